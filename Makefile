@@ -1,0 +1,176 @@
+# shoal: build, test, install. `make help` lists the targets.
+#
+#   V=1           print the commands
+#   SANITIZE=1    build and test in build-sanitize with the address and undefined behaviour sanitizers
+#   TEST="rod x"  let `make test` run tests/test_rod.c and tests/test_x.sh only
+
+VERSION = 0.1.0
+
+prefix = /usr/local
+CC     = gcc
+PYTHON = /usr/bin/python3
+
+CPPFLAGS =
+CFLAGS   = -O3 -g
+LDFLAGS  =
+
+SHELL = /bin/bash
+.SHELLFLAGS = -euo pipefail -c
+.DELETE_ON_ERROR:
+.SUFFIXES:
+.DEFAULT_GOAL = all
+
+ifdef SANITIZE
+B = build-sanitize
+CFLAGS = -O1 -g
+# gcc 12 warns of variables that may be unset where the sanitizer's own code hides how they are set
+sanitize = -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer -Wno-maybe-uninitialized
+else
+B = build
+sanitize =
+endif
+
+ifdef V
+quiet =
+say = @:
+else
+quiet = @
+say = @printf '  %-4s %s\n'
+endif
+
+# -iquote, not -I: <yaml.h> is the library's header and "yaml.h" is ours. _XOPEN_SOURCE=700 is POSIX 2008 with M_PI.
+# The results must not depend on the machine: nothing that reorders sums or fuses operations belongs here.
+shoal_cppflags = -D_XOPEN_SOURCE=700 -iquote src -iquote include -isystem /usr/include/suitesparse $(CPPFLAGS)
+shoal_cflags   = -std=c11 -ffp-contract=off -fno-math-errno -fopenmp -Wall -Wextra -Wconversion -Wshadow -Werror \
+                 $(sanitize) $(CFLAGS)
+libraries      = -lsundials_ida -lsundials_kinsol -lsundials_arkode -lsundials_sunlinsolklu \
+                 -lsundials_sunmatrixsparse -lsundials_nvecserial -lklu -lamd -lcolamd -lbtf -lsuitesparseconfig \
+                 -lnetcdf -lyaml -lz -lm
+
+library = $(B)/libshoal.a
+program = $(B)/shoal
+
+library_objects = $(patsubst src/%.c,$(B)/%.o,$(filter-out src/main.c,$(wildcard src/*.c)))
+
+test_names   = $(or $(TEST),*)
+c_tests      = $(patsubst tests/%.c,$(B)/tests/%,$(wildcard $(test_names:%=tests/test_%.c)))
+shell_tests  = $(wildcard $(test_names:%=tests/test_%.sh))
+test_helpers = $(patsubst tests/%.c,$(B)/tests/%.o,$(filter-out tests/test_%,$(wildcard tests/*.c)))
+
+generated_docs = $(B)/doc/cases.md $(B)/doc/output.md
+c_files        = $(wildcard src/*.[ch] include/*.h tests/*.[ch])
+
+# "commit" or "commit-dirty"; of this folder's own repository, not of one that happens to lie around it
+commit := $(shell test -e .git && git describe --always --dirty --abbrev=12 --exclude='*' 2>/dev/null || echo unknown)
+
+# make again, on all cores unless told otherwise
+parallel = $(MAKE) --no-print-directory $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
+
+.PHONY: all demo test tests bench style format docs install uninstall clean deps help FORCE
+
+## Everyday
+
+all: $(program)  ## build build/shoal and build/libshoal.a
+
+demo: deps  ## install what is missing, build, swim: demo.nc and demo.png
+	@$(parallel) all
+	@$(program) demo
+
+test: deps  ## install what is missing, build, run every test
+	@$(parallel) tests
+	@scripts/run-tests.sh $(program) $(c_tests) $(shell_tests)
+
+bench: $(program)  ## measure time, memory and counts of the benchmark cases
+	@scripts/bench.sh $(program)
+
+clean:  ## remove everything that was built
+	$(quiet)rm -rf build build-sanitize
+
+help:  ## this list
+	@awk -F '  +## ' '/^## / { print "\n" substr($$0, 4) } \
+	    /^[a-z]+:.*  ## / { sub(/:.*/, "", $$1); printf "  make %-10s %s\n", $$1, $$2 }' Makefile
+	@printf '\nVariables\n'; sed -n 's/^#   \([A-Z]\)/  \1/p' Makefile
+
+## For developers
+
+style: $(program) $(generated_docs)  ## check format, layers, names and the generated documents
+	@clang-format --dry-run -Werror $(c_files)
+	@scripts/check-layers.sh
+	@scripts/check-names.sh $(B)
+	@for document in $(generated_docs:$(B)/%=%); do \
+	    diff -u "$$document" "$(B)/$$document" || { echo "$$document is out of date: run 'make docs'" >&2; exit 1; }; \
+	done
+
+format:  ## lay out all C files as `make style` wants them
+	$(quiet)clang-format -i $(c_files)
+
+docs: $(generated_docs)  ## write doc/cases.md and doc/output.md from the tables of the program
+	$(quiet)cp $^ doc/
+
+deps:  ## install the packages that are missing (nothing to do: no output)
+	@scripts/install-deps.sh
+
+## Installation: prefix=/usr/local DESTDIR=
+
+install: $(program) $(library)  ## install program, library, header, cases, scripts and documents
+	$(say) INST '$(DESTDIR)$(prefix)'
+	$(quiet)install -d $(addprefix '$(DESTDIR)$(prefix)'/,bin include lib/pkgconfig $(addprefix share/shoal/,cases scripts doc))
+	$(quiet)install -m 755 $(program) '$(DESTDIR)$(prefix)/bin'
+	$(quiet)install -m 644 include/shoal.h '$(DESTDIR)$(prefix)/include'
+	$(quiet)install -m 644 $(library) '$(DESTDIR)$(prefix)/lib'
+	$(quiet)install -m 644 cases/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases'
+	$(quiet)install -m 755 $(filter-out scripts/make-%,$(wildcard scripts/*.py)) '$(DESTDIR)$(prefix)/share/shoal/scripts'
+	$(quiet)install -m 644 LICENSE doc/*.md '$(DESTDIR)$(prefix)/share/shoal/doc'
+	$(quiet)printf '%s\n' 'prefix=$(prefix)' 'Name: shoal' 'Description: Swimming of fish and schools with their wakes' \
+	    'Version: $(VERSION)' 'Cflags: -I$${prefix}/include' 'Libs: -L$${prefix}/lib -lshoal $(libraries) -fopenmp' \
+	    >'$(DESTDIR)$(prefix)/lib/pkgconfig/shoal.pc'
+
+uninstall:  ## remove what `make install` installed
+	$(quiet)rm -f $(addprefix '$(DESTDIR)$(prefix)'/,bin/shoal include/shoal.h lib/libshoal.a lib/pkgconfig/shoal.pc)
+	$(quiet)rm -rf '$(DESTDIR)$(prefix)/share/shoal'
+
+# ---- rules ----
+
+$(program): $(B)/main.o $(library)
+	$(say) LD $@
+	$(quiet)$(CC) $(shoal_cflags) $(LDFLAGS) -o $@ $^ $(libraries)
+
+$(library): $(library_objects)
+	$(say) AR $@
+	$(quiet)rm -f $@
+	$(quiet)$(AR) rcs $@ $^
+
+$(B)/%.o: src/%.c Makefile | $(B)/tests
+	$(say) CC $<
+	$(quiet)$(CC) $(shoal_cppflags) $(shoal_cflags) -MMD -MP -c -o $@ $<
+
+$(B)/version.o: shoal_cppflags += -DSHOAL_VERSION='"$(VERSION)"' -DSHOAL_COMMIT='"$(commit)"'
+$(B)/version.o: $(B)/commit
+
+# rewritten only when the commit changes
+$(B)/commit: FORCE | $(B)/tests
+	@echo '$(commit)' | cmp -s - $@ || echo '$(commit)' >$@
+
+tests: $(program) $(c_tests)
+
+$(B)/tests/%.o: tests/%.c Makefile | $(B)/tests
+	$(say) CC $<
+	$(quiet)$(CC) $(shoal_cppflags) -iquote tests $(shoal_cflags) -MMD -MP -c -o $@ $<
+
+# A test that defines __wrap_calloc receives every calloc of the program, and finds the true one as __real_calloc.
+$(B)/tests/test_%: $(B)/tests/test_%.o $(test_helpers) $(library)
+	$(say) LD $@
+	$(quiet)$(CC) $(shoal_cflags) $(LDFLAGS) \
+	    $$(nm $(filter %.o,$^) | sed -n 's/.* T __wrap_\(.*\)/-Wl,--wrap=\1/p') -o $@ $^ -lcmocka $(libraries)
+
+$(B)/doc/cases.md: $(program) scripts/make-cases-doc.py | $(B)/tests
+	$(quiet)$(program) keys --json | $(PYTHON) scripts/make-cases-doc.py >$@
+
+$(B)/doc/output.md: $(program) scripts/make-output-doc.py | $(B)/tests
+	$(quiet)$(program) keys --output --json | $(PYTHON) scripts/make-output-doc.py >$@
+
+$(B)/tests:
+	@mkdir -p $@ $(B)/doc
+
+.PRECIOUS: $(B)/tests/%.o
+-include $(wildcard $(B)/*.d $(B)/tests/*.d)

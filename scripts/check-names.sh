@@ -1,0 +1,53 @@
+#!/usr/bin/env bash
+# Check the names and the text of the sources.
+#
+#   scripts/check-names.sh [BUILD]      BUILD: the folder with the objects, build by default
+#
+# - what src/x.c and src/x_more.c share begins with x_ (main.c shares nothing else than main);
+# - tests do not use cmocka's assert_float_equal, which compares in single precision: NEAR of tests/near.h does not;
+# - no tabs (but in the Makefile) and no blanks at the end of a line.
+set -euo pipefail
+
+cd "$(dirname "$0")/.."
+build=${1:-build}
+
+n_errors=0
+complain() {
+    echo "$1" >&2
+    n_errors=$((n_errors + 1))
+}
+
+# Names with a dot or two leading underscores are the compiler's own.
+for source in src/*.c; do
+    stem=$(basename "$source" .c)
+    object=$build/$stem.o
+    if [[ ! -e $object ]]; then
+        complain "$source: error: there is no $object: run 'make' first"
+        continue
+    fi
+    prefix=${stem%%_*}_
+    [[ $stem != main ]] || prefix=main
+    while read -r name; do
+        [[ $name == "$prefix"* ]] ||
+            complain "$source: error: '$name' is shared and does not begin with '$prefix': rename it or make it static"
+    done < <(nm --defined-only --extern-only --format=posix "$object" | awk '$1 !~ /\.|^__/ { print $1 }')
+done
+
+# complain of each line of the files that matches
+refuse() {  # pattern, what to say, files
+    local pattern=$1 remedy=$2 place
+    shift 2
+    while read -r place; do
+        complain "$place: error: $remedy"
+    done < <(grep -noP -- "$pattern" "$@" /dev/null | cut -d: -f1,2)
+}
+
+shopt -s nullglob
+refuse 'assert_float_(not_)?equal' 'this compares in single precision: use NEAR' tests/*.c
+text=(src/*.[ch] include/*.h tests/*.[ch] tests/*.sh scripts/*.sh scripts/*.py cases/*.yaml doc/*.md README.md .ci/run)
+existing=()
+for file in "${text[@]}" Makefile; do [[ ! -e $file ]] || existing+=("$file"); done
+refuse '[ \t]+$' 'blank at the end of the line' "${existing[@]}"
+refuse '\t' 'tab: use spaces' "${existing[@]/#Makefile//dev/null}"
+
+((n_errors == 0)) || { echo "names: $n_errors errors" >&2; exit 1; }

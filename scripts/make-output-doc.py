@@ -1,0 +1,133 @@
+#!/usr/bin/python3
+"""Write doc/output.md: reads what `shoal keys --output --json` prints on stdin, writes markdown on stdout."""
+
+import json
+import sys
+
+INTRODUCTION = """\
+# The result file
+
+<!-- Written by `make docs` from the table in src/store_table.c and the words in scripts/make-output-doc.py. -->
+
+`shoal run CASE` writes one NetCDF file, in the classic format with 64-bit sizes (CDF-5): every NetCDF library since
+4.4 reads it, and a run that is killed or fills the disk loses none of the rows written before. The file contains all
+that a picture needs and the case itself.
+
+## Opening it
+
+    shoal info demo.nc                 # a summary: status, fish, last values, work of the solver
+    ncdump -h demo.nc                  # everything that is in the file
+    ncdump -v speed,heading demo.nc
+
+Python (`apt install python3-xarray python3-netcdf4`):
+
+    import xarray
+    run = xarray.open_dataset("demo.nc")
+    run.speed.plot.line(x="time")                       # one line per fish
+    nose = run.x.isel(fish=0, node=0)                   # (time, xy)
+    run.swap_dims(fish="fish_name").speed.sel(fish_name="leader")
+
+Octave (`pkg load netcdf`) and MATLAB; both list the dimensions in the opposite order:
+
+    t = ncread("demo.nc", "time");
+    x = ncread("demo.nc", "x");                         % (xy, node, fish, time)
+    plot(squeeze(x(1, 1, 1, :)), squeeze(x(2, 1, 1, :)))  % path of the first fish's nose
+
+Pictures: `scripts/plot.py demo.nc`, `scripts/plot.py time demo.nc`, `scripts/animate.py demo.nc demo.mp4`.
+
+## Shapes
+
+| dimension | length |
+|---|---|
+| `time` | rows written so far: one per `time.output_interval`, the first at t = 0 |
+| `fish` | fish, in the order of the case |
+| `node`, `edge`, `joint` | of the fish with most nodes N: N, N - 1, N - 2; node 0 is the nose |
+| `sheet` | bound vortices of the fish with most of them |
+| `vortex` | slots for free vortices: the most that one fish can own |
+| `xy` | 2: x, then y |
+| `name` | bytes of the longest name of a fish |
+
+A shorter fish uses the first slots only, `n_nodes`, `n_edges`, `n_joints`, `n_sheet` of them. All other slots hold NaN,
+which is the `_FillValue` too; a derived quantity that is not defined yet (a mean over a beat in the first beat, the
+distance between the bodies of one fish) is NaN as well.
+
+The wake: `wake_count` says how many free vortices a fish owns; they stand in the first slots, oldest first. A vortex
+moves up when an older one is removed, so a slot is not a vortex; `wake_birth` tells them apart. With
+`output.wake_interval` longer than `time.output_interval` the rows between hold NaN in `wake_x`, `wake_circulation` and
+`wake_birth`; `wake_count` is always right. `wake_circulation` is what was shed; what counts in the flow fades over the
+last `wake_fade` seconds of `wake_lifetime` (doc/model.md, section 8). The vortex that grows at the tail has no slot
+until it is released.
+
+`output.precision: single` stores the variables marked "double or float" as float, which halves the file; time and
+derived quantities stay double.
+
+## While it is being written
+
+Each row shows up when it is complete: the file can be opened at any time, also by several readers. A reader that keeps
+it open sees new rows after it has opened it anew. The attribute `run_status` says how things stand:
+
+| `run_status` | meaning |
+|---|---|
+| `running` | the run goes on, or was killed |
+| `complete` | the run reached `time.end` |
+| `stopped` | a signal stopped it; the rows are good |
+| `failed: ...` | the solver or the disk gave up, for this reason; the rows are good |
+
+## Repeating a run
+
+Attribute `case_effective` is the whole case with every key, its includes, preset and `--set` worked in; `case_text` is
+the case file as it was written. `source` names the program, its commit and its libraries, `history` the command.
+
+    shoal info --case demo.nc > again.yaml
+    shoal run again.yaml
+
+gives the same numbers, bit for bit with the same program (only `wall_time` and `history` differ).
+
+## Attributes
+
+| attribute | contents |
+|---|---|
+| `Conventions` | CF-1.10 |
+| `title` | name of the case |
+| `history` | when the file was made, by which command |
+| `source` | program, commit, versions of the libraries |
+| `shoal_schema` | 1; a program that meets another number does not know the file |
+| `run_status`, `case_text`, `case_effective` | see above |
+
+Every variable has `long_name` and, unless it is text, `units`. `fish_name`, `node_arc` and `sheet_arc` are coordinates.
+"""
+
+# Title of a section, and which variables belong to it, by their dimensions.
+SECTIONS = [
+    ("Constants", lambda dimensions: "time" not in dimensions),
+    ("Bodies, sheets and wakes", lambda dimensions: {"node", "joint", "sheet", "vortex"} & set(dimensions)),
+    ("Each fish", lambda dimensions: "fish" in dimensions),
+    ("The school and the solver", lambda dimensions: True),
+]
+
+
+def section_of(variable):
+    """The title of the first section that takes the variable."""
+    return next(title for title, takes in SECTIONS if takes(variable["dimensions"]))
+
+
+def table(variables):
+    """The rows of a markdown table."""
+    yield "| variable | dimensions | unit | type | meaning |"
+    yield "|---|---|---|---|---|"
+    for variable in variables:
+        cells = [variable[key] for key in ("unit", "type", "meaning")]
+        yield "| " + " | ".join([f"`{variable['name']}`", ", ".join(variable["dimensions"]), *cells]) + " |"
+
+
+def main():
+    variables = json.load(sys.stdin)
+    print(INTRODUCTION)
+    print("## Variables")
+    for title, _ in SECTIONS:
+        print(f"\n### {title}\n")
+        print("\n".join(table(v for v in variables if section_of(v) == title)))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,296 @@
+#!/usr/bin/python3
+"""Make a picture from a result file of shoal. The ending of the picture's name decides its kind: .png .svg .pdf
+
+    plot.py [swim] RUN.nc [PICTURE]    bodies, wakes and the paths of the fish, at the end or at --times 1 2 3
+    plot.py gait   RUN.nc [PICTURE]    the shapes that the muscle asks for, over the last beat
+    plot.py time   RUN.nc [PICTURE]    speed, heading and power over time; with --audit the energy audit too
+"""
+
+import argparse
+import math
+import os
+import sys
+
+from shoal_results import EXIT_FILE, EXIT_USAGE, FileError, Results, np, stop
+
+try:
+    import matplotlib
+except ImportError as missing:
+    stop(f"{missing}: apt install python3-matplotlib, and run this with /usr/bin/python3", EXIT_FILE)
+
+matplotlib.use("Agg")
+from matplotlib import pyplot  # noqa: E402
+from matplotlib.collections import PolyCollection  # noqa: E402
+from matplotlib.lines import Line2D  # noqa: E402
+
+# The ends of the red-blue scale of ColorBrewer: told apart by colour-blind eyes, and dark and light in grey.
+RED, BLUE = "#b2182b", "#4393c3"
+BODY, BODY_EDGE, PATH = "#d9d9d9", "#222222", "#555555"
+# Okabe and Ito's colours, in an order that falls from dark to light in grey.
+LINES = ["#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"]
+
+STYLE = {
+    "font.size": 9,
+    "axes.linewidth": 0.6,
+    "axes.labelsize": 9,
+    "xtick.direction": "in",
+    "ytick.direction": "in",
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "legend.frameon": False,
+    "legend.fontsize": 8,
+    "svg.fonttype": "none",
+    "pdf.fonttype": 42,
+    "savefig.dpi": 200,
+    "savefig.bbox": "tight",
+    "savefig.pad_inches": 0.05,
+}
+WIDTH = 7.0  # of a picture, inches: two columns of a journal
+
+
+class Snapshot:
+    """Bodies, wakes and paths of one row, drawn on axes; show() moves everything to another row."""
+
+    def __init__(self, axes, results, dot=9.0):
+        self.results, self.dot = results, dot
+        self.strongest = strongest_vortex(results)
+        self.com = results["com"]
+        self.wake = axes.scatter([], [], linewidths=0, zorder=2)
+        self.paths = [axes.plot([], [], color=PATH, lw=0.8, dashes=(5, 3), zorder=1)[0] for _ in results.names]
+        self.bodies = PolyCollection([], facecolors=BODY, edgecolors=BODY_EDGE, linewidths=0.7, zorder=3)
+        axes.add_collection(self.bodies)
+        self.clock = axes.annotate("", (1, 1), (-5, -5), "axes fraction", "offset points", ha="right", va="top")
+        self.labels = [axes.text(0, 0, name, size=7, ha="center", va="bottom", zorder=4) for name in names(results)]
+        axes.set_aspect("equal")
+        axes.set_xlabel("x [m]")
+        axes.set_ylabel("y [m]")
+
+    def show(self, row):
+        """Draw the state of a row."""
+        outlines = [self.results.outline(row, f) for f in range(self.results.n_fish)]
+        self.bodies.set_verts(outlines)
+        for label, outline in zip(self.labels, outlines):
+            label.set_position((outline[:, 0].mean(), outline[:, 1].max() + 0.03 * np.ptp(outline, axis=0).max()))
+        for f, path in enumerate(self.paths):
+            path.set_data(*self.com[: row + 1, f].T)
+        position, circulation = self.results.wake(row)
+        share = np.minimum(np.abs(circulation) / self.strongest, 1)
+        self.wake.set_offsets(position)
+        self.wake.set_sizes(self.dot * (0.15 + 0.85 * share))
+        self.wake.set_facecolors(wake_colours(circulation, share))
+        self.clock.set_text(f"$t$ = {self.results.time[row]:.2f} s")
+
+
+def names(results):
+    """The names of the fish as a picture needs them: none where there is one fish only."""
+    return results.names if results.n_fish > 1 else [""]
+
+
+def strongest_vortex(results):
+    """What the size of a dot is relative to: all but the strongest hundredth of the vortices are weaker."""
+    circulation = np.abs(results["wake_circulation"])
+    circulation = circulation[np.isfinite(circulation)]
+    return max(np.quantile(circulation, 0.99) if circulation.size else 0.0, 1e-300)
+
+
+def wake_colours(circulation, share):
+    """Red for counter-clockwise and blue for clockwise vortices; weak ones are lighter."""
+    colours = np.empty((circulation.size, 4))
+    colours[:] = matplotlib.colors.to_rgba(BLUE)
+    colours[circulation > 0] = matplotlib.colors.to_rgba(RED)
+    colours[:, 3] = 0.25 + 0.75 * share
+    return colours
+
+
+def limits(results, rows, with_paths=True, margin=0.4):
+    """The window that holds bodies and wakes of some rows, and the paths up to them: x0, x1, y0, y1."""
+    points = [results.wake(row)[0] for row in rows]
+    points += [results.outline(row, f) for row in rows for f in range(results.n_fish)]
+    if with_paths:
+        points.append(results["com"][: max(rows) + 1].reshape(-1, 2))
+    points = np.concatenate(points)
+    margin *= float(np.nanmax(results["body_length"]))
+    (x0, y0), (x1, y1) = np.nanmin(points, axis=0) - margin, np.nanmax(points, axis=0) + margin
+    return x0, x1, y0, y1
+
+
+def add_legend(axes, handles):
+    """What colours and lines mean, in one row above a panel; returns the legend."""
+    legend = axes.legend(
+        handles=handles, loc="lower left", bbox_to_anchor=(0, 1), ncol=len(handles), borderpad=0, columnspacing=1.5
+    )
+    legend.set_in_layout(False)  # it may be wider than its panel
+    return legend
+
+
+def swim_handles():
+    """What is drawn in a snapshot, for its legend."""
+    dot = {"ls": "", "marker": "o", "ms": 4, "mew": 0}
+    return [
+        Line2D([], [], color=RED, label="counter-clockwise vortex", **dot),
+        Line2D([], [], color=BLUE, label="clockwise vortex", **dot),
+        Line2D([], [], color=PATH, lw=0.8, dashes=(5, 3), label="path of the centre of mass"),
+    ]
+
+
+def panel_grid(n, window):
+    """Panels for n pictures of one window: rows, columns, and the height of one in inches."""
+    shape = (window[3] - window[2]) / (window[1] - window[0])
+    n_columns = 1 if shape < 0.4 else min(n, 2 if shape < 1.2 else 3)
+    return math.ceil(n / n_columns), n_columns, min((WIDTH - 0.6) / n_columns * shape, 8)
+
+
+def panels(n, n_rows, n_columns, height):
+    """A figure with n panels that share their axes."""
+    figure, grid = pyplot.subplots(
+        n_rows,
+        n_columns,
+        sharex=True,
+        sharey=True,
+        squeeze=False,
+        layout="compressed",
+        figsize=(WIDTH, n_rows * (height + 0.1) + 0.5),
+    )
+    for axes in grid.flat[n:]:
+        axes.set_visible(False)
+    return figure, list(grid.flat[:n])
+
+
+def plot_swim(results, options):
+    """Bodies, wakes and paths: one panel per time."""
+    with_wake = results.rows_with_wake()
+    rows = [results.nearest(t, with_wake) for t in options.times or [results.time[-1]]]
+    window = options.limits or limits(results, rows)
+    figure, all_axes = panels(len(rows), *panel_grid(len(rows), window))
+    for axes, row in zip(all_axes, rows):
+        Snapshot(axes, results).show(row)
+        axes.axis(window)
+        axes.label_outer()
+    add_legend(all_axes[0], swim_handles())
+    return figure
+
+
+def reference_shape(natural_curvature):
+    """Midline of length 1 with the natural curvature of the joints, the nose at 0, swimming towards -x."""
+    turning = 2 * np.arctan(natural_curvature / 2)
+    angle = np.concatenate([[0], np.cumsum(turning)])
+    edges = np.column_stack([np.cos(angle), np.sin(angle)]) / angle.size
+    return np.concatenate([[[0, 0]], np.cumsum(edges, axis=0)])
+
+
+def beat_rows(results, fish, n):
+    """About n rows that share the last beat of a fish out evenly."""
+    frequency = results["frequency"][fish]
+    if not frequency > 0:
+        raise FileError(f"{results.path}: {results.names[fish]} does not beat (wave.frequency is 0)")
+    rows = np.flatnonzero(results.time > results.time[-1] - (1 - 1e-6) / frequency)
+    if rows.size < 6:
+        raise FileError(f"{results.path}: {rows.size} rows per beat are too few: make time.output_interval smaller")
+    return rows[:: max(1, round(rows.size / n))]
+
+
+def plot_gait(results, options):
+    """The reference shapes of each fish over its last beat, one panel per fish."""
+    n_columns = min(results.n_fish, 3)
+    figure, all_axes = panels(results.n_fish, math.ceil(results.n_fish / n_columns), n_columns, 4.5 / n_columns)
+    colours = matplotlib.colors.ListedColormap(matplotlib.colormaps["viridis"](np.linspace(0, 0.9, 256)))
+    for fish, axes in enumerate(all_axes):
+        rows = beat_rows(results, fish, options.shapes)
+        for row in rows:
+            curvature = results.read("natural_curvature", row)[fish, : results.n_nodes[fish] - 2]
+            phase = (results.time[row] - results.time[rows[0]]) * results["frequency"][fish]
+            axes.plot(*reference_shape(curvature).T, color=colours(phase), lw=1, marker="o", ms=1.8)
+        axes.set_title(results.names[fish], size=9)
+        axes.set_aspect("equal")
+        axes.set_xlabel("x / body length")
+        axes.set_ylabel("y / body length")
+        axes.label_outer()
+    scale = matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(0, 1), colours)
+    figure.colorbar(scale, ax=all_axes, label="time / period", aspect=15, pad=0.02)
+    return figure
+
+
+def plot_time(results, options):
+    """Speed, heading and power over time in stacked panels, one line per fish."""
+    rows = [("speed", "speed [m/s]"), ("heading", "heading [degree]"), ("actuation_power", "muscle power [W]")]
+    if options.audit:
+        rows.append(("energy_audit", "energy audit [J]"))
+    figure, stack = pyplot.subplots(
+        len(rows), 1, sharex=True, layout="constrained", figsize=(WIDTH, 0.5 + 1.5 * len(rows))
+    )
+    for axes, (variable, label) in zip(stack, rows):
+        for f, values in enumerate(results[variable].T):
+            axes.plot(results.time, values, color=LINES[f % len(LINES)], lw=1, label=results.names[f])
+        axes.set_ylabel(label)
+        axes.grid(lw=0.3, color="#cccccc")
+        axes.margins(x=0)
+    for f, desired in enumerate(results["desired_heading"].T):
+        stack[1].plot(results.time, desired, color=LINES[f % len(LINES)], lw=1, ls="--", zorder=3)
+    stack[-1].set_xlabel("time [s]")
+    figure.align_ylabels(stack)
+    handles = stack[0].get_legend_handles_labels()[0] if results.n_fish > 1 else []
+    add_legend(stack[0], [*handles, Line2D([], [], color="black", lw=1, ls="--", label="desired heading")])
+    return figure
+
+
+# What the first word of the command line may be: the function, and a line of help.
+PICTURES = {
+    "swim": (plot_swim, "bodies, wakes and paths (the default)"),
+    "gait": (plot_gait, "the shapes that the muscle asks for, over one beat"),
+    "time": (plot_time, "speed, heading and power over time"),
+}
+
+
+def parse(arguments):
+    """The options of the command line; without a kind of picture the kind is swim."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    kinds = parser.add_subparsers(dest="kind", metavar="KIND", required=True)
+    options = {}
+    for kind, (_, words) in PICTURES.items():
+        options[kind] = kinds.add_parser(kind, help=words)
+        options[kind].add_argument("results", metavar="RUN.nc")
+        options[kind].add_argument("picture", metavar="PICTURE", nargs="?", help="default: RUN.png in this folder")
+    options["swim"].add_argument("--times", type=float, nargs="+", metavar="T", help="one panel per time [s]")
+    options["swim"].add_argument(
+        "--limits", type=float, nargs=4, metavar=("X0", "X1", "Y0", "Y1"), help="the window shown [m]"
+    )
+    options["gait"].add_argument("--shapes", type=int, default=12, help="how many shapes to draw (12)")
+    options["time"].add_argument("--audit", action="store_true", help="add the energy audit")
+    if arguments and arguments[0] not in (*PICTURES, "-h", "--help"):
+        arguments = ["swim", *arguments]
+    return parser.parse_args(arguments)
+
+
+def check_folder(path):
+    """Refuse a picture or movie in a folder that does not exist, before any work is done."""
+    folder = os.path.dirname(path) or "."
+    if not os.path.isdir(folder):
+        stop(f"{path}: there is no folder {folder}", EXIT_FILE)
+
+
+def save(figure, path):
+    """Write the picture; a message where that fails."""
+    legends = [axes.get_legend() for axes in figure.axes if axes.get_legend()]
+    try:
+        figure.savefig(path, bbox_extra_artists=[*figure.get_default_bbox_extra_artists(), *legends])
+    except ValueError as error:  # an unknown ending
+        stop(f"{path}: {error}", EXIT_USAGE)
+    except OSError as error:
+        stop(f"{path}: cannot be written: {error.strerror}", EXIT_FILE)
+
+
+def main(arguments):
+    options = parse(arguments)
+    picture = options.picture or os.path.splitext(os.path.basename(options.results))[0] + ".png"
+    check_folder(picture)
+    with matplotlib.rc_context(STYLE):
+        try:
+            figure = PICTURES[options.kind][0](Results(options.results), options)
+        except FileError as error:
+            stop(error, EXIT_FILE)
+        save(figure, picture)
+    print(picture)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

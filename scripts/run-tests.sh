@@ -1,0 +1,117 @@
+#!/usr/bin/env bash
+# Run test programs and say how it went.
+#
+#   scripts/run-tests.sh PROGRAM TEST...
+#
+# A TEST that ends in .sh is a shell test: it gets PROGRAM as its argument and ends with "N passed, N failed, N skipped".
+# Any other TEST is a cmocka program. Two run at a time; the report keeps the given order, with the whole output of what
+# failed. A test that crashes, exits early, runs longer than the limit or tests nothing has failed.
+# The last line printed is the sum: "N passed, N failed, N skipped".
+set -euo pipefail
+
+readonly time_limit=300  # seconds for one test
+readonly at_once=2
+
+if (($# < 1)); then
+    echo "usage: scripts/run-tests.sh PROGRAM TEST..." >&2
+    exit 2
+fi
+program=$1
+shift
+tests=("$@")
+
+folder=$(mktemp -d)
+stop() {
+    local pids
+    mapfile -t pids < <(jobs -p)
+    ((${#pids[@]} == 0)) || kill "${pids[@]}" 2>/dev/null || true
+    rm -rf "$folder"
+}
+trap stop EXIT
+trap 'exit 130' INT TERM
+
+# the sanitizers, when built in: show the stack, also where cmocka would catch the signal
+export UBSAN_OPTIONS=print_stacktrace=1 ASAN_OPTIONS=handle_segv=2:handle_sigfpe=2
+
+# Sums of a cmocka program: "passed failed skipped". What was announced and neither passed nor was skipped has failed.
+count_cmocka() {
+    awk '/^\[==========\] Running [0-9]+ test/ { announced += $3; running = 1 }
+         /^\[==========\] [0-9]+ test\(s\) run/ { running = 0 }
+         running && /\[       OK \]/ { passed++ }
+         running && /\[  SKIPPED \]/ { skipped++ }
+         END { print passed + 0, announced - passed - skipped, skipped + 0 }' "$1"
+}
+
+# Sums of a shell test: its last line.
+count_shell() {
+    local counts
+    counts=$(tail -n 1 "$1" | sed -n 's/^\([0-9]\+\) passed, \([0-9]\+\) failed, \([0-9]\+\) skipped$/\1 \2 \3/p')
+    echo "${counts:-0 0 0}"
+}
+
+# Start test number $1 in the background; standard input is empty, so that nothing can wait for an answer.
+start() {
+    local command=("${tests[$1]}")
+    [[ ${tests[$1]} != *.sh ]] || command=(bash "${tests[$1]}" "$program")
+    started[$1]=$EPOCHREALTIME
+    timeout --kill-after=10 "$time_limit" "${command[@]}" >"$folder/$1" 2>&1 </dev/null &
+    number_of[$!]=$1
+}
+
+# Print the line of test number $1, and its output if it failed; add to the sums.
+report() {
+    local name=${tests[$1]} code=${exit_code[$1]} passed failed skipped note=''
+    case $name in
+        *.sh) read -r passed failed skipped < <(count_shell "$folder/$1") ;;
+        *) read -r passed failed skipped < <(count_cmocka "$folder/$1") ;;
+    esac
+    if ((code == 124 || code == 137)); then
+        note="stopped after $time_limit s"
+    elif ((code > 128)); then
+        note="died of signal $((code - 128))"
+    elif ((passed + failed + skipped == 0)); then
+        note="ran no test (exit code $code)"
+    elif ((code != 0 && failed == 0)); then
+        note="exit code $code"
+    fi
+    if [[ -n $note ]] && ((failed == 0)); then failed=1; fi
+
+    ((failed == 0)) || sed 's/^/    /' "$folder/$1"
+    printf '%-34s %4d passed %3d failed %3d skipped %7s s%s\n' "${name##*/}" "$passed" "$failed" "$skipped" \
+        "${seconds[$1]}" "${note:+  $note}"
+    all_passed=$((all_passed + passed))
+    all_failed=$((all_failed + failed))
+    all_skipped=$((all_skipped + skipped))
+}
+
+declare -A number_of
+started=() exit_code=() seconds=()
+all_passed=0 all_failed=0 all_skipped=0
+next=0 shown=0 running=0
+while ((shown < ${#tests[@]})); do
+    while ((running < at_once && next < ${#tests[@]})); do
+        start "$next"
+        next=$((next + 1))
+        running=$((running + 1))
+    done
+
+    code=0
+    wait -n -p pid 2>/dev/null || code=$?  # the shell's own words on a crash are not needed
+    i=${number_of[$pid]}
+    exit_code[i]=$code
+    microseconds=$((${EPOCHREALTIME/[.,]/} - ${started[i]/[.,]/}))
+    seconds[i]=$((microseconds / 1000000)).$((microseconds / 100000 % 10))
+    running=$((running - 1))
+
+    while ((shown < ${#tests[@]})) && [[ -n ${exit_code[shown]-} ]]; do
+        report "$shown"
+        shown=$((shown + 1))
+    done
+done
+
+if ((all_passed + all_failed + all_skipped == 0)); then
+    echo "no test was found" >&2
+    all_failed=1
+fi
+echo "$all_passed passed, $all_failed failed, $all_skipped skipped"
+((all_failed == 0))

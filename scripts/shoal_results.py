@@ -1,0 +1,157 @@
+#!/usr/bin/python3
+"""Read a result file of shoal: bodies, wakes and time series as numpy arrays. Used by plot.py and animate.py.
+
+    from shoal_results import Results
+    results = Results("demo.nc")
+    results.time, results["speed"], results.outline(row=-1, fish=0)
+"""
+
+import os
+import sys
+
+EXIT_USAGE, EXIT_FILE = 2, 4  # as the program itself: doc/cases.md
+
+
+def stop(message, code):
+    """End with one message on stderr."""
+    print(f"{os.path.basename(sys.argv[0])}: {message}", file=sys.stderr)
+    sys.exit(code)
+
+
+try:
+    import netCDF4
+    import numpy as np
+except ImportError as missing:
+    stop(f"{missing}: apt install python3-netcdf4 python3-matplotlib, and run this with /usr/bin/python3", EXIT_FILE)
+
+
+class FileError(Exception):
+    """A file cannot be read or is not a result of shoal; the text says which and why."""
+
+
+class Results:
+    """A result file. Indexing with the name of a variable reads all of it, NaN where a slot is unused."""
+
+    def __init__(self, path):
+        self.path = path
+        self.data = open_dataset(path)
+        self.time = self["time"]
+        if self.time.size == 0:
+            raise FileError(f"{path}: the run has not written a row yet")
+        self.n_fish = self.data.dimensions["fish"].size
+        self.names = list(self["fish_name"])
+        self.n_nodes = self["n_nodes"].astype(int)
+        self.edge_height = self["edge_height"]
+        self.title = getattr(self.data, "title", "")
+
+    def __getitem__(self, name):
+        return self.read(name)
+
+    def read(self, name, row=slice(None)):
+        """A variable, or the given rows of it."""
+        if name not in self.data.variables:
+            raise FileError(f"{self.path}: there is no variable {name} in it")
+        return np.ma.filled(self.data.variables[name][row], np.nan)
+
+    def nearest(self, time, rows=None):
+        """The row nearest to a time, among the given rows."""
+        rows = np.arange(self.time.size) if rows is None else np.asarray(rows)
+        return int(rows[np.argmin(np.abs(self.time[rows] - time))])
+
+    def nodes(self, row, fish):
+        """Positions of the nodes of one fish (n_nodes, 2)."""
+        return self.read("x", row)[fish, : self.n_nodes[fish]]
+
+    def outline(self, row, fish):
+        """The outline of one fish as a closed polygon (n, 2)."""
+        return outline(self.nodes(row, fish), self.edge_height[fish, : self.n_nodes[fish] - 1])
+
+    def wake(self, row):
+        """All free vortices of a row: positions (n, 2) and circulations (n), faded as they count in the flow."""
+        circulation = self.read("wake_circulation", row).ravel()
+        birth = self.read("wake_birth", row).ravel()
+        position = self.read("wake_x", row).reshape(-1, 2)
+        used = np.isfinite(circulation)
+        return position[used], circulation[used] * self.remaining(self.time[row] - birth[used])
+
+    def remaining(self, age):
+        """The part of its circulation that a vortex of some age still counts with: doc/model.md, section 8."""
+        lifetime, fade = float(self["wake_lifetime"]), float(self["wake_fade"])
+        if fade == 0:
+            return np.ones_like(age)
+        return smooth_step((lifetime - age) / fade)
+
+    def rows_with_wake(self):
+        """The rows in which the wake was written, or has nothing to write."""
+        first = self.read("wake_circulation", (slice(None), slice(None), 0))
+        return np.flatnonzero(((self["wake_count"] == 0) | np.isfinite(first)).all(axis=1))
+
+
+def open_dataset(path):
+    """The open NetCDF file, checked to be one of shoal."""
+    if not os.path.exists(path):
+        raise FileError(f"{path}: no such file")
+    if os.path.isdir(path):
+        raise FileError(f"{path}: a folder, not a result file")
+    try:
+        data = netCDF4.Dataset(path)
+    except OSError as error:
+        raise FileError(f"{path}: not a result file of shoal ({error.strerror or error})") from error
+    if not hasattr(data, "shoal_schema"):
+        raise FileError(f"{path}: a NetCDF file, but not one of shoal")
+    return data
+
+
+def smooth_step(q):
+    """0 below 0, 1 above 1, three times continuously differentiable."""
+    q = np.clip(q, 0, 1)
+    return q**4 * (35 - 84 * q + 70 * q**2 - 20 * q**3)
+
+
+def hermite(knots, values, slopes, at):
+    """The piecewise cubic through values with the given slopes at the knots (n) or (n, 2)."""
+    k = np.clip(np.searchsorted(knots, at, side="right") - 1, 0, knots.size - 2)
+    length = knots[k + 1] - knots[k]
+    q = (at - knots[k]) / length
+    if values.ndim == 2:
+        q, length = q[:, None], length[:, None]
+    return (
+        (1 + 2 * q) * (1 - q) ** 2 * values[k]
+        + q * (1 - q) ** 2 * length * slopes[k]
+        + q**2 * (3 - 2 * q) * values[k + 1]
+        - q**2 * (1 - q) * length * slopes[k + 1]
+    )
+
+
+def centreline(nodes, at):
+    """Points and unit normals of a smooth curve through the nodes, at arc coordinates from 0 to 1."""
+    knots = np.linspace(0, 1, len(nodes))
+    slopes = np.gradient(nodes, knots, axis=0, edge_order=2)
+    points = hermite(knots, nodes, slopes, at)
+    tangent = np.gradient(points, at, axis=0, edge_order=2)
+    tangent /= np.hypot(*tangent.T)[:, None]
+    return points, np.column_stack([-tangent[:, 1], tangent[:, 0]])
+
+
+def half_thickness(height, at):
+    """Half the thickness at arc coordinates from 0 to 1, from the heights of the edges; zero at nose and tail.
+
+    Over the angle whose cosine runs along the body, a blunt nose is as smooth as a sine: what is interpolated is the
+    ratio to the sine, mirrored at both ends. The height of an edge is the sum of the half thicknesses at its nodes.
+    """
+    at_nodes = np.arccos(np.linspace(1, -1, height.size + 1))
+    angle = np.arccos((np.cos(at_nodes[1:]) + np.cos(at_nodes[:-1])) / 2)
+    ratio = height / (np.sin(at_nodes[1:]) + np.sin(at_nodes[:-1]))
+    knots = np.concatenate([[-angle[0]], angle, [2 * np.pi - angle[-1]]])
+    values = np.concatenate([[ratio[0]], ratio, [ratio[-1]]])
+    slopes = np.gradient(values, knots)
+    where = np.arccos(1 - 2 * at)
+    return np.sin(where) * np.maximum(hermite(knots, values, slopes, where), 0)
+
+
+def outline(nodes, height, n=80):
+    """The outline of a body as a closed polygon: a smooth curve through the nodes, as thick as the edges are."""
+    at = (1 - np.cos(np.linspace(0, np.pi, n))) / 2  # dense at nose and tail
+    points, normals = centreline(nodes, at)
+    half = half_thickness(height, at)[:, None]
+    return np.concatenate([points + half * normals, (points - half * normals)[-2:0:-1]])

@@ -1,0 +1,87 @@
+/* flow.h: the velocity of the fluid at the points of every body and anywhere else: external flow, free sheets, nascent
+ * vortices, bound sheets. doc/model.md, sections 6 to 9. Tested by tests/test_flow.c.
+ *
+ * The points of one fish, in this order; which sheets each of them feels:
+ *
+ *     | control points (M-1)          | edge midpoints (N-1)  | tail (1)                         |
+ *     | all; own with no smoothing    | those of other fish   | all, with sheet_smoothing        |
+ *
+ * The sources: per fish one group of free vortices (the nascent one is the last) and its bound vortices. */
+#ifndef FLOW_H
+#define FLOW_H
+
+#include "fish.h"
+#include "state.h"
+#include "status.h"
+
+/* A range of an array that holds all fish, one after another. */
+struct range {
+    int first, n;
+};
+
+struct flow {
+    const struct school *school;
+    double t, since; /* time of the sources, and time since the last event, s */
+    long event;      /* whose wakes the free vortices are; -1: none gathered yet */
+
+    /* points */
+    struct range *points; /* of each fish                                           (n_fish) */
+    int n_points;
+    double *x, *y, *u, *v;   /* place, m, and velocity of the fluid, m s-1         (n_points) */
+    double *u_x, *u_y, *v_x; /* gradient, after flow_gradient, s-1                 (n_points) */
+
+    /* sources */
+    struct range *free_range; /* free vortices of each fish, the nascent one last   (n_fish) */
+    int capacity;
+    double *free_x, *free_y, *free_circulation;    /*                              (capacity) */
+    struct range *sheet_range;                     /*                              (n_fish) */
+    double *sheet_x, *sheet_y, *sheet_circulation; /*                              (bound vortices of all fish) */
+};
+
+/* Derivative of the velocity at the points of fish f with respect to the unknowns of fish g, row by row:
+ * columns are x (N_g), y (N_g), sheet (M_g), shed (1) of fish g. */
+struct flow_block {
+    int n_points, n_columns;
+    double *u, *v; /* (n_points, n_columns) */
+};
+
+/* Fails with STATUS_MEMORY. flow_free accepts NULL. */
+enum status flow_create(struct flow **flow, const struct school *school);
+void flow_free(struct flow *flow);
+
+/* Index, among the points of a fish, of the midpoint of an edge and of the tail; control point c is point c. */
+int flow_midpoint(const struct fish *fish, int edge);
+int flow_tail(const struct fish *fish);
+
+/* The unknown that column c of the block of fish other stands for. */
+int flow_column(const struct fish *other, int c);
+
+/* Whether the midpoint of an edge of fish feels column c of the block of fish other. Of its own unknowns it feels the
+ * nodes of its edge and, through the nascent vortex, the tail and the circulation shed. */
+int flow_midpoint_feels(const struct fish *fish, const struct fish *other, int edge, int c);
+
+/* The external flow at height y at time t. */
+void flow_external(const struct school *school, double t, double y, double *u, double *v);
+
+/* Place all sources as they are at time t (at or after the event of the state) for the unknowns y.
+ * Fails with STATUS_MEMORY. */
+enum status flow_place(struct flow *flow, const struct state *state, double t, const double *y);
+
+/* The wakes have changed since they were last placed. */
+void flow_forget(struct flow *flow);
+
+/* The velocity at all points of all fish; with its gradient too. After flow_place. */
+void flow_velocity(struct flow *flow);
+void flow_gradient(struct flow *flow);
+
+/* Fill block with the derivative of the velocity at the points of fish f by the unknowns of fish g. After
+ * flow_gradient. */
+void flow_derivative(const struct flow *flow, int f, int g, struct flow_block *block);
+
+/* The velocity at the free vortices of fish f that are released, in the order of its wake. After flow_place. */
+void flow_at_wake(const struct flow *flow, int f, double *u, double *v);
+
+/* The fluid's velocity past the tail of fish f, u - v_tail. After flow_velocity. */
+void flow_slip(const struct flow *flow, int f, const double *y, double slip[2]);
+
+#endif

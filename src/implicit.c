@@ -1,0 +1,231 @@
+/* implicit.c: IDA on the residual of the school. */
+#include "implicit.h"
+
+#include <ida/ida.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "bridge.h"
+#include "measure.h"
+
+/* Newton ends when its error is this part of the error test's: stiff velocities are outside that test, and an
+ * iteration that stopped at IDA's own 0.33 would leave their noise in the accelerations. Measured: doc/numerics.md. */
+static const double newton_coefficient = 0.01;
+
+struct implicit {
+    struct residual *residual;
+    struct state *state;
+    struct integrator_options options;
+    struct sparse *jacobian;
+    unsigned pattern;         /* of the residual's Jacobian that jacobian has recorded */
+    enum status failure;      /* of the last callback */
+    double *tolerance, *kind; /* absolute tolerance and kind of each unknown             (n_unknowns) */
+
+    SUNContext context;
+    N_Vector y, yp, tolerances, kinds, scratch[2];
+    struct bridge_klu klu;
+    void *ida;
+    struct integrator_counts before; /* restarts set IDA's own totals to zero */
+};
+
+static int residual_callback(realtype t, N_Vector y, N_Vector yp, N_Vector value, void *data) {
+    struct implicit *const solver = data;
+    solver->failure = residual_evaluate(solver->residual, t, N_VGetArrayPointer(y), N_VGetArrayPointer(yp),
+                                        N_VGetArrayPointer(value));
+    return solver->failure;
+}
+
+static int jacobian_callback(realtype t, realtype cj, N_Vector y, N_Vector yp, N_Vector value, SUNMatrix matrix,
+                             void *data, N_Vector scratch1, N_Vector scratch2, N_Vector scratch3) {
+    (void)yp, (void)value, (void)matrix, (void)scratch1, (void)scratch2, (void)scratch3;
+    struct implicit *const solver = data;
+    if (solver->pattern != solver->residual->pattern) sparse_forget(solver->jacobian);
+    solver->pattern = solver->residual->pattern;
+    solver->failure = residual_jacobian(solver->residual, t, cj, N_VGetArrayPointer(y), solver->jacobian);
+    if (solver->failure == STATUS_OK) solver->failure = bridge_klu_copy(&solver->klu, solver->jacobian);
+    return solver->failure;
+}
+
+static void implicit_free(void *data) {
+    struct implicit *const solver = data;
+    if (!solver) return;
+    if (solver->ida) IDAFree(&solver->ida);
+    bridge_klu_free(&solver->klu);
+    const N_Vector vectors[] = {solver->y,     solver->yp,         solver->tolerances,
+                                solver->kinds, solver->scratch[0], solver->scratch[1]};
+    for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
+        if (vectors[i]) N_VDestroy(vectors[i]);
+    }
+    sparse_free(solver->jacobian);
+    free(solver->tolerance);
+    free(solver->kind);
+    if (solver->context) SUNContext_Free(&solver->context);
+    free(solver);
+}
+
+static enum status set_up_ida(struct implicit *solver) {
+    const struct school *school = solver->residual->school;
+    void *const ida = solver->ida;
+    if (IDASetErrHandlerFn(ida, bridge_message, NULL) || IDASetUserData(ida, solver) ||
+        IDAInit(ida, residual_callback, solver->state->t, solver->y, solver->yp) ||
+        IDASVtolerances(ida, 0, solver->tolerances) || IDASetId(ida, solver->kinds) || IDASetSuppressAlg(ida, 1) ||
+        IDASetLinearSolver(ida, solver->klu.solver, solver->klu.matrix) || IDASetJacFn(ida, jacobian_callback) ||
+        IDASetNonlinConvCoef(ida, newton_coefficient) || IDASetMaxOrd(ida, solver->options.order) ||
+        IDASetMaxNonlinIters(ida, 5) || IDASetMaxErrTestFails(ida, 20) || IDASetMaxConvFails(ida, 20) ||
+        IDASetMinStep(ida, 1e-10 * school->interval)) {
+        return status_fail(STATUS_SOLVER, "IDA cannot be set up: %s", status_message());
+    }
+    return STATUS_OK;
+}
+
+static enum status fill(struct implicit *solver) {
+    const int n = solver->residual->school->n_unknowns;
+    solver->tolerance = calloc((size_t)n, sizeof *solver->tolerance);
+    solver->kind = calloc((size_t)n, sizeof *solver->kind);
+    if (!solver->tolerance || !solver->kind) return status_fail(STATUS_MEMORY, "no room for %d tolerances", n);
+    residual_kinds(solver->residual, solver->kind);
+    for (int i = 0; i < n; i++) {
+        solver->tolerance[i] = solver->residual->school->rtol * residual_scale(solver->residual, i);
+    }
+    TRY(sparse_create(&solver->jacobian, n));
+    residual_mask(solver->residual, solver->jacobian);
+    TRY(bridge_context(&solver->context));
+    TRY(bridge_vector(&solver->y, solver->context, n, solver->state->y));
+    TRY(bridge_vector(&solver->yp, solver->context, n, solver->state->yp));
+    TRY(bridge_vector(&solver->tolerances, solver->context, n, solver->tolerance));
+    TRY(bridge_vector(&solver->kinds, solver->context, n, solver->kind));
+    for (int i = 0; i < 2; i++) {
+        solver->scratch[i] = N_VClone(solver->y);
+        if (!solver->scratch[i]) return status_fail(STATUS_MEMORY, "no room for a vector of %d unknowns", n);
+    }
+    TRY(bridge_klu_create(&solver->klu, solver->context, solver->y, n));
+    solver->ida = IDACreate(solver->context);
+    if (!solver->ida) return status_fail(STATUS_MEMORY, "no room for IDA");
+    return set_up_ida(solver);
+}
+
+static enum status implicit_create(void **solver, struct residual *residual, struct state *state,
+                                   const struct integrator_options *options) {
+    *solver = NULL;
+    struct implicit *const new = calloc(1, sizeof *new);
+    if (!new) return status_fail(STATUS_MEMORY, "no room for the implicit solver");
+    new->residual = residual;
+    new->state = state;
+    new->options = *options;
+    new->pattern = residual->pattern;
+    const enum status status = fill(new);
+    if (status != STATUS_OK) {
+        implicit_free(new);
+        return status;
+    }
+    *solver = new;
+    return STATUS_OK;
+}
+
+static void implicit_count(const void *data, struct integrator_counts *counts) {
+    const struct implicit *const solver = data;
+    long steps, evaluations, setups, error_failures, iterations, convergence_failures, jacobians;
+    int last_order, next_order;
+    double first_step, last_step, next_step, now;
+    *counts = solver->before;
+    IDAGetIntegratorStats(solver->ida, &steps, &evaluations, &setups, &error_failures, &last_order, &next_order,
+                          &first_step, &last_step, &next_step, &now);
+    IDAGetNonlinSolvStats(solver->ida, &iterations, &convergence_failures);
+    IDAGetNumJacEvals(solver->ida, &jacobians);
+    counts->steps += steps;
+    counts->residual_evaluations += evaluations;
+    counts->newton_iterations += iterations;
+    counts->jacobian_evaluations += jacobians;
+    counts->error_test_failures += error_failures;
+    counts->convergence_failures += convergence_failures;
+    counts->step_size = last_step;
+    counts->order = last_order;
+}
+
+static enum status implicit_restart(void *data) {
+    struct implicit *const solver = data;
+    implicit_count(solver, &solver->before);
+    residual_kinds(solver->residual, solver->kind);
+    if (IDAReInit(solver->ida, solver->state->t, solver->y, solver->yp)) {
+        return status_fail(STATUS_SOLVER, "IDA cannot start again: %s", status_message());
+    }
+    // IDA's own guess of the first step knows nothing of the body; the last step does
+    const double step = solver->before.step_size;
+    if (step > 0 && IDASetInitStep(solver->ida, step)) return STATUS_SOLVER;
+    return STATUS_OK;
+}
+
+// which unknown has the largest estimated error, in units of its tolerance
+static struct unknown_place worst_unknown(const struct implicit *solver, double *size) {
+    int worst = 0;
+    *size = -1;
+    if (IDAGetEstLocalErrors(solver->ida, solver->scratch[0]) == 0) {
+        const double *const error = N_VGetArrayPointer(solver->scratch[0]);
+        for (int i = 0; i < solver->residual->school->n_unknowns; i++) {
+            const double weighted = fabs(error[i]) / solver->tolerance[i];
+            if (!(weighted <= *size)) {
+                *size = weighted;
+                worst = i;
+            }
+        }
+    }
+    return residual_place(solver->residual->school, worst);
+}
+
+static const char *reason(int code) {
+    switch (code) {
+        case IDA_TOO_MUCH_ACC: return "the tolerance is below what double precision can hold: raise solver.rtol";
+        case IDA_ERR_FAIL: return "the error test failed again and again or at the least step";
+        case IDA_CONV_FAIL: return "Newton's iteration did not converge with steps down to the least";
+        case IDA_LSETUP_FAIL: return "the Jacobian is singular";
+        case IDA_REP_RES_ERR: return "the equations had no finite value with steps down to the least";
+        default: return "see the solver's own words";
+    }
+}
+
+static enum status give_up(const struct implicit *solver, int code, long steps) {
+    const struct school *school = solver->residual->school;
+    double now = 0, step = 0, size;
+    IDAGetCurrentTime(solver->ida, &now);
+    IDAGetCurrentStep(solver->ida, &step);
+    char words[512];
+    snprintf(words, sizeof words, "%s", status_message());
+    const struct unknown_place place = worst_unknown(solver, &size);
+    return status_fail(STATUS_SOLVER,
+                       "the solver gave up at t = %.10g s: %s; the worst unknown is %s[%d] of fish %s with an error of "
+                       "%.3g tolerances; tried: order %d and below, %ld steps since the last event, the last of %.3g s "
+                       "(IDA, code %d: %s)",
+                       now, reason(code), place.name, place.index, school->fish[place.fish].name, size,
+                       solver->options.order, steps, step, code, words);
+}
+
+static enum status implicit_advance(void *data, double t) {
+    struct implicit *const solver = data;
+    struct state *const state = solver->state;
+    double reached = state->t;
+    if (IDASetStopTime(solver->ida, t)) return give_up(solver, IDA_ILL_INPUT, 0);
+    for (long steps = 0; reached < t; steps++) {
+        if (steps == solver->options.max_steps) {
+            return status_fail(
+                STATUS_SOLVER,
+                "more than solver.max_steps = %d steps between two events, at t = %.10g s: the motion is "
+                "too fast for the shedding interval, or solver.rtol too small; raise one of them",
+                solver->options.max_steps, reached);
+        }
+        solver->failure = STATUS_OK;
+        const int code = IDASolve(solver->ida, t, &reached, solver->y, solver->yp, IDA_ONE_STEP);
+        if (solver->failure < 0) return solver->failure;
+        if (code < 0) return give_up(solver, code, steps);
+        if (code == IDA_TSTOP_RETURN) reached = t;
+        measure_step(solver->residual, state, reached, state->y, state->yp);
+    }
+    return STATUS_OK;
+}
+
+const struct integrator implicit_ida = {.name = "ida",
+                                        .create = implicit_create,
+                                        .advance = implicit_advance,
+                                        .restart = implicit_restart,
+                                        .count = implicit_count,
+                                        .free = implicit_free};

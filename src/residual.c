@@ -1,0 +1,321 @@
+/* residual.c: the equations in the order of doc/model.md, section 10, and their derivatives in the same order. */
+#include "residual.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "actuation.h"
+#include "drag.h"
+#include "rod.h"
+#include "sheet.h"
+#include "smooth.h"
+
+static enum status allocate(struct residual *residual) {
+    const struct school *school = residual->school;
+    const size_t n_fish = (size_t)school->n_fish;
+    int n_joints = 0, most_points = 0, most_columns = 0;
+    residual->joints = calloc(n_fish, sizeof *residual->joints);
+    residual->coupled = calloc(n_fish * n_fish, sizeof *residual->coupled);
+    if (!residual->joints || !residual->coupled) goto no_memory;
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *fish = &school->fish[f];
+        const int points = fish->n_control + fish->n_edges + 1, columns = 2 * fish->n_nodes + fish->n_sheet + 1;
+        residual->joints[f] = (struct range){n_joints, fish->n_joints};
+        n_joints += fish->n_joints;
+        if (points > most_points) most_points = points;
+        if (columns > most_columns) most_columns = columns;
+    }
+    const size_t block = (size_t)most_points * (size_t)most_columns;
+    residual->scratch = calloc((size_t)school->n_unknowns, sizeof(double));
+    residual->natural_curvature = calloc((size_t)n_joints, sizeof(double));
+    residual->curvature_by_phi0 = calloc((size_t)n_joints, sizeof(double));
+    residual->block.u = calloc(block, sizeof(double));
+    residual->block.v = calloc(block, sizeof(double));
+    if (!residual->natural_curvature || !residual->curvature_by_phi0 || !residual->scratch || !residual->block.u ||
+        !residual->block.v) {
+        goto no_memory;
+    }
+    return flow_create(&residual->flow, school);
+
+no_memory:
+    return status_fail(STATUS_MEMORY, "no room for the equations of %d fish", school->n_fish);
+}
+
+enum status residual_create(struct residual **residual, const struct school *school, const struct state *state) {
+    *residual = NULL;
+    struct residual *const new = calloc(1, sizeof *new);
+    if (!new) return status_fail(STATUS_MEMORY, "no room for the equations");
+    new->school = school;
+    new->state = state;
+    const enum status status = allocate(new);
+    if (status != STATUS_OK) {
+        residual_free(new);
+        return status;
+    }
+    residual_couple(new, state->y);
+    *residual = new;
+    return STATUS_OK;
+}
+
+void residual_free(struct residual *residual) {
+    if (!residual) return;
+    flow_free(residual->flow);
+    free(residual->joints);
+    free(residual->coupled);
+    free(residual->natural_curvature);
+    free(residual->curvature_by_phi0);
+    free(residual->scratch);
+    free(residual->block.u);
+    free(residual->block.v);
+    free(residual);
+}
+
+int residual_couple(struct residual *residual, const double *y) {
+    const struct school *school = residual->school;
+    int changed = 0;
+    for (int f = 0; f < school->n_fish; f++) {
+        for (int g = 0; g <= f; g++) {
+            const int couple =
+                f == g || fish_distance(&school->fish[f], &school->fish[g], y) <= school->coupling_distance;
+            unsigned char *const here = &residual->coupled[f * school->n_fish + g];
+            if (*here != couple) changed = 1;
+            *here = residual->coupled[g * school->n_fish + f] = (unsigned char)couple;
+        }
+    }
+    residual->pattern += (unsigned)changed;
+    return changed;
+}
+
+static enum sheet_law law_of(const struct residual *residual) {
+    const struct school *school = residual->school;
+    if (school->shedding == SHEDDING_IMPULSIVE && !(residual->at_impulse && school->kutta == KUTTA_EDGE)) {
+        return SHEET_FROZEN;
+    }
+    return school->kutta == KUTTA_EDGE ? SHEET_EDGE : SHEET_RATE;
+}
+
+int residual_shed_is_algebraic(const struct residual *residual) {
+    return law_of(residual) == SHEET_EDGE;
+}
+
+double residual_kutta_rate(const struct residual *residual, int f, double t, const double *y) {
+    const int first = residual->flow->points[f].first;
+    return sheet_shedding_rate(&residual->school->fish[f], smooth_ramp(t, residual->school->kutta_ramp),
+                               residual->flow->u + first, residual->flow->v + first, y);
+}
+
+double residual_shed_rate(const struct residual *residual, int f, double t, const double *y) {
+    return law_of(residual) == SHEET_RATE ? residual_kutta_rate(residual, f, t, y) : 0;
+}
+
+double residual_dissipated(const struct residual *residual, int f) {
+    return residual->school->dissipated == DISSIPATED_DROPPED ? residual->state->wake[f].dissipated : 0;
+}
+
+// the moment of the flow matters to a law with feedforward only
+static int feels_moment(const struct fish *fish) {
+    return fish->control.law == CONTROL_HEADING && fish->control.feedforward != 0;
+}
+
+static void muscle(struct residual *residual, int f, double t, const double *y) {
+    const struct fish *fish = &residual->school->fish[f];
+    const int first = residual->joints[f].first;
+    actuation_curvature(fish, t, y[fish->at.phi0], residual->natural_curvature + first,
+                        residual->curvature_by_phi0 + first);
+}
+
+// the rows of a node whose motion is given: its place, velocity and acceleration are the given ones
+static void drive(const struct fish *fish, double t, const double *y, double *value) {
+    for (int k = 0; k < fish_n_driven(fish); k++) {
+        double position[2], velocity[2], acceleration[2];
+        fish_driven_node(fish, k, t, position, velocity, acceleration);
+        value[fish->at.x + k] = y[fish->at.x + k] - position[0];
+        value[fish->at.y + k] = y[fish->at.y + k] - position[1];
+        value[fish->at.vx + k] = y[fish->at.vx + k] - velocity[0];
+        value[fish->at.vy + k] = y[fish->at.vy + k] - velocity[1];
+        value[fish->at.ax + k] = y[fish->at.ax + k] - acceleration[0];
+        value[fish->at.ay + k] = y[fish->at.ay + k] - acceleration[1];
+    }
+}
+
+// rows ax, ay: m a less all forces, N
+static void balance(const struct residual *residual, int f, const double *u, const double *v, const double *y,
+                    double *value) {
+    const struct fish *fish = &residual->school->fish[f];
+    for (int k = 0; k < fish->n_nodes; k++) {
+        value[fish->at.ax + k] = fish->mass[k] * y[fish->at.ax + k];
+        value[fish->at.ay + k] = fish->mass[k] * y[fish->at.ay + k];
+    }
+    rod_residual(fish, residual->natural_curvature + residual->joints[f].first, y, value);
+    drag_residual(fish, u, v, y, value);
+    value[fish->at.ax + fish->n_nodes - 1] -= fish->load_tip[0];
+    value[fish->at.ay + fish->n_nodes - 1] -= fish->load_tip[1];
+}
+
+static void evaluate_fish(struct residual *residual, int f, double t, const double *y, const double *yp,
+                          double *value) {
+    const struct school *school = residual->school;
+    const struct state *state = residual->state;
+    const struct fish *fish = &school->fish[f];
+    const double *const u = residual->flow->u + residual->flow->points[f].first;
+    const double *const v = residual->flow->v + residual->flow->points[f].first;
+
+    // dx/dt = v and dv/dt = a
+    for (int i = 0; i < 2 * fish->n_nodes; i++) {
+        value[fish->at.x + i] = yp[fish->at.x + i] - y[fish->at.vx + i];
+        value[fish->at.vx + i] = yp[fish->at.vx + i] - y[fish->at.ax + i];
+    }
+    // the law of motion, per mass
+    muscle(residual, f, t, y);
+    balance(residual, f, u, v, y, value);
+    for (int k = 0; k < fish->n_nodes; k++) {
+        value[fish->at.ax + k] /= fish->mass[k];
+        value[fish->at.ay + k] /= fish->mass[k];
+    }
+    drive(fish, t, y, value);
+    // no penetration, Kelvin, Kutta
+    sheet_residual(fish, residual_dissipated(residual, f), u, v, y, value);
+    sheet_kutta_residual(fish, law_of(residual), smooth_ramp(t, school->kutta_ramp), u, v, y, yp, value);
+    // the control law
+    const double tau = feels_moment(fish) ? drag_moment(fish, u, v, y) : 0;
+    control_residual(fish, &state->control[f], t, t - state->t, tau, y, value);
+}
+
+enum status residual_evaluate(struct residual *residual, double t, const double *y, const double *yp, double *value) {
+    TRY(flow_place(residual->flow, residual->state, t, y));
+    flow_velocity(residual->flow);
+    for (int f = 0; f < residual->school->n_fish; f++) evaluate_fish(residual, f, t, y, yp, value);
+    for (int i = 0; i < residual->school->n_unknowns; i++) {
+        if (!isfinite(value[i])) {
+            const struct unknown_place place = residual_place(residual->school, i);
+            return status_fail(STATUS_RETRY, "the equation for %s[%d] of fish %s has no finite value at t = %g s",
+                               place.name, place.index, residual->school->fish[place.fish].name, t);
+        }
+    }
+    return STATUS_OK;
+}
+
+void residual_balance(const struct residual *residual, int f, const double *y, double *value) {
+    const int first = residual->flow->points[f].first;
+    balance(residual, f, residual->flow->u + first, residual->flow->v + first, y, value);
+}
+
+static void stamp_driven(const struct fish *fish, struct sparse *jacobian) {
+    const int slices[] = {fish->at.x, fish->at.y, fish->at.vx, fish->at.vy, fish->at.ax, fish->at.ay};
+    for (int k = 0; k < fish_n_driven(fish); k++) {
+        for (size_t i = 0; i < sizeof slices / sizeof *slices; i++) {
+            sparse_add_unmasked(jacobian, slices[i] + k, slices[i] + k, 1);
+        }
+    }
+}
+
+// the derivatives of one fish's equations, in the order of evaluate_fish
+static void stamp_fish(struct residual *residual, int f, double t, double cj, const double *y,
+                       struct sparse *jacobian) {
+    const struct school *school = residual->school;
+    const struct fish *fish = &school->fish[f];
+    const double *const u = residual->flow->u + residual->flow->points[f].first;
+    const double *const v = residual->flow->v + residual->flow->points[f].first;
+    const int joints = residual->joints[f].first;
+    const double chi = smooth_ramp(t, school->kutta_ramp);
+
+    for (int i = 0; i < 2 * fish->n_nodes; i++) {
+        sparse_add(jacobian, fish->at.x + i, fish->at.x + i, cj);
+        sparse_add(jacobian, fish->at.x + i, fish->at.vx + i, -1);
+        sparse_add(jacobian, fish->at.vx + i, fish->at.vx + i, cj);
+        sparse_add(jacobian, fish->at.vx + i, fish->at.ax + i, -1);
+        sparse_add(jacobian, fish->at.ax + i, fish->at.ax + i, 1);
+    }
+    muscle(residual, f, t, y);
+    rod_stamp(fish, residual->natural_curvature + joints, residual->curvature_by_phi0 + joints, y, jacobian);
+    drag_stamp(fish, u, v, y, jacobian);
+    stamp_driven(fish, jacobian);
+    sheet_stamp(fish, u, v, y, jacobian);
+    sheet_kutta_stamp(fish, law_of(residual), chi, cj, u, v, y, jacobian);
+    const double tau = feels_moment(fish) ? drag_moment(fish, u, v, y) : 0;
+    const double by_tau = control_stamp(fish, &residual->state->control[f], t, tau, y, jacobian);
+    if (feels_moment(fish)) drag_moment_stamp(fish, by_tau, u, v, y, jacobian);
+
+    // what comes through the velocity of the fluid
+    for (int g = 0; g < school->n_fish; g++) {
+        if (!residual->coupled[f * school->n_fish + g]) continue;
+        const struct fish *other = &school->fish[g];
+        const struct flow_block *block = &residual->block;
+        flow_derivative(residual->flow, f, g, &residual->block);
+        drag_stamp_flow(fish, other, u, v, block, y, jacobian);
+        sheet_stamp_flow(fish, other, block, y, jacobian);
+        if (law_of(residual) == SHEET_RATE) sheet_kutta_stamp_flow(fish, other, chi, block, y, jacobian);
+        if (feels_moment(fish)) drag_moment_stamp_flow(fish, other, by_tau, u, v, block, y, jacobian);
+    }
+}
+
+enum status residual_jacobian(struct residual *residual, double t, double cj, const double *y,
+                              struct sparse *jacobian) {
+    TRY(flow_place(residual->flow, residual->state, t, y));
+    flow_gradient(residual->flow);
+    sparse_begin(jacobian);
+    for (int f = 0; f < residual->school->n_fish; f++) stamp_fish(residual, f, t, cj, y, jacobian);
+    return sparse_end(jacobian);
+}
+
+void residual_mask(const struct residual *residual, struct sparse *jacobian) {
+    for (int f = 0; f < residual->school->n_fish; f++) {
+        const struct fish *fish = &residual->school->fish[f];
+        const int slices[] = {fish->at.x, fish->at.y, fish->at.vx, fish->at.vy, fish->at.ax, fish->at.ay};
+        for (int k = 0; k < fish_n_driven(fish); k++) {
+            for (size_t i = 0; i < sizeof slices / sizeof *slices; i++) sparse_mask(jacobian, slices[i] + k);
+        }
+    }
+}
+
+struct unknown_place residual_place(const struct school *school, int i) {
+    int f = 0;
+    while (i >= school->fish[f].at.end) f++;
+    const struct layout *at = &school->fish[f].at;
+    const struct {
+        int first;
+        enum unknown kind;
+        const char *name;
+    } slices[] = {
+        {at->phi0, UNKNOWN_PHI0, "phi0"}, {at->shed, UNKNOWN_SHED, "shed"}, {at->sheet, UNKNOWN_SHEET, "sheet"},
+        {at->ay, UNKNOWN_AY, "ay"},       {at->ax, UNKNOWN_AX, "ax"},       {at->vy, UNKNOWN_VY, "vy"},
+        {at->vx, UNKNOWN_VX, "vx"},       {at->y, UNKNOWN_Y, "y"},          {at->x, UNKNOWN_X, "x"}};
+    int s = 0;
+    while (i < slices[s].first) s++;
+    return (struct unknown_place){
+        .fish = f, .index = i - slices[s].first, .kind = slices[s].kind, .name = slices[s].name};
+}
+
+void residual_kinds(const struct residual *residual, double *kind) {
+    for (int i = 0; i < residual->school->n_unknowns; i++) {
+        const struct unknown_place place = residual_place(residual->school, i);
+        const int driven = place.index < fish_n_driven(&residual->school->fish[place.fish]);
+        kind[i] = 0;
+        if (place.kind <= UNKNOWN_VY && !driven) kind[i] = 1;
+        if (place.kind == UNKNOWN_SHED && !residual_shed_is_algebraic(residual)) kind[i] = 1;
+    }
+}
+
+double residual_scale(const struct residual *residual, int i) {
+    const struct unknown_place place = residual_place(residual->school, i);
+    const struct fish *fish = &residual->school->fish[place.fish];
+    // a fish that does not beat has the time in which it, or the stream, goes one length
+    const double drift = hypot(residual->school->velocity[0], residual->school->velocity[1]);
+    const double speed = fmax(fmax(fabs(fish->start_speed), fabs(fish->motion.speed)), drift);
+    double f = fish->frequency > 0 ? fish->frequency : speed / fish->length;
+    if (f <= 0) f = 1;
+    const double length = fish->length;
+    switch (place.kind) {
+        case UNKNOWN_X:
+        case UNKNOWN_Y: return 0.025 * length;
+        case UNKNOWN_VX:
+        case UNKNOWN_VY: return 100 * length * f;
+        case UNKNOWN_AX:
+        case UNKNOWN_AY: return 1e4 * length * f * f;
+        case UNKNOWN_SHEET: return 3 * length * f;
+        case UNKNOWN_SHED: return length * length * f;
+        case UNKNOWN_PHI0: return 1;
+    }
+    return 1;
+}

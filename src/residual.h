@@ -1,0 +1,88 @@
+/* residual.h: the equations of the whole school as one residual F(t, y, y') = 0, and its Jacobian. doc/model.md,
+ * section 10. Tested by tests/test_residual.c. */
+#ifndef RESIDUAL_H
+#define RESIDUAL_H
+
+#include "flow.h"
+#include "sparse.h"
+#include "state.h"
+#include "status.h"
+
+/* What the equations need besides the unknowns; workspace that holds nothing a restart would miss. */
+struct residual {
+    const struct school *school;
+    const struct state *state; /* wakes, control memory, time of the last event */
+    struct flow *flow;
+    int at_impulse;         /* an impulsive event is being solved: Kutta's condition determines the circulation shed */
+    unsigned pattern;       /* changes whenever that of the Jacobian does, but for at_impulse */
+    unsigned char *coupled; /* whether the Jacobian holds the block of fish g in the rows of fish f (n_fish, n_fish) */
+
+    /* natural curvature of the joints of all fish and its derivative with respect to phi0, as last evaluated */
+    struct range *joints;      /* of each fish                                   (n_fish) */
+    double *natural_curvature; /* dimensionless, doc/model.md section 4          (joints of all fish) */
+    double *curvature_by_phi0;
+    struct flow_block block; /* scratch */
+    double *scratch;         /* for whoever reads the results                     (n_unknowns) */
+};
+
+/* What an unknown is: for tolerances, names in messages, and which equations are algebraic. */
+enum unknown {
+    UNKNOWN_X,
+    UNKNOWN_Y,
+    UNKNOWN_VX,
+    UNKNOWN_VY,
+    UNKNOWN_AX,
+    UNKNOWN_AY,
+    UNKNOWN_SHEET,
+    UNKNOWN_SHED,
+    UNKNOWN_PHI0
+};
+struct unknown_place {
+    int fish, index; /* index: node or point of the sheet */
+    enum unknown kind;
+    const char *name; /* "x", "sheet", ... */
+};
+
+/* The state is read at every evaluation; it must outlive the residual. Fails with STATUS_MEMORY; residual_free accepts
+ * NULL. */
+enum status residual_create(struct residual **residual, const struct school *school, const struct state *state);
+void residual_free(struct residual *residual);
+
+/* Decide anew which fish couple in the Jacobian, from the positions in y. Returns whether anything changed. */
+int residual_couple(struct residual *residual, const double *y);
+
+/* value = F(t, y, yp). Returns STATUS_RETRY where a value is not finite. */
+enum status residual_evaluate(struct residual *residual, double t, const double *y, const double *yp, double *value);
+
+/* jacobian = dF/dy + cj dF/dyp. When residual->pattern has changed, call sparse_forget first. */
+enum status residual_jacobian(struct residual *residual, double t, double cj, const double *y, struct sparse *jacobian);
+
+/* The rows ax, ay of fish f in N, before given motions replace them: m a less all forces. With the fluid's velocity and
+ * the natural curvature of the last evaluation. */
+void residual_balance(const struct residual *residual, int f, const double *y, double *value);
+
+/* What Kutta's condition in its rate form gives for fish f, m2 s-2. With the fluid's velocity of the last evaluation. */
+double residual_kutta_rate(const struct residual *residual, int f, double t, const double *y);
+
+/* The rate of the circulation shed by fish f where that is a differential unknown: as above, or 0 between impulses. */
+double residual_shed_rate(const struct residual *residual, int f, double t, const double *y);
+
+/* Circulation that no longer counts in Kelvin's equation of fish f, m2 s-1. */
+double residual_dissipated(const struct residual *residual, int f);
+
+/* Mask the rows of the Jacobian whose equation is a given motion; once, before the first pass. */
+void residual_mask(const struct residual *residual, struct sparse *jacobian);
+
+/* kind[i] = 1 where unknown i is differential, 0 where it is algebraic                           (n_unknowns) */
+void residual_kinds(const struct residual *residual, double *kind);
+
+/* The scale of unknown i, in its unit: what the error tolerance is relative to. */
+double residual_scale(const struct residual *residual, int i);
+
+/* Where unknown i belongs. */
+struct unknown_place residual_place(const struct school *school, int i);
+
+/* Whether the circulation shed by a fish is algebraic now. */
+int residual_shed_is_algebraic(const struct residual *residual);
+
+#endif

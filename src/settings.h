@@ -1,0 +1,184 @@
+/* settings.h: a case as plain values. One table of keys (src/settings_table.c) drives parsing, checking, printing and
+ * the reference doc/cases.md. Tested by tests/test_settings.c and, for bad input, tests/test_bad.sh.
+ *
+ *     text of the case ---yaml---> tree ---merge---> tree ---table---> struct settings ---check---> const struct school
+ *     (and its includes)                  preset < include < case file < --set;  defaults.fish < fish[f]
+ *
+ * Values are in the units of the case file: angles in degrees, lengths in metres or in fractions of the body length as
+ * the key's meaning says. */
+#ifndef SETTINGS_H
+#define SETTINGS_H
+
+#include <stdio.h>
+
+#include "status.h"
+
+enum shedding { SHEDDING_CONTINUOUS, SHEDDING_IMPULSIVE };
+enum kutta { KUTTA_EDGE, KUTTA_RATE };
+enum collocation { COLLOCATION_CHEBYSHEV, COLLOCATION_MIDPOINT };
+enum dissipated { DISSIPATED_RETAINED, DISSIPATED_DROPPED };
+enum method { METHOD_IDA, METHOD_EULER, METHOD_HEUN, METHOD_RK4, METHOD_DORMAND_PRINCE };
+enum precision { PRECISION_DOUBLE, PRECISION_SINGLE };
+enum profile { PROFILE_JOUKOWSKI, PROFILE_UNIFORM, PROFILE_TABLE };
+enum second_moment { SECOND_MOMENT_ELLIPSE, SECOND_MOMENT_PUBLISHED };
+enum drag_law { DRAG_QUADRATIC, DRAG_LINEAR_QUADRATIC };
+enum extent { EXTENT_THICKNESS, EXTENT_WIDTH };
+enum driven { DRIVEN_NONE, DRIVEN_HEAD, DRIVEN_ALL };
+enum control_law { CONTROL_NONE, CONTROL_HEADING, CONTROL_AVERAGED_HEADING };
+enum preset { PRESET_NONE, PRESET_PUBLISHED };
+
+/* A list of numbers, or of pairs (then 2 n numbers, pair after pair). Owned by the settings. */
+struct settings_list {
+    int n;
+    double *value;
+};
+
+struct settings_time {
+    double end, shedding_interval; /* s */
+    double output_interval;        /* s; default ten shedding intervals */
+    double checkpoint_interval;    /* s; 0: none */
+};
+
+struct settings_fluid {
+    double density;        /* kg m-3 */
+    double velocity[2];    /* m s-1 */
+    double shear;          /* s-1 */
+    double gust_amplitude; /* m s-1 */
+    double gust_frequency; /* Hz */
+};
+
+struct settings_wake {
+    double smoothing, sheet_smoothing; /* fractions of the body length */
+    double lifetime;                   /* s */
+    double fade;                       /* s; default a tenth of the lifetime */
+    enum shedding shedding;
+    enum kutta kutta;
+    double kutta_ramp; /* s */
+    enum collocation collocation;
+    enum dissipated dissipated_circulation;
+};
+
+struct settings_solver {
+    enum method method;
+    double rtol;
+    int order;
+    double coupling_distance; /* body lengths of the longest fish */
+    int threads;
+    double step;   /* s; 0: adaptive */
+    int max_steps; /* per shedding interval */
+};
+
+struct settings_output {
+    char *file; /* NULL: the name of the case with .nc, in the working directory */
+    enum precision precision;
+    double wake_interval; /* s; default the output interval */
+};
+
+struct settings_body {
+    enum profile profile;
+    double thickness, width;   /* fractions of the body length */
+    struct settings_list h, w; /* m, one value per edge: profile table only */
+    double density;            /* kg m-3 */
+    double modulus;            /* Pa */
+    enum second_moment second_moment;
+    double bending_damping; /* N m2 s ... as in doc/model.md, section 3 */
+    double stretching_damping;
+    double relaxation_time; /* s */
+};
+
+struct settings_wave {
+    double amplitude, linear, quadratic, number;
+    double frequency; /* Hz */
+    double phase;     /* degree */
+    double ramp;      /* s; default one period (0 when the frequency is 0) */
+};
+
+struct settings_drag {
+    double tangential, normal, added_mass;
+    enum drag_law law;
+    enum extent extent;
+};
+
+struct settings_motion {
+    enum driven driven;
+    double speed;              /* m s-1; default start.speed */
+    double heave;              /* m */
+    double pitch, pitch_phase; /* degree */
+    double frequency;          /* Hz */
+    double phase;              /* degree */
+    double pivot;              /* fraction of the body length from the nose */
+};
+
+struct settings_control {
+    enum control_law law;
+    double bias;
+    struct settings_list desired_heading; /* pairs (s, degree); one number in the case becomes one pair (0, degree);
+                                             default one pair (0, start.heading) */
+    struct settings_list waypoints;       /* pairs (m, m) */
+    double arrival;                       /* body lengths */
+    double gain, limit, feedforward;
+    double rate; /* s-1 */
+};
+
+struct settings_fish {
+    char *name;    /* default "fish1", "fish2", ... */
+    double length; /* m */
+    int nodes, reference_nodes, sheet_points;
+    struct settings_body body;
+    struct settings_wave wave;
+    struct settings_drag drag;
+    double start_position[2]; /* m */
+    double start_heading;     /* degree */
+    double start_speed;       /* m s-1 */
+    double load_tip[2];       /* N */
+    struct settings_motion motion;
+    struct settings_control control;
+};
+
+/* One axis of a sweep: a key (a path as --set takes it) and the texts of its values. */
+struct settings_axis {
+    char *key;
+    int n_values;
+    char **value;
+};
+
+struct settings {
+    int format;
+    char *name; /* default: the file's name without folder and ending */
+    enum preset preset;
+    struct settings_time time;
+    struct settings_fluid fluid;
+    struct settings_wake wake;
+    struct settings_solver solver;
+    struct settings_output output;
+    int n_fish;
+    struct settings_fish *fish;
+    int n_axes;
+    struct settings_axis *sweep;
+    char *text; /* the text of the case file as read (without its includes) */
+};
+
+/* Read the case file at path, apply the n_assignments texts "path=value" in order, check everything and fill *settings.
+ * Fails with STATUS_FILE (cannot be read) or STATUS_CASE; the message then lists up to 20 errors in the form of a
+ * compiler, each with a caret under its place. *settings then owns nothing. Free with settings_free. */
+enum status settings_read(struct settings *settings, const char *path, int n_assignments,
+                          const char *const *assignments);
+
+/* The same from a text in memory; origin stands for the file name in messages, folder is where includes are looked up. */
+enum status settings_parse(struct settings *settings, const char *text, size_t length, const char *origin,
+                           const char *folder, int n_assignments, const char *const *assignments);
+
+/* Refuse what this version does not run (settings_read has checked everything else): one error per such value. */
+enum status settings_runnable(const struct settings *settings);
+
+/* Release what the settings own and zero them. Accepts zeroed settings. */
+void settings_free(struct settings *settings);
+
+/* The whole case with every key and its value, as a case file that reads back to the same settings bit for bit. The
+ * caller frees *text. Fails with STATUS_MEMORY. */
+enum status settings_show(const struct settings *settings, char **text);
+
+/* Print the table of keys: path, type, default, range, unit, meaning; as text, or as JSON. */
+void settings_keys(FILE *stream, int as_json);
+
+#endif

@@ -1,0 +1,175 @@
+/* settings_show.c: a case written out in full, and the table of keys as text and as JSON. Declared in settings.h. */
+#include <string.h>
+
+#include "settings_table.h"
+#include "settings_value.h"
+
+// ---- a case
+
+enum { COMMENT_COLUMN = 40 };
+
+/* The number of characters since the last end of line. */
+static size_t column(const struct yaml_text *text) {
+    size_t n = 0;
+    while (n < text->length && text->text[text->length - 1 - n] != '\n') n++;
+    return n;
+}
+
+/* Add the headings of the sections that a path is in and the path before it was not. below: where both begin. */
+static void show_headings(struct yaml_text *text, const char *path, const char *before, const char *below) {
+    bool is_same = true;
+    int depth = 0;
+    for (const char *c = below; strchr(c, '.'); c = strchr(c, '.') + 1, depth++) {
+        const size_t length = (size_t)(strchr(c, '.') + 1 - path);
+        is_same = is_same && before && strncmp(path, before, length) == 0;
+        if (is_same) continue;
+        const bool is_fish = below != path;
+        if (!is_fish && depth == 0) yaml_text_add(text, "\n");
+        yaml_text_add(text, "%*s%.*s:\n", 2 * depth + (is_fish ? 4 : 0), "", (int)(strchr(c, '.') - c), c);
+    }
+}
+
+/* Add one line: indentation, key, value, unit. */
+static void show_key(struct yaml_text *text, const struct key *key, const void *field, bool is_first_of_fish) {
+    int depth = 0;
+    for (const char *c = key->path; *c; c++) depth += *c == '.';
+    const bool is_fish = settings_table_is_of_fish(key);
+    const char *const name = strrchr(key->path, '.') ? strrchr(key->path, '.') + 1 : key->path;
+    const int indent = 2 * depth + (is_fish ? 2 : 0);
+    if (is_first_of_fish) {
+        yaml_text_add(text, "%*s- %s: ", indent - 2, "", name);
+    } else {
+        yaml_text_add(text, "%*s%s: ", indent, "", name);
+    }
+    if (text->failed) return;
+    settings_value_write(text, key, field);
+    if (*key->unit && !text->failed) {
+        const size_t used = column(text);
+        yaml_text_add(text, "%*s# %s", used < COMMENT_COLUMN ? (int)(COMMENT_COLUMN - used) : 2, "", key->unit);
+    }
+    yaml_text_add(text, "\n");
+}
+
+/* True if a key is left out: it has been applied already, or it has no value. */
+static bool is_hidden(const struct key *key, const void *field) {
+    if (key->type == FILES || key->type == DEFAULTS || key->type == AXES) return true;
+    if (strcmp(key->path, "preset") == 0) return true;
+    if (key->type == TEXT) return !*(char *const *)field;
+    return key->type == NUMBERS && ((const struct settings_list *)field)->n == 0;
+}
+
+/* Add the rows of the table from k on that belong to the same fish, or to none. before: the path of the last row. */
+static void show_rows(struct yaml_text *text, struct settings *settings, struct settings_fish *fish) {
+    const char *before = NULL;
+    for (int k = 0; k < settings_table_n; k++) {
+        const struct key *const key = &settings_table[k];
+        if (settings_table_is_of_fish(key) != (fish != NULL)) continue;
+        const void *const field = settings_table_field(key, settings, fish);
+        if (is_hidden(key, field)) continue;
+        show_headings(text, key->path, before, key->path + (fish ? strlen("fish.") : 0));
+        show_key(text, key, field, fish && !before);
+        before = key->path;
+    }
+}
+
+static void show_sweep(struct yaml_text *text, const struct settings *settings) {
+    if (settings->n_axes > 0) yaml_text_add(text, "\nsweep:\n");
+    for (int i = 0; i < settings->n_axes; i++) {
+        const struct settings_axis *const axis = &settings->sweep[i];
+        yaml_text_add(text, "  - key: ");
+        yaml_text_add_scalar(text, axis->key);
+        yaml_text_add(text, "\n    values: [");
+        for (int j = 0; j < axis->n_values; j++) yaml_text_add(text, "%s%s", j > 0 ? ", " : "", axis->value[j]);
+        yaml_text_add(text, "]\n");
+    }
+}
+
+enum status settings_show(const struct settings *settings, char **text) {
+    struct settings all = *settings;  // a shallow copy, so that the table can point into it
+    struct yaml_text list = {0};
+    show_rows(&list, &all, NULL);
+    yaml_text_add(&list, "\nfish:\n");
+    for (int i = 0; i < all.n_fish; i++) show_rows(&list, &all, &all.fish[i]);
+    show_sweep(&list, &all);
+    *text = NULL;
+    if (list.failed) {
+        yaml_text_free(&list);
+        return status_fail(STATUS_MEMORY, "no memory to show the case");
+    }
+    *text = list.text;
+    return STATUS_OK;
+}
+
+// ---- the table
+
+/* What stands in the column "default". */
+static const char *initial_text(const struct key *key) {
+    if (key->derived) return key->derived;
+    return key->initial ? key->initial : "required";
+}
+
+/* The path of a key as a user writes it. */
+static const char *fish_mark(const struct key *key) {
+    return settings_table_is_of_fish(key) ? "fish[i]" : "";
+}
+
+static const char *fish_rest(const struct key *key) {
+    return settings_table_is_of_fish(key) ? key->path + strlen("fish") : key->path;
+}
+
+static void print_text(FILE *stream) {
+    for (int k = 0; k < settings_table_n; k++) {
+        const struct key *const key = &settings_table[k];
+        struct yaml_text range = {0};
+        settings_table_range(key, &range);
+        const bool has_range = range.length > 0;
+        fprintf(stream, "%s%s: %s\n    %s%s%s%s%s; default: %s", fish_mark(key), fish_rest(key), key->meaning,
+                settings_table_type(key), *key->unit ? " in " : "", key->unit, has_range ? ", " : "",
+                has_range ? range.text : "", initial_text(key));
+        if (key->published) fprintf(stream, " (preset published: %s)", key->published);
+        fprintf(stream, "\n");
+        yaml_text_free(&range);
+    }
+}
+
+/* Print a string of JSON, or null. */
+static void print_string(FILE *stream, const char *name, const char *text) {
+    fprintf(stream, ", \"%s\": ", name);
+    if (!text) {
+        fprintf(stream, "null");
+        return;
+    }
+    fputc('"', stream);
+    for (; *text; text++) {
+        if (*text == '"' || *text == '\\') fputc('\\', stream);
+        fputc(*text, stream);
+    }
+    fputc('"', stream);
+}
+
+static void print_json(FILE *stream) {
+    for (int k = 0; k < settings_table_n; k++) {
+        const struct key *const key = &settings_table[k];
+        struct yaml_text range = {0};
+        settings_table_range(key, &range);
+        fprintf(stream, "%s{\"path\": \"%s\"", k > 0 ? ",\n " : "[", key->path);
+        print_string(stream, "type", settings_table_type(key));
+        print_string(stream, "default", key->initial);
+        print_string(stream, "derived", key->derived);
+        print_string(stream, "published", key->published);
+        print_string(stream, "range", range.text ? range.text : "");
+        print_string(stream, "unit", key->unit);
+        print_string(stream, "meaning", key->meaning);
+        fprintf(stream, "}");
+        yaml_text_free(&range);
+    }
+    fprintf(stream, "]\n");
+}
+
+void settings_keys(FILE *stream, int as_json) {
+    if (as_json) {
+        print_json(stream);
+    } else {
+        print_text(stream);
+    }
+}

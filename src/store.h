@@ -1,0 +1,47 @@
+/* store.h: the result file, NetCDF classic in the 64-bit data format (CDF-5). doc/output.md lists its contents. One
+ * table of variables (name, dimensions, unit, long name, where the value lives) drives definition, writing and the
+ * reference. Tested by tests/test_store.c. */
+#ifndef STORE_H
+#define STORE_H
+
+#include <stdio.h>
+
+#include "fish.h"
+#include "measure.h"
+#include "settings.h"
+#include "state.h"
+#include "status.h"
+
+/* Running totals of the integrator, as written with every row. */
+struct store_counts {
+    long steps, residual_evaluations, newton_iterations, jacobian_evaluations;
+    long error_test_failures, convergence_failures;
+    double step_size; /* the last, s */
+    int order;        /* the last */
+    double wall_time; /* since the start, s */
+};
+
+struct store; /* an open result file */
+
+/* Create the file at path. overwrite: replace one that exists, else that is an error. The file is first written under a
+ * temporary name beside it and takes its own when its header is complete, so that a failure leaves nothing half made.
+ * effective is the complete case (settings_show), command the command line, kept in the attribute history.
+ * Fails with STATUS_FILE or STATUS_MEMORY; *store is then NULL. */
+enum status store_create(struct store **store, const char *path, int overwrite, const struct settings *settings,
+                         const char *effective, const char *command, const struct school *school, long n_events);
+
+/* Append one row; with_wake tells whether the wake is written too (else its variables hold fill values). The file is
+ * synchronised at every row, or every second where rows come faster. Fails with STATUS_FILE. */
+enum status store_row(struct store *store, const struct state *state, const struct residual *residual,
+                      const struct measure *measure, const struct store_counts *counts, int with_wake);
+
+/* Set the attribute run_status ("complete", "failed: why", "stopped") and close. Accepts NULL. */
+enum status store_close(struct store *store, const char *run_status);
+
+/* Print the table of variables: name, dimensions, unit, meaning; as aligned text, or as JSON. */
+void store_variables(FILE *stream, int as_json);
+
+/* Print a summary of a result file, or its complete case alone. Fails with STATUS_FILE. */
+enum status store_info(const char *path, int case_only, FILE *stream);
+
+#endif

@@ -1,0 +1,250 @@
+/* store_table.c: the table of variables; definition, writing and the reference doc/output.md loop over it. */
+#include "store_table.h"
+
+#include <string.h>
+
+#include "rod.h"
+
+// ---- values that have to be put together ----
+
+static void interleave(int n, const double *x, const double *y, double *slots) {
+    for (int i = 0; i < n; i++) {
+        slots[2 * i] = x[i];
+        slots[2 * i + 1] = y[i];
+    }
+}
+
+static void copy(int n, const double *value, double *slots) {
+    for (int i = 0; i < n; i++) slots[i] = value[i];
+}
+
+static void gather_position(const struct store_row *row, int f, double *slots) {
+    const struct fish *fish = &row->school->fish[f];
+    interleave(fish->n_nodes, row->state->y + fish->at.x, row->state->y + fish->at.y, slots);
+}
+
+static void gather_velocity(const struct store_row *row, int f, double *slots) {
+    const struct fish *fish = &row->school->fish[f];
+    interleave(fish->n_nodes, row->state->y + fish->at.vx, row->state->y + fish->at.vy, slots);
+}
+
+static void gather_acceleration(const struct store_row *row, int f, double *slots) {
+    const struct fish *fish = &row->school->fish[f];
+    interleave(fish->n_nodes, row->state->y + fish->at.ax, row->state->y + fish->at.ay, slots);
+}
+
+static void gather_curvature(const struct store_row *row, int f, double *slots) {
+    rod_curvature(&row->school->fish[f], row->state->y, slots);
+}
+
+static void gather_natural_curvature(const struct store_row *row, int f, double *slots) {
+    const struct range joints = row->residual->joints[f];
+    copy(joints.n, row->residual->natural_curvature + joints.first, slots);
+}
+
+static void gather_sheet_position(const struct store_row *row, int f, double *slots) {
+    const struct fish *fish = &row->school->fish[f];
+    for (int j = 0; j < fish->n_sheet; j++) {
+        slots[2 * j] = fish_mean(&fish->sheet_point[j], row->state->y + fish->at.x);
+        slots[2 * j + 1] = fish_mean(&fish->sheet_point[j], row->state->y + fish->at.y);
+    }
+}
+
+static void gather_sheet_strength(const struct store_row *row, int f, double *slots) {
+    const struct fish *fish = &row->school->fish[f];
+    copy(fish->n_sheet, row->state->y + fish->at.sheet, slots);
+}
+
+static void gather_sheet_arc(const struct store_row *row, int f, double *slots) {
+    const struct fish *fish = &row->school->fish[f];
+    for (int j = 0; j < fish->n_sheet; j++) slots[j] = fish_mean(&fish->sheet_point[j], fish->arc);
+}
+
+static void gather_wake_position(const struct store_row *row, int f, double *slots) {
+    const struct wake *wake = &row->state->wake[f];
+    if (row->with_wake) interleave(wake->n_vortex, wake->x, wake->y, slots);
+}
+
+static void gather_wake_circulation(const struct store_row *row, int f, double *slots) {
+    const struct wake *wake = &row->state->wake[f];
+    if (row->with_wake) copy(wake->n_vortex, wake->circulation, slots);
+}
+
+static void gather_wake_birth(const struct store_row *row, int f, double *slots) {
+    const struct wake *wake = &row->state->wake[f];
+    if (row->with_wake) copy(wake->n_vortex, wake->birth, slots);
+}
+
+// ---- the table ----
+
+#define IN_SCHOOL(field) .owner = OF_SCHOOL, .offset = offsetof(struct school, field)
+#define IN_FISH(field) .owner = OF_FISH, .offset = offsetof(struct fish, field)
+#define ARRAY_IN_FISH(field) IN_FISH(field), .is_pointer = true
+#define IN_STATE(field) .owner = OF_STATE, .offset = offsetof(struct state, field)
+#define IN_WAKE(field) .owner = OF_WAKE, .offset = offsetof(struct wake, field)
+#define IN_MEASURE(field) .owner = OF_MEASURE, .offset = offsetof(struct measure, field)
+#define MEASURED(field) .owner = OF_MEASURED_FISH, .offset = offsetof(struct measure_fish, field)
+#define IN_COUNTS(field) .owner = OF_COUNTS, .offset = offsetof(struct store_counts, field)
+#define GATHERED(function) .gather = function
+
+// clang-format off
+const struct store_variable store_table[] = {
+    // what does not change
+    {"fish_name",             {FISH, NAME},           STORE_TEXT,    "",        "name of the fish", ARRAY_IN_FISH(name)},
+    {"n_nodes",               {FISH},                 STORE_INTEGER, "1",       "number of nodes", IN_FISH(n_nodes)},
+    {"n_edges",               {FISH},                 STORE_INTEGER, "1",       "number of edges", IN_FISH(n_edges)},
+    {"n_joints",              {FISH},                 STORE_INTEGER, "1",       "number of joints", IN_FISH(n_joints)},
+    {"n_sheet",               {FISH},                 STORE_INTEGER, "1",       "number of bound vortices", IN_FISH(n_sheet)},
+    {"body_length",           {FISH},                 STORE_REAL,    "m",       "body length", IN_FISH(length)},
+    {"edge_length",           {FISH},                 STORE_REAL,    "m",       "natural length of every edge", IN_FISH(edge_length)},
+    {"body_mass",             {FISH},                 STORE_REAL,    "kg",      "mass of the body", IN_FISH(total_mass)},
+    {"frequency",             {FISH},                 STORE_REAL,    "Hz",      "frequency of the beat", IN_FISH(frequency)},
+    {"bias",                  {FISH},                 STORE_REAL,    "1",       "bias of the gait that the case gives, for a fish without a control law", IN_FISH(control.bias)},
+    {"wake_smoothing",        {FISH},                 STORE_REAL,    "m",       "smoothing radius of the free vortices", IN_FISH(smoothing)},
+    {"sheet_smoothing",       {FISH},                 STORE_REAL,    "m",       "smoothing radius of the bound vortices seen from elsewhere", IN_FISH(sheet_smoothing)},
+    {"node_arc",              {FISH, NODE},           STORE_REAL,    "m",       "arc coordinate of the nodes, from the nose", ARRAY_IN_FISH(arc)},
+    {"node_mass",             {FISH, NODE},           STORE_REAL,    "kg",      "mass of the nodes", ARRAY_IN_FISH(mass)},
+    {"edge_height",           {FISH, EDGE},           STORE_REAL,    "m",       "thickness of the body in the plane of motion", ARRAY_IN_FISH(height)},
+    {"edge_width",            {FISH, EDGE},           STORE_REAL,    "m",       "extent of the body out of the plane of motion", ARRAY_IN_FISH(width)},
+    {"sheet_arc",             {FISH, SHEET},          STORE_REAL,    "m",       "arc coordinate of the bound vortices, from the nose", GATHERED(gather_sheet_arc)},
+    {"sheet_weight",          {FISH, SHEET},          STORE_REAL,    "m",       "length of body that a bound vortex stands for: circulation over strength", ARRAY_IN_FISH(sheet_weight)},
+    {"fluid_density",         {NONE},                 STORE_REAL,    "kg m-3",  "density of the fluid", IN_SCHOOL(density)},
+    {"shedding_interval",     {NONE},                 STORE_REAL,    "s",       "time between the release of two vortices", IN_SCHOOL(interval)},
+    {"wake_lifetime",         {NONE},                 STORE_REAL,    "s",       "age at which a free vortex is removed", IN_SCHOOL(lifetime)},
+    {"wake_fade",             {NONE},                 STORE_REAL,    "s",       "last part of its life in which a free vortex fades out", IN_SCHOOL(fade)},
+
+    // the bodies and the fluid
+    {"time",                  {TIME},                 STORE_REAL,    "s",       "time", IN_STATE(t)},
+    {"x",                     {TIME, FISH, NODE, XY}, STORE_BULK,    "m",       "position of the nodes, nose first", GATHERED(gather_position)},
+    {"v",                     {TIME, FISH, NODE, XY}, STORE_BULK,    "m s-1",   "velocity of the nodes", GATHERED(gather_velocity)},
+    {"a",                     {TIME, FISH, NODE, XY}, STORE_BULK,    "m s-2",   "acceleration of the nodes", GATHERED(gather_acceleration)},
+    {"natural_curvature",     {TIME, FISH, JOINT},    STORE_BULK,    "1",       "natural curvature of the joints, 2 tan(angle/2): the shape the muscle asks for", GATHERED(gather_natural_curvature)},
+    {"curvature",             {TIME, FISH, JOINT},    STORE_BULK,    "1",       "curvature of the joints, 2 tan(angle/2)", GATHERED(gather_curvature)},
+    {"sheet_x",               {TIME, FISH, SHEET, XY}, STORE_BULK,   "m",       "position of the bound vortices", GATHERED(gather_sheet_position)},
+    {"sheet_strength",        {TIME, FISH, SHEET},    STORE_BULK,    "m s-1",   "strength of the bound vortices: circulation per length of body", GATHERED(gather_sheet_strength)},
+    {"wake_count",            {TIME, FISH},           STORE_INTEGER, "1",       "number of free vortices", IN_WAKE(n_vortex)},
+    {"wake_x",                {TIME, FISH, VORTEX, XY}, STORE_BULK,  "m",       "position of the free vortices, oldest first", GATHERED(gather_wake_position)},
+    {"wake_circulation",      {TIME, FISH, VORTEX},   STORE_BULK,    "m2 s-1",  "circulation of the free vortices, without fading", GATHERED(gather_wake_circulation)},
+    {"wake_birth",            {TIME, FISH, VORTEX},   STORE_BULK,    "s",       "time of release of the free vortices", GATHERED(gather_wake_birth)},
+
+    // derived quantities of each fish
+    {"com",                   {TIME, FISH, XY},       STORE_REAL,    "m",       "position of the centre of mass", MEASURED(com)},
+    {"com_velocity",          {TIME, FISH, XY},       STORE_REAL,    "m s-1",   "velocity of the centre of mass", MEASURED(com_velocity)},
+    {"speed",                 {TIME, FISH},           STORE_REAL,    "m s-1",   "speed of the centre of mass over the last period", MEASURED(speed)},
+    {"heading",               {TIME, FISH},           STORE_REAL,    "degree",  "heading, from the x axis towards the y axis, unwrapped", MEASURED(heading)},
+    {"desired_heading",       {TIME, FISH},           STORE_REAL,    "degree",  "heading that the control law asks for", MEASURED(desired_heading)},
+    {"phi0",                  {TIME, FISH},           STORE_REAL,    "1",       "bias of the gait: positive turns right", MEASURED(phi0)},
+    {"shed_circulation",      {TIME, FISH},           STORE_REAL,    "m2 s-1",  "all circulation shed since the start", MEASURED(shed_circulation)},
+    {"shedding_rate",         {TIME, FISH},           STORE_REAL,    "m2 s-2",  "rate at which circulation is shed", MEASURED(shedding_rate)},
+    {"kinetic_energy",        {TIME, FISH},           STORE_REAL,    "J",       "kinetic energy of the body", MEASURED(kinetic_energy)},
+    {"bending_energy",        {TIME, FISH},           STORE_REAL,    "J",       "elastic energy of bending", MEASURED(bending_energy)},
+    {"stretching_energy",     {TIME, FISH},           STORE_REAL,    "J",       "elastic energy of stretching", MEASURED(stretching_energy)},
+    {"actuation_power",       {TIME, FISH},           STORE_REAL,    "W",       "power that the muscle puts into the body", MEASURED(actuation_power)},
+    {"damping_power",         {TIME, FISH},           STORE_REAL,    "W",       "power of the internal damping", MEASURED(damping_power)},
+    {"drag_power",            {TIME, FISH},           STORE_REAL,    "W",       "power of the drag on the body", MEASURED(drag_power)},
+    {"added_mass_power",      {TIME, FISH},           STORE_REAL,    "W",       "power of the added mass on the body", MEASURED(added_mass_power)},
+    {"driving_power",         {TIME, FISH},           STORE_REAL,    "W",       "power of the forces that hold driven nodes to their motion, and of loads", MEASURED(driving_power)},
+    {"energy_audit",          {TIME, FISH},           STORE_REAL,    "J",       "energy less its first value less the integral of all powers: the error of integration", MEASURED(energy_audit)},
+    {"actuation_work",        {TIME, FISH},           STORE_REAL,    "J",       "work that the muscle has put into the body since the start", MEASURED(actuation_work)},
+    {"cost_of_transport",     {TIME, FISH},           STORE_REAL,    "m s-2",   "mean actuation power over mass and speed, over the last period", MEASURED(cost_of_transport)},
+    {"strouhal",              {TIME, FISH},           STORE_REAL,    "1",       "Strouhal number: frequency times peak-to-peak motion of the tail over speed", MEASURED(strouhal)},
+
+    // the school and the solver
+    {"total_circulation",     {TIME},                 STORE_REAL,    "m2 s-1",  "sum of all bound, free and dissipated circulation: zero but for rounding", IN_MEASURE(total_circulation)},
+    {"least_distance",        {TIME},                 STORE_REAL,    "m",       "least distance between two bodies", IN_MEASURE(least_distance)},
+    {"polarisation",          {TIME},                 STORE_REAL,    "1",       "length of the mean unit vector of the headings", IN_MEASURE(polarisation)},
+    {"steps",                 {TIME},                 STORE_COUNT,   "1",       "steps of the integrator since the start", IN_COUNTS(steps)},
+    {"residual_evaluations",  {TIME},                 STORE_COUNT,   "1",       "evaluations of the residual since the start", IN_COUNTS(residual_evaluations)},
+    {"newton_iterations",     {TIME},                 STORE_COUNT,   "1",       "Newton iterations since the start", IN_COUNTS(newton_iterations)},
+    {"jacobian_evaluations",  {TIME},                 STORE_COUNT,   "1",       "evaluations of the Jacobian since the start", IN_COUNTS(jacobian_evaluations)},
+    {"error_test_failures",   {TIME},                 STORE_COUNT,   "1",       "steps refused by the error test since the start", IN_COUNTS(error_test_failures)},
+    {"convergence_failures",  {TIME},                 STORE_COUNT,   "1",       "steps refused because Newton did not converge since the start", IN_COUNTS(convergence_failures)},
+    {"step_size",             {TIME},                 STORE_REAL,    "s",       "last step of the integrator", IN_COUNTS(step_size)},
+    {"order",                 {TIME},                 STORE_INTEGER, "1",       "order of the last step", IN_COUNTS(order)},
+    {"wall_time",             {TIME},                 STORE_REAL,    "s",       "time the run has taken so far", IN_COUNTS(wall_time)},
+};
+// clang-format on
+const int store_table_n = sizeof store_table / sizeof *store_table;
+
+// ---- look-ups ----
+
+const char *store_table_dimension(enum store_dimension dimension) {
+    static const char *const name[] = {"", "time", "fish", "node", "edge", "joint", "sheet", "vortex", "xy", "name"};
+    return name[dimension];
+}
+
+bool store_table_has(const struct store_variable *variable, enum store_dimension dimension) {
+    for (const enum store_dimension *d = variable->dimension; *d != NONE; d++)
+        if (*d == dimension) return true;
+    return false;
+}
+
+int store_table_length(const struct fish *fish, enum store_dimension dimension) {
+    switch (dimension) {
+        case NODE: return fish->n_nodes;
+        case EDGE: return fish->n_edges;
+        case JOINT: return fish->n_joints;
+        case SHEET: return fish->n_sheet;
+        default: return 1;
+    }
+}
+
+const void *store_table_owner(const struct store_row *row, enum store_owner owner, int f) {
+    switch (owner) {
+        case OF_SCHOOL: return row->school;
+        case OF_FISH: return &row->school->fish[f];
+        case OF_STATE: return row->state;
+        case OF_WAKE: return &row->state->wake[f];
+        case OF_MEASURE: return row->measure;
+        case OF_MEASURED_FISH: return &row->measure->fish[f];
+        default: return row->counts;
+    }
+}
+
+// ---- the reference ----
+
+static const char *type_name(enum store_type type) {
+    static const char *const name[] = {"double", "double or float", "int", "int64", "char"};
+    return name[type];
+}
+
+/* "time, fish, node, xy"; each name between the marks of quote. */
+static void list_dimensions(const struct store_variable *variable, const char *quote, char *text, size_t size) {
+    size_t length = 0;
+    text[0] = '\0';
+    for (const enum store_dimension *d = variable->dimension; *d != NONE; d++)
+        length += (size_t)snprintf(text + length, size - length, "%s%s%s%s", length > 0 ? ", " : "", quote,
+                                   store_table_dimension(*d), quote);
+}
+
+static void print_text(FILE *stream) {
+    for (int i = 0; i < store_table_n; i++) {
+        const struct store_variable *variable = &store_table[i];
+        char dimensions[80];
+        list_dimensions(variable, "", dimensions, sizeof dimensions);
+        fprintf(stream, "%-20s  (%s)%*s  %-6s  %s\n", variable->name, dimensions, 22 - (int)strlen(dimensions), "",
+                variable->unit, variable->long_name);
+    }
+}
+
+static void print_json(FILE *stream) {
+    fprintf(stream, "[\n");
+    for (int i = 0; i < store_table_n; i++) {
+        const struct store_variable *variable = &store_table[i];
+        char dimensions[80];
+        list_dimensions(variable, "\"", dimensions, sizeof dimensions);
+        fprintf(
+            stream,
+            "  {\"name\": \"%s\", \"dimensions\": [%s], \"type\": \"%s\", \"unit\": \"%s\", \"meaning\": \"%s\"}%s\n",
+            variable->name, dimensions, type_name(variable->type), variable->unit, variable->long_name,
+            i < store_table_n - 1 ? "," : "");
+    }
+    fprintf(stream, "]\n");
+}
+
+void store_variables(FILE *stream, int as_json) {
+    if (as_json)
+        print_json(stream);
+    else
+        print_text(stream);
+}
