@@ -308,7 +308,7 @@ double residual_scale(const struct residual *residual, int i) {
     const double length = fish->length;
     switch (place.kind) {
         case UNKNOWN_X:
-        case UNKNOWN_Y: return 0.025 * length;
+        case UNKNOWN_Y: return 0.018 * length;
         case UNKNOWN_VX:
         case UNKNOWN_VY: return 100 * length * f;
         case UNKNOWN_AX:

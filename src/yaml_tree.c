@@ -147,7 +147,7 @@ static const char *remedy(const char *problem) {
         {"did not find expected ',' or ']'",
          "a list that begins with '[' needs ',' between its values and ']' at its end"},
         {"did not find expected ',' or '}'",
-         "a map that begins with '{' needs ',' between its keys and '}' at its end"},
+         "a map that begins with '{' needs ',' between its keys and '}' at its end; a text with brackets needs quotes"},
         {"found unexpected end of stream", "the quote that begins here is not closed"},
         {"found character that cannot start any token", "put a text that begins with this character in quotes"},
     };
@@ -356,11 +356,16 @@ static long code_point(const unsigned char *text, size_t left, size_t *size) {
     return overlong || (code >= 0xD800 && code <= 0xDFFF) || code > 0x10FFFF ? -1 : code;
 }
 
+/* The number of bytes of the mark that some editors put before UTF-8; libyaml does not skip it. */
+static size_t mark_size(const struct yaml_source *source) {
+    return source->length >= 3 && memcmp(source->text, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0;
+}
+
 /* Refuse what is no text: not UTF-8, or control characters. One error at the first place. */
 static enum status check_characters(const struct yaml_source *source, struct yaml_errors *errors) {
     const unsigned char *const text = (const unsigned char *)source->text;
     struct yaml_mark mark = {source, 1, 1};
-    for (size_t i = 0, size; i < source->length; i += size) {
+    for (size_t i = mark_size(source), size; i < source->length; i += size) {
         const long code = code_point(text + i, source->length - i, &size);
         const bool is_control = (code < ' ' && code != '\t' && code != '\n' && code != '\r') ||
                                 (code >= 0x7F && code < 0xA0 && code != 0x85) || code == 0xFFFE || code == 0xFFFF;
@@ -382,7 +387,9 @@ static enum status read_text(struct yaml_node **root, const struct yaml_source *
     struct reader reader = {.source = source, .errors = errors};
     if (!yaml_parser_initialize(&reader.parser)) return no_memory();
     yaml_parser_set_encoding(&reader.parser, YAML_UTF8_ENCODING);
-    yaml_parser_set_input_string(&reader.parser, (const unsigned char *)source->text, source->length);
+    const size_t skipped = mark_size(source);
+    yaml_parser_set_input_string(&reader.parser, (const unsigned char *)source->text + skipped,
+                                 source->length - skipped);
     const enum status status = read_document(&reader, root);
     yaml_parser_delete(&reader.parser);
     return status;
