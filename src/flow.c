@@ -228,17 +228,11 @@ static struct stencil point_stencil(const struct fish *fish, int p) {
     return (struct stencil){.n = 2, .node = {k, k + 1}, .weight = {0.5, 0.5}};
 }
 
-// the least number that keeps 0/0 away where a source meets its own point
-static double square_of(double smoothing) {
-    return smoothing * smoothing + 2.3e-308;
-}
-
 static void derive_nascent(const struct flow *flow, const struct fish *other, int g, int p, double x, double y,
                            struct flow_block *block) {
     const int source = flow->free_range[g].first + flow->free_range[g].n - 1;
     const int tail = other->n_nodes - 1;
-    const struct kernel_value unit =
-        kernel_unit(x - flow->free_x[source], y - flow->free_y[source], square_of(other->smoothing));
+    const struct kernel_value unit = kernel_unit(x - flow->free_x[source], y - flow->free_y[source], other->smoothing);
     const struct stencil end = {.n = 1, .node = {tail}, .weight = {1}};
     add_motion(block, p, &end, other->n_nodes, &unit, -flow->free_circulation[source]);
     const long shed = (long)p * block->n_columns + 2 * other->n_nodes + other->n_sheet;
@@ -249,11 +243,10 @@ static void derive_nascent(const struct flow *flow, const struct fish *other, in
 static void derive_sheet(const struct flow *flow, const struct fish *other, int g, int p, double x, double y,
                          double smoothing, struct flow_block *block) {
     const int first = flow->sheet_range[g].first;
-    const double square = square_of(smoothing);
     const long strength = (long)p * block->n_columns + 2 * other->n_nodes;
     for (int j = 0; j < other->n_sheet; j++) {
         const struct kernel_value unit =
-            kernel_unit(x - flow->sheet_x[first + j], y - flow->sheet_y[first + j], square);
+            kernel_unit(x - flow->sheet_x[first + j], y - flow->sheet_y[first + j], smoothing);
         block->u[strength + j] += unit.u * other->sheet_weight[j];
         block->v[strength + j] += unit.v * other->sheet_weight[j];
         add_motion(block, p, &other->sheet_point[j], other->n_nodes, &unit, -flow->sheet_circulation[first + j]);

@@ -24,6 +24,12 @@ static inline void block_read(lanes *block, const double *value, int n) {
     }
 }
 
+// A source on a target has no velocity there: a number that is small, but whose square is not zero, keeps 0/0 away. At
+// distances that matter it changes no bit.
+static inline double square_of(double smoothing) {
+    return smoothing * smoothing + 1e-150;
+}
+
 static inline void block_add(double *value, const lanes *block, int n) {
     for (int i = 0; i < LANES && i < n; i++) value[i] += (*block)[i] / two_pi;
 }
@@ -31,8 +37,7 @@ static inline void block_add(double *value, const lanes *block, int n) {
 WIDE void kernel_add_velocity(int n_targets, const double *x, const double *y, int n_sources, const double *source_x,
                               const double *source_y, const double *circulation, double smoothing, double *u,
                               double *v) {
-    // a source on a target has no velocity there: the least normal number keeps 0/0 away and changes no other bit
-    const double square = smoothing * smoothing + 2.3e-308;
+    const double square = square_of(smoothing);
     for (int first = 0; first < n_targets; first += 2 * LANES) {
         const int n = n_targets - first;
         const int rest = n > LANES ? n - LANES : 0;
@@ -63,7 +68,7 @@ WIDE void kernel_add_velocity(int n_targets, const double *x, const double *y, i
 WIDE void kernel_add_gradient(int n_targets, const double *x, const double *y, int n_sources, const double *source_x,
                               const double *source_y, const double *circulation, double smoothing, double *u, double *v,
                               double *u_x, double *u_y, double *v_x) {
-    const double square = smoothing * smoothing + 2.3e-308;
+    const double square = square_of(smoothing);
     for (int first = 0; first < n_targets; first += LANES) {
         const int n = n_targets - first;
         lanes xs, ys;
@@ -89,8 +94,8 @@ WIDE void kernel_add_gradient(int n_targets, const double *x, const double *y, i
     }
 }
 
-struct kernel_value kernel_unit(double rx, double ry, double square) {
-    const double inverse = 1 / (rx * rx + ry * ry + square);
+struct kernel_value kernel_unit(double rx, double ry, double smoothing) {
+    const double inverse = 1 / (rx * rx + ry * ry + square_of(smoothing));
     const double g = inverse / two_pi;
     const double twice = 2 * g * inverse;
     return (struct kernel_value){

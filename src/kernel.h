@@ -15,10 +15,10 @@ void kernel_add_gradient(int n_targets, const double *x, const double *y, int n_
                          const double *source_y, const double *circulation, double smoothing, double *u, double *v,
                          double *u_x, double *u_y, double *v_x);
 
-/* Velocity of one source of unit circulation at the distance (rx, ry) from it, square = e^2. */
+/* Velocity and gradient at the distance (rx, ry) from one source of unit circulation. */
 struct kernel_value {
     double u, v, u_x, u_y, v_x;
 };
-struct kernel_value kernel_unit(double rx, double ry, double square);
+struct kernel_value kernel_unit(double rx, double ry, double smoothing);
 
 #endif
