@@ -17,6 +17,9 @@ static const double newton_coefficient = 0.01;
  * factorisations. */
 static const double cj_change = 0.2;
 
+/* After a restart the method is of order one: its first step is this part of the last one. */
+static const double first_step = 0.3;
+
 struct implicit {
     struct residual *residual;
     struct state *state;
@@ -131,10 +134,10 @@ static void implicit_count(const void *data, struct integrator_counts *counts) {
     const struct implicit *const solver = data;
     long steps, evaluations, setups, error_failures, iterations, convergence_failures, jacobians;
     int last_order, next_order;
-    double first_step, last_step, next_step, now;
+    double initial_step, last_step, next_step, now;
     *counts = solver->before;
     IDAGetIntegratorStats(solver->ida, &steps, &evaluations, &setups, &error_failures, &last_order, &next_order,
-                          &first_step, &last_step, &next_step, &now);
+                          &initial_step, &last_step, &next_step, &now);
     IDAGetNonlinSolvStats(solver->ida, &iterations, &convergence_failures);
     IDAGetNumJacEvals(solver->ida, &jacobians);
     counts->steps += steps;
@@ -155,7 +158,7 @@ static enum status implicit_restart(void *data) {
         return status_fail(STATUS_SOLVER, "IDA cannot start again: %s", status_message());
     }
     // IDA's own guess of the first step knows nothing of the body; the last step does
-    const double step = solver->before.step_size;
+    const double step = first_step * solver->before.step_size;
     if (step > 0 && IDASetInitStep(solver->ida, step)) return STATUS_SOLVER;
     return STATUS_OK;
 }
