@@ -98,6 +98,7 @@ static enum status place_free(struct flow *flow, const struct state *state, doub
         flow->free_range[f] = (struct range){n, state->wake[f].n_vortex + 1};
         n += state->wake[f].n_vortex + 1;
     }
+    flow->n_free = n;
     if (n > flow->capacity) {
         const int capacity = n + n / 2;
         TRY(doubles(&flow->free_x, capacity));
@@ -177,6 +178,27 @@ static void add_sheet(struct flow *flow, int with_gradient, struct range points,
                 flow->sheet_circulation, smoothing);
 }
 
+// how many threads a sum is worth: below this many interactions starting them costs more than they save
+static int n_threads(const struct school *school, double interactions) {
+    return interactions > 30000 ? school->threads : 1;
+}
+
+// the free vortices of all fish: targets in chunks, so that threads share them; every target's sum is one thread's
+enum { CHUNK = 16 };
+static void add_free(struct flow *flow, int with_gradient) {
+    const struct school *school = flow->school;
+    const int n_chunks = (flow->n_points + CHUNK - 1) / CHUNK;
+    const int threads = n_threads(school, (double)flow->n_points * flow->n_free);
+#pragma omp parallel for num_threads(threads) schedule(static)
+    for (int chunk = 0; chunk < n_chunks; chunk++) {
+        const int first = chunk * CHUNK, rest = flow->n_points - first;
+        for (int g = 0; g < school->n_fish; g++) {
+            add_sources(flow, with_gradient, (struct range){first, rest < CHUNK ? rest : CHUNK}, flow->free_range[g],
+                        flow->free_x, flow->free_y, flow->free_circulation, school->fish[g].smoothing);
+        }
+    }
+}
+
 static void evaluate(struct flow *flow, int with_gradient) {
     const struct school *school = flow->school;
     for (int p = 0; p < flow->n_points; p++) {
@@ -184,10 +206,9 @@ static void evaluate(struct flow *flow, int with_gradient) {
         flow->u_x[p] = flow->v_x[p] = 0;
         flow->u_y[p] = school->shear;
     }
+    add_free(flow, with_gradient);
     for (int g = 0; g < school->n_fish; g++) {
         const struct fish *fish = &school->fish[g];
-        add_sources(flow, with_gradient, (struct range){0, flow->n_points}, flow->free_range[g], flow->free_x,
-                    flow->free_y, flow->free_circulation, fish->smoothing);
         // its bound sheet: at the points of the fish before and behind it in the list, and at its own
         const struct range own = flow->points[g];
         const int behind = own.first + own.n;
@@ -278,18 +299,24 @@ void flow_derivative(const struct flow *flow, int f, int g, struct flow_block *b
 
 void flow_at_wake(const struct flow *flow, int f, double *u, double *v) {
     const struct school *school = flow->school;
-    const double *const x = flow->free_x + flow->free_range[f].first, *const y =
-                                                                          flow->free_y + flow->free_range[f].first;
-    const int n = flow->free_range[f].n - 1;
-    for (int i = 0; i < n; i++) flow_external(school, flow->t, y[i], &u[i], &v[i]);
-    for (int g = 0; g < school->n_fish; g++) {
-        const struct fish *fish = &school->fish[g];
-        const struct range free_range = flow->free_range[g], sheet_range = flow->sheet_range[g];
-        kernel_add_velocity(n, x, y, free_range.n, flow->free_x + free_range.first, flow->free_y + free_range.first,
-                            flow->free_circulation + free_range.first, fish->smoothing, u, v);
-        kernel_add_velocity(n, x, y, sheet_range.n, flow->sheet_x + sheet_range.first,
-                            flow->sheet_y + sheet_range.first, flow->sheet_circulation + sheet_range.first,
-                            fish->sheet_smoothing, u, v);
+    const double *const x = flow->free_x + flow->free_range[f].first;
+    const double *const y = flow->free_y + flow->free_range[f].first;
+    const int n = flow->free_range[f].n - 1, n_chunks = (n + CHUNK - 1) / CHUNK;
+    const int threads = n_threads(school, (double)n * flow->n_free);
+#pragma omp parallel for num_threads(threads) schedule(static)
+    for (int chunk = 0; chunk < n_chunks; chunk++) {
+        const int first = chunk * CHUNK, m = n - first < CHUNK ? n - first : CHUNK;
+        for (int i = first; i < first + m; i++) flow_external(school, flow->t, y[i], &u[i], &v[i]);
+        for (int g = 0; g < school->n_fish; g++) {
+            const struct fish *fish = &school->fish[g];
+            const int free_first = flow->free_range[g].first, sheet_first = flow->sheet_range[g].first;
+            kernel_add_velocity(m, x + first, y + first, flow->free_range[g].n, flow->free_x + free_first,
+                                flow->free_y + free_first, flow->free_circulation + free_first, fish->smoothing,
+                                u + first, v + first);
+            kernel_add_velocity(m, x + first, y + first, flow->sheet_range[g].n, flow->sheet_x + sheet_first,
+                                flow->sheet_y + sheet_first, flow->sheet_circulation + sheet_first,
+                                fish->sheet_smoothing, u + first, v + first);
+        }
     }
 }
 

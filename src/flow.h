@@ -32,7 +32,7 @@ struct flow {
 
     /* sources */
     struct range *free_range; /* free vortices of each fish, the nascent one last   (n_fish) */
-    int capacity;
+    int n_free, capacity;
     double *free_x, *free_y, *free_circulation;    /*                              (capacity) */
     struct range *sheet_range;                     /*                              (n_fish) */
     double *sheet_x, *sheet_y, *sheet_circulation; /*                              (bound vortices of all fish) */

@@ -205,7 +205,7 @@ const struct key settings_table[] = {
     {"fish.control.bias", REAL, IN_FISH(control.bias), "0", ANY, "",
      .meaning = "law none: the bias; positive turns right", .synonyms = "phi0 offset"},
     {"fish.control.desired_heading", HEADING, IN_FISH(control.desired_heading), NULL, ANY, "degree",
-     .meaning = "a number, or a list of [time in s, angle] each valid from its time on", .derived = "start.heading",
+     .meaning = "a number, or a list of [time in s, angle], linear between the times", .derived = "start.heading",
      .synonyms = "target h_des target_heading"},
     {"fish.control.waypoints", PAIRS, IN_FISH(control.waypoints), "[]", ANY, "m",
      .meaning = "points [x, y] to visit in order; they set the desired heading", .synonyms = "route points"},
