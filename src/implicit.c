@@ -182,6 +182,7 @@ static struct unknown_place worst_unknown(const struct implicit *solver, double 
 
 static const char *reason(int code) {
     switch (code) {
+        case IDA_TOO_MUCH_WORK: return "more steps between two events than solver.max_steps: raise it, or solver.rtol";
         case IDA_TOO_MUCH_ACC: return "the tolerance is below what double precision can hold: raise solver.rtol";
         case IDA_ERR_FAIL: return "the error test failed again and again or at the least step";
         case IDA_CONV_FAIL: return "Newton's iteration did not converge with steps down to the least";
@@ -196,15 +197,16 @@ static enum status give_up(const struct implicit *solver, int code, long steps) 
     double now = 0, step = 0, size;
     IDAGetCurrentTime(solver->ida, &now);
     IDAGetCurrentStep(solver->ida, &step);
-    char words[512];
-    snprintf(words, sizeof words, "%s", status_message());
+    // at the limit of steps IDA itself has nothing to say
+    char words[512] = "";
+    if (code != IDA_TOO_MUCH_WORK) snprintf(words, sizeof words, "; IDA: %s", status_message());
     const struct unknown_place place = worst_unknown(solver, &size);
-    return status_fail(STATUS_SOLVER,
-                       "the solver gave up at t = %.10g s: %s; the worst unknown is %s[%d] of fish %s with an error of "
-                       "%.3g tolerances; tried: order %d and below, %ld steps since the last event, the last of %.3g s "
-                       "(IDA, code %d: %s)",
-                       now, reason(code), place.name, place.index, school->fish[place.fish].name, size,
-                       solver->options.order, steps, step, code, words);
+    return status_fail(
+        STATUS_SOLVER,
+        "the solver gave up at t = %.10g s: %s; the worst unknown is %s[%d] of fish %s with an error of "
+        "%.3g tolerances; tried: order %d and below, %ld steps since the last event, the last of %.3g s%s",
+        now, reason(code), place.name, place.index, school->fish[place.fish].name, size, solver->options.order, steps,
+        step, words);
 }
 
 static enum status implicit_advance(void *data, double t) {
@@ -213,13 +215,7 @@ static enum status implicit_advance(void *data, double t) {
     double reached = state->t;
     if (IDASetStopTime(solver->ida, t)) return give_up(solver, IDA_ILL_INPUT, 0);
     for (long steps = 0; reached < t; steps++) {
-        if (steps == solver->options.max_steps) {
-            return status_fail(
-                STATUS_SOLVER,
-                "more than solver.max_steps = %d steps between two events, at t = %.10g s: the motion is "
-                "too fast for the shedding interval, or solver.rtol too small; raise one of them",
-                solver->options.max_steps, reached);
-        }
+        if (steps == solver->options.max_steps) return give_up(solver, IDA_TOO_MUCH_WORK, steps);
         solver->failure = STATUS_OK;
         const int code = IDASolve(solver->ida, t, &reached, solver->y, solver->yp, IDA_ONE_STEP);
         if (solver->failure < 0) return solver->failure;

@@ -265,7 +265,7 @@ static void print_command_help(const struct command *command, FILE *stream) {
 static enum status usage(const struct command *command, const char *format, const char *word) {
     char problem[512];
     snprintf(problem, sizeof problem, format, word);
-    return status_fail(STATUS_CASE, "shoal: error: %s; see shoal %s%s--help", problem, command ? command->name : "",
+    return status_fail(STATUS_CASE, "%s; see shoal %s%s--help", problem, command ? command->name : "",
                        command ? " " : "");
 }
 
@@ -362,7 +362,7 @@ static enum status print_version(void) {
 static enum status choose(int argc, char **argv) {
     if (argc < 2) {
         print_help(stderr);
-        return status_fail(STATUS_CASE, "shoal: error: no command");
+        return status_fail(STATUS_CASE, "no command");
     }
     if (strcmp(argv[1], "--version") == 0) return print_version();
     if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0) {
@@ -375,15 +375,18 @@ static enum status choose(int argc, char **argv) {
     return usage(NULL, "unknown command '%s'", argv[1]);
 }
 
+// the errors of a case name their places themselves
+static void print_message(const char *message) {
+    const size_t length = strlen(message);
+    fprintf(stderr, "%s%s%s", strstr(message, "error: ") ? "" : "shoal: error: ", message,
+            length > 0 && message[length - 1] == '\n' ? "" : "\n");
+}
+
 int main(int argc, char **argv) {
     enum status status = choose(argc, argv);
     if (status == STATUS_OK && (fflush(stdout) != 0 || ferror(stdout))) {
-        status = status_fail(STATUS_FILE, "shoal: error: cannot write to standard output");
+        status = status_fail(STATUS_FILE, "cannot write to standard output");
     }
-    if (status != STATUS_OK) {
-        const char *const message = status_message();
-        const size_t length = strlen(message);
-        fprintf(stderr, "%s%s", message, length > 0 && message[length - 1] == '\n' ? "" : "\n");
-    }
+    if (status != STATUS_OK) print_message(status_message());
     return status_exit_code(status);
 }
