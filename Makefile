@@ -57,8 +57,11 @@ c_tests      = $(patsubst tests/%.c,$(B)/tests/%,$(wildcard $(test_names:%=tests
 shell_tests  = $(wildcard $(test_names:%=tests/test_%.sh))
 test_helpers = $(patsubst tests/%.c,$(B)/tests/%.o,$(filter-out tests/test_%,$(wildcard tests/*.c)))
 
+verify_program = $(B)/verify/verify
+verify_objects = $(patsubst tests/verify/%.c,$(B)/verify/%.o,$(wildcard tests/verify/*.c))
+
 generated_docs = $(B)/doc/cases.md $(B)/doc/output.md
-c_files        = $(wildcard src/*.[ch] include/*.h tests/*.[ch])
+c_files        = $(wildcard src/*.[ch] include/*.h tests/*.[ch] tests/verify/*.[ch])
 
 # "commit" or "commit-dirty"; of this folder's own repository, not of one that happens to lie around it
 commit := $(shell test -e .git && git describe --always --dirty --abbrev=12 --exclude='*' 2>/dev/null || echo unknown)
@@ -66,7 +69,7 @@ commit := $(shell test -e .git && git describe --always --dirty --abbrev=12 --ex
 # make again, on all cores unless told otherwise
 parallel = $(MAKE) --no-print-directory $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
-.PHONY: all demo test tests bench style format docs install uninstall clean deps help FORCE
+.PHONY: all demo test tests verify bench style format docs install uninstall clean deps help FORCE
 
 ## Everyday
 
@@ -79,6 +82,10 @@ demo: deps  ## install what is missing, build, swim: demo.nc and demo.png
 test: deps  ## install what is missing, build, run every test
 	@$(parallel) tests
 	@scripts/run-tests.sh $(program) $(c_tests) $(shell_tests)
+
+verify: deps  ## check the program against classical results (minutes) and write doc/verification.md
+	@$(parallel) $(verify_program)
+	@scripts/verify.sh $(verify_program) $(B)/verify
 
 bench: $(program)  ## measure time, memory and counts of the benchmark cases
 	@scripts/bench.sh $(program)
@@ -151,7 +158,15 @@ $(B)/version.o: $(B)/commit
 $(B)/commit: FORCE | $(B)/tests
 	@echo '$(commit)' | cmp -s - $@ || echo '$(commit)' >$@
 
-tests: $(program) $(c_tests)
+tests: $(program) $(c_tests) $(verify_program)
+
+$(B)/verify/%.o: tests/verify/%.c Makefile | $(B)/verify
+	$(say) CC $<
+	$(quiet)$(CC) $(shoal_cppflags) $(shoal_cflags) -MMD -MP -c -o $@ $<
+
+$(verify_program): $(verify_objects) $(library)
+	$(say) LD $@
+	$(quiet)$(CC) $(shoal_cflags) $(LDFLAGS) -o $@ $^ $(libraries)
 
 $(B)/tests/%.o: tests/%.c Makefile | $(B)/tests
 	$(say) CC $<
@@ -169,8 +184,8 @@ $(B)/doc/cases.md: $(program) scripts/make-cases-doc.py | $(B)/tests
 $(B)/doc/output.md: $(program) scripts/make-output-doc.py | $(B)/tests
 	$(quiet)$(program) keys --output --json | $(PYTHON) scripts/make-output-doc.py >$@
 
-$(B)/tests:
+$(B)/tests $(B)/verify:
 	@mkdir -p $@ $(B)/doc
 
 .PRECIOUS: $(B)/tests/%.o
--include $(wildcard $(B)/*.d $(B)/tests/*.d)
+-include $(wildcard $(B)/*.d $(B)/tests/*.d $(B)/verify/*.d)

@@ -11,7 +11,7 @@
 
 /* Newton ends when its error is this part of the error test's: stiff velocities are outside that test, and an
  * iteration that stopped at IDA's own 0.33 would leave their noise in the accelerations. Measured: doc/numerics.md. */
-static const double newton_coefficient = 0.01;
+static const double newton_coefficient = 0.003;
 
 /* A Jacobian serves while its cj is within this part of the step's; IDA's own 0.25 costs more iterations than it saves
  * factorisations. */
@@ -79,7 +79,7 @@ static enum status set_up_ida(struct implicit *solver) {
         IDASVtolerances(ida, 0, solver->tolerances) || IDASetId(ida, solver->kinds) || IDASetSuppressAlg(ida, 1) ||
         IDASetLinearSolver(ida, solver->klu.solver, solver->klu.matrix) || IDASetJacFn(ida, jacobian_callback) ||
         IDASetNonlinConvCoef(ida, newton_coefficient) || IDASetMaxOrd(ida, solver->options.order) ||
-        IDASetMaxNonlinIters(ida, 5) || IDASetDeltaCjLSetup(ida, cj_change) || IDASetMaxErrTestFails(ida, 20) ||
+        IDASetMaxNonlinIters(ida, 6) || IDASetDeltaCjLSetup(ida, cj_change) || IDASetMaxErrTestFails(ida, 20) ||
         IDASetMaxConvFails(ida, 20) || IDASetMinStep(ida, 1e-10 * school->interval)) {
         return status_fail(STATUS_SOLVER, "IDA cannot be set up: %s", status_message());
     }

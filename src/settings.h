@@ -81,7 +81,7 @@ struct settings_body {
     double density;            /* kg m-3 */
     double modulus;            /* Pa */
     enum second_moment second_moment;
-    double bending_damping; /* N m2 s ... as in doc/model.md, section 3 */
+    double bending_damping; /* N m s, and N s m-1: doc/model.md, section 3 */
     double stretching_damping;
     double relaxation_time; /* s */
 };
@@ -164,7 +164,8 @@ struct settings {
 enum status settings_read(struct settings *settings, const char *path, int n_assignments,
                           const char *const *assignments);
 
-/* The same from a text in memory; origin stands for the file name in messages, folder is where includes are looked up. */
+/* The same from a text in memory; origin stands for the file name in messages, folder (NULL or "": the working
+ * directory) is where includes are looked up. */
 enum status settings_parse(struct settings *settings, const char *text, size_t length, const char *origin,
                            const char *folder, int n_assignments, const char *const *assignments);
 

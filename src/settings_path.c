@@ -37,7 +37,7 @@ static const char *parse_index(struct settings_path *path, const char *text, int
     return text + 2 + length;
 }
 
-/* Check the words of a path below a section of the table one by one. prefix and text are for messages. */
+/* Check the words of a path below a section of the table one by one. text is the whole path, for messages; owner as in settings_table_suggest. */
 static bool check_words(struct settings_path *path, const char *words, const char *text, const char *owner,
                         struct yaml_mark mark, struct yaml_errors *errors) {
     for (;;) {

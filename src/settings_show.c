@@ -58,7 +58,7 @@ static bool is_hidden(const struct key *key, const void *field) {
     return key->type == NUMBERS && ((const struct settings_list *)field)->n == 0;
 }
 
-/* Add the rows of the table from k on that belong to the same fish, or to none. before: the path of the last row. */
+/* Add every row of the table that belongs to a fish, or with fish NULL every row that belongs to none. */
 static void show_rows(struct yaml_text *text, struct settings *settings, struct settings_fish *fish) {
     const char *before = NULL;
     for (int k = 0; k < settings_table_n; k++) {

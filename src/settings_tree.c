@@ -123,7 +123,7 @@ static enum status include_path(struct settings_tree *tree, const struct yaml_no
     return root ? yaml_tree_merge(base, root) : STATUS_OK;
 }
 
-/* Read what one entry of an include list names. folder: the path, up to its last slash, that relative names begin at. */
+/* Read what one entry of an include list names. Relative names begin at the folder, which ends at its last slash. */
 static enum status include_entry(struct settings_tree *tree, const struct yaml_node *node, const char *folder,
                                  const struct open_file *by, struct yaml_errors *errors, struct yaml_node **base) {
     if (node->kind != YAML_SCALAR || node->text[0] == '\0') {

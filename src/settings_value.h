@@ -1,4 +1,4 @@
-/* settings_value.h: one value of a case, by its row of the table: read, write, release. Tested by tests/test_settings.c.
+/* settings_value.h: one value of a case, by its row of the table. Tested by tests/test_settings.c.
  *
  * A field that has not been read holds NaN, -1 (word), 0 or an empty list: a comparison with it is false, so that a
  * check of several keys is silent about a value that has been complained about already. */

@@ -30,8 +30,8 @@ void yaml_text_add_node(struct yaml_text *text, const struct yaml_node *node);
 /* Release the text and zero it. */
 void yaml_text_free(struct yaml_text *text);
 
-/* Read a decimal number; all of the text must belong to it. Too large a number becomes an infinity. False if the text is
- * no number; nan, inf and hexadecimal digits are none. */
+/* Read a decimal number; all of the text must belong to it. Too large a number becomes an infinity. False if the text
+ * is no number; nan, inf and hexadecimal digits are none. */
 bool yaml_text_number(const char *text, double *number);
 
 #endif
