@@ -1,0 +1,229 @@
+/* school.c: schools, random states, differences. */
+#include "school.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "smooth.h"
+
+void school_ok(enum status status) {
+    if (status == STATUS_OK) return;
+    print_error("%s\n", status_message());
+    fail();
+}
+
+void school_settings(struct settings *settings, const char *text) {
+    char whole[8192];
+    const int length = snprintf(whole, sizeof whole, "format: 1\nname: test\n%s", text);
+    assert_in_range(length, 0, sizeof whole - 1);
+    school_ok(settings_parse(settings, whole, (size_t)length, "test", ".", 0, NULL));
+}
+
+void school_build(struct setup *setup, const char *text) {
+    *setup = (struct setup){.seed = 1};
+    school_settings(&setup->settings, text);
+    school_ok(fish_school_create(&setup->school, &setup->settings));
+    school_ok(state_create(&setup->state, setup->school));
+    school_ok(residual_create(&setup->residual, setup->school, setup->state));
+    school_ok(sparse_create(&setup->jacobian, setup->school->n_unknowns));
+    residual_mask(setup->residual, setup->jacobian);
+    setup->value = calloc((size_t)setup->school->n_unknowns, sizeof *setup->value);
+    assert_non_null(setup->value);
+}
+
+void school_clear(struct setup *setup) {
+    free(setup->value);
+    sparse_free(setup->jacobian);
+    residual_free(setup->residual);
+    state_free(setup->state, setup->school);
+    fish_school_free(setup->school);
+    settings_free(&setup->settings);
+}
+
+double school_random(struct setup *setup) {
+    // Knuth's linear congruential generator; the upper bits are good ones
+    setup->seed = setup->seed * 6364136223846793005u + 1442695040888963407u;
+    return (double)(int64_t)(setup->seed >> 11) / 4503599627370496.0 - 1;
+}
+
+static void stir_fish(struct setup *setup, const struct fish *fish, double *y, double *yp) {
+    // joints turned by up to 0.3 rad, edges stretched by up to 2 %
+    double angle = fish->start_heading - 3.14159265358979 + 0.2 * school_random(setup);
+    for (int k = 0; k < fish->n_edges; k++) {
+        const double l = fish->edge_length * (1 + 0.02 * school_random(setup));
+        y[fish->at.x + k + 1] = y[fish->at.x + k] + l * cos(angle);
+        y[fish->at.y + k + 1] = y[fish->at.y + k] + l * sin(angle);
+        angle += 0.3 * school_random(setup);
+    }
+    for (int k = 0; k < fish->n_nodes; k++) {
+        y[fish->at.vx + k] += 0.5 * school_random(setup);
+        y[fish->at.vy + k] += 0.5 * school_random(setup);
+        y[fish->at.ax + k] = 2 * school_random(setup);
+        y[fish->at.ay + k] = 2 * school_random(setup);
+    }
+    for (int j = 0; j < fish->n_sheet; j++) y[fish->at.sheet + j] = school_random(setup);
+    y[fish->at.shed] = 0.4 * school_random(setup);
+    y[fish->at.phi0] = 0.3 * school_random(setup);
+    for (int i = fish->at.x; i < fish->at.end; i++) yp[i] = school_random(setup);
+}
+
+static void stir_wake(struct setup *setup, const struct fish *fish, struct wake *wake) {
+    const double back[2] = {-cos(fish->start_heading), -sin(fish->start_heading)};
+    for (int i = 0; i < 6; i++) {
+        const double along = fish->length * (1.6 - 0.1 * i), across = 0.2 * fish->length * school_random(setup);
+        // the oldest one is fading
+        const double age = i == 0 ? setup->school->lifetime - setup->school->fade / 2 : 0.5 * setup->school->lifetime;
+        school_ok(wake_release(wake, fish->start_position[0] + along * back[0] - across * back[1],
+                               fish->start_position[1] + along * back[1] + across * back[0],
+                               0.1 * school_random(setup), setup->state->t - age));
+        wake->u[i] = school_random(setup);
+        wake->v[i] = school_random(setup);
+        wake->u_before[i] = school_random(setup);
+        wake->v_before[i] = school_random(setup);
+    }
+    wake->dissipated = 0.1 * school_random(setup);
+    wake->shed_before = 0.3 * school_random(setup);
+    wake->slip[0] = school_random(setup);
+    wake->slip[1] = school_random(setup);
+}
+
+void school_stir(struct setup *setup) {
+    struct state *state = setup->state;
+    state->event = 10;
+    state->t = 10 * setup->school->interval;
+    setup->t = state->t + 0.4 * setup->school->interval;
+    for (int f = 0; f < setup->school->n_fish; f++) {
+        const struct fish *fish = &setup->school->fish[f];
+        stir_fish(setup, fish, state->y, state->yp);
+        stir_wake(setup, fish, &state->wake[f]);
+        state->control[f].phi0 = 0.2 * school_random(setup);
+        state->control[f].phi0_rate = school_random(setup);
+    }
+    flow_forget(setup->residual->flow);
+    residual_couple(setup->residual, state->y);
+}
+
+void school_flow(struct setup *setup, const double *y) {
+    school_ok(flow_place(setup->residual->flow, setup->state, setup->t, y));
+    flow_gradient(setup->residual->flow);
+}
+
+double *school_dense(const struct sparse *matrix) {
+    const size_t n = (size_t)matrix->n;
+    double *const dense = calloc(n * n, sizeof *dense);
+    assert_non_null(dense);
+    for (size_t column = 0; column < n; column++) {
+        for (int64_t i = matrix->column_start[column]; i < matrix->column_start[column + 1]; i++) {
+            dense[(size_t)matrix->row_index[i] * n + column] = matrix->value[i];
+        }
+    }
+    return dense;
+}
+
+/* The step of the differences for an unknown, and the size of its values. The sum of what is cut off, of relative size
+ * (step/d)^4/30 with d the length over which the function changes, and of what is rounded off, 1e-16 size/step, is
+ * smallest near these. The shortest d: bound vortex to control point, 2e-3 lengths at the ends of a sheet of 21. */
+struct step {
+    double step, size;
+};
+static struct step step_of(enum unknown kind) {
+    switch (kind) {
+        case UNKNOWN_X:
+        case UNKNOWN_Y: return (struct step){1e-5, 1};
+        case UNKNOWN_VX:
+        case UNKNOWN_VY: return (struct step){1e-3, 1};
+        case UNKNOWN_AX:
+        case UNKNOWN_AY: return (struct step){1, 1};
+        case UNKNOWN_SHEET:
+        case UNKNOWN_SHED: return (struct step){1e-3, 1};
+        case UNKNOWN_PHI0: return (struct step){1e-3, 1};
+    }
+    return (struct step){0, 0};
+}
+
+// column j of dF/dy + cj dF/dyp by differences of fourth order
+static void difference(struct setup *setup, school_value *value, double cj, int j, double step, double *column) {
+    static const double node[4] = {-2, -1, 1, 2}, weight[4] = {1.0 / 12, -8.0 / 12, 8.0 / 12, -1.0 / 12};
+    const size_t n = (size_t)setup->school->n_unknowns;
+    double *const y = malloc(3 * n * sizeof *y), *const yp = y + n, *const at = y + 2 * n;
+    assert_non_null(y);
+    memset(column, 0, n * sizeof *column);
+    memcpy(y, setup->state->y, n * sizeof *y);
+    memcpy(yp, setup->state->yp, n * sizeof *yp);
+    for (int i = 0; i < 4; i++) {
+        y[j] = setup->state->y[j] + node[i] * step;
+        yp[j] = setup->state->yp[j] + cj * (y[j] - setup->state->y[j]);
+        memset(at, 0, n * sizeof *at);
+        value(setup, y, yp, at);
+        for (size_t row = 0; row < n; row++) column[row] += weight[i] / step * at[row];
+    }
+    free(y);
+}
+
+// no entry may differ by more than 1e-6 of the largest in its row among the unknowns of the same kind (a large stiffness
+// hides no error in a small drag), and what the differences round off
+static void check_row(struct setup *setup, int row, const double *got, const double *want, const char *name) {
+    const int n = setup->school->n_unknowns;
+    double largest[UNKNOWN_PHI0 + 1] = {0}, size = 0;
+    for (int j = 0; j < n; j++) {
+        const enum unknown kind = residual_place(setup->school, j).kind;
+        largest[kind] = fmax(largest[kind], fmax(fabs(got[j]), fabs(want[j])));
+        size = fmax(size, fabs(want[j]) * step_of(kind).size);
+    }
+    // x and y, and so on, are of one kind
+    for (int kind = UNKNOWN_X; kind < UNKNOWN_SHEET; kind += 2) {
+        largest[kind] = largest[kind + 1] = fmax(largest[kind], largest[kind + 1]);
+    }
+    for (int j = 0; j < n; j++) {
+        const struct unknown_place of = residual_place(setup->school, j), in = residual_place(setup->school, row);
+        const double allowed = 1e-6 * largest[of.kind] + 1e-14 * size / step_of(of.kind).step;
+        if (fabs(got[j] - want[j]) <= allowed) continue;
+        print_error("%s: derivative of row %s[%d] of fish %d by %s[%d] of fish %d: stamped %.10g, differences %.10g, "
+                    "allowed %.3g\n",
+                    name, in.name, in.index, in.fish, of.name, of.index, of.fish, got[j], want[j], allowed);
+        fail();
+    }
+}
+
+void school_compare(struct setup *setup, school_value *value, school_stamp *stamp, const char *name) {
+    const double cj = 37;
+    const size_t n = (size_t)setup->school->n_unknowns;
+    // once while recording, once replayed
+    sparse_forget(setup->jacobian);
+    for (int pass = 0; pass < 2; pass++) {
+        school_flow(setup, setup->state->y);
+        if (stamp) {
+            sparse_begin(setup->jacobian);
+            stamp(setup, cj, setup->state->y, setup->jacobian);
+            school_ok(sparse_end(setup->jacobian));
+        } else {
+            school_ok(residual_jacobian(setup->residual, setup->t, cj, setup->state->y, setup->jacobian));
+        }
+        double *const dense = school_dense(setup->jacobian);
+        double *const expected = calloc(n * n, sizeof *expected), *const column = calloc(n, sizeof *column);
+        assert_non_null(expected);
+        assert_non_null(column);
+        for (size_t j = 0; j < n; j++) {
+            difference(setup, value, cj, (int)j, step_of(residual_place(setup->school, (int)j).kind).step, column);
+            for (size_t row = 0; row < n; row++) expected[row * n + j] = column[row];
+        }
+        for (size_t row = 0; row < n; row++) check_row(setup, (int)row, dense + row * n, expected + row * n, name);
+        free(dense);
+        free(expected);
+        free(column);
+    }
+}
+
+struct simulation *school_simulation(const char *text) {
+    struct settings settings;
+    school_settings(&settings, text);
+    struct simulation *simulation;
+    school_ok(simulate_create(&simulation, &settings));
+    settings_free(&settings);
+    return simulation;
+}
+
+void school_run(struct simulation *simulation, double t) {
+    while (simulation->state->t < t - simulation->school->interval / 2) school_ok(simulate_step(simulation));
+}

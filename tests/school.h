@@ -1,0 +1,54 @@
+/* school.h: what the tests of the physics share: a school from the text of a case, a state in which nothing is zero or
+ * symmetric by chance, a comparison of derivatives with differences, and short runs. */
+#ifndef SCHOOL_H
+#define SCHOOL_H
+
+#include "near.h"
+#include "residual.h"
+#include "settings.h"
+#include "simulate.h"
+#include "sparse.h"
+
+struct setup {
+    struct settings settings;
+    struct school *school;
+    struct state *state;
+    struct residual *residual;
+    struct sparse *jacobian; /* empty, rows of given motions masked */
+    double *value;           /* a residual                                        (n_unknowns) */
+    double t;                /* that of the state; after school_stir in the middle of an interval, s */
+    uint64_t seed;           /* of the random numbers */
+};
+
+/* "format: 1" and a name stand before the text. Fails the test with the message where there is one. */
+void school_settings(struct settings *settings, const char *text);
+void school_build(struct setup *setup, const char *text);
+void school_clear(struct setup *setup);
+
+/* A random number in [-1, 1], always the same ones in the same order. */
+double school_random(struct setup *setup);
+
+/* Bend, stretch and move all bodies, give every unknown and every memory a value, fill the wakes, and go 0.4 intervals
+ * past the last event. */
+void school_stir(struct setup *setup);
+
+/* The fluid's velocity (and gradient) everywhere for the unknowns y at setup->t. */
+void school_flow(struct setup *setup, const double *y);
+
+/* Compare, entry by entry, the matrix that stamp adds up with the differences of what value computes. No stamp: with
+ * residual_jacobian. */
+typedef void school_value(struct setup *setup, const double *y, const double *yp, double *value);
+typedef void school_stamp(struct setup *setup, double cj, const double *y, struct sparse *jacobian);
+void school_compare(struct setup *setup, school_value *value, school_stamp *stamp, const char *name);
+
+/* The matrix as a dense one, row after row; the caller frees it. */
+double *school_dense(const struct sparse *matrix);
+
+/* A simulation at its first event, and on to a time. Fails the test with the message where there is one. */
+struct simulation *school_simulation(const char *text);
+void school_run(struct simulation *simulation, double t);
+
+/* Fail the test with the message unless the status is STATUS_OK. */
+void school_ok(enum status status);
+
+#endif
