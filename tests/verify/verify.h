@@ -1,0 +1,53 @@
+/* verify.h: checks against classical results. `make verify` runs every section as a process of its own; each check
+ * prints one row and adds it to a table, from which scripts/verify.py writes doc/verification.md and its figures.
+ *
+ *     section --> rows: quantity | source | reference | obtained | error | bound | order
+ *             \-> points of figures: figure | series | x | y
+ */
+#ifndef VERIFY_H
+#define VERIFY_H
+
+#include "simulate.h"
+
+/* The sections, in the order of doc/verification.md; each is in a file of its own. */
+void verify_rod(void);
+void verify_sheet(void);
+void verify_wake(void);
+void verify_plate(void);
+void verify_school(void);
+void verify_symmetry(void);
+void verify_start(void);
+void verify_energy(void);
+
+/* Only the checks that take seconds are wanted: `make test` runs those. */
+int verify_is_fast(void);
+
+/* A check: |obtained - reference| <= bound; or, relative, |obtained - reference| <= bound |reference|. source says where
+ * the reference comes from. */
+void verify_value(const char *quantity, const char *source, double reference, double obtained, double bound);
+void verify_relative(const char *quantity, const char *source, double reference, double obtained, double bound);
+
+/* A check: |obtained| <= bound, where the reference is zero. */
+void verify_zero(const char *quantity, const char *source, double obtained, double bound);
+
+/* A check: an observed order of convergence between least and most. */
+void verify_order(const char *quantity, const char *source, double order, double least, double most);
+
+/* No check: a number that the reader wants to see. */
+void verify_show(const char *quantity, const char *source, double obtained);
+
+/* A point of a figure; scripts/verify.py knows how each figure is drawn. */
+void verify_point(const char *figure, const char *series, double x, double y);
+
+/* The observed order from three errors, or values, at refinement ratio two: log2(|e1| / |e2|) and
+ * log2(|v1 - v2| / |v2 - v3|). */
+double verify_order_of_errors(double coarse, double fine);
+double verify_order_of_values(double coarse, double middle, double fine);
+
+/* Open a case given as text (printf format), with at most 16 kB; the section ends with the message where that fails. */
+struct simulation *verify_open(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+/* Step until the time has come; the section ends with the message where that fails. */
+void verify_run(struct simulation *simulation, double t);
+
+#endif
