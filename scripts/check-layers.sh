@@ -17,7 +17,7 @@ readonly layers='
  9  residual
 10  measure
 11  bridge store checkpoint
-12  consistent
+12  consistent direct
 13  integrator event
 14  implicit explicit
 15  simulate
@@ -30,7 +30,7 @@ readonly layers='
 readonly same_layer=''
 
 # Outside headers (their first folder, or their name without .h) and the modules that may include them.
-readonly solver_users='bridge consistent implicit explicit'
+readonly solver_users='bridge consistent direct implicit explicit'
 readonly outside="
 sundials ida kinsol arkode nvector sunmatrix sunlinsol sunnonlinsol : $solver_users
 klu amd colamd btf SuiteSparse_config : $solver_users

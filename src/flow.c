@@ -297,6 +297,30 @@ void flow_derivative(const struct flow *flow, int f, int g, struct flow_block *b
     }
 }
 
+void flow_response(const struct flow *flow, int f, int g, struct flow_block *block) {
+    const struct fish *fish = &flow->school->fish[f], *other = &flow->school->fish[g];
+    const int sheet = flow->sheet_range[g].first, nascent = flow->free_range[g].first + flow->free_range[g].n - 1;
+    block->n_points = flow->points[f].n;
+    block->n_columns = other->n_sheet + 1;
+    for (int p = 0; p < block->n_points; p++) {
+        const double x = flow->x[flow->points[f].first + p], y = flow->y[flow->points[f].first + p];
+        const int own = f == g, control = p < fish->n_control, tail = p == flow_tail(fish);
+        double *const u = block->u + (long)p * block->n_columns, *const v = block->v + (long)p * block->n_columns;
+        for (int j = 0; j < other->n_sheet; j++) {
+            u[j] = v[j] = 0;
+            if (own && !control && !tail) continue;
+            const struct kernel_value unit = kernel_unit(x - flow->sheet_x[sheet + j], y - flow->sheet_y[sheet + j],
+                                                         own && control ? 0 : other->sheet_smoothing);
+            u[j] = unit.u * other->sheet_weight[j];
+            v[j] = unit.v * other->sheet_weight[j];
+        }
+        const struct kernel_value unit =
+            kernel_unit(x - flow->free_x[nascent], y - flow->free_y[nascent], other->smoothing);
+        u[other->n_sheet] = unit.u;
+        v[other->n_sheet] = unit.v;
+    }
+}
+
 void flow_at_wake(const struct flow *flow, int f, double *u, double *v) {
     const struct school *school = flow->school;
     const double *const x = flow->free_x + flow->free_range[f].first;

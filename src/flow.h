@@ -78,6 +78,10 @@ void flow_gradient(struct flow *flow);
  * flow_gradient. */
 void flow_derivative(const struct flow *flow, int f, int g, struct flow_block *block);
 
+/* Fill block with the velocity at the points of fish f that each bound vortex of unit strength, and a nascent vortex of
+ * unit circulation, of fish g causes: columns sheet (M_g), shed (1). After flow_place. */
+void flow_response(const struct flow *flow, int f, int g, struct flow_block *block);
+
 /* The velocity at the free vortices of fish f that are released, in the order of its wake. After flow_place. */
 void flow_at_wake(const struct flow *flow, int f, double *u, double *v);
 

@@ -11,13 +11,16 @@
 struct integrator_counts {
     long steps, residual_evaluations, newton_iterations, jacobian_evaluations;
     long error_test_failures, convergence_failures;
-    double step_size; /* s */
+    long linear_solves; /* of the algebraic unknowns, by an explicit method */
+    double step_size;   /* s */
     int order;
 };
 
 /* How to integrate. */
 struct integrator_options {
-    int order;     /* the most */
+    enum method method;
+    int order;     /* the most, of the implicit method */
+    double step;   /* fixed, of an explicit method, s; 0: adaptive */
     int max_steps; /* between two events */
 };
 

@@ -118,7 +118,13 @@ static int feels_moment(const struct fish *fish) {
     return fish->control.law == CONTROL_HEADING && fish->control.feedforward != 0;
 }
 
-static void muscle(struct residual *residual, int f, double t, const double *y) {
+double residual_moment(const struct residual *residual, int f, const double *y) {
+    const struct fish *fish = &residual->school->fish[f];
+    const int first = residual->flow->points[f].first;
+    return feels_moment(fish) ? drag_moment(fish, residual->flow->u + first, residual->flow->v + first, y) : 0;
+}
+
+void residual_muscle(struct residual *residual, int f, double t, const double *y) {
     const struct fish *fish = &residual->school->fish[f];
     const int first = residual->joints[f].first;
     actuation_curvature(fish, t, y[fish->at.phi0], residual->natural_curvature + first,
@@ -167,7 +173,7 @@ static void evaluate_fish(struct residual *residual, int f, double t, const doub
         value[fish->at.vx + i] = yp[fish->at.vx + i] - y[fish->at.ax + i];
     }
     // the law of motion, per mass
-    muscle(residual, f, t, y);
+    residual_muscle(residual, f, t, y);
     balance(residual, f, u, v, y, value);
     for (int k = 0; k < fish->n_nodes; k++) {
         value[fish->at.ax + k] /= fish->mass[k];
@@ -178,7 +184,7 @@ static void evaluate_fish(struct residual *residual, int f, double t, const doub
     sheet_residual(fish, residual_dissipated(residual, f), u, v, y, value);
     sheet_kutta_residual(fish, law_of(residual), smooth_ramp(t, school->kutta_ramp), u, v, y, yp, value);
     // the control law
-    const double tau = feels_moment(fish) ? drag_moment(fish, u, v, y) : 0;
+    const double tau = residual_moment(residual, f, y);
     control_residual(fish, &state->control[f], t, t - state->t, tau, y, value);
 }
 
@@ -227,13 +233,13 @@ static void stamp_fish(struct residual *residual, int f, double t, double cj, co
         sparse_add(jacobian, fish->at.vx + i, fish->at.ax + i, -1);
         sparse_add(jacobian, fish->at.ax + i, fish->at.ax + i, 1);
     }
-    muscle(residual, f, t, y);
+    residual_muscle(residual, f, t, y);
     rod_stamp(fish, residual->natural_curvature + joints, residual->curvature_by_phi0 + joints, y, jacobian);
     drag_stamp(fish, u, v, y, jacobian);
     stamp_driven(fish, jacobian);
     sheet_stamp(fish, u, v, y, jacobian);
     sheet_kutta_stamp(fish, law_of(residual), chi, cj, u, v, y, jacobian);
-    const double tau = feels_moment(fish) ? drag_moment(fish, u, v, y) : 0;
+    const double tau = residual_moment(residual, f, y);
     const double by_tau = control_stamp(fish, &residual->state->control[f], t, tau, y, jacobian);
     if (feels_moment(fish)) drag_moment_stamp(fish, by_tau, u, v, y, jacobian);
 

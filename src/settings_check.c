@@ -62,6 +62,20 @@ static void check_time(const struct check *check) {
                    time->output_interval);
 }
 
+static void check_solver(const struct check *check) {
+    const struct settings_solver *const solver = &check->settings->solver;
+    if (!(solver->step > 0)) return;
+    if (solver->method == METHOD_IDA) {
+        complain(check, "solver.step",
+                 "ida chooses its steps itself: remove solver.step, or choose another solver.method");
+        return;
+    }
+    const double interval = check->settings->time.shedding_interval, n = round(interval / solver->step);
+    if (n >= 1 && !(fabs(interval - n * solver->step) > 1e-9 * interval)) return;
+    complain(check, "solver.step", "%.9g s is not a whole part of time.shedding_interval, %.9g s; the nearest is %.9g",
+             solver->step, interval, interval / (n < 1 ? 1 : n));
+}
+
 static void check_wake(const struct check *check) {
     const struct settings_wake *const wake = &check->settings->wake;
     const struct settings_time *const time = &check->settings->time;
@@ -191,6 +205,7 @@ static void check_name(const struct check *check) {
 void settings_check(const struct settings *settings, const struct settings_tree *tree, struct yaml_errors *errors) {
     struct check check = {settings, tree, errors, 0};
     check_time(&check);
+    check_solver(&check);
     check_wake(&check);
     check_gust(&check);
     if (settings->name && strchr(settings->name, '/')) complain(&check, "name", "cannot contain a '/'");
@@ -209,14 +224,6 @@ void settings_check(const struct settings *settings, const struct settings_tree 
 
 enum status settings_runnable(const struct settings *settings) {
     struct yaml_text list = {0};
-    if (settings->solver.method != METHOD_IDA) {
-        const struct key *const key = settings_table_row("solver.method");
-        yaml_text_add(&list, "error: solver.method: '%s' is not in this version yet; use ida\n",
-                      key->words[settings->solver.method]);
-    }
-    if (fabs(settings->solver.step) > 0) {
-        yaml_text_add(&list, "error: solver.step: fixed steps are not in this version yet: remove solver.step\n");
-    }
     if (settings->time.checkpoint_interval > 0) {
         yaml_text_add(&list,
                       "error: time.checkpoint_interval: checkpoints are not in this version yet: "

@@ -32,6 +32,12 @@ static void stamp_ends(const struct fish *fish, int c, int row, const double by_
     }
 }
 
+void sheet_normal(const struct fish *fish, int c, const double *y, double normal[2]) {
+    const struct chord chord = chord_at(fish, c, y);
+    normal[0] = chord.n[0];
+    normal[1] = chord.n[1];
+}
+
 double sheet_circulation(const struct fish *fish, const double *y) {
     double sum = 0;
     for (int j = 0; j < fish->n_sheet; j++) sum += fish->sheet_weight[j] * y[fish->at.sheet + j];

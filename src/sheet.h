@@ -36,6 +36,9 @@ void sheet_kutta_stamp(const struct fish *fish, enum sheet_law law, double chi, 
 void sheet_kutta_stamp_flow(const struct fish *fish, const struct fish *other, double chi,
                             const struct flow_block *block, const double *y, struct sparse *jacobian);
 
+/* Unit normal of the chord between the bound vortices c and c + 1. */
+void sheet_normal(const struct fish *fish, int c, const double *y, double normal[2]);
+
 /* Circulation of the bound sheet, m2 s-1. */
 double sheet_circulation(const struct fish *fish, const double *y);
 

@@ -8,6 +8,7 @@
 #include <time.h>
 
 #include "event.h"
+#include "explicit.h"
 #include "implicit.h"
 #include "store.h"
 
@@ -20,14 +21,16 @@ static double wall_clock(void) {
 static enum status fill(struct simulation *simulation, const struct settings *settings) {
     simulation->started = wall_clock();
     simulation->n_events = lround(settings->time.end / settings->time.shedding_interval);
-    simulation->integrator = &implicit_ida;
+    simulation->integrator = settings->solver.method == METHOD_IDA ? &implicit_ida : &explicit_runge_kutta;
     TRY(fish_school_create(&simulation->school, settings));
     TRY(state_create(&simulation->state, simulation->school));
     TRY(residual_create(&simulation->residual, simulation->school, simulation->state));
     TRY(consistent_create(&simulation->consistent, simulation->residual));
     TRY(measure_create(&simulation->measure, simulation->school));
     TRY(event_start(simulation->state, simulation->residual, simulation->consistent));
-    const struct integrator_options options = {.order = settings->solver.order,
+    const struct integrator_options options = {.method = settings->solver.method,
+                                               .order = settings->solver.order,
+                                               .step = settings->solver.step,
                                                .max_steps = settings->solver.max_steps};
     return simulation->integrator->create(&simulation->solver, simulation->residual, simulation->state, &options);
 }

@@ -394,11 +394,9 @@ static void what_this_version_does_not_run_is_refused_with_a_remedy(void **state
     settings_free(&s);
     s = parse_with(swept, "solver={method: rk4, step: 0.001, threads: 2}", "time.checkpoint_interval=0.5", NULL);
     assert_int_equal(settings_runnable(&s), STATUS_CASE);
-    assert_non_null(strstr(status_message(), "error: solver.method: 'rk4' is not in this version yet; use ida\n"));
-    assert_non_null(strstr(status_message(), "error: solver.step: "));
     assert_non_null(strstr(status_message(), "remove time.checkpoint_interval\n"));
     assert_non_null(strstr(status_message(), "`shoal run` runs one case; this case has a sweep of 3 axes"));
-    assert_null(strstr(status_message(), "threads"));
+    assert_null(strstr(status_message(), "solver"));
     settings_free(&s);
 }
 
