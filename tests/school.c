@@ -75,8 +75,8 @@ static void stir_wake(struct setup *setup, const struct fish *fish, struct wake 
         // the oldest one is fading
         const double age = i == 0 ? setup->school->lifetime - setup->school->fade / 2 : 0.5 * setup->school->lifetime;
         school_ok(wake_release(wake, fish->start_position[0] + along * back[0] - across * back[1],
-                               fish->start_position[1] + along * back[1] + across * back[0],
-                               0.1 * school_random(setup), setup->state->t - age));
+                               fish->start_position[1] + along * back[1] + across * back[0], 0.1 * school_random(setup),
+                               setup->state->t - age));
         wake->u[i] = school_random(setup);
         wake->v[i] = school_random(setup);
         wake->u_before[i] = school_random(setup);
@@ -161,7 +161,7 @@ static void difference(struct setup *setup, school_value *value, double cj, int 
     free(y);
 }
 
-// no entry may differ by more than 1e-6 of the largest in its row among the unknowns of the same kind (a large stiffness
+// no entry may differ by more than 1e-6 of the largest in its row among unknowns of the same kind (a large stiffness
 // hides no error in a small drag), and what the differences round off
 static void check_row(struct setup *setup, int row, const double *got, const double *want, const char *name) {
     const int n = setup->school->n_unknowns;
@@ -179,9 +179,10 @@ static void check_row(struct setup *setup, int row, const double *got, const dou
         const struct unknown_place of = residual_place(setup->school, j), in = residual_place(setup->school, row);
         const double allowed = 1e-6 * largest[of.kind] + 1e-14 * size / step_of(of.kind).step;
         if (fabs(got[j] - want[j]) <= allowed) continue;
-        print_error("%s: derivative of row %s[%d] of fish %d by %s[%d] of fish %d: stamped %.10g, differences %.10g, "
-                    "allowed %.3g\n",
-                    name, in.name, in.index, in.fish, of.name, of.index, of.fish, got[j], want[j], allowed);
+        print_error(
+            "%s: derivative of row %s[%d] of fish %d by %s[%d] of fish %d: stamped %.10g, differences %.10g, "
+            "allowed %.3g\n",
+            name, in.name, in.index, in.fish, of.name, of.index, of.fish, got[j], want[j], allowed);
         fail();
     }
 }

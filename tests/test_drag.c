@@ -59,13 +59,15 @@ static void stamps_agree_with_differences(void **state) {
         TIME "fish: [{sheet_points: 9}]\n",
         TIME "fish: [{sheet_points: 9, drag: {law: linear_quadratic, tangential: 0.3}}]\n",
         TIME "fish: [{sheet_points: 9, drag: {extent: width, tangential: 0.3}}]\n",
-        TIME "fluid: {velocity: [0.3, -0.2], shear: 0.7, gust: {amplitude: 0.4, frequency: 1.3}}\n"
-             "fish: [{sheet_points: 9, drag: {law: linear_quadratic, extent: width}}]\n",
-        TIME FAR "fish:\n"
-                 "  - {sheet_points: 9}\n"
-                 "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170},\n"
-                 "     drag: {law: linear_quadratic, extent: width}}\n"
-                 "  - {nodes: 9, sheet_points: 11, length: 1.2, start: {position: [0.1, -0.6], heading: 200}}\n"};
+        TIME
+        "fluid: {velocity: [0.3, -0.2], shear: 0.7, gust: {amplitude: 0.4, frequency: 1.3}}\n"
+        "fish: [{sheet_points: 9, drag: {law: linear_quadratic, extent: width}}]\n",
+        TIME FAR
+        "fish:\n"
+        "  - {sheet_points: 9}\n"
+        "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170},\n"
+        "     drag: {law: linear_quadratic, extent: width}}\n"
+        "  - {nodes: 9, sheet_points: 11, length: 1.2, start: {position: [0.1, -0.6], heading: 200}}\n"};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         struct setup setup;
         school_build(&setup, texts[i]);
@@ -78,8 +80,8 @@ static void stamps_agree_with_differences(void **state) {
 // a plate along the heading 180 degrees that moves with (vx, vy) in still fluid: total force into (fx, fy)
 static void force_on_plate(const char *law, double vx, double vy, double ay, double force[2]) {
     char text[256];
-    snprintf(text, sizeof text, TIME "fish: [{body: {profile: uniform, thickness: 0.1}, drag: {law: %s, tangential: 0.02}}]\n",
-             law);
+    snprintf(text, sizeof text,
+             TIME "fish: [{body: {profile: uniform, thickness: 0.1}, drag: {law: %s, tangential: 0.02}}]\n", law);
     struct setup setup;
     school_build(&setup, text);
     const struct fish *fish = setup.school->fish;
@@ -101,7 +103,8 @@ static void force_on_plate(const char *law, double vx, double vy, double ay, dou
 static void forces_on_a_plate_are_the_formulas(void **state) {
     (void)state;
     // rho 1000, L 1, h 0.1, w 0.25, C_F 0.02, C_D 0.5, C_A 1.5
-    const double ct = 1000 * acos(-1) * 0.02 * 0.35 / 8, cn = 1000 * 0.5 * 0.1 / 2, mu = acos(-1) * 1000 * 1.5 * 0.01 / 4;
+    const double ct = 1000 * acos(-1) * 0.02 * 0.35 / 8, cn = 1000 * 0.5 * 0.1 / 2,
+                 mu = acos(-1) * 1000 * 1.5 * 0.01 / 4;
     double force[2];
     force_on_plate("quadratic", -2, 0, 0, force);
     NEAR(force[0], 4 * ct, 1e-12, 1e-13);
@@ -143,7 +146,9 @@ static void powers_are_those_of_the_forces(void **state) {
 static void moment_is_that_of_the_forces_that_the_flow_adds(void **state) {
     (void)state;
     struct setup setup;
-    school_build(&setup, TIME "fluid: {velocity: [0.3, -0.2], shear: 0.7}\nfish: [{sheet_points: 9, length: 1.1, wave: {frequency: 1.2}}]\n");
+    school_build(
+        &setup, TIME
+        "fluid: {velocity: [0.3, -0.2], shear: 0.7}\nfish: [{sheet_points: 9, length: 1.1, wave: {frequency: 1.2}}]\n");
     school_stir(&setup);
     school_flow(&setup, setup.state->y);
     const struct fish *fish = setup.school->fish;

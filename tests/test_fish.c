@@ -55,8 +55,8 @@ static void joukowski_heights_are_those_of_the_mapped_circle(void **state) {
 static void second_moments_are_the_two_formulas(void **state) {
     (void)state;
     const char *const texts[] = {
-        TIME "fish: [{nodes: 13, body: {profile: uniform, thickness: 0.1, modulus: 3.0e+5}}]\n",
-        TIME "fish: [{nodes: 13, body: {profile: uniform, thickness: 0.1, modulus: 3.0e+5, second_moment: published}}]\n"};
+        TIME "fish: [{nodes: 13, body: {profile: uniform, thickness: 0.1, modulus: 3.0e+5}}]\n", TIME
+        "fish: [{nodes: 13, body: {profile: uniform, thickness: 0.1, modulus: 3.0e+5, second_moment: published}}]\n"};
     const double h = 0.1, w = 0.25, area = pi * h * w / 4;
     const double moment[] = {pi * w * h * h * h / 64, 2000 * area * w * w / 12 / 6};
     for (int i = 0; i < 2; i++) {
@@ -73,8 +73,9 @@ static void second_moments_are_the_two_formulas(void **state) {
 static void damping_and_wave_scale_with_refinement(void **state) {
     (void)state;
     struct setup setup;
-    school_build(&setup, TIME "fish: [{nodes: 13, body: {bending_damping: 0.5, stretching_damping: 2, relaxation_time: "
-                              "0.01, profile: uniform}, wave: {phase: 30, frequency: 1.5}}]\n");
+    school_build(&setup, TIME
+                 "fish: [{nodes: 13, body: {bending_damping: 0.5, stretching_damping: 2, relaxation_time: "
+                 "0.01, profile: uniform}, wave: {phase: 30, frequency: 1.5}}]\n");
     const struct fish *fish = &setup.school->fish[0];
     // 13 nodes: edges of half the reference length
     const double l = 1.0 / 12;
@@ -84,7 +85,8 @@ static void damping_and_wave_scale_with_refinement(void **state) {
         NEAR(fish->wave_amplitude[j], 0.4 / 2 * (s + 0.2 * s * s), 0, 1e-14);
         NEAR(fish->wave_phase[j], -6 * s + pi / 6, 0, 1e-14);
     }
-    for (int k = 0; k < fish->n_edges; k++) NEAR(fish->axial_damping[k], 4 + 0.01 * fish->axial_stiffness[k] / l, 0, 1e-14);
+    for (int k = 0; k < fish->n_edges; k++)
+        NEAR(fish->axial_damping[k], 4 + 0.01 * fish->axial_stiffness[k] / l, 0, 1e-14);
     NEAR(fish->omega, 3 * pi, 0, 1e-15);
     NEAR(fish->ramp, 1 / 1.5, 0, 1e-15);
     school_clear(&setup);
@@ -193,8 +195,9 @@ static void start_without_ramp_has_the_natural_shape(void **state) {
 static void driven_velocity_and_acceleration_are_derivatives(void **state) {
     (void)state;
     struct setup setup;
-    school_build(&setup, TIME "fish: [{start: {heading: 20}, motion: {driven: all, speed: 0.6, heave: 0.2, pitch: 25, "
-                              "pitch_phase: 70, frequency: 1.3, phase: 15, pivot: 0.3}}]\n");
+    school_build(&setup, TIME
+                 "fish: [{start: {heading: 20}, motion: {driven: all, speed: 0.6, heave: 0.2, pitch: 25, "
+                 "pitch_phase: 70, frequency: 1.3, phase: 15, pivot: 0.3}}]\n");
     const struct fish *fish = &setup.school->fish[0];
     const double h = 1e-4;
     for (int k = 0; k < fish->n_nodes; k++) {
@@ -212,8 +215,9 @@ static void driven_velocity_and_acceleration_are_derivatives(void **state) {
 static void driven_body_is_straight_and_turns_about_its_pivot(void **state) {
     (void)state;
     struct setup setup;
-    school_build(&setup, TIME "fish: [{nodes: 5, start: {heading: 180, speed: 2, position: [1, 1]}, motion: {driven: all, heave: "
-                              "0.2, pitch: 25, frequency: 1, pivot: 0.25}}]\n");
+    school_build(&setup, TIME
+                 "fish: [{nodes: 5, start: {heading: 180, speed: 2, position: [1, 1]}, motion: {driven: all, heave: "
+                 "0.2, pitch: 25, frequency: 1, pivot: 0.25}}]\n");
     const struct fish *fish = &setup.school->fish[0];
     // a quarter period on: heave and pitch are largest; left of the heading 180 degrees is downwards
     double p[2], v[2], a[2], q[2];
@@ -232,8 +236,9 @@ static void driven_body_is_straight_and_turns_about_its_pivot(void **state) {
 static void distance_is_that_of_the_outlines(void **state) {
     (void)state;
     struct setup setup;
-    school_build(&setup, TIME "defaults: {fish: {body: {profile: uniform, thickness: 0.1}}}\n"
-                              "fish: [{}, {start: {position: [0, 0.5]}}, {start: {position: [1.5, 0]}}]\n");
+    school_build(&setup, TIME
+                 "defaults: {fish: {body: {profile: uniform, thickness: 0.1}}}\n"
+                 "fish: [{}, {start: {position: [0, 0.5]}}, {start: {position: [1.5, 0]}}]\n");
     const struct fish *fish = setup.school->fish;
     NEAR(fish_distance(&fish[0], &fish[1], setup.state->y), 0.4, 1e-14, 0);
     // tail at x = 1 to nose at 1.5, half of both heights taken off
@@ -262,7 +267,8 @@ static void overlapping_fish_are_refused(void **state) {
 static void unknowns_stand_fish_after_fish_in_the_documented_order(void **state) {
     (void)state;
     struct setup setup;
-    school_build(&setup, TIME "fish: [{nodes: 5, sheet_points: 6}, {nodes: 4, sheet_points: 5, start: {position: [0, 2]}}]\n");
+    school_build(&setup,
+                 TIME "fish: [{nodes: 5, sheet_points: 6}, {nodes: 4, sheet_points: 5, start: {position: [0, 2]}}]\n");
     const struct layout *a = &setup.school->fish[0].at, *b = &setup.school->fish[1].at;
     const int first[] = {a->x, a->y, a->vx, a->vy, a->ax, a->ay, a->sheet, a->shed, a->phi0, a->end};
     const int want[] = {0, 5, 10, 15, 20, 25, 30, 36, 37, 38};

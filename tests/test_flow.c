@@ -6,12 +6,11 @@
 #include "school.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
-#define TWO                                                                                            \
-    TIME                                                                                               \
-    "fluid: {velocity: [0.1, 0.2], shear: 0.3, gust: {amplitude: 0.2, frequency: 1}}\n"                \
-    "fish:\n"                                                                                          \
-    "  - {nodes: 5, sheet_points: 7}\n"                                                                \
-    "  - {nodes: 6, sheet_points: 9, length: 0.8, start: {position: [0.2, 0.5], heading: 165}}\n"
+#define TWO                                                                                  \
+    TIME "fluid: {velocity: [0.1, 0.2], shear: 0.3, gust: {amplitude: 0.2, frequency: 1}}\n" \
+         "fish:\n"                                                                           \
+         "  - {nodes: 5, sheet_points: 7}\n"                                                 \
+         "  - {nodes: 6, sheet_points: 9, length: 0.8, start: {position: [0.2, 0.5], heading: 165}}\n"
 
 // velocity at (x, y) from the sources of fish g: free vortices, and the bound sheet with a smoothing (< 0: left out)
 static void add_fish(const struct setup *setup, int g, double x, double y, double smoothing, double *u, double *v) {
@@ -34,8 +33,9 @@ static void add_fish(const struct setup *setup, int g, double x, double y, doubl
     }
     for (int j = 0; j < fish->n_sheet && smoothing >= 0; j++) {
         const double q = fish->sheet_weight[j] * state->y[fish->at.sheet + j];
-        const struct kernel_value unit = kernel_unit(x - fish_mean(&fish->sheet_point[j], state->y + fish->at.x),
-                                                     y - fish_mean(&fish->sheet_point[j], state->y + fish->at.y), smoothing);
+        const struct kernel_value unit =
+            kernel_unit(x - fish_mean(&fish->sheet_point[j], state->y + fish->at.x),
+                        y - fish_mean(&fish->sheet_point[j], state->y + fish->at.y), smoothing);
         *u += q * unit.u;
         *v += q * unit.v;
     }
@@ -143,14 +143,16 @@ static void derivative_by_every_unknown_agrees_with_differences(void **state) {
             for (int c = 0; c < block->n_columns; c++) {
                 // fourth order; bound vortices are 0.01 and more from control points: (1e-4/0.01)^4/30 of the largest
                 const double h = 1e-4;
-                for (int i = 0; i < 4; i++) velocity_at(&setup, flow_column(other, c), h * (i < 2 ? i - 2 : i - 1), velocity[i]);
+                for (int i = 0; i < 4; i++)
+                    velocity_at(&setup, flow_column(other, c), h * (i < 2 ? i - 2 : i - 1), velocity[i]);
                 for (int p = 0; p < block->n_points; p++) {
                     const int at[2] = {flow->points[f].first + p, flow->n_points + flow->points[f].first + p};
                     const double got[2] = {block->u[p * block->n_columns + c], block->v[p * block->n_columns + c]};
                     const int midpoint = p >= setup.school->fish[f].n_control && p != flow_tail(&setup.school->fish[f]);
                     for (int i = 0; i < 2; i++) {
                         const double want = (velocity[0][at[i]] - 8 * velocity[1][at[i]] + 8 * velocity[2][at[i]] -
-                                             velocity[3][at[i]]) / (12 * h);
+                                             velocity[3][at[i]]) /
+                                            (12 * h);
                         NEAR(got[i], want, 2e-6, 1e-6);
                         if (midpoint && !flow_midpoint_feels(&setup.school->fish[f], other,
                                                              p - setup.school->fish[f].n_control, c)) {

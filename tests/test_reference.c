@@ -1,5 +1,5 @@
-/* test_reference.c: whole runs against the results of an independent program (RK4, written by others from doc/model.md):
- * tests/data/reference_single.yaml and .json, reference_pair.yaml and .json. */
+/* test_reference.c: whole runs against the results of an independent program (RK4, written by others from the same
+ * model): tests/data/reference_single.yaml and .json, reference_pair.yaml and .json. */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -41,9 +41,9 @@ static const struct reference_fish pair[2] = {
      .oldest = {0.5395521359626706, 0.5096490934250922},
      .n_wake = 40,
      .n_sheet = 13,
-     .sheet = {0.08977981751748516, -0.05177144540972767, -0.11917983939009553, -0.11620690494403256, -0.155803491803733,
-               -0.19283022860000157, -0.38526250326201905, -0.3132728418641968, -0.21482292294147784, 0.1379006986106099,
-               -0.33395537726684194, -0.148668864033617, 0.7333705744012721}},
+     .sheet = {0.08977981751748516, -0.05177144540972767, -0.11917983939009553, -0.11620690494403256,
+               -0.155803491803733, -0.19283022860000157, -0.38526250326201905, -0.3132728418641968,
+               -0.21482292294147784, 0.1379006986106099, -0.33395537726684194, -0.148668864033617, 0.7333705744012721}},
     {.com = {-0.3506565876055586, 0.13569891770260734},
      .nose = {-0.6629770681200429, 0.17194202759173888},
      .tail = {0.05555746630728665, -0.06107038659449495},

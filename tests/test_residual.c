@@ -87,9 +87,128 @@ static void jacobian_agrees_with_differences_for_every_option(void **state) {
     }
 }
 
+static void far_fish_are_left_out_of_the_jacobian_and_of_nothing_else(void **state) {
+    (void)state;
+    const char *const text = TIME
+        "solver: {coupling_distance: 0.6}\n"
+        "fish: [{sheet_points: 9}, {sheet_points: 9, start: {position: [0, 1]}}]\n";
+    struct setup setup;
+    school_build(&setup, text);
+    const struct layout *a = &setup.school->fish[0].at, *b = &setup.school->fish[1].at;
+    const size_t n = (size_t)setup.school->n_unknowns;
+    assert_int_equal(setup.residual->coupled[1], 0);
+    school_ok(residual_jacobian(setup.residual, 0, 1, setup.state->y, setup.jacobian));
+    double *dense = school_dense(setup.jacobian);
+    for (int row = a->x; row < a->end; row++) {
+        for (int column = b->x; column < b->end; column++) NEAR(dense[(size_t)row * n + (size_t)column], 0, 0, 0);
+    }
+    free(dense);
+    // closer by 0.5: coupled, which is another pattern; asked again nothing has changed
+    for (int k = 0; k < 7; k++) setup.state->y[b->y + k] -= 0.5;
+    const unsigned pattern = setup.residual->pattern;
+    assert_int_equal(residual_couple(setup.residual, setup.state->y), 1);
+    assert_int_not_equal(setup.residual->pattern, pattern);
+    assert_int_equal(residual_couple(setup.residual, setup.state->y), 0);
+    sparse_forget(setup.jacobian);
+    school_ok(residual_jacobian(setup.residual, 0, 1, setup.state->y, setup.jacobian));
+    dense = school_dense(setup.jacobian);
+    assert_true(fabs(dense[(size_t)a->sheet * n + (size_t)b->sheet]) > 1e-4);
+    free(dense);
+    school_clear(&setup);
+}
+
+static void unknowns_have_names_kinds_and_scales(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME
+                 "fish: [{nodes: 4, sheet_points: 5},\n"
+                 "  {length: 2, nodes: 5, sheet_points: 6, start: {position: [0, 1]}, motion: {driven: head, heave: "
+                 "0.1, frequency: 1}}]\n");
+    const struct layout *a = &setup.school->fish[0].at, *b = &setup.school->fish[1].at;
+    const struct {
+        int i, fish, index;
+        const char *name;
+        double kind;
+    } want[] = {{a->x, 0, 0, "x", 1},       {a->vy + 3, 0, 3, "vy", 1},
+                {a->ax + 1, 0, 1, "ax", 0}, {a->sheet + 4, 0, 4, "sheet", 0},
+                {a->shed, 0, 0, "shed", 0}, {a->phi0, 0, 0, "phi0", 0},
+                {b->x + 1, 1, 1, "x", 0},   {b->y + 2, 1, 2, "y", 1},
+                {b->vx + 1, 1, 1, "vx", 0}, {b->vx + 2, 1, 2, "vx", 1},
+                {b->shed, 1, 0, "shed", 0}};
+    double kind[128];
+    assert_true(setup.school->n_unknowns <= 128);
+    residual_kinds(setup.residual, kind);
+    for (size_t k = 0; k < sizeof want / sizeof *want; k++) {
+        const struct unknown_place place = residual_place(setup.school, want[k].i);
+        assert_int_equal(place.fish, want[k].fish);
+        assert_int_equal(place.index, want[k].index);
+        assert_string_equal(place.name, want[k].name);
+        NEAR(kind[want[k].i], want[k].kind, 0, 0);
+    }
+    // a fish of twice the length and the same beat
+    NEAR(residual_scale(setup.residual, b->y), 2 * residual_scale(setup.residual, a->y), 0, 1e-14);
+    NEAR(residual_scale(setup.residual, b->vx), 2 * residual_scale(setup.residual, a->vx), 0, 1e-14);
+    NEAR(residual_scale(setup.residual, b->shed), 4 * residual_scale(setup.residual, a->shed), 0, 1e-14);
+    school_clear(&setup);
+}
+
+static void circulation_shed_is_differential_only_with_a_rate(void **state) {
+    (void)state;
+    const struct {
+        const char *text;
+        int algebraic, algebraic_at_impulse;
+    } cases[] = {{TIME FISH, 1, 1},
+                 {TIME "wake: {kutta: rate}\n" FISH, 0, 0},
+                 {TIME "wake: {shedding: impulsive}\n" FISH, 0, 1},
+                 {TIME "wake: {shedding: impulsive, kutta: rate}\n" FISH, 0, 0}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct setup setup;
+        school_build(&setup, cases[i].text);
+        assert_int_equal(residual_shed_is_algebraic(setup.residual), cases[i].algebraic);
+        setup.residual->at_impulse = 1;
+        assert_int_equal(residual_shed_is_algebraic(setup.residual), cases[i].algebraic_at_impulse);
+        school_clear(&setup);
+    }
+}
+
+static void a_value_that_is_not_finite_asks_for_a_retry_and_says_where(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME FISH);
+    school_stir(&setup);
+    setup.state->y[setup.school->fish[0].at.phi0] = INFINITY;
+    assert_int_equal(residual_evaluate(setup.residual, setup.t, setup.state->y, setup.state->yp, setup.value),
+                     STATUS_RETRY);
+    assert_non_null(strstr(status_message(), "of fish fish1"));
+    school_clear(&setup);
+}
+
+static void load_at_the_tip_accelerates_the_tail_only(void **state) {
+    (void)state;
+    struct setup with, without;
+    school_build(&with, TIME "fish: [{sheet_points: 9, load: {tip: [3, -2]}}]\n");
+    school_build(&without, TIME "fish: [{sheet_points: 9}]\n");
+    school_stir(&with);
+    school_stir(&without);
+    school_ok(residual_evaluate(with.residual, with.t, with.state->y, with.state->yp, with.value));
+    school_ok(residual_evaluate(without.residual, with.t, with.state->y, with.state->yp, without.value));
+    const struct fish *fish = with.school->fish;
+    without.value[fish->at.ax + 6] -= 3 / fish->mass[6];
+    without.value[fish->at.ay + 6] += 2 / fish->mass[6];
+    // rounding of accelerations of 1e5
+    NEAR_ARRAY(with.school->n_unknowns, with.value, without.value, 1e-10, 1e-14);
+    school_clear(&with);
+    school_clear(&without);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(jacobian_agrees_with_differences_for_every_option),
+        cmocka_unit_test(far_fish_are_left_out_of_the_jacobian_and_of_nothing_else),
+        cmocka_unit_test(unknowns_have_names_kinds_and_scales),
+        cmocka_unit_test(circulation_shed_is_differential_only_with_a_rate),
+        cmocka_unit_test(a_value_that_is_not_finite_asks_for_a_retry_and_says_where),
+        cmocka_unit_test(load_at_the_tip_accelerates_the_tail_only),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

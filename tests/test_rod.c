@@ -16,7 +16,8 @@ static void value_of_rod(struct setup *setup, const double *y, const double *yp,
     (void)yp;
     const struct fish *fish = setup->school->fish;
     double curvature[5];
-    for (int j = 0; j < 5; j++) curvature[j] = natural[j] + by_phi0[j] * (y[fish->at.phi0] - setup->state->y[fish->at.phi0]);
+    for (int j = 0; j < 5; j++)
+        curvature[j] = natural[j] + by_phi0[j] * (y[fish->at.phi0] - setup->state->y[fish->at.phi0]);
     rod_residual(fish, curvature, y, value);
     for (int k = 0; k < fish->n_nodes; k++) {
         value[fish->at.ax + k] /= fish->mass[k];
@@ -201,7 +202,8 @@ static void polygon_of_the_natural_curvature_is_at_rest(void **state) {
     rod_residual(fish, curvature, setup.state->y, setup.value);
     // EA = 4e3 N times the rounding of the length
     for (int i = fish->at.ax; i < fish->at.sheet; i++) NEAR(setup.value[i], 0, 1e-10, 0);
-    NEAR(rod_bending_energy(fish, curvature, setup.state->y) + rod_stretching_energy(fish, setup.state->y), 0, 1e-20, 0);
+    NEAR(rod_bending_energy(fish, curvature, setup.state->y) + rod_stretching_energy(fish, setup.state->y), 0, 1e-20,
+         0);
     school_clear(&setup);
 }
 
