@@ -1,0 +1,316 @@
+#!/usr/bin/python3
+"""Measure the tables of doc/numerics.md anew and print them as markdown.
+
+    scripts/numerics.py counts       cost of an event against the stiffness of the body
+    scripts/numerics.py stiffness    error against the stiffness of the body
+    scripts/numerics.py tolerance    error and cost against solver.rtol
+    scripts/numerics.py order        error and cost against solver.order, for a soft and a stiff body
+    scripts/numerics.py interval     error against time.shedding_interval, and its observed order
+    scripts/numerics.py events       cost of starting the integrator anew at every event
+    scripts/numerics.py start        cost of a muscle that starts at once
+    scripts/numerics.py explicit     cost of the explicit methods against the stiffness of the body
+    scripts/numerics.py coupling     cost against solver.coupling_distance, two fish side by side
+    scripts/numerics.py energy       energy audit against solver.rtol
+    scripts/numerics.py constants    error and cost with other constants in the source: builds variants, takes minutes
+    scripts/numerics.py threads      the same bits for any number of threads
+
+Runs build/shoal (--program names another one) on small cases in a folder of its own, and removes it.
+--verbose shows the commands.
+"""
+
+import argparse
+import math
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+from shoal_results import Results, np
+
+HERE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+
+# One fish: all that is not said is the default, doc/cases.md.
+ONE = """\
+format: 1
+time: {end: 2, shedding_interval: 0.01, output_interval: 2}
+fish:
+  - {name: fish}
+"""
+
+# Two fish side by side.
+PAIR = """\
+format: 1
+time: {end: 4, shedding_interval: 0.01, output_interval: 4}
+fish:
+  - {name: right}
+  - {name: left, start: {position: [0, 0.5]}}
+"""
+
+PUBLISHED_MOMENT = "fish[*].body.second_moment=published"
+
+
+class Bench:
+    """Runs cases in a folder of its own."""
+
+    def __init__(self, program, verbose):
+        self.program, self.verbose = program, verbose
+        self.folder = tempfile.mkdtemp(prefix="shoal-numerics-")
+
+    def run(self, text, *assignments, program=None):
+        """The result of a case with some keys set anew; None where the solver gave up."""
+        case, result = os.path.join(self.folder, "case.yaml"), os.path.join(self.folder, "result.nc")
+        with open(case, "w", encoding="utf-8") as file:
+            file.write(text)
+        command = [program or self.program, "run", case, "--force", "-q", "-o", result]
+        for assignment in assignments:
+            command += ["--set", assignment]
+        if self.verbose:
+            print(" ".join(command), file=sys.stderr)
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        if done.returncode == 1:
+            return None
+        if done.returncode != 0:
+            sys.exit(f"numerics.py: {' '.join(command)} failed:\n{done.stderr}")
+        return Results(result)
+
+    def variant(self, file, old, new):
+        """The program with what the pattern old finds in one source file replaced."""
+        tree = tempfile.mkdtemp(dir=self.folder)
+        for part in ("src", "include"):
+            shutil.copytree(os.path.join(HERE, part), os.path.join(tree, part))
+        shutil.copy(os.path.join(HERE, "Makefile"), tree)
+        path = os.path.join(tree, "src", file)
+        with open(path, encoding="utf-8") as source:
+            text, n_places = re.subn(old, new, source.read())
+        if n_places == 0:
+            sys.exit(f"numerics.py: src/{file} holds nothing like '{old}'")
+        with open(path, "w", encoding="utf-8") as source:
+            source.write(text)
+        subprocess.run(["make", "-j", str(os.cpu_count())], cwd=tree, check=True, stdout=subprocess.DEVNULL)
+        return os.path.join(tree, "build", "shoal")
+
+
+def table(heads, rows):
+    """Print a table in markdown."""
+    cells = [heads] + [[str(cell) for cell in row] for row in rows]
+    widths = [max(len(row[column]) for row in cells) for column in range(len(heads))]
+    for number, row in enumerate(cells):
+        print("| " + " | ".join(cell.rjust(width) for cell, width in zip(row, widths)) + " |")
+        if number == 0:
+            print("|" + "|".join("-" * (width + 1) + ":" for width in widths) + "|")
+
+
+def power(value):
+    """1e+06 as 1e6."""
+    mantissa, exponent = f"{value:.0e}".split("e")
+    return f"{mantissa}e{int(exponent)}"
+
+
+def short(value):
+    """Two digits of an error."""
+    return f"{value:.1e}"
+
+
+def per_event(results):
+    """Steps, Newton iterations and Jacobians per event."""
+    n_events = round(float(results.time[-1]) / float(results["shedding_interval"]))
+    names = ("steps", "newton_iterations", "jacobian_evaluations")
+    return [f"{results[name][-1] / n_events:.2f}" for name in names]
+
+
+COUNTS = ["steps", "Newton iterations", "Jacobians"]
+
+
+def ends(results):
+    """Position of nose and tail of the first fish, centre of mass, circulation shed, at the end."""
+    x = results["x"][-1, 0]
+    return x[0], x[results.n_nodes[0] - 1], results["com"][-1, 0], results["shed_circulation"][-1, 0]
+
+
+def distance(a, b):
+    """How far two points are apart."""
+    return float(np.linalg.norm(np.subtract(a, b)))
+
+
+def counts(bench):
+    rows = []
+    for modulus in (1e4, 1e6, 1e8, 1e10):
+        run = bench.run(ONE, PUBLISHED_MOMENT, f"fish[*].body.modulus={modulus:g}")
+        rows.append([7, 21, "published", power(modulus), *per_event(run)])
+    for moment in ("ellipse", "published"):
+        run = bench.run(ONE, f"fish[*].body.second_moment={moment}", "fish[*].body.modulus=1e7", "fish[*].nodes=41",
+                        "fish[*].sheet_points=65")
+        rows.append([41, 65, moment, power(1e7), *per_event(run)])
+    table(["N", "M", "second moment", "modulus [Pa]", *COUNTS], rows)
+
+
+def tolerance(bench):
+    rows = []
+    reference = ends(bench.run(ONE, "solver.rtol=1e-10", "solver.order=5"))
+    for rtol in (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8):
+        run = bench.run(ONE, f"solver.rtol={rtol:g}")
+        errors = [short(distance(got, want)) for got, want in zip(ends(run), reference)]
+        rows.append([power(rtol), *errors, *per_event(run)])
+    table(["rtol", "nose [m]", "tail [m]", "centre of mass [m]", "shed [m2/s]", *COUNTS], rows)
+
+
+def stiffness(bench):
+    rows = []
+    for moment in ("ellipse", "published"):
+        for modulus in (1e6, 1e7, 1e8, 1e9, 1e10):
+            stiff = [f"fish[*].body.second_moment={moment}", f"fish[*].body.modulus={modulus:g}"]
+            tail = ends(bench.run(ONE, *stiff, "solver.rtol=1e-9"))[1]
+            errors = []
+            for rtol in (1e-5, 1e-6, 1e-7):
+                errors.append(short(distance(ends(bench.run(ONE, *stiff, f"solver.rtol={rtol:g}"))[1], tail)))
+            rows.append([moment, power(modulus), *errors])
+    table(["second moment", "modulus [Pa]", "tail [m], rtol 1e-5", "1e-6", "1e-7"], rows)
+
+
+def order(bench):
+    rows = []
+    for modulus in (1e6, 1e10):
+        stiff = [PUBLISHED_MOMENT, f"fish[*].body.modulus={modulus:g}"]
+        reference = ends(bench.run(ONE, *stiff, "solver.rtol=1e-9"))
+        for most in range(1, 6):
+            run = bench.run(ONE, *stiff, f"solver.order={most}")
+            if run:
+                rows.append([power(modulus), most, short(distance(ends(run)[1], reference[1])), *per_event(run)])
+            else:
+                rows.append([power(modulus), most, "gave up", "", "", ""])
+    table(["modulus [Pa]", "order", "tail [m]", *COUNTS], rows)
+
+
+def interval(bench):
+    # up to 1.6 s no vortex fades; every interval divides this time
+    values, rows = [], []
+    sizes = (0.08, 0.04, 0.02, 0.01, 0.005, 0.0025)
+    for size in sizes:
+        run = bench.run(ONE, "time.end=1.6", f"time.shedding_interval={size:g}", "time.output_interval=1.6",
+                        "solver.rtol=1e-8")
+        values.append(ends(run))
+    changes = [[distance(a, b) for a, b in zip(*pair)] for pair in zip(values, values[1:])]
+    for number, size in enumerate(sizes[:-1]):
+        row = [f"{size:g} to {sizes[number + 1]:g}"]
+        for quantity, change in enumerate(changes[number]):
+            row.append(short(change))
+            row.append(f"{math.log2(changes[number - 1][quantity] / change):.2f}" if number else "")
+        rows.append(row)
+    table(["interval [s]", "nose [m]", "order", "tail [m]", "order", "centre [m]", "order", "shed [m2/s]", "order"],
+          rows)
+
+
+def events(bench):
+    rows = []
+    for keys in (["wake.shedding=continuous", "wake.kutta=edge"], ["wake.shedding=continuous", "wake.kutta=rate"],
+                 ["wake.shedding=impulsive", "wake.kutta=edge"], ["wake.shedding=impulsive", "wake.kutta=rate"]):
+        run = bench.run(ONE, *keys)
+        rows.append([*(key.split("=")[1] for key in keys), *per_event(run)])
+    table(["shedding", "kutta", *COUNTS], rows)
+
+
+def start(bench):
+    rows = []
+    for modulus in (1e4, 1e6, 1e8):
+        for ramp in (0, 0.25, 1):
+            run = bench.run(ONE, PUBLISHED_MOMENT, f"fish[*].body.modulus={modulus:g}", f"fish[*].wave.ramp={ramp:g}")
+            rows.append([power(modulus), f"{ramp:g}", *(per_event(run) if run else ["gave up", "", ""])])
+    table(["modulus [Pa]", "ramp [s]", *COUNTS], rows)
+
+
+def explicit(bench):
+    rows = []
+    for modulus in (1e4, 1e6, 1e8):
+        stiff = [PUBLISHED_MOMENT, f"fish[*].body.modulus={modulus:g}"]
+        tail = ends(bench.run(ONE, *stiff, "solver.rtol=1e-9"))[1]
+        for method in ("ida", "heun", "rk4", "dormand_prince"):
+            run = bench.run(ONE, *stiff, f"solver.method={method}")
+            cost = [f"{run[name][-1] / 200:.2f}" for name in ("steps", "residual_evaluations", "jacobian_evaluations")]
+            rows.append([power(modulus), method, short(distance(ends(run)[1], tail)), *cost])
+    table(["modulus [Pa]", "method", "tail [m]", "steps", "evaluations", "Jacobians"], rows)
+
+
+def coupling(bench):
+    rows = []
+    for apart in (0.3, 0.5, 0.75, 1, 1.5, 2):
+        for reach in (0, 100):
+            run = bench.run(PAIR, f"fish[1].start.position=[0, {apart:g}]", f"solver.coupling_distance={reach:g}")
+            if run:
+                rows.append([f"{apart:g}", "no" if reach == 0 else "yes", f"{run['least_distance'][-1]:.2f}",
+                             *per_event(run), f"{run['wall_time'][-1]:.2f}"])
+            else:
+                rows.append([f"{apart:g}", "no" if reach == 0 else "yes", "gave up", "", "", "", ""])
+    table(["apart [L]", "coupled", "least distance at the end [m]", *COUNTS], rows)
+
+
+def energy(bench):
+    rows = []
+    for rtol in (1e-3, 1e-4, 1e-5, 1e-6, 1e-7):
+        run = bench.run(ONE, f"solver.rtol={rtol:g}", "time.output_interval=0.1")
+        audit, work = np.abs(run["energy_audit"][:, 0]).max(), run["actuation_work"][-1, 0]
+        rows.append([power(rtol), short(audit), f"{work:.4f}", short(audit / abs(work)),
+                     short(np.abs(run["total_circulation"]).max())])
+    table(["rtol", "largest audit [J]", "work of the muscle [J]", "audit over work", "total circulation [m2/s]"], rows)
+
+
+# What to change: its name, the file, what stands there, what to write instead.
+NEWTON, CJ = r"(newton_coefficient =) [^;]+;", r"(cj_change =) [^;]+;"
+MOST, SPEED = r"(IDASetMaxNonlinIters\(ida,) \d+\)", r"(case UNKNOWN_VY: return) [^ ]+ \* length"
+VARIANTS = [
+    ("Newton coefficient 0.33", "implicit.c", NEWTON, r"\1 0.33;"),
+    ("Newton coefficient 0.03", "implicit.c", NEWTON, r"\1 0.03;"),
+    ("Newton coefficient 0.0003", "implicit.c", NEWTON, r"\1 0.0003;"),
+    ("at most 4 iterations", "implicit.c", MOST, r"\1 4)"),
+    ("change of cj 0.25", "implicit.c", CJ, r"\1 0.25;"),
+    ("change of cj 0.1", "implicit.c", CJ, r"\1 0.1;"),
+    ("scale of v 10 L f", "residual.c", SPEED, r"\1 10 * length"),
+    ("scale of v 0.1 L f", "residual.c", SPEED, r"\1 0.1 * length"),
+]
+
+
+def constants(bench):
+    programs = [("as it is", bench.program)]
+    programs += [(name, bench.variant(*change)) for name, *change in VARIANTS]
+    rows = []
+    for modulus in (1e6, 1e10):
+        stiff = [PUBLISHED_MOMENT, f"fish[*].body.modulus={modulus:g}"]
+        tail = ends(bench.run(ONE, *stiff, "solver.rtol=1e-9"))[1]
+        for name, program in programs:
+            run = bench.run(ONE, *stiff, program=program)
+            what = [short(distance(ends(run)[1], tail)), *per_event(run)] if run else ["gave up", "", "", ""]
+            rows.append([name, power(modulus), *what])
+    table(["constant", "modulus [Pa]", "tail [m]", *COUNTS], rows)
+
+
+def threads(bench):
+    rows = []
+    reference = None
+    for n in (1, 2, 3):
+        run = bench.run(PAIR, f"solver.threads={n}")
+        x = run["x"].tobytes() + run["wake_x"].tobytes()
+        reference = reference or x
+        rows.append([n, "yes" if x == reference else "NO"])
+    table(["threads", "same bits as one"], rows)
+
+
+TABLES = {function.__name__: function for function in
+          (counts, stiffness, tolerance, order, interval, events, start, explicit, coupling, energy, constants, threads)}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("table", choices=TABLES)
+    parser.add_argument("--program", default=os.path.join(HERE, "build", "shoal"), help="default: build/shoal")
+    parser.add_argument("--verbose", action="store_true", help="show the commands")
+    options = parser.parse_args()
+    bench = Bench(os.path.abspath(options.program), options.verbose)
+    try:
+        TABLES[options.table](bench)
+    finally:
+        shutil.rmtree(bench.folder)
+
+
+if __name__ == "__main__":
+    main()
