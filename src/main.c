@@ -168,7 +168,11 @@ static enum status find_share(char share[PATH_MAX]) {
         char file[PATH_MAX];
         if (snprintf(share, PATH_MAX, "%s/%s", program, places[i]) >= PATH_MAX) continue;
         if (snprintf(file, PATH_MAX, "%s/cases/demo.yaml", share) >= PATH_MAX) continue;
-        if (access(file, R_OK) == 0) return STATUS_OK;
+        char *const found = access(file, R_OK) == 0 ? realpath(share, NULL) : NULL;
+        if (!found) continue;
+        snprintf(share, PATH_MAX, "%s", found);
+        free(found);
+        return STATUS_OK;
     }
     return status_fail(STATUS_FILE, "cases/demo.yaml is neither in %s/.. nor in %s/../share/shoal", program, program);
 }
