@@ -126,7 +126,7 @@ install: $(program) $(library)  ## install program, library, header, cases, scri
 	$(quiet)install -m 644 include/shoal.h '$(DESTDIR)$(prefix)/include'
 	$(quiet)install -m 644 $(library) '$(DESTDIR)$(prefix)/lib'
 	$(quiet)install -m 644 cases/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases'
-	$(quiet)install -m 755 $(filter-out scripts/make-%,$(wildcard scripts/*.py)) '$(DESTDIR)$(prefix)/share/shoal/scripts'
+	$(quiet)install -m 755 $(filter-out scripts/make-% scripts/verify.py scripts/numerics.py,$(wildcard scripts/*.py)) '$(DESTDIR)$(prefix)/share/shoal/scripts'
 	$(quiet)install -m 644 LICENSE doc/*.md '$(DESTDIR)$(prefix)/share/shoal/doc'
 	$(quiet)printf '%s\n' 'prefix=$(prefix)' 'Name: shoal' 'Description: Swimming of fish and schools with their wakes' \
 	    'Version: $(VERSION)' 'Cflags: -I$${prefix}/include' 'Libs: -L$${prefix}/lib -lshoal $(libraries) -fopenmp' \

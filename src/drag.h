@@ -28,7 +28,7 @@ void drag_moment_stamp(const struct fish *fish, double factor, const double *u, 
 void drag_moment_stamp_flow(const struct fish *fish, const struct fish *other, double factor, const double *u,
                             const double *v, const struct flow_block *block, const double *y, struct sparse *jacobian);
 
-/* Powers that drag and added mass take from the body, W. */
+/* Powers of drag and added mass on the body, W: negative where they slow it. */
 double drag_power(const struct fish *fish, const double *u, const double *v, const double *y);
 double drag_added_mass_power(const struct fish *fish, const double *y);
 

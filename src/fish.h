@@ -56,7 +56,7 @@ struct control_law_data {
     int n_waypoints;                 /* visited in order; replace the table where there are any */
     double *waypoint_x, *waypoint_y; /* m                                        (n_waypoints) */
     double arrival;                  /* m */
-    double torque_scale;             /* N, per metre of depth: what the feedforward moment is divided by */
+    double torque_scale;             /* N m: what the feedforward moment is divided by */
 };
 
 struct fish {
@@ -77,7 +77,7 @@ struct fish {
     double *axial_stiffness;   /* E A, N                                         (n_edges) */
     double *axial_damping;     /* d_s, kg s-1                                    (n_edges) */
     double *bending_stiffness; /* E I, N m2                                      (n_joints) */
-    double *bending_damping;   /* d_b, N m3 s                                    (n_joints) */
+    double *bending_damping;   /* d_b, N m s                                    (n_joints) */
 
     double *wave_amplitude; /* A (lbar/l_ref) (c1 sigma + c2 sigma^2)             (n_joints) */
     double *wave_phase;     /* beta sigma + phase, rad                            (n_joints) */

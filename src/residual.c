@@ -316,7 +316,7 @@ double residual_scale(const struct residual *residual, int i) {
         case UNKNOWN_X:
         case UNKNOWN_Y: return 0.018 * length;
         case UNKNOWN_VX:
-        case UNKNOWN_VY: return 1e3 * length * f;
+        case UNKNOWN_VY: return 300 * length * f;
         case UNKNOWN_AX:
         case UNKNOWN_AY: return 1e5 * length * f * f;
         case UNKNOWN_SHEET: return 3 * length * f;
