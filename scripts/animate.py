@@ -80,7 +80,7 @@ def parse(arguments):
     parser.add_argument("--fps", type=float, help="pictures per second (as fast as the fish)")
     parser.add_argument("--dpi", type=float, default=120, help="dots per inch of a movie 8 inches wide (120)")
     parser.add_argument("--follow", action="store_true", help="let the window move with the fish")
-    return parser.parse_args(arguments)
+    return parser.parse_intermixed_args(arguments)  # options and names in any order
 
 
 def make_movie(options, movie):

@@ -156,6 +156,21 @@ def panels(n, n_rows, n_columns, height):
     return figure, list(grid.flat[:n])
 
 
+def place_clock(snapshot, row, window):
+    """Move the time to the corner of the window that is furthest from bodies and wake."""
+    results = snapshot.results
+    drawn = np.concatenate([results.wake(row)[0], *(results.outline(row, f) for f in range(results.n_fish))])
+    x0, x1, y0, y1 = window
+    corners = {("right", "top"): (x1, y1), ("left", "top"): (x0, y1), ("right", "bottom"): (x1, y0)}
+    corners["left", "bottom"] = x0, y0
+    free = {corner: np.min(np.hypot(*(drawn - at).T)) for corner, at in corners.items()}
+    wanted = 0.2 * (x1 - x0)  # the first corner that is free enough, else the freest
+    horizontal, vertical = next((c for c in corners if free[c] > wanted), max(free, key=free.get))
+    snapshot.clock.set(ha=horizontal, va=vertical)
+    snapshot.clock.xy = (float(horizontal == "right"), float(vertical == "top"))
+    snapshot.clock.set_position((-5 if horizontal == "right" else 5, -5 if vertical == "top" else 5))
+
+
 def plot_swim(results, options):
     """Bodies, wakes and paths: one panel per time."""
     with_wake = results.rows_with_wake()
@@ -163,7 +178,9 @@ def plot_swim(results, options):
     window = options.limits or limits(results, rows)
     figure, all_axes = panels(len(rows), *panel_grid(len(rows), window))
     for axes, row in zip(all_axes, rows):
-        Snapshot(axes, results).show(row)
+        snapshot = Snapshot(axes, results)
+        snapshot.show(row)
+        place_clock(snapshot, row, window)
         axes.axis(window)
         axes.label_outer()
     add_legend(all_axes[0], swim_handles())
@@ -224,8 +241,10 @@ def plot_time(results, options):
         axes.set_ylabel(label)
         axes.grid(lw=0.3, color="#cccccc")
         axes.margins(x=0)
-    for f, desired in enumerate(results["desired_heading"].T):
-        stack[1].plot(results.time, desired, color=LINES[f % len(LINES)], lw=1, ls="--", zorder=3)
+    desired = results["desired_heading"]
+    one = np.allclose(desired, desired[:, :1], atol=1e-6, equal_nan=True)  # for all: drawn once
+    for f, values in enumerate(desired[:, :1].T if one else desired.T):
+        stack[1].plot(results.time, values, color=LINES[f % len(LINES)], lw=1, ls="--", zorder=3)
     stack[-1].set_xlabel("time [s]")
     figure.align_ylabels(stack)
     handles = stack[0].get_legend_handles_labels()[0] if results.n_fish > 1 else []
@@ -258,7 +277,10 @@ def parse(arguments):
     options["time"].add_argument("--audit", action="store_true", help="add the energy audit")
     if arguments and arguments[0] not in (*PICTURES, "-h", "--help"):
         arguments = ["swim", *arguments]
-    return parser.parse_args(arguments)
+    if not arguments or arguments[0] not in PICTURES:
+        parser.parse_args(arguments)  # prints help or what is missing, and ends
+    chosen = options[arguments[0]].parse_intermixed_args(arguments[1:])  # options and names in any order
+    return argparse.Namespace(kind=arguments[0], **vars(chosen))
 
 
 def check_folder(path):
