@@ -10,7 +10,7 @@
 #include "bridge.h"
 
 /* Rows are scaled to order one; Newton ends at this norm, or where its steps no longer change the unknowns. */
-static const double tolerance = 1e-12;
+static const double tolerance = 1e-14;
 
 struct consistent {
     struct residual *residual;
