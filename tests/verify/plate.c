@@ -1,5 +1,318 @@
-/* plate.c: the section "plate". */
+/* plate.c: the section "plate": a rigid plate and the wake that it sheds, against the linear theory of thin foils:
+ * Wagner's impulsive start and a heaving plate. Length L = 1 m, speed U = 1 m/s.
+ *
+ * Linear theory has a vortex sheet that begins at the edge itself. The program has vortices of radius delta
+ * (smoothing), the newest at half the distance w Dt that the fluid goes past the tail in one interval. Near the edge
+ * their effect on the bound circulation is an integral with 1/sqrt(distance): smoothing takes a part of order
+ * sqrt(delta/L) off it, one vortex at the centroid instead of a sheet a part of order sqrt(U Dt/L). That is what the
+ * studies below show. */
+#include <complex.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "sheet.h"
 #include "verify.h"
 
+static const double pi = 3.14159265358979323846;
+
+// ---- what is varied
+
+struct resolution {
+    double interval, smoothing, sheet_smoothing; /* s, L, L */
+    int n_sheet;
+    const char *kutta, *collocation;
+};
+
+/* Radii far below the distance of the vortices, and bound vortices closer to each other at the edge, (pi/M)^2/4
+ * lengths, than the newest free one is to it: what is left is the error of the interval. */
+static struct resolution point_vortices(double interval) {
+    return (struct resolution){interval, 1e-5, 0.05, 81, "edge", "chebyshev"};
+}
+
+static const struct resolution defaults = {0.01, 0.2, 0.05, 21, "edge", "chebyshev"};
+
+/* A straight driven plate; motion: further keys of it. */
+static struct simulation *open_plate(const struct resolution *with, double end, const double velocity[2],
+                                     const char *motion) {
+    return verify_open(
+        "format: 1\n"
+        "time: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
+        "fluid: {velocity: [%.17g, %.17g]}\n"
+        "wake: {smoothing: %.17g, sheet_smoothing: %.17g, lifetime: 1000, kutta: %s, collocation: %s}\n"
+        "solver: {rtol: 1e-6}\n"
+        "fish:\n"
+        "  - {nodes: 4, sheet_points: %d, wave: {amplitude: 0}, start: {heading: 180, speed: 0},\n"
+        "     motion: {driven: all, %s}}\n",
+        end, with->interval, with->interval, velocity[0], velocity[1], with->smoothing, with->sheet_smoothing,
+        with->kutta, with->collocation, with->n_sheet, motion);
+}
+
+static double bound_circulation(const struct simulation *simulation) {
+    return sheet_circulation(&simulation->school->fish[0], simulation->state->y);
+}
+
+// ---- Wagner's problem: int_0^s G'(q) sqrt((2 + s - q)/(s - q)) dq = 1
+
+/* G'(q) = f(q)/sqrt(q) with a smooth f: linear between n + 1 points of [0, last], found one after another. With
+ * q = s (1 - cos phi)/2 the integral becomes that of f sqrt(2 + s - q) over phi, where equal steps are most exact. */
+static double growth_linear(double last, int n) {
+    enum { ANGLES = 2000 };
+    double *const f = calloc((size_t)n + 1, sizeof *f);
+    if (!f) abort();
+    const double h = last / n;
+    f[0] = 1 / (pi * sqrt(2));
+    for (int i = 1; i <= n; i++) {
+        double known = 0, weight = 0;
+        for (int a = 0; a < ANGLES; a++) {
+            const double q = i * h * (1 - cos(pi * (a + 0.5) / ANGLES)) / 2, kernel = sqrt(2 + i * h - q) * pi / ANGLES;
+            const int cell = (int)(q / h) < i - 1 ? (int)(q / h) : i - 1;
+            const double part = q / h - cell;
+            known += kernel * (1 - part) * f[cell];
+            if (cell == i - 1) {
+                weight += kernel * part;
+            } else {
+                known += kernel * part * f[cell + 1];
+            }
+        }
+        f[i] = (1 - known) / weight;
+    }
+    // int f/sqrt(q) dq = int 2 f dz, z = sqrt(q): exact for f linear in q
+    double sum = 0;
+    for (int i = 0; i < n; i++) {
+        const double a = i * h, slope = (f[i + 1] - f[i]) / h, root = sqrt(a), next = sqrt(a + h);
+        sum += 2 * (f[i] - slope * a) * (next - root) + slope * 2 / 3 * (next * next * next - root * root * root);
+    }
+    free(f);
+    return sum;
+}
+
+/* The error falls with the square of the step: two steps give the limit, to about 1e-7. */
+static double exact_growth(double s) {
+    const int n = 60 + 10 * (int)s;
+    return (4 * growth_linear(s, 2 * n) - growth_linear(s, n)) / 3;
+}
+
+static const double incidence = 0.5 * 3.14159265358979323846 / 180; /* small: 2 degrees change 0.0004 of G(2) */
+static const char wagner[] = "Wagner's integral equation";
+
+static struct simulation *start_plate(const struct resolution *with, double s) {
+    const double velocity[2] = {cos(incidence), sin(incidence)};
+    return open_plate(with, s / 2, velocity, "speed: 0");
+}
+
+/* Shed circulation over its final value after s half lengths. */
+static double grown(struct simulation *simulation, double s) {
+    verify_run(simulation, s / 2);
+    return -bound_circulation(simulation) / (pi * sin(incidence));
+}
+
+static double start_error(struct resolution with, double s) {
+    struct simulation *const simulation = start_plate(&with, s);
+    const double error = grown(simulation, s) / exact_growth(s) - 1;
+    simulate_free(simulation);
+    return error;
+}
+
+/* An independent solution of the same equation. */
+static void exact_values(void) {
+    const double s[] = {1, 2, 5, 10}, known[] = {0.41669496, 0.55081397, 0.73882952, 0.85613719};
+    for (int i = 0; i < 4; i++) {
+        verify_value(verify_text("Wagner's equation solved by steps: G(%g)", s[i]),
+                     "f as 16 Chebyshev polynomials (12 agree to 1e-9), not by this program", known[i],
+                     exact_growth(s[i]), 1e-6);
+    }
+}
+
+/* The finest runs: within 1 % from s = 2 on. */
+static void start_values(void) {
+    const double fine = verify_is_fast() ? 0.00125 : 0.000625, coarse = verify_is_fast() ? 0.005 : 0.0025;
+    const struct resolution early = point_vortices(fine), late = point_vortices(coarse);
+    struct simulation *simulation = start_plate(&early, 2);
+    verify_show(verify_text("impulsive start: error of G(1), Dt = %g s", fine), wagner,
+                grown(simulation, 1) / exact_growth(1) - 1);
+    verify_relative(verify_text("impulsive start: G(2), Dt = %g s", fine), wagner, exact_growth(2),
+                    grown(simulation, 2), 0.01);
+    simulate_free(simulation);
+    simulation = start_plate(&late, 10);
+    verify_relative(verify_text("impulsive start: G(5), Dt = %g s", coarse), wagner, exact_growth(5),
+                    grown(simulation, 5), 0.01);
+    verify_relative(verify_text("impulsive start: G(10), Dt = %g s", coarse), wagner, exact_growth(10),
+                    grown(simulation, 10), 0.01);
+    // Kelvin: bound, free and nascent
+    double sum = bound_circulation(simulation);
+    const struct wake *const wake = &simulation->state->wake[0];
+    for (int i = 0; i < wake->n_vortex; i++) sum += wake->circulation[i];
+    sum += simulation->state->y[simulation->school->fish[0].at.shed] - wake->shed_before;
+    verify_zero("impulsive start: all circulation / (pi L U sin alpha), s = 10", "Kelvin's theorem",
+                sum / (pi * sin(incidence)), 1e-10);
+    simulate_free(simulation);
+}
+
+static void order_in_the_interval(void) {
+    double error[6];
+    const int n = verify_is_fast() ? 3 : 5;
+    for (int i = 0; i < n; i++) {
+        const double interval = 0.02 / (1 << i);
+        error[i] = start_error(point_vortices(interval), 2);
+        verify_point("wagner_interval", "point vortices", interval, fabs(error[i]));
+    }
+    verify_order("impulsive start: order of G(2) in Dt, smoothing 1e-5",
+                 "reached: 1/2, as one vortex at the centroid of what was shed stands for a sheet from the edge on",
+                 verify_order_of_errors(error[n - 2], error[n - 1]), 0.4, 0.6);
+}
+
+static void order_in_the_smoothing(void) {
+    double error[8];
+    const int n = 6;
+    struct resolution with = point_vortices(verify_is_fast() ? 0.01 : 0.0025);
+    for (int i = 0; i < n; i++) {
+        with.smoothing = 0.2 / (1 << i);
+        error[i] = start_error(with, 2);
+        verify_point("wagner_smoothing", "s = 2", with.smoothing, fabs(error[i]));
+    }
+    verify_order("impulsive start: order of G(2) in smoothing",
+                 "reached: 1/2, as the plate feels the newest vortices less",
+                 verify_order_of_errors(error[n - 2], error[n - 1]), 0.4, 0.6);
+    verify_show("impulsive start: error of G(2), smoothing 0.2 (default)", wagner, start_error(defaults, 2));
+    verify_show("impulsive start: error of G(10), smoothing 0.2 (default)", wagner, start_error(defaults, 10));
+    // the bound sheet moves the wake along the plate only, by a part of the order of the incidence squared
+    struct resolution other = defaults;
+    other.sheet_smoothing = 0.01;
+    verify_zero("impulsive start: G(2) when sheet_smoothing is 0.01, not 0.05", "no effect in linear theory",
+                start_error(other, 2) - start_error(defaults, 2), 1e-4);
+}
+
+/* At one interval: the limit of many sheet points is that of edge and chebyshev with 161. */
+static void convergence_in_the_sheet(void) {
+    static const char *const kutta[] = {"edge", "rate"}, *const collocation[] = {"chebyshev", "midpoint"};
+    struct resolution with = point_vortices(0.01);
+    with.n_sheet = 161;
+    const double limit = start_error(with, 2);
+    const int n = verify_is_fast() ? 3 : 4;
+    for (int scheme = 0; scheme < 4; scheme++) {
+        double error[4];
+        with.kutta = kutta[scheme / 2];
+        with.collocation = collocation[scheme % 2];
+        for (int i = 0; i < n; i++) {
+            with.n_sheet = (10 << i) + 1;
+            error[i] = start_error(with, 2) - limit;
+            verify_point("wagner_sheet", verify_text("%s, %s", with.kutta, with.collocation), with.n_sheet,
+                         fabs(error[i]));
+        }
+        if (scheme == 0) {
+            verify_zero(verify_text("impulsive start: G(2), edge, chebyshev, M = %d against 161", with.n_sheet),
+                        "its own limit", error[n - 1], 2e-4);
+        } else {
+            verify_order(verify_text("impulsive start: order of G(2) in 1/M, %s, %s", with.kutta, with.collocation),
+                         "against edge, chebyshev, M = 161", verify_order_of_errors(error[n - 2], error[n - 1]), 0.7,
+                         1.3);
+        }
+    }
+}
+
+static void figure_of_the_start(void) {
+    const struct resolution fine = point_vortices(0.005);
+    struct simulation *const both[2] = {start_plate(&defaults, 10), start_plate(&fine, 10)};
+    for (int i = 1; i <= 20; i++) {
+        const double s = 0.5 * i;
+        verify_point("wagner", "exact", s, exact_growth(s));
+        verify_point("wagner", "smoothing 0.2 (default)", s, grown(both[0], s));
+        verify_point("wagner", "point vortices, Dt = 0.005 s", s, grown(both[1], s));
+    }
+    simulate_free(both[0]);
+    simulate_free(both[1]);
+}
+
+// ---- heaving plate
+
+/* Bound circulation over that of a steady flow at each instant's velocity; j0, j1, y0, y1 of the C library. */
+static double complex exact_ratio(double k) {
+    const double complex h0 = j0(k) - I * y0(k), h1 = j1(k) - I * y1(k);
+    return 2 * I * cexp(-I * k) / (pi * k * (h1 + I * h0));
+}
+
+/* Solve four normal equations, each with its right side behind it; the factor of function i is left in sums[i][4]. */
+static void solve_normal(double sums[4][5]) {
+    for (int pivot = 0; pivot < 4; pivot++) {
+        for (int column = 4; column >= pivot; column--) sums[pivot][column] /= sums[pivot][pivot];
+        for (int i = 0; i < 4; i++) {
+            const double factor = sums[i][pivot];
+            for (int column = pivot; i != pivot && column < 5; column++)
+                sums[i][column] -= factor * sums[pivot][column];
+        }
+    }
+}
+
+/* Obtained over exact ratio: a heaving plate with n intervals a period, fitted over the second period with a sine and,
+ * for what is left of the start, a straight line. It starts at its lowest point with no velocity. */
+static double complex heave(double k, int n, struct resolution with) {
+    const double omega = 2 * k, period = 2 * pi / omega, velocity = 0.01, still[2] = {0, 0};
+    with.interval = period / n;
+    char motion[160];
+    snprintf(motion, sizeof motion, "speed: 1, heave: %.17g, frequency: %.17g, phase: -90", velocity / omega,
+             1 / period);
+    struct simulation *const simulation = open_plate(&with, 2 * period, still, motion);
+    double sums[4][5] = {0};
+    for (int step = 1; step <= 2 * n; step++) {
+        verify_run(simulation, step * with.interval);
+        if (step <= n) continue;
+        const double angle = omega * simulation->state->t - pi / 2; /* the velocity's: its cosine */
+        const double value[5] = {cos(angle), sin(angle), 1, (double)step / n - 1.5, bound_circulation(simulation)};
+        for (int i = 0; i < 4; i++) {
+            for (int j = 0; j < 5; j++) sums[i][j] += value[i] * value[j];
+        }
+    }
+    simulate_free(simulation);
+    solve_normal(sums);
+    // swimming towards -x a motion to the left, to -y, is a stream from below: it turns the sheet clockwise
+    return -(sums[0][4] - I * sums[1][4]) / (pi * velocity) / exact_ratio(k);
+}
+
+static double degrees(double complex z) {
+    return carg(z) * 180 / pi;
+}
+
+static void heave_check(double k, int n) {
+    static const char theory[] = "2i exp(-ik)/(pi k (H1(k) + i H0(k))), Theodorsen";
+    const double complex exact = exact_ratio(k), obtained = heave(k, n, point_vortices(0));
+    verify_relative(verify_text("heaving plate, k = %g: amplitude, %d intervals a period", k, n), theory, cabs(exact),
+                    cabs(exact * obtained), 0.01);
+    verify_value(verify_text("heaving plate, k = %g: phase, degrees", k), theory, degrees(exact),
+                 degrees(exact) + degrees(obtained), 1);
+}
+
+static void heave_study(void) {
+    double error[4];
+    for (int i = 0; i < 3; i++) {
+        const int n = 250 << i;
+        const double complex obtained = heave(0.5, n, point_vortices(0));
+        error[i] = cabs(obtained - 1);
+        verify_point("heave_interval", "amplitude", pi * 2 / n, fabs(cabs(obtained) - 1));
+        verify_point("heave_interval", "phase / rad", pi * 2 / n, fabs(carg(obtained)));
+    }
+    verify_order("heaving plate, k = 0.5: order in Dt, smoothing 1e-5", "reached: 1/2, as for the impulsive start",
+                 verify_order_of_errors(error[1], error[2]), 0.4, 0.6);
+    for (int i = 0; i < 3; i++) {
+        const double k = i == 0 ? 0.1 : i == 1 ? 0.5 : 1;
+        const double complex obtained = heave(k, 250, defaults);
+        verify_show(verify_text("heaving plate, k = %g, smoothing 0.2 (default): amplitude", k), "over the exact one",
+                    cabs(obtained));
+        verify_show(verify_text("heaving plate, k = %g, smoothing 0.2 (default): phase", k),
+                    "degrees ahead of the exact one", degrees(obtained));
+    }
+}
+
 void verify_plate(void) {
+    exact_values();
+    start_values();
+    order_in_the_interval();
+    order_in_the_smoothing();
+    convergence_in_the_sheet();
+    if (verify_is_fast()) return;
+    figure_of_the_start();
+    heave_check(0.1, 1200);
+    heave_check(0.5, 2000);
+    heave_check(1, 2200);
+    heave_study();
 }

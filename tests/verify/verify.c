@@ -86,6 +86,28 @@ double verify_order_of_values(double coarse, double middle, double fine) {
     return log2(fabs((coarse - middle) / (middle - fine)));
 }
 
+double verify_slope(int n, const double *x, const double *y) {
+    double mean[2] = {0}, square = 0, product = 0;
+    for (int i = 0; i < n; i++) {
+        mean[0] += log(x[i]) / n;
+        mean[1] += log(y[i]) / n;
+    }
+    for (int i = 0; i < n; i++) {
+        square += (log(x[i]) - mean[0]) * (log(x[i]) - mean[0]);
+        product += (log(x[i]) - mean[0]) * (log(y[i]) - mean[1]);
+    }
+    return product / square;
+}
+
+const char *verify_text(const char *format, ...) {
+    static char text[160];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    return text;
+}
+
 static _Noreturn void give_up(void) {
     fprintf(stderr, "verify %s: %s\n", section, status_message());
     exit(1);

@@ -44,6 +44,12 @@ void verify_point(const char *figure, const char *series, double x, double y);
 double verify_order_of_errors(double coarse, double fine);
 double verify_order_of_values(double coarse, double middle, double fine);
 
+/* The slope of the line through the logarithms of n points. */
+double verify_slope(int n, const double *x, const double *y);
+
+/* A text (printf format) that lives until the next one is made. */
+const char *verify_text(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
 /* Open a case given as text (printf format), with at most 16 kB; the section ends with the message where that fails. */
 struct simulation *verify_open(const char *format, ...) __attribute__((format(printf, 1, 2)));
 

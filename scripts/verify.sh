@@ -1,0 +1,69 @@
+#!/usr/bin/env bash
+# Run the checks against classical results, and write doc/verification.md with its figures from what they find.
+#
+#   scripts/verify.sh PROGRAM FOLDER [DOC]
+#
+# PROGRAM is build/verify/verify. Each section writes its table FOLDER/SECTION.tsv; two sections run at a time, and
+# their rows are printed in the order of the document. DOC is the folder of the document (doc). Run it from the top of
+# the tree: some sections read cases/. Exit code: 0, 3 where a bound was missed, 1 where a section or the report failed.
+set -euo pipefail
+export LC_ALL=C
+
+readonly sections=(rod sheet wake plate school symmetry start energy)
+readonly at_once=2
+
+if (($# < 2 || $# > 3)); then
+    echo "usage: scripts/verify.sh PROGRAM FOLDER [DOC]" >&2
+    exit 2
+fi
+program=$1 folder=$2
+scripts=$(dirname "$0")
+doc=${3:-$scripts/../doc}
+mkdir -p "$folder" "$doc/figures"
+
+stop() {
+    local pids
+    mapfile -t pids < <(jobs -p)
+    ((${#pids[@]} == 0)) || kill "${pids[@]}" 2>/dev/null || true
+}
+trap stop EXIT
+trap 'exit 130' INT TERM
+
+declare -A section_of exit_code
+next=0 shown=0 running=0 missed=0 failed=0
+while ((shown < ${#sections[@]})); do
+    while ((running < at_once && next < ${#sections[@]})); do
+        section=${sections[next]}
+        rm -f "$folder/$section.tsv"
+        "$program" "$section" -o "$folder/$section.tsv" >"$folder/$section.out" 2>&1 </dev/null &
+        section_of[$!]=$section
+        next=$((next + 1)) running=$((running + 1))
+    done
+
+    code=0
+    wait -n -p pid 2>/dev/null || code=$?
+    exit_code[${section_of[$pid]}]=$code
+    running=$((running - 1))
+
+    while ((shown < ${#sections[@]})) && [[ -n ${exit_code[${sections[shown]}]-} ]]; do
+        section=${sections[shown]}
+        cat "$folder/$section.out"
+        case ${exit_code[$section]} in
+            0) ;;
+            3) missed=1 ;;
+            *)
+                echo "scripts/verify.sh: section $section ended with exit code ${exit_code[$section]}" >&2
+                failed=1
+                ;;
+        esac
+        shown=$((shown + 1))
+    done
+done
+
+# a report is written of whatever came to its end; a section that failed must not vanish from the document
+((failed == 0)) || exit 1
+/usr/bin/python3 "$scripts/verify.py" "$folder" "$doc/verification.md" "$doc/figures"
+if ((missed)); then
+    echo "a bound was missed: see the rows marked MISSED above" >&2
+    exit 3
+fi
