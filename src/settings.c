@@ -268,6 +268,26 @@ static enum status keep_text(struct settings *settings, const struct yaml_source
     return STATUS_OK;
 }
 
+/* Keep all that the case says, a top key a line. Its name is kept with it: it may be that of the file. */
+static enum status keep_merged(struct settings *settings, const struct yaml_node *root) {
+    struct yaml_text text = {0};
+    if (!yaml_tree_find(root, "name")) {
+        yaml_text_add(&text, "name: ");
+        yaml_text_add_scalar(&text, settings->name);
+        yaml_text_add(&text, "\n");
+    }
+    for (int i = 0; i < root->n; i++) {
+        yaml_text_add(&text, "%s: ", root->entry[i].key);
+        yaml_text_add_node(&text, root->entry[i].value);
+        yaml_text_add(&text, "\n");
+    }
+    settings->merged = text.text;
+    if (!text.failed) return STATUS_OK;
+    yaml_text_free(&text);
+    settings->merged = NULL;
+    return no_memory();
+}
+
 /* Apply the assignments to a tree that has been read, and fill the settings from it. status: how the reading went. */
 static enum status finish(struct reading *reading, enum status status, struct settings *settings, int n_assignments,
                           const char *const *assignments) {
@@ -277,6 +297,7 @@ static enum status finish(struct reading *reading, enum status status, struct se
         }
         if (status == STATUS_OK) status = fill(reading, settings);
         if (status == STATUS_OK) status = keep_text(settings, reading->tree.source[0]);
+        if (status == STATUS_OK && reading->errors.n == 0) status = keep_merged(settings, reading->tree.root);
     }
     if (status == STATUS_OK) status = yaml_errors_status(&reading->errors);
     if (status != STATUS_OK) settings_free(settings);
@@ -313,5 +334,7 @@ void settings_free(struct settings *settings) {
     settings_sweep_free(settings);
     free(settings->fish);
     free(settings->text);
+    free(settings->merged);
+    free(settings->study);
     *settings = (struct settings){0};
 }

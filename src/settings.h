@@ -135,11 +135,21 @@ struct settings_fish {
     struct settings_control control;
 };
 
-/* One axis of a sweep: a key (a path as --set takes it) and the texts of its values. */
+/* A key that an axis of a sweep changes. */
+struct settings_swept {
+    char *path;       /* as --set takes it */
+    const char *unit; /* of the table of keys */
+    int is_number;    /* each value is one number */
+};
+
+/* One axis of a sweep. It changes one key, or several together. */
 struct settings_axis {
-    char *key;
+    int n_keys;
+    struct settings_swept *key; /* (n_keys) */
     int n_values;
-    char **value;
+    char **value;         /* value i of key k is value[i * n_keys + k], a text as --set takes it (n_values * n_keys) */
+    int refine;           /* the values are resolutions of the first key: a study of convergence */
+    double order, within; /* what is expected of the observed order: order +- within; NaN: nothing */
 };
 
 struct settings {
@@ -155,7 +165,10 @@ struct settings {
     struct settings_fish *fish;
     int n_axes;
     struct settings_axis *sweep;
-    char *text; /* the text of the case file as read (without its includes) */
+    char *text;   /* the text of the case file as read (without its includes) */
+    char *merged; /* what the case file, its includes and the assignments say, as one text: defaults are not in it */
+    char *study;  /* of a member of a study: the merged text of the study; else NULL */
+    int member;   /* its number, from 0 */
 };
 
 /* Read the case file at path, apply the n_assignments texts "path=value" in order, check everything and fill *settings.
@@ -168,6 +181,20 @@ enum status settings_read(struct settings *settings, const char *path, int n_ass
  * directory) is where includes are looked up. */
 enum status settings_parse(struct settings *settings, const char *text, size_t length, const char *origin,
                            const char *folder, int n_assignments, const char *const *assignments);
+
+/* The number of members of the study: the product of the axes; 1 without a sweep. */
+int settings_n_members(const struct settings *study);
+
+/* Which value of an axis a member has. The last axis runs fastest. */
+int settings_member_value(const struct settings *study, int member, int axis);
+
+/* "solver.rtol=1e-5, fish[*].nodes=7": what one member sets. Empty without a sweep. The caller frees *text. Fails with
+ * STATUS_MEMORY. */
+enum status settings_member_text(const struct settings *study, int member, char **text);
+
+/* Fill *settings with the case of one member: the study's, with the member's values set as --set sets them and without
+ * a sweep. Fails with STATUS_CASE, naming the member, or with STATUS_MEMORY. Free with settings_free. */
+enum status settings_member(struct settings *settings, const struct settings *study, int member);
 
 /* Refuse what this version does not run (settings_read has checked everything else): one error per such value. */
 enum status settings_runnable(const struct settings *settings);

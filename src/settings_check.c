@@ -231,8 +231,8 @@ enum status settings_runnable(const struct settings *settings) {
     }
     if (settings->n_axes > 0) {
         yaml_text_add(&list,
-                      "error: sweep: `shoal run` runs one case; this case has a sweep of %d ax%cs: remove it, or "
-                      "set it with --set 'sweep=[]'\n",
+                      "error: sweep: `shoal run` runs one case; this case has a sweep of %d ax%cs: run it with "
+                      "`shoal study`, or take the sweep away with --set 'sweep=[]'\n",
                       settings->n_axes, settings->n_axes == 1 ? 'i' : 'e');
     }
     if (!list.failed && list.length == 0) return STATUS_OK;

@@ -72,16 +72,41 @@ static void show_rows(struct yaml_text *text, struct settings *settings, struct 
     }
 }
 
+/* Add "[a, b]", or without brackets where there is one only. */
+static void show_group(struct yaml_text *text, const struct settings_axis *axis, int value) {
+    if (axis->n_keys > 1) yaml_text_add(text, "[");
+    for (int k = 0; k < axis->n_keys && !text->failed; k++) {
+        if (k > 0) yaml_text_add(text, ", ");
+        if (value < 0) {
+            yaml_text_add_scalar(text, axis->key[k].path);
+        } else {
+            yaml_text_add(text, "%s", axis->value[value * axis->n_keys + k]);
+        }
+    }
+    if (axis->n_keys > 1) yaml_text_add(text, "]");
+}
+
+static void show_axis(struct yaml_text *text, const struct settings_axis *axis) {
+    yaml_text_add(text, "  - %s: ", axis->n_keys > 1 ? "keys" : "key");
+    show_group(text, axis, -1);
+    yaml_text_add(text, "\n    values: [");
+    for (int i = 0; i < axis->n_values; i++) {
+        if (i > 0) yaml_text_add(text, ", ");
+        show_group(text, axis, i);
+    }
+    yaml_text_add(text, "]\n");
+    if (axis->refine) yaml_text_add(text, "    refine: true\n");
+    if (!axis->refine || !(axis->order > 0)) return;
+    yaml_text_add(text, "    expect: {order: ");
+    yaml_text_add_number(text, axis->order);
+    yaml_text_add(text, ", within: ");
+    yaml_text_add_number(text, axis->within);
+    yaml_text_add(text, "}\n");
+}
+
 static void show_sweep(struct yaml_text *text, const struct settings *settings) {
     if (settings->n_axes > 0) yaml_text_add(text, "\nsweep:\n");
-    for (int i = 0; i < settings->n_axes; i++) {
-        const struct settings_axis *const axis = &settings->sweep[i];
-        yaml_text_add(text, "  - key: ");
-        yaml_text_add_scalar(text, axis->key);
-        yaml_text_add(text, "\n    values: [");
-        for (int j = 0; j < axis->n_values; j++) yaml_text_add(text, "%s%s", j > 0 ? ", " : "", axis->value[j]);
-        yaml_text_add(text, "]\n");
-    }
+    for (int i = 0; i < settings->n_axes; i++) show_axis(text, &settings->sweep[i]);
 }
 
 enum status settings_show(const struct settings *settings, char **text) {

@@ -1,6 +1,11 @@
 /* settings_sweep.c: the axes of a study. Declared in settings_check.h.
  *
+ *     - {key: solver.rtol, values: [1e-4, 1e-5]}                                       one key
+ *     - {keys: [fish[*].nodes, fish[*].sheet_points], values: [[7, 21], [13, 41]]}     two that change together
+ *     - {key: ..., values: ..., refine: true, expect: {order: 2, within: 0.2}}         resolutions
+ *
  * A value is checked here as if it were given to its key, and kept as the text that --set will get. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,23 +13,30 @@
 #include "settings_check.h"
 #include "settings_value.h"
 
-static const double most_cases = 1e6;
+static const double most_members = 1e5;
+
+enum { MOST_KEYS = 16 /* of one axis */, LEAST_LEVELS = 3 /* of a refinement */ };
 
 static enum status no_memory(void) {
     return status_fail(STATUS_MEMORY, "no memory for the sweep");
 }
 
-/* The place in the file where one axis is read from, and what is known about it. */
+/* One axis on its way: where it is read from, where it goes, and what is known about its keys. */
 struct axis {
     char name[32]; /* "sweep[1]" */
     const struct yaml_node *node;
-    const struct key *key;
+    struct settings_axis *into;
+    bool is_zipped; /* written with "keys" */
+    int n_keys;     /* as written; those that are wrong are NULL */
+    const struct key *key[MOST_KEYS];
+    struct yaml_errors *errors;
 };
 
 void settings_sweep_free(struct settings *settings) {
     for (int i = 0; i < settings->n_axes; i++) {
         struct settings_axis *const axis = &settings->sweep[i];
-        for (int j = 0; j < axis->n_values; j++) free(axis->value[j]);
+        for (int j = 0; j < axis->n_values * axis->n_keys; j++) free(axis->value[j]);
+        for (int j = 0; j < axis->n_keys; j++) free(axis->key[j].path);
         free(axis->value);
         free(axis->key);
     }
@@ -33,87 +45,227 @@ void settings_sweep_free(struct settings *settings) {
     settings->n_axes = 0;
 }
 
-/* Check a value as one of the key of the axis. */
-static enum status check_value(const struct axis *axis, int index, const struct yaml_node *value,
-                               struct yaml_errors *errors) {
-    union {
-        double number[2];
-        int whole;
-        char *text;
-        struct settings_list list;
-    } field;
-    char path[256];
-    snprintf(path, sizeof path, "%s.values[%d] (%s)", axis->name, index, axis->key->path);
-    settings_value_clear(axis->key, &field);
-    const enum status status = settings_value_read(axis->key, &field, value, path, errors);
-    settings_value_free(axis->key, &field);
-    return status;
-}
+// ---- keys
 
-/* Read the values of an axis. */
-static enum status read_values(struct settings_axis *into, const struct axis *axis, struct yaml_errors *errors) {
-    const struct yaml_node *const list = yaml_tree_find(axis->node, "values");
-    if (!list || list->kind != YAML_LIST || list->n == 0) {
-        yaml_errors_add(errors, list ? list->mark : axis->node->mark,
-                        "%s.values: expects a list of at least one value, as in [1, 2]", axis->name);
-        return STATUS_OK;
-    }
-    into->value = calloc((size_t)list->n, sizeof *into->value);
-    if (!into->value) return no_memory();
-    for (int i = 0; i < list->n; i++) {
-        const struct yaml_node *const value = list->entry[i].value;
-        if (axis->key) TRY(check_value(axis, i, value, errors));
-        struct yaml_text text = {0};
-        yaml_text_add_node(&text, value);
-        if (text.failed) {
-            yaml_text_free(&text);
-            return no_memory();
+/* Complain if an earlier key of the sweep is the same. */
+static void check_twice(const struct settings *settings, const struct axis *axis, const struct yaml_node *node) {
+    for (int i = 0; i <= settings->n_axes; i++) {
+        const struct settings_axis *const other = &settings->sweep[i];
+        for (int k = 0; k < other->n_keys; k++) {
+            if (!other->key[k].path || strcmp(other->key[k].path, node->text) != 0) continue;
+            yaml_errors_add(axis->errors, node->mark, "%s.key: sweep[%d] has this key too", axis->name, i);
         }
-        into->value[into->n_values++] = text.text;
     }
-    return STATUS_OK;
 }
 
-/* Find the row of the table that an axis changes; NULL after an error. */
+/* Find the row of the table that a key of an axis changes; NULL after an error. */
 static const struct key *find_key(const struct settings *settings, const struct axis *axis,
-                                  const struct yaml_node *node, struct yaml_errors *errors) {
+                                  const struct yaml_node *node) {
     if (!node || node->kind != YAML_SCALAR) {
-        yaml_errors_add(errors, node ? node->mark : axis->node->mark,
+        yaml_errors_add(axis->errors, node ? node->mark : axis->node->mark,
                         "%s.key: expects the path of a key, as in \"fish[*].body.modulus\"", axis->name);
         return NULL;
     }
     struct settings_path path;
-    if (!settings_path_parse(&path, node->text, settings->n_fish, node->mark, errors)) return NULL;
+    if (!settings_path_parse(&path, node->text, settings->n_fish, node->mark, axis->errors)) return NULL;
     const struct key *const key = settings_table_row(path.pattern);
     const bool is_fixed = !key || key->type == FILES || key->type == DEFAULTS || key->type == AXES;
     if (is_fixed || strcmp(key->path, "format") == 0) {
-        yaml_errors_add(errors, node->mark, "%s.key: '%.60s' is not a value that can be swept", axis->name, node->text);
+        yaml_errors_add(axis->errors, node->mark, "%s.key: '%.60s' is not a value that can be swept", axis->name,
+                        node->text);
         return NULL;
     }
-    for (int i = 0; i < settings->n_axes; i++) {
-        if (settings->sweep[i].key && strcmp(settings->sweep[i].key, node->text) == 0) {
-            yaml_errors_add(errors, node->mark, "%s.key: sweep[%d] has this key too", axis->name, i);
-        }
-    }
+    check_twice(settings, axis, node);
     return key;
 }
 
-/* Read one axis into an entry that is zero. */
-static enum status read_axis(const struct settings *settings, struct settings_axis *into, struct axis *axis,
-                             struct yaml_errors *errors) {
-    if (axis->node->kind != YAML_MAP) {
-        yaml_errors_add(errors, axis->node->mark, "%s: expects {key: PATH, values: [...]}", axis->name);
+static enum status read_key(const struct settings *settings, struct axis *axis, const struct yaml_node *node) {
+    const struct key *const key = find_key(settings, axis, node);
+    struct settings_swept *const swept = &axis->into->key[axis->n_keys];
+    axis->key[axis->n_keys++] = key;
+    axis->into->n_keys++;
+    if (!key) return STATUS_OK;
+    swept->unit = key->unit;
+    swept->is_number = key->type == REAL || key->type == INTEGER;
+    swept->path = strdup(node->text);
+    return swept->path ? STATUS_OK : no_memory();
+}
+
+/* Read "key", or "keys". */
+static enum status read_axis_keys(const struct settings *settings, struct axis *axis) {
+    const struct yaml_node *const list = yaml_tree_find(axis->node, "keys");
+    axis->is_zipped = list != NULL;
+    if (list && (list->kind != YAML_LIST || list->n == 0 || list->n > MOST_KEYS)) {
+        yaml_errors_add(axis->errors, list->mark, "%s.keys: expects a list of 1 to %d paths", axis->name, MOST_KEYS);
         return STATUS_OK;
     }
+    const struct yaml_node *const single = yaml_tree_find(axis->node, "key");
+    if (list && single) {
+        yaml_errors_add(axis->errors, single->mark, "%s: takes key or keys, not both", axis->name);
+    }
+    axis->into->key = calloc(MOST_KEYS, sizeof *axis->into->key);
+    if (!axis->into->key) return no_memory();
+    if (!list) return read_key(settings, axis, single);
+    for (int k = 0; k < list->n; k++) TRY(read_key(settings, axis, list->entry[k].value));
+    return STATUS_OK;
+}
+
+// ---- values
+
+/* Check one value as that of its key, and keep its text. */
+static enum status read_value(struct axis *axis, int index, int k, const struct yaml_node *value) {
+    if (axis->key[k]) {
+        union {
+            double number[2];
+            int whole;
+            char *text;
+            struct settings_list list;
+        } field;
+        char path[256];
+        snprintf(path, sizeof path, "%s.values[%d] (%s)", axis->name, index, axis->key[k]->path);
+        settings_value_clear(axis->key[k], &field);
+        const enum status status = settings_value_read(axis->key[k], &field, value, path, axis->errors);
+        settings_value_free(axis->key[k], &field);
+        TRY(status);
+    }
+    struct yaml_text text = {0};
+    yaml_text_add_node(&text, value);
+    if (text.failed) {
+        yaml_text_free(&text);
+        return no_memory();
+    }
+    axis->into->value[index * axis->n_keys + k] = text.text;
+    return STATUS_OK;
+}
+
+/* Read the values of an axis. */
+static enum status read_values(struct axis *axis) {
+    const struct yaml_node *const list = yaml_tree_find(axis->node, "values");
+    if (!list || list->kind != YAML_LIST || list->n == 0) {
+        yaml_errors_add(axis->errors, list ? list->mark : axis->node->mark,
+                        "%s.values: expects a list of at least one value, as in [1, 2]", axis->name);
+        return STATUS_OK;
+    }
+    axis->into->value = calloc((size_t)list->n * (size_t)axis->n_keys + 1, sizeof *axis->into->value);
+    if (!axis->into->value) return no_memory();
+    axis->into->n_values = list->n;
+    for (int i = 0; i < list->n; i++) {
+        const struct yaml_node *const value = list->entry[i].value;
+        if (!axis->is_zipped) {
+            TRY(read_value(axis, i, 0, value));
+            continue;
+        }
+        if (value->kind != YAML_LIST || value->n != axis->n_keys) {
+            yaml_errors_add(axis->errors, value->mark, "%s.values[%d]: expects a list of %d, one value for each key",
+                            axis->name, i, axis->n_keys);
+            continue;
+        }
+        for (int k = 0; k < axis->n_keys; k++) TRY(read_value(axis, i, k, value->entry[k].value));
+    }
+    return STATUS_OK;
+}
+
+// ---- refinement
+
+/* True if the values of a key are resolutions: their error goes to zero with them, or with their inverse. */
+static bool is_resolution(const struct key *key) {
+    static const char *const paths[] = {"time.shedding_interval", "solver.rtol", "solver.step", "fish.nodes",
+                                        "fish.sheet_points"};
+    for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
+        if (strcmp(key->path, paths[i]) == 0) return true;
+    }
+    return false;
+}
+
+/* Complain about what cannot be refined. */
+static void check_refine(const struct axis *axis, const struct yaml_node *node) {
+    const struct settings_axis *const into = axis->into;
+    if (!axis->key[0]) return;
+    if (!is_resolution(axis->key[0])) {
+        yaml_errors_add(axis->errors, node->mark,
+                        "%s.refine: '%.60s' is no resolution; these are: time.shedding_interval, solver.rtol, "
+                        "solver.step, fish[*].nodes, fish[*].sheet_points",
+                        axis->name, into->key[0].path);
+        return;
+    }
+    int n_different = 0;
+    for (int i = 0; i < into->n_values; i++) {
+        int is_new = 1;
+        for (int j = 0; j < i; j++) {
+            const char *const one = into->value[i * into->n_keys], *const other = into->value[j * into->n_keys];
+            double a, b;
+            if (one && other && yaml_text_number(one, &a) && yaml_text_number(other, &b) && a == b) is_new = 0;
+        }
+        n_different += is_new;
+    }
+    if (n_different < LEAST_LEVELS || n_different < into->n_values) {
+        yaml_errors_add(axis->errors, node->mark, "%s.refine: expects at least %d values, all different", axis->name,
+                        LEAST_LEVELS);
+    }
+}
+
+/* Read a positive number of a map. */
+static double read_positive(const struct axis *axis, const struct yaml_node *map, const char *name) {
+    const struct yaml_node *const node = yaml_tree_find(map, name);
+    double number;
+    if (node && node->kind == YAML_SCALAR && yaml_text_number(node->text, &number) && number > 0) return number;
+    yaml_errors_add(axis->errors, node ? node->mark : map->mark, "%s.expect.%s: expects a number above 0", axis->name,
+                    name);
+    return NAN;
+}
+
+static void read_refine(const struct settings *settings, struct axis *axis) {
+    const struct yaml_node *const refine = yaml_tree_find(axis->node, "refine");
+    const struct yaml_node *const expect = yaml_tree_find(axis->node, "expect");
+    axis->into->order = axis->into->within = NAN;
+    if (refine) {
+        const bool is_true = refine->kind == YAML_SCALAR && strcmp(refine->text, "true") == 0;
+        const bool is_false = refine->kind == YAML_SCALAR && strcmp(refine->text, "false") == 0;
+        if (!is_true && !is_false) {
+            yaml_errors_add(axis->errors, refine->mark, "%s.refine: expects true or false", axis->name);
+        }
+        axis->into->refine = is_true;
+        if (is_true) check_refine(axis, refine);
+    }
+    for (int i = 0; i < settings->n_axes; i++) {
+        if (!axis->into->refine || !settings->sweep[i].refine) continue;
+        yaml_errors_add(axis->errors, refine->mark, "%s.refine: sweep[%d] is refined already; one axis can be",
+                        axis->name, i);
+    }
+    if (!expect) return;
+    if (expect->kind != YAML_MAP || expect->n != 2) {
+        yaml_errors_add(axis->errors, expect->mark, "%s.expect: expects {order: 2, within: 0.2}", axis->name);
+        return;
+    }
+    if (!axis->into->refine) {
+        yaml_errors_add(axis->errors, expect->mark, "%s.expect: has no effect without refine: true", axis->name);
+    }
+    axis->into->order = read_positive(axis, expect, "order");
+    axis->into->within = read_positive(axis, expect, "within");
+}
+
+// ---- the sweep
+
+/* Read one axis into an entry that is zero. */
+static enum status read_axis(const struct settings *settings, struct axis *axis) {
+    if (axis->node->kind != YAML_MAP) {
+        yaml_errors_add(axis->errors, axis->node->mark, "%s: expects {key: PATH, values: [...]}", axis->name);
+        return STATUS_OK;
+    }
+    static const char *const words[] = {"key", "keys", "values", "refine", "expect"};
     for (int i = 0; i < axis->node->n; i++) {
         const struct yaml_entry *const entry = &axis->node->entry[i];
-        if (strcmp(entry->key, "key") == 0 || strcmp(entry->key, "values") == 0) continue;
-        yaml_errors_add(errors, entry->mark, "%s.%.40s: unknown key; known here: key, values", axis->name, entry->key);
+        bool is_known = false;
+        for (size_t w = 0; w < sizeof words / sizeof *words; w++) is_known |= strcmp(entry->key, words[w]) == 0;
+        if (is_known) continue;
+        yaml_errors_add(axis->errors, entry->mark,
+                        "%s.%.40s: unknown key; known here: key, keys, values, refine, expect", axis->name, entry->key);
     }
-    const struct yaml_node *const node = yaml_tree_find(axis->node, "key");
-    axis->key = find_key(settings, axis, node, errors);
-    if (axis->key && !(into->key = strdup(node->text))) return no_memory();
-    return read_values(into, axis, errors);
+    TRY(read_axis_keys(settings, axis));
+    if (axis->n_keys == 0) return STATUS_OK;
+    TRY(read_values(axis));
+    read_refine(settings, axis);
+    return STATUS_OK;
 }
 
 enum status settings_sweep_read(struct settings *settings, const struct settings_tree *tree,
@@ -127,17 +279,17 @@ enum status settings_sweep_read(struct settings *settings, const struct settings
     if (list->n == 0) return STATUS_OK;
     settings->sweep = calloc((size_t)list->n, sizeof *settings->sweep);
     if (!settings->sweep) return no_memory();
-    double n_cases = 1;
-    for (int i = 0; i < list->n && n_cases <= most_cases; i++) {
-        struct axis axis = {{0}, list->entry[i].value, NULL};
+    double n_members = 1;
+    for (int i = 0; i < list->n && n_members <= most_members; i++) {
+        struct axis axis = {.node = list->entry[i].value, .into = &settings->sweep[i], .errors = errors};
         snprintf(axis.name, sizeof axis.name, "sweep[%d]", i);
-        const enum status status = read_axis(settings, &settings->sweep[i], &axis, errors);
-        n_cases *= settings->sweep[i].n_values;
+        const enum status status = read_axis(settings, &axis);
+        n_members *= settings->sweep[i].n_values;
         settings->n_axes++;
         TRY(status);
     }
-    if (n_cases > most_cases) {
-        yaml_errors_add(errors, list->mark, "sweep: %.0f cases; the most is %.0f", n_cases, most_cases);
+    if (n_members > most_members) {
+        yaml_errors_add(errors, list->mark, "sweep: %.0f members or more; the most is %.0f", n_members, most_members);
     }
     return STATUS_OK;
 }

@@ -220,7 +220,9 @@ const struct key settings_table[] = {
      .meaning = "averaged_heading: largest change of the bias per second"},
 
     {"sweep", AXES, 0, "[]", ANY, "",
-     .meaning = "axes {key: PATH, values: [...]} of a study; their product is run by `shoal study`",
+     .meaning =
+         "axes of a study, {key: PATH, values: [...]} or {keys: [...], values: [[...], ...]}; `shoal study` runs "
+         "their product",
      .synonyms = "study parameters scan"},
 };
 

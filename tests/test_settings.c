@@ -56,9 +56,15 @@ static void are_equal(struct settings *one, struct settings *other) {
     }
     assert_int_equal(one->n_axes, other->n_axes);
     for (int i = 0; i < one->n_axes; i++) {
-        assert_string_equal(one->sweep[i].key, other->sweep[i].key);
+        assert_int_equal(one->sweep[i].n_keys, other->sweep[i].n_keys);
+        for (int k = 0; k < one->sweep[i].n_keys; k++) {
+            assert_string_equal(one->sweep[i].key[k].path, other->sweep[i].key[k].path);
+        }
+        assert_int_equal(one->sweep[i].refine, other->sweep[i].refine);
+        assert_memory_equal(&one->sweep[i].order, &other->sweep[i].order, sizeof(double));
+        assert_memory_equal(&one->sweep[i].within, &other->sweep[i].within, sizeof(double));
         assert_int_equal(one->sweep[i].n_values, other->sweep[i].n_values);
-        for (int j = 0; j < one->sweep[i].n_values; j++) {
+        for (int j = 0; j < one->sweep[i].n_values * one->sweep[i].n_keys; j++) {
             assert_string_equal(one->sweep[i].value[j], other->sweep[i].value[j]);
         }
     }
@@ -375,16 +381,72 @@ static void a_sweep_keeps_its_values_as_assignments_take_them(void **state) {
     (void)state;
     struct settings s = parse(swept);
     assert_int_equal(s.n_axes, 3);
-    assert_string_equal(s.sweep[0].key, "fish[*].body.modulus");
+    assert_string_equal(s.sweep[0].key[0].path, "fish[*].body.modulus");
     assert_int_equal(s.sweep[0].n_values, 3);
     assert_string_equal(s.sweep[0].value[2], "1.0e+8");
     assert_string_equal(s.sweep[1].value[1], "[0, 2]");
     char assignment[100];
-    snprintf(assignment, sizeof assignment, "%s=%s", s.sweep[1].key, s.sweep[1].value[1]);
+    snprintf(assignment, sizeof assignment, "%s=%s", s.sweep[1].key[0].path, s.sweep[1].value[1]);
     settings_free(&s);
     s = parse_with(swept, assignment, NULL, NULL);
     NEAR(s.fish[1].start_position[1], 2, 0, 0);
     settings_free(&s);
+}
+
+static const char zipped[] =
+    "time: {end: 1, shedding_interval: 0.1}\nformat: 1\nfish: [{}, {}]\n"
+    "sweep:\n"
+    "  - {key: time.shedding_interval, values: [0.1, 0.05, 0.025], refine: true, expect: {order: 2, within: 0.2}}\n"
+    "  - {keys: ['fish[*].nodes', 'fish[1].name'], values: [[7, thin], [9, 'a: b']]}\n";
+
+static void members_are_numbered_with_the_last_axis_fastest(void **state) {
+    (void)state;
+    struct settings study = parse(zipped);
+    assert_int_equal(settings_n_members(&study), 6);
+    for (int m = 0; m < 6; m++) {
+        struct settings s;
+        assert_int_equal(settings_member(&s, &study, m), STATUS_OK);
+        NEAR(s.time.shedding_interval, 0.1 / (1 << m / 2), 0, 1e-15);
+        // what is derived follows what is swept
+        NEAR(s.time.output_interval, 1.0 / (1 << m / 2), 0, 1e-15);
+        assert_int_equal(s.fish[0].nodes, m % 2 ? 9 : 7);
+        assert_string_equal(s.fish[1].name, m % 2 ? "a: b" : "thin");
+        assert_int_equal(s.n_axes, 0);
+        assert_int_equal(s.member, m);
+        assert_string_equal(s.study, study.merged);
+        assert_string_equal(s.text, study.text);
+        settings_free(&s);
+    }
+    char *text;
+    assert_int_equal(settings_member_text(&study, 3, &text), STATUS_OK);
+    assert_string_equal(text, "time.shedding_interval=0.05, fish[*].nodes=9, fish[1].name=\"a: b\"");
+    free(text);
+    settings_free(&study);
+}
+
+static void the_merged_text_is_the_whole_study(void **state) {
+    (void)state;
+    struct settings study = parse_with(zipped, "fish[0].length=2", "wake.fade=0.1", NULL);
+    struct settings again;
+    assert_int_equal(settings_parse(&again, study.merged, strlen(study.merged), "other.yaml", NULL, 0, NULL),
+                     STATUS_OK);
+    are_equal(&study, &again);
+    assert_string_equal(again.merged, study.merged);
+    settings_free(&study);
+    settings_free(&again);
+}
+
+static void a_wrong_member_is_named(void **state) {
+    (void)state;
+    struct settings study =
+        parse("format: 1\ntime: {end: 1}\nfish: [{}]\nsweep: [{key: time.shedding_interval, values: [0.1, 0.3]}]\n");
+    struct settings s;
+    assert_int_equal(settings_member(&s, &study, 0), STATUS_OK);
+    settings_free(&s);
+    assert_int_equal(settings_member(&s, &study, 1), STATUS_CASE);
+    assert_non_null(strstr(status_message(), "member 1 (time.shedding_interval=0.3):\n"));
+    assert_non_null(strstr(status_message(), "time.end: 1 s is not a whole multiple of time.shedding_interval, 0.3 s"));
+    settings_free(&study);
 }
 
 static void what_this_version_does_not_run_is_refused_with_a_remedy(void **state) {
@@ -407,6 +469,7 @@ static void a_case_shown_reads_back_bit_for_bit(void **state) {
     static const char *const cases[] = {
         least,
         swept,
+        zipped,
         "format: 1\nname: 'odd: \"name\"'\npreset: published\ntime: {end: 0.9, shedding_interval: 0.3}\n"
         "output: {file: 'a b.nc', precision: single}\nwake: {lifetime: 0.1e1, smoothing: 0.30000000000000004}\n"
         "defaults: {fish: {length: 0.1, start: {position: [-0.0, 1e-320]}}}\n"
@@ -470,20 +533,22 @@ static void every_failing_allocation_is_reported_and_leaves_nothing(void **state
                "include: [water.yaml]\nformat: 1\ntime: {end: 1}\ndefaults: {fish: {name: a}}\n"
                "fish:\n  - {nodes: 4, body: {profile: table, h: [1, 2, 3], w: [1, 2, 3]}}\n"
                "  - {name: b, control: {desired_heading: 3}}\n"
-               "sweep: [{key: 'fish[*].nodes', values: [4, 5]}]\n");
+               "sweep: [{keys: ['fish[*].nodes', solver.order], values: [[4, 1], [4, 2]]}]\n");
     static const char *const assignments[] = {"fish[*].length=2", "wake.fade=0.1"};
     const int n_before = n_live;
     int n_failures = 0;
     for (;; n_failures++) {
-        struct settings s;
+        struct settings s, member = {0};
         char *shown = NULL;
         n_until_failure = n_failures;
         enum status status = settings_read(&s, "case.yaml", 2, assignments);
         if (status == STATUS_OK) status = settings_show(&s, &shown);
+        if (status == STATUS_OK) status = settings_member(&member, &s, 1);
         const int ran_out = n_until_failure == -1;
         n_until_failure = -1;
         free(shown);
         settings_free(&s);
+        settings_free(&member);
         assert_int_equal(n_live, n_before);
         if (!ran_out) {
             assert_int_equal(status, STATUS_OK);
@@ -544,6 +609,9 @@ int main(void) {
         cmocka_unit_test(a_star_assigns_to_every_fish),
         cmocka_unit_test(assignments_reach_defaults_preset_and_sections),
         cmocka_unit_test(a_sweep_keeps_its_values_as_assignments_take_them),
+        cmocka_unit_test(members_are_numbered_with_the_last_axis_fastest),
+        cmocka_unit_test(the_merged_text_is_the_whole_study),
+        cmocka_unit_test(a_wrong_member_is_named),
         cmocka_unit_test(what_this_version_does_not_run_is_refused_with_a_remedy),
         cmocka_unit_test(a_case_shown_reads_back_bit_for_bit),
         cmocka_unit_test(a_shown_case_has_neither_preset_nor_defaults),
