@@ -21,8 +21,8 @@ readonly layers='
 13  integrator event
 14  implicit explicit
 15  simulate
-16  study view progress
-17  shoal
+16  study view
+17  progress shoal
 18  main
 '
 

@@ -14,11 +14,20 @@
 #include "simulate.h"
 #include "status.h"
 #include "store.h"
+#include "study.h"
 #include "version.h"
 
 /* ---- what the command line says ---- */
 
-enum option_code { OPTION_SET = 256, OPTION_THREADS, OPTION_FORCE, OPTION_JSON, OPTION_OUTPUT, OPTION_CASE };
+enum option_code {
+    OPTION_SET = 256,
+    OPTION_THREADS,
+    OPTION_FORCE,
+    OPTION_JSON,
+    OPTION_OUTPUT,
+    OPTION_CASE,
+    OPTION_MEMBERS
+};
 
 struct request {
     const char *command_line;
@@ -27,6 +36,7 @@ struct request {
     int n_assignments;
     const char **assignments; /* the texts of --set */
     char threads[64];         /* --threads as an assignment */
+    const char *processes, *members;
     const char *positional;
 };
 
@@ -37,7 +47,11 @@ struct option_help {
 };
 
 static const struct option_help all_options[] = {
-    {'o', "output", "FILE", "where the result goes (default: the case's output.file, or its name with .nc)"},
+    {'o', "output", "PATH",
+     "where the result goes: a file (default: the case's output.file, or its name with .nc), for a study a folder "
+     "(default: its name with -study)"},
+    {'j', "processes", "N", "run N members at once (default: one per processor)"},
+    {OPTION_MEMBERS, "members", "A-B", "run these members only (or one: A), and gather nothing"},
     {OPTION_FORCE, "force", NULL, "replace a result that exists"},
     {OPTION_SET, "set", "PATH=VALUE", "set a key, as in --set fish[0].wave.frequency=1.2 or --set fish[*].nodes=13"},
     {OPTION_THREADS, "threads", "N", "the same as --set solver.threads=N"},
@@ -52,7 +66,7 @@ static const struct option_help all_options[] = {
 /* One command: its name, what follows it, one sentence, the codes of its options, and the function that does it. */
 struct command {
     const char *name, *positional, *summary;
-    int options[8];
+    int options[12];
     enum status (*run)(const struct request *request);
 };
 
@@ -153,6 +167,60 @@ static enum status command_info(const struct request *request) {
     return store_info(request->positional, request->case_only, stdout);
 }
 
+/* ---- study, gather ---- */
+
+/* A whole number from 0 on of an option. */
+static enum status read_count(const char *option, const char *text, int *count) {
+    char *end;
+    const long number = strtol(text, &end, 10);
+    if (end == text || *end || number < 0 || number > 1000000) {
+        return status_fail(STATUS_CASE, "%s %s: expects a whole number", option, text);
+    }
+    *count = (int)number;
+    return STATUS_OK;
+}
+
+/* "3", or "3-7". */
+static enum status read_range(const char *text, int *first, int *last) {
+    int length = 0;
+    const int n = sscanf(text, "%9d-%9d%n", first, last, &length);
+    if (n == 1 && sscanf(text, "%*d%n", &length) == 0) *last = *first;
+    if (n >= 1 && text[length] == '\0' && *first >= 0 && *last >= *first) return STATUS_OK;
+    return status_fail(STATUS_CASE, "--members %s: expects the number of a member, or a range as in 0-9", text);
+}
+
+static enum status run_study(const struct settings *settings, const struct request *request, const char *folder) {
+    struct progress progress;
+    progress_start(&progress);
+    struct study_options options = {.folder = folder,
+                                    .command = request->command_line,
+                                    .last = -1,
+                                    .force = request->force,
+                                    .progress = request->quiet ? NULL : progress_study,
+                                    .data = &progress,
+                                    .stop = &stop_signal};
+    if (request->processes) TRY(read_count("-j", request->processes, &options.n_processes));
+    if (request->members) TRY(read_range(request->members, &options.first, &options.last));
+    catch_signals();
+    const enum status status = study_run(settings, &options, stdout);
+    progress_end(&progress);
+    return status;
+}
+
+static enum status command_study(const struct request *request) {
+    struct settings settings;
+    TRY(settings_read(&settings, request->positional, request->n_assignments, request->assignments));
+    char folder[512];
+    snprintf(folder, sizeof folder, "%s-study", settings.name);
+    const enum status status = run_study(&settings, request, request->output ? request->output : folder);
+    settings_free(&settings);
+    return status;
+}
+
+static enum status command_gather(const struct request *request) {
+    return study_gather(request->positional, request->command_line, stdout);
+}
+
 /* ---- demo ---- */
 
 // the folder that holds cases and scripts: that of the sources, or share/shoal beside an installed program
@@ -217,6 +285,12 @@ static const struct command commands[] = {
      "run a case and write its result",
      {'o', OPTION_FORCE, OPTION_SET, OPTION_THREADS, 'q', 'v', 'h'},
      command_run},
+    {"study",
+     "CASE",
+     "run every member of a case's sweep, and gather what they end with",
+     {'o', 'j', OPTION_MEMBERS, OPTION_FORCE, OPTION_SET, OPTION_THREADS, 'q', 'h'},
+     command_study},
+    {"gather", "FOLDER", "make study.nc and its table from the files of the members", {'h'}, command_gather},
     {"check",
      "CASE",
      "check a case and say everything that is wrong with it",
@@ -276,6 +350,8 @@ static enum status usage(const struct command *command, const char *format, cons
 static enum status take_option(struct request *request, int code, char *argument) {
     switch (code) {
         case 'o': request->output = argument; break;
+        case 'j': request->processes = argument; break;
+        case OPTION_MEMBERS: request->members = argument; break;
         case 'q': request->quiet = 1; break;
         case 'v': request->verbose = 1; break;
         case OPTION_FORCE: request->force = 1; break;

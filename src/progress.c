@@ -15,23 +15,40 @@ static void print_line(const struct simulate_progress *now) {
             100 * done, (double)now->steps / (double)now->event, now->n_vortices, now->t / now->wall_time, left);
 }
 
-void progress_show(const struct simulate_progress *now, void *data) {
-    struct progress *const progress = data;
+/* True if a line is due; on a terminal the cursor then stands at its begin. */
+static int is_due(struct progress *progress, double part, double wall_time) {
     if (progress->terminal) {
-        if (now->wall_time - progress->drawn_at < 0.2) return;
-        progress->drawn_at = now->wall_time;
+        if (wall_time - progress->drawn_at < 0.2) return 0;
+        progress->drawn_at = wall_time;
         progress->drawn = 1;
         fputs("\r", stderr);
-        print_line(now);
-        fputs("\033[K", stderr);
-        return;
+        return 1;
     }
     // a little over, so that a whole tenth is not missed by rounding
-    const int tenth = (int)(10 * now->t / now->end + 1e-9);
-    if (tenth <= progress->tenth) return;
+    const int tenth = (int)(10 * part + 1e-9);
+    if (tenth <= progress->tenth) return 0;
     progress->tenth = tenth;
+    return 1;
+}
+
+static void end_line(const struct progress *progress) {
+    fputs(progress->terminal ? "\033[K" : "\n", stderr);
+}
+
+void progress_show(const struct simulate_progress *now, void *data) {
+    struct progress *const progress = data;
+    if (!is_due(progress, now->t / now->end, now->wall_time)) return;
     print_line(now);
-    fputs("\n", stderr);
+    end_line(progress);
+}
+
+void progress_study(const struct study_progress *now, void *data) {
+    struct progress *const progress = data;
+    if (!is_due(progress, now->part, now->wall_time)) return;
+    const double left = now->part > 0 ? now->wall_time * (1 - now->part) / now->part : 0;
+    fprintf(stderr, "%d of %d members done, %d failed, %d running  %3.0f %%  %.0f s left", now->n_done, now->n_members,
+            now->n_failed, now->n_running, 100 * now->part, left);
+    end_line(progress);
 }
 
 void progress_end(struct progress *progress) {

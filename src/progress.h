@@ -1,8 +1,9 @@
-/* progress.h: how far a run is, on stderr: on a terminal one line, redrawn; in a log one line per tenth. */
+/* progress.h: how far a run or a study is, on stderr: on a terminal one line, redrawn; in a log one line per tenth. */
 #ifndef PROGRESS_H
 #define PROGRESS_H
 
 #include "simulate.h"
+#include "study.h"
 
 struct progress {
     int terminal;    /* stderr is one */
@@ -16,6 +17,9 @@ void progress_start(struct progress *progress);
 
 /* Tell how far it is; data is a struct progress. Fits simulate_options.progress. */
 void progress_show(const struct simulate_progress *now, void *data);
+
+/* The same for the members of a study. Fits study_options.progress. */
+void progress_study(const struct study_progress *now, void *data);
 
 /* Clear the line of a terminal, so that what is printed next stands alone. */
 void progress_end(struct progress *progress);

@@ -138,6 +138,10 @@ static int define_attributes(int file, const struct settings *settings, const ch
     NETCDF(nc_put_att_int(file, NC_GLOBAL, "shoal_schema", NC_INT, 1, &schema));
     NETCDF(write_run_status(file, "running"));
     NETCDF(write_text(file, NC_GLOBAL, "case_text", settings->text));
+    if (settings->study) {
+        NETCDF(write_text(file, NC_GLOBAL, "study_case", settings->study));
+        NETCDF(nc_put_att_int(file, NC_GLOBAL, "study_member", NC_INT, 1, &settings->member));
+    }
     return write_text(file, NC_GLOBAL, "case_effective", effective);
 }
 

@@ -1,0 +1,64 @@
+/* study.h: all members of a study, each in a process of its own, and what becomes of them. Tested by
+ * tests/test_study.sh.
+ *
+ *     FOLDER/member-0000.nc       the result of each member; it holds the study and the member's number
+ *     FOLDER/member-0003.failed   why a member failed
+ *     FOLDER/study.nc             what the members ended with; made from their files
+ *
+ * A member is finished when its file is complete and was made by the same case. The next call on the same folder goes
+ * on: finished members are passed over, all others run again. */
+#ifndef STUDY_H
+#define STUDY_H
+
+#include <signal.h>
+#include <stdio.h>
+
+#include "settings.h"
+#include "status.h"
+#include "store_study.h"
+
+/* How far it is. */
+struct study_progress {
+    int n_members; /* that this call is about */
+    int n_done;    /* finished, also before this call */
+    int n_failed, n_running;
+    double part;      /* of this call's work */
+    double wall_time; /* of this call, s */
+};
+
+struct study_options {
+    const char *folder;
+    const char *command; /* command line, for the files' history */
+    int n_processes;     /* at once; 0: one per processor */
+    int first, last;     /* members to run; last -1: all, and then the results are gathered and printed */
+    int force;           /* remove the results of another study from the folder */
+    void (*progress)(const struct study_progress *progress, void *data); /* may be NULL */
+    void *data;
+    const volatile sig_atomic_t *stop; /* may be NULL */
+};
+
+/* Run what is not finished, gather, print the table. Fails with STATUS_CASE (a member is no valid case: nothing has
+ * run), STATUS_FILE (the folder holds something else), STATUS_STOPPED, STATUS_SOLVER (some members failed) or
+ * STATUS_MISSED (another order than the case expects). */
+enum status study_run(const struct settings *study, const struct study_options *options, FILE *stream);
+
+/* Make study.nc and the table from the files of a folder alone. Fails as study_run does. */
+enum status study_gather(const char *folder, const char *command, FILE *stream);
+
+/* ---- shared by the files of the study only */
+
+/* The path of a member's file, with an ending such as ".nc"; NULL: no memory. The caller frees it. */
+char *study_path(const char *folder, int member, const char *ending);
+
+/* The end of all members in the folder. A file that cannot be read counts as a member that failed. The caller frees
+ * them with study_members_free. Fails with STATUS_FILE (a file belongs to another study) or STATUS_MEMORY. */
+enum status study_members_read(struct store_member **members, const struct settings *study, const char *folder);
+void study_members_free(struct store_member *members, int n);
+
+/* Write study.nc, print the table and the orders. */
+enum status study_report(const struct settings *study, const char *folder, const char *command, FILE *stream);
+
+/* Print the members with what they set and how they ended, in columns. */
+enum status study_print(const struct settings *study, const struct store_member *members, FILE *stream);
+
+#endif

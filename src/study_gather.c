@@ -1,0 +1,152 @@
+/* study_gather.c: from the files of the members to study.nc and the table. Declared in study.h. */
+#include <dirent.h>
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "study.h"
+
+enum { REASON_BYTES = 2048 };
+
+char *study_path(const char *folder, int member, const char *ending) {
+    // "./" keeps NetCDF from taking the name for an address
+    const size_t size = strlen(folder) + 64;
+    char *const path = malloc(size);
+    if (path) {
+        snprintf(path, size, "%s%s/member-%04d%s", folder[0] == '/' || folder[0] == '.' ? "" : "./", folder, member,
+                 ending);
+    } else {
+        status_fail(STATUS_MEMORY, "no memory for a file name");
+    }
+    return path;
+}
+
+void study_members_free(struct store_member *members, int n) {
+    for (int m = 0; members && m < n; m++) store_member_free(&members[m]);
+    free(members);
+}
+
+/* Replace the status of a member. */
+static enum status note(struct store_member *member, const char *format, const char *text) {
+    char line[REASON_BYTES + 16];
+    snprintf(line, sizeof line, format, text);
+    free(member->status);
+    member->status = strdup(line);
+    return member->status ? STATUS_OK : status_fail(STATUS_MEMORY, "no memory for the members of a study");
+}
+
+/* The reason that was kept when a member failed; 0 if there is none. */
+static int read_reason(const char *folder, int number, char reason[REASON_BYTES]) {
+    char *const path = study_path(folder, number, ".failed");
+    FILE *const file = path ? fopen(path, "r") : NULL;
+    free(path);
+    if (!file) return 0;
+    const size_t length = fread(reason, 1, REASON_BYTES - 1, file);
+    fclose(file);
+    reason[length] = '\0';
+    reason[strcspn(reason, "\n")] = '\0';
+    return 1;
+}
+
+/* Read one member and how it ended. */
+static enum status read_member(struct store_member *member, const struct settings *study, const char *folder,
+                               int number) {
+    char *const path = study_path(folder, number, ".nc");
+    if (!path) return STATUS_MEMORY;
+    enum status status = STATUS_OK;
+    if (access(path, F_OK) != 0) {
+        status = note(member, "%s", "missing");
+    } else {
+        status = store_member_read(member, path);
+        if (status == STATUS_FILE) {
+            status = note(member, "failed: %s", status_message());
+        } else if (status == STATUS_OK && (strcmp(member->study, study->merged) != 0 || member->number != number)) {
+            status = status_fail(STATUS_FILE, "%s is a result of another study than the first file there", path);
+        }
+    }
+    free(path);
+    TRY(status);
+    char reason[REASON_BYTES];
+    if (strcmp(member->status, "complete") == 0 || !read_reason(folder, number, reason)) return STATUS_OK;
+    return note(member, "failed: %s", reason);
+}
+
+enum status study_members_read(struct store_member **members, const struct settings *study, const char *folder) {
+    const int n = settings_n_members(study);
+    *members = calloc((size_t)n, sizeof **members);
+    if (!*members) return status_fail(STATUS_MEMORY, "no memory for %d members", n);
+    for (int m = 0; m < n; m++) {
+        const enum status status = read_member(&(*members)[m], study, folder, m);
+        if (status == STATUS_OK) continue;
+        study_members_free(*members, n);
+        *members = NULL;
+        return status;
+    }
+    return STATUS_OK;
+}
+
+/* Say which members are not complete. */
+static enum status say_what_failed(const struct store_member *members, int n, const char *folder) {
+    int n_failed = 0;
+    for (int m = 0; m < n; m++) n_failed += strcmp(members[m].status, "complete") != 0;
+    if (n_failed == 0) return STATUS_OK;
+    return status_fail(STATUS_SOLVER, "%d of %d members in %s are not complete; `shoal study` on it runs them again",
+                       n_failed, n, folder);
+}
+
+static enum status write_study(const struct settings *study, const struct store_member *members, const char *folder,
+                               const char *command) {
+    const size_t size = strlen(folder) + 32;
+    char *const path = malloc(size);
+    if (!path) return status_fail(STATUS_MEMORY, "no memory for a file name");
+    snprintf(path, size, "%s%s/study.nc", folder[0] == '/' || folder[0] == '.' ? "" : "./", folder);
+    const enum status status = store_study_write(path, study, members, command);
+    free(path);
+    return status;
+}
+
+enum status study_report(const struct settings *study, const char *folder, const char *command, FILE *stream) {
+    const int n = settings_n_members(study);
+    struct store_member *members;
+    TRY(study_members_read(&members, study, folder));
+    enum status status = study_print(study, members, stream);
+    if (status == STATUS_OK) status = write_study(study, members, folder, command);
+    if (status == STATUS_OK) status = say_what_failed(members, n, folder);
+    study_members_free(members, n);
+    return status;
+}
+
+/* The merged text of the study that the first readable member of a folder belongs to. The caller frees *text. */
+static enum status find_study(const char *folder, char **text) {
+    DIR *const entries = opendir(folder);
+    if (!entries) return status_fail(STATUS_FILE, "%s: cannot be read: %s", folder, strerror(errno));
+    *text = NULL;
+    for (const struct dirent *entry; !*text && (entry = readdir(entries));) {
+        int number, length = 0;
+        if (sscanf(entry->d_name, "member-%d.nc%n", &number, &length) != 1 || entry->d_name[length] || !length)
+            continue;
+        char *const path = study_path(folder, number, ".nc");
+        struct store_member member;
+        if (path && store_member_read(&member, path) == STATUS_OK) {
+            if (member.number >= 0) *text = strdup(member.study);
+            store_member_free(&member);
+        }
+        free(path);
+    }
+    closedir(entries);
+    if (*text) return STATUS_OK;
+    return status_fail(STATUS_FILE, "%s: holds no member of a study that can be read", folder);
+}
+
+enum status study_gather(const char *folder, const char *command, FILE *stream) {
+    char *text;
+    TRY(find_study(folder, &text));
+    struct settings study;
+    enum status status = settings_parse(&study, text, strlen(text), folder, NULL, 0, NULL);
+    free(text);
+    TRY(status);
+    status = study_report(&study, folder, command, stream);
+    settings_free(&study);
+    return status;
+}

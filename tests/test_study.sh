@@ -1,0 +1,222 @@
+#!/usr/bin/env bash
+# Studies: members, what is skipped and repeated, and what happens when something dies.
+#
+#   tests/test_study.sh PROGRAM
+set -uo pipefail
+export LC_ALL=C
+
+program=$(realpath "${1:?usage: tests/test_study.sh PROGRAM}")
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder" || exit 2
+
+readonly time_limit=60  # seconds for one call
+n_passed=0 n_failed=0 n_skipped=0
+
+pass() {
+    echo "ok      $1"
+    n_passed=$((n_passed + 1))
+}
+
+fail() {  # name, what happened
+    echo "FAILED  $1: $2"
+    n_failed=$((n_failed + 1))
+}
+
+# Pass or fail, by the code of the command that follows the name.
+check() {  # name, command...
+    local name=$1
+    shift
+    if "$@" >check.out 2>&1; then pass "$name"; else fail "$name" "$* : $(head -c 600 check.out) $(head -c 600 err)"; fi
+}
+
+# Run the program; sets $code, and leaves the files out and err.
+run() {
+    code=0
+    timeout "$time_limit" "$program" "$@" >out 2>err </dev/null || code=$?
+}
+
+refused() {  # name, code, text on standard error, arguments...
+    local name=$1 want=$2 text=$3
+    shift 3
+    run "$@"
+    if ((code != want)); then
+        fail "$name" "exit code $code instead of $want: $(head -c 600 err)"
+    elif grep -qF -- "$text" err; then
+        pass "$name"
+    else
+        fail "$name" "'$text' is not in: $(head -c 600 err)"
+    fi
+}
+
+has() {  # file, text
+    grep -qF -- "$2" "$1" || { echo "'$2' is not in $1"; return 1; }
+}
+
+# The time of the last change of a file, with all digits.
+changed() {
+    stat -c %y "$1"
+}
+
+# ---- a study from begin to end
+
+cat >small.yaml <<'end'
+format: 1
+time: {end: 0.2, shedding_interval: 0.02}
+fish: [{}]
+sweep:
+  - {key: "fish[*].wave.amplitude", values: [0.2, 0.3]}
+  - {keys: [solver.method, solver.max_steps], values: [[ida, 1000], [rk4, 1000], [euler, 2]]}
+end
+run study small.yaml -j 2
+check failed_members_give_exit_code_1 test "$code" = 1
+check failures_are_counted has err '2 of 6 members in small-study are not complete'
+check the_reason_is_printed has out 'member 2 failed: unstable at t = '
+check the_reason_is_kept has small-study/member-0002.failed 'unstable at t = '
+check members_are_numbered_from_0 test -e small-study/member-0000.nc -a -e small-study/member-0005.nc -a \
+    ! -e small-study/member-0006.nc
+check progress_counts_members has err '4 of 6 members done, 2 failed, 0 running  100 %'
+check a_line_per_member test "$(grep -cE '^ +[0-5] +0\.[23] ' out)" = 6
+check results_are_gathered test -s small-study/study.nc
+run info --case small-study/member-0004.nc
+check the_last_axis_is_fastest has out 'amplitude: 0.3'
+check zipped_keys_change_together has out 'method: rk4'
+
+finished=$(changed small-study/member-0001.nc) failed=$(changed small-study/member-0002.nc)
+run study small.yaml -q
+check finished_members_are_passed_over test "$(changed small-study/member-0001.nc)" = "$finished"
+check failed_members_run_again test "$(changed small-study/member-0002.nc)" != "$failed"
+
+cp out table
+mkdir alone
+cp small-study/member* alone
+run gather alone
+check the_files_of_the_members_are_enough cmp <(sed 's/ small-study/ alone/' table) out
+check gather_writes_study_nc test -s alone/study.nc
+rm alone/member-0003.nc
+echo 'not a result' >alone/member-0000.nc
+run gather alone
+check a_missing_member_is_told grep -qE '^ +3 .* missing$' out
+check an_unreadable_member_is_told has out 'member 0 failed: ./alone/member-0000.nc: cannot be read'
+
+mkdir parts
+run study small.yaml -o parts --members 0-1 -q
+check a_part_ends_with_0 test "$code" = 0 -a ! -s out
+check a_part_runs_its_members_only test -e parts/member-0001.nc -a ! -e parts/member-0002.nc -a ! -e parts/study.nc
+
+# ---- folders with something else
+
+refused another_study_is_refused 4 'small-study/member-0000.nc is a result of another study' \
+    study small.yaml --set fish[0].nodes=9 -o small-study
+check nothing_was_changed test "$(changed small-study/member-0001.nc)" = "$finished"
+sed 's/0.2, 0.3/0.2/' small.yaml >shorter.yaml
+run study shorter.yaml -o small-study --force -q
+check force_replaces_it has out 'euler'
+check force_removes_the_rest test ! -e small-study/member-0003.nc
+cp alone/member-0001.nc small-study/
+refused gather_of_two_studies 4 'is a result of another study' gather small-study
+mkdir empty
+refused gather_of_nothing 4 'empty: holds no member of a study that can be read' gather empty
+refused gather_of_no_folder 4 'nowhere: cannot be read: No such file or directory' gather nowhere
+refused folder_is_a_file 4 'small.yaml: cannot make this folder' study small.yaml -o small.yaml
+refused folder_in_no_folder 4 'no/where: cannot make this folder' study small.yaml -o no/where
+
+# ---- wrong input
+
+refused a_wrong_member_is_named 2 'member 1 (time.shedding_interval=0.03):' study small.yaml -o wrong \
+    --set 'sweep=[{key: time.shedding_interval, values: [0.02, 0.03]}]'
+check before_anything_ran test ! -e wrong/member-0000.nc
+refused members_beyond_the_study 2 '--members 4-6: the study has members 0 to 5' study small.yaml -o parts --members 4-6
+refused members_backwards 2 '--members 3-1: expects the number of a member' study small.yaml -o parts --members 3-1
+refused members_of_words 2 '--members all: expects' study small.yaml -o parts --members all
+refused processes_of_words 2 '-j two: expects a whole number' study small.yaml -o parts -j two
+refused run_refuses_a_sweep 2 'run it with `shoal study`' run small.yaml -o never.nc
+run study small.yaml --set 'sweep=[]' -o single -q
+check without_a_sweep_there_is_one_member test "$code" = 0 -a -e single/member-0000.nc -a ! -e single/member-0001.nc
+
+# ---- deaths
+
+# four members that take long; the one with number 0 is short
+cat >long.yaml <<'end'
+format: 1
+time: {end: 60, shedding_interval: 0.02}
+fish: [{}]
+sweep:
+  - {keys: [time.end, time.shedding_interval], values: [[0.2, 0.02], [60, 0.02], [60.02, 0.02], [60.04, 0.02]]}
+end
+
+# Start the study in the background and wait for member 0 to be finished and two others to run.
+start_long() {  # folder
+    "$program" study long.yaml -j 2 -o "$1" >out 2>err </dev/null &
+    study=$!
+    for ((i = 0; i < 200; i++)); do
+        [[ ! -e $1/member-0002.nc ]] || return 0
+        sleep 0.05
+    done
+    echo "the study does not start: $(<err)"
+}
+
+wait_for_end_of() {  # processes...
+    local process
+    for process in "$@"; do
+        for ((i = 0; i < 200; i++)); do
+            kill -0 "$process" 2>/dev/null || break
+            sleep 0.05
+        done
+        kill -0 "$process" 2>/dev/null && return 1
+    done
+    return 0
+}
+
+start_long stopped
+kill -INT "$study"
+code=0
+wait "$study" || code=$?
+check a_signal_stops_a_study test "$code" = 75
+check it_says_what_is_finished has err 'stopped by a signal: 1 of 4 members are finished; the same command goes on'
+run info stopped/member-0001.nc
+check its_members_stop_cleanly has out 'stopped'
+
+start_long killed
+read -ra members <"/proc/$study/task/$study/children"
+kill -KILL "$study"
+wait "$study" 2>/dev/null
+check members_end_with_a_killed_study wait_for_end_of "${members[@]}"
+before=$(changed killed/member-0000.nc)
+run study long.yaml -o killed --members 0 -q
+check what_a_killed_study_finished_stays test "$code" = 0 -a "$(changed killed/member-0000.nc)" = "$before"
+
+start_long shot
+read -ra members <"/proc/$study/task/$study/children"
+kill -KILL "${members[0]}"
+sleep 0.5
+kill -INT "$study"
+wait "$study" 2>/dev/null
+check a_killed_member_is_told grep -q 'killed by signal 9 (Killed)' shot/member-000[123].failed
+check the_others_carry_on test -e shot/member-0003.nc
+run gather shot
+check gather_tells_it_too has out 'failed: killed by signal 9 (Killed)'
+
+# a limit of the size of files is a full disk for the largest member only
+cat >disk.yaml <<'end'
+format: 1
+time: {end: 0.2, shedding_interval: 0.02, output_interval: 0.02}
+fish: [{}]
+sweep:
+  - {keys: ["fish[*].nodes", "fish[*].sheet_points"], values: [[7, 21], [25, 81], [8, 21]]}
+end
+run study disk.yaml -o roomy -q
+largest=$(stat -c %s roomy/member-0001.nc) other=$(stat -c %s roomy/member-0002.nc)
+(
+    ulimit -f $(((largest + other) / 2 / 1024))
+    timeout "$time_limit" "$program" study disk.yaml -o disk -q >out 2>err </dev/null
+    echo $? >code
+)
+check a_full_disk_is_a_failed_member test "$(<code)" = 1
+check it_says_what_could_not_be_written has out 'member 1 failed: ./disk/member-0001.nc: cannot be written at t = '
+check the_other_members_are_complete test "$(grep -c ' complete$' out)" = 2
+run study disk.yaml -o disk -q
+check with_room_the_next_call_completes_it test "$code" = 0
+
+echo "$n_passed passed, $n_failed failed, $n_skipped skipped"
+((n_failed == 0))
