@@ -13,11 +13,10 @@ static const struct store_quantity computed[] = {
     {"nose", "m", "position of the nose at the end", 1, 1},
     {"tail", "m", "position of the tail at the end", 1, 1},
     {"lateral_drift", "m", "way of the centre of mass across the first heading, to the left", 1, 0},
-    {"mean_speed", "m s-1", "mean of the speed over the last period", 1, 0},
     {"mean_heading", "degree", "mean of the heading over the last period", 1, 0},
     {"mean_actuation_power", "W", "mean power of the muscle over the last period", 1, 0},
 };
-enum { NOSE, TAIL, DRIFT, MEAN_SPEED, MEAN_HEADING, MEAN_POWER, N_COMPUTED, MOST_QUANTITIES = 96 };
+enum { NOSE, TAIL, DRIFT, MEAN_HEADING, MEAN_POWER, N_COMPUTED, MOST_QUANTITIES = 96 };
 
 /* True for (time), (time, fish) and (time, fish, xy). */
 static int has_end(const struct store_variable *variable) {
@@ -109,11 +108,28 @@ static void read_last_row(struct reading *reading) {
     }
 }
 
-/* The mean of a variable of a fish over some last rows. */
-static double mean(const struct reading *reading, const char *name, size_t first, size_t fish) {
+/* A value that does not change with time. */
+static double constant(const struct reading *reading, const char *name, size_t fish) {
+    int number;
+    double value;
+    if (nc_inq_varid(reading->file, name, &number) != NC_NOERR) return NAN;
+    return nc_get_var1_double(reading->file, number, &fish, &value) == NC_NOERR ? value : NAN;
+}
+
+/* The mean heading of a fish over its last period, or over the whole run where that is shorter: trapezoids. */
+static double mean_heading(const struct reading *reading, size_t fish) {
+    const size_t last = reading->n_rows - 1;
+    const double end = reading->time[last], start = end - (1 + 1e-9) / constant(reading, "frequency", fish);
+    size_t row = 0;
+    while (row < last && reading->time[row] < start) row++;
+    const double duration = end - reading->time[row];
+    if (!(duration > 0)) return NAN;
     double sum = 0;
-    for (size_t row = first; row < reading->n_rows; row++) sum += read_value(reading, name, row, fish, 0, 0);
-    return sum / (double)(reading->n_rows - first);
+    for (; row < last; row++) {
+        sum += (read_value(reading, "heading", row, fish, 0, 0) + read_value(reading, "heading", row + 1, fish, 0, 0)) /
+               2 * (reading->time[row + 1] - reading->time[row]);
+    }
+    return sum / duration;
 }
 
 /* The quantities that are computed, of one fish. */
@@ -122,11 +138,7 @@ static void compute(struct reading *reading, int f) {
     const int first_quantity = n_quantities() - N_COMPUTED;
     double *const to = place(reading->member, first_quantity, f, 0);
     const int stride = 2 * reading->member->n_fish;
-    int n_nodes_variable;
-    double n_nodes = NAN, frequency = NAN;
-    if (nc_inq_varid(reading->file, "n_nodes", &n_nodes_variable) == NC_NOERR) {
-        nc_get_var1_double(reading->file, n_nodes_variable, &fish, &n_nodes);
-    }
+    const double n_nodes = constant(reading, "n_nodes", fish);
     for (size_t k = 0; k < 2 && n_nodes > 0; k++) {
         to[NOSE * stride + (int)k] = read_value(reading, "x", last, fish, 0, k);
         to[TAIL * stride + (int)k] = read_value(reading, "x", last, fish, (size_t)n_nodes - 1, k);
@@ -136,21 +148,10 @@ static void compute(struct reading *reading, int f) {
     const double way_y = read_value(reading, "com", last, fish, 1, 0) - read_value(reading, "com", 0, fish, 1, 0);
     to[DRIFT * stride] = cos(heading) * way_y - sin(heading) * way_x;
 
-    // the last period, or the whole run where that is shorter
-    int frequency_variable;
-    if (nc_inq_varid(reading->file, "frequency", &frequency_variable) == NC_NOERR) {
-        nc_get_var1_double(reading->file, frequency_variable, &fish, &frequency);
-    }
-    const double end = reading->time[last], start = end - (1 + 1e-9) / frequency;
-    size_t first = 0;
-    while (first < last && reading->time[first] < start) first++;
-    // the first row stands for the end of the period before
-    const size_t first_inside = first < last ? first + 1 : first;
-    to[MEAN_SPEED * stride] = mean(reading, "speed", first_inside, fish);
-    to[MEAN_HEADING * stride] = mean(reading, "heading", first_inside, fish);
-    to[MEAN_POWER * stride] = (read_value(reading, "actuation_work", last, fish, 0, 0) -
-                               read_value(reading, "actuation_work", first, fish, 0, 0)) /
-                              (end - reading->time[first]);
+    to[MEAN_HEADING * stride] = mean_heading(reading, fish);
+    // the cost of transport is that power over mass and speed
+    to[MEAN_POWER * stride] = read_value(reading, "cost_of_transport", last, fish, 0, 0) *
+                              constant(reading, "body_mass", fish) * read_value(reading, "speed", last, fish, 0, 0);
 }
 
 static enum status no_memory(const char *path) {

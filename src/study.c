@@ -218,8 +218,9 @@ static void tell(struct study *study) {
     progress->wall_time =
         (double)(now.tv_sec - study->started.tv_sec) + 1e-9 * (double)(now.tv_nsec - study->started.tv_nsec);
     progress->n_running = n_running(study);
+    const double almost = 0.99;  // a member is done when its process is
     double work = study->n_next - progress->n_running;
-    for (int j = 0; j < study->n_jobs; j++) work += study->job[j].process ? study->job[j].report->part : 0;
+    for (int j = 0; j < study->n_jobs; j++) work += study->job[j].process ? almost * study->job[j].report->part : 0;
     progress->part = study->n_to_run > 0 ? work / study->n_to_run : 1;
     study->options->progress(progress, study->options->data);
 }

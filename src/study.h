@@ -58,6 +58,42 @@ void study_members_free(struct store_member *members, int n);
 /* Write study.nc, print the table and the orders. */
 enum status study_report(const struct settings *study, const char *folder, const char *command, FILE *stream);
 
+/* What three or more levels of a refinement say of a value, or of a point in the plane. Roache's grid convergence
+ * index: the finest value is expected to be off by less than this, in its own unit. */
+struct study_order {
+    double order;          /* observed with the three finest levels; NaN: they are equal */
+    double order_before;   /* with the three levels before; NaN: there are three levels only */
+    double limit[2];       /* Richardson's extrapolation */
+    double index;          /* safety factor 1.25 */
+    const char *objection; /* why the levels are not in the asymptotic range, or NULL */
+};
+
+/* sizes: from coarse to fine, falling; values: one point for each size. */
+struct study_order study_order(int n, const double *sizes, const double (*values)[2]);
+
+/* Print errors and orders along the axis that is refined; without such an axis nothing. Fails with STATUS_MISSED when
+ * nose or tail of a fish have another order than the axis expects, or with STATUS_MEMORY. */
+enum status study_orders(const struct settings *study, const struct store_member *members, FILE *stream);
+
+/* A table of texts that is filled cell by cell and printed in columns, aligned to the right but for the last one. */
+enum { STUDY_CELL_BYTES = 32 };
+struct study_table {
+    int n_rows, n_columns;
+    char (*cell)[STUDY_CELL_BYTES]; /* (n_rows, n_columns) */
+};
+
+/* Fails with STATUS_MEMORY. */
+enum status study_table_create(struct study_table *table, int n_rows, int n_columns);
+void study_table_free(struct study_table *table);
+
+/* Fill a cell (printf format; what is too long is cut). */
+void study_table_set(const struct study_table *table, int row, int column, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+
+/* The same for a number, "-" where it is none. */
+void study_table_number(const struct study_table *table, int row, int column, const char *format, double number);
+void study_table_print(const struct study_table *table, FILE *stream);
+
 /* Print the members with what they set and how they ended, in columns. */
 enum status study_print(const struct settings *study, const struct store_member *members, FILE *stream);
 

@@ -112,7 +112,9 @@ enum status study_report(const struct settings *study, const char *folder, const
     TRY(study_members_read(&members, study, folder));
     enum status status = study_print(study, members, stream);
     if (status == STATUS_OK) status = write_study(study, members, folder, command);
-    if (status == STATUS_OK) status = say_what_failed(members, n, folder);
+    const enum status orders = status == STATUS_OK ? study_orders(study, members, stream) : STATUS_OK;
+    if (orders == STATUS_OK && status == STATUS_OK) status = say_what_failed(members, n, folder);
+    if (status == STATUS_OK) status = orders;
     study_members_free(members, n);
     return status;
 }

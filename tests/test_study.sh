@@ -134,6 +134,28 @@ refused run_refuses_a_sweep 2 'run it with `shoal study`' run small.yaml -o neve
 run study small.yaml --set 'sweep=[]' -o single -q
 check without_a_sweep_there_is_one_member test "$code" = 0 -a -e single/member-0000.nc -a ! -e single/member-0001.nc
 
+# ---- convergence
+
+cat >refined.yaml <<'end'
+format: 1
+time: {end: 1.6}
+solver: {rtol: 1e-8}
+fish: [{body: {modulus: 1e5}}]
+sweep:
+  - {key: time.shedding_interval, values: [0.01, 0.04, 0.02], refine: true, expect: {order: 2, within: 0.6}}
+end
+run study refined.yaml -q
+check the_expected_order_gives_exit_code_0 test "$code" = 0
+check orders_are_printed grep -qE '^ +nose +fish1 +m +[0-9.e-]+ +[0-9.e-]+ +- +- +[12]\.[0-9]+ ' out
+check levels_are_sorted_from_coarse_to_fine grep -qE 'unit +0\.04 +0\.02 +0\.01 ' out
+refused another_order_gives_exit_code_3 3 \
+    'in time.shedding_interval, expected 3 +- 0.1' study refined.yaml -o third -q \
+    --set 'sweep=[{key: time.shedding_interval, values: [0.04, 0.02, 0.01], refine: true, expect: {order: 3, within: 0.1}}]'
+check then_everything_is_written_all_the_same test -s third/study.nc
+run study refined.yaml -o groups -q --set time.end=0.08 \
+    --set 'sweep=[{key: solver.rtol, values: [1e-4, 1e-5, 1e-6], refine: true}, {key: solver.order, values: [1, 2]}]'
+check other_axes_make_groups has out 'Refinement of solver.rtol, from member 1 (solver.rtol=1e-4, solver.order=2) on'
+
 # ---- deaths
 
 # four members that take long; the one with number 0 is short

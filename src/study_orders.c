@@ -1,0 +1,243 @@
+/* study_orders.c: a study of convergence: orders observed along the axis that is refined. Declared in study.h.
+ *
+ * P. J. Roache, Annual Review of Fluid Mechanics 29 (1997) 123-160: with h1 < h2 < h3, r21 = h2/h1, r32 = h3/h2 and
+ * values f1, f2, f3 the order p solves
+ *
+ *     |f3 - f2| / |f2 - f1| = r21^p (r32^p - 1) / (r21^p - 1),
+ *
+ * the limit is f1 + (f1 - f2) / (r21^p - 1), and the index 1.25 |f1 - f2| / (r21^p - 1). */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "study.h"
+#include "yaml_text.h"
+
+static const double safety_factor = 1.25;
+
+/* Values that differ by less than this part of their size are equal: rounding hides the order. */
+static const double least_difference = 1e-12;
+
+/* Orders outside of these, or that change by more than that from three levels to the next, are not asymptotic. */
+static const double least_order = 0.5, most_order = 6, most_change = 0.5;
+
+// what is compared
+static const char *const quantities[] = {"nose", "tail", "com", "speed", "shed_circulation", "cost_of_transport"};
+enum { N_QUANTITIES = sizeof quantities / sizeof *quantities, N_EXPECTED = 2 /* nose and tail */ };
+
+// ---- three levels
+
+/* The ratio of differences that an order gives. */
+static double ratio_of_order(double p, double r21, double r32) {
+    if (fabs(p) < 1e-9) return log(r32) / log(r21);
+    return pow(r21, p) * (pow(r32, p) - 1) / (pow(r21, p) - 1);
+}
+
+/* The order that gives a ratio of differences; that ratio grows with the order. */
+static double order_of_ratio(double ratio, double r21, double r32) {
+    double low = -20, high = 20;
+    while (high - low > 1e-12) {
+        const double middle = (low + high) / 2;
+        if (ratio_of_order(middle, r21, r32) < ratio) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    return (low + high) / 2;
+}
+
+/* Observed order of three levels, coarse to fine; NaN where two neighbours are equal. */
+static double three_levels(const double *h, const double (*f)[2], int *is_oscillating) {
+    const double fine[2] = {f[2][0] - f[1][0], f[2][1] - f[1][1]}, coarse[2] = {f[1][0] - f[0][0], f[1][1] - f[0][1]};
+    const double d21 = hypot(fine[0], fine[1]), d32 = hypot(coarse[0], coarse[1]);
+    const double floor = least_difference * fmax(1, hypot(f[2][0], f[2][1]));
+    *is_oscillating = fine[0] * coarse[0] + fine[1] * coarse[1] < 0;
+    if (!(d21 > floor) || !(d32 > floor)) return NAN;
+    return order_of_ratio(d32 / d21, h[1] / h[2], h[0] / h[1]);
+}
+
+struct study_order study_order(int n, const double *sizes, const double (*values)[2]) {
+    struct study_order result = {.order_before = NAN};
+    int is_oscillating, was_oscillating;
+    result.order = three_levels(sizes + n - 3, values + n - 3, &is_oscillating);
+    if (n > 3) result.order_before = three_levels(sizes + n - 4, values + n - 4, &was_oscillating);
+    const double part = 1 / (pow(sizes[n - 2] / sizes[n - 1], result.order) - 1);
+    const double *const f1 = values[n - 1], *const f2 = values[n - 2];
+    for (int k = 0; k < 2; k++) result.limit[k] = f1[k] + (f1[k] - f2[k]) * part;
+    result.index = safety_factor * hypot(f1[0] - f2[0], f1[1] - f2[1]) * fabs(part);
+    double sum = 0;
+    for (int i = 0; i < n; i++) sum += values[i][0] + values[i][1];
+    if (isnan(sum)) {
+        result.objection = "a level is missing";
+    } else if (isnan(result.order)) {
+        result.objection = "levels are equal to rounding";
+    } else if (is_oscillating) {
+        result.objection = "oscillates: not in the asymptotic range";
+    } else if (result.order < least_order || result.order > most_order) {
+        result.objection = "order out of range: not in the asymptotic range";
+    } else if (fabs(result.order - result.order_before) > most_change) {
+        result.objection = "order still changes: not in the asymptotic range";
+    }
+    return result;
+}
+
+// ---- the table
+
+/* The axis that is refined, and its levels from coarse to fine. */
+struct refinement {
+    const struct settings *study;
+    const struct store_member *members;
+    int axis, n;
+    int *level;         /* number of the value on the axis                              (n) */
+    double *size;       /* what goes to zero                                            (n) */
+    double (*value)[2]; /* one quantity                                                 (n) */
+};
+
+/* The size that belongs to a value: points become distances. */
+static double size_of(const struct settings_axis *axis, int value) {
+    double number = NAN;
+    yaml_text_number(axis->value[value * axis->n_keys], &number);
+    const char *const dot = strrchr(axis->key[0].path, '.');
+    const int are_points = dot && (strcmp(dot, ".nodes") == 0 || strcmp(dot, ".sheet_points") == 0);
+    return are_points ? 1 / (number - 1) : number;
+}
+
+/* Sort the levels: insertion, as there are few. */
+static void sort_levels(struct refinement *refinement) {
+    const struct settings_axis *const axis = &refinement->study->sweep[refinement->axis];
+    for (int i = 0; i < refinement->n; i++) {
+        const double size = size_of(axis, i);
+        int j = i;
+        for (; j > 0 && refinement->size[j - 1] < size; j--) {
+            refinement->size[j] = refinement->size[j - 1];
+            refinement->level[j] = refinement->level[j - 1];
+        }
+        refinement->size[j] = size;
+        refinement->level[j] = i;
+    }
+}
+
+/* The member at a level of the group that begins with a member whose value on the axis is number 0. */
+static int member_at(const struct refinement *refinement, int first, int level) {
+    int stride = 1;
+    for (int a = refinement->axis + 1; a < refinement->study->n_axes; a++)
+        stride *= refinement->study->sweep[a].n_values;
+    return first + level * stride;
+}
+
+/* Head: the values of the axis over the columns of errors. */
+static void fill_head(const struct study_table *table, const struct refinement *refinement) {
+    static const char *const heads[] = {"order before", "order", "limit", "", "index"};
+    const struct settings_axis *const axis = &refinement->study->sweep[refinement->axis];
+    study_table_set(table, 0, 0, "error of");
+    study_table_set(table, 0, 1, "fish");
+    study_table_set(table, 0, 2, "unit");
+    for (int i = 0; i < refinement->n; i++) {
+        study_table_set(table, 0, 3 + i, "%s", axis->value[refinement->level[i] * axis->n_keys]);
+    }
+    for (int i = 0; i < 5; i++) study_table_set(table, 0, 3 + refinement->n + i, "%s", heads[i]);
+}
+
+/* One quantity of one fish. */
+static void fill_row(const struct study_table *table, int row, struct refinement *refinement, int q, int f, int first,
+                     struct study_order *order) {
+    const int n = refinement->n, quantity = store_quantity_number(quantities[q]);
+    const int of_xy = store_quantity(quantity)->of_xy;
+    for (int i = 0; i < n; i++) {
+        const struct store_member *const member =
+            &refinement->members[member_at(refinement, first, refinement->level[i])];
+        const int is_complete = strcmp(member->status, "complete") == 0;
+        refinement->value[i][0] = is_complete ? store_member_value(member, quantity, f, 0) : NAN;
+        refinement->value[i][1] = of_xy ? store_member_value(member, quantity, f, 1) : 0;
+    }
+    *order = study_order(n, refinement->size, (const double(*)[2])refinement->value);
+    study_table_set(table, row, 0, "%s", quantities[q]);
+    study_table_set(table, row, 1, "%s", refinement->study->fish[f].name);
+    study_table_set(table, row, 2, "%s", store_quantity(quantity)->unit);
+    const double *const finest = refinement->value[n - 1];
+    for (int i = 0; i < n; i++) {
+        const double error = hypot(refinement->value[i][0] - finest[0], refinement->value[i][1] - finest[1]);
+        study_table_number(table, row, 3 + i, "%.2e", i < n - 1 ? error : NAN);
+    }
+    study_table_number(table, row, n + 3, "%.2f", order->order_before);
+    study_table_number(table, row, n + 4, "%.2f", order->order);
+    study_table_number(table, row, n + 5, "%.7g", order->limit[0]);
+    if (of_xy) study_table_number(table, row, n + 6, "%.7g", order->limit[1]);
+    study_table_number(table, row, n + 7, "%.1e", order->index);
+}
+
+/* Say what is wrong with the order of a quantity of a fish; STATUS_MISSED if it is not what the case expects. */
+static enum status judge(const struct refinement *refinement, int q, int f, const struct study_order *order,
+                         FILE *stream) {
+    const struct settings_axis *const axis = &refinement->study->sweep[refinement->axis];
+    const char *const fish = refinement->study->fish[f].name;
+    if (order->objection) fprintf(stream, "warning: %s of %s: %s\n", quantities[q], fish, order->objection);
+    if (q >= N_EXPECTED || !(axis->order > 0) || fabs(order->order - axis->order) <= axis->within) return STATUS_OK;
+    return status_fail(STATUS_MISSED, "%s of %s: observed order %.2f in %s, expected %g +- %g", quantities[q], fish,
+                       order->order, axis->key[0].path, axis->order, axis->within);
+}
+
+/* Errors and orders of one group: the members that differ in the refined axis only. */
+static enum status print_group(struct refinement *refinement, int first, FILE *stream) {
+    const int n_fish = refinement->study->n_fish, n_rows = N_QUANTITIES * n_fish;
+    struct study_table table;
+    struct study_order *const order = calloc((size_t)n_rows, sizeof *order);
+    if (!order) return status_fail(STATUS_MEMORY, "no memory for %d orders", n_rows);
+    enum status status = study_table_create(&table, 1 + n_rows, refinement->n + 8);
+    if (status == STATUS_OK) {
+        fill_head(&table, refinement);
+        for (int row = 0; row < n_rows; row++) {
+            fill_row(&table, 1 + row, refinement, row / n_fish, row % n_fish, first, &order[row]);
+        }
+        study_table_print(&table, stream);
+        for (int row = 0; row < n_rows; row++) {
+            const enum status judged = judge(refinement, row / n_fish, row % n_fish, &order[row], stream);
+            if (status == STATUS_OK) status = judged;
+        }
+        study_table_free(&table);
+    }
+    free(order);
+    return status;
+}
+
+static enum status print_groups(struct refinement *refinement, FILE *stream) {
+    const struct settings *const study = refinement->study;
+    enum status status = STATUS_OK;
+    for (int m = 0; m < settings_n_members(study); m++) {
+        if (settings_member_value(study, m, refinement->axis) != 0) continue;
+        char *text;
+        TRY(settings_member_text(study, m, &text));
+        fprintf(stream, "\nRefinement of %s", study->sweep[refinement->axis].key[0].path);
+        if (study->n_axes > 1) fprintf(stream, ", from member %d (%s) on", m, text);
+        fprintf(stream,
+                ": errors against the finest, the order of the last three levels and of those before,\n"
+                "Richardson's limit, and the grid convergence index (safety factor %g)\n",
+                safety_factor);
+        free(text);
+        const enum status printed = print_group(refinement, m, stream);
+        if (status == STATUS_OK) status = printed;
+    }
+    return status;
+}
+
+enum status study_orders(const struct settings *study, const struct store_member *members, FILE *stream) {
+    struct refinement refinement = {.study = study, .members = members};
+    while (refinement.axis < study->n_axes && !study->sweep[refinement.axis].refine) refinement.axis++;
+    if (refinement.axis == study->n_axes) return STATUS_OK;
+    refinement.n = study->sweep[refinement.axis].n_values;
+    refinement.level = calloc((size_t)refinement.n, sizeof *refinement.level);
+    refinement.size = calloc((size_t)refinement.n, sizeof *refinement.size);
+    refinement.value = calloc((size_t)refinement.n, sizeof *refinement.value);
+    enum status status = STATUS_OK;
+    if (refinement.level && refinement.size && refinement.value) {
+        sort_levels(&refinement);
+        status = print_groups(&refinement, stream);
+    } else {
+        status = status_fail(STATUS_MEMORY, "no memory for %d levels", refinement.n);
+    }
+    free(refinement.level);
+    free(refinement.size);
+    free(refinement.value);
+    return status;
+}

@@ -1,0 +1,102 @@
+/* test_study.c: observed orders, limits and grid convergence indices; tables. What processes do: test_study.sh. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "near.h"
+#include "study.h"
+
+/* Values c + a h^p, in both directions of the plane, for n sizes. */
+static struct study_order order_of(int n, const double *sizes, double p) {
+    double values[8][2];
+    for (int i = 0; i < n; i++) {
+        values[i][0] = 3 + 0.7 * pow(sizes[i], p);
+        values[i][1] = -1 - 0.2 * pow(sizes[i], p);
+    }
+    return study_order(n, sizes, (const double(*)[2])values);
+}
+
+static void a_power_of_the_size_gives_its_order_and_its_limit(void **state) {
+    (void)state;
+    const double halved[] = {0.4, 0.2, 0.1, 0.05}, uneven[] = {0.4, 0.25, 0.1, 0.07};
+    const double orders[] = {1, 2, 2.5, 4};
+    for (int i = 0; i < 4; i++) {
+        const struct study_order one = order_of(4, halved, orders[i]), other = order_of(4, uneven, orders[i]);
+        // the differences of the finest levels, 1e-6 of the values at order 4, lose ten digits of sixteen
+        NEAR(one.order, orders[i], 0, 1e-8);
+        NEAR(one.order_before, orders[i], 0, 1e-8);
+        NEAR(other.order, orders[i], 0, 1e-8);
+        NEAR(other.order_before, orders[i], 0, 1e-8);
+        NEAR(one.limit[0], 3, 1e-10, 0);
+        NEAR(other.limit[1], -1, 1e-10, 0);
+        // the index is the safety factor times the true error
+        NEAR(one.index, 1.25 * hypot(0.7, 0.2) * pow(0.05, orders[i]), 0, 1e-6);
+        assert_null(one.objection);
+        assert_null(other.objection);
+    }
+}
+
+static void the_published_example_comes_out(void **state) {
+    (void)state;
+    // Celik et al., Journal of Fluids Engineering 130 (2008) 078001, table 1, first column
+    const double sizes[] = {1.5 * 4 / 3, 1.5, 1}, values[][2] = {{5.863, 0}, {5.972, 0}, {6.063, 0}};
+    const struct study_order order = study_order(3, sizes, values);
+    NEAR(order.order, 1.53, 0.01, 0);  // two digits are printed, of ratios rounded to three
+    NEAR(order.limit[0], 6.1685, 0.0005, 0);
+    NEAR(order.index / 6.063, 0.022, 0.0005, 0);
+    assert_true(isnan(order.order_before));
+}
+
+static void what_is_not_asymptotic_is_objected_to(void **state) {
+    (void)state;
+    const double sizes[] = {0.8, 0.4, 0.2, 0.1};
+    const struct {
+        double values[4][2];
+        const char *objection;
+    } examples[] = {
+        {{{1, 0}, {2, 0}, {1.5, 0}, {1.75, 0}}, "oscillates"},
+        {{{0, 0}, {1, 0}, {2, 0}, {3, 0}}, "out of range"},    // order 0
+        {{{0, 0}, {1, 0}, {3, 0}, {7, 0}}, "out of range"},    // it diverges: order -1
+        {{{0, 0}, {1, 0}, {1.5, 0}, {1.5625, 0}}, "changes"},  // order 1, then 3
+        {{{0, 0}, {1, 0}, {1, 0}, {1, 0}}, "equal to rounding"},
+        {{{0, 0}, {1, 0}, {NAN, 0}, {1.5, 0}}, "a level is missing"},
+        {{{0, 0}, {NAN, 0}, {1, 0}, {1.5, 0}}, "a level is missing"},
+    };
+    for (size_t i = 0; i < sizeof examples / sizeof *examples; i++) {
+        const struct study_order order = study_order(4, sizes, examples[i].values);
+        if (!order.objection || !strstr(order.objection, examples[i].objection)) {
+            fail_msg("example %zu: %s", i, order.objection ? order.objection : "no objection");
+        }
+    }
+}
+
+static void a_table_has_aligned_columns_and_no_blanks_at_the_end(void **state) {
+    (void)state;
+    struct study_table table;
+    assert_int_equal(study_table_create(&table, 2, 3), STATUS_OK);
+    study_table_set(&table, 0, 0, "a");
+    study_table_set(&table, 0, 1, "%s", "a text that is much too long for a cell of a table");
+    study_table_number(&table, 1, 0, "%.2f", 3.14159);
+    study_table_number(&table, 1, 1, "%.2f", NAN);
+    study_table_set(&table, 1, 2, "end");
+    char *text = NULL;
+    size_t size;
+    FILE *const stream = open_memstream(&text, &size);
+    study_table_print(&table, stream);
+    fclose(stream);
+    assert_string_equal(text,
+                        "   a  a text that is much too long fo\n"
+                        "3.14                                -  end\n");
+    free(text);
+    study_table_free(&table);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_power_of_the_size_gives_its_order_and_its_limit),
+        cmocka_unit_test(the_published_example_comes_out),
+        cmocka_unit_test(what_is_not_asymptotic_is_objected_to),
+        cmocka_unit_test(a_table_has_aligned_columns_and_no_blanks_at_the_end),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
