@@ -21,7 +21,7 @@ readonly layers='
 13  integrator event
 14  implicit explicit
 15  simulate
-16  study view
+16  study compare view
 17  progress shoal
 18  main
 '

@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "compare.h"
 #include "fish.h"
 #include "progress.h"
 #include "settings.h"
@@ -26,7 +27,13 @@ enum option_code {
     OPTION_JSON,
     OPTION_OUTPUT,
     OPTION_CASE,
-    OPTION_MEMBERS
+    OPTION_MEMBERS,
+    OPTION_METHODS,
+    OPTION_RTOL,
+    OPTION_STEPS,
+    OPTION_REPEATS,
+    OPTION_REFERENCE,
+    OPTION_LIMIT
 };
 
 struct request {
@@ -37,6 +44,7 @@ struct request {
     const char **assignments; /* the texts of --set */
     char threads[64];         /* --threads as an assignment */
     const char *processes, *members;
+    const char *methods, *rtols, *steps, *repeats, *reference_rtol, *limit;
     const char *positional;
 };
 
@@ -49,8 +57,15 @@ struct option_help {
 static const struct option_help all_options[] = {
     {'o', "output", "PATH",
      "where the result goes: a file (default: the case's output.file, or its name with .nc), for a study a folder "
-     "(default: its name with -study)"},
+     "(default: its name with -study), for a comparison a file (default: none)"},
     {'j', "processes", "N", "run N members at once (default: one per processor)"},
+    {OPTION_METHODS, "methods", "LIST",
+     "methods to compare: ida1 to ida5 (implicit, of this order), euler, heun, rk4, dormand_prince"},
+    {OPTION_RTOL, "rtol", "LIST", "tolerances to compare (1e-3,1e-4,1e-5,1e-6,1e-7)"},
+    {OPTION_STEPS, "steps", "LIST", "fixed steps for the explicit methods instead of tolerances, s"},
+    {OPTION_REPEATS, "repeats", "N", "run each that often; the wall time is the median (3)"},
+    {OPTION_REFERENCE, "reference-rtol", "X", "tolerance of the reference, which is ida5 (1e-9)"},
+    {OPTION_LIMIT, "limit", "SECONDS", "give a run up after this wall time (60)"},
     {OPTION_MEMBERS, "members", "A-B", "run these members only (or one: A), and gather nothing"},
     {OPTION_FORCE, "force", NULL, "replace a result that exists"},
     {OPTION_SET, "set", "PATH=VALUE", "set a key, as in --set fish[0].wave.frequency=1.2 or --set fish[*].nodes=13"},
@@ -66,7 +81,7 @@ static const struct option_help all_options[] = {
 /* One command: its name, what follows it, one sentence, the codes of its options, and the function that does it. */
 struct command {
     const char *name, *positional, *summary;
-    int options[12];
+    int options[16]; /* 0 at the end */
     enum status (*run)(const struct request *request);
 };
 
@@ -221,6 +236,40 @@ static enum status command_gather(const struct request *request) {
     return study_gather(request->positional, request->command_line, stdout);
 }
 
+/* ---- compare ---- */
+
+/* A positive number of an option; the default where it is not given. */
+static enum status read_number(const char *option, const char *text, double standard, double *number) {
+    char *end = NULL;
+    *number = text ? strtod(text, &end) : standard;
+    if (*number > 0 && (!text || (end != text && *end == '\0'))) return STATUS_OK;
+    return status_fail(STATUS_CASE, "%s %s: expects a number above 0", option, text);
+}
+
+static enum status command_compare(const struct request *request) {
+    struct compare_options options = {.methods = request->methods,
+                                      .rtols = request->rtols,
+                                      .steps = request->steps,
+                                      .repeats = 3,
+                                      .path = request->output,
+                                      .command = request->command_line,
+                                      .quiet = request->quiet,
+                                      .stop = &stop_signal};
+    if (request->repeats) TRY(read_count("--repeats", request->repeats, &options.repeats));
+    TRY(read_number("--reference-rtol", request->reference_rtol, 1e-9, &options.reference_rtol));
+    TRY(read_number("--limit", request->limit, 60, &options.limit));
+    if (request->output && !request->force && access(request->output, F_OK) == 0) {
+        return status_fail(STATUS_FILE, "%s exists: choose another name with -o or allow replacing it with --force",
+                           request->output);
+    }
+    struct settings settings;
+    TRY(settings_read(&settings, request->positional, request->n_assignments, request->assignments));
+    catch_signals();
+    const enum status status = compare_run(&settings, &options, stdout);
+    settings_free(&settings);
+    return status;
+}
+
 /* ---- demo ---- */
 
 // the folder that holds cases and scripts: that of the sources, or share/shoal beside an installed program
@@ -291,6 +340,12 @@ static const struct command commands[] = {
      {'o', 'j', OPTION_MEMBERS, OPTION_FORCE, OPTION_SET, OPTION_THREADS, 'q', 'h'},
      command_study},
     {"gather", "FOLDER", "make study.nc and its table from the files of the members", {'h'}, command_gather},
+    {"compare",
+     "CASE",
+     "compare methods of integration: error against cost",
+     {'o', OPTION_FORCE, OPTION_METHODS, OPTION_RTOL, OPTION_STEPS, OPTION_REPEATS, OPTION_REFERENCE, OPTION_LIMIT,
+      OPTION_SET, OPTION_THREADS, 'q', 'h'},
+     command_compare},
     {"check",
      "CASE",
      "check a case and say everything that is wrong with it",
@@ -316,7 +371,7 @@ static const struct option_help *option_of(int code) {
 static void print_help(FILE *stream) {
     fputs("shoal: flexible swimmers and their schools\n\nUsage: shoal COMMAND [OPTIONS] [FILE]\n\n", stream);
     for (int i = 0; i < N_COMMANDS; i++) {
-        fprintf(stream, "  %-6s%-8s%s\n", commands[i].name, commands[i].positional ? commands[i].positional : "",
+        fprintf(stream, "  %-8s%-8s%s\n", commands[i].name, commands[i].positional ? commands[i].positional : "",
                 commands[i].summary);
     }
     fputs(
@@ -352,6 +407,12 @@ static enum status take_option(struct request *request, int code, char *argument
         case 'o': request->output = argument; break;
         case 'j': request->processes = argument; break;
         case OPTION_MEMBERS: request->members = argument; break;
+        case OPTION_METHODS: request->methods = argument; break;
+        case OPTION_RTOL: request->rtols = argument; break;
+        case OPTION_STEPS: request->steps = argument; break;
+        case OPTION_REPEATS: request->repeats = argument; break;
+        case OPTION_REFERENCE: request->reference_rtol = argument; break;
+        case OPTION_LIMIT: request->limit = argument; break;
         case 'q': request->quiet = 1; break;
         case 'v': request->verbose = 1; break;
         case OPTION_FORCE: request->force = 1; break;
