@@ -88,7 +88,9 @@ struct run {
 static enum status write_if_due(struct run *run) {
     struct simulation *const simulation = run->simulation;
     const long event = simulation->state->event;
-    if (event % run->events_per_row != 0) return STATUS_OK;
+    // the end is a row of its own where it is no multiple of the output interval
+    const int last = event == simulation->n_events;
+    if (event % run->events_per_row != 0 && !last) return STATUS_OK;
     struct integrator_counts counts;
     simulation->integrator->count(simulation->solver, &counts);
     simulate_measure(simulation);
@@ -102,7 +104,7 @@ static enum status write_if_due(struct run *run) {
                                     .order = counts.order,
                                     .wall_time = simulate_wall_time(simulation)};
     return store_row(run->store, simulation->state, simulation->residual, simulation->measure, &to,
-                     event % run->events_per_wake == 0);
+                     event % run->events_per_wake == 0 || last);
 }
 
 static void tell(const struct run *run) {

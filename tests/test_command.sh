@@ -154,6 +154,9 @@ output_paths() {
 
     run run "$demo" -q --set time.end=0.2 --set "fish[0].nodes=9" -o set.nc
     check "--set beats the file" grep -q 'node = 9' <(ncdump -h set.nc)
+    run run "$demo" -q -o end.nc --set time.end=0.13 --set time.output_interval=0.05
+    check "the end is a row where it is no multiple of the output interval" \
+        grep -q 'time = 0, 0.05, 0.1, 0.13 ;' <(ncdump -v time end.nc)
     run run "$demo" --set "$short" -o log.nc
     check "progress in a log: one line per 10 %" test "$(grep -c ' x real time' err)" = 10
     check "the name of the result on standard output" grep -qx log.nc out
