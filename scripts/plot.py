@@ -3,6 +3,7 @@
 
     plot.py [swim] RUN.nc [PICTURE]    bodies, wakes and the paths of the fish, at the end or at --times 1 2 3
     plot.py gait   RUN.nc [PICTURE]    the shapes that the muscle asks for, over the last beat
+    plot.py study  STUDY.nc [PICTURE]  what a study or a comparison of methods calls for: orders, costs, maps
     plot.py time   RUN.nc [PICTURE]    speed, heading and power over time; with --audit the energy audit too
 """
 
@@ -11,6 +12,7 @@ import math
 import os
 import sys
 
+import plot_study as plot_study_module
 from shoal_results import EXIT_FILE, EXIT_USAGE, FileError, Results, np, stop
 
 try:
@@ -252,11 +254,19 @@ def plot_time(results, options):
     return figure
 
 
+def plot_study(path, options):
+    """Errors, costs or maps of a study.nc, or of the file of a comparison."""
+    figure = pyplot.figure(figsize=(WIDTH, 3.4), layout="constrained")
+    plot_study_module.draw(path, figure)
+    return figure
+
+
 # What the first word of the command line may be: the function, and a line of help.
 PICTURES = {
     "swim": (plot_swim, "bodies, wakes and paths (the default)"),
     "gait": (plot_gait, "the shapes that the muscle asks for, over one beat"),
     "time": (plot_time, "speed, heading and power over time"),
+    "study": (plot_study, "a study or a comparison of methods"),
 }
 
 
@@ -307,7 +317,8 @@ def main(arguments):
     check_folder(picture)
     with matplotlib.rc_context(STYLE):
         try:
-            figure = PICTURES[options.kind][0](Results(options.results), options)
+            source = options.results if options.kind == "study" else Results(options.results)
+            figure = PICTURES[options.kind][0](source, options)
         except FileError as error:
             stop(error, EXIT_FILE)
         save(figure, picture)

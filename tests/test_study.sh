@@ -6,6 +6,7 @@ set -uo pipefail
 export LC_ALL=C
 
 program=$(realpath "${1:?usage: tests/test_study.sh PROGRAM}")
+scripts=$(realpath "$(dirname "$0")/../scripts")
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder" || exit 2
@@ -21,6 +22,11 @@ pass() {
 fail() {  # name, what happened
     echo "FAILED  $1: $2"
     n_failed=$((n_failed + 1))
+}
+
+skip() {  # name, reason
+    echo "skipped $1: $2"
+    n_skipped=$((n_skipped + 1))
 }
 
 # Pass or fail, by the code of the command that follows the name.
@@ -155,6 +161,23 @@ check then_everything_is_written_all_the_same test -s third/study.nc
 run study refined.yaml -o groups -q --set time.end=0.08 \
     --set 'sweep=[{key: solver.rtol, values: [1e-4, 1e-5, 1e-6], refine: true}, {key: solver.order, values: [1, 2]}]'
 check other_axes_make_groups has out 'Refinement of solver.rtol, from member 1 (solver.rtol=1e-4, solver.order=2) on'
+
+# ---- pictures
+
+draws() {  # file
+    rm -f picture.png
+    /usr/bin/python3 "$scripts/plot.py" study "$1" picture.png && test -s picture.png
+}
+if /usr/bin/python3 -c 'import netCDF4, matplotlib' 2>err; then
+    check a_picture_of_orders draws refined-study/study.nc
+    check a_picture_of_groups draws groups/study.nc
+    check a_picture_of_methods draws small-study/study.nc
+    run compare refined.yaml --set 'sweep=[]' --set time.end=0.08 --repeats 1 -q -o compare.nc
+    check a_picture_of_a_comparison draws compare.nc
+    check no_picture_of_one_run eval '! draws single/member-0000.nc && has check.out "neither a study.nc nor"'
+else
+    skip pictures 'python3-netcdf4 or python3-matplotlib is missing'
+fi
 
 # ---- deaths
 
