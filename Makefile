@@ -69,7 +69,7 @@ commit := $(shell test -e .git && git describe --always --dirty --abbrev=12 --ex
 # make again, on all cores unless told otherwise
 parallel = $(MAKE) --no-print-directory $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
-.PHONY: all demo test tests verify bench style format docs install uninstall clean deps help FORCE
+.PHONY: all demo test test-slurm tests verify bench style format docs install uninstall clean deps help FORCE
 
 ## Everyday
 
@@ -83,6 +83,11 @@ test: deps  ## install what is missing, build, run every test
 	@$(parallel) tests
 	@scripts/run-tests.sh $(program) $(c_tests) $(shell_tests)
 
+test-slurm: deps  ## install Slurm where it is missing, start it, run a study on it, stop it (as root)
+	@scripts/install-deps.sh slurm-wlm munge
+	@$(parallel) all
+	@tests/slurm/test_slurm.sh $(program)
+
 verify: deps  ## check the program against classical results (minutes) and write doc/verification.md
 	@$(parallel) $(verify_program)
 	@scripts/verify.sh $(verify_program) $(B)/verify
@@ -95,7 +100,7 @@ clean:  ## remove everything that was built
 
 help:  ## this list
 	@awk -F '  +## ' '/^## / { print "\n" substr($$0, 4) } \
-	    /^[a-z]+:.*  ## / { sub(/:.*/, "", $$1); printf "  make %-10s %s\n", $$1, $$2 }' Makefile
+	    /^[a-z-]+:.*  ## / { sub(/:.*/, "", $$1); printf "  make %-10s %s\n", $$1, $$2 }' Makefile
 	@printf '\nVariables\n'; sed -n 's/^#   \([A-Z]\)/  \1/p' Makefile
 
 ## For developers

@@ -8,6 +8,7 @@ readonly packages=(
     libsundials-dev libsuitesparse-dev libnetcdf-dev libyaml-dev zlib1g-dev
     libcmocka-dev netcdf-bin clang-format  # tests and style
     python3 python3-matplotlib python3-netcdf4 python3-xarray ffmpeg  # pictures and movies
+    "$@"                                   # what a target needs beyond that
 )
 
 if ! command -v dpkg-query >/dev/null; then

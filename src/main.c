@@ -33,7 +33,9 @@ enum option_code {
     OPTION_STEPS,
     OPTION_REPEATS,
     OPTION_REFERENCE,
-    OPTION_LIMIT
+    OPTION_LIMIT,
+    OPTION_SLURM,
+    OPTION_BUNDLE
 };
 
 struct request {
@@ -44,7 +46,8 @@ struct request {
     const char **assignments; /* the texts of --set */
     char threads[64];         /* --threads as an assignment */
     const char *processes, *members;
-    const char *methods, *rtols, *steps, *repeats, *reference_rtol, *limit;
+    const char *methods, *rtols, *steps, *repeats, *reference_rtol, *limit, *bundle;
+    int slurm;
     const char *positional;
 };
 
@@ -59,6 +62,8 @@ static const struct option_help all_options[] = {
      "where the result goes: a file (default: the case's output.file, or its name with .nc), for a study a folder "
      "(default: its name with -study), for a comparison a file (default: none)"},
     {'j', "processes", "N", "run N members at once (default: one per processor)"},
+    {OPTION_SLURM, "slurm", NULL, "run nothing, but write the scripts of a Slurm array job into the folder"},
+    {OPTION_BUNDLE, "bundle", "N", "with --slurm: N members a task"},
     {OPTION_METHODS, "methods", "LIST",
      "methods to compare: ida1 to ida5 (implicit, of this order), euler, heun, rk4, dormand_prince"},
     {OPTION_RTOL, "rtol", "LIST", "tolerances to compare (1e-3,1e-4,1e-5,1e-6,1e-7)"},
@@ -227,7 +232,12 @@ static enum status command_study(const struct request *request) {
     TRY(settings_read(&settings, request->positional, request->n_assignments, request->assignments));
     char folder[512];
     snprintf(folder, sizeof folder, "%s-study", settings.name);
-    const enum status status = run_study(&settings, request, request->output ? request->output : folder);
+    const char *const place = request->output ? request->output : folder;
+    int bundle = 0;
+    enum status status = request->bundle ? read_count("--bundle", request->bundle, &bundle) : STATUS_OK;
+    if (status == STATUS_OK) {
+        status = request->slurm ? study_slurm(&settings, place, bundle, stdout) : run_study(&settings, request, place);
+    }
     settings_free(&settings);
     return status;
 }
@@ -337,7 +347,7 @@ static const struct command commands[] = {
     {"study",
      "CASE",
      "run every member of a case's sweep, and gather what they end with",
-     {'o', 'j', OPTION_MEMBERS, OPTION_FORCE, OPTION_SET, OPTION_THREADS, 'q', 'h'},
+     {'o', 'j', OPTION_MEMBERS, OPTION_SLURM, OPTION_BUNDLE, OPTION_FORCE, OPTION_SET, OPTION_THREADS, 'q', 'h'},
      command_study},
     {"gather", "FOLDER", "make study.nc and its table from the files of the members", {'h'}, command_gather},
     {"compare",
@@ -407,6 +417,8 @@ static enum status take_option(struct request *request, int code, char *argument
         case 'o': request->output = argument; break;
         case 'j': request->processes = argument; break;
         case OPTION_MEMBERS: request->members = argument; break;
+        case OPTION_SLURM: request->slurm = 1; break;
+        case OPTION_BUNDLE: request->bundle = argument; break;
         case OPTION_METHODS: request->methods = argument; break;
         case OPTION_RTOL: request->rtols = argument; break;
         case OPTION_STEPS: request->steps = argument; break;

@@ -45,6 +45,11 @@ enum status study_run(const struct settings *study, const struct study_options *
 /* Make study.nc and the table from the files of a folder alone. Fails as study_run does. */
 enum status study_gather(const char *folder, const char *command, FILE *stream);
 
+/* Write what a cluster needs into the folder: study.yaml (the whole study in one file), array.sbatch (its members, bundle
+ * of them a task; 0: one, or so many that there are no more than 1000 tasks), gather.sbatch, and submit.sh that submits
+ * both. Fails with STATUS_CASE or STATUS_FILE. */
+enum status study_slurm(const struct settings *study, const char *folder, int bundle, FILE *stream);
+
 /* ---- shared by the files of the study only */
 
 /* The path of a member's file, with an ending such as ".nc"; NULL: no memory. The caller frees it. */

@@ -110,6 +110,25 @@ run study small.yaml -o parts --members 0-1 -q
 check a_part_ends_with_0 test "$code" = 0 -a ! -s out
 check a_part_runs_its_members_only test -e parts/member-0001.nc -a ! -e parts/member-0002.nc -a ! -e parts/study.nc
 
+# ---- other ways to run the members
+
+if command -v parallel >/dev/null; then
+    seq 0 5 | parallel --will-cite -j 2 "$program" study small.yaml -o many --members {} -q 2>err
+    run gather many
+    check gnu_parallel_runs_them_too cmp <(grep -o '^ *[0-5] .*-[0-9.]*e-' table) <(grep -o '^ *[0-5] .*-[0-9.]*e-' out)
+else
+    skip gnu_parallel 'parallel is missing'
+fi
+check slurm_scripts_are_written "$program" study small.yaml --slurm --bundle 4 -o cluster
+check a_task_has_a_bundle has cluster/array.sbatch '#SBATCH --array=0-1'
+# what a task does, without Slurm
+for task in 0 1; do SLURM_ARRAY_TASK_ID=$task sh cluster/array.sbatch >/dev/null 2>&1; done
+check the_tasks_run_all_members test -e cluster/member-0003.nc -a -e cluster/member-0005.nc -a ! -e cluster/member-0006.nc
+run gather cluster
+check their_results_are_those_of_the_study has err '2 of 6 members in cluster'
+refused no_quotes_in_scripts 2 'cannot stand in a script' study small.yaml --slurm -o "it's"
+refused bundles_of_words 2 '--bundle few: expects a whole number' study small.yaml --slurm --bundle few -o cluster
+
 # ---- folders with something else
 
 refused another_study_is_refused 4 'small-study/member-0000.nc is a result of another study' \
