@@ -304,17 +304,6 @@ static void accelerate(struct direct *d, int f, double t, double *y) {
     }
 }
 
-static void drive(const struct fish *fish, double t, double *y) {
-    for (int k = 0; k < fish_n_driven(fish); k++) {
-        double position[2], velocity[2], acceleration[2];
-        fish_driven_node(fish, k, t, position, velocity, acceleration);
-        y[fish->at.x + k] = position[0];
-        y[fish->at.y + k] = position[1];
-        y[fish->at.vx + k] = velocity[0];
-        y[fish->at.vy + k] = velocity[1];
-    }
-}
-
 static void steer(struct direct *d, int f, double t, double *y) {
     const struct state *state = d->residual->state;
     const struct fish *fish = &d->residual->school->fish[f];
@@ -327,7 +316,7 @@ static void steer(struct direct *d, int f, double t, double *y) {
 
 enum status direct_rates(struct direct *d, double t, double *y, double *yp) {
     const struct school *school = d->residual->school;
-    for (int f = 0; f < school->n_fish; f++) drive(&school->fish[f], t, y);
+    for (int f = 0; f < school->n_fish; f++) fish_drive(&school->fish[f], fish_n_driven(&school->fish[f]), t, y);
     for (int i = 0; i < school->n_unknowns; i++) {
         if (!isfinite(y[i])) return status_fail(STATUS_RETRY, "unknown %d is not finite at t = %g s", i, t);
     }

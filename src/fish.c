@@ -397,18 +397,22 @@ void fish_driven_node(const struct fish *fish, int k, double t, double position[
     }
 }
 
+void fish_drive(const struct fish *fish, int n, double t, double *y) {
+    for (int k = 0; k < n; k++) {
+        double position[2], velocity[2], acceleration[2];
+        fish_driven_node(fish, k, t, position, velocity, acceleration);
+        y[fish->at.x + k] = position[0];
+        y[fish->at.y + k] = position[1];
+        y[fish->at.vx + k] = velocity[0];
+        y[fish->at.vy + k] = velocity[1];
+    }
+}
+
 void fish_start(const struct fish *fish, double *y) {
     double *const x = y + fish->at.x, *const z = y + fish->at.y;
     if (fish->motion.driven != DRIVEN_NONE) {
         // the free nodes behind a driven head start with its rigid motion
-        for (int k = 0; k < fish->n_nodes; k++) {
-            double position[2], velocity[2], acceleration[2];
-            fish_driven_node(fish, k, 0, position, velocity, acceleration);
-            x[k] = position[0];
-            z[k] = position[1];
-            y[fish->at.vx + k] = velocity[0];
-            y[fish->at.vy + k] = velocity[1];
-        }
+        fish_drive(fish, fish->n_nodes, 0, y);
         return;
     }
     // the bias of a controlled fish is not known yet: its pose is that of zero bias

@@ -143,6 +143,9 @@ int fish_n_driven(const struct fish *fish);
 void fish_driven_node(const struct fish *fish, int k, double t, double position[2], double velocity[2],
                       double acceleration[2]);
 
+/* Write position and velocity that the first n nodes of a driven fish have at time t into the vector of all unknowns. */
+void fish_drive(const struct fish *fish, int n, double t, double *y);
+
 /* Write nose to tail positions and velocities of the start into the vector of all unknowns: doc/model.md, 4 and 5. */
 void fish_start(const struct fish *fish, double *y);
 

@@ -7,57 +7,13 @@ export LC_ALL=C
 
 program=$(realpath "${1:?usage: tests/test_study.sh PROGRAM}")
 scripts=$(realpath "$(dirname "$0")/../scripts")
+checks=$(realpath "$(dirname "$0")/checks.sh")
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder" || exit 2
 
-readonly time_limit=60  # seconds for one call
-n_passed=0 n_failed=0 n_skipped=0
-
-pass() {
-    echo "ok      $1"
-    n_passed=$((n_passed + 1))
-}
-
-fail() {  # name, what happened
-    echo "FAILED  $1: $2"
-    n_failed=$((n_failed + 1))
-}
-
-skip() {  # name, reason
-    echo "skipped $1: $2"
-    n_skipped=$((n_skipped + 1))
-}
-
-# Pass or fail, by the code of the command that follows the name.
-check() {  # name, command...
-    local name=$1
-    shift
-    if "$@" >check.out 2>&1; then pass "$name"; else fail "$name" "$* : $(head -c 600 check.out) $(head -c 600 err)"; fi
-}
-
-# Run the program; sets $code, and leaves the files out and err.
-run() {
-    code=0
-    timeout "$time_limit" "$program" "$@" >out 2>err </dev/null || code=$?
-}
-
-refused() {  # name, code, text on standard error, arguments...
-    local name=$1 want=$2 text=$3
-    shift 3
-    run "$@"
-    if ((code != want)); then
-        fail "$name" "exit code $code instead of $want: $(head -c 600 err)"
-    elif grep -qF -- "$text" err; then
-        pass "$name"
-    else
-        fail "$name" "'$text' is not in: $(head -c 600 err)"
-    fi
-}
-
-has() {  # file, text
-    grep -qF -- "$2" "$1" || { echo "'$2' is not in $1"; return 1; }
-}
+# shellcheck source=tests/checks.sh
+. "$checks"
 
 # The time of the last change of a file, with all digits.
 changed() {
