@@ -8,22 +8,23 @@ set -euo pipefail
 readonly layers='
  1  status version
  2  yaml kernel sparse smooth
- 3  settings
+ 3  settings vortices
  4  fish
  5  rod actuation wake control
  6  state
- 7  flow
- 8  sheet drag
- 9  residual
-10  measure
-11  bridge store checkpoint
-12  consistent direct
-13  integrator event
-14  implicit explicit
-15  simulate
-16  study compare view
-17  progress shoal
-18  main
+ 7  forecast
+ 8  flow
+ 9  sheet drag
+10  residual
+11  measure
+12  bridge store checkpoint
+13  consistent direct
+14  integrator event
+15  implicit explicit
+16  simulate
+17  study compare view
+18  progress shoal
+19  main
 '
 
 # Includes inside one layer that are allowed, as "from>to".

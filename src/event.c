@@ -54,10 +54,9 @@ static enum status release_impulse(struct state *state, struct residual *residua
 static enum status take_velocities(struct state *state, struct residual *residual, int n_new) {
     const struct school *school = residual->school;
     flow_forget(residual->flow);
-    TRY(residual_evaluate(residual, state->t, state->y, state->yp, residual->scratch));
+    TRY(flow_place(residual->flow, state, state->t, state->y));
     for (int f = 0; f < school->n_fish; f++) {
         struct wake *wake = &state->wake[f];
-        flow_slip(residual->flow, f, state->y, wake->slip);
         if (wake->n_vortex == 0) continue;
         double *const u = malloc(2 * (size_t)wake->n_vortex * sizeof *u);
         if (!u) return status_fail(STATUS_MEMORY, "no room for the velocities of %d vortices", wake->n_vortex);
@@ -65,6 +64,9 @@ static enum status take_velocities(struct state *state, struct residual *residua
         wake_set_velocity(wake, u, u + wake->n_vortex, n_new);
         free(u);
     }
+    TRY(flow_foretell(residual->flow, state));
+    TRY(residual_evaluate(residual, state->t, state->y, state->yp, residual->scratch));
+    for (int f = 0; f < school->n_fish; f++) flow_slip(residual->flow, f, state->y, state->wake[f].slip);
     return STATUS_OK;
 }
 
@@ -99,6 +101,7 @@ static enum status settle(struct state *state, struct residual *residual, struct
     if (steer(state, residual)) {
         leave(state, residual, jumped);
         TRY(consistent_solve(consistent, state->t, state->y, state->yp));
+        TRY(flow_foretell(residual->flow, state));
     }
     residual_couple(residual, state->y);
     if (*jumped) measure_arrive(residual, state);

@@ -282,6 +282,7 @@ static void set_fluid(struct school *school, const struct settings *settings) {
     school->kutta = settings->wake.kutta;
     school->kutta_ramp = settings->wake.kutta_ramp;
     school->dissipated = settings->wake.dissipated_circulation;
+    school->wake_tolerance = settings->wake.tolerance;
     school->rtol = settings->solver.rtol;
     school->threads = settings->solver.threads;
     double longest = 0;
@@ -365,6 +366,13 @@ void fish_school_free(struct school *school) {
     }
     free(school->fish);
     free(school);
+}
+
+double fish_rate(const struct school *school, const struct fish *fish) {
+    if (fish->frequency > 0) return fish->frequency;
+    const double drift = hypot(school->velocity[0], school->velocity[1]);
+    const double speed = fmax(fmax(fabs(fish->start_speed), fabs(fish->motion.speed)), drift);
+    return speed > 0 ? speed / fish->length : 1;
 }
 
 int fish_n_driven(const struct fish *fish) {

@@ -121,6 +121,7 @@ struct school {
     enum kutta kutta;
     double kutta_ramp; /* s */
     enum dissipated dissipated;
+    double wake_tolerance; /* error of the velocity of the wakes at the bodies, lengths per beat; 0: none */
 
     double rtol;
     double coupling_distance; /* m */
@@ -138,6 +139,10 @@ double fish_mean(const struct stencil *point, const double *value);
 
 /* The number of nodes of the fish, from the nose on, whose motion is given: 0, 2 or all. */
 int fish_n_driven(const struct fish *fish);
+
+/* Its beats per second, or those of its driven motion; where it has none, the lengths per second at which it, or the
+ * stream, goes; 1 where nothing moves. With the length it gives the scale of velocities. */
+double fish_rate(const struct school *school, const struct fish *fish);
 
 /* Position, velocity, acceleration of node k of a driven fish at time t; each an array of x and y. */
 void fish_driven_node(const struct fish *fish, int k, double t, double position[2], double velocity[2],

@@ -29,9 +29,24 @@ int flow_midpoint_feels(const struct fish *fish, const struct fish *other, int e
 }
 
 static enum status doubles(double **values, int n) {
-    double *const more = realloc(*values, (size_t)(n > 0 ? n : 1) * sizeof *more);
-    if (!more) return status_fail(STATUS_MEMORY, "no room for %d points of the flow", n);
-    *values = more;
+    *values = calloc((size_t)n, sizeof **values);
+    return *values ? STATUS_OK : status_fail(STATUS_MEMORY, "no room for %d points of the flow", n);
+}
+
+enum { CHUNK = 16 };
+
+static enum status make_chunks(struct flow *flow) {
+    int n = 0;
+    for (int f = 0; f < flow->school->n_fish; f++) n += (flow->points[f].n + CHUNK - 1) / CHUNK;
+    flow->chunk = calloc((size_t)n, sizeof *flow->chunk);
+    if (!flow->chunk) return status_fail(STATUS_MEMORY, "no room for %d pieces of the flow", n);
+    for (int f = 0; f < flow->school->n_fish; f++) {
+        const struct range points = flow->points[f];
+        for (int i = 0; i < points.n; i += CHUNK) {
+            const int rest = points.n - i;
+            flow->chunk[flow->n_chunks++] = (struct chunk){f, {points.first + i, rest < CHUNK ? rest : CHUNK}};
+        }
+    }
     return STATUS_OK;
 }
 
@@ -39,24 +54,27 @@ static enum status flow_fill(struct flow *flow) {
     const struct school *school = flow->school;
     const size_t n_fish = (size_t)school->n_fish;
     flow->points = calloc(n_fish, sizeof *flow->points);
-    flow->free_range = calloc(n_fish, sizeof *flow->free_range);
+    flow->released_range = calloc(n_fish, sizeof *flow->released_range);
     flow->sheet_range = calloc(n_fish, sizeof *flow->sheet_range);
-    if (!flow->points || !flow->free_range || !flow->sheet_range) {
+    flow->by_forecast = calloc(n_fish, sizeof *flow->by_forecast);
+    if (!flow->points || !flow->released_range || !flow->sheet_range || !flow->by_forecast) {
         return status_fail(STATUS_MEMORY, "no room for the flow around %d fish", school->n_fish);
     }
-    int n_sheet = 0;
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *fish = &school->fish[f];
         flow->points[f] = (struct range){flow->n_points, fish->n_control + fish->n_edges + 1};
         flow->n_points += flow->points[f].n;
-        flow->sheet_range[f] = (struct range){n_sheet, fish->n_sheet};
-        n_sheet += fish->n_sheet;
+        flow->sheet_range[f] = (struct range){flow->sheet.n, fish->n_sheet};
+        TRY(vortices_append(&flow->sheet, fish->n_sheet, fish->sheet_smoothing));
+        TRY(vortices_append(&flow->nascent, 1, fish->smoothing));
     }
-    double **const at_points[] = {&flow->x, &flow->y, &flow->u, &flow->v, &flow->u_x, &flow->u_y, &flow->v_x};
+    double **const at_points[] = {&flow->x,         &flow->y,         &flow->u,        &flow->v,
+                                  &flow->u_x,       &flow->u_y,       &flow->v_x,      &flow->motion[0],
+                                  &flow->motion[1], &flow->motion[2], &flow->motion[3]};
     for (size_t i = 0; i < sizeof at_points / sizeof *at_points; i++) TRY(doubles(at_points[i], flow->n_points));
-    TRY(doubles(&flow->sheet_x, n_sheet));
-    TRY(doubles(&flow->sheet_y, n_sheet));
-    return doubles(&flow->sheet_circulation, n_sheet);
+    TRY(make_chunks(flow));
+    if (school->wake_tolerance <= 0) return STATUS_OK;
+    return forecast_create(&flow->forecast, school, flow->points, flow->n_chunks, flow->chunk);
 }
 
 enum status flow_create(struct flow **flow, const struct school *school) {
@@ -76,11 +94,19 @@ enum status flow_create(struct flow **flow, const struct school *school) {
 
 void flow_free(struct flow *flow) {
     if (!flow) return;
-    void *const owned[] = {flow->points,      flow->x,       flow->y,       flow->u,
-                           flow->v,           flow->u_x,     flow->u_y,     flow->v_x,
-                           flow->free_range,  flow->free_x,  flow->free_y,  flow->free_circulation,
-                           flow->sheet_range, flow->sheet_x, flow->sheet_y, flow->sheet_circulation};
+    forecast_free(flow->forecast);
+    void *const owned[] = {flow->points,      flow->chunk,
+                           flow->x,           flow->y,
+                           flow->u,           flow->v,
+                           flow->u_x,         flow->u_y,
+                           flow->v_x,         flow->motion[0],
+                           flow->motion[1],   flow->motion[2],
+                           flow->motion[3],   flow->released_range,
+                           flow->sheet_range, flow->by_forecast};
     for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
+    vortices_free(&flow->released);
+    vortices_free(&flow->nascent);
+    vortices_free(&flow->sheet);
     free(flow);
 }
 
@@ -90,133 +116,157 @@ void flow_external(const struct school *school, double t, double y, double *u, d
     *v = school->velocity[1] + gust * school->gust[1];
 }
 
-// the free vortices of all fish, each fish's nascent one behind its released ones
-static enum status place_free(struct flow *flow, const struct state *state, double t) {
+// the released vortices of all fish
+static enum status place_released(struct flow *flow, const struct state *state) {
     const struct school *school = flow->school;
-    int n = 0;
+    vortices_clear(&flow->released);
     for (int f = 0; f < school->n_fish; f++) {
-        flow->free_range[f] = (struct range){n, state->wake[f].n_vortex + 1};
-        n += state->wake[f].n_vortex + 1;
-    }
-    flow->n_free = n;
-    if (n > flow->capacity) {
-        const int capacity = n + n / 2;
-        TRY(doubles(&flow->free_x, capacity));
-        TRY(doubles(&flow->free_y, capacity));
-        TRY(doubles(&flow->free_circulation, capacity));
-        flow->capacity = capacity;
-    }
-    for (int f = 0; f < school->n_fish; f++) {
-        const int first = flow->free_range[f].first;
-        wake_at(&state->wake[f], school, state->t, t - state->t, flow->free_x + first, flow->free_y + first,
-                flow->free_circulation + first);
+        const struct wake *const wake = &state->wake[f];
+        const int first = flow->released.n;
+        flow->released_range[f] = (struct range){first, wake->n_vortex};
+        TRY(vortices_append(&flow->released, wake->n_vortex, school->fish[f].smoothing));
+        wake_at(wake, school, state->t, flow->since, flow->released.x + first, flow->released.y + first,
+                flow->released.circulation + first);
     }
     return STATUS_OK;
 }
 
-static void place_points(struct flow *flow, int f, const double *y) {
+// what the points of a fish have of a quantity that its nodes have
+static void at_points(const struct flow *flow, int f, const double *of_nodes, double *of_points) {
     const struct fish *fish = &flow->school->fish[f];
-    const double *const from[2] = {y + fish->at.x, y + fish->at.y};
-    double *const to[2] = {flow->x + flow->points[f].first, flow->y + flow->points[f].first};
-    double *const sheet[2] = {flow->sheet_x + flow->sheet_range[f].first, flow->sheet_y + flow->sheet_range[f].first};
-    for (int i = 0; i < 2; i++) {
-        for (int c = 0; c < fish->n_control; c++) to[i][c] = fish_mean(&fish->control_point[c], from[i]);
-        for (int k = 0; k < fish->n_edges; k++) {
-            to[i][flow_midpoint(fish, k)] = (from[i][k] + from[i][k + 1]) / 2;
-        }
-        for (int j = 0; j < fish->n_sheet; j++) sheet[i][j] = fish_mean(&fish->sheet_point[j], from[i]);
-        to[i][flow_tail(fish)] = sheet[i][fish->n_sheet - 1];
+    double *const to = of_points + flow->points[f].first;
+    for (int c = 0; c < fish->n_control; c++) to[c] = fish_mean(&fish->control_point[c], of_nodes);
+    for (int k = 0; k < fish->n_edges; k++) to[flow_midpoint(fish, k)] = (of_nodes[k] + of_nodes[k + 1]) / 2;
+    to[flow_tail(fish)] = of_nodes[fish->n_nodes - 1];
+}
+
+static void place_sheet(struct flow *flow, int f, const double *y) {
+    const struct fish *fish = &flow->school->fish[f];
+    const int first = flow->sheet_range[f].first;
+    for (int j = 0; j < fish->n_sheet; j++) {
+        flow->sheet.x[first + j] = fish_mean(&fish->sheet_point[j], y + fish->at.x);
+        flow->sheet.y[first + j] = fish_mean(&fish->sheet_point[j], y + fish->at.y);
+        flow->sheet.circulation[first + j] = fish->sheet_weight[j] * y[fish->at.sheet + j];
     }
-    double *const circulation = flow->sheet_circulation + flow->sheet_range[f].first;
-    for (int j = 0; j < fish->n_sheet; j++) circulation[j] = fish->sheet_weight[j] * y[fish->at.sheet + j];
+}
+
+static void place_nascent(struct flow *flow, const struct state *state, int f, const double *y) {
+    const struct fish *fish = &flow->school->fish[f];
+    const double tail[2] = {y[fish->at.x + fish->n_nodes - 1], y[fish->at.y + fish->n_nodes - 1]};
+    double position[2];
+    wake_nascent(&state->wake[f], flow->since, tail, position);
+    flow->nascent.x[f] = position[0];
+    flow->nascent.y[f] = position[1];
+    flow->nascent.circulation[f] = y[fish->at.shed] - state->wake[f].shed_before;
 }
 
 enum status flow_place(struct flow *flow, const struct state *state, double t, const double *y) {
     const struct school *school = flow->school;
+    if (flow->event != state->event) flow_forget(flow);
     // the released vortices move on known paths: at one time they are the same for every y
     if (flow->event != state->event || flow->t != t) {
-        flow->event = -1;
-        TRY(place_free(flow, state, t));
+        flow->event = state->event;
         flow->t = t;
         flow->since = t - state->t;
-        flow->event = state->event;
+        flow->has_released = 0;
+        if (flow->is_foretold) forecast_place(flow->forecast, t);
     }
+    int all_foretold = 1;
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *fish = &school->fish[f];
-        place_points(flow, f, y);
-        const int nascent = flow->free_range[f].first + flow->free_range[f].n - 1;
-        const double tail[2] = {y[fish->at.x + fish->n_nodes - 1], y[fish->at.y + fish->n_nodes - 1]};
-        double position[2];
-        wake_nascent(&state->wake[f], flow->since, tail, position);
-        flow->free_x[nascent] = position[0];
-        flow->free_y[nascent] = position[1];
-        flow->free_circulation[nascent] = y[fish->at.shed] - state->wake[f].shed_before;
+        at_points(flow, f, y + fish->at.x, flow->x);
+        at_points(flow, f, y + fish->at.y, flow->y);
+        place_sheet(flow, f, y);
+        place_nascent(flow, state, f, y);
+        const int first = flow->points[f].first;
+        flow->by_forecast[f] = flow->is_foretold && forecast_holds(flow->forecast, f, flow->x + first, flow->y + first);
+        all_foretold &= flow->by_forecast[f];
     }
+    if (all_foretold || flow->has_released) return STATUS_OK;
+    TRY(place_released(flow, state));
+    flow->has_released = 1;
     return STATUS_OK;
 }
 
 void flow_forget(struct flow *flow) {
     flow->event = -1;
+    flow->is_foretold = 0;
 }
 
-// add the velocity of n sources at the points first .. first + n_points - 1, with the gradient where it is asked for
-static void add_sources(struct flow *flow, int with_gradient, struct range points, struct range sources,
-                        const double *x, const double *y, const double *circulation, double smoothing) {
-    const int p = points.first, s = sources.first;
-    if (with_gradient) {
-        kernel_add_gradient(points.n, flow->x + p, flow->y + p, sources.n, x + s, y + s, circulation + s, smoothing,
-                            flow->u + p, flow->v + p, flow->u_x + p, flow->u_y + p, flow->v_x + p);
-    } else {
-        kernel_add_velocity(points.n, flow->x + p, flow->y + p, sources.n, x + s, y + s, circulation + s, smoothing,
-                            flow->u + p, flow->v + p);
+enum status flow_foretell(struct flow *flow, const struct state *state) {
+    if (!flow->forecast) return STATUS_OK;
+    const double *const y = state->y;
+    for (int f = 0; f < flow->school->n_fish; f++) {
+        const struct layout *at = &flow->school->fish[f].at;
+        const int from[4] = {at->vx, at->vy, at->ax, at->ay};
+        for (int i = 0; i < 4; i++) at_points(flow, f, y + from[i], flow->motion[i]);
+    }
+    const struct forecast_points points = {flow->x,         flow->y,         flow->motion[0],
+                                           flow->motion[1], flow->motion[2], flow->motion[3]};
+    TRY(forecast_make(flow->forecast, state, &points));
+    // whatever the time: placed anew, by the forecast
+    flow->t = NAN;
+    flow->is_foretold = 1;
+    return STATUS_OK;
+}
+
+// the bound sheet of the fish that a chunk belongs to: at control points with no smoothing, at the tail with some, not at
+// the midpoints
+static void induce_own(const struct flow *flow, const struct chunk *chunk, const struct induced *all) {
+    const struct fish *fish = &flow->school->fish[chunk->fish];
+    const struct range own = flow->points[chunk->fish], sheet = flow->sheet_range[chunk->fish];
+    const struct vortices unsmoothed = {.n = flow->sheet.n,
+                                        .x = flow->sheet.x,
+                                        .y = flow->sheet.y,
+                                        .circulation = flow->sheet.circulation,
+                                        .n_groups = 1,
+                                        .group = &(struct vortex_group){{0, flow->sheet.n}, 0}};
+    const int end = chunk->at.first + chunk->at.n, tail = own.first + flow_tail(fish);
+    const int n_control = own.first + fish->n_control - chunk->at.first;
+    if (n_control > 0) {
+        const struct range control = {chunk->at.first, n_control < chunk->at.n ? n_control : chunk->at.n};
+        const struct induced at = vortices_targets(all, control);
+        vortices_induce(&unsmoothed, sheet, &at);
+    }
+    if (tail >= chunk->at.first && tail < end) {
+        const struct induced at = vortices_targets(all, (struct range){tail, 1});
+        vortices_induce(&flow->sheet, sheet, &at);
     }
 }
 
-static void add_sheet(struct flow *flow, int with_gradient, struct range points, int g, double smoothing) {
-    if (points.n == 0) return;
-    add_sources(flow, with_gradient, points, flow->sheet_range[g], flow->sheet_x, flow->sheet_y,
-                flow->sheet_circulation, smoothing);
-}
-
-// how many threads a sum is worth: below this many interactions starting them costs more than they save
-static int n_threads(const struct school *school, double interactions) {
-    return interactions > 30000 ? school->threads : 1;
-}
-
-// the free vortices of all fish: targets in chunks, so that threads share them; every target's sum is one thread's
-enum { CHUNK = 16 };
-static void add_free(struct flow *flow, int with_gradient) {
+static void evaluate_chunk(const struct flow *flow, const struct chunk *chunk, const struct induced *all) {
     const struct school *school = flow->school;
-    const int n_chunks = (flow->n_points + CHUNK - 1) / CHUNK;
-    const int threads = n_threads(school, (double)flow->n_points * flow->n_free);
-#pragma omp parallel for num_threads(threads) schedule(static)
-    for (int chunk = 0; chunk < n_chunks; chunk++) {
-        const int first = chunk * CHUNK, rest = flow->n_points - first;
-        for (int g = 0; g < school->n_fish; g++) {
-            add_sources(flow, with_gradient, (struct range){first, rest < CHUNK ? rest : CHUNK}, flow->free_range[g],
-                        flow->free_x, flow->free_y, flow->free_circulation, school->fish[g].smoothing);
-        }
+    const struct induced at = vortices_targets(all, chunk->at);
+    for (int p = 0; p < at.n; p++) flow_external(school, flow->t, at.y[p], &at.u[p], &at.v[p]);
+    for (int p = 0; at.u_x && p < at.n; p++) {
+        at.u_x[p] = at.v_x[p] = 0;
+        at.u_y[p] = school->shear;
     }
+    if (flow->by_forecast[chunk->fish]) {
+        forecast_induce(flow->forecast, chunk->fish, chunk->at.first, &at);
+    } else {
+        vortices_induce(&flow->released, (struct range){0, flow->released.n}, &at);
+    }
+    vortices_induce(&flow->nascent, (struct range){0, flow->nascent.n}, &at);
+    // the sheets of the fish before and behind it in the list, and its own
+    const struct range own = flow->sheet_range[chunk->fish];
+    const int behind = own.first + own.n;
+    vortices_induce(&flow->sheet, (struct range){0, own.first}, &at);
+    vortices_induce(&flow->sheet, (struct range){behind, flow->sheet.n - behind}, &at);
+    induce_own(flow, chunk, all);
 }
 
 static void evaluate(struct flow *flow, int with_gradient) {
-    const struct school *school = flow->school;
-    for (int p = 0; p < flow->n_points; p++) {
-        flow_external(school, flow->t, flow->y[p], &flow->u[p], &flow->v[p]);
-        flow->u_x[p] = flow->v_x[p] = 0;
-        flow->u_y[p] = school->shear;
+    struct induced all = {flow->n_points, flow->x, flow->y, flow->u, flow->v, NULL, NULL, NULL};
+    if (with_gradient) {
+        all.u_x = flow->u_x;
+        all.u_y = flow->u_y;
+        all.v_x = flow->v_x;
     }
-    add_free(flow, with_gradient);
-    for (int g = 0; g < school->n_fish; g++) {
-        const struct fish *fish = &school->fish[g];
-        // its bound sheet: at the points of the fish before and behind it in the list, and at its own
-        const struct range own = flow->points[g];
-        const int behind = own.first + own.n;
-        add_sheet(flow, with_gradient, (struct range){0, own.first}, g, fish->sheet_smoothing);
-        add_sheet(flow, with_gradient, (struct range){own.first, fish->n_control}, g, 0);
-        add_sheet(flow, with_gradient, (struct range){own.first + flow_tail(fish), 1}, g, fish->sheet_smoothing);
-        add_sheet(flow, with_gradient, (struct range){behind, flow->n_points - behind}, g, fish->sheet_smoothing);
-    }
+    const int n_sources = flow->sheet.n + flow->nascent.n + (flow->has_released ? flow->released.n : 0);
+    const int threads = vortices_threads(flow->school->threads, (double)flow->n_points * n_sources);
+#pragma omp parallel for num_threads(threads) schedule(static)
+    for (int c = 0; c < flow->n_chunks; c++) evaluate_chunk(flow, &flow->chunk[c], &all);
 }
 
 void flow_velocity(struct flow *flow) {
@@ -251,11 +301,10 @@ static struct stencil point_stencil(const struct fish *fish, int p) {
 
 static void derive_nascent(const struct flow *flow, const struct fish *other, int g, int p, double x, double y,
                            struct flow_block *block) {
-    const int source = flow->free_range[g].first + flow->free_range[g].n - 1;
     const int tail = other->n_nodes - 1;
-    const struct kernel_value unit = kernel_unit(x - flow->free_x[source], y - flow->free_y[source], other->smoothing);
+    const struct kernel_value unit = kernel_unit(x - flow->nascent.x[g], y - flow->nascent.y[g], other->smoothing);
     const struct stencil end = {.n = 1, .node = {tail}, .weight = {1}};
-    add_motion(block, p, &end, other->n_nodes, &unit, -flow->free_circulation[source]);
+    add_motion(block, p, &end, other->n_nodes, &unit, -flow->nascent.circulation[g]);
     const long shed = (long)p * block->n_columns + 2 * other->n_nodes + other->n_sheet;
     block->u[shed] += unit.u;
     block->v[shed] += unit.v;
@@ -267,10 +316,10 @@ static void derive_sheet(const struct flow *flow, const struct fish *other, int 
     const long strength = (long)p * block->n_columns + 2 * other->n_nodes;
     for (int j = 0; j < other->n_sheet; j++) {
         const struct kernel_value unit =
-            kernel_unit(x - flow->sheet_x[first + j], y - flow->sheet_y[first + j], smoothing);
+            kernel_unit(x - flow->sheet.x[first + j], y - flow->sheet.y[first + j], smoothing);
         block->u[strength + j] += unit.u * other->sheet_weight[j];
         block->v[strength + j] += unit.v * other->sheet_weight[j];
-        add_motion(block, p, &other->sheet_point[j], other->n_nodes, &unit, -flow->sheet_circulation[first + j]);
+        add_motion(block, p, &other->sheet_point[j], other->n_nodes, &unit, -flow->sheet.circulation[first + j]);
     }
 }
 
@@ -299,7 +348,7 @@ void flow_derivative(const struct flow *flow, int f, int g, struct flow_block *b
 
 void flow_response(const struct flow *flow, int f, int g, struct flow_block *block) {
     const struct fish *fish = &flow->school->fish[f], *other = &flow->school->fish[g];
-    const int sheet = flow->sheet_range[g].first, nascent = flow->free_range[g].first + flow->free_range[g].n - 1;
+    const int sheet = flow->sheet_range[g].first;
     block->n_points = flow->points[f].n;
     block->n_columns = other->n_sheet + 1;
     for (int p = 0; p < block->n_points; p++) {
@@ -309,13 +358,12 @@ void flow_response(const struct flow *flow, int f, int g, struct flow_block *blo
         for (int j = 0; j < other->n_sheet; j++) {
             u[j] = v[j] = 0;
             if (own && !control && !tail) continue;
-            const struct kernel_value unit = kernel_unit(x - flow->sheet_x[sheet + j], y - flow->sheet_y[sheet + j],
+            const struct kernel_value unit = kernel_unit(x - flow->sheet.x[sheet + j], y - flow->sheet.y[sheet + j],
                                                          own && control ? 0 : other->sheet_smoothing);
             u[j] = unit.u * other->sheet_weight[j];
             v[j] = unit.v * other->sheet_weight[j];
         }
-        const struct kernel_value unit =
-            kernel_unit(x - flow->free_x[nascent], y - flow->free_y[nascent], other->smoothing);
+        const struct kernel_value unit = kernel_unit(x - flow->nascent.x[g], y - flow->nascent.y[g], other->smoothing);
         u[other->n_sheet] = unit.u;
         v[other->n_sheet] = unit.v;
     }
@@ -323,24 +371,20 @@ void flow_response(const struct flow *flow, int f, int g, struct flow_block *blo
 
 void flow_at_wake(const struct flow *flow, int f, double *u, double *v) {
     const struct school *school = flow->school;
-    const double *const x = flow->free_x + flow->free_range[f].first;
-    const double *const y = flow->free_y + flow->free_range[f].first;
-    const int n = flow->free_range[f].n - 1, n_chunks = (n + CHUNK - 1) / CHUNK;
-    const int threads = n_threads(school, (double)n * flow->n_free);
+    const struct range own = flow->released_range[f];
+    const struct induced all = {
+        .n = own.n, .x = flow->released.x + own.first, .y = flow->released.y + own.first, .u = u, .v = v};
+    const int n_sources = flow->released.n + flow->nascent.n + flow->sheet.n;
+    const int n_chunks = (own.n + CHUNK - 1) / CHUNK;
+    const int threads = vortices_threads(school->threads, (double)own.n * n_sources);
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int chunk = 0; chunk < n_chunks; chunk++) {
-        const int first = chunk * CHUNK, m = n - first < CHUNK ? n - first : CHUNK;
-        for (int i = first; i < first + m; i++) flow_external(school, flow->t, y[i], &u[i], &v[i]);
-        for (int g = 0; g < school->n_fish; g++) {
-            const struct fish *fish = &school->fish[g];
-            const int free_first = flow->free_range[g].first, sheet_first = flow->sheet_range[g].first;
-            kernel_add_velocity(m, x + first, y + first, flow->free_range[g].n, flow->free_x + free_first,
-                                flow->free_y + free_first, flow->free_circulation + free_first, fish->smoothing,
-                                u + first, v + first);
-            kernel_add_velocity(m, x + first, y + first, flow->sheet_range[g].n, flow->sheet_x + sheet_first,
-                                flow->sheet_y + sheet_first, flow->sheet_circulation + sheet_first,
-                                fish->sheet_smoothing, u + first, v + first);
-        }
+        const int first = chunk * CHUNK, rest = own.n - first;
+        const struct induced at = vortices_targets(&all, (struct range){first, rest < CHUNK ? rest : CHUNK});
+        for (int i = 0; i < at.n; i++) flow_external(school, flow->t, at.y[i], &at.u[i], &at.v[i]);
+        vortices_induce(&flow->released, (struct range){0, flow->released.n}, &at);
+        vortices_induce(&flow->nascent, (struct range){0, flow->nascent.n}, &at);
+        vortices_induce(&flow->sheet, (struct range){0, flow->sheet.n}, &at);
     }
 }
 

@@ -6,36 +6,41 @@
  *     | control points (M-1)          | edge midpoints (N-1)  | tail (1)                         |
  *     | all; own with no smoothing    | those of other fish   | all, with sheet_smoothing        |
  *
- * The sources: per fish one group of free vortices (the nascent one is the last) and its bound vortices. */
+ * The sources: per fish its free vortices, released ones and the nascent one, and its bound vortices. */
 #ifndef FLOW_H
 #define FLOW_H
 
 #include "fish.h"
+#include "forecast.h"
 #include "state.h"
 #include "status.h"
-
-/* A range of an array that holds all fish, one after another. */
-struct range {
-    int first, n;
-};
+#include "vortices.h"
 
 struct flow {
     const struct school *school;
     double t, since; /* time of the sources, and time since the last event, s */
-    long event;      /* whose wakes the free vortices are; -1: none gathered yet */
+    long event;      /* whose wakes are placed; -1: none yet */
 
     /* points */
     struct range *points; /* of each fish                                           (n_fish) */
     int n_points;
+    int n_chunks;
+    struct chunk *chunk;     /* all points, in pieces for the threads               (n_chunks) */
     double *x, *y, *u, *v;   /* place, m, and velocity of the fluid, m s-1         (n_points) */
     double *u_x, *u_y, *v_x; /* gradient, after flow_gradient, s-1                 (n_points) */
 
     /* sources */
-    struct range *free_range; /* free vortices of each fish, the nascent one last   (n_fish) */
-    int n_free, capacity;
-    double *free_x, *free_y, *free_circulation;    /*                              (capacity) */
-    struct range *sheet_range;                     /*                              (n_fish) */
-    double *sheet_x, *sheet_y, *sheet_circulation; /*                              (bound vortices of all fish) */
+    struct vortices released;     /* the free vortices of all fish; only where some fish is not foretold */
+    struct range *released_range; /* of each fish                                   (n_fish) */
+    int has_released;             /* whether they are placed at t */
+    struct vortices nascent;      /* one of each fish                               (n_fish) */
+    struct vortices sheet;        /* the bound vortices of all fish */
+    struct range *sheet_range;    /* of each fish                                   (n_fish) */
+
+    struct forecast *forecast;  /* of the released vortices; NULL: they are never foretold */
+    int is_foretold;            /* whether there is one for this event */
+    unsigned char *by_forecast; /* whether it serves the fish where it is now        (n_fish) */
+    double *motion[4];          /* velocity and acceleration of the points           (n_points) */
 };
 
 /* Derivative of the velocity at the points of fish f with respect to the unknowns of fish g, row by row:
@@ -70,6 +75,11 @@ enum status flow_place(struct flow *flow, const struct state *state, double t, c
 /* The wakes have changed since they were last placed. */
 void flow_forget(struct flow *flow);
 
+/* Foretell what the released vortices do to the bodies until the next event; from now until flow_forget they are not
+ * summed up any more for fish that stay near their foretold path. At the event of the state, after flow_place, when the
+ * velocities of the wakes are known. Fails with STATUS_MEMORY. */
+enum status flow_foretell(struct flow *flow, const struct state *state);
+
 /* The velocity at all points of all fish; with its gradient too. After flow_place. */
 void flow_velocity(struct flow *flow);
 void flow_gradient(struct flow *flow);
@@ -82,7 +92,8 @@ void flow_derivative(const struct flow *flow, int f, int g, struct flow_block *b
  * unit circulation, of fish g causes: columns sheet (M_g), shed (1). After flow_place. */
 void flow_response(const struct flow *flow, int f, int g, struct flow_block *block);
 
-/* The velocity at the free vortices of fish f that are released, in the order of its wake. After flow_place. */
+/* The velocity at the free vortices of fish f that are released, in the order of its wake. After flow_forget and
+ * flow_place. */
 void flow_at_wake(const struct flow *flow, int f, double *u, double *v);
 
 /* The fluid's velocity past the tail of fish f, u - v_tail. After flow_velocity. */

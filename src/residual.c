@@ -306,11 +306,7 @@ void residual_kinds(const struct residual *residual, double *kind) {
 double residual_scale(const struct residual *residual, int i) {
     const struct unknown_place place = residual_place(residual->school, i);
     const struct fish *fish = &residual->school->fish[place.fish];
-    // a fish that does not beat has the time in which it, or the stream, goes one length
-    const double drift = hypot(residual->school->velocity[0], residual->school->velocity[1]);
-    const double speed = fmax(fmax(fabs(fish->start_speed), fabs(fish->motion.speed)), drift);
-    double f = fish->frequency > 0 ? fish->frequency : speed / fish->length;
-    if (f <= 0) f = 1;
+    const double f = fish_rate(residual->school, fish);
     const double length = fish->length;
     switch (place.kind) {
         case UNKNOWN_X:

@@ -223,6 +223,7 @@ static char *stem(const char *path) {
 static enum status derive_all(struct settings *settings, const char *origin) {
     derive(&settings->time.output_interval, 10 * settings->time.shedding_interval);
     derive(&settings->wake.fade, settings->wake.lifetime / 10);
+    derive(&settings->wake.tolerance, settings->solver.rtol / 100);
     derive(&settings->output.wake_interval, settings->time.output_interval);
     if (!settings->name && !(settings->name = stem(origin))) return no_memory();
     for (int i = 0; i < settings->n_fish; i++) TRY(derive_fish(&settings->fish[i], i));

@@ -56,6 +56,7 @@ struct settings_wake {
     double kutta_ramp; /* s */
     enum collocation collocation;
     enum dissipated dissipated_circulation;
+    double tolerance; /* lengths per beat; default a hundredth of solver.rtol; 0: exact */
 };
 
 struct settings_solver {

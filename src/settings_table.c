@@ -78,6 +78,9 @@ const struct key settings_table[] = {
     {"wake.dissipated_circulation", CHOICE, AT(wake.dissipated_circulation), "retained", ANY, "",
      .meaning = "whether the circulation of removed vortices still counts in Kelvin's theorem", .published = "dropped",
      .words = WORDS("retained", "dropped"), .synonyms = "dissipated"},
+    {"wake.tolerance", REAL, AT(wake.tolerance), NULL, FROM_TO(0, 0.01), "",
+     .meaning = "error allowed in the velocity that far vortices cause, in lengths per beat; 0: every vortex exactly",
+     .derived = "a hundredth of solver.rtol", .synonyms = "accuracy theta"},
 
     {"solver.method", CHOICE, AT(solver.method), "ida", ANY, "",
      .meaning = "integrator; ida is implicit, the others are explicit",

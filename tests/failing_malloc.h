@@ -21,12 +21,14 @@ static void *counted(void *memory) {
 
 void *__real_malloc(size_t size);
 void *__real_calloc(size_t n, size_t size);
+void *__real_aligned_alloc(size_t alignment, size_t size);
 void *__real_realloc(void *memory, size_t size);
 char *__real_strdup(const char *text);
 char *__real_strndup(const char *text, size_t length);
 void __real_free(void *memory);
 void *__wrap_malloc(size_t size);
 void *__wrap_calloc(size_t n, size_t size);
+void *__wrap_aligned_alloc(size_t alignment, size_t size);
 void *__wrap_realloc(void *memory, size_t size);
 char *__wrap_strdup(const char *text);
 char *__wrap_strndup(const char *text, size_t length);
@@ -38,6 +40,10 @@ void *__wrap_malloc(size_t size) {
 
 void *__wrap_calloc(size_t n, size_t size) {
     return may_allocate() ? counted(__real_calloc(n, size)) : NULL;
+}
+
+void *__wrap_aligned_alloc(size_t alignment, size_t size) {
+    return may_allocate() ? counted(__real_aligned_alloc(alignment, size)) : NULL;
 }
 
 void *__wrap_realloc(void *memory, size_t size) {

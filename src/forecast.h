@@ -1,0 +1,58 @@
+/* forecast.h: the velocity that the released vortices of all fish cause at the points of the bodies, foretold at an
+ * event for the whole interval that follows. doc/numerics.md, section 13. Tested by tests/test_forecast.c.
+ *
+ * Between two events t_n and t_n + Dt the vortices move on known paths, and a point of a body stays close to the path
+ * X(t) that its position, velocity and acceleration at t_n give. With tau = t - t_n, q = tau/Dt:
+ *
+ *     u(x, t) = sum_i l_i(q) U_i + ((1 - q) G_0 + q G_3) (x - X(t)) + the vortices that are near
+ *
+ * U_i: velocity at X at four times (i = 0 .. 3) from the beginning to the end, of all vortices but the near ones; l_i: the
+ * cubics that are 1 at one of them and 0 at the others; G_i: its gradient. A vortex is near where its part of the error of this would be too large. */
+#ifndef FORECAST_H
+#define FORECAST_H
+
+#include "state.h"
+#include "status.h"
+#include "vortices.h"
+
+struct forecast;
+
+/* Points of one fish that a thread takes at once. */
+struct chunk {
+    int fish;
+    struct range at; /* among the points of all fish */
+};
+
+/* All points of the bodies with their motion at an event; each array (points of all fish). */
+struct forecast_points {
+    const double *x, *y; /* m */
+    const double *u, *v; /* velocity of the point, m s-1 */
+    const double *a, *b; /* acceleration in x and y, m s-2 */
+};
+
+/* points, the points of each fish (n_fish), and chunk (n_chunks), all of them in chunks, stay the caller's and must
+ * outlive the forecast. Fails with STATUS_MEMORY; forecast_free accepts NULL. */
+enum status forecast_create(struct forecast **forecast, const struct school *school, const struct range *points,
+                            int n_chunks, const struct chunk *chunk);
+void forecast_free(struct forecast *forecast);
+
+/* Foretell the interval that begins at the state's event, for points that are there now. The error of the velocity stays
+ * below the school's wake tolerance times one length per beat of the fish. Fails with STATUS_MEMORY: it holds for no
+ * fish then. */
+enum status forecast_make(struct forecast *forecast, const struct state *state, const struct forecast_points *points);
+
+/* Go to the time t in that interval. */
+void forecast_place(struct forecast *forecast, double t);
+
+/* Whether the forecast serves the points of fish f where they are now (all its points, in the order of
+ * forecast_make): whether they are close enough to their foretold paths. Where they are not, it serves the fish no more
+ * until the next one is made: an iteration that goes back and forth meets one function, not two. */
+int forecast_holds(struct forecast *forecast, int f, const double *x, const double *y);
+
+/* Add the foretold velocity (and gradient) at points of fish f; the first of them is point number first of all. */
+void forecast_induce(const struct forecast *forecast, int f, int first, const struct induced *at);
+
+/* How many of the released vortices are near to fish f; -1 where so many are that nothing was foretold for it. */
+int forecast_near(const struct forecast *forecast, int f);
+
+#endif
