@@ -60,8 +60,10 @@ test_helpers = $(patsubst tests/%.c,$(B)/tests/%.o,$(filter-out tests/test_%,$(w
 verify_program = $(B)/verify/verify
 verify_objects = $(patsubst tests/verify/%.c,$(B)/verify/%.o,$(wildcard tests/verify/*.c))
 
+bench_program = $(B)/bench/kernels
+
 generated_docs = $(B)/doc/cases.md $(B)/doc/output.md
-c_files        = $(wildcard src/*.[ch] include/*.h tests/*.[ch] tests/verify/*.[ch])
+c_files        = $(wildcard src/*.[ch] include/*.h tests/*.[ch] tests/verify/*.[ch] tests/bench/*.[ch])
 
 # "commit" or "commit-dirty"; of this folder's own repository, not of one that happens to lie around it
 commit := $(shell test -e .git && git describe --always --dirty --abbrev=12 --exclude='*' 2>/dev/null || echo unknown)
@@ -92,7 +94,8 @@ verify: deps  ## check the program against classical results (minutes) and write
 	@$(parallel) $(verify_program)
 	@scripts/verify.sh $(verify_program) $(B)/verify
 
-bench: $(program)  ## measure time, memory and counts of the benchmark cases
+bench: $(program) $(bench_program)  ## measure the inner loops, and time, memory and counts of the benchmark cases
+	@$(bench_program)
 	@scripts/bench.sh $(program)
 
 clean:  ## remove everything that was built
@@ -164,7 +167,7 @@ $(B)/version.o: $(B)/commit
 $(B)/commit: FORCE | $(B)/tests
 	@echo '$(commit)' | cmp -s - $@ || echo '$(commit)' >$@
 
-tests: $(program) $(c_tests) $(verify_program)
+tests: $(program) $(c_tests) $(verify_program) $(bench_program)
 
 $(B)/verify/%.o: tests/verify/%.c Makefile | $(B)/verify
 	$(say) CC $<
@@ -173,6 +176,10 @@ $(B)/verify/%.o: tests/verify/%.c Makefile | $(B)/verify
 $(verify_program): $(verify_objects) $(library)
 	$(say) LD $@
 	$(quiet)$(CC) $(shoal_cflags) $(LDFLAGS) -o $@ $^ $(libraries)
+
+$(B)/bench/%: tests/bench/%.c $(library) Makefile | $(B)/bench
+	$(say) LD $@
+	$(quiet)$(CC) $(shoal_cppflags) $(shoal_cflags) $(LDFLAGS) -o $@ $< $(library) $(libraries)
 
 $(B)/tests/%.o: tests/%.c Makefile | $(B)/tests
 	$(say) CC $<
@@ -190,7 +197,7 @@ $(B)/doc/cases.md: $(program) scripts/make-cases-doc.py | $(B)/tests
 $(B)/doc/output.md: $(program) scripts/make-output-doc.py | $(B)/tests
 	$(quiet)$(program) keys --output --json | $(PYTHON) scripts/make-output-doc.py >$@
 
-$(B)/tests $(B)/verify:
+$(B)/tests $(B)/verify $(B)/bench:
 	@mkdir -p $@ $(B)/doc
 
 .PRECIOUS: $(B)/tests/%.o

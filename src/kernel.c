@@ -1,102 +1,166 @@
-/* kernel.c: blocks of targets in vectors, sources one after another. */
+/* kernel.c: three widths of the same loops, and the choice between them. */
 #include "kernel.h"
 
+#include <stddef.h>
+#include <stdint.h>
 #include <string.h>
-
-// Wide instructions are chosen when the program starts. The address sanitizer cannot follow that choice.
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
-#define WIDE __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#define WIDE
+#ifdef __x86_64__
+#include <immintrin.h>
 #endif
 
-enum { LANES = 8 };
-typedef double lanes __attribute__((vector_size(LANES * sizeof(double))));
+enum { BLOCK = 8 }; /* targets that are treated alike; a multiple of the width of every variant */
 
-static const double two_pi = 6.28318530717958647692;
+static const double inverse_two_pi = 0.159154943091895335769;
 
-// a block of targets; where fewer than LANES are left, the last target fills the rest
-static inline void block_read(lanes *block, const double *value, int n) {
-    if (n >= LANES) {
-        memcpy(block, value, sizeof *block);
-    } else {
-        for (int i = 0; i < LANES; i++) (*block)[i] = value[i < n ? i : n - 1];
-    }
+static inline double sum_of_block(const double *value) {
+    return ((value[0] + value[4]) + (value[2] + value[6])) + ((value[1] + value[5]) + (value[3] + value[7]));
+}
+
+#ifdef __x86_64__
+
+#define VARIANT(name) name##_avx512
+#define VARIANT_NAME "avx512"
+#define TARGET __attribute__((target("avx512f")))
+#define lanes __m512d
+#define FUSED(a, b, c) _mm512_fmadd_pd(a, b, c)
+#include "kernel_loops.h"
+
+#define VARIANT(name) name##_avx2
+#define VARIANT_NAME "avx2"
+#define TARGET __attribute__((target("avx2,fma")))
+#define lanes __m256d
+#define FUSED(a, b, c) _mm256_fmadd_pd(a, b, c)
+#include "kernel_loops.h"
+
+#endif
+
+// ---- without fused products in the processor
+
+typedef double two __attribute__((vector_size(2 * sizeof(double))));
+typedef uint64_t two_bits __attribute__((vector_size(2 * sizeof(uint64_t))));
+
+// a + b, and what rounding takes from it (Knuth)
+static inline two sum(two a, two b, two *error) {
+    const two s = a + b, t = s - a;
+    *error = (a - (s - t)) + (b - t);
+    return s;
+}
+
+// the first 26 digits of 53, rounded; the rest, with a sign, has 26 too
+static inline two upper(two a) {
+    return (two)(((two_bits)a + (1 << 26)) & -((uint64_t)1 << 27));
+}
+
+// a b, and what rounding takes from it (Dekker)
+static inline two product(two a, two b, two *error) {
+    const two p = a * b, a1 = upper(a), b1 = upper(b), a2 = a - a1, b2 = b - b1;
+    *error = ((a1 * b1 - p) + a1 * b2 + a2 * b1) + a2 * b2;
+    return p;
+}
+
+// a + b; where that is not exact, the neighbour with an odd last digit: a second rounding then sees that it was not
+static inline two sum_to_odd(two a, two b) {
+    two error;
+    const two s = sum(a, b, &error);
+    const two_bits bits = (two_bits)s;
+    const two_bits inexact_and_even = (two_bits)(error != 0) & ((bits & 1) - 1);
+    const two_bits outwards = 1 - 2 * (((two_bits)error ^ bits) >> 63); /* 1: the error has the sign of the sum */
+    return (two)(bits + (outwards & inexact_and_even));
+}
+
+// a b + c with one rounding: Boldo and Melquiond, Emulation of FMA and correctly rounded sums, IEEE Trans. Comp. 2008
+static inline two fused(two a, two b, two c) {
+    two product_error, low_error, high_error;
+    const two high_product = product(a, b, &product_error);
+    const two low = sum(c, product_error, &low_error), high = sum(high_product, low, &high_error);
+    return high + sum_to_odd(low_error, high_error);
+}
+
+#define VARIANT(name) name##_baseline
+#define VARIANT_NAME "baseline"
+#define TARGET
+#define lanes two
+#define FUSED(a, b, c) fused(a, b, c)
+#include "kernel_loops.h"
+
+// ---- the choice
+
+const struct kernel_variant *kernel_variant(int i) {
+    const struct kernel_variant *found[3];
+    int n = 0;
+#ifdef __x86_64__
+    if (__builtin_cpu_supports("avx512f")) found[n++] = &loops_avx512;
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) found[n++] = &loops_avx2;
+#endif
+    found[n++] = &loops_baseline;
+    return i < n ? found[i] : NULL;
 }
 
 // A source on a target has no velocity there: a number that is small, but whose square is not zero, keeps 0/0 away. At
 // distances that matter it changes no bit.
-static inline double square_of(double smoothing) {
+static double square_of(double smoothing) {
     return smoothing * smoothing + 1e-150;
 }
 
-static inline void block_add(double *value, const lanes *block, int n) {
-    for (int i = 0; i < LANES && i < n; i++) value[i] += (*block)[i] / two_pi;
+// Targets behind the last whole 16 are copied into 8 or 16 places, which the last of them fills up.
+struct rest {
+    int first, n, n_places;
+    double x[2 * BLOCK], y[2 * BLOCK], sum[5][2 * BLOCK];
+};
+
+static void rest_take(struct rest *rest, int n_targets, const double *x, const double *y) {
+    rest->n = n_targets % (2 * BLOCK);
+    rest->first = n_targets - rest->n;
+    rest->n_places = rest->n <= BLOCK ? BLOCK : 2 * BLOCK;
+    for (int i = 0; i < rest->n_places; i++) {
+        const int from = rest->first + (i < rest->n ? i : rest->n - 1);
+        rest->x[i] = x[from];
+        rest->y[i] = y[from];
+    }
+    memset(rest->sum, 0, sizeof rest->sum);
 }
 
-WIDE void kernel_add_velocity(int n_targets, const double *x, const double *y, int n_sources, const double *source_x,
-                              const double *source_y, const double *circulation, double smoothing, double *u,
-                              double *v) {
-    const double square = square_of(smoothing);
-    for (int first = 0; first < n_targets; first += 2 * LANES) {
-        const int n = n_targets - first;
-        const int rest = n > LANES ? n - LANES : 0;
-        const int second = rest > 0 ? first + LANES : first;
-        lanes x0, y0, x1, y1;
-        block_read(&x0, x + first, n);
-        block_read(&y0, y + first, n);
-        block_read(&x1, x + second, rest > 0 ? rest : n);
-        block_read(&y1, y + second, rest > 0 ? rest : n);
-        lanes u0 = {0}, v0 = {0}, u1 = {0}, v1 = {0};
-        for (int j = 0; j < n_sources; j++) {
-            const lanes rx0 = x0 - source_x[j], ry0 = y0 - source_y[j];
-            const lanes rx1 = x1 - source_x[j], ry1 = y1 - source_y[j];
-            const lanes d0 = rx0 * rx0 + ry0 * ry0 + square, d1 = rx1 * rx1 + ry1 * ry1 + square;
-            const lanes g0 = circulation[j] / d0, g1 = circulation[j] / d1;
-            u0 -= g0 * ry0;
-            v0 += g0 * rx0;
-            u1 -= g1 * ry1;
-            v1 += g1 * rx1;
-        }
-        block_add(u + first, &u0, n);
-        block_add(v + first, &v0, n);
-        block_add(u + second, &u1, rest);
-        block_add(v + second, &v1, rest);
-    }
+static void rest_add(const struct rest *rest, int k, double *value) {
+    for (int i = 0; i < rest->n; i++) value[rest->first + i] += rest->sum[k][i];
 }
 
-WIDE void kernel_add_gradient(int n_targets, const double *x, const double *y, int n_sources, const double *source_x,
-                              const double *source_y, const double *circulation, double smoothing, double *u, double *v,
-                              double *u_x, double *u_y, double *v_x) {
-    const double square = square_of(smoothing);
-    for (int first = 0; first < n_targets; first += LANES) {
-        const int n = n_targets - first;
-        lanes xs, ys;
-        block_read(&xs, x + first, n);
-        block_read(&ys, y + first, n);
-        lanes us = {0}, vs = {0}, uxs = {0}, uys = {0}, vxs = {0};
-        for (int j = 0; j < n_sources; j++) {
-            const lanes rx = xs - source_x[j], ry = ys - source_y[j];
-            const lanes inverse = 1 / (rx * rx + ry * ry + square);
-            const lanes g = circulation[j] * inverse;
-            const lanes twice = 2 * g * inverse;
-            us -= g * ry;
-            vs += g * rx;
-            uxs += twice * rx * ry;
-            uys += twice * ry * ry - g;
-            vxs += g - twice * rx * rx;
-        }
-        block_add(u + first, &us, n);
-        block_add(v + first, &vs, n);
-        block_add(u_x + first, &uxs, n);
-        block_add(u_y + first, &uys, n);
-        block_add(v_x + first, &vxs, n);
-    }
+void kernel_add_velocity(int n_targets, const double *x, const double *y, int n_sources, const double *source_x,
+                         const double *source_y, const double *circulation, double smoothing, double *u, double *v) {
+    const struct kernel_variant *const variant = kernel_variant(0);
+    const struct kernel_sources sources = {n_sources, source_x, source_y, circulation, square_of(smoothing)};
+    const int whole = n_targets - n_targets % (2 * BLOCK);
+    struct rest rest;
+    variant->velocity(whole, x, y, &sources, u, v);
+    if (whole == n_targets) return;
+    rest_take(&rest, n_targets, x, y);
+    variant->velocity(rest.n_places, rest.x, rest.y, &sources, rest.sum[0], rest.sum[1]);
+    rest_add(&rest, 0, u);
+    rest_add(&rest, 1, v);
+}
+
+void kernel_add_gradient(int n_targets, const double *x, const double *y, int n_sources, const double *source_x,
+                         const double *source_y, const double *circulation, double smoothing, double *u, double *v,
+                         double *u_x, double *u_y, double *v_x) {
+    const struct kernel_variant *const variant = kernel_variant(0);
+    const struct kernel_sources sources = {n_sources, source_x, source_y, circulation, square_of(smoothing)};
+    const int whole = n_targets - n_targets % (2 * BLOCK);
+    double *const to[5] = {u, v, u_x, u_y, v_x};
+    struct rest rest;
+    variant->gradient(whole, x, y, &sources, u, v, u_x, u_y, v_x);
+    if (whole == n_targets) return;
+    rest_take(&rest, n_targets, x, y);
+    variant->gradient(rest.n_places, rest.x, rest.y, &sources, rest.sum[0], rest.sum[1], rest.sum[2], rest.sum[3],
+                      rest.sum[4]);
+    for (int k = 0; k < 5; k++) rest_add(&rest, k, to[k]);
+}
+
+void kernel_add_mutual(const struct kernel_tile *a, const struct kernel_tile *b, double smoothing) {
+    kernel_variant(0)->mutual(a, b, square_of(smoothing));
 }
 
 struct kernel_value kernel_unit(double rx, double ry, double smoothing) {
     const double inverse = 1 / (rx * rx + ry * ry + square_of(smoothing));
-    const double g = inverse / two_pi;
+    const double g = inverse_two_pi * inverse;
     const double twice = 2 * g * inverse;
     return (struct kernel_value){
         .u = -g * ry, .v = g * rx, .u_x = twice * rx * ry, .u_y = twice * ry * ry - g, .v_x = g - twice * rx * rx};

@@ -1,8 +1,17 @@
 /* kernel.h: the velocity of smoothed point vortices at points, the inner loop of everything. doc/model.md, first
  * paragraph: K_e(r) = (-r_y, r_x) / (2 pi (|r|^2 + e^2)). Tested by tests/test_kernel.c.
  *
- * Every target sums over the sources in their order, whatever the width of the machine's vectors, so the results have
- * the same bits on every x86-64. Arrays are separate for x and y and need no alignment. */
+ * Every target sums over the sources in their order, and every operation is rounded as written here, so the results
+ * have the same bits on every x86-64, whatever the width of its vectors:
+ *
+ * - |r|^2 + e^2 and the sums are made of fused products, a b + c with one rounding. They are written as such; the
+ *   compiler fuses nothing. A processor without them computes the same bits, slowly.
+ * - Targets are taken in blocks of 16. Of one block, targets i and i + 8 share a division, 1/(d_i d_i+8): the last bits
+ *   of a target depend on the one it shares with. Where 8 targets or fewer are left, each has its own division; so have
+ *   all targets of a gradient. Lengths between 1e-75 and 1e75 m do not overflow.
+ *
+ * Arrays are separate for x and y and need no alignment: the sources go to all lanes of a vector one by one, and a
+ * block of targets is read once for all of them. */
 #ifndef KERNEL_H
 #define KERNEL_H
 
@@ -15,10 +24,43 @@ void kernel_add_gradient(int n_targets, const double *x, const double *y, int n_
                          const double *source_y, const double *circulation, double smoothing, double *u, double *v,
                          double *u_x, double *u_y, double *v_x);
 
+/* Vortices that feel each other. */
+struct kernel_tile {
+    int n;                             /* a multiple of 16, at most KERNEL_TILE; vortices of strength 0 fill it up */
+    const double *x, *y, *circulation; /* place, m, and circulation, m2 s-1 (n) */
+    double *u, *v;                     /* velocity, m s-1                   (n) */
+};
+enum { KERNEL_TILE = 128 };
+
+/* Add the velocities of the vortices of two different tiles at one another: K is odd, so a pair has one division for
+ * both. */
+void kernel_add_mutual(const struct kernel_tile *a, const struct kernel_tile *b, double smoothing);
+
 /* Velocity and gradient at the distance (rx, ry) from one source of unit circulation. */
 struct kernel_value {
     double u, v, u_x, u_y, v_x;
 };
 struct kernel_value kernel_unit(double rx, double ry, double smoothing);
+
+/* The sources of one sum. */
+struct kernel_sources {
+    int n;
+    const double *x, *y, *circulation;
+    double square; /* e^2, and a little */
+};
+
+/* The loops, for one width of vectors; the functions above use the fastest that the processor has. Targets are a
+ * multiple of 8. */
+struct kernel_variant {
+    const char *name;
+    void (*velocity)(int n, const double *x, const double *y, const struct kernel_sources *sources, double *u,
+                     double *v);
+    void (*gradient)(int n, const double *x, const double *y, const struct kernel_sources *sources, double *u,
+                     double *v, double *u_x, double *u_y, double *v_x);
+    void (*mutual)(const struct kernel_tile *a, const struct kernel_tile *b, double square);
+};
+
+/* Variant i of those that this processor has, the fastest first; NULL if there are no more. */
+const struct kernel_variant *kernel_variant(int i);
 
 #endif

@@ -1,4 +1,4 @@
-/* test_kernel.c: the vector loops against plain ones. */
+/* test_kernel.c: the vector loops against plain ones, and against each other. */
 #include <string.h>
 
 #include "kernel.h"
@@ -48,7 +48,7 @@ static void velocity(int n, int first, double smoothing, double *u, double *v) {
                         cloud.circulation, smoothing, u, v);
 }
 
-static void velocity_has_the_bits_of_a_plain_loop(void **state) {
+static void velocity_is_that_of_a_plain_loop(void **state) {
     (void)state;
     const double smoothings[] = {0, 0.05, 0.2};
     for (int s = 0; s < 3; s++) {
@@ -57,23 +57,160 @@ static void velocity_has_the_bits_of_a_plain_loop(void **state) {
         for (int i = 0; i < N_TARGETS; i++) {
             double want_u, want_v;
             plain_velocity(cloud.x[i], cloud.y[i], smoothings[s], &want_u, &want_v);
-            NEAR(u[i], want_u, 0, 0);
-            NEAR(v[i], want_v, 0, 0);
+            // rounding of sums of 53 terms, the largest 20 at the nearest source
+            NEAR(u[i], want_u, 2e-14, 1e-14);
+            NEAR(v[i], want_v, 2e-14, 1e-14);
         }
     }
 }
 
-static void targets_do_not_depend_on_their_neighbours(void **state) {
+// what kernel.h promises, step by step, with the C library's fused product
+static void promised_velocity(int n, double smoothing, double *u, double *v) {
+    const double square = smoothing * smoothing + 1e-150, inverse_two_pi = 0.159154943091895335769;
+    for (int i = 0; i < n; i++) {
+        // the last block has a partner for a target only if more than 8 are left, and the last target fills it up
+        const int first = i - i % 16, in_block = i - first;
+        const int alone = n - first <= 8;
+        int partner = first + (in_block + 8) % 16;
+        if (partner >= n) partner = n - 1;
+        double su = 0, sv = 0;
+        for (int j = 0; j < N_SOURCES; j++) {
+            const double rx = cloud.x[i] - cloud.source_x[j], ry = cloud.y[i] - cloud.source_y[j];
+            const double sx = cloud.x[partner] - cloud.source_x[j], sy = cloud.y[partner] - cloud.source_y[j];
+            const double d = fma(rx, rx, fma(ry, ry, square)), e = fma(sx, sx, fma(sy, sy, square));
+            const double g = alone ? cloud.circulation[j] / d : cloud.circulation[j] / (d * e) * e;
+            su = fma(g, ry, su);
+            sv = fma(g, rx, sv);
+        }
+        u[i] = 0 - inverse_two_pi * su;
+        v[i] = 0 + inverse_two_pi * sv;
+    }
+}
+
+static void velocity_has_the_promised_bits_for_any_number_of_targets(void **state) {
+    (void)state;
+    for (int n = 0; n <= N_TARGETS; n++) {
+        double u[N_TARGETS] = {0}, v[N_TARGETS] = {0}, want_u[N_TARGETS] = {0}, want_v[N_TARGETS] = {0};
+        velocity(n, 0, 0.1, u, v);
+        promised_velocity(n, 0.1, want_u, want_v);
+        NEAR_ARRAY(N_TARGETS, u, want_u, 0, 0);
+        NEAR_ARRAY(N_TARGETS, v, want_v, 0, 0);
+    }
+}
+
+static void whole_blocks_do_not_depend_on_other_targets(void **state) {
     (void)state;
     double u[N_TARGETS] = {0}, v[N_TARGETS] = {0};
     velocity(N_TARGETS, 0, 0.1, u, v);
-    for (int split = 0; split <= N_TARGETS; split++) {
+    for (int split = 0; split <= N_TARGETS; split += 16) {
         double a[N_TARGETS] = {0}, b[N_TARGETS] = {0};
         velocity(split, 0, 0.1, a, b);
         velocity(N_TARGETS - split, split, 0.1, a + split, b + split);
         assert_memory_equal(a, u, sizeof u);
         assert_memory_equal(b, v, sizeof v);
     }
+}
+
+// numbers of all sizes: about half of those that the sums must round, and some whose fused products are awkward
+static double any_size(struct setup *random, int largest) {
+    const int exponent = (int)(largest * school_random(random));
+    const double value = ldexp(school_random(random), exponent);
+    return school_random(random) > 0.8 ? ldexp(1, exponent) : value;
+}
+
+static void all_variants_give_the_same_bits(void **state) {
+    (void)state;
+    enum { N = 48 };
+    struct setup random = {.seed = 11};
+    static double x[N], y[N], source_x[N], source_y[N], circulation[N];
+    for (int trial = 0; trial < 240; trial++) {
+        // from all near each other to sizes so different that most sums keep one of the two numbers
+        const int largest = 1 + trial % 60;
+        for (int i = 0; i < N; i++) {
+            x[i] = any_size(&random, largest);
+            y[i] = any_size(&random, largest);
+            source_x[i] = any_size(&random, largest);
+            source_y[i] = any_size(&random, largest);
+            circulation[i] = any_size(&random, 20);
+        }
+        // some sources lie on targets
+        for (int i = 0; i < N; i += 7) {
+            source_x[i] = x[i];
+            source_y[i] = y[i];
+        }
+        const struct kernel_sources sources = {N, source_x, source_y, circulation, trial % 3 ? 0.01 : 1e-150};
+        const struct kernel_variant *variant;
+        double want[9][N];
+        int n_variants = 0;
+        for (int k = 0; (variant = kernel_variant(k)); k++) {
+            double got[9][N] = {{0}};
+            variant->velocity(40, x, y, &sources, got[0], got[1]);
+            variant->gradient(40, x, y, &sources, got[2], got[3], got[4], got[5], got[6]);
+            // the upper halves of 7 and 8 are those of the second tile
+            const struct kernel_tile a = {32, x, y, circulation, got[7], got[8]};
+            const struct kernel_tile b = {16, source_x, source_y, circulation + 32, got[7] + 32, got[8] + 32};
+            variant->mutual(&a, &b, sources.square);
+            if (k == 0) memcpy(want, got, sizeof want);
+            assert_memory_equal(got, want, sizeof want);
+            n_variants++;
+        }
+        assert_true(n_variants >= 1);
+    }
+}
+
+static void a_variant_is_there_on_any_processor(void **state) {
+    (void)state;
+    int n = 0;
+    while (kernel_variant(n)) n++;
+    assert_string_equal(kernel_variant(n - 1)->name, "baseline");
+    assert_null(kernel_variant(n + 1));
+}
+
+static void a_tile_and_another_feel_each_other(void **state) {
+    (void)state;
+    enum { N_A = 16, N_B = 32 };
+    double u[N_A] = {0}, v[N_A] = {0}, back_u[N_B] = {0}, back_v[N_B] = {0};
+    double want_u[N_A] = {0}, want_v[N_A] = {0}, want_back_u[N_B] = {0}, want_back_v[N_B] = {0};
+    const double *const g = cloud.circulation;
+    const struct kernel_tile a = {N_A, cloud.x, cloud.y, g, u, v};
+    const struct kernel_tile b = {N_B, cloud.source_x, cloud.source_y, g + N_A, back_u, back_v};
+    for (int k = 0; k < 2; k++) kernel_add_mutual(&a, &b, 0.1);
+    kernel_add_velocity(N_A, a.x, a.y, N_B, b.x, b.y, b.circulation, 0.1, want_u, want_v);
+    kernel_add_velocity(N_B, b.x, b.y, N_A, a.x, a.y, a.circulation, 0.1, want_back_u, want_back_v);
+    for (int i = 0; i < N_A; i++) {
+        // added twice; rounding of sums of 32 terms, of at most 5 each
+        NEAR(u[i], 2 * want_u[i], 1e-14, 1e-14);
+        NEAR(v[i], 2 * want_v[i], 1e-14, 1e-14);
+    }
+    for (int j = 0; j < N_B; j++) {
+        NEAR(back_u[j], 2 * want_back_u[j], 1e-14, 1e-14);
+        NEAR(back_v[j], 2 * want_back_v[j], 1e-14, 1e-14);
+    }
+}
+
+static void a_tile_may_be_as_large_as_promised(void **state) {
+    (void)state;
+    static double x[2 * KERNEL_TILE], y[2 * KERNEL_TILE], g[2 * KERNEL_TILE], u[2 * KERNEL_TILE], v[2 * KERNEL_TILE];
+    struct setup random = {.seed = 3};
+    for (int i = 0; i < 2 * KERNEL_TILE; i++) {
+        x[i] = school_random(&random);
+        y[i] = school_random(&random);
+        g[i] = school_random(&random);
+    }
+    const struct kernel_tile a = {KERNEL_TILE, x, y, g, u, v};
+    const struct kernel_tile b = {KERNEL_TILE,     x + KERNEL_TILE, y + KERNEL_TILE,
+                                  g + KERNEL_TILE, u + KERNEL_TILE, v + KERNEL_TILE};
+    kernel_add_mutual(&a, &b, 0.1);
+    // neither tile feels itself, so the impulse of both together is what is left: none
+    double sum_u = 0, sum_v = 0, size = 0;
+    for (int i = 0; i < 2 * KERNEL_TILE; i++) {
+        sum_u += g[i] * u[i];
+        sum_v += g[i] * v[i];
+        size += fabs(g[i] * u[i]) + fabs(g[i] * v[i]);
+    }
+    assert_true(size > 10);
+    NEAR(sum_u, 0, 1e-15 * size, 0);
+    NEAR(sum_v, 0, 1e-15 * size, 0);
 }
 
 static void velocity_is_added_to_what_is_there_and_writes_nothing_else(void **state) {
@@ -142,8 +279,13 @@ static void a_vortex_pair_translates_at_the_known_speed(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(velocity_has_the_bits_of_a_plain_loop),
-        cmocka_unit_test(targets_do_not_depend_on_their_neighbours),
+        cmocka_unit_test(velocity_is_that_of_a_plain_loop),
+        cmocka_unit_test(velocity_has_the_promised_bits_for_any_number_of_targets),
+        cmocka_unit_test(whole_blocks_do_not_depend_on_other_targets),
+        cmocka_unit_test(all_variants_give_the_same_bits),
+        cmocka_unit_test(a_variant_is_there_on_any_processor),
+        cmocka_unit_test(a_tile_and_another_feel_each_other),
+        cmocka_unit_test(a_tile_may_be_as_large_as_promised),
         cmocka_unit_test(velocity_is_added_to_what_is_there_and_writes_nothing_else),
         cmocka_unit_test(gradient_is_that_of_the_velocity),
         cmocka_unit_test(one_unit_source_is_what_the_loops_add),
