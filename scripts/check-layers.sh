@@ -14,9 +14,9 @@ readonly layers='
  6  state
  7  forecast
  8  flow
- 9  sheet drag
+ 9  sheet drag jacobian
 10  residual
-11  measure
+11  measure linear
 12  bridge store checkpoint
 13  consistent direct
 14  integrator event
@@ -31,7 +31,7 @@ readonly layers='
 readonly same_layer=''
 
 # Outside headers (their first folder, or their name without .h) and the modules that may include them.
-readonly solver_users='bridge consistent direct implicit explicit'
+readonly solver_users='linear bridge consistent direct implicit explicit'
 readonly outside="
 sundials ida kinsol arkode nvector sunmatrix sunlinsol sunnonlinsol : $solver_users
 klu amd colamd btf SuiteSparse_config : $solver_users

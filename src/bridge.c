@@ -2,10 +2,7 @@
 #include "bridge.h"
 
 #include <nvector/nvector_serial.h>
-#include <string.h>
 #include <sundials/sundials_context.h>
-#include <sunlinsol/sunlinsol_klu.h>
-#include <sunmatrix/sunmatrix_sparse.h>
 
 enum status bridge_context(SUNContext *context) {
     if (SUNContext_Create(NULL, context) != 0) return status_fail(STATUS_MEMORY, "no room for the solvers");
@@ -17,42 +14,56 @@ enum status bridge_vector(N_Vector *vector, SUNContext context, long n, double *
     return *vector ? STATUS_OK : status_fail(STATUS_MEMORY, "no room for a vector of %ld unknowns", n);
 }
 
-enum status bridge_klu_create(struct bridge_klu *klu, SUNContext context, N_Vector like, long n) {
-    *klu = (struct bridge_klu){.context = context, .like = like};
-    klu->matrix = SUNSparseMatrix(n, n, 1, CSC_MAT, context);
-    if (klu->matrix) klu->solver = SUNLinSol_KLU(like, klu->matrix, context);
-    if (!klu->solver) {
-        bridge_klu_free(klu);
-        return status_fail(STATUS_MEMORY, "no room for a sparse matrix of order %ld", n);
+static SUNMatrix_ID matrix_id(SUNMatrix matrix) {
+    (void)matrix;
+    return SUNMATRIX_CUSTOM;
+}
+
+// the Jacobian sets its values to zero itself when it is filled
+static int matrix_zero(SUNMatrix matrix) {
+    (void)matrix;
+    return SUNMAT_SUCCESS;
+}
+
+static SUNLinearSolver_Type solver_type(SUNLinearSolver solver) {
+    (void)solver;
+    return SUNLINEARSOLVER_DIRECT;
+}
+
+static int solver_setup(SUNLinearSolver solver, SUNMatrix matrix) {
+    (void)matrix;
+    return linear_setup(solver->content);
+}
+
+static int solver_solve(SUNLinearSolver solver, SUNMatrix matrix, N_Vector x, N_Vector b, realtype tolerance) {
+    (void)matrix, (void)tolerance;
+    return linear_solve(solver->content, N_VGetArrayPointer(b), N_VGetArrayPointer(x));
+}
+
+enum status bridge_linear_create(struct bridge_linear *bridge, SUNContext context, const struct jacobian *jacobian,
+                                 const double *scale, double tolerance) {
+    *bridge = (struct bridge_linear){0};
+    TRY(linear_create(&bridge->linear, jacobian, scale, tolerance));
+    bridge->matrix = SUNMatNewEmpty(context);
+    bridge->solver = SUNLinSolNewEmpty(context);
+    if (!bridge->matrix || !bridge->solver) {
+        bridge_linear_free(bridge);
+        return status_fail(STATUS_MEMORY, "no room for a linear solver");
     }
+    bridge->matrix->ops->getid = matrix_id;
+    bridge->matrix->ops->zero = matrix_zero;
+    bridge->solver->content = bridge->linear;
+    bridge->solver->ops->gettype = solver_type;
+    bridge->solver->ops->setup = solver_setup;
+    bridge->solver->ops->solve = solver_solve;
     return STATUS_OK;
 }
 
-void bridge_klu_free(struct bridge_klu *klu) {
-    if (klu->solver) SUNLinSolFree(klu->solver);
-    if (klu->matrix) SUNMatDestroy(klu->matrix);
-    *klu = (struct bridge_klu){0};
-}
-
-enum status bridge_klu_copy(struct bridge_klu *klu, const struct sparse *from) {
-    _Static_assert(sizeof(sunindextype) == sizeof(int64_t), "the indices of SUNDIALS and ours are of one size");
-    if (klu->version != from->version) {
-        if (SUNSparseMatrix_NNZ(klu->matrix) < from->n_nonzeros &&
-            SUNSparseMatrix_Reallocate(klu->matrix, from->n_nonzeros) != 0) {
-            return status_fail(STATUS_MEMORY, "no room for a Jacobian of %lld entries", (long long)from->n_nonzeros);
-        }
-        if (SUNLinSol_KLUReInit(klu->solver, klu->matrix, from->n_nonzeros, SUNKLU_REINIT_PARTIAL) != 0) {
-            return status_fail(STATUS_MEMORY, "no room to analyse a Jacobian of %lld entries",
-                               (long long)from->n_nonzeros);
-        }
-        klu->version = from->version;
-    }
-    memcpy(SUNSparseMatrix_IndexPointers(klu->matrix), from->column_start,
-           ((size_t)from->n + 1) * sizeof *from->column_start);
-    memcpy(SUNSparseMatrix_IndexValues(klu->matrix), from->row_index,
-           (size_t)from->n_nonzeros * sizeof *from->row_index);
-    memcpy(SUNSparseMatrix_Data(klu->matrix), from->value, (size_t)from->n_nonzeros * sizeof *from->value);
-    return STATUS_OK;
+void bridge_linear_free(struct bridge_linear *bridge) {
+    if (bridge->solver) SUNLinSolFreeEmpty(bridge->solver);
+    if (bridge->matrix) SUNMatFreeEmpty(bridge->matrix);
+    linear_free(bridge->linear);
+    *bridge = (struct bridge_linear){0};
 }
 
 void bridge_message(int code, const char *module, const char *function, char *text, void *data) {

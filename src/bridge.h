@@ -1,4 +1,4 @@
-/* bridge.h: what IDA and KINSOL share: context, vectors, the sparse matrix with its KLU solver. Tested by
+/* bridge.h: what IDA and KINSOL share: context, vectors, the Jacobian of the school with its linear solver. Tested by
  * tests/test_consistent.c and tests/test_implicit.c. */
 #ifndef BRIDGE_H
 #define BRIDGE_H
@@ -7,16 +7,15 @@
 #include <sundials/sundials_matrix.h>
 #include <sundials/sundials_nvector.h>
 
-#include "sparse.h"
+#include "jacobian.h"
+#include "linear.h"
 #include "status.h"
 
-/* A sparse matrix as SUNDIALS holds it, and KLU for it. */
-struct bridge_klu {
-    SUNContext context;
-    N_Vector like; /* any vector of the right length */
-    SUNMatrix matrix;
+/* A Jacobian as SUNDIALS holds it, and the solver of its systems. */
+struct bridge_linear {
+    struct linear *linear;
+    SUNMatrix matrix; /* has nothing of its own: the callback of the solver fills the Jacobian */
     SUNLinearSolver solver;
-    unsigned version; /* of the pattern that the matrix has; 0: none yet */
 };
 
 /* Fails with STATUS_MEMORY. */
@@ -25,13 +24,12 @@ enum status bridge_context(SUNContext *context);
 /* A vector around an array that it does not own. Fails with STATUS_MEMORY. */
 enum status bridge_vector(N_Vector *vector, SUNContext context, long n, double *values);
 
-/* A matrix of order n and its solver. Fails with STATUS_MEMORY; klu then owns nothing. */
-enum status bridge_klu_create(struct bridge_klu *klu, SUNContext context, N_Vector like, long n);
-void bridge_klu_free(struct bridge_klu *klu);
-
-/* Copy pattern and values into the matrix: SUNDIALS wipes both before every Jacobian. A new pattern makes KLU analyse
- * anew; an old one keeps its symbolic factors. Fails with STATUS_MEMORY. */
-enum status bridge_klu_copy(struct bridge_klu *klu, const struct sparse *from);
+/* The solver for a Jacobian that must outlive it; scale and tolerance as in linear_create. To SUNDIALS it is a direct
+ * one: IDA scales its solutions when the step has changed since the Jacobian. Fails with STATUS_MEMORY; there is
+ * nothing to free then. */
+enum status bridge_linear_create(struct bridge_linear *bridge, SUNContext context, const struct jacobian *jacobian,
+                                 const double *scale, double tolerance);
+void bridge_linear_free(struct bridge_linear *bridge);
 
 /* Keep the text of an error of SUNDIALS as this thread's message; an error handler. */
 void bridge_message(int code, const char *module, const char *function, char *text, void *data);

@@ -1,4 +1,5 @@
-/* consistent.c: the algebraic rows and columns of the whole Jacobian, and Newton's method of KINSOL on them. */
+/* consistent.c: Newton's method of KINSOL on the algebraic equations. The differential unknowns take part with the
+ * equation that they do not change, so that the Jacobian of the school serves as it is, with their rows masked. */
 #include "consistent.h"
 
 #include <kinsol/kinsol.h>
@@ -12,153 +13,66 @@
 /* Rows are scaled to order one; Newton ends at this norm, or where its steps no longer change the unknowns. */
 static const double tolerance = 1e-14;
 
+/* Coupled fish are solved for up to this part of the right-hand side, so that each step gains as many digits. */
+static const double linear_tolerance = 1e-10;
+
 struct consistent {
     struct residual *residual;
-    struct sparse *whole; /* the Jacobian of all equations */
-    int n_unknowns;
-    double t;
-    double *y, *value, *zero, *kind; /* all unknowns, all equations, no rates, kinds      (n_unknowns) */
-
-    /* the algebraic part; made anew when the kinds or the pattern change */
+    struct jacobian *jacobian;
     int n;
-    int *member;         /* its unknowns                                                  (n) */
-    int *place;          /* of each unknown in the part, -1: not in it                    (n_unknowns) */
-    struct sparse part;  /* shares nothing with whole */
-    int64_t *source;     /* where in whole its values stand                               (part.n_nonzeros) */
-    unsigned pattern;    /* of the residual's Jacobian that it was made from */
+    double t;
+    /* all unknowns, no rates, kinds, scales of the unknowns and inverse scales of unknowns and equations          (n) */
+    double *y, *zero, *kind, *scale, *solution_scale, *value_scale;
+    double *value;       /* equations as last evaluated                                                 (n) */
+    double *start;       /* where KINSOL begins and ends                                                (n) */
     enum status failure; /* of the last callback */
 
     SUNContext context;
-    N_Vector solution, solution_scale, value_scale;
-    double *solution_data, *solution_scale_data, *value_scale_data; /* (n) */
-    struct bridge_klu klu;
+    N_Vector solution, solution_scales, value_scales;
+    struct bridge_linear linear;
     void *kinsol;
     long iterations;
 };
 
-static void part_free(struct consistent *c) {
-    if (c->kinsol) KINFree(&c->kinsol);
-    bridge_klu_free(&c->klu);
-    N_Vector *const vectors[] = {&c->solution, &c->solution_scale, &c->value_scale};
-    for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
-        if (*vectors[i]) N_VDestroy(*vectors[i]);
-        *vectors[i] = NULL;
-    }
-    void **const owned[] = {(void **)&c->member,           (void **)&c->solution_data, (void **)&c->solution_scale_data,
-                            (void **)&c->value_scale_data, (void **)&c->source,        (void **)&c->part.column_start,
-                            (void **)&c->part.row_index,   (void **)&c->part.value};
-    for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) {
-        free(*owned[i]);
-        *owned[i] = NULL;
-    }
-    c->part = (struct sparse){0};
-}
-
 void consistent_free(struct consistent *c) {
     if (!c) return;
-    part_free(c);
-    sparse_free(c->whole);
-    free(c->y);
-    free(c->value);
-    free(c->zero);
-    free(c->kind);
-    free(c->place);
+    if (c->kinsol) KINFree(&c->kinsol);
+    bridge_linear_free(&c->linear);
+    const N_Vector vectors[] = {c->solution, c->solution_scales, c->value_scales};
+    for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
+        if (vectors[i]) N_VDestroy(vectors[i]);
+    }
+    jacobian_free(c->jacobian);
+    double *const owned[] = {c->y, c->zero, c->kind, c->scale, c->solution_scale, c->value_scale, c->value, c->start};
+    for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
     if (c->context) SUNContext_Free(&c->context);
     free(c);
 }
 
-static enum status fill(struct consistent *c) {
-    const size_t n = (size_t)c->n_unknowns;
-    c->y = calloc(n, sizeof *c->y);
-    c->value = calloc(n, sizeof *c->value);
-    c->zero = calloc(n, sizeof *c->zero);
-    c->kind = calloc(n, sizeof *c->kind);
-    c->place = calloc(n, sizeof *c->place);
-    if (!c->y || !c->value || !c->zero || !c->kind || !c->place) {
-        return status_fail(STATUS_MEMORY, "no room for a consistent start of %d unknowns", c->n_unknowns);
+// the differential unknowns keep their bits, whatever KINSOL adds
+static void take_algebraic(const struct consistent *c, const double *from, double *y) {
+    for (int i = 0; i < c->n; i++) {
+        if (c->kind[i] <= 0) y[i] = from[i];
     }
-    TRY(sparse_create(&c->whole, c->n_unknowns));
-    residual_mask(c->residual, c->whole);
-    return bridge_context(&c->context);
-}
-
-enum status consistent_create(struct consistent **consistent, struct residual *residual) {
-    *consistent = NULL;
-    struct consistent *const new = calloc(1, sizeof *new);
-    if (!new) return status_fail(STATUS_MEMORY, "no room for a consistent start");
-    new->residual = residual;
-    new->n_unknowns = residual->school->n_unknowns;
-    const enum status status = fill(new);
-    if (status != STATUS_OK) {
-        consistent_free(new);
-        return status;
-    }
-    *consistent = new;
-    return STATUS_OK;
 }
 
 // F of the algebraic equations for KINSOL
 static int algebraic_value(N_Vector solution, N_Vector value, void *data) {
     struct consistent *const c = data;
-    const double *const from = N_VGetArrayPointer(solution);
     double *const to = N_VGetArrayPointer(value);
-    for (int i = 0; i < c->n; i++) c->y[c->member[i]] = from[i];
+    take_algebraic(c, N_VGetArrayPointer(solution), c->y);
     c->failure = residual_evaluate(c->residual, c->t, c->y, c->zero, c->value);
-    for (int i = 0; i < c->n; i++) to[i] = c->value[c->member[i]];
+    for (int i = 0; i < c->n; i++) to[i] = c->kind[i] > 0 ? 0 : c->value[i];
     return c->failure;
-}
-
-static void part_values(struct consistent *c) {
-    for (int64_t i = 0; i < c->part.n_nonzeros; i++) c->part.value[i] = c->whole->value[c->source[i]];
 }
 
 static int algebraic_jacobian(N_Vector solution, N_Vector value, SUNMatrix matrix, void *data, N_Vector scratch1,
                               N_Vector scratch2) {
-    (void)value;
-    (void)matrix;
-    (void)scratch1;
-    (void)scratch2;
+    (void)value, (void)matrix, (void)scratch1, (void)scratch2;
     struct consistent *const c = data;
-    const double *const from = N_VGetArrayPointer(solution);
-    for (int i = 0; i < c->n; i++) c->y[c->member[i]] = from[i];
-    c->failure = residual_jacobian(c->residual, c->t, 0, c->y, c->whole);
-    if (c->failure != STATUS_OK) return c->failure;
-    part_values(c);
-    c->failure = bridge_klu_copy(&c->klu, &c->part);
+    take_algebraic(c, N_VGetArrayPointer(solution), c->y);
+    c->failure = residual_jacobian(c->residual, c->t, 0, c->y, c->jacobian);
     return c->failure;
-}
-
-// the pattern of the algebraic rows and columns
-static enum status choose_part(struct consistent *c) {
-    c->n = 0;
-    for (int i = 0; i < c->n_unknowns; i++) c->place[i] = c->kind[i] > 0 ? -1 : c->n++;
-    const size_t n = (size_t)c->n, most = (size_t)c->whole->n_nonzeros + 1;
-    c->member = calloc(n, sizeof *c->member);
-    c->solution_data = calloc(n, sizeof(double));
-    c->solution_scale_data = calloc(n, sizeof(double));
-    c->value_scale_data = calloc(n, sizeof(double));
-    c->source = calloc(most, sizeof *c->source);
-    c->part.column_start = calloc(n + 1, sizeof *c->part.column_start);
-    c->part.row_index = calloc(most, sizeof *c->part.row_index);
-    c->part.value = calloc(most, sizeof *c->part.value);
-    if (!c->member || !c->solution_data || !c->solution_scale_data || !c->value_scale_data || !c->source ||
-        !c->part.column_start || !c->part.row_index || !c->part.value) {
-        return status_fail(STATUS_MEMORY, "no room for %d algebraic unknowns", c->n);
-    }
-    c->part.n = c->n;
-    c->part.version = 1;
-    for (int column = 0; column < c->n_unknowns; column++) {
-        if (c->place[column] < 0) continue;
-        c->member[c->place[column]] = column;
-        for (int64_t i = c->whole->column_start[column]; i < c->whole->column_start[column + 1]; i++) {
-            const int row = c->place[c->whole->row_index[i]];
-            if (row < 0) continue;
-            c->part.row_index[c->part.n_nonzeros] = row;
-            c->source[c->part.n_nonzeros++] = i;
-        }
-        c->part.column_start[c->place[column] + 1] = c->part.n_nonzeros;
-    }
-    return STATUS_OK;
 }
 
 // the equations come in accelerations, velocities, circulations and numbers; their scales follow the unknowns'
@@ -169,42 +83,72 @@ static double row_scale(const struct residual *residual, int i) {
     return place.kind == UNKNOWN_SHEET ? speed : residual_scale(residual, i);
 }
 
-static enum status part_create(struct consistent *c) {
-    TRY(choose_part(c));
-    for (int i = 0; i < c->n; i++) {
-        c->solution_scale_data[i] = 1 / residual_scale(c->residual, c->member[i]);
-        c->value_scale_data[i] = 1 / row_scale(c->residual, c->member[i]);
-    }
-    TRY(bridge_vector(&c->solution, c->context, c->n, c->solution_data));
-    TRY(bridge_vector(&c->solution_scale, c->context, c->n, c->solution_scale_data));
-    TRY(bridge_vector(&c->value_scale, c->context, c->n, c->value_scale_data));
-    TRY(bridge_klu_create(&c->klu, c->context, c->solution, c->n));
+static enum status set_up_kinsol(struct consistent *c) {
     c->kinsol = KINCreate(c->context);
     if (!c->kinsol) return status_fail(STATUS_MEMORY, "no room for KINSOL");
     // a full step of Newton's method on equations that are nearly linear, with a new Jacobian each time
     if (KINSetErrHandlerFn(c->kinsol, bridge_message, NULL) || KINSetUserData(c->kinsol, c) ||
         KINInit(c->kinsol, algebraic_value, c->solution) ||
-        KINSetLinearSolver(c->kinsol, c->klu.solver, c->klu.matrix) || KINSetJacFn(c->kinsol, algebraic_jacobian) ||
-        KINSetMaxSetupCalls(c->kinsol, 1) || KINSetFuncNormTol(c->kinsol, tolerance) ||
-        KINSetScaledStepTol(c->kinsol, 1e-14) || KINSetNumMaxIters(c->kinsol, 50) ||
-        KINSetMaxNewtonStep(c->kinsol, 1e30)) {
+        KINSetLinearSolver(c->kinsol, c->linear.solver, c->linear.matrix) ||
+        KINSetJacFn(c->kinsol, algebraic_jacobian) || KINSetMaxSetupCalls(c->kinsol, 1) ||
+        KINSetFuncNormTol(c->kinsol, tolerance) || KINSetScaledStepTol(c->kinsol, 1e-14) ||
+        KINSetNumMaxIters(c->kinsol, 50) || KINSetMaxNewtonStep(c->kinsol, 1e30)) {
         return status_fail(STATUS_SOLVER, "KINSOL cannot be set up: %s", status_message());
     }
     return STATUS_OK;
 }
 
-// the kinds of the unknowns or the pattern of the Jacobian may have changed since the last solution
-static enum status refresh(struct consistent *c) {
+static enum status fill(struct consistent *c) {
+    const int n = c->n;
+    double **const arrays[] = {&c->y,     &c->zero,           &c->kind,        &c->scale,
+                               &c->value, &c->solution_scale, &c->value_scale, &c->start};
+    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
+        *arrays[i] = calloc((size_t)n, sizeof **arrays[i]);
+        if (!*arrays[i]) return status_fail(STATUS_MEMORY, "no room for a consistent start of %d unknowns", n);
+    }
+    for (int i = 0; i < n; i++) {
+        c->scale[i] = residual_scale(c->residual, i);
+        c->solution_scale[i] = 1 / c->scale[i];
+        c->value_scale[i] = 1 / row_scale(c->residual, i);
+        c->kind[i] = -1;  // not known yet
+    }
+    TRY(jacobian_create(&c->jacobian, c->residual->school));
+    TRY(bridge_context(&c->context));
+    TRY(bridge_vector(&c->solution, c->context, n, c->start));
+    TRY(bridge_vector(&c->solution_scales, c->context, n, c->solution_scale));
+    TRY(bridge_vector(&c->value_scales, c->context, n, c->value_scale));
+    TRY(bridge_linear_create(&c->linear, c->context, c->jacobian, c->scale, linear_tolerance));
+    return set_up_kinsol(c);
+}
+
+enum status consistent_create(struct consistent **consistent, struct residual *residual) {
+    *consistent = NULL;
+    struct consistent *const new = calloc(1, sizeof *new);
+    if (!new) return status_fail(STATUS_MEMORY, "no room for a consistent start");
+    new->residual = residual;
+    new->n = residual->school->n_unknowns;
+    const enum status status = fill(new);
+    if (status != STATUS_OK) {
+        consistent_free(new);
+        return status;
+    }
+    *consistent = new;
+    return STATUS_OK;
+}
+
+// the kinds of the unknowns may have changed since the last solution: mask the rows of the differential ones
+static void refresh(struct consistent *c) {
     double *const kind = c->value;
     residual_kinds(c->residual, kind);
-    const int same_kinds = memcmp(kind, c->kind, (size_t)c->n_unknowns * sizeof *kind) == 0;
-    if (c->kinsol && same_kinds && c->pattern == c->residual->pattern) return STATUS_OK;
-    memcpy(c->kind, kind, (size_t)c->n_unknowns * sizeof *kind);
-    c->pattern = c->residual->pattern;
-    part_free(c);
-    sparse_forget(c->whole);
-    TRY(residual_jacobian(c->residual, c->t, 0, c->y, c->whole));
-    return part_create(c);
+    if (memcmp(kind, c->kind, (size_t)c->n * sizeof *kind) == 0) return;
+    memcpy(c->kind, kind, (size_t)c->n * sizeof *kind);
+    residual_mask(c->residual, c->jacobian);
+    for (int f = 0; f < c->residual->school->n_fish; f++) {
+        const struct layout *at = &c->residual->school->fish[f].at;
+        for (int i = at->x; i < at->end; i++) {
+            if (c->kind[i] > 0) sparse_mask(c->jacobian->own[f], i, 1);
+        }
+    }
 }
 
 // what KINSOL could not do, and for which unknown the equation is worst
@@ -212,10 +156,10 @@ static enum status give_up(struct consistent *c, int code) {
     int worst = 0;
     double most = -1;
     for (int i = 0; i < c->n; i++) {
-        const double size = fabs(c->value[c->member[i]] * c->value_scale_data[i]);
+        const double size = c->kind[i] > 0 ? 0 : fabs(c->value[i] * c->value_scale[i]);
         if (!(size <= most)) {
             most = size;
-            worst = c->member[i];
+            worst = i;
         }
     }
     const struct unknown_place place = residual_place(c->residual->school, worst);
@@ -241,18 +185,18 @@ static void set_rates(const struct consistent *c, double t, const double *y, dou
 
 enum status consistent_solve(struct consistent *c, double t, double *y, double *yp) {
     c->t = t;
-    memcpy(c->y, y, (size_t)c->n_unknowns * sizeof *y);
+    memcpy(c->y, y, (size_t)c->n * sizeof *y);
+    memcpy(c->start, y, (size_t)c->n * sizeof *y);
     flow_forget(c->residual->flow);
-    TRY(refresh(c));
-    for (int i = 0; i < c->n; i++) c->solution_data[i] = y[c->member[i]];
+    refresh(c);
     c->failure = STATUS_OK;
-    const int code = KINSol(c->kinsol, c->solution, KIN_NONE, c->solution_scale, c->value_scale);
+    const int code = KINSol(c->kinsol, c->solution, KIN_NONE, c->solution_scales, c->value_scales);
     long iterations = 0;
     KINGetNumNonlinSolvIters(c->kinsol, &iterations);
     c->iterations += iterations;
     if (c->failure < 0) return c->failure;
     if (code < 0) return give_up(c, code);
-    for (int i = 0; i < c->n; i++) y[c->member[i]] = c->solution_data[i];
+    take_algebraic(c, c->start, y);
     // the fluid's velocity at the solution serves the rates, and whoever measures the state
     TRY(residual_evaluate(c->residual, t, y, yp, c->value));
     set_rates(c, t, y, yp);

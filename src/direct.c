@@ -135,6 +135,12 @@ static enum status place_flow(struct direct *d, double t, const double *y) {
     return STATUS_OK;
 }
 
+// column j of a block at point p, along a direction
+static double along(const struct flow_block *block, int j, int p, const double direction[2]) {
+    const long at = (long)j * block->n_points + p;
+    return direction[0] * block->u[at] + direction[1] * block->v[at];
+}
+
 // the system: rows of fish f are its control points, Kelvin, and the edge condition where that holds; columns of fish g
 // are its bound vortices and, with the edge condition, its nascent vortex
 static void assemble(struct direct *d, const double *y, double *rhs) {
@@ -168,12 +174,10 @@ static void assemble(struct direct *d, const double *y, double *rhs) {
             for (int c = 0; c < fish->n_control; c++) {
                 double normal[2];
                 sheet_normal(fish, c, y, normal);
-                const double *const bu = block->u + (long)c * block->n_columns;
-                const double *const bv = block->v + (long)c * block->n_columns;
                 for (int j = 0; j < n_strengths(residual, other); j++) {
-                    d->value[(long)(d->first[g] + j) * d->n + row + c] = normal[0] * bu[j] + normal[1] * bv[j];
+                    d->value[(long)(d->first[g] + j) * d->n + row + c] = along(block, j, c, normal);
                 }
-                rhs[row + c] -= known * (normal[0] * bu[other->n_sheet] + normal[1] * bv[other->n_sheet]);
+                rhs[row + c] -= known * along(block, other->n_sheet, c, normal);
             }
         }
     }
@@ -213,12 +217,12 @@ static void add_sheets(struct direct *d, const double *y) {
             const struct flow_block *block = &d->response[f * school->n_fish + g];
             const double nascent = y[other->at.shed] - d->residual->state->wake[g].shed_before;
             for (int p = 0; p < block->n_points; p++) {
-                const double *const bu = block->u + (long)p * block->n_columns;
-                const double *const bv = block->v + (long)p * block->n_columns;
-                double u = nascent * bu[other->n_sheet], v = nascent * bv[other->n_sheet];
+                const long last = (long)other->n_sheet * block->n_points + p;
+                double u = nascent * block->u[last], v = nascent * block->v[last];
                 for (int j = 0; j < other->n_sheet; j++) {
-                    u += bu[j] * y[other->at.sheet + j];
-                    v += bv[j] * y[other->at.sheet + j];
+                    const long at = (long)j * block->n_points + p;
+                    u += block->u[at] * y[other->at.sheet + j];
+                    v += block->v[at] * y[other->at.sheet + j];
                 }
                 flow->u[flow->points[f].first + p] += u;
                 flow->v[flow->points[f].first + p] += v;

@@ -120,23 +120,23 @@ void drag_stamp(const struct fish *fish, const double *u, const double *v, const
     }
 }
 
-void drag_stamp_flow(const struct fish *fish, const struct fish *other, const double *u, const double *v,
-                     const struct flow_block *block, const double *y, struct sparse *jacobian) {
+void drag_stamp_flow(const struct fish *fish, const double *u, const double *v, const struct flow_block *block,
+                     const double *y, struct flow_rows *rows) {
     for (int k = 0; k < fish->n_edges; k++) {
         const struct segment s = segment_at(fish, k, y);
         double w[2], by_velocity[2][2], by_turn[2];
         relative_velocity(fish, k, &s, u, v, w);
         drag_slope(fish, k, &s, w, by_velocity, by_turn);
-        const double *const du = block->u + (long)flow_midpoint(fish, k) * block->n_columns;
-        const double *const dv = block->v + (long)flow_midpoint(fish, k) * block->n_columns;
-        for (int c = 0; c < block->n_columns; c++) {
-            if (!flow_midpoint_feels(fish, other, k, c)) continue;
-            for (int i = 0; i < 2; i++) {
-                const double change = by_velocity[i][0] * du[c] + by_velocity[i][1] * dv[c];
-                for (int node = k; node <= k + 1; node++) {
-                    sparse_add(jacobian, acceleration(fish, i, node), flow_column(other, c),
-                               change / (2 * fish->mass[node]));
-                }
+        const double per_mass[2] = {1 / (2 * fish->mass[k]), 1 / (2 * fish->mass[k + 1])};
+        const double *const du = block->u + flow_midpoint(fish, k), *const dv = block->v + flow_midpoint(fish, k);
+        for (long c = 0; c < block->n_columns; c++) {
+            double *const ax = rows->value + c * rows->n_rows + k, *const ay = ax + fish->n_nodes;
+            const double by_u = du[c * block->n_points], by_v = dv[c * block->n_points];
+            const double change_x = by_velocity[0][0] * by_u + by_velocity[0][1] * by_v;
+            const double change_y = by_velocity[1][0] * by_u + by_velocity[1][1] * by_v;
+            for (int end = 0; end < 2; end++) {
+                ax[end] += change_x * per_mass[end];
+                ay[end] += change_y * per_mass[end];
             }
         }
     }
@@ -211,9 +211,10 @@ void drag_moment_stamp(const struct fish *fish, double factor, const double *u, 
     }
 }
 
-void drag_moment_stamp_flow(const struct fish *fish, const struct fish *other, double factor, const double *u,
-                            const double *v, const struct flow_block *block, const double *y, struct sparse *jacobian) {
+void drag_moment_stamp_flow(const struct fish *fish, double factor, const double *u, const double *v,
+                            const struct flow_block *block, const double *y, struct flow_rows *rows) {
     const double scale = factor / fish->control.torque_scale;
+    double *const row = rows->value + (fish->at.phi0 - fish->at.ax);
     double com[2];
     centre_of_mass(fish, y, com);
     for (int k = 0; k < fish->n_edges; k++) {
@@ -224,11 +225,9 @@ void drag_moment_stamp_flow(const struct fish *fish, const struct fish *other, d
         drag_slope(fish, k, &s, w, by_velocity, by_turn);
         const double by_u = arm[1] * by_velocity[0][0] - arm[0] * by_velocity[1][0];
         const double by_v = arm[1] * by_velocity[0][1] - arm[0] * by_velocity[1][1];
-        const double *const du = block->u + (long)flow_midpoint(fish, k) * block->n_columns;
-        const double *const dv = block->v + (long)flow_midpoint(fish, k) * block->n_columns;
-        for (int c = 0; c < block->n_columns; c++) {
-            if (!flow_midpoint_feels(fish, other, k, c)) continue;
-            sparse_add(jacobian, fish->at.phi0, flow_column(other, c), scale * (by_u * du[c] + by_v * dv[c]));
+        const double *const du = block->u + flow_midpoint(fish, k), *const dv = block->v + flow_midpoint(fish, k);
+        for (long c = 0; c < block->n_columns; c++) {
+            row[c * rows->n_rows] += scale * (by_u * du[c * block->n_points] + by_v * dv[c * block->n_points]);
         }
     }
 }

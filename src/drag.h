@@ -14,9 +14,9 @@ void drag_residual(const struct fish *fish, const double *u, const double *v, co
 /* Add the derivatives of drag_residual, each row divided by its node's mass: what depends on the body itself. */
 void drag_stamp(const struct fish *fish, const double *u, const double *v, const double *y, struct sparse *jacobian);
 
-/* Add those that come through the fluid's velocity, for the unknowns of the fish other. */
-void drag_stamp_flow(const struct fish *fish, const struct fish *other, const double *u, const double *v,
-                     const struct flow_block *block, const double *y, struct sparse *jacobian);
+/* Add those that come through the fluid's velocity. */
+void drag_stamp_flow(const struct fish *fish, const double *u, const double *v, const struct flow_block *block,
+                     const double *y, struct flow_rows *rows);
 
 /* tau: the moment about the centre of mass of the drag that the flow causes, sum (x - x_cm) x (F(v - u) - F(v)), over
  * its scale; dimensionless. */
@@ -25,8 +25,8 @@ double drag_moment(const struct fish *fish, const double *u, const double *v, co
 /* Add factor times the derivative of drag_moment to the row phi0: as for the forces in two parts. */
 void drag_moment_stamp(const struct fish *fish, double factor, const double *u, const double *v, const double *y,
                        struct sparse *jacobian);
-void drag_moment_stamp_flow(const struct fish *fish, const struct fish *other, double factor, const double *u,
-                            const double *v, const struct flow_block *block, const double *y, struct sparse *jacobian);
+void drag_moment_stamp_flow(const struct fish *fish, double factor, const double *u, const double *v,
+                            const struct flow_block *block, const double *y, struct flow_rows *rows);
 
 /* Powers of drag and added mass on the body, W: negative where they slow it. */
 double drag_power(const struct fish *fish, const double *u, const double *v, const double *y);

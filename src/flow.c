@@ -20,12 +20,12 @@ int flow_column(const struct fish *other, int c) {
     return c < n_places ? other->at.x + c : other->at.sheet + (c - n_places);
 }
 
-int flow_midpoint_feels(const struct fish *fish, const struct fish *other, int edge, int c) {
-    if (fish != other) return 1;
-    const int n_places = 2 * fish->n_nodes;
-    if (c >= n_places) return c == n_places + fish->n_sheet;
-    const int node = c % fish->n_nodes;
-    return node == edge || node == edge + 1 || node == fish->n_nodes - 1;
+int flow_n_rows(const struct fish *fish) {
+    return fish->at.end - fish->at.ax;
+}
+
+int flow_n_columns(const struct fish *other) {
+    return 2 * other->n_nodes + other->n_sheet + 1;
 }
 
 static enum status doubles(double **values, int n) {
@@ -277,17 +277,94 @@ void flow_gradient(struct flow *flow) {
     evaluate(flow, 1);
 }
 
-// add weight times the gradient to the columns of the nodes of a point that moves
-static void add_motion(struct flow_block *block, int p, const struct stencil *point, int n_nodes,
-                       const struct kernel_value *slope, double weight) {
-    double *const u = block->u + (long)p * block->n_columns, *const v = block->v + (long)p * block->n_columns;
+// the derivatives at n points from first on: column c of both components
+struct part {
+    double *u, *v;
+};
+static struct part part_of(const struct flow_block *block, int c, int first) {
+    const long at = (long)c * block->n_points + first;
+    return (struct part){block->u + at, block->v + at};
+}
+
+// add factor times the derivative with respect to the place of a point that moves with the nodes of fish other
+static void add_motion(const struct flow_block *block, const struct fish *other, const struct stencil *point, int first,
+                       int n, const struct kernel_values *slope, double factor) {
     for (int i = 0; i < point->n; i++) {
-        const int node = point->node[i];
-        const double w = weight * point->weight[i];
-        u[node] += w * slope->u_x;
-        u[n_nodes + node] += w * slope->u_y;
-        v[node] += w * slope->v_x;
-        v[n_nodes + node] -= w * slope->u_x;
+        const struct part by_x = part_of(block, point->node[i], first);
+        const struct part by_y = part_of(block, other->n_nodes + point->node[i], first);
+        kernel_add_motion(n, factor * point->weight[i], slope, by_x.u, by_x.v, by_y.u, by_y.v);
+    }
+}
+
+// the velocity per strength of one source, into column c
+static void set_strength(const struct flow_block *block, int c, int first, int n, const struct kernel_values *unit,
+                         double weight) {
+    const struct part to = part_of(block, c, first);
+    for (int i = 0; i < n; i++) {
+        to.u[i] = unit->u[i] * weight;
+        to.v[i] = unit->v[i] * weight;
+    }
+}
+
+// what column a source has, and whether its place moves with the unknowns too
+struct target {
+    const struct flow *flow;
+    int f, g, with_places;
+    const struct flow_block *block;
+};
+
+// the nascent vortex of fish g at all points of fish f
+static void derive_nascent(const struct target *at) {
+    const struct flow *flow = at->flow;
+    const struct fish *other = &flow->school->fish[at->g];
+    const struct range points = flow->points[at->f];
+    const struct stencil tail = {.n = 1, .node = {other->n_nodes - 1}, .weight = {1}};
+    for (int first = 0; first < points.n; first += KERNEL_CHUNK) {
+        const int n = points.n - first < KERNEL_CHUNK ? points.n - first : KERNEL_CHUNK;
+        struct kernel_values unit;
+        kernel_unit(n, flow->x + points.first + first, flow->y + points.first + first, flow->nascent.x[at->g],
+                    flow->nascent.y[at->g], other->smoothing, &unit);
+        set_strength(at->block, at->block->n_columns - 1, first, n, &unit, 1);
+        if (at->with_places) {
+            add_motion(at->block, other, &tail, first, n, &unit, -flow->nascent.circulation[at->g]);
+        }
+    }
+}
+
+// the bound vortices of fish g at a range of the points of fish f
+static void derive_sheet(const struct target *at, struct range points, double smoothing) {
+    const struct flow *flow = at->flow;
+    const struct fish *other = &flow->school->fish[at->g];
+    const int here = flow->points[at->f].first, sheet = flow->sheet_range[at->g].first;
+    const int strength = at->block->n_columns - 1 - other->n_sheet, end = points.first + points.n;
+    for (int first = points.first; first < end; first += KERNEL_CHUNK) {
+        const int n = end - first < KERNEL_CHUNK ? end - first : KERNEL_CHUNK;
+        for (int j = 0; j < other->n_sheet; j++) {
+            struct kernel_values unit;
+            kernel_unit(n, flow->x + here + first, flow->y + here + first, flow->sheet.x[sheet + j],
+                        flow->sheet.y[sheet + j], smoothing, &unit);
+            set_strength(at->block, strength + j, first, n, &unit, other->sheet_weight[j]);
+            if (at->with_places) {
+                add_motion(at->block, other, &other->sheet_point[j], first, n, &unit,
+                           -flow->sheet.circulation[sheet + j]);
+            }
+        }
+    }
+}
+
+// all that moves with fish g, at the points of fish f that feel it
+static void derive_sources(const struct target *at) {
+    const struct flow *flow = at->flow;
+    const struct fish *fish = &flow->school->fish[at->f], *other = &flow->school->fish[at->g];
+    const size_t size = (size_t)at->block->n_points * (size_t)at->block->n_columns;
+    memset(at->block->u, 0, size * sizeof *at->block->u);
+    memset(at->block->v, 0, size * sizeof *at->block->v);
+    derive_nascent(at);
+    if (at->f == at->g) {
+        derive_sheet(at, (struct range){0, fish->n_control}, 0);
+        derive_sheet(at, (struct range){flow_tail(fish), 1}, fish->sheet_smoothing);
+    } else {
+        derive_sheet(at, (struct range){0, flow->points[at->f].n}, other->sheet_smoothing);
     }
 }
 
@@ -299,74 +376,32 @@ static struct stencil point_stencil(const struct fish *fish, int p) {
     return (struct stencil){.n = 2, .node = {k, k + 1}, .weight = {0.5, 0.5}};
 }
 
-static void derive_nascent(const struct flow *flow, const struct fish *other, int g, int p, double x, double y,
-                           struct flow_block *block) {
-    const int tail = other->n_nodes - 1;
-    const struct kernel_value unit = kernel_unit(x - flow->nascent.x[g], y - flow->nascent.y[g], other->smoothing);
-    const struct stencil end = {.n = 1, .node = {tail}, .weight = {1}};
-    add_motion(block, p, &end, other->n_nodes, &unit, -flow->nascent.circulation[g]);
-    const long shed = (long)p * block->n_columns + 2 * other->n_nodes + other->n_sheet;
-    block->u[shed] += unit.u;
-    block->v[shed] += unit.v;
-}
-
-static void derive_sheet(const struct flow *flow, const struct fish *other, int g, int p, double x, double y,
-                         double smoothing, struct flow_block *block) {
-    const int first = flow->sheet_range[g].first;
-    const long strength = (long)p * block->n_columns + 2 * other->n_nodes;
-    for (int j = 0; j < other->n_sheet; j++) {
-        const struct kernel_value unit =
-            kernel_unit(x - flow->sheet.x[first + j], y - flow->sheet.y[first + j], smoothing);
-        block->u[strength + j] += unit.u * other->sheet_weight[j];
-        block->v[strength + j] += unit.v * other->sheet_weight[j];
-        add_motion(block, p, &other->sheet_point[j], other->n_nodes, &unit, -flow->sheet.circulation[first + j]);
-    }
-}
-
 void flow_derivative(const struct flow *flow, int f, int g, struct flow_block *block) {
-    const struct fish *fish = &flow->school->fish[f], *other = &flow->school->fish[g];
+    const struct fish *fish = &flow->school->fish[f];
     block->n_points = flow->points[f].n;
-    block->n_columns = 2 * other->n_nodes + other->n_sheet + 1;
-    const size_t size = (size_t)block->n_points * (size_t)block->n_columns;
-    memset(block->u, 0, size * sizeof *block->u);
-    memset(block->v, 0, size * sizeof *block->v);
+    block->n_columns = flow_n_columns(&flow->school->fish[g]);
+    derive_sources(&(struct target){flow, f, g, 1, block});
+    if (f != g) return;
+    // the points of a fish move with its own nodes, in the field of all sources
     for (int p = 0; p < block->n_points; p++) {
         const int at = flow->points[f].first + p;
-        const double x = flow->x[at], y = flow->y[at];
-        derive_nascent(flow, other, g, p, x, y, block);
-        const int own = f == g, control = p < fish->n_control, tail = p == flow_tail(fish);
-        if (!own || control || tail) {
-            derive_sheet(flow, other, g, p, x, y, own && control ? 0 : other->sheet_smoothing, block);
-        }
-        if (own) {
-            const struct kernel_value total = {.u_x = flow->u_x[at], .u_y = flow->u_y[at], .v_x = flow->v_x[at]};
-            const struct stencil point = point_stencil(fish, p);
-            add_motion(block, p, &point, fish->n_nodes, &total, 1);
+        const struct stencil point = point_stencil(fish, p);
+        for (int i = 0; i < point.n; i++) {
+            const double w = point.weight[i];
+            const struct part by_x = part_of(block, point.node[i], p);
+            const struct part by_y = part_of(block, fish->n_nodes + point.node[i], p);
+            *by_x.u += w * flow->u_x[at];
+            *by_x.v += w * flow->v_x[at];
+            *by_y.u += w * flow->u_y[at];
+            *by_y.v -= w * flow->u_x[at];
         }
     }
 }
 
 void flow_response(const struct flow *flow, int f, int g, struct flow_block *block) {
-    const struct fish *fish = &flow->school->fish[f], *other = &flow->school->fish[g];
-    const int sheet = flow->sheet_range[g].first;
     block->n_points = flow->points[f].n;
-    block->n_columns = other->n_sheet + 1;
-    for (int p = 0; p < block->n_points; p++) {
-        const double x = flow->x[flow->points[f].first + p], y = flow->y[flow->points[f].first + p];
-        const int own = f == g, control = p < fish->n_control, tail = p == flow_tail(fish);
-        double *const u = block->u + (long)p * block->n_columns, *const v = block->v + (long)p * block->n_columns;
-        for (int j = 0; j < other->n_sheet; j++) {
-            u[j] = v[j] = 0;
-            if (own && !control && !tail) continue;
-            const struct kernel_value unit = kernel_unit(x - flow->sheet.x[sheet + j], y - flow->sheet.y[sheet + j],
-                                                         own && control ? 0 : other->sheet_smoothing);
-            u[j] = unit.u * other->sheet_weight[j];
-            v[j] = unit.v * other->sheet_weight[j];
-        }
-        const struct kernel_value unit = kernel_unit(x - flow->nascent.x[g], y - flow->nascent.y[g], other->smoothing);
-        u[other->n_sheet] = unit.u;
-        v[other->n_sheet] = unit.v;
-    }
+    block->n_columns = flow->school->fish[g].n_sheet + 1;
+    derive_sources(&(struct target){flow, f, g, 0, block});
 }
 
 void flow_at_wake(const struct flow *flow, int f, double *u, double *v) {

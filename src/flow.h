@@ -43,11 +43,18 @@ struct flow {
     double *motion[4];          /* velocity and acceleration of the points           (n_points) */
 };
 
-/* Derivative of the velocity at the points of fish f with respect to the unknowns of fish g, row by row:
+/* Derivative of the velocity at the points of fish f with respect to the unknowns of fish g, column by column:
  * columns are x (N_g), y (N_g), sheet (M_g), shed (1) of fish g. */
 struct flow_block {
     int n_points, n_columns;
-    double *u, *v; /* (n_points, n_columns) */
+    double *u, *v; /* (n_columns, n_points) */
+};
+
+/* Derivative of the equations of fish f that feel the fluid with respect to the same unknowns of fish g, column by
+ * column: row r is the equation at.ax + r of fish f, so rows are ax, ay, sheet, shed, phi0. */
+struct flow_rows {
+    int n_rows, n_columns;
+    double *value; /* (n_columns, n_rows) */
 };
 
 /* Fails with STATUS_MEMORY. flow_free accepts NULL. */
@@ -61,9 +68,9 @@ int flow_tail(const struct fish *fish);
 /* The unknown that column c of the block of fish other stands for. */
 int flow_column(const struct fish *other, int c);
 
-/* Whether the midpoint of an edge of fish feels column c of the block of fish other. Of its own unknowns it feels the
- * nodes of its edge and, through the nascent vortex, the tail and the circulation shed. */
-int flow_midpoint_feels(const struct fish *fish, const struct fish *other, int edge, int c);
+/* The number of rows of fish that feel the fluid, and of columns of the block of fish other. */
+int flow_n_rows(const struct fish *fish);
+int flow_n_columns(const struct fish *other);
 
 /* The external flow at height y at time t. */
 void flow_external(const struct school *school, double t, double y, double *u, double *v);

@@ -36,11 +36,21 @@ enum { KERNEL_TILE = 128 };
  * both. */
 void kernel_add_mutual(const struct kernel_tile *a, const struct kernel_tile *b, double smoothing);
 
-/* Velocity and gradient at the distance (rx, ry) from one source of unit circulation. */
-struct kernel_value {
-    double u, v, u_x, u_y, v_x;
+/* Velocity and gradient at a chunk of targets. */
+enum { KERNEL_CHUNK = 64 };
+struct kernel_values {
+    double u[KERNEL_CHUNK], v[KERNEL_CHUNK];
+    double u_x[KERNEL_CHUNK], u_y[KERNEL_CHUNK], v_x[KERNEL_CHUNK];
 };
-struct kernel_value kernel_unit(double rx, double ry, double smoothing);
+
+/* What one source of unit circulation causes at n <= KERNEL_CHUNK targets. */
+void kernel_unit(int n, const double *x, const double *y, double source_x, double source_y, double smoothing,
+                 struct kernel_values *values);
+
+/* Add to n targets the change of the velocity with a displacement of unit length in x and in y, times a factor: u_x and
+ * v_x to the arrays of x, u_y and v_y = -u_x to those of y. */
+void kernel_add_motion(int n, double factor, const struct kernel_values *values, double *u_by_x, double *v_by_x,
+                       double *u_by_y, double *v_by_y);
 
 /* The sources of one sum. */
 struct kernel_sources {

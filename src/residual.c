@@ -2,6 +2,7 @@
 #include "residual.h"
 
 #include <math.h>
+#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -14,26 +15,32 @@
 static enum status allocate(struct residual *residual) {
     const struct school *school = residual->school;
     const size_t n_fish = (size_t)school->n_fish;
-    int n_joints = 0, most_points = 0, most_columns = 0;
+    int n_joints = 0, most_points = 0, most_columns = 0, most_rows = 0;
     residual->joints = calloc(n_fish, sizeof *residual->joints);
     residual->coupled = calloc(n_fish * n_fish, sizeof *residual->coupled);
     if (!residual->joints || !residual->coupled) goto no_memory;
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *fish = &school->fish[f];
-        const int points = fish->n_control + fish->n_edges + 1, columns = 2 * fish->n_nodes + fish->n_sheet + 1;
+        const int points = fish->n_control + fish->n_edges + 1, columns = flow_n_columns(fish);
         residual->joints[f] = (struct range){n_joints, fish->n_joints};
         n_joints += fish->n_joints;
         if (points > most_points) most_points = points;
         if (columns > most_columns) most_columns = columns;
+        if (flow_n_rows(fish) > most_rows) most_rows = flow_n_rows(fish);
     }
-    const size_t block = (size_t)most_points * (size_t)most_columns;
+    const size_t n_columns = (size_t)most_columns, n_block = (size_t)most_points * n_columns;
+    residual->stamping = calloc((size_t)school->threads, sizeof *residual->stamping);
+    for (int i = 0; residual->stamping && i < school->threads; i++) {
+        struct stamping *const stamping = &residual->stamping[i];
+        stamping->block.u = calloc(n_block, sizeof(double));
+        stamping->block.v = calloc(n_block, sizeof(double));
+        stamping->rows.value = calloc((size_t)most_rows * n_columns, sizeof(double));
+        if (!stamping->block.u || !stamping->block.v || !stamping->rows.value) goto no_memory;
+    }
     residual->scratch = calloc((size_t)school->n_unknowns, sizeof(double));
     residual->natural_curvature = calloc((size_t)n_joints, sizeof(double));
     residual->curvature_by_phi0 = calloc((size_t)n_joints, sizeof(double));
-    residual->block.u = calloc(block, sizeof(double));
-    residual->block.v = calloc(block, sizeof(double));
-    if (!residual->natural_curvature || !residual->curvature_by_phi0 || !residual->scratch || !residual->block.u ||
-        !residual->block.v) {
+    if (!residual->natural_curvature || !residual->curvature_by_phi0 || !residual->scratch || !residual->stamping) {
         goto no_memory;
     }
     return flow_create(&residual->flow, school);
@@ -66,8 +73,12 @@ void residual_free(struct residual *residual) {
     free(residual->natural_curvature);
     free(residual->curvature_by_phi0);
     free(residual->scratch);
-    free(residual->block.u);
-    free(residual->block.v);
+    for (int i = 0; residual->stamping && i < residual->school->threads; i++) {
+        free(residual->stamping[i].block.u);
+        free(residual->stamping[i].block.v);
+        free(residual->stamping[i].rows.value);
+    }
+    free(residual->stamping);
     free(residual);
 }
 
@@ -207,70 +218,112 @@ void residual_balance(const struct residual *residual, int f, const double *y, d
     balance(residual, f, residual->flow->u + first, residual->flow->v + first, y, value);
 }
 
-static void stamp_driven(const struct fish *fish, struct sparse *jacobian) {
-    const int slices[] = {fish->at.x, fish->at.y, fish->at.vx, fish->at.vy, fish->at.ax, fish->at.ay};
-    for (int k = 0; k < fish_n_driven(fish); k++) {
-        for (size_t i = 0; i < sizeof slices / sizeof *slices; i++) {
-            sparse_add_unmasked(jacobian, slices[i] + k, slices[i] + k, 1);
+// the equations of fish f by what moves with fish g and comes through the velocity of the fluid
+static void stamp_flow(const struct residual *residual, int f, int g, double t, double by_tau, const double *y,
+                       struct flow_block *block, struct flow_rows *rows) {
+    const struct fish *fish = &residual->school->fish[f];
+    const double *const u = residual->flow->u + residual->flow->points[f].first;
+    const double *const v = residual->flow->v + residual->flow->points[f].first;
+    rows->n_rows = flow_n_rows(fish);
+    rows->n_columns = flow_n_columns(&residual->school->fish[g]);
+    memset(rows->value, 0, (size_t)rows->n_rows * (size_t)rows->n_columns * sizeof *rows->value);
+    flow_derivative(residual->flow, f, g, block);
+    drag_stamp_flow(fish, u, v, block, y, rows);
+    sheet_stamp_flow(fish, block, y, rows);
+    if (law_of(residual) == SHEET_RATE) {
+        sheet_kutta_stamp_flow(fish, smooth_ramp(t, residual->school->kutta_ramp), block, y, rows);
+    }
+    if (feels_moment(fish)) drag_moment_stamp_flow(fish, by_tau, u, v, block, y, rows);
+}
+
+// add the rows of a fish by its own unknowns to its block: those entries that may differ from zero. The midpoint of an
+// edge feels the nodes of that edge and, through the nascent vortex, the tail and the circulation shed.
+static void add_own(const struct residual *residual, const struct fish *fish, const struct flow_rows *rows,
+                    struct sparse *own) {
+    const int n_nodes = fish->n_nodes, n_places = 2 * n_nodes;
+    const int rate = law_of(residual) == SHEET_RATE, moment = feels_moment(fish);
+    for (int c = 0; c < rows->n_columns; c++) {
+        const double *const value = rows->value + (long)c * rows->n_rows;
+        const int column = flow_column(fish, c), node = c % n_nodes;
+        const int is_shed = c == rows->n_columns - 1, is_sheet = c >= n_places && !is_shed;
+        const int all = is_shed || node == n_nodes - 1;
+        const int first = all || node == 0 ? 0 : node - 1, last = all || node == n_nodes - 2 ? n_nodes - 1 : node + 1;
+        for (int k = first; !is_sheet && k <= last; k++) {
+            sparse_add(own, fish->at.ax + k, column, value[k]);
+            sparse_add(own, fish->at.ay + k, column, value[n_nodes + k]);
         }
+        for (int k = 0; k < fish->n_control; k++) sparse_add(own, fish->at.sheet + k, column, value[n_places + k]);
+        if (rate) sparse_add(own, fish->at.shed, column, value[fish->at.shed - fish->at.ax]);
+        if (moment && !is_sheet) sparse_add(own, fish->at.phi0, column, value[fish->at.phi0 - fish->at.ax]);
     }
 }
 
 // the derivatives of one fish's equations, in the order of evaluate_fish
-static void stamp_fish(struct residual *residual, int f, double t, double cj, const double *y,
-                       struct sparse *jacobian) {
+static enum status stamp_fish(struct residual *residual, int f, double t, double cj, const double *y,
+                              struct stamping *stamping, struct jacobian *jacobian) {
     const struct school *school = residual->school;
     const struct fish *fish = &school->fish[f];
+    struct sparse *const own = jacobian->own[f];
     const double *const u = residual->flow->u + residual->flow->points[f].first;
     const double *const v = residual->flow->v + residual->flow->points[f].first;
     const int joints = residual->joints[f].first;
-    const double chi = smooth_ramp(t, school->kutta_ramp);
 
+    sparse_begin(own);
     for (int i = 0; i < 2 * fish->n_nodes; i++) {
-        sparse_add(jacobian, fish->at.x + i, fish->at.x + i, cj);
-        sparse_add(jacobian, fish->at.x + i, fish->at.vx + i, -1);
-        sparse_add(jacobian, fish->at.vx + i, fish->at.vx + i, cj);
-        sparse_add(jacobian, fish->at.vx + i, fish->at.ax + i, -1);
-        sparse_add(jacobian, fish->at.ax + i, fish->at.ax + i, 1);
+        sparse_add(own, fish->at.x + i, fish->at.x + i, cj);
+        sparse_add(own, fish->at.x + i, fish->at.vx + i, -1);
+        sparse_add(own, fish->at.vx + i, fish->at.vx + i, cj);
+        sparse_add(own, fish->at.vx + i, fish->at.ax + i, -1);
+        sparse_add(own, fish->at.ax + i, fish->at.ax + i, 1);
     }
     residual_muscle(residual, f, t, y);
-    rod_stamp(fish, residual->natural_curvature + joints, residual->curvature_by_phi0 + joints, y, jacobian);
-    drag_stamp(fish, u, v, y, jacobian);
-    stamp_driven(fish, jacobian);
-    sheet_stamp(fish, u, v, y, jacobian);
-    sheet_kutta_stamp(fish, law_of(residual), chi, cj, u, v, y, jacobian);
+    rod_stamp(fish, residual->natural_curvature + joints, residual->curvature_by_phi0 + joints, y, own);
+    drag_stamp(fish, u, v, y, own);
+    sheet_stamp(fish, u, v, y, own);
+    sheet_kutta_stamp(fish, law_of(residual), smooth_ramp(t, school->kutta_ramp), cj, u, v, y, own);
     const double tau = residual_moment(residual, f, y);
-    const double by_tau = control_stamp(fish, &residual->state->control[f], t, tau, y, jacobian);
-    if (feels_moment(fish)) drag_moment_stamp(fish, by_tau, u, v, y, jacobian);
+    const double by_tau = control_stamp(fish, &residual->state->control[f], t, tau, y, own);
+    if (feels_moment(fish)) drag_moment_stamp(fish, by_tau, u, v, y, own);
 
-    // what comes through the velocity of the fluid
-    for (int g = 0; g < school->n_fish; g++) {
-        if (!residual->coupled[f * school->n_fish + g]) continue;
-        const struct fish *other = &school->fish[g];
-        const struct flow_block *block = &residual->block;
-        flow_derivative(residual->flow, f, g, &residual->block);
-        drag_stamp_flow(fish, other, u, v, block, y, jacobian);
-        sheet_stamp_flow(fish, other, block, y, jacobian);
-        if (law_of(residual) == SHEET_RATE) sheet_kutta_stamp_flow(fish, other, chi, block, y, jacobian);
-        if (feels_moment(fish)) drag_moment_stamp_flow(fish, other, by_tau, u, v, block, y, jacobian);
+    // what comes through the velocity of the fluid: by the fish's own unknowns, and by those of the fish it couples to
+    stamp_flow(residual, f, f, t, by_tau, y, &stamping->block, &stamping->rows);
+    add_own(residual, fish, &stamping->rows, own);
+    for (int i = jacobian->first[f]; i < jacobian->first[f + 1]; i++) {
+        struct jacobian_coupling *const coupling = &jacobian->coupling[i];
+        stamp_flow(residual, f, coupling->other, t, by_tau, y, &stamping->block, &coupling->rows);
     }
+    jacobian_mask_couplings(jacobian, f);
+    return sparse_end(own);
 }
 
 enum status residual_jacobian(struct residual *residual, double t, double cj, const double *y,
-                              struct sparse *jacobian) {
+                              struct jacobian *jacobian) {
+    const int n_fish = residual->school->n_fish;
     TRY(flow_place(residual->flow, residual->state, t, y));
     flow_gradient(residual->flow);
-    sparse_begin(jacobian);
-    for (int f = 0; f < residual->school->n_fish; f++) stamp_fish(residual, f, t, cj, y, jacobian);
-    return sparse_end(jacobian);
+    if (jacobian->pattern != residual->pattern) {
+        TRY(jacobian_couple(jacobian, residual->coupled, residual->pattern));
+    }
+    int n_failed = 0;
+#pragma omp parallel for num_threads(jacobian_threads(residual->school)) schedule(dynamic)
+    for (int f = 0; f < n_fish; f++) {
+        struct stamping *const stamping = &residual->stamping[omp_get_thread_num()];
+        if (stamp_fish(residual, f, t, cj, y, stamping, jacobian) != STATUS_OK) {
+#pragma omp atomic
+            n_failed++;
+        }
+    }
+    // the thread that failed had the message
+    return n_failed == 0 ? STATUS_OK : status_fail(STATUS_MEMORY, "no room for the Jacobian of %d fish", n_failed);
 }
 
-void residual_mask(const struct residual *residual, struct sparse *jacobian) {
+void residual_mask(const struct residual *residual, struct jacobian *jacobian) {
     for (int f = 0; f < residual->school->n_fish; f++) {
         const struct fish *fish = &residual->school->fish[f];
-        const int slices[] = {fish->at.x, fish->at.y, fish->at.vx, fish->at.vy, fish->at.ax, fish->at.ay};
-        for (int k = 0; k < fish_n_driven(fish); k++) {
-            for (size_t i = 0; i < sizeof slices / sizeof *slices; i++) sparse_mask(jacobian, slices[i] + k);
+        for (int row = fish->at.x; row < fish->at.end; row++) {
+            const struct unknown_place place = residual_place(residual->school, row);
+            const int driven = place.kind <= UNKNOWN_AY && place.index < fish_n_driven(fish);
+            sparse_mask(jacobian->own[f], row, driven);
         }
     }
 }

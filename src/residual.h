@@ -4,7 +4,7 @@
 #define RESIDUAL_H
 
 #include "flow.h"
-#include "sparse.h"
+#include "jacobian.h"
 #include "state.h"
 #include "status.h"
 
@@ -14,15 +14,21 @@ struct residual {
     const struct state *state; /* wakes, control memory, time of the last event */
     struct flow *flow;
     int at_impulse;         /* an impulsive event is being solved: Kutta's condition determines the circulation shed */
-    unsigned pattern;       /* changes whenever that of the Jacobian does, but for at_impulse */
+    unsigned pattern;       /* changes whenever coupled does */
     unsigned char *coupled; /* whether the Jacobian holds the block of fish g in the rows of fish f (n_fish, n_fish) */
 
     /* natural curvature of the joints of all fish and its derivative with respect to phi0, as last evaluated */
     struct range *joints;      /* of each fish                                   (n_fish) */
     double *natural_curvature; /* dimensionless, doc/model.md section 4          (joints of all fish) */
     double *curvature_by_phi0;
-    struct flow_block block; /* scratch */
-    double *scratch;         /* for whoever reads the results                     (n_unknowns) */
+    struct stamping *stamping; /* scratch of each thread                          (threads) */
+    double *scratch;           /* for whoever reads the results                   (n_unknowns) */
+};
+
+/* Scratch of the derivatives through the flow, large enough for any pair of fish. */
+struct stamping {
+    struct flow_block block;
+    struct flow_rows rows;
 };
 
 /* What an unknown is: for tolerances, names in messages, and which equations are algebraic. */
@@ -54,8 +60,9 @@ int residual_couple(struct residual *residual, const double *y);
 /* value = F(t, y, yp). Returns STATUS_RETRY where a value is not finite. */
 enum status residual_evaluate(struct residual *residual, double t, const double *y, const double *yp, double *value);
 
-/* jacobian = dF/dy + cj dF/dyp. When residual->pattern has changed, call sparse_forget first. */
-enum status residual_jacobian(struct residual *residual, double t, double cj, const double *y, struct sparse *jacobian);
+/* jacobian = dF/dy + cj dF/dyp, with the blocks of the coupled fish. Fails with STATUS_MEMORY. */
+enum status residual_jacobian(struct residual *residual, double t, double cj, const double *y,
+                              struct jacobian *jacobian);
 
 /* The parts of an evaluation, for who solves the equations one after another: the natural curvature of fish f for the
  * phi0 in y, and the dimensionless moment of the flow on it where its control law feels one (else 0). */
@@ -75,8 +82,8 @@ double residual_shed_rate(const struct residual *residual, int f, double t, cons
 /* Circulation that no longer counts in Kelvin's equation of fish f, m2 s-1. */
 double residual_dissipated(const struct residual *residual, int f);
 
-/* Mask the rows of the Jacobian whose equation is a given motion; once, before the first pass. */
-void residual_mask(const struct residual *residual, struct sparse *jacobian);
+/* Mask the rows of the Jacobian whose equation is a given motion, and no others. */
+void residual_mask(const struct residual *residual, struct jacobian *jacobian);
 
 /* kind[i] = 1 where unknown i is differential, 0 where it is algebraic                           (n_unknowns) */
 void residual_kinds(const struct residual *residual, double *kind);

@@ -76,14 +76,22 @@ void sheet_stamp(const struct fish *fish, const double *u, const double *v, cons
     sparse_add(jacobian, kelvin, fish->at.shed, 1);
 }
 
-void sheet_stamp_flow(const struct fish *fish, const struct fish *other, const struct flow_block *block,
-                      const double *y, struct sparse *jacobian) {
-    for (int c = 0; c < fish->n_control; c++) {
-        const struct chord chord = chord_at(fish, c, y);
-        const double *const u = block->u + (long)c * block->n_columns;
-        const double *const v = block->v + (long)c * block->n_columns;
+void sheet_stamp_flow(const struct fish *fish, const struct flow_block *block, const double *y,
+                      struct flow_rows *rows) {
+    enum { CHUNK = 32 };  // normals at a time, so that the loop over them is the inner one
+    double normal_x[CHUNK], normal_y[CHUNK];
+    for (int first = 0; first < fish->n_control; first += CHUNK) {
+        const int n = fish->n_control - first < CHUNK ? fish->n_control - first : CHUNK;
+        for (int c = 0; c < n; c++) {
+            const struct chord chord = chord_at(fish, first + c, y);
+            normal_x[c] = chord.n[0];
+            normal_y[c] = chord.n[1];
+        }
         for (int i = 0; i < block->n_columns; i++) {
-            sparse_add(jacobian, fish->at.sheet + c, flow_column(other, i), chord.n[0] * u[i] + chord.n[1] * v[i]);
+            const double *const u = block->u + (long)i * block->n_points + first;
+            const double *const v = block->v + (long)i * block->n_points + first;
+            double *const row = rows->value + (long)i * rows->n_rows + (fish->at.sheet - fish->at.ax) + first;
+            for (int c = 0; c < n; c++) row[c] += normal_x[c] * u[c] + normal_y[c] * v[c];
         }
     }
 }
@@ -137,13 +145,13 @@ void sheet_kutta_stamp(const struct fish *fish, enum sheet_law law, double chi, 
     stamp_ends(fish, fish->n_control - 1, row, by_end, jacobian);
 }
 
-void sheet_kutta_stamp_flow(const struct fish *fish, const struct fish *other, double chi,
-                            const struct flow_block *block, const double *y, struct sparse *jacobian) {
+void sheet_kutta_stamp_flow(const struct fish *fish, double chi, const struct flow_block *block, const double *y,
+                            struct flow_rows *rows) {
     const struct chord chord = chord_at(fish, fish->n_control - 1, y);
     const double strength = chi * y[fish->at.sheet + fish->n_sheet - 1];
-    const double *const u = block->u + (long)flow_tail(fish) * block->n_columns;
-    const double *const v = block->v + (long)flow_tail(fish) * block->n_columns;
-    for (int i = 0; i < block->n_columns; i++) {
-        sparse_add(jacobian, fish->at.shed, flow_column(other, i), -strength * (chord.t[0] * u[i] + chord.t[1] * v[i]));
+    const double *const u = block->u + flow_tail(fish), *const v = block->v + flow_tail(fish);
+    double *const row = rows->value + (fish->at.shed - fish->at.ax);
+    for (long i = 0; i < block->n_columns; i++) {
+        row[i * rows->n_rows] -= strength * (chord.t[0] * u[i * block->n_points] + chord.t[1] * v[i * block->n_points]);
     }
 }

@@ -21,9 +21,8 @@ void sheet_residual(const struct fish *fish, double dissipated, const double *u,
 /* Add the derivatives of the rows sheet: what depends on the body itself. */
 void sheet_stamp(const struct fish *fish, const double *u, const double *v, const double *y, struct sparse *jacobian);
 
-/* Add the derivatives of the rows sheet that come through the fluid's velocity, for the unknowns of the fish other. */
-void sheet_stamp_flow(const struct fish *fish, const struct fish *other, const struct flow_block *block,
-                      const double *y, struct sparse *jacobian);
+/* Add the derivatives of the rows sheet that come through the fluid's velocity. */
+void sheet_stamp_flow(const struct fish *fish, const struct flow_block *block, const double *y, struct flow_rows *rows);
 
 /* The rate at which circulation is shed by law SHEET_RATE, m2 s-2; u, v as above, chi the ramp. */
 double sheet_shedding_rate(const struct fish *fish, double chi, const double *u, const double *v, const double *y);
@@ -33,8 +32,8 @@ void sheet_kutta_residual(const struct fish *fish, enum sheet_law law, double ch
                           const double *y, const double *yp, double *residual);
 void sheet_kutta_stamp(const struct fish *fish, enum sheet_law law, double chi, double cj, const double *u,
                        const double *v, const double *y, struct sparse *jacobian);
-void sheet_kutta_stamp_flow(const struct fish *fish, const struct fish *other, double chi,
-                            const struct flow_block *block, const double *y, struct sparse *jacobian);
+void sheet_kutta_stamp_flow(const struct fish *fish, double chi, const struct flow_block *block, const double *y,
+                            struct flow_rows *rows);
 
 /* Unit normal of the chord between the bound vortices c and c + 1. */
 void sheet_normal(const struct fish *fish, int c, const double *y, double normal[2]);

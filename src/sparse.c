@@ -1,14 +1,14 @@
 /* sparse.c: record the order of additions once, replay it ever after. */
 #include "sparse.h"
 
-#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum status sparse_create(struct sparse **matrix, int n) {
+enum status sparse_create(struct sparse **matrix, int first, int n) {
     struct sparse *new = calloc(1, sizeof *new);
     *matrix = NULL;
     if (!new) return status_fail(STATUS_MEMORY, "no room for a sparse matrix");
+    new->first = first;
     new->n = n;
     new->recording = 1;
     new->masked = calloc((size_t)n, sizeof *new->masked);
@@ -38,18 +38,14 @@ void sparse_forget(struct sparse *matrix) {
     matrix->recording = 1;
 }
 
-void sparse_mask(struct sparse *matrix, int row) {
-    matrix->masked[row] = 1;
+void sparse_mask(struct sparse *matrix, int row, int masked) {
+    unsigned char *const here = &matrix->masked[row - matrix->first];
+    if (*here != masked) matrix->recording = 1;
+    *here = (unsigned char)masked;
 }
 
-void sparse_begin(struct sparse *matrix) {
-    matrix->next = 0;
-    if (matrix->recording) {
-        matrix->n_entries = 0;
-        matrix->out_of_memory = 0;
-    } else {
-        memset(matrix->value, 0, (size_t)(matrix->n_nonzeros + 1) * sizeof *matrix->value);
-    }
+int sparse_is_masked(const struct sparse *matrix, int row) {
+    return matrix->masked[row - matrix->first];
 }
 
 static int grow(struct sparse *matrix) {
@@ -66,7 +62,7 @@ static int grow(struct sparse *matrix) {
     return 1;
 }
 
-static void record(struct sparse *matrix, int row, int column, double value) {
+void sparse_record(struct sparse *matrix, int row, int column, double value) {
     if (matrix->out_of_memory) return;
     if (matrix->n_entries == matrix->capacity && !grow(matrix)) {
         matrix->out_of_memory = 1;
@@ -78,19 +74,25 @@ static void record(struct sparse *matrix, int row, int column, double value) {
     memcpy(&matrix->slot[i], &value, sizeof value);
 }
 
-void sparse_add_unmasked(struct sparse *matrix, int row, int column, double value) {
+void sparse_begin(struct sparse *matrix) {
+    matrix->next = 0;
     if (matrix->recording) {
-        record(matrix, row, column, value);
-        return;
+        matrix->n_entries = 0;
+        matrix->out_of_memory = 0;
+    } else {
+        memset(matrix->value, 0, (size_t)(matrix->n_nonzeros + 1) * sizeof *matrix->value);
     }
-    assert(matrix->next < matrix->n_entries && matrix->entry_row[matrix->next] == row &&
-           matrix->entry_column[matrix->next] == column);
-    matrix->value[matrix->slot[matrix->next++]] += value;
+    // the first entries of every pass are the ones of the masked rows
+    matrix->n_masked = 0;
+    for (int row = matrix->first; row < matrix->first + matrix->n; row++) {
+        if (!sparse_is_masked(matrix, row)) continue;
+        sparse_add(matrix, row, row, 1);
+        matrix->n_masked++;
+    }
 }
 
-void sparse_add(struct sparse *matrix, int row, int column, double value) {
-    // the complement of a column, which is negative, marks an addition that falls away
-    sparse_add_unmasked(matrix, row, matrix->masked[row] ? ~column : column, value);
+static int counts(const struct sparse *matrix, int64_t entry) {
+    return entry < matrix->n_masked || !sparse_is_masked(matrix, matrix->entry_row[entry]);
 }
 
 // the numbers of the entries that count, in the order of columns, then rows: two counting sorts; returns how many
@@ -98,18 +100,17 @@ static int64_t sort_entries(const struct sparse *matrix, int64_t *order, int64_t
     const int64_t n = matrix->n;
     int64_t n_sorted = 0;
     memset(count, 0, (size_t)(n + 1) * sizeof *count);
-    for (int64_t i = 0; i < matrix->n_entries; i++) count[matrix->entry_row[i] + 1]++;
+    for (int64_t i = 0; i < matrix->n_entries; i++) count[matrix->entry_row[i] - matrix->first + 1]++;
     for (int64_t r = 0; r < n; r++) count[r + 1] += count[r];
-    for (int64_t i = 0; i < matrix->n_entries; i++) by_row[count[matrix->entry_row[i]]++] = i;
+    for (int64_t i = 0; i < matrix->n_entries; i++) by_row[count[matrix->entry_row[i] - matrix->first]++] = i;
     memset(count, 0, (size_t)(n + 1) * sizeof *count);
     for (int64_t i = 0; i < matrix->n_entries; i++) {
-        if (matrix->entry_column[i] >= 0) count[matrix->entry_column[i] + 1]++;
+        if (counts(matrix, i)) count[matrix->entry_column[i] - matrix->first + 1]++;
     }
     for (int64_t c = 0; c < n; c++) count[c + 1] += count[c];
     for (int64_t i = 0; i < matrix->n_entries; i++) {
-        const int column = matrix->entry_column[by_row[i]];
-        if (column < 0) continue;
-        order[count[column]++] = by_row[i];
+        if (!counts(matrix, by_row[i])) continue;
+        order[count[matrix->entry_column[by_row[i]] - matrix->first]++] = by_row[i];
         n_sorted++;
     }
     return n_sorted;
@@ -143,9 +144,9 @@ static enum status compile(struct sparse *matrix) {
     for (int64_t i = 0; i < matrix->n_entries; i++) matrix->slot[i] = -1;
     for (int64_t i = 0; i < n_sorted; i++) {
         const int64_t entry = order[i];
-        if (matrix->entry_row[entry] != row || matrix->entry_column[entry] != column) {
-            row = matrix->entry_row[entry];
-            column = matrix->entry_column[entry];
+        if (matrix->entry_row[entry] - matrix->first != row || matrix->entry_column[entry] - matrix->first != column) {
+            row = matrix->entry_row[entry] - matrix->first;
+            column = matrix->entry_column[entry] - matrix->first;
             row_index[n_nonzeros++] = row;
             matrix->column_start[column + 1]++;
         }
@@ -175,13 +176,4 @@ enum status sparse_end(struct sparse *matrix) {
     }
     if (matrix->out_of_memory) return status_fail(STATUS_MEMORY, "no room to record a Jacobian");
     return compile(matrix);
-}
-
-void sparse_multiply(const struct sparse *matrix, const double *vector, double *product) {
-    memset(product, 0, (size_t)matrix->n * sizeof *product);
-    for (int column = 0; column < matrix->n; column++) {
-        for (int64_t i = matrix->column_start[column]; i < matrix->column_start[column + 1]; i++) {
-            product[matrix->row_index[i]] += matrix->value[i] * vector[column];
-        }
-    }
 }

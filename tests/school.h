@@ -3,6 +3,7 @@
 #ifndef SCHOOL_H
 #define SCHOOL_H
 
+#include "jacobian.h"
 #include "near.h"
 #include "residual.h"
 #include "settings.h"
@@ -14,10 +15,11 @@ struct setup {
     struct school *school;
     struct state *state;
     struct residual *residual;
-    struct sparse *jacobian; /* empty, rows of given motions masked */
-    double *value;           /* a residual                                        (n_unknowns) */
-    double t;                /* that of the state; after school_stir in the middle of an interval, s */
-    uint64_t seed;           /* of the random numbers */
+    struct jacobian *jacobian; /* empty, rows of given motions masked */
+    struct sparse *term;       /* empty, of all unknowns: for the derivatives of one term */
+    double *value;             /* a residual                                        (n_unknowns) */
+    double t;                  /* that of the state; after school_stir in the middle of an interval, s */
+    uint64_t seed;             /* of the random numbers */
 };
 
 /* "format: 1" and a name stand before the text. Fails the test with the message where there is one. */
@@ -38,11 +40,17 @@ void school_flow(struct setup *setup, const double *y);
 /* Compare, entry by entry, the matrix that stamp adds up with the differences of what value computes. No stamp: with
  * residual_jacobian. */
 typedef void school_value(struct setup *setup, const double *y, const double *yp, double *value);
-typedef void school_stamp(struct setup *setup, double cj, const double *y, struct sparse *jacobian);
+typedef void school_stamp(struct setup *setup, double cj, const double *y, struct sparse *term);
 void school_compare(struct setup *setup, school_value *value, school_stamp *stamp, const char *name);
+
+/* For a stamp of what comes through the flow: the derivative of the velocity at fish f by the unknowns of fish g, and
+ * empty rows for it; adding those rows to the term. */
+struct stamping *school_stamping(struct setup *setup, int f, int g);
+void school_add_rows(struct setup *setup, int f, int g, struct sparse *term);
 
 /* The matrix as a dense one, row after row; the caller frees it. */
 double *school_dense(const struct sparse *matrix);
+double *school_dense_jacobian(const struct jacobian *jacobian);
 
 /* A simulation at its first event, and on to a time. Fails the test with the message where there is one. */
 struct simulation *school_simulation(const char *text);

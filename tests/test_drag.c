@@ -45,10 +45,10 @@ static void stamp_of_drag(struct setup *setup, double cj, const double *y, struc
         drag_stamp(fish, u, v, y, jacobian);
         drag_moment_stamp(fish, factor, u, v, y, jacobian);
         for (int g = 0; g < setup->school->n_fish; g++) {
-            const struct fish *other = &setup->school->fish[g];
-            flow_derivative(setup->residual->flow, f, g, &setup->residual->block);
-            drag_stamp_flow(fish, other, u, v, &setup->residual->block, y, jacobian);
-            drag_moment_stamp_flow(fish, other, factor, u, v, &setup->residual->block, y, jacobian);
+            struct stamping *const through = school_stamping(setup, f, g);
+            drag_stamp_flow(fish, u, v, &through->block, y, &through->rows);
+            drag_moment_stamp_flow(fish, factor, u, v, &through->block, y, &through->rows);
+            school_add_rows(setup, f, g, jacobian);
         }
     }
 }

@@ -27,17 +27,18 @@ static void add_fish(const struct setup *setup, int g, double x, double y, doubl
     py[wake->n_vortex] = nascent[1];
     strength[wake->n_vortex] = state->y[fish->at.shed] - wake->shed_before;
     for (int i = 0; i <= wake->n_vortex; i++) {
-        const struct kernel_value unit = kernel_unit(x - px[i], y - py[i], fish->smoothing);
-        *u += strength[i] * unit.u;
-        *v += strength[i] * unit.v;
+        struct kernel_values unit;
+        kernel_unit(1, &x, &y, px[i], py[i], fish->smoothing, &unit);
+        *u += strength[i] * *unit.u;
+        *v += strength[i] * *unit.v;
     }
     for (int j = 0; j < fish->n_sheet && smoothing >= 0; j++) {
         const double q = fish->sheet_weight[j] * state->y[fish->at.sheet + j];
-        const struct kernel_value unit =
-            kernel_unit(x - fish_mean(&fish->sheet_point[j], state->y + fish->at.x),
-                        y - fish_mean(&fish->sheet_point[j], state->y + fish->at.y), smoothing);
-        *u += q * unit.u;
-        *v += q * unit.v;
+        struct kernel_values unit;
+        kernel_unit(1, &x, &y, fish_mean(&fish->sheet_point[j], state->y + fish->at.x),
+                    fish_mean(&fish->sheet_point[j], state->y + fish->at.y), smoothing, &unit);
+        *u += q * *unit.u;
+        *v += q * *unit.v;
     }
 }
 
@@ -130,7 +131,7 @@ static void derivative_by_every_unknown_agrees_with_differences(void **state) {
     school_build(&setup, TWO);
     school_stir(&setup);
     struct flow *flow = setup.residual->flow;
-    struct flow_block *block = &setup.residual->block;
+    struct flow_block *block = &setup.residual->stamping[0].block;
     double velocity[4][64];
     assert_true(2 * flow->n_points <= 64);
     for (int f = 0; f < 2; f++) {
@@ -140,6 +141,7 @@ static void derivative_by_every_unknown_agrees_with_differences(void **state) {
             flow_derivative(flow, f, g, block);
             assert_int_equal(block->n_points, flow->points[f].n);
             assert_int_equal(block->n_columns, 2 * other->n_nodes + other->n_sheet + 1);
+            assert_int_equal(block->n_columns, flow_n_columns(other));
             for (int c = 0; c < block->n_columns; c++) {
                 // fourth order; bound vortices are 0.01 and more from control points: (1e-4/0.01)^4/30 of the largest
                 const double h = 1e-4;
@@ -147,17 +149,12 @@ static void derivative_by_every_unknown_agrees_with_differences(void **state) {
                     velocity_at(&setup, flow_column(other, c), h * (i < 2 ? i - 2 : i - 1), velocity[i]);
                 for (int p = 0; p < block->n_points; p++) {
                     const int at[2] = {flow->points[f].first + p, flow->n_points + flow->points[f].first + p};
-                    const double got[2] = {block->u[p * block->n_columns + c], block->v[p * block->n_columns + c]};
-                    const int midpoint = p >= setup.school->fish[f].n_control && p != flow_tail(&setup.school->fish[f]);
+                    const double got[2] = {block->u[c * block->n_points + p], block->v[c * block->n_points + p]};
                     for (int i = 0; i < 2; i++) {
                         const double want = (velocity[0][at[i]] - 8 * velocity[1][at[i]] + 8 * velocity[2][at[i]] -
                                              velocity[3][at[i]]) /
                                             (12 * h);
                         NEAR(got[i], want, 2e-6, 1e-6);
-                        if (midpoint && !flow_midpoint_feels(&setup.school->fish[f], other,
-                                                             p - setup.school->fish[f].n_control, c)) {
-                            NEAR(got[i], 0, 0, 0);
-                        }
                     }
                 }
             }
@@ -211,6 +208,8 @@ static void threads_change_no_bit(void **state) {
         flow_velocity(flow);
         assert_memory_equal(flow->u, one, (size_t)flow->n_points * sizeof *one);
     }
+    // those that the residual has made room for
+    setup.school->threads = 1;
     school_clear(&setup);
 }
 

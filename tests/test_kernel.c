@@ -257,11 +257,30 @@ static void one_unit_source_is_what_the_loops_add(void **state) {
     const double x = 0.3, y = -0.2, zero = 0, one = 1;
     double u = 0, v = 0, u_x = 0, u_y = 0, v_x = 0;
     kernel_add_gradient(1, &x, &y, 1, &zero, &zero, &one, 0.1, &u, &v, &u_x, &u_y, &v_x);
-    const struct kernel_value unit = kernel_unit(x, y, 0.1);
-    const double got[] = {unit.u, unit.v, unit.u_x, unit.u_y, unit.v_x}, want[] = {u, v, u_x, u_y, v_x};
+    struct kernel_values unit;
+    kernel_unit(1, &x, &y, zero, zero, 0.1, &unit);
+    const double got[] = {*unit.u, *unit.v, *unit.u_x, *unit.u_y, *unit.v_x}, want[] = {u, v, u_x, u_y, v_x};
     NEAR_ARRAY(5, got, want, 0, 1e-14);
     // K_e(r) = (-r_y, r_x)/(2 pi (r^2 + e^2)) by hand
     NEAR(u, 0.2 / (2 * acos(-1) * 0.14), 0, 1e-15);
+}
+
+static void unit_sources_at_many_targets_have_the_bits_of_one_by_one(void **state) {
+    (void)state;
+    struct kernel_values all, one;
+    kernel_unit(N_TARGETS, cloud.x, cloud.y, 0.1, 0.2, 0.05, &all);
+    double sum[4][N_TARGETS] = {{0}};
+    kernel_add_motion(N_TARGETS, -3, &all, sum[0], sum[1], sum[2], sum[3]);
+    for (int i = 0; i < N_TARGETS; i++) {
+        kernel_unit(1, cloud.x + i, cloud.y + i, 0.1, 0.2, 0.05, &one);
+        const double got[] = {all.u[i], all.v[i], all.u_x[i], all.u_y[i], all.v_x[i]};
+        const double want[] = {*one.u, *one.v, *one.u_x, *one.u_y, *one.v_x};
+        NEAR_ARRAY(5, got, want, 0, 0);
+        // the field has no divergence: v_y = -u_x
+        const double moved[] = {sum[0][i], sum[1][i], sum[2][i], sum[3][i]};
+        const double by[] = {-3 * *one.u_x, -3 * *one.v_x, -3 * *one.u_y, 3 * *one.u_x};
+        NEAR_ARRAY(4, moved, by, 0, 0);
+    }
 }
 
 static void a_vortex_pair_translates_at_the_known_speed(void **state) {
@@ -289,6 +308,7 @@ int main(void) {
         cmocka_unit_test(velocity_is_added_to_what_is_there_and_writes_nothing_else),
         cmocka_unit_test(gradient_is_that_of_the_velocity),
         cmocka_unit_test(one_unit_source_is_what_the_loops_add),
+        cmocka_unit_test(unit_sources_at_many_targets_have_the_bits_of_one_by_one),
         cmocka_unit_test(a_vortex_pair_translates_at_the_known_speed),
     };
     return cmocka_run_group_tests(tests, scatter, NULL);

@@ -63,7 +63,7 @@ static void release_flow(struct setup *setup, void *made) {
 
 static enum status create_sparse(struct setup *setup, void **made) {
     (void)setup;
-    return sparse_create((struct sparse **)made, 10);
+    return sparse_create((struct sparse **)made, 0, 10);
 }
 static void release_sparse(struct setup *setup, void *made) {
     (void)setup;
@@ -188,7 +188,7 @@ static void a_wake_that_cannot_grow_stays_as_it_is(void **state) {
 static void a_matrix_that_could_not_be_recorded_records_again(void **state) {
     (void)state;
     struct sparse *matrix;
-    school_ok(sparse_create(&matrix, 50));
+    school_ok(sparse_create(&matrix, 0, 50));
     // entries 0 .. 2499: recording grows twice, compiling allocates six times
     int n_failed = 0;
     enum status status = STATUS_MEMORY;

@@ -36,10 +36,10 @@ static void stamp_of_sheet(struct setup *setup, double cj, const double *y, stru
         sheet_stamp(fish, u, v, y, jacobian);
         sheet_kutta_stamp(fish, law, chi, cj, u, v, y, jacobian);
         for (int g = 0; g < setup->school->n_fish; g++) {
-            const struct fish *other = &setup->school->fish[g];
-            flow_derivative(setup->residual->flow, f, g, &setup->residual->block);
-            sheet_stamp_flow(fish, other, &setup->residual->block, y, jacobian);
-            if (law == SHEET_RATE) sheet_kutta_stamp_flow(fish, other, chi, &setup->residual->block, y, jacobian);
+            struct stamping *const through = school_stamping(setup, f, g);
+            sheet_stamp_flow(fish, &through->block, y, &through->rows);
+            if (law == SHEET_RATE) sheet_kutta_stamp_flow(fish, chi, &through->block, y, &through->rows);
+            school_add_rows(setup, f, g, jacobian);
         }
     }
 }

@@ -72,9 +72,9 @@ static void a_range_induces_what_its_vortices_do_one_by_one(void **state) {
             for (int p = 0; p < N; p++) {
                 double want[5] = {1, 2, 3, 4, 5};
                 for (int i = first; i < first + n; i++) {
-                    const struct kernel_value unit =
-                        kernel_unit(x[p] - vortices.x[i], y[p] - vortices.y[i], smoothing_of(i));
-                    const double of[5] = {unit.u, unit.v, unit.u_x, unit.u_y, unit.v_x};
+                    struct kernel_values unit;
+                    kernel_unit(1, &x[p], &y[p], vortices.x[i], vortices.y[i], smoothing_of(i), &unit);
+                    const double of[5] = {unit.u[0], unit.v[0], unit.u_x[0], unit.u_y[0], unit.v_x[0]};
                     for (int k = 0; k < 5; k++) want[k] += vortices.circulation[i] * of[k];
                 }
                 for (int k = 0; k < 5; k++) NEAR(value[k][p], want[k], 1e-13, 1e-13);

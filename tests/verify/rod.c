@@ -121,21 +121,22 @@ static int ascending(const void *a, const void *b) {
 static double *lateral_matrix(struct simulation *simulation, int *n) {
     const struct fish *const fish = simulation->school->fish;
     const int first = fish_n_driven(fish);
-    struct sparse *jacobian;
+    struct jacobian *jacobian;
     *n = fish->n_nodes - first;
     double *const matrix = calloc((size_t)(*n * *n), sizeof *matrix);
-    if (!matrix || sparse_create(&jacobian, simulation->school->n_unknowns) != STATUS_OK) abort();
+    if (!matrix || jacobian_create(&jacobian, simulation->school) != STATUS_OK) abort();
     residual_mask(simulation->residual, jacobian);
     if (residual_jacobian(simulation->residual, 0, 0, simulation->state->y, jacobian) != STATUS_OK) abort();
+    const struct sparse *const own = jacobian->own[0];
     for (int j = 0; j < *n; j++) {
         const int column = fish->at.y + first + j;
-        for (int64_t i = jacobian->column_start[column]; i < jacobian->column_start[column + 1]; i++) {
-            const int k = (int)jacobian->row_index[i] - fish->at.ay - first;
+        for (int64_t i = own->column_start[column]; i < own->column_start[column + 1]; i++) {
+            const int k = (int)own->row_index[i] - fish->at.ay - first;
             if (k < 0 || k >= *n) continue;
-            matrix[k * *n + j] = jacobian->value[i] * sqrt(fish->mass[first + k] / fish->mass[first + j]);
+            matrix[k * *n + j] = own->value[i] * sqrt(fish->mass[first + k] / fish->mass[first + j]);
         }
     }
-    sparse_free(jacobian);
+    jacobian_free(jacobian);
     return matrix;
 }
 

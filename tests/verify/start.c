@@ -84,32 +84,57 @@ static double reciprocal_condition(int n, double *a) {
 
 // ---- one state
 
+// a matrix of the algebraic unknowns alone
+struct algebraic {
+    int n;
+    int *place;  // of every unknown in it, -1: differential   (n_unknowns)
+    double *matrix;
+};
+
+static void set(const struct algebraic *algebraic, int row, int column, double value) {
+    const int i = algebraic->place[row], j = algebraic->place[column];
+    if (i >= 0 && j >= 0) algebraic->matrix[i * algebraic->n + j] = value;
+}
+
+// the rows of fish f
+static void copy_rows(const struct jacobian *jacobian, int f, const struct algebraic *to) {
+    const struct sparse *const own = jacobian->own[f];
+    for (int column = 0; column < own->n; column++) {
+        for (int64_t i = own->column_start[column]; i < own->column_start[column + 1]; i++) {
+            set(to, own->first + (int)own->row_index[i], own->first + column, own->value[i]);
+        }
+    }
+    for (int i = jacobian->first[f]; i < jacobian->first[f + 1]; i++) {
+        const struct fish *const other = &jacobian->school->fish[jacobian->coupling[i].other];
+        const struct flow_rows *const rows = &jacobian->coupling[i].rows;
+        for (int c = 0; c < rows->n_columns; c++) {
+            for (int r = 0; r < rows->n_rows; r++) {
+                set(to, jacobian->school->fish[f].at.ax + r, flow_column(other, c), rows->value[c * rows->n_rows + r]);
+            }
+        }
+    }
+}
+
 // the algebraic rows and columns of the Jacobian of a state
 static double *algebraic_matrix(struct simulation *simulation, int *n) {
     const int n_unknowns = simulation->school->n_unknowns;
     double *const kind = allocate(n_unknowns, sizeof *kind);
-    int *const place = allocate(n_unknowns, sizeof *place);
-    struct sparse *jacobian;
+    struct algebraic algebraic = {.place = allocate(n_unknowns, sizeof(int))};
+    struct jacobian *jacobian;
     residual_kinds(simulation->residual, kind);
-    *n = 0;
-    for (int i = 0; i < n_unknowns; i++) place[i] = kind[i] > 0 ? -1 : (*n)++;
-    if (sparse_create(&jacobian, n_unknowns) != STATUS_OK) abort();
+    for (int i = 0; i < n_unknowns; i++) algebraic.place[i] = kind[i] > 0 ? -1 : algebraic.n++;
+    if (jacobian_create(&jacobian, simulation->school) != STATUS_OK) abort();
     residual_mask(simulation->residual, jacobian);
     if (residual_jacobian(simulation->residual, simulation->state->t, 0, simulation->state->y, jacobian) != STATUS_OK) {
         abort();
     }
-    double *const matrix = allocate(*n * *n, sizeof *matrix);
-    for (int column = 0; column < n_unknowns; column++) {
-        if (place[column] < 0) continue;
-        for (int64_t i = jacobian->column_start[column]; i < jacobian->column_start[column + 1]; i++) {
-            const int row = place[jacobian->row_index[i]];
-            if (row >= 0) matrix[row * *n + place[column]] = jacobian->value[i];
-        }
-    }
-    sparse_free(jacobian);
+    algebraic.matrix = allocate(algebraic.n * algebraic.n, sizeof(double));
+    for (int f = 0; f < simulation->school->n_fish; f++) copy_rows(jacobian, f, &algebraic);
+    jacobian_free(jacobian);
     free(kind);
-    free(place);
-    return matrix;
+    free(algebraic.place);
+    *n = algebraic.n;
+    return algebraic.matrix;
 }
 
 static double condition_of(struct simulation *simulation) {
@@ -254,8 +279,8 @@ static void refinement(void) {
 // what its callbacks need
 struct correction {
     struct simulation *simulation;
-    struct sparse *jacobian;
-    struct bridge_klu klu;
+    struct jacobian *jacobian;
+    struct bridge_linear linear;
 };
 
 static int value_callback(realtype t, N_Vector y, N_Vector yp, N_Vector value, void *data) {
@@ -270,9 +295,7 @@ static int jacobian_callback(realtype t, realtype cj, N_Vector y, N_Vector yp, N
     (void)yp, (void)value, (void)matrix, (void)scratch1, (void)scratch2, (void)scratch3;
     struct correction *const correction = data;
     flow_forget(correction->simulation->residual->flow);
-    const enum status status =
-        residual_jacobian(correction->simulation->residual, t, cj, N_VGetArrayPointer(y), correction->jacobian);
-    return status == STATUS_OK ? bridge_klu_copy(&correction->klu, correction->jacobian) : status;
+    return residual_jacobian(correction->simulation->residual, t, cj, N_VGetArrayPointer(y), correction->jacobian);
 }
 
 // let IDACalcIC find the algebraic unknowns and the rates, y and yp, from those given; returns its code
@@ -286,8 +309,8 @@ static int calculate(struct simulation *simulation, double *y, double *yp, doubl
     for (int i = 0; i < 4; i++) {
         if (bridge_vector(&vector[i], context, n, values[i]) != STATUS_OK) abort();
     }
-    if (sparse_create(&correction.jacobian, n) != STATUS_OK ||
-        bridge_klu_create(&correction.klu, context, vector[0], n) != STATUS_OK) {
+    if (jacobian_create(&correction.jacobian, simulation->school) != STATUS_OK ||
+        bridge_linear_create(&correction.linear, context, correction.jacobian, tolerance, 1e-6) != STATUS_OK) {
         abort();
     }
     residual_mask(simulation->residual, correction.jacobian);
@@ -297,14 +320,14 @@ static int calculate(struct simulation *simulation, double *y, double *yp, doubl
     if (code == 0) code = IDASetUserData(ida, &correction);
     if (code == 0) code = IDASVtolerances(ida, 0, vector[3]);
     if (code == 0) code = IDASetId(ida, vector[2]);
-    if (code == 0) code = IDASetLinearSolver(ida, correction.klu.solver, correction.klu.matrix);
+    if (code == 0) code = IDASetLinearSolver(ida, correction.linear.solver, correction.linear.matrix);
     if (code == 0) code = IDASetJacFn(ida, jacobian_callback);
     if (code == 0) code = IDACalcIC(ida, IDA_YA_YDP_INIT, simulation->state->t + simulation->school->interval);
     if (code == 0) code = IDAGetConsistentIC(ida, vector[0], vector[1]);
     IDAFree(&ida);
-    bridge_klu_free(&correction.klu);
+    bridge_linear_free(&correction.linear);
     for (int i = 0; i < 4; i++) N_VDestroy(vector[i]);
-    sparse_free(correction.jacobian);
+    jacobian_free(correction.jacobian);
     SUNContext_Free(&context);
     return code;
 }

@@ -1,0 +1,38 @@
+/* linear.h: linear systems with the Jacobian of the school. Every fish's own block is factorised by KLU; fish that are
+ * coupled are solved for together by GMRES with these factors as preconditioner. doc/numerics.md, section 7. Tested by
+ * tests/test_linear.c.
+ *
+ *     linear_setup after every new Jacobian -> linear_solve, linear_solve, ... */
+#ifndef LINEAR_H
+#define LINEAR_H
+
+#include "jacobian.h"
+#include "status.h"
+
+struct linear;
+
+/* What it has done so far. */
+struct linear_counts {
+    long analyses;       /* of patterns, over all fish */
+    long factorisations; /* with pivots chosen anew */
+    long refactorisations;
+    long solves, iterations; /* iterations: of GMRES */
+};
+
+/* A solver for a Jacobian that must outlive it. What GMRES leaves of the right-hand side, through the preconditioner and
+ * each unknown in units of its scale (n_unknowns), is at most tolerance times what it began with.
+ * Fails with STATUS_MEMORY; linear_free accepts NULL. */
+enum status linear_create(struct linear **linear, const struct jacobian *jacobian, const double *scale,
+                          double tolerance);
+void linear_free(struct linear *linear);
+
+/* Factorise the blocks as they are now. A block that is singular: STATUS_SOLVER where it has never been factorised,
+ * STATUS_RETRY later. Fails with STATUS_MEMORY. */
+enum status linear_setup(struct linear *linear);
+
+/* Solve for x; both arrays (n_unknowns), and may be the same. Fails with STATUS_RETRY where x is not finite. */
+enum status linear_solve(struct linear *linear, const double *b, double *x);
+
+struct linear_counts linear_count(const struct linear *linear);
+
+#endif
