@@ -297,7 +297,7 @@ static enum status refuse_overlap(const struct school *school) {
     for (int f = 0; f < school->n_fish && status == STATUS_OK; f++) {
         fish_start(&school->fish[f], y);
         for (int g = 0; g < f && status == STATUS_OK; g++) {
-            if (fish_distance(&school->fish[f], &school->fish[g], y) <= 0) {
+            if (fish_distance(&school->fish[f], &school->fish[g], y, INFINITY) <= 0) {
                 status = status_fail(STATUS_CASE,
                                      "error: fish[%d] (%s) and fish[%d] (%s) overlap at the start: change "
                                      "start.position of one of them",
@@ -460,7 +460,33 @@ static double segment_to_segment(const double a[2], const double b[2], const dou
                 fmin(point_to_segment(c, a, b), point_to_segment(d, a, b)));
 }
 
-double fish_distance(const struct fish *a, const struct fish *b, const double *y) {
+// the gap between two intervals, negative where they overlap; each the extent of some numbers and a margin
+static double gap(int n, const double *x, double margin, int m, const double *y, double other_margin) {
+    double low = x[0], high = x[0], other_low = y[0], other_high = y[0];
+    for (int i = 1; i < n; i++) {
+        low = x[i] < low ? x[i] : low;
+        high = x[i] > high ? x[i] : high;
+    }
+    for (int i = 1; i < m; i++) {
+        other_low = y[i] < other_low ? y[i] : other_low;
+        other_high = y[i] > other_high ? y[i] : other_high;
+    }
+    return fmax(other_low - high, low - other_high) - margin - other_margin;
+}
+
+static double half_height(const struct fish *fish) {
+    double most = 0;
+    for (int k = 0; k < fish->n_edges; k++) most = fmax(most, fish->height[k] / 2);
+    return most;
+}
+
+double fish_distance(const struct fish *a, const struct fish *b, const double *y, double most) {
+    // most pairs of a school are told apart by the boxes around them
+    const double margin = half_height(a), other = half_height(b);
+    if (gap(a->n_nodes, y + a->at.x, margin, b->n_nodes, y + b->at.x, other) > most ||
+        gap(a->n_nodes, y + a->at.y, margin, b->n_nodes, y + b->at.y, other) > most) {
+        return INFINITY;
+    }
     double least = INFINITY;
     for (int i = 0; i < a->n_edges; i++) {
         const double p[2] = {y[a->at.x + i], y[a->at.y + i]}, q[2] = {y[a->at.x + i + 1], y[a->at.y + i + 1]};

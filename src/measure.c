@@ -257,8 +257,9 @@ void measure_event(const struct residual *residual, const struct state *state, s
         sum[0] += cos(smooth_radians(measure->fish[f].heading));
         sum[1] += sin(smooth_radians(measure->fish[f].heading));
         for (int g = 0; g < f; g++) {
+            const double most = isnan(measure->least_distance) ? INFINITY : measure->least_distance;
             measure->least_distance =
-                fmin(measure->least_distance, fish_distance(&school->fish[f], &school->fish[g], state->y));
+                fmin(measure->least_distance, fish_distance(&school->fish[f], &school->fish[g], state->y, most));
         }
     }
     measure->polarisation = hypot(sum[0], sum[1]) / school->n_fish;

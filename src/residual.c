@@ -87,8 +87,8 @@ int residual_couple(struct residual *residual, const double *y) {
     int changed = 0;
     for (int f = 0; f < school->n_fish; f++) {
         for (int g = 0; g <= f; g++) {
-            const int couple =
-                f == g || fish_distance(&school->fish[f], &school->fish[g], y) <= school->coupling_distance;
+            const double most = school->coupling_distance;
+            const int couple = f == g || fish_distance(&school->fish[f], &school->fish[g], y, most) <= most;
             unsigned char *const here = &residual->coupled[f * school->n_fish + g];
             if (*here != couple) changed = 1;
             *here = residual->coupled[g * school->n_fish + f] = (unsigned char)couple;

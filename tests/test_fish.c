@@ -240,16 +240,19 @@ static void distance_is_that_of_the_outlines(void **state) {
                  "defaults: {fish: {body: {profile: uniform, thickness: 0.1}}}\n"
                  "fish: [{}, {start: {position: [0, 0.5]}}, {start: {position: [1.5, 0]}}]\n");
     const struct fish *fish = setup.school->fish;
-    NEAR(fish_distance(&fish[0], &fish[1], setup.state->y), 0.4, 1e-14, 0);
+    NEAR(fish_distance(&fish[0], &fish[1], setup.state->y, INFINITY), 0.4, 1e-14, 0);
     // tail at x = 1 to nose at 1.5, half of both heights taken off
-    NEAR(fish_distance(&fish[0], &fish[2], setup.state->y), 0.4, 1e-14, 0);
-    NEAR(fish_distance(&fish[2], &fish[0], setup.state->y), 0.4, 1e-14, 0);
+    NEAR(fish_distance(&fish[0], &fish[2], setup.state->y, INFINITY), 0.4, 1e-14, 0);
+    NEAR(fish_distance(&fish[2], &fish[0], setup.state->y, INFINITY), 0.4, 1e-14, 0);
+    // looked at only where the boxes around them are near enough
+    NEAR(fish_distance(&fish[0], &fish[1], setup.state->y, 0.4 + 1e-12), 0.4, 1e-14, 0);
+    NEAR(fish_distance(&fish[0], &fish[1], setup.state->y, 0.3), INFINITY, 0, 0);
     // crossing bodies touch
     for (int k = 0; k < 7; k++) {
         setup.state->y[fish[1].at.x + k] = 0.55;
         setup.state->y[fish[1].at.y + k] = -0.5 + k / 6.0;
     }
-    NEAR(fish_distance(&fish[0], &fish[1], setup.state->y), 0, 0, 0);
+    NEAR(fish_distance(&fish[0], &fish[1], setup.state->y, INFINITY), 0, 0, 0);
     school_clear(&setup);
 }
 
