@@ -50,7 +50,8 @@ libraries      = -lsundials_ida -lsundials_kinsol -lsundials_arkode -lsundials_s
 library = $(B)/libshoal.a
 program = $(B)/shoal
 
-library_objects = $(patsubst src/%.c,$(B)/%.o,$(filter-out src/main.c,$(wildcard src/*.c)))
+main_objects    = $(patsubst src/%.c,$(B)/%.o,$(wildcard src/main.c src/main_*.c))
+library_objects = $(filter-out $(main_objects),$(patsubst src/%.c,$(B)/%.o,$(wildcard src/*.c)))
 
 test_names   = $(or $(TEST),*)
 c_tests      = $(patsubst tests/%.c,$(B)/tests/%,$(wildcard $(test_names:%=tests/test_%.c)))
@@ -147,7 +148,7 @@ uninstall:  ## remove what `make install` installed
 
 # ---- rules ----
 
-$(program): $(B)/main.o $(library)
+$(program): $(main_objects) $(library)
 	$(say) LD $@
 	$(quiet)$(CC) $(shoal_cflags) $(LDFLAGS) -o $@ $^ $(libraries)
 

@@ -3,7 +3,7 @@
 #
 #   scripts/check-names.sh [BUILD]      BUILD: the folder with the objects, build by default
 #
-# - what src/x.c and src/x_more.c share begins with x_ (main.c shares nothing else than main);
+# - what src/x.c and src/x_more.c share begins with x_ (main.c shares main, too);
 # - tests do not use cmocka's assert_float_equal, which compares in single precision: NEAR of tests/near.h does not;
 # - no tabs (but in the Makefile) and no blanks at the end of a line.
 set -euo pipefail

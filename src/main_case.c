@@ -1,0 +1,45 @@
+/* main_case.c: looking at cases and at results. Declared in main.h. */
+#include <stdlib.h>
+
+#include "fish.h"
+#include "main.h"
+#include "settings.h"
+#include "store.h"
+
+enum status main_check(const struct request *request) {
+    struct settings settings;
+    TRY(settings_read(&settings, request->positional, request->n_assignments, request->assignments));
+    struct school *school = NULL;
+    const enum status status = fish_school_create(&school, &settings);
+    if (status == STATUS_OK && !request->quiet) {
+        printf("%s: ok: %d fish, %d unknowns, %.6g s in %.0f events\n", request->positional, school->n_fish,
+               school->n_unknowns, settings.time.end, settings.time.end / settings.time.shedding_interval);
+    }
+    fish_school_free(school);
+    settings_free(&settings);
+    return status;
+}
+
+enum status main_show(const struct request *request) {
+    struct settings settings;
+    TRY(settings_read(&settings, request->positional, request->n_assignments, request->assignments));
+    char *text = NULL;
+    const enum status status = settings_show(&settings, &text);
+    if (status == STATUS_OK) fputs(text, stdout);
+    free(text);
+    settings_free(&settings);
+    return status;
+}
+
+enum status main_keys(const struct request *request) {
+    if (request->of_output) {
+        store_variables(stdout, request->json);
+    } else {
+        settings_keys(stdout, request->json);
+    }
+    return STATUS_OK;
+}
+
+enum status main_info(const struct request *request) {
+    return store_info(request->positional, request->case_only, stdout);
+}
