@@ -109,8 +109,15 @@ sweep:
 
 The members are numbered from 0, the last axis fastest. With `keys` several keys change together. An axis whose first
 key is a resolution (`time.shedding_interval`, `solver.rtol`, `solver.step`, `nodes`, `sheet_points`) may have
-`refine: true`: the study then prints observed orders, and with `expect: {order: 2, within: 0.2}` it ends with exit
-code 3 where the order is another. `shoal study` runs a sweep; `shoal run` refuses one.
+`refine: true`: the study then prints observed orders. With it the axis can say
+
+| word | meaning |
+|---|---|
+| `expect: {order: 2, within: 0.2, of: [nose, speed]}` | the study ends with exit code 3 where an order is another; without `of` those of nose and tail count |
+| `reference: {speed: 1.014, nose: [-1.6, 0.01]}` | errors and orders of these quantities are taken against given values instead of the finest level: an exact solution, or what much finer levels gave. In a school a value may be a list of one for each fish |
+
+Orders are those of `nose`, `tail`, `com`, `speed`, `mean_heading`, `shed_circulation`, `cost_of_transport` and
+`mean_actuation_power`. `shoal study` runs a sweep; `shoal run` refuses one.
 
 ## The subset of YAML
 

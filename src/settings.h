@@ -136,6 +136,19 @@ struct settings_fish {
     struct settings_control control;
 };
 
+/* What a case can expect something of: quantities that a study gathers from the ends of its members (store_study.h). */
+struct settings_quantity {
+    const char *name;
+    int of_fish, of_xy; /* one value for every fish; a point in the plane */
+};
+enum {
+    SETTINGS_NOSE,
+    SETTINGS_TAIL,
+    SETTINGS_N_ORDERS = 8, /* of the first ones orders of convergence are observed */
+    SETTINGS_N_QUANTITIES = SETTINGS_N_ORDERS
+};
+extern const struct settings_quantity settings_quantities[SETTINGS_N_QUANTITIES];
+
 /* A key that an axis of a sweep changes. */
 struct settings_swept {
     char *path;       /* as --set takes it */
@@ -151,6 +164,8 @@ struct settings_axis {
     char **value;         /* value i of key k is value[i * n_keys + k], a text as --set takes it (n_values * n_keys) */
     int refine;           /* the values are resolutions of the first key: a study of convergence */
     double order, within; /* what is expected of the observed order: order +- within; NaN: nothing */
+    unsigned order_of;    /* bit q: of quantity q */
+    double *reference;    /* see settings_reference; NULL: none */
 };
 
 struct settings {
@@ -188,6 +203,10 @@ int settings_n_members(const struct settings *study);
 
 /* Which value of an axis a member has. The last axis runs fastest. */
 int settings_member_value(const struct settings *study, int member, int axis);
+
+/* The value of a quantity (one with orders) that errors along the refined axis are to be taken against; NaN where none is
+ * given. xy is 0 where the quantity is no point. */
+double settings_reference(const struct settings *study, int axis, int quantity, int fish, int xy);
 
 /* "solver.rtol=1e-5, fish[*].nodes=7": what one member sets. Empty without a sweep. The caller frees *text. Fails with
  * STATUS_MEMORY. */

@@ -14,4 +14,20 @@ enum status settings_sweep_read(struct settings *settings, const struct settings
 /* Release the axes. */
 void settings_sweep_free(struct settings *settings);
 
+/* Read refine, reference and expect of an axis that has its values. key: the row of its first key, NULL if that is wrong;
+ * name: "sweep[1]"; node: the axis. Fails with STATUS_MEMORY only. */
+enum status settings_refine_read(const struct settings *settings, struct settings_axis *into, const struct key *key,
+                                 const char *name, const struct yaml_node *node, struct yaml_errors *errors);
+
+/* The number of a quantity among the first n_known; -1 after adding to errors that path names none. */
+int settings_quantity_read(const char *name, struct yaml_mark mark, const char *path, int n_known,
+                           struct yaml_errors *errors);
+
+/* The same for a name or a list of names under path.of, as a set: bit q stands for quantity q. */
+unsigned settings_quantities_read(const struct yaml_node *of, const char *path, int n_known,
+                                  struct yaml_errors *errors);
+
+/* Complain of the keys of a map that are not among the known ones: "key, values". */
+void settings_words_check(const struct yaml_node *map, const char *path, const char *known, struct yaml_errors *errors);
+
 #endif

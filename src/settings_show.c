@@ -1,4 +1,5 @@
 /* settings_show.c: a case written out in full, and the table of keys as text and as JSON. Declared in settings.h. */
+#include <math.h>
 #include <string.h>
 
 #include "settings_table.h"
@@ -86,7 +87,39 @@ static void show_group(struct yaml_text *text, const struct settings_axis *axis,
     if (axis->n_keys > 1) yaml_text_add(text, "]");
 }
 
-static void show_axis(struct yaml_text *text, const struct settings_axis *axis) {
+/* Add "[nose, tail]". */
+static void show_quantities(struct yaml_text *text, unsigned all) {
+    const char *before = "[";
+    for (int q = 0; q < SETTINGS_N_QUANTITIES; q++) {
+        if (!(all >> q & 1)) continue;
+        yaml_text_add(text, "%s%s", before, settings_quantities[q].name);
+        before = ", ";
+    }
+    yaml_text_add(text, "]");
+}
+
+/* Add the given values of an axis, one for each fish: {speed: [1, 1.1], nose: [[0, 1], [0, 2]]}. */
+static void show_reference(struct yaml_text *text, const struct settings *settings, int axis) {
+    const char *before = "    reference: {";
+    for (int q = 0; q < SETTINGS_N_ORDERS; q++) {
+        const int of_xy = settings_quantities[q].of_xy;
+        if (isnan(settings_reference(settings, axis, q, 0, 0))) continue;
+        yaml_text_add(text, "%s%s: [", before, settings_quantities[q].name);
+        before = ", ";
+        for (int f = 0; f < settings->n_fish; f++) {
+            yaml_text_add(text, "%s%s", f > 0 ? ", " : "", of_xy ? "[" : "");
+            yaml_text_add_number(text, settings_reference(settings, axis, q, f, 0));
+            if (of_xy) yaml_text_add(text, ", ");
+            if (of_xy) yaml_text_add_number(text, settings_reference(settings, axis, q, f, 1));
+            if (of_xy) yaml_text_add(text, "]");
+        }
+        yaml_text_add(text, "]");
+    }
+    yaml_text_add(text, "}\n");
+}
+
+static void show_axis(struct yaml_text *text, const struct settings *settings, int a) {
+    const struct settings_axis *const axis = &settings->sweep[a];
     yaml_text_add(text, "  - %s: ", axis->n_keys > 1 ? "keys" : "key");
     show_group(text, axis, -1);
     yaml_text_add(text, "\n    values: [");
@@ -95,18 +128,22 @@ static void show_axis(struct yaml_text *text, const struct settings_axis *axis) 
         show_group(text, axis, i);
     }
     yaml_text_add(text, "]\n");
-    if (axis->refine) yaml_text_add(text, "    refine: true\n");
-    if (!axis->refine || !(axis->order > 0)) return;
+    if (!axis->refine) return;
+    yaml_text_add(text, "    refine: true\n");
+    if (axis->reference) show_reference(text, settings, a);
+    if (!(axis->order > 0)) return;
     yaml_text_add(text, "    expect: {order: ");
     yaml_text_add_number(text, axis->order);
     yaml_text_add(text, ", within: ");
     yaml_text_add_number(text, axis->within);
+    yaml_text_add(text, ", of: ");
+    show_quantities(text, axis->order_of);
     yaml_text_add(text, "}\n");
 }
 
 static void show_sweep(struct yaml_text *text, const struct settings *settings) {
     if (settings->n_axes > 0) yaml_text_add(text, "\nsweep:\n");
-    for (int i = 0; i < settings->n_axes; i++) show_axis(text, &settings->sweep[i]);
+    for (int i = 0; i < settings->n_axes; i++) show_axis(text, settings, i);
 }
 
 enum status settings_show(const struct settings *settings, char **text) {

@@ -2,10 +2,9 @@
  *
  *     - {key: solver.rtol, values: [1e-4, 1e-5]}                                       one key
  *     - {keys: [fish[*].nodes, fish[*].sheet_points], values: [[7, 21], [13, 41]]}     two that change together
- *     - {key: ..., values: ..., refine: true, expect: {order: 2, within: 0.2}}         resolutions
+ *     - {key: ..., values: ..., refine: true}                                          resolutions: settings_refine.c
  *
  * A value is checked here as if it were given to its key, and kept as the text that --set will get. */
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,7 +14,7 @@
 
 static const double most_members = 1e5;
 
-enum { MOST_KEYS = 16 /* of one axis */, LEAST_LEVELS = 3 /* of a refinement */ };
+enum { MOST_KEYS = 16 /* of one axis */ };
 
 static enum status no_memory(void) {
     return status_fail(STATUS_MEMORY, "no memory for the sweep");
@@ -39,6 +38,7 @@ void settings_sweep_free(struct settings *settings) {
         for (int j = 0; j < axis->n_keys; j++) free(axis->key[j].path);
         free(axis->value);
         free(axis->key);
+        free(axis->reference);
     }
     free(settings->sweep);
     settings->sweep = NULL;
@@ -165,85 +165,6 @@ static enum status read_values(struct axis *axis) {
     return STATUS_OK;
 }
 
-// ---- refinement
-
-/* True if the values of a key are resolutions: their error goes to zero with them, or with their inverse. */
-static bool is_resolution(const struct key *key) {
-    static const char *const paths[] = {"time.shedding_interval", "solver.rtol", "solver.step", "fish.nodes",
-                                        "fish.sheet_points"};
-    for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
-        if (strcmp(key->path, paths[i]) == 0) return true;
-    }
-    return false;
-}
-
-/* Complain about what cannot be refined. */
-static void check_refine(const struct axis *axis, const struct yaml_node *node) {
-    const struct settings_axis *const into = axis->into;
-    if (!axis->key[0]) return;
-    if (!is_resolution(axis->key[0])) {
-        yaml_errors_add(axis->errors, node->mark,
-                        "%s.refine: '%.60s' is no resolution; these are: time.shedding_interval, solver.rtol, "
-                        "solver.step, fish[*].nodes, fish[*].sheet_points",
-                        axis->name, into->key[0].path);
-        return;
-    }
-    int n_different = 0;
-    for (int i = 0; i < into->n_values; i++) {
-        int is_new = 1;
-        for (int j = 0; j < i; j++) {
-            const char *const one = into->value[i * into->n_keys], *const other = into->value[j * into->n_keys];
-            double a, b;
-            if (one && other && yaml_text_number(one, &a) && yaml_text_number(other, &b) && a == b) is_new = 0;
-        }
-        n_different += is_new;
-    }
-    if (n_different < LEAST_LEVELS || n_different < into->n_values) {
-        yaml_errors_add(axis->errors, node->mark, "%s.refine: expects at least %d values, all different", axis->name,
-                        LEAST_LEVELS);
-    }
-}
-
-/* Read a positive number of a map. */
-static double read_positive(const struct axis *axis, const struct yaml_node *map, const char *name) {
-    const struct yaml_node *const node = yaml_tree_find(map, name);
-    double number;
-    if (node && node->kind == YAML_SCALAR && yaml_text_number(node->text, &number) && number > 0) return number;
-    yaml_errors_add(axis->errors, node ? node->mark : map->mark, "%s.expect.%s: expects a number above 0", axis->name,
-                    name);
-    return NAN;
-}
-
-static void read_refine(const struct settings *settings, struct axis *axis) {
-    const struct yaml_node *const refine = yaml_tree_find(axis->node, "refine");
-    const struct yaml_node *const expect = yaml_tree_find(axis->node, "expect");
-    axis->into->order = axis->into->within = NAN;
-    if (refine) {
-        const bool is_true = refine->kind == YAML_SCALAR && strcmp(refine->text, "true") == 0;
-        const bool is_false = refine->kind == YAML_SCALAR && strcmp(refine->text, "false") == 0;
-        if (!is_true && !is_false) {
-            yaml_errors_add(axis->errors, refine->mark, "%s.refine: expects true or false", axis->name);
-        }
-        axis->into->refine = is_true;
-        if (is_true) check_refine(axis, refine);
-    }
-    for (int i = 0; i < settings->n_axes; i++) {
-        if (!axis->into->refine || !settings->sweep[i].refine) continue;
-        yaml_errors_add(axis->errors, refine->mark, "%s.refine: sweep[%d] is refined already; one axis can be",
-                        axis->name, i);
-    }
-    if (!expect) return;
-    if (expect->kind != YAML_MAP || expect->n != 2) {
-        yaml_errors_add(axis->errors, expect->mark, "%s.expect: expects {order: 2, within: 0.2}", axis->name);
-        return;
-    }
-    if (!axis->into->refine) {
-        yaml_errors_add(axis->errors, expect->mark, "%s.expect: has no effect without refine: true", axis->name);
-    }
-    axis->into->order = read_positive(axis, expect, "order");
-    axis->into->within = read_positive(axis, expect, "within");
-}
-
 // ---- the sweep
 
 /* Read one axis into an entry that is zero. */
@@ -252,20 +173,11 @@ static enum status read_axis(const struct settings *settings, struct axis *axis)
         yaml_errors_add(axis->errors, axis->node->mark, "%s: expects {key: PATH, values: [...]}", axis->name);
         return STATUS_OK;
     }
-    static const char *const words[] = {"key", "keys", "values", "refine", "expect"};
-    for (int i = 0; i < axis->node->n; i++) {
-        const struct yaml_entry *const entry = &axis->node->entry[i];
-        bool is_known = false;
-        for (size_t w = 0; w < sizeof words / sizeof *words; w++) is_known |= strcmp(entry->key, words[w]) == 0;
-        if (is_known) continue;
-        yaml_errors_add(axis->errors, entry->mark,
-                        "%s.%.40s: unknown key; known here: key, keys, values, refine, expect", axis->name, entry->key);
-    }
+    settings_words_check(axis->node, axis->name, "key, keys, values, refine, expect, reference", axis->errors);
     TRY(read_axis_keys(settings, axis));
     if (axis->n_keys == 0) return STATUS_OK;
     TRY(read_values(axis));
-    read_refine(settings, axis);
-    return STATUS_OK;
+    return settings_refine_read(settings, axis->into, axis->key[0], axis->name, axis->node, axis->errors);
 }
 
 enum status settings_sweep_read(struct settings *settings, const struct settings_tree *tree,

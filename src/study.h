@@ -66,18 +66,19 @@ enum status study_report(const struct settings *study, const char *folder, const
 /* What three or more levels of a refinement say of a value, or of a point in the plane. Roache's grid convergence
  * index: the finest value is expected to be off by less than this, in its own unit. */
 struct study_order {
-    double order;          /* observed with the three finest levels; NaN: they are equal */
-    double order_before;   /* with the three levels before; NaN: there are three levels only */
+    double order;          /* observed with the finest levels; NaN: they are equal */
+    double order_before;   /* with the levels before; NaN: there are none */
     double limit[2];       /* Richardson's extrapolation */
     double index;          /* safety factor 1.25 */
     const char *objection; /* why the levels are not in the asymptotic range, or NULL */
 };
 
-/* sizes: from coarse to fine, falling; values: one point for each size. */
-struct study_order study_order(int n, const double *sizes, const double (*values)[2]);
+/* sizes: from coarse to fine, falling; values: one point for each size; reference: the exact value as far as one is
+ * given, from which orders then are observed with two levels each; else NULL. */
+struct study_order study_order(int n, const double *sizes, const double (*values)[2], const double *reference);
 
-/* Print errors and orders along the axis that is refined; without such an axis nothing. Fails with STATUS_MISSED when
- * nose or tail of a fish have another order than the axis expects, or with STATUS_MEMORY. */
+/* Print errors and orders along the axis that is refined; without such an axis nothing. Fails with STATUS_MISSED when a
+ * quantity of a fish has another order than the axis expects, or with STATUS_MEMORY. */
 enum status study_orders(const struct settings *study, const struct store_member *members, FILE *stream);
 
 /* A table of texts that is filled cell by cell and printed in columns, aligned to the right but for the last one. */

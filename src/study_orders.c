@@ -5,7 +5,8 @@
  *
  *     |f3 - f2| / |f2 - f1| = r21^p (r32^p - 1) / (r21^p - 1),
  *
- * the limit is f1 + (f1 - f2) / (r21^p - 1), and the index 1.25 |f1 - f2| / (r21^p - 1). */
+ * the limit is f1 + (f1 - f2) / (r21^p - 1), and the index 1.25 |f1 - f2| / (r21^p - 1). Where the exact value f is given,
+ * p is log(|f2 - f| / |f1 - f|) / log r21 instead. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,11 +22,7 @@ static const double least_difference = 1e-12;
 /* Orders outside of these, or that change by more than that from three levels to the next, are not asymptotic. */
 static const double least_order = 0.5, most_order = 6, most_change = 0.5;
 
-// what is compared
-static const char *const quantities[] = {"nose", "tail", "com", "speed", "shed_circulation", "cost_of_transport"};
-enum { N_QUANTITIES = sizeof quantities / sizeof *quantities, N_EXPECTED = 2 /* nose and tail */ };
-
-// ---- three levels
+// ---- two or three levels
 
 /* The ratio of differences that an order gives. */
 static double ratio_of_order(double p, double r21, double r32) {
@@ -57,11 +54,27 @@ static double three_levels(const double *h, const double (*f)[2], int *is_oscill
     return order_of_ratio(d32 / d21, h[1] / h[2], h[0] / h[1]);
 }
 
-struct study_order study_order(int n, const double *sizes, const double (*values)[2]) {
+/* The same of two levels and the exact value. */
+static double two_levels(const double *h, const double (*f)[2], const double *exact, int *is_oscillating) {
+    const double fine[2] = {f[1][0] - exact[0], f[1][1] - exact[1]},
+                 coarse[2] = {f[0][0] - exact[0], f[0][1] - exact[1]};
+    const double e1 = hypot(fine[0], fine[1]), e2 = hypot(coarse[0], coarse[1]);
+    const double floor = least_difference * fmax(1, hypot(exact[0], exact[1]));
+    *is_oscillating = fine[0] * coarse[0] + fine[1] * coarse[1] < 0;
+    if (!(e1 > floor) || !(e2 > floor)) return NAN;
+    return log(e2 / e1) / log(h[0] / h[1]);
+}
+
+struct study_order study_order(int n, const double *sizes, const double (*values)[2], const double *reference) {
     struct study_order result = {.order_before = NAN};
     int is_oscillating, was_oscillating;
-    result.order = three_levels(sizes + n - 3, values + n - 3, &is_oscillating);
-    if (n > 3) result.order_before = three_levels(sizes + n - 4, values + n - 4, &was_oscillating);
+    if (reference) {
+        result.order = two_levels(sizes + n - 2, values + n - 2, reference, &is_oscillating);
+        result.order_before = two_levels(sizes + n - 3, values + n - 3, reference, &was_oscillating);
+    } else {
+        result.order = three_levels(sizes + n - 3, values + n - 3, &is_oscillating);
+        if (n > 3) result.order_before = three_levels(sizes + n - 4, values + n - 4, &was_oscillating);
+    }
     const double part = 1 / (pow(sizes[n - 2] / sizes[n - 1], result.order) - 1);
     const double *const f1 = values[n - 1], *const f2 = values[n - 2];
     for (int k = 0; k < 2; k++) result.limit[k] = f1[k] + (f1[k] - f2[k]) * part;
@@ -142,8 +155,8 @@ static void fill_head(const struct study_table *table, const struct refinement *
 /* One quantity of one fish. */
 static void fill_row(const struct study_table *table, int row, struct refinement *refinement, int q, int f, int first,
                      struct study_order *order) {
-    const int n = refinement->n, quantity = store_quantity_number(quantities[q]);
-    const int of_xy = store_quantity(quantity)->of_xy;
+    const int n = refinement->n, quantity = store_quantity_number(settings_quantities[q].name);
+    const int of_xy = settings_quantities[q].of_xy;
     for (int i = 0; i < n; i++) {
         const struct store_member *const member =
             &refinement->members[member_at(refinement, first, refinement->level[i])];
@@ -151,19 +164,23 @@ static void fill_row(const struct study_table *table, int row, struct refinement
         refinement->value[i][0] = is_complete ? store_member_value(member, quantity, f, 0) : NAN;
         refinement->value[i][1] = of_xy ? store_member_value(member, quantity, f, 1) : 0;
     }
-    *order = study_order(n, refinement->size, (const double(*)[2])refinement->value);
-    study_table_set(table, row, 0, "%s", quantities[q]);
+    const double *const finest = refinement->value[n - 1];
+    const double given[2] = {settings_reference(refinement->study, refinement->axis, q, f, 0),
+                             of_xy ? settings_reference(refinement->study, refinement->axis, q, f, 1) : 0};
+    const int is_given = !isnan(given[0]);
+    const double *const reference = is_given ? given : finest;
+    *order = study_order(n, refinement->size, (const double(*)[2])refinement->value, is_given ? given : NULL);
+    study_table_set(table, row, 0, "%s%s", settings_quantities[q].name, is_given ? "*" : "");
     study_table_set(table, row, 1, "%s", refinement->study->fish[f].name);
     study_table_set(table, row, 2, "%s", store_quantity(quantity)->unit);
-    const double *const finest = refinement->value[n - 1];
     for (int i = 0; i < n; i++) {
-        const double error = hypot(refinement->value[i][0] - finest[0], refinement->value[i][1] - finest[1]);
-        study_table_number(table, row, 3 + i, "%.2e", i < n - 1 ? error : NAN);
+        const double error = hypot(refinement->value[i][0] - reference[0], refinement->value[i][1] - reference[1]);
+        study_table_number(table, row, 3 + i, "%.2e", i < n - 1 || is_given ? error : NAN);
     }
     study_table_number(table, row, n + 3, "%.2f", order->order_before);
     study_table_number(table, row, n + 4, "%.2f", order->order);
-    study_table_number(table, row, n + 5, "%.7g", order->limit[0]);
-    if (of_xy) study_table_number(table, row, n + 6, "%.7g", order->limit[1]);
+    study_table_number(table, row, n + 5, "%.9g", order->limit[0]);
+    if (of_xy) study_table_number(table, row, n + 6, "%.9g", order->limit[1]);
     study_table_number(table, row, n + 7, "%.1e", order->index);
 }
 
@@ -172,15 +189,17 @@ static enum status judge(const struct refinement *refinement, int q, int f, cons
                          FILE *stream) {
     const struct settings_axis *const axis = &refinement->study->sweep[refinement->axis];
     const char *const fish = refinement->study->fish[f].name;
-    if (order->objection) fprintf(stream, "warning: %s of %s: %s\n", quantities[q], fish, order->objection);
-    if (q >= N_EXPECTED || !(axis->order > 0) || fabs(order->order - axis->order) <= axis->within) return STATUS_OK;
-    return status_fail(STATUS_MISSED, "%s of %s: observed order %.2f in %s, expected %g +- %g", quantities[q], fish,
+    const char *const quantity = settings_quantities[q].name;
+    if (order->objection) fprintf(stream, "warning: %s of %s: %s\n", quantity, fish, order->objection);
+    if (!(axis->order_of >> q & 1) || !(axis->order > 0)) return STATUS_OK;
+    if (fabs(order->order - axis->order) <= axis->within) return STATUS_OK;
+    return status_fail(STATUS_MISSED, "%s of %s: observed order %.2f in %s, expected %g +- %g", quantity, fish,
                        order->order, axis->key[0].path, axis->order, axis->within);
 }
 
 /* Errors and orders of one group: the members that differ in the refined axis only. */
 static enum status print_group(struct refinement *refinement, int first, FILE *stream) {
-    const int n_fish = refinement->study->n_fish, n_rows = N_QUANTITIES * n_fish;
+    const int n_fish = refinement->study->n_fish, n_rows = SETTINGS_N_ORDERS * n_fish;
     struct study_table table;
     struct study_order *const order = calloc((size_t)n_rows, sizeof *order);
     if (!order) return status_fail(STATUS_MEMORY, "no memory for %d orders", n_rows);
@@ -211,8 +230,9 @@ static enum status print_groups(struct refinement *refinement, FILE *stream) {
         fprintf(stream, "\nRefinement of %s", study->sweep[refinement->axis].key[0].path);
         if (study->n_axes > 1) fprintf(stream, ", from member %d (%s) on", m, text);
         fprintf(stream,
-                ": errors against the finest, the order of the last three levels and of those before,\n"
+                ": errors against the finest%s, the order of the last levels and of those before,\n"
                 "Richardson's limit, and the grid convergence index (safety factor %g)\n",
+                study->sweep[refinement->axis].reference ? " (*: against the reference of the case)" : "",
                 safety_factor);
         free(text);
         const enum status printed = print_group(refinement, m, stream);

@@ -63,6 +63,12 @@ static void are_equal(struct settings *one, struct settings *other) {
         assert_int_equal(one->sweep[i].refine, other->sweep[i].refine);
         assert_memory_equal(&one->sweep[i].order, &other->sweep[i].order, sizeof(double));
         assert_memory_equal(&one->sweep[i].within, &other->sweep[i].within, sizeof(double));
+        assert_int_equal(one->sweep[i].order_of, other->sweep[i].order_of);
+        assert_int_equal(one->sweep[i].reference != NULL, other->sweep[i].reference != NULL);
+        for (int k = 0; one->sweep[i].reference && k < SETTINGS_N_ORDERS * one->n_fish * 2; k++) {
+            const double a = one->sweep[i].reference[k], b = other->sweep[i].reference[k];
+            assert_true(a == b || (isnan(a) && isnan(b)));
+        }
         assert_int_equal(one->sweep[i].n_values, other->sweep[i].n_values);
         for (int j = 0; j < one->sweep[i].n_values * one->sweep[i].n_keys; j++) {
             assert_string_equal(one->sweep[i].value[j], other->sweep[i].value[j]);
@@ -436,6 +442,36 @@ static void the_merged_text_is_the_whole_study(void **state) {
     settings_free(&again);
 }
 
+static const char refined[] =
+    "time: {end: 1, shedding_interval: 0.1}\nformat: 1\nfish: [{}, {}]\n"
+    "sweep:\n"
+    "  - key: solver.rtol\n"
+    "    values: [1e-3, 1e-4, 1e-5]\n"
+    "    refine: true\n"
+    "    reference: {speed: 1.25, nose: [[1, 2], [3, 4]], com: [5, 6], mean_heading: [7, 8]}\n"
+    "    expect: {order: 0.8, within: 0.2, of: [speed, com]}\n";
+
+static void a_reference_is_given_for_all_fish_or_for_each(void **state) {
+    (void)state;
+    struct settings s = parse(refined);
+    // quantities in the order of the table: nose, tail, com, speed, mean_heading
+    for (int f = 0; f < 2; f++) {
+        for (int k = 0; k < 2; k++) {
+            NEAR(settings_reference(&s, 0, 0, f, k), 1 + 2 * f + k, 0, 0);
+            assert_true(isnan(settings_reference(&s, 0, 1, f, k)));
+            NEAR(settings_reference(&s, 0, 2, f, k), 5 + k, 0, 0);
+        }
+        NEAR(settings_reference(&s, 0, 3, f, 0), 1.25, 0, 0);
+        NEAR(settings_reference(&s, 0, 4, f, 0), 7 + f, 0, 0);
+    }
+    assert_int_equal(s.sweep[0].order_of, 1 << 3 | 1 << 2);
+    settings_free(&s);
+    s = parse(zipped);
+    assert_true(isnan(settings_reference(&s, 0, 0, 0, 0)));
+    assert_int_equal(s.sweep[0].order_of, 1 << SETTINGS_NOSE | 1 << SETTINGS_TAIL);
+    settings_free(&s);
+}
+
 static void a_wrong_member_is_named(void **state) {
     (void)state;
     struct settings study =
@@ -470,6 +506,7 @@ static void a_case_shown_reads_back_bit_for_bit(void **state) {
         least,
         swept,
         zipped,
+        refined,
         "format: 1\nname: 'odd: \"name\"'\npreset: published\ntime: {end: 0.9, shedding_interval: 0.3}\n"
         "output: {file: 'a b.nc', precision: single}\nwake: {lifetime: 0.1e1, smoothing: 0.30000000000000004}\n"
         "defaults: {fish: {length: 0.1, start: {position: [-0.0, 1e-320]}}}\n"
@@ -533,7 +570,8 @@ static void every_failing_allocation_is_reported_and_leaves_nothing(void **state
                "include: [water.yaml]\nformat: 1\ntime: {end: 1}\ndefaults: {fish: {name: a}}\n"
                "fish:\n  - {nodes: 4, body: {profile: table, h: [1, 2, 3], w: [1, 2, 3]}}\n"
                "  - {name: b, control: {desired_heading: 3}}\n"
-               "sweep: [{keys: ['fish[*].nodes', solver.order], values: [[4, 1], [4, 2]]}]\n");
+               "sweep: [{keys: ['fish[*].nodes', solver.order], values: [[4, 1], [4, 2]]},\n"
+               "  {key: solver.rtol, values: [0.1, 1e-3, 1e-4], refine: true, reference: {speed: 1}}]\n");
     static const char *const assignments[] = {"fish[*].length=2", "wake.fade=0.1"};
     const int n_before = n_live;
     int n_failures = 0;
@@ -611,6 +649,7 @@ int main(void) {
         cmocka_unit_test(a_sweep_keeps_its_values_as_assignments_take_them),
         cmocka_unit_test(members_are_numbered_with_the_last_axis_fastest),
         cmocka_unit_test(the_merged_text_is_the_whole_study),
+        cmocka_unit_test(a_reference_is_given_for_all_fish_or_for_each),
         cmocka_unit_test(a_wrong_member_is_named),
         cmocka_unit_test(what_this_version_does_not_run_is_refused_with_a_remedy),
         cmocka_unit_test(a_case_shown_reads_back_bit_for_bit),

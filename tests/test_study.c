@@ -13,7 +13,7 @@ static struct study_order order_of(int n, const double *sizes, double p) {
         values[i][0] = 3 + 0.7 * pow(sizes[i], p);
         values[i][1] = -1 - 0.2 * pow(sizes[i], p);
     }
-    return study_order(n, sizes, (const double(*)[2])values);
+    return study_order(n, sizes, (const double(*)[2])values, NULL);
 }
 
 static void a_power_of_the_size_gives_its_order_and_its_limit(void **state) {
@@ -40,11 +40,42 @@ static void the_published_example_comes_out(void **state) {
     (void)state;
     // Celik et al., Journal of Fluids Engineering 130 (2008) 078001, table 1, first column
     const double sizes[] = {1.5 * 4 / 3, 1.5, 1}, values[][2] = {{5.863, 0}, {5.972, 0}, {6.063, 0}};
-    const struct study_order order = study_order(3, sizes, values);
+    const struct study_order order = study_order(3, sizes, values, NULL);
     NEAR(order.order, 1.53, 0.01, 0);  // two digits are printed, of ratios rounded to three
     NEAR(order.limit[0], 6.1685, 0.0005, 0);
     NEAR(order.index / 6.063, 0.022, 0.0005, 0);
     assert_true(isnan(order.order_before));
+}
+
+static void a_given_value_gives_the_order_with_two_levels_each(void **state) {
+    (void)state;
+    // errors of order 2 about (3, -1), but for the finest level: its own error is that of a sum of orders 2 and 1
+    const double sizes[] = {0.4, 0.2, 0.1}, exact[] = {3, -1};
+    const double errors[] = {0.16, 0.04, 0.02};
+    double values[3][2];
+    for (int i = 0; i < 3; i++) {
+        values[i][0] = 3 + 0.6 * errors[i];
+        values[i][1] = -1 + 0.8 * errors[i];
+    }
+    const struct study_order order = study_order(3, sizes, (const double(*)[2])values, exact);
+    NEAR(order.order_before, 2, 0, 1e-12);
+    NEAR(order.order, 1, 0, 1e-12);
+    assert_non_null(strstr(order.objection, "changes"));
+    // with order 1 the limit is as far beyond the finest level as that is from the one before
+    NEAR(order.limit[0], 3, 1e-12, 0);
+    NEAR(order.limit[1], -1, 1e-12, 0);
+    NEAR(order.index, 1.25 * 0.02, 0, 1e-12);
+    // without the given value the same levels look otherwise: a ratio of differences of 6
+    NEAR(study_order(3, sizes, (const double(*)[2])values, NULL).order, log2(6), 0, 1e-9);
+}
+
+static void levels_on_both_sides_of_a_given_value_oscillate(void **state) {
+    (void)state;
+    const double sizes[] = {0.4, 0.2, 0.1}, values[][2] = {{1.4, 0}, {1.1, 0}, {0.97, 0}}, exact[] = {1, 0};
+    const struct study_order order = study_order(3, sizes, values, exact);
+    assert_non_null(strstr(order.objection, "oscillates"));
+    const double same[][2] = {{1.4, 0}, {1.1, 0}, {1, 0}};
+    assert_non_null(strstr(study_order(3, sizes, same, exact).objection, "equal to rounding"));
 }
 
 static void what_is_not_asymptotic_is_objected_to(void **state) {
@@ -63,11 +94,25 @@ static void what_is_not_asymptotic_is_objected_to(void **state) {
         {{{0, 0}, {NAN, 0}, {1, 0}, {1.5, 0}}, "a level is missing"},
     };
     for (size_t i = 0; i < sizeof examples / sizeof *examples; i++) {
-        const struct study_order order = study_order(4, sizes, examples[i].values);
+        const struct study_order order = study_order(4, sizes, examples[i].values, NULL);
         if (!order.objection || !strstr(order.objection, examples[i].objection)) {
             fail_msg("example %zu: %s", i, order.objection ? order.objection : "no objection");
         }
     }
+}
+
+static void quantities_of_a_case_are_those_of_a_study(void **state) {
+    (void)state;
+    for (int q = 0; q < SETTINGS_N_QUANTITIES; q++) {
+        // the look-up would run beyond the last one
+        const struct store_quantity *const quantity =
+            store_quantity(store_quantity_number(settings_quantities[q].name));
+        assert_non_null(quantity);
+        assert_int_equal(quantity->of_fish, settings_quantities[q].of_fish);
+        assert_int_equal(quantity->of_xy, settings_quantities[q].of_xy);
+    }
+    assert_string_equal(settings_quantities[SETTINGS_NOSE].name, "nose");
+    assert_string_equal(settings_quantities[SETTINGS_TAIL].name, "tail");
 }
 
 static void a_table_has_aligned_columns_and_no_blanks_at_the_end(void **state) {
@@ -95,7 +140,10 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_power_of_the_size_gives_its_order_and_its_limit),
         cmocka_unit_test(the_published_example_comes_out),
+        cmocka_unit_test(a_given_value_gives_the_order_with_two_levels_each),
+        cmocka_unit_test(levels_on_both_sides_of_a_given_value_oscillate),
         cmocka_unit_test(what_is_not_asymptotic_is_objected_to),
+        cmocka_unit_test(quantities_of_a_case_are_those_of_a_study),
         cmocka_unit_test(a_table_has_aligned_columns_and_no_blanks_at_the_end),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -133,6 +133,15 @@ refused another_order_gives_exit_code_3 3 \
     'in time.shedding_interval, expected 3 +- 0.1' study refined.yaml -o third -q \
     --set 'sweep=[{key: time.shedding_interval, values: [0.04, 0.02, 0.01], refine: true, expect: {order: 3, within: 0.1}}]'
 check then_everything_is_written_all_the_same test -s third/study.nc
+# a speed that no level comes near: all errors are its own, and the order is none
+run study refined.yaml -o given -q \
+    --set 'sweep=[{key: time.shedding_interval, values: [0.04, 0.02, 0.01], refine: true, reference: {speed: 100}}]'
+check errors_are_against_the_reference grep -qE '^ +speed\* +fish1 +m s-1 +9\.9.e\+01 +9\.9.e\+01 +9\.9.e\+01 +-?0\.00 ' out
+check other_errors_are_against_the_finest grep -qE '^ +nose +fish1 +m +[0-9.e-]+ +[0-9.e-]+ +- ' out
+check the_head_says_so has out "against the finest (*: against the reference of the case)"
+refused the_order_of_any_quantity_can_be_expected 3 'speed of fish1: observed order' study refined.yaml -o given -q --force \
+    --set 'sweep=[{key: time.shedding_interval, values: [0.04, 0.02, 0.01], refine: true, reference: {speed: 100},
+                   expect: {order: 2, within: 0.6, of: speed}}]'
 run study refined.yaml -o groups -q --set time.end=0.08 \
     --set 'sweep=[{key: solver.rtol, values: [1e-4, 1e-5, 1e-6], refine: true}, {key: solver.order, values: [1, 2]}]'
 check other_axes_make_groups has out 'Refinement of solver.rtol, from member 1 (solver.rtol=1e-4, solver.order=2) on'
