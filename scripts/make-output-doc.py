@@ -16,6 +16,7 @@ that a picture needs and the case itself.
 ## Opening it
 
     shoal info demo.nc                 # a summary: status, fish, last values, work of the solver
+    shoal info demo-study/study.nc     # of a study: axes, members, orders of convergence; also of a comparison
     ncdump -h demo.nc                  # everything that is in the file
     ncdump -v speed,heading demo.nc
 
@@ -106,6 +107,31 @@ SECTIONS = [
 ]
 
 
+# What stands before the variables of the other files.
+OTHERS = {
+    "study": """
+## The file of a study
+
+`shoal study` and `shoal gather` make `study.nc` from the files of the members. Attribute `study_case` is the case with
+its sweep, `shoal_study` is 1. For each swept key there is a variable over `member`, named like the key with `_` for `.`
+and without brackets; its `long_name` is the path, its `axis` the number of its axis, and `refine` is 1 where that is
+refined. Every variable over (time), (time, fish) or (time, fish, xy) of a result file is there with its last row, over
+(member), (member, fish) or (member, fish, xy). Further there are those below; a member that is not complete has NaN where
+its file has no rows.
+
+With a refined axis there is one variable of each of the last six kinds for each of the quantities Q: `nose`, `tail`, `com`,
+`speed`, `mean_heading`, `shed_circulation`, `cost_of_transport`, `mean_actuation_power`; the order of the nose is
+`order_nose`. A group is what the other axes leave of the study: members that differ in the refined key only.
+""",
+    "comparison": """
+## The file of a comparison
+
+`shoal compare -o FILE` writes one row for each method with each tolerance or step. Attribute `compare_case` is the case,
+`shoal_compare` is 1.
+""",
+}
+
+
 def section_of(variable):
     """The title of the first section that takes the variable."""
     return next(title for title, takes in SECTIONS if takes(variable["dimensions"]))
@@ -126,7 +152,10 @@ def main():
     print("## Variables")
     for title, _ in SECTIONS:
         print(f"\n### {title}\n")
-        print("\n".join(table(v for v in variables if section_of(v) == title)))
+        print("\n".join(table(v for v in variables if v["file"] == "run" and section_of(v) == title)))
+    for name, words in OTHERS.items():
+        print(words)
+        print("\n".join(table(v for v in variables if v["file"] == name)))
 
 
 if __name__ == "__main__":

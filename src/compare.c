@@ -268,24 +268,32 @@ static void fill_row(const struct compare *compare, struct run *run, struct stor
     snprintf(row->status, sizeof row->status, "%s", run->outcome->code == 0 ? "complete" : run->outcome->reason);
 }
 
-static void print(const struct compare *compare, const struct store_compare_row *row, FILE *stream) {
-    fprintf(stream, "Reference: ida5, rtol %s; with ten times that it is off by %.1e (nose) and %.1e (tail) lengths.\n",
-            compare->reference.value, error_of(compare, &compare->check, 0), error_of(compare, &compare->check, 1));
-    fprintf(stream, "%-14s  %8s  %8s  %8s  %8s  %9s  %9s  %8s  %9s  %8s  %9s  %s\n", "method",
-            compare->options->steps ? "rtol/step" : "rtol", "nose", "tail", "wall", "steps", "evaluat.", "Newton",
-            "Jacobians", "solves", "us/eval.", "status");
-    fprintf(stream, "%-14s  %8s  %8s  %8s  %8s\n", "", "", "lengths", "lengths", "s");
-    for (int i = 0; i < compare->n; i++) {
+/* A number in a column, "-" where it is none. */
+static void print_number(FILE *stream, const char *format, double number) {
+    char text[32];
+    snprintf(text, sizeof text, format, number);
+    fprintf(stream, "  %8s", isnan(number) ? "-" : text);
+}
+
+static void print(const struct store_compare_reference *reference, int n, const struct store_compare_row *row,
+                  FILE *stream) {
+    fprintf(stream, "Reference: ida5, rtol %g; with ten times that it is off by %.1e (nose) and %.1e (tail) lengths.\n",
+            reference->rtol, reference->nose_error, reference->tail_error);
+    fprintf(stream, "%-14s  %8s  %8s  %8s  %8s  %8s  %9s  %9s  %8s  %9s  %8s  %9s  %s\n", "method", "rtol", "step",
+            "nose", "tail", "wall", "steps", "evaluat.", "Newton", "Jacobians", "solves", "us/eval.", "status");
+    fprintf(stream, "%-14s  %8s  %8s  %8s  %8s  %8s\n", "", "", "s", "lengths", "lengths", "s");
+    for (int i = 0; i < n; i++) {
         const struct store_compare_row *const r = &row[i];
-        char nose[16] = "-", tail[16] = "-";
-        if (!isnan(r->nose_error)) snprintf(nose, sizeof nose, "%.1e", r->nose_error);
-        if (!isnan(r->tail_error)) snprintf(tail, sizeof tail, "%.1e", r->tail_error);
+        fprintf(stream, "%-14s", r->method);
+        print_number(stream, "%.6g", r->rtol);
+        print_number(stream, "%.6g", r->step);
+        print_number(stream, "%.1e", r->nose_error);
+        print_number(stream, "%.1e", r->tail_error);
         // a long reason stands whole in the file
         const int n_status = (int)strcspn(r->status, ":;");
-        fprintf(stream, "%-14s  %8s  %8s  %8s  %8.3f  %9.0f  %9.0f  %8.0f  %9.0f  %8.0f  %9.1f  %.*s\n", r->method,
-                compare->run[i].value, nose, tail, r->wall_time, r->steps, r->evaluations, r->newton_iterations,
-                r->jacobians, r->linear_solves, r->evaluations > 0 ? 1e6 * r->wall_time / r->evaluations : 0, n_status,
-                r->status);
+        fprintf(stream, "  %8.3f  %9.0f  %9.0f  %8.0f  %9.0f  %8.0f  %9.1f  %.*s\n", r->wall_time, r->steps,
+                r->evaluations, r->newton_iterations, r->jacobians, r->linear_solves,
+                r->evaluations > 0 ? 1e6 * r->wall_time / r->evaluations : 0, n_status, r->status);
     }
 }
 
@@ -293,10 +301,14 @@ static enum status report(struct compare *compare, FILE *stream) {
     struct store_compare_row *const row = calloc((size_t)compare->n, sizeof *row);
     if (!row) return status_fail(STATUS_MEMORY, "no memory for %d rows", compare->n);
     for (int i = 0; i < compare->n; i++) fill_row(compare, &compare->run[i], &row[i]);
-    print(compare, row, stream);
-    const char *const path = compare->options->path;
-    const enum status status =
-        path ? store_compare_write(path, compare->settings, compare->n, row, compare->options->command) : STATUS_OK;
+    const struct store_compare_reference reference = {.rtol = compare->options->reference_rtol,
+                                                      .nose_error = error_of(compare, &compare->check, 0),
+                                                      .tail_error = error_of(compare, &compare->check, 1)};
+    print(&reference, compare->n, row, stream);
+    const struct compare_options *const options = compare->options;
+    const enum status status = options->path ? store_compare_write(options->path, compare->settings, &reference,
+                                                                   compare->n, row, options->command)
+                                             : STATUS_OK;
     free(row);
     return status;
 }
@@ -329,4 +341,15 @@ enum status compare_run(const struct settings *settings, const struct compare_op
     free(compare->check.outcome);
     free(compare);
     return status;
+}
+
+enum status compare_info(const char *path, FILE *stream) {
+    struct store_compare_reference reference;
+    struct store_compare_row *row;
+    int n;
+    TRY(store_compare_read(path, &reference, &n, &row));
+    fprintf(stream, "\n");
+    print(&reference, n, row, stream);
+    free(row);
+    return STATUS_OK;
 }

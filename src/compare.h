@@ -29,4 +29,7 @@ struct compare_options {
  * STATUS_STOPPED, STATUS_FILE or STATUS_MEMORY. */
 enum status compare_run(const struct settings *settings, const struct compare_options *options, FILE *stream);
 
+/* Print what the file of a comparison holds. Fails with STATUS_FILE or STATUS_MEMORY. */
+enum status compare_info(const char *path, FILE *stream);
+
 #endif

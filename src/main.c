@@ -60,7 +60,7 @@ static const struct command commands[] = {
      "list all keys of a case, or all variables of a result",
      {OPTION_JSON, OPTION_OUTPUT, 'h'},
      main_keys},
-    {"info", "RUN.nc", "say what a result file holds", {OPTION_CASE, 'h'}, main_info},
+    {"info", "FILE.nc", "say what the file of a run, a study or a comparison holds", {OPTION_CASE, 'h'}, main_info},
     {"demo", NULL, "let a fish swim: write demo.nc and demo.png here", {'q', 'h'}, main_demo},
 };
 enum { N_COMMANDS = sizeof commands / sizeof *commands };

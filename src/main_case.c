@@ -1,10 +1,12 @@
 /* main_case.c: looking at cases and at results. Declared in main.h. */
 #include <stdlib.h>
 
+#include "compare.h"
 #include "fish.h"
 #include "main.h"
 #include "settings.h"
 #include "store.h"
+#include "study.h"
 
 enum status main_check(const struct request *request) {
     struct settings settings;
@@ -41,5 +43,9 @@ enum status main_keys(const struct request *request) {
 }
 
 enum status main_info(const struct request *request) {
-    return store_info(request->positional, request->case_only, stdout);
+    enum store_kind kind;
+    TRY(store_info(request->positional, request->case_only, stdout, &kind));
+    if (request->case_only) return STATUS_OK;
+    if (kind == STORE_STUDY) return study_info(request->positional, stdout);
+    return kind == STORE_COMPARISON ? compare_info(request->positional, stdout) : STATUS_OK;
 }

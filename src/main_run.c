@@ -34,7 +34,8 @@ static enum status run_settings(const struct settings *settings, const struct re
     const enum status status = simulate_run(settings, &options);
     progress_end(&progress);
     TRY(status);
-    if (request->verbose) TRY(store_info(path, 0, stdout));
+    enum store_kind kind;
+    if (request->verbose) TRY(store_info(path, 0, stdout, &kind));
     if (!request->quiet && !request->verbose) printf("%s\n", path);
     return STATUS_OK;
 }

@@ -41,7 +41,11 @@ enum status store_close(struct store *store, const char *run_status);
 /* Print the table of variables: name, dimensions, unit, meaning; as aligned text, or as JSON. */
 void store_variables(FILE *stream, int as_json);
 
-/* Print a summary of a result file, or its complete case alone. Fails with STATUS_FILE. */
-enum status store_info(const char *path, int case_only, FILE *stream);
+/* The files that shoal writes: of a run, of a study (store_study.h), of a comparison (store_compare.h). */
+enum store_kind { STORE_RUN, STORE_STUDY, STORE_COMPARISON };
+
+/* Print a summary of a file, or the case in it alone; of studies and comparisons the head only: see study_info and
+ * compare_info. *kind is what the file is. Fails with STATUS_FILE or STATUS_MEMORY. */
+enum status store_info(const char *path, int case_only, FILE *stream, enum store_kind *kind);
 
 #endif

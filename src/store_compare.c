@@ -1,16 +1,18 @@
-/* store_compare.c: writing a comparison of methods. */
+/* store_compare.c: writing and reading a comparison of methods. */
 #include "store_compare.h"
 
 #include <math.h>
 #include <netcdf.h>
 #include <stddef.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
+#include "store_table.h"
 #include "version.h"
 
-enum { SCHEMA = 1 /* attribute shoal_compare */, PATH_BYTES = 4200 };
+enum { PATH_BYTES = 4200 };
 
 /* Leave with NetCDF's error code. */
 #define NETCDF(call)                                     \
@@ -38,12 +40,66 @@ static const struct column {
 };
 enum { N_COLUMNS = sizeof columns / sizeof *columns };
 
+/* The texts of a row. */
+enum { METHOD, STATUS, N_TEXTS };
+static const struct words {
+    const char *name, *long_name;
+    size_t offset;
+} texts[N_TEXTS] = {
+    {"method", "method; ida2 is the implicit one of order 2", IN_ROW(method)},
+    {"status", "complete, or why the run ended early", IN_ROW(status)},
+};
+
+/* The numbers of the reference. */
+static const struct column of_reference[] = {
+#define IN_REFERENCE(field) offsetof(struct store_compare_reference, field)
+    {"reference_rtol", "1", "tolerance of the reference, the implicit method of order 5", IN_REFERENCE(rtol)},
+    {"reference_nose_error", "1", "error of the nose with ten times that tolerance, in body lengths",
+     IN_REFERENCE(nose_error)},
+    {"reference_tail_error", "1", "the same for the tail", IN_REFERENCE(tail_error)},
+};
+enum { N_OF_REFERENCE = sizeof of_reference / sizeof *of_reference };
+
+/* The value of a column. */
+static double value_of(const struct column *column, const void *from) {
+    double value;
+    memcpy(&value, (const char *)from + column->offset, sizeof value);
+    return value;
+}
+
+int store_compare_listed(int i, struct store_listed *listed) {
+    if (i < N_TEXTS) {
+        *listed = (struct store_listed){.name = texts[i].name,
+                                        .unit = "",
+                                        .type = "char",
+                                        .meaning = texts[i].long_name,
+                                        .dimensions = "run, text"};
+        return 1;
+    }
+    const int is_number = i - N_TEXTS < N_COLUMNS;
+    if (i >= N_TEXTS + N_COLUMNS + N_OF_REFERENCE) return 0;
+    const struct column *const column = is_number ? &columns[i - N_TEXTS] : &of_reference[i - N_TEXTS - N_COLUMNS];
+    *listed = (struct store_listed){
+        .name = column->name, .unit = column->unit, .type = "double", .meaning = column->long_name};
+    if (is_number) strcpy(listed->dimensions, "run");
+    return 1;
+}
+
 static int write_attribute(int file, int variable, const char *name, const char *text) {
     return nc_put_att_text(file, variable, name, strlen(text), text);
 }
 
+static int define_number(int file, const struct column *column, int n_dimensions, const int *dimension) {
+    const double fill = NAN;
+    int variable;
+    NETCDF(nc_def_var(file, column->name, NC_DOUBLE, n_dimensions, dimension, &variable));
+    NETCDF(write_attribute(file, variable, "units", column->unit));
+    NETCDF(write_attribute(file, variable, "long_name", column->long_name));
+    return nc_put_att_double(file, variable, _FillValue, NC_DOUBLE, 1, &fill);
+}
+
 static int define(int file, const struct settings *settings, int n, const char *command) {
-    const int schema = SCHEMA;
+    const int schema = STORE_COMPARE_SCHEMA;
     int run, text, variable;
     NETCDF(nc_def_dim(file, "run", (size_t)n, &run));
     NETCDF(nc_def_dim(file, "text", sizeof((struct store_compare_row){0}).status, &text));
@@ -52,18 +108,14 @@ static int define(int file, const struct settings *settings, int n, const char *
     NETCDF(write_attribute(file, NC_GLOBAL, "history", command));
     NETCDF(write_attribute(file, NC_GLOBAL, "source", version_short()));
     NETCDF(nc_put_att_int(file, NC_GLOBAL, "shoal_compare", NC_INT, 1, &schema));
-    NETCDF(write_attribute(file, NC_GLOBAL, "case_text", settings->text));
-    NETCDF(nc_def_var(file, "method", NC_CHAR, 2, (int[]){run, text}, &variable));
-    NETCDF(write_attribute(file, variable, "_Encoding", "utf-8"));
-    NETCDF(nc_def_var(file, "status", NC_CHAR, 2, (int[]){run, text}, &variable));
-    NETCDF(write_attribute(file, variable, "_Encoding", "utf-8"));
-    for (int c = 0; c < N_COLUMNS; c++) {
-        const double fill = NAN;
-        NETCDF(nc_def_var(file, columns[c].name, NC_DOUBLE, 1, &run, &variable));
-        NETCDF(write_attribute(file, variable, "units", columns[c].unit));
-        NETCDF(write_attribute(file, variable, "long_name", columns[c].long_name));
-        NETCDF(nc_put_att_double(file, variable, _FillValue, NC_DOUBLE, 1, &fill));
+    NETCDF(write_attribute(file, NC_GLOBAL, "compare_case", settings->merged));
+    for (int i = 0; i < N_TEXTS; i++) {
+        NETCDF(nc_def_var(file, texts[i].name, NC_CHAR, 2, (int[]){run, text}, &variable));
+        NETCDF(write_attribute(file, variable, "long_name", texts[i].long_name));
+        NETCDF(write_attribute(file, variable, "_Encoding", "utf-8"));
     }
+    for (int c = 0; c < N_COLUMNS; c++) NETCDF(define_number(file, &columns[c], 1, &run));
+    for (int c = 0; c < N_OF_REFERENCE; c++) NETCDF(define_number(file, &of_reference[c], 0, NULL));
     return nc_enddef(file);
 }
 
@@ -75,22 +127,28 @@ static int write_text(int file, const char *name, int row, const char *value) {
     return nc_put_vara_text(file, variable, (size_t[]){(size_t)row, 0}, (size_t[]){1, sizeof text}, text);
 }
 
-static int write_rows(int file, int n, const struct store_compare_row *row) {
+static int write_number(int file, const struct column *column, int row, double value) {
+    int variable;
+    NETCDF(nc_inq_varid(file, column->name, &variable));
+    return nc_put_var1_double(file, variable, (size_t[]){(size_t)row}, &value);
+}
+
+static int write_all(int file, const struct store_compare_reference *reference, int n,
+                     const struct store_compare_row *row) {
     for (int i = 0; i < n; i++) {
-        NETCDF(write_text(file, "method", i, row[i].method));
-        NETCDF(write_text(file, "status", i, row[i].status));
-        for (int c = 0; c < N_COLUMNS; c++) {
-            int variable;
-            double value;
-            memcpy(&value, (const char *)&row[i] + columns[c].offset, sizeof value);
-            NETCDF(nc_inq_varid(file, columns[c].name, &variable));
-            NETCDF(nc_put_var1_double(file, variable, (size_t[]){(size_t)i}, &value));
+        for (int k = 0; k < N_TEXTS; k++) {
+            NETCDF(write_text(file, texts[k].name, i, (const char *)&row[i] + texts[k].offset));
         }
+        for (int c = 0; c < N_COLUMNS; c++) NETCDF(write_number(file, &columns[c], i, value_of(&columns[c], &row[i])));
+    }
+    for (int c = 0; c < N_OF_REFERENCE; c++) {
+        NETCDF(write_number(file, &of_reference[c], 0, value_of(&of_reference[c], reference)));
     }
     return NC_NOERR;
 }
 
-enum status store_compare_write(const char *path, const struct settings *settings, int n,
+enum status store_compare_write(const char *path, const struct settings *settings,
+                                const struct store_compare_reference *reference, int n,
                                 const struct store_compare_row *row, const char *command) {
     char temporary[PATH_BYTES];
     // "./" keeps NetCDF from taking the name for an address
@@ -99,7 +157,7 @@ enum status store_compare_write(const char *path, const struct settings *setting
     int code = nc_create(temporary, NC_CLOBBER | NC_64BIT_DATA, &file);
     if (code == NC_NOERR) {
         code = define(file, settings, n, command);
-        if (code == NC_NOERR) code = write_rows(file, n, row);
+        if (code == NC_NOERR) code = write_all(file, reference, n, row);
         const int closed = nc_close(file);
         if (code == NC_NOERR) code = closed;
     }
@@ -107,4 +165,56 @@ enum status store_compare_write(const char *path, const struct settings *setting
     unlink(temporary);
     return status_fail(STATUS_FILE, "%s: cannot be written (%s): choose another place with -o", path,
                        code == NC_NOERR ? "no renaming there" : nc_strerror(code));
+}
+
+// ---- reading
+
+static int read_row(int file, int i, size_t n_text, struct store_compare_row *row) {
+    int variable;
+    for (int k = 0; k < N_TEXTS; k++) {
+        const size_t room = (k == METHOD ? sizeof row->method : sizeof row->status) - 1;
+        NETCDF(nc_inq_varid(file, texts[k].name, &variable));
+        NETCDF(nc_get_vara_text(file, variable, (size_t[]){(size_t)i, 0}, (size_t[]){1, n_text < room ? n_text : room},
+                                (char *)row + texts[k].offset));
+    }
+    for (int c = 0; c < N_COLUMNS; c++) {
+        NETCDF(nc_inq_varid(file, columns[c].name, &variable));
+        NETCDF(nc_get_var1_double(file, variable, (size_t[]){(size_t)i}, (double *)((char *)row + columns[c].offset)));
+    }
+    return NC_NOERR;
+}
+
+static int read_all(int file, struct store_compare_reference *reference, int n, size_t n_text,
+                    struct store_compare_row *row) {
+    for (int i = 0; i < n; i++) NETCDF(read_row(file, i, n_text, &row[i]));
+    for (int c = 0; c < N_OF_REFERENCE; c++) {
+        int variable;
+        NETCDF(nc_inq_varid(file, of_reference[c].name, &variable));
+        NETCDF(nc_get_var_double(file, variable, (double *)((char *)reference + of_reference[c].offset)));
+    }
+    return NC_NOERR;
+}
+
+static size_t length_of(int file, const char *dimension) {
+    int number;
+    size_t length = 0;
+    if (nc_inq_dimid(file, dimension, &number) == NC_NOERR) nc_inq_dimlen(file, number, &length);
+    return length;
+}
+
+enum status store_compare_read(const char *path, struct store_compare_reference *reference, int *n,
+                               struct store_compare_row **row) {
+    *row = NULL;
+    int file;
+    int code = nc_open(path, NC_NOWRITE, &file);
+    if (code != NC_NOERR) return status_fail(STATUS_FILE, "%s: cannot be read: %s", path, nc_strerror(code));
+    *n = (int)length_of(file, "run");
+    *row = calloc((size_t)*n + 1, sizeof **row);
+    if (*row) code = read_all(file, reference, *n, length_of(file, "text"), *row);
+    nc_close(file);
+    if (!*row) return status_fail(STATUS_MEMORY, "%s: no memory to read it", path);
+    if (code == NC_NOERR) return STATUS_OK;
+    free(*row);
+    *row = NULL;
+    return status_fail(STATUS_FILE, "%s: not a whole comparison: %s", path, nc_strerror(code));
 }

@@ -14,8 +14,27 @@ struct store_compare_row {
     double steps, evaluations, newton_iterations, jacobians, linear_solves;
 };
 
+/* What all are compared with: the implicit method of order 5. */
+struct store_compare_reference {
+    double rtol;
+    double nose_error, tail_error; /* with ten times that tolerance, against it: how good it is, in lengths */
+};
+
 /* Write the rows. A file that is there is replaced when the new one is complete. Fails with STATUS_FILE. */
-enum status store_compare_write(const char *path, const struct settings *settings, int n,
+enum status store_compare_write(const char *path, const struct settings *settings,
+                                const struct store_compare_reference *reference, int n,
                                 const struct store_compare_row *row, const char *command);
+
+/* Read them back; the caller frees *row. Fails with STATUS_FILE or STATUS_MEMORY; *row is then NULL. */
+enum status store_compare_read(const char *path, struct store_compare_reference *reference, int *n,
+                               struct store_compare_row **row);
+
+/* Row i, from 0, of the reference of its variables; 0 beyond the last. */
+struct store_listed;
+int store_compare_listed(int i, struct store_listed *listed);
+
+/* ---- shared by the files of the store only */
+
+enum { STORE_COMPARE_SCHEMA = 1 /* attribute shoal_compare */ };
 
 #endif

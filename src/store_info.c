@@ -8,6 +8,8 @@
 #include <sys/stat.h>
 
 #include "store.h"
+#include "store_compare.h"
+#include "store_study.h"
 #include "store_table.h"
 
 struct info {
@@ -67,32 +69,18 @@ static enum status open_file(struct info *info) {
     if (stat(info->path, &target) != 0)
         return status_fail(STATUS_FILE, "%s: cannot be read: %s", info->path, strerror(errno));
     if (S_ISDIR(target.st_mode))
-        return status_fail(STATUS_FILE, "%s is a folder: name the result file of a run", info->path);
+        return status_fail(STATUS_FILE, "%s is a folder: name a file that shoal wrote", info->path);
     const int code = nc_open(info->path, NC_NOWRITE, &info->file);
     if (code == NC_NOERR) return STATUS_OK;
     if (code == NC_ENOMEM) return status_fail(STATUS_MEMORY, "%s: no memory to read it", info->path);
     if (code > 0) return status_fail(STATUS_FILE, "%s: cannot be read: %s", info->path, strerror(code));
-    return status_fail(STATUS_FILE, "%s: not a NetCDF file (%s): name the result file of a run", info->path,
+    return status_fail(STATUS_FILE, "%s: not a NetCDF file (%s): name a file that shoal wrote", info->path,
                        nc_strerror(code));
 }
 
 /* Missing data at the end of a file reads as zero; the time the run took, the last value of each row, never is. */
 static bool is_cut(const struct info *info) {
     return info->n_rows > 1 && last_value(info, "wall_time", 0) == 0;
-}
-
-static enum status check_file(const struct info *info) {
-    int schema;
-    if (nc_get_att_int(info->file, NC_GLOBAL, "shoal_schema", &schema) != NC_NOERR)
-        return status_fail(STATUS_FILE, "%s: a NetCDF file, but not one of shoal (it has no attribute shoal_schema)",
-                           info->path);
-    if (schema != STORE_SCHEMA)
-        return status_fail(STATUS_FILE,
-                           "%s: written in schema %d, but this program reads %d: use the one that wrote it", info->path,
-                           schema, STORE_SCHEMA);
-    if (is_cut(info))
-        return status_fail(STATUS_FILE, "%s: the end of the file is missing: was it copied completely?", info->path);
-    return STATUS_OK;
 }
 
 // ---- printing ----
@@ -205,14 +193,20 @@ static void print_solver(const struct info *info) {
             last_value(info, "time", 0) / wall);
 }
 
-static enum status print_summary(const struct info *info) {
+/* What is the same in all files. */
+static enum status print_head(const struct info *info) {
     fprintf(info->stream, "%s\n", info->path);
     TRY(print_attribute(info, "case", "title"));
     TRY(print_attribute(info, "program", "source"));
     TRY(print_attribute(info, "history", "history"));
+    print_size(info);
+    return STATUS_OK;
+}
+
+static enum status print_run(const struct info *info) {
+    TRY(print_head(info));
     TRY(print_attribute(info, "status", "run_status"));
     print_span(info);
-    print_size(info);
     TRY(print_fish(info));
     if (info->n_rows == 0) return STATUS_OK;
     print_school(info);
@@ -220,15 +214,50 @@ static enum status print_summary(const struct info *info) {
     return STATUS_OK;
 }
 
-enum status store_info(const char *path, int case_only, FILE *stream) {
+// ---- all kinds of files ----
+
+/* The attribute that holds the schema, the one that holds the case, and the summary. */
+static const struct kind {
+    const char *schema_name;
+    int schema;
+    const char *case_name;
+    enum status (*print)(const struct info *info);
+} kinds[] = {
+    [STORE_RUN] = {"shoal_schema", STORE_SCHEMA, "case_effective", print_run},
+    [STORE_STUDY] = {"shoal_study", STORE_STUDY_SCHEMA, "study_case", print_head},
+    [STORE_COMPARISON] = {"shoal_compare", STORE_COMPARE_SCHEMA, "compare_case", print_head},
+};
+enum { N_KINDS = sizeof kinds / sizeof *kinds };
+
+static enum status find_kind(const struct info *info, enum store_kind *kind) {
+    int schema = 0, k = 0;
+    while (k < N_KINDS && nc_get_att_int(info->file, NC_GLOBAL, kinds[k].schema_name, &schema) != NC_NOERR) k++;
+    if (k == N_KINDS) {
+        return status_fail(STATUS_FILE, "%s: a NetCDF file, but not one of shoal (it has no attribute shoal_schema)",
+                           info->path);
+    }
+    if (schema != kinds[k].schema) {
+        return status_fail(STATUS_FILE,
+                           "%s: written in schema %d, but this program reads %d: use the one that wrote it", info->path,
+                           schema, kinds[k].schema);
+    }
+    if (is_cut(info)) {
+        return status_fail(STATUS_FILE, "%s: the end of the file is missing: was it copied completely?", info->path);
+    }
+    *kind = (enum store_kind)k;
+    return STATUS_OK;
+}
+
+enum status store_info(const char *path, int case_only, FILE *stream, enum store_kind *kind) {
     struct info info = {.path = path, .stream = stream};
     TRY(open_file(&info));
     info.n_rows = dimension_length(&info, "time");
     info.n_fish = dimension_length(&info, "fish");
     info.n_name = dimension_length(&info, "name");
-
-    enum status status = check_file(&info);
-    if (status == STATUS_OK) status = case_only ? print_attribute(&info, NULL, "case_effective") : print_summary(&info);
+    enum status status = find_kind(&info, kind);
+    if (status == STATUS_OK) {
+        status = case_only ? print_attribute(&info, NULL, kinds[*kind].case_name) : kinds[*kind].print(&info);
+    }
     nc_close(info.file);
     return status;
 }

@@ -10,11 +10,11 @@
 // ---- the table of quantities: first what stands in the last row of a result file, then what is computed
 
 static const struct store_quantity computed[] = {
-    {"nose", "m", "position of the nose at the end", 1, 1},
-    {"tail", "m", "position of the tail at the end", 1, 1},
-    {"lateral_drift", "m", "way of the centre of mass across the first heading, to the left", 1, 0},
-    {"mean_heading", "degree", "mean of the heading over the last period", 1, 0},
-    {"mean_actuation_power", "W", "mean power of the muscle over the last period", 1, 0},
+    {"nose", "m", "position of the nose at the end", 1, 1, 1},
+    {"tail", "m", "position of the tail at the end", 1, 1, 1},
+    {"lateral_drift", "m", "way of the centre of mass across the first heading, to the left", 1, 0, 1},
+    {"mean_heading", "degree", "mean of the heading over the last period", 1, 0, 1},
+    {"mean_actuation_power", "W", "mean power of the muscle over the last period", 1, 0, 1},
 };
 enum { NOSE, TAIL, DRIFT, MEAN_HEADING, MEAN_POWER, N_COMPUTED, MOST_QUANTITIES = 96 };
 
@@ -32,8 +32,8 @@ const struct store_quantity *store_quantity(int i) {
         for (int v = 0; v < store_table_n; v++) {
             const struct store_variable *const from = &store_table[v];
             if (!has_end(from)) continue;
-            all[n++] = (struct store_quantity){from->name, from->unit, from->long_name, store_table_has(from, FISH),
-                                               store_table_has(from, XY)};
+            all[n++] = (struct store_quantity){
+                from->name, from->unit, from->long_name, store_table_has(from, FISH), store_table_has(from, XY), 0};
         }
         for (int c = 0; c < N_COMPUTED; c++) all[n++] = computed[c];
     }

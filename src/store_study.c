@@ -9,16 +9,28 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "store_table.h"
 #include "version.h"
 #include "yaml_text.h"
 
-enum { STUDY_SCHEMA = 1 /* attribute shoal_study */, SHORTEST_TEXT = 16, NAME_BYTES = 256 };
+enum { SHORTEST_TEXT = 64 /* an objection to an order */, NAME_BYTES = 256 };
+
+/* The variables of its own; those of the swept keys and the quantities follow. */
+enum { MEMBER, STATUS, FISH_NAME, N_OWN };
+static const struct own {
+    const char *name, *dimension, *meaning;
+} own[N_OWN] = {
+    {"member", "member", "number of the member"},
+    {"status", "member", "how the member ended"},
+    {"fish_name", "fish", "name of the fish"},
+};
 
 /* A study.nc on its way. */
 struct writing {
     int file;
     const struct settings *study;
     const struct store_member *member;
+    const struct store_orders *orders;
     int n_members, n_fish;
     size_t n_text; /* length of the dimension text */
     int member_dimension, fish_dimension, xy_dimension, text_dimension;
@@ -80,7 +92,7 @@ static int define_attributes(const struct writing *writing, const char *command)
     struct tm utc;
     strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
     snprintf(history, sizeof history, "%s %s", date, command);
-    const int schema = STUDY_SCHEMA, file = writing->file;
+    const int schema = STORE_STUDY_SCHEMA, file = writing->file;
     NETCDF(write_attribute(file, NC_GLOBAL, "Conventions", "CF-1.10"));
     NETCDF(write_attribute(file, NC_GLOBAL, "title", writing->study->name));
     NETCDF(write_attribute(file, NC_GLOBAL, "history", history));
@@ -131,13 +143,17 @@ static int define_all(struct writing *writing, const char *command) {
     NETCDF(nc_def_dim(file, "xy", 2, &writing->xy_dimension));
     NETCDF(nc_def_dim(file, "text", writing->n_text, &writing->text_dimension));
     NETCDF(define_attributes(writing, command));
-    NETCDF(define(writing, "member", NC_INT, writing->member_dimension, "number of the member", "1", &variable));
-    NETCDF(define(writing, "status", NC_CHAR, writing->member_dimension, "how the member ended", "", &variable));
-    NETCDF(define(writing, "fish_name", NC_CHAR, writing->fish_dimension, "name of the fish", "", &variable));
+    for (int i = 0; i < N_OWN; i++) {
+        NETCDF(define(writing, own[i].name, i == MEMBER ? NC_INT : NC_CHAR,
+                      i == FISH_NAME ? writing->fish_dimension : writing->member_dimension, own[i].meaning, "1",
+                      &variable));
+    }
     for (int a = 0; a < writing->study->n_axes; a++) {
         for (int k = 0; k < writing->study->sweep[a].n_keys; k++) NETCDF(define_key(writing, a, k));
     }
     for (int q = 0; store_quantity(q); q++) NETCDF(define_quantity(writing, store_quantity(q)));
+    const int of_orders[] = {writing->fish_dimension, writing->xy_dimension, writing->text_dimension};
+    NETCDF(store_orders_define(file, writing->study, writing->orders, of_orders));
     return nc_enddef(file);
 }
 
@@ -180,17 +196,17 @@ static int write_key(const struct writing *writing, int a, int k) {
 static int write_all(struct writing *writing, const char *command) {
     NETCDF(define_all(writing, command));
     for (int m = 0; m < writing->n_members; m++) {
-        NETCDF(nc_put_var1_int(writing->file, variable_number(writing, "member"), (size_t[]){(size_t)m}, &m));
-        NETCDF(write_text(writing, "status", m, writing->member[m].status));
+        NETCDF(nc_put_var1_int(writing->file, variable_number(writing, own[MEMBER].name), (size_t[]){(size_t)m}, &m));
+        NETCDF(write_text(writing, own[STATUS].name, m, writing->member[m].status));
     }
     for (int f = 0; f < writing->n_fish; f++) {
-        NETCDF(write_text(writing, "fish_name", f, writing->study->fish[f].name));
+        NETCDF(write_text(writing, own[FISH_NAME].name, f, writing->study->fish[f].name));
     }
     for (int a = 0; a < writing->study->n_axes; a++) {
         for (int k = 0; k < writing->study->sweep[a].n_keys; k++) NETCDF(write_key(writing, a, k));
     }
     for (int q = 0; store_quantity(q); q++) NETCDF(write_quantity(writing, q));
-    return NC_NOERR;
+    return store_orders_write(writing->file, writing->study, writing->orders, writing->n_text);
 }
 
 /* Write under a temporary name, and give it its own. */
@@ -208,9 +224,12 @@ static enum status write_file(struct writing *writing, const char *path, const c
 }
 
 enum status store_study_write(const char *path, const struct settings *study, const struct store_member *member,
-                              const char *command) {
-    struct writing writing = {
-        .study = study, .member = member, .n_members = settings_n_members(study), .n_fish = study->n_fish};
+                              const struct store_orders *orders, const char *command) {
+    struct writing writing = {.study = study,
+                              .member = member,
+                              .orders = orders,
+                              .n_members = settings_n_members(study),
+                              .n_fish = study->n_fish};
     writing.n_text = longest_text(&writing);
     writing.buffer = calloc((size_t)writing.n_members * (size_t)writing.n_fish * 2, sizeof *writing.buffer);
     writing.text = calloc(writing.n_text, 1);
@@ -227,4 +246,25 @@ enum status store_study_write(const char *path, const struct settings *study, co
     free(writing.text);
     free(temporary);
     return status;
+}
+
+int store_study_listed(int i, struct store_listed *listed) {
+    *listed = (struct store_listed){.unit = "1", .type = "int"};
+    if (i < N_OWN) {
+        listed->name = own[i].name;
+        if (i != MEMBER) listed->type = "char", listed->unit = "";
+        listed->meaning = own[i].meaning;
+        snprintf(listed->dimensions, sizeof listed->dimensions, "%s%s", own[i].dimension, i == MEMBER ? "" : ", text");
+        return 1;
+    }
+    int k = i - N_OWN;
+    for (int q = 0; store_quantity(q); q++) {
+        const struct store_quantity *const quantity = store_quantity(q);
+        if (!quantity->is_computed || k-- > 0) continue;
+        *listed = (struct store_listed){
+            .name = quantity->name, .unit = quantity->unit, .type = "double", .meaning = quantity->long_name};
+        snprintf(listed->dimensions, sizeof listed->dimensions, "member, fish%s", quantity->of_xy ? ", xy" : "");
+        return 1;
+    }
+    return store_orders_listed(k, listed);
 }

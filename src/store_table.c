@@ -4,6 +4,8 @@
 #include <string.h>
 
 #include "rod.h"
+#include "store_compare.h"
+#include "store_study.h"
 
 // ---- values that have to be put together ----
 
@@ -208,38 +210,54 @@ static const char *type_name(enum store_type type) {
     return name[type];
 }
 
-/* "time, fish, node, xy"; each name between the marks of quote. */
-static void list_dimensions(const struct store_variable *variable, const char *quote, char *text, size_t size) {
+/* Row i of the reference: the variables of a run, of study.nc, of a comparison; 0 beyond the last. */
+static int listed_row(int i, struct store_listed *listed) {
+    if (i >= store_table_n) {
+        // each table begins where the one before ends
+        int n_study = 0;
+        while (store_study_listed(n_study, listed)) n_study++;
+        const int is_study = i - store_table_n < n_study;
+        if (is_study) store_study_listed(i - store_table_n, listed);
+        const int exists = is_study || store_compare_listed(i - store_table_n - n_study, listed);
+        listed->file = is_study ? "study" : "comparison";
+        return exists;
+    }
+    const struct store_variable *const variable = &store_table[i];
+    *listed = (struct store_listed){
+        "run", variable->name, variable->unit, type_name(variable->type), variable->long_name, ""};
     size_t length = 0;
-    text[0] = '\0';
-    for (const enum store_dimension *d = variable->dimension; *d != NONE; d++)
-        length += (size_t)snprintf(text + length, size - length, "%s%s%s%s", length > 0 ? ", " : "", quote,
-                                   store_table_dimension(*d), quote);
+    for (const enum store_dimension *d = variable->dimension; *d != NONE; d++) {
+        length += (size_t)snprintf(listed->dimensions + length, sizeof listed->dimensions - length, "%s%s",
+                                   length > 0 ? ", " : "", store_table_dimension(*d));
+    }
+    return 1;
 }
 
 static void print_text(FILE *stream) {
-    for (int i = 0; i < store_table_n; i++) {
-        const struct store_variable *variable = &store_table[i];
-        char dimensions[80];
-        list_dimensions(variable, "", dimensions, sizeof dimensions);
-        fprintf(stream, "%-20s  (%s)%*s  %-6s  %s\n", variable->name, dimensions, 22 - (int)strlen(dimensions), "",
-                variable->unit, variable->long_name);
+    const char *before = "run";
+    struct store_listed listed;
+    for (int i = 0; listed_row(i, &listed); i++) {
+        if (strcmp(listed.file, before) != 0) fprintf(stream, "\nIn the file of a %s:\n\n", listed.file);
+        before = listed.file;
+        fprintf(stream, "%-20s  (%s)%*s  %-6s  %s\n", listed.name, listed.dimensions,
+                22 - (int)strlen(listed.dimensions), "", listed.unit, listed.meaning);
     }
 }
 
 static void print_json(FILE *stream) {
-    fprintf(stream, "[\n");
-    for (int i = 0; i < store_table_n; i++) {
-        const struct store_variable *variable = &store_table[i];
-        char dimensions[80];
-        list_dimensions(variable, "\"", dimensions, sizeof dimensions);
-        fprintf(
-            stream,
-            "  {\"name\": \"%s\", \"dimensions\": [%s], \"type\": \"%s\", \"unit\": \"%s\", \"meaning\": \"%s\"}%s\n",
-            variable->name, dimensions, type_name(variable->type), variable->unit, variable->long_name,
-            i < store_table_n - 1 ? "," : "");
+    struct store_listed listed;
+    for (int i = 0; listed_row(i, &listed); i++) {
+        fprintf(stream, "%s\n  {\"file\": \"%s\", \"name\": \"%s\", \"dimensions\": [", i == 0 ? "[" : ",", listed.file,
+                listed.name);
+        for (const char *word = listed.dimensions; *word; word += strspn(word, ", ")) {
+            const int length = (int)strcspn(word, ",");
+            fprintf(stream, "%s\"%.*s\"", word == listed.dimensions ? "" : ", ", length, word);
+            word += length;
+        }
+        fprintf(stream, "], \"type\": \"%s\", \"unit\": \"%s\", \"meaning\": \"%s\"}", listed.type, listed.unit,
+                listed.meaning);
     }
-    fprintf(stream, "]\n");
+    fprintf(stream, "\n]\n");
 }
 
 void store_variables(FILE *stream, int as_json) {

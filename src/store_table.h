@@ -52,6 +52,13 @@ struct store_variable {
     void (*gather)(const struct store_row *row, int f, double *slots);
 };
 
+/* A row of the reference of variables. */
+struct store_listed {
+    const char *file; /* "run", "study" or "comparison" */
+    const char *name, *unit, *type, *meaning;
+    char dimensions[80]; /* "time, fish" */
+};
+
 /* In the order in which they stand in the file; wall_time is the last one: see store_info. */
 extern const struct store_variable store_table[];
 extern const int store_table_n;

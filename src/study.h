@@ -45,6 +45,9 @@ enum status study_run(const struct settings *study, const struct study_options *
 /* Make study.nc and the table from the files of a folder alone. Fails as study_run does. */
 enum status study_gather(const char *folder, const char *command, FILE *stream);
 
+/* Print what a study.nc holds: axes, members and orders. Fails with STATUS_FILE or STATUS_MEMORY. */
+enum status study_info(const char *path, FILE *stream);
+
 /* Write what a cluster needs into the folder: study.yaml (the whole study in one file), array.sbatch (its members, bundle
  * of them a task; 0: one, or so many that there are no more than 1000 tasks), gather.sbatch, and submit.sh that submits
  * both. Fails with STATUS_CASE or STATUS_FILE. */
@@ -63,23 +66,18 @@ void study_members_free(struct store_member *members, int n);
 /* Write study.nc, print the table and the orders. */
 enum status study_report(const struct settings *study, const char *folder, const char *command, FILE *stream);
 
-/* What three or more levels of a refinement say of a value, or of a point in the plane. Roache's grid convergence
- * index: the finest value is expected to be off by less than this, in its own unit. */
-struct study_order {
-    double order;          /* observed with the finest levels; NaN: they are equal */
-    double order_before;   /* with the levels before; NaN: there are none */
-    double limit[2];       /* Richardson's extrapolation */
-    double index;          /* safety factor 1.25 */
-    const char *objection; /* why the levels are not in the asymptotic range, or NULL */
-};
+/* What three or more levels of a refinement say. sizes: from coarse to fine, falling; values: one point for each size;
+ * reference: the exact value, from which orders then are observed with two levels each; NULL: none is given. */
+struct store_order study_order(int n, const double *sizes, const double (*values)[2], const double *reference);
 
-/* sizes: from coarse to fine, falling; values: one point for each size; reference: the exact value as far as one is
- * given, from which orders then are observed with two levels each; else NULL. */
-struct study_order study_order(int n, const double *sizes, const double (*values)[2], const double *reference);
+/* Errors and orders along the axis that is refined; without such an axis there are no groups. The caller frees them with
+ * store_orders_free, also after a failure. Fails with STATUS_MEMORY. */
+enum status study_orders_create(struct store_orders *orders, const struct settings *study,
+                                const struct store_member *members);
 
-/* Print errors and orders along the axis that is refined; without such an axis nothing. Fails with STATUS_MISSED when a
- * quantity of a fish has another order than the axis expects, or with STATUS_MEMORY. */
-enum status study_orders(const struct settings *study, const struct store_member *members, FILE *stream);
+/* Print them. Fails with STATUS_MISSED when a quantity of a fish has another order than the axis expects, or with
+ * STATUS_MEMORY. */
+enum status study_orders_print(const struct settings *study, const struct store_orders *orders, FILE *stream);
 
 /* A table of texts that is filled cell by cell and printed in columns, aligned to the right but for the last one. */
 enum { STUDY_CELL_BYTES = 32 };

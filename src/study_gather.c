@@ -95,27 +95,35 @@ static enum status say_what_failed(const struct store_member *members, int n, co
                        n_failed, n, folder);
 }
 
-static enum status write_study(const struct settings *study, const struct store_member *members, const char *folder,
-                               const char *command) {
+static enum status write_study(const struct settings *study, const struct store_member *members,
+                               const struct store_orders *orders, const char *folder, const char *command) {
     const size_t size = strlen(folder) + 32;
     char *const path = malloc(size);
     if (!path) return status_fail(STATUS_MEMORY, "no memory for a file name");
     snprintf(path, size, "%s%s/study.nc", folder[0] == '/' || folder[0] == '.' ? "" : "./", folder);
-    const enum status status = store_study_write(path, study, members, command);
+    const enum status status = store_study_write(path, study, members, orders, command);
     free(path);
     return status;
 }
 
+/* Print all, write study.nc, then judge. */
+static enum status report(const struct settings *study, const struct store_member *members,
+                          const struct store_orders *orders, const char *folder, const char *command, FILE *stream) {
+    TRY(study_print(study, members, stream));
+    TRY(write_study(study, members, orders, folder, command));
+    const enum status expected = study_orders_print(study, orders, stream);
+    if (expected == STATUS_OK) TRY(say_what_failed(members, settings_n_members(study), folder));
+    return expected;
+}
+
 enum status study_report(const struct settings *study, const char *folder, const char *command, FILE *stream) {
-    const int n = settings_n_members(study);
     struct store_member *members;
     TRY(study_members_read(&members, study, folder));
-    enum status status = study_print(study, members, stream);
-    if (status == STATUS_OK) status = write_study(study, members, folder, command);
-    const enum status orders = status == STATUS_OK ? study_orders(study, members, stream) : STATUS_OK;
-    if (orders == STATUS_OK && status == STATUS_OK) status = say_what_failed(members, n, folder);
-    if (status == STATUS_OK) status = orders;
-    study_members_free(members, n);
+    struct store_orders orders;
+    enum status status = study_orders_create(&orders, study, members);
+    if (status == STATUS_OK) status = report(study, members, &orders, folder, command, stream);
+    store_orders_free(&orders);
+    study_members_free(members, settings_n_members(study));
     return status;
 }
 
@@ -151,4 +159,38 @@ enum status study_gather(const char *folder, const char *command, FILE *stream) 
     status = study_report(&study, folder, command, stream);
     settings_free(&study);
     return status;
+}
+
+/* How many members ended how, and the axes. */
+static void print_head(const struct settings *study, const struct store_member *members, FILE *stream) {
+    const int n = settings_n_members(study);
+    int n_complete = 0;
+    for (int m = 0; m < n; m++) n_complete += strcmp(members[m].status, "complete") == 0;
+    fprintf(stream, "  %-10s  %d, %d of them complete\n", "members", n, n_complete);
+    for (int a = 0; a < study->n_axes; a++) {
+        const struct settings_axis *const axis = &study->sweep[a];
+        fprintf(stream, "  axis %-5d  %d values of ", a, axis->n_values);
+        for (int k = 0; k < axis->n_keys; k++) fprintf(stream, "%s%s", k > 0 ? ", " : "", axis->key[k].path);
+        fprintf(stream, "%s\n", axis->refine ? ", refined" : "");
+    }
+    fprintf(stream, "\n");
+}
+
+enum status study_info(const char *path, FILE *stream) {
+    struct settings study;
+    struct store_member *members;
+    TRY(store_study_read(path, &study, &members));
+    print_head(&study, members, stream);
+    struct store_orders orders;
+    enum status status = study_print(&study, members, stream);
+    if (status == STATUS_OK) {
+        status = study_orders_create(&orders, &study, members);
+        if (status == STATUS_OK) status = study_orders_print(&study, &orders, stream);
+        store_orders_free(&orders);
+    }
+    // what is missed has been said before; here it is a part of what the file holds
+    if (status == STATUS_MISSED) fprintf(stream, "missed: %s\n", status_message());
+    study_members_free(members, settings_n_members(&study));
+    settings_free(&study);
+    return status == STATUS_MISSED ? STATUS_OK : status;
 }

@@ -65,8 +65,8 @@ static double two_levels(const double *h, const double (*f)[2], const double *ex
     return log(e2 / e1) / log(h[0] / h[1]);
 }
 
-struct study_order study_order(int n, const double *sizes, const double (*values)[2], const double *reference) {
-    struct study_order result = {.order_before = NAN};
+struct store_order study_order(int n, const double *sizes, const double (*values)[2], const double *reference) {
+    struct store_order result = {.order_before = NAN};
     int is_oscillating, was_oscillating;
     if (reference) {
         result.order = two_levels(sizes + n - 2, values + n - 2, reference, &is_oscillating);
@@ -95,16 +95,14 @@ struct study_order study_order(int n, const double *sizes, const double (*values
     return result;
 }
 
-// ---- the table
+// ---- all groups
 
-/* The axis that is refined, and its levels from coarse to fine. */
+/* What is needed to fill the orders of a study. */
 struct refinement {
     const struct settings *study;
     const struct store_member *members;
-    int axis, n;
-    int *level;         /* number of the value on the axis                              (n) */
-    double *size;       /* what goes to zero                                            (n) */
-    double (*value)[2]; /* one quantity                                                 (n) */
+    struct store_orders *orders;
+    double (*value)[2]; /* one quantity at each level                                   (n_levels) */
 };
 
 /* The size that belongs to a value: points become distances. */
@@ -116,80 +114,121 @@ static double size_of(const struct settings_axis *axis, int value) {
     return are_points ? 1 / (number - 1) : number;
 }
 
-/* Sort the levels: insertion, as there are few. */
-static void sort_levels(struct refinement *refinement) {
-    const struct settings_axis *const axis = &refinement->study->sweep[refinement->axis];
-    for (int i = 0; i < refinement->n; i++) {
-        const double size = size_of(axis, i);
+/* Sort the levels from coarse to fine: insertion, as there are few. */
+static void sort_levels(const struct settings *study, struct store_orders *orders) {
+    for (int i = 0; i < orders->n_levels; i++) {
+        const double size = size_of(&study->sweep[orders->axis], i);
         int j = i;
-        for (; j > 0 && refinement->size[j - 1] < size; j--) {
-            refinement->size[j] = refinement->size[j - 1];
-            refinement->level[j] = refinement->level[j - 1];
+        for (; j > 0 && orders->size[j - 1] < size; j--) {
+            orders->size[j] = orders->size[j - 1];
+            orders->level[j] = orders->level[j - 1];
         }
-        refinement->size[j] = size;
-        refinement->level[j] = i;
+        orders->size[j] = size;
+        orders->level[j] = i;
     }
 }
 
-/* The member at a level of the group that begins with a member whose value on the axis is number 0. */
-static int member_at(const struct refinement *refinement, int first, int level) {
+/* Each member with the first value of the refined axis begins a group. */
+static void find_groups(const struct settings *study, struct store_orders *orders) {
+    int n = 0;
+    for (int m = 0; m < settings_n_members(study); m++) {
+        if (settings_member_value(study, m, orders->axis) == 0) orders->first[n++] = m;
+    }
+}
+
+/* The member at a level of a group. */
+static const struct store_member *member_at(const struct refinement *refinement, int group, int level) {
+    const struct store_orders *const orders = refinement->orders;
     int stride = 1;
-    for (int a = refinement->axis + 1; a < refinement->study->n_axes; a++)
-        stride *= refinement->study->sweep[a].n_values;
-    return first + level * stride;
+    for (int a = orders->axis + 1; a < refinement->study->n_axes; a++) stride *= refinement->study->sweep[a].n_values;
+    return &refinement->members[orders->first[group] + orders->level[level] * stride];
 }
 
-/* Head: the values of the axis over the columns of errors. */
-static void fill_head(const struct study_table *table, const struct refinement *refinement) {
-    static const char *const heads[] = {"order before", "order", "limit", "", "index"};
-    const struct settings_axis *const axis = &refinement->study->sweep[refinement->axis];
-    study_table_set(table, 0, 0, "error of");
-    study_table_set(table, 0, 1, "fish");
-    study_table_set(table, 0, 2, "unit");
-    for (int i = 0; i < refinement->n; i++) {
-        study_table_set(table, 0, 3 + i, "%s", axis->value[refinement->level[i] * axis->n_keys]);
-    }
-    for (int i = 0; i < 5; i++) study_table_set(table, 0, 3 + refinement->n + i, "%s", heads[i]);
-}
-
-/* One quantity of one fish. */
-static void fill_row(const struct study_table *table, int row, struct refinement *refinement, int q, int f, int first,
-                     struct study_order *order) {
-    const int n = refinement->n, quantity = store_quantity_number(settings_quantities[q].name);
+/* One quantity of one fish of a group. */
+static void fill_order(struct refinement *refinement, int group, int q, int f) {
+    struct store_orders *const orders = refinement->orders;
+    const int n = orders->n_levels, quantity = store_quantity_number(settings_quantities[q].name);
     const int of_xy = settings_quantities[q].of_xy;
     for (int i = 0; i < n; i++) {
-        const struct store_member *const member =
-            &refinement->members[member_at(refinement, first, refinement->level[i])];
+        const struct store_member *const member = member_at(refinement, group, i);
         const int is_complete = strcmp(member->status, "complete") == 0;
         refinement->value[i][0] = is_complete ? store_member_value(member, quantity, f, 0) : NAN;
         refinement->value[i][1] = of_xy ? store_member_value(member, quantity, f, 1) : 0;
     }
-    const double *const finest = refinement->value[n - 1];
-    const double given[2] = {settings_reference(refinement->study, refinement->axis, q, f, 0),
-                             of_xy ? settings_reference(refinement->study, refinement->axis, q, f, 1) : 0};
+    const double given[2] = {settings_reference(refinement->study, orders->axis, q, f, 0),
+                             of_xy ? settings_reference(refinement->study, orders->axis, q, f, 1) : 0};
     const int is_given = !isnan(given[0]);
-    const double *const reference = is_given ? given : finest;
-    *order = study_order(n, refinement->size, (const double(*)[2])refinement->value, is_given ? given : NULL);
-    study_table_set(table, row, 0, "%s%s", settings_quantities[q].name, is_given ? "*" : "");
-    study_table_set(table, row, 1, "%s", refinement->study->fish[f].name);
-    study_table_set(table, row, 2, "%s", store_quantity(quantity)->unit);
+    const double *const exact = is_given ? given : refinement->value[n - 1];
+    const int place = store_orders_place(orders, group, q, f);
     for (int i = 0; i < n; i++) {
-        const double error = hypot(refinement->value[i][0] - reference[0], refinement->value[i][1] - reference[1]);
-        study_table_number(table, row, 3 + i, "%.2e", i < n - 1 || is_given ? error : NAN);
+        const double error = hypot(refinement->value[i][0] - exact[0], refinement->value[i][1] - exact[1]);
+        orders->error[place * n + i] = i < n - 1 || is_given ? error : NAN;
     }
+    orders->order[place] = study_order(n, orders->size, (const double(*)[2])refinement->value, is_given ? given : NULL);
+}
+
+enum status study_orders_create(struct store_orders *orders, const struct settings *study,
+                                const struct store_member *members) {
+    *orders = (struct store_orders){.n_fish = study->n_fish};
+    while (orders->axis < study->n_axes && !study->sweep[orders->axis].refine) orders->axis++;
+    if (orders->axis == study->n_axes) return STATUS_OK;
+    const int n = study->sweep[orders->axis].n_values, n_groups = settings_n_members(study) / n;
+    struct refinement refinement = {study, members, orders, calloc((size_t)n, sizeof *refinement.value)};
+    enum status status = refinement.value ? store_orders_create(orders, n_groups, n) : STATUS_MEMORY;
+    if (status == STATUS_OK) {
+        sort_levels(study, orders);
+        find_groups(study, orders);
+        for (int g = 0; g < n_groups; g++) {
+            for (int q = 0; q < SETTINGS_N_ORDERS; q++) {
+                for (int f = 0; f < study->n_fish; f++) fill_order(&refinement, g, q, f);
+            }
+        }
+    } else {
+        status_fail(STATUS_MEMORY, "no memory for the orders of %d levels", n);
+    }
+    free(refinement.value);
+    return status;
+}
+
+// ---- the table
+
+/* Head: the values of the axis over the columns of errors. */
+static void fill_head(const struct study_table *table, const struct settings *study,
+                      const struct store_orders *orders) {
+    static const char *const heads[] = {"order before", "order", "limit", "", "index"};
+    const struct settings_axis *const axis = &study->sweep[orders->axis];
+    study_table_set(table, 0, 0, "error of");
+    study_table_set(table, 0, 1, "fish");
+    study_table_set(table, 0, 2, "unit");
+    for (int i = 0; i < orders->n_levels; i++) {
+        study_table_set(table, 0, 3 + i, "%s", axis->value[orders->level[i] * axis->n_keys]);
+    }
+    for (int i = 0; i < 5; i++) study_table_set(table, 0, 3 + orders->n_levels + i, "%s", heads[i]);
+}
+
+/* One quantity of one fish. */
+static void fill_row(const struct study_table *table, int row, const struct settings *study,
+                     const struct store_orders *orders, int group, int q, int f) {
+    const int n = orders->n_levels, place = store_orders_place(orders, group, q, f);
+    const int is_given = !isnan(settings_reference(study, orders->axis, q, f, 0));
+    const struct store_order *const order = &orders->order[place];
+    study_table_set(table, row, 0, "%s%s", settings_quantities[q].name, is_given ? "*" : "");
+    study_table_set(table, row, 1, "%s", study->fish[f].name);
+    study_table_set(table, row, 2, "%s", store_quantity(store_quantity_number(settings_quantities[q].name))->unit);
+    for (int i = 0; i < n; i++) study_table_number(table, row, 3 + i, "%.2e", orders->error[place * n + i]);
     study_table_number(table, row, n + 3, "%.2f", order->order_before);
     study_table_number(table, row, n + 4, "%.2f", order->order);
     study_table_number(table, row, n + 5, "%.9g", order->limit[0]);
-    if (of_xy) study_table_number(table, row, n + 6, "%.9g", order->limit[1]);
+    if (settings_quantities[q].of_xy) study_table_number(table, row, n + 6, "%.9g", order->limit[1]);
     study_table_number(table, row, n + 7, "%.1e", order->index);
 }
 
 /* Say what is wrong with the order of a quantity of a fish; STATUS_MISSED if it is not what the case expects. */
-static enum status judge(const struct refinement *refinement, int q, int f, const struct study_order *order,
+static enum status judge(const struct settings *study, const struct store_orders *orders, int group, int q, int f,
                          FILE *stream) {
-    const struct settings_axis *const axis = &refinement->study->sweep[refinement->axis];
-    const char *const fish = refinement->study->fish[f].name;
-    const char *const quantity = settings_quantities[q].name;
+    const struct settings_axis *const axis = &study->sweep[orders->axis];
+    const struct store_order *const order = &orders->order[store_orders_place(orders, group, q, f)];
+    const char *const fish = study->fish[f].name, *const quantity = settings_quantities[q].name;
     if (order->objection) fprintf(stream, "warning: %s of %s: %s\n", quantity, fish, order->objection);
     if (!(axis->order_of >> q & 1) || !(axis->order > 0)) return STATUS_OK;
     if (fabs(order->order - axis->order) <= axis->within) return STATUS_OK;
@@ -198,66 +237,38 @@ static enum status judge(const struct refinement *refinement, int q, int f, cons
 }
 
 /* Errors and orders of one group: the members that differ in the refined axis only. */
-static enum status print_group(struct refinement *refinement, int first, FILE *stream) {
-    const int n_fish = refinement->study->n_fish, n_rows = SETTINGS_N_ORDERS * n_fish;
+static enum status print_group(const struct settings *study, const struct store_orders *orders, int group,
+                               FILE *stream) {
+    const int n_fish = study->n_fish, n_rows = SETTINGS_N_ORDERS * n_fish;
     struct study_table table;
-    struct study_order *const order = calloc((size_t)n_rows, sizeof *order);
-    if (!order) return status_fail(STATUS_MEMORY, "no memory for %d orders", n_rows);
-    enum status status = study_table_create(&table, 1 + n_rows, refinement->n + 8);
-    if (status == STATUS_OK) {
-        fill_head(&table, refinement);
-        for (int row = 0; row < n_rows; row++) {
-            fill_row(&table, 1 + row, refinement, row / n_fish, row % n_fish, first, &order[row]);
-        }
-        study_table_print(&table, stream);
-        for (int row = 0; row < n_rows; row++) {
-            const enum status judged = judge(refinement, row / n_fish, row % n_fish, &order[row], stream);
-            if (status == STATUS_OK) status = judged;
-        }
-        study_table_free(&table);
+    TRY(study_table_create(&table, 1 + n_rows, orders->n_levels + 8));
+    fill_head(&table, study, orders);
+    for (int row = 0; row < n_rows; row++) fill_row(&table, 1 + row, study, orders, group, row / n_fish, row % n_fish);
+    study_table_print(&table, stream);
+    study_table_free(&table);
+    enum status status = STATUS_OK;
+    for (int row = 0; row < n_rows; row++) {
+        const enum status judged = judge(study, orders, group, row / n_fish, row % n_fish, stream);
+        if (status == STATUS_OK) status = judged;
     }
-    free(order);
     return status;
 }
 
-static enum status print_groups(struct refinement *refinement, FILE *stream) {
-    const struct settings *const study = refinement->study;
+enum status study_orders_print(const struct settings *study, const struct store_orders *orders, FILE *stream) {
     enum status status = STATUS_OK;
-    for (int m = 0; m < settings_n_members(study); m++) {
-        if (settings_member_value(study, m, refinement->axis) != 0) continue;
+    for (int g = 0; g < orders->n_groups; g++) {
+        const struct settings_axis *const axis = &study->sweep[orders->axis];
         char *text;
-        TRY(settings_member_text(study, m, &text));
-        fprintf(stream, "\nRefinement of %s", study->sweep[refinement->axis].key[0].path);
-        if (study->n_axes > 1) fprintf(stream, ", from member %d (%s) on", m, text);
+        TRY(settings_member_text(study, orders->first[g], &text));
+        fprintf(stream, "\nRefinement of %s", axis->key[0].path);
+        if (study->n_axes > 1) fprintf(stream, ", from member %d (%s) on", orders->first[g], text);
         fprintf(stream,
                 ": errors against the finest%s, the order of the last levels and of those before,\n"
                 "Richardson's limit, and the grid convergence index (safety factor %g)\n",
-                study->sweep[refinement->axis].reference ? " (*: against the reference of the case)" : "",
-                safety_factor);
+                axis->reference ? " (*: against the reference of the case)" : "", safety_factor);
         free(text);
-        const enum status printed = print_group(refinement, m, stream);
+        const enum status printed = print_group(study, orders, g, stream);
         if (status == STATUS_OK) status = printed;
     }
-    return status;
-}
-
-enum status study_orders(const struct settings *study, const struct store_member *members, FILE *stream) {
-    struct refinement refinement = {.study = study, .members = members};
-    while (refinement.axis < study->n_axes && !study->sweep[refinement.axis].refine) refinement.axis++;
-    if (refinement.axis == study->n_axes) return STATUS_OK;
-    refinement.n = study->sweep[refinement.axis].n_values;
-    refinement.level = calloc((size_t)refinement.n, sizeof *refinement.level);
-    refinement.size = calloc((size_t)refinement.n, sizeof *refinement.size);
-    refinement.value = calloc((size_t)refinement.n, sizeof *refinement.value);
-    enum status status = STATUS_OK;
-    if (refinement.level && refinement.size && refinement.value) {
-        sort_levels(&refinement);
-        status = print_groups(&refinement, stream);
-    } else {
-        status = status_fail(STATUS_MEMORY, "no memory for %d levels", refinement.n);
-    }
-    free(refinement.level);
-    free(refinement.size);
-    free(refinement.value);
     return status;
 }

@@ -1,7 +1,9 @@
 /* test_store_info.c: reading the result file, the reference of its variables, and the version it names. */
 #include <sys/stat.h>
 
+#include "store_compare.h"
 #include "store_fixture.h"
+#include "store_study.h"
 #include "store_table.h"
 #include "version.h"
 
@@ -12,7 +14,9 @@ static const char *info(const char *path, int case_only, enum status *status) {
     static char text[8192];
     memset(text, 0, sizeof text);
     FILE *stream = fmemopen(text, sizeof text - 1, "w");
-    *status = store_info(path, case_only, stream);
+    enum store_kind kind = STORE_COMPARISON;
+    *status = store_info(path, case_only, stream, &kind);
+    if (*status == STATUS_OK) assert_int_equal(kind, STORE_RUN);
     fclose(stream);
     return text;
 }
@@ -112,6 +116,11 @@ static void info_refuses_a_file_that_was_cut(void **state) {
 
 static void reference_has_one_line_per_variable(void **state) {
     (void)state;
+    struct store_listed listed;
+    int n_study = 0, n_compare = 0;
+    while (store_study_listed(n_study, &listed)) n_study++;
+    while (store_compare_listed(n_compare, &listed)) n_compare++;
+    assert_true(n_study > 10 && n_compare > 10);
     for (int as_json = 0; as_json < 2; as_json++) {
         static char text[32768];
         memset(text, 0, sizeof text);
@@ -120,7 +129,8 @@ static void reference_has_one_line_per_variable(void **state) {
         fclose(stream);
         int n_lines = 0;
         for (const char *c = text; *c; c++) n_lines += *c == '\n';
-        assert_int_equal(n_lines, store_table_n + (as_json ? 2 : 0));
+        // the text has a heading of three lines for each of two further files
+        assert_int_equal(n_lines, store_table_n + n_study + n_compare + (as_json ? 2 : 6));
         assert_non_null(strstr(
             text, as_json ? "\"dimensions\": [\"time\", \"fish\", \"node\", \"xy\"]" : "(time, fish, node, xy)"));
     }

@@ -1,13 +1,16 @@
 /* test_study.c: observed orders, limits and grid convergence indices; tables. What processes do: test_study.sh. */
+#include <netcdf.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "near.h"
 #include "study.h"
+#include "yaml_text.h"
 
 /* Values c + a h^p, in both directions of the plane, for n sizes. */
-static struct study_order order_of(int n, const double *sizes, double p) {
+static struct store_order order_of(int n, const double *sizes, double p) {
     double values[8][2];
     for (int i = 0; i < n; i++) {
         values[i][0] = 3 + 0.7 * pow(sizes[i], p);
@@ -21,7 +24,7 @@ static void a_power_of_the_size_gives_its_order_and_its_limit(void **state) {
     const double halved[] = {0.4, 0.2, 0.1, 0.05}, uneven[] = {0.4, 0.25, 0.1, 0.07};
     const double orders[] = {1, 2, 2.5, 4};
     for (int i = 0; i < 4; i++) {
-        const struct study_order one = order_of(4, halved, orders[i]), other = order_of(4, uneven, orders[i]);
+        const struct store_order one = order_of(4, halved, orders[i]), other = order_of(4, uneven, orders[i]);
         // the differences of the finest levels, 1e-6 of the values at order 4, lose ten digits of sixteen
         NEAR(one.order, orders[i], 0, 1e-8);
         NEAR(one.order_before, orders[i], 0, 1e-8);
@@ -40,7 +43,7 @@ static void the_published_example_comes_out(void **state) {
     (void)state;
     // Celik et al., Journal of Fluids Engineering 130 (2008) 078001, table 1, first column
     const double sizes[] = {1.5 * 4 / 3, 1.5, 1}, values[][2] = {{5.863, 0}, {5.972, 0}, {6.063, 0}};
-    const struct study_order order = study_order(3, sizes, values, NULL);
+    const struct store_order order = study_order(3, sizes, values, NULL);
     NEAR(order.order, 1.53, 0.01, 0);  // two digits are printed, of ratios rounded to three
     NEAR(order.limit[0], 6.1685, 0.0005, 0);
     NEAR(order.index / 6.063, 0.022, 0.0005, 0);
@@ -57,7 +60,7 @@ static void a_given_value_gives_the_order_with_two_levels_each(void **state) {
         values[i][0] = 3 + 0.6 * errors[i];
         values[i][1] = -1 + 0.8 * errors[i];
     }
-    const struct study_order order = study_order(3, sizes, (const double(*)[2])values, exact);
+    const struct store_order order = study_order(3, sizes, (const double(*)[2])values, exact);
     NEAR(order.order_before, 2, 0, 1e-12);
     NEAR(order.order, 1, 0, 1e-12);
     assert_non_null(strstr(order.objection, "changes"));
@@ -72,7 +75,7 @@ static void a_given_value_gives_the_order_with_two_levels_each(void **state) {
 static void levels_on_both_sides_of_a_given_value_oscillate(void **state) {
     (void)state;
     const double sizes[] = {0.4, 0.2, 0.1}, values[][2] = {{1.4, 0}, {1.1, 0}, {0.97, 0}}, exact[] = {1, 0};
-    const struct study_order order = study_order(3, sizes, values, exact);
+    const struct store_order order = study_order(3, sizes, values, exact);
     assert_non_null(strstr(order.objection, "oscillates"));
     const double same[][2] = {{1.4, 0}, {1.1, 0}, {1, 0}};
     assert_non_null(strstr(study_order(3, sizes, same, exact).objection, "equal to rounding"));
@@ -94,11 +97,102 @@ static void what_is_not_asymptotic_is_objected_to(void **state) {
         {{{0, 0}, {NAN, 0}, {1, 0}, {1.5, 0}}, "a level is missing"},
     };
     for (size_t i = 0; i < sizeof examples / sizeof *examples; i++) {
-        const struct study_order order = study_order(4, sizes, examples[i].values, NULL);
+        const struct store_order order = study_order(4, sizes, examples[i].values, NULL);
         if (!order.objection || !strstr(order.objection, examples[i].objection)) {
             fail_msg("example %zu: %s", i, order.objection ? order.objection : "no objection");
         }
     }
+}
+
+static const char refined[] =
+    "format: 1\ntime: {end: 1, shedding_interval: 0.1}\nfish: [{}, {}]\n"
+    "sweep:\n"
+    "  - {key: solver.order, values: [1, 2]}\n"
+    "  - {key: time.shedding_interval, values: [0.05, 0.1, 0.025], refine: true, reference: {speed: 5}}\n";
+
+/* The member of a study whose quantities are 5 + 0.3 h^p, p = 1 + (solver.order), in both directions. */
+static void make_member(struct store_member *member, const struct settings *study, int m) {
+    double h = NAN;
+    yaml_text_number(study->sweep[1].value[settings_member_value(study, m, 1)], &h);
+    int n = 0;
+    while (store_quantity(n)) n++;
+    n *= 2 * study->n_fish;
+    *member = (struct store_member){.number = m, .n_fish = study->n_fish, .status = strdup("complete")};
+    member->value = calloc((size_t)n, sizeof *member->value);
+    for (int i = 0; i < n; i++) member->value[i] = 5 + 0.3 * pow(h, 2 + settings_member_value(study, m, 0));
+}
+
+/* A value of a variable of an open file. */
+static double value_of(int file, const char *name, size_t i, size_t j, size_t k) {
+    int variable;
+    double value;
+    assert_int_equal(nc_inq_varid(file, name, &variable), NC_NOERR);
+    assert_int_equal(nc_get_var1_double(file, variable, (size_t[]){i, j, k}, &value), NC_NOERR);
+    return value;
+}
+
+static void orders_are_kept_in_study_nc(void **state) {
+    (void)state;
+    struct settings study, again;
+    assert_int_equal(settings_parse(&study, refined, strlen(refined), "refined.yaml", NULL, 0, NULL), STATUS_OK);
+    struct store_member member[6], *read;
+    for (int m = 0; m < 6; m++) make_member(&member[m], &study, m);
+    struct store_orders orders;
+    assert_int_equal(study_orders_create(&orders, &study, member), STATUS_OK);
+    char path[] = "/tmp/shoal-study-XXXXXX";
+    close(mkstemp(path));
+    assert_int_equal(store_study_write(path, &study, member, &orders, "test"), STATUS_OK);
+
+    int file, variable;
+    assert_int_equal(nc_open(path, NC_NOWRITE, &file), NC_NOERR);
+    for (size_t g = 0; g < 2; g++) {
+        const double p = 2 + (double)g, e = 0.3 * pow(0.025, p);
+        NEAR(value_of(file, "group_member", g, 0, 0), 3 * (double)g, 0, 0);
+        for (size_t f = 0; f < 2; f++) {
+            NEAR(value_of(file, "order_nose", g, f, 0), p, 1e-6, 0);
+            NEAR(value_of(file, "order_speed", g, f, 0), p, 1e-6, 0);
+            NEAR(value_of(file, "order_before_speed", g, f, 0), p, 1e-6, 0);
+            assert_true(isnan(value_of(file, "order_before_nose", g, f, 0)));
+            NEAR(value_of(file, "limit_nose", g, f, 1), 5, 1e-9, 0);
+            NEAR(value_of(file, "index_tail", g, f, 0), 1.25 * sqrt(2) * e, 0, 1e-5);
+            NEAR(value_of(file, "index_speed", g, f, 0), 1.25 * e, 0, 1e-5);
+            // errors from coarse to fine: from the finest, and from the given value
+            NEAR(value_of(file, "error_com", g, f, 0), sqrt(2) * (0.3 * pow(0.1, p) - e), 0, 1e-9);
+            assert_true(isnan(value_of(file, "error_com", g, f, 2)));
+            NEAR(value_of(file, "error_speed", g, f, 2), e, 0, 1e-9);
+        }
+    }
+    NEAR(value_of(file, "level_value", 0, 0, 0), 0.1, 0, 0);
+    NEAR(value_of(file, "level_size", 2, 0, 0), 0.025, 0, 0);
+    char unit[8] = "";
+    assert_int_equal(nc_inq_varid(file, "index_mean_actuation_power", &variable), NC_NOERR);
+    assert_int_equal(nc_get_att_text(file, variable, "units", unit), NC_NOERR);
+    assert_string_equal(unit, "W");
+    nc_close(file);
+
+    assert_int_equal(store_study_read(path, &again, &read), STATUS_OK);
+    assert_string_equal(again.merged, study.merged);
+    for (int m = 0; m < 6; m++) {
+        assert_string_equal(read[m].status, "complete");
+        const int tail = store_quantity_number("tail"), steps = store_quantity_number("steps");
+        NEAR(store_member_value(&read[m], tail, 1, 1), store_member_value(&member[m], tail, 1, 1), 0, 0);
+        NEAR(store_member_value(&read[m], steps, 0, 0), store_member_value(&member[m], steps, 0, 0), 0, 0);
+        store_member_free(&member[m]);
+    }
+    // what is not whole is refused
+    assert_int_equal(nc_open(path, NC_WRITE, &file), NC_NOERR);
+    assert_int_equal(nc_redef(file), NC_NOERR);
+    assert_int_equal(nc_rename_var(file, 1, "state"), NC_NOERR);
+    nc_close(file);
+    struct settings none;
+    struct store_member *nobody;
+    assert_int_equal(store_study_read(path, &none, &nobody), STATUS_FILE);
+    assert_non_null(strstr(status_message(), "not a whole study"));
+    unlink(path);
+    study_members_free(read, 6);
+    store_orders_free(&orders);
+    settings_free(&study);
+    settings_free(&again);
 }
 
 static void quantities_of_a_case_are_those_of_a_study(void **state) {
@@ -143,6 +237,7 @@ int main(void) {
         cmocka_unit_test(a_given_value_gives_the_order_with_two_levels_each),
         cmocka_unit_test(levels_on_both_sides_of_a_given_value_oscillate),
         cmocka_unit_test(what_is_not_asymptotic_is_objected_to),
+        cmocka_unit_test(orders_are_kept_in_study_nc),
         cmocka_unit_test(quantities_of_a_case_are_those_of_a_study),
         cmocka_unit_test(a_table_has_aligned_columns_and_no_blanks_at_the_end),
     };

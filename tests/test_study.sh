@@ -50,6 +50,12 @@ check finished_members_are_passed_over test "$(changed small-study/member-0001.n
 check failed_members_run_again test "$(changed small-study/member-0002.nc)" != "$failed"
 
 cp out table
+run info small-study/study.nc
+check info_tells_the_axes has out '  axis 1      3 values of solver.method, solver.max_steps'
+check info_counts_members has out '  members     6, 4 of them complete'
+check info_prints_the_table_of_the_study cmp <(sed 1,9d out) table
+run info --case small-study/study.nc
+check info_prints_the_case_of_the_study grep -q '^sweep: ' out
 mkdir alone
 cp small-study/member* alone
 run gather alone
@@ -139,9 +145,13 @@ run study refined.yaml -o given -q \
 check errors_are_against_the_reference grep -qE '^ +speed\* +fish1 +m s-1 +9\.9.e\+01 +9\.9.e\+01 +9\.9.e\+01 +-?0\.00 ' out
 check other_errors_are_against_the_finest grep -qE '^ +nose +fish1 +m +[0-9.e-]+ +[0-9.e-]+ +- ' out
 check the_head_says_so has out "against the finest (*: against the reference of the case)"
+run info given/study.nc
+check info_prints_orders_too grep -qE '^ +speed\* +fish1 ' out
 refused the_order_of_any_quantity_can_be_expected 3 'speed of fish1: observed order' study refined.yaml -o given -q --force \
     --set 'sweep=[{key: time.shedding_interval, values: [0.04, 0.02, 0.01], refine: true, reference: {speed: 100},
                    expect: {order: 2, within: 0.6, of: speed}}]'
+run info given/study.nc
+check info_tells_what_was_missed eval 'test "$code" = 0 && has out "missed: speed of fish1: observed order"'
 run study refined.yaml -o groups -q --set time.end=0.08 \
     --set 'sweep=[{key: solver.rtol, values: [1e-4, 1e-5, 1e-6], refine: true}, {key: solver.order, values: [1, 2]}]'
 check other_axes_make_groups has out 'Refinement of solver.rtol, from member 1 (solver.rtol=1e-4, solver.order=2) on'
