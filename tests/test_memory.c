@@ -1,4 +1,6 @@
 /* test_memory.c: every create fails cleanly at every one of its allocations. */
+#include "direct.h"
+#include "explicit.h"
 #include "failing_malloc.h"
 #include "implicit.h"
 #include "school.h"
@@ -91,6 +93,23 @@ static void release_implicit(struct setup *setup, void *made) {
     implicit_ida.free(made);
 }
 
+static enum status create_direct(struct setup *setup, void **made) {
+    return direct_create((struct direct **)made, setup->residual);
+}
+static void release_direct(struct setup *setup, void *made) {
+    (void)setup;
+    direct_free(made);
+}
+
+static enum status create_explicit(struct setup *setup, void **made) {
+    const struct integrator_options options = {.method = METHOD_RK4, .max_steps = 100};
+    return explicit_runge_kutta.create(made, setup->residual, setup->state, &options);
+}
+static void release_explicit(struct setup *setup, void *made) {
+    (void)setup;
+    explicit_runge_kutta.free(made);
+}
+
 static enum status create_simulation(struct setup *setup, void **made) {
     return simulate_create((struct simulation **)made, &setup->settings);
 }
@@ -147,6 +166,8 @@ static void every_create_fails_cleanly_at_every_allocation(void **state) {
                {create_sparse, release_sparse, "sparse", 4},
                {create_wake, release_wake, "wake", 8},
                {create_implicit, release_implicit, "implicit", 7},
+               {create_direct, release_direct, "direct", 18},
+               {create_explicit, release_explicit, "explicit", 24},
                {create_simulation, release_simulation, "simulation", 100}};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         const int n_failed = fail_one_by_one(all[i].make, all[i].drop, all[i].name);
@@ -158,8 +179,9 @@ static void every_free_accepts_nothing(void **state) {
     (void)state;
     struct setup setup;
     school_build(&setup, text);
-    release *const all[] = {release_school, release_state,  release_residual, release_consistent, release_measure,
-                            release_flow,   release_sparse, release_implicit, release_simulation};
+    release *const all[] = {release_school,  release_state,    release_residual,  release_consistent,
+                            release_measure, release_flow,     release_sparse,    release_implicit,
+                            release_direct,  release_explicit, release_simulation};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) all[i](&setup, NULL);
     school_clear(&setup);
 }

@@ -5,6 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "failing_malloc.h"
 #include "near.h"
 #include "study.h"
 #include "yaml_text.h"
@@ -195,6 +196,79 @@ static void orders_are_kept_in_study_nc(void **state) {
     settings_free(&again);
 }
 
+// ---- memory
+
+static const char small[] =
+    "format: 1\nname: small\ntime: {end: 0.02, shedding_interval: 0.02}\nfish: [{nodes: 4, sheet_points: 5}]\n"
+    "sweep: [{key: solver.rtol, values: [1e-3, 1e-4, 1e-5], refine: true}]\n";
+
+/* What fails: each with the case above and a folder. */
+struct attempt {
+    struct settings study;
+    char folder[64];
+    FILE *nowhere;
+};
+typedef enum status attempt_function(const struct attempt *attempt);
+
+static enum status run_small(const struct attempt *attempt) {
+    const struct study_options options = {.folder = attempt->folder, .command = "test", .last = -1, .n_processes = 2};
+    return study_run(&attempt->study, &options, attempt->nowhere);
+}
+
+static enum status gather_small(const struct attempt *attempt) {
+    return study_gather(attempt->folder, "test", attempt->nowhere);
+}
+
+static enum status inform_of_small(const struct attempt *attempt) {
+    char path[80];
+    snprintf(path, sizeof path, "%s/study.nc", attempt->folder);
+    return study_info(path, attempt->nowhere);
+}
+
+static enum status write_jobs_of_small(const struct attempt *attempt) {
+    return study_slurm(&attempt->study, attempt->folder, 0, attempt->nowhere);
+}
+
+/* Let ever later allocations fail until all succeed. In the processes of members as many succeed again: a member may fail
+ * where the study does not. */
+static void fail_one_by_one(const struct attempt *attempt, attempt_function *function, const char *name, int least) {
+    int n_failed = 0;
+    for (int n = 0;; n += 1 + n / 30) {
+        const int n_before = n_live;
+        n_until_failure = n;
+        const enum status status = function(attempt);
+        const int ran_out = n_until_failure == -1;
+        n_until_failure = -1;
+        if (n_live != n_before) fail_msg("%s: with allocation %d failing %d are left", name, n, n_live - n_before);
+        if (status == STATUS_OK && !ran_out) break;
+        n_failed++;
+        if (status == STATUS_OK) continue;
+        if (status != STATUS_MEMORY && status != STATUS_SOLVER) {
+            fail_msg("%s: with allocation %d failing: %s", name, n, status_message());
+        }
+        assert_true(status_message()[0] != '\0');
+        assert_in_range(n, 0, 100000);
+    }
+    print_message("%s: %d failures\n", name, n_failed);
+    assert_true(n_failed >= least);
+}
+
+static void every_failing_allocation_of_a_study_is_reported_and_leaves_nothing(void **state) {
+    (void)state;
+    struct attempt attempt = {.folder = "/tmp/shoal-study-XXXXXX", .nowhere = fopen("/dev/null", "w")};
+    assert_non_null(mkdtemp(attempt.folder));
+    assert_int_equal(settings_parse(&attempt.study, small, strlen(small), "small.yaml", NULL, 0, NULL), STATUS_OK);
+    fail_one_by_one(&attempt, run_small, "study_run", 50);
+    fail_one_by_one(&attempt, gather_small, "study_gather", 50);
+    fail_one_by_one(&attempt, inform_of_small, "study_info", 30);
+    fail_one_by_one(&attempt, write_jobs_of_small, "study_slurm", 1);
+    char command[128];
+    snprintf(command, sizeof command, "rm -r %s", attempt.folder);
+    assert_int_equal(system(command), 0);
+    fclose(attempt.nowhere);
+    settings_free(&attempt.study);
+}
+
 static void quantities_of_a_case_are_those_of_a_study(void **state) {
     (void)state;
     for (int q = 0; q < SETTINGS_N_QUANTITIES; q++) {
@@ -238,6 +312,7 @@ int main(void) {
         cmocka_unit_test(levels_on_both_sides_of_a_given_value_oscillate),
         cmocka_unit_test(what_is_not_asymptotic_is_objected_to),
         cmocka_unit_test(orders_are_kept_in_study_nc),
+        cmocka_unit_test(every_failing_allocation_of_a_study_is_reported_and_leaves_nothing),
         cmocka_unit_test(quantities_of_a_case_are_those_of_a_study),
         cmocka_unit_test(a_table_has_aligned_columns_and_no_blanks_at_the_end),
     };
