@@ -20,7 +20,7 @@ readonly layers='
 12  bridge store checkpoint
 13  consistent direct
 14  integrator event
-15  implicit explicit
+15  implicit explicit fixed
 16  simulate
 17  study compare view
 18  progress shoal

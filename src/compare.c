@@ -64,15 +64,16 @@ static int is_implicit(const char *method) {
 }
 
 static enum status check_method(const char *method) {
-    static const char *const known[] = {"ida1",  "ida2", "ida3", "ida4",          "ida5",
-                                        "euler", "heun", "rk4",  "dormand_prince"};
+    static const char *const known[] = {"ida1", "ida2", "ida3",           "ida4",           "ida5",     "euler",
+                                        "heun", "rk4",  "dormand_prince", "implicit_euler", "trapezoid"};
     for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
         if (strcmp(method, known[i]) == 0) return STATUS_OK;
     }
-    return status_fail(STATUS_CASE,
-                       "--methods: '%s' is unknown: choose from ida1 to ida5 (implicit, of this order), "
-                       "euler, heun, rk4, dormand_prince",
-                       method);
+    return status_fail(
+        STATUS_CASE,
+        "--methods: '%s' is unknown: choose from ida1 to ida5 (implicit, of this order), euler, heun, rk4, "
+        "dormand_prince, and with --steps implicit_euler and trapezoid",
+        method);
 }
 
 static enum status add_runs(struct compare *compare, const char *method, const char *values, int is_step) {

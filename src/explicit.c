@@ -91,7 +91,7 @@ static ARKodeButcherTable table_of(enum method method, int adaptive) {
         case METHOD_HEUN: return ARKodeButcherTable_LoadERK(ARKODE_HEUN_EULER_2_1_2);
         case METHOD_RK4: return rk4_table(adaptive);
         case METHOD_DORMAND_PRINCE: return ARKodeButcherTable_LoadERK(ARKODE_DORMAND_PRINCE_7_4_5);
-        case METHOD_IDA: break;
+        default: break;
     }
     return NULL;
 }

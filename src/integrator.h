@@ -20,7 +20,7 @@ struct integrator_counts {
 struct integrator_options {
     enum method method;
     int order;     /* the most, of the implicit method */
-    double step;   /* fixed, of an explicit method, s; 0: adaptive */
+    double step;   /* fixed, of all other methods, s; 0: adaptive */
     int max_steps; /* between two events */
 };
 

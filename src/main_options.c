@@ -19,9 +19,10 @@ static const struct option_help all_options[] = {
     {OPTION_SLURM, "slurm", NULL, "run nothing, but write the scripts of a Slurm array job into the folder"},
     {OPTION_BUNDLE, "bundle", "N", "with --slurm: N members a task"},
     {OPTION_METHODS, "methods", "LIST",
-     "methods to compare: ida1 to ida5 (implicit, of this order), euler, heun, rk4, dormand_prince"},
+     "methods to compare: ida1 to ida5 (implicit, of this order), euler, heun, rk4, dormand_prince, and with --steps "
+     "implicit_euler and trapezoid"},
     {OPTION_RTOL, "rtol", "LIST", "tolerances to compare (1e-3,1e-4,1e-5,1e-6,1e-7)"},
-    {OPTION_STEPS, "steps", "LIST", "fixed steps for the explicit methods instead of tolerances, s"},
+    {OPTION_STEPS, "steps", "LIST", "fixed steps for all methods but ida instead of tolerances, s"},
     {OPTION_REPEATS, "repeats", "N", "run each that often; the wall time is the median (3)"},
     {OPTION_REFERENCE, "reference-rtol", "X", "tolerance of the reference, which is ida5 (1e-9)"},
     {OPTION_LIMIT, "limit", "SECONDS", "give a run up after this wall time (60)"},

@@ -64,6 +64,11 @@ static void check_time(const struct check *check) {
 
 static void check_solver(const struct check *check) {
     const struct settings_solver *const solver = &check->settings->solver;
+    const bool is_fixed = solver->method == METHOD_IMPLICIT_EULER || solver->method == METHOD_TRAPEZOID;
+    if (is_fixed && solver->step == 0) {
+        complain(check, "solver.method", "takes fixed steps only: give solver.step, such as %.9g (s)",
+                 check->settings->time.shedding_interval);
+    }
     if (!(solver->step > 0)) return;
     if (solver->method == METHOD_IDA) {
         complain(check, "solver.step",

@@ -83,8 +83,10 @@ const struct key settings_table[] = {
      .derived = "a hundredth of solver.rtol", .synonyms = "accuracy theta"},
 
     {"solver.method", CHOICE, AT(solver.method), "ida", ANY, "",
-     .meaning = "integrator; ida is implicit, the others are explicit",
-     .words = WORDS("ida", "euler", "heun", "rk4", "dormand_prince"), .synonyms = "integrator scheme"},
+     .meaning =
+         "integrator: ida is implicit; implicit_euler and trapezoid are so with fixed steps; the others are explicit",
+     .words = WORDS("ida", "euler", "heun", "rk4", "dormand_prince", "implicit_euler", "trapezoid"),
+     .synonyms = "integrator scheme"},
     {"solver.rtol", REAL, AT(solver.rtol), "1e-5", FROM_TO(1e-14, 0.1), "",
      .meaning = "relative error allowed per step", .synonyms = "tolerance tol reltol relative_tolerance"},
     {"solver.order", INTEGER, AT(solver.order), "2", FROM_TO(1, 5), "",
@@ -94,7 +96,7 @@ const struct key settings_table[] = {
     {"solver.threads", INTEGER, AT(solver.threads), "1", FROM_TO(1, MOST_THREADS), "", .meaning = "threads used",
      .synonyms = "n_threads cores processes"},
     {"solver.step", REAL, AT(solver.step), "0", FROM(0), "s",
-     .meaning = "fixed step of an explicit integrator; 0: adaptive", .synonyms = "step_size"},
+     .meaning = "fixed step of any integrator but ida; 0: adaptive, of an explicit one only", .synonyms = "step_size"},
     {"solver.max_steps", INTEGER, AT(solver.max_steps), "10000", FROM_TO(1, MOST_STEPS), "",
      .meaning = "the solver gives up after this many steps between two events", .synonyms = "mxstep"},
 

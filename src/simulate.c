@@ -9,6 +9,7 @@
 
 #include "event.h"
 #include "explicit.h"
+#include "fixed.h"
 #include "implicit.h"
 #include "store.h"
 
@@ -18,10 +19,19 @@ static double wall_clock(void) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
+static const struct integrator *integrator_of(enum method method) {
+    switch (method) {
+        case METHOD_IDA: return &implicit_ida;
+        case METHOD_IMPLICIT_EULER:
+        case METHOD_TRAPEZOID: return &fixed_implicit;
+        default: return &explicit_runge_kutta;
+    }
+}
+
 static enum status fill(struct simulation *simulation, const struct settings *settings) {
     simulation->started = wall_clock();
     simulation->n_events = lround(settings->time.end / settings->time.shedding_interval);
-    simulation->integrator = settings->solver.method == METHOD_IDA ? &implicit_ida : &explicit_runge_kutta;
+    simulation->integrator = integrator_of(settings->solver.method);
     TRY(fish_school_create(&simulation->school, settings));
     TRY(state_create(&simulation->state, simulation->school));
     TRY(residual_create(&simulation->residual, simulation->school, simulation->state));

@@ -56,6 +56,10 @@ check with_force_it_is test "$code" = 0 -a ! -s err
 run compare case.yaml --methods ida2,rk4,euler --steps 0.01,0.0025 --rtol 1e-4 --repeats 1 -q
 check fixed_steps_count_their_stages test "$(value rk4 0.0025 7)" = 160
 check steps_are_for_explicit_methods_only test "$(value ida2 1e-4 12)" != '' -a "$(value ida2 0.01 12)" = ''
+run compare case.yaml --methods implicit_euler,trapezoid --steps 0.005 --repeats 1 -q
+check implicit_methods_take_fixed_steps_too test "$(value trapezoid 0.005 7)" = 80
+check they_count_newton_and_jacobians below 0 "$(value trapezoid 0.005 10)"
+check the_trapezoid_is_more_exact below "$(value trapezoid 0.005 5)" "$(value implicit_euler 0.005 5)"
 run compare case.yaml --set 'fish[0].body.modulus=1e9' --methods rk4,ida2 --steps 0.01 --rtol 1e-4 --repeats 2 -q
 check a_step_too_large_is_unstable grep -qE '^rk4 .* unstable at t = ' out
 check that_is_no_failure_of_the_comparison test "$code" = 0
@@ -66,6 +70,7 @@ check which_may_be_the_reference has err 'the reference, ida5 with rtol 1e-05, f
 
 refused unknown_method 2 "--methods: 'adams' is unknown" compare case.yaml --methods ida2,adams
 refused tolerance_out_of_range 2 'solver.rtol' compare case.yaml --rtol 1e-3,-1
+refused implicit_methods_without_steps 2 'takes fixed steps only: give solver.step' compare case.yaml --methods trapezoid
 refused step_that_is_no_part 2 'solver.step' compare case.yaml --methods rk4 --steps 0.013
 refused empty_list 2 'nothing to compare' compare case.yaml --methods ''
 refused repeats_of_words 2 '--repeats two: expects a whole number' compare case.yaml --repeats two

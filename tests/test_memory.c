@@ -2,6 +2,7 @@
 #include "direct.h"
 #include "explicit.h"
 #include "failing_malloc.h"
+#include "fixed.h"
 #include "implicit.h"
 #include "school.h"
 
@@ -110,6 +111,15 @@ static void release_explicit(struct setup *setup, void *made) {
     explicit_runge_kutta.free(made);
 }
 
+static enum status create_fixed(struct setup *setup, void **made) {
+    const struct integrator_options options = {.method = METHOD_TRAPEZOID, .step = 0.01, .max_steps = 100};
+    return fixed_implicit.create(made, setup->residual, setup->state, &options);
+}
+static void release_fixed(struct setup *setup, void *made) {
+    (void)setup;
+    fixed_implicit.free(made);
+}
+
 static enum status create_simulation(struct setup *setup, void **made) {
     return simulate_create((struct simulation **)made, &setup->settings);
 }
@@ -168,6 +178,7 @@ static void every_create_fails_cleanly_at_every_allocation(void **state) {
                {create_implicit, release_implicit, "implicit", 7},
                {create_direct, release_direct, "direct", 18},
                {create_explicit, release_explicit, "explicit", 24},
+               {create_fixed, release_fixed, "fixed", 10},
                {create_simulation, release_simulation, "simulation", 100}};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         const int n_failed = fail_one_by_one(all[i].make, all[i].drop, all[i].name);
@@ -179,9 +190,9 @@ static void every_free_accepts_nothing(void **state) {
     (void)state;
     struct setup setup;
     school_build(&setup, text);
-    release *const all[] = {release_school,  release_state,    release_residual,  release_consistent,
-                            release_measure, release_flow,     release_sparse,    release_implicit,
-                            release_direct,  release_explicit, release_simulation};
+    release *const all[] = {release_school,  release_state,    release_residual, release_consistent,
+                            release_measure, release_flow,     release_sparse,   release_implicit,
+                            release_direct,  release_explicit, release_fixed,    release_simulation};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) all[i](&setup, NULL);
     school_clear(&setup);
 }
