@@ -8,7 +8,7 @@ set -euo pipefail
 readonly layers='
  1  status version
  2  yaml kernel sparse smooth
- 3  settings vortices
+ 3  settings vortices mutual
  4  fish
  5  rod actuation wake control
  6  state

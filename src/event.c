@@ -53,20 +53,23 @@ static enum status release_impulse(struct state *state, struct residual *residua
 // velocities of all free vortices, and the slip at every tail, from the state as it is now
 static enum status take_velocities(struct state *state, struct residual *residual, int n_new) {
     const struct school *school = residual->school;
+    const struct flow *const flow = residual->flow;
     flow_forget(residual->flow);
     TRY(flow_place(residual->flow, state, state->t, state->y));
-    for (int f = 0; f < school->n_fish; f++) {
-        struct wake *wake = &state->wake[f];
-        if (wake->n_vortex == 0) continue;
-        double *const u = malloc(2 * (size_t)wake->n_vortex * sizeof *u);
-        if (!u) return status_fail(STATUS_MEMORY, "no room for the velocities of %d vortices", wake->n_vortex);
-        flow_at_wake(residual->flow, f, u, u + wake->n_vortex);
-        wake_set_velocity(wake, u, u + wake->n_vortex, n_new);
-        free(u);
+    const int n = flow->released.n;
+    double *const u = malloc((2 * (size_t)n + 1) * sizeof *u);
+    if (!u) return status_fail(STATUS_MEMORY, "no room for the velocities of %d vortices", n);
+    double *const v = u + n;
+    const enum status status = flow_at_wake(flow, u, v);
+    for (int f = 0; f < school->n_fish && status == STATUS_OK; f++) {
+        const int first = flow->released_range[f].first;
+        if (state->wake[f].n_vortex > 0) wake_set_velocity(&state->wake[f], u + first, v + first, n_new);
     }
+    free(u);
+    TRY(status);
     TRY(flow_foretell(residual->flow, state));
     TRY(residual_evaluate(residual, state->t, state->y, state->yp, residual->scratch));
-    for (int f = 0; f < school->n_fish; f++) flow_slip(residual->flow, f, state->y, state->wake[f].slip);
+    for (int f = 0; f < school->n_fish; f++) flow_slip(flow, f, state->y, state->wake[f].slip);
     return STATUS_OK;
 }
 

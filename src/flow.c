@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "kernel.h"
+#include "mutual.h"
 
 int flow_midpoint(const struct fish *fish, int edge) {
     return fish->n_control + edge;
@@ -404,23 +405,33 @@ void flow_response(const struct flow *flow, int f, int g, struct flow_block *blo
     derive_sources(&(struct target){flow, f, g, 0, block});
 }
 
-void flow_at_wake(const struct flow *flow, int f, double *u, double *v) {
-    const struct school *school = flow->school;
-    const struct range own = flow->released_range[f];
-    const struct induced all = {
-        .n = own.n, .x = flow->released.x + own.first, .y = flow->released.y + own.first, .u = u, .v = v};
-    const int n_sources = flow->released.n + flow->nascent.n + flow->sheet.n;
-    const int n_chunks = (own.n + CHUNK - 1) / CHUNK;
-    const int threads = vortices_threads(school->threads, (double)own.n * n_sources);
+// the external flow, the nascent vortices and all bound sheets at the released ones
+static void sheets_at_wake(const struct flow *flow, const struct induced *all) {
+    const int n_chunks = (all->n + CHUNK - 1) / CHUNK;
+    const int threads = vortices_threads(flow->school->threads, (double)all->n * flow->sheet.n);
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int chunk = 0; chunk < n_chunks; chunk++) {
-        const int first = chunk * CHUNK, rest = own.n - first;
-        const struct induced at = vortices_targets(&all, (struct range){first, rest < CHUNK ? rest : CHUNK});
-        for (int i = 0; i < at.n; i++) flow_external(school, flow->t, at.y[i], &at.u[i], &at.v[i]);
-        vortices_induce(&flow->released, (struct range){0, flow->released.n}, &at);
+        const int first = chunk * CHUNK, rest = all->n - first;
+        const struct induced at = vortices_targets(all, (struct range){first, rest < CHUNK ? rest : CHUNK});
+        for (int i = 0; i < at.n; i++) flow_external(flow->school, flow->t, at.y[i], &at.u[i], &at.v[i]);
         vortices_induce(&flow->nascent, (struct range){0, flow->nascent.n}, &at);
         vortices_induce(&flow->sheet, (struct range){0, flow->sheet.n}, &at);
     }
+}
+
+enum status flow_at_wake(const struct flow *flow, double *u, double *v) {
+    const struct vortices *const released = &flow->released;
+    struct mutual_group *const group = malloc((size_t)(released->n_groups + 1) * sizeof *group);
+    if (!group) return status_fail(STATUS_MEMORY, "no room for the wakes of %d fish", flow->school->n_fish);
+    for (int g = 0; g < released->n_groups; g++) {
+        group[g] = (struct mutual_group){released->group[g].at.n, released->group[g].smoothing};
+    }
+    sheets_at_wake(flow, &(struct induced){.n = released->n, .x = released->x, .y = released->y, .u = u, .v = v});
+    const int threads = vortices_threads(flow->school->threads, (double)released->n * released->n);
+    const enum status status =
+        mutual_add_velocity(released->n_groups, group, released->x, released->y, released->circulation, threads, u, v);
+    free(group);
+    return status;
 }
 
 void flow_slip(const struct flow *flow, int f, const double *y, double slip[2]) {

@@ -99,9 +99,9 @@ void flow_derivative(const struct flow *flow, int f, int g, struct flow_block *b
  * unit circulation, of fish g causes: columns sheet (M_g), shed (1). After flow_place. */
 void flow_response(const struct flow *flow, int f, int g, struct flow_block *block);
 
-/* The velocity at the free vortices of fish f that are released, in the order of its wake. After flow_forget and
- * flow_place. */
-void flow_at_wake(const struct flow *flow, int f, double *u, double *v);
+/* The velocity (u, v), both (released.n), at the released vortices of all fish. After flow_forget and flow_place. Fails
+ * with STATUS_MEMORY. */
+enum status flow_at_wake(const struct flow *flow, double *u, double *v);
 
 /* The fluid's velocity past the tail of fish f, u - v_tail. After flow_velocity. */
 void flow_slip(const struct flow *flow, int f, const double *y, double slip[2]);

@@ -1,31 +1,71 @@
-/* kernels.c: how many interactions of a vortex with a point the loops of src/kernel.c do in a second, on one core, for
- * every variant that this processor has. A pair that feels each other counts twice. Printed by `make bench`.
+/* kernels.c: how many interactions of a vortex with a point the program does in a second: the loops of src/kernel.c on
+ * one core, for every variant that this processor has, and whole wakes at themselves (src/mutual.c) with more threads.
+ * A pair that feels each other counts twice. Printed by `make bench`.
  *
- * The last columns are what the processor can do with vectors of that width, in numbers (not vectors): fused products
- * and divisions, each alone. A velocity takes 5.5 products or fused products and half a division. The machine may be
- * shared: each rate is the best of several runs, and only rates of one table compare. */
+ * The first two rows say what the processor can do with vectors of that width: products, and divisions, of numbers in
+ * registers. A velocity takes 5.5 products (some with a sum) and half a division, two velocities of a pair at each
+ * other 9.5 and half a division. The machine may be shared: each rate is the best of several runs, and rates compare
+ * inside one run of this program only. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
 #include "kernel.h"
+#include "mutual.h"
 
-enum { MOST = 1600, N_RUNS = 7 };
+enum { MOST = 3200, N_RUNS = 9 };
 static const double run_time = 0.02; /* s */
 
-static struct {
-    double x[MOST], y[MOST], circulation[MOST], u[MOST], v[MOST], u_x[MOST], u_y[MOST], v_x[MOST];
-} cloud __attribute__((aligned(64)));
+static struct { double x[MOST], y[MOST], circulation[MOST], u[MOST], v[MOST], u_x[MOST], u_y[MOST], v_x[MOST]; } cloud;
 
-static double now(void) {
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+/* What is timed: some use of a variant for n and m things. */
+typedef void some_use(const struct kernel_variant *variant, int n, int m);
+
+// ---- the processor
+
+// 10 n m operations on vectors, none of which waits for another
+#define OPERATIONS(name, target, width, operation)                                                   \
+    target static void name(int n, int m) {                                                          \
+        typedef double lanes __attribute__((vector_size(width * sizeof(double))));                   \
+        lanes a = 1.1 - (lanes){0}, b = 1.3 - (lanes){0};                                            \
+        for (long i = 0; i < (long)n * m; i++) {                                                     \
+            _Pragma("GCC unroll 10") for (int k = 0; k < 10; k++) {                                  \
+                const lanes result = a operation b;                                                  \
+                __asm__ volatile("" : "+x"(a), "+x"(b) : "x"(result)); /* it must not be left out */ \
+            }                                                                                        \
+        }                                                                                            \
+    }
+OPERATIONS(products_avx512, __attribute__((target("avx512f"))), 8, *)
+OPERATIONS(products_avx2, __attribute__((target("avx2"))), 4, *)
+OPERATIONS(products_baseline, , 2, *)
+OPERATIONS(divisions_avx512, __attribute__((target("avx512f"))), 8, /)
+OPERATIONS(divisions_avx2, __attribute__((target("avx2"))), 4, /)
+OPERATIONS(divisions_baseline, , 2, /)
+
+static const struct {
+    const char *name;
+    int width;
+    void (*products)(int n, int m), (*divisions)(int n, int m);
+} processor[] = {{"avx512", 8, products_avx512, divisions_avx512},
+                 {"avx2", 4, products_avx2, divisions_avx2},
+                 {"baseline", 2, products_baseline, divisions_baseline}};
+
+static int processor_of(const struct kernel_variant *variant) {
+    int i = 0;
+    while (strcmp(processor[i].name, variant->name) != 0) i++;
+    return i;
 }
 
-/* One use of a variant: what is timed, on n targets and m sources. */
-typedef void some_use(const struct kernel_variant *variant, int n, int m);
+static void products(const struct kernel_variant *variant, int n, int m) {
+    processor[processor_of(variant)].products(n, m);
+}
+
+static void divisions(const struct kernel_variant *variant, int n, int m) {
+    processor[processor_of(variant)].divisions(n, m);
+}
+
+// ---- the loops
 
 static void velocity(const struct kernel_variant *variant, int n, int m) {
     const struct kernel_sources sources = {m, cloud.x, cloud.y, cloud.circulation, 0.04};
@@ -37,30 +77,97 @@ static void gradient(const struct kernel_variant *variant, int n, int m) {
     variant->gradient(n, cloud.x, cloud.y, &sources, cloud.u, cloud.v, cloud.u_x, cloud.u_y, cloud.v_x);
 }
 
-static struct kernel_tile tile(int first, int n) {
-    return (struct kernel_tile){
-        n, cloud.x + first, cloud.y + first, cloud.circulation + first, cloud.u + first, cloud.v + first};
+static void tiles(const struct kernel_variant *variant, int n, int m) {
+    struct kernel_tile tile[2];
+    for (int k = 0; k < 2; k++) {
+        const int first = k == 0 ? 0 : n;
+        tile[k] = (struct kernel_tile){
+            k == 0 ? n : m,  cloud.x + first, cloud.y + first, cloud.circulation + first,
+            cloud.u + first, cloud.v + first,
+        };
+    }
+    variant->mutual(&tile[0], &tile[1], 0.04);
 }
 
-static void mutual(const struct kernel_variant *variant, int n, int m) {
-    const struct kernel_tile a = tile(0, n), b = tile(n, m);
-    variant->mutual(&a, &b, 0.04);
+// ---- whole wakes
+
+/* n vortices with m threads; the fastest variant */
+static void wake(const struct kernel_variant *variant, int n, int m) {
+    (void)variant;
+    const struct mutual_group group = {n, 0.2};
+    if (mutual_add_velocity(1, &group, cloud.x, cloud.y, cloud.circulation, m, cloud.u, cloud.v) != STATUS_OK) abort();
 }
 
-/* The best rate of several runs, in 1e9 per second; one call does so many interactions. */
-static double rate(some_use *use, const struct kernel_variant *variant, int n, int m, double interactions) {
+// ---- the tables
+
+static double now(clockid_t clock) {
+    struct timespec t;
+    clock_gettime(clock, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* The best of several runs, in 1e9 per second of a clock; one call does so many of what is counted. */
+static double rate(clockid_t clock, some_use *use, const struct kernel_variant *variant, int n, int m,
+                   double per_call) {
     double best = 0;
     for (int run = 0; run < N_RUNS; run++) {
-        const double start = now();
+        const double start = now(clock);
         double spent = 0, done = 0;
         do {
-            for (int i = 0; i < 50; i++) use(variant, n, m);
-            done += 50 * interactions;
-            spent = now() - start;
+            for (int i = 0; i < 10; i++) use(variant, n, m);
+            done += 10 * per_call;
+            spent = now(clock) - start;
         } while (spent < run_time);
         if (done / spent > best) best = done / spent;
     }
     return 1e-9 * best;
+}
+
+static void print_variants(void) {
+    const struct {
+        const char *name;
+        some_use *use;
+        int n, m;
+        double per_call; /* counted in one call, per lane of a vector if negative */
+    } rows[] = {
+        {"products", products, 100, 10, -100 * 10 * 10},
+        {"divisions", divisions, 100, 10, -100 * 10 * 10},
+        {"sheet on wake, 1600 x 21", velocity, 1600, 21, 1600 * 21},
+        {"wake on body points, 112 x 400", velocity, 112, 400, 112 * 400},
+        {"16 x 400", velocity, 16, 400, 16 * 400},
+        {"8 x 400", velocity, 8, 400, 8 * 400},
+        {"with gradient, 112 x 400", gradient, 112, 400, 112 * 400},
+        {"with gradient, 112 x 21", gradient, 112, 21, 112 * 21},
+        {"wake on wake, 128 with 128", tiles, 128, 128, 2 * 128 * 128},
+        {"64 with 64", tiles, 64, 64, 2 * 64 * 64},
+    };
+    const struct kernel_variant *variant;
+    printf("%-32s", "1e9 per processor second");
+    for (int i = 0; (variant = kernel_variant(i)); i++) printf(" %9s", variant->name);
+    printf("\n");
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        printf("%-32s", rows[k].name);
+        for (int i = 0; (variant = kernel_variant(i)); i++) {
+            double per_call = rows[k].per_call;
+            if (per_call < 0) per_call *= -processor[processor_of(variant)].width;
+            printf(" %9.2f", rate(CLOCK_PROCESS_CPUTIME_ID, rows[k].use, variant, rows[k].n, rows[k].m, per_call));
+        }
+        printf("\n");
+    }
+}
+
+static void print_threads(void) {
+    const int sizes[] = {400, 1600, 3200}, threads[] = {1, 2, 4};
+    printf("\n%-32s", "1e9 per second, threads");
+    for (int i = 0; i < 3; i++) printf(" %9d", threads[i]);
+    printf("\n");
+    for (int k = 0; k < 3; k++) {
+        printf("wake on wake, %4d vortices      ", sizes[k]);
+        for (int i = 0; i < 3; i++) {
+            printf(" %9.2f", rate(CLOCK_MONOTONIC, wake, NULL, sizes[k], threads[i], (double)sizes[k] * sizes[k]));
+        }
+        printf("\n");
+    }
 }
 
 int main(void) {
@@ -69,27 +176,8 @@ int main(void) {
         cloud.y[i] = rand() / (double)RAND_MAX;
         cloud.circulation[i] = rand() / (double)RAND_MAX - 0.5;
     }
-    const struct {
-        const char *name;
-        some_use *use;
-        int n, m, both;
-    } rows[] = {
-        {"sheet on wake, 1600 x 21", velocity, 1600, 21, 1}, {"wake on body points, 16 x 400", velocity, 16, 400, 1},
-        {"the same, 112 x 400", velocity, 112, 400, 1},      {"the same, 8 x 400", velocity, 8, 400, 1},
-        {"with gradient, 112 x 400", gradient, 112, 400, 1}, {"sheet with gradient, 112 x 21", gradient, 112, 21, 1},
-        {"wake on wake, tiles of 128", mutual, 128, 128, 2}, {"the same, tiles of 64", mutual, 64, 64, 2},
-    };
-    const struct kernel_variant *variant;
-    printf("%-32s", "G interactions/s");
-    for (int i = 0; (variant = kernel_variant(i)); i++) printf(" %9s", variant->name);
+    print_variants();
+    print_threads();
     printf("\n");
-    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        printf("%-32s", rows[k].name);
-        for (int i = 0; (variant = kernel_variant(i)); i++) {
-            printf(" %9.2f",
-                   rate(rows[k].use, variant, rows[k].n, rows[k].m, (double)rows[k].both * rows[k].n * rows[k].m));
-        }
-        printf("\n");
-    }
     return 0;
 }

@@ -32,12 +32,12 @@ static void release(struct simulation *simulation, int f, double x, double y, do
 static void step(struct simulation *simulation) {
     struct state *const state = simulation->state;
     struct wake *const wake = &state->wake[0];
-    double *const u = malloc(2 * (size_t)wake->n_vortex * sizeof *u);
-    if (!u) abort();
-    flow_forget(simulation->residual->flow);
-    if (flow_place(simulation->residual->flow, state, state->t, state->y) != STATUS_OK) abort();
-    flow_at_wake(simulation->residual->flow, 0, u, u + wake->n_vortex);
-    wake_set_velocity(wake, u, u + wake->n_vortex, state->event == 0 ? wake->n_vortex : 0);
+    struct flow *const flow = simulation->residual->flow;
+    flow_forget(flow);
+    if (flow_place(flow, state, state->t, state->y) != STATUS_OK) abort();
+    double *const u = malloc(2 * (size_t)flow->released.n * sizeof *u);
+    if (!u || flow_at_wake(flow, u, u + flow->released.n) != STATUS_OK) abort();
+    wake_set_velocity(wake, u, u + flow->released.n, state->event == 0 ? wake->n_vortex : 0);
     free(u);
     wake_advance(wake, simulation->school->interval);
     state->event++;
