@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "kernel.h"
+
 enum status jacobian_create(struct jacobian **jacobian, const struct school *school) {
     *jacobian = NULL;
     struct jacobian *const new = calloc(1, sizeof *new);
@@ -93,11 +95,11 @@ void jacobian_multiply_couplings(const struct jacobian *jacobian, int f, const d
     for (int i = jacobian->first[f]; i < jacobian->first[f + 1]; i++) {
         const struct fish *other = &school->fish[jacobian->coupling[i].other];
         const struct flow_rows *rows = &jacobian->coupling[i].rows;
-        for (int c = 0; c < rows->n_columns; c++) {
-            const double *const column = rows->value + (long)c * rows->n_rows;
-            const double factor = unknowns[flow_column(other, c)];
-            for (int r = 0; r < rows->n_rows; r++) product[r] += factor * column[r];
-        }
+        // the columns of x and y, then those of sheet and shed, follow each other among the unknowns too
+        const int n_places = 2 * other->n_nodes;
+        kernel_multiply(rows->n_rows, n_places, rows->value, unknowns + other->at.x, product);
+        kernel_multiply(rows->n_rows, rows->n_columns - n_places, rows->value + (long)n_places * rows->n_rows,
+                        unknowns + other->at.sheet, product);
     }
 }
 

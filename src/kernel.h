@@ -52,6 +52,9 @@ void kernel_unit(int n, const double *x, const double *y, double source_x, doubl
 void kernel_add_motion(int n, double factor, const struct kernel_values *values, double *u_by_x, double *v_by_x,
                        double *u_by_y, double *v_by_y);
 
+/* product += matrix * vector: a dense matrix (n_rows, n_columns), column after column; they are added in this order. */
+void kernel_multiply(int n_rows, int n_columns, const double *matrix, const double *vector, double *product);
+
 /* The sources of one sum. */
 struct kernel_sources {
     int n;

@@ -283,6 +283,24 @@ static void unit_sources_at_many_targets_have_the_bits_of_one_by_one(void **stat
     }
 }
 
+static void product_with_a_matrix_adds_column_after_column(void **state) {
+    (void)state;
+    enum { ROWS = 19, MOST = 9 };
+    struct setup random = {.seed = 5};
+    double matrix[ROWS * MOST], vector[MOST];
+    for (int i = 0; i < ROWS * MOST; i++) matrix[i] = school_random(&random);
+    for (int i = 0; i < MOST; i++) vector[i] = school_random(&random);
+    for (int n = 0; n <= MOST; n++) {
+        double got[ROWS], want[ROWS];
+        for (int r = 0; r < ROWS; r++) got[r] = want[r] = 1;
+        for (int c = 0; c < n; c++) {
+            for (int r = 0; r < ROWS; r++) want[r] += vector[c] * matrix[c * ROWS + r];
+        }
+        kernel_multiply(ROWS, n, matrix, vector, got);
+        NEAR_ARRAY(ROWS, got, want, 0, 0);
+    }
+}
+
 static void a_vortex_pair_translates_at_the_known_speed(void **state) {
     (void)state;
     // doc/model.md, section 12: G d/(2 pi (d^2 + delta^2))
@@ -308,6 +326,7 @@ int main(void) {
         cmocka_unit_test(velocity_is_added_to_what_is_there_and_writes_nothing_else),
         cmocka_unit_test(gradient_is_that_of_the_velocity),
         cmocka_unit_test(one_unit_source_is_what_the_loops_add),
+        cmocka_unit_test(product_with_a_matrix_adds_column_after_column),
         cmocka_unit_test(unit_sources_at_many_targets_have_the_bits_of_one_by_one),
         cmocka_unit_test(a_vortex_pair_translates_at_the_known_speed),
     };

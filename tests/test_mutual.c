@@ -58,11 +58,11 @@ static void compare(int n_groups, const struct mutual_group *group) {
         double u = 0, v = 0, size = 0;
         for (int k = 0, j = 0; k < n_groups; k++) {
             for (const int end = j + group[k].n; j < end; j++) {
-                const struct kernel_value unit =
-                    kernel_unit(cloud.x[i] - cloud.x[j], cloud.y[i] - cloud.y[j], group[k].smoothing);
-                u += cloud.circulation[j] * unit.u;
-                v += cloud.circulation[j] * unit.v;
-                size += fabs(cloud.circulation[j]) * hypot(unit.u, unit.v);
+                struct kernel_values unit;
+                kernel_unit(1, cloud.x + i, cloud.y + i, cloud.x[j], cloud.y[j], group[k].smoothing, &unit);
+                u += cloud.circulation[j] * unit.u[0];
+                v += cloud.circulation[j] * unit.v[0];
+                size += fabs(cloud.circulation[j]) * hypot(unit.u[0], unit.v[0]);
             }
         }
         // rounding of the terms, and of sums that grow like the root of their number
