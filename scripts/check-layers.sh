@@ -10,7 +10,7 @@ readonly layers='
  2  yaml kernel sparse smooth
  3  settings vortices mutual
  4  fish
- 5  rod actuation wake control
+ 5  rod actuation wake control carry
  6  state
  7  forecast
  8  flow
@@ -18,7 +18,7 @@ readonly layers='
 10  residual
 11  measure linear
 12  bridge store checkpoint
-13  consistent direct
+13  consistent direct newton
 14  integrator event
 15  implicit explicit fixed
 16  simulate
@@ -31,7 +31,7 @@ readonly layers='
 readonly same_layer=''
 
 # Outside headers (their first folder, or their name without .h) and the modules that may include them.
-readonly solver_users='linear bridge consistent direct implicit explicit'
+readonly solver_users='linear bridge consistent direct newton implicit explicit'
 readonly outside="
 sundials ida kinsol arkode nvector sunmatrix sunlinsol sunnonlinsol : $solver_users
 klu amd colamd btf SuiteSparse_config : $solver_users

@@ -8,14 +8,16 @@
 
 #include "bridge.h"
 #include "measure.h"
+#include "newton.h"
 
-/* Newton ends when its error is this part of the error test's: stiff velocities are outside that test, and an
- * iteration that stopped at IDA's own 0.33 would leave their noise in the accelerations. Measured: doc/numerics.md. */
+/* Newton ends when its error is this part of the error test's: stiff velocities are outside that test, and an iteration
+ * that stopped at IDA's own 0.33 would leave their noise in the accelerations. Measured: doc/numerics.md. */
 static const double newton_coefficient = 0.003;
 
-/* A Jacobian serves while its leading coefficient is within this part of the step's. IDA's own is 0.25; the smaller one
- * costs a few more factorisations and saves more iterations. Measured: doc/numerics.md. */
+/* A Jacobian serves while its leading coefficient is within this part of the step's (IDA's own is 0.25), and while it
+ * saves more than it costs, in iterations. Measured: doc/numerics.md. */
 static const double cj_change = 0.1;
+static const int jacobian_cost = 5, most_iterations = 6;
 
 /* Coupled fish are solved for up to this part of the right-hand side. Measured: doc/numerics.md. */
 static const double linear_tolerance = 1e-3;
@@ -34,6 +36,7 @@ struct implicit {
     SUNContext context;
     N_Vector y, yp, tolerances, kinds, scratch[2];
     struct bridge_linear linear;
+    SUNNonlinearSolver newton;
     void *ida;
     struct integrator_counts before; /* restarts set IDA's own totals to zero */
     long jacobians; /* evaluated so far: IDA sets its own total to zero only some time after a restart */
@@ -55,10 +58,17 @@ static int jacobian_callback(realtype t, realtype cj, N_Vector y, N_Vector yp, N
     return solver->failure;
 }
 
+static double leading_coefficient(void *ida) {
+    double value = 0;
+    IDAGetCurrentCj(ida, &value);
+    return value;
+}
+
 static void implicit_free(void *data) {
     struct implicit *const solver = data;
     if (!solver) return;
     if (solver->ida) IDAFree(&solver->ida);
+    if (solver->newton) SUNNonlinSolFree(solver->newton);
     bridge_linear_free(&solver->linear);
     const N_Vector vectors[] = {solver->y,     solver->yp,         solver->tolerances,
                                 solver->kinds, solver->scratch[0], solver->scratch[1]};
@@ -79,9 +89,9 @@ static enum status set_up_ida(struct implicit *solver) {
         IDAInit(ida, residual_callback, solver->state->t, solver->y, solver->yp) ||
         IDASVtolerances(ida, 0, solver->tolerances) || IDASetId(ida, solver->kinds) || IDASetSuppressAlg(ida, 1) ||
         IDASetLinearSolver(ida, solver->linear.solver, solver->linear.matrix) || IDASetJacFn(ida, jacobian_callback) ||
-        IDASetNonlinConvCoef(ida, newton_coefficient) || IDASetMaxOrd(ida, solver->options.order) ||
-        IDASetMaxNonlinIters(ida, 6) || IDASetDeltaCjLSetup(ida, cj_change) || IDASetMaxErrTestFails(ida, 20) ||
-        IDASetMaxConvFails(ida, 20) || IDASetMinStep(ida, 1e-10 * school->interval)) {
+        IDASetNonlinearSolver(ida, solver->newton) || IDASetNonlinConvCoef(ida, newton_coefficient) ||
+        IDASetMaxOrd(ida, solver->options.order) || IDASetDeltaCjLSetup(ida, cj_change) ||
+        IDASetMaxErrTestFails(ida, 20) || IDASetMaxConvFails(ida, 20) || IDASetMinStep(ida, 1e-10 * school->interval)) {
         return status_fail(STATUS_SOLVER, "IDA cannot be set up: %s", status_message());
     }
     return STATUS_OK;
@@ -108,6 +118,8 @@ static enum status fill(struct implicit *solver) {
         if (!solver->scratch[i]) return status_fail(STATUS_MEMORY, "no room for a vector of %d unknowns", n);
     }
     TRY(bridge_linear_create(&solver->linear, solver->context, solver->jacobian, solver->tolerance, linear_tolerance));
+    const struct newton_rules rules = {most_iterations, jacobian_cost, leading_coefficient};
+    TRY(newton_create(&solver->newton, solver->context, solver->y, solver->residual->school, rules));
     solver->ida = IDACreate(solver->context);
     if (!solver->ida) return status_fail(STATUS_MEMORY, "no room for IDA");
     return set_up_ida(solver);
