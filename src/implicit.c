@@ -220,18 +220,31 @@ static enum status give_up(const struct implicit *solver, int code, long steps) 
         step, words);
 }
 
+// Where the next step shall end at the latest: steps that divide the rest of the interval into equal parts keep their
+// size from event to event, and with it the Jacobian.
+static double next_stop(const struct implicit *solver, double now, double end) {
+    // the step that IDA wants; 0 before the first one
+    double step = 0;
+    IDAGetCurrentStep(solver->ida, &step);
+    // less than IDA itself takes for the end reached
+    const double rounding = 1e-14 * end;
+    const double n_steps = step > 0 ? ceil((end - now - rounding) / step) : 1;
+    return n_steps > 1 ? now + (end - now) / n_steps : end;
+}
+
 static enum status implicit_advance(void *data, double t) {
     struct implicit *const solver = data;
     struct state *const state = solver->state;
     double reached = state->t;
-    if (IDASetStopTime(solver->ida, t)) return give_up(solver, IDA_ILL_INPUT, 0);
     for (long steps = 0; reached < t; steps++) {
         if (steps == solver->options.max_steps) return give_up(solver, IDA_TOO_MUCH_WORK, steps);
+        const double stop = next_stop(solver, reached, t);
+        if (IDASetStopTime(solver->ida, stop)) return give_up(solver, IDA_ILL_INPUT, steps);
         solver->failure = STATUS_OK;
         const int code = IDASolve(solver->ida, t, &reached, solver->y, solver->yp, IDA_ONE_STEP);
         if (solver->failure < 0) return solver->failure;
         if (code < 0) return give_up(solver, code, steps);
-        if (code == IDA_TSTOP_RETURN) reached = t;
+        if (code == IDA_TSTOP_RETURN) reached = stop;
         measure_step(solver->residual, state, reached, state->y, state->yp);
     }
     return STATUS_OK;

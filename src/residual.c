@@ -363,7 +363,7 @@ double residual_scale(const struct residual *residual, int i) {
     const double length = fish->length;
     switch (place.kind) {
         case UNKNOWN_X:
-        case UNKNOWN_Y: return 0.018 * length;
+        case UNKNOWN_Y: return 0.01 * length;
         case UNKNOWN_VX:
         case UNKNOWN_VY: return 300 * length * f;
         case UNKNOWN_AX:

@@ -169,7 +169,7 @@ static void stiffness(struct places *places, int f, const double *y, double *den
     const struct fish *fish = &places->setup.school->fish[f];
     const double natural[MOST_NODES] = {0};
     struct sparse *matrix;
-    school_ok(sparse_create(&matrix, places->n));
+    school_ok(sparse_create(&matrix, 0, places->n));
     sparse_begin(matrix);
     rod_stamp(fish, natural, natural, y, matrix);
     school_ok(sparse_end(matrix));

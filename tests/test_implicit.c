@@ -60,6 +60,26 @@ static void continuous_events_cost_no_restart(void **state) {
     simulate_free(simulation);
 }
 
+static void steps_divide_the_interval_and_keep_the_jacobian(void **state) {
+    (void)state;
+    struct simulation *const simulation = school_simulation("time: {end: 1, shedding_interval: 0.01}\nfish: [{}]\n");
+    school_run(simulation, 0.5);
+    struct integrator_counts before = counts_of(simulation);
+    int n_equal = 0;
+    for (int n = 0; n < 50; n++) {
+        school_ok(simulate_step(simulation));
+        const struct integrator_counts now = counts_of(simulation);
+        const double interval = (double)(now.steps - before.steps) * now.step_size;
+        // rounding of times of the order of one
+        n_equal += fabs(interval - 0.01) < 1e-13;
+        before = now;
+    }
+    // but where IDA itself changed the step
+    assert_in_range(n_equal, 40, 50);
+    assert_true(before.jacobian_evaluations < 50);
+    simulate_free(simulation);
+}
+
 static void a_very_stiff_body_keeps_its_course(void **state) {
     (void)state;
     // what an iteration leaves in the equations of motion must have no moment: with half a thousandth of a radian per
@@ -154,6 +174,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_driven_body_follows_the_given_motion),
         cmocka_unit_test(continuous_events_cost_no_restart),
+        cmocka_unit_test(steps_divide_the_interval_and_keep_the_jacobian),
         cmocka_unit_test(a_very_stiff_body_keeps_its_course),
         cmocka_unit_test(counts_go_on_across_restarts),
         cmocka_unit_test(restart_without_a_jump_goes_the_same_way),
