@@ -61,7 +61,7 @@ test_helpers = $(patsubst tests/%.c,$(B)/tests/%.o,$(filter-out tests/test_%,$(w
 verify_program = $(B)/verify/verify
 verify_objects = $(patsubst tests/verify/%.c,$(B)/verify/%.o,$(wildcard tests/verify/*.c))
 
-bench_program = $(B)/bench/kernels
+bench_programs = $(patsubst tests/bench/%.c,$(B)/bench/%,$(wildcard tests/bench/*.c))
 
 generated_docs = $(B)/doc/cases.md $(B)/doc/output.md
 c_files        = $(wildcard src/*.[ch] include/*.h tests/*.[ch] tests/verify/*.[ch] tests/bench/*.[ch])
@@ -95,8 +95,8 @@ verify: deps  ## check the program against classical results (minutes) and write
 	@$(parallel) $(verify_program)
 	@scripts/verify.sh $(verify_program) $(B)/verify
 
-bench: $(program) $(bench_program)  ## measure the inner loops, and time, memory and counts of the benchmark cases
-	@$(bench_program)
+bench: $(program) $(bench_programs)  ## measure the inner loops, and time, memory and counts of the benchmark cases
+	@$(B)/bench/kernels
 	@scripts/bench.sh $(program)
 
 clean:  ## remove everything that was built
@@ -168,7 +168,7 @@ $(B)/version.o: $(B)/commit
 $(B)/commit: FORCE | $(B)/tests
 	@echo '$(commit)' | cmp -s - $@ || echo '$(commit)' >$@
 
-tests: $(program) $(c_tests) $(verify_program) $(bench_program)
+tests: $(program) $(c_tests) $(verify_program) $(bench_programs)
 
 $(B)/verify/%.o: tests/verify/%.c Makefile | $(B)/verify
 	$(say) CC $<
@@ -178,19 +178,24 @@ $(verify_program): $(verify_objects) $(library)
 	$(say) LD $@
 	$(quiet)$(CC) $(shoal_cflags) $(LDFLAGS) -o $@ $^ $(libraries)
 
-$(B)/bench/%: tests/bench/%.c $(library) Makefile | $(B)/bench
-	$(say) LD $@
-	$(quiet)$(CC) $(shoal_cppflags) $(shoal_cflags) $(LDFLAGS) -o $@ $< $(library) $(libraries)
+$(B)/bench/%.o: tests/bench/%.c Makefile | $(B)/bench
+	$(say) CC $<
+	$(quiet)$(CC) $(shoal_cppflags) $(shoal_cflags) -MMD -MP -c -o $@ $<
 
 $(B)/tests/%.o: tests/%.c Makefile | $(B)/tests
 	$(say) CC $<
 	$(quiet)$(CC) $(shoal_cppflags) -iquote tests $(shoal_cflags) -MMD -MP -c -o $@ $<
 
-# A test that defines __wrap_calloc receives every calloc of the program, and finds the true one as __real_calloc.
+# A program that defines __wrap_calloc receives every calloc of the library, and finds the true one as __real_calloc.
+wrapped = $$(nm $(filter %.o,$^) | sed -n 's/.* T __wrap_\(.*\)/-Wl,--wrap=\1/p')
+
+$(B)/bench/%: $(B)/bench/%.o $(library)
+	$(say) LD $@
+	$(quiet)$(CC) $(shoal_cflags) $(LDFLAGS) $(wrapped) -o $@ $^ $(libraries)
+
 $(B)/tests/test_%: $(B)/tests/test_%.o $(test_helpers) $(library)
 	$(say) LD $@
-	$(quiet)$(CC) $(shoal_cflags) $(LDFLAGS) \
-	    $$(nm $(filter %.o,$^) | sed -n 's/.* T __wrap_\(.*\)/-Wl,--wrap=\1/p') -o $@ $^ -lcmocka $(libraries)
+	$(quiet)$(CC) $(shoal_cflags) $(LDFLAGS) $(wrapped) -o $@ $^ -lcmocka $(libraries)
 
 $(B)/doc/cases.md: $(program) scripts/make-cases-doc.py | $(B)/tests
 	$(quiet)$(program) keys --json | $(PYTHON) scripts/make-cases-doc.py >$@
@@ -201,5 +206,5 @@ $(B)/doc/output.md: $(program) scripts/make-output-doc.py | $(B)/tests
 $(B)/tests $(B)/verify $(B)/bench:
 	@mkdir -p $@ $(B)/doc
 
-.PRECIOUS: $(B)/tests/%.o
--include $(wildcard $(B)/*.d $(B)/tests/*.d $(B)/verify/*.d)
+.PRECIOUS: $(B)/tests/%.o $(B)/bench/%.o
+-include $(wildcard $(B)/*.d $(B)/tests/*.d $(B)/verify/*.d $(B)/bench/*.d)

@@ -8,8 +8,8 @@ set -euo pipefail
 readonly layers='
  1  status version
  2  yaml kernel sparse smooth
- 3  settings vortices mutual
- 4  fish
+ 3  settings vortices
+ 4  fish mutual
  5  rod actuation wake control carry
  6  state
  7  forecast

@@ -421,17 +421,9 @@ static void sheets_at_wake(const struct flow *flow, const struct induced *all) {
 
 enum status flow_at_wake(const struct flow *flow, double *u, double *v) {
     const struct vortices *const released = &flow->released;
-    struct mutual_group *const group = malloc((size_t)(released->n_groups + 1) * sizeof *group);
-    if (!group) return status_fail(STATUS_MEMORY, "no room for the wakes of %d fish", flow->school->n_fish);
-    for (int g = 0; g < released->n_groups; g++) {
-        group[g] = (struct mutual_group){released->group[g].at.n, released->group[g].smoothing};
-    }
     sheets_at_wake(flow, &(struct induced){.n = released->n, .x = released->x, .y = released->y, .u = u, .v = v});
     const int threads = vortices_threads(flow->school->threads, (double)released->n * released->n);
-    const enum status status =
-        mutual_add_velocity(released->n_groups, group, released->x, released->y, released->circulation, threads, u, v);
-    free(group);
-    return status;
+    return mutual_add_velocity(released, threads, u, v);
 }
 
 void flow_slip(const struct flow *flow, int f, const double *y, double slip[2]) {

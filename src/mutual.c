@@ -44,7 +44,7 @@ static int rounded_up(int n) {
 }
 
 // the place of every vortex, and the tiles: groups of one smoothing next to each other
-static void sort(struct sorted *sorted, int n_groups, const struct mutual_group *group) {
+static void sort(struct sorted *sorted, int n_groups, const struct vortex_group *group) {
     for (int k = 0; k < n_groups; k++) {
         int first_of_smoothing = 0;
         while (group[first_of_smoothing].smoothing != group[k].smoothing) first_of_smoothing++;
@@ -52,8 +52,8 @@ static void sort(struct sorted *sorted, int n_groups, const struct mutual_group 
         int n = sorted->n_places, vortex = 0;
         for (int l = 0; l < n_groups; l++) {
             const int same = group[l].smoothing == group[k].smoothing;
-            for (int i = 0; same && i < group[l].n; i++) sorted->place[vortex + i] = n++;
-            vortex += group[l].n;
+            for (int i = 0; same && i < group[l].at.n; i++) sorted->place[vortex + i] = n++;
+            vortex += group[l].at.n;
         }
         const int end = sorted->n_places + rounded_up(n - sorted->n_places);
         for (int first = sorted->n_places; first < end; first += KERNEL_TILE) {
@@ -71,14 +71,12 @@ static void sorted_free(struct sorted *sorted) {
     free(sorted->memory);
 }
 
-static enum status sorted_fill(struct sorted *sorted, int n_groups, const struct mutual_group *group, const double *x,
-                               const double *y, const double *circulation) {
-    for (int k = 0; k < n_groups; k++) sorted->n_vortices += group[k].n;
-    const int n = sorted->n_vortices;
+static enum status sorted_fill(struct sorted *sorted, const struct vortices *vortices) {
+    const int n = sorted->n_vortices = vortices->n;
     sorted->place = malloc((size_t)(n + 1) * sizeof *sorted->place);
-    sorted->tile = malloc((size_t)(n / KERNEL_TILE + n_groups + 1) * sizeof *sorted->tile);
+    sorted->tile = malloc((size_t)(n / KERNEL_TILE + vortices->n_groups + 1) * sizeof *sorted->tile);
     if (!sorted->place || !sorted->tile) goto no_memory;
-    sort(sorted, n_groups, group);
+    sort(sorted, vortices->n_groups, vortices->group);
     sorted->n_shares = n_shares(sorted->n_tiles);
     // places are a multiple of BLOCK: where one array is aligned, the next is
     const size_t n_places = (size_t)sorted->n_places, n_sums = n_places * (size_t)sorted->n_shares;
@@ -92,9 +90,9 @@ static enum status sorted_fill(struct sorted *sorted, int n_groups, const struct
     sorted->v = sorted->u + n_sums;
     memset(aligned, 0, 3 * n_places * sizeof *aligned);
     for (int i = 0; i < n; i++) {
-        sorted->x[sorted->place[i]] = x[i];
-        sorted->y[sorted->place[i]] = y[i];
-        sorted->circulation[sorted->place[i]] = circulation[i];
+        sorted->x[sorted->place[i]] = vortices->x[i];
+        sorted->y[sorted->place[i]] = vortices->y[i];
+        sorted->circulation[sorted->place[i]] = vortices->circulation[i];
     }
     return STATUS_OK;
 
@@ -145,10 +143,9 @@ static void gather(const struct sorted *sorted, const struct tile *tile) {
     }
 }
 
-enum status mutual_add_velocity(int n_groups, const struct mutual_group *group, const double *x, const double *y,
-                                const double *circulation, int threads, double *u, double *v) {
+enum status mutual_add_velocity(const struct vortices *vortices, int threads, double *u, double *v) {
     struct sorted sorted = {0};
-    const enum status status = sorted_fill(&sorted, n_groups, group, x, y, circulation);
+    const enum status status = sorted_fill(&sorted, vortices);
     if (status == STATUS_OK) {
 #pragma omp parallel num_threads(threads)
         {

@@ -15,17 +15,10 @@
 #define MUTUAL_H
 
 #include "status.h"
+#include "vortices.h"
 
-/* Vortices of one smoothing that follow each other. */
-struct mutual_group {
-    int n;
-    double smoothing; /* length e of the kernel, m */
-};
-
-/* Add to (u, v), m s-1, at every vortex the velocity of all others; x, y, m, and circulation, m2 s-1, hold the groups
- * one after another. What a vortex causes is smoothed by its own length. Fails with STATUS_MEMORY, and then leaves u
- * and v as they are. */
-enum status mutual_add_velocity(int n_groups, const struct mutual_group *group, const double *x, const double *y,
-                                const double *circulation, int threads, double *u, double *v);
+/* Add to (u, v), m s-1, both (n), at every vortex the velocity of all others. What a vortex causes is smoothed by its own
+ * length. Fails with STATUS_MEMORY, and then leaves u and v as they are. */
+enum status mutual_add_velocity(const struct vortices *vortices, int threads, double *u, double *v);
 
 #endif

@@ -202,6 +202,10 @@ static void evaluate_fish(struct residual *residual, int f, double t, const doub
 enum status residual_evaluate(struct residual *residual, double t, const double *y, const double *yp, double *value) {
     TRY(flow_place(residual->flow, residual->state, t, y));
     flow_velocity(residual->flow);
+    // a fish takes a microsecond: starting the threads for a few costs more than it saves
+    enum { FEW = 16 };
+    const int threads = residual->school->n_fish < FEW ? 1 : residual->school->threads;
+#pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < residual->school->n_fish; f++) evaluate_fish(residual, f, t, y, yp, value);
     for (int i = 0; i < residual->school->n_unknowns; i++) {
         if (!isfinite(value[i])) {

@@ -36,22 +36,40 @@ static int scatter(void **state) {
     return 0;
 }
 
-static int n_vortices(int n_groups, const struct mutual_group *group) {
+// vortices of one smoothing that follow each other
+struct stretch {
+    int n;
+    double smoothing;
+};
+
+static int n_vortices(int n_groups, const struct stretch *group) {
     int n = 0;
     for (int k = 0; k < n_groups; k++) n += group[k].n;
     return n;
 }
 
+// the first vortices of the cloud, sorted into groups
+static struct vortices grouped(int n_groups, const struct stretch *stretch, struct vortex_group *group) {
+    struct vortices vortices = {.x = cloud.x, .y = cloud.y, .circulation = cloud.circulation, .group = group};
+    for (int k = 0; k < n_groups; k++) {
+        group[k] = (struct vortex_group){{vortices.n, stretch[k].n}, stretch[k].smoothing};
+        vortices.n += stretch[k].n;
+    }
+    vortices.n_groups = n_groups;
+    return vortices;
+}
+
 // added to zero; the caller frees u, and v is behind it
-static double *velocity(int n_groups, const struct mutual_group *group, int threads) {
-    const int n = n_vortices(n_groups, group);
-    double *const u = calloc(2 * (size_t)n + 1, sizeof *u);
+static double *velocity(int n_groups, const struct stretch *stretch, int threads) {
+    struct vortex_group group[MOST_GROUPS];
+    const struct vortices vortices = grouped(n_groups, stretch, group);
+    double *const u = calloc(2 * (size_t)vortices.n + 1, sizeof *u);
     assert_non_null(u);
-    school_ok(mutual_add_velocity(n_groups, group, cloud.x, cloud.y, cloud.circulation, threads, u, u + n));
+    school_ok(mutual_add_velocity(&vortices, threads, u, u + vortices.n));
     return u;
 }
 
-static void compare(int n_groups, const struct mutual_group *group) {
+static void compare(int n_groups, const struct stretch *group) {
     const int n = n_vortices(n_groups, group);
     double *const got = velocity(n_groups, group, 1);
     for (int i = 0; i < n; i++) {
@@ -76,13 +94,13 @@ static void velocities_are_those_of_all_vortices_at_all_others(void **state) {
     (void)state;
     const int n[] = {0, 1, 2, 7, 8, 9, 15, 16, 17, 127, 128, 129, 300, 1000};
     for (size_t k = 0; k < sizeof n / sizeof *n; k++) {
-        for (int s = 0; s < 2; s++) compare(1, &(struct mutual_group){n[k], s ? 0.2 : 0});
+        for (int s = 0; s < 2; s++) compare(1, &(struct stretch){n[k], s ? 0.2 : 0});
     }
 }
 
 static void every_group_has_its_own_smoothing(void **state) {
     (void)state;
-    const struct mutual_group groups[][MOST_GROUPS] = {
+    const struct stretch groups[][MOST_GROUPS] = {
         {{30, 0.1}, {0, 0.5}, {200, 0.2}, {1, 0.3}},    // all different, one empty, one alone
         {{150, 0.1}, {70, 0.2}, {33, 0.1}, {19, 0.2}},  // two smoothings that alternate
         {{100, 0.1}, {100, 0.1}, {100, 0.1}, {9, 0}},   // one for all but a few
@@ -93,7 +111,7 @@ static void every_group_has_its_own_smoothing(void **state) {
 
 static void groups_of_one_smoothing_have_the_bits_of_one_group(void **state) {
     (void)state;
-    const struct mutual_group three[] = {{100, 0.1}, {31, 0.1}, {200, 0.1}}, one = {331, 0.1};
+    const struct stretch three[] = {{100, 0.1}, {31, 0.1}, {200, 0.1}}, one = {331, 0.1};
     double *const a = velocity(3, three, 1), *const b = velocity(1, &one, 1);
     assert_memory_equal(a, b, 2 * 331 * sizeof *a);
     free(a);
@@ -103,7 +121,7 @@ static void groups_of_one_smoothing_have_the_bits_of_one_group(void **state) {
 static void vortices_of_one_smoothing_push_each_other_equally(void **state) {
     (void)state;
     const int n = 1000;
-    double *const u = velocity(1, &(struct mutual_group){n, 0.1}, 1), *const v = u + n;
+    double *const u = velocity(1, &(struct stretch){n, 0.1}, 1), *const v = u + n;
     double sum_u = 0, sum_v = 0, size = 0;
     for (int i = 0; i < n; i++) {
         sum_u += cloud.circulation[i] * u[i];
@@ -118,7 +136,7 @@ static void vortices_of_one_smoothing_push_each_other_equally(void **state) {
 
 static void threads_change_no_bit(void **state) {
     (void)state;
-    const struct mutual_group groups[][2] = {{{1, 0.1}, {0, 0}}, {{300, 0.1}, {77, 0.2}}, {{3000, 0.1}, {0, 0}}};
+    const struct stretch groups[][2] = {{{1, 0.1}, {0, 0}}, {{300, 0.1}, {77, 0.2}}, {{3000, 0.1}, {0, 0}}};
     for (size_t k = 0; k < sizeof groups / sizeof *groups; k++) {
         const size_t size = 2 * (size_t)n_vortices(2, groups[k]) * sizeof(double);
         double *const one = velocity(2, groups[k], 1);
@@ -134,10 +152,12 @@ static void threads_change_no_bit(void **state) {
 static void velocity_is_added_to_what_is_there(void **state) {
     (void)state;
     enum { N = 20 };
-    const struct mutual_group group = {N, 0.1};
+    const struct stretch group = {N, 0.1};
     double u[N + 1], v[N + 1];
     for (int i = 0; i <= N; i++) u[i] = v[i] = 100;
-    school_ok(mutual_add_velocity(1, &group, cloud.x, cloud.y, cloud.circulation, 1, u, v));
+    struct vortex_group all;
+    const struct vortices vortices = grouped(1, &group, &all);
+    school_ok(mutual_add_velocity(&vortices, 1, u, v));
     double *const alone = velocity(1, &group, 1);
     for (int i = 0; i < N; i++) {
         NEAR(u[i], 100 + alone[i], 0, 0);
@@ -151,12 +171,14 @@ static void velocity_is_added_to_what_is_there(void **state) {
 static void without_memory_nothing_is_added(void **state) {
     (void)state;
     enum { N = 20 };
-    const struct mutual_group group = {N, 0.1};
+    const struct stretch group = {N, 0.1};
+    struct vortex_group all;
+    const struct vortices vortices = grouped(1, &group, &all);
     int n_failures = 0;
     for (int k = 0;; k++) {
         double u[N] = {0}, v[N] = {0};
         n_until_failure = k;
-        const enum status status = mutual_add_velocity(1, &group, cloud.x, cloud.y, cloud.circulation, 1, u, v);
+        const enum status status = mutual_add_velocity(&vortices, 1, u, v);
         n_until_failure = -1;
         if (status == STATUS_OK) break;
         assert_int_equal(status, STATUS_MEMORY);

@@ -4,7 +4,7 @@
  *
  * The first two rows say what the processor can do with vectors of that width: products, and divisions, of numbers in
  * registers. A velocity takes 5.5 products (some with a sum) and half a division, two velocities of a pair at each
- * other 9.5 and half a division. The machine may be shared: each rate is the best of several runs, and rates compare
+ * other 9.5 and half a division. The machine may be shared: each rate is the best of many short runs, and rates compare
  * inside one run of this program only. */
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,8 +14,8 @@
 #include "kernel.h"
 #include "mutual.h"
 
-enum { MOST = 3200, N_RUNS = 9 };
-static const double run_time = 0.02; /* s */
+enum { MOST = 3200, N_RUNS = 50 };
+static const double per_run = 1e6; /* interactions at least */
 
 static struct { double x[MOST], y[MOST], circulation[MOST], u[MOST], v[MOST], u_x[MOST], u_y[MOST], v_x[MOST]; } cloud;
 
@@ -94,8 +94,10 @@ static void tiles(const struct kernel_variant *variant, int n, int m) {
 /* n vortices with m threads; the fastest variant */
 static void wake(const struct kernel_variant *variant, int n, int m) {
     (void)variant;
-    const struct mutual_group group = {n, 0.2};
-    if (mutual_add_velocity(1, &group, cloud.x, cloud.y, cloud.circulation, m, cloud.u, cloud.v) != STATUS_OK) abort();
+    struct vortex_group all = {{0, n}, 0.2};
+    const struct vortices vortices = {
+        .n = n, .x = cloud.x, .y = cloud.y, .circulation = cloud.circulation, .n_groups = 1, .group = &all};
+    if (mutual_add_velocity(&vortices, m, cloud.u, cloud.v) != STATUS_OK) abort();
 }
 
 // ---- the tables
@@ -106,19 +108,16 @@ static double now(clockid_t clock) {
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* The best of several runs, in 1e9 per second of a clock; one call does so many of what is counted. */
+/* The best of many short runs, in 1e9 per second of a clock; one call does so many of what is counted. */
 static double rate(clockid_t clock, some_use *use, const struct kernel_variant *variant, int n, int m,
                    double per_call) {
+    const int n_calls = 1 + (int)(per_run / per_call);
     double best = 0;
     for (int run = 0; run < N_RUNS; run++) {
         const double start = now(clock);
-        double spent = 0, done = 0;
-        do {
-            for (int i = 0; i < 10; i++) use(variant, n, m);
-            done += 10 * per_call;
-            spent = now(clock) - start;
-        } while (spent < run_time);
-        if (done / spent > best) best = done / spent;
+        for (int i = 0; i < n_calls; i++) use(variant, n, m);
+        const double done = n_calls * per_call / (now(clock) - start);
+        if (done > best) best = done;
     }
     return 1e-9 * best;
 }

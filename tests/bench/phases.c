@@ -1,0 +1,265 @@
+/* phases.c: where the time of a run goes, and how it grows with the school. `make bench` prints it.
+ *
+ *   phases CASES           single_free and diamond whole, with one thread and with two: events and simulated time per
+ *                          second of wall clock, the ratio to the floor, the parts of the time
+ *   phases CASES --schools schools of 1, 4, 16, 64 and 256 fish with full wakes: time and memory per event
+ *
+ * CASES is the folder of the cases. The linker sends the calls of the functions below through a clock: nothing of this is
+ * in the program. The floor is the time that the interactions of an event take which no method of this accuracy leaves
+ * out, at the best rate that this machine showed in the same run, on all cores used:
+ *
+ *     wake on wake (n^2), sheets on wake (n M), wake on bodies once (n P), sheets on bodies at every residual (P M)
+ *
+ * with n vortices, M bound vortices and P points of bodies of the whole school. Direct sums: a school that is summed by
+ * a tree can go below it. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "kernel.h"
+#include "linear.h"
+#include "mutual.h"
+#include "simulate.h"
+#include "store.h"
+
+static double now(void) {
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+// ---- the clock
+
+enum { WAKE, FIELD, RESIDUAL, JACOBIAN, LINEAR, MEASURE, OUTPUT, N_PHASES };
+static const char *const phase_name[N_PHASES] = {"wake",   "field",   "residual", "Jacobian",
+                                                 "linear", "measure", "output"};
+static struct {
+    double time[N_PHASES];
+    double interactions; /* of the floor */
+    struct store_counts counts;
+} seen;
+
+static void left(int phase, double since) {
+    seen.time[phase] += now() - since;
+}
+
+#define TIMED(phase, name, parameters, arguments)           \
+    enum status __real_##name parameters;                   \
+    enum status __wrap_##name parameters;                   \
+    enum status __wrap_##name parameters {                  \
+        const double since = now();                         \
+        const enum status status = __real_##name arguments; \
+        left(phase, since);                                 \
+        return status;                                      \
+    }
+TIMED(FIELD, flow_foretell, (struct flow * flow, const struct state *state), (flow, state))
+TIMED(JACOBIAN, residual_jacobian,
+      (struct residual * residual, double t, double cj, const double *y, struct jacobian *jacobian),
+      (residual, t, cj, y, jacobian))
+TIMED(LINEAR, linear_setup, (struct linear * linear), (linear))
+TIMED(LINEAR, linear_solve, (struct linear * linear, const double *b, double *x), (linear, b, x))
+
+enum status __real_flow_at_wake(const struct flow *flow, double *u, double *v);
+enum status __wrap_flow_at_wake(const struct flow *flow, double *u, double *v);
+enum status __wrap_flow_at_wake(const struct flow *flow, double *u, double *v) {
+    const double since = now(), n = flow->released.n;
+    const enum status status = __real_flow_at_wake(flow, u, v);
+    left(WAKE, since);
+    seen.interactions += n * (n + flow->sheet.n + flow->n_points);
+    return status;
+}
+
+enum status __real_residual_evaluate(struct residual *residual, double t, const double *y, const double *yp,
+                                     double *value);
+enum status __wrap_residual_evaluate(struct residual *residual, double t, const double *y, const double *yp,
+                                     double *value);
+enum status __wrap_residual_evaluate(struct residual *residual, double t, const double *y, const double *yp,
+                                     double *value) {
+    const double since = now();
+    const enum status status = __real_residual_evaluate(residual, t, y, yp, value);
+    left(RESIDUAL, since);
+    seen.interactions += (double)residual->flow->n_points * residual->flow->sheet.n;
+    return status;
+}
+
+void __real_measure_step(const struct residual *residual, struct state *state, double t, const double *y,
+                         const double *yp);
+void __wrap_measure_step(const struct residual *residual, struct state *state, double t, const double *y,
+                         const double *yp);
+void __wrap_measure_step(const struct residual *residual, struct state *state, double t, const double *y,
+                         const double *yp) {
+    const double since = now();
+    __real_measure_step(residual, state, t, y, yp);
+    left(MEASURE, since);
+}
+
+enum status __real_store_row(struct store *store, const struct state *state, const struct residual *residual,
+                             const struct measure *measure, const struct store_counts *counts, int with_wake);
+enum status __wrap_store_row(struct store *store, const struct state *state, const struct residual *residual,
+                             const struct measure *measure, const struct store_counts *counts, int with_wake);
+enum status __wrap_store_row(struct store *store, const struct state *state, const struct residual *residual,
+                             const struct measure *measure, const struct store_counts *counts, int with_wake) {
+    const double since = now();
+    const enum status status = __real_store_row(store, state, residual, measure, counts, with_wake);
+    left(OUTPUT, since);
+    seen.counts = *counts;
+    return status;
+}
+
+static void must(enum status status) {
+    if (status == STATUS_OK) return;
+    fprintf(stderr, "phases: %s\n", status_message());
+    exit(status_exit_code(status));
+}
+
+// interactions per second of wakes like those of the diamond at themselves, on one core
+static double best_rate(void) {
+    enum { N = 1600, RUNS = 20 };
+    struct vortices vortices = {0};
+    static double u[N], v[N];
+    must(vortices_append(&vortices, N, 0.2));
+    for (int i = 0; i < N; i++) {
+        vortices.x[i] = 0.01 * (i % 400);
+        vortices.y[i] = i / 400 + 0.2 * sin(0.03 * i);
+        vortices.circulation[i] = 0.01 * cos(0.03 * i);
+    }
+    double best = 0;
+    for (int run = 0; run < RUNS; run++) {
+        const double since = now();
+        must(mutual_add_velocity(&vortices, 1, u, v));
+        best = fmax(best, (double)N * N / (now() - since));
+    }
+    vortices_free(&vortices);
+    return best;
+}
+
+static double peak_memory(void) {
+    struct rusage usage;
+    getrusage(RUSAGE_SELF, &usage);
+    return (double)usage.ru_maxrss / 1024;
+}
+
+static void read_case(struct settings *settings, const char *text, int threads) {
+    char assignment[64];
+    snprintf(assignment, sizeof assignment, "solver.threads=%d", threads);
+    const char *const assignments[] = {assignment};
+    must(settings_parse(settings, text, strlen(text), "bench.yaml", NULL, 1, assignments));
+}
+
+static void print_head(void) {
+    printf("%-12s %7s %8s %7s %8s %8s %7s ", "", "threads", "vortices", "ms per", "x real", "x floor", "memory");
+    for (int i = 0; i < N_PHASES; i++) printf(" %8s", phase_name[i]);
+    printf(" %8s\n%-12s %7s %8s %7s %8s %8s %7s  %% of the time\n", "rest", "", "", "", "event", "time", "", "MB");
+}
+
+static void print_row(const char *name, int threads, int n_vortices, long n_events, double interval, double wall) {
+    const long cores = sysconf(_SC_NPROCESSORS_ONLN);
+    const double rate = best_rate() * (double)(threads < cores ? threads : cores);
+    printf("%-12s %7d %8d %7.3f %8.3g %8.2f %7.0f ", name, threads, n_vortices, 1e3 * wall / (double)n_events,
+           (double)n_events * interval / wall, wall * rate / seen.interactions, peak_memory());
+    double rest = 1;
+    for (int i = 0; i < N_PHASES; i++) {
+        printf(" %8.1f", 100 * seen.time[i] / wall);
+        rest -= seen.time[i] / wall;
+    }
+    printf(" %8.1f\n", 100 * rest);
+    fflush(stdout);
+}
+
+// ---- whole runs with their output
+
+static void whole_run(const char *cases, const char *name, int threads) {
+    char path[4096];
+    snprintf(path, sizeof path, "%s/%s.yaml", cases, name);
+    char assignment[64];
+    snprintf(assignment, sizeof assignment, "solver.threads=%d", threads);
+    const char *const assignments[] = {assignment};
+    struct settings settings;
+    must(settings_read(&settings, path, 1, assignments));
+    memset(&seen, 0, sizeof seen);
+    const struct simulate_options options = {.path = "phases.nc", .overwrite = 1, .command = "phases"};
+    const double since = now();
+    must(simulate_run(&settings, &options));
+    const double wall = now() - since, interval = settings.time.shedding_interval;
+    const long n_events = lround(settings.time.end / interval);
+    const int n_vortices = settings.n_fish * (int)fmin(settings.wake.lifetime / interval, (double)n_events);
+    print_row(name, threads, n_vortices, n_events, interval, wall);
+    settings_free(&settings);
+    remove("phases.nc");
+}
+
+// ---- schools
+
+// rows a length apart, fish in a row two lengths, every second row shifted and in antiphase
+static char *school_text(int n_fish) {
+    const size_t size = 512 + 128 * (size_t)n_fish;
+    char *const text = malloc(size);
+    if (!text) must(status_fail(STATUS_MEMORY, "no room for a school"));
+    int used = snprintf(text, size,
+                        "format: 1\nname: school\ntime: {end: 3, shedding_interval: 0.01, output_interval: 1}\n"
+                        "defaults: {fish: {control: {law: heading}}}\nfish:\n");
+    const int columns = (int)ceil(sqrt(n_fish));
+    for (int f = 0; f < n_fish; f++) {
+        const int row = f / columns, odd = row % 2;
+        used += snprintf(text + used, size - (size_t)used, "  - {start: {position: [%d, %d]}, wave: {phase: %d}}\n",
+                         2 * (f % columns) + odd, row, 180 * odd);
+    }
+    return text;
+}
+
+// milliseconds per event with wakes of a whole lifetime
+static double school(int n_fish, int threads) {
+    enum { EVENTS = 20 };
+    char *const text = school_text(n_fish);
+    struct settings settings;
+    struct simulation *simulation;
+    read_case(&settings, text, threads);
+    free(text);
+    must(simulate_create(&simulation, &settings));
+    const long full = lround(settings.wake.lifetime / settings.time.shedding_interval);
+    while (simulation->state->event < full) must(simulate_step(simulation));
+    memset(&seen, 0, sizeof seen);
+    const double since = now();
+    for (int i = 0; i < EVENTS; i++) must(simulate_step(simulation));
+    const double wall = now() - since;
+    char name[32];
+    snprintf(name, sizeof name, "%d fish", n_fish);
+    print_row(name, threads, simulation->residual->flow->released.n, EVENTS, settings.time.shedding_interval, wall);
+    simulate_free(simulation);
+    settings_free(&settings);
+    return 1e3 * wall / EVENTS;
+}
+
+static void schools(void) {
+    const int n_fish[] = {1, 4, 16, 64, 256};
+    enum { N = sizeof n_fish / sizeof *n_fish };
+    double time[N];
+    for (int i = 0; i < N; i++) time[i] = school(n_fish[i], 2);
+    printf("\ntime per event grows like the number of fish to the power");
+    for (int i = 1; i < N; i++) {
+        printf(" %.2f (%d to %d)%s", log(time[i] / time[i - 1]) / log((double)n_fish[i] / n_fish[i - 1]), n_fish[i - 1],
+               n_fish[i], i + 1 < N ? "," : "\n");
+    }
+    printf("256 fish take %.1f times the time per event of 64\n", time[N - 1] / time[N - 2]);
+}
+
+int main(int argc, char **argv) {
+    if (argc < 2 || argc > 3 || (argc == 3 && strcmp(argv[2], "--schools") != 0)) {
+        fputs("usage: phases CASES [--schools]\n", stderr);
+        return 2;
+    }
+    print_head();
+    if (argc == 3) {
+        schools();
+        return 0;
+    }
+    const char *const names[] = {"single_free", "diamond"};
+    for (int i = 0; i < 2; i++) {
+        for (int threads = 1; threads <= 2; threads++) whole_run(argv[1], names[i], threads);
+    }
+    return 0;
+}
