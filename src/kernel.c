@@ -75,7 +75,8 @@ static inline two sum_to_odd(two a, two b) {
     return (two)(bits + (outwards & inexact_and_even));
 }
 
-// a b + c with one rounding: Boldo and Melquiond, Emulation of FMA and correctly rounded sums, IEEE Trans. Comp. 2008
+// a b + c with one rounding: Boldo and Melquiond, Emulation of FMA and correctly rounded sums, IEEE Trans. Comp. 2008.
+// It needs products above 1e-290, or a c so much larger that they do not matter.
 static inline two fused(two a, two b, two c) {
     two product_error, low_error, high_error;
     const two high_product = product(a, b, &product_error);
