@@ -75,7 +75,7 @@ static enum status flow_fill(struct flow *flow) {
     for (size_t i = 0; i < sizeof at_points / sizeof *at_points; i++) TRY(doubles(at_points[i], flow->n_points));
     TRY(make_chunks(flow));
     if (school->wake_tolerance <= 0) return STATUS_OK;
-    return forecast_create(&flow->forecast, school, flow->points, flow->n_chunks, flow->chunk);
+    return forecast_create(&flow->forecast, school, flow->points);
 }
 
 enum status flow_create(struct flow **flow, const struct school *school) {

@@ -16,6 +16,12 @@
 #include "status.h"
 #include "vortices.h"
 
+/* Points of one fish that a thread takes at once. */
+struct chunk {
+    int fish;
+    struct range at; /* among the points of all fish */
+};
+
 struct flow {
     const struct school *school;
     double t, since; /* time of the sources, and time since the last event, s */

@@ -11,6 +11,7 @@ enum { N_TIMES = 4, END = N_TIMES - 1 };
 
 /* A forecast for a fish to which more vortices are near, and more than a third of all, costs more than it saves. */
 enum { FEW = 32 };
+enum { CHUNK = 16 }; /* points that a thread takes at once */
 
 /* The times, as parts of the interval: of all four with both ends these have the least largest |product of (q - time)|,
  * (3 - 2 sqrt(2))/16, which the fourth derivative over 4! comes with in the error of the cubic. */
@@ -69,14 +70,14 @@ struct outlook {
 
 struct forecast {
     const struct school *school;
-    double start, tau, q; /* time of the event; since then, s; as part of the interval */
-    int n_points, n_chunks;
+    double start, q; /* time of the event, s; part of the interval that has passed */
+    int n_points;
     const struct range *points; /* of each fish                                    (n_fish) */
-    const struct chunk *chunk;  /*                                                 (n_chunks) */
     struct outlook *outlook;    /*                                                    (n_fish) */
 
     double *motion[6];                                  /* of all points at the event: x y, u v, a b (n_points) */
-    double *path[2];                                    /* where they are foretold to be, m          (n_points) */
+    double *now[2];                                     /* where they are foretold to be now, m      (n_points) */
+    double *path[N_TIMES][2];                           /* and at the times of the forecast          (n_points) */
     double *velocity_u[N_TIMES], *velocity_v[N_TIMES];  /* of the fluid there, m s-1                 (n_points) */
     double *u_x[N_TIMES], *u_y[N_TIMES], *v_x[N_TIMES]; /* its gradient at both ends, s-1          (n_points) */
 
@@ -100,8 +101,9 @@ static enum status fill(struct forecast *forecast) {
     }
     const int n = forecast->n_points;
     for (int i = 0; i < 6; i++) TRY(doubles(&forecast->motion[i], n));
-    for (int i = 0; i < 2; i++) TRY(doubles(&forecast->path[i], n));
+    for (int i = 0; i < 2; i++) TRY(doubles(&forecast->now[i], n));
     for (int i = 0; i < N_TIMES; i++) {
+        for (int k = 0; k < 2; k++) TRY(doubles(&forecast->path[i][k], n));
         TRY(doubles(&forecast->velocity_u[i], n));
         TRY(doubles(&forecast->velocity_v[i], n));
         if (i > 0 && i < END) continue;
@@ -112,8 +114,7 @@ static enum status fill(struct forecast *forecast) {
     return STATUS_OK;
 }
 
-enum status forecast_create(struct forecast **forecast, const struct school *school, const struct range *points,
-                            int n_chunks, const struct chunk *chunk) {
+enum status forecast_create(struct forecast **forecast, const struct school *school, const struct range *points) {
     *forecast = NULL;
     struct forecast *const new = calloc(1, sizeof *new);
     if (!new) return status_fail(STATUS_MEMORY, "no room for a forecast");
@@ -121,8 +122,6 @@ enum status forecast_create(struct forecast **forecast, const struct school *sch
     const struct range last = points[school->n_fish - 1];
     new->n_points = last.first + last.n;
     new->points = points;
-    new->n_chunks = n_chunks;
-    new->chunk = chunk;
     const enum status status = fill(new);
     if (status != STATUS_OK) {
         forecast_free(new);
@@ -135,8 +134,9 @@ enum status forecast_create(struct forecast **forecast, const struct school *sch
 void forecast_free(struct forecast *forecast) {
     if (!forecast) return;
     for (int i = 0; i < 6; i++) free(forecast->motion[i]);
-    for (int i = 0; i < 2; i++) free(forecast->path[i]);
+    for (int i = 0; i < 2; i++) free(forecast->now[i]);
     for (int i = 0; i < N_TIMES; i++) {
+        for (int k = 0; k < 2; k++) free(forecast->path[i][k]);
         double *const at_points[] = {forecast->velocity_u[i], forecast->velocity_v[i], forecast->u_x[i],
                                      forecast->u_y[i], forecast->v_x[i]};
         for (size_t k = 0; k < sizeof at_points / sizeof *at_points; k++) free(at_points[k]);
@@ -376,12 +376,12 @@ static enum status reserve_near(struct outlook *outlook) {
     return STATUS_OK;
 }
 
-// all points on their foretold paths
-static void follow(struct forecast *forecast, double tau) {
+// where all points are on their foretold paths
+static void follow(const struct forecast *forecast, double tau, double *const path[2]) {
     for (int k = 0; k < 2; k++) {
         const double *const x = forecast->motion[k], *const u = forecast->motion[2 + k],
                             *const a = forecast->motion[4 + k];
-        for (int p = 0; p < forecast->n_points; p++) forecast->path[k][p] = x[p] + tau * (u[p] + tau / 2 * a[p]);
+        for (int p = 0; p < forecast->n_points; p++) path[k][p] = x[p] + tau * (u[p] + tau / 2 * a[p]);
     }
 }
 
@@ -402,18 +402,31 @@ static enum status place_released(struct forecast *forecast, const struct state 
     return STATUS_OK;
 }
 
-// the velocity at one of the times at the points of a chunk, without the near vortices; their strengths are negative now
-static void sum_chunk(struct forecast *forecast, int i, const struct chunk *chunk) {
-    const struct induced all = {forecast->n_points,      forecast->path[0], forecast->path[1], forecast->velocity_u[i],
-                                forecast->velocity_v[i], forecast->u_x[i],  forecast->u_y[i],  forecast->v_x[i]};
-    const struct induced at = vortices_targets(&all, chunk->at);
+static struct induced at_time(const struct forecast *forecast, int i) {
+    return (struct induced){forecast->n_points,      forecast->path[i][0],    forecast->path[i][1],
+                            forecast->velocity_u[i], forecast->velocity_v[i], forecast->u_x[i],
+                            forecast->u_y[i],        forecast->v_x[i]};
+}
+
+// all released vortices at some of the points at one of the times
+static void sum_chunk(struct forecast *forecast, int i, struct range which) {
+    const struct induced all = at_time(forecast, i), at = vortices_targets(&all, which);
     double *const values[] = {at.u, at.v, at.u_x, at.u_y, at.v_x};
     for (size_t k = 0; k < sizeof values / sizeof *values; k++) {
         if (values[k]) memset(values[k], 0, (size_t)at.n * sizeof *values[k]);
     }
-    const struct vortices *const released = &forecast->released[i], *near = &forecast->outlook[chunk->fish].now;
-    vortices_induce(released, (struct range){0, released->n}, &at);
-    vortices_induce(near, (struct range){0, near->n}, &at);
+    vortices_induce(&forecast->released[i], (struct range){0, forecast->released[i].n}, &at);
+}
+
+// take what is near to a fish out of the sums of all times again
+static void take_near(struct forecast *forecast, int f) {
+    struct outlook *const outlook = &forecast->outlook[f];
+    if (!outlook->serves || outlook->n_near == 0) return;
+    for (int i = 0; i < N_TIMES; i++) {
+        const struct induced all = at_time(forecast, i), at = vortices_targets(&all, forecast->points[f]);
+        place_near(outlook, time_of[i] * forecast->school->interval, time_of[i], -1);
+        vortices_induce(&outlook->now, (struct range){0, outlook->n_near}, &at);
+    }
 }
 
 static enum status make(struct forecast *forecast, const struct state *state, const struct forecast_points *points) {
@@ -441,14 +454,17 @@ static enum status make(struct forecast *forecast, const struct state *state, co
     }
     // a message stays with the thread that wrote it
     if (status != STATUS_OK) return status_fail(status, "no room for the near vortices of %d fish", school->n_fish);
-    for (int i = 0; i < N_TIMES; i++) {
-        const double q = time_of[i];
-        follow(forecast, q * school->interval);
-        for (int f = 0; f < school->n_fish; f++) place_near(&forecast->outlook[f], q * school->interval, q, -1);
-#pragma omp parallel for num_threads(threads) schedule(dynamic)
-        for (int c = 0; c < forecast->n_chunks; c++) {
-            if (forecast->outlook[forecast->chunk[c].fish].serves) sum_chunk(forecast, i, &forecast->chunk[c]);
+    for (int i = 0; i < N_TIMES; i++) follow(forecast, time_of[i] * school->interval, forecast->path[i]);
+    const int n_chunks = (forecast->n_points + CHUNK - 1) / CHUNK;
+#pragma omp parallel num_threads(threads)
+    {
+#pragma omp for schedule(dynamic)
+        for (int task = 0; task < N_TIMES * n_chunks; task++) {
+            const int first = task / N_TIMES * CHUNK, rest = forecast->n_points - first;
+            sum_chunk(forecast, task % N_TIMES, (struct range){first, rest < CHUNK ? rest : CHUNK});
         }
+#pragma omp for schedule(dynamic)
+        for (int f = 0; f < school->n_fish; f++) take_near(forecast, f);
     }
     return STATUS_OK;
 }
@@ -462,7 +478,7 @@ enum status forecast_make(struct forecast *forecast, const struct state *state, 
 void forecast_place(struct forecast *forecast, double t) {
     const double tau = t - forecast->start;
     forecast->q = tau / forecast->school->interval;
-    follow(forecast, tau);
+    follow(forecast, tau, forecast->now);
     for (int f = 0; f < forecast->school->n_fish; f++) place_near(&forecast->outlook[f], tau, forecast->q, 1);
 }
 
@@ -472,7 +488,7 @@ int forecast_holds(struct forecast *forecast, int f, const double *x, const doub
     const int first = forecast->points[f].first;
     double square = 0;
     for (int p = 0; p < forecast->points[f].n; p++) {
-        const double dx = x[p] - forecast->path[0][first + p], dy = y[p] - forecast->path[1][first + p];
+        const double dx = x[p] - forecast->now[0][first + p], dy = y[p] - forecast->now[1][first + p];
         square = max_of(square, dx * dx + dy * dy);
     }
     // written so that NaN does not pass
@@ -491,7 +507,7 @@ void forecast_induce(const struct forecast *forecast, int f, int first, const st
     }
     for (int i = 0; i < at->n; i++) {
         const int p = first + i;
-        const double dx = at->x[i] - forecast->path[0][p], dy = at->y[i] - forecast->path[1][p];
+        const double dx = at->x[i] - forecast->now[0][p], dy = at->y[i] - forecast->now[1][p];
         const double u_x = (1 - q) * forecast->u_x[0][p] + q * forecast->u_x[END][p];
         const double u_y = (1 - q) * forecast->u_y[0][p] + q * forecast->u_y[END][p];
         const double v_x = (1 - q) * forecast->v_x[0][p] + q * forecast->v_x[END][p];

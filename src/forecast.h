@@ -17,12 +17,6 @@
 
 struct forecast;
 
-/* Points of one fish that a thread takes at once. */
-struct chunk {
-    int fish;
-    struct range at; /* among the points of all fish */
-};
-
 /* All points of the bodies with their motion at an event; each array (points of all fish). */
 struct forecast_points {
     const double *x, *y; /* m */
@@ -30,10 +24,9 @@ struct forecast_points {
     const double *a, *b; /* acceleration in x and y, m s-2 */
 };
 
-/* points, the points of each fish (n_fish), and chunk (n_chunks), all of them in chunks, stay the caller's and must
- * outlive the forecast. Fails with STATUS_MEMORY; forecast_free accepts NULL. */
-enum status forecast_create(struct forecast **forecast, const struct school *school, const struct range *points,
-                            int n_chunks, const struct chunk *chunk);
+/* points, those of each fish (n_fish), stay the caller's and must outlive the forecast. Fails with STATUS_MEMORY;
+ * forecast_free accepts NULL. */
+enum status forecast_create(struct forecast **forecast, const struct school *school, const struct range *points);
 void forecast_free(struct forecast *forecast);
 
 /* Foretell the interval that begins at the state's event, for points that are there now. The error of the velocity stays
