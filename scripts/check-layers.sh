@@ -8,7 +8,7 @@ set -euo pipefail
 readonly layers='
  1  status version
  2  yaml kernel sparse smooth
- 3  settings vortices
+ 3  settings vortices tree
  4  fish mutual
  5  rod actuation wake control carry
  6  state
