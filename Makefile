@@ -96,8 +96,7 @@ verify: deps  ## check the program against classical results (minutes) and write
 	@scripts/verify.sh $(verify_program) $(B)/verify
 
 bench: $(program) $(bench_programs)  ## measure the inner loops, and time, memory and counts of the benchmark cases
-	@$(B)/bench/kernels
-	@scripts/bench.sh $(program)
+	@OMP_WAIT_POLICY=passive scripts/bench.sh $(B)
 
 clean:  ## remove everything that was built
 	$(quiet)rm -rf build build-sanitize
