@@ -9,7 +9,7 @@ readonly layers='
  1  status version
  2  yaml kernel sparse smooth
  3  settings vortices tree
- 4  fish mutual
+ 4  fish mutual summation
  5  rod actuation wake control carry
  6  state
  7  forecast

@@ -74,6 +74,7 @@ static enum status flow_fill(struct flow *flow) {
                                   &flow->motion[1], &flow->motion[2], &flow->motion[3]};
     for (size_t i = 0; i < sizeof at_points / sizeof *at_points; i++) TRY(doubles(at_points[i], flow->n_points));
     TRY(make_chunks(flow));
+    TRY(summation_create(&flow->summation));
     if (school->wake_tolerance <= 0) return STATUS_OK;
     return forecast_create(&flow->forecast, school, flow->points);
 }
@@ -96,6 +97,7 @@ enum status flow_create(struct flow **flow, const struct school *school) {
 void flow_free(struct flow *flow) {
     if (!flow) return;
     forecast_free(flow->forecast);
+    summation_free(flow->summation);
     void *const owned[] = {flow->points,      flow->chunk,
                            flow->x,           flow->y,
                            flow->u,           flow->v,
@@ -421,8 +423,12 @@ static void sheets_at_wake(const struct flow *flow, const struct induced *all) {
 
 enum status flow_at_wake(const struct flow *flow, double *u, double *v) {
     const struct vortices *const released = &flow->released;
-    sheets_at_wake(flow, &(struct induced){.n = released->n, .x = released->x, .y = released->y, .u = u, .v = v});
+    const struct induced at = {.n = released->n, .x = released->x, .y = released->y, .u = u, .v = v};
+    sheets_at_wake(flow, &at);
     const int threads = vortices_threads(flow->school->threads, (double)released->n * released->n);
+    if (summation_by_tree(released, released->n, flow->school->wake_tolerance)) {
+        return summation_induce(flow->summation, released, flow->school->wake_tolerance, threads, &at);
+    }
     return mutual_add_velocity(released, threads, u, v);
 }
 

@@ -14,6 +14,7 @@
 #include "forecast.h"
 #include "state.h"
 #include "status.h"
+#include "summation.h"
 #include "vortices.h"
 
 /* Points of one fish that a thread takes at once. */
@@ -43,10 +44,11 @@ struct flow {
     struct vortices sheet;        /* the bound vortices of all fish */
     struct range *sheet_range;    /* of each fish                                   (n_fish) */
 
-    struct forecast *forecast;  /* of the released vortices; NULL: they are never foretold */
-    int is_foretold;            /* whether there is one for this event */
-    unsigned char *by_forecast; /* whether it serves the fish where it is now        (n_fish) */
-    double *motion[4];          /* velocity and acceleration of the points           (n_points) */
+    struct summation *summation; /* for the wakes at one another */
+    struct forecast *forecast;   /* of the released vortices; NULL: they are never foretold */
+    int is_foretold;             /* whether there is one for this event */
+    unsigned char *by_forecast;  /* whether it serves the fish where it is now        (n_fish) */
+    double *motion[4];           /* velocity and acceleration of the points           (n_points) */
 };
 
 /* Derivative of the velocity at the points of fish f with respect to the unknowns of fish g, column by column:

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "summation.h"
+
 static const double two_pi = 6.28318530717958647692;
 
 enum { N_TIMES = 4, END = N_TIMES - 1 };
@@ -81,6 +83,7 @@ struct forecast {
     double *velocity_u[N_TIMES], *velocity_v[N_TIMES];  /* of the fluid there, m s-1                 (n_points) */
     double *u_x[N_TIMES], *u_y[N_TIMES], *v_x[N_TIMES]; /* its gradient at both ends, s-1          (n_points) */
 
+    struct summation *summation;
     struct vortices released[N_TIMES]; /* of all fish */
     struct range *wake;                /* those of each fish                       (n_fish) */
     struct bounds *bounds;             /* of each wake                             (n_fish) */
@@ -92,6 +95,7 @@ static enum status doubles(double **values, int n) {
 }
 
 static enum status fill(struct forecast *forecast) {
+    TRY(summation_create(&forecast->summation));
     const size_t n_fish = (size_t)forecast->school->n_fish;
     forecast->outlook = calloc(n_fish, sizeof *forecast->outlook);
     forecast->wake = calloc(n_fish, sizeof *forecast->wake);
@@ -146,6 +150,7 @@ void forecast_free(struct forecast *forecast) {
         free(forecast->outlook[f].near);
         vortices_free(&forecast->outlook[f].now);
     }
+    summation_free(forecast->summation);
     free(forecast->outlook);
     free(forecast->wake);
     free(forecast->bounds);
@@ -408,14 +413,36 @@ static struct induced at_time(const struct forecast *forecast, int i) {
                             forecast->u_y[i],        forecast->v_x[i]};
 }
 
-// all released vortices at some of the points at one of the times
-static void sum_chunk(struct forecast *forecast, int i, struct range which) {
-    const struct induced all = at_time(forecast, i), at = vortices_targets(&all, which);
-    double *const values[] = {at.u, at.v, at.u_x, at.u_y, at.v_x};
-    for (size_t k = 0; k < sizeof values / sizeof *values; k++) {
-        if (values[k]) memset(values[k], 0, (size_t)at.n * sizeof *values[k]);
+// the sums of all released vortices at all points at all times
+static void sum_directly(const struct forecast *forecast, int threads) {
+    const int n_chunks = (forecast->n_points + CHUNK - 1) / CHUNK;
+#pragma omp parallel for num_threads(threads) schedule(dynamic)
+    for (int task = 0; task < N_TIMES * n_chunks; task++) {
+        const int i = task % N_TIMES, first = task / N_TIMES * CHUNK, rest = forecast->n_points - first;
+        const struct induced all = at_time(forecast, i);
+        const struct induced at = vortices_targets(&all, (struct range){first, rest < CHUNK ? rest : CHUNK});
+        vortices_induce(&forecast->released[i], (struct range){0, forecast->released[i].n}, &at);
     }
-    vortices_induce(&forecast->released[i], (struct range){0, forecast->released[i].n}, &at);
+}
+
+static enum status sum(const struct forecast *forecast, int threads) {
+    const double tolerance = forecast->school->wake_tolerance;
+    for (int i = 0; i < N_TIMES; i++) {
+        const struct induced at = at_time(forecast, i);
+        double *const values[] = {at.u, at.v, at.u_x, at.u_y, at.v_x};
+        for (size_t k = 0; k < sizeof values / sizeof *values; k++) {
+            if (values[k]) memset(values[k], 0, (size_t)at.n * sizeof *values[k]);
+        }
+    }
+    if (!summation_by_tree(&forecast->released[0], forecast->n_points, tolerance)) {
+        sum_directly(forecast, threads);
+        return STATUS_OK;
+    }
+    for (int i = 0; i < N_TIMES; i++) {
+        const struct induced at = at_time(forecast, i);
+        TRY(summation_induce(forecast->summation, &forecast->released[i], tolerance, threads, &at));
+    }
+    return STATUS_OK;
 }
 
 // take what is near to a fish out of the sums of all times again
@@ -455,17 +482,9 @@ static enum status make(struct forecast *forecast, const struct state *state, co
     // a message stays with the thread that wrote it
     if (status != STATUS_OK) return status_fail(status, "no room for the near vortices of %d fish", school->n_fish);
     for (int i = 0; i < N_TIMES; i++) follow(forecast, time_of[i] * school->interval, forecast->path[i]);
-    const int n_chunks = (forecast->n_points + CHUNK - 1) / CHUNK;
-#pragma omp parallel num_threads(threads)
-    {
-#pragma omp for schedule(dynamic)
-        for (int task = 0; task < N_TIMES * n_chunks; task++) {
-            const int first = task / N_TIMES * CHUNK, rest = forecast->n_points - first;
-            sum_chunk(forecast, task % N_TIMES, (struct range){first, rest < CHUNK ? rest : CHUNK});
-        }
-#pragma omp for schedule(dynamic)
-        for (int f = 0; f < school->n_fish; f++) take_near(forecast, f);
-    }
+    TRY(sum(forecast, threads));
+#pragma omp parallel for num_threads(threads) schedule(dynamic)
+    for (int f = 0; f < school->n_fish; f++) take_near(forecast, f);
     return STATUS_OK;
 }
 
