@@ -41,9 +41,9 @@ static int solver_solve(SUNLinearSolver solver, SUNMatrix matrix, N_Vector x, N_
 }
 
 enum status bridge_linear_create(struct bridge_linear *bridge, SUNContext context, const struct jacobian *jacobian,
-                                 const double *scale, double tolerance) {
+                                 const double *scale, struct linear_end end) {
     *bridge = (struct bridge_linear){0};
-    TRY(linear_create(&bridge->linear, jacobian, scale, tolerance));
+    TRY(linear_create(&bridge->linear, jacobian, scale, end));
     bridge->matrix = SUNMatNewEmpty(context);
     bridge->solver = SUNLinSolNewEmpty(context);
     if (!bridge->matrix || !bridge->solver) {

@@ -24,11 +24,11 @@ enum status bridge_context(SUNContext *context);
 /* A vector around an array that it does not own. Fails with STATUS_MEMORY. */
 enum status bridge_vector(N_Vector *vector, SUNContext context, long n, double *values);
 
-/* The solver for a Jacobian that must outlive it; scale and tolerance as in linear_create. To SUNDIALS it is a direct
+/* The solver for a Jacobian that must outlive it; scale and end as in linear_create. To SUNDIALS it is a direct
  * one: IDA scales its solutions when the step has changed since the Jacobian. Fails with STATUS_MEMORY; there is
  * nothing to free then. */
 enum status bridge_linear_create(struct bridge_linear *bridge, SUNContext context, const struct jacobian *jacobian,
-                                 const double *scale, double tolerance);
+                                 const double *scale, struct linear_end end);
 void bridge_linear_free(struct bridge_linear *bridge);
 
 /* Keep the text of an error of SUNDIALS as this thread's message; an error handler. */

@@ -14,7 +14,7 @@
 static const double tolerance = 1e-14;
 
 /* Coupled fish are solved for up to this part of the right-hand side, so that each step gains as many digits. */
-static const double linear_tolerance = 1e-10;
+static const struct linear_end linear_end = {.relative = 1e-10};
 
 struct consistent {
     struct residual *residual;
@@ -117,7 +117,7 @@ static enum status fill(struct consistent *c) {
     TRY(bridge_vector(&c->solution, c->context, n, c->start));
     TRY(bridge_vector(&c->solution_scales, c->context, n, c->solution_scale));
     TRY(bridge_vector(&c->value_scales, c->context, n, c->value_scale));
-    TRY(bridge_linear_create(&c->linear, c->context, c->jacobian, c->scale, linear_tolerance));
+    TRY(bridge_linear_create(&c->linear, c->context, c->jacobian, c->scale, linear_end));
     return set_up_kinsol(c);
 }
 

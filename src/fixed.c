@@ -12,7 +12,7 @@
 static const double newton_coefficient = 0.01;
 
 /* Coupled fish are solved for up to this part of the right-hand side: Newton's iteration loses more with an old Jacobian. */
-static const double linear_tolerance = 1e-3;
+static const double linear_relative = 1e-3;
 
 /* A Jacobian is used on, from step to step, as long as corrections shrink by this factor each. */
 static const double slow_rate = 0.3;
@@ -64,7 +64,7 @@ static enum status fill(struct fixed *solver) {
     }
     TRY(jacobian_create(&solver->jacobian, solver->residual->school));
     residual_mask(solver->residual, solver->jacobian);
-    return linear_create(&solver->linear, solver->jacobian, solver->tolerance, linear_tolerance);
+    return linear_create(&solver->linear, solver->jacobian, solver->tolerance, (struct linear_end){linear_relative, 0});
 }
 
 static enum status fixed_create(void **solver, struct residual *residual, struct state *state,

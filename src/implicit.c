@@ -19,8 +19,9 @@ static const double newton_coefficient = 0.003;
 static const double cj_change = 0.1;
 static const int jacobian_cost = 5, most_iterations = 6;
 
-/* Coupled fish are solved for up to this part of the right-hand side. Measured: doc/numerics.md. */
-static const double linear_tolerance = 1e-3;
+/* Coupled fish are solved for up to this part of the right-hand side, or of what ends Newton's iteration: below that no
+ * iteration less is needed. Measured: doc/numerics.md. */
+static const double linear_relative = 1e-4, linear_enough = 0.1;
 
 /* After a restart the method is of order one: its first step is this part of the last one. */
 static const double first_step = 0.3;
@@ -117,7 +118,8 @@ static enum status fill(struct implicit *solver) {
         solver->scratch[i] = N_VClone(solver->y);
         if (!solver->scratch[i]) return status_fail(STATUS_MEMORY, "no room for a vector of %d unknowns", n);
     }
-    TRY(bridge_linear_create(&solver->linear, solver->context, solver->jacobian, solver->tolerance, linear_tolerance));
+    const struct linear_end end = {linear_relative, linear_enough * newton_coefficient};
+    TRY(bridge_linear_create(&solver->linear, solver->context, solver->jacobian, solver->tolerance, end));
     const struct newton_rules rules = {most_iterations, jacobian_cost, leading_coefficient};
     TRY(newton_create(&solver->newton, solver->context, solver->y, solver->residual->school, rules));
     solver->ida = IDACreate(solver->context);

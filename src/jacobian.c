@@ -103,7 +103,6 @@ void jacobian_multiply_couplings(const struct jacobian *jacobian, int f, const d
     }
 }
 
-int jacobian_threads(const struct school *school) {
-    enum { FEW = 4 };
-    return school->n_fish < FEW ? 1 : school->threads;
+int jacobian_threads(const struct school *school, int least) {
+    return school->n_fish > 1 && school->n_unknowns >= least ? school->threads : 1;
 }

@@ -28,8 +28,8 @@ struct block {
 
 struct linear {
     const struct jacobian *jacobian;
-    double tolerance;
-    double *weight; /* 1/scale^2                                       (n_unknowns) */
+    struct linear_end end;
+    double *weight; /* 1/(n_unknowns scale^2)                          (n_unknowns) */
     struct block *block;
     double *direction; /* an orthonormal basis                              (MOST + 1, n_unknowns) */
     int n_directions;  /* it has room for */
@@ -41,16 +41,16 @@ static int n_unknowns(const struct linear *linear) {
 }
 
 enum status linear_create(struct linear **linear, const struct jacobian *jacobian, const double *scale,
-                          double tolerance) {
+                          struct linear_end end) {
     *linear = NULL;
     struct linear *const new = calloc(1, sizeof *new);
     if (!new) goto no_memory;
     new->jacobian = jacobian;
-    new->tolerance = tolerance;
+    new->end = end;
     new->weight = calloc((size_t)n_unknowns(new), sizeof *new->weight);
     new->block = calloc((size_t)jacobian->school->n_fish, sizeof *new->block);
     if (!new->weight || !new->block) goto no_memory;
-    for (int i = 0; i < n_unknowns(new); i++) new->weight[i] = 1 / (scale[i] * scale[i]);
+    for (int i = 0; i < n_unknowns(new); i++) new->weight[i] = 1 / (n_unknowns(new) * scale[i] * scale[i]);
     for (int f = 0; f < jacobian->school->n_fish; f++) klu_l_defaults(&new->block[f].common);
     *linear = new;
     return STATUS_OK;
@@ -120,7 +120,7 @@ static enum status set_up(struct block *block, struct sparse *own) {
 enum status linear_setup(struct linear *linear) {
     const struct jacobian *jacobian = linear->jacobian;
     const struct school *school = jacobian->school;
-#pragma omp parallel for num_threads(jacobian_threads(school)) schedule(dynamic)
+#pragma omp parallel for num_threads(jacobian_threads(school, JACOBIAN_HEAVY)) schedule(dynamic)
     for (int f = 0; f < school->n_fish; f++) {
         linear->block[f].status = set_up(&linear->block[f], jacobian->own[f]);
     }
@@ -136,7 +136,7 @@ enum status linear_setup(struct linear *linear) {
 // x = what the own blocks alone make of b; both may be the same
 static void solve_blocks(struct linear *linear, const double *b, double *x) {
     const struct school *school = linear->jacobian->school;
-#pragma omp parallel for num_threads(jacobian_threads(school)) schedule(static)
+#pragma omp parallel for num_threads(jacobian_threads(school, JACOBIAN_LIGHT)) schedule(static)
     for (int f = 0; f < school->n_fish; f++) {
         const struct layout *at = &school->fish[f].at;
         const int n = at->end - at->x;
@@ -150,7 +150,7 @@ static void solve_blocks(struct linear *linear, const double *b, double *x) {
 static void multiply(struct linear *linear, const double *v, double *product) {
     const struct jacobian *jacobian = linear->jacobian;
     const struct school *school = jacobian->school;
-#pragma omp parallel for num_threads(jacobian_threads(school)) schedule(static)
+#pragma omp parallel for num_threads(jacobian_threads(school, JACOBIAN_LIGHT)) schedule(static)
     for (int f = 0; f < school->n_fish; f++) {
         const struct layout *at = &school->fish[f].at;
         struct block *const block = &linear->block[f];
@@ -218,12 +218,13 @@ static enum status solve_coupled(struct linear *linear, double *x) {
     const int n = n_unknowns(linear);
     struct least_squares ls;
     const double start = sqrt(dot(linear, x, x));
-    if (!(start > 0) || !isfinite(start)) return STATUS_OK;
+    const double limit = fmax(linear->end.relative * start, linear->end.enough);
+    if (!(start > limit) || !isfinite(start)) return STATUS_OK;
     TRY(make_room(linear, 1));
     for (int i = 0; i < n; i++) linear->direction[i] = x[i] / start;
     ls.rhs[0] = start;
     int j = 0;
-    while (j < MOST && fabs(ls.rhs[j]) > linear->tolerance * start) {
+    while (j < MOST && fabs(ls.rhs[j]) > limit) {
         TRY(make_room(linear, j + 2));
         double *const next = linear->direction + (long)(j + 1) * n;
         multiply(linear, linear->direction + (long)j * n, next);

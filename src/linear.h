@@ -19,11 +19,17 @@ struct linear_counts {
     long solves, iterations; /* iterations: of GMRES */
 };
 
-/* A solver for a Jacobian that must outlive it. What GMRES leaves of the right-hand side, through the preconditioner and
- * each unknown in units of its scale (n_unknowns), is at most tolerance times what it began with.
- * Fails with STATUS_MEMORY; linear_free accepts NULL. */
+/* When GMRES ends. The norm of what it leaves of the right-hand side, through the preconditioner, is the root mean square
+ * over all unknowns, each in units of its scale; what it leaves is near the error of the solution. */
+struct linear_end {
+    double relative; /* this part of what it began with */
+    double enough;   /* or this norm, whichever is the larger */
+};
+
+/* A solver for a Jacobian that must outlive it; scale (n_unknowns) is copied. Fails with STATUS_MEMORY; linear_free
+ * accepts NULL. */
 enum status linear_create(struct linear **linear, const struct jacobian *jacobian, const double *scale,
-                          double tolerance);
+                          struct linear_end end);
 void linear_free(struct linear *linear);
 
 /* Factorise the blocks as they are now. A block that is singular: STATUS_SOLVER where it has never been factorised,

@@ -202,10 +202,7 @@ static void evaluate_fish(struct residual *residual, int f, double t, const doub
 enum status residual_evaluate(struct residual *residual, double t, const double *y, const double *yp, double *value) {
     TRY(flow_place(residual->flow, residual->state, t, y));
     flow_velocity(residual->flow);
-    // a fish takes a microsecond: starting the threads for a few costs more than it saves
-    enum { FEW = 16 };
-    const int threads = residual->school->n_fish < FEW ? 1 : residual->school->threads;
-#pragma omp parallel for num_threads(threads) schedule(static)
+#pragma omp parallel for num_threads(jacobian_threads(residual->school, JACOBIAN_LIGHT)) schedule(static)
     for (int f = 0; f < residual->school->n_fish; f++) evaluate_fish(residual, f, t, y, yp, value);
     for (int i = 0; i < residual->school->n_unknowns; i++) {
         if (!isfinite(value[i])) {
@@ -309,7 +306,7 @@ enum status residual_jacobian(struct residual *residual, double t, double cj, co
         TRY(jacobian_couple(jacobian, residual->coupled, residual->pattern));
     }
     int n_failed = 0;
-#pragma omp parallel for num_threads(jacobian_threads(residual->school)) schedule(dynamic)
+#pragma omp parallel for num_threads(jacobian_threads(residual->school, JACOBIAN_HEAVY)) schedule(dynamic)
     for (int f = 0; f < n_fish; f++) {
         struct stamping *const stamping = &residual->stamping[omp_get_thread_num()];
         if (stamp_fish(residual, f, t, cj, y, stamping, jacobian) != STATUS_OK) {

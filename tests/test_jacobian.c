@@ -104,7 +104,7 @@ static void threads_change_no_bit(void **state) {
     const char *const texts[] = {FIVE(2), FIVE(3)};
     for (int i = 0; i < 2; i++) {
         build(&more, texts[i]);
-        assert_int_equal(jacobian_threads(more.school), i + 2);
+        assert_int_equal(jacobian_threads(more.school, JACOBIAN_HEAVY), i + 2);
         // recorded, then replayed
         for (int pass = 0; pass < 2; pass++) {
             double *const got = school_dense_jacobian(more.jacobian);
@@ -122,7 +122,12 @@ static void few_fish_are_not_worth_threads(void **state) {
     (void)state;
     struct setup setup;
     school_build(&setup, TIME "solver: {threads: 3}\nfish: [{}, {start: {position: [0, 2]}}]\n");
-    assert_int_equal(jacobian_threads(setup.school), 1);
+    assert_int_equal(setup.school->n_unknowns, 130);
+    assert_int_equal(jacobian_threads(setup.school, 131), 1);
+    assert_int_equal(jacobian_threads(setup.school, 130), 3);
+    school_clear(&setup);
+    school_build(&setup, TIME "solver: {threads: 3}\nfish: [{}]\n");
+    assert_int_equal(jacobian_threads(setup.school, 0), 1);
     school_clear(&setup);
 }
 

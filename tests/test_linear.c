@@ -1,4 +1,5 @@
 /* test_linear.c: systems with the Jacobian of a school: factors of blocks, coupled fish, threads, failures. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,9 +10,8 @@
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 
 /* Six fish close together, of different size, one with a driven head; and one far away. */
-#define SCHOOL(threads)                                                                            \
-    TIME "solver: {coupling_distance: 0.6, threads: " #threads                                     \
-         "}\n"                                                                                     \
+#define SCHOOL                                                                                     \
+    TIME "solver: {coupling_distance: 0.6}\n"                                                      \
          "fish:\n"                                                                                 \
          "  - {sheet_points: 9, control: {law: heading, desired_heading: 150}}\n"                  \
          "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.35]}}\n"          \
@@ -34,7 +34,7 @@ static void jacobian_at(struct system *system, double cj) {
     school_ok(residual_jacobian(setup->residual, setup->t, cj, setup->state->y, setup->jacobian));
 }
 
-static void build(struct system *system, const char *text, double tolerance) {
+static void build(struct system *system, const char *text, double relative) {
     school_build(&system->setup, text);
     school_stir(&system->setup);
     system->n = system->setup.school->n_unknowns;
@@ -47,7 +47,8 @@ static void build(struct system *system, const char *text, double tolerance) {
         system->b[i] = school_random(&system->setup);
     }
     jacobian_at(system, 370);
-    school_ok(linear_create(&system->linear, system->setup.jacobian, system->scale, tolerance));
+    const struct linear_end end = {.relative = relative};
+    school_ok(linear_create(&system->linear, system->setup.jacobian, system->scale, end));
 }
 
 // without the blocks between the fish
@@ -117,7 +118,7 @@ static double error_of(const struct system *system) {
 static void fish_far_apart_are_solved_for_one_by_one(void **state) {
     (void)state;
     struct system system;
-    build(&system, SCHOOL(1), 1e-3);
+    build(&system, SCHOOL, 1e-3);
     uncouple(&system);
     school_ok(linear_setup(system.linear));
     school_ok(linear_solve(system.linear, system.b, system.x));
@@ -136,7 +137,7 @@ static void coupled_fish_are_solved_for_to_the_tolerance(void **state) {
     long before = 0;
     for (size_t i = 0; i < sizeof tolerances / sizeof *tolerances; i++) {
         struct system system;
-        build(&system, SCHOOL(1), tolerances[i]);
+        build(&system, SCHOOL, tolerances[i]);
         assert_true(system.setup.jacobian->n_couplings >= 20);
         school_ok(linear_setup(system.linear));
         school_ok(linear_solve(system.linear, system.b, system.x));
@@ -151,10 +152,37 @@ static void coupled_fish_are_solved_for_to_the_tolerance(void **state) {
     }
 }
 
+static void what_is_small_enough_is_left(void **state) {
+    (void)state;
+    struct system system;
+    build(&system, SCHOOL, 1e-6);
+    linear_free(system.linear);
+    const struct linear_end end = {.relative = 1e-6, .enough = 1e-3};
+    school_ok(linear_create(&system.linear, system.setup.jacobian, system.scale, end));
+    school_ok(linear_setup(system.linear));
+    // right-hand sides ever smaller need ever fewer iterations, in the end none
+    long fewest = 40;
+    for (double size = 1e3; size > 1e-7; size /= 100) {
+        for (int i = 0; i < system.n; i++) system.b[i] = size * school_random(&system.setup);
+        const long before = linear_count(system.linear).iterations;
+        school_ok(linear_solve(system.linear, system.b, system.x));
+        const long iterations = linear_count(system.linear).iterations - before;
+        assert_true(iterations <= fewest);
+        fewest = iterations;
+        // the error over the scales is some times the root mean square of what is left
+        const double error = error_of(&system);
+        double largest = 0;
+        for (int i = 0; i < system.n; i++) largest = fmax(largest, fabs(system.x[i]) / system.scale[i]);
+        assert_true(error < 1e-5 || error * largest < 50 * end.enough);
+    }
+    assert_int_equal(fewest, 0);
+    clear(&system);
+}
+
 static void patterns_are_analysed_once(void **state) {
     (void)state;
     struct system system;
-    build(&system, SCHOOL(1), 1e-6);
+    build(&system, SCHOOL, 1e-6);
     school_ok(linear_setup(system.linear));
     struct linear_counts counts = linear_count(system.linear);
     assert_int_equal(counts.analyses, 7);
@@ -197,7 +225,7 @@ static void set_pieces(struct sparse *own, double on_diagonal, double beside) {
 static void factors_that_are_bad_are_made_anew_with_other_pivots(void **state) {
     (void)state;
     struct system system;
-    build(&system, SCHOOL(1), 1e-6);
+    build(&system, SCHOOL, 1e-6);
     uncouple(&system);
     struct jacobian *const jacobian = system.setup.jacobian;
     for (int f = 0; f < 7; f++) sparse_forget(jacobian->own[f]);
@@ -220,7 +248,7 @@ static void factors_that_are_bad_are_made_anew_with_other_pivots(void **state) {
 static void a_singular_block_is_final_at_first_and_a_retry_later(void **state) {
     (void)state;
     struct system system;
-    build(&system, SCHOOL(1), 1e-6);
+    build(&system, SCHOOL, 1e-6);
     uncouple(&system);
     struct jacobian *const jacobian = system.setup.jacobian;
     for (int f = 0; f < 7; f++) sparse_forget(jacobian->own[f]);
@@ -244,7 +272,7 @@ static void a_singular_block_is_final_at_first_and_a_retry_later(void **state) {
 static void a_right_hand_side_without_a_finite_value_asks_for_a_retry(void **state) {
     (void)state;
     struct system system;
-    build(&system, SCHOOL(1), 1e-6);
+    build(&system, SCHOOL, 1e-6);
     school_ok(linear_setup(system.linear));
     system.b[3] = NAN;
     assert_int_equal(linear_solve(system.linear, system.b, system.x), STATUS_RETRY);
@@ -257,17 +285,25 @@ static void a_right_hand_side_without_a_finite_value_asks_for_a_retry(void **sta
 
 static void threads_change_no_bit(void **state) {
     (void)state;
-    const char *const texts[] = {SCHOOL(1), SCHOOL(2), SCHOOL(3)};
     double *first = NULL;
-    for (int i = 0; i < 3; i++) {
+    for (int threads = 1; threads <= 3; threads++) {
+        // so many fish that the solutions too are shared
+        char text[8000];
+        int length = snprintf(text, sizeof text, TIME "solver: {threads: %d}\nfish:\n", threads);
+        for (int f = 0; f < 36; f++) {
+            length += snprintf(text + length, sizeof text - (size_t)length, "  - {start: {position: [%g, %g]}}\n",
+                               1.4 * (f % 6), 0.5 * (f / 6));
+        }
         struct system system;
-        build(&system, texts[i], 1e-6);
+        build(&system, text, 1e-6);
+        assert_int_equal(jacobian_threads(system.setup.school, JACOBIAN_LIGHT), threads);
         // with pivots of their own, then with those
         for (int pass = 0; pass < 2; pass++) {
             jacobian_at(&system, pass == 0 ? 300 : 370);
             school_ok(linear_setup(system.linear));
             school_ok(linear_solve(system.linear, system.b, system.x));
         }
+        assert_true(linear_count(system.linear).iterations > 4);
         if (!first) {
             first = malloc((size_t)system.n * sizeof *first);
             assert_non_null(first);
@@ -282,14 +318,15 @@ static void threads_change_no_bit(void **state) {
 static void allocations_that_fail_are_reported(void **state) {
     (void)state;
     struct system system;
-    build(&system, SCHOOL(1), 1e-6);
+    build(&system, SCHOOL, 1e-6);
     linear_free(system.linear);
     int n_failed = 0;
     enum status status = STATUS_MEMORY;
     for (; status != STATUS_OK; n_failed += status != STATUS_OK) {
         const int n_before = n_live;
         n_until_failure = n_failed;
-        status = linear_create(&system.linear, system.setup.jacobian, system.scale, 1e-6);
+        const struct linear_end end = {.relative = 1e-6};
+        status = linear_create(&system.linear, system.setup.jacobian, system.scale, end);
         if (status == STATUS_OK) {
             status = linear_setup(system.linear);
             if (status == STATUS_OK) status = linear_solve(system.linear, system.b, system.x);
@@ -312,6 +349,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(fish_far_apart_are_solved_for_one_by_one),
         cmocka_unit_test(coupled_fish_are_solved_for_to_the_tolerance),
+        cmocka_unit_test(what_is_small_enough_is_left),
         cmocka_unit_test(patterns_are_analysed_once),
         cmocka_unit_test(factors_that_are_bad_are_made_anew_with_other_pivots),
         cmocka_unit_test(a_singular_block_is_final_at_first_and_a_retry_later),

@@ -302,6 +302,7 @@ static int jacobian_callback(realtype t, realtype cj, N_Vector y, N_Vector yp, N
 static int calculate(struct simulation *simulation, double *y, double *yp, double *kind, double *tolerance) {
     const int n = simulation->school->n_unknowns;
     struct correction correction = {.simulation = simulation};
+    const struct linear_end end = {.relative = 1e-10};
     double *const values[4] = {y, yp, kind, tolerance};
     SUNContext context;
     N_Vector vector[4];
@@ -310,7 +311,7 @@ static int calculate(struct simulation *simulation, double *y, double *yp, doubl
         if (bridge_vector(&vector[i], context, n, values[i]) != STATUS_OK) abort();
     }
     if (jacobian_create(&correction.jacobian, simulation->school) != STATUS_OK ||
-        bridge_linear_create(&correction.linear, context, correction.jacobian, tolerance, 1e-6) != STATUS_OK) {
+        bridge_linear_create(&correction.linear, context, correction.jacobian, tolerance, end) != STATUS_OK) {
         abort();
     }
     residual_mask(simulation->residual, correction.jacobian);
