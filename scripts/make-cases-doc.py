@@ -119,6 +119,30 @@ key is a resolution (`time.shedding_interval`, `solver.rtol`, `solver.step`, `no
 Orders are those of `nose`, `tail`, `com`, `speed`, `mean_heading`, `shed_circulation`, `cost_of_transport` and
 `mean_actuation_power`. `shoal study` runs a sweep; `shoal run` refuses one.
 
+### expect
+
+With a sweep, `expect` is a list of statements about the ends of the members. `shoal study` prints for each what is and
+what should be, and ends with exit code 3 where one does not hold, or a member that it is about is not complete.
+
+```yaml
+expect:
+  - {of: speed, fish: leader, least: 1.0, most: 1.1}              # every value
+  - {of: [nose, tail], spread: 1e-5}                              # all values together
+  - {of: steps, where: ["solver.method=ida"], ratio: 1.5}         # of the members with this value
+```
+
+| word | meaning |
+|---|---|
+| `of` | a quantity or a list of them; a statement holds for each by itself |
+| `fish` | the name of a fish; without it the values of all fish count |
+| `where` | members that have all of these values; without it all members |
+| `least`, `most` | bounds of every value |
+| `spread` | a bound of the difference between the largest and the least value; of positions, of the diagonal of the box around them |
+| `ratio` | a bound of the largest value over the least |
+
+Quantities are those with orders, and `lateral_drift`, `strouhal`, `energy_audit`, `steps`, `residual_evaluations`,
+`jacobian_evaluations`, `wall_time`. `shoal run` takes no notice of `expect`.
+
 ## The subset of YAML
 
 Maps, lists, plain and quoted scalars, comments, and the short forms `{a: 1}` and `[1, 2]`. Refused, each with its place:

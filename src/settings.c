@@ -175,7 +175,7 @@ static enum status read_keys(struct reading *reading, struct settings *settings)
     TRY(read_key(reading, preset, 0, PRESET_NONE, &settings->preset));
     for (int k = 0; k < settings_table_n; k++) {
         const struct key *const key = &settings_table[k];
-        if (key == preset || key->type == FILES || key->type == DEFAULTS || key->type == AXES) continue;
+        if (key == preset || !settings_table_is_value(key)) continue;
         if (!settings_table_is_of_fish(key)) {
             TRY(read_key(reading, key, 0, settings->preset, settings_table_field(key, settings, NULL)));
             continue;
@@ -255,6 +255,7 @@ static enum status fill(struct reading *reading, struct settings *settings) {
     TRY(read_keys(reading, settings));
     TRY(derive_all(settings, tree->source[0]->name));
     TRY(settings_sweep_read(settings, tree, &reading->errors));
+    TRY(settings_expect_read(settings, tree, &reading->errors));
     // an unknown key may be a known one misspelt: then its value is not the one that would be checked here
     if (are_keys_known) settings_check(settings, tree, &reading->errors);
     return STATUS_OK;
@@ -326,12 +327,13 @@ enum status settings_parse(struct settings *settings, const char *text, size_t l
 void settings_free(struct settings *settings) {
     for (int k = 0; k < settings_table_n; k++) {
         const struct key *const key = &settings_table[k];
-        if (key->type == FILES || key->type == DEFAULTS || key->type == AXES) continue;
+        if (!settings_table_is_value(key)) continue;
         if (!settings_table_is_of_fish(key)) settings_value_free(key, settings_table_field(key, settings, NULL));
         for (int i = 0; i < settings->n_fish && settings_table_is_of_fish(key); i++) {
             settings_value_free(key, settings_table_field(key, settings, &settings->fish[i]));
         }
     }
+    settings_expect_free(settings);
     settings_sweep_free(settings);
     free(settings->fish);
     free(settings->text);

@@ -153,7 +153,7 @@ enum {
     SETTINGS_NOSE,
     SETTINGS_TAIL,
     SETTINGS_N_ORDERS = 8, /* of the first ones orders of convergence are observed */
-    SETTINGS_N_QUANTITIES = SETTINGS_N_ORDERS
+    SETTINGS_N_QUANTITIES = 15
 };
 extern const struct settings_quantity settings_quantities[SETTINGS_N_QUANTITIES];
 
@@ -176,6 +176,20 @@ struct settings_axis {
     double *reference;    /* see settings_reference; NULL: none */
 };
 
+/* A statement about the ends of members: of all, or of those that have the values of where. */
+struct settings_expectation {
+    unsigned of; /* bit q: of quantity q */
+    int fish;    /* -1: of all */
+    int n_where;
+    struct settings_condition {
+        int axis, key; /* of the sweep */
+        char *value;
+    } * where;          /* all must hold                                              (n_where) */
+    double least, most; /* of each value; NaN: no bound, as below */
+    double spread;      /* from the least to the largest value; of points, the diagonal of the box around them */
+    double ratio;       /* of the largest value to the least */
+};
+
 struct settings {
     int format;
     char *name; /* default: the file's name without folder and ending */
@@ -189,6 +203,8 @@ struct settings {
     struct settings_fish *fish;
     int n_axes;
     struct settings_axis *sweep;
+    int n_expectations;
+    struct settings_expectation *expect;
     char *text;   /* the text of the case file as read (without its includes) */
     char *merged; /* what the case file, its includes and the assignments say, as one text: defaults are not in it */
     char *study;  /* of a member of a study: the merged text of the study; else NULL */
@@ -215,6 +231,9 @@ int settings_member_value(const struct settings *study, int member, int axis);
 /* The value of a quantity (one with orders) that errors along the refined axis are to be taken against; NaN where none is
  * given. xy is 0 where the quantity is no point. */
 double settings_reference(const struct settings *study, int axis, int quantity, int fish, int xy);
+
+/* Whether a statement is about a member. */
+int settings_expects_of(const struct settings *study, const struct settings_expectation *one, int member);
 
 /* "solver.rtol=1e-5, fish[*].nodes=7": what one member sets. Empty without a sweep. The caller frees *text. Fails with
  * STATUS_MEMORY. */

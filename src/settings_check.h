@@ -14,6 +14,12 @@ enum status settings_sweep_read(struct settings *settings, const struct settings
 /* Release the axes. */
 void settings_sweep_free(struct settings *settings);
 
+/* Read what is expected of the members; the sweep has been read. Fails with STATUS_MEMORY only. settings_expect_free
+ * releases it. */
+enum status settings_expect_read(struct settings *settings, const struct settings_tree *tree,
+                                 struct yaml_errors *errors);
+void settings_expect_free(struct settings *settings);
+
 /* Read refine, reference and expect of an axis that has its values. key: the row of its first key, NULL if that is wrong;
  * name: "sweep[1]"; node: the axis. Fails with STATUS_MEMORY only. */
 enum status settings_refine_read(const struct settings *settings, struct settings_axis *into, const struct key *key,

@@ -12,6 +12,13 @@ const struct settings_quantity settings_quantities[SETTINGS_N_QUANTITIES] = {
     {"shed_circulation", 1, 0},
     {"cost_of_transport", 1, 0},
     {"mean_actuation_power", 1, 0},
+    {"lateral_drift", 1, 0},
+    {"strouhal", 1, 0},
+    {"energy_audit", 1, 0},
+    {"steps", 0, 0},
+    {"residual_evaluations", 0, 0},
+    {"jacobian_evaluations", 0, 0},
+    {"wall_time", 0, 0},
 };
 
 int settings_quantity_read(const char *name, struct yaml_mark mark, const char *path, int n_known,

@@ -53,7 +53,7 @@ static void show_key(struct yaml_text *text, const struct key *key, const void *
 
 /* True if a key is left out: it has been applied already, or it has no value. */
 static bool is_hidden(const struct key *key, const void *field) {
-    if (key->type == FILES || key->type == DEFAULTS || key->type == AXES) return true;
+    if (!settings_table_is_value(key)) return true;
     if (strcmp(key->path, "preset") == 0) return true;
     if (key->type == TEXT) return !*(char *const *)field;
     return key->type == NUMBERS && ((const struct settings_list *)field)->n == 0;
@@ -141,9 +141,44 @@ static void show_axis(struct yaml_text *text, const struct settings *settings, i
     yaml_text_add(text, "}\n");
 }
 
+/* Add a bound of a statement. */
+static void show_bound(struct yaml_text *text, const char *name, double bound) {
+    if (isnan(bound)) return;
+    yaml_text_add(text, ", %s: ", name);
+    yaml_text_add_number(text, bound);
+}
+
+static void show_expectation(struct yaml_text *text, const struct settings *settings,
+                             const struct settings_expectation *one) {
+    yaml_text_add(text, "  - {of: ");
+    show_quantities(text, one->of);
+    if (one->fish >= 0) {
+        yaml_text_add(text, ", fish: ");
+        yaml_text_add_scalar(text, settings->fish[one->fish].name);
+    }
+    for (int c = 0; c < one->n_where; c++) {
+        const struct settings_condition *const condition = &one->where[c];
+        struct yaml_text assignment = {0};
+        yaml_text_add(&assignment, "%s=%s", settings->sweep[condition->axis].key[condition->key].path,
+                      condition->value);
+        yaml_text_add(text, "%s", c == 0 ? ", where: [" : ", ");
+        if (assignment.failed) text->failed = true;
+        if (!assignment.failed) yaml_text_add_scalar(text, assignment.text);
+        yaml_text_free(&assignment);
+    }
+    if (one->n_where > 0) yaml_text_add(text, "]");
+    show_bound(text, "least", one->least);
+    show_bound(text, "most", one->most);
+    show_bound(text, "spread", one->spread);
+    show_bound(text, "ratio", one->ratio);
+    yaml_text_add(text, "}\n");
+}
+
 static void show_sweep(struct yaml_text *text, const struct settings *settings) {
     if (settings->n_axes > 0) yaml_text_add(text, "\nsweep:\n");
     for (int i = 0; i < settings->n_axes; i++) show_axis(text, settings, i);
+    if (settings->n_expectations > 0) yaml_text_add(text, "\nexpect:\n");
+    for (int i = 0; i < settings->n_expectations; i++) show_expectation(text, settings, &settings->expect[i]);
 }
 
 enum status settings_show(const struct settings *settings, char **text) {

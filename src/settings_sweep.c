@@ -69,7 +69,7 @@ static const struct key *find_key(const struct settings *settings, const struct 
     struct settings_path path;
     if (!settings_path_parse(&path, node->text, settings->n_fish, node->mark, axis->errors)) return NULL;
     const struct key *const key = settings_table_row(path.pattern);
-    const bool is_fixed = !key || key->type == FILES || key->type == DEFAULTS || key->type == AXES;
+    const bool is_fixed = !key || !settings_table_is_value(key);
     if (is_fixed || strcmp(key->path, "format") == 0) {
         yaml_errors_add(axis->errors, node->mark, "%s.key: '%.60s' is not a value that can be swept", axis->name,
                         node->text);

@@ -229,6 +229,10 @@ const struct key settings_table[] = {
          "axes of a study, {key: PATH, values: [...]} or {keys: [...], values: [[...], ...]}; `shoal study` runs "
          "their product",
      .synonyms = "study parameters scan"},
+    {"expect", STATEMENTS, 0, "[]", ANY, "",
+     .meaning = "statements about the ends of a study's members, {of: QUANTITY, least: ..., most: ...}; `shoal study` "
+                "checks them",
+     .synonyms = "expected check assert"},
 };
 
 const int settings_table_n = sizeof settings_table / sizeof *settings_table;
@@ -252,6 +256,10 @@ bool settings_table_is_of_fish(const struct key *key) {
     return strncmp(key->path, "fish.", 5) == 0;
 }
 
+bool settings_table_is_value(const struct key *key) {
+    return key->type < FILES;
+}
+
 void *settings_table_field(const struct key *key, struct settings *settings, struct settings_fish *fish) {
     return (settings_table_is_of_fish(key) ? (char *)fish : (char *)settings) + key->offset;
 }
@@ -262,7 +270,7 @@ const char *settings_table_type(const struct key *key) {
                                         [PAIR] = "[x, y]",          [NUMBERS] = "list of numbers",
                                         [PAIRS] = "list of [x, y]", [HEADING] = "number or list of [time, angle]",
                                         [FILES] = "list of files",  [DEFAULTS] = "map",
-                                        [AXES] = "list of axes"};
+                                        [AXES] = "list of axes",    [STATEMENTS] = "list of statements"};
     return names[key->type];
 }
 

@@ -11,17 +11,18 @@
 #include "yaml_text.h"
 
 enum key_type {
-    REAL,     /* double */
-    INTEGER,  /* int */
-    CHOICE,   /* an enum: the place of the word among .words */
-    TEXT,     /* char *, owned */
-    PAIR,     /* double[2] */
-    NUMBERS,  /* struct settings_list of numbers */
-    PAIRS,    /* struct settings_list of pairs */
-    HEADING,  /* struct settings_list of pairs (time, angle); one number is the pair (0, angle) */
-    FILES,    /* include: no place in struct settings */
-    DEFAULTS, /* defaults: no place in struct settings */
-    AXES      /* sweep: read by settings_sweep.c */
+    REAL,      /* double */
+    INTEGER,   /* int */
+    CHOICE,    /* an enum: the place of the word among .words */
+    TEXT,      /* char *, owned */
+    PAIR,      /* double[2] */
+    NUMBERS,   /* struct settings_list of numbers */
+    PAIRS,     /* struct settings_list of pairs */
+    HEADING,   /* struct settings_list of pairs (time, angle); one number is the pair (0, angle) */
+    FILES,     /* include: no place in struct settings */
+    DEFAULTS,  /* defaults: no place in struct settings */
+    AXES,      /* sweep: read by settings_sweep.c */
+    STATEMENTS /* expect: read by settings_expect.c */
 };
 
 /* What a number, or each number of a list, may be; for a TEXT, most is the largest number of bytes. */
@@ -55,6 +56,9 @@ bool settings_table_is_section(const char *path);
 
 /* True if the key stands under every fish. */
 bool settings_table_is_of_fish(const struct key *key);
+
+/* True if a key has one value, with a place in struct settings; false from FILES on. */
+bool settings_table_is_value(const struct key *key);
 
 /* Where the value of a key is; fish is ignored unless the key is of a fish. */
 void *settings_table_field(const struct key *key, struct settings *settings, struct settings_fish *fish);

@@ -28,7 +28,8 @@ void settings_value_clear(const struct key *key, void *field) {
         case HEADING: *(struct settings_list *)field = (struct settings_list){0}; break;
         case FILES:
         case DEFAULTS:
-        case AXES: break;
+        case AXES:
+        case STATEMENTS: break;
     }
 }
 
@@ -234,7 +235,8 @@ enum status settings_value_read(const struct key *key, void *field, const struct
         case HEADING: return read_heading(&context, node, field);
         case FILES:
         case DEFAULTS:
-        case AXES: break;
+        case AXES:
+        case STATEMENTS: break;
     }
     return STATUS_OK;
 }
@@ -274,6 +276,7 @@ void settings_value_write(struct yaml_text *text, const struct key *key, const v
         case HEADING: write_list(text, field, true); break;
         case FILES:
         case DEFAULTS:
-        case AXES: break;
+        case AXES:
+        case STATEMENTS: break;
     }
 }

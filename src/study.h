@@ -79,6 +79,9 @@ enum status study_orders_create(struct store_orders *orders, const struct settin
  * STATUS_MEMORY. */
 enum status study_orders_print(const struct settings *study, const struct store_orders *orders, FILE *stream);
 
+/* Print what the case expects of its members, and what is. Fails with STATUS_MISSED when a statement does not hold. */
+enum status study_expect(const struct settings *study, const struct store_member *members, FILE *stream);
+
 /* A table of texts that is filled cell by cell and printed in columns, aligned to the right but for the last one. */
 enum { STUDY_CELL_BYTES = 32 };
 struct study_table {

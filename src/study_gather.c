@@ -106,12 +106,21 @@ static enum status write_study(const struct settings *study, const struct store_
     return status;
 }
 
+/* Print orders and statements; the first that is missed counts. */
+static enum status print_expected(const struct settings *study, const struct store_member *members,
+                                  const struct store_orders *orders, FILE *stream) {
+    const enum status of_orders = study_orders_print(study, orders, stream);
+    if (of_orders != STATUS_OK && of_orders != STATUS_MISSED) return of_orders;
+    const enum status of_members = study_expect(study, members, stream);
+    return of_orders == STATUS_OK ? of_members : of_orders;
+}
+
 /* Print all, write study.nc, then judge. */
 static enum status report(const struct settings *study, const struct store_member *members,
                           const struct store_orders *orders, const char *folder, const char *command, FILE *stream) {
     TRY(study_print(study, members, stream));
     TRY(write_study(study, members, orders, folder, command));
-    const enum status expected = study_orders_print(study, orders, stream);
+    const enum status expected = print_expected(study, members, orders, stream);
     if (expected == STATUS_OK) TRY(say_what_failed(members, settings_n_members(study), folder));
     return expected;
 }
@@ -185,7 +194,7 @@ enum status study_info(const char *path, FILE *stream) {
     enum status status = study_print(&study, members, stream);
     if (status == STATUS_OK) {
         status = study_orders_create(&orders, &study, members);
-        if (status == STATUS_OK) status = study_orders_print(&study, &orders, stream);
+        if (status == STATUS_OK) status = print_expected(&study, members, &orders, stream);
         store_orders_free(&orders);
     }
     // what is missed has been said before; here it is a part of what the file holds

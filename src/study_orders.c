@@ -231,7 +231,10 @@ static enum status judge(const struct settings *study, const struct store_orders
     const char *const fish = study->fish[f].name, *const quantity = settings_quantities[q].name;
     if (order->objection) fprintf(stream, "warning: %s of %s: %s\n", quantity, fish, order->objection);
     if (!(axis->order_of >> q & 1) || !(axis->order > 0)) return STATUS_OK;
-    if (fabs(order->order - axis->order) <= axis->within) return STATUS_OK;
+    const int is_met = fabs(order->order - axis->order) <= axis->within;
+    fprintf(stream, "%s: order of %s of %s is %.2f, expected %g +- %g\n", is_met ? "met" : "MISSED", quantity, fish,
+            order->order, axis->order, axis->within);
+    if (is_met) return STATUS_OK;
     return status_fail(STATUS_MISSED, "%s of %s: observed order %.2f in %s, expected %g +- %g", quantity, fish,
                        order->order, axis->key[0].path, axis->order, axis->within);
 }

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Every case in cases/ runs, and gives the numbers of tests/data/cases.tsv.
+# Every case in cases/ runs, and gives the numbers of tests/data/cases.tsv; every study in cases/studies/ states what it
+# expects, and meets it.
 #
 #   tests/test_cases.sh PROGRAM
 set -uo pipefail
@@ -17,7 +18,8 @@ import netCDF4
 import numpy as np
 
 program, cases, table = sys.argv[1:]
-counts = {"ok": 0, "FAILED": 0}
+counts = {"ok": 0, "FAILED": 0, "skipped": 0}
+LONG = ["stiffness"]  # studies of minutes, to be run by hand
 
 
 def check(name, good, words=""):
@@ -75,6 +77,24 @@ for path in sorted(glob.glob(f"{cases}/*.yaml")):
     if case not in (row[0] for row in rows):
         check(f"{case} has an expected result", False, f"there is none in {table}")
 
-print(f"{counts['ok']} passed, {counts['FAILED']} failed, 0 skipped")
+
+def study(path):
+    """Run a study: it ends with exit code 0 only if it meets what it expects."""
+    name = os.path.basename(path)[:-5]
+    if name in LONG:
+        counts["skipped"] += 1
+        return print(f"skipped study {name}: it takes minutes")
+    shown = subprocess.run([program, "show", path], stdin=subprocess.DEVNULL, capture_output=True, text=True)
+    check(f"study {name} states what it expects", "expect:" in shown.stdout, shown.stderr[:500])
+    done = subprocess.run(
+        [program, "study", path, "-q", "-o", name], stdin=subprocess.DEVNULL, capture_output=True, text=True
+    )
+    check(f"study {name} meets it", done.returncode == 0, f"exit code {done.returncode} {done.stderr[:500]}")
+
+
+for path in sorted(glob.glob(f"{cases}/studies/*.yaml")):
+    study(path)
+
+print(f"{counts['ok']} passed, {counts['FAILED']} failed, {counts['skipped']} skipped")
 sys.exit(counts["FAILED"] > 0)
 EOF

@@ -74,6 +74,20 @@ static void are_equal(struct settings *one, struct settings *other) {
             assert_string_equal(one->sweep[i].value[j], other->sweep[i].value[j]);
         }
     }
+    assert_int_equal(one->n_expectations, other->n_expectations);
+    for (int i = 0; i < one->n_expectations; i++) {
+        const struct settings_expectation *const a = &one->expect[i], *const b = &other->expect[i];
+        assert_int_equal(a->of, b->of);
+        assert_int_equal(a->fish, b->fish);
+        assert_int_equal(a->n_where, b->n_where);
+        for (int c = 0; c < a->n_where; c++) {
+            assert_int_equal(a->where[c].axis, b->where[c].axis);
+            assert_int_equal(a->where[c].key, b->where[c].key);
+            assert_string_equal(a->where[c].value, b->where[c].value);
+        }
+        const double *const from = &a->least, *const to = &b->least;
+        for (int k = 0; k < 4; k++) assert_true(from[k] == to[k] || (isnan(from[k]) && isnan(to[k])));
+    }
 }
 
 /* A folder for files, made by the setup of a test. */
@@ -472,6 +486,38 @@ static void a_reference_is_given_for_all_fish_or_for_each(void **state) {
     settings_free(&s);
 }
 
+static const char stated[] =
+    "time: {end: 1, shedding_interval: 0.1}\nformat: 1\nfish: [{name: a}, {name: 'b: c'}]\n"
+    "sweep:\n"
+    "  - {keys: [solver.method, solver.rtol], values: [[ida, 1e-3], [rk4, 1e-4], [ida, 1e-4]]}\n"
+    "  - {key: 'fish[1].start.position', values: [[0, 1], [0, 2]]}\n"
+    "expect:\n"
+    "  - {of: speed, fish: 'b: c', least: 1, most: 2, ratio: 3}\n"
+    "  - {of: [nose, tail], spread: 0, where: ['solver.rtol=0.0001', 'fish[1].start.position=[0,2]']}\n"
+    "  - {of: steps, least: -1, where: [solver.method=ida]}\n";
+
+static void a_statement_is_about_the_members_with_its_values(void **state) {
+    (void)state;
+    struct settings s = parse(stated);
+    assert_int_equal(s.n_expectations, 3);
+    assert_int_equal(s.expect[0].of, 1 << 3);
+    assert_int_equal(s.expect[0].fish, 1);
+    assert_int_equal(s.expect[1].fish, -1);
+    assert_int_equal(s.expect[1].of, 1 << SETTINGS_NOSE | 1 << SETTINGS_TAIL);
+    NEAR(s.expect[0].ratio, 3, 0, 0);
+    assert_true(isnan(s.expect[0].spread));
+    // members: (ida 1e-3, 1), (.., 2), (rk4 1e-4, 1), (.., 2), (ida 1e-4, 1), (.., 2)
+    static const int are_meant[3][6] = {{1, 1, 1, 1, 1, 1}, {0, 0, 0, 1, 0, 1}, {1, 1, 0, 0, 1, 1}};
+    for (int i = 0; i < 3; i++) {
+        for (int m = 0; m < 6; m++) assert_int_equal(settings_expects_of(&s, &s.expect[i], m), are_meant[i][m]);
+    }
+    struct settings member;
+    assert_int_equal(settings_member(&member, &s, 2), STATUS_OK);
+    assert_int_equal(member.n_expectations, 0);
+    settings_free(&member);
+    settings_free(&s);
+}
+
 static void a_wrong_member_is_named(void **state) {
     (void)state;
     struct settings study =
@@ -507,6 +553,7 @@ static void a_case_shown_reads_back_bit_for_bit(void **state) {
         swept,
         zipped,
         refined,
+        stated,
         "format: 1\nname: 'odd: \"name\"'\npreset: published\ntime: {end: 0.9, shedding_interval: 0.3}\n"
         "output: {file: 'a b.nc', precision: single}\nwake: {lifetime: 0.1e1, smoothing: 0.30000000000000004}\n"
         "defaults: {fish: {length: 0.1, start: {position: [-0.0, 1e-320]}}}\n"
@@ -571,7 +618,8 @@ static void every_failing_allocation_is_reported_and_leaves_nothing(void **state
                "fish:\n  - {nodes: 4, body: {profile: table, h: [1, 2, 3], w: [1, 2, 3]}}\n"
                "  - {name: b, control: {desired_heading: 3}}\n"
                "sweep: [{keys: ['fish[*].nodes', solver.order], values: [[4, 1], [4, 2]]},\n"
-               "  {key: solver.rtol, values: [0.1, 1e-3, 1e-4], refine: true, reference: {speed: 1}}]\n");
+               "  {key: solver.rtol, values: [0.1, 1e-3, 1e-4], refine: true, reference: {speed: 1}}]\n"
+               "expect: [{of: speed, where: [solver.order=1], least: 0}]\n");
     static const char *const assignments[] = {"fish[*].length=2", "wake.fade=0.1"};
     const int n_before = n_live;
     int n_failures = 0;
@@ -650,6 +698,7 @@ int main(void) {
         cmocka_unit_test(members_are_numbered_with_the_last_axis_fastest),
         cmocka_unit_test(the_merged_text_is_the_whole_study),
         cmocka_unit_test(a_reference_is_given_for_all_fish_or_for_each),
+        cmocka_unit_test(a_statement_is_about_the_members_with_its_values),
         cmocka_unit_test(a_wrong_member_is_named),
         cmocka_unit_test(what_this_version_does_not_run_is_refused_with_a_remedy),
         cmocka_unit_test(a_case_shown_reads_back_bit_for_bit),

@@ -156,6 +156,39 @@ run study refined.yaml -o groups -q --set time.end=0.08 \
     --set 'sweep=[{key: solver.rtol, values: [1e-4, 1e-5, 1e-6], refine: true}, {key: solver.order, values: [1, 2]}]'
 check other_axes_make_groups has out 'Refinement of solver.rtol, from member 1 (solver.rtol=1e-4, solver.order=2) on'
 
+# ---- what is expected of members
+
+cat >stated.yaml <<'end'
+format: 1
+time: {end: 0.2, shedding_interval: 0.02}
+fish: [{name: one}, {name: two, start: {position: [0, 3]}}]
+sweep:
+  - {key: "fish[*].wave.amplitude", values: [0.2, 0.3]}
+  - {key: solver.method, values: [ida, rk4]}
+expect:
+  - {of: speed, least: 0.9, most: 1.1}
+  - {of: [nose, tail], fish: two, where: ["fish[*].wave.amplitude=0.30"], spread: 1e-3}
+  - {of: steps, where: [solver.method=rk4], ratio: 3}
+end
+run study stated.yaml -q
+check statements_that_hold_give_exit_code_0 test "$code" = 0
+check each_is_printed grep -qx 'nose of two, 2 values' out
+check with_what_is_and_what_should_be grep -qE '^  met      the least is 0\.9[0-9]*, expected at least 0\.9$' out
+check values_of_all_members_and_fish_count grep -qx 'speed, 8 values' out
+check the_same_number_is_the_same_value grep -qx 'tail of two, 2 values' out
+refused a_statement_that_does_not_hold_gives_exit_code_3 3 'expect[0]: speed is not what the case expects' \
+    study stated.yaml -q -o unstated --set 'expect=[{of: speed, most: 0.5}, {of: nose, fish: one, spread: 0}]'
+check what_is_missed_is_printed grep -qE '^  MISSED   the largest is [01]\.[0-9]*, expected at most 0\.5$' out
+check all_statements_are_judged grep -qE '^  MISSED   they differ by [0-9.e-]+, expected at most 0$' out
+run info unstated/study.nc
+check info_tells_it_too eval 'test "$code" = 0 && has out "missed: expect[0]"'
+refused a_member_that_is_not_complete_misses 3 'expect[0]: speed is not what the case expects; ' \
+    study small.yaml -q -o failing --set 'sweep=[{key: solver.max_steps, values: [1000, 2]}]' --set solver.method=euler \
+    --set 'expect=[{of: speed, least: 0}]'
+check which_member_it_is_is_printed has out '  MISSED   member 1 is not complete'
+run study stated.yaml -q -o plain --set 'sweep=[]'
+check without_a_sweep_nothing_is_expected eval 'test "$code" = 0 && ! grep -q Expected out'
+
 # ---- pictures
 
 draws() {  # file

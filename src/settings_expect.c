@@ -1,0 +1,209 @@
+/* settings_expect.c: what a study expects of the ends of its members. Declared in settings_check.h.
+ *
+ *     - {of: speed, fish: leader, least: 0.99, most: 1.01}                 every value
+ *     - {of: [nose, tail], spread: 1e-5}                                   all values together
+ *     - {of: steps, where: ["solver.method=ida"], ratio: 1.5}              of some members
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "settings_check.h"
+
+static enum status no_memory(void) {
+    return status_fail(STATUS_MEMORY, "no memory for what is expected");
+}
+
+/* One statement on its way. */
+struct stating {
+    const struct settings *settings;
+    char name[32]; /* "expect[1]" */
+    const struct yaml_node *node;
+    struct settings_expectation *into;
+    struct yaml_errors *errors;
+};
+
+void settings_expect_free(struct settings *settings) {
+    for (int i = 0; i < settings->n_expectations; i++) {
+        struct settings_expectation *const one = &settings->expect[i];
+        for (int c = 0; c < one->n_where; c++) free(one->where[c].value);
+        free(one->where);
+    }
+    free(settings->expect);
+    settings->expect = NULL;
+    settings->n_expectations = 0;
+}
+
+// ---- which members
+
+/* True if two texts of a value are the same, blanks apart, or the same number. */
+static bool are_same(const char *one, const char *other) {
+    double a, b;
+    if (yaml_text_number(one, &a) && yaml_text_number(other, &b)) return a == b;
+    for (;; one++, other++) {
+        one += strspn(one, " \"'");
+        other += strspn(other, " \"'");
+        if (*one != *other) return false;
+        if (*one == '\0') return true;
+    }
+}
+
+int settings_expects_of(const struct settings *study, const struct settings_expectation *one, int member) {
+    for (int c = 0; c < one->n_where; c++) {
+        const struct settings_condition *const condition = &one->where[c];
+        const struct settings_axis *const axis = &study->sweep[condition->axis];
+        const int value = settings_member_value(study, member, condition->axis);
+        if (!are_same(axis->value[value * axis->n_keys + condition->key], condition->value)) return 0;
+    }
+    return 1;
+}
+
+/* Find the key of the sweep that a condition "path=value" is about; false if there is none. */
+static bool find_key(const struct settings *settings, const char *text, size_t length,
+                     struct settings_condition *condition) {
+    for (int a = 0; a < settings->n_axes; a++) {
+        for (int k = 0; k < settings->sweep[a].n_keys; k++) {
+            const char *const path = settings->sweep[a].key[k].path;
+            if (!path || strlen(path) != length || strncmp(path, text, length) != 0) continue;
+            *condition = (struct settings_condition){.axis = a, .key = k};
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Read "where". */
+static enum status read_where(const struct stating *statement, const struct yaml_node *list) {
+    if (list->kind != YAML_LIST) {
+        yaml_errors_add(statement->errors, list->mark, "%s.where: expects a list, as in [\"solver.method=ida\"]",
+                        statement->name);
+        return STATUS_OK;
+    }
+    statement->into->where = calloc((size_t)list->n + 1, sizeof *statement->into->where);
+    if (!statement->into->where) return no_memory();
+    for (int i = 0; i < list->n; i++) {
+        const struct yaml_node *const node = list->entry[i].value;
+        const char *const equals = node->kind == YAML_SCALAR ? strchr(node->text, '=') : NULL;
+        struct settings_condition *const condition = &statement->into->where[statement->into->n_where];
+        if (!equals || !find_key(statement->settings, node->text, (size_t)(equals - node->text), condition)) {
+            yaml_errors_add(statement->errors, node->mark,
+                            "%s.where: expects PATH=VALUE with a key of the sweep, as in \"solver.method=ida\"",
+                            statement->name);
+            continue;
+        }
+        condition->value = strdup(equals + 1);
+        if (!condition->value) return no_memory();
+        statement->into->n_where++;
+    }
+    return STATUS_OK;
+}
+
+/* Complain if no member is meant. */
+static void check_members(const struct stating *statement, const struct yaml_node *where) {
+    const int n = settings_n_members(statement->settings);
+    for (int m = 0; m < n; m++) {
+        if (settings_expects_of(statement->settings, statement->into, m)) return;
+    }
+    yaml_errors_add(statement->errors, where->mark, "%s.where: no member of the sweep has these values",
+                    statement->name);
+}
+
+// ---- what
+
+/* Read a number of the statement; NaN if it is not there. */
+static double read_number(const struct stating *statement, const char *name, double least) {
+    const struct yaml_node *const node = yaml_tree_find(statement->node, name);
+    double number;
+    if (!node) return NAN;
+    if (node->kind == YAML_SCALAR && yaml_text_number(node->text, &number) && isfinite(number) && number >= least)
+        return number;
+    yaml_errors_add(statement->errors, node->mark, "%s.%s: expects a number%s", statement->name, name,
+                    least == 0   ? " from 0 on"
+                    : least == 1 ? " from 1 on"
+                                 : "");
+    return NAN;
+}
+
+/* Read "fish". */
+static void read_fish(const struct stating *statement, const struct yaml_node *node) {
+    for (int f = 0; f < statement->settings->n_fish; f++) {
+        const char *const name = statement->settings->fish[f].name;
+        if (node->kind == YAML_SCALAR && name && strcmp(name, node->text) == 0) statement->into->fish = f;
+    }
+    if (statement->into->fish >= 0) return;
+    yaml_errors_add(statement->errors, node->mark, "%s.fish: expects the name of a fish", statement->name);
+}
+
+/* Complain about what a quantity does not have. */
+static void check_quantities(const struct stating *statement) {
+    const struct settings_expectation *const one = statement->into;
+    for (int q = 0; q < SETTINGS_N_QUANTITIES; q++) {
+        const struct settings_quantity *const quantity = &settings_quantities[q];
+        if (!(one->of >> q & 1)) continue;
+        if (one->fish >= 0 && !quantity->of_fish) {
+            yaml_errors_add(statement->errors, statement->node->mark, "%s.fish: %s has no value for each fish",
+                            statement->name, quantity->name);
+        }
+        if (quantity->of_xy && !(isnan(one->least) && isnan(one->most) && isnan(one->ratio))) {
+            yaml_errors_add(statement->errors, statement->node->mark,
+                            "%s: %s is a point, of which only spread is known", statement->name, quantity->name);
+        }
+    }
+}
+
+/* Read one statement into an entry that is zero. */
+static enum status read_statement(const struct stating *statement) {
+    struct settings_expectation *const into = statement->into;
+    into->fish = -1;
+    if (statement->node->kind != YAML_MAP) {
+        yaml_errors_add(statement->errors, statement->node->mark, "%s: expects {of: QUANTITY, least: ..., most: ...}",
+                        statement->name);
+        return STATUS_OK;
+    }
+    settings_words_check(statement->node, statement->name, "of, fish, where, least, most, spread, ratio",
+                         statement->errors);
+    const struct yaml_node *const of = yaml_tree_find(statement->node, "of"),
+                                  *const fish = yaml_tree_find(statement->node, "fish"),
+                                  *const where = yaml_tree_find(statement->node, "where");
+    if (of) into->of = settings_quantities_read(of, statement->name, SETTINGS_N_QUANTITIES, statement->errors);
+    if (fish) read_fish(statement, fish);
+    into->least = read_number(statement, "least", -INFINITY);
+    into->most = read_number(statement, "most", -INFINITY);
+    into->spread = read_number(statement, "spread", 0);
+    into->ratio = read_number(statement, "ratio", 1);
+    const bool says_something = yaml_tree_find(statement->node, "least") || yaml_tree_find(statement->node, "most") ||
+                                yaml_tree_find(statement->node, "spread") || yaml_tree_find(statement->node, "ratio");
+    if (!of || !says_something) {
+        yaml_errors_add(statement->errors, statement->node->mark,
+                        "%s: expects of, and at least one of least, most, spread, ratio", statement->name);
+    }
+    check_quantities(statement);
+    if (!where) return STATUS_OK;
+    const int n_before = statement->errors->n;
+    TRY(read_where(statement, where));
+    if (statement->errors->n == n_before) check_members(statement, where);
+    return STATUS_OK;
+}
+
+enum status settings_expect_read(struct settings *settings, const struct settings_tree *tree,
+                                 struct yaml_errors *errors) {
+    const struct yaml_node *const list = yaml_tree_find(tree->root, "expect");
+    // a member, or a run with --set 'sweep=[]', expects nothing
+    if (!list || (settings->n_axes == 0 && yaml_tree_find(tree->root, "sweep"))) return STATUS_OK;
+    if (list->kind != YAML_LIST) {
+        yaml_errors_add(errors, list->mark, "expect: expects a list of statements, each {of: QUANTITY, least: ...}");
+        return STATUS_OK;
+    }
+    if (settings->n_axes == 0) yaml_errors_add(errors, list->mark, "expect: has no effect without a sweep");
+    settings->expect = calloc((size_t)list->n + 1, sizeof *settings->expect);
+    if (!settings->expect) return no_memory();
+    for (int i = 0; i < list->n; i++) {
+        struct stating statement = {
+            .settings = settings, .node = list->entry[i].value, .into = &settings->expect[i], .errors = errors};
+        snprintf(statement.name, sizeof statement.name, "expect[%d]", i);
+        settings->n_expectations++;
+        TRY(read_statement(&statement));
+    }
+    return STATUS_OK;
+}

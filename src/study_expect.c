@@ -1,0 +1,83 @@
+/* study_expect.c: what the case expects of the ends of its members. Declared in study.h. */
+#include <math.h>
+#include <string.h>
+
+#include "study.h"
+
+/* The values that a statement is about, of one quantity. */
+struct reach {
+    int n;
+    double least[2], most[2]; /* x and y of points */
+    int missing;              /* a member that has no value; -1: none */
+};
+
+static struct reach reach_of(const struct settings *study, const struct store_member *members,
+                             const struct settings_expectation *one, int q) {
+    const struct settings_quantity *const what = &settings_quantities[q];
+    const int quantity = store_quantity_number(what->name);
+    struct reach reach = {.least = {INFINITY, INFINITY}, .most = {-INFINITY, -INFINITY}, .missing = -1};
+    for (int m = 0; m < settings_n_members(study); m++) {
+        if (!settings_expects_of(study, one, m)) continue;
+        for (int f = 0; f < (what->of_fish ? study->n_fish : 1); f++) {
+            if (one->fish >= 0 && one->fish != f) continue;
+            reach.n++;
+            for (int k = 0; k < 1 + what->of_xy; k++) {
+                const double value = store_member_value(&members[m], quantity, f, k);
+                if (isnan(value) || strcmp(members[m].status, "complete") != 0) reach.missing = m;
+                reach.least[k] = fmin(reach.least[k], value);
+                reach.most[k] = fmax(reach.most[k], value);
+            }
+        }
+    }
+    return reach;
+}
+
+/* One bound: print what is and what should be; whether it holds. NaN is no bound. */
+static int holds(const char *what, double value, const char *word, double bound, FILE *stream) {
+    if (isnan(bound)) return 1;
+    const int is_least = strcmp(word, "least") == 0;
+    const int is_met = is_least ? value >= bound : value <= bound;
+    fprintf(stream, "  %-8s %s %.9g, expected at %s %.9g\n", is_met ? "met" : "MISSED", what, value,
+            is_least ? "least" : "most", bound);
+    return is_met;
+}
+
+/* Whether a statement holds for a quantity. */
+static int judge(const struct settings *study, const struct store_member *members, int number, int q, FILE *stream) {
+    const struct settings_expectation *const one = &study->expect[number];
+    const struct reach reach = reach_of(study, members, one, q);
+    const char *const name = settings_quantities[q].name;
+    fprintf(stream, "%s%s%s, %d value%s\n", name, one->fish >= 0 ? " of " : "",
+            one->fish >= 0 ? study->fish[one->fish].name : "", reach.n, reach.n == 1 ? "" : "s");
+    if (reach.missing >= 0) {
+        fprintf(stream, "  MISSED   member %d is not complete\n", reach.missing);
+        return 0;
+    }
+    // of a number the second direction is empty
+    const double width = reach.most[0] - reach.least[0];
+    const double height = settings_quantities[q].of_xy ? reach.most[1] - reach.least[1] : 0;
+    // all are printed
+    const int n_met =
+        holds("the least is", reach.least[0], "least", one->least, stream) +
+        holds("the largest is", reach.most[0], "most", one->most, stream) +
+        holds("they differ by", hypot(width, height), "most", one->spread, stream) +
+        holds("the largest over the least is", reach.most[0] / reach.least[0], "most", one->ratio, stream);
+    return n_met == 4;
+}
+
+enum status study_expect(const struct settings *study, const struct store_member *members, FILE *stream) {
+    int n_missed = 0, first_statement = 0, first_quantity = 0;
+    if (study->n_expectations > 0) fprintf(stream, "\nExpected:\n");
+    for (int i = 0; i < study->n_expectations; i++) {
+        for (int q = 0; q < SETTINGS_N_QUANTITIES; q++) {
+            if (!(study->expect[i].of >> q & 1) || judge(study, members, i, q, stream)) continue;
+            if (n_missed++ > 0) continue;
+            first_statement = i;
+            first_quantity = q;
+        }
+    }
+    if (n_missed == 0) return STATUS_OK;
+    return status_fail(STATUS_MISSED, "expect[%d]: %s is not what the case expects%s; the output says what it is",
+                       first_statement, settings_quantities[first_quantity].name,
+                       n_missed > 1 ? ", nor are others" : "");
+}
