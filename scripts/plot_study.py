@@ -16,8 +16,13 @@ from shoal_results import FileError, netCDF4, np
 # In black and white every line has its own mark and its own dashes.
 MARKS = ["o", "s", "^", "D", "v", "P", "X", "*"]
 DASHES = ["-", "--", "-.", ":", (0, (5, 1)), (0, (3, 1, 1, 1)), (0, (1, 1)), (0, (8, 2))]
-COLOURS = ["#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#666666"]
-NAMES = {"modulus": "Young's modulus", "rtol": "relative tolerance"}
+COLOURS = ["#000000", "#0072b2", "#d55e00", "#009e73", "#aa4499", "#b06000", "#3366aa", "#666666"]  # all dark
+NAMES = {
+    "modulus": "Young's modulus",
+    "rtol": "relative tolerance",
+    "com": "centre of mass",
+    "strouhal": "Strouhal number",
+}
 
 
 class Study:
@@ -62,45 +67,75 @@ def style(i):
     }
 
 
-def slope_triangle(axes, x, y, order):
-    """A triangle of a slope in a double logarithmic panel: from (x, y) a factor of two to the right."""
-    right, top = 2 * x, y * 2.0**order
-    axes.plot([x, right, right, x], [y, y, top, y], color="#666666", lw=0.8)
-    axes.annotate(f"{abs(order):g}", (right, np.sqrt(y * top)), (3, 0), textcoords="offset points", va="center", size=8)
+def legend_above(axes, figure, n_columns):
+    """A legend above a panel, as wide as it needs to be."""
+    n_rows = -(-len(axes.get_legend_handles_labels()[1]) // n_columns)
+    if n_rows == 0:
+        return
+    above = 1.12 if axes.get_title() else 1.01
+    axes.legend(loc="lower left", bbox_to_anchor=(0, above), ncol=n_columns).set_in_layout(False)
+    figure.get_layout_engine().set(rect=(0, 0, 1, 1 - 0.29 * n_rows / figure.get_figheight()))
+
+
+def slope_triangles(axes, x, lowest, sign):
+    """Triangles of slope 1 and 2 below all lines, which go from the least to the largest x."""
+    span = max(x) / min(x)
+    width = min(2.0, span**0.25)
+    low = lowest / width**2 / 4
+    for order, place in [(1, 0.05), (2, 0.5)]:
+        left, right = min(x) * span**place, min(x) * span**place * width
+        top = low * width**order
+        # the upright side stands where the error is larger
+        upright = right if sign > 0 else left
+        axes.plot([left, right, upright, left if sign > 0 else right], [low, low, top, low], color="#666666", lw=0.8)
+        axes.annotate(
+            f"{order}",
+            (upright, np.sqrt(low * top)),
+            (4 if sign > 0 else -4, 0),
+            textcoords="offset points",
+            va="center",
+            ha="left" if sign > 0 else "right",
+            size=8,
+        )
+
+
+def settings_of(study, member, refined):
+    """What the axes that are not refined set in a member, as text."""
+    others = [v for axis in study.axes for v in axis if v.axis != refined.axis]
+    texts = [f"{study[v.name][member]:g}" if study.is_number(v.name) else study[v.name][member] for v in others]
+    return ", ".join(f"{v.long_name.split('.')[-1]} {text}" for v, text in zip(others, texts))
 
 
 def plot_convergence(study, refined, figure):
-    """Errors of nose, tail, centre of mass and circulation against the finest level, one panel per fish."""
-    size = study[refined.name]
-    others = np.array([study[v.name] for axis in study.axes for v in axis if v.axis != refined.axis])
-    group = np.unique(others, axis=1, return_inverse=True)[1].ravel() if others.size else np.zeros(size.size, int)
-    falls = refined.long_name.endswith(("nodes", "sheet_points"))  # more points, less error
+    """Errors of nose, tail, centre of mass and circulation at each level, one panel per fish."""
+    level, first = study["level_value"], study["group_member"]
+    sign = -1 if refined.long_name.endswith(("nodes", "sheet_points")) else 1  # more points, less error
     names = list(study["fish_name"])
     all_axes = figure.subplots(1, len(names), squeeze=False, sharey=True)[0]
+    quantities = ["nose", "tail", "com", "shed_circulation"]
+    errors = {name: study[f"error_{name}"] for name in quantities}
+    known = np.concatenate([e[np.isfinite(e) & (e > 0)] for e in errors.values()])
+    if known.size == 0:
+        raise FileError(f"{study.path}: no errors to draw: all levels are equal, or too few are complete")
+    # the finest level has no error but where a reference is given
+    is_known = np.any([np.isfinite(e).any(axis=(0, 1)) for e in errors.values()], axis=0)
+    drawn = level[is_known]
     for f, axes in enumerate(all_axes):
-        errors, i = [], 0
-        for g in range(group.max() + 1):
-            of_group = np.flatnonzero((group == g) & study.complete)
-            order = of_group[np.argsort(size[of_group] if falls else -size[of_group])]
-            for name in ["nose", "tail", "com", "shed_circulation"]:
-                values = study[name][order, f].reshape(order.size, -1)
-                error = np.linalg.norm(values - values[-1], axis=1)[:-1]
-                label = {"com": "centre of mass [m]", "shed_circulation": "shed circulation [m2 s-1]"}.get(name)
-                axes.loglog(size[order][:-1], error, label=label or f"{name} [m]", **style(i))
-                errors.append((size[order][:-1], error))
+        i = 0
+        for g, member in enumerate(first):
+            for name in quantities:
+                words = [study.label(name), settings_of(study, member, refined)]
+                axes.loglog(drawn, errors[name][g, f, is_known], label=", ".join(filter(None, words)), **style(i))
                 i += 1
-        x, y = errors[1] if len(errors) > 1 else errors[0]
-        if x.size > 1:
-            left, low = min(x), np.min(y) / 6
-            for k, slope in enumerate([1, 2]):
-                sign = -slope if falls else slope
-                slope_triangle(axes, left * 3**k, low * (2.0**slope if falls else 1), sign)
+        slope_triangles(axes, drawn, known.min(), sign)
         axes.set_xlabel(study.label(refined.name))
+        axes.set_xticks(drawn, [f"{x:g}" for x in drawn])
+        axes.minorticks_off()
         if len(names) > 1:
             axes.set_title(names[f], size=9)
-        axes.grid(which="major", lw=0.3, color="#cccccc")
-    all_axes[0].set_ylabel("difference from the finest level")
-    all_axes[0].legend()
+        axes.grid(lw=0.3, color="#cccccc")
+    all_axes[0].set_ylabel("error" if is_known.all() else "difference from the finest level")
+    legend_above(all_axes[0], figure, 4 if first.size == 1 else 2)
 
 
 def plot_methods(study, over, figure):
@@ -112,6 +147,8 @@ def plot_methods(study, over, figure):
     ):
         for i, word in enumerate(dict.fromkeys(method)):
             rows = (method == word) & study.complete
+            if not rows.any():
+                continue
             axes.loglog(x[rows], study[name][rows], label={"ida": "implicit (ida)"}.get(word, word), **style(i))
         y = study[name][(method != "ida") & study.complete]
         if y.size:
@@ -125,25 +162,36 @@ def plot_methods(study, over, figure):
     panels[0].legend()
 
 
-def annotate_values(axes, x, y, values):
-    """A number at each place."""
-    for at_x, at_y, value in zip(x, y, values):
-        axes.annotate(f"{value:.5g}", (at_x, at_y), (0, 7), textcoords="offset points", ha="center", size=7)
+def digits_for(values):
+    """How many digits behind the point tell values apart."""
+    spread = np.ptp(values)
+    return int(np.clip(2 - np.floor(np.log10(spread)), 0, 12)) if spread > 0 else 4
+
+
+def scale_of(x):
+    """Logarithmic for positive values that span more than a decade."""
+    return "log" if x.min() > 0 and x.max() > 10.01 * x.min() else "linear"
 
 
 def plot_map(study, x, y, labels, quantity, figure):
     """One panel per fish: a mark per member, as dark as its value, and the value."""
     names = list(study["fish_name"])
+    x, y = x[study.complete], y[study.complete]
     all_axes = figure.subplots(1, len(names), squeeze=False, sharey=True)[0]
     for f, axes in enumerate(all_axes):
-        values = study[quantity][:, f]
-        marks = axes.scatter(x, y, c=values, cmap="Greys", edgecolors="black", s=50, lw=0.7)
-        annotate_values(axes, x, y, values)
+        values = study[quantity][study.complete, f]
+        axes.set_xscale(scale_of(x))
+        axes.set_yscale(scale_of(y))
+        marks = axes.scatter(x, y, c=values, cmap="Greys", edgecolors="black", s=110, lw=0.7)
+        for at_x, at_y, value in zip(x, y, values):
+            text = f"{value:.{digits_for(values)}f}"
+            axes.annotate(text, (at_x, at_y), (0, 8), textcoords="offset points", ha="center", size=7)
         axes.margins(0.2)
         axes.set_xlabel(labels[0])
         if len(names) > 1:
             axes.set_title(names[f], size=9)
-        figure.colorbar(marks, ax=axes, label=study.label(quantity))
+        bar = figure.colorbar(marks, ax=axes, label=study.label(quantity))
+        bar.formatter.set_useOffset(False)
     all_axes[0].set_ylabel(labels[1])
 
 
@@ -151,8 +199,9 @@ def plot_lines(study, figure):
     """Speed, cost of transport and Strouhal number over the first axis; a line per fish and per value of the rest."""
     first = study.axes[0][0]
     x = study[first.name] if study.is_number(first.name) else np.arange(study.complete.size)
-    rest = [[str(study[v.name][m]) for axis in study.axes[1:] for v in axis] for m in range(x.size)]
+    rest = [[settings_of(study, m, first)] if study.axes[1:] else [] for m in range(x.size)]
     names = list(study["fish_name"])
+    figure.set_figheight(4.8)
     stack = figure.subplots(3, 1, sharex=True)
     for axes, quantity in zip(stack, ["speed", "cost_of_transport", "strouhal"]):
         i = 0
@@ -166,21 +215,24 @@ def plot_lines(study, figure):
         axes.grid(lw=0.3, color="#cccccc")
     stack[-1].set_xlabel(study.label(first.name))
     if i > 1:
-        stack[0].legend(loc="lower left", bbox_to_anchor=(0, 1), ncol=2)
+        legend_above(stack[0], figure, 2)
 
 
 def plot_comparison(study, figure):
     """Work and precision: the error of the tail against wall time and evaluations, a line per method."""
     method = study["method"]
-    for axes, name in zip(figure.subplots(1, 2, sharey=True), ["wall_time", "evaluations"]):
+    panels = figure.subplots(1, 2, sharey=True)
+    for axes, name in zip(panels, ["wall_time", "evaluations"]):
         for i, word in enumerate(dict.fromkeys(method)):
             rows = (method == word) & study.complete
+            if not rows.any():
+                continue
             axes.loglog(study[name][rows], study["tail_error"][rows], label=word, **style(i))
         axes.set_xlabel({"wall_time": "wall time [s]"}.get(name, "evaluations of the equations"))
         axes.grid(which="major", lw=0.3, color="#cccccc")
         if name == "wall_time":
             axes.set_ylabel("error of the tail [body lengths]")
-            axes.legend(loc="lower left", bbox_to_anchor=(0, 1), ncol=6)
+    legend_above(panels[0], figure, 6)
 
 
 def draw(path, figure):

@@ -199,6 +199,16 @@ if /usr/bin/python3 -c 'import netCDF4, matplotlib' 2>err; then
     check a_picture_of_orders draws refined-study/study.nc
     check a_picture_of_groups draws groups/study.nc
     check a_picture_of_methods draws small-study/study.nc
+    run study small.yaml -o map -q --set time.end=0.04 --set \
+        'sweep=[{key: "fish[*].body.modulus", values: [1e4, 1e6]}, {key: "fish[*].wave.frequency", values: [1, 2]}]'
+    check a_map_over_two_axes draws map/study.nc
+    run study stated.yaml -o places -q --set time.end=0.04 --set expect=[] --set \
+        'sweep=[{key: "fish[1].start.position", values: [[1, 0.5], [2, 0.5]]}]'
+    check a_map_of_places draws places/study.nc
+    # two of three levels need more steps than they may take
+    run study refined.yaml -o lonely -q --set time.end=0.04 --set time.shedding_interval=0.02 --set solver.method=rk4 \
+        --set solver.max_steps=3 --set 'sweep=[{key: solver.step, values: [0.01, 0.005, 0.0025], refine: true}]'
+    check no_picture_without_errors eval '! draws lonely/study.nc && has check.out "no errors to draw"'
     run compare refined.yaml --set 'sweep=[]' --set time.end=0.08 --repeats 1 -q -o compare.nc
     check a_picture_of_a_comparison draws compare.nc
     check no_picture_of_one_run eval '! draws single/member-0000.nc && has check.out "neither a study.nc nor"'
