@@ -8,14 +8,27 @@
 #include "store.h"
 #include "study.h"
 
+/* Check the case of each member of a study, as `shoal study` will. */
+static enum status check_members(const struct settings *study) {
+    for (int m = 0; study->n_axes > 0 && m < settings_n_members(study); m++) {
+        struct settings member;
+        TRY(settings_member(&member, study, m));
+        settings_free(&member);
+    }
+    return STATUS_OK;
+}
+
 enum status main_check(const struct request *request) {
     struct settings settings;
     TRY(settings_read(&settings, request->positional, request->n_assignments, request->assignments));
     struct school *school = NULL;
-    const enum status status = fish_school_create(&school, &settings);
+    enum status status = fish_school_create(&school, &settings);
+    if (status == STATUS_OK) status = check_members(&settings);
     if (status == STATUS_OK && !request->quiet) {
-        printf("%s: ok: %d fish, %d unknowns, %.6g s in %.0f events\n", request->positional, school->n_fish,
+        printf("%s: ok: %d fish, %d unknowns, %.6g s in %.0f events", request->positional, school->n_fish,
                school->n_unknowns, settings.time.end, settings.time.end / settings.time.shedding_interval);
+        if (settings.n_axes > 0) printf("; %d members", settings_n_members(&settings));
+        printf("\n");
     }
     fish_school_free(school);
     settings_free(&settings);

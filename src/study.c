@@ -79,7 +79,7 @@ static enum status plan_member(struct study *study, int number) {
     struct settings settings;
     TRY(settings_member(&settings, study->settings, number));
     enum status status = settings_runnable(&settings);
-    char *const path = study_path(study->options->folder, number, ".nc");
+    char *const path = study_member_path(study->options->folder, number, ".nc");
     int is_finished = 0;
     if (!path) status = STATUS_MEMORY;
     if (status == STATUS_OK) status = look_at(study, &settings, path, &is_finished);
@@ -93,7 +93,7 @@ static enum status plan_member(struct study *study, int number) {
 /* Remove what other studies have left behind the last member of this one. */
 static enum status clear_rest(const struct study *study) {
     for (int number = settings_n_members(study->settings);; number++) {
-        char *const path = study_path(study->options->folder, number, ".nc");
+        char *const path = study_member_path(study->options->folder, number, ".nc");
         if (!path) return STATUS_MEMORY;
         const int exists = access(path, F_OK) == 0;
         if (exists && study->options->force) unlink(path);
@@ -108,12 +108,37 @@ static enum status clear_rest(const struct study *study) {
     }
 }
 
+/* Refuse to replace what another study has gathered there; a file that cannot be read is none. */
+static enum status look_at_gathered(const struct study *study) {
+    char *const path = study_path(study->options->folder, "study.nc");
+    if (!path) return STATUS_MEMORY;
+    struct settings settings;
+    struct store_member *members;
+    enum status status = access(path, F_OK) == 0 ? store_study_read(path, &settings, &members) : STATUS_FILE;
+    if (status == STATUS_OK) {
+        if (strcmp(settings.merged, study->settings->merged) != 0) {
+            status = status_fail(STATUS_FILE,
+                                 "%s was gathered from another study, or from this one before its case was changed: "
+                                 "choose another folder with -o, or replace what is there with --force",
+                                 path);
+        }
+        study_members_free(members, settings_n_members(&settings));
+        settings_free(&settings);
+    } else if (status != STATUS_MEMORY) {
+        status = STATUS_OK;
+    }
+    free(path);
+    return status;
+}
+
 static enum status plan(struct study *study, int first, int last) {
     study->to_run = calloc((size_t)(last - first + 1), sizeof *study->to_run);
     if (!study->to_run) return status_fail(STATUS_MEMORY, "no memory for a study of %d members", last - first + 1);
     study->progress.n_members = last - first + 1;
     for (int number = first; number <= last; number++) TRY(plan_member(study, number));
-    return study->options->last < 0 ? clear_rest(study) : STATUS_OK;
+    if (study->options->last >= 0) return STATUS_OK;
+    if (!study->options->force) TRY(look_at_gathered(study));
+    return clear_rest(study);
 }
 
 static enum status make_folder(const char *folder) {
@@ -133,7 +158,7 @@ static void tell_part(const struct simulate_progress *now, void *data) {
 static enum status run_member(const struct study *study, const struct job *job) {
     struct settings settings;
     TRY(settings_member(&settings, study->settings, job->member));
-    char *const path = study_path(study->options->folder, job->member, ".nc");
+    char *const path = study_member_path(study->options->folder, job->member, ".nc");
     const struct simulate_options options = {.path = path,
                                              .overwrite = 1,
                                              .command = study->options->command,
@@ -173,7 +198,7 @@ static enum status start(struct study *study, struct job *job, const sigset_t *m
 
 /* Keep the reason of a failure beside the result, or remove what an earlier call has kept there. */
 static enum status keep_reason(const struct study *study, int member, const char *reason) {
-    char *const path = study_path(study->options->folder, member, ".failed");
+    char *const path = study_member_path(study->options->folder, member, ".failed");
     if (!path) return STATUS_MEMORY;
     // nothing can be done about a full disk here: the result file says "running" or "failed" itself
     FILE *const file = reason ? fopen(path, "w") : NULL;
@@ -293,8 +318,8 @@ static enum status run_and_report(struct study *study, FILE *stream) {
     if (first < 0 || first > last || last >= n) {
         return status_fail(STATUS_CASE, "--members %d-%d: the study has members 0 to %d", first, last, n - 1);
     }
-    TRY(make_folder(options->folder));
     TRY(plan(study, first, last));
+    TRY(make_folder(options->folder));
     study->n_jobs = options->n_processes > 0 ? options->n_processes : (int)sysconf(_SC_NPROCESSORS_ONLN);
     if (study->n_jobs > study->n_to_run) study->n_jobs = study->n_to_run;
     if (study->n_jobs > 0) TRY(run_all(study));

@@ -55,8 +55,10 @@ enum status study_slurm(const struct settings *study, const char *folder, int bu
 
 /* ---- shared by the files of the study only */
 
-/* The path of a member's file, with an ending such as ".nc"; NULL: no memory. The caller frees it. */
-char *study_path(const char *folder, int member, const char *ending);
+/* The path of a file in the folder, or of a member's with an ending such as ".nc"; NULL: no memory. The caller frees
+ * it. */
+char *study_path(const char *folder, const char *name);
+char *study_member_path(const char *folder, int member, const char *ending);
 
 /* The end of all members in the folder. A file that cannot be read counts as a member that failed. The caller frees
  * them with study_members_free. Fails with STATUS_FILE (a file belongs to another study) or STATUS_MEMORY. */

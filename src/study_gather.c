@@ -9,17 +9,22 @@
 
 enum { REASON_BYTES = 2048 };
 
-char *study_path(const char *folder, int member, const char *ending) {
+char *study_path(const char *folder, const char *name) {
     // "./" keeps NetCDF from taking the name for an address
-    const size_t size = strlen(folder) + 64;
+    const size_t size = strlen(folder) + strlen(name) + 8;
     char *const path = malloc(size);
     if (path) {
-        snprintf(path, size, "%s%s/member-%04d%s", folder[0] == '/' || folder[0] == '.' ? "" : "./", folder, member,
-                 ending);
+        snprintf(path, size, "%s%s/%s", folder[0] == '/' || folder[0] == '.' ? "" : "./", folder, name);
     } else {
         status_fail(STATUS_MEMORY, "no memory for a file name");
     }
     return path;
+}
+
+char *study_member_path(const char *folder, int member, const char *ending) {
+    char name[64];
+    snprintf(name, sizeof name, "member-%04d%s", member, ending);
+    return study_path(folder, name);
 }
 
 void study_members_free(struct store_member *members, int n) {
@@ -38,7 +43,7 @@ static enum status note(struct store_member *member, const char *format, const c
 
 /* The reason that was kept when a member failed; 0 if there is none. */
 static int read_reason(const char *folder, int number, char reason[REASON_BYTES]) {
-    char *const path = study_path(folder, number, ".failed");
+    char *const path = study_member_path(folder, number, ".failed");
     FILE *const file = path ? fopen(path, "r") : NULL;
     free(path);
     if (!file) return 0;
@@ -52,7 +57,7 @@ static int read_reason(const char *folder, int number, char reason[REASON_BYTES]
 /* Read one member and how it ended. */
 static enum status read_member(struct store_member *member, const struct settings *study, const char *folder,
                                int number) {
-    char *const path = study_path(folder, number, ".nc");
+    char *const path = study_member_path(folder, number, ".nc");
     if (!path) return STATUS_MEMORY;
     enum status status = STATUS_OK;
     if (access(path, F_OK) != 0) {
@@ -97,10 +102,8 @@ static enum status say_what_failed(const struct store_member *members, int n, co
 
 static enum status write_study(const struct settings *study, const struct store_member *members,
                                const struct store_orders *orders, const char *folder, const char *command) {
-    const size_t size = strlen(folder) + 32;
-    char *const path = malloc(size);
-    if (!path) return status_fail(STATUS_MEMORY, "no memory for a file name");
-    snprintf(path, size, "%s%s/study.nc", folder[0] == '/' || folder[0] == '.' ? "" : "./", folder);
+    char *const path = study_path(folder, "study.nc");
+    if (!path) return STATUS_MEMORY;
     const enum status status = store_study_write(path, study, members, orders, command);
     free(path);
     return status;
@@ -145,7 +148,7 @@ static enum status find_study(const char *folder, char **text) {
         int number, length = 0;
         if (sscanf(entry->d_name, "member-%d.nc%n", &number, &length) != 1 || entry->d_name[length] || !length)
             continue;
-        char *const path = study_path(folder, number, ".nc");
+        char *const path = study_member_path(folder, number, ".nc");
         struct store_member member;
         if (path && store_member_read(&member, path) == STATUS_OK) {
             if (member.number >= 0) *text = strdup(member.study);

@@ -102,6 +102,12 @@ check force_replaces_it has out 'euler'
 check force_removes_the_rest test ! -e small-study/member-0003.nc
 cp alone/member-0001.nc small-study/
 refused gather_of_two_studies 4 'is a result of another study' gather small-study
+mkdir gathered
+cp alone/study.nc gathered
+refused the_table_of_another_study_is_refused 4 './gathered/study.nc was gathered from another study' \
+    study shorter.yaml -o gathered -q
+run study shorter.yaml -o gathered -q --force
+check force_replaces_it_too test -e gathered/member-0000.nc
 mkdir empty
 refused gather_of_nothing 4 'empty: holds no member of a study that can be read' gather empty
 refused gather_of_no_folder 4 'nowhere: cannot be read: No such file or directory' gather nowhere
@@ -112,7 +118,18 @@ refused folder_in_no_folder 4 'no/where: cannot make this folder' study small.ya
 
 refused a_wrong_member_is_named 2 'member 1 (time.shedding_interval=0.03):' study small.yaml -o wrong \
     --set 'sweep=[{key: time.shedding_interval, values: [0.02, 0.03]}]'
-check before_anything_ran test ! -e wrong/member-0000.nc
+check before_anything_ran test ! -e wrong
+refused check_names_it_too 2 'member 1 (time.shedding_interval=0.03):' check small.yaml \
+    --set 'sweep=[{key: time.shedding_interval, values: [0.02, 0.03]}]'
+run check small.yaml
+check check_counts_members has out '; 6 members'
+# forty values, of which number 37 is wrong: by itself, or with the rest of the case
+forty=$(seq -s, 5 41),3,43,44
+refused a_value_out_of_range_in_member_37 2 'sweep[0].values[37] (fish.nodes): must be from 4 to 10000, got 3' \
+    study small.yaml -o wrong --set "sweep=[{key: \"fish[*].nodes\", values: [$forty]}]"
+forty=$(seq -f '0.%02.0f' -s, 10 46),0.003,0.48,0.49
+refused a_value_that_does_not_fit_in_member_37 2 'member 37 (wake.lifetime=0.003):' \
+    study small.yaml -o wrong --set "sweep=[{key: wake.lifetime, values: [$forty]}]"
 refused members_beyond_the_study 2 '--members 4-6: the study has members 0 to 5' study small.yaml -o parts --members 4-6
 refused members_backwards 2 '--members 3-1: expects the number of a member' study small.yaml -o parts --members 3-1
 refused members_of_words 2 '--members all: expects' study small.yaml -o parts --members all
