@@ -129,16 +129,18 @@ expect:
   - {of: speed, fish: leader, least: 1.0, most: 1.1}              # every value
   - {of: [nose, tail], spread: 1e-5}                              # all values together
   - {of: steps, where: ["solver.method=ida"], ratio: 1.5}         # of the members with this value
+  - {fails: unstable, where: ["solver.method=euler"]}             # members that are not to be complete
 ```
 
 | word | meaning |
 |---|---|
 | `of` | a quantity or a list of them; a statement holds for each by itself |
 | `fish` | the name of a fish; without it the values of all fish count |
-| `where` | members that have all of these values; without it all members |
+| `where` | members that have these values, one of each key that is named; without it all members |
 | `least`, `most` | bounds of every value |
 | `spread` | a bound of the difference between the largest and the least value; of positions, of the diagonal of the box around them |
 | `ratio` | a bound of the largest value over the least |
+| `fails` | stands alone or with `where`: the members fail, and these words are in their reasons; they then count as they should be, and do not make the exit code 1 |
 
 Quantities are those with orders, and `lateral_drift`, `strouhal`, `energy_audit`, `steps`, `residual_evaluations`,
 `jacobian_evaluations`, `wall_time`. `shoal run` takes no notice of `expect`.

@@ -176,18 +176,22 @@ struct settings_axis {
     double *reference;    /* see settings_reference; NULL: none */
 };
 
+/* A key of the sweep has a value. */
+struct settings_condition {
+    int axis, key;
+    char *value;
+};
+
 /* A statement about the ends of members: of all, or of those that have the values of where. */
 struct settings_expectation {
+    char *fails; /* they fail, and their reasons have these words in them; nothing else is then said. NULL: no */
     unsigned of; /* bit q: of quantity q */
     int fish;    /* -1: of all */
     int n_where;
-    struct settings_condition {
-        int axis, key; /* of the sweep */
-        char *value;
-    } * where;          /* all must hold                                              (n_where) */
-    double least, most; /* of each value; NaN: no bound, as below */
-    double spread;      /* from the least to the largest value; of points, the diagonal of the box around them */
-    double ratio;       /* of the largest value to the least */
+    struct settings_condition *where; /* one of each key must hold                (n_where) */
+    double least, most;               /* of each value; NaN: no bound, as below */
+    double spread; /* from the least to the largest value; of points, the diagonal of the box around them */
+    double ratio;  /* of the largest value to the least */
 };
 
 struct settings {

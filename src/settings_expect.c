@@ -3,6 +3,7 @@
  *     - {of: speed, fish: leader, least: 0.99, most: 1.01}                 every value
  *     - {of: [nose, tail], spread: 1e-5}                                   all values together
  *     - {of: steps, where: ["solver.method=ida"], ratio: 1.5}              of some members
+ *     - {fails: unstable, where: ["solver.method=euler"]}                  that are not complete, with reason
  */
 #include <math.h>
 #include <stdio.h>
@@ -29,6 +30,7 @@ void settings_expect_free(struct settings *settings) {
         struct settings_expectation *const one = &settings->expect[i];
         for (int c = 0; c < one->n_where; c++) free(one->where[c].value);
         free(one->where);
+        free(one->fails);
     }
     free(settings->expect);
     settings->expect = NULL;
@@ -51,10 +53,16 @@ static bool are_same(const char *one, const char *other) {
 
 int settings_expects_of(const struct settings *study, const struct settings_expectation *one, int member) {
     for (int c = 0; c < one->n_where; c++) {
-        const struct settings_condition *const condition = &one->where[c];
-        const struct settings_axis *const axis = &study->sweep[condition->axis];
-        const int value = settings_member_value(study, member, condition->axis);
-        if (!are_same(axis->value[value * axis->n_keys + condition->key], condition->value)) return 0;
+        // several values of one key are alternatives
+        int is_met = 0;
+        for (int d = 0; d < one->n_where && !is_met; d++) {
+            const struct settings_condition *const condition = &one->where[d];
+            if (condition->axis != one->where[c].axis || condition->key != one->where[c].key) continue;
+            const struct settings_axis *const axis = &study->sweep[condition->axis];
+            const int value = settings_member_value(study, member, condition->axis);
+            is_met = are_same(axis->value[value * axis->n_keys + condition->key], condition->value);
+        }
+        if (!is_met) return 0;
     }
     return 1;
 }
@@ -152,22 +160,10 @@ static void check_quantities(const struct stating *statement) {
     }
 }
 
-/* Read one statement into an entry that is zero. */
-static enum status read_statement(const struct stating *statement) {
+/* Read the quantities and their bounds. */
+static void read_bounds(const struct stating *statement, const struct yaml_node *of) {
     struct settings_expectation *const into = statement->into;
-    into->fish = -1;
-    if (statement->node->kind != YAML_MAP) {
-        yaml_errors_add(statement->errors, statement->node->mark, "%s: expects {of: QUANTITY, least: ..., most: ...}",
-                        statement->name);
-        return STATUS_OK;
-    }
-    settings_words_check(statement->node, statement->name, "of, fish, where, least, most, spread, ratio",
-                         statement->errors);
-    const struct yaml_node *const of = yaml_tree_find(statement->node, "of"),
-                                  *const fish = yaml_tree_find(statement->node, "fish"),
-                                  *const where = yaml_tree_find(statement->node, "where");
     if (of) into->of = settings_quantities_read(of, statement->name, SETTINGS_N_QUANTITIES, statement->errors);
-    if (fish) read_fish(statement, fish);
     into->least = read_number(statement, "least", -INFINITY);
     into->most = read_number(statement, "most", -INFINITY);
     into->spread = read_number(statement, "spread", 0);
@@ -179,6 +175,39 @@ static enum status read_statement(const struct stating *statement) {
                         "%s: expects of, and at least one of least, most, spread, ratio", statement->name);
     }
     check_quantities(statement);
+}
+
+/* Read "fails". */
+static enum status read_fails(const struct stating *statement, const struct yaml_node *fails) {
+    if (fails->kind != YAML_SCALAR || !*fails->text) {
+        yaml_errors_add(statement->errors, fails->mark, "%s.fails: expects words of the reason, as in unstable",
+                        statement->name);
+        return STATUS_OK;
+    }
+    settings_words_check(statement->node, statement->name, "fails, where", statement->errors);
+    statement->into->fails = strdup(fails->text);
+    return statement->into->fails ? STATUS_OK : no_memory();
+}
+
+/* Read one statement into an entry that is zero. */
+static enum status read_statement(const struct stating *statement) {
+    statement->into->fish = -1;
+    if (statement->node->kind != YAML_MAP) {
+        yaml_errors_add(statement->errors, statement->node->mark, "%s: expects {of: QUANTITY, least: ..., most: ...}",
+                        statement->name);
+        return STATUS_OK;
+    }
+    const struct yaml_node *const fails = yaml_tree_find(statement->node, "fails"),
+                                  *const fish = yaml_tree_find(statement->node, "fish"),
+                                  *const where = yaml_tree_find(statement->node, "where");
+    if (fails) {
+        TRY(read_fails(statement, fails));
+    } else {
+        settings_words_check(statement->node, statement->name, "of, fish, where, least, most, spread, ratio, fails",
+                             statement->errors);
+        if (fish) read_fish(statement, fish);
+        read_bounds(statement, yaml_tree_find(statement->node, "of"));
+    }
     if (!where) return STATUS_OK;
     const int n_before = statement->errors->n;
     TRY(read_where(statement, where));

@@ -150,8 +150,12 @@ static void show_bound(struct yaml_text *text, const char *name, double bound) {
 
 static void show_expectation(struct yaml_text *text, const struct settings *settings,
                              const struct settings_expectation *one) {
-    yaml_text_add(text, "  - {of: ");
-    show_quantities(text, one->of);
+    yaml_text_add(text, one->fails ? "  - {fails: " : "  - {of: ");
+    if (one->fails) {
+        yaml_text_add_scalar(text, one->fails);
+    } else {
+        show_quantities(text, one->of);
+    }
     if (one->fish >= 0) {
         yaml_text_add(text, ", fish: ");
         yaml_text_add_scalar(text, settings->fish[one->fish].name);
@@ -167,10 +171,12 @@ static void show_expectation(struct yaml_text *text, const struct settings *sett
         yaml_text_free(&assignment);
     }
     if (one->n_where > 0) yaml_text_add(text, "]");
-    show_bound(text, "least", one->least);
-    show_bound(text, "most", one->most);
-    show_bound(text, "spread", one->spread);
-    show_bound(text, "ratio", one->ratio);
+    if (!one->fails) {
+        show_bound(text, "least", one->least);
+        show_bound(text, "most", one->most);
+        show_bound(text, "spread", one->spread);
+        show_bound(text, "ratio", one->ratio);
+    }
     yaml_text_add(text, "}\n");
 }
 

@@ -84,6 +84,9 @@ enum status study_orders_print(const struct settings *study, const struct store_
 /* Print what the case expects of its members, and what is. Fails with STATUS_MISSED when a statement does not hold. */
 enum status study_expect(const struct settings *study, const struct store_member *members, FILE *stream);
 
+/* Whether a member has failed as the case expects it to. */
+int study_expects_failure(const struct settings *study, const struct store_member *members, int member);
+
 /* A table of texts that is filled cell by cell and printed in columns, aligned to the right but for the last one. */
 enum { STUDY_CELL_BYTES = 32 };
 struct study_table {

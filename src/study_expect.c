@@ -65,19 +65,65 @@ static int judge(const struct settings *study, const struct store_member *member
     return n_met == 4;
 }
 
+// ---- members that are to fail
+
+static int has_failed(const struct store_member *member, const char *words) {
+    return strncmp(member->status, "failed", strlen("failed")) == 0 && strstr(member->status, words) != NULL;
+}
+
+int study_expects_failure(const struct settings *study, const struct store_member *members, int member) {
+    for (int i = 0; i < study->n_expectations; i++) {
+        const struct settings_expectation *const one = &study->expect[i];
+        if (one->fails && settings_expects_of(study, one, member) && has_failed(&members[member], one->fails)) return 1;
+    }
+    return 0;
+}
+
+/* Whether all members that a statement is about have failed as it says. */
+static int judge_failures(const struct settings *study, const struct store_member *members,
+                          const struct settings_expectation *one, FILE *stream) {
+    int n = 0, wrong = -1;
+    for (int m = 0; m < settings_n_members(study); m++) {
+        if (!settings_expects_of(study, one, m)) continue;
+        n++;
+        if (!has_failed(&members[m], one->fails)) wrong = m;
+    }
+    fprintf(stream, "failures, %d member%s\n", n, n == 1 ? "" : "s");
+    if (wrong < 0) {
+        fprintf(stream, "  met      failed with '%s'\n", one->fails);
+    } else {
+        fprintf(stream, "  MISSED   member %d has not failed with '%s'\n", wrong, one->fails);
+    }
+    return wrong < 0;
+}
+
+// ---- all statements
+
+/* Whether a statement holds; if not, *what is the first thing that does not. */
+static int judge_all(const struct settings *study, const struct store_member *members, int number, const char **what,
+                     FILE *stream) {
+    const struct settings_expectation *const one = &study->expect[number];
+    *what = "failures";
+    if (one->fails) return judge_failures(study, members, one, stream);
+    int are_met = 1;
+    for (int q = 0; q < SETTINGS_N_QUANTITIES; q++) {
+        if (!(one->of >> q & 1) || judge(study, members, number, q, stream)) continue;
+        if (are_met) *what = settings_quantities[q].name;
+        are_met = 0;
+    }
+    return are_met;
+}
+
 enum status study_expect(const struct settings *study, const struct store_member *members, FILE *stream) {
-    int n_missed = 0, first_statement = 0, first_quantity = 0;
+    int n_missed = 0, first = 0;
+    const char *first_what = "", *what;
     if (study->n_expectations > 0) fprintf(stream, "\nExpected:\n");
     for (int i = 0; i < study->n_expectations; i++) {
-        for (int q = 0; q < SETTINGS_N_QUANTITIES; q++) {
-            if (!(study->expect[i].of >> q & 1) || judge(study, members, i, q, stream)) continue;
-            if (n_missed++ > 0) continue;
-            first_statement = i;
-            first_quantity = q;
-        }
+        if (judge_all(study, members, i, &what, stream) || n_missed++ > 0) continue;
+        first = i;
+        first_what = what;
     }
     if (n_missed == 0) return STATUS_OK;
-    return status_fail(STATUS_MISSED, "expect[%d]: %s is not what the case expects%s; the output says what it is",
-                       first_statement, settings_quantities[first_quantity].name,
-                       n_missed > 1 ? ", nor are others" : "");
+    return status_fail(STATUS_MISSED, "expect[%d]: %s: not what the case expects%s; the output says what is", first,
+                       first_what, n_missed > 1 ? ", nor are others" : "");
 }

@@ -78,6 +78,8 @@ static void are_equal(struct settings *one, struct settings *other) {
     for (int i = 0; i < one->n_expectations; i++) {
         const struct settings_expectation *const a = &one->expect[i], *const b = &other->expect[i];
         assert_int_equal(a->of, b->of);
+        assert_int_equal(a->fails != NULL, b->fails != NULL);
+        if (a->fails) assert_string_equal(a->fails, b->fails);
         assert_int_equal(a->fish, b->fish);
         assert_int_equal(a->n_where, b->n_where);
         for (int c = 0; c < a->n_where; c++) {
@@ -494,12 +496,16 @@ static const char stated[] =
     "expect:\n"
     "  - {of: speed, fish: 'b: c', least: 1, most: 2, ratio: 3}\n"
     "  - {of: [nose, tail], spread: 0, where: ['solver.rtol=0.0001', 'fish[1].start.position=[0,2]']}\n"
-    "  - {of: steps, least: -1, where: [solver.method=ida]}\n";
+    "  - {of: steps, least: -1, where: [solver.method=ida]}\n"
+    "  - {fails: 'is: unstable', where: [solver.rtol=1e-3, 'fish[1].start.position=[0, 2]', solver.method=rk4,\n"
+    "      solver.method=ida]}\n";
 
 static void a_statement_is_about_the_members_with_its_values(void **state) {
     (void)state;
     struct settings s = parse(stated);
-    assert_int_equal(s.n_expectations, 3);
+    assert_int_equal(s.n_expectations, 4);
+    assert_string_equal(s.expect[3].fails, "is: unstable");
+    assert_null(s.expect[0].fails);
     assert_int_equal(s.expect[0].of, 1 << 3);
     assert_int_equal(s.expect[0].fish, 1);
     assert_int_equal(s.expect[1].fish, -1);
@@ -507,8 +513,8 @@ static void a_statement_is_about_the_members_with_its_values(void **state) {
     NEAR(s.expect[0].ratio, 3, 0, 0);
     assert_true(isnan(s.expect[0].spread));
     // members: (ida 1e-3, 1), (.., 2), (rk4 1e-4, 1), (.., 2), (ida 1e-4, 1), (.., 2)
-    static const int are_meant[3][6] = {{1, 1, 1, 1, 1, 1}, {0, 0, 0, 1, 0, 1}, {1, 1, 0, 0, 1, 1}};
-    for (int i = 0; i < 3; i++) {
+    static const int are_meant[4][6] = {{1, 1, 1, 1, 1, 1}, {0, 0, 0, 1, 0, 1}, {1, 1, 0, 0, 1, 1}, {0, 1, 0, 0, 0, 0}};
+    for (int i = 0; i < 4; i++) {
         for (int m = 0; m < 6; m++) assert_int_equal(settings_expects_of(&s, &s.expect[i], m), are_meant[i][m]);
     }
     struct settings member;
@@ -619,7 +625,7 @@ static void every_failing_allocation_is_reported_and_leaves_nothing(void **state
                "  - {name: b, control: {desired_heading: 3}}\n"
                "sweep: [{keys: ['fish[*].nodes', solver.order], values: [[4, 1], [4, 2]]},\n"
                "  {key: solver.rtol, values: [0.1, 1e-3, 1e-4], refine: true, reference: {speed: 1}}]\n"
-               "expect: [{of: speed, where: [solver.order=1], least: 0}]\n");
+               "expect: [{of: speed, where: [solver.order=1], least: 0}, {fails: a}]\n");
     static const char *const assignments[] = {"fish[*].length=2", "wake.fade=0.1"};
     const int n_before = n_live;
     int n_failures = 0;

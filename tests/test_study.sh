@@ -193,16 +193,26 @@ check each_is_printed grep -qx 'nose of two, 2 values' out
 check with_what_is_and_what_should_be grep -qE '^  met      the least is 0\.9[0-9]*, expected at least 0\.9$' out
 check values_of_all_members_and_fish_count grep -qx 'speed, 8 values' out
 check the_same_number_is_the_same_value grep -qx 'tail of two, 2 values' out
-refused a_statement_that_does_not_hold_gives_exit_code_3 3 'expect[0]: speed is not what the case expects' \
+refused a_statement_that_does_not_hold_gives_exit_code_3 3 'expect[0]: speed: not what the case expects' \
     study stated.yaml -q -o unstated --set 'expect=[{of: speed, most: 0.5}, {of: nose, fish: one, spread: 0}]'
 check what_is_missed_is_printed grep -qE '^  MISSED   the largest is [01]\.[0-9]*, expected at most 0\.5$' out
 check all_statements_are_judged grep -qE '^  MISSED   they differ by [0-9.e-]+, expected at most 0$' out
 run info unstated/study.nc
 check info_tells_it_too eval 'test "$code" = 0 && has out "missed: expect[0]"'
-refused a_member_that_is_not_complete_misses 3 'expect[0]: speed is not what the case expects; ' \
+refused a_member_that_is_not_complete_misses 3 'expect[0]: speed: not what the case expects; ' \
     study small.yaml -q -o failing --set 'sweep=[{key: solver.max_steps, values: [1000, 2]}]' --set solver.method=euler \
     --set 'expect=[{of: speed, least: 0}]'
 check which_member_it_is_is_printed has out '  MISSED   member 1 is not complete'
+run study small.yaml -q -o doomed --set 'expect=[{fails: unstable at, where: [solver.method=euler]},
+    {of: speed, least: 0, where: [solver.method=ida, solver.method=rk4]}]'
+check failures_that_are_expected_give_exit_code_0 eval 'test "$code" = 0 && grep -q "^member 2 failed" out'
+check they_are_counted grep -qx 'failures, 2 members' out
+check several_values_of_a_key_are_alternatives grep -qx 'speed, 4 values' out
+refused a_failure_that_does_not_come_misses 3 'expect[0]: failures: not what' study small.yaml -q -o doomed --force \
+    --set 'expect=[{fails: unstable, where: [solver.method=euler, solver.method=rk4]}]'
+check which_member_does_not_fail_is_printed has out "  MISSED   member 4 has not failed with 'unstable'"
+refused other_words_of_the_reason_miss_too 3 'expect[0]: failures: not what' study small.yaml -q -o doomed --force \
+    --set 'expect=[{fails: no memory, where: [solver.method=euler]}]'
 run study stated.yaml -q -o plain --set 'sweep=[]'
 check without_a_sweep_nothing_is_expected eval 'test "$code" = 0 && ! grep -q Expected out'
 
