@@ -9,7 +9,9 @@
     scripts/numerics.py events       cost of starting the integrator anew at every event
     scripts/numerics.py start        cost of a muscle that starts at once
     scripts/numerics.py explicit     cost of the explicit methods against the stiffness of the body
-    scripts/numerics.py coupling     cost against solver.coupling_distance, two fish side by side
+    scripts/numerics.py coupling     cost of two fish near each other, coupled in the Jacobian and not
+    scripts/numerics.py school       cost of an event against the number of fish
+    scripts/numerics.py coupled      cost against the end of the iteration for coupled fish: builds variants, minutes
     scripts/numerics.py energy       energy audit against solver.rtol
     scripts/numerics.py constants    error and cost with other constants in the source: builds variants, takes minutes
     scripts/numerics.py threads      the same bits for any number of threads
@@ -22,6 +24,7 @@ import argparse
 import math
 import os
 import re
+import resource
 import shutil
 import subprocess
 import sys
@@ -74,6 +77,15 @@ class Bench:
         if done.returncode != 0:
             sys.exit(f"numerics.py: {' '.join(command)} failed:\n{done.stderr}")
         return Results(result)
+
+    def seconds(self, text, *assignments):
+        """Processor time of a run, the least of three, s."""
+        times = []
+        for _ in range(3):
+            before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+            self.run(text, *assignments)
+            times.append(resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before)
+        return min(times)
 
     def variant(self, file, old, new):
         """The program with what the pattern old finds in one source file replaced."""
@@ -234,15 +246,44 @@ def explicit(bench):
 
 def coupling(bench):
     rows = []
-    for apart in (0.3, 0.5, 0.75, 1, 1.5, 2):
-        for reach in (0, 100):
-            run = bench.run(PAIR, f"fish[1].start.position=[0, {apart:g}]", f"solver.coupling_distance={reach:g}")
-            if run:
-                rows.append([f"{apart:g}", "no" if reach == 0 else "yes", f"{run['least_distance'][-1]:.2f}",
-                             *per_event(run), f"{run['wall_time'][-1]:.2f}"])
-            else:
-                rows.append([f"{apart:g}", "no" if reach == 0 else "yes", "gave up", "", "", "", ""])
-    table(["apart [L]", "coupled", "least distance at the end [m]", *COUNTS], rows)
+    for layout, gaps in (("beside", (0.1, 0.2, 0.3, 0.5, 0.75, 1, 1.5, 2)), ("behind", (0.1, 0.2, 0.5, 1, 2))):
+        for gap in gaps:
+            # 0.25: the height of two fish, and what they draw together in four seconds
+            place = f"[0, {gap + 0.25:g}]" if layout == "beside" else f"[{gap + 1:g}, 0]"
+            runs, times = [], []
+            for reach in (0, 100):
+                keys = f"fish[1].start.position={place}", f"solver.coupling_distance={reach}"
+                runs.append(bench.run(PAIR, *keys))
+                times.append(bench.seconds(PAIR, *keys))
+            if None in runs:
+                rows.append([layout, f"{gap:g}", *["gave up"] * 6])
+                continue
+            (_, apart, apart_jacobians), (_, coupled, coupled_jacobians) = (per_event(run) for run in runs)
+            rows.append([layout, f"{gap:g}", f"{runs[1]['least_distance'][-1]:.2f}", apart, coupled, apart_jacobians,
+                         coupled_jacobians, f"{times[1] / times[0]:.2f}"])
+    table(["layout", "gap [L]", "at the end", "Newton iterations, not coupled", "coupled", "Jacobians, not coupled",
+           "coupled", "time, coupled over not"], rows)
+
+
+def lattice(n, spacing, end):
+    """n fish in a square, with heading control."""
+    side = math.ceil(math.sqrt(n))
+    places = [f"  - {{start: {{position: [{spacing[0] * (i % side):g}, {spacing[1] * (i // side):g}]}}}}"
+              for i in range(n)]
+    return "\n".join(["format: 1", f"time: {{end: {end}, shedding_interval: 0.01, output_interval: {end}}}",
+                      "wake: {lifetime: 2}", "defaults: {fish: {control: {law: heading}}}", "fish:", *places, ""])
+
+
+def school(bench):
+    rows = []
+    for n, spacing, reach in ((4, (1.5, 1.5), 0.5), (16, (1.5, 1.5), 0.5), (64, (1.5, 1.5), 0.5),
+                              (64, (1.5, 1.5), 0), (64, (1.5, 1.5), 1.5),
+                              (9, (1.3, 0.4), 0), (9, (1.3, 0.4), 0.5), (9, (1.3, 0.4), 100)):
+        case, key = lattice(n, spacing, 0.5), f"solver.coupling_distance={reach}"
+        run = bench.run(case, key)
+        cost = [*per_event(run), f"{1000 * bench.seconds(case, key) / 50:.1f}"] if run else ["gave up", "", "", ""]
+        rows.append([n, f"{spacing[0]:g} x {spacing[1]:g}", reach, *cost])
+    table(["fish", "spacing [L]", "coupling distance [L]", *COUNTS, "processor time of an event [ms]"], rows)
 
 
 def energy(bench):
@@ -284,11 +325,28 @@ def constants(bench):
     table(["constant", "modulus [Pa]", "tail [m]", *COUNTS], rows)
 
 
+# Where the iteration for coupled fish ends: part of the right-hand side, part of what ends Newton's.
+ENDS = [(relative, enough) for enough in (0, 0.1) for relative in ("1e-1", "1e-2", "1e-3", "1e-4", "1e-10")]
+
+
+def coupled(bench):
+    rows = []
+    place = "fish[1].start.position=[0, 0.3]"
+    for relative, enough in ENDS:
+        program = bench.variant("implicit.c", r"linear_relative = [^,]+, linear_enough = [^;]+;",
+                                f"linear_relative = {relative}, linear_enough = {enough};")
+        runs = [bench.run(PAIR, place, f"fish[*].body.modulus={modulus}", program=program) for modulus in ("1e6", "1e9")]
+        rows.append([relative, enough, *(cell for run in runs for cell in per_event(run)[1:])])
+    table(["relative", "of Newton's", "Newton iterations, 1e6 Pa", "Jacobians", "Newton iterations, 1e9 Pa", "Jacobians"],
+          rows)
+
+
 def threads(bench):
     rows = []
     reference = None
     for n in (1, 2, 3):
-        run = bench.run(PAIR, f"solver.threads={n}")
+        # enough fish that every loop is shared
+        run = bench.run(lattice(64, (1.4, 0.6), 0.1), f"solver.threads={n}")
         x = run["x"].tobytes() + run["wake_x"].tobytes()
         reference = reference or x
         rows.append([n, "yes" if x == reference else "NO"])
@@ -296,8 +354,8 @@ def threads(bench):
 
 
 TABLES = {function.__name__: function for function in
-          (counts, stiffness, tolerance, order, interval, events, start, explicit, coupling, energy,
-           constants, threads)}
+          (counts, stiffness, tolerance, order, interval, events, start, explicit, coupling, school, energy,
+           constants, coupled, threads)}
 
 
 def main():

@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "failing_malloc.h"
 #include "linear.h"
@@ -283,17 +284,74 @@ static void a_right_hand_side_without_a_finite_value_asks_for_a_retry(void **sta
     clear(&system);
 }
 
+// n fish in a square, the text of a case
+static void lattice(int n, double along, double beside, const char *solver, char *text, size_t size) {
+    const int side = (int)ceil(sqrt(n));
+    int length = snprintf(text, size, TIME "%sfish:\n", solver);
+    for (int f = 0; f < n; f++) {
+        length += snprintf(text + length, size - (size_t)length, "  - {start: {position: [%g, %g]}}\n",
+                           along * (f % side), beside * (f / side));
+    }
+    assert_true((size_t)length < size);
+}
+
+static double milliseconds(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return 1e3 * (double)now.tv_sec + 1e-6 * (double)now.tv_nsec;
+}
+
+static void a_school_costs_in_proportion_to_its_couplings(void **state) {
+    (void)state;
+    const struct {
+        int n;
+        double along, beside;
+        const char *solver;
+    } cases[] = {{4, 1.5, 1.5, ""},
+                 {16, 1.5, 1.5, ""},
+                 {64, 1.5, 1.5, ""},
+                 {144, 1.5, 1.5, ""},
+                 {10, 1.3, 0.4, "solver: {coupling_distance: 100}\n"}};
+    enum { TIMES = 10 };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        static char text[8000];
+        lattice(cases[i].n, cases[i].along, cases[i].beside, cases[i].solver, text, sizeof text);
+        struct system system;
+        build(&system, text, 1e-4);
+        school_ok(linear_setup(system.linear));
+        double filled = 0, factorised = 0, solved = 0;
+        for (int k = 0; k < TIMES; k++) {
+            const double start = milliseconds();
+            jacobian_at(&system, 370 + k);
+            const double full = milliseconds();
+            school_ok(linear_setup(system.linear));
+            const double ready = milliseconds();
+            school_ok(linear_solve(system.linear, system.b, system.x));
+            filled += (full - start) / TIMES;
+            factorised += (ready - full) / TIMES;
+            solved += (milliseconds() - ready) / TIMES;
+        }
+        const struct linear_counts counts = linear_count(system.linear);
+        const double iterations = (double)counts.iterations / TIMES;
+        print_message("%d fish, %d couplings: Jacobian %.2f ms, factors %.2f ms, solution %.2f ms, %.1f iterations\n",
+                      cases[i].n, system.setup.jacobian->n_couplings, filled, factorised, solved, iterations);
+        // a square has 2 n pairs of neighbours at most, each counted twice; more fish need no more iterations
+        const int all = cases[i].n * (cases[i].n - 1);
+        assert_true(system.setup.jacobian->n_couplings <= (i == 4 ? all : 4 * cases[i].n));
+        assert_true(iterations >= 1 && iterations <= 15);
+        assert_int_equal(counts.factorisations, cases[i].n);
+        clear(&system);
+    }
+}
+
 static void threads_change_no_bit(void **state) {
     (void)state;
     double *first = NULL;
     for (int threads = 1; threads <= 3; threads++) {
         // so many fish that the solutions too are shared
-        char text[8000];
-        int length = snprintf(text, sizeof text, TIME "solver: {threads: %d}\nfish:\n", threads);
-        for (int f = 0; f < 36; f++) {
-            length += snprintf(text + length, sizeof text - (size_t)length, "  - {start: {position: [%g, %g]}}\n",
-                               1.4 * (f % 6), 0.5 * (f / 6));
-        }
+        char solver[40], text[8000];
+        snprintf(solver, sizeof solver, "solver: {threads: %d}\n", threads);
+        lattice(64, 1.4, 0.5, solver, text, sizeof text);
         struct system system;
         build(&system, text, 1e-6);
         assert_int_equal(jacobian_threads(system.setup.school, JACOBIAN_LIGHT), threads);
@@ -354,6 +412,7 @@ int main(void) {
         cmocka_unit_test(factors_that_are_bad_are_made_anew_with_other_pivots),
         cmocka_unit_test(a_singular_block_is_final_at_first_and_a_retry_later),
         cmocka_unit_test(a_right_hand_side_without_a_finite_value_asks_for_a_retry),
+        cmocka_unit_test(a_school_costs_in_proportion_to_its_couplings),
         cmocka_unit_test(threads_change_no_bit),
         cmocka_unit_test(allocations_that_fail_are_reported),
     };
