@@ -225,12 +225,14 @@ static enum status give_up(const struct implicit *solver, int code, long steps) 
 // Where the next step shall end at the latest: steps that divide the rest of the interval into equal parts keep their
 // size from event to event, and with it the Jacobian.
 static double next_stop(const struct implicit *solver, double now, double end) {
-    // the step that IDA wants; 0 before the first one
+    long steps = 0;
     double step = 0;
+    IDAGetNumSteps(solver->ida, &steps);
     IDAGetCurrentStep(solver->ida, &step);
+    // nothing is known before the first step
+    if (steps == 0) return end;
     // less than IDA itself takes for the end reached
-    const double rounding = 1e-14 * end;
-    const double n_steps = step > 0 ? ceil((end - now - rounding) / step) : 1;
+    const double rounding = 1e-14 * end, n_steps = ceil((end - now - rounding) / step);
     return n_steps > 1 ? now + (end - now) / n_steps : end;
 }
 

@@ -110,6 +110,14 @@ static int newton_solve(SUNNonlinearSolver solver, N_Vector predicted, N_Vector 
     }
 }
 
+// IDA starts anew: nothing of what was may show
+static int newton_forget(SUNNonlinearSolver solver) {
+    struct newton *const newton = newton_of(solver);
+    newton->coefficient = 0;
+    newton->n_solutions = newton->n_iterations = newton->n_last = 0;
+    return 0;
+}
+
 static SUNNonlinearSolver_Type newton_type(SUNNonlinearSolver solver) {
     (void)solver;
     return SUNNONLINEARSOLVER_ROOTFIND;
@@ -168,6 +176,7 @@ enum status newton_create(SUNNonlinearSolver *solver, SUNContext context, N_Vect
     newton->rules = rules;
     N_VConst(0, newton->last);
     new->ops->gettype = newton_type;
+    new->ops->initialize = newton_forget;
     new->ops->solve = newton_solve;
     new->ops->free = newton_free;
     new->ops->setsysfn = newton_set_residual;

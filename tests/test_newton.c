@@ -186,6 +186,10 @@ static void the_last_correction_is_the_guess_while_the_step_stays(void **state) 
     problem.coefficient *= 1.001;
     assert_int_equal(solve(&problem, 1e-3, 0, &iterations), 0);
     assert_true(iterations > 2);
+    // nor after a restart, whatever the step
+    assert_int_equal(SUNNonlinSolInitialize(problem.solver), 0);
+    assert_int_equal(solve(&problem, 1e-3, 0, &iterations), 0);
+    assert_true(iterations > 2);
     clear(&problem);
 }
 
