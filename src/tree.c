@@ -9,8 +9,10 @@
 #include "tree_series.h"
 
 enum {
-    LEAF = 128, /* most points of a box that is not halved */
-    CHUNK = 16  /* boxes of targets whose far pairs one thread does */
+    LEAF = 128,         /* most points of a box that is not halved */
+    LEAF_GRADIENT = 64, /* the same for targets that ask for the gradient, whose direct sum costs twice as much */
+    CHUNK = 16,         /* boxes of targets whose far pairs one thread does */
+    SHARED = 64         /* fewer boxes than this are not worth more than one thread */
 };
 
 // The bound on the error of a pair takes all sources and targets to be as near to each other as their boxes allow. The
@@ -170,7 +172,7 @@ static enum status pair_up(struct tree *tree, int with_gradient, int target, int
     const double rx = to->x - from->x, ry = to->y - from->y, radius = to->radius + from->radius;
     const double square = tree->smoothing * tree->smoothing, scale = rx * rx + ry * ry + square;
     const double limit = tree->limits.theta[TREE_HARMONIC];
-    const double direct = (double)to->n * from->n;
+    const double direct = (with_gradient ? 2.0 : 1.0) * to->n * from->n;
     if (radius * radius <= limit * limit * scale) {
         struct tree_order order;
         if (find_order(&tree->limits, with_gradient, radius / sqrt(scale), square / scale, &order)) {
@@ -249,7 +251,7 @@ static enum status place_series(struct many_series *many, int n_boxes) {
 }
 
 static enum status plan(struct tree *tree, int n_targets, const double *x, const double *y, int with_gradient) {
-    TRY(tree_boxes_fill(&tree->targets, n_targets, x, y, NULL, LEAF));
+    TRY(tree_boxes_fill(&tree->targets, n_targets, x, y, NULL, with_gradient ? LEAF_GRADIENT : LEAF));
     const int n_boxes = tree->targets.n_boxes;
     if (n_boxes + 1 > tree->first_capacity) {
         tree->first_capacity = 0;
@@ -276,15 +278,15 @@ static enum status plan(struct tree *tree, int n_targets, const double *x, const
 
 static void gather(struct tree *tree, int threads) {
     const struct tree_boxes *const boxes = &tree->sources;
-    const int first = tree_boxes_level(boxes->depth);
+    const int first_leaf = tree_boxes_level(boxes->depth);
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
-    for (int b = first; b < boxes->n_boxes; b++) {
+    for (int b = first_leaf; b < boxes->n_boxes; b++) {
         if (tree->moments.of[b].order.harmonic >= 0) tree_series_gather(boxes, b, &tree->moments.of[b]);
     }
     for (int level = boxes->depth - 1; level >= 0; level--) {
-        const int end = tree_boxes_level(level + 1);
-#pragma omp parallel for num_threads(threads) schedule(dynamic)
-        for (int b = tree_boxes_level(level); b < end; b += TREE_LANES / 2) {
+        const int first = tree_boxes_level(level), end = tree_boxes_level(level + 1);
+#pragma omp parallel for num_threads(threads) schedule(dynamic) if (end - first >= SHARED)
+        for (int b = first; b < end; b += TREE_LANES / 2) {
             tree_series_join(boxes, b, end - b < TREE_LANES / 2 ? end - b : TREE_LANES / 2, tree->moments.of);
         }
     }
@@ -305,9 +307,9 @@ static void cross(struct tree *tree, int threads) {
                           tree->far_sorted + first, tree->moments.of, tree->series.of);
     }
     for (int level = 0; level < boxes->depth; level++) {
-        const int end = tree_boxes_level(level + 1);
-#pragma omp parallel for num_threads(threads) schedule(dynamic)
-        for (int b = tree_boxes_level(level); b < end; b += TREE_LANES / 2) {
+        const int first = tree_boxes_level(level), end = tree_boxes_level(level + 1);
+#pragma omp parallel for num_threads(threads) schedule(dynamic) if (end - first >= SHARED)
+        for (int b = first; b < end; b += TREE_LANES / 2) {
             tree_series_split(boxes, b, end - b < TREE_LANES / 2 ? end - b : TREE_LANES / 2, tree->series.of);
         }
     }
