@@ -121,35 +121,44 @@ static struct errors errors(int n, double smoothing, double tolerance, int n_tar
 }
 
 struct cloud {
+    const char *name;
     void (*place)(int i);
     int n;
     double smoothing;
 };
 
 static const struct cloud clouds[] = {
-    {square, 5000, 0},   {square, 5000, 0.2}, {square, 5000, 40},    {strips, 6400, 1e-5},
-    {strips, 6400, 0.2}, {strips, 6400, 1},   {cluster, 5000, 1e-5}, {cluster, 5000, .01},
-    {line, 5000, 0},     {line, 5000, 0.2},   {heaps, 4608, 0},      {heaps, 4608, 0.3},
-    {heaps, 4608, 3},    {far_away, 3001, 0}, {far_away, 3001, 0.2}, {one_place, 700, 0.2}};
-enum { N_CLOUDS = sizeof clouds / sizeof *clouds };
+    {"square", square, 5000, 0},        {"square", square, 5000, 0.2},    {"square", square, 5000, 40},
+    {"strips", strips, 6400, 1e-5},     {"strips", strips, 6400, 0.2},    {"strips", strips, 6400, 1},
+    {"cluster", cluster, 5000, 1e-5},   {"cluster", cluster, 5000, 0.01}, {"line", line, 5000, 0},
+    {"line", line, 5000, 0.2},          {"heaps", heaps, 4608, 0},        {"heaps", heaps, 4608, 0.3},
+    {"heaps", heaps, 4608, 3},          {"far away", far_away, 3001, 0},  {"far away", far_away, 3001, 0.2},
+    {"one place", one_place, 700, 0.2},
+};
+static const double tolerances[] = {1e-4, 1e-6, 1e-8, 1e-10, 1e-12};
+enum { N_CLOUDS = sizeof clouds / sizeof *clouds, N_TOLERANCES = sizeof tolerances / sizeof *tolerances };
 
 static void errors_are_below_the_tolerance_and_not_far_below(void **state) {
     (void)state;
-    const double tolerances[] = {1e-4, 1e-6, 1e-8, 1e-10, 1e-12};
-    for (int t = 0; t < 5; t++) {
-        struct errors worst = {0};
-        for (int c = 0; c < N_CLOUDS; c++) {
-            const struct cloud *const cloud = &clouds[c];
-            fill(cloud->n, cloud->place);
+    double worst[N_TOLERANCES] = {0};
+    for (int c = 0; c < N_CLOUDS; c++) {
+        const struct cloud *const cloud = &clouds[c];
+        struct errors most = {0};  // in tolerances
+        fill(cloud->n, cloud->place);
+        for (int t = 0; t < N_TOLERANCES; t++) {
             const struct errors now = errors(cloud->n, cloud->smoothing, tolerances[t], cloud->n, x, y);
             // rounding of both sums: some 1e-15 each
             NEAR(now.velocity, 0, tolerances[t] + 1e-14, 0);
             NEAR(now.gradient, 0, 20 * tolerances[t] + 1e-13, 0);
-            keep_worse(&worst.velocity, now.velocity);
+            keep_worse(&worst[t], now.velocity);
+            keep_worse(&most.velocity, now.velocity / tolerances[t]);
+            keep_worse(&most.gradient, now.gradient / tolerances[t]);
         }
-        // the degrees are not higher than they must be for the worst
-        assert_true(worst.velocity > tolerances[t] / 50);
+        print_message("%-9s smoothing %-5g errors in tolerances: velocity %.3f, gradient %.3f\n", cloud->name,
+                      cloud->smoothing, most.velocity, most.gradient);
     }
+    // the degrees are not higher than the worst of these clouds needs
+    for (int t = 0; t < N_TOLERANCES; t++) assert_true(worst[t] > tolerances[t] / 50);
 }
 
 static void targets_need_not_be_the_sources(void **state) {
