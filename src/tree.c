@@ -17,7 +17,7 @@ enum {
 
 // The bound on the error of a pair takes all sources and targets to be as near to each other as their boxes allow. The
 // true errors are so much smaller (tests/test_tree.c) that the bound is held to this many tolerances.
-static const double allowance = 8;
+static const double allowance = 4;
 
 // boxes that interact by a direct sum
 struct near {

@@ -8,8 +8,8 @@
  *     |error of the velocity| <= tolerance A,      A = sum_j |Gamma_j| / (2 pi sqrt(|x - x_j|^2 + e^2)):
  *
  * A is about the velocity that the vortices would have if nothing cancelled. That is what tests hold it to; the bound
- * that the degrees are chosen by is 8 times more, errors in wakes are 100 times less. The error of a gradient is at
- * most 20 tolerance sum_j |Gamma_j| / (2 pi (|x - x_j|^2 + e^2)). Rounding adds some 1e-15 of the same sums.
+ * that the degrees are chosen by is 4 times more, errors in wakes are 100 times less. The error of a gradient is at
+ * most 50 tolerance sum_j |Gamma_j| / (2 pi (|x - x_j|^2 + e^2)). Rounding adds some 1e-15 of the same sums.
  *
  * The sums are in an order that depends on the points only: same bits for any number of threads. */
 #ifndef TREE_H
