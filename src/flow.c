@@ -74,6 +74,7 @@ static enum status flow_fill(struct flow *flow) {
                                   &flow->motion[1], &flow->motion[2], &flow->motion[3]};
     for (size_t i = 0; i < sizeof at_points / sizeof *at_points; i++) TRY(doubles(at_points[i], flow->n_points));
     TRY(make_chunks(flow));
+    TRY(doubles(&flow->opposite, flow->sheet.n));
     TRY(summation_create(&flow->summation));
     if (school->wake_tolerance <= 0) return STATUS_OK;
     return forecast_create(&flow->forecast, school, flow->points);
@@ -105,7 +106,8 @@ void flow_free(struct flow *flow) {
                            flow->v_x,         flow->motion[0],
                            flow->motion[1],   flow->motion[2],
                            flow->motion[3],   flow->released_range,
-                           flow->sheet_range, flow->by_forecast};
+                           flow->sheet_range, flow->by_forecast,
+                           flow->opposite};
     for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
     vortices_free(&flow->released);
     vortices_free(&flow->nascent);
@@ -150,6 +152,7 @@ static void place_sheet(struct flow *flow, int f, const double *y) {
         flow->sheet.x[first + j] = fish_mean(&fish->sheet_point[j], y + fish->at.x);
         flow->sheet.y[first + j] = fish_mean(&fish->sheet_point[j], y + fish->at.y);
         flow->sheet.circulation[first + j] = fish->sheet_weight[j] * y[fish->at.sheet + j];
+        flow->opposite[first + j] = -flow->sheet.circulation[first + j];
     }
 }
 
@@ -213,50 +216,72 @@ enum status flow_foretell(struct flow *flow, const struct state *state) {
     return STATUS_OK;
 }
 
-// the bound sheet of the fish that a chunk belongs to: at control points with no smoothing, at the tail with some, not at
-// the midpoints
-static void induce_own(const struct flow *flow, const struct chunk *chunk, const struct induced *all) {
-    const struct fish *fish = &flow->school->fish[chunk->fish];
-    const struct range own = flow->points[chunk->fish], sheet = flow->sheet_range[chunk->fish];
-    const struct vortices unsmoothed = {.n = flow->sheet.n,
-                                        .x = flow->sheet.x,
-                                        .y = flow->sheet.y,
-                                        .circulation = flow->sheet.circulation,
-                                        .n_groups = 1,
-                                        .group = &(struct vortex_group){{0, flow->sheet.n}, 0}};
-    const int end = chunk->at.first + chunk->at.n, tail = own.first + flow_tail(fish);
-    const int n_control = own.first + fish->n_control - chunk->at.first;
-    if (n_control > 0) {
-        const struct range control = {chunk->at.first, n_control < chunk->at.n ? n_control : chunk->at.n};
-        const struct induced at = vortices_targets(all, control);
-        vortices_induce(&unsmoothed, sheet, &at);
-    }
-    if (tail >= chunk->at.first && tail < end) {
-        const struct induced at = vortices_targets(all, (struct range){tail, 1});
-        vortices_induce(&flow->sheet, sheet, &at);
-    }
+// the part of a chunk that lies in a range of points
+static struct range overlap(const struct chunk *chunk, struct range range) {
+    const int first = chunk->at.first > range.first ? chunk->at.first : range.first;
+    const int end = chunk->at.first + chunk->at.n, range_end = range.first + range.n;
+    return (struct range){first, (end < range_end ? end : range_end) - first};
 }
 
-static void evaluate_chunk(const struct flow *flow, const struct chunk *chunk, const struct induced *all) {
+// add what the own bound sheet, with one smoothing and these circulations, causes at some points of its fish
+static void induce_own(const struct flow *flow, const struct chunk *chunk, struct range points, double smoothing,
+                       double *circulation, const struct induced *all) {
+    const struct range which = overlap(chunk, points);
+    if (which.n <= 0) return;
+    const struct vortices sheet = {.n = flow->sheet.n,
+                                   .x = flow->sheet.x,
+                                   .y = flow->sheet.y,
+                                   .circulation = circulation,
+                                   .n_groups = 1,
+                                   .group = &(struct vortex_group){{0, flow->sheet.n}, smoothing}};
+    const struct induced at = vortices_targets(all, which);
+    vortices_induce(&sheet, flow->sheet_range[chunk->fish], &at);
+}
+
+// the bound sheets at a chunk: those of other fish; the own one at control points with no smoothing, at the tail with
+// some, not at the midpoints
+static void induce_sheets(const struct flow *flow, const struct chunk *chunk, int by_tree, const struct induced *all) {
+    const struct fish *fish = &flow->school->fish[chunk->fish];
+    const struct range own = flow->sheet_range[chunk->fish], points = flow->points[chunk->fish];
+    const struct range control = {points.first, fish->n_control}, tail = {points.first + flow_tail(fish), 1};
+    induce_own(flow, chunk, control, 0, flow->sheet.circulation, all);
+    if (by_tree) {
+        // the tree has summed all of them at all points
+        const struct range but_tail = {points.first, points.n - 1};
+        induce_own(flow, chunk, but_tail, fish->sheet_smoothing, flow->opposite, all);
+        return;
+    }
+    const struct induced at = vortices_targets(all, chunk->at);
+    const int behind = own.first + own.n;
+    vortices_induce(&flow->sheet, (struct range){0, own.first}, &at);
+    vortices_induce(&flow->sheet, (struct range){behind, flow->sheet.n - behind}, &at);
+    induce_own(flow, chunk, tail, fish->sheet_smoothing, flow->sheet.circulation, all);
+}
+
+static void evaluate_chunk(const struct flow *flow, const struct chunk *chunk, int by_tree, const struct induced *all) {
     const struct school *school = flow->school;
     const struct induced at = vortices_targets(all, chunk->at);
-    for (int p = 0; p < at.n; p++) flow_external(school, flow->t, at.y[p], &at.u[p], &at.v[p]);
-    for (int p = 0; at.u_x && p < at.n; p++) {
-        at.u_x[p] = at.v_x[p] = 0;
-        at.u_y[p] = school->shear;
+    for (int p = 0; p < at.n; p++) {
+        double u, v;
+        flow_external(school, flow->t, at.y[p], &u, &v);
+        at.u[p] += u;
+        at.v[p] += v;
     }
+    for (int p = 0; at.u_x && p < at.n; p++) at.u_y[p] += school->shear;
     if (flow->by_forecast[chunk->fish]) {
         forecast_induce(flow->forecast, chunk->fish, chunk->at.first, &at);
     } else {
         vortices_induce(&flow->released, (struct range){0, flow->released.n}, &at);
     }
     vortices_induce(&flow->nascent, (struct range){0, flow->nascent.n}, &at);
-    // the sheets of the fish before and behind it in the list, and its own
-    const struct range own = flow->sheet_range[chunk->fish];
-    const int behind = own.first + own.n;
-    vortices_induce(&flow->sheet, (struct range){0, own.first}, &at);
-    vortices_induce(&flow->sheet, (struct range){behind, flow->sheet.n - behind}, &at);
-    induce_own(flow, chunk, all);
+    induce_sheets(flow, chunk, by_tree, all);
+}
+
+static void set_to_zero(const struct induced *all) {
+    double *const values[] = {all->u, all->v, all->u_x, all->u_y, all->v_x};
+    for (size_t k = 0; k < sizeof values / sizeof *values; k++) {
+        if (values[k]) memset(values[k], 0, (size_t)all->n * sizeof *values[k]);
+    }
 }
 
 static void evaluate(struct flow *flow, int with_gradient) {
@@ -268,8 +293,16 @@ static void evaluate(struct flow *flow, int with_gradient) {
     }
     const int n_sources = flow->sheet.n + flow->nascent.n + (flow->has_released ? flow->released.n : 0);
     const int threads = vortices_threads(flow->school->threads, (double)flow->n_points * n_sources);
+    const double tolerance = flow->school->wake_tolerance;
+    int by_tree = summation_by_tree(&flow->sheet, flow->n_points, tolerance);
+    set_to_zero(&all);
+    if (by_tree && summation_induce(flow->summation, &flow->sheet, tolerance, threads, &all) != STATUS_OK) {
+        // without memory for a tree there is still the direct sum
+        by_tree = 0;
+        set_to_zero(&all);
+    }
 #pragma omp parallel for num_threads(threads) schedule(static)
-    for (int c = 0; c < flow->n_chunks; c++) evaluate_chunk(flow, &flow->chunk[c], &all);
+    for (int c = 0; c < flow->n_chunks; c++) evaluate_chunk(flow, &flow->chunk[c], by_tree, &all);
 }
 
 void flow_velocity(struct flow *flow) {
@@ -407,8 +440,8 @@ void flow_response(const struct flow *flow, int f, int g, struct flow_block *blo
     derive_sources(&(struct target){flow, f, g, 0, block});
 }
 
-// the external flow, the nascent vortices and all bound sheets at the released ones
-static void sheets_at_wake(const struct flow *flow, const struct induced *all) {
+// the external flow, the nascent vortices and, where they are not summed by the tree, the sheets at the released ones
+static void others_at_wake(const struct flow *flow, int sheets_too, const struct induced *all) {
     const int n_chunks = (all->n + CHUNK - 1) / CHUNK;
     const int threads = vortices_threads(flow->school->threads, (double)all->n * flow->sheet.n);
 #pragma omp parallel for num_threads(threads) schedule(static)
@@ -417,17 +450,20 @@ static void sheets_at_wake(const struct flow *flow, const struct induced *all) {
         const struct induced at = vortices_targets(all, (struct range){first, rest < CHUNK ? rest : CHUNK});
         for (int i = 0; i < at.n; i++) flow_external(flow->school, flow->t, at.y[i], &at.u[i], &at.v[i]);
         vortices_induce(&flow->nascent, (struct range){0, flow->nascent.n}, &at);
-        vortices_induce(&flow->sheet, (struct range){0, flow->sheet.n}, &at);
+        if (sheets_too) vortices_induce(&flow->sheet, (struct range){0, flow->sheet.n}, &at);
     }
 }
 
 enum status flow_at_wake(const struct flow *flow, double *u, double *v) {
     const struct vortices *const released = &flow->released;
     const struct induced at = {.n = released->n, .x = released->x, .y = released->y, .u = u, .v = v};
-    sheets_at_wake(flow, &at);
+    const double tolerance = flow->school->wake_tolerance;
+    const int by_tree = summation_by_tree(&flow->sheet, released->n, tolerance);
     const int threads = vortices_threads(flow->school->threads, (double)released->n * released->n);
-    if (summation_by_tree(released, released->n, flow->school->wake_tolerance)) {
-        return summation_induce(flow->summation, released, flow->school->wake_tolerance, threads, &at);
+    others_at_wake(flow, !by_tree, &at);
+    if (by_tree) TRY(summation_induce(flow->summation, &flow->sheet, tolerance, threads, &at));
+    if (summation_by_tree(released, released->n, tolerance)) {
+        return summation_induce(flow->summation, released, tolerance, threads, &at);
     }
     return mutual_add_velocity(released, threads, u, v);
 }

@@ -43,8 +43,9 @@ struct flow {
     struct vortices nascent;      /* one of each fish                               (n_fish) */
     struct vortices sheet;        /* the bound vortices of all fish */
     struct range *sheet_range;    /* of each fish                                   (n_fish) */
+    double *opposite;             /* circulations of the bound vortices with the other sign (sheet.n) */
 
-    struct summation *summation; /* for the wakes at one another */
+    struct summation *summation; /* where wakes or sheets are summed by the tree */
     struct forecast *forecast;   /* of the released vortices; NULL: they are never foretold */
     int is_foretold;             /* whether there is one for this event */
     unsigned char *by_forecast;  /* whether it serves the fish where it is now        (n_fish) */

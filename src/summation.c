@@ -8,8 +8,8 @@
 
 /* Where the tree is faster than direct sums: at least so many vortices, and so many interactions. Measured by
  * `make bench`; the ways differ little near these numbers. */
-static const int fewest_vortices = 3000;
-static const double fewest_interactions = 9e6;
+static const int fewest_vortices = 1000;
+static const double fewest_interactions = 6e6;
 
 struct summation {
     struct tree *tree;
