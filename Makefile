@@ -95,8 +95,8 @@ verify: deps  ## check the program against classical results (minutes) and write
 	@$(parallel) $(verify_program)
 	@scripts/verify.sh $(verify_program) $(B)/verify
 
-bench: $(program) $(bench_programs)  ## measure the inner loops, and time, memory and counts of the benchmark cases
-	@OMP_WAIT_POLICY=passive scripts/bench.sh $(B)
+bench: $(program) $(bench_programs)  ## measure: inner loops, phases, schools, whole runs (doc/performance.md)
+	@scripts/bench.sh $(B)
 
 clean:  ## remove everything that was built
 	$(quiet)rm -rf build build-sanitize

@@ -1,20 +1,28 @@
 #!/usr/bin/env bash
-# Measure whole runs of a program on one core: time, memory, work of the solver.
+# Measure the program: inner loops, fast sums, where the time of runs goes, schools, whole processes.
 #
-#   scripts/bench.sh PROGRAM
+#   scripts/bench.sh BUILD      BUILD: the folder with shoal and bench/
 #
-# Exit code 3 if a limit is missed.
+# Exit code 3 if a limit is missed. doc/performance.md explains the numbers. Run it on a machine that does nothing else.
 set -euo pipefail
 
-program=$(realpath "${1:?usage: scripts/bench.sh PROGRAM}")
+build=$(realpath "${1:?usage: scripts/bench.sh BUILD}")
+program=$build/shoal
 cases=$(realpath "$(dirname "$0")/../cases")
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
+# threads that wait sleep, as they do in the program
+export OMP_WAIT_POLICY=${OMP_WAIT_POLICY-passive}
+
+# A heading over a table.
+heading() {
+    printf '\n== %s\n\n' "$1"
+}
 
 # Run a command; print wall seconds, processor seconds and peak memory in MB.
 measured() {
-    /usr/bin/python3 - "$@" <<'EOF'
+    /usr/bin/python3 - "$@" <<'PYTHON'
 import resource, subprocess, sys, time
 start = time.perf_counter()
 code = subprocess.run(sys.argv[1:], stdin=subprocess.DEVNULL).returncode
@@ -23,7 +31,7 @@ used = resource.getrusage(resource.RUSAGE_CHILDREN)
 if code:
     sys.exit(f"exit code {code}: {' '.join(sys.argv[1:])}")
 print(f"{wall:.2f} {used.ru_utime + used.ru_stime:.2f} {used.ru_maxrss / 1024:.0f}")
-EOF
+PYTHON
 }
 
 # What `shoal info` says per event of the result run.nc: steps, newton_iterations or jacobian_evaluations.
@@ -31,39 +39,78 @@ per_event() {
     "$program" info run.nc | awk -v name="$1" '$1 == name { print $3 }'
 }
 
-# Run a case and print its line of the first table: name, limits in seconds and in MB.
-whole_run() {
-    local name=$1 most_seconds=$2 most_memory=$3 wall processor memory verdict=ok
-    read -r wall processor memory < <(measured "$program" run "$cases/$name.yaml" -q --force -o run.nc)
-    [[ -n ${memory-} ]] || exit 1
-    if awk "BEGIN { exit !($wall > $most_seconds || $memory > $most_memory) }"; then
+# A case of 64 fish: rows a length apart, every second one shifted and in antiphase.
+school_of_64() {
+    printf 'format: 1\ntime: {end: 10, shedding_interval: 0.01, output_interval: 0.1}\noutput: {wake_interval: 1}\n'
+    printf 'defaults: {fish: {control: {law: heading}}}\nfish:\n'
+    local row column
+    for row in {0..7}; do
+        for column in {0..7}; do
+            printf '  - {start: {position: [%d, %d]}, wave: {phase: %d}}\n' $((2 * column + row % 2)) "$row" \
+                $((180 * (row % 2)))
+        done
+    done
+}
+
+# Judge a number against its limit: what, number, limit.
+judge() {
+    local verdict=ok
+    if awk "BEGIN { exit !($2 > $3) }"; then
         verdict=MISSED
         missed=1
     fi
-    local simulated
+    printf '%-58s %10s %10s  %s\n' "$1" "$2" "$3" "$verdict"
+}
+
+# Run a case and print its line: name, file, threads. Leaves its wall clock in $wall.
+whole_run() {
+    local name=$1 case=$2 threads=$3 processor memory simulated
+    read -r wall processor memory < <(measured "$program" run "$case" -q --force --threads "$threads" -o run.nc)
+    [[ -n ${memory-} ]] || exit 1
     simulated=$("$program" info run.nc | sed -n 's/.* to \([0-9.]*\) s;.*/\1/p')
-    printf '%-12s %7s %7s %7.1f %7s %7s %7s %7s %6s %6s  %s\n' "$name" "$wall" "$processor" \
-        "$(awk "BEGIN { print $simulated / $wall }")" "$memory" "$(per_event steps)" "$(per_event newton_iterations)" \
-        "$(per_event jacobian_evaluations)" "$most_seconds" "$most_memory" "$verdict"
+    printf '%-12s %7s %8s %8s %8.2f %7s %7s %7s %7s\n' "$name" "$threads" "$wall" "$processor" \
+        "$(awk "BEGIN { print $simulated / $wall }")" "$memory" "$(per_event steps)" \
+        "$(per_event newton_iterations)" "$(per_event jacobian_evaluations)"
 }
 
 missed=0
-printf '%-12s %7s %7s %7s %7s %7s %7s %7s %6s %6s\n' \
-    '' 'wall' 'cpu' 'x real' 'memory' 'steps' 'Newton' 'Jacob.' 'limit' 'limit' \
-    'case' 's' 's' 'time' 'MB' '/event' '/event' '/event' 's' 'MB'
-whole_run single_free 4 150
-whole_run diamond 20 150
+heading 'Inner loops (tests/bench/kernels.c)'
+"$build/bench/kernels"
+heading 'Fast sums (tests/bench/tree.c)'
+"$build/bench/tree"
+heading 'Where the time goes (tests/bench/phases.c)'
+"$build/bench/phases" "$cases" | tee phases.txt
+heading 'Schools with full wakes (tests/bench/phases.c)'
+"$build/bench/phases" "$cases" --schools | tee schools.txt
 
-printf '\nStiffness: one fish, 2 s, published second moment, 100 events per second\n'
-printf '%-12s %7s %7s %7s %7s\n' 'modulus Pa' 'wall s' 'steps' 'Newton' 'Jacob.'
+heading 'Whole processes with their output'
+printf '%-12s %7s %8s %8s %8s %7s %7s %7s %7s\n' '' threads 'wall s' 'cpu s' 'x real' MB steps Newton Jacob.
+whole_run single_free "$cases/single_free.yaml" 1
+single=$wall
+whole_run diamond "$cases/diamond.yaml" 1
+one=$wall
+whole_run diamond "$cases/diamond.yaml" 2
+two=$wall
+school_of_64 >school64.yaml
+whole_run '64 fish' school64.yaml 2
+school=$wall
+
+heading 'Stiffness: one fish, 2 s, published second moment, 100 events per second'
+printf '%-12s %8s %7s %7s %7s\n' 'modulus Pa' 'wall s' steps Newton Jacob.
 for modulus in 1e4 1e6 1e8 1e10; do
     read -r wall _ < <(measured "$program" run "$cases/demo.yaml" -q --force -o run.nc --set time.end=2 \
         --set "fish[0].body.second_moment=published" --set "fish[0].body.modulus=$modulus")
-    printf '%-12s %7s %7s %7s %7s\n' "$modulus" "$wall" "$(per_event steps)" "$(per_event newton_iterations)" \
+    printf '%-12s %8s %7s %7s %7s\n' "$modulus" "$wall" "$(per_event steps)" "$(per_event newton_iterations)" \
         "$(per_event jacobian_evaluations)"
 done
 
-if ((missed)); then
-    echo 'a limit was missed' >&2
-    exit 3
-fi
+heading 'Limits'
+printf '%-58s %10s %10s\n' '' here limit
+judge 'single_free, 20 s: wall s' "$single" 1
+judge 'diamond, 25 s, 2 threads: wall s' "$two" 5
+judge 'diamond, 2 threads: times the floor' "$(awk '$1 == "diamond" && $2 == 2 { print $7 }' phases.txt)" 2.5
+judge 'diamond: time with 2 threads over time with 1' "$(awk "BEGIN { printf \"%.2f\", $two / $one }")" 0.556
+judge 'diamond: output, % of the time' "$(awk '$1 == "diamond" && $2 == 1 { print $15 }' phases.txt)" 3
+judge '64 fish, 10 s, 2 threads: wall s' "$school" 40
+judge '256 fish: time per event over that of 64' "$(awk '/^256 fish take/ { print $4 }' schools.txt)" 6
+exit $((missed ? 3 : 0))
