@@ -2,7 +2,8 @@
 """Pictures of studies and comparisons: study.nc of `shoal study`, and the file of `shoal compare`. Used by plot.py.
 
     a refined axis                  errors against resolution, with triangles of slope 1 and 2
-    solver.method as an axis        cost against the other axis, a line per method
+    solver.method as an axis        cost against the first axis, a line per method; where there are several settings of a
+                                    method the cheapest that is accurate, also as a table
     a position as the only axis     a map of the places, a number at each
     two axes of numbers             a map over both
     anything else                   speed, cost of transport and Strouhal number over the first axis
@@ -138,19 +139,61 @@ def plot_convergence(study, refined, figure):
     legend_above(all_axes[0], figure, 4 if first.size == 1 else 2)
 
 
+ACCURATE = 1e-4  # error of nose and tail at which methods are compared [m]
+
+
+def reference_errors(study, x):
+    """How far nose or tail are from those of the most accurate implicit member with the same x [m]."""
+    errors = np.full(x.size, np.nan)
+    rtol = np.where((study["solver_method"] == "ida") & study.complete, study["solver_rtol"], np.inf)
+    for value in np.unique(x):
+        rows = np.flatnonzero(x == value)
+        best = rows[np.argmin(rtol[rows])]
+        for end in ("nose", "tail"):
+            off = np.linalg.norm(study[end][rows] - study[end][best], axis=2).max(axis=1)
+            errors[rows] = np.fmax(errors[rows], off)
+        errors[best] = np.inf  # the reference itself does not compete
+    return errors
+
+
+def cheapest(study, over, errors):
+    """Of each method, at each x, the accurate member with the fewest evaluations; printed as a table."""
+    x, method = study[over], study["solver_method"]
+    wall, evaluations = study["wall_time"], study["residual_evaluations"]
+    accurate = np.flatnonzero(study.complete & (errors <= ACCURATE))
+    chosen = []
+    print(f"| {study.label(over)} | method | setting | error [m] | evaluations | wall time [s] |")
+    print("|" + 6 * "--:|")
+    for value in np.unique(x):
+        for word in dict.fromkeys(method):
+            rows = [m for m in accurate if x[m] == value and method[m] == word]
+            if not rows:
+                print(f"| {value:g} | {word} | none within {ACCURATE:g} m | | | |")
+                continue
+            m = min(rows, key=lambda row: evaluations[row])
+            step, rtol = study["solver_step"][m], study["solver_rtol"][m]
+            setting = f"step {step:g}" if step > 0 else f"rtol {rtol:g}"
+            print(f"| {value:g} | {word} | {setting} | {errors[m]:.1e} | {evaluations[m]:.0f} | {wall[m]:.2g} |")
+            chosen.append(m)
+    return np.isin(np.arange(x.size), chosen)
+
+
 def plot_methods(study, over, figure):
     """Wall time and evaluations against a key, a line per method."""
     method, x = study["solver_method"], study[over]
+    shown = study.complete
+    if "solver_step" in study.data.variables:
+        shown = cheapest(study, over, reference_errors(study, x))
     panels = figure.subplots(1, 2)
     for axes, (name, label) in zip(
         panels, [("wall_time", "wall time [s]"), ("residual_evaluations", "evaluations of the equations")]
     ):
         for i, word in enumerate(dict.fromkeys(method)):
-            rows = (method == word) & study.complete
+            rows = (method == word) & shown
             if not rows.any():
                 continue
             axes.loglog(x[rows], study[name][rows], label={"ida": "implicit (ida)"}.get(word, word), **style(i))
-        y = study[name][(method != "ida") & study.complete]
+        y = study[name][(method != "ida") & shown]
         if y.size:
             right = x.max() / 30
             low = np.median(y)
@@ -159,7 +202,7 @@ def plot_methods(study, over, figure):
         axes.set_xlabel(study.label(over))
         axes.set_ylabel(label)
         axes.grid(which="major", lw=0.3, color="#cccccc")
-    panels[0].legend()
+    legend_above(panels[0], figure, 5)
 
 
 def digits_for(values):

@@ -220,7 +220,7 @@ check without_a_sweep_nothing_is_expected eval 'test "$code" = 0 && ! grep -q Ex
 
 draws() {  # file
     rm -f picture.png
-    /usr/bin/python3 "$scripts/plot.py" study "$1" picture.png && test -s picture.png
+    /usr/bin/python3 "$scripts/plot.py" study "$1" picture.png >drawn && test -s picture.png
 }
 if /usr/bin/python3 -c 'import netCDF4, matplotlib' 2>err; then
     check a_picture_of_orders draws refined-study/study.nc
@@ -236,6 +236,13 @@ if /usr/bin/python3 -c 'import netCDF4, matplotlib' 2>err; then
     run study refined.yaml -o lonely -q --set time.end=0.04 --set time.shedding_interval=0.02 --set solver.method=rk4 \
         --set solver.max_steps=3 --set 'sweep=[{key: solver.step, values: [0.01, 0.005, 0.0025], refine: true}]'
     check no_picture_without_errors eval '! draws lonely/study.nc && has check.out "no errors to draw"'
+    run study refined.yaml -o costs -q --set time.end=0.08 --set time.shedding_interval=0.01 --set 'sweep=[{
+        keys: ["fish[*].body.modulus", solver.method, solver.step, solver.rtol],
+        values: [[1e5, ida, 0, 1e-8], [1e5, ida, 0, 1e-4], [1e5, rk4, 1e-3, 1e-5], [1e5, euler, 1e-2, 1e-5]]}]'
+    check a_picture_of_costs draws costs/study.nc
+    check the_reference_does_not_compete has drawn '| 100000 | ida | rtol 0.0001 |'
+    check a_fixed_step_is_a_setting has drawn '| 100000 | rk4 | step 0.001 |'
+    check a_method_without_an_accurate_member_is_named has drawn '| 100000 | euler | none within 0.0001 m |'
     run compare refined.yaml --set 'sweep=[]' --set time.end=0.08 --repeats 1 -q -o compare.nc
     check a_picture_of_a_comparison draws compare.nc
     check no_picture_of_one_run eval '! draws single/member-0000.nc && has check.out "neither a study.nc nor"'
