@@ -38,7 +38,9 @@ static int judge(struct newton *newton, double size, double tolerance) {
         return size <= 1e-4 * tolerance ? SUN_NLS_SUCCESS : SUN_NLS_CONTINUE;
     }
     const double rate = pow(size / newton->first, 1.0 / (newton->done - 1));
-    if (rate < 0.9 && size * rate / (1 - rate) <= tolerance) return SUN_NLS_SUCCESS;
+    // where corrections are noise of the linear solver they no longer shrink: small ones will do
+    const double to_come = rate < 0.9 ? rate / (1 - rate) : 10;
+    if (size * to_come <= tolerance) return SUN_NLS_SUCCESS;
     // an old Jacobian may need two iterations before its errors fall
     if (newton->done > 2 && rate >= 0.9) return SUN_NLS_CONV_RECVR;
     return newton->done < newton->rules.most_iterations ? SUN_NLS_CONTINUE : SUN_NLS_CONV_RECVR;

@@ -159,6 +159,23 @@ static void an_old_jacobian_that_does_not_converge_is_replaced(void **state) {
     }
 }
 
+static void small_corrections_that_do_not_shrink_are_noise(void **state) {
+    (void)state;
+    struct problem problem;
+    long iterations, failures;
+    set_up(&problem);
+    assert_int_equal(solve(&problem, 1e-6, 1, &iterations), 0);
+    // corrections of 0.05 and 0.0475 tolerances
+    problem.root = 1 + 1e-6;
+    problem.wrong = 0.95;
+    assert_int_equal(solve(&problem, 1e-6, 0, &iterations), 0);
+    assert_int_equal(iterations, 2);
+    assert_int_equal(SUNNonlinSolGetNumConvFails(problem.solver, &failures), 0);
+    assert_int_equal(failures, 0);
+    assert_true(fabs(error_of(&problem, problem.total)) <= 1e-6);
+    clear(&problem);
+}
+
 static void what_a_new_jacobian_does_not_mend_asks_for_a_smaller_step(void **state) {
     (void)state;
     struct problem problem;
@@ -221,6 +238,7 @@ int main(void) {
         cmocka_unit_test(an_exact_jacobian_needs_two_iterations),
         cmocka_unit_test(the_error_left_is_below_the_tolerance),
         cmocka_unit_test(an_old_jacobian_that_does_not_converge_is_replaced),
+        cmocka_unit_test(small_corrections_that_do_not_shrink_are_noise),
         cmocka_unit_test(what_a_new_jacobian_does_not_mend_asks_for_a_smaller_step),
         cmocka_unit_test(the_last_correction_is_the_guess_while_the_step_stays),
         cmocka_unit_test(a_jacobian_that_has_become_dear_is_renewed),
