@@ -4,7 +4,6 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "version.h"
 
@@ -28,17 +27,6 @@ void main_catch_signals(void) {
 
 const volatile sig_atomic_t *main_stop_signal(void) {
     return &stop_signal;
-}
-
-/* ---- threads ---- */
-
-/* A thread that waits for others must sleep: OpenMP's own choice is to spin, and where another process holds a core, each
- * of the thousands of short loops of a run then lasts until that one lets go: a run took 20 times its time. OpenMP reads
- * this when the program is loaded, hence the second start. Whoever has made a choice keeps it. */
-static void wait_asleep(char **argv) {
-    if (getenv("OMP_WAIT_POLICY") || getenv("GOMP_SPINCOUNT")) return;
-    // if the program cannot be started again it goes on as it is
-    if (setenv("OMP_WAIT_POLICY", "passive", 1) == 0) execv("/proc/self/exe", argv);
 }
 
 /* ---- the commands ---- */
@@ -151,7 +139,7 @@ static void print_message(const char *message) {
 }
 
 int main(int argc, char **argv) {
-    wait_asleep(argv);
+    main_wait_briefly(argv);
     enum status status = choose(argc, argv);
     if (status == STATUS_OK && (fflush(stdout) != 0 || ferror(stdout))) {
         status = status_fail(STATUS_FILE, "cannot write to standard output");

@@ -5,6 +5,7 @@
  *     main_run.c      run, demo
  *     main_case.c     check, show, keys, info
  *     main_study.c    study, gather, compare
+ *     main_threads.c  where threads wait and run
  */
 #ifndef MAIN_H
 #define MAIN_H
@@ -53,6 +54,17 @@ struct command {
     int options[16]; /* 0 at the end */
     enum status (*run)(const struct request *request);
 };
+
+/* Let threads that wait for others spin for microseconds only and then sleep. OpenMP's own choice is to spin for
+ * milliseconds: where threads share a core, with each other or with other programs, each of the thousands of short loops
+ * of a run then lasts that long. OpenMP reads its choice when the program is loaded, so this starts the program again, with
+ * GOMP_SPINCOUNT; whoever has set that or OMP_WAIT_POLICY keeps what he chose. */
+void main_wait_briefly(char **argv);
+
+/* Give each thread its own part of the processors that this process may use: a thread that has slept is easily woken on
+ * the core of the one that woke it, and stays there. Where there are more threads than processors, or the environment
+ * says where threads go (OMP_PROC_BIND, OMP_PLACES), nothing happens. */
+void main_spread_threads(int threads);
 
 /* Read the options of a command, argv[0] being its name, into *request, whose assignments have room for argc texts.
  * Returns -1 once the help of the command has been printed; else 0, and *status is STATUS_CASE where they are wrong. */

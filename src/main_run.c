@@ -31,6 +31,7 @@ static enum status run_settings(const struct settings *settings, const struct re
                                              .data = &progress,
                                              .stop = main_stop_signal()};
     main_catch_signals();
+    main_spread_threads(settings->solver.threads);
     const enum status status = simulate_run(settings, &options);
     progress_end(&progress);
     TRY(status);
