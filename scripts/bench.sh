@@ -12,8 +12,12 @@ cases=$(realpath "$(dirname "$0")/../cases")
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
-# threads that wait sleep, as they do in the program
-export OMP_WAIT_POLICY=${OMP_WAIT_POLICY-passive}
+# The threads of a program of ours that measures: as those of the program itself (src/main_threads.c).
+bench() {
+    local name=$1
+    shift
+    GOMP_SPINCOUNT=1000 OMP_PROC_BIND=true "$build/bench/$name" "$@"
+}
 
 # A heading over a table.
 heading() {
@@ -39,15 +43,16 @@ per_event() {
     "$program" info run.nc | awk -v name="$1" '$1 == name { print $3 }'
 }
 
-# A case of 64 fish: rows a length apart, every second one shifted and in antiphase.
+# A case of 64 fish: rows a length apart, every second one shifted and in antiphase, three lengths from nose to nose in a
+# row. Closer ones run into each other within 10 s.
 school_of_64() {
     printf 'format: 1\ntime: {end: 10, shedding_interval: 0.01, output_interval: 0.1}\noutput: {wake_interval: 1}\n'
     printf 'defaults: {fish: {control: {law: heading}}}\nfish:\n'
     local row column
     for row in {0..7}; do
         for column in {0..7}; do
-            printf '  - {start: {position: [%d, %d]}, wave: {phase: %d}}\n' $((2 * column + row % 2)) "$row" \
-                $((180 * (row % 2)))
+            printf '  - {start: {position: [%d.%d, %d]}, wave: {phase: %d}}\n' \
+                $((3 * column + row % 2)) $((5 * (row % 2))) "$row" $((180 * (row % 2)))
         done
     done
 }
@@ -75,13 +80,13 @@ whole_run() {
 
 missed=0
 heading 'Inner loops (tests/bench/kernels.c)'
-"$build/bench/kernels"
+bench kernels
 heading 'Fast sums (tests/bench/tree.c)'
-"$build/bench/tree"
+bench tree
 heading 'Where the time goes (tests/bench/phases.c)'
-"$build/bench/phases" "$cases" | tee phases.txt
+bench phases "$cases" | tee phases.txt
 heading 'Schools with full wakes (tests/bench/phases.c)'
-"$build/bench/phases" "$cases" --schools | tee schools.txt
+bench phases "$cases" --schools | tee schools.txt
 
 heading 'Whole processes with their output'
 printf '%-12s %7s %8s %8s %8s %7s %7s %7s %7s\n' '' threads 'wall s' 'cpu s' 'x real' MB steps Newton Jacob.

@@ -208,7 +208,7 @@ static void whole_run(const char *cases, const char *name, int threads) {
 
 // ---- schools
 
-// rows a length apart, fish in a row two lengths, every second row shifted and in antiphase
+// rows a length apart, fish in a row three lengths, every second row shifted and in antiphase
 static char *school_text(int n_fish) {
     const size_t size = 512 + 128 * (size_t)n_fish;
     char *const text = malloc(size);
@@ -219,8 +219,8 @@ static char *school_text(int n_fish) {
     const int columns = (int)ceil(sqrt(n_fish));
     for (int f = 0; f < n_fish; f++) {
         const int row = f / columns, odd = row % 2;
-        used += snprintf(text + used, size - (size_t)used, "  - {start: {position: [%d, %d]}, wave: {phase: %d}}\n",
-                         2 * (f % columns) + odd, row, 180 * odd);
+        used += snprintf(text + used, size - (size_t)used, "  - {start: {position: [%g, %d]}, wave: {phase: %d}}\n",
+                         3 * (f % columns) + 1.5 * odd, row, 180 * odd);
     }
     return text;
 }
