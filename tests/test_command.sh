@@ -180,14 +180,9 @@ failures() {
     check "overlapping fish: no file" test ! -e overlap.nc
 }
 
-repeats() {
-    run run "$demo" -q --set time.end=0.5 -o first.nc
-    run info --case first.nc
-    check "info --case: exit 0" ended 0
-    mv out again.yaml
-    run run again.yaml -q -o second.nc
-    check "a run repeated from its result: exit 0" ended 0
-    check "a run repeated from its result: the same to the last bit" /usr/bin/python3 - first.nc second.nc <<'EOF'
+# Two results hold the same bits in all variables but the wall clock.
+same_bits() {
+    /usr/bin/python3 - "$@" <<'EOF'
 import sys, netCDF4, numpy
 a, b = (netCDF4.Dataset(path) for path in sys.argv[1:])
 for name in a.variables:
@@ -198,6 +193,37 @@ for name in a.variables:
 if set(a.variables) != set(b.variables):
     sys.exit("other variables")
 EOF
+}
+
+repeats() {
+    run run "$demo" -q --set time.end=0.5 -o first.nc
+    run info --case first.nc
+    check "info --case: exit 0" ended 0
+    mv out again.yaml
+    run run again.yaml -q -o second.nc
+    check "a run repeated from its result: exit 0" ended 0
+    check "a run repeated from its result: the same to the last bit" same_bits first.nc second.nc
+}
+
+# Threads on processors of their own, on one that they share, and where the environment says: the same bits.
+spread() {
+    local short=(run "$diamond" -q --force --set time.end=0.2)
+    run "${short[@]}" -o one.nc
+    run "${short[@]}" --threads 3 -o three.nc
+    check "three threads: exit 0" ended 0
+    check "three threads: the same bits" same_bits one.nc three.nc
+    local processor
+    processor=$(taskset -cp $$ | sed 's/.*: \([0-9]*\).*/\1/')
+    code=0
+    taskset -c "$processor" timeout "$time_limit" "$program" "${short[@]}" --threads 2 -o shared.nc \
+        >out 2>err </dev/null || code=$?
+    check "two threads on one processor: exit 0" ended 0
+    check "two threads on one processor: the same bits" same_bits one.nc shared.nc
+    code=0
+    OMP_WAIT_POLICY=passive OMP_PROC_BIND=true timeout "$time_limit" "$program" "${short[@]}" --threads 2 -o bound.nc \
+        >out 2>err </dev/null || code=$?
+    check "threads where the environment says: exit 0" ended 0
+    check "threads where the environment says: the same bits" same_bits one.nc bound.nc
 }
 
 # ---- signals: the run is started in the background ----
@@ -283,6 +309,7 @@ wrong_words
 output_paths
 failures
 repeats
+spread
 signals
 limits
 finish

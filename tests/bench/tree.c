@@ -1,4 +1,4 @@
-/* bench/tree.c: the tree against the direct sum of kernel.h: time, error, memory. `make bench-tree`; the tables of
+/* bench/tree.c: the tree against the direct sum of kernel.h: time, error, memory. `make bench`; the tables of
  * doc/performance.md, section "Fast summation".
  *
  * Wakes of 200 vortices, 2 lengths long, behind fish 1.5 lengths apart in a square school; lengths are those of a fish.
