@@ -212,7 +212,7 @@ static void whole_run(const char *cases, const char *name, int threads) {
 static char *school_text(int n_fish) {
     const size_t size = 512 + 128 * (size_t)n_fish;
     char *const text = malloc(size);
-    if (!text) must(status_fail(STATUS_MEMORY, "no room for a school"));
+    if (!text) abort();
     int used = snprintf(text, size,
                         "format: 1\nname: school\ntime: {end: 3, shedding_interval: 0.01, output_interval: 1}\n"
                         "defaults: {fish: {control: {law: heading}}}\nfish:\n");
