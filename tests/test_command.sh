@@ -7,9 +7,9 @@ export LC_ALL=C
 
 program=$(realpath "${1:?usage: tests/test_command.sh PROGRAM}")
 cases=$(realpath "$(dirname "$0")/../cases")
+tests=$(realpath "$(dirname "$0")")
 folder=$(mktemp -d)
 cd "$folder" || exit 2
-readonly time_limit=60  # seconds
 readonly demo="$cases/demo.yaml" diamond="$cases/diamond.yaml"
 export short="time.end=0.3"
 
@@ -21,31 +21,8 @@ stop() {
 }
 trap stop EXIT
 
-n_passed=0 n_failed=0 n_skipped=0
-
-check() {  # name, command that is true if all is well
-    local name=$1
-    shift
-    if "$@"; then
-        echo "ok      $name"
-        n_passed=$((n_passed + 1))
-    else
-        echo "FAILED  $name: $*"
-        [[ ! -s err ]] || head -c 600 err | sed 's/^/            /'
-        n_failed=$((n_failed + 1))
-    fi
-}
-
-skip() {  # name, reason
-    echo "skipped $1: $2"
-    n_skipped=$((n_skipped + 1))
-}
-
-# Run the program with arguments; leaves out, err and $code.
-run() {
-    code=0
-    timeout "$time_limit" "$program" "$@" >out 2>err </dev/null || code=$?
-}
+# shellcheck source=tests/checks.sh
+. "$tests/checks.sh"
 
 says() { grep -qF -- "$1" err; }
 ended() { ((code == $1)); }
@@ -57,7 +34,7 @@ has_rows() { (($(rows_of "$1") >= $2)); }
 status_is() { [[ $(status_of "$1") == "$2" ]]; }
 readable() { timeout 20 ncdump -v time,heading,wake_count "$1" >/dev/null; }
 # the name of the case's result and of nothing else: no half-made file is left behind
-only_files() { [[ $(find "$1" -type f -printf '%f ' | sort) == "$2" ]]; }
+only_files() { [[ $(find "$1" -type f -printf '%f\n' | sort | tr '\n' ' ') == "$2" ]]; }
 
 finish() {
     echo "$n_passed passed, $n_failed failed, $n_skipped skipped"
@@ -116,7 +93,7 @@ wrong_words() {
     check "unknown key in --set: exit 2" ended 2
     run run "$demo" -q --set time.end
     check "--set without a value: exit 2" ended 2
-    check "nothing was written" only_files . "err out "
+    check "nothing was written" only_files . "check.out err out "
 }
 
 # ---- where the result goes ----

@@ -12,24 +12,8 @@ trap 'rm -rf "$folder"' EXIT
 cd "$folder" || exit 2
 export MPLCONFIGDIR=$folder/matplotlib
 
-n_passed=0 n_failed=0 n_skipped=0
-
-check() {  # name, command that is true if all is well
-    local name=$1
-    shift
-    if "$@"; then
-        echo "ok      $name"
-        n_passed=$((n_passed + 1))
-    else
-        echo "FAILED  $name: $* (exit code $code) $(head -c 600 err)"
-        n_failed=$((n_failed + 1))
-    fi
-}
-
-skip() {  # name, reason
-    echo "skipped $1: $2"
-    n_skipped=$((n_skipped + 1))
-}
+# shellcheck source=tests/checks.sh
+. "$root/tests/checks.sh"
 
 # Run a script with arguments; leaves out, err and $code.
 script() {
