@@ -16,6 +16,10 @@ int flow_tail(const struct fish *fish) {
     return fish->n_control + fish->n_edges;
 }
 
+int flow_n_points(const struct fish *fish) {
+    return flow_tail(fish) + 1;
+}
+
 int flow_column(const struct fish *other, int c) {
     const int n_places = 2 * other->n_nodes;
     return c < n_places ? other->at.x + c : other->at.sheet + (c - n_places);
@@ -34,18 +38,16 @@ static enum status doubles(double **values, int n) {
     return *values ? STATUS_OK : status_fail(STATUS_MEMORY, "no room for %d points of the flow", n);
 }
 
-enum { CHUNK = 16 };
-
 static enum status make_chunks(struct flow *flow) {
     int n = 0;
-    for (int f = 0; f < flow->school->n_fish; f++) n += (flow->points[f].n + CHUNK - 1) / CHUNK;
+    for (int f = 0; f < flow->school->n_fish; f++) n += vortices_n_chunks(flow->points[f].n);
     flow->chunk = calloc((size_t)n, sizeof *flow->chunk);
     if (!flow->chunk) return status_fail(STATUS_MEMORY, "no room for %d pieces of the flow", n);
     for (int f = 0; f < flow->school->n_fish; f++) {
         const struct range points = flow->points[f];
-        for (int i = 0; i < points.n; i += CHUNK) {
-            const int rest = points.n - i;
-            flow->chunk[flow->n_chunks++] = (struct chunk){f, {points.first + i, rest < CHUNK ? rest : CHUNK}};
+        for (int i = 0; i < vortices_n_chunks(points.n); i++) {
+            const struct range part = vortices_chunk(i, points.n);
+            flow->chunk[flow->n_chunks++] = (struct chunk){f, {points.first + part.first, part.n}};
         }
     }
     return STATUS_OK;
@@ -63,7 +65,7 @@ static enum status flow_fill(struct flow *flow) {
     }
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *fish = &school->fish[f];
-        flow->points[f] = (struct range){flow->n_points, fish->n_control + fish->n_edges + 1};
+        flow->points[f] = (struct range){flow->n_points, flow_n_points(fish)};
         flow->n_points += flow->points[f].n;
         flow->sheet_range[f] = (struct range){flow->sheet.n, fish->n_sheet};
         TRY(vortices_append(&flow->sheet, fish->n_sheet, fish->sheet_smoothing));
@@ -121,21 +123,6 @@ void flow_external(const struct school *school, double t, double y, double *u, d
     *v = school->velocity[1] + gust * school->gust[1];
 }
 
-// the released vortices of all fish
-static enum status place_released(struct flow *flow, const struct state *state) {
-    const struct school *school = flow->school;
-    vortices_clear(&flow->released);
-    for (int f = 0; f < school->n_fish; f++) {
-        const struct wake *const wake = &state->wake[f];
-        const int first = flow->released.n;
-        flow->released_range[f] = (struct range){first, wake->n_vortex};
-        TRY(vortices_append(&flow->released, wake->n_vortex, school->fish[f].smoothing));
-        wake_at(wake, school, state->t, flow->since, flow->released.x + first, flow->released.y + first,
-                flow->released.circulation + first);
-    }
-    return STATUS_OK;
-}
-
 // what the points of a fish have of a quantity that its nodes have
 static void at_points(const struct flow *flow, int f, const double *of_nodes, double *of_points) {
     const struct fish *fish = &flow->school->fish[f];
@@ -189,7 +176,7 @@ enum status flow_place(struct flow *flow, const struct state *state, double t, c
         all_foretold &= flow->by_forecast[f];
     }
     if (all_foretold || flow->has_released) return STATUS_OK;
-    TRY(place_released(flow, state));
+    TRY(forecast_released(school, state, flow->since, &flow->released, flow->released_range));
     flow->has_released = 1;
     return STATUS_OK;
 }
@@ -277,13 +264,6 @@ static void evaluate_chunk(const struct flow *flow, const struct chunk *chunk, i
     induce_sheets(flow, chunk, by_tree, all);
 }
 
-static void set_to_zero(const struct induced *all) {
-    double *const values[] = {all->u, all->v, all->u_x, all->u_y, all->v_x};
-    for (size_t k = 0; k < sizeof values / sizeof *values; k++) {
-        if (values[k]) memset(values[k], 0, (size_t)all->n * sizeof *values[k]);
-    }
-}
-
 static void evaluate(struct flow *flow, int with_gradient) {
     struct induced all = {flow->n_points, flow->x, flow->y, flow->u, flow->v, NULL, NULL, NULL};
     if (with_gradient) {
@@ -295,11 +275,11 @@ static void evaluate(struct flow *flow, int with_gradient) {
     const int threads = vortices_threads(flow->school->threads, (double)flow->n_points * n_sources);
     const double tolerance = flow->school->wake_tolerance;
     int by_tree = summation_by_tree(&flow->sheet, flow->n_points, tolerance);
-    set_to_zero(&all);
+    vortices_zero(&all);
     if (by_tree && summation_induce(flow->summation, &flow->sheet, tolerance, threads, &all) != STATUS_OK) {
         // without memory for a tree there is still the direct sum
         by_tree = 0;
-        set_to_zero(&all);
+        vortices_zero(&all);
     }
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int c = 0; c < flow->n_chunks; c++) evaluate_chunk(flow, &flow->chunk[c], by_tree, &all);
@@ -442,12 +422,11 @@ void flow_response(const struct flow *flow, int f, int g, struct flow_block *blo
 
 // the external flow, the nascent vortices and, where they are not summed by the tree, the sheets at the released ones
 static void others_at_wake(const struct flow *flow, int sheets_too, const struct induced *all) {
-    const int n_chunks = (all->n + CHUNK - 1) / CHUNK;
+    const int n_chunks = vortices_n_chunks(all->n);
     const int threads = vortices_threads(flow->school->threads, (double)all->n * flow->sheet.n);
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int chunk = 0; chunk < n_chunks; chunk++) {
-        const int first = chunk * CHUNK, rest = all->n - first;
-        const struct induced at = vortices_targets(all, (struct range){first, rest < CHUNK ? rest : CHUNK});
+        const struct induced at = vortices_targets(all, vortices_chunk(chunk, all->n));
         for (int i = 0; i < at.n; i++) flow_external(flow->school, flow->t, at.y[i], &at.u[i], &at.v[i]);
         vortices_induce(&flow->nascent, (struct range){0, flow->nascent.n}, &at);
         if (sheets_too) vortices_induce(&flow->sheet, (struct range){0, flow->sheet.n}, &at);

@@ -70,6 +70,9 @@ struct flow_rows {
 enum status flow_create(struct flow **flow, const struct school *school);
 void flow_free(struct flow *flow);
 
+/* The number of points of a fish. */
+int flow_n_points(const struct fish *fish);
+
 /* Index, among the points of a fish, of the midpoint of an edge and of the tail; control point c is point c. */
 int flow_midpoint(const struct fish *fish, int edge);
 int flow_tail(const struct fish *fish);

@@ -13,7 +13,6 @@ enum { N_TIMES = 4, END = N_TIMES - 1 };
 
 /* A forecast for a fish to which more vortices are near, and more than a third of all, costs more than it saves. */
 enum { FEW = 32 };
-enum { CHUNK = 16 }; /* points that a thread takes at once */
 
 /* The times, as parts of the interval: of all four with both ends these have the least largest |product of (q - time)|,
  * (3 - 2 sqrt(2))/16, which the fourth derivative over 4! comes with in the error of the cubic. */
@@ -52,7 +51,6 @@ struct part {
 
 /* A vortex that is near to a body: its path x + tau u + tau^2 a/2, and its strength as it counts in sums. */
 struct near {
-    int index;               /* among the released vortices */
     struct part part;        /* what it would contribute if it were far */
     double x[2], u[2], a[2]; /* at the event */
     double strength, change; /* at the event, and until the end of the interval, m2 s-1 */
@@ -72,7 +70,8 @@ struct outlook {
 
 struct forecast {
     const struct school *school;
-    double start, q; /* time of the event, s; part of the interval that has passed */
+    double start, q;        /* time of the event, s; part of the interval that has passed */
+    double weight[N_TIMES]; /* of the values at the four times, now */
     int n_points;
     const struct range *points; /* of each fish                                    (n_fish) */
     struct outlook *outlook;    /*                                                    (n_fish) */
@@ -284,7 +283,6 @@ static enum status sort_wake(struct forecast *forecast, const struct state *stat
             continue;
         }
         const struct near near = {
-            .index = forecast->wake[g].first + i,
             .part = part,
             .x = {wake->x[i], wake->y[i]},
             .u = {wake->u[i], wake->v[i]},
@@ -390,19 +388,15 @@ static void follow(const struct forecast *forecast, double tau, double *const pa
     }
 }
 
-static enum status place_released(struct forecast *forecast, const struct state *state) {
-    const struct school *const school = forecast->school;
-    for (int i = 0; i < N_TIMES; i++) {
-        struct vortices *const released = &forecast->released[i];
-        vortices_clear(released);
-        for (int g = 0; g < school->n_fish; g++) {
-            const struct wake *const wake = &state->wake[g];
-            forecast->wake[g] = (struct range){released->n, wake->n_vortex};
-            TRY(vortices_append(released, wake->n_vortex, school->fish[g].smoothing));
-            const int first = forecast->wake[g].first;
-            wake_at(wake, school, state->t, time_of[i] * school->interval, released->x + first, released->y + first,
-                    released->circulation + first);
-        }
+enum status forecast_released(const struct school *school, const struct state *state, double tau,
+                              struct vortices *released, struct range *wake) {
+    vortices_clear(released);
+    for (int g = 0; g < school->n_fish; g++) {
+        wake[g] = (struct range){released->n, state->wake[g].n_vortex};
+        TRY(vortices_append(released, wake[g].n, school->fish[g].smoothing));
+        const int first = wake[g].first;
+        wake_at(&state->wake[g], school, state->t, tau, released->x + first, released->y + first,
+                released->circulation + first);
     }
     return STATUS_OK;
 }
@@ -415,12 +409,12 @@ static struct induced at_time(const struct forecast *forecast, int i) {
 
 // the sums of all released vortices at all points at all times
 static void sum_directly(const struct forecast *forecast, int threads) {
-    const int n_chunks = (forecast->n_points + CHUNK - 1) / CHUNK;
+    const int n_tasks = N_TIMES * vortices_n_chunks(forecast->n_points);
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
-    for (int task = 0; task < N_TIMES * n_chunks; task++) {
-        const int i = task % N_TIMES, first = task / N_TIMES * CHUNK, rest = forecast->n_points - first;
+    for (int task = 0; task < n_tasks; task++) {
+        const int i = task % N_TIMES;
         const struct induced all = at_time(forecast, i);
-        const struct induced at = vortices_targets(&all, (struct range){first, rest < CHUNK ? rest : CHUNK});
+        const struct induced at = vortices_targets(&all, vortices_chunk(task / N_TIMES, all.n));
         vortices_induce(&forecast->released[i], (struct range){0, forecast->released[i].n}, &at);
     }
 }
@@ -429,10 +423,7 @@ static enum status sum(const struct forecast *forecast, int threads) {
     const double tolerance = forecast->school->wake_tolerance;
     for (int i = 0; i < N_TIMES; i++) {
         const struct induced at = at_time(forecast, i);
-        double *const values[] = {at.u, at.v, at.u_x, at.u_y, at.v_x};
-        for (size_t k = 0; k < sizeof values / sizeof *values; k++) {
-            if (values[k]) memset(values[k], 0, (size_t)at.n * sizeof *values[k]);
-        }
+        vortices_zero(&at);
     }
     if (!summation_by_tree(&forecast->released[0], forecast->n_points, tolerance)) {
         sum_directly(forecast, threads);
@@ -461,7 +452,9 @@ static enum status make(struct forecast *forecast, const struct state *state, co
     const double *const motion[6] = {points->x, points->y, points->u, points->v, points->a, points->b};
     for (int k = 0; k < 6; k++) memcpy(forecast->motion[k], motion[k], (size_t)forecast->n_points * sizeof(double));
     forecast->start = state->t;
-    TRY(place_released(forecast, state));
+    for (int i = 0; i < N_TIMES; i++) {
+        TRY(forecast_released(school, state, time_of[i] * school->interval, &forecast->released[i], forecast->wake));
+    }
     for (int g = 0; g < school->n_fish; g++) {
         const int first = forecast->wake[g].first;
         forecast->bounds[g] = bound_wake(&state->wake[g], school->interval, forecast->released[0].circulation + first,
@@ -496,9 +489,16 @@ enum status forecast_make(struct forecast *forecast, const struct state *state, 
 
 void forecast_place(struct forecast *forecast, double t) {
     const double tau = t - forecast->start;
-    forecast->q = tau / forecast->school->interval;
+    const double q = tau / forecast->school->interval;
+    forecast->q = q;
+    for (int i = 0; i < N_TIMES; i++) {
+        forecast->weight[i] = 1;
+        for (int k = 0; k < N_TIMES; k++) {
+            if (k != i) forecast->weight[i] *= (q - time_of[k]) / (time_of[i] - time_of[k]);
+        }
+    }
     follow(forecast, tau, forecast->now);
-    for (int f = 0; f < forecast->school->n_fish; f++) place_near(&forecast->outlook[f], tau, forecast->q, 1);
+    for (int f = 0; f < forecast->school->n_fish; f++) place_near(&forecast->outlook[f], tau, q, 1);
 }
 
 int forecast_holds(struct forecast *forecast, int f, const double *x, const double *y) {
@@ -517,13 +517,6 @@ int forecast_holds(struct forecast *forecast, int f, const double *x, const doub
 
 void forecast_induce(const struct forecast *forecast, int f, int first, const struct induced *at) {
     const double q = forecast->q;
-    double weight[N_TIMES];
-    for (int i = 0; i < N_TIMES; i++) {
-        weight[i] = 1;
-        for (int k = 0; k < N_TIMES; k++) {
-            if (k != i) weight[i] *= (q - time_of[k]) / (time_of[i] - time_of[k]);
-        }
-    }
     for (int i = 0; i < at->n; i++) {
         const int p = first + i;
         const double dx = at->x[i] - forecast->now[0][p], dy = at->y[i] - forecast->now[1][p];
@@ -532,8 +525,8 @@ void forecast_induce(const struct forecast *forecast, int f, int first, const st
         const double v_x = (1 - q) * forecast->v_x[0][p] + q * forecast->v_x[END][p];
         double u = u_x * dx + u_y * dy, v = v_x * dx - u_x * dy;
         for (int k = 0; k < N_TIMES; k++) {
-            u += weight[k] * forecast->velocity_u[k][p];
-            v += weight[k] * forecast->velocity_v[k][p];
+            u += forecast->weight[k] * forecast->velocity_u[k][p];
+            v += forecast->weight[k] * forecast->velocity_v[k][p];
         }
         at->u[i] += u;
         at->v[i] += v;

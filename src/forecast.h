@@ -34,6 +34,11 @@ void forecast_free(struct forecast *forecast);
  * fish then. */
 enum status forecast_make(struct forecast *forecast, const struct state *state, const struct forecast_points *points);
 
+/* The released vortices of all fish at the time tau after the event of the state; wake: those of each fish (n_fish).
+ * Fails with STATUS_MEMORY. */
+enum status forecast_released(const struct school *school, const struct state *state, double tau,
+                              struct vortices *released, struct range *wake);
+
 /* Go to the time t in that interval. */
 void forecast_place(struct forecast *forecast, double t);
 

@@ -21,7 +21,7 @@ static enum status allocate(struct residual *residual) {
     if (!residual->joints || !residual->coupled) goto no_memory;
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *fish = &school->fish[f];
-        const int points = fish->n_control + fish->n_edges + 1, columns = flow_n_columns(fish);
+        const int points = flow_n_points(fish), columns = flow_n_columns(fish);
         residual->joints[f] = (struct range){n_joints, fish->n_joints};
         n_joints += fish->n_joints;
         if (points > most_points) most_points = points;

@@ -87,6 +87,24 @@ void vortices_induce(const struct vortices *vortices, struct range which, const 
     }
 }
 
+void vortices_zero(const struct induced *at) {
+    double *const values[] = {at->u, at->v, at->u_x, at->u_y, at->v_x};
+    for (size_t k = 0; k < sizeof values / sizeof *values; k++) {
+        if (values[k]) memset(values[k], 0, (size_t)at->n * sizeof *values[k]);
+    }
+}
+
+enum { CHUNK = 16 };
+
+int vortices_n_chunks(int n) {
+    return (n + CHUNK - 1) / CHUNK;
+}
+
+struct range vortices_chunk(int i, int n) {
+    const int first = i * CHUNK, rest = n - first;
+    return (struct range){first, rest < CHUNK ? rest : CHUNK};
+}
+
 int vortices_threads(int threads, double interactions) {
     return interactions > 30000 ? threads : 1;
 }

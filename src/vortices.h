@@ -48,6 +48,13 @@ void vortices_induce(const struct vortices *vortices, struct range which, const 
 /* The targets first .. first + n - 1 of others. */
 struct induced vortices_targets(const struct induced *all, struct range which);
 
+/* Set what the targets have to zero. */
+void vortices_zero(const struct induced *at);
+
+/* Targets are taken in chunks of whole vectors, cut at places that depend on nothing else: chunk i of n targets. */
+int vortices_n_chunks(int n);
+struct range vortices_chunk(int i, int n);
+
 /* How many of the threads a sum of so many interactions is worth: starting them costs as much as some thousand. */
 int vortices_threads(int threads, double interactions);
 
