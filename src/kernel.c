@@ -8,13 +8,6 @@
 #include <immintrin.h>
 #endif
 
-// The compiler's own loops, in variants that the loader chooses. The address sanitizer cannot follow that choice.
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
-#define WIDE __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#define WIDE
-#endif
-
 enum { BLOCK = 8 }; /* targets that are treated alike; a multiple of the width of every variant */
 
 static const double inverse_two_pi = 0.159154943091895335769;
@@ -166,8 +159,8 @@ void kernel_add_mutual(const struct kernel_tile *a, const struct kernel_tile *b,
     kernel_variant(0)->mutual(a, b, square_of(smoothing));
 }
 
-WIDE void kernel_unit(int n, const double *x, const double *y, double source_x, double source_y, double smoothing,
-                      struct kernel_values *values) {
+KERNEL_WIDE void kernel_unit(int n, const double *x, const double *y, double source_x, double source_y,
+                             double smoothing, struct kernel_values *values) {
     const double square = square_of(smoothing);
     for (int i = 0; i < n; i++) {
         const double rx = x[i] - source_x, ry = y[i] - source_y;
@@ -182,8 +175,8 @@ WIDE void kernel_unit(int n, const double *x, const double *y, double source_x, 
     }
 }
 
-WIDE void kernel_add_motion(int n, double factor, const struct kernel_values *values, double *restrict u_by_x,
-                            double *restrict v_by_x, double *restrict u_by_y, double *restrict v_by_y) {
+KERNEL_WIDE void kernel_add_motion(int n, double factor, const struct kernel_values *values, double *restrict u_by_x,
+                                   double *restrict v_by_x, double *restrict u_by_y, double *restrict v_by_y) {
     for (int i = 0; i < n; i++) {
         u_by_x[i] += factor * values->u_x[i];
         v_by_x[i] += factor * values->v_x[i];
@@ -192,8 +185,8 @@ WIDE void kernel_add_motion(int n, double factor, const struct kernel_values *va
     }
 }
 
-WIDE void kernel_multiply(int n_rows, int n_columns, const double *restrict matrix, const double *restrict vector,
-                          double *restrict product) {
+KERNEL_WIDE void kernel_multiply(int n_rows, int n_columns, const double *restrict matrix,
+                                 const double *restrict vector, double *restrict product) {
     int c = 0;
     // four columns at a time, so that a product is read and written once for them
     for (; c + 4 <= n_columns; c += 4) {

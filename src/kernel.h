@@ -15,6 +15,14 @@
 #ifndef KERNEL_H
 #define KERNEL_H
 
+/* Before a function with plain loops: compiled for three widths of vectors, of which the loader chooses. The address
+ * sanitizer cannot follow that choice. */
+#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
+#define KERNEL_WIDE __attribute__((target_clones("avx512f", "avx2", "default")))
+#else
+#define KERNEL_WIDE
+#endif
+
 /* Add to (u, v) at each target the velocity of all sources; smoothing is the length e. A source at a target adds 0. */
 void kernel_add_velocity(int n_targets, const double *x, const double *y, int n_sources, const double *source_x,
                          const double *source_y, const double *circulation, double smoothing, double *u, double *v);

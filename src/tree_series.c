@@ -4,12 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-// as in kernel.c
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
-#define WIDE __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#define WIDE
-#endif
+#include "kernel.h"
+
 #define INLINE static inline __attribute__((always_inline))
 
 enum { LANES = TREE_LANES, DEGREES = TREE_HARMONIC + 1, MIXED = TREE_MIXED + 1, DEPTH = TREE_MIXED / 2 + 1 };
@@ -159,7 +155,7 @@ INLINE void points_read(lanes *block, const double *value, int n, int is_weight)
     }
 }
 
-WIDE void tree_series_gather(const struct tree_boxes *boxes, int box, const struct tree_series *moments) {
+KERNEL_WIDE void tree_series_gather(const struct tree_boxes *boxes, int box, const struct tree_series *moments) {
     const struct tree_box *const own = &boxes->box[box];
     const struct tree_order order = moments->order;
     struct block block;
@@ -256,8 +252,8 @@ INLINE void series_shift(lanes *re, lanes *im, int stride, int degree, int last,
     }
 }
 
-WIDE void tree_series_join(const struct tree_boxes *boxes, int parent, int n_parents,
-                           const struct tree_series *moments) {
+KERNEL_WIDE void tree_series_join(const struct tree_boxes *boxes, int parent, int n_parents,
+                                  const struct tree_series *moments) {
     struct tree_order order = {-1, 0};
     for (int i = 0; i < n_parents; i++) order = tree_order_join(order, moments[parent + i].order);
     if (order.harmonic < 0) return;
@@ -304,8 +300,8 @@ WIDE void tree_series_join(const struct tree_boxes *boxes, int parent, int n_par
     }
 }
 
-WIDE void tree_series_split(const struct tree_boxes *boxes, int parent, int n_parents,
-                            const struct tree_series *series) {
+KERNEL_WIDE void tree_series_split(const struct tree_boxes *boxes, int parent, int n_parents,
+                                   const struct tree_series *series) {
     struct tree_order order = {-1, 0};
     for (int i = 0; i < n_parents; i++) order = tree_order_join(order, series[parent + i].order);
     if (order.harmonic < 0) return;
@@ -454,9 +450,9 @@ INLINE void cross(const struct tree_boxes *targets, const struct tree_boxes *sou
     for (int i = 0; i < n; i++) block_add(&series[far[i].target], far[i].order, &result, i);
 }
 
-WIDE void tree_series_cross(const struct tree_boxes *targets, const struct tree_boxes *sources, double smoothing, int n,
-                            const struct tree_far *far, const struct tree_series *moments,
-                            const struct tree_series *series) {
+KERNEL_WIDE void tree_series_cross(const struct tree_boxes *targets, const struct tree_boxes *sources, double smoothing,
+                                   int n, const struct tree_far *far, const struct tree_series *moments,
+                                   const struct tree_series *series) {
     for (int i = 0; i < n; i += LANES) {
         cross(targets, sources, smoothing, n - i < LANES ? n - i : LANES, far + i, moments, series);
     }
@@ -536,8 +532,8 @@ INLINE void points_add(double *value, const lanes *block, int n) {
     for (int i = 0; i < LANES && i < n; i++) value[i] += (*block)[i];
 }
 
-WIDE void tree_series_spread(const struct tree_boxes *boxes, int box, const struct tree_series *series, double *u,
-                             double *v, double *const gradient[3]) {
+KERNEL_WIDE void tree_series_spread(const struct tree_boxes *boxes, int box, const struct tree_series *series,
+                                    double *u, double *v, double *const gradient[3]) {
     const struct tree_box *const own = &boxes->box[box];
     const double inverse = 1 / own->radius, unit = inverse / two_pi;
     for (int i = 0; i < own->n; i += LANES) {
