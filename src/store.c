@@ -4,7 +4,6 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>
-#include <netcdf.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,8 +11,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "store_netcdf.h"
 #include "store_table.h"
-#include "version.h"
 
 enum {
     STATUS_LENGTH = 256,   /* bytes kept for run_status: rewritten in place, it must never move what follows */
@@ -33,13 +32,6 @@ struct store {
     double last_fsync; /* s on the monotonic clock */
     double *buffer;    /* one row, or the whole, of the largest variable */
 };
-
-/* Leave with NetCDF's error code. */
-#define NETCDF(call)                                     \
-    do {                                                 \
-        const int netcdf_code = (call);                  \
-        if (netcdf_code != NC_NOERR) return netcdf_code; \
-    } while (0)
 
 static double seconds_now(void) {
     struct timespec now;
@@ -84,10 +76,6 @@ static nc_type type_in_file(enum store_type type, enum precision precision) {
     }
 }
 
-static int write_text(int file, int number, const char *name, const char *text) {
-    return nc_put_att_text(file, number, name, strlen(text), text);
-}
-
 /* The attribute run_status, in the space that is kept for it; a longer text is cut. */
 static int write_run_status(int file, const char *run_status) {
     char text[STATUS_LENGTH] = {0};
@@ -105,9 +93,9 @@ static int define_variable(struct store *store, int i, const int *dimension_numb
     NETCDF(nc_def_var(store->file, variable->name, type, n, dimensions, &store->number[i]));
 
     const int number = store->number[i];
-    NETCDF(write_text(store->file, number, "long_name", variable->long_name));
-    if (variable->type == STORE_TEXT) return write_text(store->file, number, "_Encoding", "utf-8");
-    NETCDF(write_text(store->file, number, "units", variable->unit));
+    NETCDF(store_netcdf_text(store->file, number, "long_name", variable->long_name));
+    if (variable->type == STORE_TEXT) return store_netcdf_text(store->file, number, "_Encoding", "utf-8");
+    NETCDF(store_netcdf_text(store->file, number, "units", variable->unit));
     if (!store_table_has(variable, FISH)) return NC_NOERR;
 
     const double fill = NAN;
@@ -117,32 +105,21 @@ static int define_variable(struct store *store, int i, const int *dimension_numb
     if (store_table_has(variable, NODE) && strcmp(variable->name, "node_arc") != 0) coordinates = "fish_name node_arc";
     if (store_table_has(variable, SHEET) && strcmp(variable->name, "sheet_arc") != 0)
         coordinates = "fish_name sheet_arc";
-    return write_text(store->file, number, "coordinates", coordinates);
+    return store_netcdf_text(store->file, number, "coordinates", coordinates);
 }
 
 /* The global attributes; the texts of the case make a result file repeatable. */
 static int define_attributes(int file, const struct settings *settings, const char *effective, const char *command) {
-    char libraries[VERSION_LENGTH], source[2 * VERSION_LENGTH], history[4096], date[32];
-    version_libraries(libraries);
-    snprintf(source, sizeof source, "%s, %s", version_short(), libraries);
-    const time_t now = time(NULL);
-    struct tm utc;
-    strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
-    snprintf(history, sizeof history, "%s %s", date, command);
-
     const int schema = STORE_SCHEMA;
-    NETCDF(write_text(file, NC_GLOBAL, "Conventions", "CF-1.10"));
-    NETCDF(write_text(file, NC_GLOBAL, "title", settings->name));
-    NETCDF(write_text(file, NC_GLOBAL, "history", history));
-    NETCDF(write_text(file, NC_GLOBAL, "source", source));
+    NETCDF(store_netcdf_origin(file, settings->name, command));
     NETCDF(nc_put_att_int(file, NC_GLOBAL, "shoal_schema", NC_INT, 1, &schema));
     NETCDF(write_run_status(file, "running"));
-    NETCDF(write_text(file, NC_GLOBAL, "case_text", settings->text));
+    NETCDF(store_netcdf_text(file, NC_GLOBAL, "case_text", settings->text));
     if (settings->study) {
-        NETCDF(write_text(file, NC_GLOBAL, "study_case", settings->study));
+        NETCDF(store_netcdf_text(file, NC_GLOBAL, "study_case", settings->study));
         NETCDF(nc_put_att_int(file, NC_GLOBAL, "study_member", NC_INT, 1, &settings->member));
     }
-    return write_text(file, NC_GLOBAL, "case_effective", effective);
+    return store_netcdf_text(file, NC_GLOBAL, "case_effective", effective);
 }
 
 static int define_all(struct store *store, const struct settings *settings, const char *effective,

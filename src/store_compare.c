@@ -2,24 +2,17 @@
 #include "store_compare.h"
 
 #include <math.h>
-#include <netcdf.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
+#include "store_netcdf.h"
 #include "store_table.h"
 #include "version.h"
 
 enum { PATH_BYTES = 4200 };
-
-/* Leave with NetCDF's error code. */
-#define NETCDF(call)                                     \
-    do {                                                 \
-        const int netcdf_code = (call);                  \
-        if (netcdf_code != NC_NOERR) return netcdf_code; \
-    } while (0)
 
 /* The numbers of a row. */
 static const struct column {
@@ -85,16 +78,12 @@ int store_compare_listed(int i, struct store_listed *listed) {
     return 1;
 }
 
-static int write_attribute(int file, int variable, const char *name, const char *text) {
-    return nc_put_att_text(file, variable, name, strlen(text), text);
-}
-
 static int define_number(int file, const struct column *column, int n_dimensions, const int *dimension) {
     const double fill = NAN;
     int variable;
     NETCDF(nc_def_var(file, column->name, NC_DOUBLE, n_dimensions, dimension, &variable));
-    NETCDF(write_attribute(file, variable, "units", column->unit));
-    NETCDF(write_attribute(file, variable, "long_name", column->long_name));
+    NETCDF(store_netcdf_text(file, variable, "units", column->unit));
+    NETCDF(store_netcdf_text(file, variable, "long_name", column->long_name));
     return nc_put_att_double(file, variable, _FillValue, NC_DOUBLE, 1, &fill);
 }
 
@@ -103,16 +92,16 @@ static int define(int file, const struct settings *settings, int n, const char *
     int run, text, variable;
     NETCDF(nc_def_dim(file, "run", (size_t)n, &run));
     NETCDF(nc_def_dim(file, "text", sizeof((struct store_compare_row){0}).status, &text));
-    NETCDF(write_attribute(file, NC_GLOBAL, "Conventions", "CF-1.10"));
-    NETCDF(write_attribute(file, NC_GLOBAL, "title", settings->name));
-    NETCDF(write_attribute(file, NC_GLOBAL, "history", command));
-    NETCDF(write_attribute(file, NC_GLOBAL, "source", version_short()));
+    NETCDF(store_netcdf_text(file, NC_GLOBAL, "Conventions", "CF-1.10"));
+    NETCDF(store_netcdf_text(file, NC_GLOBAL, "title", settings->name));
+    NETCDF(store_netcdf_text(file, NC_GLOBAL, "history", command));
+    NETCDF(store_netcdf_text(file, NC_GLOBAL, "source", version_short()));
     NETCDF(nc_put_att_int(file, NC_GLOBAL, "shoal_compare", NC_INT, 1, &schema));
-    NETCDF(write_attribute(file, NC_GLOBAL, "compare_case", settings->merged));
+    NETCDF(store_netcdf_text(file, NC_GLOBAL, "compare_case", settings->merged));
     for (int i = 0; i < N_TEXTS; i++) {
         NETCDF(nc_def_var(file, texts[i].name, NC_CHAR, 2, (int[]){run, text}, &variable));
-        NETCDF(write_attribute(file, variable, "long_name", texts[i].long_name));
-        NETCDF(write_attribute(file, variable, "_Encoding", "utf-8"));
+        NETCDF(store_netcdf_text(file, variable, "long_name", texts[i].long_name));
+        NETCDF(store_netcdf_text(file, variable, "_Encoding", "utf-8"));
     }
     for (int c = 0; c < N_COLUMNS; c++) NETCDF(define_number(file, &columns[c], 1, &run));
     for (int c = 0; c < N_OF_REFERENCE; c++) NETCDF(define_number(file, &of_reference[c], 0, NULL));

@@ -1,22 +1,15 @@
 /* store_orders.c: the orders of a study of convergence in study.nc. Declared in store_study.h. */
 #include <math.h>
-#include <netcdf.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "store_netcdf.h"
 #include "store_study.h"
 #include "store_table.h"
 #include "yaml_text.h"
 
 enum { NAME_BYTES = 64, MEANING_BYTES = 160, MOST_DIMENSIONS = 3 };
-
-/* Leave with NetCDF's error code. */
-#define NETCDF(call)                                     \
-    do {                                                 \
-        const int netcdf_code = (call);                  \
-        if (netcdf_code != NC_NOERR) return netcdf_code; \
-    } while (0)
 
 // ---- the table
 
@@ -119,9 +112,9 @@ static int define(int file, const char *name, nc_type type, int n, const int *di
                   const char *meaning) {
     int variable;
     NETCDF(nc_def_var(file, name, type, n, dimensions, &variable));
-    NETCDF(nc_put_att_text(file, variable, "long_name", strlen(meaning), meaning));
-    if (type == NC_CHAR) return nc_put_att_text(file, variable, "_Encoding", 5, "utf-8");
-    NETCDF(nc_put_att_text(file, variable, "units", strlen(unit), unit));
+    NETCDF(store_netcdf_text(file, variable, "long_name", meaning));
+    if (type == NC_CHAR) return store_netcdf_text(file, variable, "_Encoding", "utf-8");
+    NETCDF(store_netcdf_text(file, variable, "units", unit));
     const double fill = NAN;
     return type == NC_DOUBLE ? nc_put_att_double(file, variable, _FillValue, NC_DOUBLE, 1, &fill) : NC_NOERR;
 }

@@ -2,15 +2,13 @@
 #include "store_study.h"
 
 #include <math.h>
-#include <netcdf.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
+#include "store_netcdf.h"
 #include "store_table.h"
-#include "version.h"
 #include "yaml_text.h"
 
 enum { SHORTEST_TEXT = 64 /* an objection to an order */, NAME_BYTES = 256 };
@@ -37,17 +35,6 @@ struct writing {
     double *buffer; /* one quantity of all members */
     char *text;     /* one text */
 };
-
-/* Leave with NetCDF's error code. */
-#define NETCDF(call)                                     \
-    do {                                                 \
-        const int netcdf_code = (call);                  \
-        if (netcdf_code != NC_NOERR) return netcdf_code; \
-    } while (0)
-
-static int write_attribute(int file, int variable, const char *name, const char *text) {
-    return nc_put_att_text(file, variable, name, strlen(text), text);
-}
 
 /* The name of the variable of a swept key: "fish[*].body.modulus" becomes fish_body_modulus. */
 static void variable_name(const char *path, char name[NAME_BYTES]) {
@@ -85,20 +72,10 @@ static size_t longest_text(const struct writing *writing) {
 }
 
 static int define_attributes(const struct writing *writing, const char *command) {
-    char libraries[VERSION_LENGTH], source[2 * VERSION_LENGTH], history[4096], date[32];
-    version_libraries(libraries);
-    snprintf(source, sizeof source, "%s, %s", version_short(), libraries);
-    const time_t now = time(NULL);
-    struct tm utc;
-    strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
-    snprintf(history, sizeof history, "%s %s", date, command);
     const int schema = STORE_STUDY_SCHEMA, file = writing->file;
-    NETCDF(write_attribute(file, NC_GLOBAL, "Conventions", "CF-1.10"));
-    NETCDF(write_attribute(file, NC_GLOBAL, "title", writing->study->name));
-    NETCDF(write_attribute(file, NC_GLOBAL, "history", history));
-    NETCDF(write_attribute(file, NC_GLOBAL, "source", source));
+    NETCDF(store_netcdf_origin(file, writing->study->name, command));
     NETCDF(nc_put_att_int(file, NC_GLOBAL, "shoal_study", NC_INT, 1, &schema));
-    return write_attribute(file, NC_GLOBAL, "study_case", writing->study->merged);
+    return store_netcdf_text(file, NC_GLOBAL, "study_case", writing->study->merged);
 }
 
 /* One variable of texts (n, text), or of numbers over the members. */
@@ -106,9 +83,9 @@ static int define(const struct writing *writing, const char *name, nc_type type,
                   const char *long_name, const char *unit, int *variable) {
     const int dimensions[] = {first_dimension, writing->text_dimension};
     NETCDF(nc_def_var(writing->file, name, type, type == NC_CHAR ? 2 : 1, dimensions, variable));
-    NETCDF(write_attribute(writing->file, *variable, "long_name", long_name));
-    if (type == NC_CHAR) return write_attribute(writing->file, *variable, "_Encoding", "utf-8");
-    return write_attribute(writing->file, *variable, "units", *unit ? unit : "1");
+    NETCDF(store_netcdf_text(writing->file, *variable, "long_name", long_name));
+    if (type == NC_CHAR) return store_netcdf_text(writing->file, *variable, "_Encoding", "utf-8");
+    return store_netcdf_text(writing->file, *variable, "units", *unit ? unit : "1");
 }
 
 static int define_quantity(const struct writing *writing, const struct store_quantity *quantity) {
@@ -117,8 +94,8 @@ static int define_quantity(const struct writing *writing, const struct store_qua
     if (quantity->of_xy) dimensions[n++] = writing->xy_dimension;
     const double fill = NAN;
     NETCDF(nc_def_var(writing->file, quantity->name, NC_DOUBLE, n, dimensions, &variable));
-    NETCDF(write_attribute(writing->file, variable, "long_name", quantity->long_name));
-    NETCDF(write_attribute(writing->file, variable, "units", quantity->unit));
+    NETCDF(store_netcdf_text(writing->file, variable, "long_name", quantity->long_name));
+    NETCDF(store_netcdf_text(writing->file, variable, "units", quantity->unit));
     return nc_put_att_double(writing->file, variable, _FillValue, NC_DOUBLE, 1, &fill);
 }
 
