@@ -1,7 +1,7 @@
 # checks.sh: what shell tests of the program share; to be sourced with $program set, in a folder of the test's own.
 # shellcheck shell=bash
 
-readonly time_limit=60  # seconds for one call
+readonly time_limit=${time_limit:-60}  # seconds for one call, unless the test has set it
 n_passed=0 n_failed=0 n_skipped=0
 
 pass() {

@@ -14,24 +14,9 @@ bad=$PWD
 folder=$(mktemp -d)
 trap 'chmod -R u+rwx "$folder"; rm -rf "$folder"' EXIT
 
-readonly time_limit=20  # seconds; hostile files are small and must be refused at once
-
-n_passed=0 n_failed=0 n_skipped=0
-
-pass() {
-    echo "ok      $1"
-    n_passed=$((n_passed + 1))
-}
-
-fail() {  # name, what happened
-    echo "FAILED  $1: $2"
-    n_failed=$((n_failed + 1))
-}
-
-skip() {  # name, reason
-    echo "skipped $1: $2"
-    n_skipped=$((n_skipped + 1))
-}
+time_limit=20  # seconds; hostile files are small and must be refused at once
+# shellcheck source=tests/checks.sh
+. ../checks.sh
 
 # Run `check` with the arguments; sets $code, and leaves $folder/out and $folder/err.
 run() {
