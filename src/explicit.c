@@ -127,13 +127,6 @@ static enum status set_up_arkode(struct explicit *solver) {
     return failed ? status_fail(STATUS_SOLVER, "ARKODE cannot be set up: %s", status_message()) : STATUS_OK;
 }
 
-// An implicit method damps the fast oscillations of a stiff body, and its velocities may stay out of the error test; an
-// explicit one that does not see them there goes wrong without a word. A velocity is a position's scale in 1/(2 pi f).
-static double velocity_factor(const struct school *school, int i) {
-    const enum unknown kind = residual_place(school, i).kind;
-    return kind == UNKNOWN_VX || kind == UNKNOWN_VY ? 1.0 / 3000 : 1;
-}
-
 static void remember(struct explicit *solver) {
     const struct school *school = solver->residual->school;
     for (int f = 0; f < school->n_fish; f++) {
@@ -151,10 +144,11 @@ static enum status fill(struct explicit *solver) {
     solver->shed = calloc((size_t)solver->residual->school->n_fish, sizeof *solver->shed);
     if (!solver->work || !solver->rates || !solver->phi0 || !solver->shed || !solver->tolerance)
         return status_fail(STATUS_MEMORY, "no room for %d unknowns", n);
-    // algebraic unknowns have no rate and no error here
+    // algebraic unknowns have no rate and no error here; an explicit method that does not see velocities goes wrong
+    // without a word
     for (int i = 0; i < n; i++) {
         solver->tolerance[i] = solver->residual->school->rtol * residual_scale(solver->residual, i) *
-                               velocity_factor(solver->residual->school, i);
+                               residual_undamped(solver->residual, i);
     }
     remember(solver);
     TRY(direct_create(&solver->direct, solver->residual));

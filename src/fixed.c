@@ -17,10 +17,6 @@ static const double linear_relative = 1e-3;
 /* A Jacobian is used on, from step to step, as long as corrections shrink by this factor each. */
 static const double slow_rate = 0.3;
 
-/* The scale of velocities lets those of a stiff body's vibrations pass; what Newton leaves of them adds up to a momentum
- * that is not there. With this factor it is that of the positions times 2 pi f. */
-static const double velocity_factor = 1.0 / 3000;
-
 enum { MOST_ITERATIONS = 12 };
 
 struct fixed {
@@ -58,9 +54,9 @@ static enum status fill(struct fixed *solver) {
     }
     residual_kinds(solver->residual, solver->kind);
     for (int i = 0; i < n; i++) {
-        const enum unknown kind = residual_place(solver->residual->school, i).kind;
-        const double factor = kind == UNKNOWN_VX || kind == UNKNOWN_VY ? velocity_factor : 1;
-        solver->tolerance[i] = solver->residual->school->rtol * residual_scale(solver->residual, i) * factor;
+        // what Newton leaves of a stiff body's velocities adds up to a momentum that is not there
+        solver->tolerance[i] = solver->residual->school->rtol * residual_scale(solver->residual, i) *
+                               residual_undamped(solver->residual, i);
     }
     TRY(jacobian_create(&solver->jacobian, solver->residual->school));
     residual_mask(solver->residual, solver->jacobian);

@@ -375,3 +375,8 @@ double residual_scale(const struct residual *residual, int i) {
     }
     return 1;
 }
+
+double residual_undamped(const struct residual *residual, int i) {
+    const enum unknown kind = residual_place(residual->school, i).kind;
+    return kind == UNKNOWN_VX || kind == UNKNOWN_VY ? 1.0 / 3000 : 1;
+}

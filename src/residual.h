@@ -91,6 +91,10 @@ void residual_kinds(const struct residual *residual, double *kind);
 /* The scale of unknown i, in its unit: what the error tolerance is relative to. */
 double residual_scale(const struct residual *residual, int i);
 
+/* The part of its scale that a method takes which sees velocities: the scale of velocities lets the vibrations of a stiff
+ * body pass, since IDA damps them. With this it is the positions' scale times 2 pi f; 1 for other unknowns. */
+double residual_undamped(const struct residual *residual, int i);
+
 /* Where unknown i belongs. */
 struct unknown_place residual_place(const struct school *school, int i);
 
