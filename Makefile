@@ -2,7 +2,7 @@
 #
 #   V=1           print the commands
 #   SANITIZE=1    build and test in build-sanitize with the address and undefined behaviour sanitizers
-#   TEST="rod x"  let `make test` run tests/test_rod.c and tests/test_x.sh only
+#   TEST="rod x"  let `make test` run tests/*/test_rod.c and tests/*/test_x.sh only
 
 VERSION = 0.1.0
 
@@ -38,7 +38,7 @@ quiet = @
 say = @printf '  %-4s %s\n'
 endif
 
-# -iquote, not -I: <yaml.h> is the library's header and "yaml.h" is ours. _XOPEN_SOURCE=700 is POSIX 2008 with M_PI.
+# -iquote, not -I: <netcdf.h> is the library's header and "output/netcdf.h" is ours. _XOPEN_SOURCE=700 is POSIX 2008 with M_PI.
 # The results must not depend on the machine: nothing that reorders sums or fuses operations belongs here.
 shoal_cppflags = -D_XOPEN_SOURCE=700 -iquote src -iquote include -isystem /usr/include/suitesparse $(CPPFLAGS)
 shoal_cflags   = -std=c11 -ffp-contract=off -fno-math-errno -fopenmp -Wall -Wextra -Wconversion -Wshadow -Werror \
@@ -47,16 +47,20 @@ libraries      = -lsundials_ida -lsundials_kinsol -lsundials_arkode -lsundials_s
                  -lsundials_sunmatrixsparse -lsundials_nvecserial -lklu -lamd -lcolamd -lbtf -lsuitesparseconfig \
                  -lnetcdf -lyaml -lz -lm
 
+# objects.a holds every function for the program and the tests; libshoal.a, which is installed, shares shoal_* only
+objects = $(B)/objects.a
 library = $(B)/libshoal.a
 program = $(B)/shoal
 
-main_objects    = $(patsubst src/%.c,$(B)/%.o,$(wildcard src/main.c src/main_*.c))
-library_objects = $(filter-out $(main_objects),$(patsubst src/%.c,$(B)/%.o,$(wildcard src/*.c)))
+# the rooms of src/, lowest first: scripts/check-layers.sh
+rooms           = base case vortex model solver output run study app
+app_objects     = $(patsubst src/%.c,$(B)/%.o,$(wildcard src/app/*.c))
+library_objects = $(patsubst src/%.c,$(B)/%.o,$(wildcard $(patsubst %,src/%/*.c,$(filter-out app,$(rooms)))))
 
 test_names   = $(or $(TEST),*)
-c_tests      = $(patsubst tests/%.c,$(B)/tests/%,$(wildcard $(test_names:%=tests/test_%.c)))
-shell_tests  = $(wildcard $(test_names:%=tests/test_%.sh))
-test_helpers = $(patsubst tests/%.c,$(B)/tests/%.o,$(filter-out tests/test_%,$(wildcard tests/*.c)))
+c_tests      = $(patsubst tests/%.c,$(B)/tests/%,$(wildcard $(test_names:%=tests/*/test_%.c)))
+shell_tests  = $(filter-out tests/slurm/%,$(wildcard $(test_names:%=tests/*/test_%.sh)))
+test_helpers = $(patsubst tests/%.c,$(B)/tests/%.o,$(wildcard tests/*.c))
 
 verify_program = $(B)/verify/verify
 verify_objects = $(patsubst tests/verify/%.c,$(B)/verify/%.o,$(wildcard tests/verify/*.c))
@@ -64,7 +68,7 @@ verify_objects = $(patsubst tests/verify/%.c,$(B)/verify/%.o,$(wildcard tests/ve
 bench_programs = $(patsubst tests/bench/%.c,$(B)/bench/%,$(wildcard tests/bench/*.c))
 
 generated_docs = $(B)/doc/cases.md $(B)/doc/output.md
-c_files        = $(wildcard src/*.[ch] include/*.h tests/*.[ch] tests/verify/*.[ch] tests/bench/*.[ch])
+c_files        = $(wildcard src/*/*.[ch] include/*.h tests/*.[ch] tests/*/*.[ch])
 
 # "commit" or "commit-dirty"; of this folder's own repository, not of one that happens to lie around it
 commit := $(shell test -e .git && git describe --always --dirty --abbrev=12 --exclude='*' 2>/dev/null || echo unknown)
@@ -76,7 +80,7 @@ parallel = $(MAKE) --no-print-directory $(if $(filter -j%,$(MAKEFLAGS)),,-j$(she
 
 ## Everyday
 
-all: $(program)  ## build build/shoal and build/libshoal.a
+all: $(program) $(library)  ## build build/shoal and build/libshoal.a
 
 demo: deps  ## install what is missing, build, swim: demo.nc and demo.png
 	@$(parallel) all
@@ -108,9 +112,9 @@ help:  ## this list
 
 ## For developers
 
-style: $(program) $(generated_docs)  ## check format, layers, names and the generated documents
+style: all $(generated_docs)  ## check format, layers, names and the generated documents
 	@clang-format --dry-run -Werror $(c_files)
-	@scripts/check-layers.sh
+	@scripts/check-layers.sh $(B)
 	@scripts/check-names.sh $(B)
 	@for document in $(generated_docs:$(B)/%=%); do \
 	    diff -u "$$document" "$(B)/$$document" || { echo "$$document is out of date: run 'make docs'" >&2; exit 1; }; \
@@ -147,11 +151,22 @@ uninstall:  ## remove what `make install` installed
 
 # ---- rules ----
 
-$(program): $(main_objects) $(library)
+$(program): $(app_objects) $(objects)
 	$(say) LD $@
 	$(quiet)$(CC) $(shoal_cflags) $(LDFLAGS) -o $@ $^ $(libraries)
 
-$(library): $(library_objects)
+$(objects): $(library_objects)
+	$(say) AR $@
+	$(quiet)rm -f $@
+	$(quiet)$(AR) rcs $@ $^
+
+# one object in which every other name is local: a program that links it may use those names for itself
+$(B)/libshoal.o: $(library_objects)
+	$(say) LD $@
+	$(quiet)$(LD) -r -o $@ $^
+	$(quiet)objcopy --wildcard --keep-global-symbol='shoal_*' $@
+
+$(library): $(B)/libshoal.o
 	$(say) AR $@
 	$(quiet)rm -f $@
 	$(quiet)$(AR) rcs $@ $^
@@ -160,8 +175,8 @@ $(B)/%.o: src/%.c Makefile | $(B)/tests
 	$(say) CC $<
 	$(quiet)$(CC) $(shoal_cppflags) $(shoal_cflags) -MMD -MP -c -o $@ $<
 
-$(B)/version.o: shoal_cppflags += -DSHOAL_VERSION='"$(VERSION)"' -DSHOAL_COMMIT='"$(commit)"'
-$(B)/version.o: $(B)/commit
+$(B)/base/version.o: shoal_cppflags += -DSHOAL_VERSION='"$(VERSION)"' -DSHOAL_COMMIT='"$(commit)"'
+$(B)/base/version.o: $(B)/commit
 
 # rewritten only when the commit changes
 $(B)/commit: FORCE | $(B)/tests
@@ -169,15 +184,15 @@ $(B)/commit: FORCE | $(B)/tests
 
 tests: $(program) $(c_tests) $(verify_program) $(bench_programs)
 
-$(B)/verify/%.o: tests/verify/%.c Makefile | $(B)/verify
+$(B)/verify/%.o: tests/verify/%.c Makefile | $(B)/tests
 	$(say) CC $<
 	$(quiet)$(CC) $(shoal_cppflags) $(shoal_cflags) -MMD -MP -c -o $@ $<
 
-$(verify_program): $(verify_objects) $(library)
+$(verify_program): $(verify_objects) $(objects)
 	$(say) LD $@
 	$(quiet)$(CC) $(shoal_cflags) $(LDFLAGS) -o $@ $^ $(libraries)
 
-$(B)/bench/%.o: tests/bench/%.c Makefile | $(B)/bench
+$(B)/bench/%.o: tests/bench/%.c Makefile | $(B)/tests
 	$(say) CC $<
 	$(quiet)$(CC) $(shoal_cppflags) $(shoal_cflags) -MMD -MP -c -o $@ $<
 
@@ -188,11 +203,11 @@ $(B)/tests/%.o: tests/%.c Makefile | $(B)/tests
 # A program that defines __wrap_calloc receives every calloc of the library, and finds the true one as __real_calloc.
 wrapped = $$(nm $(filter %.o,$^) | sed -n 's/.* T __wrap_\(.*\)/-Wl,--wrap=\1/p')
 
-$(B)/bench/%: $(B)/bench/%.o $(library)
+$(B)/bench/%: $(B)/bench/%.o $(objects)
 	$(say) LD $@
 	$(quiet)$(CC) $(shoal_cflags) $(LDFLAGS) $(wrapped) -o $@ $^ $(libraries)
 
-$(B)/tests/test_%: $(B)/tests/test_%.o $(test_helpers) $(library)
+$(c_tests): %: %.o $(test_helpers) $(objects)
 	$(say) LD $@
 	$(quiet)$(CC) $(shoal_cflags) $(LDFLAGS) $(wrapped) -o $@ $^ -lcmocka $(libraries)
 
@@ -202,8 +217,8 @@ $(B)/doc/cases.md: $(program) scripts/make-cases-doc.py | $(B)/tests
 $(B)/doc/output.md: $(program) scripts/make-output-doc.py | $(B)/tests
 	$(quiet)$(program) keys --output --json | $(PYTHON) scripts/make-output-doc.py >$@
 
-$(B)/tests $(B)/verify $(B)/bench:
-	@mkdir -p $@ $(B)/doc
+$(B)/tests:
+	@mkdir -p $@ $(addprefix $(B)/,doc verify bench $(rooms) $(rooms:%=tests/%))
 
 .PRECIOUS: $(B)/tests/%.o $(B)/bench/%.o
--include $(wildcard $(B)/*.d $(B)/tests/*.d $(B)/verify/*.d $(B)/bench/*.d)
+-include $(wildcard $(B)/*/*.d $(B)/tests/*/*.d)

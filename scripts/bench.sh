@@ -12,7 +12,7 @@ cases=$(realpath "$(dirname "$0")/../cases")
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
-# The threads of a program of ours that measures: as those of the program itself (src/main_threads.c).
+# The threads of a program of ours that measures: as those of the program itself (src/app/main_threads.c).
 bench() {
     local name=$1
     shift

@@ -1,57 +1,29 @@
 #!/usr/bin/env bash
-# Prove that each #include in src/ goes to a lower layer, and that outside libraries stay where they belong.
+# Prove the rooms of src/: what a file names, by #include and by the symbols of its object, lies in its own folder or in
+# one further up the list, and no two files of a folder need each other, directly or in a circle.
 #
-# A module is src/x.c and src/x.h; src/x_more.c and src/x_more.h belong to x too. A new module is entered here, in the
-# lowest layer above all that it includes. doc/architecture.md says what each module is for.
+#   scripts/check-layers.sh [BUILD]      BUILD: the folder with the objects, build by default
+#
+# Outside libraries stay in the folders that are named below, by their headers and by their functions.
 set -euo pipefail
 
-readonly layers='
- 1  status version
- 2  yaml kernel sparse smooth
- 3  settings vortices tree
- 4  fish mutual summation
- 5  rod actuation wake control carry
- 6  state
- 7  forecast
- 8  flow
- 9  sheet drag jacobian
-10  residual
-11  measure linear
-12  bridge store checkpoint
-13  consistent direct newton
-14  integrator event
-15  implicit explicit fixed
-16  simulate
-17  study compare view
-18  progress shoal
-19  main
+# Lowest first. doc/architecture.md says what each is for.
+readonly rooms=(base case vortex model solver output run study app)
+
+# Headers (first folder, or name without .h), the beginnings of the functions they declare, and the folders that may use
+# them. base/version asks every library for its version, and calls no other function of it.
+readonly outside='
+sundials|ida|kinsol|arkode|nvector|sunmatrix|sunlinsol|sunnonlinsol : IDA KIN ARK ERK N_V SUN : solver
+klu|amd|colamd|btf|SuiteSparse_config|lapacke|cblas : klu_ LAPACKE_ cblas_ : solver
+netcdf : nc_ : output study
+yaml : yaml_parser_ yaml_event_ : case
 '
 
-# Includes inside one layer that are allowed, as "from>to".
-readonly same_layer=''
-
-# Outside headers (their first folder, or their name without .h) and the modules that may include them.
-readonly solver_users='linear bridge consistent direct newton implicit explicit'
-readonly outside="
-sundials ida kinsol arkode nvector sunmatrix sunlinsol sunnonlinsol : $solver_users
-klu amd colamd btf SuiteSparse_config : $solver_users
-netcdf : store checkpoint
-yaml : yaml
-"
-
-# Who may ask the libraries for their versions, and the headers that this takes.
-readonly version_users='main version store'
-readonly version_headers='sundials/sundials_version.h sundials/sundials_config.h klu.h netcdf.h yaml.h zlib.h'
+# Rooms that are still being put in order.
+readonly pending='case output study app'
 
 cd "$(dirname "$0")/.."
-
-declare -A layer_of users_of
-while read -r number modules; do
-    for module in $modules; do layer_of[$module]=$number; done
-done <<<"$layers"
-while IFS=: read -r headers users; do
-    for header in $headers; do users_of[$header]=$users; done
-done <<<"$outside"
+build=${1:-build}
 
 n_errors=0
 complain() {
@@ -59,52 +31,73 @@ complain() {
     n_errors=$((n_errors + 1))
 }
 
-has_word() {  # word, list of words
-    [[ " $2 " == *" $1 "* ]]
-}
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
 
-# The module that a file belongs to: wake.c -> wake, settings_table.c -> settings. The result is in $module.
-find_module() {
-    module=$(basename "${1%.[ch]}")
-    [[ -n ${layer_of[$module]-} ]] || module=${module%%_*}
-}
+declare -A level_of
+for i in "${!rooms[@]}"; do level_of[${rooms[i]}]=$i; done
 
-check_own() {  # place, module, included file
-    local from=$2
-    find_module "$3"
-    if [[ -z ${layer_of[$module]-} ]]; then
-        complain "$1: error: no layer is known for \"$3\": enter '$module' in scripts/check-layers.sh"
-    elif [[ $module == "$from" ]] || has_word "$from>$module" "$same_layer"; then
-        return
-    elif ((layer_of[$module] >= layer_of[$from])); then
-        complain "$1: error: $from (layer ${layer_of[$from]}) includes $module (layer ${layer_of[$module]}): only a\
- lower layer may be included"
-    fi
-}
-
-check_outside() {  # place, module, included header
-    local library=${3%%/*}
-    local users=${users_of[${library%.h}]-}
-    if [[ -z $users ]] || has_word "$2" "$users"; then return; fi
-    if has_word "$2" "$version_users" && has_word "$3" "$version_headers"; then return; fi
-    complain "$1: error: $2 includes <$3>, which only${users% } may"
-}
-
-for file in src/*.[ch] include/*.h; do
-    [[ -e $file ]] || continue
-    find_module "$file"
-    owner=$module
-    if [[ -z ${layer_of[$owner]-} ]]; then
-        complain "$file: error: no layer is known for '$owner': enter it in scripts/check-layers.sh"
-        continue
-    fi
-    while IFS=: read -r line text; do
-        if [[ $text =~ \"([^\"]+)\" ]]; then
-            check_own "$file:$line" "$owner" "${BASH_REMATCH[1]}"
-        elif [[ $text =~ \<([^>]+)\> ]]; then
-            check_outside "$file:$line" "$owner" "${BASH_REMATCH[1]}"
-        fi
-    done < <(grep -nE '^[[:space:]]*#[[:space:]]*include' "$file" || true)
+for source in src/*/*.c; do
+    module=${source#src/}
+    [[ -n ${level_of[${module%%/*}]-} ]] || complain "$source: error: its folder is not in the list of rooms"
+    [[ -e $build/${module%.c}.o ]] || complain "$source: error: it has no object in $build: run 'make' first"
 done
+
+# ---- who needs whom: "from to", both as room/module
+
+# by includes
+grep -noE '^[[:space:]]*#[[:space:]]*include[[:space:]]*"[^"]+"' src/*/*.[ch] |
+    sed -E 's/^src\/([^:]*)\.[ch]:([0-9]+):.*"([^"]+)\.h"/\1 \3 src\/\1/' >"$folder/includes"
+# by symbols: who defines what, and who names what
+for object in $(printf "$build/%s/*.o " "${rooms[@]}"); do
+    module=${object#"$build"/}
+    nm --extern-only --format=posix "$object" | awk -v module="${module%.o}" '{ print module, $1, $2 }'
+done >"$folder/symbols"
+awk '$3 != "U" && $3 != "w" { print $2, $1 }' "$folder/symbols" >"$folder/defined"
+awk 'NR == FNR { owner[$1] = $2; next } $3 == "U" && ($2 in owner) { print $1, owner[$2], $2 }' \
+    "$folder/defined" "$folder/symbols" >"$folder/uses"
+
+cat "$folder/includes" "$folder/uses" | while read -r from to how; do
+    [[ $to == shoal ]] && continue  # include/shoal.h
+    [[ $from == "$to" ]] && continue
+    echo "$from $to $how"
+done >"$folder/edges"
+
+while read -r from to how; do
+    from_level=${level_of[${from%%/*}]} to_level=${level_of[${to%%/*}]-}
+    if [[ -z $to_level ]]; then
+        complain "src/$from: error: it includes \"$to.h\", which is in no room"
+    elif ((to_level > from_level)) && [[ " $pending " != *" ${from%%/*} "* ]]; then
+        complain "src/$from: error: it needs src/$to ($how): ${to%%/*} stands below ${from%%/*} in the list of rooms"
+    fi
+done < <(sort -u -k1,2 "$folder/edges")
+
+# ---- no circles
+for room in "${rooms[@]}"; do
+    [[ " $pending " != *" $room "* ]] || continue
+    awk -v room="$room/" 'index($1, room) == 1 && index($2, room) == 1 { print $1, $2 }' "$folder/edges" | sort -u \
+        >"$folder/room"
+    if ! tsort "$folder/room" >/dev/null 2>"$folder/circle"; then
+        complain "src/$room: error: files need each other in a circle: $(sed -n 's/^tsort: \([a-z]*\/\)/\1/p' \
+            "$folder/circle" | tr '\n' ' ')"
+    fi
+done
+
+# ---- outside libraries
+while IFS=: read -r headers functions users; do
+    [[ -n ${headers// /} ]] || continue
+    allowed=" $users "
+    while IFS=: read -r file line _; do
+        room=$(cut -d/ -f2 <<<"$file")
+        [[ $allowed == *" $room "* || $file == src/base/version.c ]] ||
+            complain "$file:$line: error: only${users% } may include this library"
+    done < <(grep -nE "^[[:space:]]*#[[:space:]]*include[[:space:]]*<(${headers// /})[./]" src/*/*.[ch] || true)
+    for function in $functions; do
+        while read -r module name _; do
+            [[ $allowed == *" ${module%%/*} "* || $module == base/version ]] ||
+                complain "src/$module.c: error: it calls $name, which only$users may"
+        done < <(awk -v name="$function" '$3 == "U" && index($2, name) == 1' "$folder/symbols")
+    done
+done <<<"$outside"
 
 ((n_errors == 0)) || { echo "layers: $n_errors errors" >&2; exit 1; }

@@ -3,7 +3,8 @@
 #
 #   scripts/check-names.sh [BUILD]      BUILD: the folder with the objects, build by default
 #
-# - what src/x.c and src/x_more.c share begins with x_ (main.c shares main, too);
+# - what src/*/x.c and src/*/x_more.c share begins with x_ (main.c shares main, too);
+# - libshoal.a has no global name without shoal_;
 # - tests do not use cmocka's assert_float_equal, which compares in single precision: NEAR of tests/near.h does not;
 # - no tabs (but in the Makefile) and no blanks at the end of a line.
 set -euo pipefail
@@ -18,9 +19,10 @@ complain() {
 }
 
 # Names with a dot or two leading underscores are the compiler's own.
-for source in src/*.c; do
+for source in src/*/*.c; do
     stem=$(basename "$source" .c)
-    object=$build/$stem.o
+    object=${source#src/}
+    object=$build/${object%.c}.o
     if [[ ! -e $object ]]; then
         complain "$source: error: there is no $object: run 'make' first"
         continue
@@ -33,6 +35,10 @@ for source in src/*.c; do
     done < <(nm --defined-only --extern-only --format=posix "$object" | awk '$1 !~ /\.|^__/ { print $1 }')
 done
 
+while read -r name; do
+    complain "$build/libshoal.a: error: '$name' is global and does not begin with shoal_"
+done < <(nm --defined-only --extern-only --format=posix "$build/libshoal.a" | awk 'NF > 1 && $1 !~ /^shoal_/ { print $1 }')
+
 # complain of each line of the files that matches
 refuse() {  # pattern, what to say, files
     local pattern=$1 remedy=$2 place
@@ -43,8 +49,8 @@ refuse() {  # pattern, what to say, files
 }
 
 shopt -s nullglob
-refuse 'assert_float_(not_)?equal' 'this compares in single precision: use NEAR' tests/*.c
-text=(src/*.[ch] include/*.h tests/*.[ch] tests/*.sh scripts/*.sh scripts/*.py cases/*.yaml doc/*.md README.md .ci/run)
+refuse 'assert_float_(not_)?equal' 'this compares in single precision: use NEAR' tests/*/*.c
+text=(src/*/*.[ch] include/*.h tests/*.[ch] tests/*/*.[ch] tests/*.sh tests/*/*.sh scripts/*.sh scripts/*.py cases/*.yaml doc/*.md README.md .ci/run)
 existing=()
 for file in "${text[@]}" Makefile; do [[ ! -e $file ]] || existing+=("$file"); done
 refuse '[ \t]+$' 'blank at the end of the line' "${existing[@]}"

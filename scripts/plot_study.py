@@ -100,7 +100,7 @@ def slope_triangles(axes, x, lowest, sign):
         )
 
 
-def settings_of(study, member, refined):
+def case_of(study, member, refined):
     """What the axes that are not refined set in a member, as text."""
     others = [v for axis in study.axes for v in axis if v.axis != refined.axis]
     texts = [f"{study[v.name][member]:g}" if study.is_number(v.name) else study[v.name][member] for v in others]
@@ -125,7 +125,7 @@ def plot_convergence(study, refined, figure):
         i = 0
         for g, member in enumerate(first):
             for name in quantities:
-                words = [study.label(name), settings_of(study, member, refined)]
+                words = [study.label(name), case_of(study, member, refined)]
                 axes.loglog(drawn, errors[name][g, f, is_known], label=", ".join(filter(None, words)), **style(i))
                 i += 1
         slope_triangles(axes, drawn, known.min(), sign)
@@ -242,7 +242,7 @@ def plot_lines(study, figure):
     """Speed, cost of transport and Strouhal number over the first axis; a line per fish and per value of the rest."""
     first = study.axes[0][0]
     x = study[first.name] if study.is_number(first.name) else np.arange(study.complete.size)
-    rest = [[settings_of(study, m, first)] if study.axes[1:] else [] for m in range(x.size)]
+    rest = [[case_of(study, m, first)] if study.axes[1:] else [] for m in range(x.size)]
     names = list(study["fish_name"])
     figure.set_figheight(4.8)
     stack = figure.subplots(3, 1, sharex=True)

@@ -79,7 +79,7 @@ class Results:
         lifetime, fade = float(self["wake_lifetime"]), float(self["wake_fade"])
         if fade == 0:
             return np.ones_like(age)
-        return smooth_step((lifetime - age) / fade)
+        return ramp_step((lifetime - age) / fade)
 
     def rows_with_wake(self):
         """The rows in which the wake was written, or has nothing to write."""
@@ -102,7 +102,7 @@ def open_dataset(path):
     return data
 
 
-def smooth_step(q):
+def ramp_step(q):
     """0 below 0, 1 above 1, three times continuously differentiable."""
     q = np.clip(q, 0, 1)
     return q**4 * (35 - 84 * q + 70 * q**2 - 20 * q**3)

@@ -5,25 +5,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "smooth.h"
-
 void school_ok(enum status status) {
     if (status == STATUS_OK) return;
     print_error("%s\n", status_message());
     fail();
 }
 
-void school_settings(struct settings *settings, const char *text) {
+void school_settings(struct case_values *values, const char *text) {
     char whole[8192];
     const int length = snprintf(whole, sizeof whole, "format: 1\nname: test\n%s", text);
     assert_in_range(length, 0, sizeof whole - 1);
-    school_ok(settings_parse(settings, whole, (size_t)length, "test", ".", 0, NULL));
+    school_ok(case_parse(values, whole, (size_t)length, "test", ".", 0, NULL));
 }
 
 void school_build(struct setup *setup, const char *text) {
     *setup = (struct setup){.seed = 1};
-    school_settings(&setup->settings, text);
-    school_ok(fish_school_create(&setup->school, &setup->settings));
+    school_settings(&setup->values, text);
+    school_ok(fish_school_create(&setup->school, &setup->values));
     school_ok(state_create(&setup->state, setup->school));
     school_ok(residual_create(&setup->residual, setup->school, setup->state));
     school_ok(jacobian_create(&setup->jacobian, setup->school));
@@ -40,7 +38,7 @@ void school_clear(struct setup *setup) {
     residual_free(setup->residual);
     state_free(setup->state, setup->school);
     fish_school_free(setup->school);
-    settings_free(&setup->settings);
+    case_free(&setup->values);
 }
 
 double school_random(struct setup *setup) {
@@ -64,8 +62,8 @@ static void stir_fish(struct setup *setup, const struct fish *fish, double *y, d
         y[fish->at.ax + k] = 2 * school_random(setup);
         y[fish->at.ay + k] = 2 * school_random(setup);
     }
-    for (int j = 0; j < fish->n_sheet; j++) y[fish->at.sheet + j] = school_random(setup);
-    y[fish->at.shed] = 0.4 * school_random(setup);
+    for (int j = 0; j < fish->n_sheet; j++) y[fish->at.gamma + j] = school_random(setup);
+    y[fish->at.circulation] = 0.4 * school_random(setup);
     y[fish->at.phi0] = 0.3 * school_random(setup);
     for (int i = fish->at.x; i < fish->at.end; i++) yp[i] = school_random(setup);
 }
@@ -102,26 +100,27 @@ void school_stir(struct setup *setup) {
         state->control[f].phi0 = 0.2 * school_random(setup);
         state->control[f].phi0_rate = school_random(setup);
     }
-    flow_forget(setup->residual->flow);
+    flow_invalidate(setup->residual->flow);
     residual_couple(setup->residual, state->y);
 }
 
 void school_flow(struct setup *setup, const double *y) {
-    school_ok(flow_place(setup->residual->flow, setup->state, setup->t, y));
+    school_ok(flow_update_sources(setup->residual->flow, setup->state, setup->t, y));
     flow_gradient(setup->residual->flow);
 }
 
-struct stamping *school_stamping(struct setup *setup, int f, int g) {
-    struct stamping *const stamping = &setup->residual->stamping[0];
-    flow_derivative(setup->residual->flow, f, g, &stamping->block);
-    stamping->rows.n_rows = flow_n_rows(&setup->school->fish[f]);
-    stamping->rows.n_columns = flow_n_columns(&setup->school->fish[g]);
-    for (int i = 0; i < stamping->rows.n_rows * stamping->rows.n_columns; i++) stamping->rows.value[i] = 0;
-    return stamping;
+struct jacobian_scratch *school_stamping(struct setup *setup, int f, int g) {
+    struct jacobian_scratch *const jacobian_scratch = &setup->residual->jacobian_scratch[0];
+    flow_derivative(setup->residual->flow, f, g, &jacobian_scratch->block);
+    jacobian_scratch->rows.n_rows = flow_n_rows(&setup->school->fish[f]);
+    jacobian_scratch->rows.n_columns = flow_n_columns(&setup->school->fish[g]);
+    for (int i = 0; i < jacobian_scratch->rows.n_rows * jacobian_scratch->rows.n_columns; i++)
+        jacobian_scratch->rows.value[i] = 0;
+    return jacobian_scratch;
 }
 
 void school_add_rows(struct setup *setup, int f, int g, struct sparse *term) {
-    const struct flow_rows *rows = &setup->residual->stamping[0].rows;
+    const struct coupling_block *rows = &setup->residual->jacobian_scratch[0].rows;
     for (int c = 0; c < rows->n_columns; c++) {
         for (int r = 0; r < rows->n_rows; r++) {
             sparse_add(term, setup->school->fish[f].at.ax + r, flow_column(&setup->school->fish[g], c),
@@ -157,7 +156,7 @@ double *school_dense_jacobian(const struct jacobian *jacobian) {
         copy_block(jacobian->own[f], n, dense);
         for (int i = jacobian->first[f]; i < jacobian->first[f + 1]; i++) {
             const struct fish *other = &school->fish[jacobian->coupling[i].other];
-            const struct flow_rows *rows = &jacobian->coupling[i].rows;
+            const struct coupling_block *rows = &jacobian->coupling[i].rows;
             for (int c = 0; c < rows->n_columns; c++) {
                 for (int r = 0; r < rows->n_rows; r++) {
                     dense[(size_t)(school->fish[f].at.ax + r) * n + (size_t)flow_column(other, c)] =
@@ -183,8 +182,8 @@ static struct step step_of(enum unknown kind) {
         case UNKNOWN_VY: return (struct step){1e-3, 1};
         case UNKNOWN_AX:
         case UNKNOWN_AY: return (struct step){1, 1};
-        case UNKNOWN_SHEET:
-        case UNKNOWN_SHED: return (struct step){1e-3, 1};
+        case UNKNOWN_GAMMA:
+        case UNKNOWN_CIRCULATION: return (struct step){1e-3, 1};
         case UNKNOWN_PHI0: return (struct step){1e-3, 1};
     }
     return (struct step){0, 0};
@@ -220,7 +219,7 @@ static void check_row(struct setup *setup, int row, const double *got, const dou
         size = fmax(size, fabs(want[j]) * step_of(kind).size);
     }
     // x and y, and so on, are of one kind
-    for (int kind = UNKNOWN_X; kind < UNKNOWN_SHEET; kind += 2) {
+    for (int kind = UNKNOWN_X; kind < UNKNOWN_GAMMA; kind += 2) {
         largest[kind] = largest[kind + 1] = fmax(largest[kind], largest[kind + 1]);
     }
     for (int j = 0; j < n; j++) {
@@ -266,11 +265,11 @@ void school_compare(struct setup *setup, school_value *value, school_stamp *stam
 }
 
 struct simulation *school_simulation(const char *text) {
-    struct settings settings;
-    school_settings(&settings, text);
+    struct case_values values;
+    school_settings(&values, text);
     struct simulation *simulation;
-    school_ok(simulate_create(&simulation, &settings));
-    settings_free(&settings);
+    school_ok(simulate_create(&simulation, &values));
+    case_free(&values);
     return simulation;
 }
 

@@ -3,15 +3,15 @@
 #ifndef SCHOOL_H
 #define SCHOOL_H
 
-#include "jacobian.h"
+#include "base/sparse.h"
+#include "case/case.h"
+#include "model/jacobian.h"
+#include "model/residual.h"
 #include "near.h"
-#include "residual.h"
-#include "settings.h"
-#include "simulate.h"
-#include "sparse.h"
+#include "run/simulate.h"
 
 struct setup {
-    struct settings settings;
+    struct case_values values;
     struct school *school;
     struct state *state;
     struct residual *residual;
@@ -23,7 +23,7 @@ struct setup {
 };
 
 /* "format: 1" and a name stand before the text. Fails the test with the message where there is one. */
-void school_settings(struct settings *settings, const char *text);
+void school_settings(struct case_values *values, const char *text);
 void school_build(struct setup *setup, const char *text);
 void school_clear(struct setup *setup);
 
@@ -45,7 +45,7 @@ void school_compare(struct setup *setup, school_value *value, school_stamp *stam
 
 /* For a stamp of what comes through the flow: the derivative of the velocity at fish f by the unknowns of fish g, and
  * empty rows for it; adding those rows to the term. */
-struct stamping *school_stamping(struct setup *setup, int f, int g);
+struct jacobian_scratch *school_stamping(struct setup *setup, int f, int g);
 void school_add_rows(struct setup *setup, int f, int g, struct sparse *term);
 
 /* The matrix as a dense one, row after row; the caller frees it. */

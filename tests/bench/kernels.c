@@ -1,5 +1,5 @@
-/* kernels.c: how many interactions of a vortex with a point the program does in a second: the loops of src/kernel.c on
- * one core, for every variant that this processor has, and whole wakes at themselves (src/mutual.c) with more threads.
+/* kernels.c: how many interactions of a vortex with a point the program does in a second: the loops of src/vortex/kernel.c on
+ * one core, for every variant that this processor has, and whole wakes at themselves (src/vortex/pairwise.c) with more threads.
  * A pair that feels each other counts twice. Printed by `make bench`.
  *
  * The first two rows say what the processor can do with vectors of that width: products, and divisions, of numbers in
@@ -11,8 +11,8 @@
 #include <string.h>
 #include <time.h>
 
-#include "kernel.h"
-#include "mutual.h"
+#include "vortex/kernel.h"
+#include "vortex/pairwise.h"
 
 enum { MOST = 3200, N_RUNS = 50 };
 static const double per_run = 1e6; /* interactions at least */
@@ -97,7 +97,7 @@ static void wake(const struct kernel_variant *variant, int n, int m) {
     struct vortex_group all = {{0, n}, 0.2};
     const struct vortices vortices = {
         .n = n, .x = cloud.x, .y = cloud.y, .circulation = cloud.circulation, .n_groups = 1, .group = &all};
-    if (mutual_add_velocity(&vortices, m, cloud.u, cloud.v) != STATUS_OK) abort();
+    if (pairwise_add_velocity(&vortices, m, cloud.u, cloud.v) != STATUS_OK) abort();
 }
 
 // ---- the tables

@@ -20,11 +20,11 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "kernel.h"
-#include "linear.h"
-#include "mutual.h"
-#include "simulate.h"
-#include "store.h"
+#include "output/result_file.h"
+#include "run/simulate.h"
+#include "solver/linear.h"
+#include "vortex/kernel.h"
+#include "vortex/pairwise.h"
 
 static double read_clock(clockid_t id) {
     struct timespec t;
@@ -49,7 +49,7 @@ static const char *const phase_name[N_PHASES] = {"wake",   "field",   "residual"
 static struct {
     double time[N_PHASES];
     double interactions; /* of the floor */
-    struct store_counts counts;
+    struct result_counts counts;
 } seen;
 
 static void left(int phase, double since) {
@@ -65,7 +65,7 @@ static void left(int phase, double since) {
         left(phase, since);                                 \
         return status;                                      \
     }
-TIMED(FIELD, flow_foretell, (struct flow * flow, const struct state *state), (flow, state))
+TIMED(FIELD, flow_interpolate, (struct flow * flow, const struct state *state), (flow, state))
 TIMED(JACOBIAN, residual_jacobian,
       (struct residual * residual, double t, double cj, const double *y, struct jacobian *jacobian),
       (residual, t, cj, y, jacobian))
@@ -95,25 +95,28 @@ enum status __wrap_residual_evaluate(struct residual *residual, double t, const 
     return status;
 }
 
-void __real_measure_step(const struct residual *residual, struct state *state, double t, const double *y,
-                         const double *yp);
-void __wrap_measure_step(const struct residual *residual, struct state *state, double t, const double *y,
-                         const double *yp);
-void __wrap_measure_step(const struct residual *residual, struct state *state, double t, const double *y,
-                         const double *yp) {
+void __real_diagnostics_step(const struct residual *residual, struct state *state, double t, const double *y,
+                             const double *yp);
+void __wrap_diagnostics_step(const struct residual *residual, struct state *state, double t, const double *y,
+                             const double *yp);
+void __wrap_diagnostics_step(const struct residual *residual, struct state *state, double t, const double *y,
+                             const double *yp) {
     const double since = now();
-    __real_measure_step(residual, state, t, y, yp);
+    __real_diagnostics_step(residual, state, t, y, yp);
     left(MEASURE, since);
 }
 
-enum status __real_store_row(struct store *store, const struct state *state, const struct residual *residual,
-                             const struct measure *measure, const struct store_counts *counts, int with_wake);
-enum status __wrap_store_row(struct store *store, const struct state *state, const struct residual *residual,
-                             const struct measure *measure, const struct store_counts *counts, int with_wake);
-enum status __wrap_store_row(struct store *store, const struct state *state, const struct residual *residual,
-                             const struct measure *measure, const struct store_counts *counts, int with_wake) {
+enum status __real_result_file_row(struct result_file *store, const struct state *state,
+                                   const struct residual *residual, const struct diagnostics *diagnostics,
+                                   const struct result_counts *counts, int with_wake);
+enum status __wrap_result_file_row(struct result_file *store, const struct state *state,
+                                   const struct residual *residual, const struct diagnostics *diagnostics,
+                                   const struct result_counts *counts, int with_wake);
+enum status __wrap_result_file_row(struct result_file *store, const struct state *state,
+                                   const struct residual *residual, const struct diagnostics *diagnostics,
+                                   const struct result_counts *counts, int with_wake) {
     const double since = now();
-    const enum status status = __real_store_row(store, state, residual, measure, counts, with_wake);
+    const enum status status = __real_result_file_row(store, state, residual, diagnostics, counts, with_wake);
     left(OUTPUT, since);
     seen.counts = *counts;
     return status;
@@ -139,7 +142,7 @@ static double best_rate(void) {
     double best = 0;
     for (int run = 0; run < RUNS; run++) {
         const double since = now();
-        must(mutual_add_velocity(&vortices, 1, u, v));
+        must(pairwise_add_velocity(&vortices, 1, u, v));
         best = fmax(best, (double)N * N / (now() - since));
     }
     vortices_free(&vortices);
@@ -152,11 +155,11 @@ static double peak_memory(void) {
     return (double)usage.ru_maxrss / 1024;
 }
 
-static void read_case(struct settings *settings, const char *text, int threads) {
+static void read_case(struct case_values *values, const char *text, int threads) {
     char assignment[64];
     snprintf(assignment, sizeof assignment, "solver.threads=%d", threads);
     const char *const assignments[] = {assignment};
-    must(settings_parse(settings, text, strlen(text), "bench.yaml", NULL, 1, assignments));
+    must(case_parse(values, text, strlen(text), "bench.yaml", NULL, 1, assignments));
 }
 
 static void print_head(void) {
@@ -191,18 +194,18 @@ static void whole_run(const char *cases, const char *name, int threads) {
     char assignment[64];
     snprintf(assignment, sizeof assignment, "solver.threads=%d", threads);
     const char *const assignments[] = {assignment};
-    struct settings settings;
-    must(settings_read(&settings, path, 1, assignments));
+    struct case_values values;
+    must(case_read(&values, path, 1, assignments));
     memset(&seen, 0, sizeof seen);
     const struct simulate_options options = {.path = "phases.nc", .overwrite = 1, .command = "phases"};
     const double since = now(), processor_since = processor_time();
-    must(simulate_run(&settings, &options));
+    must(simulate_run(&values, &options));
     const double wall = now() - since, processor = processor_time() - processor_since,
-                 interval = settings.time.shedding_interval;
-    const long n_events = lround(settings.time.end / interval);
-    const int n_vortices = settings.n_fish * (int)fmin(settings.wake.lifetime / interval, (double)n_events);
+                 interval = values.time.shedding_interval;
+    const long n_events = lround(values.time.end / interval);
+    const int n_vortices = values.n_fish * (int)fmin(values.wake.lifetime / interval, (double)n_events);
     print_row(name, threads, n_vortices, n_events, interval, wall, processor);
-    settings_free(&settings);
+    case_free(&values);
     remove("phases.nc");
 }
 
@@ -229,12 +232,12 @@ static char *school_text(int n_fish) {
 static double school(int n_fish, int threads) {
     enum { EVENTS = 20 };
     char *const text = school_text(n_fish);
-    struct settings settings;
+    struct case_values values;
     struct simulation *simulation;
-    read_case(&settings, text, threads);
+    read_case(&values, text, threads);
     free(text);
-    must(simulate_create(&simulation, &settings));
-    const long full = lround(settings.wake.lifetime / settings.time.shedding_interval);
+    must(simulate_create(&simulation, &values));
+    const long full = lround(values.wake.lifetime / values.time.shedding_interval);
     while (simulation->state->event < full) must(simulate_step(simulation));
     memset(&seen, 0, sizeof seen);
     const double since = now(), processor_since = processor_time();
@@ -242,10 +245,10 @@ static double school(int n_fish, int threads) {
     const double wall = now() - since, processor = processor_time() - processor_since;
     char name[32];
     snprintf(name, sizeof name, "%d fish", n_fish);
-    print_row(name, threads, simulation->residual->flow->released.n, EVENTS, settings.time.shedding_interval, wall,
+    print_row(name, threads, simulation->residual->flow->released.n, EVENTS, values.time.shedding_interval, wall,
               processor);
     simulate_free(simulation);
-    settings_free(&settings);
+    case_free(&values);
     return 1e3 * wall / EVENTS;
 }
 

@@ -3,9 +3,7 @@
  *
  * Wakes of 200 vortices, 2 lengths long, behind fish 1.5 lengths apart in a square school; lengths are those of a fish.
  * Times are the least of several runs, ms: processor time on one core, wall clock on more. A tree's time is that of
- * tree_build and the sum together. The direct sum is timed on at most 2048 targets and scaled. */
-#include "tree.h"
-
+ * treecode_build and the sum together. The direct sum is timed on at most 2048 targets and scaled. */
 #include <malloc.h>
 #include <math.h>
 #include <stdint.h>
@@ -14,7 +12,8 @@
 #include <string.h>
 #include <time.h>
 
-#include "kernel.h"
+#include "vortex/kernel.h"
+#include "vortex/treecode.h"
 
 enum { REPEAT = 7, SAMPLE = 2048 };
 
@@ -25,7 +24,7 @@ struct points {
 
 struct result {
     double direct, alone, shared; /* ms */
-    double error, relative;       /* greatest error: of the greatest velocity; in units of A, tree.h */
+    double error, relative;       /* greatest error: of the greatest velocity; in units of A, treecode.h */
     double gradient;              /* greatest error of the gradient of the greatest one; 0 without */
     double megabytes;             /* of the tree */
 };
@@ -94,19 +93,20 @@ static void direct(const struct points *to, int n_targets, const struct points *
     }
 }
 
-static void by_tree(struct tree *tree, const struct points *to, const struct points *from, const double *circulation,
-                    double smoothing, double tolerance, int with_gradient, int threads, double *const out[5]) {
+static void by_tree(struct treecode *tree, const struct points *to, const struct points *from,
+                    const double *circulation, double smoothing, double tolerance, int with_gradient, int threads,
+                    double *const out[5]) {
     for (int k = 0; k < 5; k++) memset(out[k], 0, (size_t)to->n * sizeof *out[k]);
-    enum status status = tree_build(tree, from->n, from->x, from->y, circulation, smoothing, tolerance);
+    enum status status = treecode_build(tree, from->n, from->x, from->y, circulation, smoothing, tolerance);
     if (status == STATUS_OK && with_gradient) {
-        status = tree_add_gradient(tree, to->n, to->x, to->y, threads, out[0], out[1], out[2], out[3], out[4]);
+        status = treecode_add_gradient(tree, to->n, to->x, to->y, threads, out[0], out[1], out[2], out[3], out[4]);
     } else if (status == STATUS_OK) {
-        status = tree_add_velocity(tree, to->n, to->x, to->y, threads, out[0], out[1]);
+        status = treecode_add_velocity(tree, to->n, to->x, to->y, threads, out[0], out[1]);
     }
     if (status != STATUS_OK) die(status_message());
 }
 
-// the sum A of tree.h
+// the sum A of treecode.h
 static double unsigned_sum(double x, double y, const struct points *from, const double *circulation, double smoothing) {
     double sum = 0;
     for (int j = 0; j < from->n; j++) {
@@ -151,8 +151,8 @@ static struct result compare(const struct points *to, const struct points *from,
     }
     for (int k = 0; k < 5; k++) want[k] = doubles(sample.n);
     const struct mallinfo2 before = mallinfo2();
-    struct tree *tree;
-    if (tree_create(&tree) != STATUS_OK) die(status_message());
+    struct treecode *tree;
+    if (treecode_create(&tree) != STATUS_OK) die(status_message());
     for (int r = 0; r < REPEAT; r++) {
         for (int k = 0; k < 5; k++) memset(want[k], 0, (size_t)sample.n * sizeof *want[k]);
         const double t0 = milliseconds(CLOCK_PROCESS_CPUTIME_ID);
@@ -168,7 +168,7 @@ static struct result compare(const struct points *to, const struct points *from,
     }
     const struct mallinfo2 after = mallinfo2();
     result.megabytes = 1e-6 * (double)(after.uordblks + after.hblkhd - before.uordblks - before.hblkhd);
-    tree_free(tree);
+    treecode_free(tree);
     find_errors(&result, &sample, from, circulation, smoothing, which, got, want);
     for (int k = 0; k < 5; k++) free(got[k]), free(want[k]);
     free(sample.x), free(sample.y), free(which);

@@ -27,7 +27,7 @@ static double relative_audit(struct simulation *simulation) {
     double most = 0;
     simulate_measure(simulation);
     for (int f = 0; f < simulation->school->n_fish; f++) {
-        const struct measure_fish *const fish = &simulation->measure->fish[f];
+        const struct diagnostics_fish *const fish = &simulation->diagnostics->fish[f];
         most = fmax(most, fabs(fish->energy_audit / fish->actuation_work));
     }
     return most;
@@ -39,15 +39,15 @@ static void whole_case(const char *name, const char *more, double end, double bo
     char path[80], quantity[120];
     snprintf(path, sizeof path, "cases/%s.yaml", name);
     struct simulation *const simulation = open_case(path, more);
-    double audit = 0;
+    double balance = 0;
     for (double t = every; t < end + every / 2; t += every) {
         verify_run(simulation, t);
-        audit = relative_audit(simulation);
+        balance = relative_audit(simulation);
         snprintf(quantity, sizeof quantity, "%s%s%s", name, more[0] ? ", " : "", more);
-        verify_point("energy audit", quantity, t, audit);
+        verify_point("energy audit", quantity, t, balance);
     }
     snprintf(quantity, sizeof quantity, "%s%s%s: audit after %g s over work", name, more[0] ? ", " : "", more, end);
-    verify_zero(quantity, source, audit, bound);
+    verify_zero(quantity, source, balance, bound);
     simulate_free(simulation);
 }
 
@@ -60,9 +60,9 @@ static double audit_with(double rtol, int order, double end, double *step) {
     struct integrator_counts counts;
     simulation->integrator->count(simulation->solver, &counts);
     *step = end / (double)counts.steps;
-    const double audit = relative_audit(simulation);
+    const double balance = relative_audit(simulation);
     simulate_free(simulation);
-    return audit;
+    return balance;
 }
 
 // to second order when the tolerance falls: in the mean step, for the error of a step is held, not that of the run
@@ -70,16 +70,16 @@ static void second_order(void) {
     enum { MOST = 5 };
     const int n = verify_is_fast() ? MOST - 1 : MOST;
     const double end = verify_is_fast() ? 2 : 4;
-    double step[MOST], audit[MOST], rtol = 1e-3;
+    double step[MOST], balance[MOST], rtol = 1e-3;
     for (int i = 0; i < n; i++) {
         rtol /= 10;
-        audit[i] = audit_with(rtol, 2, end, &step[i]);
-        verify_point("energy audit, order 2", "single_free", step[i], audit[i]);
+        balance[i] = audit_with(rtol, 2, end, &step[i]);
+        verify_point("energy audit, order 2", "single_free", step[i], balance[i]);
         char name[80];
         snprintf(name, sizeof name, "single_free, order 2, rtol %.0e: audit after %g s", rtol, end);
-        verify_show(name, "over the work of the muscle", audit[i]);
+        verify_show(name, "over the work of the muscle", balance[i]);
     }
-    verify_order("single_free: audit, order in the mean step", "method of order 2", verify_slope(n, step, audit), 1.8,
+    verify_order("single_free: audit, order in the mean step", "method of order 2", verify_slope(n, step, balance), 1.8,
                  2.5);
 }
 
@@ -89,14 +89,14 @@ static void fifth_order(void) {
     double rtol = 1e-3, step;
     for (int i = 0; i < 5; i++) {
         rtol /= 10;
-        const double audit = audit_with(rtol, 5, 4, &step);
-        verify_point("energy audit, order 5", "single_free", rtol, audit);
+        const double balance = audit_with(rtol, 5, 4, &step);
+        verify_point("energy audit, order 5", "single_free", rtol, balance);
         char name[80];
         snprintf(name, sizeof name, "single_free, order 5, rtol %.0e: audit after 4 s", rtol);
         if (rtol > 2e-6) {
-            verify_show(name, "over the work of the muscle", audit);
+            verify_show(name, "over the work of the muscle", balance);
         } else {
-            verify_zero(name, "over the work of the muscle", audit, 1e-4);
+            verify_zero(name, "over the work of the muscle", balance, 1e-4);
         }
     }
 }

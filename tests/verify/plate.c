@@ -11,7 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "sheet.h"
+#include "model/bound_sheet.h"
 #include "verify.h"
 
 static const double pi = 3.14159265358979323846;
@@ -49,7 +49,7 @@ static struct simulation *open_plate(const struct resolution *with, double end, 
 }
 
 static double bound_circulation(const struct simulation *simulation) {
-    return sheet_circulation(&simulation->school->fish[0], simulation->state->y);
+    return bound_sheet_circulation(&simulation->school->fish[0], simulation->state->y);
 }
 
 // ---- Wagner's problem: int_0^s G'(q) sqrt((2 + s - q)/(s - q)) dq = 1
@@ -143,7 +143,7 @@ static void start_values(void) {
     double sum = bound_circulation(simulation);
     const struct wake *const wake = &simulation->state->wake[0];
     for (int i = 0; i < wake->n_vortex; i++) sum += wake->circulation[i];
-    sum += simulation->state->y[simulation->school->fish[0].at.shed] - wake->shed_before;
+    sum += simulation->state->y[simulation->school->fish[0].at.circulation] - wake->shed_before;
     verify_zero("impulsive start: all circulation / (pi L U sin alpha), s = 10", "Kelvin's theorem",
                 sum / (pi * sin(incidence)), 1e-10);
     simulate_free(simulation);

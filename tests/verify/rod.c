@@ -9,7 +9,7 @@
  * P/EI over n = 1 .. N-2, which is (L - lbar/2)^3 P/(3 EI) but for terms of second order; any other free length
  * leaves one of first order.
  */
-#include "rod.h"
+#include "model/rod.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -279,7 +279,7 @@ struct invariants {
 static struct invariants invariants_of(struct simulation *simulation) {
     const struct fish *const fish = simulation->school->fish;
     const double *const y = simulation->state->y;
-    struct invariants now = {.energy = measure_energy(simulation->residual, 0, simulation->state->t, y)};
+    struct invariants now = {.energy = diagnostics_energy(simulation->residual, 0, simulation->state->t, y)};
     for (int k = 0; k < fish->n_nodes; k++) {
         const double p[2] = {fish->mass[k] * y[fish->at.vx + k], fish->mass[k] * y[fish->at.vy + k]};
         now.momentum[0] += p[0];
@@ -294,7 +294,7 @@ static void strike(struct simulation *simulation) {
     const struct fish *const fish = simulation->school->fish;
     double *const y = simulation->state->y;
     for (int k = 0; k < fish->n_nodes; k++) y[fish->at.vy + k] = 2 * fish->arc[k] * fish->arc[k];
-    if (consistent_solve(simulation->consistent, 0, y, simulation->state->yp) != STATUS_OK ||
+    if (initial_conditions_solve(simulation->consistent, 0, y, simulation->state->yp) != STATUS_OK ||
         simulation->integrator->restart(simulation->solver) != STATUS_OK) {
         abort();
     }

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "event.h"
+#include "run/event.h"
 #include "verify.h"
 
 // where a run ended: what is compared between two runs. Places in m, circulation in m2/s, fish after fish
@@ -67,7 +67,7 @@ static struct ends ends_of(const struct simulation *simulation, double shed_at) 
             add(&ends, TAIL, y[slices[i] + fish->n_nodes - 1]);
             add(&ends, CENTRE, centre);
         }
-        add(&ends, SHED, y[fish->at.shed]);
+        add(&ends, SHED, y[fish->at.circulation]);
         add_place_in_sheet(&ends, simulation, f, shed_at);
     }
     return ends;
@@ -387,11 +387,11 @@ static enum status runge_kutta_step(struct simulation *simulation, const double 
         for (int i = 0; s > 0 && i < n; i++) {
             if (kind[i] > 0) stage[i] = y[i] + node[s] * h * rate[i];
         }
-        TRY(consistent_solve(simulation->consistent, t + node[s] * h, stage, rate));
+        TRY(initial_conditions_solve(simulation->consistent, t + node[s] * h, stage, rate));
         for (int i = 0; i < n; i++) sum[i] += weight[s] * rate[i];
     }
     for (int i = 0; i < n; i++) y[i] = kind[i] > 0 ? y[i] + h * sum[i] : stage[i];
-    return consistent_solve(simulation->consistent, t + h, y, simulation->state->yp);
+    return initial_conditions_solve(simulation->consistent, t + h, y, simulation->state->yp);
 }
 
 static enum status runge_kutta_run(struct simulation *simulation, double end, int steps_per_event) {

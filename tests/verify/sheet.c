@@ -1,4 +1,4 @@
-/* sheet.c: the section "sheet": the bound sheet alone against the closed forms of thin plates and circular arcs.
+/* bound_sheet.c: the section "sheet": the bound sheet alone against the closed forms of thin plates and circular arcs.
  *
  * The rows "no penetration" and Kelvin of the residual are linear in the strengths: probing the residual with unit
  * strengths gives their matrix, and a dense solver of this file solves it. So what is measured is the discretisation
@@ -7,14 +7,13 @@
  *     no circulation:  M - 1 times no penetration, sum of q_j = 0
  *     steady Kutta:    M - 1 times no penetration, q_{M-1} = 0: the starting vortex is infinitely far away
  */
-#include "sheet.h"
-
 #include <complex.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "model/bound_sheet.h"
 #include "verify.h"
 
 static const double pi = 3.14159265358979323846;
@@ -88,9 +87,9 @@ static void rows(const struct probe *probe, enum closure closure, const double *
     struct residual *const residual = probe->simulation->residual;
     double *const value = numbers(probe->simulation->school->n_unknowns);
     if (residual_evaluate(residual, 0, y, probe->simulation->state->yp, value) != STATUS_OK) abort();
-    memcpy(row, value + probe->fish->at.sheet, (size_t)probe->n * sizeof *row);
+    memcpy(row, value + probe->fish->at.gamma, (size_t)probe->n * sizeof *row);
     const int last = probe->n - 1;
-    if (closure == STEADY_KUTTA) row[last] = probe->fish->sheet_weight[last] * y[probe->fish->at.sheet + last];
+    if (closure == STEADY_KUTTA) row[last] = probe->fish->sheet_weight[last] * y[probe->fish->at.gamma + last];
     free(value);
 }
 
@@ -98,7 +97,7 @@ static void probe_solve(struct probe *probe, enum closure closure) {
     const int n = probe->n;
     double *const y = numbers(probe->simulation->school->n_unknowns), *const row = numbers(n);
     memcpy(y, probe->simulation->state->y, (size_t)probe->simulation->school->n_unknowns * sizeof *y);
-    double *const sheet = y + probe->fish->at.sheet;
+    double *const sheet = y + probe->fish->at.gamma;
     memset(sheet, 0, (size_t)n * sizeof *sheet);
     rows(probe, closure, y, probe->right);
     for (int i = 0; i < n; i++) probe->right[i] *= -1;
@@ -248,7 +247,7 @@ static void start_of_a_run(void) {
     probe_solve(&probe, NO_CIRCULATION);
     double largest = 0;
     for (int j = 0; j < probe.n; j++) {
-        const double difference = probe.simulation->state->y[probe.fish->at.sheet + j] - probe.sheet[j];
+        const double difference = probe.simulation->state->y[probe.fish->at.gamma + j] - probe.sheet[j];
         largest = fmax(largest, fabs(difference) * probe.fish->sheet_weight[j]);
     }
     verify_zero("plate: q_j of KINSOL and KLU against a dense solver", "the same equations, U L = 1 m2/s", largest,

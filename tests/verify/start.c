@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "bridge.h"
+#include "solver/sundials_adapter.h"
 #include "verify.h"
 
 // ---- dense matrices, row after row
@@ -106,7 +106,7 @@ static void copy_rows(const struct jacobian *jacobian, int f, const struct algeb
     }
     for (int i = jacobian->first[f]; i < jacobian->first[f + 1]; i++) {
         const struct fish *const other = &jacobian->school->fish[jacobian->coupling[i].other];
-        const struct flow_rows *const rows = &jacobian->coupling[i].rows;
+        const struct coupling_block *const rows = &jacobian->coupling[i].rows;
         for (int c = 0; c < rows->n_columns; c++) {
             for (int r = 0; r < rows->n_rows; r++) {
                 set(to, jacobian->school->fish[f].at.ax + r, flow_column(other, c), rows->value[c * rows->n_rows + r]);
@@ -153,7 +153,7 @@ static struct value largest_value(struct simulation *simulation) {
     const int n = simulation->school->n_unknowns;
     double *const value = allocate(n, sizeof *value);
     struct value most = {0};
-    flow_forget(simulation->residual->flow);
+    flow_invalidate(simulation->residual->flow);
     if (residual_evaluate(simulation->residual, simulation->state->t, simulation->state->y, simulation->state->yp,
                           value) != STATUS_OK) {
         abort();
@@ -280,12 +280,12 @@ static void refinement(void) {
 struct correction {
     struct simulation *simulation;
     struct jacobian *jacobian;
-    struct bridge_linear linear;
+    struct sundials_adapter_linear linear;
 };
 
 static int value_callback(realtype t, N_Vector y, N_Vector yp, N_Vector value, void *data) {
     const struct correction *const correction = data;
-    flow_forget(correction->simulation->residual->flow);
+    flow_invalidate(correction->simulation->residual->flow);
     return residual_evaluate(correction->simulation->residual, t, N_VGetArrayPointer(y), N_VGetArrayPointer(yp),
                              N_VGetArrayPointer(value));
 }
@@ -294,7 +294,7 @@ static int jacobian_callback(realtype t, realtype cj, N_Vector y, N_Vector yp, N
                              void *data, N_Vector scratch1, N_Vector scratch2, N_Vector scratch3) {
     (void)yp, (void)value, (void)matrix, (void)scratch1, (void)scratch2, (void)scratch3;
     struct correction *const correction = data;
-    flow_forget(correction->simulation->residual->flow);
+    flow_invalidate(correction->simulation->residual->flow);
     return residual_jacobian(correction->simulation->residual, t, cj, N_VGetArrayPointer(y), correction->jacobian);
 }
 
@@ -306,18 +306,18 @@ static int calculate(struct simulation *simulation, double *y, double *yp, doubl
     double *const values[4] = {y, yp, kind, tolerance};
     SUNContext context;
     N_Vector vector[4];
-    if (bridge_context(&context) != STATUS_OK) abort();
+    if (sundials_adapter_context(&context) != STATUS_OK) abort();
     for (int i = 0; i < 4; i++) {
-        if (bridge_vector(&vector[i], context, n, values[i]) != STATUS_OK) abort();
+        if (sundials_adapter_vector(&vector[i], context, n, values[i]) != STATUS_OK) abort();
     }
     if (jacobian_create(&correction.jacobian, simulation->school) != STATUS_OK ||
-        bridge_linear_create(&correction.linear, context, correction.jacobian, tolerance, end) != STATUS_OK) {
+        sundials_adapter_linear_create(&correction.linear, context, correction.jacobian, tolerance, end) != STATUS_OK) {
         abort();
     }
     residual_mask(simulation->residual, correction.jacobian);
     void *ida = IDACreate(context);
     int code = IDAInit(ida, value_callback, simulation->state->t, vector[0], vector[1]);
-    if (code == 0) code = IDASetErrHandlerFn(ida, bridge_message, NULL);
+    if (code == 0) code = IDASetErrHandlerFn(ida, sundials_adapter_message, NULL);
     if (code == 0) code = IDASetUserData(ida, &correction);
     if (code == 0) code = IDASVtolerances(ida, 0, vector[3]);
     if (code == 0) code = IDASetId(ida, vector[2]);
@@ -326,7 +326,7 @@ static int calculate(struct simulation *simulation, double *y, double *yp, doubl
     if (code == 0) code = IDACalcIC(ida, IDA_YA_YDP_INIT, simulation->state->t + simulation->school->interval);
     if (code == 0) code = IDAGetConsistentIC(ida, vector[0], vector[1]);
     IDAFree(&ida);
-    bridge_linear_free(&correction.linear);
+    sundials_adapter_linear_free(&correction.linear);
     for (int i = 0; i < 4; i++) N_VDestroy(vector[i]);
     jacobian_free(correction.jacobian);
     SUNContext_Free(&context);

@@ -113,7 +113,7 @@ static void compare(const struct simulation *one, const struct simulation *seen,
             *bodies = largest(*bodies, distance(view, y[a->at.x + k], y[a->at.y + k], z[b->at.x + k], z[b->at.y + k]));
         }
         for (int j = 0; j < a->n_sheet; j++) {
-            *wakes = largest(*wakes, fabs(sign * y[a->at.sheet + j] - z[b->at.sheet + j]) * a->sheet_weight[j]);
+            *wakes = largest(*wakes, fabs(sign * y[a->at.gamma + j] - z[b->at.gamma + j]) * a->sheet_weight[j]);
         }
         const struct wake *v = &one->state->wake[f], *w = &seen->state->wake[place];
         if (v->n_vortex != w->n_vortex) *wakes = INFINITY;
@@ -223,14 +223,14 @@ static double *last_row(const char *path, const char *name, size_t *n) {
 static void write_result(const char *path, double output_interval) {
     char text[MOST_TEXT];
     write_case(&usual, output_interval, text);
-    struct settings settings;
+    struct case_values values;
     const struct simulate_options options = {.path = path, .overwrite = 1, .command = "verify"};
-    if (settings_parse(&settings, text, strlen(text), "verify", ".", 0, NULL) != STATUS_OK ||
-        simulate_run(&settings, &options) != STATUS_OK) {
+    if (case_parse(&values, text, strlen(text), "verify", ".", 0, NULL) != STATUS_OK ||
+        simulate_run(&values, &options) != STATUS_OK) {
         fprintf(stderr, "verify symmetry: %s\n", status_message());
         exit(1);
     }
-    settings_free(&settings);
+    case_free(&values);
 }
 
 // one row of output at the end, or one at every second event on the way

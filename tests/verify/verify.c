@@ -119,11 +119,11 @@ struct simulation *verify_open(const char *format, ...) {
     va_start(arguments, format);
     const int length = vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    struct settings settings;
+    struct case_values values;
     struct simulation *simulation;
-    if (settings_parse(&settings, text, (size_t)length, "verify", ".", 0, NULL) != STATUS_OK) give_up();
-    if (simulate_create(&simulation, &settings) != STATUS_OK) give_up();
-    settings_free(&settings);
+    if (case_parse(&values, text, (size_t)length, "verify", ".", 0, NULL) != STATUS_OK) give_up();
+    if (simulate_create(&simulation, &values) != STATUS_OK) give_up();
+    case_free(&values);
     return simulation;
 }
 

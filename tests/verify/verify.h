@@ -7,7 +7,7 @@
 #ifndef VERIFY_H
 #define VERIFY_H
 
-#include "simulate.h"
+#include "run/simulate.h"
 
 /* The sections, in the order of doc/verification.md; each is in a file of its own. */
 void verify_rod(void);

@@ -1,0 +1,149 @@
+/* main.c: chooses a command, catches signals, and prints errors: the only place that does. Results go to stdout,
+ * progress and messages to stderr. */
+#include "app/main.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/version.h"
+
+/* ---- signals ---- */
+
+static volatile sig_atomic_t stop_signal;
+
+static void on_signal(int number) {
+    stop_signal = number;
+}
+
+void main_catch_signals(void) {
+    struct sigaction action = {.sa_handler = on_signal};
+    sigemptyset(&action.sa_mask);
+    action.sa_flags = (int)SA_RESETHAND; /* a second one ends the program at once */
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+    /* a full disk or a file limit is an error to report, not a death */
+    signal(SIGXFSZ, SIG_IGN);
+}
+
+const volatile sig_atomic_t *main_stop_signal(void) {
+    return &stop_signal;
+}
+
+/* ---- the commands ---- */
+
+static const struct command commands[] = {
+    {"run",
+     "CASE",
+     "run a case and write its result",
+     {'o', OPTION_FORCE, OPTION_SET, OPTION_THREADS, 'q', 'v', 'h'},
+     main_run},
+    {"study",
+     "CASE",
+     "run every member of a case's sweep, and gather what they end with",
+     {'o', 'j', OPTION_MEMBERS, OPTION_SLURM, OPTION_BUNDLE, OPTION_FORCE, OPTION_SET, OPTION_THREADS, 'q', 'h'},
+     main_study},
+    {"gather", "FOLDER", "make study.nc and its table from the files of the members", {'h'}, main_gather},
+    {"compare",
+     "CASE",
+     "compare methods of integration: error against cost",
+     {'o', OPTION_FORCE, OPTION_METHODS, OPTION_RTOL, OPTION_STEPS, OPTION_REPEATS, OPTION_REFERENCE, OPTION_LIMIT,
+      OPTION_SET, OPTION_THREADS, 'q', 'h'},
+     main_compare},
+    {"check",
+     "CASE",
+     "check a case and say everything that is wrong with it",
+     {OPTION_SET, OPTION_THREADS, 'q', 'h'},
+     main_check},
+    {"show", "CASE", "print every key of a case with its value", {OPTION_SET, OPTION_THREADS, 'h'}, main_show},
+    {"keys",
+     NULL,
+     "list all keys of a case, or all variables of a result",
+     {OPTION_JSON, OPTION_OUTPUT, 'h'},
+     main_keys},
+    {"info", "FILE.nc", "say what the file of a run, a study or a comparison holds", {OPTION_CASE, 'h'}, main_info},
+    {"demo", NULL, "let a fish swim: write demo.nc and demo.png here", {'q', 'h'}, main_demo},
+};
+enum { N_COMMANDS = sizeof commands / sizeof *commands };
+
+static void print_help(FILE *stream) {
+    fputs("shoal: flexible swimmers and their schools\n\nUsage: shoal COMMAND [OPTIONS] [FILE]\n\n", stream);
+    for (int i = 0; i < N_COMMANDS; i++) {
+        fprintf(stream, "  %-8s%-8s%s\n", commands[i].name, commands[i].positional ? commands[i].positional : "",
+                commands[i].summary);
+    }
+    fputs(
+        "\n  shoal COMMAND --help    the options of a command\n"
+        "  shoal --version         versions of the program and its libraries\n\n"
+        "Exit codes: 0 done, 1 the solver gave up, 2 usage or case error, 3 a stated check missed, 4 file error,\n"
+        "75 stopped by a signal.\n",
+        stream);
+}
+
+static char *join(int argc, char **argv) {
+    size_t length = 1;
+    for (int i = 0; i < argc; i++) length += strlen(argv[i]) + 1;
+    char *const text = calloc(1, length);
+    for (int i = 0; i < argc && text; i++) {
+        strcat(text, argv[i]);
+        if (i + 1 < argc) strcat(text, " ");
+    }
+    return text;
+}
+
+static enum status dispatch(const struct command *command, int argc, char **argv) {
+    char *const command_line = join(argc, argv);
+    const char **const assignments = calloc((size_t)argc + 1, sizeof *assignments);
+    enum status status = STATUS_OK;
+    if (command_line && assignments) {
+        struct request request = {.command_line = command_line, .assignments = assignments};
+        // getopt starts behind the command's name
+        if (main_parse(command, argc - 1, argv + 1, &request, &status) == 0 && status == STATUS_OK) {
+            status = command->run(&request);
+        }
+    } else {
+        status = status_fail(STATUS_MEMORY, "no room for the command line");
+    }
+    free(command_line);
+    free(assignments);
+    return status;
+}
+
+static enum status print_version(void) {
+    char libraries[VERSION_LENGTH];
+    version_libraries(libraries);
+    printf("%s\n%s\n", version_short(), libraries);
+    return STATUS_OK;
+}
+
+static enum status choose(int argc, char **argv) {
+    if (argc < 2) {
+        print_help(stderr);
+        return status_fail(STATUS_CASE, "no command");
+    }
+    if (strcmp(argv[1], "--version") == 0) return print_version();
+    if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0) {
+        print_help(stdout);
+        return STATUS_OK;
+    }
+    for (int i = 0; i < N_COMMANDS; i++) {
+        if (strcmp(argv[1], commands[i].name) == 0) return dispatch(&commands[i], argc, argv);
+    }
+    return main_usage(NULL, "unknown command '%s'", argv[1]);
+}
+
+// the errors of a case name their places themselves
+static void print_message(const char *message) {
+    const size_t length = strlen(message);
+    fprintf(stderr, "%s%s%s", strstr(message, "error: ") ? "" : "shoal: error: ", message,
+            length > 0 && message[length - 1] == '\n' ? "" : "\n");
+}
+
+int main(int argc, char **argv) {
+    main_wait_briefly(argv);
+    enum status status = choose(argc, argv);
+    if (status == STATUS_OK && (fflush(stdout) != 0 || ferror(stdout))) {
+        status = status_fail(STATUS_FILE, "cannot write to standard output");
+    }
+    if (status != STATUS_OK) print_message(status_message());
+    return status_exit_code(status);
+}

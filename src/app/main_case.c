@@ -1,0 +1,64 @@
+/* main_case.c: looking at cases and at results. Declared in main.h. */
+#include <stdlib.h>
+
+#include "app/main.h"
+#include "case/case.h"
+#include "model/fish.h"
+#include "output/result_file.h"
+#include "study/compare.h"
+#include "study/study.h"
+
+/* Check the case of each member of a study, as `shoal study` will. */
+static enum status check_members(const struct case_values *study) {
+    for (int m = 0; study->n_axes > 0 && m < sweep_n_members(study); m++) {
+        struct case_values member;
+        TRY(sweep_member(&member, study, m));
+        case_free(&member);
+    }
+    return STATUS_OK;
+}
+
+enum status main_check(const struct request *request) {
+    struct case_values values;
+    TRY(case_read(&values, request->positional, request->n_assignments, request->assignments));
+    struct school *school = NULL;
+    enum status status = fish_school_create(&school, &values);
+    if (status == STATUS_OK) status = check_members(&values);
+    if (status == STATUS_OK && !request->quiet) {
+        printf("%s: ok: %d fish, %d unknowns, %.6g s in %.0f events", request->positional, school->n_fish,
+               school->n_unknowns, values.time.end, values.time.end / values.time.shedding_interval);
+        if (values.n_axes > 0) printf("; %d members", sweep_n_members(&values));
+        printf("\n");
+    }
+    fish_school_free(school);
+    case_free(&values);
+    return status;
+}
+
+enum status main_show(const struct request *request) {
+    struct case_values values;
+    TRY(case_read(&values, request->positional, request->n_assignments, request->assignments));
+    char *text = NULL;
+    const enum status status = case_show(&values, &text);
+    if (status == STATUS_OK) fputs(text, stdout);
+    free(text);
+    case_free(&values);
+    return status;
+}
+
+enum status main_keys(const struct request *request) {
+    if (request->of_output) {
+        result_variables(stdout, request->json);
+    } else {
+        case_keys(stdout, request->json);
+    }
+    return STATUS_OK;
+}
+
+enum status main_info(const struct request *request) {
+    enum result_kind kind;
+    TRY(result_info(request->positional, request->case_only, stdout, &kind));
+    if (request->case_only) return STATUS_OK;
+    if (kind == RESULT_STUDY) return study_info(request->positional, stdout);
+    return kind == RESULT_COMPARISON ? compare_info(request->positional, stdout) : STATUS_OK;
+}

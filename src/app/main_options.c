@@ -1,0 +1,129 @@
+/* main_options.c: the options of the commands. Declared in main.h. */
+#include <getopt.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "app/main.h"
+
+/* One option: its names, the word for its argument (NULL: none), and what it means. */
+struct option_help {
+    int code;
+    const char *name, *argument, *meaning;
+};
+
+static const struct option_help all_options[] = {
+    {'o', "output", "PATH",
+     "where the result goes: a file (default: the case's output.file, or its name with .nc), for a study a folder "
+     "(default: its name with -study), for a comparison a file (default: none)"},
+    {'j', "processes", "N", "run N members at once (default: one per processor)"},
+    {OPTION_SLURM, "slurm", NULL, "run nothing, but write the scripts of a Slurm array job into the folder"},
+    {OPTION_BUNDLE, "bundle", "N", "with --slurm: N members a task"},
+    {OPTION_METHODS, "methods", "LIST",
+     "methods to compare: ida1 to ida5 (implicit, of this order), euler, heun, rk4, dormand_prince, and with --steps "
+     "implicit_euler and trapezoid"},
+    {OPTION_RTOL, "rtol", "LIST", "tolerances to compare (1e-3,1e-4,1e-5,1e-6,1e-7)"},
+    {OPTION_STEPS, "steps", "LIST", "fixed steps for all methods but ida instead of tolerances, s"},
+    {OPTION_REPEATS, "repeats", "N", "run each that often; the wall time is the median (3)"},
+    {OPTION_REFERENCE, "reference-rtol", "X", "tolerance of the reference, which is ida5 (1e-9)"},
+    {OPTION_LIMIT, "limit", "SECONDS", "give a run up after this wall time (60)"},
+    {OPTION_MEMBERS, "members", "A-B", "run these members only (or one: A), and gather nothing"},
+    {OPTION_FORCE, "force", NULL, "replace a result that exists"},
+    {OPTION_SET, "set", "PATH=VALUE", "set a key, as in --set fish[0].wave.frequency=1.2 or --set fish[*].nodes=13"},
+    {OPTION_THREADS, "threads", "N", "the same as --set solver.threads=N"},
+    {'q', "quiet", NULL, "no progress and no summary"},
+    {'v', "verbose", NULL, "print the counts of the solver at the end"},
+    {OPTION_JSON, "json", NULL, "print as JSON"},
+    {OPTION_OUTPUT, "output", NULL, "list the variables of a result file instead of the keys of a case"},
+    {OPTION_CASE, "case", NULL, "print the complete case that made the file, and nothing else"},
+    {'h', "help", NULL, "this text"},
+};
+
+enum { N_OPTIONS = sizeof all_options / sizeof *all_options };
+
+static const struct option_help *option_of(int code) {
+    const struct option_help *option = all_options;
+    while (option->code != code) option++;
+    return option;
+}
+
+static void print_command_help(const struct command *command, FILE *stream) {
+    fprintf(stream, "shoal %s: %s\n\nUsage: shoal %s [OPTIONS]%s%s\n\n", command->name, command->summary, command->name,
+            command->positional ? " " : "", command->positional ? command->positional : "");
+    for (int i = 0; command->options[i]; i++) {
+        const struct option_help *option = option_of(command->options[i]);
+        char names[64];
+        snprintf(names, sizeof names, "%s--%s%s%s", option->code < OPTION_SET ? "-x, " : "    ", option->name,
+                 option->argument ? " " : "", option->argument ? option->argument : "");
+        if (option->code < OPTION_SET) names[1] = (char)option->code;
+        fprintf(stream, "  %-22s %s\n", names, option->meaning);
+    }
+}
+
+enum status main_usage(const struct command *command, const char *format, const char *word) {
+    char problem[512];
+    snprintf(problem, sizeof problem, format, word);
+    return status_fail(STATUS_CASE, "%s; see shoal %s%s--help", problem, command ? command->name : "",
+                       command ? " " : "");
+}
+
+static void take_option(struct request *request, int code, char *argument) {
+    switch (code) {
+        case 'o': request->output = argument; break;
+        case 'j': request->processes = argument; break;
+        case OPTION_MEMBERS: request->members = argument; break;
+        case OPTION_SLURM: request->slurm = 1; break;
+        case OPTION_BUNDLE: request->bundle = argument; break;
+        case OPTION_METHODS: request->methods = argument; break;
+        case OPTION_RTOL: request->rtols = argument; break;
+        case OPTION_STEPS: request->steps = argument; break;
+        case OPTION_REPEATS: request->repeats = argument; break;
+        case OPTION_REFERENCE: request->reference_rtol = argument; break;
+        case OPTION_LIMIT: request->limit = argument; break;
+        case 'q': request->quiet = 1; break;
+        case 'v': request->verbose = 1; break;
+        case OPTION_FORCE: request->force = 1; break;
+        case OPTION_JSON: request->json = 1; break;
+        case OPTION_OUTPUT: request->of_output = 1; break;
+        case OPTION_CASE: request->case_only = 1; break;
+        case OPTION_SET: request->assignments[request->n_assignments++] = argument; break;
+        case OPTION_THREADS:
+            snprintf(request->threads, sizeof request->threads, "solver.threads=%.40s", argument);
+            request->assignments[request->n_assignments++] = request->threads;
+            break;
+        default: break;
+    }
+}
+
+int main_parse(const struct command *command, int argc, char **argv, struct request *request, enum status *status) {
+    struct option options[N_OPTIONS + 1] = {0};
+    char letters[2 * N_OPTIONS + 2] = ":";
+    for (int i = 0; command->options[i]; i++) {
+        const struct option_help *from = option_of(command->options[i]);
+        options[i] = (struct option){from->name, from->argument ? required_argument : no_argument, NULL, from->code};
+        if (from->code < OPTION_SET) {
+            const size_t end = strlen(letters);
+            letters[end] = (char)from->code;
+            letters[end + 1] = from->argument ? ':' : '\0';
+        }
+    }
+    opterr = 0;
+    for (int code; (code = getopt_long(argc, argv, letters, options, NULL)) != -1;) {
+        if (code == 'h') {
+            print_command_help(command, stdout);
+            return -1;
+        }
+        if (code == '?' || code == ':') {
+            *status = main_usage(command, code == '?' ? "unknown option '%s'" : "option '%s' needs a value",
+                                 argv[optind - 1]);
+            return 0;
+        }
+        take_option(request, code, optarg);
+    }
+    const int n_left = argc - optind;
+    if (command->positional && n_left == 0) *status = main_usage(command, "%s is missing", command->positional);
+    if (n_left > (command->positional ? 1 : 0)) {
+        *status = main_usage(command, "'%s' is one word too many", argv[optind + (command->positional ? 1 : 0)]);
+    }
+    if (command->positional && n_left > 0) request->positional = argv[optind];
+    return 0;
+}

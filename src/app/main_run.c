@@ -1,0 +1,111 @@
+/* main_run.c: running a case; the demonstration. Declared in main.h. */
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "app/main.h"
+#include "app/progress.h"
+#include "case/case.h"
+#include "output/result_file.h"
+#include "run/simulate.h"
+
+// ---- run
+
+static char *default_path(const struct case_values *values) {
+    const char *const name = values->output.file ? values->output.file : values->name;
+    const char *const ending = values->output.file ? "" : ".nc";
+    char *const path = malloc(strlen(name) + strlen(ending) + 1);
+    if (path) sprintf(path, "%s%s", name, ending);
+    return path;
+}
+
+static enum status run_settings(const struct case_values *values, const struct request *request, const char *path) {
+    struct progress progress;
+    progress_start(&progress);
+    const struct simulate_options options = {.path = path,
+                                             .overwrite = request->force,
+                                             .command = request->command_line,
+                                             .progress = request->quiet ? NULL : progress_show,
+                                             .data = &progress,
+                                             .stop = main_stop_signal()};
+    main_catch_signals();
+    main_spread_threads(values->solver.threads);
+    const enum status status = simulate_run(values, &options);
+    progress_end(&progress);
+    TRY(status);
+    enum result_kind kind;
+    if (request->verbose) TRY(result_info(path, 0, stdout, &kind));
+    if (!request->quiet && !request->verbose) printf("%s\n", path);
+    return STATUS_OK;
+}
+
+enum status main_run(const struct request *request) {
+    struct case_values values;
+    TRY(case_read(&values, request->positional, request->n_assignments, request->assignments));
+    enum status status = case_runnable(&values);
+    if (status == STATUS_OK) {
+        char *const path = request->output ? strdup(request->output) : default_path(&values);
+        status = path ? run_settings(&values, request, path) : status_fail(STATUS_MEMORY, "no room for a file name");
+        free(path);
+    }
+    case_free(&values);
+    return status;
+}
+
+// ---- demo
+
+// the folder that holds cases and scripts: that of the sources, or share/shoal beside an installed program
+static enum status find_share(char share[PATH_MAX]) {
+    char program[PATH_MAX];
+    const ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+    if (length <= 0) return status_fail(STATUS_FILE, "cannot find the folder of this program");
+    program[length] = '\0';
+    char *const slash = strrchr(program, '/');
+    if (slash) *slash = '\0';
+    static const char *const places[] = {"..", "../share/shoal"};
+    for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
+        char file[PATH_MAX];
+        if (snprintf(share, PATH_MAX, "%s/%s", program, places[i]) >= PATH_MAX) continue;
+        if (snprintf(file, PATH_MAX, "%s/cases/demo.yaml", share) >= PATH_MAX) continue;
+        char *const found = access(file, R_OK) == 0 ? realpath(share, NULL) : NULL;
+        if (!found) continue;
+        snprintf(share, PATH_MAX, "%s", found);
+        free(found);
+        return STATUS_OK;
+    }
+    return status_fail(STATUS_FILE, "cases/demo.yaml is neither in %s/.. nor in %s/../share/shoal", program, program);
+}
+
+static enum status draw(const char *share, const char *result, const char *picture) {
+    char script[PATH_MAX + 32];
+    snprintf(script, sizeof script, "%s/scripts/plot.py", share);
+    fflush(NULL);
+    const pid_t child = fork();
+    if (child == 0) {
+        execl("/usr/bin/python3", "python3", script, result, picture, (char *)NULL);
+        _exit(127);
+    }
+    int outcome = -1;
+    if (child < 0 || waitpid(child, &outcome, 0) != child || outcome != 0) {
+        return status_fail(STATUS_FILE, "%s was written, but /usr/bin/python3 %s could not draw %s", result, script,
+                           picture);
+    }
+    return STATUS_OK;
+}
+
+enum status main_demo(const struct request *request) {
+    char share[PATH_MAX], path[PATH_MAX + 32];
+    TRY(find_share(share));
+    snprintf(path, sizeof path, "%s/cases/demo.yaml", share);
+    struct request demo = *request;
+    demo.positional = path;
+    demo.output = "demo.nc";
+    demo.force = 1; /* the demonstration owns its two files */
+    demo.verbose = !request->quiet;
+    TRY(main_run(&demo));
+    TRY(draw(share, "demo.nc", "demo.png"));
+    if (!request->quiet) printf("\nThe picture is demo.png; the case is %s.\n", path);
+    return STATUS_OK;
+}

@@ -1,0 +1,102 @@
+/* main_study.c: many runs from one case. Declared in main.h. */
+#include <stdlib.h>
+#include <unistd.h>
+
+#include "app/main.h"
+#include "app/progress.h"
+#include "case/case.h"
+#include "study/compare.h"
+#include "study/study.h"
+
+// ---- study, gather
+
+/* A whole number from 0 on of an option. */
+static enum status read_count(const char *option, const char *text, int *count) {
+    char *end;
+    const long number = strtol(text, &end, 10);
+    if (end == text || *end || number < 0 || number > 1000000) {
+        return status_fail(STATUS_CASE, "%s %s: expects a whole number", option, text);
+    }
+    *count = (int)number;
+    return STATUS_OK;
+}
+
+/* "3", or "3-7". */
+static enum status read_range(const char *text, int *first, int *last) {
+    int length = 0;
+    const int n = sscanf(text, "%9d-%9d%n", first, last, &length);
+    if (n == 1 && sscanf(text, "%*d%n", &length) == 0) *last = *first;
+    if (n >= 1 && text[length] == '\0' && *first >= 0 && *last >= *first) return STATUS_OK;
+    return status_fail(STATUS_CASE, "--members %s: expects the number of a member, or a range as in 0-9", text);
+}
+
+static enum status run_study(const struct case_values *values, const struct request *request, const char *folder) {
+    struct progress progress;
+    progress_start(&progress);
+    struct study_options options = {.folder = folder,
+                                    .command = request->command_line,
+                                    .last = -1,
+                                    .force = request->force,
+                                    .progress = request->quiet ? NULL : progress_study,
+                                    .data = &progress,
+                                    .stop = main_stop_signal()};
+    if (request->processes) TRY(read_count("-j", request->processes, &options.n_processes));
+    if (request->members) TRY(read_range(request->members, &options.first, &options.last));
+    main_catch_signals();
+    const enum status status = study_run(values, &options, stdout);
+    progress_end(&progress);
+    return status;
+}
+
+enum status main_study(const struct request *request) {
+    struct case_values values;
+    TRY(case_read(&values, request->positional, request->n_assignments, request->assignments));
+    char folder[512];
+    snprintf(folder, sizeof folder, "%s-study", values.name);
+    const char *const place = request->output ? request->output : folder;
+    int bundle = 0;
+    enum status status = request->bundle ? read_count("--bundle", request->bundle, &bundle) : STATUS_OK;
+    if (status == STATUS_OK) {
+        status = request->slurm ? study_slurm(&values, place, bundle, stdout) : run_study(&values, request, place);
+    }
+    case_free(&values);
+    return status;
+}
+
+enum status main_gather(const struct request *request) {
+    return study_gather(request->positional, request->command_line, stdout);
+}
+
+// ---- compare
+
+/* A positive number of an option; the default where it is not given. */
+static enum status read_number(const char *option, const char *text, double standard, double *number) {
+    char *end = NULL;
+    *number = text ? strtod(text, &end) : standard;
+    if (*number > 0 && (!text || (end != text && *end == '\0'))) return STATUS_OK;
+    return status_fail(STATUS_CASE, "%s %s: expects a number above 0", option, text);
+}
+
+enum status main_compare(const struct request *request) {
+    struct compare_options options = {.methods = request->methods,
+                                      .rtols = request->rtols,
+                                      .steps = request->steps,
+                                      .repeats = 3,
+                                      .path = request->output,
+                                      .command = request->command_line,
+                                      .quiet = request->quiet,
+                                      .stop = main_stop_signal()};
+    if (request->repeats) TRY(read_count("--repeats", request->repeats, &options.repeats));
+    TRY(read_number("--reference-rtol", request->reference_rtol, 1e-9, &options.reference_rtol));
+    TRY(read_number("--limit", request->limit, 60, &options.limit));
+    if (request->output && !request->force && access(request->output, F_OK) == 0) {
+        return status_fail(STATUS_FILE, "%s exists: choose another name with -o or allow replacing it with --force",
+                           request->output);
+    }
+    struct case_values values;
+    TRY(case_read(&values, request->positional, request->n_assignments, request->assignments));
+    main_catch_signals();
+    const enum status status = compare_run(&values, &options, stdout);
+    case_free(&values);
+    return status;
+}

@@ -1,0 +1,57 @@
+/* progress.c: one line, at most five times a second. */
+#include "app/progress.h"
+
+#include <stdio.h>
+#include <unistd.h>
+
+void progress_start(struct progress *progress) {
+    *progress = (struct progress){.terminal = isatty(STDERR_FILENO), .drawn_at = -1};
+}
+
+static void print_line(const struct simulate_progress *now) {
+    const double done = now->t / now->end;
+    const double left = done > 0 ? now->wall_time * (1 - done) / done : 0;
+    fprintf(stderr, "t %8.3f s  %3.0f %%  %4.1f steps/event  %6d vortices  %6.2f x real time  %.0f s left", now->t,
+            100 * done, (double)now->steps / (double)now->event, now->n_vortices, now->t / now->wall_time, left);
+}
+
+/* True if a line is due; on a terminal the cursor then stands at its begin. */
+static int is_due(struct progress *progress, double part, double wall_time) {
+    if (progress->terminal) {
+        if (wall_time - progress->drawn_at < 0.2) return 0;
+        progress->drawn_at = wall_time;
+        progress->drawn = 1;
+        fputs("\r", stderr);
+        return 1;
+    }
+    // a little over, so that a whole tenth is not missed by rounding
+    const int tenth = (int)(10 * part + 1e-9);
+    if (tenth <= progress->tenth) return 0;
+    progress->tenth = tenth;
+    return 1;
+}
+
+static void end_line(const struct progress *progress) {
+    fputs(progress->terminal ? "\033[K" : "\n", stderr);
+}
+
+void progress_show(const struct simulate_progress *now, void *data) {
+    struct progress *const progress = data;
+    if (!is_due(progress, now->t / now->end, now->wall_time)) return;
+    print_line(now);
+    end_line(progress);
+}
+
+void progress_study(const struct study_progress *now, void *data) {
+    struct progress *const progress = data;
+    if (!is_due(progress, now->part, now->wall_time)) return;
+    const double left = now->part > 0 ? now->wall_time * (1 - now->part) / now->part : 0;
+    fprintf(stderr, "%d of %d members done, %d failed, %d running  %3.0f %%  %.0f s left", now->n_done, now->n_members,
+            now->n_failed, now->n_running, 100 * now->part, left);
+    end_line(progress);
+}
+
+void progress_end(struct progress *progress) {
+    if (progress->drawn) fputs("\r\033[K", stderr);
+    progress->drawn = 0;
+}

@@ -1,0 +1,27 @@
+/* progress.h: how far a run or a study is, on stderr: on a terminal one line, redrawn; in a log one line per tenth. */
+#ifndef PROGRESS_H
+#define PROGRESS_H
+
+#include "run/simulate.h"
+#include "study/study.h"
+
+struct progress {
+    int terminal;    /* stderr is one */
+    double drawn_at; /* wall time of the run when the line was last drawn, s */
+    int tenth;       /* of the run that has been told in a log */
+    int drawn;       /* a line stands on the terminal */
+};
+
+/* Ready for a run. */
+void progress_start(struct progress *progress);
+
+/* Tell how far it is; data is a struct progress. Fits simulate_options.progress. */
+void progress_show(const struct simulate_progress *now, void *data);
+
+/* The same for the members of a study. Fits study_options.progress. */
+void progress_study(const struct study_progress *now, void *data);
+
+/* Clear the line of a terminal, so that what is printed next stands alone. */
+void progress_end(struct progress *progress);
+
+#endif

@@ -1,0 +1,179 @@
+/* sparse.c: record the order of additions once, replay it ever after. */
+#include "base/sparse.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum status sparse_create(struct sparse **matrix, int first, int n) {
+    struct sparse *new = calloc(1, sizeof *new);
+    *matrix = NULL;
+    if (!new) return status_fail(STATUS_MEMORY, "no room for a sparse matrix");
+    new->first = first;
+    new->n = n;
+    new->recording = 1;
+    new->masked = calloc((size_t)n, sizeof *new->masked);
+    new->column_start = calloc((size_t)n + 1, sizeof *new->column_start);
+    new->value = calloc(1, sizeof *new->value);
+    if (!new->masked || !new->column_start || !new->value) {
+        sparse_free(new);
+        return status_fail(STATUS_MEMORY, "no room for a sparse matrix of order %d", n);
+    }
+    *matrix = new;
+    return STATUS_OK;
+}
+
+void sparse_free(struct sparse *matrix) {
+    if (!matrix) return;
+    free(matrix->column_start);
+    free(matrix->row_index);
+    free(matrix->value);
+    free(matrix->entry_row);
+    free(matrix->entry_column);
+    free(matrix->slot);
+    free(matrix->masked);
+    free(matrix);
+}
+
+void sparse_forget(struct sparse *matrix) {
+    matrix->recording = 1;
+}
+
+void sparse_mask(struct sparse *matrix, int row, int masked) {
+    unsigned char *const here = &matrix->masked[row - matrix->first];
+    if (*here != masked) matrix->recording = 1;
+    *here = (unsigned char)masked;
+}
+
+int sparse_is_masked(const struct sparse *matrix, int row) {
+    return matrix->masked[row - matrix->first];
+}
+
+static int grow(struct sparse *matrix) {
+    const int64_t capacity = matrix->capacity > 0 ? 2 * matrix->capacity : 1024;
+    int *row = realloc(matrix->entry_row, (size_t)capacity * sizeof *row);
+    if (row) matrix->entry_row = row;
+    int *column = realloc(matrix->entry_column, (size_t)capacity * sizeof *column);
+    if (column) matrix->entry_column = column;
+    // while recording, a slot's place keeps the value
+    int64_t *slot = realloc(matrix->slot, (size_t)capacity * sizeof *slot);
+    if (slot) matrix->slot = slot;
+    if (!row || !column || !slot) return 0;
+    matrix->capacity = capacity;
+    return 1;
+}
+
+void sparse_record(struct sparse *matrix, int row, int column, double value) {
+    if (matrix->out_of_memory) return;
+    if (matrix->n_entries == matrix->capacity && !grow(matrix)) {
+        matrix->out_of_memory = 1;
+        return;
+    }
+    const int64_t i = matrix->n_entries++;
+    matrix->entry_row[i] = row;
+    matrix->entry_column[i] = column;
+    memcpy(&matrix->slot[i], &value, sizeof value);
+}
+
+void sparse_begin(struct sparse *matrix) {
+    matrix->next = 0;
+    if (matrix->recording) {
+        matrix->n_entries = 0;
+        matrix->out_of_memory = 0;
+    } else {
+        memset(matrix->value, 0, (size_t)(matrix->n_nonzeros + 1) * sizeof *matrix->value);
+    }
+    // the first entries of every pass are the ones of the masked rows
+    matrix->n_masked = 0;
+    for (int row = matrix->first; row < matrix->first + matrix->n; row++) {
+        if (!sparse_is_masked(matrix, row)) continue;
+        sparse_add(matrix, row, row, 1);
+        matrix->n_masked++;
+    }
+}
+
+static int counts(const struct sparse *matrix, int64_t entry) {
+    return entry < matrix->n_masked || !sparse_is_masked(matrix, matrix->entry_row[entry]);
+}
+
+// the numbers of the entries that count, in the order of columns, then rows: two counting sorts; returns how many
+static int64_t sort_entries(const struct sparse *matrix, int64_t *order, int64_t *by_row, int64_t *count) {
+    const int64_t n = matrix->n;
+    int64_t n_sorted = 0;
+    memset(count, 0, (size_t)(n + 1) * sizeof *count);
+    for (int64_t i = 0; i < matrix->n_entries; i++) count[matrix->entry_row[i] - matrix->first + 1]++;
+    for (int64_t r = 0; r < n; r++) count[r + 1] += count[r];
+    for (int64_t i = 0; i < matrix->n_entries; i++) by_row[count[matrix->entry_row[i] - matrix->first]++] = i;
+    memset(count, 0, (size_t)(n + 1) * sizeof *count);
+    for (int64_t i = 0; i < matrix->n_entries; i++) {
+        if (counts(matrix, i)) count[matrix->entry_column[i] - matrix->first + 1]++;
+    }
+    for (int64_t c = 0; c < n; c++) count[c + 1] += count[c];
+    for (int64_t i = 0; i < matrix->n_entries; i++) {
+        if (!counts(matrix, by_row[i])) continue;
+        order[count[matrix->entry_column[by_row[i]] - matrix->first]++] = by_row[i];
+        n_sorted++;
+    }
+    return n_sorted;
+}
+
+// give every distinct entry its place in the compressed columns, and every record its slot
+static enum status compile(struct sparse *matrix) {
+    const size_t n_entries = (size_t)matrix->n_entries + 1;
+    int64_t *order = malloc(n_entries * sizeof *order), *by_row = malloc(n_entries * sizeof *by_row);
+    int64_t *count = malloc(((size_t)matrix->n + 1) * sizeof *count);
+    double *recorded = malloc(n_entries * sizeof *recorded);
+    int64_t *row_index = malloc(n_entries * sizeof *row_index);
+    double *value = calloc(n_entries + 1, sizeof *value);
+    enum status status = STATUS_OK;
+    if (!order || !by_row || !count || !recorded || !row_index || !value) {
+        free(row_index);
+        free(value);
+        status = status_fail(STATUS_MEMORY, "no room for %lld entries of a Jacobian", (long long)matrix->n_entries);
+        goto done;
+    }
+    const int64_t n_sorted = sort_entries(matrix, order, by_row, count);
+    if (matrix->n_entries > 0) memcpy(recorded, matrix->slot, (size_t)matrix->n_entries * sizeof *recorded);
+    free(matrix->row_index);
+    free(matrix->value);
+    matrix->row_index = row_index;
+    matrix->value = value;
+
+    int64_t n_nonzeros = 0;
+    int row = -1, column = -1;
+    memset(matrix->column_start, 0, ((size_t)matrix->n + 1) * sizeof *matrix->column_start);
+    for (int64_t i = 0; i < matrix->n_entries; i++) matrix->slot[i] = -1;
+    for (int64_t i = 0; i < n_sorted; i++) {
+        const int64_t entry = order[i];
+        if (matrix->entry_row[entry] - matrix->first != row || matrix->entry_column[entry] - matrix->first != column) {
+            row = matrix->entry_row[entry] - matrix->first;
+            column = matrix->entry_column[entry] - matrix->first;
+            row_index[n_nonzeros++] = row;
+            matrix->column_start[column + 1]++;
+        }
+        matrix->slot[entry] = n_nonzeros - 1;
+    }
+    for (int c = 0; c < matrix->n; c++) matrix->column_start[c + 1] += matrix->column_start[c];
+    matrix->n_nonzeros = n_nonzeros;
+    // add in the recorded order, as a replay does, so that both have the same bits
+    for (int64_t i = 0; i < matrix->n_entries; i++) {
+        if (matrix->slot[i] < 0) matrix->slot[i] = n_nonzeros;
+        value[matrix->slot[i]] += recorded[i];
+    }
+    matrix->recording = 0;
+    matrix->version++;
+done:
+    free(order);
+    free(by_row);
+    free(count);
+    free(recorded);
+    return status;
+}
+
+enum status sparse_end(struct sparse *matrix) {
+    if (!matrix->recording) {
+        assert(matrix->next == matrix->n_entries);
+        return STATUS_OK;
+    }
+    if (matrix->out_of_memory) return status_fail(STATUS_MEMORY, "no room to record a Jacobian");
+    return compile(matrix);
+}

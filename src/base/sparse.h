@@ -1,0 +1,68 @@
+/* sparse.h: a square sparse matrix that is filled by adding values in a fixed order. Tested by tests/base/test_sparse.c.
+ *
+ * The first pass after sparse_forget records which (row, column) every addition meets; sparse_end compiles the
+ * compressed columns from it. Later passes replay: the i-th addition goes straight to its slot. So the order of the
+ * additions must not depend on values; built without NDEBUG, every replayed addition is compared with the recorded one.
+ *
+ *     sparse_begin -> sparse_add, sparse_add, ... -> sparse_end -> column_start, row_index, value
+ */
+#ifndef SPARSE_H
+#define SPARSE_H
+
+#include <assert.h>
+#include <stdint.h>
+
+#include "base/status.h"
+
+struct sparse {
+    int first; /* the number that rows and columns begin with where they are added */
+    int n;     /* rows and columns */
+
+    /* the matrix in compressed columns, rows and columns counted from 0; rows rise inside a column */
+    int64_t n_nonzeros;
+    int64_t *column_start; /* (n + 1) */
+    int64_t *row_index;    /* (n_nonzeros) */
+    double *value;         /* (n_nonzeros + 1); the last takes what falls into masked rows */
+    unsigned version;      /* changes with every new pattern */
+
+    /* the record */
+    int recording, out_of_memory;
+    int n_masked; /* the first entries: the ones of masked rows */
+    int64_t n_entries, capacity, next;
+    int *entry_row, *entry_column; /* (n_entries) */
+    int64_t *slot;                 /* (n_entries) */
+    unsigned char *masked;         /* (n) */
+};
+
+/* An empty matrix of order n that records at its first pass. Fails with STATUS_MEMORY. */
+enum status sparse_create(struct sparse **matrix, int first, int n);
+
+/* Release the matrix. Accepts NULL. */
+void sparse_free(struct sparse *matrix);
+
+/* Forget the pattern: the next pass records a new one. */
+void sparse_forget(struct sparse *matrix);
+
+/* A masked row is that of the identity: additions to it fall away. A change makes the next pass record. */
+void sparse_mask(struct sparse *matrix, int row, int masked);
+int sparse_is_masked(const struct sparse *matrix, int row);
+
+/* Start a pass: all values are zero but the ones of masked rows. */
+void sparse_begin(struct sparse *matrix);
+
+/* Add to one entry; sparse_record does so while recording. */
+void sparse_record(struct sparse *matrix, int row, int column, double value);
+static inline void sparse_add(struct sparse *matrix, int row, int column, double value) {
+    if (matrix->recording) {
+        sparse_record(matrix, row, column, value);
+        return;
+    }
+    const int64_t i = matrix->next++;
+    assert(i < matrix->n_entries && matrix->entry_row[i] == row && matrix->entry_column[i] == column);
+    matrix->value[matrix->slot[i]] += value;
+}
+
+/* End a pass. Fails with STATUS_MEMORY; the next pass then records again. */
+enum status sparse_end(struct sparse *matrix);
+
+#endif

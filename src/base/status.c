@@ -1,0 +1,36 @@
+/* status.c: one message per thread, and the exit codes. */
+#include "base/status.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+static _Thread_local char message[65536];
+
+enum status status_fail(enum status status, const char *format, ...) {
+    // the arguments may point into the old message, so write to another place first
+    static _Thread_local char fresh[sizeof message];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(fresh, sizeof fresh, format, arguments);
+    va_end(arguments);
+    snprintf(message, sizeof message, "%s", fresh);
+    return status;
+}
+
+const char *status_message(void) {
+    return message;
+}
+
+int status_exit_code(enum status status) {
+    switch (status) {
+        case STATUS_OK: return 0;
+        case STATUS_RETRY:
+        case STATUS_SOLVER: return 1;
+        case STATUS_CASE: return 2;
+        case STATUS_MISSED: return 3;
+        case STATUS_FILE:
+        case STATUS_MEMORY: return 4;
+        case STATUS_STOPPED: return 75;
+    }
+    return 1;
+}

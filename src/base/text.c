@@ -1,0 +1,96 @@
+/* text.c: strings that grow, and numbers without a locale. */
+#include "base/text.h"
+
+#include <locale.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Make room for more bytes and a zero. */
+static bool grow(struct text *text, size_t more) {
+    if (text->failed) return false;
+    if (text->length + more < text->capacity) return true;
+    const size_t capacity = 2 * (text->length + more) + 64;
+    char *const grown = realloc(text->text, capacity);
+    if (!grown) {
+        text->failed = true;
+        return false;
+    }
+    text->text = grown;
+    text->capacity = capacity;
+    return true;
+}
+
+void text_add(struct text *text, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    const int length = vsnprintf(NULL, 0, format, arguments);
+    va_end(arguments);
+    if (length < 0 || !grow(text, (size_t)length)) return;
+    va_start(arguments, format);
+    vsnprintf(text->text + text->length, (size_t)length + 1, format, arguments);
+    va_end(arguments);
+    text->length += (size_t)length;
+}
+
+void text_free(struct text *text) {
+    free(text->text);
+    *text = (struct text){0};
+}
+
+/* Take the "C" locale for this thread; hand the result to restore_locale. */
+static locale_t take_c_locale(locale_t *c_locale) {
+    *c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
+    return uselocale(*c_locale);
+}
+
+static void restore_locale(locale_t before, locale_t c_locale) {
+    uselocale(before);
+    if (c_locale) freelocale(c_locale);
+}
+
+void text_add_number(struct text *text, double number) {
+    locale_t c_locale;
+    const locale_t before = take_c_locale(&c_locale);
+    char digits[40];
+    for (int precision = 15; precision <= 17; precision++) {
+        snprintf(digits, sizeof digits, "%.*g", precision, number);
+        if (strtod(digits, NULL) == number) break;
+    }
+    restore_locale(before, c_locale);
+    text_add(text, "%s", digits);
+}
+
+/* Skip decimal digits and count them. */
+static int skip_digits(const char **text) {
+    int n = 0;
+    for (; **text >= '0' && **text <= '9'; (*text)++) n++;
+    return n;
+}
+
+/* True for: sign, digits with a point among them, exponent; no more and no less. */
+static bool is_number(const char *text) {
+    if (*text == '+' || *text == '-') text++;
+    int n = skip_digits(&text);
+    if (*text == '.') {
+        text++;
+        n += skip_digits(&text);
+    }
+    if (n == 0) return false;
+    if (*text == 'e' || *text == 'E') {
+        text++;
+        if (*text == '+' || *text == '-') text++;
+        if (skip_digits(&text) == 0) return false;
+    }
+    return *text == '\0';
+}
+
+bool text_number(const char *text, double *number) {
+    if (!is_number(text)) return false;
+    locale_t c_locale;
+    const locale_t before = take_c_locale(&c_locale);
+    *number = strtod(text, NULL);
+    restore_locale(before, c_locale);
+    return true;
+}

@@ -1,0 +1,29 @@
+/* text.h: a text that grows, and values written as YAML; numbers as text and back. Tested by tests/case/test_yaml.c.
+ *
+ * Numbers are written and read with a decimal point whatever the locale of the process is. */
+#ifndef TEXT_H
+#define TEXT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* Zero it to begin. Once an allocation has failed, nothing more is added and failed stays true. */
+struct text {
+    char *text; /* ends with a zero; NULL before the first addition */
+    size_t length, capacity;
+    bool failed;
+};
+
+void text_add(struct text *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* Add the shortest text that reads back as exactly this number. */
+void text_add_number(struct text *text, double number);
+
+/* Release the text and zero it. */
+void text_free(struct text *text);
+
+/* Read a decimal number; all of the text must belong to it. Too large a number becomes an infinity. False if the text
+ * is no number; nan, inf and hexadecimal digits are none. */
+bool text_number(const char *text, double *number);
+
+#endif

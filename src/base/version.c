@@ -1,0 +1,28 @@
+/* version.c: see version.h. The Makefile gives SHOAL_VERSION and SHOAL_COMMIT to this file only. */
+#include "base/version.h"
+
+#include <klu.h>
+#include <netcdf.h>
+#include <stdio.h>
+#include <string.h>
+#include <sundials/sundials_version.h>
+#include <yaml.h>
+
+const char *version_short(void) {
+    return "shoal " SHOAL_VERSION " (commit " SHOAL_COMMIT ")";
+}
+
+void version_libraries(char text[VERSION_LENGTH]) {
+    char sundials[32] = "unknown";
+    SUNDIALSGetVersion(sundials, sizeof sundials);
+    int suitesparse[3];
+    SuiteSparse_version(suitesparse);
+
+    // "4.9.0 of Aug  7 2022 23:41:41 $": the number is enough
+    const char *netcdf = nc_inq_libvers();
+    const int netcdf_length = (int)strcspn(netcdf, " ");
+
+    snprintf(text, VERSION_LENGTH, "SUNDIALS %s, KLU %d.%d.%d (SuiteSparse %d.%d.%d), NetCDF %.*s, libyaml %s",
+             sundials, KLU_MAIN_VERSION, KLU_SUB_VERSION, KLU_SUBSUB_VERSION, suitesparse[0], suitesparse[1],
+             suitesparse[2], netcdf_length, netcdf, yaml_get_version_string());
+}

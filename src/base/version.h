@@ -1,0 +1,16 @@
+/* version.h: which program this is and which libraries it runs with. Tested by tests/output/test_result_file.c. */
+#ifndef VERSION_H
+#define VERSION_H
+
+#include <stddef.h>
+
+enum { VERSION_LENGTH = 256 }; /* bytes that hold the longest text of this module */
+
+/* "shoal 0.1.0 (commit 0123456789ab)" */
+const char *version_short(void);
+
+/* Write "SUNDIALS 6.4.1, KLU 1.3.9 (SuiteSparse 5.12.0), NetCDF 4.9.0, libyaml 0.2.5": the libraries as loaded, except
+ * that KLU knows its version at compile time only. */
+void version_libraries(char text[VERSION_LENGTH]);
+
+#endif

@@ -1,0 +1,343 @@
+/* case.c: from a tree to plain values, row by row of the table. */
+#include "case/case.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "case/case_check.h"
+#include "case/case_value.h"
+#include "case/yaml_write.h"
+
+/* A case on its way from the text to its values. */
+struct reading {
+    struct case_tree tree;
+    struct yaml_errors errors;
+};
+
+static enum status no_memory(void) {
+    return status_fail(STATUS_MEMORY, "no memory for the values of the case");
+}
+
+// ---- keys that nobody knows
+
+/* Complain about the unknown keys of a map, and of the maps below it. section: its place in the table ("" is the top);
+ * path: how messages call it; owner: the fish it belongs to, or NULL. */
+static void check_keys(const struct yaml_node *map, const char *section, const char *path, const char *owner,
+                       struct yaml_errors *errors);
+
+/* Complain unless a node is a map, and about its keys. */
+static void check_map(const struct yaml_node *node, const char *section, const char *path, const char *owner,
+                      struct yaml_errors *errors) {
+    char shown[64];
+    if (node->kind == YAML_MAP) {
+        check_keys(node, section, path, owner, errors);
+    } else {
+        yaml_errors_add(errors, node->mark, "%s: expects keys below it, got %s", path,
+                        yaml_tree_describe(node, shown, sizeof shown));
+    }
+}
+
+static void check_school(const struct yaml_node *node, struct yaml_errors *errors) {
+    if (node->kind != YAML_LIST) {
+        yaml_errors_add(errors, node->mark, "fish: expects a list; begin the keys of each fish with '- '");
+        return;
+    }
+    if (node->n > CASE_MAX_FISH) {
+        yaml_errors_add(errors, node->mark, "fish: more than %d fish", CASE_MAX_FISH);
+        return;
+    }
+    for (int i = 0; i < node->n; i++) {
+        char path[32];
+        snprintf(path, sizeof path, "fish[%d]", i);
+        check_map(node->entry[i].value, "fish", path, path, errors);
+    }
+}
+
+static void check_defaults(const struct yaml_node *node, struct yaml_errors *errors) {
+    if (node->kind != YAML_MAP) {
+        yaml_errors_add(errors, node->mark, "defaults: expects {fish: {...}}");
+        return;
+    }
+    for (int i = 0; i < node->n; i++) {
+        const struct yaml_entry *const entry = &node->entry[i];
+        if (strcmp(entry->key, "fish") == 0) {
+            check_map(entry->value, "fish", "defaults.fish", "defaults.fish", errors);
+        } else {
+            yaml_errors_add(errors, entry->mark, "defaults.%.40s: unknown key; known here: fish", entry->key);
+        }
+    }
+}
+
+static void check_keys(const struct yaml_node *map, const char *section, const char *path, const char *owner,
+                       struct yaml_errors *errors) {
+    for (int i = 0; i < map->n; i++) {
+        const struct yaml_entry *const entry = &map->entry[i];
+        char pattern[128], full[256];
+        snprintf(pattern, sizeof pattern, "%s%s%.50s", section, *section ? "." : "", entry->key);
+        snprintf(full, sizeof full, "%s%s%.50s", path, *path ? "." : "", entry->key);
+        const struct key *const key = case_table_row(pattern);
+        if (strcmp(full, "fish") == 0) {
+            check_school(entry->value, errors);
+        } else if (key && key->type == DEFAULTS) {
+            check_defaults(entry->value, errors);
+        } else if (!key && case_table_is_section(pattern)) {
+            check_map(entry->value, pattern, full, owner, errors);
+        } else if (!key) {
+            case_path_unknown(errors, entry->mark, full, section, entry->key, owner);
+        }
+    }
+}
+
+// ---- values
+
+/* Read the value of one key from the text of its default. */
+static enum status read_default(const struct key *key, const char *text, void *field) {
+    const struct yaml_source source = {"default", (char *)text, strlen(text), 0, true};
+    struct yaml_errors none = {0};
+    struct yaml_node *node = NULL;
+    enum status status = yaml_tree_read(&node, &source, &none);
+    if (status == STATUS_OK) status = case_value_read(key, field, node, key->path, &none);
+    yaml_tree_free(node);
+    yaml_errors_free(&none);
+    return status;
+}
+
+/* True if the section of a key is written as a value ("time: 3"): that has been reported already. */
+static bool is_under_value(const struct case_tree *tree, const struct key *key) {
+    char section[80] = "";
+    const char *const dot = strrchr(key->path, '.');
+    if (dot) snprintf(section, sizeof section, "%.*s", (int)(dot - key->path), key->path);
+    const struct yaml_node *const node = yaml_tree_find(tree->root, section);
+    return node && node->kind != YAML_MAP;
+}
+
+/* Read the value of one key of the case or of one fish; leave the field cleared if nothing gives it one. */
+static enum status read_key(struct reading *reading, const struct key *key, int fish, enum preset preset, void *field) {
+    bool is_default;
+    const struct yaml_node *const node = case_merge_value(&reading->tree, key->path, fish, &is_default);
+    if (node) {
+        // a wrong default has been reported in its own place
+        struct yaml_errors silent = {0};
+        char path[128];
+        if (case_table_is_of_fish(key)) {
+            snprintf(path, sizeof path, "fish[%d].%s", fish, key->path + 5);
+        } else {
+            snprintf(path, sizeof path, "%s", key->path);
+        }
+        const enum status status = case_value_read(key, field, node, path, is_default ? &silent : &reading->errors);
+        yaml_errors_free(&silent);
+        return status;
+    }
+    const char *const initial = preset == PRESET_PUBLISHED && key->published ? key->published : key->initial;
+    if (initial) return read_default(key, initial, field);
+    if (!key->derived && !is_under_value(&reading->tree, key)) {
+        yaml_errors_add(&reading->errors, case_merge_mark(&reading->tree, key->path, fish), "%s: is required: %s%s%s",
+                        key->path, key->meaning, *key->unit ? ", in " : "", key->unit);
+    }
+    return STATUS_OK;
+}
+
+/* Check the values under defaults.fish by reading them, each once. */
+static enum status check_default_values(struct reading *reading) {
+    const struct yaml_node *const defaults = yaml_tree_find(reading->tree.root, "defaults.fish");
+    struct case_fish scratch;
+    enum status status = STATUS_OK;
+    for (int k = 0; k < case_table_n && status == STATUS_OK; k++) {
+        const struct key *const key = &case_table[k];
+        if (!case_table_is_of_fish(key)) continue;
+        const struct yaml_node *const node = yaml_tree_find(defaults, key->path + 5);
+        if (!node) continue;
+        void *const field = case_table_field(key, NULL, &scratch);
+        char path[128];
+        snprintf(path, sizeof path, "defaults.%s", key->path);
+        case_value_clear(key, field);
+        status = case_value_read(key, field, node, path, &reading->errors);
+        case_value_free(key, field);
+    }
+    return status;
+}
+
+/* Mark all values as not read. */
+static void clear(struct case_values *values) {
+    for (int k = 0; k < case_table_n; k++) {
+        const struct key *const key = &case_table[k];
+        if (!case_table_is_of_fish(key)) case_value_clear(key, case_table_field(key, values, NULL));
+        for (int i = 0; i < values->n_fish && case_table_is_of_fish(key); i++) {
+            case_value_clear(key, case_table_field(key, values, &values->fish[i]));
+        }
+    }
+}
+
+/* Read every key of the table. */
+static enum status read_keys(struct reading *reading, struct case_values *values) {
+    const struct key *const preset = case_table_row("preset");
+    TRY(read_key(reading, preset, 0, PRESET_NONE, &values->preset));
+    for (int k = 0; k < case_table_n; k++) {
+        const struct key *const key = &case_table[k];
+        if (key == preset || !case_table_is_value(key)) continue;
+        if (!case_table_is_of_fish(key)) {
+            TRY(read_key(reading, key, 0, values->preset, case_table_field(key, values, NULL)));
+            continue;
+        }
+        for (int i = 0; i < values->n_fish; i++) {
+            TRY(read_key(reading, key, i, values->preset, case_table_field(key, values, &values->fish[i])));
+        }
+    }
+    return STATUS_OK;
+}
+
+// ---- defaults that depend on other values; the table has them in words
+
+/* A value that was not read gets its default. */
+static void derive(double *value, double standard) {
+    if (isnan(*value)) *value = standard;
+}
+
+static enum status derive_fish(struct case_fish *fish, int index) {
+    derive(&fish->wave.ramp, fish->wave.frequency > 0 ? 1 / fish->wave.frequency : 0);
+    derive(&fish->motion.speed, fish->start_speed);
+    if (!fish->name) {
+        char name[32];
+        snprintf(name, sizeof name, "fish%d", index + 1);
+        if (!(fish->name = strdup(name))) return no_memory();
+    }
+    if (fish->control.desired_heading.n == 0) {
+        double *const pair = calloc(2, sizeof *pair);
+        if (!pair) return no_memory();
+        pair[1] = fish->start_heading;
+        fish->control.desired_heading = (struct case_list){1, pair};
+    }
+    return STATUS_OK;
+}
+
+/* The name of a file without its folders and its ending. */
+static char *stem(const char *path) {
+    const char *const slash = strrchr(path, '/');
+    const char *const from = slash ? slash + 1 : path;
+    const char *const dot = strrchr(from, '.');
+    const size_t length = dot && dot > from ? (size_t)(dot - from) : strlen(from);
+    return length > 0 ? strndup(from, length) : strdup("case");
+}
+
+static enum status derive_all(struct case_values *values, const char *origin) {
+    derive(&values->time.output_interval, 10 * values->time.shedding_interval);
+    derive(&values->wake.fade, values->wake.lifetime / 10);
+    derive(&values->wake.tolerance, values->solver.rtol / 100);
+    derive(&values->output.wake_interval, values->time.output_interval);
+    if (!values->name && !(values->name = stem(origin))) return no_memory();
+    for (int i = 0; i < values->n_fish; i++) TRY(derive_fish(&values->fish[i], i));
+    return STATUS_OK;
+}
+
+// ---- the whole case
+
+/* Turn the tree into values. Fails with STATUS_MEMORY only; what is wrong is added to the errors. */
+static enum status fill(struct reading *reading, struct case_values *values) {
+    const struct case_tree *const tree = &reading->tree;
+    const int n_before = reading->errors.n;
+    check_keys(tree->root, "", "", NULL, &reading->errors);
+    const bool are_keys_known = reading->errors.n == n_before;
+
+    values->n_fish = case_merge_n_fish(tree);
+    if (values->n_fish > CASE_MAX_FISH) values->n_fish = 0;
+    values->fish = calloc((size_t)values->n_fish + 1, sizeof *values->fish);
+    if (!values->fish) {
+        values->n_fish = 0;
+        return no_memory();
+    }
+    clear(values);
+    if (case_merge_n_fish(tree) == 0 && are_keys_known) {
+        yaml_errors_add(&reading->errors, case_merge_mark(tree, "fish", 0),
+                        "fish: at least one fish is required; write 'fish:' and under it '  - name: first'");
+    }
+    TRY(check_default_values(reading));
+    TRY(read_keys(reading, values));
+    TRY(derive_all(values, tree->source[0]->name));
+    TRY(sweep_read(values, tree, &reading->errors));
+    TRY(sweep_expect_read(values, tree, &reading->errors));
+    // an unknown key may be a known one misspelt: then its value is not the one that would be checked here
+    if (are_keys_known) case_check(values, tree, &reading->errors);
+    return STATUS_OK;
+}
+
+/* Keep the text of the case file. */
+static enum status keep_text(struct case_values *values, const struct yaml_source *source) {
+    values->text = malloc(source->length + 1);
+    if (!values->text) return no_memory();
+    memcpy(values->text, source->text, source->length);
+    values->text[source->length] = '\0';
+    return STATUS_OK;
+}
+
+/* Keep all that the case says, a top key a line. Its name is kept with it: it may be that of the file. */
+static enum status keep_merged(struct case_values *values, const struct yaml_node *root) {
+    struct text text = {0};
+    if (!yaml_tree_find(root, "name")) {
+        text_add(&text, "name: ");
+        yaml_write_scalar(&text, values->name);
+        text_add(&text, "\n");
+    }
+    for (int i = 0; i < root->n; i++) {
+        text_add(&text, "%s: ", root->entry[i].key);
+        yaml_write_node(&text, root->entry[i].value);
+        text_add(&text, "\n");
+    }
+    values->merged = text.text;
+    if (!text.failed) return STATUS_OK;
+    text_free(&text);
+    values->merged = NULL;
+    return no_memory();
+}
+
+/* Apply the assignments to a tree that has been read, and fill the settings from it. status: how the reading went. */
+static enum status finish(struct reading *reading, enum status status, struct case_values *values, int n_assignments,
+                          const char *const *assignments) {
+    if (status == STATUS_OK && reading->tree.root) {
+        for (int i = 0; i < n_assignments && status == STATUS_OK; i++) {
+            status = case_merge_assign(&reading->tree, assignments[i], &reading->errors);
+        }
+        if (status == STATUS_OK) status = fill(reading, values);
+        if (status == STATUS_OK) status = keep_text(values, reading->tree.source[0]);
+        if (status == STATUS_OK && reading->errors.n == 0) status = keep_merged(values, reading->tree.root);
+    }
+    if (status == STATUS_OK) status = yaml_errors_status(&reading->errors);
+    if (status != STATUS_OK) case_free(values);
+    yaml_errors_free(&reading->errors);
+    case_merge_free(&reading->tree);
+    return status;
+}
+
+enum status case_read(struct case_values *values, const char *path, int n_assignments, const char *const *assignments) {
+    *values = (struct case_values){0};
+    struct reading reading = {0};
+    const enum status status = case_merge_read_file(&reading.tree, path, &reading.errors);
+    return finish(&reading, status, values, n_assignments, assignments);
+}
+
+enum status case_parse(struct case_values *values, const char *text, size_t length, const char *origin,
+                       const char *folder, int n_assignments, const char *const *assignments) {
+    *values = (struct case_values){0};
+    struct reading reading = {0};
+    const enum status status = case_merge_read_text(&reading.tree, text, length, origin, folder, &reading.errors);
+    return finish(&reading, status, values, n_assignments, assignments);
+}
+
+void case_free(struct case_values *values) {
+    for (int k = 0; k < case_table_n; k++) {
+        const struct key *const key = &case_table[k];
+        if (!case_table_is_value(key)) continue;
+        if (!case_table_is_of_fish(key)) case_value_free(key, case_table_field(key, values, NULL));
+        for (int i = 0; i < values->n_fish && case_table_is_of_fish(key); i++) {
+            case_value_free(key, case_table_field(key, values, &values->fish[i]));
+        }
+    }
+    sweep_expect_free(values);
+    sweep_free(values);
+    free(values->fish);
+    free(values->text);
+    free(values->merged);
+    free(values->study);
+    *values = (struct case_values){0};
+}

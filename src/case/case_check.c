@@ -1,0 +1,248 @@
+/* case_check.c: relations between keys, and what this version does not run yet. */
+#include "case/case_check.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+static const double most_events = 1e9, most_vortices = 1e7 /* of one fish */;
+
+/* The case that is checked, and where complaints go. fish: the one under check. */
+struct check {
+    const struct case_values *values;
+    const struct case_tree *tree;
+    struct yaml_errors *errors;
+    int fish;
+};
+
+/* Complain about the value at a path of the table. */
+__attribute__((format(printf, 3, 4))) static void complain(const struct check *check, const char *path,
+                                                           const char *format, ...) {
+    char reason[512];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(reason, sizeof reason, format, arguments);
+    va_end(arguments);
+    const struct yaml_mark mark = case_merge_mark(check->tree, path, check->fish);
+    if (strncmp(path, "fish.", 5) == 0) {
+        yaml_errors_add(check->errors, mark, "fish[%d].%s: %s", check->fish, path + 5, reason);
+    } else {
+        yaml_errors_add(check->errors, mark, "%s: %s", path, reason);
+    }
+}
+
+// ---- time and wake
+
+/* Complain unless a time is a whole multiple of a unit; name: the path of the unit. */
+static void check_multiple(const struct check *check, const char *path, double time, const char *name, double unit) {
+    const double n = round(time / unit);
+    if (!(fabs(time - n * unit) > 1e-9 * time)) return;  // not a number: complained about already
+    if (n < 1) {
+        complain(check, path, "%g s is less than %s, %g s", time, name, unit);
+        return;
+    }
+    const double below = floor(time / unit);
+    complain(check, path, "%.9g s is not a whole multiple of %s, %.9g s; the nearest are %.9g and %.9g", time, name,
+             unit, (below < 1 ? 1 : below) * unit, (below + 1) * unit);
+}
+
+static void check_time(const struct check *check) {
+    const struct case_time *const time = &check->values->time;
+    static const char interval[] = "time.shedding_interval";
+    if (time->end / time->shedding_interval > most_events) {
+        complain(check, "time.end", "%g events; the most is %g: raise time.shedding_interval",
+                 time->end / time->shedding_interval, most_events);
+        return;
+    }
+    check_multiple(check, "time.end", time->end, interval, time->shedding_interval);
+    check_multiple(check, "time.output_interval", time->output_interval, interval, time->shedding_interval);
+    check_multiple(check, "time.checkpoint_interval", time->checkpoint_interval, interval, time->shedding_interval);
+    check_multiple(check, "output.wake_interval", check->values->output.wake_interval, "time.output_interval",
+                   time->output_interval);
+}
+
+static void check_solver(const struct check *check) {
+    const struct case_solver *const solver = &check->values->solver;
+    const bool is_fixed = solver->method == METHOD_IMPLICIT_EULER || solver->method == METHOD_TRAPEZOID;
+    if (is_fixed && solver->step == 0) {
+        complain(check, "solver.method", "takes fixed steps only: give solver.step, such as %.9g (s)",
+                 check->values->time.shedding_interval);
+    }
+    if (!(solver->step > 0)) return;
+    if (solver->method == METHOD_IDA) {
+        complain(check, "solver.step",
+                 "ida chooses its steps itself: remove solver.step, or choose another solver.method");
+        return;
+    }
+    const double interval = check->values->time.shedding_interval, n = round(interval / solver->step);
+    if (n >= 1 && !(fabs(interval - n * solver->step) > 1e-9 * interval)) return;
+    complain(check, "solver.step", "%.9g s is not a whole part of time.shedding_interval, %.9g s; the nearest is %.9g",
+             solver->step, interval, interval / (n < 1 ? 1 : n));
+}
+
+static void check_wake(const struct check *check) {
+    const struct case_wake *const wake = &check->values->wake;
+    const struct case_time *const time = &check->values->time;
+    if (wake->fade > wake->lifetime) {
+        complain(check, "wake.fade", "%g s is longer than wake.lifetime, %g s", wake->fade, wake->lifetime);
+    }
+    if (wake->lifetime < time->shedding_interval) {
+        complain(check, "wake.lifetime", "%g s is less than time.shedding_interval, %g s", wake->lifetime,
+                 time->shedding_interval);
+    }
+    const double n_vortices = fmin(wake->lifetime, time->end) / time->shedding_interval;
+    if (n_vortices > most_vortices) {
+        complain(check, "wake.lifetime", "%g vortices in the wake of a fish; the most is %g", n_vortices,
+                 most_vortices);
+    }
+}
+
+static void check_gust(const struct check *check) {
+    const struct case_fluid *const fluid = &check->values->fluid;
+    if (fabs(fluid->gust_amplitude) > 0 && fluid->gust_frequency == 0) {
+        complain(check, "fluid.gust.amplitude", "has no effect while fluid.gust.frequency is 0");
+    }
+}
+
+// ---- fish
+
+/* Complain about a list of a table profile that is missing, too many, or of another length than the edges. */
+static void check_edge_list(const struct check *check, const char *path, const struct case_list *list) {
+    const struct case_fish *const fish = &check->values->fish[check->fish];
+    bool is_default;
+    const bool is_written = case_merge_value(check->tree, path, check->fish, &is_default);
+    const bool is_read = list->n > 0 || !is_written;
+    if (fish->body.profile == PROFILE_TABLE && fish->nodes > 0 && is_read && list->n != fish->nodes - 1) {
+        complain(check, path, "profile table needs one value per edge, %d for %d nodes; got %d", fish->nodes - 1,
+                 fish->nodes, list->n);
+    }
+    const bool is_other = fish->body.profile == PROFILE_JOUKOWSKI || fish->body.profile == PROFILE_UNIFORM;
+    if (is_other && list->n > 0) complain(check, path, "is for 'profile: table' only; remove it");
+}
+
+/* The largest turning angle that the wave asks of a joint without bias, in radians. */
+static double largest_turn(const struct case_fish *fish) {
+    double largest = 0;
+    for (int k = 1; k < fish->nodes - 1; k++) {
+        const double q = (double)k / (fish->nodes - 1);
+        largest = fmax(largest, fabs(fish->wave.linear * q + fish->wave.quadratic * q * q));
+    }
+    return largest * fabs(fish->wave.amplitude) * (fish->reference_nodes - 1) / (fish->nodes - 1);
+}
+
+/* The curvature of a joint is 2 tan(angle/2): it has no value at half a turn. */
+static void check_turn(const struct check *check) {
+    const struct case_fish *const fish = &check->values->fish[check->fish];
+    if (fish->nodes == 0 || fish->reference_nodes == 0) return;
+    const bool is_controlled = fish->control.law == CONTROL_HEADING || fish->control.law == CONTROL_AVERAGED_HEADING;
+    const double turn = largest_turn(fish) * (1 + (is_controlled ? fish->control.limit : fabs(fish->control.bias)));
+    if (turn >= 3.14159) {
+        complain(check, "fish.wave.amplitude", "the wave turns a joint by up to %.3g rad; it must stay below 3.14",
+                 turn);
+    }
+}
+
+/* True if an amplitude times sin(2 pi frequency t + phase) is 0 at all times although the amplitude is not. */
+static bool is_idle(double amplitude, double frequency, double phase) {
+    return fabs(amplitude) > 0 && frequency == 0 && remainder(phase, 180) == 0;
+}
+
+static void check_motion(const struct check *check) {
+    const struct case_motion *const motion = &check->values->fish[check->fish].motion;
+    static const char not_driven[] = "has no effect while motion.driven is none; set it to head or all";
+    static const char constant[] = "has no effect while motion.frequency is 0";
+    if (motion->driven == DRIVEN_NONE) {
+        if (fabs(motion->heave) > 0) complain(check, "fish.motion.heave", not_driven);
+        if (fabs(motion->pitch) > 0) complain(check, "fish.motion.pitch", not_driven);
+    } else {
+        const double phase = motion->phase + motion->pitch_phase;
+        if (is_idle(motion->heave, motion->frequency, motion->phase)) complain(check, "fish.motion.heave", constant);
+        if (is_idle(motion->pitch, motion->frequency, phase)) complain(check, "fish.motion.pitch", constant);
+    }
+}
+
+static void check_headings(const struct check *check) {
+    const struct case_list *const heading = &check->values->fish[check->fish].control.desired_heading;
+    if (heading->n > 0 && heading->value[0] < 0) {
+        complain(check, "fish.control.desired_heading", "the times begin at 0 s, not at %g s", heading->value[0]);
+    }
+    for (int i = 1; i < heading->n; i++) {
+        const double before = heading->value[2 * i - 2], time = heading->value[2 * i];
+        if (time <= before) {
+            complain(check, "fish.control.desired_heading", "the times must increase, but %g follows %g", time, before);
+            return;
+        }
+    }
+}
+
+static void check_control(const struct check *check) {
+    const struct case_fish *const fish = &check->values->fish[check->fish];
+    const struct case_control *const control = &fish->control;
+    check_headings(check);
+    if (control->law == CONTROL_NONE && control->waypoints.n > 0) {
+        complain(check, "fish.control.waypoints", "has no effect while control.law is none; set it to heading");
+    }
+    if (control->law != CONTROL_HEADING && control->law != CONTROL_AVERAGED_HEADING) return;
+
+    if (fabs(control->bias) > 0) {
+        complain(check, "fish.control.bias", "is for 'law: none' only; the law sets the bias itself");
+    }
+    const bool has_moment = fabs(control->feedforward) > 0;
+    if (fish->wave.frequency == 0 && (has_moment || control->law == CONTROL_AVERAGED_HEADING)) {
+        complain(check, "fish.control.law", "needs wave.frequency above 0%s",
+                 control->law == CONTROL_HEADING ? ", or feedforward: 0" : "");
+    }
+    if (check->values->fluid.density == 0 && has_moment) {
+        complain(check, "fish.control.law", "needs fluid.density above 0, or feedforward: 0");
+    }
+}
+
+static void check_name(const struct check *check) {
+    const struct case_fish *const fish = check->values->fish;
+    for (int i = 0; i < check->fish; i++) {
+        if (!fish[i].name || !fish[check->fish].name || strcmp(fish[i].name, fish[check->fish].name) != 0) continue;
+        complain(check, "fish.name", "fish[%d] is called '%.60s' too; give each fish its own name", i, fish[i].name);
+        return;
+    }
+}
+
+void case_check(const struct case_values *values, const struct case_tree *tree, struct yaml_errors *errors) {
+    struct check check = {values, tree, errors, 0};
+    check_time(&check);
+    check_solver(&check);
+    check_wake(&check);
+    check_gust(&check);
+    if (values->name && strchr(values->name, '/')) complain(&check, "name", "cannot contain a '/'");
+    for (check.fish = 0; check.fish < values->n_fish; check.fish++) {
+        const struct case_fish *const fish = &values->fish[check.fish];
+        check_name(&check);
+        check_edge_list(&check, "fish.body.h", &fish->body.h);
+        check_edge_list(&check, "fish.body.w", &fish->body.w);
+        check_turn(&check);
+        check_motion(&check);
+        check_control(&check);
+    }
+}
+
+// ---- what this version does not run
+
+enum status case_runnable(const struct case_values *values) {
+    struct text list = {0};
+    if (values->time.checkpoint_interval > 0) {
+        text_add(&list,
+                 "error: time.checkpoint_interval: checkpoints are not in this version yet: "
+                 "remove time.checkpoint_interval\n");
+    }
+    if (values->n_axes > 0) {
+        text_add(&list,
+                 "error: sweep: `shoal run` runs one case; this case has a sweep of %d ax%cs: run it with "
+                 "`shoal study`, or take the sweep away with --set 'sweep=[]'\n",
+                 values->n_axes, values->n_axes == 1 ? 'i' : 'e');
+    }
+    if (!list.failed && list.length == 0) return STATUS_OK;
+    const enum status status = list.failed ? status_fail(STATUS_MEMORY, "no memory to list the errors of the case")
+                                           : status_fail(STATUS_CASE, "%.*s", (int)(list.length - 1), list.text);
+    text_free(&list);
+    return status;
+}

@@ -1,0 +1,355 @@
+/* case_tree.c: reads the case file and its includes, lays them over each other, and applies assignments. */
+#include "case/case_merge.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { MOST_INCLUDES = 64, MOST_INCLUDE_DEPTH = 8 };
+
+/* The files that are being read, innermost first: an include that is among them includes itself. */
+struct open_file {
+    dev_t device;
+    ino_t inode;
+    int depth;
+    const struct open_file *by;
+};
+
+static enum status no_memory(void) {
+    return status_fail(STATUS_MEMORY, "no memory to read the case file");
+}
+
+// ---- sources
+
+/* Add an empty source; NULL if there is no memory. The tree owns it. */
+static struct yaml_source *add_source(struct case_tree *tree, const char *name) {
+    const size_t size = (size_t)(tree->n_sources + 1) * sizeof(struct yaml_source *);
+    struct yaml_source **const grown = realloc(tree->source, size);
+    if (!grown) return NULL;
+    tree->source = grown;
+    struct yaml_source *const source = calloc(1, sizeof *source);
+    if (!source) return NULL;
+    source->rank = tree->n_sources;
+    tree->source[tree->n_sources++] = source;
+    source->name = strdup(name);
+    return source->name ? source : NULL;
+}
+
+void case_merge_free(struct case_tree *tree) {
+    yaml_tree_free(tree->root);
+    for (int i = 0; i < tree->n_sources; i++) {
+        free(tree->source[i]->name);
+        free(tree->source[i]->text);
+        free(tree->source[i]);
+    }
+    free(tree->source);
+    *tree = (struct case_tree){0};
+}
+
+/* Read at most one byte more than a case file may have. */
+static enum status read_bytes(int file, struct yaml_source *source) {
+    const size_t capacity = YAML_TREE_BYTES + 1;
+    source->text = malloc(capacity);
+    if (!source->text) return no_memory();
+    ssize_t n;
+    do {
+        n = read(file, source->text + source->length, capacity - source->length);
+        if (n > 0) source->length += (size_t)n;
+    } while ((n > 0 && source->length < capacity) || (n < 0 && errno == EINTR));
+    if (n < 0) return status_fail(STATUS_FILE, "cannot be read: %s", strerror(errno));
+    char *const fitting = realloc(source->text, source->length + 1);
+    if (fitting) source->text = fitting;
+    return STATUS_OK;
+}
+
+/* Read the file at path into a source. Fails with STATUS_FILE and the reason as message, or with STATUS_MEMORY. */
+static enum status read_file(const char *path, struct yaml_source *source, struct open_file *self) {
+    struct stat facts;
+    const int file = open(path, O_RDONLY | O_NOCTTY | O_CLOEXEC);
+    if (file < 0 || fstat(file, &facts) != 0) {
+        const enum status status = status_fail(STATUS_FILE, "cannot be read: %s", strerror(errno));
+        if (file >= 0) close(file);
+        return status;
+    }
+    self->device = facts.st_dev;
+    self->inode = facts.st_ino;
+    const enum status status =
+        S_ISDIR(facts.st_mode) ? status_fail(STATUS_FILE, "is a folder, not a case file") : read_bytes(file, source);
+    close(file);
+    return status;
+}
+
+// ---- includes
+
+static enum status read_source(struct case_tree *tree, const struct yaml_source *source, const char *folder,
+                               const struct open_file *self, struct yaml_errors *errors, struct yaml_node **root);
+
+/* The length of the folder part of a path, with the slash; 0 if there is none. */
+static int folder_length(const char *path) {
+    const char *const slash = strrchr(path, '/');
+    return slash ? (int)(slash - path) + 1 : 0;
+}
+
+/* True if a file is being read already. */
+static bool is_open(const struct open_file *file, const struct open_file *by) {
+    for (; by; by = by->by) {
+        if (by->device == file->device && by->inode == file->inode) return true;
+    }
+    return false;
+}
+
+/* Read one included file of a known path and lay it over *base. */
+static enum status include_path(struct case_tree *tree, const struct yaml_node *node, const char *path,
+                                const struct open_file *by, struct yaml_errors *errors, struct yaml_node **base) {
+    struct yaml_source *const source = add_source(tree, path);
+    if (!source) return no_memory();
+    struct open_file self = {.depth = by->depth + 1, .by = by};
+    const enum status status = read_file(path, source, &self);
+    if (status == STATUS_FILE) {
+        yaml_errors_add(errors, node->mark, "include: %.200s: %s", path, status_message());
+        return STATUS_OK;
+    }
+    TRY(status);
+    if (is_open(&self, by)) {
+        yaml_errors_add(errors, node->mark, "include: %.200s includes itself", path);
+        return STATUS_OK;
+    }
+    struct yaml_node *root = NULL;
+    TRY(read_source(tree, source, path, &self, errors, &root));
+    return root ? yaml_tree_merge(base, root) : STATUS_OK;
+}
+
+/* Read what one entry of an include list names. Relative names begin at the folder, which ends at its last slash. */
+static enum status include_entry(struct case_tree *tree, const struct yaml_node *node, const char *folder,
+                                 const struct open_file *by, struct yaml_errors *errors, struct yaml_node **base) {
+    if (node->kind != YAML_SCALAR || node->text[0] == '\0') {
+        yaml_errors_add(errors, node->mark, "include: expects a list of file names, as in [water.yaml]");
+        return STATUS_OK;
+    }
+    if (by->depth == MOST_INCLUDE_DEPTH || tree->n_sources > MOST_INCLUDES) {
+        yaml_errors_add(errors, node->mark, "include: more than %d files, or files that include each other %d deep",
+                        MOST_INCLUDES, MOST_INCLUDE_DEPTH);
+        return STATUS_OK;
+    }
+    struct text path = {0};
+    if (node->text[0] != '/') text_add(&path, "%.*s", folder_length(folder), folder);
+    text_add(&path, "%s", node->text);
+    const enum status status = path.failed ? no_memory() : include_path(tree, node, path.text, by, errors, base);
+    text_free(&path);
+    return status;
+}
+
+/* Take the include list out of *root, read the files and lay *root over them. */
+static enum status read_includes(struct case_tree *tree, const char *folder, const struct open_file *self,
+                                 struct yaml_errors *errors, struct yaml_node **root) {
+    struct yaml_entry *const entry = yaml_tree_entry(*root, "include", strlen("include"));
+    if (!entry) return STATUS_OK;
+    struct yaml_node *const list = entry->value;
+    free(entry->key);
+    memmove(entry, entry + 1, (size_t)(&(*root)->entry[--(*root)->n] - entry) * sizeof *entry);
+
+    struct yaml_node *base = NULL;
+    enum status status = STATUS_OK;
+    if (list->kind == YAML_LIST) {
+        for (int i = 0; i < list->n && status == STATUS_OK; i++) {
+            status = include_entry(tree, list->entry[i].value, folder, self, errors, &base);
+        }
+    } else {
+        status = include_entry(tree, list, folder, self, errors, &base);
+    }
+    yaml_tree_free(list);
+    if (status == STATUS_OK && base) {
+        status = yaml_tree_merge(&base, *root);
+        *root = base;
+    } else {
+        yaml_tree_free(base);
+    }
+    return status;
+}
+
+/* Turn a text and what it includes into a tree; *root stays NULL if the text itself is wrong. */
+static enum status read_source(struct case_tree *tree, const struct yaml_source *source, const char *folder,
+                               const struct open_file *self, struct yaml_errors *errors, struct yaml_node **root) {
+    const enum status status = yaml_tree_read(root, source, errors);
+    if (status == STATUS_CASE) return STATUS_OK;
+    TRY(status);
+    if (!*root) {
+        const struct yaml_mark start = {source, 1, 1};
+        yaml_errors_add(errors, start, "the file is empty; a case needs at least format, time and fish");
+        return STATUS_OK;
+    }
+    if ((*root)->kind != YAML_MAP) {
+        yaml_errors_add(errors, (*root)->mark,
+                        "a case file consists of keys with values, such as 'format: 1', with a blank after each ':'");
+        yaml_tree_free(*root);
+        *root = NULL;
+        return STATUS_OK;
+    }
+    return read_includes(tree, folder, self, errors, root);
+}
+
+/* Read the case file and what it includes. */
+static enum status read_case(struct case_tree *tree, const char *folder, const struct open_file *self,
+                             struct yaml_errors *errors) {
+    struct yaml_node *root = NULL;
+    const enum status status = read_source(tree, tree->source[0], folder, self, errors, &root);
+    if (status == STATUS_OK && errors->n == 0) {
+        tree->root = root;
+    } else {
+        yaml_tree_free(root);
+    }
+    return status;
+}
+
+enum status case_merge_read_file(struct case_tree *tree, const char *path, struct yaml_errors *errors) {
+    struct yaml_source *const source = add_source(tree, path);
+    if (!source) return no_memory();
+    struct open_file self = {0};
+    const enum status status = read_file(path, source, &self);
+    if (status == STATUS_FILE) return status_fail(STATUS_FILE, "%s: error: the case file %s", path, status_message());
+    TRY(status);
+    return read_case(tree, path, &self, errors);
+}
+
+enum status case_merge_read_text(struct case_tree *tree, const char *text, size_t length, const char *origin,
+                                 const char *folder, struct yaml_errors *errors) {
+    struct yaml_source *const source = add_source(tree, origin);
+    if (!source || !(source->text = malloc(length + 1))) return no_memory();
+    memcpy(source->text, text, length);
+    source->length = length;
+    struct text place = {0};
+    if (folder && *folder) text_add(&place, "%s/", folder);
+    const struct open_file self = {0};
+    const enum status status =
+        place.failed ? no_memory() : read_case(tree, place.text ? place.text : "", &self, errors);
+    text_free(&place);
+    return status;
+}
+
+// ---- assignments
+
+/* Merge a value into *node at a path of keys; "" is the node itself. Takes the value. */
+static enum status put_at(struct yaml_node **node, const char *path, struct yaml_mark mark, struct yaml_node *value) {
+    if (*path == '\0') return yaml_tree_merge(node, value);
+    if ((*node)->kind != YAML_MAP) {  // that will be reported in its own place
+        yaml_tree_free(value);
+        return STATUS_OK;
+    }
+    char key[80];
+    const size_t length = strcspn(path, ".");
+    snprintf(key, sizeof key, "%.*s", (int)length, path);
+    if (path[length] == '\0') return yaml_tree_put(*node, key, mark, value);
+
+    if (!yaml_tree_entry(*node, key, length)) {
+        struct yaml_node *const map = yaml_tree_map(mark);
+        const enum status status = map ? yaml_tree_put(*node, key, mark, map) : no_memory();
+        if (status != STATUS_OK) {
+            yaml_tree_free(value);
+            return status;
+        }
+    }
+    return put_at(&yaml_tree_entry(*node, key, length)->value, path + length + 1, mark, value);
+}
+
+/* Put copies of a value into one fish or into every fish. */
+static enum status put_in_fish(struct case_tree *tree, const struct case_path *path, const struct yaml_node *value) {
+    struct yaml_entry *const school = yaml_tree_entry(tree->root, "fish", 4);
+    for (int i = 0; i < case_merge_n_fish(tree); i++) {
+        if (path->fish != i && path->fish != CASE_EVERY_FISH) continue;
+        struct yaml_node *const copy = yaml_tree_copy(value);
+        if (!copy) return no_memory();
+        TRY(put_at(&school->value->entry[i].value, path->below, value->mark, copy));
+    }
+    return STATUS_OK;
+}
+
+/* Put a value where a path says. Takes the value. */
+static enum status put(struct case_tree *tree, const struct case_path *path, struct yaml_node *value) {
+    if (path->fish == CASE_NO_FISH) return put_at(&tree->root, path->below, value->mark, value);
+    const enum status status = put_in_fish(tree, path, value);
+    yaml_tree_free(value);
+    return status;
+}
+
+/* Apply an assignment whose text before the equals sign is name. */
+static enum status assign(struct case_tree *tree, char *name, const char *text, struct yaml_source *source,
+                          struct yaml_errors *errors) {
+    const struct yaml_mark mark = {source, 1, 1};
+    struct case_path path;
+    if (!case_path_parse(&path, name, case_merge_n_fish(tree), mark, errors)) return STATUS_OK;
+    const struct key *const key = case_table_row(path.pattern);
+    if (key && key->type == FILES) {
+        yaml_errors_add(errors, mark, "%s: stands in a case file only", name);
+        return STATUS_OK;
+    }
+    // nothing after the equals sign is the empty text
+    source->text = strdup(text[strspn(text, " ")] ? text : "\"\"");
+    if (!source->text) return no_memory();
+    source->length = strlen(source->text);
+    struct yaml_node *value = NULL;
+    const enum status status = yaml_tree_read(&value, source, errors);
+    if (status == STATUS_CASE) return STATUS_OK;
+    TRY(status);
+    if (value) return put(tree, &path, value);
+    yaml_errors_add(errors, mark, "%s: expects a value after the '='", name);
+    return STATUS_OK;
+}
+
+enum status case_merge_assign(struct case_tree *tree, const char *assignment, struct yaml_errors *errors) {
+    struct text title = {0};
+    text_add(&title, "--set %s", assignment);
+    struct yaml_source *const source = title.failed ? NULL : add_source(tree, title.text);
+    text_free(&title);
+    char *const name = strdup(assignment);
+    if (!source || !name) {
+        free(name);
+        return no_memory();
+    }
+    source->one_line = true;
+    enum status status = STATUS_OK;
+    char *const equals = strchr(name, '=');
+    if (equals) {
+        *equals = '\0';
+        status = assign(tree, name, equals + 1, source, errors);
+    } else {
+        const struct yaml_mark mark = {source, 1, 1};
+        yaml_errors_add(errors, mark, "expects PATH=VALUE, as in --set time.end=3");
+    }
+    free(name);
+    return status;
+}
+
+// ---- look-ups
+
+int case_merge_n_fish(const struct case_tree *tree) {
+    const struct yaml_node *const school = yaml_tree_find(tree->root, "fish");
+    return school && school->kind == YAML_LIST ? school->n : 0;
+}
+
+const struct yaml_node *case_merge_value(const struct case_tree *tree, const char *path, int fish, bool *is_default) {
+    *is_default = false;
+    if (strncmp(path, "fish.", 5) != 0) return yaml_tree_find(tree->root, path);
+    const struct yaml_node *const school = yaml_tree_find(tree->root, "fish");
+    const struct yaml_node *const own = yaml_tree_find(school->entry[fish].value, path + 5);
+    if (own) return own;
+    *is_default = true;
+    return yaml_tree_find(yaml_tree_find(tree->root, "defaults.fish"), path + 5);
+}
+
+struct yaml_mark case_merge_mark(const struct case_tree *tree, const char *path, int fish) {
+    char around[80];
+    snprintf(around, sizeof around, "%s", path);
+    for (;;) {
+        bool is_default;
+        const struct yaml_node *const node = case_merge_value(tree, around, fish, &is_default);
+        if (node) return node->mark;
+        char *const dot = strrchr(around, '.');
+        if (!dot) return tree->root->mark;
+        *dot = '\0';
+        if (strcmp(around, "fish") == 0) return yaml_tree_find(tree->root, "fish")->entry[fish].value->mark;
+    }
+}

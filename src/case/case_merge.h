@@ -1,0 +1,60 @@
+/* case_tree.h: one tree from a case file, its includes and the assignments of the command line; and paths into it.
+ * Tested by tests/case/test_case.c.
+ *
+ * The tree keeps what is strongest: assignments, then the case file, then its includes (the last one first). Defaults
+ * are not merged into the fish but looked up after them, so that no value is ever copied. */
+#ifndef CASE_MERGE_H
+#define CASE_MERGE_H
+
+#include "case/case_table.h"
+#include "case/yaml_tree.h"
+
+enum { CASE_MAX_FISH = 10000 };
+
+struct case_tree {
+    struct yaml_node *root; /* a map; NULL if something could not be read */
+    int n_sources;
+    struct yaml_source **source; /* the case file first */
+};
+
+/* Read a case from a file, or from a text of which origin is the name and folder ("" or NULL: the working directory)
+ * the place where includes are looked up. Zero the tree before. What is wrong with the case is added to errors, and
+ * tree->root is then NULL. Fails with STATUS_FILE (the case file cannot be read) or STATUS_MEMORY only. */
+enum status case_merge_read_file(struct case_tree *tree, const char *path, struct yaml_errors *errors);
+enum status case_merge_read_text(struct case_tree *tree, const char *text, size_t length, const char *origin,
+                                 const char *folder, struct yaml_errors *errors);
+
+/* Apply an assignment "fish[0].nodes=9" to the tree. Fails with STATUS_MEMORY only. */
+enum status case_merge_assign(struct case_tree *tree, const char *assignment, struct yaml_errors *errors);
+
+/* Release all that the tree owns and zero it. */
+void case_merge_free(struct case_tree *tree);
+
+/* The number of fish, and what is written at a path ("time.end", "fish.nodes") for one fish (ignored for other paths):
+ * among its own keys or, with *is_default, under defaults.fish; NULL if nowhere. */
+int case_merge_n_fish(const struct case_tree *tree);
+const struct yaml_node *case_merge_value(const struct case_tree *tree, const char *path, int fish, bool *is_default);
+
+/* Where a message about a path should point: at its value, or at the nearest that is written around it. */
+struct yaml_mark case_merge_mark(const struct case_tree *tree, const char *path, int fish);
+
+/* ---- paths as --set and sweep take them */
+
+enum { CASE_NO_FISH = -1, CASE_EVERY_FISH = -2 };
+
+struct case_path {
+    char pattern[80];  /* "fish.wave.frequency" for fish[2].wave.frequency; a row or a section of the table */
+    int fish;          /* index, CASE_EVERY_FISH or CASE_NO_FISH */
+    const char *below; /* "wave.frequency": points into the text that was parsed */
+};
+
+/* Parse a path and check that it exists; false after adding what is wrong to errors. */
+bool case_path_parse(struct case_path *path, const char *text, int n_fish, struct yaml_mark mark,
+                     struct yaml_errors *errors);
+
+/* Add the error "path: unknown key; did you mean ...?" for a word under a section of the table (see
+ * case_table_suggest for section and owner). */
+void case_path_unknown(struct yaml_errors *errors, struct yaml_mark mark, const char *path, const char *section,
+                       const char *word, const char *owner);
+
+#endif

@@ -1,0 +1,277 @@
+/* case_show.c: a case written out in full, and the table of keys as text and as JSON. Declared in case.h. */
+#include <math.h>
+#include <string.h>
+
+#include "case/case_table.h"
+#include "case/case_value.h"
+#include "case/yaml_write.h"
+
+// ---- a case
+
+enum { COMMENT_COLUMN = 40 };
+
+/* The number of characters since the last end of line. */
+static size_t column(const struct text *text) {
+    size_t n = 0;
+    while (n < text->length && text->text[text->length - 1 - n] != '\n') n++;
+    return n;
+}
+
+/* Add the headings of the sections that a path is in and the path before it was not. below: where both begin. */
+static void show_headings(struct text *text, const char *path, const char *before, const char *below) {
+    bool is_same = true;
+    int depth = 0;
+    for (const char *c = below; strchr(c, '.'); c = strchr(c, '.') + 1, depth++) {
+        const size_t length = (size_t)(strchr(c, '.') + 1 - path);
+        is_same = is_same && before && strncmp(path, before, length) == 0;
+        if (is_same) continue;
+        const bool is_fish = below != path;
+        if (!is_fish && depth == 0) text_add(text, "\n");
+        text_add(text, "%*s%.*s:\n", 2 * depth + (is_fish ? 4 : 0), "", (int)(strchr(c, '.') - c), c);
+    }
+}
+
+/* Add one line: indentation, key, value, unit. */
+static void show_key(struct text *text, const struct key *key, const void *field, bool is_first_of_fish) {
+    int depth = 0;
+    for (const char *c = key->path; *c; c++) depth += *c == '.';
+    const bool is_fish = case_table_is_of_fish(key);
+    const char *const name = strrchr(key->path, '.') ? strrchr(key->path, '.') + 1 : key->path;
+    const int indent = 2 * depth + (is_fish ? 2 : 0);
+    if (is_first_of_fish) {
+        text_add(text, "%*s- %s: ", indent - 2, "", name);
+    } else {
+        text_add(text, "%*s%s: ", indent, "", name);
+    }
+    if (text->failed) return;
+    case_value_write(text, key, field);
+    if (*key->unit && !text->failed) {
+        const size_t used = column(text);
+        text_add(text, "%*s# %s", used < COMMENT_COLUMN ? (int)(COMMENT_COLUMN - used) : 2, "", key->unit);
+    }
+    text_add(text, "\n");
+}
+
+/* True if a key is left out: it has been applied already, or it has no value. */
+static bool is_hidden(const struct key *key, const void *field) {
+    if (!case_table_is_value(key)) return true;
+    if (strcmp(key->path, "preset") == 0) return true;
+    if (key->type == TEXT) return !*(char *const *)field;
+    return key->type == NUMBERS && ((const struct case_list *)field)->n == 0;
+}
+
+/* Add every row of the table that belongs to a fish, or with fish NULL every row that belongs to none. */
+static void show_rows(struct text *text, struct case_values *values, struct case_fish *fish) {
+    const char *before = NULL;
+    for (int k = 0; k < case_table_n; k++) {
+        const struct key *const key = &case_table[k];
+        if (case_table_is_of_fish(key) != (fish != NULL)) continue;
+        const void *const field = case_table_field(key, values, fish);
+        if (is_hidden(key, field)) continue;
+        show_headings(text, key->path, before, key->path + (fish ? strlen("fish.") : 0));
+        show_key(text, key, field, fish && !before);
+        before = key->path;
+    }
+}
+
+/* Add "[a, b]", or without brackets where there is one only. */
+static void show_group(struct text *text, const struct sweep_axis *axis, int value) {
+    if (axis->n_keys > 1) text_add(text, "[");
+    for (int k = 0; k < axis->n_keys && !text->failed; k++) {
+        if (k > 0) text_add(text, ", ");
+        if (value < 0) {
+            yaml_write_scalar(text, axis->key[k].path);
+        } else {
+            text_add(text, "%s", axis->value[value * axis->n_keys + k]);
+        }
+    }
+    if (axis->n_keys > 1) text_add(text, "]");
+}
+
+/* Add "[nose, tail]". */
+static void show_quantities(struct text *text, unsigned all) {
+    const char *before = "[";
+    for (int q = 0; q < SWEEP_N_QUANTITIES; q++) {
+        if (!(all >> q & 1)) continue;
+        text_add(text, "%s%s", before, sweep_quantities[q].name);
+        before = ", ";
+    }
+    text_add(text, "]");
+}
+
+/* Add the given values of an axis, one for each fish: {speed: [1, 1.1], nose: [[0, 1], [0, 2]]}. */
+static void show_reference(struct text *text, const struct case_values *values, int axis) {
+    const char *before = "    reference: {";
+    for (int q = 0; q < SWEEP_N_ORDERS; q++) {
+        const int of_xy = sweep_quantities[q].of_xy;
+        if (isnan(sweep_reference(values, axis, q, 0, 0))) continue;
+        text_add(text, "%s%s: [", before, sweep_quantities[q].name);
+        before = ", ";
+        for (int f = 0; f < values->n_fish; f++) {
+            text_add(text, "%s%s", f > 0 ? ", " : "", of_xy ? "[" : "");
+            text_add_number(text, sweep_reference(values, axis, q, f, 0));
+            if (of_xy) text_add(text, ", ");
+            if (of_xy) text_add_number(text, sweep_reference(values, axis, q, f, 1));
+            if (of_xy) text_add(text, "]");
+        }
+        text_add(text, "]");
+    }
+    text_add(text, "}\n");
+}
+
+static void show_axis(struct text *text, const struct case_values *values, int a) {
+    const struct sweep_axis *const axis = &values->sweep[a];
+    text_add(text, "  - %s: ", axis->n_keys > 1 ? "keys" : "key");
+    show_group(text, axis, -1);
+    text_add(text, "\n    values: [");
+    for (int i = 0; i < axis->n_values; i++) {
+        if (i > 0) text_add(text, ", ");
+        show_group(text, axis, i);
+    }
+    text_add(text, "]\n");
+    if (!axis->refine) return;
+    text_add(text, "    refine: true\n");
+    if (axis->reference) show_reference(text, values, a);
+    if (!(axis->order > 0)) return;
+    text_add(text, "    expect: {order: ");
+    text_add_number(text, axis->order);
+    text_add(text, ", within: ");
+    text_add_number(text, axis->within);
+    text_add(text, ", of: ");
+    show_quantities(text, axis->order_of);
+    text_add(text, "}\n");
+}
+
+/* Add a bound of a statement. */
+static void show_bound(struct text *text, const char *name, double bound) {
+    if (isnan(bound)) return;
+    text_add(text, ", %s: ", name);
+    text_add_number(text, bound);
+}
+
+static void show_expectation(struct text *text, const struct case_values *values, const struct sweep_expectation *one) {
+    text_add(text, one->fails ? "  - {fails: " : "  - {of: ");
+    if (one->fails) {
+        yaml_write_scalar(text, one->fails);
+    } else {
+        show_quantities(text, one->of);
+    }
+    if (one->fish >= 0) {
+        text_add(text, ", fish: ");
+        yaml_write_scalar(text, values->fish[one->fish].name);
+    }
+    for (int c = 0; c < one->n_where; c++) {
+        const struct sweep_condition *const condition = &one->where[c];
+        struct text assignment = {0};
+        text_add(&assignment, "%s=%s", values->sweep[condition->axis].key[condition->key].path, condition->value);
+        text_add(text, "%s", c == 0 ? ", where: [" : ", ");
+        if (assignment.failed) text->failed = true;
+        if (!assignment.failed) yaml_write_scalar(text, assignment.text);
+        text_free(&assignment);
+    }
+    if (one->n_where > 0) text_add(text, "]");
+    if (!one->fails) {
+        show_bound(text, "least", one->least);
+        show_bound(text, "most", one->most);
+        show_bound(text, "spread", one->spread);
+        show_bound(text, "ratio", one->ratio);
+    }
+    text_add(text, "}\n");
+}
+
+static void show_sweep(struct text *text, const struct case_values *values) {
+    if (values->n_axes > 0) text_add(text, "\nsweep:\n");
+    for (int i = 0; i < values->n_axes; i++) show_axis(text, values, i);
+    if (values->n_expectations > 0) text_add(text, "\nexpect:\n");
+    for (int i = 0; i < values->n_expectations; i++) show_expectation(text, values, &values->expect[i]);
+}
+
+enum status case_show(const struct case_values *values, char **text) {
+    struct case_values all = *values;  // a shallow copy, so that the table can point into it
+    struct text list = {0};
+    show_rows(&list, &all, NULL);
+    text_add(&list, "\nfish:\n");
+    for (int i = 0; i < all.n_fish; i++) show_rows(&list, &all, &all.fish[i]);
+    show_sweep(&list, &all);
+    *text = NULL;
+    if (list.failed) {
+        text_free(&list);
+        return status_fail(STATUS_MEMORY, "no memory to show the case");
+    }
+    *text = list.text;
+    return STATUS_OK;
+}
+
+// ---- the table
+
+/* What stands in the column "default". */
+static const char *initial_text(const struct key *key) {
+    if (key->derived) return key->derived;
+    return key->initial ? key->initial : "required";
+}
+
+/* The path of a key as a user writes it. */
+static const char *fish_mark(const struct key *key) {
+    return case_table_is_of_fish(key) ? "fish[i]" : "";
+}
+
+static const char *fish_rest(const struct key *key) {
+    return case_table_is_of_fish(key) ? key->path + strlen("fish") : key->path;
+}
+
+static void print_text(FILE *stream) {
+    for (int k = 0; k < case_table_n; k++) {
+        const struct key *const key = &case_table[k];
+        struct text range = {0};
+        case_table_range(key, &range);
+        const bool has_range = range.length > 0;
+        fprintf(stream, "%s%s: %s\n    %s%s%s%s%s; default: %s", fish_mark(key), fish_rest(key), key->meaning,
+                case_table_type(key), *key->unit ? " in " : "", key->unit, has_range ? ", " : "",
+                has_range ? range.text : "", initial_text(key));
+        if (key->published) fprintf(stream, " (preset published: %s)", key->published);
+        fprintf(stream, "\n");
+        text_free(&range);
+    }
+}
+
+/* Print a string of JSON, or null. */
+static void print_string(FILE *stream, const char *name, const char *text) {
+    fprintf(stream, ", \"%s\": ", name);
+    if (!text) {
+        fprintf(stream, "null");
+        return;
+    }
+    fputc('"', stream);
+    for (; *text; text++) {
+        if (*text == '"' || *text == '\\') fputc('\\', stream);
+        fputc(*text, stream);
+    }
+    fputc('"', stream);
+}
+
+static void print_json(FILE *stream) {
+    for (int k = 0; k < case_table_n; k++) {
+        const struct key *const key = &case_table[k];
+        struct text range = {0};
+        case_table_range(key, &range);
+        fprintf(stream, "%s{\"path\": \"%s\"", k > 0 ? ",\n " : "[", key->path);
+        print_string(stream, "type", case_table_type(key));
+        print_string(stream, "default", key->initial);
+        print_string(stream, "derived", key->derived);
+        print_string(stream, "published", key->published);
+        print_string(stream, "range", range.text ? range.text : "");
+        print_string(stream, "unit", key->unit);
+        print_string(stream, "meaning", key->meaning);
+        fprintf(stream, "}");
+        text_free(&range);
+    }
+    fprintf(stream, "]\n");
+}
+
+void case_keys(FILE *stream, int as_json) {
+    if (as_json) {
+        print_json(stream);
+    } else {
+        print_text(stream);
+    }
+}

@@ -1,0 +1,132 @@
+/* case_suggest.c: what a user may have meant by an unknown key. Declared in case_table.h. */
+#include <limits.h>
+#include <string.h>
+
+#include "case/case_table.h"
+
+enum { WORD = 40 /* longer words are like no key */ };
+
+/* One word of a path of the table: "body" or "modulus" of "fish.body.modulus". */
+struct candidate {
+    char word[WORD + 1];
+    char section[80]; /* "fish.body"; "" at the top */
+    int distance;     /* edits from what the user wrote */
+    int remoteness;   /* 0: a sibling, 1: below, 2: elsewhere */
+};
+
+static char lower(char c) {
+    return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
+}
+
+static int least(int a, int b) {
+    return a < b ? a : b;
+}
+
+/* Number of insertions, deletions, changes and swaps of neighbours between a word of n and one of m characters. */
+static int edit_distance(const char *a, size_t n, const char *b, size_t m) {
+    if (n > WORD || m > WORD) return INT_MAX;
+    int d[WORD + 1][WORD + 1];
+    for (size_t i = 0; i <= n; i++) d[i][0] = (int)i;
+    for (size_t j = 0; j <= m; j++) d[0][j] = (int)j;
+    for (size_t i = 1; i <= n; i++) {
+        for (size_t j = 1; j <= m; j++) {
+            const int change = d[i - 1][j - 1] + (lower(a[i - 1]) != lower(b[j - 1]));
+            d[i][j] = least(change, least(d[i - 1][j], d[i][j - 1]) + 1);
+            const bool is_swap =
+                i > 1 && j > 1 && lower(a[i - 1]) == lower(b[j - 2]) && lower(a[i - 2]) == lower(b[j - 1]);
+            if (is_swap) d[i][j] = least(d[i][j], d[i - 2][j - 2] + 1);
+        }
+    }
+    return d[n][m];
+}
+
+/* The least distance of a word to any of some words separated by blanks. */
+static int distance_to_any(const char *word, const char *words) {
+    int distance = INT_MAX;
+    while (words && *words) {
+        const size_t length = strcspn(words, " ");
+        distance = least(distance, edit_distance(word, strlen(word), words, length));
+        words += length + strspn(words + length, " ");
+    }
+    return distance;
+}
+
+/* Take the candidate for the word of a path that ends at end, if it is nearer than the best so far. */
+static void consider(struct candidate *best, const struct key *key, size_t end, const char *section, const char *word) {
+    size_t begin = end;
+    while (begin > 0 && key->path[begin - 1] != '.') begin--;
+    struct candidate one = {{0}, {0}, INT_MAX, 2};
+    if (end - begin > WORD || begin > sizeof one.section) return;
+    memcpy(one.word, key->path + begin, end - begin);
+    if (begin > 0) memcpy(one.section, key->path, begin - 1);
+
+    one.distance = edit_distance(word, strlen(word), one.word, strlen(one.word));
+    const bool is_leaf = key->path[end] == '\0';
+    if (is_leaf) one.distance = least(one.distance, distance_to_any(word, key->synonyms));
+    const size_t here = strlen(section);
+    if (strcmp(one.section, section) == 0) {
+        one.remoteness = 0;
+    } else if (strncmp(one.section, section, here) == 0 && (here == 0 || one.section[here] == '.')) {
+        one.remoteness = 1;
+    }
+    const bool is_nearer = one.distance < best->distance;
+    if (is_nearer || (one.distance == best->distance && one.remoteness < best->remoteness)) *best = one;
+}
+
+/* Say where the candidate stands: "fish[2].body" or "time". */
+static void add_section(struct text *hint, const struct candidate *candidate, const char *owner) {
+    const char *const section = candidate->section;
+    const bool is_of_fish = strncmp(section, "fish", 4) == 0 && (section[4] == '\0' || section[4] == '.');
+    if (section[0] == '\0') {
+        text_add(hint, "the top of the file");
+    } else if (is_of_fish) {
+        const char *const rest = section + strlen("fish");
+        if (owner) {
+            text_add(hint, "%s%s", owner, rest);
+        } else {
+            text_add(hint, "a fish, as fish[0]%s, or to defaults.fish%s for every fish", rest, rest);
+        }
+    } else {
+        text_add(hint, "%s", section);
+    }
+}
+
+/* List the words that can stand in a section. */
+static void add_words(struct text *hint, const char *section) {
+    const size_t here = section[0] ? strlen(section) + 1 : 0;
+    size_t last_length = 0;
+    const char *last = "";
+    text_add(hint, "; known here:");
+    for (int i = 0; i < case_table_n; i++) {
+        const char *const path = case_table[i].path;
+        if (here > 0 && (strncmp(path, section, here - 1) != 0 || path[here - 1] != '.')) continue;
+        const size_t length = strcspn(path + here, ".");
+        const bool is_same = length == last_length && strncmp(path + here, last, length) == 0;
+        if (!is_same) text_add(hint, "%s %.*s", last_length ? "," : "", (int)length, path + here);
+        last = path + here;
+        last_length = length;
+    }
+}
+
+void case_table_suggest(struct text *hint, const char *section, const char *word, const char *owner) {
+    struct candidate best = {{0}, {0}, INT_MAX, INT_MAX};
+    for (int i = 0; i < case_table_n; i++) {
+        const char *const path = case_table[i].path;
+        for (size_t end = 1; end <= strlen(path); end++) {
+            if (path[end] == '.' || path[end] == '\0') consider(&best, &case_table[i], end, section, word);
+        }
+    }
+    const int length = (int)strnlen(word, WORD);
+    const int allowed = length < 4 ? length / 2 : least(3, length / 3);
+    if (best.distance > allowed) {
+        add_words(hint, section);
+        return;
+    }
+    const bool is_known = strcmp(best.word, word) == 0, is_elsewhere = best.remoteness > 0;
+    if (is_known) {
+        text_add(hint, " here; it belongs to ");
+    } else {
+        text_add(hint, "; did you mean '%s'?%s", best.word, is_elsewhere ? " It belongs to " : "");
+    }
+    if (is_elsewhere) add_section(hint, &best, owner);
+}

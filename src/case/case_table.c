@@ -1,0 +1,297 @@
+/* case_table.c: the table of keys. Everything that reads, checks, prints or documents a case loops over it. */
+#include "case/case_table.h"
+
+#include <math.h>
+#include <string.h>
+
+#define AT(field) offsetof(struct case_values, field)
+#define IN_FISH(field) offsetof(struct case_fish, field)
+#define ANY \
+    { -INFINITY, INFINITY, false, false }
+#define FROM(least) \
+    { least, INFINITY, false, false }
+#define ABOVE(least) \
+    { least, INFINITY, true, false }
+#define FROM_TO(least, most) \
+    { least, most, false, false }
+#define BETWEEN(least, most) \
+    { least, most, true, true }
+#define WORDS(...)          \
+    (const char *const[]) { \
+        __VA_ARGS__, NULL   \
+    }
+
+enum { NAME_BYTES = 200, FILE_BYTES = 4000, MOST_NODES = 10000, MOST_THREADS = 1024, MOST_STEPS = 1000000000 };
+
+const struct key case_table[] = {
+    {"format", INTEGER, AT(format), NULL, FROM_TO(1, 1), "", .meaning = "version of the case file format; write 1"},
+    {"name", TEXT, AT(name), NULL, FROM_TO(1, NAME_BYTES), "", .meaning = "name of the case",
+     .derived = "the file's name without its ending", .synonyms = "title case"},
+    {"include", FILES, 0, "[]", FROM_TO(1, FILE_BYTES), "",
+     .meaning = "case files read before this one, relative to it; what this file says is stronger",
+     .synonyms = "import includes"},
+    {"preset", CHOICE, AT(preset), "none", ANY, "",
+     .meaning = "published: the options of the article are the defaults; what the case says is stronger",
+     .words = WORDS("none", "published"), .synonyms = "variant"},
+
+    {"time.end", REAL, AT(time.end), NULL, ABOVE(0), "s", .meaning = "the run goes from time 0 to here",
+     .synonyms = "duration t_end tend final_time stop t_final"},
+    {"time.shedding_interval", REAL, AT(time.shedding_interval), "0.01", ABOVE(0), "s",
+     .meaning = "each fish releases a vortex once in this time: the interval between two events",
+     .synonyms = "dt delta_t timestep time_step"},
+    {"time.output_interval", REAL, AT(time.output_interval), NULL, ABOVE(0), "s",
+     .meaning = "a row of output once in this time; a whole multiple of shedding_interval",
+     .derived = "ten shedding intervals", .synonyms = "output_every save_interval dt_out"},
+    {"time.checkpoint_interval", REAL, AT(time.checkpoint_interval), "0", FROM(0), "s",
+     .meaning = "a checkpoint once in this time; a whole multiple of shedding_interval; 0: none",
+     .synonyms = "restart_interval checkpoint"},
+
+    {"fluid.density", REAL, AT(fluid.density), "1000", FROM(0), "kg m-3",
+     .meaning = "density of the fluid; 0: no fluid forces", .synonyms = "rho rho_f"},
+    {"fluid.velocity", PAIR, AT(fluid.velocity), "[0, 0]", ANY, "m s-1", .meaning = "uniform external flow",
+     .synonyms = "current stream flow wind u_inf"},
+    {"fluid.shear", REAL, AT(fluid.shear), "0", ANY, "s-1", .meaning = "adds shear * y to the external flow along x"},
+    {"fluid.gust.amplitude", REAL, AT(fluid.gust_amplitude), "0", ANY, "m s-1",
+     .meaning = "amplitude of a flow across the stream that oscillates in time"},
+    {"fluid.gust.frequency", REAL, AT(fluid.gust_frequency), "0", FROM(0), "Hz", .meaning = "frequency of the gust"},
+
+    {"wake.smoothing", REAL, AT(wake.smoothing), "0.2", ABOVE(0), "",
+     .meaning = "radius of a free vortex acting on the wake, in body lengths", .synonyms = "delta core blob epsilon"},
+    {"wake.sheet_smoothing", REAL, AT(wake.sheet_smoothing), "0.05", ABOVE(0), "",
+     .meaning = "radius of a bound vortex acting on the wake and on other fish, in body lengths", .published = "0.01"},
+    {"wake.lifetime", REAL, AT(wake.lifetime), "2", ABOVE(0), "s", .meaning = "age at which a vortex is removed",
+     .synonyms = "life max_age age"},
+    {"wake.fade", REAL, AT(wake.fade), NULL, FROM(0), "s",
+     .meaning = "the last part of its life in which a vortex fades out", .derived = "a tenth of the lifetime",
+     .published = "0"},
+    {"wake.shedding", CHOICE, AT(wake.shedding), "continuous", ANY, "",
+     .meaning = "continuous: a nascent vortex grows between events; impulsive: a whole one appears at each",
+     .published = "impulsive", .words = WORDS("continuous", "impulsive")},
+    {"wake.kutta", CHOICE, AT(wake.kutta), "edge", ANY, "",
+     .meaning = "edge: the strength at the tail vanishes; rate: it is shed at the rate of the slip",
+     .published = "rate", .words = WORDS("edge", "rate"), .synonyms = "kutta_condition"},
+    {"wake.kutta_ramp", REAL, AT(wake.kutta_ramp), "0", FROM(0), "s",
+     .meaning = "kutta rate: shedding begins gradually over this time", .published = "0.5"},
+    {"wake.collocation", CHOICE, AT(wake.collocation), "chebyshev", ANY, "",
+     .meaning = "where no penetration is required: chebyshev points or midpoints of the chords",
+     .published = "midpoint", .words = WORDS("chebyshev", "midpoint")},
+    {"wake.dissipated_circulation", CHOICE, AT(wake.dissipated_circulation), "retained", ANY, "",
+     .meaning = "whether the circulation of removed vortices still counts in Kelvin's theorem", .published = "dropped",
+     .words = WORDS("retained", "dropped"), .synonyms = "dissipated"},
+    {"wake.tolerance", REAL, AT(wake.tolerance), NULL, FROM_TO(0, 0.01), "",
+     .meaning = "error allowed in the velocity that far vortices cause, in lengths per beat; 0: every vortex exactly",
+     .derived = "a hundredth of solver.rtol", .synonyms = "accuracy theta"},
+
+    {"solver.method", CHOICE, AT(solver.method), "ida", ANY, "",
+     .meaning =
+         "integrator: ida is implicit; implicit_euler and trapezoid are so with fixed steps; the others are explicit",
+     .words = WORDS("ida", "euler", "heun", "rk4", "dormand_prince", "implicit_euler", "trapezoid"),
+     .synonyms = "integrator scheme"},
+    {"solver.rtol", REAL, AT(solver.rtol), "1e-5", FROM_TO(1e-14, 0.1), "",
+     .meaning = "relative error allowed per step", .synonyms = "tolerance tol reltol relative_tolerance"},
+    {"solver.order", INTEGER, AT(solver.order), "2", FROM_TO(1, 5), "",
+     .meaning = "highest order of the implicit integrator"},
+    {"solver.coupling_distance", REAL, AT(solver.coupling_distance), "0.5", FROM(0), "",
+     .meaning = "fish further apart than this, in lengths of the longest fish, are not coupled in the Jacobian"},
+    {"solver.threads", INTEGER, AT(solver.threads), "1", FROM_TO(1, MOST_THREADS), "", .meaning = "threads used",
+     .synonyms = "n_threads cores processes"},
+    {"solver.step", REAL, AT(solver.step), "0", FROM(0), "s",
+     .meaning = "fixed step of any integrator but ida; 0: adaptive, of an explicit one only", .synonyms = "step_size"},
+    {"solver.max_steps", INTEGER, AT(solver.max_steps), "10000", FROM_TO(1, MOST_STEPS), "",
+     .meaning = "the solver gives up after this many steps between two events", .synonyms = "mxstep"},
+
+    {"output.file", TEXT, AT(output.file), NULL, FROM_TO(1, FILE_BYTES), "", .meaning = "NetCDF file to write",
+     .derived = "the name of the case with .nc", .synonyms = "path filename"},
+    {"output.precision", CHOICE, AT(output.precision), "double", ANY, "", .meaning = "of the numbers in the file",
+     .words = WORDS("double", "single")},
+    {"output.wake_interval", REAL, AT(output.wake_interval), NULL, ABOVE(0), "s",
+     .meaning = "the wake is written once in this time; a whole multiple of output_interval",
+     .derived = "time.output_interval"},
+
+    {"defaults", DEFAULTS, 0, "{}", ANY, "",
+     .meaning = "defaults: {fish: {...}}: keys that every fish takes unless it has its own",
+     .synonyms = "default common shared"},
+
+    {"fish.name", TEXT, IN_FISH(name), NULL, FROM_TO(1, NAME_BYTES), "",
+     .meaning = "name of the fish, its own in the school", .derived = "fish1, fish2, ..."},
+    {"fish.length", REAL, IN_FISH(length), "1", ABOVE(0), "m", .meaning = "body length L", .synonyms = "size chord"},
+    {"fish.nodes", INTEGER, IN_FISH(nodes), "7", FROM_TO(4, MOST_NODES), "", .meaning = "nodes of the body",
+     .synonyms = "n_nodes segments points resolution"},
+    {"fish.reference_nodes", INTEGER, IN_FISH(reference_nodes), "7", FROM_TO(2, MOST_NODES), "",
+     .meaning = "number of nodes for which wave.amplitude and the dampings are stated"},
+    {"fish.sheet_points", INTEGER, IN_FISH(sheet_points), "21", FROM_TO(5, MOST_NODES), "",
+     .meaning = "vortices of the bound sheet", .synonyms = "vortices panels bound_vortices"},
+
+    {"fish.body.profile", CHOICE, IN_FISH(body.profile), "joukowski", ANY, "",
+     .meaning = "height along the body: a Joukowski foil, the same everywhere, or the lists h and w",
+     .words = WORDS("joukowski", "uniform", "table"), .synonyms = "shape"},
+    {"fish.body.thickness", REAL, IN_FISH(body.thickness), "0.2", BETWEEN(0, 1), "",
+     .meaning = "joukowski: parameter d of the foil; uniform: height over length"},
+    {"fish.body.width", REAL, IN_FISH(body.width), "0.25", ABOVE(0), "", .meaning = "width over length"},
+    {"fish.body.h", NUMBERS, IN_FISH(body.h), "[]", ABOVE(0), "m", .meaning = "profile table: height of every edge",
+     .synonyms = "height heights"},
+    {"fish.body.w", NUMBERS, IN_FISH(body.w), "[]", ABOVE(0), "m", .meaning = "profile table: width of every edge",
+     .synonyms = "widths"},
+    {"fish.body.density", REAL, IN_FISH(body.density), "2000", ABOVE(0), "kg m-3", .meaning = "density of the body",
+     .synonyms = "rho rho_b"},
+    {"fish.body.modulus", REAL, IN_FISH(body.modulus), "1e6", ABOVE(0), "Pa",
+     .meaning = "Young's modulus of the whole body",
+     .synonyms = "stiffness young youngs_modulus young_modulus elasticity rigidity e"},
+    {"fish.body.second_moment", CHOICE, IN_FISH(body.second_moment), "ellipse", ANY, "",
+     .meaning = "second moment of area: of the elliptic section, or as the article computes it",
+     .published = "published", .words = WORDS("ellipse", "published")},
+    {"fish.body.bending_damping", REAL, IN_FISH(body.bending_damping), "0.5", FROM(0), "N m s",
+     .meaning = "internal damping of bending, per joint of a body of reference_nodes", .synonyms = "d_b damping"},
+    {"fish.body.stretching_damping", REAL, IN_FISH(body.stretching_damping), "1", FROM(0), "N s m-1",
+     .meaning = "internal damping of stretching, per edge of a body of reference_nodes", .synonyms = "d_s"},
+    {"fish.body.relaxation_time", REAL, IN_FISH(body.relaxation_time), "0", FROM(0), "s",
+     .meaning = "damping in proportion to stiffness (Kelvin-Voigt)", .synonyms = "viscosity"},
+
+    {"fish.wave.amplitude", REAL, IN_FISH(wave.amplitude), "0.4", ANY, "rad",
+     .meaning =
+         "A of the turning angle A (linear q + quadratic q^2) sin(number q + 2 pi frequency t + phase), q = s/L"},
+    {"fish.wave.linear", REAL, IN_FISH(wave.linear), "1", ANY, "", .meaning = "growth of the wave along the body",
+     .synonyms = "c1"},
+    {"fish.wave.quadratic", REAL, IN_FISH(wave.quadratic), "0.2", ANY, "", .meaning = "growth with the square",
+     .synonyms = "c2"},
+    {"fish.wave.number", REAL, IN_FISH(wave.number), "-6", ANY, "rad",
+     .meaning = "phase along one body length; negative: the wave travels from head to tail",
+     .synonyms = "beta wavenumber wave_number k"},
+    {"fish.wave.frequency", REAL, IN_FISH(wave.frequency), "1", FROM(0), "Hz", .meaning = "beats per second",
+     .synonyms = "omega freq f beat period"},
+    {"fish.wave.phase", REAL, IN_FISH(wave.phase), "0", ANY, "degree", .meaning = "phase at time 0"},
+    {"fish.wave.ramp", REAL, IN_FISH(wave.ramp), NULL, FROM(0), "s",
+     .meaning = "the wave grows to its amplitude over this time",
+     .derived = "one period, 1/frequency (0 when the frequency is 0)", .published = "0"},
+
+    {"fish.drag.tangential", REAL, IN_FISH(drag.tangential), "1e-3", FROM(0), "", .meaning = "coefficient of friction",
+     .synonyms = "friction c_f cf"},
+    {"fish.drag.normal", REAL, IN_FISH(drag.normal), "0.5", FROM(0), "",
+     .meaning = "coefficient of drag across the body", .synonyms = "c_d cd lateral"},
+    {"fish.drag.added_mass", REAL, IN_FISH(drag.added_mass), "1.5", FROM(0), "", .meaning = "coefficient of added mass",
+     .synonyms = "c_a ca"},
+    {"fish.drag.law", CHOICE, IN_FISH(drag.law), "quadratic", ANY, "", .meaning = "v |v|, or v (1 m/s + |v|)",
+     .published = "quadratic", .words = WORDS("quadratic", "linear_quadratic")},
+    {"fish.drag.extent", CHOICE, IN_FISH(drag.extent), "thickness", ANY, "",
+     .meaning = "the height of the body that a motion across it meets", .published = "thickness",
+     .words = WORDS("thickness", "width")},
+
+    {"fish.start.position", PAIR, IN_FISH(start_position), "[0, 0]", ANY, "m", .meaning = "where the nose is at time 0",
+     .synonyms = "x0 nose"},
+    {"fish.start.heading", REAL, IN_FISH(start_heading), "180", ANY, "degree",
+     .meaning = "direction in which the fish swims at time 0, counter-clockwise from x", .synonyms = "angle direction"},
+    {"fish.start.speed", REAL, IN_FISH(start_speed), "1", ANY, "m s-1",
+     .meaning = "speed of every node along the heading at time 0", .synonyms = "velocity u0 v0"},
+
+    {"fish.load.tip", PAIR, IN_FISH(load_tip), "[0, 0]", ANY, "N", .meaning = "constant force on the tail node",
+     .synonyms = "force"},
+
+    {"fish.motion.driven", CHOICE, IN_FISH(motion.driven), "none", ANY, "",
+     .meaning = "what moves as given instead of freely: nothing, the first two nodes, or the whole straight body",
+     .words = WORDS("none", "head", "all"), .synonyms = "drive prescribed"},
+    {"fish.motion.speed", REAL, IN_FISH(motion.speed), NULL, ANY, "m s-1", .meaning = "speed along start.heading",
+     .derived = "start.speed"},
+    {"fish.motion.heave", REAL, IN_FISH(motion.heave), "0", ANY, "m",
+     .meaning = "amplitude of the motion to the left, heave sin(2 pi frequency t + phase)", .synonyms = "plunge"},
+    {"fish.motion.pitch", REAL, IN_FISH(motion.pitch), "0", ANY, "degree",
+     .meaning = "amplitude of the rotation, pitch sin(2 pi frequency t + pitch_phase + phase)"},
+    {"fish.motion.pitch_phase", REAL, IN_FISH(motion.pitch_phase), "0", ANY, "degree",
+     .meaning = "phase of pitch before heave"},
+    {"fish.motion.frequency", REAL, IN_FISH(motion.frequency), "0", FROM(0), "Hz",
+     .meaning = "frequency of heave and pitch"},
+    {"fish.motion.phase", REAL, IN_FISH(motion.phase), "0", ANY, "degree",
+     .meaning = "phase of heave and pitch at time 0"},
+    {"fish.motion.pivot", REAL, IN_FISH(motion.pivot), "0", FROM_TO(0, 1), "",
+     .meaning = "point about which the body pitches, in lengths from the nose"},
+
+    {"fish.control.law", CHOICE, IN_FISH(control.law), "none", ANY, "",
+     .meaning = "what sets the bias of the wave: nothing, the heading, or the heading averaged over a period",
+     .words = WORDS("none", "heading", "averaged_heading"), .synonyms = "controller type"},
+    {"fish.control.bias", REAL, IN_FISH(control.bias), "0", ANY, "",
+     .meaning = "law none: the bias; positive turns right", .synonyms = "phi0 offset"},
+    {"fish.control.desired_heading", HEADING, IN_FISH(control.desired_heading), NULL, ANY, "degree",
+     .meaning = "a number, or a list of [time in s, angle], linear between the times", .derived = "start.heading",
+     .synonyms = "target h_des target_heading"},
+    {"fish.control.waypoints", PAIRS, IN_FISH(control.waypoints), "[]", ANY, "m",
+     .meaning = "points [x, y] to visit in order; they set the desired heading", .synonyms = "route points"},
+    {"fish.control.arrival", REAL, IN_FISH(control.arrival), "0.5", ABOVE(0), "",
+     .meaning = "a waypoint is reached within this distance, in body lengths", .synonyms = "radius"},
+    {"fish.control.gain", REAL, IN_FISH(control.gain), "2", ANY, "", .meaning = "weight of the error of the heading",
+     .synonyms = "k_p kp proportional"},
+    {"fish.control.limit", REAL, IN_FISH(control.limit), "0.5", ABOVE(0), "", .meaning = "largest bias"},
+    {"fish.control.feedforward", REAL, IN_FISH(control.feedforward), "1", ANY, "",
+     .meaning = "weight of the moment that the flow exerts"},
+    {"fish.control.rate", REAL, IN_FISH(control.rate), "2", ABOVE(0), "s-1",
+     .meaning = "averaged_heading: largest change of the bias per second"},
+
+    {"sweep", AXES, 0, "[]", ANY, "",
+     .meaning =
+         "axes of a study, {key: PATH, values: [...]} or {keys: [...], values: [[...], ...]}; `shoal study` runs "
+         "their product",
+     .synonyms = "study parameters scan"},
+    {"expect", STATEMENTS, 0, "[]", ANY, "",
+     .meaning = "statements about the ends of a study's members, {of: QUANTITY, least: ..., most: ...}; `shoal study` "
+                "checks them",
+     .synonyms = "expected check assert"},
+};
+
+const int case_table_n = sizeof case_table / sizeof *case_table;
+
+const struct key *case_table_row(const char *path) {
+    for (int i = 0; i < case_table_n; i++) {
+        if (strcmp(case_table[i].path, path) == 0) return &case_table[i];
+    }
+    return NULL;
+}
+
+bool case_table_is_section(const char *path) {
+    const size_t length = strlen(path);
+    for (int i = 0; i < case_table_n; i++) {
+        if (strncmp(case_table[i].path, path, length) == 0 && case_table[i].path[length] == '.') return true;
+    }
+    return false;
+}
+
+bool case_table_is_of_fish(const struct key *key) {
+    return strncmp(key->path, "fish.", 5) == 0;
+}
+
+bool case_table_is_value(const struct key *key) {
+    return key->type < FILES;
+}
+
+void *case_table_field(const struct key *key, struct case_values *values, struct case_fish *fish) {
+    return (case_table_is_of_fish(key) ? (char *)fish : (char *)values) + key->offset;
+}
+
+const char *case_table_type(const struct key *key) {
+    static const char *const names[] = {[REAL] = "number",          [INTEGER] = "whole number",
+                                        [CHOICE] = "word",          [TEXT] = "text",
+                                        [PAIR] = "[x, y]",          [NUMBERS] = "list of numbers",
+                                        [PAIRS] = "list of [x, y]", [HEADING] = "number or list of [time, angle]",
+                                        [FILES] = "list of files",  [DEFAULTS] = "map",
+                                        [AXES] = "list of axes",    [STATEMENTS] = "list of statements"};
+    return names[key->type];
+}
+
+void case_table_range(const struct key *key, struct text *range) {
+    const struct bounds *const bounds = &key->bounds;
+    if (key->type == CHOICE) {
+        for (int i = 0; key->words[i]; i++) text_add(range, "%s%s", i > 0 ? ", " : "", key->words[i]);
+        return;
+    }
+    if (key->type == TEXT || key->type == FILES || isinf(bounds->least)) return;
+    if (bounds->least == bounds->most) {
+        text_add_number(range, bounds->least);
+        return;
+    }
+    if (isinf(bounds->most)) {
+        text_add(range, bounds->is_least_open ? "above " : "at least ");
+        text_add_number(range, bounds->least);
+        return;
+    }
+    text_add(range, bounds->is_least_open ? "between " : "from ");
+    text_add_number(range, bounds->least);
+    text_add(range, bounds->is_least_open ? " and " : " to ");
+    text_add_number(range, bounds->most);
+}

@@ -1,0 +1,74 @@
+/* case_table.h: the one table of keys of a case file, and the look-ups in it. Tested by tests/case/test_case.c.
+ *
+ * Shared by the files src/settings*.c only. */
+#ifndef CASE_TABLE_H
+#define CASE_TABLE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "base/text.h"
+#include "case/case.h"
+
+enum key_type {
+    REAL,      /* double */
+    INTEGER,   /* int */
+    CHOICE,    /* an enum: the place of the word among .words */
+    TEXT,      /* char *, owned */
+    PAIR,      /* double[2] */
+    NUMBERS,   /* struct case_list of numbers */
+    PAIRS,     /* struct case_list of pairs */
+    HEADING,   /* struct case_list of pairs (time, angle); one number is the pair (0, angle) */
+    FILES,     /* include: no place in struct case_values */
+    DEFAULTS,  /* defaults: no place in struct case_values */
+    AXES,      /* sweep: read by case_sweep.c */
+    STATEMENTS /* expect: read by case_expect.c */
+};
+
+/* What a number, or each number of a list, may be; for a TEXT, most is the largest number of bytes. */
+struct bounds {
+    double least, most;
+    bool is_least_open, is_most_open; /* the bound itself is refused */
+};
+
+struct key {
+    const char *path; /* "time.end"; keys of every fish begin with "fish." */
+    enum key_type type;
+    size_t offset;       /* in struct case_values, or in struct case_fish */
+    const char *initial; /* the default as YAML; NULL: see derived, or required when that is NULL too */
+    struct bounds bounds;
+    const char *unit; /* "" where there is none */
+    const char *meaning;
+    const char *derived;      /* how the program computes the default, in words */
+    const char *published;    /* the default under preset: published, where it differs */
+    const char *const *words; /* of a CHOICE, in the order of its enum, NULL at the end */
+    const char *synonyms;     /* words that people write instead, separated by blanks */
+};
+
+extern const struct key case_table[];
+extern const int case_table_n;
+
+/* The row of a path without indices ("fish.nodes"); NULL if there is none. */
+const struct key *case_table_row(const char *path);
+
+/* True if keys of the table begin with "path.", as for "fish.body". */
+bool case_table_is_section(const char *path);
+
+/* True if the key stands under every fish. */
+bool case_table_is_of_fish(const struct key *key);
+
+/* True if a key has one value, with a place in struct case_values; false from FILES on. */
+bool case_table_is_value(const struct key *key);
+
+/* Where the value of a key is; fish is ignored unless the key is of a fish. */
+void *case_table_field(const struct key *key, struct case_values *values, struct case_fish *fish);
+
+/* The name of a type as the reference calls it, and the range ("0 to 1", "> 0" or ""). */
+const char *case_table_type(const struct key *key);
+void case_table_range(const struct key *key, struct text *range);
+
+/* Add what the user may have meant by an unknown word under a section ("" is the top, "fish.body" that of fish): "; did
+ * you mean 'modulus'?". owner is how messages call the fish the word belongs to ("fish[2]"), or NULL. */
+void case_table_suggest(struct text *hint, const char *section, const char *word, const char *owner);
+
+#endif

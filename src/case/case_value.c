@@ -1,0 +1,282 @@
+/* case_value.c: the types of the key table, each with how it is read, written and released. */
+#include "case/case_value.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "case/yaml_write.h"
+
+enum { MOST_VALUES = 10000 /* of one list */ };
+
+/* A value being read, and where complaints go. */
+struct context {
+    const struct key *key;
+    const char *path;
+    const char *unit; /* "" if the text of the messages has it */
+    struct yaml_errors *errors;
+};
+
+void case_value_clear(const struct key *key, void *field) {
+    switch (key->type) {
+        case REAL: *(double *)field = NAN; break;
+        case PAIR: ((double *)field)[0] = ((double *)field)[1] = NAN; break;
+        case INTEGER: *(int *)field = 0; break;
+        case CHOICE: *(int *)field = -1; break;
+        case TEXT: *(char **)field = NULL; break;
+        case NUMBERS:
+        case PAIRS:
+        case HEADING: *(struct case_list *)field = (struct case_list){0}; break;
+        case FILES:
+        case DEFAULTS:
+        case AXES:
+        case STATEMENTS: break;
+    }
+}
+
+void case_value_free(const struct key *key, void *field) {
+    if (key->type == TEXT) free(*(char **)field);
+    if (key->type == NUMBERS || key->type == PAIRS || key->type == HEADING) free(((struct case_list *)field)->value);
+    case_value_clear(key, field);
+}
+
+// ---- numbers
+
+/* "must be above 0 m, got '-1'" */
+static void report_range(const struct context *context, const struct yaml_node *node) {
+    struct text range = {0};
+    case_table_range(context->key, &range);
+    const char *const unit = context->unit;
+    yaml_errors_add(context->errors, node->mark, "%s: must be %s%s%s, got %.40s", context->path,
+                    range.text ? range.text : "in range", *unit ? " " : "", unit, node->text);
+    if (range.failed) context->errors->no_memory = true;
+    text_free(&range);
+}
+
+static bool is_in(const struct bounds *bounds, double value) {
+    if (bounds->is_least_open ? value <= bounds->least : value < bounds->least) return false;
+    return bounds->is_most_open ? value < bounds->most : value <= bounds->most;
+}
+
+/* Read one number in the range of the key. what: "a number", "two numbers [x, y]": how the whole value should look. */
+static bool read_number(const struct context *context, const struct yaml_node *node, const char *what, double *value) {
+    char shown[64];
+    const char *const unit = context->unit;
+    double number;
+    if (node->kind != YAML_SCALAR || !text_number(node->text, &number)) {
+        yaml_errors_add(context->errors, node->mark, "%s: expects %s%s%s, got %s", context->path, what,
+                        *unit ? " in " : "", unit, yaml_tree_describe(node, shown, sizeof shown));
+        return false;
+    }
+    if (isinf(number)) {
+        yaml_errors_add(context->errors, node->mark, "%s: %.40s is too large a number", context->path, node->text);
+        return false;
+    }
+    if (!is_in(&context->key->bounds, number)) {
+        report_range(context, node);
+        return false;
+    }
+    *value = number;
+    return true;
+}
+
+/* True for a sign and digits only. */
+static bool is_whole(const char *text) {
+    if (*text == '+' || *text == '-') text++;
+    return *text != '\0' && strspn(text, "0123456789") == strlen(text);
+}
+
+static void read_integer(const struct context *context, const struct yaml_node *node, int *value) {
+    char shown[64];
+    double number;
+    if (node->kind != YAML_SCALAR || !is_whole(node->text) || !text_number(node->text, &number)) {
+        yaml_errors_add(context->errors, node->mark, "%s: expects a whole number, got %s", context->path,
+                        yaml_tree_describe(node, shown, sizeof shown));
+    } else if (!is_in(&context->key->bounds, number) || number < INT_MIN || number > INT_MAX) {
+        report_range(context, node);
+    } else {
+        *value = (int)number;
+    }
+}
+
+// ---- words and texts
+
+static void read_choice(const struct context *context, const struct yaml_node *node, int *value) {
+    const char *const *const words = context->key->words;
+    for (int i = 0; node->kind == YAML_SCALAR && words[i]; i++) {
+        if (strcmp(words[i], node->text) == 0) {
+            *value = i;
+            return;
+        }
+    }
+    char shown[64];
+    struct text range = {0};
+    case_table_range(context->key, &range);
+    if (range.failed) context->errors->no_memory = true;
+    yaml_errors_add(context->errors, node->mark, "%s: expects one of %s; got %s", context->path,
+                    range.text ? range.text : "", yaml_tree_describe(node, shown, sizeof shown));
+    text_free(&range);
+}
+
+/* True for texts with characters that end a line or move the cursor. */
+static bool has_control(const char *text) {
+    for (const char *c = text; *c; c++) {
+        if ((unsigned char)*c < ' ' || *c == 0x7F) return true;
+    }
+    return strstr(text, "\xC2\x85") || strstr(text, "\xE2\x80\xA8") || strstr(text, "\xE2\x80\xA9");
+}
+
+static enum status read_text(const struct context *context, const struct yaml_node *node, char **value) {
+    char shown[64];
+    if (node->kind != YAML_SCALAR || node->text[0] == '\0') {
+        yaml_errors_add(context->errors, node->mark, "%s: expects a text, got %s", context->path,
+                        yaml_tree_describe(node, shown, sizeof shown));
+    } else if (has_control(node->text)) {
+        yaml_errors_add(context->errors, node->mark, "%s: must be one line without control characters", context->path);
+    } else if ((double)strlen(node->text) > context->key->bounds.most) {
+        yaml_errors_add(context->errors, node->mark, "%s: longer than %d bytes", context->path,
+                        (int)context->key->bounds.most);
+    } else if (!(*value = strdup(node->text))) {
+        return status_fail(STATUS_MEMORY, "no memory for the value of %s", context->path);
+    }
+    return STATUS_OK;
+}
+
+// ---- pairs and lists
+
+/* Read [a, b]. */
+static bool read_pair(const struct context *context, const struct yaml_node *node, const char *what, double value[2]) {
+    char shown[64];
+    const char *const unit = context->unit;
+    if (node->kind != YAML_LIST || node->n != 2) {
+        yaml_errors_add(context->errors, node->mark, "%s: expects %s%s%s, got %s", context->path, what,
+                        *unit ? " in " : "", unit, yaml_tree_describe(node, shown, sizeof shown));
+        return false;
+    }
+    double pair[2];
+    if (!read_number(context, node->entry[0].value, what, &pair[0])) return false;
+    if (!read_number(context, node->entry[1].value, what, &pair[1])) return false;
+    value[0] = pair[0];
+    value[1] = pair[1];
+    return true;
+}
+
+/* Read the values of a list, each of width 1 (numbers) or 2 (pairs). */
+static bool read_values(const struct context *context, const struct yaml_node *node, double *value) {
+    bool is_good = true;
+    for (int i = 0; i < node->n; i++) {
+        const struct yaml_node *const one = node->entry[i].value;
+        if (context->key->type == NUMBERS) {
+            is_good &= read_number(context, one, "a list of numbers", &value[i]);
+        } else if (context->key->type == PAIRS) {
+            is_good &= read_pair(context, one, "a list of pairs [x, y]", &value[2 * i]);
+        } else {
+            is_good &=
+                read_pair(context, one, "a number in degree or a list of [time in s, angle in degree]", &value[2 * i]);
+        }
+    }
+    return is_good;
+}
+
+static enum status read_list(const struct context *context, const struct yaml_node *node, struct case_list *list) {
+    char shown[64];
+    if (node->kind != YAML_LIST) {
+        yaml_errors_add(context->errors, node->mark, "%s: expects a %s, got %s", context->path,
+                        case_table_type(context->key), yaml_tree_describe(node, shown, sizeof shown));
+        return STATUS_OK;
+    }
+    if (node->n > MOST_VALUES) {
+        yaml_errors_add(context->errors, node->mark, "%s: more than %d values", context->path, MOST_VALUES);
+        return STATUS_OK;
+    }
+    if (node->n == 0) return STATUS_OK;
+    double *const value = calloc(2 * (size_t)node->n, sizeof *value);
+    if (!value) return status_fail(STATUS_MEMORY, "no memory for the %d values of %s", node->n, context->path);
+    if (read_values(context, node, value)) {
+        *list = (struct case_list){node->n, value};
+    } else {
+        free(value);
+    }
+    return STATUS_OK;
+}
+
+/* Read a number, or a list of [time, angle]. */
+static enum status read_heading(const struct context *context, const struct yaml_node *node, struct case_list *list) {
+    if (node->kind == YAML_LIST && node->n == 0) {
+        yaml_errors_add(context->errors, node->mark, "%s: expects at least one pair [time in s, angle in degree]",
+                        context->path);
+        return STATUS_OK;
+    }
+    if (node->kind == YAML_LIST) return read_list(context, node, list);
+    double angle;
+    if (!read_number(context, node, "a number in degree or a list of [time in s, angle in degree]", &angle)) {
+        return STATUS_OK;
+    }
+    double *const pair = calloc(2, sizeof *pair);
+    if (!pair) return status_fail(STATUS_MEMORY, "no memory for the value of %s", context->path);
+    pair[1] = angle;
+    *list = (struct case_list){1, pair};
+    return STATUS_OK;
+}
+
+enum status case_value_read(const struct key *key, void *field, const struct yaml_node *node, const char *path,
+                            struct yaml_errors *errors) {
+    const char *const unit = key->type == HEADING ? "" : key->unit;
+    const struct context context = {key, path, unit, errors};
+    switch (key->type) {
+        case REAL: read_number(&context, node, "a number", field); break;
+        case INTEGER: read_integer(&context, node, field); break;
+        case CHOICE: read_choice(&context, node, field); break;
+        case TEXT: return read_text(&context, node, field);
+        case PAIR: read_pair(&context, node, "two numbers [x, y]", field); break;
+        case NUMBERS:
+        case PAIRS: return read_list(&context, node, field);
+        case HEADING: return read_heading(&context, node, field);
+        case FILES:
+        case DEFAULTS:
+        case AXES:
+        case STATEMENTS: break;
+    }
+    return STATUS_OK;
+}
+
+// ---- writing
+
+static void write_pair(struct text *text, const double pair[2]) {
+    text_add(text, "[");
+    text_add_number(text, pair[0]);
+    text_add(text, ", ");
+    text_add_number(text, pair[1]);
+    text_add(text, "]");
+}
+
+static void write_list(struct text *text, const struct case_list *list, bool is_of_pairs) {
+    text_add(text, "[");
+    for (int i = 0; i < list->n; i++) {
+        if (i > 0) text_add(text, ", ");
+        if (is_of_pairs) {
+            write_pair(text, &list->value[2 * i]);
+        } else {
+            text_add_number(text, list->value[i]);
+        }
+    }
+    text_add(text, "]");
+}
+
+void case_value_write(struct text *text, const struct key *key, const void *field) {
+    switch (key->type) {
+        case REAL: text_add_number(text, *(const double *)field); break;
+        case INTEGER: text_add(text, "%d", *(const int *)field); break;
+        case CHOICE: text_add(text, "%s", key->words[*(const int *)field]); break;
+        case TEXT: yaml_write_scalar(text, *(char *const *)field); break;
+        case PAIR: write_pair(text, field); break;
+        case NUMBERS: write_list(text, field, false); break;
+        case PAIRS:
+        case HEADING: write_list(text, field, true); break;
+        case FILES:
+        case DEFAULTS:
+        case AXES:
+        case STATEMENTS: break;
+    }
+}

@@ -1,0 +1,237 @@
+/* case_expect.c: what a study expects of the ends of its members. Declared in case_check.h.
+ *
+ *     - {of: speed, fish: leader, least: 0.99, most: 1.01}                 every value
+ *     - {of: [nose, tail], spread: 1e-5}                                   all values together
+ *     - {of: steps, where: ["solver.method=ida"], ratio: 1.5}              of some members
+ *     - {fails: unstable, where: ["solver.method=euler"]}                  that are not complete, with reason
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "case/case_check.h"
+
+static enum status no_memory(void) {
+    return status_fail(STATUS_MEMORY, "no memory for what is expected");
+}
+
+/* One statement on its way. */
+struct stating {
+    const struct case_values *values;
+    char name[32]; /* "expect[1]" */
+    const struct yaml_node *node;
+    struct sweep_expectation *into;
+    struct yaml_errors *errors;
+};
+
+void sweep_expect_free(struct case_values *values) {
+    for (int i = 0; i < values->n_expectations; i++) {
+        struct sweep_expectation *const one = &values->expect[i];
+        for (int c = 0; c < one->n_where; c++) free(one->where[c].value);
+        free(one->where);
+        free(one->fails);
+    }
+    free(values->expect);
+    values->expect = NULL;
+    values->n_expectations = 0;
+}
+
+// ---- which members
+
+/* True if two texts of a value are the same, blanks apart, or the same number. */
+static bool are_same(const char *one, const char *other) {
+    double a, b;
+    if (text_number(one, &a) && text_number(other, &b)) return a == b;
+    for (;; one++, other++) {
+        one += strspn(one, " \"'");
+        other += strspn(other, " \"'");
+        if (*one != *other) return false;
+        if (*one == '\0') return true;
+    }
+}
+
+int sweep_expects_of(const struct case_values *study, const struct sweep_expectation *one, int member) {
+    for (int c = 0; c < one->n_where; c++) {
+        // several values of one key are alternatives
+        int is_met = 0;
+        for (int d = 0; d < one->n_where && !is_met; d++) {
+            const struct sweep_condition *const condition = &one->where[d];
+            if (condition->axis != one->where[c].axis || condition->key != one->where[c].key) continue;
+            const struct sweep_axis *const axis = &study->sweep[condition->axis];
+            const int value = sweep_member_value(study, member, condition->axis);
+            is_met = are_same(axis->value[value * axis->n_keys + condition->key], condition->value);
+        }
+        if (!is_met) return 0;
+    }
+    return 1;
+}
+
+/* Find the key of the sweep that a condition "path=value" is about; false if there is none. */
+static bool find_key(const struct case_values *values, const char *text, size_t length,
+                     struct sweep_condition *condition) {
+    for (int a = 0; a < values->n_axes; a++) {
+        for (int k = 0; k < values->sweep[a].n_keys; k++) {
+            const char *const path = values->sweep[a].key[k].path;
+            if (!path || strlen(path) != length || strncmp(path, text, length) != 0) continue;
+            *condition = (struct sweep_condition){.axis = a, .key = k};
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Read "where". */
+static enum status read_where(const struct stating *statement, const struct yaml_node *list) {
+    if (list->kind != YAML_LIST) {
+        yaml_errors_add(statement->errors, list->mark, "%s.where: expects a list, as in [\"solver.method=ida\"]",
+                        statement->name);
+        return STATUS_OK;
+    }
+    statement->into->where = calloc((size_t)list->n + 1, sizeof *statement->into->where);
+    if (!statement->into->where) return no_memory();
+    for (int i = 0; i < list->n; i++) {
+        const struct yaml_node *const node = list->entry[i].value;
+        const char *const equals = node->kind == YAML_SCALAR ? strchr(node->text, '=') : NULL;
+        struct sweep_condition *const condition = &statement->into->where[statement->into->n_where];
+        if (!equals || !find_key(statement->values, node->text, (size_t)(equals - node->text), condition)) {
+            yaml_errors_add(statement->errors, node->mark,
+                            "%s.where: expects PATH=VALUE with a key of the sweep, as in \"solver.method=ida\"",
+                            statement->name);
+            continue;
+        }
+        condition->value = strdup(equals + 1);
+        if (!condition->value) return no_memory();
+        statement->into->n_where++;
+    }
+    return STATUS_OK;
+}
+
+/* Complain if no member is meant. */
+static void check_members(const struct stating *statement, const struct yaml_node *where) {
+    const int n = sweep_n_members(statement->values);
+    for (int m = 0; m < n; m++) {
+        if (sweep_expects_of(statement->values, statement->into, m)) return;
+    }
+    yaml_errors_add(statement->errors, where->mark, "%s.where: no member of the sweep has these values",
+                    statement->name);
+}
+
+// ---- what
+
+/* Read a number of the statement; NaN if it is not there. */
+static double read_number(const struct stating *statement, const char *name, double least) {
+    const struct yaml_node *const node = yaml_tree_find(statement->node, name);
+    double number;
+    if (!node) return NAN;
+    if (node->kind == YAML_SCALAR && text_number(node->text, &number) && isfinite(number) && number >= least)
+        return number;
+    yaml_errors_add(statement->errors, node->mark, "%s.%s: expects a number%s", statement->name, name,
+                    least == 0   ? " from 0 on"
+                    : least == 1 ? " from 1 on"
+                                 : "");
+    return NAN;
+}
+
+/* Read "fish". */
+static void read_fish(const struct stating *statement, const struct yaml_node *node) {
+    for (int f = 0; f < statement->values->n_fish; f++) {
+        const char *const name = statement->values->fish[f].name;
+        if (node->kind == YAML_SCALAR && name && strcmp(name, node->text) == 0) statement->into->fish = f;
+    }
+    if (statement->into->fish >= 0) return;
+    yaml_errors_add(statement->errors, node->mark, "%s.fish: expects the name of a fish", statement->name);
+}
+
+/* Complain about what a quantity does not have. */
+static void check_quantities(const struct stating *statement) {
+    const struct sweep_expectation *const one = statement->into;
+    for (int q = 0; q < SWEEP_N_QUANTITIES; q++) {
+        const struct sweep_quantity *const quantity = &sweep_quantities[q];
+        if (!(one->of >> q & 1)) continue;
+        if (one->fish >= 0 && !quantity->of_fish) {
+            yaml_errors_add(statement->errors, statement->node->mark, "%s.fish: %s has no value for each fish",
+                            statement->name, quantity->name);
+        }
+        if (quantity->of_xy && !(isnan(one->least) && isnan(one->most) && isnan(one->ratio))) {
+            yaml_errors_add(statement->errors, statement->node->mark,
+                            "%s: %s is a point, of which only spread is known", statement->name, quantity->name);
+        }
+    }
+}
+
+/* Read the quantities and their bounds. */
+static void read_bounds(const struct stating *statement, const struct yaml_node *of) {
+    struct sweep_expectation *const into = statement->into;
+    if (of) into->of = sweep_quantities_read(of, statement->name, SWEEP_N_QUANTITIES, statement->errors);
+    into->least = read_number(statement, "least", -INFINITY);
+    into->most = read_number(statement, "most", -INFINITY);
+    into->spread = read_number(statement, "spread", 0);
+    into->ratio = read_number(statement, "ratio", 1);
+    const bool says_something = yaml_tree_find(statement->node, "least") || yaml_tree_find(statement->node, "most") ||
+                                yaml_tree_find(statement->node, "spread") || yaml_tree_find(statement->node, "ratio");
+    if (!of || !says_something) {
+        yaml_errors_add(statement->errors, statement->node->mark,
+                        "%s: expects of, and at least one of least, most, spread, ratio", statement->name);
+    }
+    check_quantities(statement);
+}
+
+/* Read "fails". */
+static enum status read_fails(const struct stating *statement, const struct yaml_node *fails) {
+    if (fails->kind != YAML_SCALAR || !*fails->text) {
+        yaml_errors_add(statement->errors, fails->mark, "%s.fails: expects words of the reason, as in unstable",
+                        statement->name);
+        return STATUS_OK;
+    }
+    sweep_words_check(statement->node, statement->name, "fails, where", statement->errors);
+    statement->into->fails = strdup(fails->text);
+    return statement->into->fails ? STATUS_OK : no_memory();
+}
+
+/* Read one statement into an entry that is zero. */
+static enum status read_statement(const struct stating *statement) {
+    statement->into->fish = -1;
+    if (statement->node->kind != YAML_MAP) {
+        yaml_errors_add(statement->errors, statement->node->mark, "%s: expects {of: QUANTITY, least: ..., most: ...}",
+                        statement->name);
+        return STATUS_OK;
+    }
+    const struct yaml_node *const fails = yaml_tree_find(statement->node, "fails"),
+                                  *const fish = yaml_tree_find(statement->node, "fish"),
+                                  *const where = yaml_tree_find(statement->node, "where");
+    if (fails) {
+        TRY(read_fails(statement, fails));
+    } else {
+        sweep_words_check(statement->node, statement->name, "of, fish, where, least, most, spread, ratio, fails",
+                          statement->errors);
+        if (fish) read_fish(statement, fish);
+        read_bounds(statement, yaml_tree_find(statement->node, "of"));
+    }
+    if (!where) return STATUS_OK;
+    const int n_before = statement->errors->n;
+    TRY(read_where(statement, where));
+    if (statement->errors->n == n_before) check_members(statement, where);
+    return STATUS_OK;
+}
+
+enum status sweep_expect_read(struct case_values *values, const struct case_tree *tree, struct yaml_errors *errors) {
+    const struct yaml_node *const list = yaml_tree_find(tree->root, "expect");
+    // a member, or a run with --set 'sweep=[]', expects nothing
+    if (!list || (values->n_axes == 0 && yaml_tree_find(tree->root, "sweep"))) return STATUS_OK;
+    if (list->kind != YAML_LIST) {
+        yaml_errors_add(errors, list->mark, "expect: expects a list of statements, each {of: QUANTITY, least: ...}");
+        return STATUS_OK;
+    }
+    if (values->n_axes == 0) yaml_errors_add(errors, list->mark, "expect: has no effect without a sweep");
+    values->expect = calloc((size_t)list->n + 1, sizeof *values->expect);
+    if (!values->expect) return no_memory();
+    for (int i = 0; i < list->n; i++) {
+        struct stating statement = {
+            .values = values, .node = list->entry[i].value, .into = &values->expect[i], .errors = errors};
+        snprintf(statement.name, sizeof statement.name, "expect[%d]", i);
+        values->n_expectations++;
+        TRY(read_statement(&statement));
+    }
+    return STATUS_OK;
+}

@@ -1,0 +1,174 @@
+/* case_refine.c: an axis of resolutions, and what is known or expected of its errors. Declared in case_check.h.
+ *
+ *     refine: true
+ *     reference: {speed: 1.014, nose: [-1.6, 0.01]}       given values, which errors and orders are taken against
+ *     expect: {order: 2, within: 0.2, of: [nose, speed]}
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "case/case_check.h"
+#include "case/case_value.h"
+
+enum { LEAST_LEVELS = 3 };
+
+/* An axis on its way. */
+struct refining {
+    const struct case_values *values;
+    struct sweep_axis *into;
+    const char *name; /* "sweep[1]" */
+    struct yaml_errors *errors;
+};
+
+/* True if the values of a key are resolutions: their error goes to zero with them, or with their inverse. */
+static bool is_resolution(const struct key *key) {
+    static const char *const paths[] = {"time.shedding_interval", "solver.rtol", "solver.step", "fish.nodes",
+                                        "fish.sheet_points"};
+    for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
+        if (strcmp(key->path, paths[i]) == 0) return true;
+    }
+    return false;
+}
+
+/* Complain about what cannot be refined. */
+static void check_refine(const struct refining *axis, const struct key *key, const struct yaml_node *node) {
+    const struct sweep_axis *const into = axis->into;
+    if (!key) return;
+    if (!is_resolution(key)) {
+        yaml_errors_add(axis->errors, node->mark,
+                        "%s.refine: '%.60s' is no resolution; these are: time.shedding_interval, solver.rtol, "
+                        "solver.step, fish[*].nodes, fish[*].sheet_points",
+                        axis->name, into->key[0].path);
+        return;
+    }
+    int n_different = 0;
+    for (int i = 0; i < into->n_values; i++) {
+        int is_new = 1;
+        for (int j = 0; j < i; j++) {
+            const char *const one = into->value[i * into->n_keys], *const other = into->value[j * into->n_keys];
+            double a, b;
+            if (one && other && text_number(one, &a) && text_number(other, &b) && a == b) is_new = 0;
+        }
+        n_different += is_new;
+    }
+    if (n_different < LEAST_LEVELS || n_different < into->n_values) {
+        yaml_errors_add(axis->errors, node->mark, "%s.refine: expects at least %d values, all different", axis->name,
+                        LEAST_LEVELS);
+    }
+}
+
+/* Read a positive number of a map. */
+static double read_positive(const struct refining *axis, const struct yaml_node *map, const char *name) {
+    const struct yaml_node *const node = yaml_tree_find(map, name);
+    double number;
+    if (node && node->kind == YAML_SCALAR && text_number(node->text, &number) && number > 0) return number;
+    yaml_errors_add(axis->errors, node ? node->mark : map->mark, "%s.expect.%s: expects a number above 0", axis->name,
+                    name);
+    return NAN;
+}
+
+/* Read "refine". */
+static void read_refine(const struct refining *axis, const struct key *key, const struct yaml_node *refine) {
+    const bool is_true = refine->kind == YAML_SCALAR && strcmp(refine->text, "true") == 0;
+    const bool is_false = refine->kind == YAML_SCALAR && strcmp(refine->text, "false") == 0;
+    if (!is_true && !is_false) {
+        yaml_errors_add(axis->errors, refine->mark, "%s.refine: expects true or false", axis->name);
+    }
+    axis->into->refine = is_true;
+    if (!is_true) return;
+    check_refine(axis, key, refine);
+    for (int i = 0; i < axis->values->n_axes; i++) {
+        if (!axis->values->sweep[i].refine) continue;
+        yaml_errors_add(axis->errors, refine->mark, "%s.refine: sweep[%d] is refined already; one axis can be",
+                        axis->name, i);
+    }
+}
+
+/* Read "expect". */
+static void read_expect(const struct refining *axis, const struct yaml_node *expect) {
+    if (expect->kind != YAML_MAP) {
+        yaml_errors_add(axis->errors, expect->mark, "%s.expect: expects {order: 2, within: 0.2}", axis->name);
+        return;
+    }
+    char path[64];
+    snprintf(path, sizeof path, "%s.expect", axis->name);
+    sweep_words_check(expect, path, "order, within, of", axis->errors);
+    axis->into->order = read_positive(axis, expect, "order");
+    axis->into->within = read_positive(axis, expect, "within");
+    const struct yaml_node *const of = yaml_tree_find(expect, "of");
+    axis->into->order_of = 1U << SWEEP_NOSE | 1U << SWEEP_TAIL;
+    if (of) axis->into->order_of = sweep_quantities_read(of, path, SWEEP_N_ORDERS, axis->errors);
+}
+
+// ---- the reference
+
+/* Read one value of a quantity: a number, or two; false if it is something else. */
+static bool read_value(const struct yaml_node *node, int of_xy, double value[2]) {
+    if (of_xy && (node->kind != YAML_LIST || node->n != 2)) return false;
+    for (int k = 0; k < 1 + of_xy; k++) {
+        const struct yaml_node *const number = of_xy ? node->entry[k].value : node;
+        if (number->kind != YAML_SCALAR || !text_number(number->text, &value[k]) || isinf(value[k])) return false;
+    }
+    return true;
+}
+
+/* Read the value of a quantity for all fish, or a list of one for each. */
+static bool read_values(const struct refining *axis, const struct yaml_node *node, int q) {
+    const int n_fish = axis->values->n_fish, of_xy = sweep_quantities[q].of_xy;
+    double *const to = axis->into->reference + (long)q * n_fish * 2;
+    const bool is_one = read_value(node, of_xy, to);
+    if (!is_one && (node->kind != YAML_LIST || node->n != n_fish)) return false;
+    for (int f = 0; f < n_fish; f++) {
+        if (!read_value(is_one ? node : node->entry[f].value, of_xy, to + 2 * f)) return false;
+    }
+    return true;
+}
+
+/* Read "reference". */
+static enum status read_reference(const struct refining *axis, const struct yaml_node *node) {
+    char path[64];
+    snprintf(path, sizeof path, "%s.reference", axis->name);
+    if (node->kind != YAML_MAP || node->n == 0) {
+        yaml_errors_add(axis->errors, node->mark, "%s: expects the values of quantities, as in {speed: 1.01}", path);
+        return STATUS_OK;
+    }
+    const size_t n = (size_t)SWEEP_N_ORDERS * (size_t)axis->values->n_fish * 2;
+    axis->into->reference = malloc((n + 1) * sizeof *axis->into->reference);
+    if (!axis->into->reference) return status_fail(STATUS_MEMORY, "no memory for the sweep");
+    for (size_t i = 0; i < n; i++) axis->into->reference[i] = NAN;
+    for (int i = 0; i < node->n; i++) {
+        const struct yaml_entry *const entry = &node->entry[i];
+        const int q = sweep_quantity_read(entry->key, entry->mark, path, SWEEP_N_ORDERS, axis->errors);
+        if (q < 0 || read_values(axis, entry->value, q)) continue;
+        yaml_errors_add(axis->errors, entry->value->mark, "%s.%s: expects %s%s", path, entry->key,
+                        sweep_quantities[q].of_xy ? "[x, y]" : "a number",
+                        axis->values->n_fish > 1 ? ", or a list of one for each fish" : "");
+    }
+    return STATUS_OK;
+}
+
+double sweep_reference(const struct case_values *study, int axis, int quantity, int fish, int xy) {
+    const double *const reference = study->sweep[axis].reference;
+    return reference ? reference[((long)quantity * study->n_fish + fish) * 2 + xy] : NAN;
+}
+
+// ---- all
+
+enum status sweep_refine_read(const struct case_values *values, struct sweep_axis *into, const struct key *key,
+                              const char *name, const struct yaml_node *node, struct yaml_errors *errors) {
+    const struct refining axis = {values, into, name, errors};
+    const struct yaml_node *const refine = yaml_tree_find(node, "refine"),
+                                  *const expect = yaml_tree_find(node, "expect"),
+                                  *const reference = yaml_tree_find(node, "reference");
+    into->order = into->within = NAN;
+    if (refine) read_refine(&axis, key, refine);
+    const struct yaml_node *const futile[] = {expect, reference};
+    for (int i = 0; i < 2; i++) {
+        if (!futile[i] || into->refine) continue;
+        yaml_errors_add(errors, futile[i]->mark, "%s.%s: has no effect without refine: true", name,
+                        i == 0 ? "expect" : "reference");
+    }
+    if (expect) read_expect(&axis, expect);
+    return reference ? read_reference(&axis, reference) : STATUS_OK;
+}

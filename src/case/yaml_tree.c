@@ -1,0 +1,414 @@
+/* yaml_tree.c: from the events of libyaml to a tree, with every limit and refusal on the way. */
+#include "case/yaml_tree.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <yaml.h>
+
+struct reader {
+    yaml_parser_t parser;
+    const struct yaml_source *source;
+    struct yaml_errors *errors;
+};
+
+static enum status no_memory(void) {
+    return status_fail(STATUS_MEMORY, "no memory for the tree of a case file");
+}
+
+// ---- the tree
+
+static struct yaml_node *create(enum yaml_kind kind, struct yaml_mark mark) {
+    struct yaml_node *const node = calloc(1, sizeof *node);
+    if (!node) return NULL;
+    node->kind = kind;
+    node->mark = mark;
+    return node;
+}
+
+struct yaml_node *yaml_tree_map(struct yaml_mark mark) {
+    return create(YAML_MAP, mark);
+}
+
+void yaml_tree_free(struct yaml_node *node) {
+    if (!node) return;
+    for (int i = 0; i < node->n; i++) {
+        free(node->entry[i].key);
+        yaml_tree_free(node->entry[i].value);
+    }
+    free(node->entry);
+    free(node->text);
+    free(node);
+}
+
+/* Append an entry with a copy of the key (NULL in a list). Takes the value, also when it fails. */
+static enum status append(struct yaml_node *node, const char *key, struct yaml_mark mark, struct yaml_node *value) {
+    char *const own_key = key ? strdup(key) : NULL;
+    if (key && !own_key) goto failed;
+    if (node->n == node->capacity) {
+        const int capacity = 2 * node->capacity + 4;
+        struct yaml_entry *const grown = realloc(node->entry, (size_t)capacity * sizeof *grown);
+        if (!grown) goto failed;
+        node->entry = grown;
+        node->capacity = capacity;
+    }
+    node->entry[node->n++] = (struct yaml_entry){own_key, mark, value};
+    return STATUS_OK;
+failed:
+    free(own_key);
+    yaml_tree_free(value);
+    return no_memory();
+}
+
+struct yaml_node *yaml_tree_copy(const struct yaml_node *node) {
+    struct yaml_node *const copy = create(node->kind, node->mark);
+    if (!copy) return NULL;
+    if (node->text && !(copy->text = strdup(node->text))) goto failed;
+    for (int i = 0; i < node->n; i++) {
+        struct yaml_node *const value = yaml_tree_copy(node->entry[i].value);
+        if (!value || append(copy, node->entry[i].key, node->entry[i].mark, value) != STATUS_OK) goto failed;
+    }
+    return copy;
+failed:
+    yaml_tree_free(copy);
+    return NULL;
+}
+
+struct yaml_entry *yaml_tree_entry(const struct yaml_node *map, const char *key, size_t length) {
+    if (!map || map->kind != YAML_MAP) return NULL;
+    for (int i = 0; i < map->n; i++) {
+        if (strlen(map->entry[i].key) == length && memcmp(map->entry[i].key, key, length) == 0) return &map->entry[i];
+    }
+    return NULL;
+}
+
+const struct yaml_node *yaml_tree_find(const struct yaml_node *map, const char *path) {
+    while (map) {
+        const size_t length = strcspn(path, ".");
+        const struct yaml_entry *const entry = yaml_tree_entry(map, path, length);
+        map = entry ? entry->value : NULL;
+        if (path[length] == '\0') break;
+        path += length + 1;
+    }
+    return map;
+}
+
+enum status yaml_tree_put(struct yaml_node *map, const char *key, struct yaml_mark mark, struct yaml_node *value) {
+    struct yaml_entry *const entry = yaml_tree_entry(map, key, strlen(key));
+    if (!entry) return append(map, key, mark, value);
+    entry->mark = mark;
+    return yaml_tree_merge(&entry->value, value);
+}
+
+enum status yaml_tree_merge(struct yaml_node **base, struct yaml_node *over) {
+    if (!*base || (*base)->kind != YAML_MAP || over->kind != YAML_MAP) {
+        yaml_tree_free(*base);
+        *base = over;
+        return STATUS_OK;
+    }
+    enum status status = STATUS_OK;
+    for (int i = 0; i < over->n && status == STATUS_OK; i++) {
+        struct yaml_node *const value = over->entry[i].value;
+        over->entry[i].value = NULL;
+        status = yaml_tree_put(*base, over->entry[i].key, over->entry[i].mark, value);
+    }
+    (*base)->mark = over->mark;
+    yaml_tree_free(over);
+    return status;
+}
+
+const char *yaml_tree_describe(const struct yaml_node *node, char *buffer, size_t size) {
+    if (node->kind == YAML_MAP) return "a map of keys";
+    if (node->kind == YAML_LIST) {
+        snprintf(buffer, size, "a list of %d", node->n);
+        return buffer;
+    }
+    if (node->text[0] == '\0') return "nothing";
+    const int shown = 40;
+    snprintf(buffer, size, "'%.*s%s'", shown, node->text, strlen(node->text) > (size_t)shown ? "..." : "");
+    return buffer;
+}
+
+// ---- what libyaml reports
+
+static struct yaml_mark mark_at(const struct reader *reader, yaml_mark_t mark) {
+    return (struct yaml_mark){reader->source, (int)mark.line + 1, (int)mark.column + 1};
+}
+
+/* What a user can do about the commonest reports of libyaml. */
+static const char *remedy(const char *problem) {
+    static const char *const remedies[][2] = {
+        {"did not find expected key",
+         "the indentation of this line differs from the lines above, or a quote or bracket is open"},
+        {"did not find expected '-' indicator", "every entry of this list must begin with '- ' in the same column"},
+        {"mapping values are not allowed in this context",
+         "a key cannot stand here: check the indentation, and put a text that contains ': ' in quotes"},
+        {"could not find expected ':'", "a key ends with ':' and a blank"},
+        {"did not find expected ',' or ']'",
+         "a list that begins with '[' needs ',' between its values and ']' at its end"},
+        {"did not find expected ',' or '}'",
+         "a map that begins with '{' needs ',' between its keys and '}' at its end; a text with brackets needs quotes"},
+        {"found unexpected end of stream", "the quote that begins here is not closed"},
+        {"found character that cannot start any token", "put a text that begins with this character in quotes"},
+    };
+    for (size_t i = 0; i < sizeof remedies / sizeof *remedies; i++) {
+        if (strcmp(problem, remedies[i][0]) == 0) return remedies[i][1];
+    }
+    return "this is not valid YAML";
+}
+
+/* True if a tab stands among the blanks that begin the line of a mark. */
+static bool is_tab_indented(struct yaml_mark mark) {
+    const char *place = mark.source->text, *const end = place + mark.source->length;
+    for (int line = 1; line < mark.line && place < end; place++) line += *place == '\n';
+    while (place < end && *place == ' ') place++;
+    return place < end && *place == '\t';
+}
+
+/* Turn an error of libyaml into one of ours. */
+static enum status report_parser(struct reader *reader) {
+    const yaml_parser_t *const parser = &reader->parser;
+    if (parser->error == YAML_MEMORY_ERROR) return no_memory();
+    const char *const problem = parser->problem ? parser->problem : "not readable";
+    struct yaml_mark mark = mark_at(reader, parser->problem_mark);
+    if (is_tab_indented(mark)) {
+        mark.column = 1;
+        yaml_errors_add(reader->errors, mark, "the line is indented with a tab; use blanks");
+        return STATUS_CASE;
+    }
+    if (!parser->context) {
+        yaml_errors_add(reader->errors, mark, "%s (%s)", remedy(problem), problem);
+        return STATUS_CASE;
+    }
+    // what is never closed ends with the file: its beginning says more
+    const struct yaml_mark begin = mark_at(reader, parser->context_mark);
+    if (strcmp(problem, "found unexpected end of stream") == 0) mark = begin;
+    yaml_errors_add(reader->errors, mark, "%s (%s, line %d: %s)", remedy(problem), parser->context, begin.line,
+                    problem);
+    return STATUS_CASE;
+}
+
+static enum status next_event(struct reader *reader, yaml_event_t *event) {
+    return yaml_parser_parse(&reader->parser, event) ? STATUS_OK : report_parser(reader);
+}
+
+// ---- from events to nodes
+
+static enum status read_node(struct reader *reader, const yaml_event_t *event, int depth, struct yaml_node **node);
+
+/* Refuse the anchor and the tag of a node; what follows is still read. */
+static void refuse_extras(struct reader *reader, struct yaml_mark mark, const unsigned char *anchor,
+                          const unsigned char *tag) {
+    if (anchor) {
+        yaml_errors_add(reader->errors, mark,
+                        "anchors ('&') are not used in case files; put what is shared under defaults");
+    }
+    if (tag) yaml_errors_add(reader->errors, mark, "tags ('!') are not used in case files; the key decides the type");
+}
+
+static enum status read_scalar(struct reader *reader, const yaml_event_t *event, struct yaml_node **node) {
+    const struct yaml_mark mark = mark_at(reader, event->start_mark);
+    const char *const text = (const char *)event->data.scalar.value;
+    refuse_extras(reader, mark, event->data.scalar.anchor, event->data.scalar.tag);
+    if (strlen(text) != event->data.scalar.length) {
+        yaml_errors_add(reader->errors, mark, "a text cannot contain a zero byte");
+    }
+    *node = create(YAML_SCALAR, mark);
+    if (!*node || !((*node)->text = strdup(text))) return no_memory();
+    return STATUS_OK;
+}
+
+static enum status read_list(struct reader *reader, int depth, struct yaml_node *list) {
+    for (;;) {
+        yaml_event_t event;
+        TRY(next_event(reader, &event));
+        if (event.type == YAML_SEQUENCE_END_EVENT) {
+            yaml_event_delete(&event);
+            return STATUS_OK;
+        }
+        struct yaml_node *value = NULL;
+        enum status status = read_node(reader, &event, depth, &value);
+        yaml_event_delete(&event);
+        if (status == STATUS_OK) {
+            status = append(list, NULL, value->mark, value);
+        } else {
+            yaml_tree_free(value);
+        }
+        TRY(status);
+    }
+}
+
+/* Check a key; false if its value is not to be kept. */
+static bool accept_key(struct reader *reader, const struct yaml_node *map, const struct yaml_node *key) {
+    if (strcmp(key->text, "<<") == 0) {
+        yaml_errors_add(reader->errors, key->mark,
+                        "merge keys ('<<') are not used in case files; put what is shared under defaults");
+        return false;
+    }
+    const struct yaml_entry *const twin = yaml_tree_entry(map, key->text, strlen(key->text));
+    if (twin) {
+        yaml_errors_add(reader->errors, key->mark, "the key '%.40s' is here twice; the first is on line %d: remove one",
+                        key->text, twin->mark.line);
+    }
+    return !twin;
+}
+
+/* Read a value and put it under its key. */
+static enum status read_value(struct reader *reader, int depth, struct yaml_node *map, const struct yaml_node *key) {
+    yaml_event_t event;
+    TRY(next_event(reader, &event));
+    struct yaml_node *value = NULL;
+    const enum status status = read_node(reader, &event, depth, &value);
+    yaml_event_delete(&event);
+    if (status != STATUS_OK || !accept_key(reader, map, key)) {
+        yaml_tree_free(value);
+        return status;
+    }
+    return append(map, key->text, key->mark, value);
+}
+
+static enum status read_map(struct reader *reader, int depth, struct yaml_node *map) {
+    for (;;) {
+        yaml_event_t event;
+        TRY(next_event(reader, &event));
+        const struct yaml_mark mark = mark_at(reader, event.start_mark);
+        const yaml_event_type_t type = event.type;
+        struct yaml_node *key = NULL;
+        enum status status = type == YAML_SCALAR_EVENT ? read_scalar(reader, &event, &key) : STATUS_OK;
+        yaml_event_delete(&event);
+        if (type == YAML_MAPPING_END_EVENT) return STATUS_OK;
+        if (type != YAML_SCALAR_EVENT) {
+            yaml_errors_add(reader->errors, mark, "a key must be a plain word, without brackets or braces");
+            return STATUS_CASE;
+        }
+        if (status == STATUS_OK && map->n == YAML_TREE_KEYS) {
+            yaml_errors_add(reader->errors, mark, "more than %d keys in one map", YAML_TREE_KEYS);
+            status = STATUS_CASE;
+        }
+        if (status == STATUS_OK) status = read_value(reader, depth, map, key);
+        yaml_tree_free(key);
+        TRY(status);
+    }
+}
+
+/* Read the node that begins with an event. *node is set also when it fails. */
+static enum status read_node(struct reader *reader, const yaml_event_t *event, int depth, struct yaml_node **node) {
+    const struct yaml_mark mark = mark_at(reader, event->start_mark);
+    if (event->type == YAML_SCALAR_EVENT) return read_scalar(reader, event, node);
+    if (event->type == YAML_ALIAS_EVENT) {
+        yaml_errors_add(reader->errors, mark, "aliases ('*') are not used in case files; write the value");
+        return STATUS_CASE;
+    }
+    if (depth == YAML_TREE_DEPTH) {
+        yaml_errors_add(reader->errors, mark, "nested deeper than %d levels", YAML_TREE_DEPTH);
+        return STATUS_CASE;
+    }
+    const bool is_map = event->type == YAML_MAPPING_START_EVENT;
+    *node = create(is_map ? YAML_MAP : YAML_LIST, mark);
+    if (!*node) return no_memory();
+    if (is_map) {
+        refuse_extras(reader, mark, event->data.mapping_start.anchor, event->data.mapping_start.tag);
+        return read_map(reader, depth + 1, *node);
+    }
+    refuse_extras(reader, mark, event->data.sequence_start.anchor, event->data.sequence_start.tag);
+    return read_list(reader, depth + 1, *node);
+}
+
+/* Read the only document of a stream. */
+static enum status read_document(struct reader *reader, struct yaml_node **root) {
+    enum { BEGIN, INSIDE, AFTER } stage = BEGIN;
+    for (;;) {
+        yaml_event_t event;
+        TRY(next_event(reader, &event));
+        const yaml_event_type_t type = event.type;
+        const struct yaml_mark mark = mark_at(reader, event.start_mark);
+        enum status status = STATUS_OK;
+        if (type == YAML_DOCUMENT_START_EVENT) {
+            if (stage == AFTER)
+                yaml_errors_add(reader->errors, mark, "a second document ('---') begins here; keep one");
+            if (stage == AFTER) status = STATUS_CASE;
+            stage = INSIDE;
+        } else if (type == YAML_DOCUMENT_END_EVENT) {
+            stage = AFTER;
+        } else if (stage == INSIDE) {
+            status = read_node(reader, &event, 0, root);
+        }
+        yaml_event_delete(&event);
+        TRY(status);
+        if (type == YAML_STREAM_END_EVENT) return STATUS_OK;
+    }
+}
+
+// ---- the text before libyaml sees it
+
+/* The code point of the character at text and its size in bytes; -1 if it is not UTF-8. */
+static long code_point(const unsigned char *text, size_t left, size_t *size) {
+    const unsigned char first = text[0];
+    *size = first < 0x80 ? 1 : first < 0xC2 ? 0 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : first < 0xF5 ? 4 : 0;
+    if (*size == 0 || *size > left) return -1;
+    static const unsigned char payload[] = {0, 0x7F, 0x1F, 0x0F, 0x07};
+    long code = first & payload[*size];
+    for (size_t i = 1; i < *size; i++) {
+        if ((text[i] & 0xC0) != 0x80) return -1;
+        code = code << 6 | (text[i] & 0x3F);
+    }
+    const bool overlong = (*size == 3 && code < 0x800) || (*size == 4 && code < 0x10000);
+    return overlong || (code >= 0xD800 && code <= 0xDFFF) || code > 0x10FFFF ? -1 : code;
+}
+
+/* The number of bytes of the mark that some editors put before UTF-8; libyaml does not skip it. */
+static size_t mark_size(const struct yaml_source *source) {
+    return source->length >= 3 && memcmp(source->text, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0;
+}
+
+/* Refuse what is no text: not UTF-8, or control characters. One error at the first place. */
+static enum status check_characters(const struct yaml_source *source, struct yaml_errors *errors) {
+    const unsigned char *const text = (const unsigned char *)source->text;
+    struct yaml_mark mark = {source, 1, 1};
+    for (size_t i = mark_size(source), size; i < source->length; i += size) {
+        const long code = code_point(text + i, source->length - i, &size);
+        const bool is_control = (code < ' ' && code != '\t' && code != '\n' && code != '\r') ||
+                                (code >= 0x7F && code < 0xA0 && code != 0x85) || code == 0xFFFE || code == 0xFFFF;
+        if (code < 0 || is_control) {
+            yaml_errors_add(errors, mark,
+                            code < 0 ? "not a text in UTF-8 (byte 0x%02X); is this a case file?"
+                                     : "not a text (control character 0x%02X); is this a case file?",
+                            text[i]);
+            return STATUS_CASE;
+        }
+        mark.column++;
+        if (code == '\n') mark = (struct yaml_mark){source, mark.line + 1, 1};
+    }
+    return STATUS_OK;
+}
+
+/* Read a text that has passed the checks of size and characters. */
+static enum status read_text(struct yaml_node **root, const struct yaml_source *source, struct yaml_errors *errors) {
+    struct reader reader = {.source = source, .errors = errors};
+    if (!yaml_parser_initialize(&reader.parser)) return no_memory();
+    yaml_parser_set_encoding(&reader.parser, YAML_UTF8_ENCODING);
+    const size_t skipped = mark_size(source);
+    yaml_parser_set_input_string(&reader.parser, (const unsigned char *)source->text + skipped,
+                                 source->length - skipped);
+    const enum status status = read_document(&reader, root);
+    yaml_parser_delete(&reader.parser);
+    return status;
+}
+
+enum status yaml_tree_read(struct yaml_node **root, const struct yaml_source *source, struct yaml_errors *errors) {
+    *root = NULL;
+    const struct yaml_mark start = {source, 1, 1};
+    const int n_errors = errors->n;
+    if (source->length > YAML_TREE_BYTES) {
+        yaml_errors_add(errors, start, "larger than %d MiB; is this a case file?", YAML_TREE_BYTES >> 20);
+        return STATUS_CASE;
+    }
+    TRY(check_characters(source, errors));
+    enum status status = read_text(root, source, errors);
+    if (status == STATUS_OK && errors->n > n_errors) status = STATUS_CASE;
+    if (status != STATUS_OK) {
+        yaml_tree_free(*root);
+        *root = NULL;
+    }
+    return status;
+}

@@ -1,0 +1,61 @@
+/* yaml_tree.h: a subset of YAML read into a tree that knows where everything stands. Tested by tests/case/test_yaml.c.
+ *
+ *     time: {end: 3}          map -- "time" -- map -- "end" -- scalar "3"
+ *     fish:                    |
+ *       - nodes: 7             +-- "fish" -- list -- map -- "nodes" -- scalar "7"
+ *
+ * Maps, lists and scalars only: anchors, aliases, tags, merge keys, duplicate keys and further documents are refused.
+ * A scalar is its text: what it means is decided by who asks for it, never by YAML. Only events of libyaml are used:
+ * its loader takes quadratic time on hostile input. (Not "yaml.h": that is the name of libyaml's own header.) */
+#ifndef YAML_TREE_H
+#define YAML_TREE_H
+
+#include "base/status.h"
+#include "case/yaml_errors.h"
+
+enum { YAML_TREE_DEPTH = 32, YAML_TREE_KEYS = 256 /* keys of one map */, YAML_TREE_BYTES = 4 * 1024 * 1024 };
+
+enum yaml_kind { YAML_SCALAR, YAML_LIST, YAML_MAP };
+
+struct yaml_node {
+    enum yaml_kind kind;
+    struct yaml_mark mark;
+    char *text;               /* of a scalar, UTF-8 */
+    int n, capacity;          /* entries of a list or map */
+    struct yaml_entry *entry; /* in the order of the text */
+};
+
+struct yaml_entry {
+    char *key;             /* of a map; NULL in a list */
+    struct yaml_mark mark; /* of the key */
+    struct yaml_node *value;
+};
+
+/* Read a text. Fails with STATUS_CASE after adding what is wrong to errors, or with STATUS_MEMORY; *root is then NULL.
+ * The nodes point at the source. Free with yaml_tree_free. */
+enum status yaml_tree_read(struct yaml_node **root, const struct yaml_source *source, struct yaml_errors *errors);
+
+/* Release a node and all below it. Accepts NULL. */
+void yaml_tree_free(struct yaml_node *node);
+
+/* A new empty map, or a copy of a whole tree; NULL if there is no memory. */
+struct yaml_node *yaml_tree_map(struct yaml_mark mark);
+struct yaml_node *yaml_tree_copy(const struct yaml_node *node);
+
+/* The entry of a map under a key of length bytes; NULL if there is none or the node is NULL or no map. */
+struct yaml_entry *yaml_tree_entry(const struct yaml_node *map, const char *key, size_t length);
+
+/* The node at a path of keys like "time.end"; NULL if there is none. */
+const struct yaml_node *yaml_tree_find(const struct yaml_node *map, const char *path);
+
+/* Lay *over* onto *base: maps are merged key by key, anything else replaces what was there. Takes over, also when it
+ * fails with STATUS_MEMORY. */
+enum status yaml_tree_merge(struct yaml_node **base, struct yaml_node *over);
+
+/* The same for one key of a map. */
+enum status yaml_tree_put(struct yaml_node *map, const char *key, struct yaml_mark mark, struct yaml_node *value);
+
+/* "a map of keys", "a list of 3", "'text'" or "nothing": for messages, kept in buffer and returned. */
+const char *yaml_tree_describe(const struct yaml_node *node, char *buffer, size_t size);
+
+#endif

@@ -1,0 +1,47 @@
+/* bound_sheet.h: the equations of the bound sheet: no penetration, Kelvin, Kutta. doc/model.md, sections 6 and 7. Tested by
+ * tests/model/test_bound_sheet.c. */
+#ifndef BOUND_SHEET_H
+#define BOUND_SHEET_H
+
+#include "base/sparse.h"
+#include "model/fish.h"
+#include "model/flow.h"
+
+/* What holds for the circulation shed by a fish. */
+enum bound_sheet_law {
+    BOUND_SHEET_EDGE,  /* the bound vortex at the tail vanishes */
+    BOUND_SHEET_RATE,  /* dGamma/dt = chi gamma_{M-1} ubar */
+    BOUND_SHEET_FROZEN /* dGamma/dt = 0: nothing is shed between events (impulsive) */
+};
+
+/* No penetration at the control points, then Kelvin: rows sheet. u, v is the fluid's velocity at the fish's points. */
+void bound_sheet_residual(const struct fish *fish, double dissipated, const double *u, const double *v, const double *y,
+                          double *residual);
+
+/* Add the derivatives of the rows sheet: what depends on the body itself. */
+void bound_sheet_jacobian(const struct fish *fish, const double *u, const double *v, const double *y,
+                          struct sparse *jacobian);
+
+/* Add the derivatives of the rows sheet that come through the fluid's velocity. */
+void bound_sheet_flow_jacobian(const struct fish *fish, const struct influence_block *block, const double *y,
+                               struct coupling_block *rows);
+
+/* The rate at which circulation is shed by law BOUND_SHEET_RATE, m2 s-2; u, v as above, chi the ramp. */
+double bound_sheet_shedding_rate(const struct fish *fish, double chi, const double *u, const double *v,
+                                 const double *y);
+
+/* The row shed. */
+void bound_sheet_kutta_residual(const struct fish *fish, enum bound_sheet_law law, double chi, const double *u,
+                                const double *v, const double *y, const double *yp, double *residual);
+void bound_sheet_kutta_jacobian(const struct fish *fish, enum bound_sheet_law law, double chi, double cj,
+                                const double *u, const double *v, const double *y, struct sparse *jacobian);
+void bound_sheet_kutta_flow_jacobian(const struct fish *fish, double chi, const struct influence_block *block,
+                                     const double *y, struct coupling_block *rows);
+
+/* Unit normal of the chord between the bound vortices c and c + 1. */
+void bound_sheet_normal(const struct fish *fish, int c, const double *y, double normal[2]);
+
+/* Circulation of the bound sheet, m2 s-1. */
+double bound_sheet_circulation(const struct fish *fish, const double *y);
+
+#endif

@@ -1,0 +1,126 @@
+/* control.c: heading, desired heading, and the law between them and phi0. */
+#include "model/control.h"
+
+#include <math.h>
+
+#include "base/angle.h"
+
+// from the body point at a third of the length to the nose
+static void head_vector(const struct fish *fish, const double *y, double head[2]) {
+    const double *const x = y + fish->at.x, *const z = y + fish->at.y;
+    head[0] = x[0] - fish_mean(&fish->heading_point, x);
+    head[1] = z[0] - fish_mean(&fish->heading_point, z);
+}
+
+double control_heading(const struct fish *fish, const double *y) {
+    double head[2];
+    head_vector(fish, y, head);
+    return atan2(head[1], head[0]);
+}
+
+static int steers_to_waypoint(const struct fish *fish, const struct control_memory *memory) {
+    return memory->waypoint < fish->control.n_waypoints;
+}
+
+static double heading_in_table(const struct control_law_data *control, double t) {
+    const int last = control->n_headings - 1;
+    if (t <= control->heading_time[0]) return control->heading[0];
+    for (int i = 0; i < last; i++) {
+        const double start = control->heading_time[i], end = control->heading_time[i + 1];
+        if (t < end) {
+            return control->heading[i] + (t - start) / (end - start) * (control->heading[i + 1] - control->heading[i]);
+        }
+    }
+    return control->heading[last];
+}
+
+double control_desired_heading(const struct fish *fish, const struct control_memory *memory, double t,
+                               const double *y) {
+    const struct control_law_data *control = &fish->control;
+    if (control->n_waypoints == 0) return heading_in_table(control, t);
+    if (!steers_to_waypoint(fish, memory)) return memory->held_heading;
+    return atan2(control->waypoint_y[memory->waypoint] - y[fish->at.y],
+                 control->waypoint_x[memory->waypoint] - y[fish->at.x]);
+}
+
+// what the hyperbolic tangent of the law is taken of
+static double law_argument(const struct fish *fish, const struct control_memory *memory, double t, double tau,
+                           double heading, const double *y) {
+    const double error = angle_wrap(heading - control_desired_heading(fish, memory, t, y));
+    return fish->control.feedforward * tau + fish->control.gain * error;
+}
+
+double control_law(const struct fish *fish, const struct control_memory *memory, double t, double tau, double heading,
+                   const double *y) {
+    return fish->control.limit * tanh(law_argument(fish, memory, t, tau, heading, y));
+}
+
+void control_residual(const struct fish *fish, const struct control_memory *memory, double t, double since, double tau,
+                      const double *y, double *residual) {
+    double value = fish->control.bias;
+    switch (fish->control.law) {
+        case CONTROL_NONE: break;
+        case CONTROL_HEADING: value = control_law(fish, memory, t, tau, control_heading(fish, y), y); break;
+        case CONTROL_AVERAGED_HEADING: value = memory->phi0 + since * memory->phi0_rate; break;
+    }
+    residual[fish->at.phi0] = y[fish->at.phi0] - value;
+}
+
+double control_jacobian(const struct fish *fish, const struct control_memory *memory, double t, double tau,
+                        const double *y, struct sparse *jacobian) {
+    const int row = fish->at.phi0;
+    sparse_add(jacobian, row, fish->at.phi0, 1);
+    if (fish->control.law != CONTROL_HEADING) return 0;
+    const double tangent = tanh(law_argument(fish, memory, t, tau, control_heading(fish, y), y));
+    const double slope = fish->control.limit * (1 - tangent * tangent);
+
+    // the heading turns with the head vector (hx, hy): dh = (hx dhy - hy dhx)/|h|^2
+    double head[2];
+    head_vector(fish, y, head);
+    const double square = head[0] * head[0] + head[1] * head[1], gain = slope * fish->control.gain;
+    const double by_head[2] = {-head[1] / square, head[0] / square};
+    sparse_add(jacobian, row, fish->at.x, -gain * by_head[0]);
+    sparse_add(jacobian, row, fish->at.y, -gain * by_head[1]);
+    for (int i = 0; i < fish->heading_point.n; i++) {
+        const double weight = fish->heading_point.weight[i];
+        sparse_add(jacobian, row, fish->at.x + fish->heading_point.node[i], gain * weight * by_head[0]);
+        sparse_add(jacobian, row, fish->at.y + fish->heading_point.node[i], gain * weight * by_head[1]);
+    }
+    // so does the direction to the waypoint with the nose; without one the entries are there and zero
+    double by_nose[2] = {0, 0};
+    if (fish->control.n_waypoints > 0 && steers_to_waypoint(fish, memory)) {
+        const double away[2] = {fish->control.waypoint_x[memory->waypoint] - y[fish->at.x],
+                                fish->control.waypoint_y[memory->waypoint] - y[fish->at.y]};
+        const double distance = away[0] * away[0] + away[1] * away[1];
+        by_nose[0] = away[1] / distance;
+        by_nose[1] = -away[0] / distance;
+    }
+    sparse_add(jacobian, row, fish->at.x, gain * by_nose[0]);
+    sparse_add(jacobian, row, fish->at.y, gain * by_nose[1]);
+    return -slope * fish->control.feedforward;
+}
+
+int control_event(const struct fish *fish, struct control_memory *memory, double t, double interval, double tau,
+                  double mean_heading, const double *y) {
+    const struct control_law_data *control = &fish->control;
+    int jumps = 0;
+    while (steers_to_waypoint(fish, memory)) {
+        const double away[2] = {control->waypoint_x[memory->waypoint] - y[fish->at.x],
+                                control->waypoint_y[memory->waypoint] - y[fish->at.y]};
+        if (hypot(away[0], away[1]) > control->arrival) break;
+        // after the last waypoint the course of the last leg is held
+        const int before = memory->waypoint - 1;
+        const double from[2] = {before >= 0 ? control->waypoint_x[before] : fish->start_position[0],
+                                before >= 0 ? control->waypoint_y[before] : fish->start_position[1]};
+        memory->held_heading =
+            atan2(control->waypoint_y[memory->waypoint] - from[1], control->waypoint_x[memory->waypoint] - from[0]);
+        memory->waypoint++;
+        jumps = control->law == CONTROL_HEADING;
+    }
+    if (control->law != CONTROL_AVERAGED_HEADING) return jumps;
+    memory->phi0 += interval * memory->phi0_rate;
+    if (t <= 0) memory->phi0 = 0;
+    const double target = control_law(fish, memory, t, tau, mean_heading, y);
+    memory->phi0_rate = fmax(-control->rate, fmin(control->rate, (target - memory->phi0) / interval));
+    return 0;
+}

@@ -1,0 +1,269 @@
+/* diagnostics.c: energies and powers of one instant, means over the last period, the audit over all steps. */
+#include "model/diagnostics.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/angle.h"
+#include "model/actuation.h"
+#include "model/bound_sheet.h"
+#include "model/drag.h"
+#include "model/rod.h"
+
+enum status diagnostics_create(struct diagnostics **diagnostics, const struct school *school) {
+    *diagnostics = NULL;
+    struct diagnostics *const new = calloc(1, sizeof *new);
+    if (new) new->fish = calloc((size_t)school->n_fish, sizeof *new->fish);
+    if (!new || !new->fish) {
+        diagnostics_free(new);
+        return status_fail(STATUS_MEMORY, "no room for the measures of %d fish", school->n_fish);
+    }
+    *diagnostics = new;
+    return STATUS_OK;
+}
+
+void diagnostics_free(struct diagnostics *diagnostics) {
+    if (!diagnostics) return;
+    free(diagnostics->fish);
+    free(diagnostics);
+}
+
+// mean over the nodes, weighted with their masses
+static double mass_mean(const struct fish *fish, const double *value) {
+    double sum = 0;
+    for (int k = 0; k < fish->n_nodes; k++) sum += fish->mass[k] * value[k];
+    return sum / fish->total_mass;
+}
+
+// what holds the driven nodes on their path, and the load at the tip
+static double driving_power(const struct residual *residual, int f, const double *y, double *scratch) {
+    const struct fish *fish = &residual->school->fish[f];
+    const int tail = fish->n_nodes - 1;
+    double power = fish->load_tip[0] * y[fish->at.vx + tail] + fish->load_tip[1] * y[fish->at.vy + tail];
+    if (fish->motion.driven == DRIVEN_NONE) return power;
+    residual_balance(residual, f, y, scratch);
+    for (int k = 0; k < fish_n_driven(fish); k++) {
+        power += scratch[fish->at.ax + k] * y[fish->at.vx + k] + scratch[fish->at.ay + k] * y[fish->at.vy + k];
+    }
+    return power;
+}
+
+struct diagnostics_power diagnostics_power(const struct residual *residual, int f, double t, const double *y,
+                                           const double *yp) {
+    const struct fish *fish = &residual->school->fish[f];
+    const double *const u = residual->flow->u + residual->flow->points[f].first;
+    const double *const v = residual->flow->v + residual->flow->points[f].first;
+    // natural curvature, its derivative and its rate at this very state
+    double *const curvature = residual->scratch, *const by_phi0 = curvature + fish->n_joints;
+    actuation_curvature(fish, t, y[fish->at.phi0], curvature, by_phi0);
+    double *const rate = by_phi0;
+    actuation_rate(fish, t, y[fish->at.phi0], yp[fish->at.phi0], rate);
+    return (struct diagnostics_power){.actuation = rod_actuation_power(fish, curvature, rate, y),
+                                      .damping = rod_damping_power(fish, y),
+                                      .drag = drag_power(fish, u, v, y),
+                                      .added_mass = drag_added_mass_power(fish, y),
+                                      .driving = driving_power(residual, f, y, residual->scratch)};
+}
+
+static double kinetic_energy(const struct fish *fish, const double *y) {
+    double energy = 0;
+    for (int k = 0; k < fish->n_nodes; k++) {
+        const double vx = y[fish->at.vx + k], vy = y[fish->at.vy + k];
+        energy += fish->mass[k] * (vx * vx + vy * vy) / 2;
+    }
+    return energy;
+}
+
+static double bending_energy(const struct residual *residual, int f, double t, const double *y) {
+    const struct fish *fish = &residual->school->fish[f];
+    double *const curvature = residual->scratch;
+    actuation_curvature(fish, t, y[fish->at.phi0], curvature, curvature + fish->n_joints);
+    return rod_bending_energy(fish, curvature, y);
+}
+
+double diagnostics_energy(const struct residual *residual, int f, double t, const double *y) {
+    const struct fish *fish = &residual->school->fish[f];
+    return kinetic_energy(fish, y) + bending_energy(residual, f, t, y) + rod_stretching_energy(fish, y);
+}
+
+static double total_power(const struct diagnostics_power *power) {
+    return power->actuation + power->damping + power->drag + power->added_mass + power->driving;
+}
+
+// integral over the newest interval of the quadratic through three values, or the line through two
+static double newest_area(int n, const double t[3], const double value[3]) {
+    const double h = t[0] - t[1], slope = (value[0] - value[1]) / h;
+    double area = h * (value[0] + value[1]) / 2;
+    if (n == 3) area -= h * h * h / 6 * (slope - (value[1] - value[2]) / (t[1] - t[2])) / (t[0] - t[2]);
+    return area;
+}
+
+void diagnostics_step(const struct residual *residual, struct state *state, double t, const double *y,
+                      const double *yp) {
+    for (int f = 0; f < residual->school->n_fish; f++) {
+        struct energy_balance *balance = &state->balance[f];
+        const struct diagnostics_power now = diagnostics_power(residual, f, t, y, yp);
+        const double times[3] = {t, balance->t[0], balance->t[1]};
+        const double power[3] = {total_power(&now), balance->power[0], balance->power[1]};
+        const double actuation[3] = {now.actuation, balance->actuation_power[0], balance->actuation_power[1]};
+        if (t > times[1]) {
+            balance->work += newest_area(balance->n + 1, times, power);
+            balance->actuation_work += newest_area(balance->n + 1, times, actuation);
+        }
+        for (int i = 0; i < 2; i++) {
+            balance->t[i] = times[i];
+            balance->power[i] = power[i];
+            balance->actuation_power[i] = actuation[i];
+        }
+        if (balance->n < 2) balance->n++;
+    }
+}
+
+void diagnostics_before_jump(const struct residual *residual, struct state *state) {
+    for (int f = 0; f < residual->school->n_fish; f++) {
+        state->balance[f].work -= diagnostics_energy(residual, f, state->t, state->y);
+    }
+}
+
+void diagnostics_after_jump(const struct residual *residual, struct state *state) {
+    for (int f = 0; f < residual->school->n_fish; f++) {
+        struct energy_balance *balance = &state->balance[f];
+        const struct diagnostics_power now = diagnostics_power(residual, f, state->t, state->y, state->yp);
+        balance->work += diagnostics_energy(residual, f, state->t, state->y);
+        balance->n = 1;
+        balance->t[0] = state->t;
+        balance->power[0] = total_power(&now);
+        balance->actuation_power[0] = now.actuation;
+    }
+}
+
+void diagnostics_start(const struct residual *residual, struct state *state) {
+    diagnostics_after_jump(residual, state);
+    for (int f = 0; f < residual->school->n_fish; f++) {
+        state->balance[f].initial_energy = diagnostics_energy(residual, f, state->t, state->y);
+        state->balance[f].work = 0;
+    }
+}
+
+void diagnostics_remember(const struct residual *residual, struct state *state) {
+    for (int f = 0; f < residual->school->n_fish; f++) {
+        const struct fish *fish = &residual->school->fish[f];
+        const double *const y = state->y;
+        struct history *history = &state->history[f];
+        double heading = control_heading(fish, y);
+        if (history->n > 0) {
+            const double before = state_recall(history, 0)->heading;
+            heading = before + angle_wrap(heading - before);
+        }
+        const int tail = fish->n_nodes - 1;
+        const struct sample sample = {.com = {mass_mean(fish, y + fish->at.x), mass_mean(fish, y + fish->at.y)},
+                                      .tail = {y[fish->at.x + tail], y[fish->at.y + tail]},
+                                      .heading = heading,
+                                      .actuation_work = state->balance[f].actuation_work};
+        state_remember(history, &sample);
+    }
+}
+
+double diagnostics_mean_heading(const struct history *history) {
+    if (history->n == 1) return state_recall(history, 0)->heading;
+    double sum = 0;
+    for (int age = 0; age < history->n; age++) {
+        sum += (age == 0 || age == history->n - 1 ? 0.5 : 1) * state_recall(history, age)->heading;
+    }
+    return sum / (history->n - 1);
+}
+
+// extent of the tail's path across the way that the fish went
+static double peak_to_peak(const struct history *history, const double way[2], double distance) {
+    double least = INFINITY, most = -INFINITY;
+    for (int age = 0; age < history->n; age++) {
+        const double *tail = state_recall(history, age)->tail;
+        const double across = (way[0] * tail[1] - way[1] * tail[0]) / distance;
+        least = fmin(least, across);
+        most = fmax(most, across);
+    }
+    return most - least;
+}
+
+// speed, cost of transport and Strouhal number over the last period, or since the start where that is less
+static void diagnostics_period(const struct fish *fish, const struct history *history, double interval,
+                               struct diagnostics_fish *to) {
+    to->speed = hypot(to->com_velocity[0], to->com_velocity[1]);
+    to->cost_of_transport = to->strouhal = NAN;
+    if (history->n < 2) return;
+    const struct sample *new = state_recall(history, 0), *old = state_recall(history, history->n - 1);
+    const double duration = (history->n - 1) * interval;
+    const double way[2] = {new->com[0] - old->com[0], new->com[1] - old->com[1]}, distance = hypot(way[0], way[1]);
+    to->speed = distance / duration;
+    if (distance <= 0) return;
+    to->cost_of_transport = (new->actuation_work - old->actuation_work) / duration / (fish->total_mass * to->speed);
+    to->strouhal = fish->frequency * peak_to_peak(history, way, distance) / to->speed;
+}
+
+static double shedding_rate(const struct residual *residual, const struct state *state, int f) {
+    if (residual->school->kutta == KUTTA_EDGE) return state->yp[residual->school->fish[f].at.circulation];
+    return residual_kutta_rate(residual, f, state->t, state->y);
+}
+
+static void diagnostics_one(const struct residual *residual, const struct state *state, int f,
+                            struct diagnostics_fish *to) {
+    const struct fish *fish = &residual->school->fish[f];
+    const struct history *history = &state->history[f];
+    const double *const y = state->y;
+    to->com[0] = mass_mean(fish, y + fish->at.x);
+    to->com[1] = mass_mean(fish, y + fish->at.y);
+    to->com_velocity[0] = mass_mean(fish, y + fish->at.vx);
+    to->com_velocity[1] = mass_mean(fish, y + fish->at.vy);
+    diagnostics_period(fish, history, residual->school->interval, to);
+    to->heading = angle_degrees(state_recall(history, 0)->heading);
+    const double desired = control_desired_heading(fish, &state->control[f], state->t, y);
+    to->desired_heading = to->heading - angle_degrees(angle_wrap(angle_radians(to->heading) - desired));
+    to->phi0 = y[fish->at.phi0];
+    to->shed_circulation = y[fish->at.circulation];
+    to->shedding_rate = shedding_rate(residual, state, f);
+    to->kinetic_energy = kinetic_energy(fish, y);
+    to->bending_energy = bending_energy(residual, f, state->t, y);
+    to->stretching_energy = rod_stretching_energy(fish, y);
+    const struct diagnostics_power power = diagnostics_power(residual, f, state->t, y, state->yp);
+    to->actuation_power = power.actuation;
+    to->damping_power = power.damping;
+    to->drag_power = power.drag;
+    to->added_mass_power = power.added_mass;
+    to->driving_power = power.driving;
+    const struct energy_balance *balance = &state->balance[f];
+    to->energy_audit =
+        to->kinetic_energy + to->bending_energy + to->stretching_energy - balance->initial_energy - balance->work;
+    to->actuation_work = balance->actuation_work;
+}
+
+// every vortex counted one by one: bound, nascent, free, dissipated
+static double total_circulation(const struct residual *residual, const struct state *state) {
+    double total = 0;
+    for (int f = 0; f < residual->school->n_fish; f++) {
+        const struct fish *fish = &residual->school->fish[f];
+        const struct wake *wake = &state->wake[f];
+        total += bound_sheet_circulation(fish, state->y) + (state->y[fish->at.circulation] - wake->shed_before);
+        for (int i = 0; i < wake->n_vortex; i++) total += wake->circulation[i];
+        if (residual->school->dissipated == DISSIPATED_RETAINED) total += wake->dissipated;
+    }
+    return total;
+}
+
+void diagnostics_event(const struct residual *residual, const struct state *state, struct diagnostics *diagnostics) {
+    const struct school *school = residual->school;
+    double sum[2] = {0, 0};
+    diagnostics->t = state->t;
+    diagnostics->least_distance = NAN;
+    for (int f = 0; f < school->n_fish; f++) {
+        diagnostics_one(residual, state, f, &diagnostics->fish[f]);
+        sum[0] += cos(angle_radians(diagnostics->fish[f].heading));
+        sum[1] += sin(angle_radians(diagnostics->fish[f].heading));
+        for (int g = 0; g < f; g++) {
+            const double most = isnan(diagnostics->least_distance) ? INFINITY : diagnostics->least_distance;
+            diagnostics->least_distance =
+                fmin(diagnostics->least_distance, fish_distance(&school->fish[f], &school->fish[g], state->y, most));
+        }
+    }
+    diagnostics->polarisation = hypot(sum[0], sum[1]) / school->n_fish;
+    diagnostics->total_circulation = total_circulation(residual, state);
+}

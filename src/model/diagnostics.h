@@ -1,0 +1,71 @@
+/* diagnostics.h: what a user reads off a state: energies, powers, headings, means. doc/model.md, section 13. Tested by
+ * tests/model/test_diagnostics.c. */
+#ifndef DIAGNOSTICS_H
+#define DIAGNOSTICS_H
+
+#include "model/fish.h"
+#include "model/residual.h"
+#include "model/state.h"
+
+/* One fish at one event. */
+struct diagnostics_fish {
+    double com[2], com_velocity[2]; /* centre of mass, m, m s-1 */
+    double speed;                   /* of the centre of mass over the last period, m s-1 */
+    double heading;                 /* degree, unwrapped */
+    double desired_heading;         /* degree */
+    double phi0;
+    double shed_circulation;                                                            /* m2 s-1 */
+    double shedding_rate;                                                               /* m2 s-2 */
+    double kinetic_energy, bending_energy, stretching_energy;                           /* J */
+    double actuation_power, damping_power, drag_power, added_mass_power, driving_power; /* W */
+    double energy_audit;                                                                /* J */
+    double actuation_work;    /* put in by the muscle since the start, J */
+    double cost_of_transport; /* mean actuation power over mass and speed, m s-2 */
+    double strouhal;          /* frequency times peak-to-peak of the tail over speed */
+};
+
+/* The school at one event. */
+struct diagnostics {
+    double t;
+    struct diagnostics_fish *fish; /* (n_fish) */
+    double total_circulation;      /* m2 s-1 */
+    double least_distance;         /* between two bodies, m; NaN for one fish */
+    double polarisation;           /* length of the mean unit vector of the headings */
+};
+
+/* Fails with STATUS_MEMORY. diagnostics_free accepts NULL. */
+enum status diagnostics_create(struct diagnostics **diagnostics, const struct school *school);
+void diagnostics_free(struct diagnostics *diagnostics);
+
+/* Powers of one fish, W, from the unknowns, their rates and the fluid's velocity in the last residual evaluated. */
+struct diagnostics_power {
+    double actuation, damping, drag, added_mass, driving;
+};
+struct diagnostics_power diagnostics_power(const struct residual *residual, int f, double t, const double *y,
+                                           const double *yp);
+
+/* Kinetic plus bending plus stretching energy of one fish, J. */
+double diagnostics_energy(const struct residual *residual, int f, double t, const double *y);
+
+/* Add the powers of the step that ended at t to the audits, by the quadratic through the last three steps. */
+void diagnostics_step(const struct residual *residual, struct state *state, double t, const double *y,
+                      const double *yp);
+
+/* Start the audits: at the first event, when the state is consistent. */
+void diagnostics_start(const struct residual *residual, struct state *state);
+
+/* Before and after a jump of the state: the energy that the jump brings counts as work done, and no later step reaches
+ * back over it. A bias that jumps, for one, changes the natural curvature and with it the energy of bending. */
+void diagnostics_before_jump(const struct residual *residual, struct state *state);
+void diagnostics_after_jump(const struct residual *residual, struct state *state);
+
+/* Mean of the headings in a history, rad, unwrapped. */
+double diagnostics_mean_heading(const struct history *history);
+
+/* Take a sample of every fish into its history; at every event, before diagnostics_event. */
+void diagnostics_remember(const struct residual *residual, struct state *state);
+
+/* Fill *measure from the state at its event; the residual must have been evaluated there. */
+void diagnostics_event(const struct residual *residual, const struct state *state, struct diagnostics *diagnostics);
+
+#endif

@@ -1,0 +1,500 @@
+/* fish.c: from the values of a case to the constant data of every fish. */
+#include "model/fish.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/angle.h"
+#include "base/ramp.h"
+
+static const double pi = 3.14159265358979323846;
+
+double fish_mean(const struct stencil *point, const double *value) {
+    double mean = 0;
+    for (int i = 0; i < point->n; i++) mean += point->weight[i] * value[point->node[i]];
+    return mean;
+}
+
+// half thickness of the Joukowski profile at arc coordinate s from the nose
+static double joukowski_half_thickness(double s, double length, double thickness) {
+    const double r0 = length * (1 - thickness) / 4, c = r0 * (1 + thickness);
+    const double nose = 2 * r0 * (1 + thickness * thickness) / (thickness - 1);
+    // the chord coordinate falls from tail (theta = 0) to nose (theta = pi): bisect down to neighbouring numbers
+    double low = 0, high = pi;
+    for (;;) {
+        const double theta = (low + high) / 2;
+        if (theta <= low || theta >= high) break;
+        const double re = r0 * (cos(theta) + thickness), im = r0 * sin(theta);
+        const double x = re * (1 + c * c / (re * re + im * im));
+        if (x > nose + s) {
+            low = theta;
+        } else {
+            high = theta;
+        }
+    }
+    const double theta = (low + high) / 2;
+    const double re = r0 * (cos(theta) + thickness), im = r0 * sin(theta);
+    return fabs(im * (1 - c * c / (re * re + im * im)));
+}
+
+// the point at fraction sigma of the body, between its two neighbouring nodes
+static struct stencil point_at(const struct fish *fish, double sigma) {
+    const double place = sigma * fish->n_edges;
+    int node = (int)place;
+    if (node > fish->n_edges - 1) node = fish->n_edges - 1;
+    const double weight = place - node;
+    return (struct stencil){.n = 2, .node = {node, node + 1}, .weight = {1 - weight, weight}};
+}
+
+// the point half way between two points; a node that both use appears once
+static struct stencil point_between(const struct stencil *a, const struct stencil *b) {
+    struct stencil mean = {0};
+    const struct stencil *const parts[2] = {a, b};
+    for (int part = 0; part < 2; part++) {
+        for (int i = 0; i < parts[part]->n; i++) {
+            int at = 0;
+            while (at < mean.n && mean.node[at] != parts[part]->node[i]) at++;
+            if (at == mean.n) mean.node[mean.n++] = parts[part]->node[i];
+            mean.weight[at] += parts[part]->weight[i] / 2;
+        }
+    }
+    return mean;
+}
+
+static enum status doubles(double **values, int n) {
+    *values = calloc((size_t)(n > 0 ? n : 1), sizeof **values);
+    return *values ? STATUS_OK : status_fail(STATUS_MEMORY, "no room for %d numbers of a fish", n);
+}
+
+static enum status fish_allocate(struct fish *fish) {
+    TRY(doubles(&fish->arc, fish->n_nodes));
+    TRY(doubles(&fish->mass, fish->n_nodes));
+    double **const per_edge[] = {&fish->height,        &fish->width,           &fish->axial_stiffness,
+                                 &fish->axial_damping, &fish->drag_tangential, &fish->drag_normal,
+                                 &fish->added_mass};
+    for (size_t i = 0; i < sizeof per_edge / sizeof *per_edge; i++) TRY(doubles(per_edge[i], fish->n_edges));
+    double **const per_joint[] = {&fish->bending_stiffness, &fish->bending_damping, &fish->wave_amplitude,
+                                  &fish->wave_phase};
+    for (size_t i = 0; i < sizeof per_joint / sizeof *per_joint; i++) TRY(doubles(per_joint[i], fish->n_joints));
+    TRY(doubles(&fish->sheet_weight, fish->n_sheet));
+    fish->sheet_point = calloc((size_t)fish->n_sheet, sizeof *fish->sheet_point);
+    fish->control_point = calloc((size_t)fish->n_control, sizeof *fish->control_point);
+    if (!fish->sheet_point || !fish->control_point) {
+        return status_fail(STATUS_MEMORY, "no room for %d points of a sheet", fish->n_sheet);
+    }
+    return STATUS_OK;
+}
+
+static void shape_edges(struct fish *fish, const struct case_fish *from) {
+    for (int k = 0; k < fish->n_nodes; k++) fish->arc[k] = k * fish->edge_length;
+    double radius_before = 0;
+    for (int k = 0; k < fish->n_edges; k++) {
+        // both tips are sharp, however the last arc coordinate is rounded
+        const double radius =
+            k + 1 < fish->n_edges ? joukowski_half_thickness(fish->arc[k + 1], fish->length, from->body.thickness) : 0;
+        fish->width[k] = from->body.width * fish->length;
+        switch (from->body.profile) {
+            case PROFILE_JOUKOWSKI: fish->height[k] = radius_before + radius; break;
+            case PROFILE_UNIFORM: fish->height[k] = from->body.thickness * fish->length; break;
+            case PROFILE_TABLE:
+                fish->height[k] = from->body.h.value[k];
+                fish->width[k] = from->body.w.value[k];
+                break;
+        }
+        radius_before = radius;
+    }
+}
+
+// masses, stiffnesses and damping: doc/model.md, sections 1 and 3
+static void weigh_body(struct fish *fish, const struct case_fish *from) {
+    const struct case_body *body = &from->body;
+    const double reference = fish->length / (from->reference_nodes - 1), refinement = reference / fish->edge_length;
+    double moment_before = 0;
+    for (int k = 0; k < fish->n_edges; k++) {
+        const double h = fish->height[k], w = fish->width[k], area = pi * h * w / 4;
+        const double edge_mass = body->density * area * fish->edge_length;
+        fish->mass[k] += edge_mass / 2;
+        fish->mass[k + 1] += edge_mass / 2;
+        fish->total_mass += edge_mass;
+        fish->axial_stiffness[k] = body->modulus * area;
+        fish->axial_damping[k] = body->stretching_damping * refinement +
+                                 body->relaxation_time * fish->axial_stiffness[k] / fish->edge_length;
+        const double moment = body->second_moment == SECOND_MOMENT_ELLIPSE
+                                  ? pi * w * h * h * h / 64
+                                  : body->density * area * reference * w * w / 12;
+        if (k > 0) {
+            fish->bending_stiffness[k - 1] = body->modulus * (moment_before + moment) / 2;
+            fish->bending_damping[k - 1] = body->bending_damping * refinement +
+                                           body->relaxation_time * fish->bending_stiffness[k - 1] / fish->edge_length;
+        }
+        moment_before = moment;
+    }
+}
+
+static void set_wave(struct fish *fish, const struct case_fish *from) {
+    const struct case_wave *wave = &from->wave;
+    const double reference = fish->length / (from->reference_nodes - 1);
+    for (int joint = 0; joint < fish->n_joints; joint++) {
+        const double sigma = (joint + 1.0) / fish->n_edges;
+        fish->wave_amplitude[joint] = wave->amplitude * (fish->edge_length / reference) *
+                                      (wave->linear * sigma + wave->quadratic * sigma * sigma);
+        fish->wave_phase[joint] = wave->number * sigma + angle_radians(wave->phase);
+    }
+    fish->omega = 2 * pi * wave->frequency;
+    fish->ramp = wave->ramp;
+}
+
+static void set_drag(struct fish *fish, const struct case_fish *from, double density) {
+    const struct case_drag *drag = &from->drag;
+    for (int k = 0; k < fish->n_edges; k++) {
+        const double h = fish->height[k], w = fish->width[k], l = fish->edge_length;
+        const double across = drag->extent == EXTENT_WIDTH ? w : h;
+        fish->drag_tangential[k] = density * pi * drag->tangential * l * (h + w) / 8;
+        fish->drag_normal[k] = density * drag->normal * l * across / 2;
+        fish->added_mass[k] = pi * density * drag->added_mass * across * across * l / 4;
+    }
+    fish->drag_law = drag->law;
+}
+
+static void place_sheet(struct fish *fish, enum collocation collocation) {
+    const int last = fish->n_sheet - 1;
+    double before = 0;
+    for (int j = 0; j <= last; j++) {
+        const double sigma = j == last ? 1 : (1 - cos(pi * j / last)) / 2;
+        fish->sheet_point[j] = point_at(fish, sigma);
+        if (j > 0) {
+            fish->sheet_weight[j - 1] += (sigma - before) * fish->length / 2;
+            fish->sheet_weight[j] += (sigma - before) * fish->length / 2;
+        }
+        before = sigma;
+    }
+    for (int c = 0; c < fish->n_control; c++) {
+        fish->control_point[c] = collocation == COLLOCATION_CHEBYSHEV
+                                     ? point_at(fish, (1 - cos(pi * (c + 0.5) / last)) / 2)
+                                     : point_between(&fish->sheet_point[c], &fish->sheet_point[c + 1]);
+    }
+    fish->heading_point = point_at(fish, 1.0 / 3.0);
+}
+
+static void set_motion(struct fish *fish, const struct case_fish *from) {
+    fish->start_position[0] = from->start_position[0];
+    fish->start_position[1] = from->start_position[1];
+    fish->start_heading = angle_radians(from->start_heading);
+    fish->start_speed = from->start_speed;
+    fish->load_tip[0] = from->load_tip[0];
+    fish->load_tip[1] = from->load_tip[1];
+    fish->motion = (struct motion){.driven = from->motion.driven,
+                                   .speed = from->motion.speed,
+                                   .heave = from->motion.heave,
+                                   .pitch = angle_radians(from->motion.pitch),
+                                   .pitch_phase = angle_radians(from->motion.pitch_phase),
+                                   .omega = 2 * pi * from->motion.frequency,
+                                   .phase = angle_radians(from->motion.phase),
+                                   .pivot = from->motion.pivot * from->length};
+    const int given = fish->motion.driven != DRIVEN_NONE && from->motion.frequency > 0;
+    fish->frequency = given ? from->motion.frequency : from->wave.frequency;
+    fish->period = fish->frequency > 0 ? 1 / fish->frequency : 0;
+}
+
+static enum status set_control(struct fish *fish, const struct case_fish *from, double density) {
+    const struct case_control *control = &from->control;
+    struct control_law_data *to = &fish->control;
+    to->law = control->law;
+    to->bias = control->bias;
+    to->gain = control->gain;
+    to->limit = control->limit;
+    to->feedforward = control->feedforward;
+    to->rate = control->rate;
+    to->arrival = control->arrival * fish->length;
+    to->n_headings = control->desired_heading.n;
+    TRY(doubles(&to->heading_time, to->n_headings));
+    TRY(doubles(&to->heading, to->n_headings));
+    for (int i = 0; i < to->n_headings; i++) {
+        to->heading_time[i] = control->desired_heading.value[2 * i];
+        to->heading[i] = angle_radians(control->desired_heading.value[2 * i + 1]);
+    }
+    to->n_waypoints = control->waypoints.n;
+    TRY(doubles(&to->waypoint_x, to->n_waypoints));
+    TRY(doubles(&to->waypoint_y, to->n_waypoints));
+    for (int i = 0; i < to->n_waypoints; i++) {
+        to->waypoint_x[i] = control->waypoints.value[2 * i];
+        to->waypoint_y[i] = control->waypoints.value[2 * i + 1];
+    }
+    // rho_f w L^2 (L f)^2
+    const double beat_speed = fish->length * from->wave.frequency;
+    to->torque_scale =
+        density * from->body.width * fish->length * fish->length * fish->length * beat_speed * beat_speed;
+    return STATUS_OK;
+}
+
+static enum status fish_fill(struct fish *fish, const struct case_values *values, const struct case_fish *from) {
+    fish->name = strdup(from->name);
+    if (!fish->name) return status_fail(STATUS_MEMORY, "no room for the name of a fish");
+    fish->n_nodes = from->nodes;
+    fish->n_edges = from->nodes - 1;
+    fish->n_joints = from->nodes - 2;
+    fish->n_sheet = from->sheet_points;
+    fish->n_control = from->sheet_points - 1;
+    fish->length = from->length;
+    fish->edge_length = fish->length / fish->n_edges;
+    fish->smoothing = values->wake.smoothing * fish->length;
+    fish->sheet_smoothing = values->wake.sheet_smoothing * fish->length;
+    TRY(fish_allocate(fish));
+    shape_edges(fish, from);
+    weigh_body(fish, from);
+    set_wave(fish, from);
+    set_drag(fish, from, values->fluid.density);
+    place_sheet(fish, values->wake.collocation);
+    set_motion(fish, from);
+    return set_control(fish, from, values->fluid.density);
+}
+
+static struct layout layout_after(int first, int n_nodes, int n_sheet) {
+    struct layout at = {.x = first};
+    at.y = at.x + n_nodes;
+    at.vx = at.y + n_nodes;
+    at.vy = at.vx + n_nodes;
+    at.ax = at.vy + n_nodes;
+    at.ay = at.ax + n_nodes;
+    at.gamma = at.ay + n_nodes;
+    at.circulation = at.gamma + n_sheet;
+    at.phi0 = at.circulation + 1;
+    at.end = at.phi0 + 1;
+    return at;
+}
+
+static void set_fluid(struct school *school, const struct case_values *values) {
+    school->density = values->fluid.density;
+    school->velocity[0] = values->fluid.velocity[0];
+    school->velocity[1] = values->fluid.velocity[1];
+    school->shear = values->fluid.shear;
+    // the gust blows to the left of the stream, along y where there is none
+    const double stream = hypot(school->velocity[0], school->velocity[1]);
+    const double along[2] = {stream > 0 ? school->velocity[0] / stream : 1,
+                             stream > 0 ? school->velocity[1] / stream : 0};
+    school->gust[0] = -values->fluid.gust_amplitude * along[1];
+    school->gust[1] = values->fluid.gust_amplitude * along[0];
+    school->gust_omega = 2 * pi * values->fluid.gust_frequency;
+    school->interval = values->time.shedding_interval;
+    school->lifetime = values->wake.lifetime;
+    school->fade = values->wake.fade;
+    school->shedding = values->wake.shedding;
+    school->kutta = values->wake.kutta;
+    school->kutta_ramp = values->wake.kutta_ramp;
+    school->dissipated = values->wake.dissipated_circulation;
+    school->wake_tolerance = values->wake.tolerance;
+    school->rtol = values->solver.rtol;
+    school->threads = values->solver.threads;
+    double longest = 0;
+    for (int f = 0; f < values->n_fish; f++) longest = fmax(longest, values->fish[f].length);
+    school->coupling_distance = values->solver.coupling_distance * longest;
+}
+
+static enum status refuse_overlap(const struct school *school) {
+    double *y = calloc((size_t)school->n_unknowns, sizeof *y);
+    if (!y) return status_fail(STATUS_MEMORY, "no room for %d unknowns", school->n_unknowns);
+    enum status status = STATUS_OK;
+    for (int f = 0; f < school->n_fish && status == STATUS_OK; f++) {
+        fish_start(&school->fish[f], y);
+        for (int g = 0; g < f && status == STATUS_OK; g++) {
+            if (fish_distance(&school->fish[f], &school->fish[g], y, INFINITY) <= 0) {
+                status = status_fail(STATUS_CASE,
+                                     "error: fish[%d] (%s) and fish[%d] (%s) overlap at the start: change "
+                                     "start.position of one of them",
+                                     g, school->fish[g].name, f, school->fish[f].name);
+            }
+        }
+    }
+    free(y);
+    return status;
+}
+
+enum status fish_school_create(struct school **school, const struct case_values *values) {
+    struct school *new = calloc(1, sizeof *new);
+    *school = NULL;
+    if (!new) goto no_memory;
+    new->fish = calloc((size_t)values->n_fish, sizeof *new->fish);
+    if (!new->fish) goto no_memory;
+    new->n_fish = values->n_fish;
+    set_fluid(new, values);
+    for (int f = 0; f < new->n_fish; f++) {
+        if (fish_fill(&new->fish[f], values, &values->fish[f]) != STATUS_OK) goto failed;
+        new->fish[f].at = layout_after(new->n_unknowns, new->fish[f].n_nodes, new->fish[f].n_sheet);
+        new->n_unknowns = new->fish[f].at.end;
+    }
+    const enum status overlap = refuse_overlap(new);
+    if (overlap != STATUS_OK) {
+        fish_school_free(new);
+        return overlap;
+    }
+    *school = new;
+    return STATUS_OK;
+
+no_memory:
+    status_fail(STATUS_MEMORY, "no room for a school of %d fish", values->n_fish);
+failed:
+    fish_school_free(new);
+    return STATUS_MEMORY;
+}
+
+void fish_school_free(struct school *school) {
+    if (!school) return;
+    for (int f = 0; f < school->n_fish; f++) {
+        struct fish *fish = &school->fish[f];
+        void *const owned[] = {fish->name,
+                               fish->arc,
+                               fish->mass,
+                               fish->height,
+                               fish->width,
+                               fish->axial_stiffness,
+                               fish->axial_damping,
+                               fish->bending_stiffness,
+                               fish->bending_damping,
+                               fish->wave_amplitude,
+                               fish->wave_phase,
+                               fish->drag_tangential,
+                               fish->drag_normal,
+                               fish->added_mass,
+                               fish->sheet_weight,
+                               fish->sheet_point,
+                               fish->control_point,
+                               fish->control.heading_time,
+                               fish->control.heading,
+                               fish->control.waypoint_x,
+                               fish->control.waypoint_y};
+        for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
+    }
+    free(school->fish);
+    free(school);
+}
+
+double fish_rate(const struct school *school, const struct fish *fish) {
+    if (fish->frequency > 0) return fish->frequency;
+    const double drift = hypot(school->velocity[0], school->velocity[1]);
+    const double speed = fmax(fmax(fabs(fish->start_speed), fabs(fish->motion.speed)), drift);
+    return speed > 0 ? speed / fish->length : 1;
+}
+
+int fish_n_driven(const struct fish *fish) {
+    switch (fish->motion.driven) {
+        case DRIVEN_NONE: return 0;
+        case DRIVEN_HEAD: return 2;
+        case DRIVEN_ALL: return fish->n_nodes;
+    }
+    return 0;
+}
+
+void fish_driven_node(const struct fish *fish, int k, double t, double position[2], double velocity[2],
+                      double acceleration[2]) {
+    const struct motion *motion = &fish->motion;
+    const double ahead[2] = {cos(fish->start_heading), sin(fish->start_heading)}, left[2] = {-ahead[1], ahead[0]};
+    const double omega = motion->omega;
+    const double angle = omega * t + motion->phase, pitch_angle = angle + motion->pitch_phase;
+    const double heave = motion->heave * sin(angle), heave_rate = motion->heave * omega * cos(angle);
+    const double heading = fish->start_heading + motion->pitch * sin(pitch_angle);
+    const double rate = motion->pitch * omega * cos(pitch_angle);
+    const double heave_change = -omega * omega * heave;
+    const double rate_change = -omega * omega * motion->pitch * sin(pitch_angle);
+    const double along[2] = {cos(heading), sin(heading)}, across[2] = {-along[1], along[0]};
+    const double arm = motion->pivot - fish->arc[k];
+    for (int i = 0; i < 2; i++) {
+        position[i] =
+            fish->start_position[i] + (motion->speed * t - motion->pivot) * ahead[i] + heave * left[i] + arm * along[i];
+        velocity[i] = motion->speed * ahead[i] + heave_rate * left[i] + arm * rate * across[i];
+        acceleration[i] = heave_change * left[i] + arm * (rate_change * across[i] - rate * rate * along[i]);
+    }
+}
+
+void fish_drive(const struct fish *fish, int n, double t, double *y) {
+    for (int k = 0; k < n; k++) {
+        double position[2], velocity[2], acceleration[2];
+        fish_driven_node(fish, k, t, position, velocity, acceleration);
+        y[fish->at.x + k] = position[0];
+        y[fish->at.y + k] = position[1];
+        y[fish->at.vx + k] = velocity[0];
+        y[fish->at.vy + k] = velocity[1];
+    }
+}
+
+void fish_start(const struct fish *fish, double *y) {
+    double *const x = y + fish->at.x, *const z = y + fish->at.y;
+    if (fish->motion.driven != DRIVEN_NONE) {
+        // the free nodes behind a driven head start with its rigid motion
+        fish_drive(fish, fish->n_nodes, 0, y);
+        return;
+    }
+    // the bias of a controlled fish is not known yet: its pose is that of zero bias
+    const double bias = fish->control.law == CONTROL_NONE ? fish->control.bias : 0;
+    double angle = fish->start_heading - pi;
+    x[0] = fish->start_position[0];
+    z[0] = fish->start_position[1];
+    for (int k = 0; k < fish->n_edges; k++) {
+        if (k > 0) {
+            angle += ramp_value(0, fish->ramp) * fish->wave_amplitude[k - 1] * (sin(fish->wave_phase[k - 1]) + bias);
+        }
+        x[k + 1] = x[k] + fish->edge_length * cos(angle);
+        z[k + 1] = z[k] + fish->edge_length * sin(angle);
+    }
+    for (int k = 0; k < fish->n_nodes; k++) {
+        y[fish->at.vx + k] = fish->start_speed * cos(fish->start_heading);
+        y[fish->at.vy + k] = fish->start_speed * sin(fish->start_heading);
+    }
+}
+
+// least distance of the point p from the segment a b
+static double point_to_segment(const double p[2], const double a[2], const double b[2]) {
+    const double e[2] = {b[0] - a[0], b[1] - a[1]}, r[2] = {p[0] - a[0], p[1] - a[1]};
+    const double square = e[0] * e[0] + e[1] * e[1];
+    double q = square > 0 ? (r[0] * e[0] + r[1] * e[1]) / square : 0;
+    q = fmin(1, fmax(0, q));
+    return hypot(r[0] - q * e[0], r[1] - q * e[1]);
+}
+
+static double cross(const double a[2], const double b[2], const double c[2]) {
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
+
+static double segment_to_segment(const double a[2], const double b[2], const double c[2], const double d[2]) {
+    if (cross(a, b, c) * cross(a, b, d) < 0 && cross(c, d, a) * cross(c, d, b) < 0) return 0;
+    return fmin(fmin(point_to_segment(a, c, d), point_to_segment(b, c, d)),
+                fmin(point_to_segment(c, a, b), point_to_segment(d, a, b)));
+}
+
+// the gap between two intervals, negative where they overlap; each the extent of some numbers and a margin
+static double gap(int n, const double *x, double margin, int m, const double *y, double other_margin) {
+    double low = x[0], high = x[0], other_low = y[0], other_high = y[0];
+    for (int i = 1; i < n; i++) {
+        low = x[i] < low ? x[i] : low;
+        high = x[i] > high ? x[i] : high;
+    }
+    for (int i = 1; i < m; i++) {
+        other_low = y[i] < other_low ? y[i] : other_low;
+        other_high = y[i] > other_high ? y[i] : other_high;
+    }
+    return fmax(other_low - high, low - other_high) - margin - other_margin;
+}
+
+static double half_height(const struct fish *fish) {
+    double most = 0;
+    for (int k = 0; k < fish->n_edges; k++) most = fmax(most, fish->height[k] / 2);
+    return most;
+}
+
+double fish_distance(const struct fish *a, const struct fish *b, const double *y, double most) {
+    // most pairs of a school are told apart by the boxes around them
+    const double margin = half_height(a), other = half_height(b);
+    if (gap(a->n_nodes, y + a->at.x, margin, b->n_nodes, y + b->at.x, other) > most ||
+        gap(a->n_nodes, y + a->at.y, margin, b->n_nodes, y + b->at.y, other) > most) {
+        return INFINITY;
+    }
+    double least = INFINITY;
+    for (int i = 0; i < a->n_edges; i++) {
+        const double p[2] = {y[a->at.x + i], y[a->at.y + i]}, q[2] = {y[a->at.x + i + 1], y[a->at.y + i + 1]};
+        for (int j = 0; j < b->n_edges; j++) {
+            const double r[2] = {y[b->at.x + j], y[b->at.y + j]}, s[2] = {y[b->at.x + j + 1], y[b->at.y + j + 1]};
+            least = fmin(least, segment_to_segment(p, q, r, s) - (a->height[i] + b->height[j]) / 2);
+        }
+    }
+    return fmax(0, least);
+}

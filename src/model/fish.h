@@ -1,0 +1,161 @@
+/* fish.h: the constant data of the fish and of their school, and where the unknowns of each fish stand in the vector
+ * of all unknowns. doc/model.md, sections 1, 6 and 10. Tested by tests/model/test_fish.c.
+ *
+ * Body: nodes 0 (nose) .. N-1 (tail), edge k from node k to k+1, joint j at node j+1.
+ *
+ *     node 0    edge 0    node 1    edge 1    node 2            node N-1
+ *        o-----------------o-----------------o--- ... ---o--------o
+ *      nose              joint 0           joint 1     joint N-3  tail
+ *
+ * Sheet: bound vortices j = 0 .. M-1 at the cosine points, control points c = 0 .. M-2 between them.
+ *
+ *        x--o--x---o---x----o----x ...  x--o--x          x vortex, o control point
+ *
+ * Unknowns: fish after fish, per fish in this order (struct layout gives the first index of each):
+ *
+ *     | x (N) y (N) | vx (N) vy (N) | ax (N) ay (N) | gamma (M) | circulation (1) | phi0 (1) |
+ */
+#ifndef FISH_H
+#define FISH_H
+
+#include "base/status.h"
+#include "case/case.h"
+
+/* A fixed weighted mean of at most four nodes: a point that moves with the body. */
+struct stencil {
+    int n;
+    int node[4];
+    double weight[4];
+};
+
+/* First index of each slice in the vector of all unknowns, and one past the last. The equations have the same layout:
+ * rows x, y: dx/dt - v; vx, vy: dv/dt - a; ax, ay: law of motion; sheet: M - 1 times no penetration, then Kelvin;
+ * shed: Kutta; phi0: control law. */
+struct layout {
+    int x, y, vx, vy, ax, ay, gamma, circulation, phi0, end;
+};
+
+/* A straight rigid motion given in time: doc/model.md, section 5. Angles in rad. */
+struct motion {
+    enum driven driven;
+    double speed;              /* m s-1 */
+    double heave;              /* m */
+    double pitch, pitch_phase; /* rad */
+    double omega, phase;       /* rad s-1, rad */
+    double pivot;              /* m from the nose */
+};
+
+/* Heading control: doc/model.md, section 11. Angles in rad. */
+struct control_law_data {
+    enum control_law law;
+    double bias, gain, limit, feedforward;
+    double rate;                     /* s-1 */
+    int n_headings;                  /* a table of desired headings, linear between its times */
+    double *heading_time;            /* s                                           (n_headings) */
+    double *heading;                 /* rad                                         (n_headings) */
+    int n_waypoints;                 /* visited in order; replace the table where there are any */
+    double *waypoint_x, *waypoint_y; /* m                                        (n_waypoints) */
+    double arrival;                  /* m */
+    double torque_scale;             /* N m: what the feedforward moment is divided by */
+};
+
+struct fish {
+    char *name;
+    struct layout at;
+
+    int n_nodes, n_edges, n_joints, n_sheet, n_control; /* N, N-1, N-2, M, M-1 */
+    double length;                                      /* m */
+    double edge_length;                                 /* natural length of every edge, m */
+    double frequency;                                   /* of the beat, Hz; 0: none */
+    double period;                                      /* over which means are taken, s; 0: no means */
+    double total_mass;                                  /* kg */
+
+    double *arc;               /* arc coordinate of the nodes, m                          (n_nodes) */
+    double *mass;              /* kg                                                      (n_nodes) */
+    double *height;            /* thickness across the plane of motion h, m               (n_edges) */
+    double *width;             /* extent out of that plane w, m                           (n_edges) */
+    double *axial_stiffness;   /* E A, N                                         (n_edges) */
+    double *axial_damping;     /* d_s, kg s-1                                    (n_edges) */
+    double *bending_stiffness; /* E I, N m2                                      (n_joints) */
+    double *bending_damping;   /* d_b, N m s                                    (n_joints) */
+
+    double *wave_amplitude; /* A (lbar/l_ref) (c1 sigma + c2 sigma^2)             (n_joints) */
+    double *wave_phase;     /* beta sigma + phase, rad                            (n_joints) */
+    double omega;           /* rad s-1 */
+    double ramp;            /* s */
+
+    double *drag_tangential; /* c_t, kg m-1                                       (n_edges) */
+    double *drag_normal;     /* c_n, kg m-1                                       (n_edges) */
+    double *added_mass;      /* mu, kg                                            (n_edges) */
+    enum drag_law drag_law;
+
+    double *sheet_weight;          /* ds_j, m                                     (n_sheet) */
+    struct stencil *sheet_point;   /* the bound vortices                          (n_sheet) */
+    struct stencil *control_point; /* where no penetration is asked for           (n_control) */
+    struct stencil heading_point;  /* the body point at a third of the length */
+
+    double smoothing;       /* of its free vortices, delta, m */
+    double sheet_smoothing; /* of its bound sheet seen from elsewhere, m */
+
+    double start_position[2]; /* of the nose, m */
+    double start_heading;     /* rad */
+    double start_speed;       /* m s-1 */
+    double load_tip[2];       /* N */
+    struct motion motion;
+    struct control_law_data control;
+};
+
+/* All that does not change during a run. */
+struct school {
+    int n_fish;
+    struct fish *fish;
+    int n_unknowns;
+
+    double density;             /* of the fluid, kg m-3 */
+    double velocity[2], shear;  /* m s-1, s-1 */
+    double gust[2], gust_omega; /* m s-1 in x and y, rad s-1 */
+
+    double interval;       /* between two events, s */
+    double lifetime, fade; /* of a free vortex, s */
+    enum shedding shedding;
+    enum kutta kutta;
+    double kutta_ramp; /* s */
+    enum dissipated dissipated;
+    double wake_tolerance; /* error of the velocity of the wakes at the bodies, lengths per beat; 0: none */
+
+    double rtol;
+    double coupling_distance; /* m */
+    int threads;
+};
+
+/* Build the school of a checked case. Fails with STATUS_MEMORY, or STATUS_CASE where fish overlap at the start. */
+enum status fish_school_create(struct school **school, const struct case_values *values);
+
+/* Release the school and all that it owns. Accepts NULL. */
+void fish_school_free(struct school *school);
+
+/* sum of weight * value over the nodes of the point. */
+double fish_mean(const struct stencil *point, const double *value);
+
+/* The number of nodes of the fish, from the nose on, whose motion is given: 0, 2 or all. */
+int fish_n_driven(const struct fish *fish);
+
+/* Its beats per second, or those of its driven motion; where it has none, the lengths per second at which it, or the
+ * stream, goes; 1 where nothing moves. With the length it gives the scale of velocities. */
+double fish_rate(const struct school *school, const struct fish *fish);
+
+/* Position, velocity, acceleration of node k of a driven fish at time t; each an array of x and y. */
+void fish_driven_node(const struct fish *fish, int k, double t, double position[2], double velocity[2],
+                      double acceleration[2]);
+
+/* Write position and velocity that the first n nodes of a driven fish have at time t into the vector of all unknowns. */
+void fish_drive(const struct fish *fish, int n, double t, double *y);
+
+/* Write nose to tail positions and velocities of the start into the vector of all unknowns: doc/model.md, 4 and 5. */
+void fish_start(const struct fish *fish, double *y);
+
+/* Least distance between the outlines of two bodies at the nodes given in y, 0 where they touch, m; it may be
+ * infinite where it is more than most. */
+double fish_distance(const struct fish *a, const struct fish *b, const double *y, double most);
+
+#endif

@@ -1,0 +1,457 @@
+/* flow.c: all sources onto all points. */
+#include "model/flow.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "vortex/kernel.h"
+#include "vortex/pairwise.h"
+
+int flow_midpoint(const struct fish *fish, int edge) {
+    return fish->n_control + edge;
+}
+
+int flow_tail(const struct fish *fish) {
+    return fish->n_control + fish->n_edges;
+}
+
+int flow_n_points(const struct fish *fish) {
+    return flow_tail(fish) + 1;
+}
+
+int flow_column(const struct fish *other, int c) {
+    const int n_places = 2 * other->n_nodes;
+    return c < n_places ? other->at.x + c : other->at.gamma + (c - n_places);
+}
+
+int flow_n_rows(const struct fish *fish) {
+    return fish->at.end - fish->at.ax;
+}
+
+int flow_n_columns(const struct fish *other) {
+    return 2 * other->n_nodes + other->n_sheet + 1;
+}
+
+static enum status doubles(double **values, int n) {
+    *values = calloc((size_t)n, sizeof **values);
+    return *values ? STATUS_OK : status_fail(STATUS_MEMORY, "no room for %d points of the flow", n);
+}
+
+static enum status make_chunks(struct flow *flow) {
+    int n = 0;
+    for (int f = 0; f < flow->school->n_fish; f++) n += vortices_n_chunks(flow->points[f].n);
+    flow->chunk = calloc((size_t)n, sizeof *flow->chunk);
+    if (!flow->chunk) return status_fail(STATUS_MEMORY, "no room for %d pieces of the flow", n);
+    for (int f = 0; f < flow->school->n_fish; f++) {
+        const struct range points = flow->points[f];
+        for (int i = 0; i < vortices_n_chunks(points.n); i++) {
+            const struct range part = vortices_chunk(i, points.n);
+            flow->chunk[flow->n_chunks++] = (struct chunk){f, {points.first + part.first, part.n}};
+        }
+    }
+    return STATUS_OK;
+}
+
+static enum status flow_fill(struct flow *flow) {
+    const struct school *school = flow->school;
+    const size_t n_fish = (size_t)school->n_fish;
+    flow->points = calloc(n_fish, sizeof *flow->points);
+    flow->released_range = calloc(n_fish, sizeof *flow->released_range);
+    flow->sheet_range = calloc(n_fish, sizeof *flow->sheet_range);
+    flow->by_interpolation = calloc(n_fish, sizeof *flow->by_interpolation);
+    if (!flow->points || !flow->released_range || !flow->sheet_range || !flow->by_interpolation) {
+        return status_fail(STATUS_MEMORY, "no room for the flow around %d fish", school->n_fish);
+    }
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *fish = &school->fish[f];
+        flow->points[f] = (struct range){flow->n_points, flow_n_points(fish)};
+        flow->n_points += flow->points[f].n;
+        flow->sheet_range[f] = (struct range){flow->sheet.n, fish->n_sheet};
+        TRY(vortices_append(&flow->sheet, fish->n_sheet, fish->sheet_smoothing));
+        TRY(vortices_append(&flow->nascent, 1, fish->smoothing));
+    }
+    double **const at_points[] = {&flow->x,         &flow->y,         &flow->u,        &flow->v,
+                                  &flow->u_x,       &flow->u_y,       &flow->v_x,      &flow->motion[0],
+                                  &flow->motion[1], &flow->motion[2], &flow->motion[3]};
+    for (size_t i = 0; i < sizeof at_points / sizeof *at_points; i++) TRY(doubles(at_points[i], flow->n_points));
+    TRY(make_chunks(flow));
+    TRY(doubles(&flow->opposite, flow->sheet.n));
+    TRY(velocity_sum_create(&flow->velocity_sum));
+    if (school->wake_tolerance <= 0) return STATUS_OK;
+    return wake_interpolation_create(&flow->interpolation, school, flow->points);
+}
+
+enum status flow_create(struct flow **flow, const struct school *school) {
+    *flow = NULL;
+    struct flow *const new = calloc(1, sizeof *new);
+    if (!new) return status_fail(STATUS_MEMORY, "no room for a flow");
+    new->school = school;
+    new->event = -1;
+    const enum status status = flow_fill(new);
+    if (status != STATUS_OK) {
+        flow_free(new);
+        return status;
+    }
+    *flow = new;
+    return STATUS_OK;
+}
+
+void flow_free(struct flow *flow) {
+    if (!flow) return;
+    wake_interpolation_free(flow->interpolation);
+    velocity_sum_free(flow->velocity_sum);
+    void *const owned[] = {flow->points,      flow->chunk,
+                           flow->x,           flow->y,
+                           flow->u,           flow->v,
+                           flow->u_x,         flow->u_y,
+                           flow->v_x,         flow->motion[0],
+                           flow->motion[1],   flow->motion[2],
+                           flow->motion[3],   flow->released_range,
+                           flow->sheet_range, flow->by_interpolation,
+                           flow->opposite};
+    for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
+    vortices_free(&flow->released);
+    vortices_free(&flow->nascent);
+    vortices_free(&flow->sheet);
+    free(flow);
+}
+
+void flow_external(const struct school *school, double t, double y, double *u, double *v) {
+    const double gust = sin(school->gust_omega * t);
+    *u = school->velocity[0] + school->shear * y + gust * school->gust[0];
+    *v = school->velocity[1] + gust * school->gust[1];
+}
+
+// what the points of a fish have of a quantity that its nodes have
+static void at_points(const struct flow *flow, int f, const double *of_nodes, double *of_points) {
+    const struct fish *fish = &flow->school->fish[f];
+    double *const to = of_points + flow->points[f].first;
+    for (int c = 0; c < fish->n_control; c++) to[c] = fish_mean(&fish->control_point[c], of_nodes);
+    for (int k = 0; k < fish->n_edges; k++) to[flow_midpoint(fish, k)] = (of_nodes[k] + of_nodes[k + 1]) / 2;
+    to[flow_tail(fish)] = of_nodes[fish->n_nodes - 1];
+}
+
+static void place_sheet(struct flow *flow, int f, const double *y) {
+    const struct fish *fish = &flow->school->fish[f];
+    const int first = flow->sheet_range[f].first;
+    for (int j = 0; j < fish->n_sheet; j++) {
+        flow->sheet.x[first + j] = fish_mean(&fish->sheet_point[j], y + fish->at.x);
+        flow->sheet.y[first + j] = fish_mean(&fish->sheet_point[j], y + fish->at.y);
+        flow->sheet.circulation[first + j] = fish->sheet_weight[j] * y[fish->at.gamma + j];
+        flow->opposite[first + j] = -flow->sheet.circulation[first + j];
+    }
+}
+
+static void place_nascent(struct flow *flow, const struct state *state, int f, const double *y) {
+    const struct fish *fish = &flow->school->fish[f];
+    const double tail[2] = {y[fish->at.x + fish->n_nodes - 1], y[fish->at.y + fish->n_nodes - 1]};
+    double position[2];
+    wake_nascent(&state->wake[f], flow->since, tail, position);
+    flow->nascent.x[f] = position[0];
+    flow->nascent.y[f] = position[1];
+    flow->nascent.circulation[f] = y[fish->at.circulation] - state->wake[f].shed_before;
+}
+
+enum status flow_update_sources(struct flow *flow, const struct state *state, double t, const double *y) {
+    const struct school *school = flow->school;
+    if (flow->event != state->event) flow_invalidate(flow);
+    // the released vortices move on known paths: at one time they are the same for every y
+    if (flow->event != state->event || flow->t != t) {
+        flow->event = state->event;
+        flow->t = t;
+        flow->since = t - state->t;
+        flow->has_released = 0;
+        if (flow->is_interpolated) wake_interpolation_update(flow->interpolation, t);
+    }
+    int all_foretold = 1;
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *fish = &school->fish[f];
+        at_points(flow, f, y + fish->at.x, flow->x);
+        at_points(flow, f, y + fish->at.y, flow->y);
+        place_sheet(flow, f, y);
+        place_nascent(flow, state, f, y);
+        const int first = flow->points[f].first;
+        flow->by_interpolation[f] =
+            flow->is_interpolated &&
+            wake_interpolation_is_valid(flow->interpolation, f, flow->x + first, flow->y + first);
+        all_foretold &= flow->by_interpolation[f];
+    }
+    if (all_foretold || flow->has_released) return STATUS_OK;
+    TRY(wake_interpolation_released(school, state, flow->since, &flow->released, flow->released_range));
+    flow->has_released = 1;
+    return STATUS_OK;
+}
+
+void flow_invalidate(struct flow *flow) {
+    flow->event = -1;
+    flow->is_interpolated = 0;
+}
+
+enum status flow_interpolate(struct flow *flow, const struct state *state) {
+    if (!flow->interpolation) return STATUS_OK;
+    const double *const y = state->y;
+    for (int f = 0; f < flow->school->n_fish; f++) {
+        const struct layout *at = &flow->school->fish[f].at;
+        const int from[4] = {at->vx, at->vy, at->ax, at->ay};
+        for (int i = 0; i < 4; i++) at_points(flow, f, y + from[i], flow->motion[i]);
+    }
+    const struct wake_interpolation_points points = {flow->x,         flow->y,         flow->motion[0],
+                                                     flow->motion[1], flow->motion[2], flow->motion[3]};
+    TRY(wake_interpolation_build(flow->interpolation, state, &points));
+    // whatever the time: placed anew, by the forecast
+    flow->t = NAN;
+    flow->is_interpolated = 1;
+    return STATUS_OK;
+}
+
+// the part of a chunk that lies in a range of points
+static struct range overlap(const struct chunk *chunk, struct range range) {
+    const int first = chunk->at.first > range.first ? chunk->at.first : range.first;
+    const int end = chunk->at.first + chunk->at.n, range_end = range.first + range.n;
+    return (struct range){first, (end < range_end ? end : range_end) - first};
+}
+
+// add what the own bound sheet, with one smoothing and these circulations, causes at some points of its fish
+static void induce_own(const struct flow *flow, const struct chunk *chunk, struct range points, double smoothing,
+                       double *circulation, const struct induced *all) {
+    const struct range which = overlap(chunk, points);
+    if (which.n <= 0) return;
+    const struct vortices sheet = {.n = flow->sheet.n,
+                                   .x = flow->sheet.x,
+                                   .y = flow->sheet.y,
+                                   .circulation = circulation,
+                                   .n_groups = 1,
+                                   .group = &(struct vortex_group){{0, flow->sheet.n}, smoothing}};
+    const struct induced at = vortices_targets(all, which);
+    vortices_induce(&sheet, flow->sheet_range[chunk->fish], &at);
+}
+
+// the bound sheets at a chunk: those of other fish; the own one at control points with no smoothing, at the tail with
+// some, not at the midpoints
+static void induce_sheets(const struct flow *flow, const struct chunk *chunk, int by_tree, const struct induced *all) {
+    const struct fish *fish = &flow->school->fish[chunk->fish];
+    const struct range own = flow->sheet_range[chunk->fish], points = flow->points[chunk->fish];
+    const struct range control = {points.first, fish->n_control}, tail = {points.first + flow_tail(fish), 1};
+    induce_own(flow, chunk, control, 0, flow->sheet.circulation, all);
+    if (by_tree) {
+        // the tree has summed all of them at all points
+        const struct range but_tail = {points.first, points.n - 1};
+        induce_own(flow, chunk, but_tail, fish->sheet_smoothing, flow->opposite, all);
+        return;
+    }
+    const struct induced at = vortices_targets(all, chunk->at);
+    const int behind = own.first + own.n;
+    vortices_induce(&flow->sheet, (struct range){0, own.first}, &at);
+    vortices_induce(&flow->sheet, (struct range){behind, flow->sheet.n - behind}, &at);
+    induce_own(flow, chunk, tail, fish->sheet_smoothing, flow->sheet.circulation, all);
+}
+
+static void evaluate_chunk(const struct flow *flow, const struct chunk *chunk, int by_tree, const struct induced *all) {
+    const struct school *school = flow->school;
+    const struct induced at = vortices_targets(all, chunk->at);
+    for (int p = 0; p < at.n; p++) {
+        double u, v;
+        flow_external(school, flow->t, at.y[p], &u, &v);
+        at.u[p] += u;
+        at.v[p] += v;
+    }
+    for (int p = 0; at.u_x && p < at.n; p++) at.u_y[p] += school->shear;
+    if (flow->by_interpolation[chunk->fish]) {
+        wake_interpolation_induce(flow->interpolation, chunk->fish, chunk->at.first, &at);
+    } else {
+        vortices_induce(&flow->released, (struct range){0, flow->released.n}, &at);
+    }
+    vortices_induce(&flow->nascent, (struct range){0, flow->nascent.n}, &at);
+    induce_sheets(flow, chunk, by_tree, all);
+}
+
+static void evaluate(struct flow *flow, int with_gradient) {
+    struct induced all = {flow->n_points, flow->x, flow->y, flow->u, flow->v, NULL, NULL, NULL};
+    if (with_gradient) {
+        all.u_x = flow->u_x;
+        all.u_y = flow->u_y;
+        all.v_x = flow->v_x;
+    }
+    const int n_sources = flow->sheet.n + flow->nascent.n + (flow->has_released ? flow->released.n : 0);
+    const int threads = vortices_threads(flow->school->threads, (double)flow->n_points * n_sources);
+    const double tolerance = flow->school->wake_tolerance;
+    int by_tree = velocity_sum_by_tree(&flow->sheet, flow->n_points, tolerance);
+    vortices_zero(&all);
+    if (by_tree && velocity_sum_induce(flow->velocity_sum, &flow->sheet, tolerance, threads, &all) != STATUS_OK) {
+        // without memory for a tree there is still the direct sum
+        by_tree = 0;
+        vortices_zero(&all);
+    }
+#pragma omp parallel for num_threads(threads) schedule(static)
+    for (int c = 0; c < flow->n_chunks; c++) evaluate_chunk(flow, &flow->chunk[c], by_tree, &all);
+}
+
+void flow_velocity(struct flow *flow) {
+    evaluate(flow, 0);
+}
+
+void flow_gradient(struct flow *flow) {
+    evaluate(flow, 1);
+}
+
+// the derivatives at n points from first on: column c of both components
+struct part {
+    double *u, *v;
+};
+static struct part part_of(const struct influence_block *block, int c, int first) {
+    const long at = (long)c * block->n_points + first;
+    return (struct part){block->u + at, block->v + at};
+}
+
+// add factor times the derivative with respect to the place of a point that moves with the nodes of fish other
+static void add_motion(const struct influence_block *block, const struct fish *other, const struct stencil *point,
+                       int first, int n, const struct kernel_values *slope, double factor) {
+    for (int i = 0; i < point->n; i++) {
+        const struct part by_x = part_of(block, point->node[i], first);
+        const struct part by_y = part_of(block, other->n_nodes + point->node[i], first);
+        kernel_add_motion(n, factor * point->weight[i], slope, by_x.u, by_x.v, by_y.u, by_y.v);
+    }
+}
+
+// the velocity per strength of one source, into column c
+static void set_strength(const struct influence_block *block, int c, int first, int n, const struct kernel_values *unit,
+                         double weight) {
+    const struct part to = part_of(block, c, first);
+    for (int i = 0; i < n; i++) {
+        to.u[i] = unit->u[i] * weight;
+        to.v[i] = unit->v[i] * weight;
+    }
+}
+
+// what column a source has, and whether its place moves with the unknowns too
+struct target {
+    const struct flow *flow;
+    int f, g, with_places;
+    const struct influence_block *block;
+};
+
+// the nascent vortex of fish g at all points of fish f
+static void derive_nascent(const struct target *at) {
+    const struct flow *flow = at->flow;
+    const struct fish *other = &flow->school->fish[at->g];
+    const struct range points = flow->points[at->f];
+    const struct stencil tail = {.n = 1, .node = {other->n_nodes - 1}, .weight = {1}};
+    for (int first = 0; first < points.n; first += KERNEL_CHUNK) {
+        const int n = points.n - first < KERNEL_CHUNK ? points.n - first : KERNEL_CHUNK;
+        struct kernel_values unit;
+        kernel_unit(n, flow->x + points.first + first, flow->y + points.first + first, flow->nascent.x[at->g],
+                    flow->nascent.y[at->g], other->smoothing, &unit);
+        set_strength(at->block, at->block->n_columns - 1, first, n, &unit, 1);
+        if (at->with_places) {
+            add_motion(at->block, other, &tail, first, n, &unit, -flow->nascent.circulation[at->g]);
+        }
+    }
+}
+
+// the bound vortices of fish g at a range of the points of fish f
+static void derive_sheet(const struct target *at, struct range points, double smoothing) {
+    const struct flow *flow = at->flow;
+    const struct fish *other = &flow->school->fish[at->g];
+    const int here = flow->points[at->f].first, sheet = flow->sheet_range[at->g].first;
+    const int strength = at->block->n_columns - 1 - other->n_sheet, end = points.first + points.n;
+    for (int first = points.first; first < end; first += KERNEL_CHUNK) {
+        const int n = end - first < KERNEL_CHUNK ? end - first : KERNEL_CHUNK;
+        for (int j = 0; j < other->n_sheet; j++) {
+            struct kernel_values unit;
+            kernel_unit(n, flow->x + here + first, flow->y + here + first, flow->sheet.x[sheet + j],
+                        flow->sheet.y[sheet + j], smoothing, &unit);
+            set_strength(at->block, strength + j, first, n, &unit, other->sheet_weight[j]);
+            if (at->with_places) {
+                add_motion(at->block, other, &other->sheet_point[j], first, n, &unit,
+                           -flow->sheet.circulation[sheet + j]);
+            }
+        }
+    }
+}
+
+// all that moves with fish g, at the points of fish f that feel it
+static void derive_sources(const struct target *at) {
+    const struct flow *flow = at->flow;
+    const struct fish *fish = &flow->school->fish[at->f], *other = &flow->school->fish[at->g];
+    const size_t size = (size_t)at->block->n_points * (size_t)at->block->n_columns;
+    memset(at->block->u, 0, size * sizeof *at->block->u);
+    memset(at->block->v, 0, size * sizeof *at->block->v);
+    derive_nascent(at);
+    if (at->f == at->g) {
+        derive_sheet(at, (struct range){0, fish->n_control}, 0);
+        derive_sheet(at, (struct range){flow_tail(fish), 1}, fish->sheet_smoothing);
+    } else {
+        derive_sheet(at, (struct range){0, flow->points[at->f].n}, other->sheet_smoothing);
+    }
+}
+
+// the stencil of point p of a fish
+static struct stencil point_stencil(const struct fish *fish, int p) {
+    if (p < fish->n_control) return fish->control_point[p];
+    if (p == flow_tail(fish)) return fish->sheet_point[fish->n_sheet - 1];
+    const int k = p - fish->n_control;
+    return (struct stencil){.n = 2, .node = {k, k + 1}, .weight = {0.5, 0.5}};
+}
+
+void flow_derivative(const struct flow *flow, int f, int g, struct influence_block *block) {
+    const struct fish *fish = &flow->school->fish[f];
+    block->n_points = flow->points[f].n;
+    block->n_columns = flow_n_columns(&flow->school->fish[g]);
+    derive_sources(&(struct target){flow, f, g, 1, block});
+    if (f != g) return;
+    // the points of a fish move with its own nodes, in the field of all sources
+    for (int p = 0; p < block->n_points; p++) {
+        const int at = flow->points[f].first + p;
+        const struct stencil point = point_stencil(fish, p);
+        for (int i = 0; i < point.n; i++) {
+            const double w = point.weight[i];
+            const struct part by_x = part_of(block, point.node[i], p);
+            const struct part by_y = part_of(block, fish->n_nodes + point.node[i], p);
+            *by_x.u += w * flow->u_x[at];
+            *by_x.v += w * flow->v_x[at];
+            *by_y.u += w * flow->u_y[at];
+            *by_y.v -= w * flow->u_x[at];
+        }
+    }
+}
+
+void flow_influence(const struct flow *flow, int f, int g, struct influence_block *block) {
+    block->n_points = flow->points[f].n;
+    block->n_columns = flow->school->fish[g].n_sheet + 1;
+    derive_sources(&(struct target){flow, f, g, 0, block});
+}
+
+// the external flow, the nascent vortices and, where they are not summed by the tree, the sheets at the released ones
+static void others_at_wake(const struct flow *flow, int sheets_too, const struct induced *all) {
+    const int n_chunks = vortices_n_chunks(all->n);
+    const int threads = vortices_threads(flow->school->threads, (double)all->n * flow->sheet.n);
+#pragma omp parallel for num_threads(threads) schedule(static)
+    for (int chunk = 0; chunk < n_chunks; chunk++) {
+        const struct induced at = vortices_targets(all, vortices_chunk(chunk, all->n));
+        for (int i = 0; i < at.n; i++) flow_external(flow->school, flow->t, at.y[i], &at.u[i], &at.v[i]);
+        vortices_induce(&flow->nascent, (struct range){0, flow->nascent.n}, &at);
+        if (sheets_too) vortices_induce(&flow->sheet, (struct range){0, flow->sheet.n}, &at);
+    }
+}
+
+enum status flow_at_wake(const struct flow *flow, double *u, double *v) {
+    const struct vortices *const released = &flow->released;
+    const struct induced at = {.n = released->n, .x = released->x, .y = released->y, .u = u, .v = v};
+    const double tolerance = flow->school->wake_tolerance;
+    const int by_tree = velocity_sum_by_tree(&flow->sheet, released->n, tolerance);
+    const int threads = vortices_threads(flow->school->threads, (double)released->n * released->n);
+    others_at_wake(flow, !by_tree, &at);
+    if (by_tree) TRY(velocity_sum_induce(flow->velocity_sum, &flow->sheet, tolerance, threads, &at));
+    if (velocity_sum_by_tree(released, released->n, tolerance)) {
+        return velocity_sum_induce(flow->velocity_sum, released, tolerance, threads, &at);
+    }
+    return pairwise_add_velocity(released, threads, u, v);
+}
+
+void flow_slip(const struct flow *flow, int f, const double *y, double slip[2]) {
+    const struct fish *fish = &flow->school->fish[f];
+    const int tail = flow->points[f].first + flow_tail(fish);
+    slip[0] = flow->u[tail] - y[fish->at.vx + fish->n_nodes - 1];
+    slip[1] = flow->v[tail] - y[fish->at.vy + fish->n_nodes - 1];
+}

@@ -1,0 +1,121 @@
+/* flow.h: the velocity of the fluid at the points of every body and anywhere else: external flow, free sheets, nascent
+ * vortices, bound sheets. doc/model.md, sections 6 to 9. Tested by tests/model/test_flow.c.
+ *
+ * The points of one fish, in this order; which sheets each of them feels:
+ *
+ *     | control points (M-1)          | edge midpoints (N-1)  | tail (1)                         |
+ *     | all; own with no smoothing    | those of other fish   | all, with sheet_smoothing        |
+ *
+ * The sources: per fish its free vortices, released ones and the nascent one, and its bound vortices. */
+#ifndef FLOW_H
+#define FLOW_H
+
+#include "base/status.h"
+#include "model/fish.h"
+#include "model/state.h"
+#include "model/wake_interpolation.h"
+#include "vortex/velocity_sum.h"
+#include "vortex/vortices.h"
+
+/* Points of one fish that a thread takes at once. */
+struct chunk {
+    int fish;
+    struct range at; /* among the points of all fish */
+};
+
+struct flow {
+    const struct school *school;
+    double t, since; /* time of the sources, and time since the last event, s */
+    long event;      /* whose wakes are placed; -1: none yet */
+
+    /* points */
+    struct range *points; /* of each fish                                           (n_fish) */
+    int n_points;
+    int n_chunks;
+    struct chunk *chunk;     /* all points, in pieces for the threads               (n_chunks) */
+    double *x, *y, *u, *v;   /* place, m, and velocity of the fluid, m s-1         (n_points) */
+    double *u_x, *u_y, *v_x; /* gradient, after flow_gradient, s-1                 (n_points) */
+
+    /* sources */
+    struct vortices released;     /* the free vortices of all fish; only where some fish is not foretold */
+    struct range *released_range; /* of each fish                                   (n_fish) */
+    int has_released;             /* whether they are placed at t */
+    struct vortices nascent;      /* one of each fish                               (n_fish) */
+    struct vortices sheet;        /* the bound vortices of all fish */
+    struct range *sheet_range;    /* of each fish                                   (n_fish) */
+    double *opposite;             /* circulations of the bound vortices with the other sign (sheet.n) */
+
+    struct velocity_sum *velocity_sum;        /* where wakes or sheets are summed by the tree */
+    struct wake_interpolation *interpolation; /* of the released vortices; NULL: they are never foretold */
+    int is_interpolated;                      /* whether there is one for this event */
+    unsigned char *by_interpolation;          /* whether it serves the fish where it is now        (n_fish) */
+    double *motion[4];                        /* velocity and acceleration of the points           (n_points) */
+};
+
+/* Derivative of the velocity at the points of fish f with respect to the unknowns of fish g, column by column:
+ * columns are x (N_g), y (N_g), sheet (M_g), shed (1) of fish g. */
+struct influence_block {
+    int n_points, n_columns;
+    double *u, *v; /* (n_columns, n_points) */
+};
+
+/* Derivative of the equations of fish f that feel the fluid with respect to the same unknowns of fish g, column by
+ * column: row r is the equation at.ax + r of fish f, so rows are ax, ay, sheet, shed, phi0. */
+struct coupling_block {
+    int n_rows, n_columns;
+    double *value; /* (n_columns, n_rows) */
+};
+
+/* Fails with STATUS_MEMORY. flow_free accepts NULL. */
+enum status flow_create(struct flow **flow, const struct school *school);
+void flow_free(struct flow *flow);
+
+/* The number of points of a fish. */
+int flow_n_points(const struct fish *fish);
+
+/* Index, among the points of a fish, of the midpoint of an edge and of the tail; control point c is point c. */
+int flow_midpoint(const struct fish *fish, int edge);
+int flow_tail(const struct fish *fish);
+
+/* The unknown that column c of the block of fish other stands for. */
+int flow_column(const struct fish *other, int c);
+
+/* The number of rows of fish that feel the fluid, and of columns of the block of fish other. */
+int flow_n_rows(const struct fish *fish);
+int flow_n_columns(const struct fish *other);
+
+/* The external flow at height y at time t. */
+void flow_external(const struct school *school, double t, double y, double *u, double *v);
+
+/* Place all sources as they are at time t (at or after the event of the state) for the unknowns y.
+ * Fails with STATUS_MEMORY. */
+enum status flow_update_sources(struct flow *flow, const struct state *state, double t, const double *y);
+
+/* The wakes have changed since they were last placed. */
+void flow_invalidate(struct flow *flow);
+
+/* Foretell what the released vortices do to the bodies until the next event; from now until flow_invalidate they are not
+ * summed up any more for fish that stay near their foretold path. At the event of the state, after flow_update_sources, when the
+ * velocities of the wakes are known. Fails with STATUS_MEMORY. */
+enum status flow_interpolate(struct flow *flow, const struct state *state);
+
+/* The velocity at all points of all fish; with its gradient too. After flow_update_sources. */
+void flow_velocity(struct flow *flow);
+void flow_gradient(struct flow *flow);
+
+/* Fill block with the derivative of the velocity at the points of fish f by the unknowns of fish g. After
+ * flow_gradient. */
+void flow_derivative(const struct flow *flow, int f, int g, struct influence_block *block);
+
+/* Fill block with the velocity at the points of fish f that each bound vortex of unit strength, and a nascent vortex of
+ * unit circulation, of fish g causes: columns sheet (M_g), shed (1). After flow_update_sources. */
+void flow_influence(const struct flow *flow, int f, int g, struct influence_block *block);
+
+/* The velocity (u, v), both (released.n), at the released vortices of all fish. After flow_invalidate and flow_update_sources. Fails
+ * with STATUS_MEMORY. */
+enum status flow_at_wake(const struct flow *flow, double *u, double *v);
+
+/* The fluid's velocity past the tail of fish f, u - v_tail. After flow_velocity. */
+void flow_slip(const struct flow *flow, int f, const double *y, double slip[2]);
+
+#endif

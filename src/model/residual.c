@@ -1,0 +1,388 @@
+/* residual.c: the equations in the order of doc/model.md, section 10, and their derivatives in the same order. */
+#include "model/residual.h"
+
+#include <math.h>
+#include <omp.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/ramp.h"
+#include "model/actuation.h"
+#include "model/bound_sheet.h"
+#include "model/drag.h"
+#include "model/rod.h"
+
+static enum status allocate(struct residual *residual) {
+    const struct school *school = residual->school;
+    const size_t n_fish = (size_t)school->n_fish;
+    int n_joints = 0, most_points = 0, most_columns = 0, most_rows = 0;
+    residual->joints = calloc(n_fish, sizeof *residual->joints);
+    residual->coupled = calloc(n_fish * n_fish, sizeof *residual->coupled);
+    if (!residual->joints || !residual->coupled) goto no_memory;
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *fish = &school->fish[f];
+        const int points = flow_n_points(fish), columns = flow_n_columns(fish);
+        residual->joints[f] = (struct range){n_joints, fish->n_joints};
+        n_joints += fish->n_joints;
+        if (points > most_points) most_points = points;
+        if (columns > most_columns) most_columns = columns;
+        if (flow_n_rows(fish) > most_rows) most_rows = flow_n_rows(fish);
+    }
+    const size_t n_columns = (size_t)most_columns, n_block = (size_t)most_points * n_columns;
+    residual->jacobian_scratch = calloc((size_t)school->threads, sizeof *residual->jacobian_scratch);
+    for (int i = 0; residual->jacobian_scratch && i < school->threads; i++) {
+        struct jacobian_scratch *const jacobian_scratch = &residual->jacobian_scratch[i];
+        jacobian_scratch->block.u = calloc(n_block, sizeof(double));
+        jacobian_scratch->block.v = calloc(n_block, sizeof(double));
+        jacobian_scratch->rows.value = calloc((size_t)most_rows * n_columns, sizeof(double));
+        if (!jacobian_scratch->block.u || !jacobian_scratch->block.v || !jacobian_scratch->rows.value) goto no_memory;
+    }
+    residual->scratch = calloc((size_t)school->n_unknowns, sizeof(double));
+    residual->natural_curvature = calloc((size_t)n_joints, sizeof(double));
+    residual->curvature_by_phi0 = calloc((size_t)n_joints, sizeof(double));
+    if (!residual->natural_curvature || !residual->curvature_by_phi0 || !residual->scratch ||
+        !residual->jacobian_scratch) {
+        goto no_memory;
+    }
+    return flow_create(&residual->flow, school);
+
+no_memory:
+    return status_fail(STATUS_MEMORY, "no room for the equations of %d fish", school->n_fish);
+}
+
+enum status residual_create(struct residual **residual, const struct school *school, const struct state *state) {
+    *residual = NULL;
+    struct residual *const new = calloc(1, sizeof *new);
+    if (!new) return status_fail(STATUS_MEMORY, "no room for the equations");
+    new->school = school;
+    new->state = state;
+    const enum status status = allocate(new);
+    if (status != STATUS_OK) {
+        residual_free(new);
+        return status;
+    }
+    residual_couple(new, state->y);
+    *residual = new;
+    return STATUS_OK;
+}
+
+void residual_free(struct residual *residual) {
+    if (!residual) return;
+    flow_free(residual->flow);
+    free(residual->joints);
+    free(residual->coupled);
+    free(residual->natural_curvature);
+    free(residual->curvature_by_phi0);
+    free(residual->scratch);
+    for (int i = 0; residual->jacobian_scratch && i < residual->school->threads; i++) {
+        free(residual->jacobian_scratch[i].block.u);
+        free(residual->jacobian_scratch[i].block.v);
+        free(residual->jacobian_scratch[i].rows.value);
+    }
+    free(residual->jacobian_scratch);
+    free(residual);
+}
+
+int residual_couple(struct residual *residual, const double *y) {
+    const struct school *school = residual->school;
+    int changed = 0;
+    for (int f = 0; f < school->n_fish; f++) {
+        for (int g = 0; g <= f; g++) {
+            const double most = school->coupling_distance;
+            const int couple = f == g || fish_distance(&school->fish[f], &school->fish[g], y, most) <= most;
+            unsigned char *const here = &residual->coupled[f * school->n_fish + g];
+            if (*here != couple) changed = 1;
+            *here = residual->coupled[g * school->n_fish + f] = (unsigned char)couple;
+        }
+    }
+    residual->pattern += (unsigned)changed;
+    return changed;
+}
+
+static enum bound_sheet_law law_of(const struct residual *residual) {
+    const struct school *school = residual->school;
+    if (school->shedding == SHEDDING_IMPULSIVE && !(residual->at_impulse && school->kutta == KUTTA_EDGE)) {
+        return BOUND_SHEET_FROZEN;
+    }
+    return school->kutta == KUTTA_EDGE ? BOUND_SHEET_EDGE : BOUND_SHEET_RATE;
+}
+
+int residual_shed_is_algebraic(const struct residual *residual) {
+    return law_of(residual) == BOUND_SHEET_EDGE;
+}
+
+double residual_kutta_rate(const struct residual *residual, int f, double t, const double *y) {
+    const int first = residual->flow->points[f].first;
+    return bound_sheet_shedding_rate(&residual->school->fish[f], ramp_value(t, residual->school->kutta_ramp),
+                                     residual->flow->u + first, residual->flow->v + first, y);
+}
+
+double residual_shed_rate(const struct residual *residual, int f, double t, const double *y) {
+    return law_of(residual) == BOUND_SHEET_RATE ? residual_kutta_rate(residual, f, t, y) : 0;
+}
+
+double residual_dissipated(const struct residual *residual, int f) {
+    return residual->school->dissipated == DISSIPATED_DROPPED ? residual->state->wake[f].dissipated : 0;
+}
+
+// the moment of the flow matters to a law with feedforward only
+static int feels_moment(const struct fish *fish) {
+    return fish->control.law == CONTROL_HEADING && fish->control.feedforward != 0;
+}
+
+double residual_moment(const struct residual *residual, int f, const double *y) {
+    const struct fish *fish = &residual->school->fish[f];
+    const int first = residual->flow->points[f].first;
+    return feels_moment(fish) ? drag_moment(fish, residual->flow->u + first, residual->flow->v + first, y) : 0;
+}
+
+void residual_muscle(struct residual *residual, int f, double t, const double *y) {
+    const struct fish *fish = &residual->school->fish[f];
+    const int first = residual->joints[f].first;
+    actuation_curvature(fish, t, y[fish->at.phi0], residual->natural_curvature + first,
+                        residual->curvature_by_phi0 + first);
+}
+
+// the rows of a node whose motion is given: its place, velocity and acceleration are the given ones
+static void drive(const struct fish *fish, double t, const double *y, double *value) {
+    for (int k = 0; k < fish_n_driven(fish); k++) {
+        double position[2], velocity[2], acceleration[2];
+        fish_driven_node(fish, k, t, position, velocity, acceleration);
+        value[fish->at.x + k] = y[fish->at.x + k] - position[0];
+        value[fish->at.y + k] = y[fish->at.y + k] - position[1];
+        value[fish->at.vx + k] = y[fish->at.vx + k] - velocity[0];
+        value[fish->at.vy + k] = y[fish->at.vy + k] - velocity[1];
+        value[fish->at.ax + k] = y[fish->at.ax + k] - acceleration[0];
+        value[fish->at.ay + k] = y[fish->at.ay + k] - acceleration[1];
+    }
+}
+
+// rows ax, ay: m a less all forces, N
+static void balance(const struct residual *residual, int f, const double *u, const double *v, const double *y,
+                    double *value) {
+    const struct fish *fish = &residual->school->fish[f];
+    for (int k = 0; k < fish->n_nodes; k++) {
+        value[fish->at.ax + k] = fish->mass[k] * y[fish->at.ax + k];
+        value[fish->at.ay + k] = fish->mass[k] * y[fish->at.ay + k];
+    }
+    rod_residual(fish, residual->natural_curvature + residual->joints[f].first, y, value);
+    drag_residual(fish, u, v, y, value);
+    value[fish->at.ax + fish->n_nodes - 1] -= fish->load_tip[0];
+    value[fish->at.ay + fish->n_nodes - 1] -= fish->load_tip[1];
+}
+
+static void evaluate_fish(struct residual *residual, int f, double t, const double *y, const double *yp,
+                          double *value) {
+    const struct school *school = residual->school;
+    const struct state *state = residual->state;
+    const struct fish *fish = &school->fish[f];
+    const double *const u = residual->flow->u + residual->flow->points[f].first;
+    const double *const v = residual->flow->v + residual->flow->points[f].first;
+
+    // dx/dt = v and dv/dt = a
+    for (int i = 0; i < 2 * fish->n_nodes; i++) {
+        value[fish->at.x + i] = yp[fish->at.x + i] - y[fish->at.vx + i];
+        value[fish->at.vx + i] = yp[fish->at.vx + i] - y[fish->at.ax + i];
+    }
+    // the law of motion, per mass
+    residual_muscle(residual, f, t, y);
+    balance(residual, f, u, v, y, value);
+    for (int k = 0; k < fish->n_nodes; k++) {
+        value[fish->at.ax + k] /= fish->mass[k];
+        value[fish->at.ay + k] /= fish->mass[k];
+    }
+    drive(fish, t, y, value);
+    // no penetration, Kelvin, Kutta
+    bound_sheet_residual(fish, residual_dissipated(residual, f), u, v, y, value);
+    bound_sheet_kutta_residual(fish, law_of(residual), ramp_value(t, school->kutta_ramp), u, v, y, yp, value);
+    // the control law
+    const double tau = residual_moment(residual, f, y);
+    control_residual(fish, &state->control[f], t, t - state->t, tau, y, value);
+}
+
+enum status residual_evaluate(struct residual *residual, double t, const double *y, const double *yp, double *value) {
+    TRY(flow_update_sources(residual->flow, residual->state, t, y));
+    flow_velocity(residual->flow);
+#pragma omp parallel for num_threads(jacobian_threads(residual->school, JACOBIAN_LIGHT)) schedule(static)
+    for (int f = 0; f < residual->school->n_fish; f++) evaluate_fish(residual, f, t, y, yp, value);
+    for (int i = 0; i < residual->school->n_unknowns; i++) {
+        if (!isfinite(value[i])) {
+            const struct unknown_place place = residual_place(residual->school, i);
+            return status_fail(STATUS_RETRY, "the equation for %s[%d] of fish %s has no finite value at t = %g s",
+                               place.name, place.index, residual->school->fish[place.fish].name, t);
+        }
+    }
+    return STATUS_OK;
+}
+
+void residual_balance(const struct residual *residual, int f, const double *y, double *value) {
+    const int first = residual->flow->points[f].first;
+    balance(residual, f, residual->flow->u + first, residual->flow->v + first, y, value);
+}
+
+// the equations of fish f by what moves with fish g and comes through the velocity of the fluid
+static void stamp_flow(const struct residual *residual, int f, int g, double t, double by_tau, const double *y,
+                       struct influence_block *block, struct coupling_block *rows) {
+    const struct fish *fish = &residual->school->fish[f];
+    const double *const u = residual->flow->u + residual->flow->points[f].first;
+    const double *const v = residual->flow->v + residual->flow->points[f].first;
+    rows->n_rows = flow_n_rows(fish);
+    rows->n_columns = flow_n_columns(&residual->school->fish[g]);
+    memset(rows->value, 0, (size_t)rows->n_rows * (size_t)rows->n_columns * sizeof *rows->value);
+    flow_derivative(residual->flow, f, g, block);
+    drag_flow_jacobian(fish, u, v, block, y, rows);
+    bound_sheet_flow_jacobian(fish, block, y, rows);
+    if (law_of(residual) == BOUND_SHEET_RATE) {
+        bound_sheet_kutta_flow_jacobian(fish, ramp_value(t, residual->school->kutta_ramp), block, y, rows);
+    }
+    if (feels_moment(fish)) drag_moment_flow_jacobian(fish, by_tau, u, v, block, y, rows);
+}
+
+// add the rows of a fish by its own unknowns to its block: those entries that may differ from zero. The midpoint of an
+// edge feels the nodes of that edge and, through the nascent vortex, the tail and the circulation shed.
+static void add_own(const struct residual *residual, const struct fish *fish, const struct coupling_block *rows,
+                    struct sparse *own) {
+    const int n_nodes = fish->n_nodes, n_places = 2 * n_nodes;
+    const int rate = law_of(residual) == BOUND_SHEET_RATE, moment = feels_moment(fish);
+    for (int c = 0; c < rows->n_columns; c++) {
+        const double *const value = rows->value + (long)c * rows->n_rows;
+        const int column = flow_column(fish, c), node = c % n_nodes;
+        const int is_shed = c == rows->n_columns - 1, is_sheet = c >= n_places && !is_shed;
+        const int all = is_shed || node == n_nodes - 1;
+        const int first = all || node == 0 ? 0 : node - 1, last = all || node == n_nodes - 2 ? n_nodes - 1 : node + 1;
+        for (int k = first; !is_sheet && k <= last; k++) {
+            sparse_add(own, fish->at.ax + k, column, value[k]);
+            sparse_add(own, fish->at.ay + k, column, value[n_nodes + k]);
+        }
+        for (int k = 0; k < fish->n_control; k++) sparse_add(own, fish->at.gamma + k, column, value[n_places + k]);
+        if (rate) sparse_add(own, fish->at.circulation, column, value[fish->at.circulation - fish->at.ax]);
+        if (moment && !is_sheet) sparse_add(own, fish->at.phi0, column, value[fish->at.phi0 - fish->at.ax]);
+    }
+}
+
+// the derivatives of one fish's equations, in the order of evaluate_fish
+static enum status stamp_fish(struct residual *residual, int f, double t, double cj, const double *y,
+                              struct jacobian_scratch *jacobian_scratch, struct jacobian *jacobian) {
+    const struct school *school = residual->school;
+    const struct fish *fish = &school->fish[f];
+    struct sparse *const own = jacobian->own[f];
+    const double *const u = residual->flow->u + residual->flow->points[f].first;
+    const double *const v = residual->flow->v + residual->flow->points[f].first;
+    const int joints = residual->joints[f].first;
+
+    sparse_begin(own);
+    for (int i = 0; i < 2 * fish->n_nodes; i++) {
+        sparse_add(own, fish->at.x + i, fish->at.x + i, cj);
+        sparse_add(own, fish->at.x + i, fish->at.vx + i, -1);
+        sparse_add(own, fish->at.vx + i, fish->at.vx + i, cj);
+        sparse_add(own, fish->at.vx + i, fish->at.ax + i, -1);
+        sparse_add(own, fish->at.ax + i, fish->at.ax + i, 1);
+    }
+    residual_muscle(residual, f, t, y);
+    rod_jacobian(fish, residual->natural_curvature + joints, residual->curvature_by_phi0 + joints, y, own);
+    drag_jacobian(fish, u, v, y, own);
+    bound_sheet_jacobian(fish, u, v, y, own);
+    bound_sheet_kutta_jacobian(fish, law_of(residual), ramp_value(t, school->kutta_ramp), cj, u, v, y, own);
+    const double tau = residual_moment(residual, f, y);
+    const double by_tau = control_jacobian(fish, &residual->state->control[f], t, tau, y, own);
+    if (feels_moment(fish)) drag_moment_jacobian(fish, by_tau, u, v, y, own);
+
+    // what comes through the velocity of the fluid: by the fish's own unknowns, and by those of the fish it couples to
+    stamp_flow(residual, f, f, t, by_tau, y, &jacobian_scratch->block, &jacobian_scratch->rows);
+    add_own(residual, fish, &jacobian_scratch->rows, own);
+    for (int i = jacobian->first[f]; i < jacobian->first[f + 1]; i++) {
+        struct jacobian_coupling *const coupling = &jacobian->coupling[i];
+        stamp_flow(residual, f, coupling->other, t, by_tau, y, &jacobian_scratch->block, &coupling->rows);
+    }
+    jacobian_mask_couplings(jacobian, f);
+    return sparse_end(own);
+}
+
+enum status residual_jacobian(struct residual *residual, double t, double cj, const double *y,
+                              struct jacobian *jacobian) {
+    const int n_fish = residual->school->n_fish;
+    TRY(flow_update_sources(residual->flow, residual->state, t, y));
+    flow_gradient(residual->flow);
+    if (jacobian->pattern != residual->pattern) {
+        TRY(jacobian_couple(jacobian, residual->coupled, residual->pattern));
+    }
+    int n_failed = 0;
+#pragma omp parallel for num_threads(jacobian_threads(residual->school, JACOBIAN_HEAVY)) schedule(dynamic)
+    for (int f = 0; f < n_fish; f++) {
+        struct jacobian_scratch *const jacobian_scratch = &residual->jacobian_scratch[omp_get_thread_num()];
+        if (stamp_fish(residual, f, t, cj, y, jacobian_scratch, jacobian) != STATUS_OK) {
+#pragma omp atomic
+            n_failed++;
+        }
+    }
+    // the thread that failed had the message
+    return n_failed == 0 ? STATUS_OK : status_fail(STATUS_MEMORY, "no room for the Jacobian of %d fish", n_failed);
+}
+
+void residual_mask(const struct residual *residual, struct jacobian *jacobian) {
+    for (int f = 0; f < residual->school->n_fish; f++) {
+        const struct fish *fish = &residual->school->fish[f];
+        for (int row = fish->at.x; row < fish->at.end; row++) {
+            const struct unknown_place place = residual_place(residual->school, row);
+            const int driven = place.kind <= UNKNOWN_AY && place.index < fish_n_driven(fish);
+            sparse_mask(jacobian->own[f], row, driven);
+        }
+    }
+}
+
+struct unknown_place residual_place(const struct school *school, int i) {
+    int f = 0;
+    while (i >= school->fish[f].at.end) f++;
+    const struct layout *at = &school->fish[f].at;
+    const struct {
+        int first;
+        enum unknown kind;
+        const char *name;
+    } slices[] = {{at->phi0, UNKNOWN_PHI0, "phi0"},
+                  {at->circulation, UNKNOWN_CIRCULATION, "circulation"},
+                  {at->gamma, UNKNOWN_GAMMA, "gamma"},
+                  {at->ay, UNKNOWN_AY, "ay"},
+                  {at->ax, UNKNOWN_AX, "ax"},
+                  {at->vy, UNKNOWN_VY, "vy"},
+                  {at->vx, UNKNOWN_VX, "vx"},
+                  {at->y, UNKNOWN_Y, "y"},
+                  {at->x, UNKNOWN_X, "x"}};
+    int s = 0;
+    while (i < slices[s].first) s++;
+    return (struct unknown_place){
+        .fish = f, .index = i - slices[s].first, .kind = slices[s].kind, .name = slices[s].name};
+}
+
+void residual_kinds(const struct residual *residual, double *kind) {
+    for (int i = 0; i < residual->school->n_unknowns; i++) {
+        const struct unknown_place place = residual_place(residual->school, i);
+        const int driven = place.index < fish_n_driven(&residual->school->fish[place.fish]);
+        kind[i] = 0;
+        if (place.kind <= UNKNOWN_VY && !driven) kind[i] = 1;
+        if (place.kind == UNKNOWN_CIRCULATION && !residual_shed_is_algebraic(residual)) kind[i] = 1;
+    }
+}
+
+double residual_scale(const struct residual *residual, int i) {
+    const struct unknown_place place = residual_place(residual->school, i);
+    const struct fish *fish = &residual->school->fish[place.fish];
+    const double f = fish_rate(residual->school, fish);
+    const double length = fish->length;
+    switch (place.kind) {
+        case UNKNOWN_X:
+        case UNKNOWN_Y: return 0.01 * length;
+        case UNKNOWN_VX:
+        case UNKNOWN_VY: return 300 * length * f;
+        case UNKNOWN_AX:
+        case UNKNOWN_AY: return 1e5 * length * f * f;
+        case UNKNOWN_GAMMA: return 3 * length * f;
+        case UNKNOWN_CIRCULATION: return length * length * f;
+        case UNKNOWN_PHI0: return 1;
+    }
+    return 1;
+}
+
+double residual_undamped(const struct residual *residual, int i) {
+    const enum unknown kind = residual_place(residual->school, i).kind;
+    return kind == UNKNOWN_VX || kind == UNKNOWN_VY ? 1.0 / 3000 : 1;
+}

@@ -1,0 +1,104 @@
+/* residual.h: the equations of the whole school as one residual F(t, y, y') = 0, and its Jacobian. doc/model.md,
+ * section 10. Tested by tests/model/test_residual.c. */
+#ifndef RESIDUAL_H
+#define RESIDUAL_H
+
+#include "base/status.h"
+#include "model/flow.h"
+#include "model/jacobian.h"
+#include "model/state.h"
+
+/* What the equations need besides the unknowns; workspace that holds nothing a restart would miss. */
+struct residual {
+    const struct school *school;
+    const struct state *state; /* wakes, control memory, time of the last event */
+    struct flow *flow;
+    int at_impulse;         /* an impulsive event is being solved: Kutta's condition determines the circulation shed */
+    unsigned pattern;       /* changes whenever coupled does */
+    unsigned char *coupled; /* whether the Jacobian holds the block of fish g in the rows of fish f (n_fish, n_fish) */
+
+    /* natural curvature of the joints of all fish and its derivative with respect to phi0, as last evaluated */
+    struct range *joints;      /* of each fish                                   (n_fish) */
+    double *natural_curvature; /* dimensionless, doc/model.md section 4          (joints of all fish) */
+    double *curvature_by_phi0;
+    struct jacobian_scratch *jacobian_scratch; /* scratch of each thread                          (threads) */
+    double *scratch;                           /* for whoever reads the results                   (n_unknowns) */
+};
+
+/* Scratch of the derivatives through the flow, large enough for any pair of fish. */
+struct jacobian_scratch {
+    struct influence_block block;
+    struct coupling_block rows;
+};
+
+/* What an unknown is: for tolerances, names in messages, and which equations are algebraic. */
+enum unknown {
+    UNKNOWN_X,
+    UNKNOWN_Y,
+    UNKNOWN_VX,
+    UNKNOWN_VY,
+    UNKNOWN_AX,
+    UNKNOWN_AY,
+    UNKNOWN_GAMMA,
+    UNKNOWN_CIRCULATION,
+    UNKNOWN_PHI0
+};
+struct unknown_place {
+    int fish, index; /* index: node or point of the sheet */
+    enum unknown kind;
+    const char *name; /* "x", "sheet", ... */
+};
+
+/* The state is read at every evaluation; it must outlive the residual. Fails with STATUS_MEMORY; residual_free accepts
+ * NULL. */
+enum status residual_create(struct residual **residual, const struct school *school, const struct state *state);
+void residual_free(struct residual *residual);
+
+/* Decide anew which fish couple in the Jacobian, from the positions in y. Returns whether anything changed. */
+int residual_couple(struct residual *residual, const double *y);
+
+/* value = F(t, y, yp). Returns STATUS_RETRY where a value is not finite. */
+enum status residual_evaluate(struct residual *residual, double t, const double *y, const double *yp, double *value);
+
+/* jacobian = dF/dy + cj dF/dyp, with the blocks of the coupled fish. Fails with STATUS_MEMORY. */
+enum status residual_jacobian(struct residual *residual, double t, double cj, const double *y,
+                              struct jacobian *jacobian);
+
+/* The parts of an evaluation, for who solves the equations one after another: the natural curvature of fish f for the
+ * phi0 in y, and the dimensionless moment of the flow on it where its control law feels one (else 0). */
+void residual_muscle(struct residual *residual, int f, double t, const double *y);
+double residual_moment(const struct residual *residual, int f, const double *y);
+
+/* The rows ax, ay of fish f in N, before given motions replace them: m a less all forces. With the fluid's velocity and
+ * the natural curvature of the last evaluation. */
+void residual_balance(const struct residual *residual, int f, const double *y, double *value);
+
+/* What Kutta's condition in its rate form gives for fish f, m2 s-2. With the fluid's velocity of the last evaluation. */
+double residual_kutta_rate(const struct residual *residual, int f, double t, const double *y);
+
+/* The rate of the circulation shed by fish f where that is a differential unknown: as above, or 0 between impulses. */
+double residual_shed_rate(const struct residual *residual, int f, double t, const double *y);
+
+/* Circulation that no longer counts in Kelvin's equation of fish f, m2 s-1. */
+double residual_dissipated(const struct residual *residual, int f);
+
+/* Mask the rows of the Jacobian whose equation is a given motion, and no others. */
+void residual_mask(const struct residual *residual, struct jacobian *jacobian);
+
+/* kind[i] = 1 where unknown i is differential, 0 where it is algebraic                           (n_unknowns) */
+void residual_kinds(const struct residual *residual, double *kind);
+
+/* The scale of unknown i, in its unit: what the error tolerance is relative to. */
+double residual_scale(const struct residual *residual, int i);
+
+/* The part of its scale that a method takes which sees velocities: the scale of velocities lets the vibrations of a stiff
+ * body pass, since IDA damps them. With this it is the positions' scale times 2 pi f; 1 for other unknowns. */
+double residual_undamped(const struct residual *residual, int i);
+
+/* Where unknown i belongs. */
+struct unknown_place residual_place(const struct school *school, int i);
+
+/* Whether the circulation shed by a fish is algebraic now. */
+int residual_shed_is_algebraic(const struct residual *residual);
+
+#endif

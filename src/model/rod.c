@@ -1,0 +1,206 @@
+/* rod.c: every joint and every edge by itself: its local geometry, then energy, force, derivative. */
+#include "model/rod.h"
+
+#include <math.h>
+
+// an edge: its vector's length, tangent, normal, and the same of the difference of its nodes' velocities
+struct edge {
+    double length, t[2], n[2];
+    double rate[2];
+};
+
+static struct edge edge_at(const struct fish *fish, int k, const double *y) {
+    const double *const x = y + fish->at.x + k, *const z = y + fish->at.y + k;
+    const double *const vx = y + fish->at.vx + k, *const vy = y + fish->at.vy + k;
+    struct edge edge = {.rate = {vx[1] - vx[0], vy[1] - vy[0]}};
+    const double e[2] = {x[1] - x[0], z[1] - z[0]};
+    edge.length = sqrt(e[0] * e[0] + e[1] * e[1]);
+    edge.t[0] = e[0] / edge.length;
+    edge.t[1] = e[1] / edge.length;
+    edge.n[0] = -edge.t[1];
+    edge.n[1] = edge.t[0];
+    return edge;
+}
+
+static double dot(const double a[2], const double b[2]) {
+    return a[0] * b[0] + a[1] * b[1];
+}
+
+// a joint: turning angle, its gradient and rate, the curvature and its derivatives with respect to the angle
+enum { N_LOCAL = 6 };  // coordinates of the joint's three nodes: x, y of each in turn
+struct joint {
+    struct edge before, after;
+    double curvature, slope, second; /* kappa, dkappa/dphi, d2kappa/dphi2 */
+    double gradient[N_LOCAL];        /* dphi/dx */
+    double angle_rate;               /* dphi/dt */
+};
+
+static struct joint joint_at(const struct fish *fish, int j, const double *y) {
+    struct joint joint = {.before = edge_at(fish, j, y), .after = edge_at(fish, j + 1, y)};
+    const struct edge *a = &joint.before, *b = &joint.after;
+    const double sine = a->t[0] * b->t[1] - a->t[1] * b->t[0];
+    const double angle = atan2(sine, dot(a->t, b->t));
+    joint.curvature = 2 * tan(angle / 2);
+    joint.slope = 2 / (1 + cos(angle));
+    joint.second = joint.slope * joint.curvature / 2;
+    for (int i = 0; i < 2; i++) {
+        joint.gradient[i] = a->n[i] / a->length;
+        joint.gradient[4 + i] = b->n[i] / b->length;
+        joint.gradient[2 + i] = -joint.gradient[i] - joint.gradient[4 + i];
+    }
+    joint.angle_rate = dot(b->n, b->rate) / b->length - dot(a->n, a->rate) / a->length;
+    return joint;
+}
+
+// the second derivative of the turning angle: that of an edge's direction is -(n t + t n)/l^2
+static void joint_hessian(const struct joint *joint, double hessian[N_LOCAL][N_LOCAL]) {
+    const struct edge *const edges[2] = {&joint->before, &joint->after};
+    for (int i = 0; i < N_LOCAL; i++) {
+        for (int k = 0; k < N_LOCAL; k++) hessian[i][k] = 0;
+    }
+    for (int side = 0; side < 2; side++) {
+        const struct edge *edge = edges[side];
+        const double sign = side == 0 ? 1 : -1;
+        for (int i = 0; i < 2; i++) {
+            for (int k = 0; k < 2; k++) {
+                const double h =
+                    sign * (edge->n[i] * edge->t[k] + edge->t[i] * edge->n[k]) / (edge->length * edge->length);
+                const int first = 2 * side, last = 2 * side + 2;
+                hessian[first + i][first + k] += h;
+                hessian[last + i][last + k] += h;
+                hessian[first + i][last + k] -= h;
+                hessian[last + i][first + k] -= h;
+            }
+        }
+    }
+}
+
+static double bending_moment(const struct fish *fish, int j, double curvature, double natural_curvature) {
+    return fish->bending_stiffness[j] * (curvature - natural_curvature) / fish->edge_length;
+}
+
+void rod_curvature(const struct fish *fish, const double *y, double *curvature) {
+    for (int j = 0; j < fish->n_joints; j++) curvature[j] = joint_at(fish, j, y).curvature;
+}
+
+void rod_residual(const struct fish *fish, const double *natural_curvature, const double *y, double *residual) {
+    double *const force[2] = {residual + fish->at.ax, residual + fish->at.ay};
+    for (int j = 0; j < fish->n_joints; j++) {
+        const struct joint joint = joint_at(fish, j, y);
+        const double elastic = bending_moment(fish, j, joint.curvature, natural_curvature[j]) * joint.slope;
+        const double damping = fish->bending_damping[j] * joint.slope * joint.slope * joint.angle_rate;
+        for (int i = 0; i < N_LOCAL; i++) force[i % 2][j + i / 2] += (elastic + damping) * joint.gradient[i];
+    }
+    for (int k = 0; k < fish->n_edges; k++) {
+        const struct edge edge = edge_at(fish, k, y);
+        const double elastic = fish->axial_stiffness[k] * (edge.length / fish->edge_length - 1);
+        const double damping = fish->axial_damping[k] * dot(edge.t, edge.rate);
+        for (int i = 0; i < 2; i++) {
+            force[i][k] -= (elastic + damping) * edge.t[i];
+            force[i][k + 1] += (elastic + damping) * edge.t[i];
+        }
+    }
+}
+
+static void stamp_joint(const struct fish *fish, int j, double natural_curvature, double by_phi0, const double *y,
+                        struct sparse *jacobian) {
+    const struct joint joint = joint_at(fish, j, y);
+    double hessian[N_LOCAL][N_LOCAL], turned[N_LOCAL];
+    joint_hessian(&joint, hessian);
+    const double stiffness = fish->bending_stiffness[j] / fish->edge_length, d = fish->bending_damping[j];
+    const double moment = bending_moment(fish, j, joint.curvature, natural_curvature);
+    const double first = moment * joint.slope + d * joint.slope * joint.slope * joint.angle_rate;
+    const double second = stiffness * joint.slope * joint.slope + moment * joint.second +
+                          2 * d * joint.slope * joint.second * joint.angle_rate;
+    const double rate = d * joint.slope * joint.slope;
+    // derivative of the angle's rate with respect to positions: hessian times velocity
+    for (int i = 0; i < N_LOCAL; i++) {
+        turned[i] = 0;
+        for (int k = 0; k < N_LOCAL; k++) {
+            const int velocity = (k % 2 == 0 ? fish->at.vx : fish->at.vy) + j + k / 2;
+            turned[i] += hessian[i][k] * y[velocity];
+        }
+    }
+    for (int i = 0; i < N_LOCAL; i++) {
+        const int node = j + i / 2, row = (i % 2 == 0 ? fish->at.ax : fish->at.ay) + node;
+        const double *b = joint.gradient;
+        for (int k = 0; k < N_LOCAL; k++) {
+            const int other = j + k / 2;
+            sparse_add(jacobian, row, (k % 2 == 0 ? fish->at.x : fish->at.y) + other,
+                       (first * hessian[i][k] + second * b[i] * b[k] + rate * b[i] * turned[k]) / fish->mass[node]);
+            sparse_add(jacobian, row, (k % 2 == 0 ? fish->at.vx : fish->at.vy) + other,
+                       rate * b[i] * b[k] / fish->mass[node]);
+        }
+        sparse_add(jacobian, row, fish->at.phi0, -stiffness * joint.slope * by_phi0 * b[i] / fish->mass[node]);
+    }
+}
+
+static void stamp_edge(const struct fish *fish, int k, const double *y, struct sparse *jacobian) {
+    const struct edge edge = edge_at(fish, k, y);
+    const double stretch_rate = dot(edge.t, edge.rate), turn_rate = dot(edge.n, edge.rate) / edge.length;
+    const double tension =
+        fish->axial_stiffness[k] * (edge.length / fish->edge_length - 1) + fish->axial_damping[k] * stretch_rate;
+    const double stiffness = fish->axial_stiffness[k] / fish->edge_length;
+    for (int i = 0; i < 4; i++) {
+        const int node = k + i / 2, row = (i % 2 == 0 ? fish->at.ax : fish->at.ay) + node;
+        for (int m = 0; m < 4; m++) {
+            const double sign = (i / 2 == m / 2 ? 1 : -1) / fish->mass[node];
+            const int a = i % 2, b = m % 2;
+            const double by_place = stiffness * edge.t[a] * edge.t[b] + tension / edge.length * edge.n[a] * edge.n[b] +
+                                    fish->axial_damping[k] * turn_rate * edge.t[a] * edge.n[b];
+            const double by_velocity = fish->axial_damping[k] * edge.t[a] * edge.t[b];
+            sparse_add(jacobian, row, (b == 0 ? fish->at.x : fish->at.y) + k + m / 2, sign * by_place);
+            sparse_add(jacobian, row, (b == 0 ? fish->at.vx : fish->at.vy) + k + m / 2, sign * by_velocity);
+        }
+    }
+}
+
+void rod_jacobian(const struct fish *fish, const double *natural_curvature, const double *curvature_by_phi0,
+                  const double *y, struct sparse *jacobian) {
+    for (int j = 0; j < fish->n_joints; j++) {
+        stamp_joint(fish, j, natural_curvature[j], curvature_by_phi0[j], y, jacobian);
+    }
+    for (int k = 0; k < fish->n_edges; k++) stamp_edge(fish, k, y, jacobian);
+}
+
+double rod_bending_energy(const struct fish *fish, const double *natural_curvature, const double *y) {
+    double energy = 0;
+    for (int j = 0; j < fish->n_joints; j++) {
+        const double excess = joint_at(fish, j, y).curvature - natural_curvature[j];
+        energy += fish->bending_stiffness[j] * excess * excess / (2 * fish->edge_length);
+    }
+    return energy;
+}
+
+double rod_stretching_energy(const struct fish *fish, const double *y) {
+    double energy = 0;
+    for (int k = 0; k < fish->n_edges; k++) {
+        const double strain = edge_at(fish, k, y).length / fish->edge_length - 1;
+        energy += fish->axial_stiffness[k] * strain * strain * fish->edge_length / 2;
+    }
+    return energy;
+}
+
+double rod_actuation_power(const struct fish *fish, const double *natural_curvature, const double *curvature_rate,
+                           const double *y) {
+    double power = 0;
+    for (int j = 0; j < fish->n_joints; j++) {
+        power -= bending_moment(fish, j, joint_at(fish, j, y).curvature, natural_curvature[j]) * curvature_rate[j];
+    }
+    return power;
+}
+
+double rod_damping_power(const struct fish *fish, const double *y) {
+    double power = 0;
+    for (int j = 0; j < fish->n_joints; j++) {
+        const struct joint joint = joint_at(fish, j, y);
+        const double rate = joint.slope * joint.angle_rate;
+        power -= fish->bending_damping[j] * rate * rate;
+    }
+    for (int k = 0; k < fish->n_edges; k++) {
+        const struct edge edge = edge_at(fish, k, y);
+        const double rate = dot(edge.t, edge.rate);
+        power -= fish->axial_damping[k] * rate * rate;
+    }
+    return power;
+}

@@ -1,0 +1,36 @@
+/* rod.h: the elastic body: forces of bending, stretching and internal damping, their derivatives, energies and powers.
+ * doc/model.md, sections 2 and 3. Tested by tests/model/test_rod.c.
+ *
+ * Joint j stands at node j+1 between the edges j and j+1 and depends on the nodes j, j+1, j+2:
+ *
+ *     node j ---- edge j ---- node j+1 ---- edge j+1 ---- node j+2
+ *                          turning angle phi
+ */
+#ifndef ROD_H
+#define ROD_H
+
+#include "base/sparse.h"
+#include "model/fish.h"
+
+/* Curvature kappa = 2 tan(phi/2) of every joint, dimensionless (n_joints). */
+void rod_curvature(const struct fish *fish, const double *y, double *curvature);
+
+/* Take the elastic and damping forces off the rows ax, ay of the residual [N]; natural_curvature is (n_joints). */
+void rod_residual(const struct fish *fish, const double *natural_curvature, const double *y, double *residual);
+
+/* Add the derivatives of rod_residual, each row divided by its node's mass; curvature_by_phi0 is (n_joints). */
+void rod_jacobian(const struct fish *fish, const double *natural_curvature, const double *curvature_by_phi0,
+                  const double *y, struct sparse *jacobian);
+
+/* Energies, J. */
+double rod_bending_energy(const struct fish *fish, const double *natural_curvature, const double *y);
+double rod_stretching_energy(const struct fish *fish, const double *y);
+
+/* Power of the muscle, which changes the natural curvature at the given rate [s-1], W. */
+double rod_actuation_power(const struct fish *fish, const double *natural_curvature, const double *curvature_rate,
+                           const double *y);
+
+/* Power of the internal damping, W: never positive. */
+double rod_damping_power(const struct fish *fish, const double *y);
+
+#endif

@@ -1,0 +1,55 @@
+/* state.h: all that changes during a run and that a later run would need to go on: nothing else. Tested by
+ * tests/model/test_state.c. */
+#ifndef STATE_H
+#define STATE_H
+
+#include "base/status.h"
+#include "model/control.h"
+#include "model/fish.h"
+#include "model/wake.h"
+
+/* What one fish did at the events of the last period, for means over it: a ring of samples. */
+struct sample {
+    double com[2], tail[2]; /* m */
+    double heading;         /* rad, unwrapped */
+    double actuation_work;  /* since the start, J */
+};
+struct history {
+    int capacity;          /* samples in one period and one more; 1 where there is no period */
+    int n, last;           /* how many there are; where the newest one is */
+    struct sample *sample; /* (capacity) */
+};
+
+/* The energy audit of one fish: what went in since the start, summed over the integrator's own steps. */
+struct energy_balance {
+    double initial_energy; /* J */
+    double work;           /* of all powers, J */
+    double actuation_work; /* J */
+    double t[2], power[2]; /* the last two steps: times, s, and total power, W; [0] is the newer */
+    double actuation_power[2];
+    int n; /* how many of those there are */
+};
+
+struct state {
+    double t;                       /* time of the last event, s */
+    long event;                     /* its number, 0 at the start */
+    double *y, *yp;                 /* the unknowns and their rates                     (n_unknowns) */
+    struct wake *wake;              /* (n_fish) */
+    struct control_memory *control; /* (n_fish) */
+    struct history *history;        /* (n_fish) */
+    struct energy_balance *balance; /* (n_fish) */
+};
+
+/* The state before the start: bodies placed, everything else zero. Fails with STATUS_MEMORY. */
+enum status state_create(struct state **state, const struct school *school);
+
+/* Release the state and all that it owns. Accepts NULL. */
+void state_free(struct state *state, const struct school *school);
+
+/* Add a sample to a history; the oldest one falls out when it is full. */
+void state_remember(struct history *history, const struct sample *sample);
+
+/* The sample that is age events old, 0 the newest; age < history->n. */
+const struct sample *state_recall(const struct history *history, int age);
+
+#endif

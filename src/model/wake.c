@@ -1,0 +1,122 @@
+/* wake.c: the queue of free vortices of one fish. */
+#include "model/wake.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/ramp.h"
+
+enum { N_ARRAYS = 8 };
+
+static void list_arrays(struct wake *wake, double **array[N_ARRAYS]) {
+    double **const all[N_ARRAYS] = {&wake->x,        &wake->y,        &wake->u,           &wake->v,
+                                    &wake->u_before, &wake->v_before, &wake->circulation, &wake->birth};
+    memcpy(array, all, sizeof all);
+}
+
+static enum status reserve(struct wake *wake, int capacity) {
+    double **array[N_ARRAYS];
+    list_arrays(wake, array);
+    for (int i = 0; i < N_ARRAYS; i++) {
+        double *const more = realloc(*array[i], (size_t)capacity * sizeof *more);
+        if (!more) return status_fail(STATUS_MEMORY, "no room for a wake of %d vortices", capacity);
+        *array[i] = more;
+    }
+    wake->capacity = capacity;
+    return STATUS_OK;
+}
+
+enum status wake_create(struct wake *wake, int capacity) {
+    *wake = (struct wake){0};
+    const enum status status = reserve(wake, capacity > 0 ? capacity : 1);
+    if (status != STATUS_OK) wake_free(wake);
+    return status;
+}
+
+void wake_free(struct wake *wake) {
+    double **array[N_ARRAYS];
+    list_arrays(wake, array);
+    for (int i = 0; i < N_ARRAYS; i++) free(*array[i]);
+    *wake = (struct wake){0};
+}
+
+int wake_most(const struct school *school, long n_events) {
+    // one is released at every event but the first (impulsive: at the first too) and lives for a lifetime
+    const double in_a_lifetime = ceil(school->lifetime / school->interval * (1 - 1e-9)) + 1;
+    const double ever = (double)n_events + 1;
+    return (int)fmin(fmin(in_a_lifetime, ever), 2e9);
+}
+
+enum status wake_release(struct wake *wake, double x, double y, double circulation, double birth) {
+    if (wake->n_vortex == wake->capacity) TRY(reserve(wake, 2 * wake->capacity));
+    const int i = wake->n_vortex++;
+    wake->x[i] = x;
+    wake->y[i] = y;
+    wake->u[i] = wake->v[i] = wake->u_before[i] = wake->v_before[i] = 0;
+    wake->circulation[i] = circulation;
+    wake->birth[i] = birth;
+    return STATUS_OK;
+}
+
+double wake_strength(const struct school *school, double age) {
+    if (school->fade <= 0) return 1;
+    return 1 - ramp_step((age - (school->lifetime - school->fade)) / school->fade);
+}
+
+static double along_path(double x, double u, double u_before, double tau, double interval) {
+    return x + tau * u + tau * tau / (2 * interval) * (u - u_before);
+}
+
+void wake_at(const struct wake *wake, const struct school *school, double t, double tau, double *x, double *y,
+             double *strength) {
+    const double q = tau / school->interval;
+    for (int i = 0; i < wake->n_vortex; i++) {
+        x[i] = along_path(wake->x[i], wake->u[i], wake->u_before[i], tau, school->interval);
+        y[i] = along_path(wake->y[i], wake->v[i], wake->v_before[i], tau, school->interval);
+        strength[i] = wake->circulation[i];
+    }
+    // the oldest ones fade, linearly in time inside an interval
+    for (int i = 0; i < wake->n_vortex && t + school->interval - wake->birth[i] > school->lifetime - school->fade;
+         i++) {
+        const double now = wake_strength(school, t - wake->birth[i]);
+        const double next = wake_strength(school, t + school->interval - wake->birth[i]);
+        strength[i] *= now + q * (next - now);
+    }
+}
+
+void wake_advance(struct wake *wake, double interval) {
+    for (int i = 0; i < wake->n_vortex; i++) {
+        wake->x[i] = along_path(wake->x[i], wake->u[i], wake->u_before[i], interval, interval);
+        wake->y[i] = along_path(wake->y[i], wake->v[i], wake->v_before[i], interval, interval);
+    }
+}
+
+int wake_remove_old(struct wake *wake, const struct school *school, double t) {
+    // ages are multiples of the interval: half of one decides what rounding must not
+    int n_old = 0;
+    while (n_old < wake->n_vortex && t - wake->birth[n_old] > school->lifetime - school->interval / 2) n_old++;
+    if (n_old == 0) return 0;
+    for (int i = 0; i < n_old; i++) wake->dissipated += wake->circulation[i];
+    wake->n_vortex -= n_old;
+    double **array[N_ARRAYS];
+    list_arrays(wake, array);
+    for (int i = 0; i < N_ARRAYS; i++)
+        memmove(*array[i], *array[i] + n_old, (size_t)wake->n_vortex * sizeof **array[i]);
+    return school->fade <= 0;
+}
+
+void wake_set_velocity(struct wake *wake, const double *u, const double *v, int n_new) {
+    const int n_old = wake->n_vortex - n_new;
+    memcpy(wake->u_before, wake->u, (size_t)n_old * sizeof *u);
+    memcpy(wake->v_before, wake->v, (size_t)n_old * sizeof *v);
+    memcpy(wake->u_before + n_old, u + n_old, (size_t)n_new * sizeof *u);
+    memcpy(wake->v_before + n_old, v + n_old, (size_t)n_new * sizeof *v);
+    memcpy(wake->u, u, (size_t)wake->n_vortex * sizeof *u);
+    memcpy(wake->v, v, (size_t)wake->n_vortex * sizeof *v);
+}
+
+void wake_nascent(const struct wake *wake, double tau, const double tail[2], double position[2]) {
+    position[0] = tail[0] + tau * wake->slip[0] / 2;
+    position[1] = tail[1] + tau * wake->slip[1] / 2;
+}

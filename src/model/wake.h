@@ -1,0 +1,63 @@
+/* wake.h: the free sheet of a fish: a queue of point vortices, oldest first, and the nascent vortex at its tail.
+ * doc/model.md, sections 7 and 8. Tested by tests/model/test_wake.c.
+ *
+ * One interval between two events t_n and t_n+1 = t_n + Dt:
+ *
+ *     t_n                                                    t_n+1
+ *      |  a released vortex moves on a path that is known:     |
+ *      |  x + tau W + tau^2/(2 Dt) (W - W_before)              |
+ *      |  the nascent vortex grows as shed - shed_before       |   then: move, release, remove, new W and slip
+ *      |  at x_tail(t) + tau slip/2                            |
+ */
+#ifndef WAKE_H
+#define WAKE_H
+
+#include "base/status.h"
+#include "model/fish.h"
+
+struct wake {
+    int n_vortex, capacity;
+    double *x, *y;               /* position at the last event, m                     (n_vortex) */
+    double *u, *v;               /* velocity W at the last event, m s-1               (n_vortex) */
+    double *u_before, *v_before; /* and at the event before; W on the first interval  (n_vortex) */
+    double *circulation;         /* m2 s-1, constant once released                    (n_vortex) */
+    double *birth;               /* time of release, s                                (n_vortex) */
+    double dissipated;           /* circulation of all vortices removed so far, m2 s-1 */
+    double shed_before;          /* circulation shed up to the last event, m2 s-1 */
+    double slip[2];              /* velocity of the fluid past the tail at the last event, m s-1 */
+};
+
+/* An empty wake. Fails with STATUS_MEMORY. */
+enum status wake_create(struct wake *wake, int capacity);
+
+/* Release what the wake owns. Accepts a zeroed wake. */
+void wake_free(struct wake *wake);
+
+/* The most vortices that one fish can own during n_events events. */
+int wake_most(const struct school *school, long n_events);
+
+/* Add a vortex at the end of the queue. The wake grows when full. Fails with STATUS_MEMORY; it is then unchanged. */
+enum status wake_release(struct wake *wake, double x, double y, double circulation, double birth);
+
+/* Where all vortices are at the time tau after the last event: positions and strengths as they count in velocity sums
+ * (the circulation less what has faded); each array (n_vortex). t is the time of the last event. */
+void wake_at(const struct wake *wake, const struct school *school, double t, double tau, double *x, double *y,
+             double *strength);
+
+/* Move all vortices on to the next event. */
+void wake_advance(struct wake *wake, double interval);
+
+/* Remove the vortices released a lifetime or more before t. Returns whether a velocity jumps: something that still had
+ * strength was removed. */
+int wake_remove_old(struct wake *wake, const struct school *school, double t);
+
+/* Take new velocities; a vortex that had none before moves on its first interval with them alone. */
+void wake_set_velocity(struct wake *wake, const double *u, const double *v, int n_new);
+
+/* The part of its circulation that a vortex of this age counts with in velocity sums. */
+double wake_strength(const struct school *school, double age);
+
+/* Where the nascent vortex is: the tail's position plus tau slip/2. */
+void wake_nascent(const struct wake *wake, double tau, const double tail[2], double position[2]);
+
+#endif

@@ -1,0 +1,185 @@
+/* simulate.c: the loop of events, and the output that is due at some of them. */
+#include "run/simulate.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "output/result_file.h"
+#include "run/event.h"
+#include "solver/ida.h"
+#include "solver/one_step.h"
+#include "solver/runge_kutta.h"
+
+static double wall_clock(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static const struct integrator *integrator_of(enum method method) {
+    switch (method) {
+        case METHOD_IDA: return &ida_integrator;
+        case METHOD_IMPLICIT_EULER:
+        case METHOD_TRAPEZOID: return &one_step_integrator;
+        default: return &runge_kutta_integrator;
+    }
+}
+
+static enum status fill(struct simulation *simulation, const struct case_values *values) {
+    simulation->started = wall_clock();
+    simulation->n_events = lround(values->time.end / values->time.shedding_interval);
+    simulation->integrator = integrator_of(values->solver.method);
+    TRY(fish_school_create(&simulation->school, values));
+    TRY(state_create(&simulation->state, simulation->school));
+    TRY(residual_create(&simulation->residual, simulation->school, simulation->state));
+    TRY(initial_conditions_create(&simulation->consistent, simulation->residual));
+    TRY(diagnostics_create(&simulation->diagnostics, simulation->school));
+    TRY(event_start(simulation->state, simulation->residual, simulation->consistent));
+    const struct integrator_options options = {.method = values->solver.method,
+                                               .order = values->solver.order,
+                                               .step = values->solver.step,
+                                               .max_steps = values->solver.max_steps};
+    return simulation->integrator->create(&simulation->solver, simulation->residual, simulation->state, &options);
+}
+
+enum status simulate_create(struct simulation **simulation, const struct case_values *values) {
+    *simulation = NULL;
+    struct simulation *const new = calloc(1, sizeof *new);
+    if (!new) return status_fail(STATUS_MEMORY, "no room for a simulation");
+    const enum status status = fill(new, values);
+    if (status != STATUS_OK) {
+        simulate_free(new);
+        return status;
+    }
+    *simulation = new;
+    return STATUS_OK;
+}
+
+void simulate_free(struct simulation *simulation) {
+    if (!simulation) return;
+    if (simulation->integrator) simulation->integrator->free(simulation->solver);
+    diagnostics_free(simulation->diagnostics);
+    initial_conditions_free(simulation->consistent);
+    residual_free(simulation->residual);
+    state_free(simulation->state, simulation->school);
+    fish_school_free(simulation->school);
+    free(simulation);
+}
+
+enum status simulate_step(struct simulation *simulation) {
+    struct state *const state = simulation->state;
+    const double next = (double)(state->event + 1) * simulation->school->interval;
+    TRY(simulation->integrator->advance(simulation->solver, next));
+    int jumped = 0;
+    TRY(event_next(state, simulation->residual, simulation->consistent, &jumped));
+    return jumped ? simulation->integrator->restart(simulation->solver) : STATUS_OK;
+}
+
+void simulate_measure(struct simulation *simulation) {
+    diagnostics_event(simulation->residual, simulation->state, simulation->diagnostics);
+}
+
+double simulate_wall_time(const struct simulation *simulation) {
+    return wall_clock() - simulation->started;
+}
+
+// a run and its result file
+struct run {
+    const struct case_values *values;
+    const struct simulate_options *options;
+    struct simulation *simulation;
+    struct result_file *store;
+    long events_per_row, events_per_wake;
+};
+
+static enum status write_if_due(struct run *run) {
+    struct simulation *const simulation = run->simulation;
+    const long event = simulation->state->event;
+    // the end is a row of its own where it is no multiple of the output interval
+    const int last = event == simulation->n_events;
+    if (event % run->events_per_row != 0 && !last) return STATUS_OK;
+    struct integrator_counts counts;
+    simulation->integrator->count(simulation->solver, &counts);
+    simulate_measure(simulation);
+    const struct result_counts to = {.steps = counts.steps,
+                                     .residual_evaluations = counts.residual_evaluations,
+                                     .newton_iterations = counts.newton_iterations,
+                                     .jacobian_evaluations = counts.jacobian_evaluations,
+                                     .error_test_failures = counts.error_test_failures,
+                                     .convergence_failures = counts.convergence_failures,
+                                     .step_size = counts.step_size,
+                                     .order = counts.order,
+                                     .wall_time = simulate_wall_time(simulation)};
+    return result_file_row(run->store, simulation->state, simulation->residual, simulation->diagnostics, &to,
+                           event % run->events_per_wake == 0 || last);
+}
+
+static void tell(const struct run *run) {
+    if (!run->options->progress) return;
+    const struct simulation *const simulation = run->simulation;
+    struct integrator_counts counts;
+    simulation->integrator->count(simulation->solver, &counts);
+    struct simulate_progress progress = {.t = simulation->state->t,
+                                         .end = run->values->time.end,
+                                         .event = simulation->state->event,
+                                         .steps = counts.steps,
+                                         .wall_time = simulate_wall_time(simulation)};
+    for (int f = 0; f < simulation->school->n_fish; f++) progress.n_vortices += simulation->state->wake[f].n_vortex;
+    run->options->progress(&progress, run->options->data);
+}
+
+static enum status loop(struct run *run) {
+    TRY(write_if_due(run));
+    while (run->simulation->state->event < run->simulation->n_events) {
+        if (run->options->stop && *run->options->stop) {
+            return status_fail(STATUS_STOPPED, "stopped by a signal at t = %.10g s; %s holds all rows up to there",
+                               run->simulation->state->t, run->options->path);
+        }
+        TRY(simulate_step(run->simulation));
+        TRY(write_if_due(run));
+        tell(run);
+    }
+    return STATUS_OK;
+}
+
+static enum status open_store(struct run *run) {
+    char *effective = NULL;
+    TRY(case_show(run->values, &effective));
+    const enum status status =
+        result_file_create(&run->store, run->options->path, run->options->overwrite, run->values, effective,
+                           run->options->command, run->simulation->school, run->simulation->n_events);
+    free(effective);
+    return status;
+}
+
+static enum status run_to_end(struct run *run) {
+    TRY(simulate_create(&run->simulation, run->values));
+    TRY(open_store(run));
+    const enum status status = loop(run);
+    // the reason of a failure is the message; closing must not lose it
+    char reason[4096];
+    snprintf(reason, sizeof reason, "%s", status_message());
+    char run_status[4096 + 16];
+    if (status == STATUS_OK) {
+        snprintf(run_status, sizeof run_status, "complete");
+    } else if (status == STATUS_STOPPED) {
+        snprintf(run_status, sizeof run_status, "stopped");
+    } else {
+        snprintf(run_status, sizeof run_status, "failed: %s", reason);
+    }
+    const enum status closed = result_file_close(run->store, run_status);
+    if (status == STATUS_OK) return closed;
+    return status_fail(status, "%s", reason);
+}
+
+enum status simulate_run(const struct case_values *values, const struct simulate_options *options) {
+    struct run run = {.values = values, .options = options};
+    run.events_per_row = lround(values->time.output_interval / values->time.shedding_interval);
+    run.events_per_wake = lround(values->output.wake_interval / values->time.shedding_interval);
+    const enum status status = run_to_end(&run);
+    simulate_free(run.simulation);
+    return status;
+}

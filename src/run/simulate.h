@@ -1,0 +1,62 @@
+/* simulate.h: a case from its start to its end: integrate to the next event, do the event, write what is due. Tested by
+ * tests/run/test_simulate.c. */
+#ifndef SIMULATE_H
+#define SIMULATE_H
+
+#include <signal.h>
+
+#include "base/status.h"
+#include "case/case.h"
+#include "model/diagnostics.h"
+#include "solver/integrator.h"
+
+/* A run in memory. Read its parts; only the functions below change them. */
+struct simulation {
+    struct school *school;
+    struct state *state;
+    struct residual *residual;
+    struct initial_conditions *consistent;
+    struct diagnostics *diagnostics;
+    const struct integrator *integrator;
+    void *solver;
+    long n_events;  /* of the whole run, without the one at the start */
+    double started; /* wall clock, s */
+};
+
+/* Build everything and do the event at t = 0. Fails with STATUS_CASE, STATUS_MEMORY or STATUS_SOLVER. */
+enum status simulate_create(struct simulation **simulation, const struct case_values *values);
+
+/* Release all of it. Accepts NULL. */
+void simulate_free(struct simulation *simulation);
+
+/* Go on to the next event and do it. */
+enum status simulate_step(struct simulation *simulation);
+
+/* Bring simulation->measure up to date. */
+void simulate_measure(struct simulation *simulation);
+
+/* Seconds of wall clock since the simulation was created. */
+double simulate_wall_time(const struct simulation *simulation);
+
+/* What a run tells while it goes on, after every event. */
+struct simulate_progress {
+    double t, end;
+    long event;
+    long steps;     /* of the integrator, in all */
+    int n_vortices; /* of all fish */
+    double wall_time;
+};
+
+struct simulate_options {
+    const char *path;                                                       /* of the result file */
+    int overwrite;                                                          /* replace one that exists */
+    const char *command;                                                    /* command line, for the file's history */
+    void (*progress)(const struct simulate_progress *progress, void *data); /* may be NULL */
+    void *data;
+    const volatile sig_atomic_t *stop; /* the run stops at the next event once this is not 0; may be NULL */
+};
+
+/* Run a case into a result file. On STATUS_SOLVER and STATUS_STOPPED the file is closed with all rows up to there. */
+enum status simulate_run(const struct case_values *values, const struct simulate_options *options);
+
+#endif

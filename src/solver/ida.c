@@ -1,0 +1,262 @@
+/* ida.c: IDA on the residual of the school. */
+#include "solver/ida.h"
+
+#include <ida/ida.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "model/diagnostics.h"
+#include "solver/ida_newton.h"
+#include "solver/sundials_adapter.h"
+
+/* Newton ends when its error is this part of the error test's: stiff velocities are outside that test, and an iteration
+ * that stopped at IDA's own 0.33 would leave their noise in the accelerations. Measured: doc/numerics.md. */
+static const double newton_coefficient = 0.003;
+
+/* A Jacobian serves while its leading coefficient is within this part of the step's (IDA's own is 0.25), and while it
+ * saves more than it costs, in iterations. Measured: doc/numerics.md. */
+static const double cj_change = 0.1;
+static const int jacobian_cost = 5, most_iterations = 6;
+
+/* Coupled fish are solved for up to this part of the right-hand side, or of what ends Newton's iteration: below that no
+ * iteration less is needed. Measured: doc/numerics.md. */
+static const double linear_relative = 1e-4, linear_enough = 0.1;
+
+/* After a restart the method is of order one: its first step is this part of the last one. */
+static const double first_step = 0.3;
+
+struct ida {
+    struct residual *residual;
+    struct state *state;
+    struct integrator_options options;
+    struct jacobian *jacobian;
+    enum status failure;      /* of the last callback */
+    double *tolerance, *kind; /* absolute tolerance and kind of each unknown             (n_unknowns) */
+
+    SUNContext context;
+    N_Vector y, yp, tolerances, kinds, scratch[2];
+    struct sundials_adapter_linear linear;
+    SUNNonlinearSolver newton;
+    void *ida;
+    struct integrator_counts before; /* restarts set IDA's own totals to zero */
+    long jacobians; /* evaluated so far: IDA sets its own total to zero only some time after a restart */
+};
+
+static int residual_callback(realtype t, N_Vector y, N_Vector yp, N_Vector value, void *data) {
+    struct ida *const solver = data;
+    solver->failure = residual_evaluate(solver->residual, t, N_VGetArrayPointer(y), N_VGetArrayPointer(yp),
+                                        N_VGetArrayPointer(value));
+    return solver->failure;
+}
+
+static int jacobian_callback(realtype t, realtype cj, N_Vector y, N_Vector yp, N_Vector value, SUNMatrix matrix,
+                             void *data, N_Vector scratch1, N_Vector scratch2, N_Vector scratch3) {
+    (void)yp, (void)value, (void)matrix, (void)scratch1, (void)scratch2, (void)scratch3;
+    struct ida *const solver = data;
+    solver->jacobians++;
+    solver->failure = residual_jacobian(solver->residual, t, cj, N_VGetArrayPointer(y), solver->jacobian);
+    return solver->failure;
+}
+
+static double leading_coefficient(void *ida) {
+    double value = 0;
+    IDAGetCurrentCj(ida, &value);
+    return value;
+}
+
+static void implicit_free(void *data) {
+    struct ida *const solver = data;
+    if (!solver) return;
+    if (solver->ida) IDAFree(&solver->ida);
+    if (solver->newton) SUNNonlinSolFree(solver->newton);
+    sundials_adapter_linear_free(&solver->linear);
+    const N_Vector vectors[] = {solver->y,     solver->yp,         solver->tolerances,
+                                solver->kinds, solver->scratch[0], solver->scratch[1]};
+    for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
+        if (vectors[i]) N_VDestroy(vectors[i]);
+    }
+    jacobian_free(solver->jacobian);
+    free(solver->tolerance);
+    free(solver->kind);
+    if (solver->context) SUNContext_Free(&solver->context);
+    free(solver);
+}
+
+static enum status set_up_ida(struct ida *solver) {
+    const struct school *school = solver->residual->school;
+    void *const ida = solver->ida;
+    if (IDASetErrHandlerFn(ida, sundials_adapter_message, NULL) || IDASetUserData(ida, solver) ||
+        IDAInit(ida, residual_callback, solver->state->t, solver->y, solver->yp) ||
+        IDASVtolerances(ida, 0, solver->tolerances) || IDASetId(ida, solver->kinds) || IDASetSuppressAlg(ida, 1) ||
+        IDASetLinearSolver(ida, solver->linear.solver, solver->linear.matrix) || IDASetJacFn(ida, jacobian_callback) ||
+        IDASetNonlinearSolver(ida, solver->newton) || IDASetNonlinConvCoef(ida, newton_coefficient) ||
+        IDASetMaxOrd(ida, solver->options.order) || IDASetDeltaCjLSetup(ida, cj_change) ||
+        IDASetMaxErrTestFails(ida, 20) || IDASetMaxConvFails(ida, 20) || IDASetMinStep(ida, 1e-10 * school->interval)) {
+        return status_fail(STATUS_SOLVER, "IDA cannot be set up: %s", status_message());
+    }
+    return STATUS_OK;
+}
+
+static enum status fill(struct ida *solver) {
+    const int n = solver->residual->school->n_unknowns;
+    solver->tolerance = calloc((size_t)n, sizeof *solver->tolerance);
+    solver->kind = calloc((size_t)n, sizeof *solver->kind);
+    if (!solver->tolerance || !solver->kind) return status_fail(STATUS_MEMORY, "no room for %d tolerances", n);
+    residual_kinds(solver->residual, solver->kind);
+    for (int i = 0; i < n; i++) {
+        solver->tolerance[i] = solver->residual->school->rtol * residual_scale(solver->residual, i);
+    }
+    TRY(jacobian_create(&solver->jacobian, solver->residual->school));
+    residual_mask(solver->residual, solver->jacobian);
+    TRY(sundials_adapter_context(&solver->context));
+    TRY(sundials_adapter_vector(&solver->y, solver->context, n, solver->state->y));
+    TRY(sundials_adapter_vector(&solver->yp, solver->context, n, solver->state->yp));
+    TRY(sundials_adapter_vector(&solver->tolerances, solver->context, n, solver->tolerance));
+    TRY(sundials_adapter_vector(&solver->kinds, solver->context, n, solver->kind));
+    for (int i = 0; i < 2; i++) {
+        solver->scratch[i] = N_VClone(solver->y);
+        if (!solver->scratch[i]) return status_fail(STATUS_MEMORY, "no room for a vector of %d unknowns", n);
+    }
+    const struct linear_end end = {linear_relative, linear_enough * newton_coefficient};
+    TRY(sundials_adapter_linear_create(&solver->linear, solver->context, solver->jacobian, solver->tolerance, end));
+    const struct ida_newton_rules rules = {most_iterations, jacobian_cost, leading_coefficient};
+    TRY(ida_newton_create(&solver->newton, solver->context, solver->y, solver->residual->school, rules));
+    solver->ida = IDACreate(solver->context);
+    if (!solver->ida) return status_fail(STATUS_MEMORY, "no room for IDA");
+    return set_up_ida(solver);
+}
+
+static enum status implicit_create(void **solver, struct residual *residual, struct state *state,
+                                   const struct integrator_options *options) {
+    *solver = NULL;
+    struct ida *const new = calloc(1, sizeof *new);
+    if (!new) return status_fail(STATUS_MEMORY, "no room for the implicit solver");
+    new->residual = residual;
+    new->state = state;
+    new->options = *options;
+    const enum status status = fill(new);
+    if (status != STATUS_OK) {
+        implicit_free(new);
+        return status;
+    }
+    *solver = new;
+    return STATUS_OK;
+}
+
+static void implicit_count(const void *data, struct integrator_counts *counts) {
+    const struct ida *const solver = data;
+    long steps, evaluations, setups, error_failures, iterations, convergence_failures;
+    int last_order, next_order;
+    double initial_step, last_step, next_step, now;
+    *counts = solver->before;
+    IDAGetIntegratorStats(solver->ida, &steps, &evaluations, &setups, &error_failures, &last_order, &next_order,
+                          &initial_step, &last_step, &next_step, &now);
+    IDAGetNonlinSolvStats(solver->ida, &iterations, &convergence_failures);
+    counts->steps += steps;
+    counts->residual_evaluations += evaluations;
+    counts->newton_iterations += iterations;
+    counts->jacobian_evaluations = solver->jacobians;
+    counts->error_test_failures += error_failures;
+    counts->convergence_failures += convergence_failures;
+    counts->step_size = last_step;
+    counts->order = last_order;
+}
+
+static enum status implicit_restart(void *data) {
+    struct ida *const solver = data;
+    implicit_count(solver, &solver->before);
+    residual_kinds(solver->residual, solver->kind);
+    if (IDAReInit(solver->ida, solver->state->t, solver->y, solver->yp)) {
+        return status_fail(STATUS_SOLVER, "IDA cannot start again: %s", status_message());
+    }
+    // IDA's own guess of the first step knows nothing of the body; the last step does
+    const double step = first_step * solver->before.step_size;
+    if (step > 0 && IDASetInitStep(solver->ida, step)) return STATUS_SOLVER;
+    return STATUS_OK;
+}
+
+// which unknown has the largest estimated error, in units of its tolerance
+static struct unknown_place worst_unknown(const struct ida *solver, double *size) {
+    int worst = 0;
+    *size = -1;
+    if (IDAGetEstLocalErrors(solver->ida, solver->scratch[0]) == 0) {
+        const double *const error = N_VGetArrayPointer(solver->scratch[0]);
+        for (int i = 0; i < solver->residual->school->n_unknowns; i++) {
+            const double weighted = fabs(error[i]) / solver->tolerance[i];
+            if (!(weighted <= *size)) {
+                *size = weighted;
+                worst = i;
+            }
+        }
+    }
+    return residual_place(solver->residual->school, worst);
+}
+
+static const char *reason(int code) {
+    switch (code) {
+        case IDA_TOO_MUCH_WORK: return "more steps between two events than solver.max_steps: raise it, or solver.rtol";
+        case IDA_TOO_MUCH_ACC: return "the tolerance is below what double precision can hold: raise solver.rtol";
+        case IDA_ERR_FAIL: return "the error test failed again and again or at the least step";
+        case IDA_CONV_FAIL: return "Newton's iteration did not converge with steps down to the least";
+        case IDA_LSETUP_FAIL: return "the Jacobian is singular";
+        case IDA_REP_RES_ERR: return "the equations had no finite value with steps down to the least";
+        default: return "see the solver's own words";
+    }
+}
+
+static enum status give_up(const struct ida *solver, int code, long steps) {
+    const struct school *school = solver->residual->school;
+    double now = 0, step = 0, size;
+    IDAGetCurrentTime(solver->ida, &now);
+    IDAGetCurrentStep(solver->ida, &step);
+    // at the limit of steps IDA itself has nothing to say
+    char words[512] = "";
+    if (code != IDA_TOO_MUCH_WORK) snprintf(words, sizeof words, "; IDA: %s", status_message());
+    const struct unknown_place place = worst_unknown(solver, &size);
+    return status_fail(
+        STATUS_SOLVER,
+        "the solver gave up at t = %.10g s: %s; the worst unknown is %s[%d] of fish %s with an error of "
+        "%.3g tolerances; tried: order %d and below, %ld steps since the last event, the last of %.3g s%s",
+        now, reason(code), place.name, place.index, school->fish[place.fish].name, size, solver->options.order, steps,
+        step, words);
+}
+
+// Where the next step shall end at the latest: steps that divide the rest of the interval into equal parts keep their
+// size from event to event, and with it the Jacobian.
+static double next_stop(const struct ida *solver, double now, double end) {
+    long steps = 0;
+    double step = 0;
+    IDAGetNumSteps(solver->ida, &steps);
+    IDAGetCurrentStep(solver->ida, &step);
+    // nothing is known before the first step
+    if (steps == 0) return end;
+    // less than IDA itself takes for the end reached
+    const double rounding = 1e-14 * end, n_steps = ceil((end - now - rounding) / step);
+    return n_steps > 1 ? now + (end - now) / n_steps : end;
+}
+
+static enum status implicit_advance(void *data, double t) {
+    struct ida *const solver = data;
+    struct state *const state = solver->state;
+    double reached = state->t;
+    for (long steps = 0; reached < t; steps++) {
+        if (steps == solver->options.max_steps) return give_up(solver, IDA_TOO_MUCH_WORK, steps);
+        const double stop = next_stop(solver, reached, t);
+        if (IDASetStopTime(solver->ida, stop)) return give_up(solver, IDA_ILL_INPUT, steps);
+        solver->failure = STATUS_OK;
+        const int code = IDASolve(solver->ida, t, &reached, solver->y, solver->yp, IDA_ONE_STEP);
+        if (solver->failure < 0) return solver->failure;
+        if (code < 0) return give_up(solver, code, steps);
+        if (code == IDA_TSTOP_RETURN) reached = stop;
+        diagnostics_step(solver->residual, state, reached, state->y, state->yp);
+    }
+    return STATUS_OK;
+}
+
+const struct integrator ida_integrator = {.name = "ida",
+                                          .create = implicit_create,
+                                          .advance = implicit_advance,
+                                          .restart = implicit_restart,
+                                          .count = implicit_count,
+                                          .free = implicit_free};

@@ -1,0 +1,191 @@
+/* ida_newton.c: one iteration after another, and what to think of them. */
+#include "solver/ida_newton.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+struct ida_newton {
+    struct ida_newton_rules rules;
+    struct corotation *corotation;
+    N_Vector correction;
+    N_Vector last;      /* the total correction of the last solution */
+    double coefficient; /* the leading one, then */
+
+    /* given by IDA */
+    SUNNonlinSolSysFn residual;
+    SUNNonlinSolLSetupFn set_up;
+    SUNNonlinSolLSolveFn solve;
+
+    /* of this solution: iterations and failures in all, iterations with the present Jacobian */
+    long iterations, failures;
+    int done;
+    double first; /* size of the first correction */
+
+    /* since the last Jacobian: solutions, their iterations, and those of the last one */
+    int n_solutions, n_iterations, n_last;
+};
+
+static struct ida_newton *newton_of(SUNNonlinearSolver solver) {
+    return solver->content;
+}
+
+// whether the correction of this size was the last, one more is needed, or the iteration goes nowhere
+static int judge(struct ida_newton *newton, double size, double tolerance) {
+    if (!isfinite(size)) return SUN_NLS_CONV_RECVR;
+    if (newton->done == 1) {
+        newton->first = size;
+        // rounding
+        return size <= 1e-4 * tolerance ? SUN_NLS_SUCCESS : SUN_NLS_CONTINUE;
+    }
+    const double rate = pow(size / newton->first, 1.0 / (newton->done - 1));
+    // where corrections are noise of the linear solver they no longer shrink: small ones will do
+    const double to_come = rate < 0.9 ? rate / (1 - rate) : 10;
+    if (size * to_come <= tolerance) return SUN_NLS_SUCCESS;
+    // an old Jacobian may need two iterations before its errors fall
+    if (newton->done > 2 && rate >= 0.9) return SUN_NLS_CONV_RECVR;
+    return newton->done < newton->rules.most_iterations ? SUN_NLS_CONTINUE : SUN_NLS_CONV_RECVR;
+}
+
+// the residual is in newton->correction
+static int iterate(struct ida_newton *newton, N_Vector total, N_Vector weights, double tolerance, void *ida) {
+    double *const values = N_VGetArrayPointer(newton->correction);
+    newton->done = 0;
+    for (;;) {
+        newton->iterations++;
+        newton->done++;
+        N_VScale(-1, newton->correction, newton->correction);
+        corotation_to_reference(newton->corotation, values);
+        int code = newton->solve(newton->correction, ida);
+        if (code != 0) return code;
+        corotation_to_current(newton->corotation, values);
+        N_VLinearSum(1, total, 1, newton->correction, total);
+        code = judge(newton, N_VWrmsNorm(newton->correction, weights), tolerance);
+        if (code != SUN_NLS_CONTINUE) return code;
+        code = newton->residual(total, newton->correction, ida);
+        if (code != 0) return code;
+    }
+}
+
+// whether a solution with this Jacobian costs more by now than the mean one, the Jacobian's own cost included
+static int jacobian_is_stale(const struct ida_newton *newton) {
+    return newton->n_last * newton->n_solutions >= newton->n_iterations + newton->rules.jacobian_cost;
+}
+
+// begin where the last solution ended, where the step has not changed since: there the predictor errs by nearly the same
+static void guess(struct ida_newton *newton, N_Vector total, void *ida) {
+    const double coefficient = newton->rules.leading_coefficient(ida);
+    const int same = fabs(coefficient - newton->coefficient) <= 1e-9 * coefficient;
+    N_VScale(same ? 1 : 0, newton->last, total);
+    newton->coefficient = coefficient;
+}
+
+static int newton_solve(SUNNonlinearSolver solver, N_Vector predicted, N_Vector total, N_Vector weights,
+                        realtype tolerance, booleantype renew, void *ida) {
+    struct ida_newton *const newton = newton_of(solver);
+    newton->iterations = newton->failures = 0;
+    if (jacobian_is_stale(newton)) renew = SUNTRUE;
+    if (!renew) corotation_set_current(newton->corotation, N_VGetArrayPointer(predicted));
+    guess(newton, total, ida);
+    for (booleantype failed = SUNFALSE;; failed = SUNTRUE) {
+        int code = newton->residual(total, newton->correction, ida);
+        if (code != 0) return code;
+        if (renew) {
+            booleantype current;
+            code = newton->set_up(failed, &current, ida);
+            if (code != 0) return code;
+            corotation_set_reference(newton->corotation, N_VGetArrayPointer(predicted));
+            newton->n_solutions = newton->n_iterations = 0;
+        }
+        code = iterate(newton, total, weights, tolerance, ida);
+        if (code == 0) {
+            N_VScale(1, total, newton->last);
+            newton->n_solutions++;
+            newton->n_last = newton->done;
+            newton->n_iterations += newton->done;
+            return 0;
+        }
+        newton->failures++;
+        if (code < 0 || renew) return code;
+        // the same again with a new Jacobian
+        renew = SUNTRUE;
+        N_VConst(0, total);
+    }
+}
+
+// IDA starts anew: nothing of what was may show
+static int newton_forget(SUNNonlinearSolver solver) {
+    struct ida_newton *const newton = newton_of(solver);
+    newton->coefficient = 0;
+    newton->n_solutions = newton->n_iterations = newton->n_last = 0;
+    return 0;
+}
+
+static SUNNonlinearSolver_Type newton_type(SUNNonlinearSolver solver) {
+    (void)solver;
+    return SUNNONLINEARSOLVER_ROOTFIND;
+}
+
+static int newton_set_residual(SUNNonlinearSolver solver, SUNNonlinSolSysFn function) {
+    newton_of(solver)->residual = function;
+    return 0;
+}
+
+static int newton_set_set_up(SUNNonlinearSolver solver, SUNNonlinSolLSetupFn function) {
+    newton_of(solver)->set_up = function;
+    return 0;
+}
+
+static int newton_set_solve(SUNNonlinearSolver solver, SUNNonlinSolLSolveFn function) {
+    newton_of(solver)->solve = function;
+    return 0;
+}
+
+static int newton_iterations(SUNNonlinearSolver solver, long *iterations) {
+    *iterations = newton_of(solver)->iterations;
+    return 0;
+}
+
+static int newton_failures(SUNNonlinearSolver solver, long *failures) {
+    *failures = newton_of(solver)->failures;
+    return 0;
+}
+
+static int newton_free(SUNNonlinearSolver solver) {
+    if (!solver) return 0;
+    struct ida_newton *const newton = newton_of(solver);
+    if (newton) {
+        corotation_free(newton->corotation);
+        if (newton->correction) N_VDestroy(newton->correction);
+        if (newton->last) N_VDestroy(newton->last);
+        free(newton);
+    }
+    SUNNonlinSolFreeEmpty(solver);
+    return 0;
+}
+
+enum status ida_newton_create(SUNNonlinearSolver *solver, SUNContext context, N_Vector like,
+                              const struct school *school, struct ida_newton_rules rules) {
+    *solver = NULL;
+    struct ida_newton *const newton = calloc(1, sizeof *newton);
+    SUNNonlinearSolver const new = SUNNonlinSolNewEmpty(context);
+    if (new) new->content = newton;
+    if (!newton || !new || corotation_create(&newton->corotation, school) != STATUS_OK ||
+        !(newton->correction = N_VClone(like)) || !(newton->last = N_VClone(like))) {
+        if (!new) free(newton);
+        newton_free(new);
+        return status_fail(STATUS_MEMORY, "no room for Newton's iteration");
+    }
+    newton->rules = rules;
+    N_VConst(0, newton->last);
+    new->ops->gettype = newton_type;
+    new->ops->initialize = newton_forget;
+    new->ops->solve = newton_solve;
+    new->ops->free = newton_free;
+    new->ops->setsysfn = newton_set_residual;
+    new->ops->setlsetupfn = newton_set_set_up;
+    new->ops->setlsolvefn = newton_set_solve;
+    new->ops->getnumiters = newton_iterations;
+    new->ops->getnumconvfails = newton_failures;
+    *solver = new;
+    return STATUS_OK;
+}

@@ -1,0 +1,208 @@
+/* initial_conditions.c: Newton's method of KINSOL on the algebraic equations. The differential unknowns take part with the
+ * equation that they do not change, so that the Jacobian of the school serves as it is, with their rows masked. */
+#include "solver/initial_conditions.h"
+
+#include <kinsol/kinsol.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "solver/sundials_adapter.h"
+
+/* Rows are scaled to order one; Newton ends at this norm, or where its steps no longer change the unknowns. */
+static const double tolerance = 1e-14;
+
+/* Coupled fish are solved for up to this part of the right-hand side, so that each step gains as many digits. */
+static const struct linear_end linear_end = {.relative = 1e-10};
+
+struct initial_conditions {
+    struct residual *residual;
+    struct jacobian *jacobian;
+    int n;
+    double t;
+    /* all unknowns, no rates, kinds, scales of the unknowns and inverse scales of unknowns and equations          (n) */
+    double *y, *zero, *kind, *scale, *solution_scale, *value_scale;
+    double *value;       /* equations as last evaluated                                                 (n) */
+    double *start;       /* where KINSOL begins and ends                                                (n) */
+    enum status failure; /* of the last callback */
+
+    SUNContext context;
+    N_Vector solution, solution_scales, value_scales;
+    struct sundials_adapter_linear linear;
+    void *kinsol;
+    long iterations;
+};
+
+void initial_conditions_free(struct initial_conditions *c) {
+    if (!c) return;
+    if (c->kinsol) KINFree(&c->kinsol);
+    sundials_adapter_linear_free(&c->linear);
+    const N_Vector vectors[] = {c->solution, c->solution_scales, c->value_scales};
+    for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
+        if (vectors[i]) N_VDestroy(vectors[i]);
+    }
+    jacobian_free(c->jacobian);
+    double *const owned[] = {c->y, c->zero, c->kind, c->scale, c->solution_scale, c->value_scale, c->value, c->start};
+    for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
+    if (c->context) SUNContext_Free(&c->context);
+    free(c);
+}
+
+// the differential unknowns keep their bits, whatever KINSOL adds
+static void take_algebraic(const struct initial_conditions *c, const double *from, double *y) {
+    for (int i = 0; i < c->n; i++) {
+        if (c->kind[i] <= 0) y[i] = from[i];
+    }
+}
+
+// F of the algebraic equations for KINSOL
+static int algebraic_value(N_Vector solution, N_Vector value, void *data) {
+    struct initial_conditions *const c = data;
+    double *const to = N_VGetArrayPointer(value);
+    take_algebraic(c, N_VGetArrayPointer(solution), c->y);
+    c->failure = residual_evaluate(c->residual, c->t, c->y, c->zero, c->value);
+    for (int i = 0; i < c->n; i++) to[i] = c->kind[i] > 0 ? 0 : c->value[i];
+    return c->failure;
+}
+
+static int algebraic_jacobian(N_Vector solution, N_Vector value, SUNMatrix matrix, void *data, N_Vector scratch1,
+                              N_Vector scratch2) {
+    (void)value, (void)matrix, (void)scratch1, (void)scratch2;
+    struct initial_conditions *const c = data;
+    take_algebraic(c, N_VGetArrayPointer(solution), c->y);
+    c->failure = residual_jacobian(c->residual, c->t, 0, c->y, c->jacobian);
+    return c->failure;
+}
+
+// the equations come in accelerations, velocities, circulations and numbers; their scales follow the unknowns'
+static double row_scale(const struct residual *residual, int i) {
+    const struct unknown_place place = residual_place(residual->school, i);
+    const struct layout *at = &residual->school->fish[place.fish].at;
+    const double speed = residual_scale(residual, at->gamma);
+    return place.kind == UNKNOWN_GAMMA ? speed : residual_scale(residual, i);
+}
+
+static enum status set_up_kinsol(struct initial_conditions *c) {
+    c->kinsol = KINCreate(c->context);
+    if (!c->kinsol) return status_fail(STATUS_MEMORY, "no room for KINSOL");
+    // a full step of Newton's method on equations that are nearly linear, with a new Jacobian each time
+    if (KINSetErrHandlerFn(c->kinsol, sundials_adapter_message, NULL) || KINSetUserData(c->kinsol, c) ||
+        KINInit(c->kinsol, algebraic_value, c->solution) ||
+        KINSetLinearSolver(c->kinsol, c->linear.solver, c->linear.matrix) ||
+        KINSetJacFn(c->kinsol, algebraic_jacobian) || KINSetMaxSetupCalls(c->kinsol, 1) ||
+        KINSetFuncNormTol(c->kinsol, tolerance) || KINSetScaledStepTol(c->kinsol, 1e-14) ||
+        KINSetNumMaxIters(c->kinsol, 50) || KINSetMaxNewtonStep(c->kinsol, 1e30)) {
+        return status_fail(STATUS_SOLVER, "KINSOL cannot be set up: %s", status_message());
+    }
+    return STATUS_OK;
+}
+
+static enum status fill(struct initial_conditions *c) {
+    const int n = c->n;
+    double **const arrays[] = {&c->y,     &c->zero,           &c->kind,        &c->scale,
+                               &c->value, &c->solution_scale, &c->value_scale, &c->start};
+    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
+        *arrays[i] = calloc((size_t)n, sizeof **arrays[i]);
+        if (!*arrays[i]) return status_fail(STATUS_MEMORY, "no room for a consistent start of %d unknowns", n);
+    }
+    for (int i = 0; i < n; i++) {
+        c->scale[i] = residual_scale(c->residual, i);
+        c->solution_scale[i] = 1 / c->scale[i];
+        c->value_scale[i] = 1 / row_scale(c->residual, i);
+        c->kind[i] = -1;  // not known yet
+    }
+    TRY(jacobian_create(&c->jacobian, c->residual->school));
+    TRY(sundials_adapter_context(&c->context));
+    TRY(sundials_adapter_vector(&c->solution, c->context, n, c->start));
+    TRY(sundials_adapter_vector(&c->solution_scales, c->context, n, c->solution_scale));
+    TRY(sundials_adapter_vector(&c->value_scales, c->context, n, c->value_scale));
+    TRY(sundials_adapter_linear_create(&c->linear, c->context, c->jacobian, c->scale, linear_end));
+    return set_up_kinsol(c);
+}
+
+enum status initial_conditions_create(struct initial_conditions **consistent, struct residual *residual) {
+    *consistent = NULL;
+    struct initial_conditions *const new = calloc(1, sizeof *new);
+    if (!new) return status_fail(STATUS_MEMORY, "no room for a consistent start");
+    new->residual = residual;
+    new->n = residual->school->n_unknowns;
+    const enum status status = fill(new);
+    if (status != STATUS_OK) {
+        initial_conditions_free(new);
+        return status;
+    }
+    *consistent = new;
+    return STATUS_OK;
+}
+
+// the kinds of the unknowns may have changed since the last solution: mask the rows of the differential ones
+static void refresh(struct initial_conditions *c) {
+    double *const kind = c->value;
+    residual_kinds(c->residual, kind);
+    if (memcmp(kind, c->kind, (size_t)c->n * sizeof *kind) == 0) return;
+    memcpy(c->kind, kind, (size_t)c->n * sizeof *kind);
+    residual_mask(c->residual, c->jacobian);
+    for (int f = 0; f < c->residual->school->n_fish; f++) {
+        const struct layout *at = &c->residual->school->fish[f].at;
+        for (int i = at->x; i < at->end; i++) {
+            if (c->kind[i] > 0) sparse_mask(c->jacobian->own[f], i, 1);
+        }
+    }
+}
+
+// what KINSOL could not do, and for which unknown the equation is worst
+static enum status give_up(struct initial_conditions *c, int code) {
+    int worst = 0;
+    double most = -1;
+    for (int i = 0; i < c->n; i++) {
+        const double size = c->kind[i] > 0 ? 0 : fabs(c->value[i] * c->value_scale[i]);
+        if (!(size <= most)) {
+            most = size;
+            worst = i;
+        }
+    }
+    const struct unknown_place place = residual_place(c->residual->school, worst);
+    char cause[512];
+    snprintf(cause, sizeof cause, "%s", status_message());
+    return status_fail(
+        STATUS_SOLVER,
+        "no consistent state at t = %.10g s: KINSOL ended with code %d; the equation for %s[%d] of fish %s "
+        "is left with %.3g of its scale (%s)",
+        c->t, code, place.name, place.index, c->residual->school->fish[place.fish].name, most, cause);
+}
+
+// rates of the differential unknowns; those of the algebraic ones stay
+static void set_rates(const struct initial_conditions *c, double t, const double *y, double *yp) {
+    const struct school *school = c->residual->school;
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct layout *at = &school->fish[f].at;
+        for (int i = at->x; i < at->vx; i++) yp[i] = y[i + (at->vx - at->x)];
+        for (int i = at->vx; i < at->ax; i++) yp[i] = y[i + (at->ax - at->vx)];
+        if (c->kind[at->circulation] > 0) yp[at->circulation] = residual_shed_rate(c->residual, f, t, y);
+    }
+}
+
+enum status initial_conditions_solve(struct initial_conditions *c, double t, double *y, double *yp) {
+    c->t = t;
+    memcpy(c->y, y, (size_t)c->n * sizeof *y);
+    memcpy(c->start, y, (size_t)c->n * sizeof *y);
+    flow_invalidate(c->residual->flow);
+    refresh(c);
+    c->failure = STATUS_OK;
+    const int code = KINSol(c->kinsol, c->solution, KIN_NONE, c->solution_scales, c->value_scales);
+    long iterations = 0;
+    KINGetNumNonlinSolvIters(c->kinsol, &iterations);
+    c->iterations += iterations;
+    if (c->failure < 0) return c->failure;
+    if (code < 0) return give_up(c, code);
+    take_algebraic(c, c->start, y);
+    // the fluid's velocity at the solution serves the rates, and whoever measures the state
+    TRY(residual_evaluate(c->residual, t, y, yp, c->value));
+    set_rates(c, t, y, yp);
+    return STATUS_OK;
+}
+
+long initial_conditions_iterations(const struct initial_conditions *consistent) {
+    return consistent->iterations;
+}

@@ -1,0 +1,265 @@
+/* linear.c: KLU for the blocks, GMRES around them. */
+#include "solver/linear.h"
+
+#include <klu.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Factors with the pivots of an earlier matrix are kept while neither the ratio of the least to the largest pivot nor
+ * the reciprocal growth of the entries is worse by more than this than when the pivots were chosen. It is what KLU
+ * itself gives away when it chooses them: it takes the diagonal where that is no less than 1e-3 of the largest. */
+static const double worse = 1e-3;
+
+/* GMRES keeps at most so many directions; what it has then is handed back, and Newton's iteration judges it. */
+enum { MOST = 40 };
+
+/* The block of one fish. */
+struct block {
+    unsigned version; /* of the pattern that was analysed; 0: none */
+    klu_l_common common;
+    klu_l_symbolic *symbolic;
+    klu_l_numeric *numeric;
+    double rcond, rgrowth; /* when its pivots were chosen */
+    int was_factorised;
+    struct linear_counts counts;
+    enum status status; /* of the last set-up */
+};
+
+struct linear {
+    const struct jacobian *jacobian;
+    struct linear_end end;
+    double *weight; /* 1/(n_unknowns scale^2)                          (n_unknowns) */
+    struct block *block;
+    double *direction; /* an orthonormal basis                              (MOST + 1, n_unknowns) */
+    int n_directions;  /* it has room for */
+    long solves, iterations;
+};
+
+static int n_unknowns(const struct linear *linear) {
+    return linear->jacobian->school->n_unknowns;
+}
+
+enum status linear_create(struct linear **linear, const struct jacobian *jacobian, const double *scale,
+                          struct linear_end end) {
+    *linear = NULL;
+    struct linear *const new = calloc(1, sizeof *new);
+    if (!new) goto no_memory;
+    new->jacobian = jacobian;
+    new->end = end;
+    new->weight = calloc((size_t)n_unknowns(new), sizeof *new->weight);
+    new->block = calloc((size_t)jacobian->school->n_fish, sizeof *new->block);
+    if (!new->weight || !new->block) goto no_memory;
+    for (int i = 0; i < n_unknowns(new); i++) new->weight[i] = 1 / (n_unknowns(new) * scale[i] * scale[i]);
+    for (int f = 0; f < jacobian->school->n_fish; f++) klu_l_defaults(&new->block[f].common);
+    *linear = new;
+    return STATUS_OK;
+
+no_memory:
+    linear_free(new);
+    return status_fail(STATUS_MEMORY, "no room for linear systems of %d unknowns", jacobian->school->n_unknowns);
+}
+
+void linear_free(struct linear *linear) {
+    if (!linear) return;
+    for (int f = 0; linear->block && f < linear->jacobian->school->n_fish; f++) {
+        struct block *const block = &linear->block[f];
+        klu_l_free_numeric(&block->numeric, &block->common);
+        klu_l_free_symbolic(&block->symbolic, &block->common);
+    }
+    free(linear->block);
+    free(linear->weight);
+    free(linear->direction);
+    free(linear);
+}
+
+// the factors that the last pivots give for the values of now, if they are good
+static int refactor(struct block *block, struct sparse *own) {
+    if (!block->numeric) return 0;
+    klu_l_common *const common = &block->common;
+    block->counts.refactorisations++;
+    return klu_l_refactor(own->column_start, own->row_index, own->value, block->symbolic, block->numeric, common) &&
+           klu_l_rcond(block->symbolic, block->numeric, common) && common->rcond >= worse * block->rcond &&
+           klu_l_rgrowth(own->column_start, own->row_index, own->value, block->symbolic, block->numeric, common) &&
+           common->rgrowth >= worse * block->rgrowth;
+}
+
+static enum status factor(struct block *block, struct sparse *own) {
+    klu_l_common *const common = &block->common;
+    klu_l_free_numeric(&block->numeric, common);
+    block->counts.factorisations++;
+    block->numeric = klu_l_factor(own->column_start, own->row_index, own->value, block->symbolic, common);
+    if (!block->numeric) {
+        if (common->status == KLU_OUT_OF_MEMORY) return STATUS_MEMORY;
+        return block->was_factorised ? STATUS_RETRY : STATUS_SOLVER;
+    }
+    block->was_factorised = 1;
+    klu_l_rcond(block->symbolic, block->numeric, common);
+    block->rcond = common->rcond;
+    klu_l_rgrowth(own->column_start, own->row_index, own->value, block->symbolic, block->numeric, common);
+    block->rgrowth = common->rgrowth;
+    return STATUS_OK;
+}
+
+static enum status set_up(struct block *block, struct sparse *own) {
+    if (block->version != own->version) {
+        klu_l_free_numeric(&block->numeric, &block->common);
+        klu_l_free_symbolic(&block->symbolic, &block->common);
+        block->counts.analyses++;
+        block->symbolic = klu_l_analyze(own->n, own->column_start, own->row_index, &block->common);
+        block->version = own->version;
+    }
+    // what cannot be analysed is singular whatever its values, or there is no memory
+    if (!block->symbolic) {
+        block->version = 0;
+        return block->common.status == KLU_OUT_OF_MEMORY ? STATUS_MEMORY : STATUS_SOLVER;
+    }
+    return refactor(block, own) ? STATUS_OK : factor(block, own);
+}
+
+enum status linear_setup(struct linear *linear) {
+    const struct jacobian *jacobian = linear->jacobian;
+    const struct school *school = jacobian->school;
+#pragma omp parallel for num_threads(jacobian_threads(school, JACOBIAN_HEAVY)) schedule(dynamic)
+    for (int f = 0; f < school->n_fish; f++) {
+        linear->block[f].status = set_up(&linear->block[f], jacobian->own[f]);
+    }
+    for (int f = 0; f < school->n_fish; f++) {
+        const enum status status = linear->block[f].status;
+        if (status == STATUS_MEMORY) return status_fail(status, "no room to factorise the Jacobian");
+        if (status != STATUS_OK)
+            return status_fail(status, "the Jacobian of fish %s is singular", school->fish[f].name);
+    }
+    return STATUS_OK;
+}
+
+// x = what the own blocks alone make of b; both may be the same
+static void solve_blocks(struct linear *linear, const double *b, double *x) {
+    const struct school *school = linear->jacobian->school;
+#pragma omp parallel for num_threads(jacobian_threads(school, JACOBIAN_LIGHT)) schedule(static)
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct layout *at = &school->fish[f].at;
+        const int n = at->end - at->x;
+        struct block *const block = &linear->block[f];
+        if (x != b) memcpy(x + at->x, b + at->x, (size_t)n * sizeof *x);
+        klu_l_solve(block->symbolic, block->numeric, n, 1, x + at->x, &block->common);
+    }
+}
+
+// product = v plus what the couplings make of v, through the own blocks
+static void multiply(struct linear *linear, const double *v, double *product) {
+    const struct jacobian *jacobian = linear->jacobian;
+    const struct school *school = jacobian->school;
+#pragma omp parallel for num_threads(jacobian_threads(school, JACOBIAN_LIGHT)) schedule(static)
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct layout *at = &school->fish[f].at;
+        struct block *const block = &linear->block[f];
+        memset(product + at->x, 0, (size_t)(at->ax - at->x) * sizeof *product);
+        jacobian_multiply_couplings(jacobian, f, v, product + at->ax);
+        klu_l_solve(block->symbolic, block->numeric, at->end - at->x, 1, product + at->x, &block->common);
+        for (int i = at->x; i < at->end; i++) product[i] += v[i];
+    }
+}
+
+static double dot(const struct linear *linear, const double *a, const double *b) {
+    double sum = 0;
+    for (int i = 0; i < n_unknowns(linear); i++) sum += linear->weight[i] * a[i] * b[i];
+    return sum;
+}
+
+// room for one more direction; growing keeps those that are there
+static enum status make_room(struct linear *linear, int n) {
+    if (n <= linear->n_directions) return STATUS_OK;
+    double *const more = realloc(linear->direction, (size_t)n * (size_t)n_unknowns(linear) * sizeof *more);
+    if (!more) return status_fail(STATUS_MEMORY, "no room for %d directions of GMRES", n);
+    linear->direction = more;
+    linear->n_directions = n;
+    return STATUS_OK;
+}
+
+// Hessenberg matrix of GMRES in columns, made upper triangular by rotations as it grows, and its right-hand side
+struct least_squares {
+    double h[MOST][MOST + 1], cosine[MOST], sine[MOST], rhs[MOST + 1];
+};
+
+// rotate column j of the matrix; what is left of the right-hand side is then |rhs[j + 1]|
+static void rotate(struct least_squares *ls, int j) {
+    double *const h = ls->h[j];
+    for (int i = 0; i < j; i++) {
+        const double upper = ls->cosine[i] * h[i] + ls->sine[i] * h[i + 1];
+        h[i + 1] = ls->cosine[i] * h[i + 1] - ls->sine[i] * h[i];
+        h[i] = upper;
+    }
+    const double length = sqrt(h[j] * h[j] + h[j + 1] * h[j + 1]);
+    ls->cosine[j] = length > 0 ? h[j] / length : 1;
+    ls->sine[j] = length > 0 ? h[j + 1] / length : 0;
+    h[j] = length;
+    ls->rhs[j + 1] = -ls->sine[j] * ls->rhs[j];
+    ls->rhs[j] = ls->cosine[j] * ls->rhs[j];
+}
+
+// x = the combination of n directions that leaves the least
+static void combine(const struct linear *linear, const struct least_squares *ls, int n, double *x) {
+    double factor[MOST];
+    for (int j = n - 1; j >= 0; j--) {
+        factor[j] = ls->rhs[j];
+        for (int k = j + 1; k < n; k++) factor[j] -= ls->h[k][j] * factor[k];
+        factor[j] /= ls->h[j][j];
+    }
+    memset(x, 0, (size_t)n_unknowns(linear) * sizeof *x);
+    for (int j = 0; j < n; j++) {
+        const double *const direction = linear->direction + (long)j * n_unknowns(linear);
+        for (int i = 0; i < n_unknowns(linear); i++) x[i] += factor[j] * direction[i];
+    }
+}
+
+// the coupled system: x comes in as the solution of the uncoupled one
+static enum status solve_coupled(struct linear *linear, double *x) {
+    const int n = n_unknowns(linear);
+    struct least_squares ls;
+    const double start = sqrt(dot(linear, x, x));
+    const double limit = fmax(linear->end.relative * start, linear->end.enough);
+    if (!(start > limit) || !isfinite(start)) return STATUS_OK;
+    TRY(make_room(linear, 1));
+    for (int i = 0; i < n; i++) linear->direction[i] = x[i] / start;
+    ls.rhs[0] = start;
+    int j = 0;
+    while (j < MOST && fabs(ls.rhs[j]) > limit) {
+        TRY(make_room(linear, j + 2));
+        double *const next = linear->direction + (long)(j + 1) * n;
+        multiply(linear, linear->direction + (long)j * n, next);
+        for (int k = 0; k <= j; k++) {
+            const double *const direction = linear->direction + (long)k * n;
+            ls.h[j][k] = dot(linear, direction, next);
+            for (int i = 0; i < n; i++) next[i] -= ls.h[j][k] * direction[i];
+        }
+        const double length = sqrt(dot(linear, next, next));
+        ls.h[j][j + 1] = length;
+        for (int i = 0; length > 0 && i < n; i++) next[i] /= length;
+        rotate(&ls, j++);
+    }
+    linear->iterations += j;
+    combine(linear, &ls, j, x);
+    return STATUS_OK;
+}
+
+enum status linear_solve(struct linear *linear, const double *b, double *x) {
+    linear->solves++;
+    solve_blocks(linear, b, x);
+    if (linear->jacobian->n_couplings > 0) TRY(solve_coupled(linear, x));
+    for (int i = 0; i < n_unknowns(linear); i++) {
+        if (!isfinite(x[i])) return status_fail(STATUS_RETRY, "a linear system has no finite solution");
+    }
+    return STATUS_OK;
+}
+
+struct linear_counts linear_count(const struct linear *linear) {
+    struct linear_counts counts = {.solves = linear->solves, .iterations = linear->iterations};
+    for (int f = 0; f < linear->jacobian->school->n_fish; f++) {
+        const struct linear_counts *block = &linear->block[f].counts;
+        counts.analyses += block->analyses;
+        counts.factorisations += block->factorisations;
+        counts.refactorisations += block->refactorisations;
+    }
+    return counts;
+}

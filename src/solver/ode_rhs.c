@@ -1,0 +1,350 @@
+/* ode_rhs.c: sheets, flow, control, accelerations: each a linear solve or a formula. */
+#include "solver/ode_rhs.h"
+
+#include <klu.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "model/bound_sheet.h"
+
+struct ode_rhs {
+    struct residual *residual;
+    double *still; /* the unknowns with sheets and nascent vortices of no strength        (n_unknowns) */
+    struct influence_block *response; /* of the points of fish f to the vortices of fish g      (n_fish, n_fish) */
+
+    /* the system of all sheets: dense, in compressed columns for KLU */
+    int n;
+    int *first; /* row and column of the first unknown of each fish                       (n_fish) */
+    int64_t *column_start, *row_index;
+    double *value, *solution;
+    klu_l_common common;
+    klu_l_symbolic *symbolic;
+    klu_l_numeric *numeric;
+    long solves;
+
+    double *band, *force; /* mass and added mass of one fish, and its right-hand side */
+};
+
+enum { BANDWIDTH = 4 }; /* of the mass matrix with x and y of each node together: the diagonal and three below */
+
+// with Kutta's edge condition the circulation shed is unknown too
+static int n_strengths(const struct residual *residual, const struct fish *fish) {
+    return fish->n_sheet + (residual_shed_is_algebraic(residual) ? 1 : 0);
+}
+
+static enum status allocate(struct ode_rhs *d) {
+    const struct school *school = d->residual->school;
+    const size_t n_fish = (size_t)school->n_fish;
+    int most_nodes = 0;
+    d->first = calloc(n_fish, sizeof *d->first);
+    d->response = calloc(n_fish * n_fish, sizeof *d->response);
+    d->still = calloc((size_t)school->n_unknowns, sizeof *d->still);
+    if (!d->first || !d->response || !d->still) goto no_memory;
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *fish = &school->fish[f];
+        d->first[f] = d->n;
+        d->n += n_strengths(d->residual, fish);
+        if (fish->n_nodes > most_nodes) most_nodes = fish->n_nodes;
+        for (int g = 0; g < school->n_fish; g++) {
+            struct influence_block *const block = &d->response[f * school->n_fish + g];
+            const size_t size = (size_t)d->residual->flow->points[f].n * (size_t)(school->fish[g].n_sheet + 1);
+            block->u = calloc(size, sizeof *block->u);
+            block->v = calloc(size, sizeof *block->v);
+            if (!block->u || !block->v) goto no_memory;
+        }
+    }
+    const size_t n = (size_t)d->n;
+    d->column_start = calloc(n + 1, sizeof *d->column_start);
+    d->row_index = calloc(n * n, sizeof *d->row_index);
+    d->value = calloc(n * n, sizeof *d->value);
+    d->solution = calloc(n, sizeof *d->solution);
+    d->band = calloc(2 * (size_t)most_nodes * BANDWIDTH, sizeof *d->band);
+    d->force = calloc(2 * (size_t)most_nodes, sizeof *d->force);
+    if (!d->column_start || !d->row_index || !d->value || !d->solution || !d->band || !d->force) goto no_memory;
+    return STATUS_OK;
+
+no_memory:
+    return status_fail(STATUS_MEMORY, "no room for the sheets of %d fish", school->n_fish);
+}
+
+static enum status analyse(struct ode_rhs *d) {
+    for (int64_t column = 0; column < d->n; column++) {
+        d->column_start[column + 1] = (column + 1) * d->n;
+        for (int64_t row = 0; row < d->n; row++) d->row_index[column * d->n + row] = row;
+    }
+    klu_l_defaults(&d->common);
+    d->symbolic = klu_l_analyze(d->n, d->column_start, d->row_index, &d->common);
+    return d->symbolic ? STATUS_OK
+                       : status_fail(STATUS_MEMORY, "no room to analyse a system of %d sheets' unknowns", d->n);
+}
+
+enum status ode_rhs_create(struct ode_rhs **direct, struct residual *residual) {
+    *direct = NULL;
+    struct ode_rhs *const new = calloc(1, sizeof *new);
+    if (!new) return status_fail(STATUS_MEMORY, "no room for the direct solution");
+    new->residual = residual;
+    enum status status = allocate(new);
+    if (status == STATUS_OK) status = analyse(new);
+    if (status != STATUS_OK) {
+        ode_rhs_free(new);
+        return status;
+    }
+    *direct = new;
+    return STATUS_OK;
+}
+
+void ode_rhs_free(struct ode_rhs *d) {
+    if (!d) return;
+    const int n_fish = d->residual->school->n_fish;
+    for (int i = 0; d->response && i < n_fish * n_fish; i++) {
+        free(d->response[i].u);
+        free(d->response[i].v);
+    }
+    if (d->numeric) klu_l_free_numeric(&d->numeric, &d->common);
+    if (d->symbolic) klu_l_free_symbolic(&d->symbolic, &d->common);
+    free(d->response);
+    free(d->still);
+    free(d->first);
+    free(d->column_start);
+    free(d->row_index);
+    free(d->value);
+    free(d->solution);
+    free(d->band);
+    free(d->force);
+    free(d);
+}
+
+// the velocity of everything but sheets and nascent vortices, and what each of those adds
+static enum status place_flow(struct ode_rhs *d, double t, const double *y) {
+    const struct school *school = d->residual->school;
+    const struct state *state = d->residual->state;
+    memcpy(d->still, y, (size_t)school->n_unknowns * sizeof *y);
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *fish = &school->fish[f];
+        memset(d->still + fish->at.gamma, 0, (size_t)fish->n_sheet * sizeof *y);
+        d->still[fish->at.circulation] = state->wake[f].shed_before;
+    }
+    TRY(flow_update_sources(d->residual->flow, state, t, d->still));
+    flow_velocity(d->residual->flow);
+    for (int f = 0; f < school->n_fish; f++) {
+        for (int g = 0; g < school->n_fish; g++) {
+            flow_influence(d->residual->flow, f, g, &d->response[f * school->n_fish + g]);
+        }
+    }
+    return STATUS_OK;
+}
+
+// column j of a block at point p, along a direction
+static double along(const struct influence_block *block, int j, int p, const double direction[2]) {
+    const long at = (long)j * block->n_points + p;
+    return direction[0] * block->u[at] + direction[1] * block->v[at];
+}
+
+// the system: rows of fish f are its control points, Kelvin, and the edge condition where that holds; columns of fish g
+// are its bound vortices and, with the edge condition, its nascent vortex
+static void assemble(struct ode_rhs *d, const double *y, double *rhs) {
+    const struct residual *residual = d->residual;
+    const struct school *school = residual->school;
+    const int edge = residual_shed_is_algebraic(residual);
+    memset(d->value, 0, (size_t)d->n * (size_t)d->n * sizeof *d->value);
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *fish = &school->fish[f];
+        const int first = residual->flow->points[f].first, row = d->first[f], last = fish->n_sheet - 1;
+        const double *const u = residual->flow->u + first, *const v = residual->flow->v + first;
+        const double before = residual->state->wake[f].shed_before;
+        const double shed = edge ? before : y[fish->at.circulation];
+        // right-hand side: what the equations are left with where nothing unknown has strength
+        double *const value = residual->scratch;
+        bound_sheet_residual(fish, residual_dissipated(residual, f), u, v, d->still, value);
+        for (int c = 0; c < fish->n_control; c++) rhs[row + c] = -value[fish->at.gamma + c];
+        rhs[row + fish->n_control] = residual_dissipated(residual, f) - shed;
+        for (int j = 0; j < fish->n_sheet; j++) {
+            d->value[(long)(row + j) * d->n + row + fish->n_control] = fish->sheet_weight[j];
+        }
+        if (edge) {
+            d->value[(long)(row + fish->n_sheet) * d->n + row + fish->n_control] = 1;
+            d->value[(long)(row + last) * d->n + row + fish->n_sheet] = fish->sheet_weight[last];
+            rhs[row + fish->n_sheet] = 0;
+        }
+        for (int g = 0; g < school->n_fish; g++) {
+            const struct fish *other = &school->fish[g];
+            const struct influence_block *block = &d->response[f * school->n_fish + g];
+            const double known = edge ? 0 : y[other->at.circulation] - residual->state->wake[g].shed_before;
+            for (int c = 0; c < fish->n_control; c++) {
+                double normal[2];
+                bound_sheet_normal(fish, c, y, normal);
+                for (int j = 0; j < n_strengths(residual, other); j++) {
+                    d->value[(long)(d->first[g] + j) * d->n + row + c] = along(block, j, c, normal);
+                }
+                rhs[row + c] -= known * along(block, other->n_sheet, c, normal);
+            }
+        }
+    }
+}
+
+static enum status solve_sheets(struct ode_rhs *d, double *y) {
+    const struct residual *residual = d->residual;
+    const struct school *school = residual->school;
+    assemble(d, y, d->solution);
+    int solved = 0;
+    if (d->numeric) {
+        solved = (int)klu_l_refactor(d->column_start, d->row_index, d->value, d->symbolic, d->numeric, &d->common);
+    } else {
+        d->numeric = klu_l_factor(d->column_start, d->row_index, d->value, d->symbolic, &d->common);
+        solved = d->numeric != NULL;
+    }
+    solved = solved && klu_l_solve(d->symbolic, d->numeric, d->n, 1, d->solution, &d->common);
+    if (!solved) return status_fail(STATUS_RETRY, "the system of the bound sheets is singular");
+    d->solves++;
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *fish = &school->fish[f];
+        memcpy(y + fish->at.gamma, d->solution + d->first[f], (size_t)fish->n_sheet * sizeof *y);
+        if (residual_shed_is_algebraic(residual)) {
+            y[fish->at.circulation] = residual->state->wake[f].shed_before + d->solution[d->first[f] + fish->n_sheet];
+        }
+    }
+    return STATUS_OK;
+}
+
+// the velocity at the points with the strengths that have been found
+static void add_sheets(struct ode_rhs *d, const double *y) {
+    const struct school *school = d->residual->school;
+    struct flow *const flow = d->residual->flow;
+    for (int f = 0; f < school->n_fish; f++) {
+        for (int g = 0; g < school->n_fish; g++) {
+            const struct fish *other = &school->fish[g];
+            const struct influence_block *block = &d->response[f * school->n_fish + g];
+            const double nascent = y[other->at.circulation] - d->residual->state->wake[g].shed_before;
+            for (int p = 0; p < block->n_points; p++) {
+                const long last = (long)other->n_sheet * block->n_points + p;
+                double u = nascent * block->u[last], v = nascent * block->v[last];
+                for (int j = 0; j < other->n_sheet; j++) {
+                    const long at = (long)j * block->n_points + p;
+                    u += block->u[at] * y[other->at.gamma + j];
+                    v += block->v[at] * y[other->at.gamma + j];
+                }
+                flow->u[flow->points[f].first + p] += u;
+                flow->v[flow->points[f].first + p] += v;
+            }
+        }
+    }
+}
+
+// mass and added mass of one fish: rows 2 k and 2 k + 1 are x and y of node k; band[BANDWIDTH row + i] is column row - i
+static void assemble_mass(const struct fish *fish, const double *y, double *band) {
+    memset(band, 0, 2 * (size_t)fish->n_nodes * BANDWIDTH * sizeof *band);
+    for (int k = 0; k < fish->n_nodes; k++) {
+        for (int i = 0; i < 2; i++) band[BANDWIDTH * (2 * k + i)] = fish->mass[k];
+    }
+    for (int k = 0; k < fish->n_edges; k++) {
+        const double e[2] = {y[fish->at.x + k + 1] - y[fish->at.x + k], y[fish->at.y + k + 1] - y[fish->at.y + k]};
+        const double length = sqrt(e[0] * e[0] + e[1] * e[1]), n[2] = {-e[1] / length, e[0] / length};
+        for (int row = 0; row < 4; row++) {
+            for (int column = 0; column <= row; column++) {
+                band[BANDWIDTH * (2 * k + row) + row - column] += fish->added_mass[k] * n[row % 2] * n[column % 2] / 4;
+            }
+        }
+    }
+}
+
+// rows whose acceleration is given become the identity
+static void fix_given(const struct fish *fish, double t, double *band, double *force) {
+    const int n = 2 * fish->n_nodes, n_given = 2 * fish_n_driven(fish);
+    for (int row = 0; row < n_given; row++) {
+        double position[2], velocity[2], acceleration[2];
+        fish_driven_node(fish, row / 2, t, position, velocity, acceleration);
+        const double given = acceleration[row % 2];
+        for (int below = row + 1; below < n && below < row + BANDWIDTH; below++) {
+            if (below >= n_given) force[below] -= band[BANDWIDTH * below + below - row] * given;
+            band[BANDWIDTH * below + below - row] = 0;
+        }
+        for (int i = 1; i < BANDWIDTH; i++) band[BANDWIDTH * row + i] = 0;
+        band[BANDWIDTH * row] = 1;
+        force[row] = given;
+    }
+}
+
+// Cholesky's factorisation of a band, and both substitutions
+static void solve_band(int n, double *band, double *x) {
+    for (int row = 0; row < n; row++) {
+        for (int i = BANDWIDTH - 1; i >= 0; i--) {
+            const int column = row - i;
+            if (column < 0) continue;
+            double sum = band[BANDWIDTH * row + i];
+            for (int k = row - BANDWIDTH + 1 > 0 ? row - BANDWIDTH + 1 : 0; k < column; k++) {
+                if (column - k < BANDWIDTH)
+                    sum -= band[BANDWIDTH * row + row - k] * band[BANDWIDTH * column + column - k];
+            }
+            band[BANDWIDTH * row + i] = i == 0 ? sqrt(sum) : sum / band[BANDWIDTH * column];
+        }
+    }
+    for (int row = 0; row < n; row++) {
+        for (int i = 1; i < BANDWIDTH && i <= row; i++) x[row] -= band[BANDWIDTH * row + i] * x[row - i];
+        x[row] /= band[BANDWIDTH * row];
+    }
+    for (int row = n - 1; row >= 0; row--) {
+        for (int i = 1; i < BANDWIDTH && row + i < n; i++) x[row] -= band[BANDWIDTH * (row + i) + i] * x[row + i];
+        x[row] /= band[BANDWIDTH * row];
+    }
+}
+
+static void accelerate(struct ode_rhs *d, int f, double t, double *y) {
+    const struct fish *fish = &d->residual->school->fish[f];
+    double *const value = d->residual->scratch;
+    // with no acceleration the balance is left with minus the forces
+    memset(y + fish->at.ax, 0, 2 * (size_t)fish->n_nodes * sizeof *y);
+    residual_balance(d->residual, f, y, value);
+    for (int k = 0; k < fish->n_nodes; k++) {
+        d->force[2 * k] = -value[fish->at.ax + k];
+        d->force[2 * k + 1] = -value[fish->at.ay + k];
+    }
+    assemble_mass(fish, y, d->band);
+    fix_given(fish, t, d->band, d->force);
+    solve_band(2 * fish->n_nodes, d->band, d->force);
+    for (int k = 0; k < fish->n_nodes; k++) {
+        y[fish->at.ax + k] = d->force[2 * k];
+        y[fish->at.ay + k] = d->force[2 * k + 1];
+    }
+}
+
+static void steer(struct ode_rhs *d, int f, double t, double *y) {
+    const struct state *state = d->residual->state;
+    const struct fish *fish = &d->residual->school->fish[f];
+    double *const value = d->residual->scratch;
+    // the control law is phi0 less a value that does not depend on phi0
+    y[fish->at.phi0] = 0;
+    control_residual(fish, &state->control[f], t, t - state->t, residual_moment(d->residual, f, y), y, value);
+    y[fish->at.phi0] = -value[fish->at.phi0];
+}
+
+enum status ode_rhs_rates(struct ode_rhs *d, double t, double *y, double *yp) {
+    const struct school *school = d->residual->school;
+    for (int f = 0; f < school->n_fish; f++) fish_drive(&school->fish[f], fish_n_driven(&school->fish[f]), t, y);
+    for (int i = 0; i < school->n_unknowns; i++) {
+        if (!isfinite(y[i])) return status_fail(STATUS_RETRY, "unknown %d is not finite at t = %g s", i, t);
+    }
+    TRY(place_flow(d, t, y));
+    TRY(solve_sheets(d, y));
+    add_sheets(d, y);
+    memset(yp, 0, (size_t)school->n_unknowns * sizeof *yp);
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct layout *at = &school->fish[f].at;
+        const size_t size = 2 * (size_t)school->fish[f].n_nodes * sizeof *y;
+        steer(d, f, t, y);
+        residual_muscle(d->residual, f, t, y);
+        accelerate(d, f, t, y);
+        memcpy(yp + at->x, y + at->vx, size);
+        memcpy(yp + at->vx, y + at->ax, size);
+        yp[at->circulation] = residual_shed_is_algebraic(d->residual) ? 0 : residual_shed_rate(d->residual, f, t, y);
+        if (!isfinite(y[at->ax]) || !isfinite(y[at->ay])) {
+            return status_fail(STATUS_RETRY, "the nose of fish %s has no finite acceleration at t = %g s",
+                               school->fish[f].name, t);
+        }
+    }
+    return STATUS_OK;
+}
+
+long ode_rhs_solves(const struct ode_rhs *direct) {
+    return direct->solves;
+}

@@ -1,0 +1,213 @@
+/* one_step.c: implicit Euler and the trapezoidal rule on the equations as they are. */
+#include "solver/one_step.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "model/diagnostics.h"
+#include "solver/linear.h"
+
+/* Newton's iteration ends when what is left is this part of the tolerance. */
+static const double newton_coefficient = 0.01;
+
+/* Coupled fish are solved for up to this part of the right-hand side: Newton's iteration loses more with an old Jacobian. */
+static const double linear_relative = 1e-3;
+
+/* A Jacobian is used on, from step to step, as long as corrections shrink by this factor each. */
+static const double slow_rate = 0.3;
+
+enum { MOST_ITERATIONS = 12 };
+
+struct one_step {
+    struct residual *residual;
+    struct state *state;
+    struct integrator_options options;
+    struct jacobian *jacobian;
+    struct linear *linear;
+    unsigned pattern;                /* of the residual that the Jacobian has been filled for */
+    double cj;                       /* of the Jacobian that is factorised; 0: there is none */
+    double *kind, *tolerance;        /* kind and absolute tolerance of each unknown     (n_unknowns) */
+    double *before, *rates;          /* unknowns and rates at the start of the step     (n_unknowns) */
+    double *correction, *right_hand; /* Newton's                                        (n_unknowns) */
+    struct integrator_counts counts;
+};
+
+static void fixed_free(void *data) {
+    struct one_step *const solver = data;
+    if (!solver) return;
+    linear_free(solver->linear);
+    jacobian_free(solver->jacobian);
+    double *const arrays[] = {solver->kind,  solver->tolerance,  solver->before,
+                              solver->rates, solver->correction, solver->right_hand};
+    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) free(arrays[i]);
+    free(solver);
+}
+
+static enum status fill(struct one_step *solver) {
+    const int n = solver->residual->school->n_unknowns;
+    double **const arrays[] = {&solver->kind,  &solver->tolerance,  &solver->before,
+                               &solver->rates, &solver->correction, &solver->right_hand};
+    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
+        *arrays[i] = calloc((size_t)n, sizeof **arrays[i]);
+        if (!*arrays[i]) return status_fail(STATUS_MEMORY, "no room for %d unknowns", n);
+    }
+    residual_kinds(solver->residual, solver->kind);
+    for (int i = 0; i < n; i++) {
+        // what Newton leaves of a stiff body's velocities adds up to a momentum that is not there
+        solver->tolerance[i] = solver->residual->school->rtol * residual_scale(solver->residual, i) *
+                               residual_undamped(solver->residual, i);
+    }
+    TRY(jacobian_create(&solver->jacobian, solver->residual->school));
+    residual_mask(solver->residual, solver->jacobian);
+    return linear_create(&solver->linear, solver->jacobian, solver->tolerance, (struct linear_end){linear_relative, 0});
+}
+
+static enum status fixed_create(void **solver, struct residual *residual, struct state *state,
+                                const struct integrator_options *options) {
+    *solver = NULL;
+    struct one_step *const new = calloc(1, sizeof *new);
+    if (!new) return status_fail(STATUS_MEMORY, "no room for the implicit solver");
+    new->residual = residual;
+    new->state = state;
+    new->options = *options;
+    new->pattern = residual->pattern;
+    new->counts.step_size = options->step;
+    new->counts.order = options->method == METHOD_TRAPEZOID ? 2 : 1;
+    const enum status status = fill(new);
+    if (status != STATUS_OK) {
+        fixed_free(new);
+        return status;
+    }
+    *solver = new;
+    return STATUS_OK;
+}
+
+static void fixed_count(const void *data, struct integrator_counts *counts) {
+    *counts = ((const struct one_step *)data)->counts;
+}
+
+// a one-step method has no past: what a jump changes is which unknowns are differential
+static enum status fixed_restart(void *data) {
+    struct one_step *const solver = data;
+    residual_kinds(solver->residual, solver->kind);
+    solver->cj = 0;
+    return STATUS_OK;
+}
+
+// ---- one step
+
+/* The rates that belong to the unknowns at the end of the step. */
+static void set_rates(struct one_step *solver, double h) {
+    struct state *const state = solver->state;
+    const int is_trapezoid = solver->options.method == METHOD_TRAPEZOID;
+    for (int i = 0; i < solver->residual->school->n_unknowns; i++) {
+        const double change = (state->y[i] - solver->before[i]) / h;
+        // those of algebraic unknowns serve the audits only
+        state->yp[i] = is_trapezoid && solver->kind[i] > 0 ? 2 * change - solver->rates[i] : change;
+    }
+}
+
+/* Evaluate and factorise the Jacobian. */
+static enum status set_up(struct one_step *solver, double t, double cj) {
+    solver->pattern = solver->residual->pattern;
+    solver->counts.jacobian_evaluations++;
+    solver->cj = 0;
+    TRY(residual_jacobian(solver->residual, t, cj, solver->state->y, solver->jacobian));
+    const enum status status = linear_setup(solver->linear);
+    if (status == STATUS_SOLVER) return status_fail(STATUS_RETRY, "the Jacobian is singular");
+    TRY(status);
+    solver->cj = cj;
+    return STATUS_OK;
+}
+
+/* One correction of the unknowns; its size in tolerances. */
+static enum status correct(struct one_step *solver, double t, double h, double *size) {
+    struct state *const state = solver->state;
+    const int n = solver->residual->school->n_unknowns;
+    set_rates(solver, h);
+    solver->counts.residual_evaluations++;
+    solver->counts.newton_iterations++;
+    TRY(residual_evaluate(solver->residual, t, state->y, state->yp, solver->right_hand));
+    TRY(linear_solve(solver->linear, solver->right_hand, solver->correction));
+    *size = 0;
+    for (int i = 0; i < n; i++) {
+        state->y[i] -= solver->correction[i];
+        // not a number must not pass for small
+        const double weighted = fabs(solver->correction[i]) / solver->tolerance[i];
+        if (!(weighted <= *size)) *size = weighted;
+    }
+    return STATUS_OK;
+}
+
+/* Newton's iteration from the unknowns at the start of the step. *converged: whether it ended well. */
+static enum status iterate(struct one_step *solver, double t, double h, int *converged) {
+    double before = 0;
+    *converged = 0;
+    const double cj = solver->options.method == METHOD_TRAPEZOID ? 2 / h : 1 / h;
+    for (int i = 0; i < MOST_ITERATIONS; i++) {
+        if (solver->cj != cj || solver->pattern != solver->residual->pattern) TRY(set_up(solver, t, cj));
+        double size = 0;
+        TRY(correct(solver, t, h, &size));
+        const double rate = i > 0 ? size / before : 0;
+        // what is left after this correction, as far as its rate tells
+        const double left = i > 0 && rate < 0.5 ? size * rate / (1 - rate) : size;
+        // at the floor of rounding corrections shrink no more
+        *converged = left < newton_coefficient || (rate > 0.9 && size < 1);
+        if (*converged || !isfinite(size)) return STATUS_OK;
+        if (rate > slow_rate) solver->cj = 0;
+        before = size;
+    }
+    return STATUS_OK;
+}
+
+static enum status give_up(const struct one_step *solver, double t) {
+    return status_fail(STATUS_SOLVER,
+                       "the solver gave up at t = %.10g s: Newton's iteration did not converge with steps of %.3g s: "
+                       "take a smaller solver.step, or solver.method: ida",
+                       t, solver->options.step);
+}
+
+/* From the state, at time t - h, to time t. */
+static enum status step(struct one_step *solver, double t, double h) {
+    struct state *const state = solver->state;
+    const size_t size = (size_t)solver->residual->school->n_unknowns * sizeof *state->y;
+    memcpy(solver->before, state->y, size);
+    memcpy(solver->rates, state->yp, size);
+    int converged = 0;
+    // a second attempt has a Jacobian of its own
+    for (int attempt = 0; attempt < 2 && !converged; attempt++) {
+        memcpy(state->y, solver->before, size);
+        const enum status status = iterate(solver, t, h, &converged);
+        if (status < 0) return status;
+        if (status > 0) converged = 0;
+        if (!converged) solver->cj = 0;
+    }
+    if (!converged) return give_up(solver, t - h);
+    set_rates(solver, h);
+    solver->counts.steps++;
+    diagnostics_step(solver->residual, state, t, state->y, state->yp);
+    return STATUS_OK;
+}
+
+static enum status fixed_advance(void *data, double t) {
+    struct one_step *const solver = data;
+    const double start = solver->state->t, interval = t - start;
+    const long n = lround(interval / solver->options.step);
+    if (n > solver->options.max_steps) {
+        return status_fail(STATUS_SOLVER,
+                           "the solver gave up at t = %.10g s: %ld steps between two events are more than "
+                           "solver.max_steps: raise it, or solver.step",
+                           start, n);
+    }
+    const double h = solver->residual->school->interval / (double)n;
+    for (long i = 1; i <= n; i++) TRY(step(solver, i < n ? start + (double)i * h : t, h));
+    return STATUS_OK;
+}
+
+const struct integrator one_step_integrator = {.name = "implicit, fixed steps",
+                                               .create = fixed_create,
+                                               .advance = fixed_advance,
+                                               .restart = fixed_restart,
+                                               .count = fixed_count,
+                                               .free = fixed_free};

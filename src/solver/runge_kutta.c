@@ -1,0 +1,263 @@
+/* runge_kutta.c: ARKStep on the right-hand side that ode_rhs.c computes. */
+#include "solver/runge_kutta.h"
+
+#include <arkode/arkode_arkstep.h>
+#include <math.h>
+#include <nvector/nvector_serial.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "model/diagnostics.h"
+#include "solver/ode_rhs.h"
+#include "solver/sundials_adapter.h"
+
+struct runge_kutta {
+    struct residual *residual;
+    struct state *state;
+    struct integrator_options options;
+    struct ode_rhs *direct;
+    enum status failure; /* of the last right-hand side */
+    double *tolerance;   /* absolute tolerance of each unknown                        (n_unknowns) */
+
+    /* the last evaluation: unknowns with the algebraic ones filled in, and their rates */
+    double *work, *rates; /*                                                           (n_unknowns) */
+    int known;            /* whether there is one */
+    double known_t;
+    long known_event;
+    long evaluations;    /* so far */
+    double *phi0, *shed; /* of every fish at the end of the last step                   (n_fish) */
+
+    SUNContext context;
+    N_Vector y, tolerances;
+    void *arkode;
+    struct integrator_counts before; /* restarts set ARKODE's own totals to zero */
+};
+
+// whether the differential unknowns and the wakes are those of the last evaluation
+static int is_known(const struct runge_kutta *solver, double t, const double *y) {
+    if (!solver->known || t != solver->known_t || solver->state->event != solver->known_event) return 0;
+    for (int f = 0; f < solver->residual->school->n_fish; f++) {
+        const struct layout *at = &solver->residual->school->fish[f].at;
+        const size_t size = (size_t)(at->ax - at->x) * sizeof *y;
+        if (memcmp(y + at->x, solver->work + at->x, size) != 0) return 0;
+        const int differential = !residual_shed_is_algebraic(solver->residual);
+        if (differential && memcmp(y + at->circulation, solver->work + at->circulation, sizeof *y) != 0) return 0;
+    }
+    return 1;
+}
+
+// unknowns and rates at one place of the differential unknowns, into work and rates
+static enum status evaluate(struct runge_kutta *solver, double t, const double *y) {
+    // the end of a step is the start of the next: one evaluation serves both
+    if (is_known(solver, t, y)) return STATUS_OK;
+    solver->known = 0;
+    solver->evaluations++;
+    memcpy(solver->work, y, (size_t)solver->residual->school->n_unknowns * sizeof *y);
+    TRY(ode_rhs_rates(solver->direct, t, solver->work, solver->rates));
+    solver->known = 1;
+    solver->known_t = t;
+    solver->known_event = solver->state->event;
+    return STATUS_OK;
+}
+
+static int rates_callback(realtype t, N_Vector y, N_Vector rates, void *data) {
+    struct runge_kutta *const solver = data;
+    solver->failure = evaluate(solver, t, N_VGetArrayPointer(y));
+    if (solver->failure == STATUS_OK) {
+        memcpy(N_VGetArrayPointer(rates), solver->rates,
+               (size_t)solver->residual->school->n_unknowns * sizeof *solver->rates);
+    }
+    return solver->failure;
+}
+
+// Euler's method; a second stage gives the error estimate that an adaptive step needs
+static ARKodeButcherTable euler_table(int adaptive) {
+    double c[2] = {0, 1}, a[4] = {0, 0, 1, 0}, b[2] = {1, 0}, heun[2] = {0.5, 0.5};
+    return adaptive ? ARKodeButcherTable_Create(2, 1, 2, c, a, b, heun)
+                    : ARKodeButcherTable_Create(1, 1, 0, c, a, b, NULL);
+}
+
+// the classical method of order four; adaptive: with Zonneveld's fifth stage for the error estimate
+static ARKodeButcherTable rk4_table(int adaptive) {
+    if (adaptive) return ARKodeButcherTable_LoadERK(ARKODE_ZONNEVELD_5_3_4);
+    double c[4] = {0, 0.5, 0.5, 1}, b[4] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
+    double a[16] = {0, 0, 0, 0, 0.5, 0, 0, 0, 0, 0.5, 0, 0, 0, 0, 1, 0};
+    return ARKodeButcherTable_Create(4, 4, 0, c, a, b, NULL);
+}
+
+static ARKodeButcherTable table_of(enum method method, int adaptive) {
+    switch (method) {
+        case METHOD_EULER: return euler_table(adaptive);
+        case METHOD_HEUN: return ARKodeButcherTable_LoadERK(ARKODE_HEUN_EULER_2_1_2);
+        case METHOD_RK4: return rk4_table(adaptive);
+        case METHOD_DORMAND_PRINCE: return ARKodeButcherTable_LoadERK(ARKODE_DORMAND_PRINCE_7_4_5);
+        default: break;
+    }
+    return NULL;
+}
+
+static void explicit_free(void *data) {
+    struct runge_kutta *const solver = data;
+    if (!solver) return;
+    if (solver->arkode) ARKStepFree(&solver->arkode);
+    if (solver->y) N_VDestroy(solver->y);
+    if (solver->tolerances) N_VDestroy(solver->tolerances);
+    ode_rhs_free(solver->direct);
+    free(solver->work);
+    free(solver->rates);
+    free(solver->phi0);
+    free(solver->shed);
+    free(solver->tolerance);
+    if (solver->context) SUNContext_Free(&solver->context);
+    free(solver);
+}
+
+static enum status set_up_arkode(struct runge_kutta *solver) {
+    void *const arkode = solver->arkode;
+    const double step = solver->options.step;
+    const ARKodeButcherTable table = table_of(solver->options.method, step <= 0);
+    if (!table) return status_fail(STATUS_MEMORY, "no room for the table of a Runge-Kutta method");
+    const int failed = ARKStepSetErrHandlerFn(arkode, sundials_adapter_message, NULL) ||
+                       ARKStepSetUserData(arkode, solver) || ARKStepSetTables(arkode, 0, 0, NULL, table) ||
+                       ARKStepSVtolerances(arkode, 0, solver->tolerances) || ARKStepSetMaxNumSteps(arkode, -1) ||
+                       ARKStepSetMaxErrTestFails(arkode, 20) ||
+                       ARKStepSetMinStep(arkode, step > 0 ? 0 : 1e-10 * solver->residual->school->interval) ||
+                       (step > 0 && ARKStepSetFixedStep(arkode, step));
+    ARKodeButcherTable_Free(table);
+    return failed ? status_fail(STATUS_SOLVER, "ARKODE cannot be set up: %s", status_message()) : STATUS_OK;
+}
+
+static void remember(struct runge_kutta *solver) {
+    const struct school *school = solver->residual->school;
+    for (int f = 0; f < school->n_fish; f++) {
+        solver->phi0[f] = solver->state->y[school->fish[f].at.phi0];
+        solver->shed[f] = solver->state->y[school->fish[f].at.circulation];
+    }
+}
+
+static enum status fill(struct runge_kutta *solver) {
+    const int n = solver->residual->school->n_unknowns;
+    solver->work = calloc((size_t)n, sizeof *solver->work);
+    solver->tolerance = calloc((size_t)n, sizeof *solver->tolerance);
+    solver->rates = calloc((size_t)n, sizeof *solver->rates);
+    solver->phi0 = calloc((size_t)solver->residual->school->n_fish, sizeof *solver->phi0);
+    solver->shed = calloc((size_t)solver->residual->school->n_fish, sizeof *solver->shed);
+    if (!solver->work || !solver->rates || !solver->phi0 || !solver->shed || !solver->tolerance)
+        return status_fail(STATUS_MEMORY, "no room for %d unknowns", n);
+    // algebraic unknowns have no rate and no error here; an explicit method that does not see velocities goes wrong
+    // without a word
+    for (int i = 0; i < n; i++) {
+        solver->tolerance[i] = solver->residual->school->rtol * residual_scale(solver->residual, i) *
+                               residual_undamped(solver->residual, i);
+    }
+    remember(solver);
+    TRY(ode_rhs_create(&solver->direct, solver->residual));
+    TRY(sundials_adapter_context(&solver->context));
+    TRY(sundials_adapter_vector(&solver->y, solver->context, n, solver->state->y));
+    TRY(sundials_adapter_vector(&solver->tolerances, solver->context, n, solver->tolerance));
+    solver->arkode = ARKStepCreate(rates_callback, NULL, solver->state->t, solver->y, solver->context);
+    if (!solver->arkode) return status_fail(STATUS_MEMORY, "no room for ARKODE");
+    return set_up_arkode(solver);
+}
+
+static enum status explicit_create(void **solver, struct residual *residual, struct state *state,
+                                   const struct integrator_options *options) {
+    *solver = NULL;
+    struct runge_kutta *const new = calloc(1, sizeof *new);
+    if (!new) return status_fail(STATUS_MEMORY, "no room for the explicit solver");
+    new->residual = residual;
+    new->state = state;
+    new->options = *options;
+    const enum status status = fill(new);
+    if (status != STATUS_OK) {
+        explicit_free(new);
+        return status;
+    }
+    *solver = new;
+    return STATUS_OK;
+}
+
+static void explicit_count(const void *data, struct integrator_counts *counts) {
+    const struct runge_kutta *const solver = data;
+    long steps = 0, error_failures = 0;
+    double last_step = 0;
+    *counts = solver->before;
+    ARKStepGetNumSteps(solver->arkode, &steps);
+    ARKStepGetNumErrTestFails(solver->arkode, &error_failures);
+    ARKStepGetLastStep(solver->arkode, &last_step);
+    counts->steps += steps;
+    counts->residual_evaluations = solver->evaluations;
+    counts->error_test_failures += error_failures;
+    if (last_step > 0) counts->step_size = last_step;
+    counts->linear_solves = ode_rhs_solves(solver->direct);
+    counts->order = (int[]){0, 1, 2, 4, 5}[solver->options.method];
+}
+
+static enum status explicit_restart(void *data) {
+    struct runge_kutta *const solver = data;
+    explicit_count(solver, &solver->before);
+    remember(solver);
+    if (ARKStepReInit(solver->arkode, rates_callback, NULL, solver->state->t, solver->y)) {
+        return status_fail(STATUS_SOLVER, "ARKODE cannot start again: %s", status_message());
+    }
+    if (solver->options.step > 0 && ARKStepSetFixedStep(solver->arkode, solver->options.step)) return STATUS_SOLVER;
+    return STATUS_OK;
+}
+
+static enum status unstable(const struct runge_kutta *solver, double t, const char *why) {
+    double step = 0;
+    ARKStepGetLastStep(solver->arkode, &step);
+    return status_fail(STATUS_SOLVER,
+                       "unstable at t = %.10g s: %s with steps of %.3g s; the body is too stiff for an explicit method "
+                       "with such steps: take solver.method: ida, or a smaller solver.step",
+                       t, why, step);
+}
+
+// the algebraic unknowns at the end of a step, for the audits and the event
+static enum status close_step(struct runge_kutta *solver, double before, double reached) {
+    struct state *const state = solver->state;
+    const struct school *school = solver->residual->school;
+    const enum status status = evaluate(solver, reached, state->y);
+    if (status > 0) return unstable(solver, reached, "the solution leaves all numbers");
+    TRY(status);
+    memcpy(state->yp, solver->rates, (size_t)school->n_unknowns * sizeof *state->yp);
+    // the rates of algebraic unknowns that matter are known from their changes only
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct layout *at = &school->fish[f].at;
+        state->yp[at->phi0] = (solver->work[at->phi0] - solver->phi0[f]) / (reached - before);
+        if (residual_shed_is_algebraic(solver->residual)) {
+            state->yp[at->circulation] = (solver->work[at->circulation] - solver->shed[f]) / (reached - before);
+        }
+    }
+    memcpy(state->y, solver->work, (size_t)school->n_unknowns * sizeof *state->y);
+    remember(solver);
+    return STATUS_OK;
+}
+
+static enum status explicit_advance(void *data, double t) {
+    struct runge_kutta *const solver = data;
+    struct state *const state = solver->state;
+    double reached = state->t;
+    for (long steps = 0; reached < t; steps++) {
+        if (steps == solver->options.max_steps) {
+            return unstable(solver, reached, "more steps between two events than solver.max_steps");
+        }
+        if (ARKStepSetStopTime(solver->arkode, t)) return status_fail(STATUS_SOLVER, "ARKODE: %s", status_message());
+        solver->failure = STATUS_OK;
+        const double before = reached;
+        const int code = ARKStepEvolve(solver->arkode, t, solver->y, &reached, ARK_ONE_STEP);
+        if (solver->failure < 0) return solver->failure;
+        if (code < 0) return unstable(solver, reached, "the solution leaves all numbers");
+        if (code == ARK_TSTOP_RETURN) reached = t;
+        TRY(close_step(solver, before, reached));
+        diagnostics_step(solver->residual, state, reached, state->y, state->yp);
+    }
+    return STATUS_OK;
+}
+
+const struct integrator runge_kutta_integrator = {.name = "explicit Runge-Kutta",
+                                                  .create = explicit_create,
+                                                  .advance = explicit_advance,
+                                                  .restart = explicit_restart,
+                                                  .count = explicit_count,
+                                                  .free = explicit_free};

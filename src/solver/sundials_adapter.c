@@ -1,0 +1,74 @@
+/* sundials_adapter.c: SUNDIALS objects around our arrays. */
+#include "solver/sundials_adapter.h"
+
+#include <nvector/nvector_serial.h>
+#include <sundials/sundials_context.h>
+
+enum status sundials_adapter_context(SUNContext *context) {
+    if (SUNContext_Create(NULL, context) != 0) return status_fail(STATUS_MEMORY, "no room for the solvers");
+    return STATUS_OK;
+}
+
+enum status sundials_adapter_vector(N_Vector *vector, SUNContext context, long n, double *values) {
+    *vector = N_VMake_Serial(n, values, context);
+    return *vector ? STATUS_OK : status_fail(STATUS_MEMORY, "no room for a vector of %ld unknowns", n);
+}
+
+static SUNMatrix_ID matrix_id(SUNMatrix matrix) {
+    (void)matrix;
+    return SUNMATRIX_CUSTOM;
+}
+
+// the Jacobian sets its values to zero itself when it is filled
+static int matrix_zero(SUNMatrix matrix) {
+    (void)matrix;
+    return SUNMAT_SUCCESS;
+}
+
+static SUNLinearSolver_Type solver_type(SUNLinearSolver solver) {
+    (void)solver;
+    return SUNLINEARSOLVER_DIRECT;
+}
+
+static int solver_setup(SUNLinearSolver solver, SUNMatrix matrix) {
+    (void)matrix;
+    return linear_setup(solver->content);
+}
+
+static int solver_solve(SUNLinearSolver solver, SUNMatrix matrix, N_Vector x, N_Vector b, realtype tolerance) {
+    (void)matrix, (void)tolerance;
+    return linear_solve(solver->content, N_VGetArrayPointer(b), N_VGetArrayPointer(x));
+}
+
+enum status sundials_adapter_linear_create(struct sundials_adapter_linear *adapter, SUNContext context,
+                                           const struct jacobian *jacobian, const double *scale,
+                                           struct linear_end end) {
+    *adapter = (struct sundials_adapter_linear){0};
+    TRY(linear_create(&adapter->linear, jacobian, scale, end));
+    adapter->matrix = SUNMatNewEmpty(context);
+    adapter->solver = SUNLinSolNewEmpty(context);
+    if (!adapter->matrix || !adapter->solver) {
+        sundials_adapter_linear_free(adapter);
+        return status_fail(STATUS_MEMORY, "no room for a linear solver");
+    }
+    adapter->matrix->ops->getid = matrix_id;
+    adapter->matrix->ops->zero = matrix_zero;
+    adapter->solver->content = adapter->linear;
+    adapter->solver->ops->gettype = solver_type;
+    adapter->solver->ops->setup = solver_setup;
+    adapter->solver->ops->solve = solver_solve;
+    return STATUS_OK;
+}
+
+void sundials_adapter_linear_free(struct sundials_adapter_linear *adapter) {
+    if (adapter->solver) SUNLinSolFreeEmpty(adapter->solver);
+    if (adapter->matrix) SUNMatFreeEmpty(adapter->matrix);
+    linear_free(adapter->linear);
+    *adapter = (struct sundials_adapter_linear){0};
+}
+
+void sundials_adapter_message(int code, const char *module, const char *function, char *text, void *data) {
+    (void)data;
+    // a warning needs no word: what matters comes back as a code
+    if (code < 0) status_fail(STATUS_SOLVER, "%s (%s, %s)", text, module, function);
+}

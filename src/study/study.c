@@ -1,0 +1,340 @@
+/* study.c: running the members of a study, some at a time. */
+#define _DEFAULT_SOURCE  // MAP_ANONYMOUS
+#include "study/study.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "run/simulate.h"
+
+enum { REASON_BYTES = 2048 };
+
+/* What a process tells the study; in memory that both see. */
+struct report {
+    double part; /* of its run */
+    char reason[REASON_BYTES];
+};
+
+/* One process at a time. */
+struct job {
+    pid_t process; /* 0: none */
+    int member;
+    struct report *report;
+};
+
+struct study {
+    const struct case_values *values;
+    const struct study_options *options;
+    int n_jobs;
+    struct job *job;       /* (n_jobs) */
+    struct report *report; /* shared memory                                        (n_jobs) */
+    int n_to_run, n_next;
+    int *to_run; /* numbers of the members that are not finished                    (n_to_run) */
+    struct study_progress progress;
+    struct timespec started;
+    int is_stopping;
+};
+
+static int is_stopped(const struct study *study) {
+    return study->options->stop && *study->options->stop;
+}
+
+// ---- what there is to do
+
+/* Find out whether a member is finished, and refuse the result of another study. settings: the member's case. */
+static enum status look_at(const struct study *study, const struct case_values *values, const char *path,
+                           int *is_finished) {
+    struct member_file member;
+    *is_finished = 0;
+    if (access(path, F_OK) != 0) return STATUS_OK;
+    const enum status read = member_file_read(&member, path);
+    if (read == STATUS_FILE) return STATUS_OK;  // cut off by a crash: it runs again
+    TRY(read);
+    enum status status = STATUS_OK;
+    char *effective = NULL;
+    if (strcmp(member.study, study->values->merged) == 0 && member.number == values->member) {
+        status = case_show(values, &effective);
+        *is_finished =
+            status == STATUS_OK && strcmp(member.status, "complete") == 0 && strcmp(member.effective, effective) == 0;
+    } else if (!study->options->force) {
+        status = status_fail(STATUS_FILE,
+                             "%s is a result of another study, or of this one before its case was changed: choose "
+                             "another folder with -o, or replace what is there with --force",
+                             path);
+    }
+    free(effective);
+    member_file_free(&member);
+    return status;
+}
+
+/* Check the case of a member and enter it in the list unless it is finished. */
+static enum status plan_member(struct study *study, int number) {
+    struct case_values values;
+    TRY(sweep_member(&values, study->values, number));
+    enum status status = case_runnable(&values);
+    char *const path = study_member_path(study->options->folder, number, ".nc");
+    int is_finished = 0;
+    if (!path) status = STATUS_MEMORY;
+    if (status == STATUS_OK) status = look_at(study, &values, path, &is_finished);
+    if (status == STATUS_OK && !is_finished) study->to_run[study->n_to_run++] = number;
+    if (is_finished) study->progress.n_done++;
+    free(path);
+    case_free(&values);
+    return status;
+}
+
+/* Remove what other studies have left behind the last member of this one. */
+static enum status clear_rest(const struct study *study) {
+    for (int number = sweep_n_members(study->values);; number++) {
+        char *const path = study_member_path(study->options->folder, number, ".nc");
+        if (!path) return STATUS_MEMORY;
+        const int exists = access(path, F_OK) == 0;
+        if (exists && study->options->force) unlink(path);
+        if (exists && !study->options->force) {
+            status_fail(STATUS_FILE,
+                        "%s is a result of another study: choose another folder with -o, or remove it with --force",
+                        path);
+        }
+        free(path);
+        if (!exists) return STATUS_OK;
+        if (!study->options->force) return STATUS_FILE;
+    }
+}
+
+/* Refuse to replace what another study has gathered there; a file that cannot be read is none. */
+static enum status look_at_gathered(const struct study *study) {
+    char *const path = study_path(study->options->folder, "study.nc");
+    if (!path) return STATUS_MEMORY;
+    struct case_values values;
+    struct member_file *members;
+    enum status status = access(path, F_OK) == 0 ? study_file_read(path, &values, &members) : STATUS_FILE;
+    if (status == STATUS_OK) {
+        if (strcmp(values.merged, study->values->merged) != 0) {
+            status = status_fail(STATUS_FILE,
+                                 "%s was gathered from another study, or from this one before its case was changed: "
+                                 "choose another folder with -o, or replace what is there with --force",
+                                 path);
+        }
+        study_members_free(members, sweep_n_members(&values));
+        case_free(&values);
+    } else if (status != STATUS_MEMORY) {
+        status = STATUS_OK;
+    }
+    free(path);
+    return status;
+}
+
+static enum status plan(struct study *study, int first, int last) {
+    study->to_run = calloc((size_t)(last - first + 1), sizeof *study->to_run);
+    if (!study->to_run) return status_fail(STATUS_MEMORY, "no memory for a study of %d members", last - first + 1);
+    study->progress.n_members = last - first + 1;
+    for (int number = first; number <= last; number++) TRY(plan_member(study, number));
+    if (study->options->last >= 0) return STATUS_OK;
+    if (!study->options->force) TRY(look_at_gathered(study));
+    return clear_rest(study);
+}
+
+static enum status make_folder(const char *folder) {
+    struct stat facts;
+    if (mkdir(folder, 0777) == 0) return STATUS_OK;
+    if (errno == EEXIST && stat(folder, &facts) == 0 && S_ISDIR(facts.st_mode)) return STATUS_OK;
+    return status_fail(STATUS_FILE, "%s: cannot make this folder (%s): choose another one with -o", folder,
+                       strerror(errno));
+}
+
+// ---- one member, in its own process
+
+static void tell_part(const struct simulate_progress *now, void *data) {
+    ((struct report *)data)->part = now->t / now->end;
+}
+
+static enum status run_member(const struct study *study, const struct job *job) {
+    struct case_values values;
+    TRY(sweep_member(&values, study->values, job->member));
+    char *const path = study_member_path(study->options->folder, job->member, ".nc");
+    const struct simulate_options options = {.path = path,
+                                             .overwrite = 1,
+                                             .command = study->options->command,
+                                             .progress = tell_part,
+                                             .data = job->report,
+                                             .stop = study->options->stop};
+    const enum status status = path ? simulate_run(&values, &options) : STATUS_MEMORY;
+    free(path);
+    case_free(&values);
+    return status;
+}
+
+/* Never returns. */
+static void be_member(const struct study *study, const struct job *job, pid_t parent, const sigset_t *mask) {
+    // a study that is killed takes its members with it
+    prctl(PR_SET_PDEATHSIG, SIGTERM);
+    if (getppid() != parent) _exit(status_exit_code(STATUS_STOPPED));
+    sigprocmask(SIG_SETMASK, mask, NULL);
+    const enum status status = run_member(study, job);
+    if (status != STATUS_OK) snprintf(job->report->reason, REASON_BYTES, "%s", status_message());
+    _exit(status_exit_code(status));
+}
+
+static enum status start(struct study *study, struct job *job, const sigset_t *mask) {
+    job->member = study->to_run[study->n_next++];
+    *job->report = (struct report){0};
+    const pid_t parent = getpid();
+    fflush(NULL);
+    const pid_t process = fork();
+    if (process == 0) be_member(study, job, parent, mask);
+    if (process < 0) return status_fail(STATUS_FILE, "cannot start a process: %s: use fewer with -j", strerror(errno));
+    job->process = process;
+    return STATUS_OK;
+}
+
+// ---- all members
+
+/* Keep the reason of a failure beside the result, or remove what an earlier call has kept there. */
+static enum status keep_reason(const struct study *study, int member, const char *reason) {
+    char *const path = study_member_path(study->options->folder, member, ".failed");
+    if (!path) return STATUS_MEMORY;
+    // nothing can be done about a full disk here: the result file says "running" or "failed" itself
+    FILE *const file = reason ? fopen(path, "w") : NULL;
+    if (file) {
+        fprintf(file, "%s\n", reason);
+        fclose(file);
+    } else {
+        unlink(path);
+    }
+    free(path);
+    return STATUS_OK;
+}
+
+/* Note how a member ended. */
+static enum status finish(struct study *study, struct job *job, int outcome) {
+    job->process = 0;
+    const int code = WIFEXITED(outcome) ? WEXITSTATUS(outcome) : -1;
+    if (code == status_exit_code(STATUS_STOPPED)) return STATUS_OK;
+    if (code == 0) {
+        study->progress.n_done++;
+        return keep_reason(study, job->member, NULL);
+    }
+    study->progress.n_failed++;
+    if (WIFSIGNALED(outcome)) {
+        snprintf(job->report->reason, REASON_BYTES, "killed by signal %d (%s)", WTERMSIG(outcome),
+                 strsignal(WTERMSIG(outcome)));
+    }
+    return keep_reason(study, job->member, job->report->reason);
+}
+
+static int n_running(const struct study *study) {
+    int n = 0;
+    for (int j = 0; j < study->n_jobs; j++) n += study->job[j].process != 0;
+    return n;
+}
+
+static void tell(struct study *study) {
+    if (!study->options->progress) return;
+    struct study_progress *const progress = &study->progress;
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    progress->wall_time =
+        (double)(now.tv_sec - study->started.tv_sec) + 1e-9 * (double)(now.tv_nsec - study->started.tv_nsec);
+    progress->n_running = n_running(study);
+    const double almost = 0.99;  // a member is done when its process is
+    double work = study->n_next - progress->n_running;
+    for (int j = 0; j < study->n_jobs; j++) work += study->job[j].process ? almost * study->job[j].report->part : 0;
+    progress->part = study->n_to_run > 0 ? work / study->n_to_run : 1;
+    study->options->progress(progress, study->options->data);
+}
+
+/* Ask all processes to stop at their next event, once. */
+static void stop_all(struct study *study) {
+    if (study->is_stopping) return;
+    study->is_stopping = 1;
+    for (int j = 0; j < study->n_jobs; j++) {
+        if (study->job[j].process) kill(study->job[j].process, SIGTERM);
+    }
+}
+
+/* Collect the processes that have ended. */
+static enum status collect(struct study *study) {
+    for (int j = 0; j < study->n_jobs; j++) {
+        int outcome;
+        const pid_t process = study->job[j].process;
+        if (process && waitpid(process, &outcome, WNOHANG) == process) TRY(finish(study, &study->job[j], outcome));
+    }
+    return STATUS_OK;
+}
+
+/* Start members while there are any, until all have ended. mask: the signals that a member blocks. */
+static enum status loop(struct study *study, const sigset_t *mask) {
+    sigset_t ended;
+    sigemptyset(&ended);
+    sigaddset(&ended, SIGCHLD);
+    const struct timespec patience = {.tv_nsec = 200000000};
+    enum status status = STATUS_OK;
+    for (;;) {
+        if (is_stopped(study) || status != STATUS_OK) stop_all(study);
+        for (int j = 0; j < study->n_jobs && !study->is_stopping && status == STATUS_OK; j++) {
+            if (study->job[j].process == 0 && study->n_next < study->n_to_run)
+                status = start(study, &study->job[j], mask);
+        }
+        tell(study);
+        if (n_running(study) == 0) return status;
+        sigtimedwait(&ended, NULL, &patience);
+        const enum status collected = collect(study);
+        if (status == STATUS_OK) status = collected;
+    }
+}
+
+static enum status run_all(struct study *study) {
+    study->job = calloc((size_t)study->n_jobs, sizeof *study->job);
+    study->report = mmap(NULL, (size_t)study->n_jobs * sizeof *study->report, PROT_READ | PROT_WRITE,
+                         MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (study->report == MAP_FAILED) study->report = NULL;
+    if (!study->job || !study->report) return status_fail(STATUS_MEMORY, "no memory for %d processes", study->n_jobs);
+    for (int j = 0; j < study->n_jobs; j++) study->job[j].report = &study->report[j];
+
+    // a blocked signal waits for us, so that the end of a process is never missed
+    sigset_t ended, before;
+    sigemptyset(&ended);
+    sigaddset(&ended, SIGCHLD);
+    sigprocmask(SIG_BLOCK, &ended, &before);
+    const enum status status = loop(study, &before);
+    sigprocmask(SIG_SETMASK, &before, NULL);
+    TRY(status);
+    if (!is_stopped(study)) return STATUS_OK;
+    return status_fail(STATUS_STOPPED, "stopped by a signal: %d of %d members are finished; the same command goes on",
+                       study->progress.n_done, study->progress.n_members);
+}
+
+static enum status run_and_report(struct study *study, FILE *stream) {
+    const struct study_options *const options = study->options;
+    const int n = sweep_n_members(study->values), is_part = options->last >= 0;
+    const int first = is_part ? options->first : 0, last = is_part ? options->last : n - 1;
+    if (first < 0 || first > last || last >= n) {
+        return status_fail(STATUS_CASE, "--members %d-%d: the study has members 0 to %d", first, last, n - 1);
+    }
+    TRY(plan(study, first, last));
+    TRY(make_folder(options->folder));
+    study->n_jobs = options->n_processes > 0 ? options->n_processes : (int)sysconf(_SC_NPROCESSORS_ONLN);
+    if (study->n_jobs > study->n_to_run) study->n_jobs = study->n_to_run;
+    if (study->n_jobs > 0) TRY(run_all(study));
+    if (!is_part) return study_report(study->values, options->folder, options->command, stream);
+    if (study->progress.n_failed == 0) return STATUS_OK;
+    return status_fail(STATUS_SOLVER, "%d of %d members failed; %s/member-*.failed say why", study->progress.n_failed,
+                       last - first + 1, options->folder);
+}
+
+enum status study_run(const struct case_values *values, const struct study_options *options, FILE *stream) {
+    struct study study = {.values = values, .options = options};
+    clock_gettime(CLOCK_MONOTONIC, &study.started);
+    const enum status status = run_and_report(&study, stream);
+    if (study.report) munmap(study.report, (size_t)study.n_jobs * sizeof *study.report);
+    free(study.job);
+    free(study.to_run);
+    return status;
+}

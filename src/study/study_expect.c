@@ -1,0 +1,129 @@
+/* study_expect.c: what the case expects of the ends of its members. Declared in study.h. */
+#include <math.h>
+#include <string.h>
+
+#include "study/study.h"
+
+/* The values that a statement is about, of one quantity. */
+struct reach {
+    int n;
+    double least[2], most[2]; /* x and y of points */
+    int missing;              /* a member that has no value; -1: none */
+};
+
+static struct reach reach_of(const struct case_values *study, const struct member_file *members,
+                             const struct sweep_expectation *one, int q) {
+    const struct sweep_quantity *const what = &sweep_quantities[q];
+    const int quantity = member_file_quantity_number(what->name);
+    struct reach reach = {.least = {INFINITY, INFINITY}, .most = {-INFINITY, -INFINITY}, .missing = -1};
+    for (int m = 0; m < sweep_n_members(study); m++) {
+        if (!sweep_expects_of(study, one, m)) continue;
+        for (int f = 0; f < (what->of_fish ? study->n_fish : 1); f++) {
+            if (one->fish >= 0 && one->fish != f) continue;
+            reach.n++;
+            for (int k = 0; k < 1 + what->of_xy; k++) {
+                const double value = member_file_value(&members[m], quantity, f, k);
+                if (isnan(value) || strcmp(members[m].status, "complete") != 0) reach.missing = m;
+                reach.least[k] = fmin(reach.least[k], value);
+                reach.most[k] = fmax(reach.most[k], value);
+            }
+        }
+    }
+    return reach;
+}
+
+/* One bound: print what is and what should be; whether it holds. NaN is no bound. */
+static int holds(const char *what, double value, const char *word, double bound, FILE *stream) {
+    if (isnan(bound)) return 1;
+    const int is_least = strcmp(word, "least") == 0;
+    const int is_met = is_least ? value >= bound : value <= bound;
+    fprintf(stream, "  %-8s %s %.9g, expected at %s %.9g\n", is_met ? "met" : "MISSED", what, value,
+            is_least ? "least" : "most", bound);
+    return is_met;
+}
+
+/* Whether a statement holds for a quantity. */
+static int judge(const struct case_values *study, const struct member_file *members, int number, int q, FILE *stream) {
+    const struct sweep_expectation *const one = &study->expect[number];
+    const struct reach reach = reach_of(study, members, one, q);
+    const char *const name = sweep_quantities[q].name;
+    fprintf(stream, "%s%s%s, %d value%s\n", name, one->fish >= 0 ? " of " : "",
+            one->fish >= 0 ? study->fish[one->fish].name : "", reach.n, reach.n == 1 ? "" : "s");
+    if (reach.missing >= 0) {
+        fprintf(stream, "  MISSED   member %d is not complete\n", reach.missing);
+        return 0;
+    }
+    // of a number the second direction is empty
+    const double width = reach.most[0] - reach.least[0];
+    const double height = sweep_quantities[q].of_xy ? reach.most[1] - reach.least[1] : 0;
+    // all are printed
+    const int n_met =
+        holds("the least is", reach.least[0], "least", one->least, stream) +
+        holds("the largest is", reach.most[0], "most", one->most, stream) +
+        holds("they differ by", hypot(width, height), "most", one->spread, stream) +
+        holds("the largest over the least is", reach.most[0] / reach.least[0], "most", one->ratio, stream);
+    return n_met == 4;
+}
+
+// ---- members that are to fail
+
+static int has_failed(const struct member_file *member, const char *words) {
+    return strncmp(member->status, "failed", strlen("failed")) == 0 && strstr(member->status, words) != NULL;
+}
+
+int study_expects_failure(const struct case_values *study, const struct member_file *members, int member) {
+    for (int i = 0; i < study->n_expectations; i++) {
+        const struct sweep_expectation *const one = &study->expect[i];
+        if (one->fails && sweep_expects_of(study, one, member) && has_failed(&members[member], one->fails)) return 1;
+    }
+    return 0;
+}
+
+/* Whether all members that a statement is about have failed as it says. */
+static int judge_failures(const struct case_values *study, const struct member_file *members,
+                          const struct sweep_expectation *one, FILE *stream) {
+    int n = 0, wrong = -1;
+    for (int m = 0; m < sweep_n_members(study); m++) {
+        if (!sweep_expects_of(study, one, m)) continue;
+        n++;
+        if (!has_failed(&members[m], one->fails)) wrong = m;
+    }
+    fprintf(stream, "failures, %d member%s\n", n, n == 1 ? "" : "s");
+    if (wrong < 0) {
+        fprintf(stream, "  met      failed with '%s'\n", one->fails);
+    } else {
+        fprintf(stream, "  MISSED   member %d has not failed with '%s'\n", wrong, one->fails);
+    }
+    return wrong < 0;
+}
+
+// ---- all statements
+
+/* Whether a statement holds; if not, *what is the first thing that does not. */
+static int judge_all(const struct case_values *study, const struct member_file *members, int number, const char **what,
+                     FILE *stream) {
+    const struct sweep_expectation *const one = &study->expect[number];
+    *what = "failures";
+    if (one->fails) return judge_failures(study, members, one, stream);
+    int are_met = 1;
+    for (int q = 0; q < SWEEP_N_QUANTITIES; q++) {
+        if (!(one->of >> q & 1) || judge(study, members, number, q, stream)) continue;
+        if (are_met) *what = sweep_quantities[q].name;
+        are_met = 0;
+    }
+    return are_met;
+}
+
+enum status study_expect(const struct case_values *study, const struct member_file *members, FILE *stream) {
+    int n_missed = 0, first = 0;
+    const char *first_what = "", *what;
+    if (study->n_expectations > 0) fprintf(stream, "\nExpected:\n");
+    for (int i = 0; i < study->n_expectations; i++) {
+        if (judge_all(study, members, i, &what, stream) || n_missed++ > 0) continue;
+        first = i;
+        first_what = what;
+    }
+    if (n_missed == 0) return STATUS_OK;
+    return status_fail(STATUS_MISSED, "expect[%d]: %s: not what the case expects%s; the output says what is", first,
+                       first_what, n_missed > 1 ? ", nor are others" : "");
+}

@@ -1,0 +1,99 @@
+/* study_print.c: the table of members. Declared in study.h. */
+#include <string.h>
+
+#include "study/study.h"
+
+enum { MOST_FISH_SHOWN = 4 };
+
+/* The quantities that are shown; all others are in study.nc. */
+static const struct shown {
+    const char *quantity, *head, *format;
+} shown[] = {
+    {"time", "t", "%.4g"},
+    {"speed", "speed", "%.5f"},
+    {"mean_heading", "heading", "%.3f"},
+    {"cost_of_transport", "cost", "%.4g"},
+    {"strouhal", "Strouhal", "%.4f"},
+    {"lateral_drift", "drift", "%.5f"},
+    {"shed_circulation", "shed", "%.5f"},
+    {"energy_audit", "audit", "%.1e"},
+    {"steps", "steps", "%.0f"},
+    {"residual_evaluations", "evaluations", "%.0f"},
+    {"wall_time", "wall", "%.2f"},
+};
+enum { N_SHOWN = sizeof shown / sizeof *shown };
+
+/* "modulus" for fish[*].body.modulus, "[1]phase" for fish[1].wave.phase. */
+static void set_short_name(const struct study_table *table, int row, int column, const char *path) {
+    const char *const dot = strrchr(path, '.');
+    const int is_one = strncmp(path, "fish[", 5) == 0 && path[5] != '*';
+    study_table_set(table, row, column, "%.*s%s", is_one ? (int)strcspn(path + 4, ".") : 0, path + 4,
+                    dot ? dot + 1 : path);
+}
+
+/* Head and unit of each column. */
+static void fill_head(const struct study_table *table, const struct case_values *study, int with_fish) {
+    int c = 0;
+    study_table_set(table, 0, c++, "member");
+    for (int a = 0; a < study->n_axes; a++) {
+        for (int k = 0; k < study->sweep[a].n_keys; k++, c++) {
+            set_short_name(table, 0, c, study->sweep[a].key[k].path);
+            study_table_set(table, 1, c, "%s", study->sweep[a].key[k].unit);
+        }
+    }
+    if (with_fish) study_table_set(table, 0, c++, "fish");
+    for (int s = 0; s < N_SHOWN; s++, c++) {
+        const char *const unit = member_file_quantity(member_file_quantity_number(shown[s].quantity))->unit;
+        study_table_set(table, 0, c, "%s", shown[s].head);
+        study_table_set(table, 1, c, "%s", strcmp(unit, "1") == 0 ? "" : unit);
+    }
+    study_table_set(table, 0, c, "status");
+}
+
+/* One fish of one member. */
+static void fill_row(const struct study_table *table, int row, const struct case_values *study,
+                     const struct member_file *member, int number, int f, int with_fish) {
+    int c = 0;
+    study_table_set(table, row, c++, "%d", number);
+    for (int a = 0; a < study->n_axes; a++) {
+        const struct sweep_axis *const axis = &study->sweep[a];
+        const int value = sweep_member_value(study, number, a);
+        for (int k = 0; k < axis->n_keys; k++) {
+            study_table_set(table, row, c++, "%s", axis->value[value * axis->n_keys + k]);
+        }
+    }
+    if (with_fish) study_table_set(table, row, c++, "%s", study->fish[f].name);
+    for (int s = 0; s < N_SHOWN; s++) {
+        const int quantity = member_file_quantity_number(shown[s].quantity);
+        const double value = member_file_value(member, quantity, member_file_quantity(quantity)->of_fish ? f : 0, 0);
+        study_table_number(table, row, c++, shown[s].format, value);
+    }
+    // "failed: why": the reasons stand below the table
+    study_table_set(table, row, c, "%.*s", (int)strcspn(member->status, ":"), member->status);
+}
+
+/* What else there is to say about the members that are not complete. */
+static void print_reasons(const struct member_file *members, int n, FILE *stream) {
+    for (int m = 0; m < n; m++) {
+        if (strchr(members[m].status, ':')) fprintf(stream, "member %d %s\n", m, members[m].status);
+    }
+}
+
+enum status study_print(const struct case_values *study, const struct member_file *members, FILE *stream) {
+    const int n = sweep_n_members(study), n_fish = study->n_fish < MOST_FISH_SHOWN ? study->n_fish : MOST_FISH_SHOWN;
+    int n_columns = 2 + (n_fish > 1) + N_SHOWN;
+    for (int a = 0; a < study->n_axes; a++) n_columns += study->sweep[a].n_keys;
+    struct study_table table;
+    TRY(study_table_create(&table, 2 + n * n_fish, n_columns));
+    fill_head(&table, study, n_fish > 1);
+    for (int m = 0; m < n; m++) {
+        for (int f = 0; f < n_fish; f++) {
+            fill_row(&table, 2 + m * n_fish + f, study, &members[m], m, f, n_fish > 1);
+        }
+    }
+    study_table_print(&table, stream);
+    study_table_free(&table);
+    if (n_fish < study->n_fish) fprintf(stream, "The first %d of %d fish; study.nc has all.\n", n_fish, study->n_fish);
+    print_reasons(members, n, stream);
+    return STATUS_OK;
+}

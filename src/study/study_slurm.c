@@ -1,0 +1,113 @@
+/* study_slurm.c: a study as an array job of Slurm. Declared in study.h. */
+#include <errno.h>
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "study/study.h"
+
+enum { MOST_TASKS = 1000 /* Slurm's own default is 1001 */ };
+
+/* Open a file of the folder for writing. */
+static enum status open_file(FILE **file, const char *folder, const char *name, int is_script) {
+    char path[PATH_MAX];
+    if (snprintf(path, sizeof path, "%s/%s", folder, name) >= (int)sizeof path) {
+        return status_fail(STATUS_FILE, "%s: too long a name", folder);
+    }
+    *file = fopen(path, "w");
+    if (!*file) return status_fail(STATUS_FILE, "%s: cannot be written: %s", path, strerror(errno));
+    if (is_script) chmod(path, 0755);
+    return STATUS_OK;
+}
+
+static enum status close_file(FILE *file, const char *folder) {
+    const int failed = ferror(file);
+    if (fclose(file) == 0 && !failed) return STATUS_OK;
+    return status_fail(STATUS_FILE, "%s: the scripts cannot be written: %s", folder, strerror(errno));
+}
+
+static enum status write_array(const struct case_values *study, const char *folder, const char *program, int n_tasks,
+                               int bundle) {
+    FILE *file;
+    TRY(open_file(&file, folder, "array.sbatch", 1));
+    fprintf(file,
+            "#!/bin/sh\n"
+            "#SBATCH --job-name='%s'\n"
+            "#SBATCH --array=0-%d\n"
+            "#SBATCH --ntasks=1\n"
+            "#SBATCH --cpus-per-task=%d\n"
+            "#SBATCH --requeue\n"
+            "#SBATCH --open-mode=append\n"
+            "#SBATCH --output='%s/task-%%a.log'\n"
+            "# Each task runs %d of the %d members; one that is requeued goes on where it was.\n"
+            "first=$((SLURM_ARRAY_TASK_ID * %d))\n"
+            "last=$((first + %d))\n"
+            "[ $last -lt %d ] || last=%d\n"
+            "exec '%s' study '%s/study.yaml' -o '%s' --members $first-$last -j 1\n",
+            study->name, n_tasks - 1, study->solver.threads, folder, bundle, sweep_n_members(study), bundle, bundle - 1,
+            sweep_n_members(study), sweep_n_members(study) - 1, program, folder, folder);
+    return close_file(file, folder);
+}
+
+static enum status write_gather(const struct case_values *study, const char *folder, const char *program) {
+    FILE *file;
+    TRY(open_file(&file, folder, "gather.sbatch", 1));
+    fprintf(file,
+            "#!/bin/sh\n"
+            "#SBATCH --job-name='%s-gather'\n"
+            "#SBATCH --ntasks=1\n"
+            "#SBATCH --output='%s/study.txt'\n"
+            "exec '%s' gather '%s'\n",
+            study->name, folder, program, folder);
+    TRY(close_file(file, folder));
+    TRY(open_file(&file, folder, "submit.sh", 1));
+    fprintf(
+        file,
+        "#!/bin/sh\n"
+        "# Submit the members as an array job, and after the last of them the job that gathers what they end with.\n"
+        "set -eu\n"
+        "array=$(sbatch --parsable \"$@\" '%s/array.sbatch')\n"
+        "gather=$(sbatch --parsable --dependency=\"afterany:$array\" '%s/gather.sbatch')\n"
+        "echo \"members: job $array; results: job $gather, %s/study.txt and study.nc\"\n",
+        folder, folder, folder);
+    return close_file(file, folder);
+}
+
+static enum status write_case(const struct case_values *study, const char *folder) {
+    FILE *file;
+    TRY(open_file(&file, folder, "study.yaml", 0));
+    fputs(study->merged, file);
+    return close_file(file, folder);
+}
+
+enum status study_slurm(const struct case_values *study, const char *folder, int bundle, FILE *stream) {
+    const int n = sweep_n_members(study);
+    if (bundle < 1) bundle = (n + MOST_TASKS - 1) / MOST_TASKS;
+    const int n_tasks = (n + bundle - 1) / bundle;
+    for (int m = 0; m < n; m++) {
+        struct case_values member;
+        TRY(sweep_member(&member, study, m));
+        case_free(&member);
+    }
+    char place[PATH_MAX], program[PATH_MAX];
+    if (mkdir(folder, 0777) != 0 && errno != EEXIST) {
+        return status_fail(STATUS_FILE, "%s: cannot make this folder (%s): choose another one with -o", folder,
+                           strerror(errno));
+    }
+    if (!realpath(folder, place) || !realpath("/proc/self/exe", program)) {
+        return status_fail(STATUS_FILE, "%s: its full path cannot be found: %s", folder, strerror(errno));
+    }
+    if (strpbrk(place, "'\n\"") || strpbrk(program, "'\n\"") || strpbrk(study->name, "'\n\"")) {
+        return status_fail(STATUS_CASE,
+                           "%s: quotes in the folder, the program's path or the name of the case cannot "
+                           "stand in a script",
+                           place);
+    }
+    TRY(write_case(study, place));
+    TRY(write_array(study, place, program, n_tasks, bundle));
+    TRY(write_gather(study, place, program));
+    fprintf(stream, "%d members in %d tasks; start them with %s/submit.sh\n", n, n_tasks, folder);
+    return STATUS_OK;
+}

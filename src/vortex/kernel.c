@@ -1,0 +1,204 @@
+/* kernel.c: three widths of the same loops, and the choice between them. */
+#include "vortex/kernel.h"
+
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+#ifdef __x86_64__
+#include <immintrin.h>
+#endif
+
+enum { BLOCK = 8 }; /* targets that are treated alike; a multiple of the width of every variant */
+
+static const double inverse_two_pi = 0.159154943091895335769;
+
+static inline double sum_of_block(const double *value) {
+    return ((value[0] + value[4]) + (value[2] + value[6])) + ((value[1] + value[5]) + (value[3] + value[7]));
+}
+
+#ifdef __x86_64__
+
+#define VARIANT(name) name##_avx512
+#define VARIANT_NAME "avx512"
+#define TARGET __attribute__((target("avx512f")))
+#define lanes __m512d
+#define FUSED(a, b, c) _mm512_fmadd_pd(a, b, c)
+#include "vortex/kernel_loops.h"
+
+#define VARIANT(name) name##_avx2
+#define VARIANT_NAME "avx2"
+#define TARGET __attribute__((target("avx2,fma")))
+#define lanes __m256d
+#define FUSED(a, b, c) _mm256_fmadd_pd(a, b, c)
+#include "vortex/kernel_loops.h"
+
+#endif
+
+// ---- without fused products in the processor
+
+typedef double two __attribute__((vector_size(2 * sizeof(double))));
+typedef uint64_t two_bits __attribute__((vector_size(2 * sizeof(uint64_t))));
+
+// a + b, and what rounding takes from it (Knuth)
+static inline two sum(two a, two b, two *error) {
+    const two s = a + b, t = s - a;
+    *error = (a - (s - t)) + (b - t);
+    return s;
+}
+
+// the first 26 digits of 53, rounded; the rest, with a sign, has 26 too
+static inline two upper(two a) {
+    return (two)(((two_bits)a + (1 << 26)) & -((uint64_t)1 << 27));
+}
+
+// a b, and what rounding takes from it (Dekker)
+static inline two product(two a, two b, two *error) {
+    const two p = a * b, a1 = upper(a), b1 = upper(b), a2 = a - a1, b2 = b - b1;
+    *error = ((a1 * b1 - p) + a1 * b2 + a2 * b1) + a2 * b2;
+    return p;
+}
+
+// a + b; where that is not exact, the neighbour with an odd last digit: a second rounding then sees that it was not
+static inline two sum_to_odd(two a, two b) {
+    two error;
+    const two s = sum(a, b, &error);
+    const two_bits bits = (two_bits)s;
+    const two_bits inexact_and_even = (two_bits)(error != 0) & ((bits & 1) - 1);
+    const two_bits outwards = 1 - 2 * (((two_bits)error ^ bits) >> 63); /* 1: the error has the sign of the sum */
+    return (two)(bits + (outwards & inexact_and_even));
+}
+
+// a b + c with one rounding: Boldo and Melquiond, Emulation of FMA and correctly rounded sums, IEEE Trans. Comp. 2008.
+// It needs products above 1e-290, or a c so much larger that they do not matter.
+static inline two fused(two a, two b, two c) {
+    two product_error, low_error, high_error;
+    const two high_product = product(a, b, &product_error);
+    const two low = sum(c, product_error, &low_error), high = sum(high_product, low, &high_error);
+    return high + sum_to_odd(low_error, high_error);
+}
+
+#define VARIANT(name) name##_baseline
+#define VARIANT_NAME "baseline"
+#define TARGET
+#define lanes two
+#define FUSED(a, b, c) fused(a, b, c)
+#include "vortex/kernel_loops.h"
+
+// ---- the choice
+
+const struct kernel_variant *kernel_variant(int i) {
+    const struct kernel_variant *found[3];
+    int n = 0;
+#ifdef __x86_64__
+    if (__builtin_cpu_supports("avx512f")) found[n++] = &loops_avx512;
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) found[n++] = &loops_avx2;
+#endif
+    found[n++] = &loops_baseline;
+    return i < n ? found[i] : NULL;
+}
+
+// A source on a target has no velocity there: a number that is small, but whose square is not zero, keeps 0/0 away. At
+// distances that matter it changes no bit.
+static double square_of(double smoothing) {
+    return smoothing * smoothing + 1e-150;
+}
+
+// Targets behind the last whole 16 are copied into 8 or 16 places, which the last of them fills up.
+struct rest {
+    int first, n, n_places;
+    double x[2 * BLOCK], y[2 * BLOCK], sum[5][2 * BLOCK];
+};
+
+static void rest_take(struct rest *rest, int n_targets, const double *x, const double *y) {
+    rest->n = n_targets % (2 * BLOCK);
+    rest->first = n_targets - rest->n;
+    rest->n_places = rest->n <= BLOCK ? BLOCK : 2 * BLOCK;
+    for (int i = 0; i < rest->n_places; i++) {
+        const int from = rest->first + (i < rest->n ? i : rest->n - 1);
+        rest->x[i] = x[from];
+        rest->y[i] = y[from];
+    }
+    memset(rest->sum, 0, sizeof rest->sum);
+}
+
+static void rest_add(const struct rest *rest, int k, double *value) {
+    for (int i = 0; i < rest->n; i++) value[rest->first + i] += rest->sum[k][i];
+}
+
+void kernel_add_velocity(int n_targets, const double *x, const double *y, int n_sources, const double *source_x,
+                         const double *source_y, const double *circulation, double smoothing, double *u, double *v) {
+    const struct kernel_variant *const variant = kernel_variant(0);
+    const struct kernel_sources sources = {n_sources, source_x, source_y, circulation, square_of(smoothing)};
+    const int whole = n_targets - n_targets % (2 * BLOCK);
+    struct rest rest;
+    variant->velocity(whole, x, y, &sources, u, v);
+    if (whole == n_targets) return;
+    rest_take(&rest, n_targets, x, y);
+    variant->velocity(rest.n_places, rest.x, rest.y, &sources, rest.sum[0], rest.sum[1]);
+    rest_add(&rest, 0, u);
+    rest_add(&rest, 1, v);
+}
+
+void kernel_add_gradient(int n_targets, const double *x, const double *y, int n_sources, const double *source_x,
+                         const double *source_y, const double *circulation, double smoothing, double *u, double *v,
+                         double *u_x, double *u_y, double *v_x) {
+    const struct kernel_variant *const variant = kernel_variant(0);
+    const struct kernel_sources sources = {n_sources, source_x, source_y, circulation, square_of(smoothing)};
+    const int whole = n_targets - n_targets % (2 * BLOCK);
+    double *const to[5] = {u, v, u_x, u_y, v_x};
+    struct rest rest;
+    variant->gradient(whole, x, y, &sources, u, v, u_x, u_y, v_x);
+    if (whole == n_targets) return;
+    rest_take(&rest, n_targets, x, y);
+    variant->gradient(rest.n_places, rest.x, rest.y, &sources, rest.sum[0], rest.sum[1], rest.sum[2], rest.sum[3],
+                      rest.sum[4]);
+    for (int k = 0; k < 5; k++) rest_add(&rest, k, to[k]);
+}
+
+void kernel_add_pairwise(const struct kernel_tile *a, const struct kernel_tile *b, double smoothing) {
+    kernel_variant(0)->mutual(a, b, square_of(smoothing));
+}
+
+KERNEL_WIDE void kernel_unit(int n, const double *x, const double *y, double source_x, double source_y,
+                             double smoothing, struct kernel_values *values) {
+    const double square = square_of(smoothing);
+    for (int i = 0; i < n; i++) {
+        const double rx = x[i] - source_x, ry = y[i] - source_y;
+        const double inverse = 1 / (rx * rx + ry * ry + square);
+        const double g = inverse_two_pi * inverse;
+        const double twice = 2 * g * inverse;
+        values->u[i] = -g * ry;
+        values->v[i] = g * rx;
+        values->u_x[i] = twice * rx * ry;
+        values->u_y[i] = twice * ry * ry - g;
+        values->v_x[i] = g - twice * rx * rx;
+    }
+}
+
+KERNEL_WIDE void kernel_add_motion(int n, double factor, const struct kernel_values *values, double *restrict u_by_x,
+                                   double *restrict v_by_x, double *restrict u_by_y, double *restrict v_by_y) {
+    for (int i = 0; i < n; i++) {
+        u_by_x[i] += factor * values->u_x[i];
+        v_by_x[i] += factor * values->v_x[i];
+        u_by_y[i] += factor * values->u_y[i];
+        v_by_y[i] -= factor * values->u_x[i];
+    }
+}
+
+KERNEL_WIDE void kernel_multiply(int n_rows, int n_columns, const double *restrict matrix,
+                                 const double *restrict vector, double *restrict product) {
+    int c = 0;
+    // four columns at a time, so that a product is read and written once for them
+    for (; c + 4 <= n_columns; c += 4) {
+        const double *const column = matrix + (long)c * n_rows;
+        const double f0 = vector[c], f1 = vector[c + 1], f2 = vector[c + 2], f3 = vector[c + 3];
+        for (int r = 0; r < n_rows; r++) {
+            product[r] = product[r] + f0 * column[r] + f1 * column[n_rows + r] + f2 * column[2 * n_rows + r] +
+                         f3 * column[3 * n_rows + r];
+        }
+    }
+    for (; c < n_columns; c++) {
+        const double *const column = matrix + (long)c * n_rows;
+        for (int r = 0; r < n_rows; r++) product[r] += vector[c] * column[r];
+    }
+}

@@ -1,0 +1,87 @@
+/* kernel.h: the velocity of smoothed point vortices at points, the inner loop of everything. doc/model.md, first
+ * paragraph: K_e(r) = (-r_y, r_x) / (2 pi (|r|^2 + e^2)). Tested by tests/vortex/test_kernel.c.
+ *
+ * Every target sums over the sources in their order, and every operation is rounded as written here, so the results
+ * have the same bits on every x86-64, whatever the width of its vectors:
+ *
+ * - |r|^2 + e^2 and the sums are made of fused products, a b + c with one rounding. They are written as such; the
+ *   compiler fuses nothing. A processor without them computes the same bits, slowly.
+ * - Targets are taken in blocks of 16. Of one block, targets i and i + 8 share a division, 1/(d_i d_i+8): the last bits
+ *   of a target depend on the one it shares with. Where 8 targets or fewer are left, each has its own division; so have
+ *   all targets of a gradient. Lengths between 1e-75 and 1e75 m do not overflow.
+ *
+ * Arrays are separate for x and y and need no alignment: the sources go to all lanes of a vector one by one, and a
+ * block of targets is read once for all of them. */
+#ifndef KERNEL_H
+#define KERNEL_H
+
+/* Before a function with plain loops: compiled for three widths of vectors, of which the loader chooses. The address
+ * sanitizer cannot follow that choice. */
+#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
+#define KERNEL_WIDE __attribute__((target_clones("avx512f", "avx2", "default")))
+#else
+#define KERNEL_WIDE
+#endif
+
+/* Add to (u, v) at each target the velocity of all sources; smoothing is the length e. A source at a target adds 0. */
+void kernel_add_velocity(int n_targets, const double *x, const double *y, int n_sources, const double *source_x,
+                         const double *source_y, const double *circulation, double smoothing, double *u, double *v);
+
+/* The same, and add the gradient: u_x = du/dx = -dv/dy, u_y = du/dy, v_x = dv/dx (the field has no divergence). */
+void kernel_add_gradient(int n_targets, const double *x, const double *y, int n_sources, const double *source_x,
+                         const double *source_y, const double *circulation, double smoothing, double *u, double *v,
+                         double *u_x, double *u_y, double *v_x);
+
+/* Vortices that feel each other. */
+struct kernel_tile {
+    int n;                             /* a multiple of 16, at most KERNEL_TILE; vortices of strength 0 fill it up */
+    const double *x, *y, *circulation; /* place, m, and circulation, m2 s-1 (n) */
+    double *u, *v;                     /* velocity, m s-1                   (n) */
+};
+enum { KERNEL_TILE = 128 };
+
+/* Add the velocities of the vortices of two different tiles at one another: K is odd, so a pair has one division for
+ * both. */
+void kernel_add_pairwise(const struct kernel_tile *a, const struct kernel_tile *b, double smoothing);
+
+/* Velocity and gradient at a chunk of targets. */
+enum { KERNEL_CHUNK = 64 };
+struct kernel_values {
+    double u[KERNEL_CHUNK], v[KERNEL_CHUNK];
+    double u_x[KERNEL_CHUNK], u_y[KERNEL_CHUNK], v_x[KERNEL_CHUNK];
+};
+
+/* What one source of unit circulation causes at n <= KERNEL_CHUNK targets. */
+void kernel_unit(int n, const double *x, const double *y, double source_x, double source_y, double smoothing,
+                 struct kernel_values *values);
+
+/* Add to n targets the change of the velocity with a displacement of unit length in x and in y, times a factor: u_x and
+ * v_x to the arrays of x, u_y and v_y = -u_x to those of y. */
+void kernel_add_motion(int n, double factor, const struct kernel_values *values, double *u_by_x, double *v_by_x,
+                       double *u_by_y, double *v_by_y);
+
+/* product += matrix * vector: a dense matrix (n_rows, n_columns), column after column; they are added in this order. */
+void kernel_multiply(int n_rows, int n_columns, const double *matrix, const double *vector, double *product);
+
+/* The sources of one sum. */
+struct kernel_sources {
+    int n;
+    const double *x, *y, *circulation;
+    double square; /* e^2, and a little */
+};
+
+/* The loops, for one width of vectors; the functions above use the fastest that the processor has. Targets are a
+ * multiple of 8. */
+struct kernel_variant {
+    const char *name;
+    void (*velocity)(int n, const double *x, const double *y, const struct kernel_sources *sources, double *u,
+                     double *v);
+    void (*gradient)(int n, const double *x, const double *y, const struct kernel_sources *sources, double *u,
+                     double *v, double *u_x, double *u_y, double *v_x);
+    void (*mutual)(const struct kernel_tile *a, const struct kernel_tile *b, double square);
+};
+
+/* Variant i of those that this processor has, the fastest first; NULL if there are no more. */
+const struct kernel_variant *kernel_variant(int i);
+
+#endif

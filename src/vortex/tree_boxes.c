@@ -1,0 +1,128 @@
+/* tree_boxes.c: halve by the longer side of the box, at the median. */
+#include "vortex/tree_boxes.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+struct tree_point {
+    double at[2], weight;
+    int place;
+};
+
+static enum status resize(void *memory, size_t n, size_t size) {
+    void **const place = memory;
+    void *const more = realloc(*place, n * size);
+    if (!more) return status_fail(STATUS_MEMORY, "no memory for a tree of %zu points", n);
+    *place = more;
+    return STATUS_OK;
+}
+
+static enum status reserve(struct tree_boxes *boxes, int n, int n_boxes) {
+    if (n > boxes->capacity) {
+        const size_t capacity = (size_t)n + (size_t)n / 2;
+        boxes->capacity = 0;
+        TRY(resize(&boxes->place, capacity, sizeof *boxes->place));
+        TRY(resize(&boxes->x, capacity, sizeof *boxes->x));
+        TRY(resize(&boxes->y, capacity, sizeof *boxes->y));
+        TRY(resize(&boxes->weight, capacity, sizeof *boxes->weight));
+        TRY(resize(&boxes->work, capacity, sizeof *boxes->work));
+        boxes->capacity = (int)capacity;
+    }
+    if (n_boxes > boxes->box_capacity) {
+        boxes->box_capacity = 0;
+        TRY(resize(&boxes->box, (size_t)n_boxes, sizeof *boxes->box));
+        boxes->box_capacity = n_boxes;
+    }
+    return STATUS_OK;
+}
+
+// Reorder the points so that those before the middle are not greater, and those behind it not less, along one axis.
+static void halve(struct tree_point *point, int n, int middle, int axis) {
+    int low = 0, high = n - 1;
+    while (low < high) {
+        const double pivot = point[low + (high - low) / 2].at[axis];
+        int i = low, j = high;
+        while (i <= j) {
+            while (point[i].at[axis] < pivot) i++;
+            while (point[j].at[axis] > pivot) j--;
+            if (i > j) break;
+            const struct tree_point other = point[i];
+            point[i++] = point[j];
+            point[j--] = other;
+        }
+        if (middle <= j) {
+            high = j;
+        } else if (middle >= i) {
+            low = i;
+        } else {
+            return;
+        }
+    }
+}
+
+// the circle around the smallest rectangle of the points; returns the axis along which the rectangle is longer
+static int enclose(struct tree_box *box, const struct tree_point *point) {
+    double low[2] = {point->at[0], point->at[1]}, high[2] = {point->at[0], point->at[1]};
+    for (int i = 1; i < box->n; i++) {
+        for (int axis = 0; axis < 2; axis++) {
+            const double at = point[i].at[axis];
+            low[axis] = at < low[axis] ? at : low[axis];
+            high[axis] = at > high[axis] ? at : high[axis];
+        }
+    }
+    box->x = low[0] + (high[0] - low[0]) / 2;
+    box->y = low[1] + (high[1] - low[1]) / 2;
+    double square = 0;
+    for (int i = 0; i < box->n; i++) {
+        const double rx = point[i].at[0] - box->x, ry = point[i].at[1] - box->y;
+        const double distance = rx * rx + ry * ry;
+        square = distance > square ? distance : square;
+    }
+    // where all points are one, the series still divide by the radius
+    box->radius = fmax(sqrt(square), 1e-100);
+    return high[1] - low[1] > high[0] - low[0];
+}
+
+enum status tree_boxes_fill(struct tree_boxes *boxes, int n, const double *x, const double *y, const double *weight,
+                            int leaf) {
+    boxes->n = boxes->n_boxes = boxes->depth = 0;
+    if (n == 0) return STATUS_OK;
+    int depth = 0;
+    while ((n + (1 << depth) - 1) >> depth > leaf) depth++;
+    const int n_boxes = tree_boxes_level(depth + 1);
+    TRY(reserve(boxes, n, n_boxes));
+    struct tree_point *const point = boxes->work;
+    for (int i = 0; i < n; i++) {
+        point[i] = (struct tree_point){.at = {x[i], y[i]}, .weight = weight ? weight[i] : 0, .place = i};
+    }
+    boxes->box[0] = (struct tree_box){.first = 0, .n = n};
+    for (int i = 0; i < n_boxes; i++) {
+        struct tree_box *const box = &boxes->box[i];
+        const int axis = enclose(box, point + box->first);
+        if (i >= tree_boxes_level(depth)) continue;
+        const int middle = box->n / 2;
+        halve(point + box->first, box->n, middle, axis);
+        boxes->box[2 * i + 1] = (struct tree_box){.first = box->first, .n = middle};
+        boxes->box[2 * i + 2] = (struct tree_box){.first = box->first + middle, .n = box->n - middle};
+    }
+    for (int i = 0; i < n; i++) {
+        boxes->x[i] = point[i].at[0];
+        boxes->y[i] = point[i].at[1];
+        boxes->weight[i] = point[i].weight;
+        boxes->place[i] = point[i].place;
+    }
+    boxes->n = n;
+    boxes->depth = depth;
+    boxes->n_boxes = n_boxes;
+    return STATUS_OK;
+}
+
+void tree_boxes_clear(struct tree_boxes *boxes) {
+    free(boxes->box);
+    free(boxes->place);
+    free(boxes->x);
+    free(boxes->y);
+    free(boxes->weight);
+    free(boxes->work);
+    *boxes = (struct tree_boxes){0};
+}

@@ -1,0 +1,83 @@
+/* velocity_sum.c: one tree after another for the vortices of each smoothing. */
+#include "vortex/velocity_sum.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "vortex/treecode.h"
+
+/* Where the tree is faster than direct sums: at least so many vortices, and so many interactions. Measured by
+ * `make bench`; the ways differ little near these numbers. */
+static const int fewest_vortices = 1000;
+static const double fewest_interactions = 6e6;
+
+struct velocity_sum {
+    struct treecode *tree;
+    struct vortices gathered; /* those of one smoothing */
+};
+
+enum status velocity_sum_create(struct velocity_sum **velocity_sum) {
+    *velocity_sum = NULL;
+    struct velocity_sum *const new = calloc(1, sizeof *new);
+    if (!new) return status_fail(STATUS_MEMORY, "no room for a sum");
+    const enum status status = treecode_create(&new->tree);
+    if (status != STATUS_OK) {
+        velocity_sum_free(new);
+        return status;
+    }
+    *velocity_sum = new;
+    return STATUS_OK;
+}
+
+void velocity_sum_free(struct velocity_sum *velocity_sum) {
+    if (!velocity_sum) return;
+    treecode_free(velocity_sum->tree);
+    vortices_free(&velocity_sum->gathered);
+    free(velocity_sum);
+}
+
+int velocity_sum_by_tree(const struct vortices *vortices, int n_targets, double tolerance) {
+    return tolerance > 0 && vortices->n >= fewest_vortices && (double)vortices->n * n_targets >= fewest_interactions;
+}
+
+// whether an earlier group has the smoothing of group k
+static int is_done(const struct vortices *vortices, int k) {
+    int first = 0;
+    while (vortices->group[first].smoothing != vortices->group[k].smoothing) first++;
+    return first < k;
+}
+
+// all vortices with the smoothing of group k
+static enum status gather(struct velocity_sum *velocity_sum, const struct vortices *vortices, int k) {
+    struct vortices *const all = &velocity_sum->gathered;
+    vortices_clear(all);
+    for (int g = k; g < vortices->n_groups; g++) {
+        const struct vortex_group *const group = &vortices->group[g];
+        if (group->smoothing != vortices->group[k].smoothing) continue;
+        const int n = all->n;
+        const size_t size = (size_t)group->at.n * sizeof(double);
+        TRY(vortices_append(all, group->at.n, group->smoothing));
+        memcpy(all->x + n, vortices->x + group->at.first, size);
+        memcpy(all->y + n, vortices->y + group->at.first, size);
+        memcpy(all->circulation + n, vortices->circulation + group->at.first, size);
+    }
+    return STATUS_OK;
+}
+
+enum status velocity_sum_induce(struct velocity_sum *velocity_sum, const struct vortices *vortices, double tolerance,
+                                int threads, const struct induced *at) {
+    for (int k = 0; k < vortices->n_groups; k++) {
+        if (is_done(vortices, k)) continue;
+        TRY(gather(velocity_sum, vortices, k));
+        const struct vortices *const all = &velocity_sum->gathered;
+        TRY(treecode_build(velocity_sum->tree, all->n, all->x, all->y, all->circulation, vortices->group[k].smoothing,
+                           tolerance / 10));
+        if (at->u_x) {
+            TRY(treecode_add_gradient(velocity_sum->tree, at->n, at->x, at->y, threads, at->u, at->v, at->u_x, at->u_y,
+                                      at->v_x));
+        } else {
+            TRY(treecode_add_velocity(velocity_sum->tree, at->n, at->x, at->y, threads, at->u, at->v));
+        }
+    }
+    return STATUS_OK;
+}

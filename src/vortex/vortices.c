@@ -1,0 +1,110 @@
+/* vortices.c: groups of vortices onto targets. */
+#include "vortex/vortices.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "vortex/kernel.h"
+
+void vortices_free(struct vortices *vortices) {
+    free(vortices->x);
+    free(vortices->y);
+    free(vortices->circulation);
+    free(vortices->group);
+    *vortices = (struct vortices){0};
+}
+
+void vortices_clear(struct vortices *vortices) {
+    vortices->n = 0;
+    vortices->n_groups = 0;
+}
+
+static enum status grow(double **values, int n, int capacity) {
+    // whole cache lines
+    enum { LINE = 64 };
+    const size_t bytes = ((size_t)capacity * sizeof **values + LINE - 1) / LINE * LINE;
+    double *const more = aligned_alloc(LINE, bytes);
+    if (!more) return status_fail(STATUS_MEMORY, "no room for %d vortices", capacity);
+    if (n > 0) memcpy(more, *values, (size_t)n * sizeof *more);
+    free(*values);
+    *values = more;
+    return STATUS_OK;
+}
+
+enum status vortices_append(struct vortices *vortices, int n, double smoothing) {
+    const int all = vortices->n + n;
+    if (all > vortices->capacity) {
+        const int capacity = all + all / 2;
+        TRY(grow(&vortices->x, vortices->n, capacity));
+        TRY(grow(&vortices->y, vortices->n, capacity));
+        TRY(grow(&vortices->circulation, vortices->n, capacity));
+        vortices->capacity = capacity;
+    }
+    if (n == 0) return STATUS_OK;
+    if (vortices->n_groups > 0 && vortices->group[vortices->n_groups - 1].smoothing == smoothing) {
+        vortices->group[vortices->n_groups - 1].at.n += n;
+    } else {
+        if (vortices->n_groups == vortices->group_capacity) {
+            const int capacity = 2 * vortices->group_capacity + 1;
+            struct vortex_group *const more = realloc(vortices->group, (size_t)capacity * sizeof *more);
+            if (!more) return status_fail(STATUS_MEMORY, "no room for %d groups of vortices", capacity);
+            vortices->group = more;
+            vortices->group_capacity = capacity;
+        }
+        vortices->group[vortices->n_groups++] = (struct vortex_group){{vortices->n, n}, smoothing};
+    }
+    vortices->n = all;
+    return STATUS_OK;
+}
+
+struct induced vortices_targets(const struct induced *all, struct range which) {
+    const int i = which.first;
+    struct induced part = {which.n, all->x + i, all->y + i, all->u + i, all->v + i, NULL, NULL, NULL};
+    if (all->u_x) {
+        part.u_x = all->u_x + i;
+        part.u_y = all->u_y + i;
+        part.v_x = all->v_x + i;
+    }
+    return part;
+}
+
+void vortices_induce(const struct vortices *vortices, struct range which, const struct induced *at) {
+    const int end = which.first + which.n;
+    for (int g = 0; g < vortices->n_groups; g++) {
+        const struct vortex_group *group = &vortices->group[g];
+        const int group_end = group->at.first + group->at.n;
+        const int i = group->at.first > which.first ? group->at.first : which.first;
+        const int n = (group_end < end ? group_end : end) - i;
+        if (n <= 0) continue;
+        const double *const x = vortices->x + i, *const y = vortices->y + i;
+        const double *const circulation = vortices->circulation + i;
+        if (at->u_x) {
+            kernel_add_gradient(at->n, at->x, at->y, n, x, y, circulation, group->smoothing, at->u, at->v, at->u_x,
+                                at->u_y, at->v_x);
+        } else {
+            kernel_add_velocity(at->n, at->x, at->y, n, x, y, circulation, group->smoothing, at->u, at->v);
+        }
+    }
+}
+
+void vortices_zero(const struct induced *at) {
+    double *const values[] = {at->u, at->v, at->u_x, at->u_y, at->v_x};
+    for (size_t k = 0; k < sizeof values / sizeof *values; k++) {
+        if (values[k]) memset(values[k], 0, (size_t)at->n * sizeof *values[k]);
+    }
+}
+
+enum { CHUNK = 16 };
+
+int vortices_n_chunks(int n) {
+    return (n + CHUNK - 1) / CHUNK;
+}
+
+struct range vortices_chunk(int i, int n) {
+    const int first = i * CHUNK, rest = n - first;
+    return (struct range){first, rest < CHUNK ? rest : CHUNK};
+}
+
+int vortices_threads(int threads, double interactions) {
+    return interactions > 30000 ? threads : 1;
+}

@@ -1,0 +1,61 @@
+/* vortices.h: point vortices in groups of one smoothing each, and the velocity that they induce. doc/model.md, first
+ * paragraph. Tested by tests/vortex/test_vortices.c. */
+#ifndef VORTICES_H
+#define VORTICES_H
+
+#include "base/status.h"
+
+/* A part of an array. */
+struct range {
+    int first, n;
+};
+
+struct vortex_group {
+    struct range at;
+    double smoothing; /* m */
+};
+
+/* Groups follow one another without a gap; neighbours of one smoothing are one group. */
+struct vortices {
+    int n, capacity;
+    double *x, *y;       /* m, aligned to cache lines                              (n) */
+    double *circulation; /* m2 s-1                                                 (n) */
+    int n_groups, group_capacity;
+    struct vortex_group *group; /* (n_groups) */
+};
+
+/* Where velocity, and its gradient where u_x is not NULL, are wanted, and where they are added; all arrays (n).
+ * u_x = du/dx = -dv/dy, u_y = du/dy, v_x = dv/dx. */
+struct induced {
+    int n;
+    const double *x, *y;     /* m */
+    double *u, *v;           /* m s-1 */
+    double *u_x, *u_y, *v_x; /* s-1 */
+};
+
+/* Release what the vortices own. Accepts a zeroed struct, as all functions here do. */
+void vortices_free(struct vortices *vortices);
+
+/* None left; the room stays. */
+void vortices_clear(struct vortices *vortices);
+
+/* Add n vortices with no values yet at the end. Fails with STATUS_MEMORY; nothing is changed then. */
+enum status vortices_append(struct vortices *vortices, int n, double smoothing);
+
+/* Add what the vortices of a range cause at the targets, group after group. */
+void vortices_induce(const struct vortices *vortices, struct range which, const struct induced *at);
+
+/* The targets first .. first + n - 1 of others. */
+struct induced vortices_targets(const struct induced *all, struct range which);
+
+/* Set what the targets have to zero. */
+void vortices_zero(const struct induced *at);
+
+/* Targets are taken in chunks of whole vectors, cut at places that depend on nothing else: chunk i of n targets. */
+int vortices_n_chunks(int n);
+struct range vortices_chunk(int i, int n);
+
+/* How many of the threads a sum of so many interactions is worth: starting them costs as much as some thousand. */
+int vortices_threads(int threads, double interactions);
+
+#endif

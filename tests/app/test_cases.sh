@@ -1,0 +1,100 @@
+#!/usr/bin/env bash
+# Every case in cases/ runs, and gives the numbers of tests/data/cases.tsv; every study in cases/studies/ states what it
+# expects, and meets it.
+#
+#   tests/app/test_cases.sh PROGRAM
+set -uo pipefail
+export LC_ALL=C
+
+program=$(realpath "${1:?usage: tests/app/test_cases.sh PROGRAM}")
+tests=$(realpath "$(dirname "$0")/..")
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder" || exit 2
+
+exec /usr/bin/python3 - "$program" "$tests/../cases" "$tests/data/cases.tsv" <<'EOF'
+import glob, os, subprocess, sys
+import netCDF4
+import numpy as np
+
+program, cases, table = sys.argv[1:]
+counts = {"ok": 0, "FAILED": 0, "skipped": 0}
+LONG = ["stiffness"]  # studies of minutes, to be run by hand
+
+
+def check(name, good, words=""):
+    """Count and print one check."""
+    word = "ok" if good else "FAILED"
+    counts[word] += 1
+    print(f"{word:7s} {name}{': ' if words else ''}{words}", flush=True)
+
+
+def run(case, end):
+    """Run a case, up to a time; the open result, or None."""
+    path = f"{case}-{end}.nc"
+    shorter = [] if end == "-" else ["--set", f"time.end={end}"]
+    done = subprocess.run(
+        [program, "run", f"{cases}/{case}.yaml", "-q", "-o", path, *shorter],
+        stdin=subprocess.DEVNULL, capture_output=True, text=True,
+    )
+    if done.returncode or done.stdout or done.stderr:
+        check(f"{case} runs", False, f"exit code {done.returncode}: {done.stderr[:500]}")
+        return None
+    data = netCDF4.Dataset(path)
+    check(f"{case} runs", data.run_status == "complete", data.run_status)
+    circulation = np.abs(data["total_circulation"][:]).max()
+    check(f"{case} total circulation", circulation < 1e-10, f"{circulation:.1e}")
+    return data
+
+
+def quantity(data, name, fish):
+    """The number that a line of the table asks for."""
+    time = data["time"][:]
+    beat = slice(-round(1 / (time[1] - time[0])), None)  # the rows of the last beat: all cases beat once a second
+    if name == "steps":
+        return data["steps"][-1] * data["shedding_interval"][...] / time[-1]
+    if name == "tail":
+        return np.ptp(data["x"][beat, fish, -1, 1])
+    if name == "turning":
+        return np.degrees(2 * np.arctan(data["natural_curvature"][beat, fish] / 2)).sum(axis=1).mean()
+    how, _, variable = name.rpartition(":")
+    values = np.ma.filled(data[variable][:], np.nan)
+    values = values if fish is None else values[:, fish]
+    return {"": lambda v: v[-1], "beat": lambda v: v[beat].mean(), "least": np.nanmin, "most": np.nanmax}[how](values)
+
+
+rows = [line.split() for line in open(table) if line.strip() and not line.startswith("#")]
+results = {}
+for case, end, name, fish, value, tolerance in rows:
+    if (case, end) not in results:
+        results[case, end] = run(case, end)
+    if results[case, end] is not None:
+        got = quantity(results[case, end], name, None if fish == "-" else int(fish))
+        good = abs(got - float(value)) <= float(tolerance)
+        check(f"{case} {name} {fish}", good, f"{got:.5f}, expected {value} within {tolerance}")
+for path in sorted(glob.glob(f"{cases}/*.yaml")):
+    case = os.path.basename(path)[:-5]
+    if case not in (row[0] for row in rows):
+        check(f"{case} has an expected result", False, f"there is none in {table}")
+
+
+def study(path):
+    """Run a study: it ends with exit code 0 only if it meets what it expects."""
+    name = os.path.basename(path)[:-5]
+    if name in LONG:
+        counts["skipped"] += 1
+        return print(f"skipped study {name}: it takes minutes")
+    shown = subprocess.run([program, "show", path], stdin=subprocess.DEVNULL, capture_output=True, text=True)
+    check(f"study {name} states what it expects", "expect:" in shown.stdout, shown.stderr[:500])
+    done = subprocess.run(
+        [program, "study", path, "-q", "-o", name], stdin=subprocess.DEVNULL, capture_output=True, text=True
+    )
+    check(f"study {name} meets it", done.returncode == 0, f"exit code {done.returncode} {done.stderr[:500]}")
+
+
+for path in sorted(glob.glob(f"{cases}/studies/*.yaml")):
+    study(path)
+
+print(f"{counts['ok']} passed, {counts['FAILED']} failed, {counts['skipped']} skipped")
+sys.exit(counts["FAILED"] > 0)
+EOF

@@ -1,0 +1,292 @@
+#!/usr/bin/env bash
+# The command line, as a stranger meets it: help, exit codes, files that are in the way, signals, full disks.
+#
+#   tests/app/test_command.sh PROGRAM
+set -uo pipefail
+export LC_ALL=C
+
+program=$(realpath "${1:?usage: tests/app/test_command.sh PROGRAM}")
+cases=$(realpath "$(dirname "$0")/../../cases")
+tests=$(realpath "$(dirname "$0")/..")
+folder=$(mktemp -d)
+cd "$folder" || exit 2
+readonly demo="$cases/demo.yaml" diamond="$cases/diamond.yaml"
+export short="time.end=0.3"
+
+pid=
+stop() {
+    [[ -z $pid ]] || kill -KILL "$pid" 2>/dev/null
+    chmod -R u+rwx "$folder"
+    rm -rf "$folder"
+}
+trap stop EXIT
+
+# shellcheck source=tests/checks.sh
+. "$tests/checks.sh"
+
+says() { grep -qF -- "$1" err; }
+ended() { ((code == $1)); }
+silent() { [[ ! -s out && ! -s err ]]; }
+one_line() { (($(wc -l <err) == 1)); }
+status_of() { ncdump -h "$1" 2>/dev/null | sed -n 's/.*:run_status = "\(.*\)" ;/\1/p'; }
+rows_of() { ncdump -h "$1" 2>/dev/null | sed -n 's/.*time = UNLIMITED ; \/\/ (\([0-9]*\) currently).*/\1/p'; }
+has_rows() { (($(rows_of "$1") >= $2)); }
+status_is() { [[ $(status_of "$1") == "$2" ]]; }
+readable() { timeout 20 ncdump -v time,heading,wake_count "$1" >/dev/null; }
+# the name of the case's result and of nothing else: no half-made file is left behind
+only_files() { [[ $(find "$1" -type f -printf '%f\n' | sort | tr '\n' ' ') == "$2" ]]; }
+
+finish() {
+    echo "$n_passed passed, $n_failed failed, $n_skipped skipped"
+    ((n_failed == 0))
+}
+
+# ---- help ----
+
+help_and_versions() {
+    local command
+    run --help
+    check "--help ends with 0" ended 0
+    check "--help lists the commands on standard output" grep -q '^  run  ' out
+    check "--help says nothing on standard error" test ! -s err
+    for command in run check show keys info demo; do
+        run "$command" --help
+        check "$command --help ends with 0" ended 0
+        check "$command --help shows its usage" grep -q "^Usage: shoal $command" out
+    done
+    run --version
+    check "--version names the libraries" grep -qE 'SUNDIALS.*KLU.*NetCDF' out
+    check "--version ends with 0" ended 0
+}
+
+# ---- wrong words ----
+
+wrong_words() {
+    run
+    check "no command: exit 2" ended 2
+    check "no command: says so" test -s err
+    run swim
+    check "unknown command: exit 2" ended 2
+    check "unknown command is named" says swim
+    run runn "$demo"
+    check "mistyped command: the nearest one is named" says "run"
+    run run --colour "$demo"
+    check "unknown option: exit 2" ended 2
+    check "unknown option is named" says colour
+    run run -o
+    check "option without its value: exit 2" ended 2
+    run run
+    check "run without a case: exit 2" ended 2
+    check "run without a case: one message" test -s err
+    run run "$demo" "$demo"
+    check "run with two cases: exit 2" ended 2
+    run info
+    check "info without a file: exit 2" ended 2
+    run run nothing.yaml
+    check "case that does not exist: exit 2 or 4" test "$code" = 2 -o "$code" = 4
+    check "case that does not exist is named" says nothing.yaml
+    run info nothing.nc
+    check "result that does not exist: exit 4" ended 4
+    run info "$demo"
+    check "info of a case: exit 4" ended 4
+    run run "$demo" -q --set nonsense.key=1
+    check "unknown key in --set: exit 2" ended 2
+    run run "$demo" -q --set time.end
+    check "--set without a value: exit 2" ended 2
+    check "nothing was written" only_files . "check.out err out "
+}
+
+# ---- where the result goes ----
+
+output_paths() {
+    run run "$demo" -q --set "$short"
+    check "run: exit 0" ended 0
+    check "run: the name of the case with .nc" status_is demo.nc complete
+    check "-q is silent" silent
+
+    echo precious >mine.nc
+    run run "$demo" -q --set "$short" -o mine.nc
+    check "existing file: exit 2 or 4" test "$code" = 2 -o "$code" = 4
+    check "existing file: --force is named" says --force
+    check "existing file is untouched" grep -q precious mine.nc
+    run run "$demo" -q --set "$short" -o mine.nc --force
+    check "--force replaces it" status_is mine.nc complete
+
+    run run "$demo" -q --set "$short" -o no/such/folder.nc
+    check "missing folder: exit 4" ended 4
+    check "missing folder is named" says no/such
+    mkdir a_folder
+    run run "$demo" -q --set "$short" -o a_folder
+    check "output is a folder: exit 4" ended 4
+    check "output is a folder: nothing in it" only_files a_folder ""
+    run run "$demo" -q --set "$short" -o a_folder --force
+    check "output is a folder, --force: it stays" test "$code" = 4 -a -d a_folder
+    if ((EUID == 0)); then
+        skip "read-only folder: exit 4" "root may write everywhere"
+    else
+        mkdir closed && chmod a-w closed
+        run run "$demo" -q --set "$short" -o closed/x.nc
+        check "read-only folder: exit 4" ended 4
+    fi
+
+    run run "$demo" -q --set time.end=0.2 --set "fish[0].nodes=9" -o set.nc
+    check "--set beats the file" grep -q 'node = 9' <(ncdump -h set.nc)
+    run run "$demo" -q -o end.nc --set time.end=0.13 --set time.output_interval=0.05
+    check "the end is a row where it is no multiple of the output interval" \
+        grep -q 'time = 0, 0.05, 0.1, 0.13 ;' <(ncdump -v time end.nc)
+    run run "$demo" --set "$short" -o log.nc
+    check "progress in a log: one line per 10 %" test "$(grep -c ' x real time' err)" = 10
+    check "the name of the result on standard output" grep -qx log.nc out
+}
+
+# ---- results that are not wanted, and results that can be repeated ----
+
+failures() {
+    run run "$demo" -q --set solver.max_steps=1 -o failed.nc
+    check "solver gives up: exit 1" ended 1
+    check "solver gives up: when" grep -qE 't = [0-9.]+' err
+    check "solver gives up: which fish" says fish
+    check "solver gives up: run_status" grep -q '^failed: ' <(status_of failed.nc)
+    check "solver gives up: its first row stays" has_rows failed.nc 1
+
+    printf '%s\n' 'format: 1' 'name: overlap' 'time: {end: 1}' 'fish:' '  - {name: a}' \
+        '  - {name: b, start: {position: [0, 0.05]}}' >overlap.yaml
+    run run overlap.yaml -q
+    check "overlapping fish: exit 2" ended 2
+    check "overlapping fish: which" grep -qE "a.*b|overlap" err
+    check "overlapping fish: no file" test ! -e overlap.nc
+}
+
+# Two results hold the same bits in all variables but the wall clock.
+same_bits() {
+    /usr/bin/python3 - "$@" <<'EOF'
+import sys, netCDF4, numpy
+a, b = (netCDF4.Dataset(path) for path in sys.argv[1:])
+for name in a.variables:
+    if name != "wall_time":
+        first, second = (numpy.ma.getdata(f[name][...]) for f in (a, b))
+        if first.tobytes() != second.tobytes():
+            sys.exit(f"{name} differs")
+if set(a.variables) != set(b.variables):
+    sys.exit("other variables")
+EOF
+}
+
+repeats() {
+    run run "$demo" -q --set time.end=0.5 -o first.nc
+    run info --case first.nc
+    check "info --case: exit 0" ended 0
+    mv out again.yaml
+    run run again.yaml -q -o second.nc
+    check "a run repeated from its result: exit 0" ended 0
+    check "a run repeated from its result: the same to the last bit" same_bits first.nc second.nc
+}
+
+# Threads on processors of their own, on one that they share, and where the environment says: the same bits.
+spread() {
+    local short=(run "$diamond" -q --force --set time.end=0.2)
+    run "${short[@]}" -o one.nc
+    run "${short[@]}" --threads 3 -o three.nc
+    check "three threads: exit 0" ended 0
+    check "three threads: the same bits" same_bits one.nc three.nc
+    local processor
+    processor=$(taskset -cp $$ | sed 's/.*: \([0-9]*\).*/\1/')
+    code=0
+    taskset -c "$processor" timeout "$time_limit" "$program" "${short[@]}" --threads 2 -o shared.nc \
+        >out 2>err </dev/null || code=$?
+    check "two threads on one processor: exit 0" ended 0
+    check "two threads on one processor: the same bits" same_bits one.nc shared.nc
+    code=0
+    OMP_WAIT_POLICY=passive OMP_PROC_BIND=true timeout "$time_limit" "$program" "${short[@]}" --threads 2 -o bound.nc \
+        >out 2>err </dev/null || code=$?
+    check "threads where the environment says: exit 0" ended 0
+    check "threads where the environment says: the same bits" same_bits one.nc bound.nc
+}
+
+# ---- signals: the run is started in the background ----
+
+# Start a long run; wait until it has written some rows.
+start_long_run() {
+    rm -f long.nc
+    env --default-signal=INT,TERM "$program" run "$diamond" -q --force -o long.nc >out 2>err </dev/null &
+    pid=$!
+    local try
+    for try in $(seq 200); do
+        if [[ -e long.nc ]] && has_rows long.nc 4 2>/dev/null; then return 0; fi
+        sleep 0.1
+    done
+    return 1
+}
+
+# Stop the long run and set $code.
+end_long_run() {
+    code=0
+    kill "-$1" "$pid"
+    wait "$pid" 2>/dev/null || code=$?
+    pid=
+}
+
+signals() {
+    local signal
+    for signal in INT TERM; do
+        check "SIG$signal: the run is going on" start_long_run
+        end_long_run "$signal"
+        check "SIG$signal: exit 75" ended 75
+        check "SIG$signal: rows kept" has_rows long.nc 4
+        check "SIG$signal: run_status stopped" status_is long.nc stopped
+        check "SIG$signal: readable" readable long.nc
+    done
+    check "while it runs: the run is going on" start_long_run
+    check "while it runs: readable" readable long.nc
+    check "while it runs: run_status running" status_is long.nc running
+    run info long.nc
+    check "while it runs: info ends with 0" ended 0
+    end_long_run KILL
+    check "SIGKILL leaves a readable file" readable long.nc
+    run info long.nc
+    check "SIGKILL: info ends with 0" ended 0
+}
+
+# ---- full disk, closed output, no memory ----
+
+limited() {  # ulimit option, its value, arguments
+    local option=$1 value=$2
+    shift 2
+    code=0
+    (ulimit "$option" "$value" && exec timeout "$time_limit" "$program" "$@") >out 2>err </dev/null || code=$?
+}
+
+limits() {
+    limited -f 150 run "$demo" -q -o limited.nc  # in units of 1024 bytes; a whole demo needs more
+    check "file too large: exit 4" ended 4
+    check "file too large: a message" test -s err
+    check "file too large: whole rows stay readable" readable limited.nc
+    check "file too large: there are rows" has_rows limited.nc 2
+
+    code=0
+    timeout "$time_limit" "$program" --help >/dev/full 2>err || code=$?
+    check "standard output full: exit 4" ended 4
+    code=0
+    timeout "$time_limit" "$program" keys >&- 2>err || code=$?
+    check "standard output closed: exit 4" ended 4
+
+    if grep -q __asan_init "$program"; then
+        skip "little memory" "the address sanitizer needs all of it"
+    else
+        # just enough for the program itself; what a school of fine bodies needs is not there
+        limited -v 200000 run "$diamond" -q -o memory.nc --set "fish[*].nodes=4000" --set "fish[*].sheet_points=4000"
+        check "little memory: exit 4" ended 4
+        check "little memory: says memory" grep -qiE 'memory|room' err
+        check "little memory: one message" one_line
+    fi
+}
+
+help_and_versions
+wrong_words
+output_paths
+failures
+repeats
+spread
+signals
+limits
+finish

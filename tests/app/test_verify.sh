@@ -1,0 +1,39 @@
+#!/usr/bin/env bash
+# The fast part of the checks against classical results: those that take seconds. All of them: make verify.
+#
+#   tests/app/test_verify.sh PROGRAM
+#
+# PROGRAM is build/shoal; the program of the checks is built beside it, as verify/verify.
+set -uo pipefail
+export LC_ALL=C
+
+program=$(realpath "${1:?usage: tests/app/test_verify.sh PROGRAM}")
+verify=$(dirname "$program")/verify/verify
+cd "$(dirname "$0")/../.." || exit 2  # some checks run the cases of the tree
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+
+n_passed=0 n_failed=0 n_skipped=0
+for section in rod sheet wake plate school symmetry start energy; do
+    code=0
+    : >"$folder/table"
+    "$verify" "$section" --fast -o "$folder/table" >"$folder/out" 2>&1 </dev/null || code=$?
+    # the last field of a row is its verdict; a row without one shows a number and checks nothing
+    passed=$(awk -F '\t' '$1 == "row" && $NF == "ok"' "$folder/table" | wc -l)
+    missed=$(awk -F '\t' '$1 == "row" && $NF == "MISSED"' "$folder/table" | wc -l)
+    if ((code != 0 && code != 3)); then
+        echo "FAILED  $section: exit code $code"
+        missed=$((missed + 1))
+    elif ((passed + missed == 0)); then
+        echo "skipped $section: no check of it is fast"
+        n_skipped=$((n_skipped + 1))
+    elif (((code == 3) != (missed > 0))); then
+        echo "FAILED  $section: exit code $code with $missed checks missed"
+        missed=$((missed + 1))
+    fi
+    ((missed == 0)) || cat "$folder/out"
+    n_passed=$((n_passed + passed))
+    n_failed=$((n_failed + missed))
+done
+echo "$n_passed passed, $n_failed failed, $n_skipped skipped"
+((n_failed == 0))

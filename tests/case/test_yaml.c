@@ -1,0 +1,410 @@
+/* test_yaml.c: the tree of a text, its places, what is refused, and how values are written. */
+#include <locale.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/text.h"
+#include "case/yaml_errors.h"
+#include "case/yaml_tree.h"
+#include "case/yaml_write.h"
+#include "failing_malloc.h"
+#include "near.h"
+
+// ---- the fixture
+
+struct fixture {
+    struct yaml_source source;
+    struct yaml_errors errors;
+    struct yaml_node *root;
+    enum status status;
+};
+
+/* Read a text of some bytes as the file "x.yaml". */
+static void read_bytes(struct fixture *fixture, const char *text, size_t length) {
+    *fixture = (struct fixture){.source = {"x.yaml", (char *)text, length, 0, false}};
+    fixture->status = yaml_tree_read(&fixture->root, &fixture->source, &fixture->errors);
+}
+
+static void read_text(struct fixture *fixture, const char *text) {
+    read_bytes(fixture, text, strlen(text));
+}
+
+static void release(struct fixture *fixture) {
+    yaml_tree_free(fixture->root);
+    yaml_errors_free(&fixture->errors);
+}
+
+/* The text of a tree on one line; valid until the next call. */
+static const char *flow(const struct yaml_node *node) {
+    static char line[1000];
+    struct text text = {0};
+    yaml_write_node(&text, node);
+    snprintf(line, sizeof line, "%s", text.text);
+    text_free(&text);
+    return line;
+}
+
+static void reads_as(const char *text, const char *want) {
+    struct fixture f;
+    read_text(&f, text);
+    assert_int_equal(f.status, STATUS_OK);
+    assert_string_equal(flow(f.root), want);
+    release(&f);
+}
+
+static void is_refused(const char *text, size_t length, const char *want) {
+    struct fixture f;
+    read_bytes(&f, text, length);
+    assert_int_equal(f.status, STATUS_CASE);
+    assert_null(f.root);
+    assert_int_equal(yaml_errors_status(&f.errors), STATUS_CASE);
+    if (!strstr(status_message(), want)) {
+        fail_msg("the message of '%.60s' is\n%.600s\nwithout %s", text, status_message(), want);
+    }
+    release(&f);
+}
+
+// ---- reading
+
+static void maps_lists_and_scalars_become_a_tree(void **state) {
+    (void)state;
+    reads_as("time: {end: 3}\nfish:\n  - nodes: 7\n  - [a, b]\n", "{time: {end: 3}, fish: [{nodes: 7}, [a, b]]}");
+}
+
+static void block_and_flow_read_the_same(void **state) {
+    (void)state;
+    reads_as("a:\n  b: 1\n  c:\n  - 2\n  - x y\n", "{a: {b: 1, c: [2, x y]}}");
+    reads_as("{a: {b: 1, c: [2, x y]}}", "{a: {b: 1, c: [2, x y]}}");
+}
+
+static void scalars_are_texts_whatever_they_look_like(void **state) {
+    (void)state;
+    reads_as("[no, 1e5, 0x10, 2001-01-01, .nan, 012]", "[no, 1e5, 0x10, 2001-01-01, .nan, 012]");
+    reads_as("a:\nb: ~\nc: 'no'\n", "{a: \"\", b: \"~\", c: no}");
+}
+
+static void keys_and_values_know_their_places(void **state) {
+    (void)state;
+    struct fixture f;
+    read_text(&f, "# comment\nfish:\n  - größe: ä\n    nodes: 7\n");
+    const struct yaml_node *const fish = yaml_tree_find(f.root, "fish")->entry[0].value;
+    const struct yaml_entry *const nodes = yaml_tree_entry(fish, "nodes", 5);
+    assert_int_equal(nodes->mark.line, 4);
+    assert_int_equal(nodes->mark.column, 5);
+    assert_int_equal(nodes->value->mark.column, 12);
+    assert_int_equal(fish->entry[0].value->mark.column, 12);  // counted in characters, not bytes
+    assert_ptr_equal(nodes->mark.source, &f.source);
+    release(&f);
+}
+
+static void a_text_without_values_has_no_root(void **state) {
+    (void)state;
+    static const char *const texts[] = {"", "\n\n", "# nothing\n", "---\n...\n"};
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        struct fixture f;
+        read_text(&f, texts[i]);
+        assert_int_equal(f.status, STATUS_OK);
+        if (f.root) assert_string_equal(f.root->text, "");
+        release(&f);
+    }
+}
+
+static void a_mark_of_utf8_and_crlf_are_accepted(void **state) {
+    (void)state;
+    reads_as(
+        "\xEF\xBB\xBF"
+        "a: 1\r\nb: 2\r\n",
+        "{a: 1, b: 2}");
+}
+
+static void depth_32_is_read_and_33_refused(void **state) {
+    (void)state;
+    char text[128];
+    for (int depth = 32; depth <= 33; depth++) {
+        memset(text, '[', (size_t)depth);
+        memset(text + depth, ']', (size_t)depth);
+        text[2 * depth] = '\0';
+        if (depth == 32) {
+            reads_as(text, text);
+        } else {
+            is_refused(text, strlen(text), "x.yaml:1:33: error: nested deeper than 32 levels");
+        }
+    }
+}
+
+static void what_is_not_in_the_subset_is_refused_with_its_place(void **state) {
+    (void)state;
+    static const char *const cases[][2] = {
+        {"a: &x 1\n", "x.yaml:1:4: error: anchors"},
+        {"a: &x [1]\n", "x.yaml:1:4: error: anchors"},
+        {"a: *x\n", "x.yaml:1:4: error: aliases"},
+        {"a: !!str 1\n", "x.yaml:1:4: error: tags"},
+        {"a: !x {b: 1}\n", "x.yaml:1:4: error: tags"},
+        {"a: 1\n<<: {b: 1}\n", "x.yaml:2:1: error: merge keys"},
+        {"a: 1\nb: 2\na: 3\n", "x.yaml:3:1: error: the key 'a' is here twice; the first is on line 1: remove one"},
+        {"a: 1\n---\nb: 2\n", "x.yaml:2:1: error: a second document"},
+        {"[a]: 1\n", "x.yaml:1:1: error: a key must be a plain word"},
+        {"? {a: 1}\n: 1\n", "x.yaml:1:3: error: a key must be a plain word"},
+        {"a:\n\tb: 1\n", "x.yaml:2:1: error: the line is indented with a tab; use blanks"},
+        {"a: 1\n  b: 2\n", "x.yaml:2:4: error: a key cannot stand here"},
+        {"a: [1, 2\nb: 3\n", "needs ',' between its values and ']' at its end"},
+        {"a: \"b\nc: 1\n", "x.yaml:1:4: error: the quote that begins here is not closed"},
+        {"a: \"b\\0c\"\n", "x.yaml:1:4: error: a text cannot contain a zero byte"},
+        {"a: 1\nb: \x01\n", "x.yaml:2:4: error: not a text (control character 0x01)"},
+        {"a: \xFF\n", "x.yaml:1:4: error: not a text in UTF-8 (byte 0xFF)"},
+        {"a: \xC3", "x.yaml:1:4: error: not a text in UTF-8 (byte 0xC3)"},
+        {"a: \xED\xA0\x80\n", "x.yaml:1:4: error: not a text in UTF-8"},
+        {"a: \xC0\x80\n", "x.yaml:1:4: error: not a text in UTF-8"},
+        {"a: \xF4\x90\x80\x80\n", "x.yaml:1:4: error: not a text in UTF-8"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) is_refused(cases[i][0], strlen(cases[i][0]), cases[i][1]);
+    is_refused("a: \0", 4, "x.yaml:1:4: error: not a text (control character 0x00)");
+}
+
+static void all_refusals_of_a_text_are_listed(void **state) {
+    (void)state;
+    struct fixture f;
+    read_text(&f, "a: &x 1\na: !y 2\n<<: 3\n");
+    assert_int_equal(f.errors.n, 4);
+    release(&f);
+}
+
+static void more_than_256_keys_or_4_mib_are_refused(void **state) {
+    (void)state;
+    char keys[4000];
+    size_t length = 0;
+    for (int i = 0; i <= 256; i++) length += (size_t)snprintf(keys + length, sizeof keys - length, "k%d: 1\n", i);
+    is_refused(keys, length, "x.yaml:257:1: error: more than 256 keys in one map");
+    char *const large = malloc(YAML_TREE_BYTES + 1);
+    memset(large, '\n', YAML_TREE_BYTES + 1);
+    is_refused(large, YAML_TREE_BYTES + 1, "x.yaml:1:1: error: larger than 4 MiB");
+    free(large);
+}
+
+// ---- the tree
+
+static void find_follows_a_path_of_keys(void **state) {
+    (void)state;
+    struct fixture f;
+    read_text(&f, "a: {b: {c: 1}}\nab: 2\n");
+    assert_string_equal(yaml_tree_find(f.root, "a.b.c")->text, "1");
+    assert_string_equal(yaml_tree_find(f.root, "ab")->text, "2");
+    assert_null(yaml_tree_find(f.root, "a.c"));
+    assert_null(yaml_tree_find(f.root, "ab.c"));
+    assert_null(yaml_tree_find(NULL, "a"));
+    release(&f);
+}
+
+static void merging_joins_maps_and_replaces_the_rest(void **state) {
+    (void)state;
+    struct fixture base, over;
+    read_text(&base, "a: {x: 1, y: [1, 2]}\nb: 1\nc: {z: 1}\n");
+    read_text(&over, "a: {y: [3], w: 2}\nc: 5\nd: 6\n");
+    assert_int_equal(yaml_tree_merge(&base.root, over.root), STATUS_OK);
+    over.root = NULL;
+    assert_string_equal(flow(base.root), "{a: {x: 1, y: [3], w: 2}, b: 1, c: 5, d: 6}");
+    release(&base);
+    release(&over);
+}
+
+static void a_copy_is_equal_and_its_own(void **state) {
+    (void)state;
+    struct fixture f;
+    read_text(&f, "a: [1, {b: c}]\n");
+    struct yaml_node *const copy = yaml_tree_copy(f.root);
+    release(&f);
+    assert_string_equal(flow(copy), "{a: [1, {b: c}]}");
+    yaml_tree_free(copy);
+}
+
+static void a_failing_allocation_leaves_nothing_behind(void **state) {
+    (void)state;
+    static const char text[] = "a: {x: 1, y: [1, 2, {b: c}]}\nb: &a 1\nc: [1, 2, 3, 4, 5, 6]\n";
+    const int n_before = n_live;
+    int n_failures = 0;
+    for (;; n_failures++) {
+        struct fixture f;
+        n_until_failure = n_failures;
+        read_text(&f, text);
+        const enum status listed = yaml_errors_status(&f.errors);
+        const int ran_out = n_until_failure == -1;
+        n_until_failure = -1;
+        release(&f);
+        assert_int_equal(n_live, n_before);
+        if (!ran_out) break;
+        assert_true(f.status == STATUS_MEMORY || listed == STATUS_MEMORY);
+    }
+    assert_true(n_failures > 30);
+}
+
+// ---- errors
+
+static void errors_are_listed_by_place_with_a_caret(void **state) {
+    (void)state;
+    struct fixture f;
+    read_text(&f, "a: 1\nb: größe 2\n");
+    const struct yaml_mark late = {&f.source, 2, 10}, early = {&f.source, 1, 4};
+    yaml_errors_add(&f.errors, late, "b: the second");
+    yaml_errors_add(&f.errors, early, "a: the %s", "first");
+    assert_int_equal(yaml_errors_status(&f.errors), STATUS_CASE);
+    assert_string_equal(status_message(),
+                        "x.yaml:1:4: error: a: the first\na: 1\n   ^\n"
+                        "x.yaml:2:10: error: b: the second\nb: größe 2\n         ^");
+    release(&f);
+}
+
+static void twenty_errors_are_listed_and_the_rest_counted(void **state) {
+    (void)state;
+    struct fixture f;
+    read_text(&f, "a: 1\n");
+    const struct yaml_mark mark = {&f.source, 1, 1};
+    for (int i = 0; i < 100; i++) yaml_errors_add(&f.errors, mark, "wrong");
+    yaml_errors_status(&f.errors);
+    int n = 0;
+    for (const char *c = status_message(); (c = strstr(c, "error: wrong")); c++) n++;
+    assert_int_equal(n, 20);
+    assert_non_null(strstr(status_message(), "\n... and 80 more"));
+    release(&f);
+}
+
+static void of_a_long_line_the_neighbourhood_is_shown(void **state) {
+    (void)state;
+    static char text[3000];
+    memset(text, 'x', sizeof text - 1);
+    text[1500] = 'Y';
+    struct yaml_source source = {"x.yaml", text, sizeof text - 1, 0, false};
+    struct yaml_errors errors = {0};
+    yaml_errors_add(&errors, (struct yaml_mark){&source, 1, 1501}, "here");
+    yaml_errors_status(&errors);
+    const char *const line = strchr(status_message(), '\n') + 1;
+    const char *const caret = strchr(line, '\n') + 1;
+    assert_int_equal(caret - line, 101);
+    assert_int_equal(line[strspn(caret, " ")], 'Y');
+    yaml_errors_free(&errors);
+}
+
+static void a_place_behind_the_text_is_harmless(void **state) {
+    (void)state;
+    struct yaml_source source = {"x.yaml", (char *)"a", 1, 0, false};
+    struct yaml_errors errors = {0};
+    yaml_errors_add(&errors, (struct yaml_mark){&source, 9, 900}, "here");
+    assert_int_equal(yaml_errors_status(&errors), STATUS_CASE);
+    assert_string_equal(status_message(), "x.yaml:9:900: error: here");
+    yaml_errors_free(&errors);
+}
+
+// ---- numbers and texts
+
+static void numbers_are_decimal_and_whole_texts(void **state) {
+    (void)state;
+    static const char *const good[] = {"0", "-1", "+2.5", "1.", ".5", "1e5", "1.0e+5", "2.0E5", "1e-320", "007"};
+    static const double values[] = {0, -1, 2.5, 1, 0.5, 1e5, 1e5, 2e5, 1e-320, 7};
+    for (size_t i = 0; i < sizeof good / sizeof *good; i++) {
+        double number = -7;
+        assert_true(text_number(good[i], &number));
+        NEAR(number, values[i], 0, 0);
+    }
+    static const char *const bad[] = {"",    " 1",  "1 ",   "1 m",   ".",   "e5",    "1e", "1e+",   "--1",     "0x10",
+                                      "nan", "inf", ".inf", "1_000", "1,5", "1.2.3", "+",  "1e5.0", "Infinity"};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        double number;
+        if (text_number(bad[i], &number)) fail_msg("'%s' was read as a number", bad[i]);
+    }
+    double large;
+    assert_true(text_number("1e999", &large));
+    assert_true(isinf(large));
+}
+
+static void a_written_number_reads_back_bit_for_bit(void **state) {
+    (void)state;
+    static const double numbers[] = {
+        0,      -0.0, 1, 0.1, 1.0 / 3, 1e23, 5e-324, 1.7976931348623157e308, 0.30000000000000004, 123456789012345678.0,
+        -2.5e-7};
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        struct text text = {0};
+        text_add_number(&text, numbers[i]);
+        double back;
+        assert_true(text_number(text.text, &back));
+        assert_memory_equal(&back, &numbers[i], sizeof back);
+        text_free(&text);
+    }
+}
+
+static void a_number_is_written_with_no_more_digits_than_needed(void **state) {
+    (void)state;
+    struct text text = {0};
+    text_add_number(&text, 0.1);
+    text_add(&text, " ");
+    text_add_number(&text, 1e6);
+    assert_string_equal(text.text, "0.1 1000000");
+    text_free(&text);
+}
+
+static void the_locale_does_not_matter(void **state) {
+    (void)state;
+    static const char *const with_comma[] = {"de_DE.UTF-8", "de_DE.utf8", "de_DE", "fr_FR.UTF-8", "nl_NL.UTF-8"};
+    const char *found = NULL;
+    for (size_t i = 0; !found && i < sizeof with_comma / sizeof *with_comma; i++) {
+        found = setlocale(LC_NUMERIC, with_comma[i]);
+    }
+    if (!found) skip();
+    double number = 0;
+    struct text text = {0};
+    const int is_number = text_number("2.5", &number);
+    text_add_number(&text, 0.5);
+    setlocale(LC_NUMERIC, "C");
+    assert_true(is_number);
+    NEAR(number, 2.5, 0, 0);
+    assert_string_equal(text.text, "0.5");
+    text_free(&text);
+}
+
+static void texts_of_any_kind_are_written_so_that_they_read_back(void **state) {
+    (void)state;
+    static const char *const texts[] = {"eel", "a b",  "a: b", "#x",   "x #y", "",      " a", "a ",        "-",
+                                        "- a", "---",  "...",  "a,b",  "[a]",  "{",     "*a", "&a",        "!a",
+                                        "'a'", "a\"b", "a\\b", "a\nb", "a\tb", "größe", "?a", "fish[*].x", "%a",
+                                        "@a",  "`a",   "|",    ">",    "a:",   "<<",    "~",  "a?b",       "\x7f"};
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        struct text text = {0};
+        text_add(&text, "[");
+        yaml_write_scalar(&text, texts[i]);
+        text_add(&text, "]\n");
+        struct fixture f;
+        read_text(&f, text.text);
+        assert_int_equal(f.status, STATUS_OK);
+        assert_string_equal(f.root->entry[0].value->text, texts[i]);
+        release(&f);
+        text_free(&text);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(maps_lists_and_scalars_become_a_tree),
+        cmocka_unit_test(block_and_flow_read_the_same),
+        cmocka_unit_test(scalars_are_texts_whatever_they_look_like),
+        cmocka_unit_test(keys_and_values_know_their_places),
+        cmocka_unit_test(a_text_without_values_has_no_root),
+        cmocka_unit_test(a_mark_of_utf8_and_crlf_are_accepted),
+        cmocka_unit_test(depth_32_is_read_and_33_refused),
+        cmocka_unit_test(what_is_not_in_the_subset_is_refused_with_its_place),
+        cmocka_unit_test(all_refusals_of_a_text_are_listed),
+        cmocka_unit_test(more_than_256_keys_or_4_mib_are_refused),
+        cmocka_unit_test(find_follows_a_path_of_keys),
+        cmocka_unit_test(merging_joins_maps_and_replaces_the_rest),
+        cmocka_unit_test(a_copy_is_equal_and_its_own),
+        cmocka_unit_test(a_failing_allocation_leaves_nothing_behind),
+        cmocka_unit_test(errors_are_listed_by_place_with_a_caret),
+        cmocka_unit_test(twenty_errors_are_listed_and_the_rest_counted),
+        cmocka_unit_test(of_a_long_line_the_neighbourhood_is_shown),
+        cmocka_unit_test(a_place_behind_the_text_is_harmless),
+        cmocka_unit_test(numbers_are_decimal_and_whole_texts),
+        cmocka_unit_test(a_written_number_reads_back_bit_for_bit),
+        cmocka_unit_test(a_number_is_written_with_no_more_digits_than_needed),
+        cmocka_unit_test(the_locale_does_not_matter),
+        cmocka_unit_test(texts_of_any_kind_are_written_so_that_they_read_back),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,108 @@
+/* test_actuation.c: the wave of natural curvature: doc/model.md, section 4. */
+#include "base/ramp.h"
+#include "model/actuation.h"
+#include "school.h"
+
+#define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+#define WAVE "fish: [{wave: {frequency: 1.2, phase: 35, amplitude: 0.5, linear: 0.8, quadratic: 0.4, number: -5}}]\n"
+
+static void curvature_is_the_formula_of_the_model(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME WAVE);
+    double curvature[5], by_phi0[5];
+    for (double t = 0; t < 1.5; t += 0.3) {
+        actuation_curvature(setup.school->fish, t, 0.2, curvature, by_phi0);
+        for (int j = 0; j < 5; j++) {
+            const double s = (j + 1) / 6.0, pi = acos(-1);
+            const double angle = ramp_value(t, 1 / 1.2) * 0.5 * (0.8 * s + 0.4 * s * s) *
+                                 (sin(-5 * s + 2 * pi * 1.2 * t + 35 * pi / 180) + 0.2);
+            NEAR(curvature[j], 2 * tan(angle / 2), 1e-14, 0);
+        }
+    }
+    school_clear(&setup);
+}
+
+static void derivatives_agree_with_differences(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME WAVE);
+    const struct fish *fish = setup.school->fish;
+    const double h = 1e-4, rate = 0.7;
+    for (double t = 0.1; t < 1.5; t += 0.3) {
+        double low[5], high[5], scratch[5], at[5], by_phi0[5], changes[5];
+        actuation_curvature(fish, t, 0.2, at, by_phi0);
+        actuation_rate(fish, t, 0.2, rate, changes);
+        actuation_curvature(fish, t, 0.2 - h, low, scratch);
+        actuation_curvature(fish, t, 0.2 + h, high, scratch);
+        // truncation h^2/6 times third derivatives of at most 0.1
+        for (int j = 0; j < 5; j++) NEAR(by_phi0[j], (high[j] - low[j]) / (2 * h), 1e-9, 0);
+        actuation_curvature(fish, t - h, 0.2 - rate * h, low, scratch);
+        actuation_curvature(fish, t + h, 0.2 + rate * h, high, scratch);
+        // the same with omega^3 = 430 and the ramp's 53/0.8^3
+        for (int j = 0; j < 5; j++) NEAR(changes[j], (high[j] - low[j]) / (2 * h), 1e-6, 0);
+    }
+    school_clear(&setup);
+}
+
+static void wave_travels_from_head_to_tail(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{nodes: 31, wave: {ramp: 0}}]\n");
+    // a crest stands where number s + omega t is constant: after 0.1 s it is 0.1 omega/6 lengths further back
+    double now[29], later[29], scratch[29];
+    const double delay = 6.0 * 3 / 30 / (2 * acos(-1));
+    actuation_curvature(setup.school->fish, 0.5, 0, now, scratch);
+    actuation_curvature(setup.school->fish, 0.5 + delay, 0, later, scratch);
+    for (int j = 0; j + 3 < 29; j++) {
+        const double a = setup.school->fish[0].wave_amplitude[j], b = setup.school->fish[0].wave_amplitude[j + 3];
+        NEAR(2 * atan(later[j + 3] / 2) / b, 2 * atan(now[j] / 2) / a, 1e-12, 0);
+    }
+    school_clear(&setup);
+}
+
+static void ramp_starts_from_a_straight_body_and_no_ramp_does_not(void **state) {
+    (void)state;
+    const char *const texts[] = {TIME "fish: [{}]\n", TIME "fish: [{wave: {ramp: 0}}]\n"};
+    for (int i = 0; i < 2; i++) {
+        struct setup setup;
+        school_build(&setup, texts[i]);
+        double curvature[5], by_phi0[5], rate[5];
+        actuation_curvature(setup.school->fish, 0, 0.3, curvature, by_phi0);
+        actuation_rate(setup.school->fish, 0, 0.3, 0, rate);
+        for (int j = 0; j < 5; j++) {
+            assert_true((curvature[j] == 0) == (i == 0));
+            assert_true((rate[j] == 0) == (i == 0));
+        }
+        school_clear(&setup);
+    }
+}
+
+static void turn_of_the_whole_body_does_not_depend_on_the_number_of_nodes(void **state) {
+    (void)state;
+    double total[2];
+    const char *const texts[] = {TIME "fish: [{nodes: 121}]\n", TIME "fish: [{nodes: 241}]\n"};
+    for (int i = 0; i < 2; i++) {
+        struct setup setup;
+        school_build(&setup, texts[i]);
+        static double curvature[300], scratch[300];
+        actuation_curvature(setup.school->fish, 1.3, 1, curvature, scratch);
+        total[i] = 0;
+        for (int j = 0; j < setup.school->fish[0].n_joints; j++) total[i] += 2 * atan(curvature[j] / 2);
+        school_clear(&setup);
+    }
+    // the sum is a Riemann sum without its end, of the size 1/N
+    NEAR(total[1], total[0], 2e-2, 0);
+    assert_true(fabs(total[0]) > 1);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(curvature_is_the_formula_of_the_model),
+        cmocka_unit_test(derivatives_agree_with_differences),
+        cmocka_unit_test(wave_travels_from_head_to_tail),
+        cmocka_unit_test(ramp_starts_from_a_straight_body_and_no_ramp_does_not),
+        cmocka_unit_test(turn_of_the_whole_body_does_not_depend_on_the_number_of_nodes),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,222 @@
+/* test_sheet.c: no penetration, Kelvin, Kutta; the flat plate in closed form: doc/model.md, sections 6, 7 and 12. */
+#include <stdio.h>
+
+#include "model/bound_sheet.h"
+#include "school.h"
+#include "solver/initial_conditions.h"
+
+#define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+#define FAR "solver: {coupling_distance: 100}\n"
+
+static const double pi = 3.14159265358979323846;
+
+static void of_fish(struct setup *setup, int f, const double **u, const double **v) {
+    *u = setup->residual->flow->u + setup->residual->flow->points[f].first;
+    *v = setup->residual->flow->v + setup->residual->flow->points[f].first;
+}
+
+static const double dissipated = 0.3, chi = 0.6;
+static enum bound_sheet_law law; /* of the pass that is compared */
+
+static void value_of_sheet(struct setup *setup, const double *y, const double *yp, double *value) {
+    school_flow(setup, y);
+    for (int f = 0; f < setup->school->n_fish; f++) {
+        const double *u, *v;
+        of_fish(setup, f, &u, &v);
+        bound_sheet_residual(&setup->school->fish[f], dissipated, u, v, y, value);
+        bound_sheet_kutta_residual(&setup->school->fish[f], law, chi, u, v, y, yp, value);
+    }
+}
+
+static void stamp_of_sheet(struct setup *setup, double cj, const double *y, struct sparse *jacobian) {
+    for (int f = 0; f < setup->school->n_fish; f++) {
+        const struct fish *fish = &setup->school->fish[f];
+        const double *u, *v;
+        of_fish(setup, f, &u, &v);
+        bound_sheet_jacobian(fish, u, v, y, jacobian);
+        bound_sheet_kutta_jacobian(fish, law, chi, cj, u, v, y, jacobian);
+        for (int g = 0; g < setup->school->n_fish; g++) {
+            struct jacobian_scratch *const through = school_stamping(setup, f, g);
+            bound_sheet_flow_jacobian(fish, &through->block, y, &through->rows);
+            if (law == BOUND_SHEET_RATE) bound_sheet_kutta_flow_jacobian(fish, chi, &through->block, y, &through->rows);
+            school_add_rows(setup, f, g, jacobian);
+        }
+    }
+}
+
+static void stamps_agree_with_differences(void **state) {
+    (void)state;
+    const char *const texts[] = {
+        TIME "fish: [{sheet_points: 9}]\n", TIME "wake: {collocation: midpoint}\nfish: [{sheet_points: 21}]\n",
+        TIME "fluid: {velocity: [0.3, -0.2], shear: 0.7}\nfish: [{sheet_points: 5, nodes: 9}]\n",
+        TIME FAR
+        "wake: {collocation: midpoint}\n"
+        "fish:\n"
+        "  - {sheet_points: 9}\n"
+        "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"
+        "  - {nodes: 9, sheet_points: 11, length: 1.2, start: {position: [0.1, -0.6], heading: 200}}\n"};
+    const enum bound_sheet_law laws[] = {BOUND_SHEET_EDGE, BOUND_SHEET_RATE, BOUND_SHEET_FROZEN};
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        for (int l = 0; l < 3; l++) {
+            struct setup setup;
+            school_build(&setup, texts[i]);
+            school_stir(&setup);
+            law = laws[l];
+            school_compare(&setup, value_of_sheet, stamp_of_sheet, texts[i]);
+            school_clear(&setup);
+        }
+    }
+}
+
+// A plate at rest along x in the stream (cos alpha, sin alpha), its bound circulations in q (m). The free vortex at its
+// tail is so wide that it has no velocity: what is left is the closed problem of the bound sheet.
+static void solve_plate(const char *collocation, const char *kutta, int m, const char *more, double *q) {
+    char text[512];
+    snprintf(text, sizeof text,
+             TIME
+             "fluid: {velocity: [0.8, 0.6]%s}\n"
+             "wake: {collocation: %s, kutta: %s, smoothing: 1.0e+9}\n"
+             "fish: [{sheet_points: %d, start: {speed: 0}, motion: {driven: all}}]\n",
+             more, collocation, kutta, m);
+    struct setup setup;
+    school_build(&setup, text);
+    struct initial_conditions *consistent;
+    school_ok(initial_conditions_create(&consistent, setup.residual));
+    school_ok(initial_conditions_solve(consistent, 0, setup.state->y, setup.state->yp));
+    const struct fish *fish = setup.school->fish;
+    for (int j = 0; j < m; j++) q[j] = fish->sheet_weight[j] * setup.state->y[fish->at.gamma + j];
+    initial_conditions_free(consistent);
+    school_clear(&setup);
+}
+
+static void plate_without_circulation_is_exact_with_chebyshev_points(void **state) {
+    (void)state;
+    // gamma = -2 w (L/2 - s)/sqrt(s (L-s)) with w = 0.6, as circulations of Gauss-Lobatto quadrature
+    for (int m = 5; m <= 33; m += 7) {
+        double q[64], want[64];
+        solve_plate("chebyshev", "rate", m, "", q);
+        for (int j = 0; j < m; j++) {
+            want[j] = -0.6 * pi / (m - 1) * cos(pi * j / (m - 1)) * (j == 0 || j == m - 1 ? 0.5 : 1);
+        }
+        // the rounding of a linear system whose condition grows like M^2
+        NEAR_ARRAY(m, q, want, 1e-12, 0);
+    }
+}
+
+static void plate_with_kutta_condition_is_exact_with_chebyshev_points(void **state) {
+    (void)state;
+    for (int m = 5; m <= 33; m += 7) {
+        double q[64], total = 0;
+        solve_plate("chebyshev", "edge", m, "", q);
+        for (int j = 0; j < m; j++) total += q[j];
+        // Gamma = pi L U sin(alpha)
+        NEAR(total, -pi * 0.6, 0, 1e-12);
+        NEAR(q[m - 1], 0, 1e-14, 0);
+    }
+}
+
+// largest error of the strengths in the middle of the plate without circulation, relative to those of a plate
+static double error_of_midpoints(int m) {
+    static double q[300];
+    solve_plate("midpoint", "rate", m, "", q);
+    double error = 0;
+    for (int j = m / 4; j < 3 * m / 4; j++) {
+        error = fmax(error, fabs(q[j] / (-0.6 * pi / (m - 1)) - cos(pi * j / (m - 1))));
+    }
+    return error;
+}
+
+static void plate_with_midpoints_converges(void **state) {
+    (void)state;
+    const double coarse = error_of_midpoints(41), fine = error_of_midpoints(81);
+    assert_true(fine < 0.03);
+    // first order: midpoints of chords are not the points of a quadrature
+    assert_true(coarse / fine > 1.8);
+    // but the sum of the strengths with Kutta's condition is exact on any mesh: it is (L/2) w times 2 pi by Vieta's
+    // formula for the polynomial whose zeros are the control points, which are the means of their neighbours
+    for (int m = 5; m <= 33; m += 7) {
+        double q[64], total = 0;
+        solve_plate("midpoint", "edge", m, "", q);
+        for (int j = 0; j < m; j++) total += q[j];
+        NEAR(total, -pi * 0.6, 0, 1e-12);
+    }
+}
+
+// bound circulation of a plate beside a vortex of circulation 1 at (0.4, 0.3), which has a smoothing of its own
+static double circulation_beside_a_vortex(int m) {
+    char text[512];
+    snprintf(text, sizeof text,
+             TIME "wake: {smoothing: 0.2}\nfish: [{sheet_points: %d, start: {speed: 0}, motion: {driven: all}}]\n", m);
+    struct setup setup;
+    school_build(&setup, text);
+    school_ok(wake_release(&setup.state->wake[0], 0.4, 0.3, 1, 0));
+    struct initial_conditions *consistent;
+    school_ok(initial_conditions_create(&consistent, setup.residual));
+    school_ok(initial_conditions_solve(consistent, 0, setup.state->y, setup.state->yp));
+    const double circulation = bound_sheet_circulation(setup.school->fish, setup.state->y);
+    initial_conditions_free(consistent);
+    school_clear(&setup);
+    return circulation;
+}
+
+static void chebyshev_points_converge_spectrally(void **state) {
+    (void)state;
+    const double limit = circulation_beside_a_vortex(161);
+    double before = fabs(circulation_beside_a_vortex(11) - limit);
+    assert_true(before < 0.1 && before > 1e-9);
+    // ten more points are worth a factor, not a power: the error falls tenfold each time until rounding
+    for (int m = 21; m <= 51; m += 10) {
+        const double error = fabs(circulation_beside_a_vortex(m) - limit);
+        assert_true(error < before / 10 || error < 1e-12);
+        before = error;
+    }
+}
+
+static void kelvin_counts_bound_shed_and_dissipated_circulation(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{sheet_points: 9}]\n");
+    school_stir(&setup);
+    school_flow(&setup, setup.state->y);
+    const struct fish *fish = setup.school->fish;
+    const double *u, *v;
+    of_fish(&setup, 0, &u, &v);
+    bound_sheet_residual(fish, 0.3, u, v, setup.state->y, setup.value);
+    NEAR(setup.value[fish->at.gamma + 8],
+         bound_sheet_circulation(fish, setup.state->y) + setup.state->y[fish->at.circulation] - 0.3, 1e-15, 0);
+    double sum = 0;
+    for (int j = 0; j < 9; j++) sum += fish->sheet_weight[j] * setup.state->y[fish->at.gamma + j];
+    NEAR(bound_sheet_circulation(fish, setup.state->y), sum, 1e-15, 0);
+    school_clear(&setup);
+}
+
+static void shedding_rate_is_edge_strength_times_slip(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{sheet_points: 9}]\n");
+    school_stir(&setup);
+    school_flow(&setup, setup.state->y);
+    const struct fish *fish = setup.school->fish;
+    const double *const y = setup.state->y, *u, *v;
+    of_fish(&setup, 0, &u, &v);
+    double slip[2];
+    flow_slip(setup.residual->flow, 0, y, slip);
+    // the last two bound points lie on the last edge
+    const double e[2] = {y[fish->at.x + 6] - y[fish->at.x + 5], y[fish->at.y + 6] - y[fish->at.y + 5]};
+    const double along = (slip[0] * e[0] + slip[1] * e[1]) / hypot(e[0], e[1]);
+    NEAR(bound_sheet_shedding_rate(fish, 0.6, u, v, y), 0.6 * y[fish->at.gamma + 8] * along, 0, 1e-13);
+    school_clear(&setup);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(stamps_agree_with_differences),
+        cmocka_unit_test(plate_without_circulation_is_exact_with_chebyshev_points),
+        cmocka_unit_test(plate_with_kutta_condition_is_exact_with_chebyshev_points),
+        cmocka_unit_test(plate_with_midpoints_converges),
+        cmocka_unit_test(chebyshev_points_converge_spectrally),
+        cmocka_unit_test(kelvin_counts_bound_shed_and_dissipated_circulation),
+        cmocka_unit_test(shedding_rate_is_edge_strength_times_slip),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,173 @@
+/* test_control.c: headings and the laws for the bias: doc/model.md, section 11. */
+#include "model/control.h"
+#include "school.h"
+
+#define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+
+static const double pi = 3.14159265358979323846;
+
+static void heading_points_from_a_third_of_the_length_to_the_nose(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{start: {heading: 130}}]\n");
+    const struct fish *fish = setup.school->fish;
+    NEAR(control_heading(fish, setup.state->y), 130 * pi / 180, 1e-14, 0);
+    // node 2 of 7 stands at a third
+    setup.state->y[fish->at.x + 2] = setup.state->y[fish->at.x];
+    setup.state->y[fish->at.y + 2] = setup.state->y[fish->at.y] + 0.3;
+    NEAR(control_heading(fish, setup.state->y), -pi / 2, 1e-14, 0);
+    school_clear(&setup);
+}
+
+static void headings_in_time_are_linear_between_their_times(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{control: {law: heading, desired_heading: [[1, 180], [2, 120], [4, 160]]}}]\n");
+    const struct fish *fish = setup.school->fish;
+    const double times[] = {0, 1, 1.5, 2, 3.5, 4, 9}, want[] = {180, 180, 150, 120, 150, 160, 160};
+    for (int i = 0; i < 7; i++) {
+        NEAR(control_desired_heading(fish, &setup.state->control[0], times[i], setup.state->y), want[i] * pi / 180,
+             1e-14, 0);
+    }
+    school_clear(&setup);
+}
+
+static void law_turns_towards_the_desired_heading_the_short_way(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME
+                 "fish: [{control: {law: heading, desired_heading: 170, gain: 3, limit: 0.4, feedforward: 0.5}}]\n");
+    const struct fish *fish = setup.school->fish;
+    const struct control_memory *memory = &setup.state->control[0];
+    // heading -175 = 185 degrees: 15 degrees too far left, so the bias is positive and turns right
+    NEAR(control_law(fish, memory, 0, 0, -175 * pi / 180, setup.state->y), 0.4 * tanh(3 * 15 * pi / 180), 1e-14, 0);
+    NEAR(control_law(fish, memory, 0, 0.2, 170 * pi / 180, setup.state->y), 0.4 * tanh(0.1), 1e-14, 0);
+    assert_true(fabs(control_law(fish, memory, 0, 1e3, 0, setup.state->y)) <= 0.4);
+    school_clear(&setup);
+}
+
+static void without_a_law_the_bias_is_the_given_one(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{control: {bias: 0.25}}]\n");
+    const struct fish *fish = setup.school->fish;
+    setup.state->y[fish->at.phi0] = 0.3;
+    control_residual(fish, &setup.state->control[0], 1, 0.01, 5, setup.state->y, setup.value);
+    NEAR(setup.value[fish->at.phi0], 0.05, 1e-16, 0);
+    school_clear(&setup);
+}
+
+static void waypoints_are_visited_in_order_and_the_last_course_is_held(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{control: {law: heading, waypoints: [[-2, 0], [-2, 3]], arrival: 0.4}}]\n");
+    const struct fish *fish = setup.school->fish;
+    struct control_memory *memory = &setup.state->control[0];
+    double *const y = setup.state->y;
+    NEAR(fabs(control_desired_heading(fish, memory, 0, y)), pi, 1e-14, 0);
+    assert_int_equal(control_event(fish, memory, 0.1, 0.02, 0, 0, y), 0);
+    // 0.41 away: not yet; 0.39: on to the next, which jumps
+    y[fish->at.x] = -1.59;
+    assert_int_equal(control_event(fish, memory, 0.2, 0.02, 0, 0, y), 0);
+    assert_int_equal(memory->waypoint, 0);
+    y[fish->at.x] = -1.61;
+    assert_int_equal(control_event(fish, memory, 0.3, 0.02, 0, 0, y), 1);
+    assert_int_equal(memory->waypoint, 1);
+    NEAR(control_desired_heading(fish, memory, 0, y), atan2(3, -0.39), 1e-14, 0);
+    y[fish->at.y] = 2.95;
+    assert_int_equal(control_event(fish, memory, 0.4, 0.02, 0, 0, y), 1);
+    assert_int_equal(memory->waypoint, 2);
+    // from one waypoint to the other, wherever the fish is by now
+    y[fish->at.x] = 7;
+    NEAR(control_desired_heading(fish, memory, 0, y), pi / 2, 1e-14, 0);
+    assert_int_equal(control_event(fish, memory, 0.5, 0.02, 0, 0, y), 0);
+    school_clear(&setup);
+}
+
+static void waypoints_close_together_are_passed_at_one_event(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{control: {law: heading, waypoints: [[-0.1, 0], [-0.2, 0], [-3, 0]]}}]\n");
+    assert_int_equal(control_event(setup.school->fish, &setup.state->control[0], 0.1, 0.02, 0, 0, setup.state->y), 1);
+    assert_int_equal(setup.state->control[0].waypoint, 2);
+    school_clear(&setup);
+}
+
+static void averaged_heading_moves_the_bias_with_bounded_rate(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{control: {law: averaged_heading, desired_heading: 90, rate: 2, limit: 0.5}}]\n");
+    const struct fish *fish = setup.school->fish;
+    struct control_memory *memory = &setup.state->control[0];
+    const double interval = 0.02, heading = pi, target = 0.5 * tanh(2 * pi / 2);
+    double before = 0;
+    int n_bounded = 0;
+    for (int n = 0; n < 30; n++) {
+        control_event(fish, memory, n * interval, interval, 0, heading, setup.state->y);
+        NEAR(memory->phi0, before, 1e-15, 0);
+        assert_true(fabs(memory->phi0_rate) <= 2);
+        n_bounded += memory->phi0_rate == 2;
+        before = memory->phi0 + interval * memory->phi0_rate;
+        // between two events the bias is linear in time
+        setup.state->y[fish->at.phi0] = memory->phi0 + 0.3 * interval * memory->phi0_rate;
+        control_residual(fish, memory, (n + 0.3) * interval, 0.3 * interval, 9, setup.state->y, setup.value);
+        NEAR(setup.value[fish->at.phi0], 0, 1e-15, 0);
+    }
+    // 0.498 at 2 per second: 12 intervals in full and one in part
+    assert_int_equal(n_bounded, 12);
+    NEAR(memory->phi0, target, 1e-15, 0);
+    school_clear(&setup);
+}
+
+// tau is given here: a function of one coordinate, so that its derivative counts too
+static double some_moment(const struct fish *fish, const double *y) {
+    return 0.1 + 0.3 * (y[fish->at.vx] - 0.2);
+}
+
+static void value_of_control(struct setup *setup, const double *y, const double *yp, double *value) {
+    (void)yp;
+    const struct fish *fish = setup->school->fish;
+    control_residual(fish, &setup->state->control[0], setup->t, setup->t - setup->state->t, some_moment(fish, y), y,
+                     value);
+}
+
+static void stamp_of_control(struct setup *setup, double cj, const double *y, struct sparse *jacobian) {
+    (void)cj;
+    const struct fish *fish = setup->school->fish;
+    const double by_tau =
+        control_jacobian(fish, &setup->state->control[0], setup->t, some_moment(fish, y), y, jacobian);
+    sparse_add(jacobian, fish->at.phi0, fish->at.vx, 0.3 * by_tau);
+}
+
+static void stamp_agrees_with_differences(void **state) {
+    (void)state;
+    const char *const texts[] = {TIME "fish: [{control: {bias: 0.2}}]\n",
+                                 TIME "fish: [{nodes: 8, control: {law: heading, desired_heading: 150}}]\n",
+                                 TIME "fish: [{control: {law: heading, desired_heading: [[0, 180], [1, 120]]}}]\n",
+                                 TIME "fish: [{control: {law: heading, waypoints: [[-3, 1], [-4, 5]]}}]\n",
+                                 TIME "fish: [{control: {law: averaged_heading, waypoints: [[-3, 1]]}}]\n"};
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        struct setup setup;
+        school_build(&setup, texts[i]);
+        school_stir(&setup);
+        school_compare(&setup, value_of_control, stamp_of_control, texts[i]);
+        // and when the last waypoint has been passed
+        setup.state->control[0].waypoint = setup.school->fish[0].control.n_waypoints;
+        school_compare(&setup, value_of_control, stamp_of_control, texts[i]);
+        school_clear(&setup);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(heading_points_from_a_third_of_the_length_to_the_nose),
+        cmocka_unit_test(headings_in_time_are_linear_between_their_times),
+        cmocka_unit_test(law_turns_towards_the_desired_heading_the_short_way),
+        cmocka_unit_test(without_a_law_the_bias_is_the_given_one),
+        cmocka_unit_test(waypoints_are_visited_in_order_and_the_last_course_is_held),
+        cmocka_unit_test(waypoints_close_together_are_passed_at_one_event),
+        cmocka_unit_test(averaged_heading_moves_the_bias_with_bounded_rate),
+        cmocka_unit_test(stamp_agrees_with_differences),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,245 @@
+/* test_measure.c: what a user reads off a state, and the audits: doc/model.md, section 13. */
+#include <stdio.h>
+
+#include "model/diagnostics.h"
+#include "school.h"
+
+#define TIME "time: {end: 2, shedding_interval: 0.01}\n"
+
+static double total_energy(const struct diagnostics_fish *fish) {
+    return fish->kinetic_energy + fish->bending_energy + fish->stretching_energy;
+}
+
+struct audit_result {
+    double worst, put_in;
+};
+
+// the largest gap of the energy audit at any event up to t, and all energy that was there or was put in
+static struct audit_result audit_of(const char *text, double t) {
+    struct simulation *const simulation = school_simulation(text);
+    struct audit_result result = {0, 0};
+    simulate_measure(simulation);
+    const double initial = total_energy(&simulation->diagnostics->fish[0]);
+    while (simulation->state->t < t - 1e-6) {
+        school_ok(simulate_step(simulation));
+        simulate_measure(simulation);
+        const struct diagnostics_fish *fish = &simulation->diagnostics->fish[0];
+        result.worst = fmax(result.worst, fabs(fish->energy_audit));
+        result.put_in = fmax(result.put_in, initial + fabs(fish->actuation_work));
+    }
+    simulate_free(simulation);
+    return result;
+}
+
+static void energy_audit_closes_within_ten_times_the_tolerance(void **state) {
+    (void)state;
+    // issue 2; the energy is that of the start and what the muscle put in
+    const double moduli[] = {1e5, 1e6, 1e7};
+    for (int i = 0; i < 3; i++) {
+        char text[256];
+        snprintf(text, sizeof text, TIME "solver: {rtol: 1.0e-5}\nfish: [{body: {modulus: %.1e}}]\n", moduli[i]);
+        const struct audit_result balance = audit_of(text, 2);
+        print_message("E %.0e, rtol 1e-5: audit %.2e J of %.1f J\n", moduli[i], balance.worst, balance.put_in);
+        assert_true(balance.worst <= 10 * 1e-5 * balance.put_in);
+        // the muscle did work: the audit is not of nothing
+        assert_true(balance.put_in > 30);
+    }
+}
+
+static void energy_audit_falls_with_the_tolerance(void **state) {
+    (void)state;
+    // errors of BDF of order 2 are of the size rtol^(2/3) or less: a factor of 21 and more from 1e-5 to 1e-7
+    double worst[2];
+    for (int i = 0; i < 2; i++) {
+        char text[256];
+        snprintf(text, sizeof text, TIME "solver: {rtol: %s}\nfish: [{}]\n", i == 0 ? "1.0e-5" : "1.0e-7");
+        worst[i] = audit_of(text, 2).worst;
+    }
+    print_message("audit %.2e J at 1e-5, %.2e J at 1e-7\n", worst[0], worst[1]);
+    assert_true(worst[0] / worst[1] > 10);
+}
+
+static void powers_are_integrated_with_third_order(void **state) {
+    (void)state;
+    // with BDF of order 5 what the quadrature leaves shows: 1e-6 J measured; the trapezoidal rule leaves 3e-5 J
+    const struct audit_result balance = audit_of(TIME "solver: {rtol: 1.0e-7, order: 5}\nfish: [{}]\n", 2);
+    print_message("audit %.2e J at 1e-7 and order 5\n", balance.worst);
+    assert_true(balance.worst < 4e-6);
+}
+
+static void energy_audit_closes_with_every_kind_of_power(void **state) {
+    (void)state;
+    const char *const texts[] = {
+        // a bias that jumps at waypoints
+        TIME "fish: [{control: {law: heading, waypoints: [[-0.6, 0.1], [-3, 2]], arrival: 0.1}}]\n",
+        // driven nodes and a load
+        TIME
+        "fish: [{body: {modulus: 1.0e+5}, load: {tip: [2, 3]}, wave: {amplitude: 0},\n"
+        "  motion: {driven: head, heave: 0.1, pitch: 10, frequency: 1}}]\n",
+        // vortices that vanish at once; impulses
+        TIME "wake: {fade: 0, lifetime: 0.5}\nfish: [{body: {modulus: 1.0e+5}}]\n",
+        TIME "wake: {shedding: impulsive}\nfish: [{body: {modulus: 1.0e+5}}]\n",
+        TIME "fluid: {velocity: [0.3, 0.1], shear: 0.2}\nfish: [{body: {relaxation_time: 0.01}, wave: {ramp: 0.5}}]\n"};
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        const struct audit_result balance = audit_of(texts[i], 2);
+        print_message("audit %.2e J of %.1f J: %s", balance.worst, balance.put_in, texts[i] + sizeof TIME - 1);
+        // order 1 at restarts, a load and a motion that begin at once: thirty tolerances
+        assert_true(balance.worst <= 30 * 1e-5 * balance.put_in);
+    }
+}
+
+static void total_circulation_vanishes_at_every_event(void **state) {
+    (void)state;
+    const char *const texts[] = {
+        TIME "wake: {lifetime: 0.3}\nfish: [{}, {start: {position: [0.3, 0.7]}, nodes: 9, sheet_points: 13}]\n",
+        TIME "wake: {lifetime: 0.3, kutta: rate, collocation: midpoint}\nfish: [{}]\n",
+        TIME "wake: {lifetime: 0.3, shedding: impulsive, fade: 0}\nfish: [{}]\n",
+        TIME "preset: published\nwake: {lifetime: 0.3, dissipated_circulation: retained}\nfish: [{}]\n",
+        // dropped: what vanishes counts neither before nor after
+        TIME "wake: {lifetime: 0.3, dissipated_circulation: dropped}\nfish: [{}]\n",
+        TIME "preset: published\nwake: {lifetime: 0.3}\nfish: [{}]\n"};
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        struct simulation *const simulation = school_simulation(texts[i]);
+        while (simulation->state->t < 0.8) {
+            school_ok(simulate_step(simulation));
+            simulate_measure(simulation);
+            NEAR(simulation->diagnostics->total_circulation, 0, 1e-10, 0);
+        }
+        // something has been shed and has vanished
+        assert_true(fabs(simulation->state->y[simulation->school->fish[0].at.circulation]) > 1e-4);
+        assert_true(fabs(simulation->state->wake[0].dissipated) > 1e-6);
+        simulate_free(simulation);
+    }
+}
+
+// the largest change of momentum (two) and angular momentum per mass of a bent fish that beats and turns, without fluid
+static void change_of_momentum(const char *rtol, double change[3]) {
+    char text[256];
+    snprintf(text, sizeof text,
+             TIME
+             "fluid: {density: 0}\nsolver: {rtol: %s}\n"
+             "fish: [{body: {modulus: 1.0e+5}, start: {speed: 0.5}, control: {bias: 0.3}}]\n",
+             rtol);
+    struct simulation *const simulation = school_simulation(text);
+    const struct fish *fish = simulation->school->fish;
+    double *const y = simulation->state->y;
+    double first[3] = {0, 0, 0};
+    change[0] = change[1] = change[2] = 0;
+    for (int n = 0; n <= 200; n++) {
+        double now[3] = {0, 0, 0};
+        for (int k = 0; k < fish->n_nodes; k++) {
+            const double px = fish->mass[k] * y[fish->at.vx + k], py = fish->mass[k] * y[fish->at.vy + k];
+            now[0] += px / fish->total_mass;
+            now[1] += py / fish->total_mass;
+            now[2] += (y[fish->at.x + k] * py - y[fish->at.y + k] * px) / fish->total_mass;
+        }
+        for (int i = 0; i < 3; i++) {
+            if (n == 0) first[i] = now[i];
+            change[i] = fmax(change[i], fabs(now[i] - first[i]));
+        }
+        if (n < 200) school_ok(simulate_step(simulation));
+    }
+    NEAR(first[0], -0.5, 1e-12, 0);
+    // it did move
+    simulate_measure(simulation);
+    assert_true(simulation->diagnostics->fish[0].bending_energy > 1e-3);
+    simulate_free(simulation);
+}
+
+static void momentum_is_constant_without_fluid(void **state) {
+    (void)state;
+    double change[3];
+    // a linear invariant: every step of BDF keeps it but for what Newton's iteration leaves
+    change_of_momentum("1.0e-5", change);
+    print_message("rtol 1e-5: momentum %.1e %.1e m s-1, angular momentum %.1e m2 s-1\n", change[0], change[1],
+                  change[2]);
+    NEAR(change[0], 0, 1e-9, 0);
+    NEAR(change[1], 0, 1e-9, 0);
+    // a quadratic one: kept to integration error, so to 1e-9 with a tolerance far below the default
+    NEAR(change[2], 0, 1e-5, 0);
+    change_of_momentum("1.0e-10", change);
+    print_message("rtol 1e-10: momentum %.1e %.1e m s-1, angular momentum %.1e m2 s-1\n", change[0], change[1],
+                  change[2]);
+    NEAR_ARRAY(3, change, ((const double[]){0, 0, 0}), 1e-9, 0);
+}
+
+static void mean_heading_is_the_trapezoidal_mean(void **state) {
+    (void)state;
+    struct sample samples[5];
+    struct history history = {.capacity = 5, .last = -1, .sample = samples};
+    const double headings[] = {9, 9, 1, 2, 4, 8, 5};
+    for (int i = 0; i < 7; i++) {
+        const struct sample sample = {.heading = headings[i]};
+        state_remember(&history, &sample);
+        if (i == 0) NEAR(diagnostics_mean_heading(&history), 9, 0, 0);
+    }
+    NEAR(diagnostics_mean_heading(&history), (0.5 + 2 + 4 + 8 + 2.5) / 4, 1e-15, 0);
+}
+
+static void speed_and_strouhal_number_are_those_of_a_driven_plate(void **state) {
+    (void)state;
+    struct simulation *const simulation = school_simulation(
+        TIME "fish: [{start: {heading: 90}, motion: {driven: all, speed: 1.5, heave: 0.1, frequency: 2}}]\n");
+    school_run(simulation, 1);
+    simulate_measure(simulation);
+    const struct diagnostics_fish *fish = &simulation->diagnostics->fish[0];
+    NEAR(fish->speed, 1.5, 0, 1e-9);
+    // samples every hundredth of a second, 50 in a period: one of them is within 1.2 degrees of each crest
+    NEAR(fish->strouhal, 2 * 0.2 / 1.5, 0, 1e-2);
+    NEAR(fish->heading, 90, 1e-9, 0);
+    NEAR(fish->com_velocity[1], 1.5, 1e-9, 0);
+    NEAR(fish->com_velocity[0], -0.1 * 4 * acos(-1), 1e-9, 0);
+    simulate_free(simulation);
+}
+
+static void heading_is_unwrapped(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{start: {heading: 170}}]\n");
+    const struct fish *fish = setup.school->fish;
+    // turned round in steps of 50 degrees, two and a half times
+    for (int i = 0; i < 19; i++) {
+        const double angle = (170 + 50 * i) * acos(-1) / 180;
+        for (int k = 0; k < fish->n_nodes; k++) {
+            setup.state->y[fish->at.x + k] = -fish->arc[k] * cos(angle);
+            setup.state->y[fish->at.y + k] = -fish->arc[k] * sin(angle);
+        }
+        diagnostics_remember(setup.residual, setup.state);
+        NEAR(state_recall(&setup.state->history[0], 0)->heading, angle, 1e-12, 0);
+    }
+    school_clear(&setup);
+}
+
+static void polarisation_and_least_distance_are_those_of_the_school(void **state) {
+    (void)state;
+    struct simulation *simulation =
+        school_simulation(TIME
+                          "defaults: {fish: {body: {profile: uniform, thickness: 0.1}}}\n"
+                          "fish: [{}, {start: {position: [0, 1]}}, {start: {position: [3, 0], heading: 90}}]\n");
+    simulate_measure(simulation);
+    // headings 180, 180, 90: (2, 1)/3
+    NEAR(simulation->diagnostics->polarisation, sqrt(5) / 3, 1e-12, 0);
+    NEAR(simulation->diagnostics->least_distance, 0.9, 1e-12, 0);
+    simulate_free(simulation);
+    simulation = school_simulation(TIME "fish: [{}]\n");
+    simulate_measure(simulation);
+    NEAR(simulation->diagnostics->polarisation, 1, 1e-15, 0);
+    assert_true(isnan(simulation->diagnostics->least_distance));
+    simulate_free(simulation);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(energy_audit_closes_within_ten_times_the_tolerance),
+        cmocka_unit_test(energy_audit_falls_with_the_tolerance),
+        cmocka_unit_test(powers_are_integrated_with_third_order),
+        cmocka_unit_test(energy_audit_closes_with_every_kind_of_power),
+        cmocka_unit_test(total_circulation_vanishes_at_every_event),
+        cmocka_unit_test(momentum_is_constant_without_fluid),
+        cmocka_unit_test(mean_heading_is_the_trapezoidal_mean),
+        cmocka_unit_test(speed_and_strouhal_number_are_those_of_a_driven_plate),
+        cmocka_unit_test(heading_is_unwrapped),
+        cmocka_unit_test(polarisation_and_least_distance_are_those_of_the_school),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

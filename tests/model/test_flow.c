@@ -1,0 +1,230 @@
+/* test_flow.c: which sources every point feels, and the derivatives of what it feels: doc/model.md, sections 6 to 9. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "school.h"
+#include "vortex/kernel.h"
+
+#define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+#define TWO                                                                                  \
+    TIME "fluid: {velocity: [0.1, 0.2], shear: 0.3, gust: {amplitude: 0.2, frequency: 1}}\n" \
+         "fish:\n"                                                                           \
+         "  - {nodes: 5, sheet_points: 7}\n"                                                 \
+         "  - {nodes: 6, sheet_points: 9, length: 0.8, start: {position: [0.2, 0.5], heading: 165}}\n"
+
+// velocity at (x, y) from the sources of fish g: free vortices, and the bound sheet with a smoothing (< 0: left out)
+static void add_fish(const struct setup *setup, int g, double x, double y, double smoothing, double *u, double *v) {
+    const struct fish *fish = &setup->school->fish[g];
+    const struct state *state = setup->state;
+    const struct wake *wake = &state->wake[g];
+    const double tau = setup->t - state->t;
+    double px[16], py[16], strength[16];
+    wake_at(wake, setup->school, state->t, tau, px, py, strength);
+    const double tail[2] = {state->y[fish->at.x + fish->n_nodes - 1], state->y[fish->at.y + fish->n_nodes - 1]};
+    double nascent[2];
+    wake_nascent(wake, tau, tail, nascent);
+    px[wake->n_vortex] = nascent[0];
+    py[wake->n_vortex] = nascent[1];
+    strength[wake->n_vortex] = state->y[fish->at.circulation] - wake->shed_before;
+    for (int i = 0; i <= wake->n_vortex; i++) {
+        struct kernel_values unit;
+        kernel_unit(1, &x, &y, px[i], py[i], fish->smoothing, &unit);
+        *u += strength[i] * *unit.u;
+        *v += strength[i] * *unit.v;
+    }
+    for (int j = 0; j < fish->n_sheet && smoothing >= 0; j++) {
+        const double q = fish->sheet_weight[j] * state->y[fish->at.gamma + j];
+        struct kernel_values unit;
+        kernel_unit(1, &x, &y, fish_mean(&fish->sheet_point[j], state->y + fish->at.x),
+                    fish_mean(&fish->sheet_point[j], state->y + fish->at.y), smoothing, &unit);
+        *u += q * *unit.u;
+        *v += q * *unit.v;
+    }
+}
+
+static void every_point_feels_the_sources_that_the_model_says(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TWO);
+    school_stir(&setup);
+    school_flow(&setup, setup.state->y);
+    flow_velocity(setup.residual->flow);
+    const struct flow *flow = setup.residual->flow;
+    for (int f = 0; f < 2; f++) {
+        const struct fish *fish = &setup.school->fish[f], *other = &setup.school->fish[1 - f];
+        assert_int_equal(flow->points[f].n, fish->n_control + fish->n_edges + 1);
+        for (int p = 0; p < flow->points[f].n; p++) {
+            const int at = flow->points[f].first + p;
+            double u, v;
+            flow_external(setup.school, setup.t, flow->y[at], &u, &v);
+            const double own = p < fish->n_control ? 0 : p == flow_tail(fish) ? fish->sheet_smoothing : -1;
+            add_fish(&setup, f, flow->x[at], flow->y[at], own, &u, &v);
+            add_fish(&setup, 1 - f, flow->x[at], flow->y[at], other->sheet_smoothing, &u, &v);
+            // rounding of sums of 40 terms, of at most 100 next to a bound vortex
+            NEAR(flow->u[at], u, 1e-13, 1e-13);
+            NEAR(flow->v[at], v, 1e-13, 1e-13);
+        }
+        const int k = 2, middle = flow->points[f].first + flow_midpoint(fish, k);
+        NEAR(flow->x[middle], (setup.state->y[fish->at.x + k] + setup.state->y[fish->at.x + k + 1]) / 2, 1e-15, 0);
+        const int tail = flow->points[f].first + flow_tail(fish);
+        NEAR(flow->y[tail], setup.state->y[fish->at.y + fish->n_nodes - 1], 1e-15, 0);
+        double slip[2];
+        flow_slip(flow, f, setup.state->y, slip);
+        NEAR(slip[0], flow->u[tail] - setup.state->y[fish->at.vx + fish->n_nodes - 1], 0, 0);
+        NEAR(slip[1], flow->v[tail] - setup.state->y[fish->at.vy + fish->n_nodes - 1], 0, 0);
+    }
+    school_clear(&setup);
+}
+
+static void wake_vortices_feel_everything_with_smoothed_sheets(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TWO);
+    school_stir(&setup);
+    // at an event: the vortices are where the wake says
+    setup.t = setup.state->t;
+    school_flow(&setup, setup.state->y);
+    const struct flow *flow = setup.residual->flow;
+    double all_u[32], all_v[32];
+    assert_in_range(flow->released.n, 1, 32);
+    school_ok(flow_at_wake(flow, all_u, all_v));
+    for (int f = 0; f < 2; f++) {
+        const struct wake *wake = &setup.state->wake[f];
+        const double *const u = all_u + flow->released_range[f].first, *const v = all_v + flow->released_range[f].first;
+        for (int i = 0; i < wake->n_vortex; i++) {
+            double want_u, want_v;
+            flow_external(setup.school, setup.t, wake->y[i], &want_u, &want_v);
+            for (int g = 0; g < 2; g++) {
+                add_fish(&setup, g, wake->x[i], wake->y[i], setup.school->fish[g].sheet_smoothing, &want_u, &want_v);
+            }
+            NEAR(u[i], want_u, 1e-13, 0);
+            NEAR(v[i], want_v, 1e-13, 0);
+        }
+    }
+    school_clear(&setup);
+}
+
+static void external_flow_is_stream_plus_shear_plus_gust(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TWO);
+    double u, v;
+    const double t = 1.0 / 12, gust = 0.2 * 0.5, stream = hypot(0.1, 0.2);
+    flow_external(setup.school, t, 2, &u, &v);
+    NEAR(u, 0.1 + 0.6 - gust * 0.2 / stream, 1e-15, 0);
+    NEAR(v, 0.2 + gust * 0.1 / stream, 1e-15, 0);
+    school_clear(&setup);
+}
+
+// the velocity at all points of fish f, u then v, when unknown i is moved by step
+static void velocity_at(struct setup *setup, int i, double step, double *velocity) {
+    struct flow *flow = setup->residual->flow;
+    const double here = setup->state->y[i];
+    setup->state->y[i] = here + step;
+    school_ok(flow_update_sources(flow, setup->state, setup->t, setup->state->y));
+    flow_velocity(flow);
+    setup->state->y[i] = here;
+    memcpy(velocity, flow->u, (size_t)flow->n_points * sizeof *velocity);
+    memcpy(velocity + flow->n_points, flow->v, (size_t)flow->n_points * sizeof *velocity);
+}
+
+static void derivative_by_every_unknown_agrees_with_differences(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TWO);
+    school_stir(&setup);
+    struct flow *flow = setup.residual->flow;
+    struct influence_block *block = &setup.residual->jacobian_scratch[0].block;
+    double velocity[4][64];
+    assert_true(2 * flow->n_points <= 64);
+    for (int f = 0; f < 2; f++) {
+        for (int g = 0; g < 2; g++) {
+            const struct fish *other = &setup.school->fish[g];
+            school_flow(&setup, setup.state->y);
+            flow_derivative(flow, f, g, block);
+            assert_int_equal(block->n_points, flow->points[f].n);
+            assert_int_equal(block->n_columns, 2 * other->n_nodes + other->n_sheet + 1);
+            assert_int_equal(block->n_columns, flow_n_columns(other));
+            for (int c = 0; c < block->n_columns; c++) {
+                // fourth order; bound vortices are 0.01 and more from control points: (1e-4/0.01)^4/30 of the largest
+                const double h = 1e-4;
+                for (int i = 0; i < 4; i++)
+                    velocity_at(&setup, flow_column(other, c), h * (i < 2 ? i - 2 : i - 1), velocity[i]);
+                for (int p = 0; p < block->n_points; p++) {
+                    const int at[2] = {flow->points[f].first + p, flow->n_points + flow->points[f].first + p};
+                    const double got[2] = {block->u[c * block->n_points + p], block->v[c * block->n_points + p]};
+                    for (int i = 0; i < 2; i++) {
+                        const double want = (velocity[0][at[i]] - 8 * velocity[1][at[i]] + 8 * velocity[2][at[i]] -
+                                             velocity[3][at[i]]) /
+                                            (12 * h);
+                        NEAR(got[i], want, 2e-6, 1e-6);
+                    }
+                }
+            }
+        }
+    }
+    school_clear(&setup);
+}
+
+static void forgotten_wakes_are_placed_anew(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TWO);
+    school_stir(&setup);
+    struct flow *flow = setup.residual->flow;
+    school_flow(&setup, setup.state->y);
+    const double before = flow->u[0];
+    setup.state->wake[0].circulation[3] += 1;
+    flow_invalidate(flow);
+    school_flow(&setup, setup.state->y);
+    assert_true(fabs(flow->u[0] - before) > 1e-3);
+    school_clear(&setup);
+}
+
+static void gradient_pass_leaves_the_velocity_as_it_is(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TWO);
+    school_stir(&setup);
+    struct flow *flow = setup.residual->flow;
+    school_flow(&setup, setup.state->y);
+    double with[64];
+    memcpy(with, flow->u, (size_t)flow->n_points * sizeof *with);
+    flow_velocity(flow);
+    // the loops differ in the order of a division and a product
+    NEAR_ARRAY(flow->n_points, flow->u, with, 1e-13, 1e-13);
+    school_clear(&setup);
+}
+
+static void threads_change_no_bit(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TWO);
+    school_stir(&setup);
+    struct flow *flow = setup.residual->flow;
+    double one[64];
+    school_flow(&setup, setup.state->y);
+    flow_velocity(flow);
+    memcpy(one, flow->u, (size_t)flow->n_points * sizeof *one);
+    for (int threads = 2; threads <= 5; threads++) {
+        setup.school->threads = threads;
+        flow_velocity(flow);
+        assert_memory_equal(flow->u, one, (size_t)flow->n_points * sizeof *one);
+    }
+    // those that the residual has made room for
+    setup.school->threads = 1;
+    school_clear(&setup);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_point_feels_the_sources_that_the_model_says),
+        cmocka_unit_test(wake_vortices_feel_everything_with_smoothed_sheets),
+        cmocka_unit_test(external_flow_is_stream_plus_shear_plus_gust),
+        cmocka_unit_test(derivative_by_every_unknown_agrees_with_differences),
+        cmocka_unit_test(forgotten_wakes_are_placed_anew),
+        cmocka_unit_test(gradient_pass_leaves_the_velocity_as_it_is),
+        cmocka_unit_test(threads_change_no_bit),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,218 @@
+/* test_residual.c: the Jacobian of the whole school against differences, for every option of the model. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "school.h"
+
+#define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+#define FAR "solver: {coupling_distance: 100}\n"
+#define FISH "fish: [{sheet_points: 9, body: {modulus: 1.0e+5}}]\n"
+
+/* Every option of doc/model.md at least once, alone or with those that it meets. */
+static const struct variant {
+    const char *name, *text;
+} variants[] = {
+    {"defaults", TIME FISH},
+    {"stiff, 21 sheet points", TIME "fish: [{body: {modulus: 1.0e+9}}]\n"},
+    {"second moment published", TIME "fish: [{sheet_points: 9, body: {second_moment: published}}]\n"},
+    {"profile uniform", TIME "fish: [{sheet_points: 9, nodes: 5, body: {profile: uniform, thickness: 0.1}}]\n"},
+    {"profile table", TIME "fish: [{sheet_points: 9, nodes: 5, body: {profile: table, h: [0.1, 0.2, 0.15, 0.05], "
+                           "w: [0.2, 0.3, 0.25, 0.1]}}]\n"},
+    {"relaxation time", TIME "fish: [{sheet_points: 9, body: {relaxation_time: 0.1, bending_damping: 2}}]\n"},
+    {"load at the tip", TIME "fish: [{sheet_points: 9, load: {tip: [3, -2]}}]\n"},
+    {"collocation midpoint", TIME "wake: {collocation: midpoint}\n" FISH},
+    {"kutta rate", TIME "wake: {kutta: rate}\n" FISH},
+    {"kutta rate with ramp, midpoint", TIME "wake: {kutta: rate, kutta_ramp: 0.5, collocation: midpoint}\n" FISH},
+    {"impulsive edge", TIME "wake: {shedding: impulsive}\n" FISH},
+    {"impulsive rate", TIME "wake: {shedding: impulsive, kutta: rate}\n" FISH},
+    {"dropped, no fade", TIME "wake: {dissipated_circulation: dropped, fade: 0}\n" FISH},
+    {"preset published", TIME "preset: published\n" FISH},
+    {"linear-quadratic drag", TIME "fish: [{sheet_points: 9, drag: {law: linear_quadratic, tangential: 0.1}}]\n"},
+    {"extent width", TIME "fish: [{sheet_points: 9, drag: {extent: width, tangential: 0.1}}]\n"},
+    {"stream, shear, gust", TIME "fluid: {velocity: [0.3, -0.2], shear: 0.7, gust: {amplitude: 0.4, frequency: 1.3}}\n"
+                                 "fish: [{sheet_points: 9, control: {law: heading}}]\n"},
+    {"bias", TIME "fish: [{sheet_points: 9, control: {bias: 0.2}}]\n"},
+    {"heading", TIME "fish: [{sheet_points: 9, control: {law: heading, desired_heading: 150}}]\n"},
+    {"heading without feedforward",
+     TIME "fish: [{sheet_points: 9, control: {law: heading, desired_heading: 150, feedforward: 0}}]\n"},
+    {"headings in time",
+     TIME "fish: [{sheet_points: 9, control: {law: heading, desired_heading: [[0, 180], [1, 120]]}}]\n"},
+    {"waypoints", TIME "fish: [{sheet_points: 9, control: {law: heading, waypoints: [[-3, 1], [-4, 5]]}}]\n"},
+    {"averaged heading", TIME "fish: [{sheet_points: 9, control: {law: averaged_heading, desired_heading: 150}}]\n"},
+    {"averaged heading, waypoints",
+     TIME "fish: [{sheet_points: 9, control: {law: averaged_heading, waypoints: [[-3, 1]]}}]\n"},
+    {"driven head", TIME "fish: [{sheet_points: 9, motion: {driven: head, heave: 0.1, pitch: 10, pitch_phase: 70, "
+                         "frequency: 1, pivot: 0.2}}]\n"},
+    {"driven body", TIME "fish: [{sheet_points: 9, motion: {driven: all, heave: 0.1, pitch: 10, frequency: 1}}]\n"},
+    {"driven head, kutta rate, load",
+     TIME "wake: {kutta: rate}\n"
+          "fish: [{sheet_points: 9, load: {tip: [1, 2]}, motion: {driven: head, heave: 0.1, frequency: 1}}]\n"},
+    {"three fish",
+     TIME FAR "fluid: {velocity: [0.1, 0.05], shear: 0.2}\n"
+              "fish:\n"
+              "  - {sheet_points: 9, control: {law: heading, desired_heading: 150}}\n"
+              "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170},\n"
+              "     drag: {law: linear_quadratic, extent: width}, control: {law: averaged_heading}}\n"
+              "  - {nodes: 9, sheet_points: 11, length: 1.2, start: {position: [0.1, -0.6], heading: 200},\n"
+              "     motion: {driven: head, heave: 0.1, frequency: 1}}\n"},
+    {"three fish, kutta rate, midpoint, waypoints",
+     TIME FAR "wake: {kutta: rate, collocation: midpoint}\n"
+              "fish:\n"
+              "  - {sheet_points: 9, control: {law: heading, waypoints: [[-3, 1]]}}\n"
+              "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"
+              "  - {nodes: 9, sheet_points: 11, length: 1.2, start: {position: [0.1, -0.6], heading: 200},\n"
+              "     body: {second_moment: published}, control: {law: heading}}\n"},
+    {"two fish, impulsive", TIME FAR "preset: published\n"
+                                     "fish:\n"
+                                     "  - {sheet_points: 9}\n"
+                                     "  - {nodes: 5, sheet_points: 7, start: {position: [0.2, 0.5]}}\n"},
+};
+
+static void value_of_school(struct setup *setup, const double *y, const double *yp, double *value) {
+    school_ok(residual_evaluate(setup->residual, setup->t, y, yp, value));
+}
+
+static void jacobian_agrees_with_differences_for_every_option(void **state) {
+    (void)state;
+    for (size_t i = 0; i < sizeof variants / sizeof *variants; i++) {
+        struct setup setup;
+        school_build(&setup, variants[i].text);
+        school_stir(&setup);
+        school_compare(&setup, value_of_school, NULL, variants[i].name);
+        if (setup.school->shedding == SHEDDING_IMPULSIVE) {
+            setup.residual->at_impulse = 1;
+            school_compare(&setup, value_of_school, NULL, variants[i].name);
+        }
+        school_clear(&setup);
+    }
+}
+
+static void far_fish_are_left_out_of_the_jacobian_and_of_nothing_else(void **state) {
+    (void)state;
+    const char *const text = TIME
+        "solver: {coupling_distance: 0.6}\n"
+        "fish: [{sheet_points: 9}, {sheet_points: 9, start: {position: [0, 1]}}]\n";
+    struct setup setup;
+    school_build(&setup, text);
+    const struct layout *a = &setup.school->fish[0].at, *b = &setup.school->fish[1].at;
+    const size_t n = (size_t)setup.school->n_unknowns;
+    assert_int_equal(setup.residual->coupled[1], 0);
+    school_ok(residual_jacobian(setup.residual, 0, 1, setup.state->y, setup.jacobian));
+    double *dense = school_dense_jacobian(setup.jacobian);
+    for (int row = a->x; row < a->end; row++) {
+        for (int column = b->x; column < b->end; column++) NEAR(dense[(size_t)row * n + (size_t)column], 0, 0, 0);
+    }
+    free(dense);
+    // closer by 0.5: coupled, which is another pattern; asked again nothing has changed
+    for (int k = 0; k < 7; k++) setup.state->y[b->y + k] -= 0.5;
+    const unsigned pattern = setup.residual->pattern;
+    assert_int_equal(residual_couple(setup.residual, setup.state->y), 1);
+    assert_int_not_equal(setup.residual->pattern, pattern);
+    assert_int_equal(residual_couple(setup.residual, setup.state->y), 0);
+    school_ok(residual_jacobian(setup.residual, 0, 1, setup.state->y, setup.jacobian));
+    dense = school_dense_jacobian(setup.jacobian);
+    assert_true(fabs(dense[(size_t)a->gamma * n + (size_t)b->gamma]) > 1e-4);
+    free(dense);
+    school_clear(&setup);
+}
+
+static void unknowns_have_names_kinds_and_scales(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME
+                 "fish: [{nodes: 4, sheet_points: 5},\n"
+                 "  {length: 2, nodes: 5, sheet_points: 6, start: {position: [0, 1]}, motion: {driven: head, heave: "
+                 "0.1, frequency: 1}}]\n");
+    const struct layout *a = &setup.school->fish[0].at, *b = &setup.school->fish[1].at;
+    const struct {
+        int i, fish, index;
+        const char *name;
+        double kind;
+    } want[] = {{a->x, 0, 0, "x", 1},
+                {a->vy + 3, 0, 3, "vy", 1},
+                {a->ax + 1, 0, 1, "ax", 0},
+                {a->gamma + 4, 0, 4, "gamma", 0},
+                {a->circulation, 0, 0, "circulation", 0},
+                {a->phi0, 0, 0, "phi0", 0},
+                {b->x + 1, 1, 1, "x", 0},
+                {b->y + 2, 1, 2, "y", 1},
+                {b->vx + 1, 1, 1, "vx", 0},
+                {b->vx + 2, 1, 2, "vx", 1},
+                {b->circulation, 1, 0, "circulation", 0}};
+    double kind[128];
+    assert_true(setup.school->n_unknowns <= 128);
+    residual_kinds(setup.residual, kind);
+    for (size_t k = 0; k < sizeof want / sizeof *want; k++) {
+        const struct unknown_place place = residual_place(setup.school, want[k].i);
+        assert_int_equal(place.fish, want[k].fish);
+        assert_int_equal(place.index, want[k].index);
+        assert_string_equal(place.name, want[k].name);
+        NEAR(kind[want[k].i], want[k].kind, 0, 0);
+    }
+    // a fish of twice the length and the same beat
+    NEAR(residual_scale(setup.residual, b->y), 2 * residual_scale(setup.residual, a->y), 0, 1e-14);
+    NEAR(residual_scale(setup.residual, b->vx), 2 * residual_scale(setup.residual, a->vx), 0, 1e-14);
+    NEAR(residual_scale(setup.residual, b->circulation), 4 * residual_scale(setup.residual, a->circulation), 0, 1e-14);
+    school_clear(&setup);
+}
+
+static void circulation_shed_is_differential_only_with_a_rate(void **state) {
+    (void)state;
+    const struct {
+        const char *text;
+        int algebraic, algebraic_at_impulse;
+    } cases[] = {{TIME FISH, 1, 1},
+                 {TIME "wake: {kutta: rate}\n" FISH, 0, 0},
+                 {TIME "wake: {shedding: impulsive}\n" FISH, 0, 1},
+                 {TIME "wake: {shedding: impulsive, kutta: rate}\n" FISH, 0, 0}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct setup setup;
+        school_build(&setup, cases[i].text);
+        assert_int_equal(residual_shed_is_algebraic(setup.residual), cases[i].algebraic);
+        setup.residual->at_impulse = 1;
+        assert_int_equal(residual_shed_is_algebraic(setup.residual), cases[i].algebraic_at_impulse);
+        school_clear(&setup);
+    }
+}
+
+static void a_value_that_is_not_finite_asks_for_a_retry_and_says_where(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME FISH);
+    school_stir(&setup);
+    setup.state->y[setup.school->fish[0].at.phi0] = INFINITY;
+    assert_int_equal(residual_evaluate(setup.residual, setup.t, setup.state->y, setup.state->yp, setup.value),
+                     STATUS_RETRY);
+    assert_non_null(strstr(status_message(), "of fish fish1"));
+    school_clear(&setup);
+}
+
+static void load_at_the_tip_accelerates_the_tail_only(void **state) {
+    (void)state;
+    struct setup with, without;
+    school_build(&with, TIME "fish: [{sheet_points: 9, load: {tip: [3, -2]}}]\n");
+    school_build(&without, TIME "fish: [{sheet_points: 9}]\n");
+    school_stir(&with);
+    school_stir(&without);
+    school_ok(residual_evaluate(with.residual, with.t, with.state->y, with.state->yp, with.value));
+    school_ok(residual_evaluate(without.residual, with.t, with.state->y, with.state->yp, without.value));
+    const struct fish *fish = with.school->fish;
+    without.value[fish->at.ax + 6] -= 3 / fish->mass[6];
+    without.value[fish->at.ay + 6] += 2 / fish->mass[6];
+    // rounding of accelerations of 1e5
+    NEAR_ARRAY(with.school->n_unknowns, with.value, without.value, 1e-10, 1e-14);
+    school_clear(&with);
+    school_clear(&without);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(jacobian_agrees_with_differences_for_every_option),
+        cmocka_unit_test(far_fish_are_left_out_of_the_jacobian_and_of_nothing_else),
+        cmocka_unit_test(unknowns_have_names_kinds_and_scales),
+        cmocka_unit_test(circulation_shed_is_differential_only_with_a_rate),
+        cmocka_unit_test(a_value_that_is_not_finite_asks_for_a_retry_and_says_where),
+        cmocka_unit_test(load_at_the_tip_accelerates_the_tail_only),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

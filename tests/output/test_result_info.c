@@ -1,0 +1,164 @@
+/* test_store_info.c: reading the result file, the reference of its variables, and the version it names. */
+#include <sys/stat.h>
+
+#include "base/version.h"
+#include "output/result_table.h"
+#include "result_fixture.h"
+#include "study/compare_file.h"
+#include "study/study_file.h"
+
+// ---- info ----
+
+/* What result_info prints, or "" when it fails. */
+static const char *info(const char *path, int case_only, enum status *status) {
+    static char text[8192];
+    memset(text, 0, sizeof text);
+    FILE *stream = fmemopen(text, sizeof text - 1, "w");
+    enum result_kind kind = RESULT_COMPARISON;
+    *status = result_info(path, case_only, stream, &kind);
+    if (*status == STATUS_OK) assert_int_equal(kind, RESULT_RUN);
+    fclose(stream);
+    return text;
+}
+
+static void info_sums_up(void **state) {
+    struct fixture *f = *state;
+    write_file(f, 3);
+    enum status status;
+    const char *text = info(f->path, 0, &status);
+    assert_int_equal(status, STATUS_OK);
+    const char *const parts[] = {"store", "complete", "3, from t = 0 s to 1 s", "leader", "suédois", "2.10 per event"};
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
+        if (strstr(text, parts[i]) == NULL) fail_msg("\"%s\" is not in\n%s", parts[i], text);
+    assert_null(strstr(text, "nan"));
+}
+
+static void info_of_a_file_without_rows_says_so(void **state) {
+    struct fixture *f = *state;
+    write_file(f, 0);
+    enum status status;
+    assert_non_null(strstr(info(f->path, 0, &status), "none yet"));
+    assert_int_equal(status, STATUS_OK);
+}
+
+static void info_prints_the_case_exactly(void **state) {
+    struct fixture *f = *state;
+    write_file(f, 1);
+    enum status status;
+    assert_string_equal(info(f->path, 1, &status), EFFECTIVE);
+    assert_int_equal(status, STATUS_OK);
+}
+
+static void assert_no_info(const struct fixture *f, const char *part) {
+    enum status status;
+    info(f->path, 0, &status);
+    assert_int_equal(status, STATUS_FILE);
+    assert_message(f->path);
+    assert_message(part);
+}
+
+static void info_refuses_other_files(void **state) {
+    struct fixture *f = *state;
+    assert_no_info(f, "No such file");
+    mkdir(f->path, 0700);
+    assert_no_info(f, "is a folder");
+    rmdir(f->path);
+
+    FILE *text = fopen(f->path, "w");
+    assert_no_info(f, "not a NetCDF file");  // empty
+    fputs("format: 1\n", text);
+    fclose(text);
+    assert_no_info(f, "not a NetCDF file");
+
+    int file;
+    assert_int_equal(nc_create(f->path, NC_CLOBBER, &file), NC_NOERR);
+    nc_close(file);
+    assert_no_info(f, "not one of shoal");
+}
+
+static void info_refuses_another_schema(void **state) {
+    struct fixture *f = *state;
+    write_file(f, 1);
+    int file;
+    const int schema = RESULT_SCHEMA + 1;
+    assert_int_equal(nc_open(f->path, NC_WRITE, &file), NC_NOERR);
+    assert_int_equal(nc_put_att_int(file, NC_GLOBAL, "shoal_schema", NC_INT, 1, &schema), NC_NOERR);
+    nc_close(file);
+    assert_no_info(f, "written in schema 2");
+}
+
+/* The number of bytes of a file without the zeros at its end, which NetCDF may leave there. */
+static off_t length_of_data(const char *path) {
+    FILE *file = fopen(path, "rb");
+    off_t length = 0;
+    int byte;
+    for (off_t i = 1; (byte = fgetc(file)) != EOF; i++)
+        if (byte != 0) length = i;
+    fclose(file);
+    return length;
+}
+
+static void info_refuses_a_file_that_was_cut(void **state) {
+    struct fixture *f = *state;
+    write_file(f, 4);
+    // the data end with wall_time: 28 is 40 3c and six zeros
+    const off_t length = length_of_data(f->path);
+    const off_t left[] = {length - 2, length - 1000, length - 4000, length / 2, 5000, 100, 3};
+    for (size_t i = 0; i < sizeof left / sizeof *left; i++) {
+        assert_int_equal(truncate(f->path, left[i]), 0);
+        enum status status;
+        info(f->path, 0, &status);
+        assert_int_equal(status, STATUS_FILE);
+    }
+}
+
+// ---- the reference and the version ----
+
+static void reference_has_one_line_per_variable(void **state) {
+    (void)state;
+    struct result_listed listed;
+    int n_study = 0, n_compare = 0;
+    while (study_file_listed(n_study, &listed)) n_study++;
+    while (compare_file_listed(n_compare, &listed)) n_compare++;
+    assert_true(n_study > 10 && n_compare > 10);
+    for (int as_json = 0; as_json < 2; as_json++) {
+        static char text[32768];
+        memset(text, 0, sizeof text);
+        FILE *stream = fmemopen(text, sizeof text - 1, "w");
+        result_variables(stream, as_json);
+        fclose(stream);
+        int n_lines = 0;
+        for (const char *c = text; *c; c++) n_lines += *c == '\n';
+        // the text has a heading of three lines for each of two further files
+        assert_int_equal(n_lines, result_table_n + n_study + n_compare + (as_json ? 2 : 6));
+        assert_non_null(strstr(
+            text, as_json ? "\"dimensions\": [\"time\", \"fish\", \"node\", \"xy\"]" : "(time, fish, node, xy)"));
+    }
+}
+
+static void version_names_every_library(void **state) {
+    (void)state;
+    char libraries[VERSION_LENGTH];
+    version_libraries(libraries);
+    const char *const names[] = {"SUNDIALS ", "KLU ", "SuiteSparse ", "NetCDF ", "libyaml "};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        const char *name = strstr(libraries, names[i]);
+        assert_non_null(name);
+        assert_in_range(name[strlen(names[i])], '0', '9');
+    }
+    assert_memory_equal(version_short(), "shoal ", 6);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        WITH_FILE(info_sums_up),
+        WITH_FILE(info_of_a_file_without_rows_says_so),
+        WITH_FILE(info_prints_the_case_exactly),
+        WITH_FILE(info_refuses_other_files),
+        WITH_FILE(info_refuses_another_schema),
+        WITH_FILE(info_refuses_a_file_that_was_cut),
+        cmocka_unit_test(reference_has_one_line_per_variable),
+        cmocka_unit_test(version_names_every_library),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,145 @@
+/* result_fixture.h: what the tests of the store share: a folder, a file in it, and everything a row is made of. */
+#ifndef RESULT_FIXTURE_H
+#define RESULT_FIXTURE_H
+
+#include <netcdf.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "near.h"
+#include "output/result_file.h"
+
+enum { N_FISH = 2, N_MEASURED = sizeof(struct diagnostics_fish) / sizeof(double) };
+
+#define CASE_TEXT                                                                                      \
+    "format: 1\n"                                                                                      \
+    "name: store\n"                                                                                    \
+    "time: {end: 1, shedding_interval: 0.1}\n"                                                         \
+    "fish:\n"                                                                                          \
+    "  - {name: leader, nodes: 5, sheet_points: 7, wave: {frequency: 2}, start: {position: [0, 0]}}\n" \
+    "  - {name: suédois, nodes: 7, sheet_points: 5, length: 2, start: {position: [0, 5]}}\n"
+#define EFFECTIVE "format: 1\nname: the whole case\n"
+
+// Everything a row is made of, each number different from all others, and a folder to write in.
+struct fixture {
+    struct case_values values;
+    struct school *school;
+    struct state *state;
+    struct residual residual;
+    struct range joints[N_FISH];
+    double natural_curvature[8];
+    struct diagnostics diagnostics;
+    struct diagnostics_fish measured[N_FISH];
+    struct result_counts counts;
+    char folder[32], path[64];
+};
+
+static inline void number_consecutively(double *value, size_t n, double first) {
+    for (size_t i = 0; i < n; i++) value[i] = first + (double)i;
+}
+
+static inline int set_up(void **state) {
+    struct fixture *f = calloc(1, sizeof *f);
+    assert_int_equal(case_parse(&f->values, CASE_TEXT, strlen(CASE_TEXT), "case", ".", 0, NULL), STATUS_OK);
+    assert_int_equal(fish_school_create(&f->school, &f->values), STATUS_OK);
+    assert_int_equal(state_create(&f->state, f->school), STATUS_OK);
+    number_consecutively(f->state->y, (size_t)f->school->n_unknowns, 1000);
+    for (int i = 0; i < N_FISH; i++) {
+        f->joints[i] = (struct range){i == 0 ? 0 : 3, f->school->fish[i].n_joints};
+        number_consecutively((double *)&f->measured[i], N_MEASURED, 100.0 * (i + 1));
+    }
+    number_consecutively(f->natural_curvature, 8, 1);
+    f->residual = (struct residual){
+        .school = f->school, .state = f->state, .joints = f->joints, .natural_curvature = f->natural_curvature};
+    f->diagnostics =
+        (struct diagnostics){.fish = f->measured, .total_circulation = 11, .least_distance = 12, .polarisation = 13};
+    f->counts = (struct result_counts){21, 22, 23, 24, 25, 26, 27, 2, 28};
+    strcpy(f->folder, "/tmp/test_store.XXXXXX");
+    assert_non_null(mkdtemp(f->folder));
+    snprintf(f->path, sizeof f->path, "%s/run.nc", f->folder);
+    *state = f;
+    return 0;
+}
+
+static inline int tear_down(void **state) {
+    struct fixture *f = *state;
+    unlink(f->path);
+    assert_int_equal(rmdir(f->folder), 0);  // nothing else is left in it
+    state_free(f->state, f->school);
+    fish_school_free(f->school);
+    case_free(&f->values);
+    free(f);
+    return 0;
+}
+
+// ---- writing ----
+
+static inline struct result_file *create(struct fixture *f) {
+    struct result_file *store;
+    assert_int_equal(
+        result_file_create(&store, f->path, 0, &f->values, EFFECTIVE, "shoal run case.yaml", f->school, 10), STATUS_OK);
+    return store;
+}
+
+static inline enum status append(struct fixture *f, struct result_file *store, double t, int with_wake) {
+    f->state->t = t;
+    return result_file_row(store, f->state, &f->residual, &f->diagnostics, &f->counts, with_wake);
+}
+
+/* A whole file with rows at t = 0, 0.5, ... */
+static inline void write_file(struct fixture *f, int n_rows) {
+    struct result_file *store = create(f);
+    for (int i = 0; i < n_rows; i++) assert_int_equal(append(f, store, 0.5 * i, 1), STATUS_OK);
+    assert_int_equal(result_file_close(store, "complete"), STATUS_OK);
+}
+
+// ---- reading ----
+
+static inline int open_to_read(const struct fixture *f) {
+    int file;
+    assert_int_equal(nc_open(f->path, NC_NOWRITE, &file), NC_NOERR);
+    return file;
+}
+
+static inline int number_of(int file, const char *name) {
+    int number;
+    if (nc_inq_varid(file, name, &number) != NC_NOERR) fail_msg("there is no variable %s", name);
+    return number;
+}
+
+/* One value; the unused indices are ignored. */
+static inline double value_at(int file, const char *name, size_t i, size_t j, size_t k, size_t l) {
+    double value;
+    assert_int_equal(nc_get_var1_double(file, number_of(file, name), (size_t[]){i, j, k, l}, &value), NC_NOERR);
+    return value;
+}
+
+static inline size_t length_of(int file, const char *name) {
+    int number;
+    size_t length;
+    assert_int_equal(nc_inq_dimid(file, name, &number), NC_NOERR);
+    assert_int_equal(nc_inq_dimlen(file, number, &length), NC_NOERR);
+    return length;
+}
+
+static inline const char *text_of(int file, int variable, const char *name) {
+    static char text[4096];
+    size_t length;
+    if (nc_inq_attlen(file, variable, name, &length) != NC_NOERR) fail_msg("there is no attribute %s", name);
+    assert_true(length < sizeof text);
+    memset(text, 0, sizeof text);
+    assert_int_equal(nc_get_att_text(file, variable, name, text), NC_NOERR);
+    return text;
+}
+
+// ---- messages ----
+
+static inline void assert_message(const char *part) {
+    if (strstr(status_message(), part) == NULL) fail_msg("\"%s\" is not in \"%s\"", part, status_message());
+}
+
+#define WITH_FILE(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
+
+#endif

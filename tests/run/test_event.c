@@ -1,0 +1,181 @@
+/* test_event.c: what is done at the times t_n = n Dt: doc/model.md, sections 7, 8 and 11. */
+#include <string.h>
+
+#include "model/bound_sheet.h"
+#include "run/event.h"
+#include "school.h"
+
+#define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+
+static void events_are_at_exact_multiples_of_the_interval(void **state) {
+    (void)state;
+    struct simulation *const simulation = school_simulation("time: {end: 1, shedding_interval: 0.01}\nfish: [{}]\n");
+    for (long n = 1; n <= 100; n++) {
+        school_ok(simulate_step(simulation));
+        assert_int_equal(simulation->state->event, n);
+        // no sum of rounded intervals
+        NEAR(simulation->state->t, (double)n * 0.01, 0, 0);
+    }
+    simulate_free(simulation);
+}
+
+static void one_vortex_is_released_at_every_event_with_what_was_shed(void **state) {
+    (void)state;
+    struct simulation *const simulation = school_simulation(TIME "fish: [{}]\n");
+    const struct fish *fish = simulation->school->fish;
+    const struct wake *wake = &simulation->state->wake[0];
+    const double *const y = simulation->state->y;
+    assert_int_equal(wake->n_vortex, 0);
+    double shed = y[fish->at.circulation];
+    for (int n = 1; n <= 20; n++) {
+        const double slip[2] = {wake->slip[0], wake->slip[1]};
+        school_ok(simulate_step(simulation));
+        assert_int_equal(wake->n_vortex, n);
+        NEAR(wake->circulation[n - 1], y[fish->at.circulation] - shed, 1e-15, 0);
+        NEAR(wake->birth[n - 1], 0.02 * n, 1e-15, 0);
+        NEAR(wake->shed_before, y[fish->at.circulation], 0, 0);
+        // where the nascent one was: half of the slip behind the tail
+        NEAR(wake->x[n - 1], y[fish->at.x + 6] + 0.01 * slip[0], 1e-15, 0);
+        NEAR(wake->y[n - 1], y[fish->at.y + 6] + 0.01 * slip[1], 1e-15, 0);
+        shed = y[fish->at.circulation];
+    }
+    simulate_free(simulation);
+}
+
+static void fields_are_continuous_across_a_continuous_event(void **state) {
+    (void)state;
+    // with fade and a short life: release and removal both
+    struct simulation *const simulation =
+        school_simulation(TIME "wake: {lifetime: 0.2}\nfish: [{}, {start: {position: [0.2, 0.5]}}]\n");
+    school_run(simulation, 0.5);
+    const double next = simulation->state->t + 0.02;
+    school_ok(simulation->integrator->advance(simulation->solver, next));
+    struct residual *residual = simulation->residual;
+    const int n = simulation->school->n_unknowns, n_points = residual->flow->n_points;
+    double before[400], u[200], v[200];
+    assert_true(n <= 400 && n_points <= 200);
+    flow_invalidate(residual->flow);
+    school_ok(residual_evaluate(residual, next, simulation->state->y, simulation->state->yp, before));
+    memcpy(u, residual->flow->u, (size_t)n_points * sizeof *u);
+    memcpy(v, residual->flow->v, (size_t)n_points * sizeof *v);
+    int jumped = 1;
+    school_ok(event_next(simulation->state, residual, simulation->consistent, &jumped));
+    assert_int_equal(jumped, 0);
+    double after[400];
+    flow_invalidate(residual->flow);
+    school_ok(residual_evaluate(residual, next, simulation->state->y, simulation->state->yp, after));
+    // rounding only, in sums over sources in another order
+    NEAR_ARRAY(n_points, residual->flow->u, u, 1e-12, 1e-12);
+    NEAR_ARRAY(n_points, residual->flow->v, v, 1e-12, 1e-12);
+    simulate_free(simulation);
+}
+
+static void wake_holds_one_lifetime(void **state) {
+    (void)state;
+    struct simulation *const simulation = school_simulation(TIME "wake: {lifetime: 0.2}\nfish: [{}]\n");
+    for (int n = 1; n <= 30; n++) {
+        school_ok(simulate_step(simulation));
+        // ten intervals long: the one released at 0.02 goes at 0.22
+        assert_int_equal(simulation->state->wake[0].n_vortex, n <= 10 ? n : 10);
+    }
+    simulate_free(simulation);
+}
+
+static void impulses_conserve_circulation_and_meet_kutta(void **state) {
+    (void)state;
+    struct simulation *const simulation =
+        school_simulation(TIME "wake: {shedding: impulsive}\nfish: [{sheet_points: 11}]\n");
+    const struct fish *fish = simulation->school->fish;
+    const struct state *s = simulation->state;
+    // the event at t = 0 sheds one too
+    assert_int_equal(s->wake[0].n_vortex, 1);
+    for (int n = 1; n <= 20; n++) {
+        const double shed = s->y[fish->at.circulation];
+        school_ok(simulation->integrator->advance(simulation->solver, 0.02 * n));
+        // nothing is shed between events
+        NEAR(s->y[fish->at.circulation], shed, 1e-12, 0);
+        int jumped = 0;
+        school_ok(event_next(simulation->state, simulation->residual, simulation->consistent, &jumped));
+        assert_int_equal(jumped, 1);
+        assert_int_equal(s->wake[0].n_vortex, n + 1);
+        NEAR(s->wake[0].circulation[n], s->y[fish->at.circulation] - shed, 1e-15, 0);
+        NEAR(bound_sheet_circulation(fish, s->y) + s->y[fish->at.circulation], 0, 1e-12, 0);
+        // the bound vortex on the edge vanishes with the new vortex there
+        NEAR(s->y[fish->at.gamma + 10] * fish->sheet_weight[10], 0, 1e-12, 0);
+        school_ok(simulation->integrator->restart(simulation->solver));
+    }
+    assert_true(fabs(s->y[fish->at.circulation]) > 1e-3);
+    simulate_free(simulation);
+}
+
+static void impulses_by_rate_are_the_rate_times_the_interval(void **state) {
+    (void)state;
+    struct simulation *const simulation =
+        school_simulation(TIME "wake: {shedding: impulsive, kutta: rate}\nfish: [{sheet_points: 11}]\n");
+    const struct fish *fish = simulation->school->fish;
+    struct state *const s = simulation->state;
+    for (int n = 1; n <= 10; n++) {
+        school_ok(simulation->integrator->advance(simulation->solver, 0.02 * n));
+        const double shed = s->y[fish->at.circulation];
+        // the wake as it will be moved, the unknowns as they are: t just at the event
+        flow_invalidate(simulation->residual->flow);
+        double value[100];
+        school_ok(residual_evaluate(simulation->residual, 0.02 * n, s->y, s->yp, value));
+        const double rate = residual_kutta_rate(simulation->residual, 0, 0.02 * n, s->y);
+        int jumped = 0;
+        school_ok(event_next(s, simulation->residual, simulation->consistent, &jumped));
+        NEAR(s->y[fish->at.circulation] - shed, 0.02 * rate, 1e-12, 1e-12);
+        school_ok(simulation->integrator->restart(simulation->solver));
+    }
+    simulate_free(simulation);
+}
+
+static void waypoints_advance_during_a_run(void **state) {
+    (void)state;
+    struct simulation *const simulation = school_simulation(
+        TIME "fish: [{control: {law: heading, waypoints: [[-0.6, 0], [-0.8, 0.3], [-2, 2]], arrival: 0.25}}]\n");
+    int before = 0;
+    for (int n = 1; n <= 40; n++) {
+        school_ok(simulate_step(simulation));
+        const int now = simulation->state->control[0].waypoint;
+        assert_true(now == before || now == before + 1 || now == before + 2);
+        before = now;
+    }
+    // the fish goes at about 1 m s-1
+    assert_true(before >= 1 && before < 3);
+    simulate_free(simulation);
+}
+
+static void averaged_heading_changes_the_bias_at_a_bounded_rate(void **state) {
+    (void)state;
+    struct simulation *const simulation =
+        school_simulation(TIME "fish: [{control: {law: averaged_heading, desired_heading: 90, rate: 1.5}}]\n");
+    const int phi0 = simulation->school->fish[0].at.phi0;
+    double before = simulation->state->y[phi0], largest = 0;
+    NEAR(before, 0, 0, 0);
+    for (int n = 1; n <= 40; n++) {
+        school_ok(simulate_step(simulation));
+        const double rate = (simulation->state->y[phi0] - before) / 0.02;
+        assert_true(fabs(rate) <= 1.5 * (1 + 1e-9));
+        largest = fmax(largest, fabs(rate));
+        before = simulation->state->y[phi0];
+    }
+    NEAR(largest, 1.5, 0, 1e-9);
+    // too far left: it turns right
+    assert_true(before > 0.3);
+    simulate_free(simulation);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(events_are_at_exact_multiples_of_the_interval),
+        cmocka_unit_test(one_vortex_is_released_at_every_event_with_what_was_shed),
+        cmocka_unit_test(fields_are_continuous_across_a_continuous_event),
+        cmocka_unit_test(wake_holds_one_lifetime),
+        cmocka_unit_test(impulses_conserve_circulation_and_meet_kutta),
+        cmocka_unit_test(impulses_by_rate_are_the_rate_times_the_interval),
+        cmocka_unit_test(waypoints_advance_during_a_run),
+        cmocka_unit_test(averaged_heading_changes_the_bias_at_a_bounded_rate),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

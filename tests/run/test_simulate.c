@@ -1,0 +1,266 @@
+/* test_simulate.c: whole short runs: symmetries of the model, events, failures, result files. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "school.h"
+
+#define TIME "time: {end: 0.5, shedding_interval: 0.02}\n"
+#define TIGHT "solver: {rtol: 1.0e-8, order: 2, coupling_distance: 100}\n"
+
+// nose, tail, circulation shed and newest vortex of a fish
+struct outcome {
+    double nose[2], tail[2], shed, vortex[2];
+};
+
+static void outcomes_of(const char *text, int n_fish, struct outcome *outcome) {
+    struct simulation *const simulation = school_simulation(text);
+    school_run(simulation, 0.5);
+    assert_int_equal(simulation->school->n_fish, n_fish);
+    for (int f = 0; f < n_fish; f++) {
+        const struct fish *fish = &simulation->school->fish[f];
+        const struct wake *wake = &simulation->state->wake[f];
+        const double *const x = simulation->state->y + fish->at.x, *const y = simulation->state->y + fish->at.y;
+        const int tail = fish->n_nodes - 1;
+        outcome[f] = (struct outcome){{x[0], y[0]},
+                                      {x[tail], y[tail]},
+                                      simulation->state->y[fish->at.circulation],
+                                      {wake->x[wake->n_vortex - 1], wake->y[wake->n_vortex - 1]}};
+    }
+    simulate_free(simulation);
+}
+
+static void same(const struct outcome *got, const struct outcome *want) {
+    // errors of a run at rtol 1e-8, some 1e-7; all lengths are of order 1
+    NEAR_ARRAY(2, got->nose, want->nose, 1e-6, 0);
+    NEAR_ARRAY(2, got->tail, want->tail, 1e-6, 0);
+    NEAR_ARRAY(2, got->vortex, want->vortex, 1e-6, 0);
+    NEAR(got->shed, want->shed, 1e-5, 0);
+    // there is something to compare
+    assert_true(fabs(want->shed) > 1e-4);
+}
+
+#define LEFT "{name: a, body: {modulus: 1.0e+5}}"
+#define RIGHT                                                                                                        \
+    "{name: b, nodes: 6, sheet_points: 15, length: 0.8, start: {position: [0.2, 0.5], heading: 170}, wave: {phase: " \
+    "60}}"
+
+static void order_of_the_fish_does_not_matter(void **state) {
+    (void)state;
+    struct outcome one[2], other[2];
+    outcomes_of(TIME TIGHT "fish: [" LEFT ", " RIGHT "]\n", 2, one);
+    outcomes_of(TIME TIGHT "fish: [" RIGHT ", " LEFT "]\n", 2, other);
+    same(&one[0], &other[1]);
+    same(&one[1], &other[0]);
+}
+
+static void a_shift_of_the_start_shifts_the_run(void **state) {
+    (void)state;
+    struct outcome at_origin, elsewhere;
+    outcomes_of(TIME TIGHT "fish: [{body: {modulus: 1.0e+5}}]\n", 1, &at_origin);
+    outcomes_of(TIME TIGHT "fish: [{body: {modulus: 1.0e+5}, start: {position: [3, -7]}}]\n", 1, &elsewhere);
+    double *const moved[] = {elsewhere.nose, elsewhere.tail, elsewhere.vortex};
+    for (int i = 0; i < 3; i++) {
+        moved[i][0] -= 3;
+        moved[i][1] += 7;
+    }
+    same(&elsewhere, &at_origin);
+}
+
+static void a_turn_of_everything_turns_the_run(void **state) {
+    (void)state;
+    struct outcome one[2], turned[2];
+    outcomes_of(TIME TIGHT
+                "fluid: {velocity: [0.1, 0.05]}\n"
+                "fish: [{control: {law: heading, desired_heading: 160}}, {start: {position: [0.3, 0.6]}}]\n",
+                2, one);
+    // by 90 degrees to the left: (x, y) becomes (-y, x)
+    outcomes_of(TIME TIGHT
+                "fluid: {velocity: [-0.05, 0.1]}\n"
+                "fish: [{start: {heading: 270}, control: {law: heading, desired_heading: 250}},\n"
+                "  {start: {position: [-0.6, 0.3], heading: 270}}]\n",
+                2, turned);
+    for (int f = 0; f < 2; f++) {
+        double *const places[] = {turned[f].nose, turned[f].tail, turned[f].vortex};
+        for (int i = 0; i < 3; i++) {
+            const double x = places[i][0];
+            places[i][0] = places[i][1];
+            places[i][1] = -x;
+        }
+        same(&turned[f], &one[f]);
+    }
+}
+
+static void the_mirror_image_of_a_case_runs_as_the_mirror_image(void **state) {
+    (void)state;
+    struct outcome one[2], mirrored[2];
+    outcomes_of(TIME TIGHT
+                "fluid: {velocity: [0.1, 0.05], shear: 0.2}\n"
+                "fish: [{control: {law: heading, desired_heading: 160}},\n"
+                "  {start: {position: [0.3, 0.6], heading: 170}, control: {bias: 0.2}}]\n",
+                2, one);
+    // y becomes -y: the wave is half a beat on, angles, bias and shear change sign
+    outcomes_of(TIME TIGHT
+                "fluid: {velocity: [0.1, -0.05], shear: -0.2}\n"
+                "defaults: {fish: {wave: {phase: 180}}}\n"
+                "fish: [{control: {law: heading, desired_heading: 200}},\n"
+                "  {start: {position: [0.3, -0.6], heading: 190}, control: {bias: -0.2}}]\n",
+                2, mirrored);
+    for (int f = 0; f < 2; f++) {
+        mirrored[f].nose[1] *= -1;
+        mirrored[f].tail[1] *= -1;
+        mirrored[f].vortex[1] *= -1;
+        mirrored[f].shed *= -1;
+        same(&mirrored[f], &one[f]);
+    }
+}
+
+static void fish_far_apart_swim_as_if_alone(void **state) {
+    (void)state;
+    struct outcome alone, pair[2];
+    outcomes_of(TIME TIGHT "fish: [{}]\n", 1, &alone);
+    outcomes_of(TIME TIGHT "fish: [{}, {start: {position: [0, 1.0e+5]}}]\n", 2, pair);
+    same(&pair[0], &alone);
+}
+
+static void two_runs_of_one_case_have_the_same_bits(void **state) {
+    (void)state;
+    struct outcome one[2], other[2];
+    outcomes_of(TIME "fish: [" LEFT ", " RIGHT "]\n", 2, one);
+    outcomes_of(TIME "fish: [" LEFT ", " RIGHT "]\n", 2, other);
+    assert_memory_equal(one, other, sizeof one);
+}
+
+static void an_uncoupled_jacobian_gives_the_same_run(void **state) {
+    (void)state;
+    struct outcome one[2], other[2];
+    outcomes_of(TIME TIGHT "fish: [" LEFT ", " RIGHT "]\n", 2, one);
+    outcomes_of(TIME "solver: {rtol: 1.0e-8, coupling_distance: 0}\nfish: [" LEFT ", " RIGHT "]\n", 2, other);
+    same(&other[0], &one[0]);
+    same(&other[1], &one[1]);
+}
+
+static void places_are_second_order_in_the_shedding_interval(void **state) {
+    (void)state;
+    struct outcome at[3];
+    const char *const intervals[] = {"0.02", "0.01", "0.005"};
+    for (int i = 0; i < 3; i++) {
+        char text[256];
+        snprintf(text, sizeof text,
+                 "time: {end: 0.8, shedding_interval: %s}\nsolver: {rtol: 1.0e-10, order: 5}\nfish: [{body: {modulus: "
+                 "1.0e+5}}]\n",
+                 intervals[i]);
+        struct simulation *const simulation = school_simulation(text);
+        school_run(simulation, 0.8);
+        const struct fish *fish = simulation->school->fish;
+        at[i].shed = simulation->state->y[fish->at.circulation];
+        at[i].tail[0] = simulation->state->y[fish->at.y + fish->n_nodes - 1];
+        simulate_free(simulation);
+    }
+    // 2.0 to 2.1 for smaller intervals; the tolerance keeps the integrator's own error far below the differences
+    const double tail = log2(fabs((at[1].tail[0] - at[0].tail[0]) / (at[2].tail[0] - at[1].tail[0])));
+    const double shed = log2(fabs((at[1].shed - at[0].shed) / (at[2].shed - at[1].shed)));
+    print_message("observed order: tail %.2f, shed %.2f\n", tail, shed);
+    assert_true(tail > 1.6 && tail < 2.8);
+    assert_true(shed > 1.6 && shed < 2.8);
+}
+
+static void positive_bias_turns_right(void **state) {
+    (void)state;
+    double heading[2];
+    for (int i = 0; i < 2; i++) {
+        struct simulation *const simulation =
+            school_simulation(i == 0 ? "time: {end: 3, shedding_interval: 0.02}\nfish: [{control: {bias: 0.5}}]\n"
+                                     : "time: {end: 3, shedding_interval: 0.02}\nfish: [{control: {bias: -0.5}}]\n");
+        school_run(simulation, 3);
+        simulate_measure(simulation);
+        heading[i] = simulation->diagnostics->fish[0].heading;
+        simulate_free(simulation);
+    }
+    // three beats in; a beat moves the heading by some degrees
+    assert_true(heading[0] < 170);
+    assert_true(heading[1] > 190);
+}
+
+static int n_told;
+static void count_progress(const struct simulate_progress *progress, void *data) {
+    (void)data;
+    n_told++;
+    assert_int_equal(progress->event, n_told);
+    NEAR(progress->t, 0.02 * n_told, 1e-15, 0);
+    NEAR(progress->end, 0.5, 0, 0);
+}
+
+static void run_into(const char *text, const struct simulate_options *options, enum status want) {
+    struct case_values values;
+    school_settings(&values, text);
+    const enum status status = simulate_run(&values, options);
+    case_free(&values);
+    if (status != want) print_error("%s\n", status_message());
+    assert_int_equal(status, want);
+}
+
+static void a_run_tells_its_progress_at_every_event(void **state) {
+    const char *const path = *state;
+    const struct simulate_options options = {
+        .path = path, .overwrite = 1, .command = "test", .progress = count_progress};
+    n_told = 0;
+    run_into(TIME "fish: [{}]\n", &options, STATUS_OK);
+    assert_int_equal(n_told, 25);
+    assert_int_equal(access(path, R_OK), 0);
+}
+
+static volatile sig_atomic_t stop;
+static void stop_at_the_fifth(const struct simulate_progress *progress, void *data) {
+    (void)data;
+    stop = progress->event >= 5;
+}
+
+static void a_signal_stops_a_run_at_the_next_event(void **state) {
+    const struct simulate_options options = {
+        .path = *state, .overwrite = 1, .command = "test", .progress = stop_at_the_fifth, .stop = &stop};
+    stop = 0;
+    run_into(TIME "fish: [{}]\n", &options, STATUS_STOPPED);
+    assert_non_null(strstr(status_message(), "t = 0.1"));
+}
+
+static void a_failing_run_says_when_and_keeps_its_file(void **state) {
+    const char *const path = *state;
+    const struct simulate_options options = {.path = path, .overwrite = 1, .command = "test"};
+    run_into(TIME "solver: {max_steps: 1}\nfish: [{}]\n", &options, STATUS_SOLVER);
+    assert_non_null(strstr(status_message(), "t = "));
+    assert_non_null(strstr(status_message(), "solver.max_steps"));
+    assert_int_equal(access(path, R_OK), 0);
+}
+
+static int make_path(void **state) {
+    static char path[] = "/tmp/test_simulate_XXXXXX";
+    const int file = mkstemp(path);
+    if (file < 0) return -1;
+    close(file);
+    *state = path;
+    return 0;
+}
+
+static int remove_path(void **state) {
+    return unlink(*state);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(order_of_the_fish_does_not_matter),
+        cmocka_unit_test(a_shift_of_the_start_shifts_the_run),
+        cmocka_unit_test(a_turn_of_everything_turns_the_run),
+        cmocka_unit_test(the_mirror_image_of_a_case_runs_as_the_mirror_image),
+        cmocka_unit_test(fish_far_apart_swim_as_if_alone),
+        cmocka_unit_test(two_runs_of_one_case_have_the_same_bits),
+        cmocka_unit_test(an_uncoupled_jacobian_gives_the_same_run),
+        cmocka_unit_test(places_are_second_order_in_the_shedding_interval),
+        cmocka_unit_test(positive_bias_turns_right),
+        cmocka_unit_test(a_run_tells_its_progress_at_every_event),
+        cmocka_unit_test(a_signal_stops_a_run_at_the_next_event),
+        cmocka_unit_test(a_failing_run_says_when_and_keeps_its_file),
+    };
+    return cmocka_run_group_tests(tests, make_path, remove_path);
+}

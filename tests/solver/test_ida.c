@@ -1,0 +1,186 @@
+/* test_implicit.c: the integrator alone: steps, restarts, failures. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "school.h"
+#include "solver/ida.h"
+
+#define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+
+static struct integrator_counts counts_of(const struct simulation *simulation) {
+    struct integrator_counts counts;
+    simulation->integrator->count(simulation->solver, &counts);
+    return counts;
+}
+
+static void a_driven_body_follows_the_given_motion(void **state) {
+    (void)state;
+    const char *const texts[] = {
+        TIME "fish: [{motion: {driven: head, heave: 0.1, pitch: 10, pitch_phase: 70, frequency: 1, pivot: 0.2}}]\n",
+        TIME "fish: [{motion: {driven: all, heave: 0.1, pitch: 10, frequency: 1}}]\n"};
+    for (int i = 0; i < 2; i++) {
+        struct simulation *const simulation = school_simulation(texts[i]);
+        const struct fish *fish = simulation->school->fish;
+        const double *const y = simulation->state->y;
+        while (simulation->state->t < 0.5) {
+            school_ok(simulate_step(simulation));
+            for (int k = 0; k < fish_n_driven(fish); k++) {
+                double x[2], v[2], a[2];
+                fish_driven_node(fish, k, simulation->state->t, x, v, a);
+                const double got[6] = {y[fish->at.x + k],  y[fish->at.y + k],  y[fish->at.vx + k],
+                                       y[fish->at.vy + k], y[fish->at.ax + k], y[fish->at.ay + k]};
+                const double want[6] = {x[0], x[1], v[0], v[1], a[0], a[1]};
+                // linear equations: Newton's iteration ends far below the tolerance of 1e-5 with which it began
+                NEAR_ARRAY(6, got, want, 1e-6, 1e-6);
+            }
+        }
+        simulate_free(simulation);
+    }
+}
+
+static void continuous_events_cost_no_restart(void **state) {
+    (void)state;
+    // a restart begins at order 1 and with a new Jacobian: at continuous events the order stays
+    struct simulation *simulation = school_simulation("time: {end: 1, shedding_interval: 0.01}\nfish: [{}]\n");
+    school_run(simulation, 0.5);
+    for (int n = 0; n < 50; n++) {
+        school_ok(simulate_step(simulation));
+        assert_int_equal(counts_of(simulation).order, 2);
+    }
+    const struct integrator_counts continuous = counts_of(simulation);
+    assert_true((double)continuous.steps / 100 <= 5);
+    simulate_free(simulation);
+    simulation =
+        school_simulation("time: {end: 1, shedding_interval: 0.01}\nwake: {shedding: impulsive}\nfish: [{}]\n");
+    school_run(simulation, 1);
+    const struct integrator_counts impulsive = counts_of(simulation);
+    assert_true(impulsive.steps > continuous.steps);
+    // every event makes a Jacobian anew
+    assert_true(impulsive.jacobian_evaluations >= 100);
+    simulate_free(simulation);
+}
+
+static void steps_divide_the_interval_and_keep_the_jacobian(void **state) {
+    (void)state;
+    struct simulation *const simulation = school_simulation("time: {end: 1, shedding_interval: 0.01}\nfish: [{}]\n");
+    school_run(simulation, 0.5);
+    struct integrator_counts before = counts_of(simulation);
+    int n_equal = 0;
+    for (int n = 0; n < 50; n++) {
+        school_ok(simulate_step(simulation));
+        const struct integrator_counts now = counts_of(simulation);
+        const double interval = (double)(now.steps - before.steps) * now.step_size;
+        // rounding of times of the order of one
+        n_equal += fabs(interval - 0.01) < 1e-13;
+        before = now;
+    }
+    // but where IDA itself changed the step
+    assert_in_range(n_equal, 40, 50);
+    assert_true(before.jacobian_evaluations < 50);
+    simulate_free(simulation);
+}
+
+static void a_very_stiff_body_keeps_its_course(void **state) {
+    (void)state;
+    // what an iteration leaves in the equations of motion must have no moment: with half a thousandth of a radian per
+    // second squared the tail would be off by a thousandth of a length
+    double tail[2][2];
+    for (int i = 0; i < 2; i++) {
+        struct simulation *const simulation =
+            school_simulation(i == 0 ? TIME "fish: [{body: {modulus: 1.0e+10}}]\n"
+                                     : TIME "solver: {rtol: 1.0e-8}\nfish: [{body: {modulus: 1.0e+10}}]\n");
+        school_run(simulation, 2);
+        const struct fish *fish = simulation->school->fish;
+        tail[i][0] = simulation->state->y[fish->at.x + fish->n_nodes - 1];
+        tail[i][1] = simulation->state->y[fish->at.y + fish->n_nodes - 1];
+        simulate_free(simulation);
+    }
+    // a few times the default tolerance
+    NEAR(tail[0][0], tail[1][0], 5e-5, 0);
+    NEAR(tail[0][1], tail[1][1], 5e-5, 0);
+}
+
+static void counts_go_on_across_restarts(void **state) {
+    (void)state;
+    struct simulation *const simulation = school_simulation(TIME "wake: {shedding: impulsive}\nfish: [{}]\n");
+    struct integrator_counts before = counts_of(simulation);
+    for (int n = 0; n < 20; n++) {
+        school_ok(simulate_step(simulation));
+        const struct integrator_counts now = counts_of(simulation);
+        assert_true(now.steps > before.steps);
+        assert_true(now.residual_evaluations > before.residual_evaluations);
+        assert_true(now.newton_iterations > before.newton_iterations);
+        assert_true(now.jacobian_evaluations > before.jacobian_evaluations);
+        // no more of them than iterations
+        assert_true(now.jacobian_evaluations <= now.newton_iterations);
+        before = now;
+    }
+    simulate_free(simulation);
+}
+
+static void restart_without_a_jump_goes_the_same_way(void **state) {
+    (void)state;
+    double tail[2];
+    for (int i = 0; i < 2; i++) {
+        struct simulation *const simulation =
+            school_simulation(TIME "solver: {rtol: 1.0e-8}\nfish: [{body: {modulus: 1.0e+5}}]\n");
+        school_run(simulation, 0.4);
+        if (i == 1) school_ok(simulation->integrator->restart(simulation->solver));
+        school_run(simulation, 0.6);
+        const struct fish *fish = simulation->school->fish;
+        tail[i] = simulation->state->y[fish->at.y + fish->n_nodes - 1];
+        simulate_free(simulation);
+    }
+    // the error of a few hundred steps at 1e-8
+    NEAR(tail[1], tail[0], 1e-6, 0);
+    assert_true(fabs(tail[0]) > 1e-3);
+}
+
+static void too_many_steps_end_with_time_and_remedy(void **state) {
+    (void)state;
+    struct simulation *const simulation = school_simulation(TIME "solver: {max_steps: 1}\nfish: [{}]\n");
+    enum status status = STATUS_OK;
+    while (status == STATUS_OK && simulation->state->t < 1) status = simulate_step(simulation);
+    assert_int_equal(status, STATUS_SOLVER);
+    assert_non_null(strstr(status_message(), "solver.max_steps"));
+    assert_non_null(strstr(status_message(), "t = "));
+    simulate_free(simulation);
+}
+
+static void equations_without_a_finite_value_end_with_time_fish_and_reason(void **state) {
+    (void)state;
+    struct simulation *const simulation = school_simulation(TIME "fish: [{name: nemo}]\n");
+    school_run(simulation, 0.1);
+    // nothing that a smaller step could mend
+    simulation->school->fish[0].drag_normal[2] = NAN;
+    assert_int_equal(simulate_step(simulation), STATUS_SOLVER);
+    assert_non_null(strstr(status_message(), "t = 0.1"));
+    assert_non_null(strstr(status_message(), "nemo"));
+    simulate_free(simulation);
+}
+
+static void an_unreachable_tolerance_ends_with_a_message(void **state) {
+    (void)state;
+    struct simulation *const simulation =
+        school_simulation(TIME "solver: {rtol: 1.0e-14, max_steps: 200}\nfish: [{body: {modulus: 1.0e+9}}]\n");
+    enum status status = STATUS_OK;
+    while (status == STATUS_OK && simulation->state->t < 0.2) status = simulate_step(simulation);
+    assert_int_equal(status, STATUS_SOLVER);
+    assert_non_null(strstr(status_message(), "t = "));
+    simulate_free(simulation);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_driven_body_follows_the_given_motion),
+        cmocka_unit_test(continuous_events_cost_no_restart),
+        cmocka_unit_test(steps_divide_the_interval_and_keep_the_jacobian),
+        cmocka_unit_test(a_very_stiff_body_keeps_its_course),
+        cmocka_unit_test(counts_go_on_across_restarts),
+        cmocka_unit_test(restart_without_a_jump_goes_the_same_way),
+        cmocka_unit_test(too_many_steps_end_with_time_and_remedy),
+        cmocka_unit_test(equations_without_a_finite_value_end_with_time_fish_and_reason),
+        cmocka_unit_test(an_unreachable_tolerance_ends_with_a_message),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

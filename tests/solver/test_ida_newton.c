@@ -1,0 +1,248 @@
+/* test_newton.c: Newton's iteration alone, on equations whose Jacobian is wrong by a known factor. */
+#include <nvector/nvector_serial.h>
+#include <stdlib.h>
+
+#include "school.h"
+#include "solver/ida_newton.h"
+
+/* The equations y - root + bend (y - root)^2 = 0 for each unknown by itself; the Jacobian that the solver gets is that
+ * of the unknowns as they were at the last set-up, times 1 / (1 - wrong): each iteration leaves the part wrong. */
+struct problem {
+    struct setup setup;
+    SUNContext context;
+    SUNNonlinearSolver solver;
+    N_Vector predicted, total, weights;
+    double root, bend, wrong;
+    double slope;       /* 1 / the Jacobian */
+    double grow;        /* added to wrong at each solution */
+    double coefficient; /* of the step */
+    int n_residuals, n_set_ups, n_bad, never_finite;
+};
+
+static double error_of(const struct problem *problem, N_Vector total) {
+    return NV_Ith_S(problem->predicted, 0) + NV_Ith_S(total, 0) - problem->root;
+}
+
+static int residual(N_Vector total, N_Vector value, void *data) {
+    struct problem *const problem = data;
+    problem->n_residuals++;
+    const double error = error_of(problem, total);
+    N_VConst(problem->never_finite ? NAN : error + problem->bend * error * error, value);
+    return 0;
+}
+
+static int set_up_matrix(booleantype bad, booleantype *current, void *data) {
+    struct problem *const problem = data;
+    problem->n_set_ups++;
+    problem->n_bad += bad;
+    *current = SUNTRUE;
+    problem->wrong = 0;
+    problem->slope = 1 / (1 + 2 * problem->bend * error_of(problem, problem->total));
+    return 0;
+}
+
+static int solve_matrix(N_Vector value, void *data) {
+    const struct problem *const problem = data;
+    N_VScale((1 - problem->wrong) * problem->slope, value, value);
+    return 0;
+}
+
+static double coefficient(void *data) {
+    const struct problem *const problem = data;
+    return problem->coefficient;
+}
+
+static void set_up(struct problem *problem) {
+    *problem = (struct problem){.root = 1, .coefficient = 100};
+    school_build(&problem->setup, "time: {end: 1}\nfish: [{nodes: 4, sheet_points: 5}]\n");
+    const int n = problem->setup.school->n_unknowns;
+    assert_int_equal(SUNContext_Create(NULL, &problem->context), 0);
+    problem->predicted = N_VNew_Serial(n, problem->context);
+    problem->total = N_VNew_Serial(n, problem->context);
+    problem->weights = N_VNew_Serial(n, problem->context);
+    N_VConst(0, problem->predicted);
+    N_VConst(1, problem->weights);
+    // the places of a straight body; the first unknown is 0
+    const struct fish *fish = problem->setup.school->fish;
+    for (int k = 0; k < fish->n_nodes; k++) NV_Ith_S(problem->predicted, fish->at.x + k) = k * fish->edge_length;
+    const struct ida_newton_rules rules = {
+        .most_iterations = 6, .jacobian_cost = 5, .leading_coefficient = coefficient};
+    school_ok(ida_newton_create(&problem->solver, problem->context, problem->total, problem->setup.school, rules));
+    assert_int_equal(SUNNonlinSolGetType(problem->solver), SUNNONLINEARSOLVER_ROOTFIND);
+    assert_int_equal(SUNNonlinSolSetSysFn(problem->solver, residual), 0);
+    assert_int_equal(SUNNonlinSolSetLSetupFn(problem->solver, set_up_matrix), 0);
+    assert_int_equal(SUNNonlinSolSetLSolveFn(problem->solver, solve_matrix), 0);
+    assert_int_equal(SUNNonlinSolInitialize(problem->solver), 0);
+}
+
+static void clear(struct problem *problem) {
+    SUNNonlinSolFree(problem->solver);
+    N_VDestroy(problem->predicted);
+    N_VDestroy(problem->total);
+    N_VDestroy(problem->weights);
+    SUNContext_Free(&problem->context);
+    school_clear(&problem->setup);
+}
+
+// solve as IDA does; returns the code, and the iterations
+static int solve(struct problem *problem, double tolerance, int renew, long *iterations) {
+    problem->n_residuals = problem->n_set_ups = problem->n_bad = 0;
+    problem->wrong += problem->grow;
+    N_VConst(0, problem->total);
+    const int code = SUNNonlinSolSolve(problem->solver, problem->predicted, problem->total, problem->weights, tolerance,
+                                       renew, problem);
+    assert_int_equal(SUNNonlinSolGetNumIters(problem->solver, iterations), 0);
+    return code;
+}
+
+static void an_exact_jacobian_needs_two_iterations(void **state) {
+    (void)state;
+    struct problem problem;
+    long iterations;
+    set_up(&problem);
+    assert_int_equal(solve(&problem, 1e-6, 1, &iterations), 0);
+    assert_int_equal(iterations, 2);
+    assert_int_equal(problem.n_residuals, 2);
+    assert_int_equal(problem.n_set_ups, 1);
+    NEAR(error_of(&problem, problem.total), 0, 1e-15, 0);
+    clear(&problem);
+}
+
+static void the_error_left_is_below_the_tolerance(void **state) {
+    (void)state;
+    // linear convergence: the estimate from the rate is the error itself
+    const double wrongs[] = {0.01, 0.1, 0.3, -0.3};
+    const double tolerances[] = {1e-2, 4e-3};
+    for (size_t i = 0; i < sizeof wrongs / sizeof *wrongs; i++) {
+        for (int j = 0; j < 2; j++) {
+            struct problem problem;
+            long iterations, failures;
+            set_up(&problem);
+            assert_int_equal(solve(&problem, 1e-6, 1, &iterations), 0);
+            problem.root = 2;
+            problem.coefficient *= 2;
+            problem.wrong = wrongs[i];
+            assert_int_equal(solve(&problem, tolerances[j], 0, &iterations), 0);
+            assert_int_equal(problem.n_set_ups, 0);
+            const double rate = fabs(wrongs[i]), left = fabs(error_of(&problem, problem.total));
+            NEAR(left, 2 * pow(rate, (double)iterations), 0, 1e-9);
+            assert_true(left <= (wrongs[i] > 0 ? 1 : (1 + rate) / (1 - rate)) * tolerances[j]);
+            // and one iteration less would not have done, or is the one that shows the rate
+            assert_true(iterations == 2 || left > rate * rate * tolerances[j]);
+            assert_int_equal(SUNNonlinSolGetNumConvFails(problem.solver, &failures), 0);
+            assert_int_equal(failures, 0);
+            clear(&problem);
+        }
+    }
+}
+
+static void an_old_jacobian_that_does_not_converge_is_replaced(void **state) {
+    (void)state;
+    // too slow, away from the root, or not within the most iterations
+    const double wrongs[] = {0.95, -1.5, 0.8};
+    for (size_t i = 0; i < sizeof wrongs / sizeof *wrongs; i++) {
+        struct problem problem;
+        long iterations, failures;
+        set_up(&problem);
+        assert_int_equal(solve(&problem, 1e-6, 1, &iterations), 0);
+        problem.root = 2;
+        problem.coefficient *= 2;
+        problem.wrong = wrongs[i];
+        assert_int_equal(solve(&problem, 1e-6, 0, &iterations), 0);
+        assert_int_equal(problem.n_set_ups, 1);
+        assert_int_equal(problem.n_bad, 1);
+        assert_int_equal(SUNNonlinSolGetNumConvFails(problem.solver, &failures), 0);
+        assert_int_equal(failures, 1);
+        // given up as soon as it shows
+        assert_int_equal(iterations, (wrongs[i] == 0.8 ? 6 : 3) + 2);
+        NEAR(error_of(&problem, problem.total), 0, 1e-12, 0);
+        clear(&problem);
+    }
+}
+
+static void small_corrections_that_do_not_shrink_are_noise(void **state) {
+    (void)state;
+    struct problem problem;
+    long iterations, failures;
+    set_up(&problem);
+    assert_int_equal(solve(&problem, 1e-6, 1, &iterations), 0);
+    // corrections of 0.05 and 0.0475 tolerances
+    problem.root = 1 + 1e-6;
+    problem.wrong = 0.95;
+    assert_int_equal(solve(&problem, 1e-6, 0, &iterations), 0);
+    assert_int_equal(iterations, 2);
+    assert_int_equal(SUNNonlinSolGetNumConvFails(problem.solver, &failures), 0);
+    assert_int_equal(failures, 0);
+    assert_true(fabs(error_of(&problem, problem.total)) <= 1e-6);
+    clear(&problem);
+}
+
+static void what_a_new_jacobian_does_not_mend_asks_for_a_smaller_step(void **state) {
+    (void)state;
+    struct problem problem;
+    long iterations;
+    set_up(&problem);
+    // no root: y^2 + ... stays above zero
+    problem.root = 0;
+    problem.never_finite = 1;
+    assert_int_equal(solve(&problem, 1e-6, 1, &iterations), SUN_NLS_CONV_RECVR);
+    assert_int_equal(iterations, 1);
+    clear(&problem);
+}
+
+static void the_last_correction_is_the_guess_while_the_step_stays(void **state) {
+    (void)state;
+    struct problem problem;
+    long iterations;
+    set_up(&problem);
+    assert_int_equal(solve(&problem, 1e-6, 1, &iterations), 0);
+    // the same correction again: nothing is left to do
+    problem.wrong = 0.3;
+    assert_int_equal(solve(&problem, 1e-6, 0, &iterations), 0);
+    assert_int_equal(iterations, 1);
+    // with another step it says nothing
+    problem.coefficient *= 1.001;
+    assert_int_equal(solve(&problem, 1e-3, 0, &iterations), 0);
+    assert_true(iterations > 2);
+    // nor after a restart, whatever the step
+    assert_int_equal(SUNNonlinSolInitialize(problem.solver), 0);
+    assert_int_equal(solve(&problem, 1e-3, 0, &iterations), 0);
+    assert_true(iterations > 2);
+    clear(&problem);
+}
+
+static void a_jacobian_that_has_become_dear_is_renewed(void **state) {
+    (void)state;
+    struct problem problem;
+    long iterations, before = 0;
+    set_up(&problem);
+    assert_int_equal(solve(&problem, 1e-6, 1, &iterations), 0);
+    int served = 1, spent = (int)iterations;
+    for (problem.grow = 0.01;; served++) {
+        before = iterations;
+        problem.coefficient *= 2;
+        assert_int_equal(solve(&problem, 1e-6, 0, &iterations), 0);
+        if (problem.n_set_ups > 0) break;
+        spent += (int)iterations;
+        assert_true(served < 100);
+    }
+    // not after a failure, but when the last solution cost what the mean one does with the Jacobian's price of 5
+    assert_int_equal(problem.n_bad, 0);
+    assert_true(before * served >= spent + 5);
+    assert_true(before * (served - 1) < spent - before + 5 + served);
+    assert_true(served > 2);
+    clear(&problem);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(an_exact_jacobian_needs_two_iterations),
+        cmocka_unit_test(the_error_left_is_below_the_tolerance),
+        cmocka_unit_test(an_old_jacobian_that_does_not_converge_is_replaced),
+        cmocka_unit_test(small_corrections_that_do_not_shrink_are_noise),
+        cmocka_unit_test(what_a_new_jacobian_does_not_mend_asks_for_a_smaller_step),
+        cmocka_unit_test(the_last_correction_is_the_guess_while_the_step_stays),
+        cmocka_unit_test(a_jacobian_that_has_become_dear_is_renewed),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

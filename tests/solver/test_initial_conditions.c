@@ -1,0 +1,174 @@
+/* test_consistent.c: the algebraic unknowns follow from the differential ones: doc/model.md, section 10. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "school.h"
+#include "solver/initial_conditions.h"
+
+#define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+#define FISH "fish: [{sheet_points: 11}]\n"
+
+static const char *const texts[] = {
+    TIME FISH,
+    TIME "wake: {kutta: rate}\n" FISH,
+    TIME "wake: {kutta: rate, kutta_ramp: 0.5, collocation: midpoint}\n" FISH,
+    TIME "wake: {collocation: midpoint, dissipated_circulation: dropped, fade: 0}\n" FISH,
+    TIME "wake: {shedding: impulsive}\n" FISH,
+    TIME "preset: published\n" FISH,
+    TIME
+    "fluid: {velocity: [0.3, -0.2], shear: 0.7, gust: {amplitude: 0.4, frequency: 1.3}}\n"
+    "fish: [{control: {law: heading, desired_heading: 150}, drag: {law: linear_quadratic, extent: width}}]\n",
+    TIME "fish: [{control: {law: averaged_heading, waypoints: [[-3, 1]]}, wave: {ramp: 0}}]\n",
+    TIME "fish: [{motion: {driven: head, heave: 0.1, pitch: 10, frequency: 1}, load: {tip: [1, 2]}}]\n",
+    TIME "fish: [{motion: {driven: all, heave: 0.1, pitch: 10, frequency: 1}}]\n",
+    TIME "fluid: {density: 0}\n" FISH,
+    TIME "fish: [{body: {modulus: 1.0e+10}}]\n",
+    TIME
+    "fish: [{}, {nodes: 5, length: 0.7, start: {position: [0.2, 0.5]}}, {nodes: 9, start: {position: [0, -0.6]}}]\n"};
+
+/* Newton's iteration with a Jacobian that leaves out how these fish feel each other. */
+static const char uncoupled[] = TIME
+    "solver: {coupling_distance: 0}\n"
+    "fish: [{}, {nodes: 5, start: {position: [0.2, 0.5]}}]\n";
+
+static void check_residual(struct setup *setup, double t, const char *text) {
+    const int n = setup->school->n_unknowns;
+    school_ok(residual_evaluate(setup->residual, t, setup->state->y, setup->state->yp, setup->value));
+    double *const kind = calloc((size_t)n, sizeof *kind);
+    assert_non_null(kind);
+    residual_kinds(setup->residual, kind);
+    for (int i = 0; i < n; i++) {
+        const struct unknown_place place = residual_place(setup->school, i);
+        // accelerations of stiff bodies are sums of large forces: relative to those
+        const double size = place.kind == UNKNOWN_AX || place.kind == UNKNOWN_AY
+                                ? fmax(1, setup->school->fish[place.fish].axial_stiffness[0] * 1e-6)
+                                : 1;
+        if (fabs(setup->value[i]) <= 1e-10 * size) continue;
+        print_error("%s: row %s[%d] of fish %d is left with %g\n", text, place.name, place.index, place.fish,
+                    setup->value[i]);
+        fail();
+    }
+    free(kind);
+}
+
+static void all_equations_hold_at_the_start_for_every_option(void **state) {
+    (void)state;
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        struct setup setup;
+        school_build(&setup, texts[i]);
+        struct initial_conditions *consistent;
+        school_ok(initial_conditions_create(&consistent, setup.residual));
+        school_ok(initial_conditions_solve(consistent, 0, setup.state->y, setup.state->yp));
+        check_residual(&setup, 0, texts[i]);
+        initial_conditions_free(consistent);
+        school_clear(&setup);
+    }
+}
+
+static void blocks_left_out_of_the_jacobian_change_no_solution(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, uncoupled);
+    assert_int_equal(setup.residual->coupled[1], 0);
+    struct initial_conditions *consistent;
+    school_ok(initial_conditions_create(&consistent, setup.residual));
+    school_ok(initial_conditions_solve(consistent, 0, setup.state->y, setup.state->yp));
+    check_residual(&setup, 0, uncoupled);
+    initial_conditions_free(consistent);
+    school_clear(&setup);
+}
+
+static void all_equations_hold_again_from_any_state(void **state) {
+    (void)state;
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        struct setup setup;
+        school_build(&setup, texts[i]);
+        school_stir(&setup);
+        // a driven node has its given motion only where it is solved for: its place and velocity are algebraic
+        struct initial_conditions *consistent;
+        school_ok(initial_conditions_create(&consistent, setup.residual));
+        school_ok(initial_conditions_solve(consistent, setup.t, setup.state->y, setup.state->yp));
+        // rates of algebraic unknowns are no part of any equation
+        check_residual(&setup, setup.t, texts[i]);
+        initial_conditions_free(consistent);
+        school_clear(&setup);
+    }
+}
+
+static void differential_unknowns_stay_as_they_are(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "wake: {kutta: rate}\n" FISH);
+    school_stir(&setup);
+    double *const kind = calloc((size_t)setup.school->n_unknowns, sizeof *kind);
+    double *const before = calloc((size_t)setup.school->n_unknowns, sizeof *before);
+    assert_non_null(kind);
+    assert_non_null(before);
+    memcpy(before, setup.state->y, (size_t)setup.school->n_unknowns * sizeof *before);
+    residual_kinds(setup.residual, kind);
+    struct initial_conditions *consistent;
+    school_ok(initial_conditions_create(&consistent, setup.residual));
+    school_ok(initial_conditions_solve(consistent, setup.t, setup.state->y, setup.state->yp));
+    int n_differential = 0;
+    for (int i = 0; i < setup.school->n_unknowns; i++) {
+        if (kind[i] > 0) NEAR(setup.state->y[i], before[i], 0, 0);
+        n_differential += kind[i] > 0;
+    }
+    // x, v of seven nodes, and the circulation shed
+    assert_int_equal(n_differential, 29);
+    assert_true(initial_conditions_iterations(consistent) >= 1);
+    initial_conditions_free(consistent);
+    school_clear(&setup);
+    free(kind);
+    free(before);
+}
+
+static void a_second_solution_changes_nothing(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME FISH);
+    school_stir(&setup);
+    struct initial_conditions *consistent;
+    school_ok(initial_conditions_create(&consistent, setup.residual));
+    school_ok(initial_conditions_solve(consistent, setup.t, setup.state->y, setup.state->yp));
+    double *const before = calloc((size_t)setup.school->n_unknowns, sizeof *before);
+    assert_non_null(before);
+    memcpy(before, setup.state->y, (size_t)setup.school->n_unknowns * sizeof *before);
+    school_ok(initial_conditions_solve(consistent, setup.t, setup.state->y, setup.state->yp));
+    // rounding of accelerations of a stiff body
+    NEAR_ARRAY(setup.school->n_unknowns, setup.state->y, before, 1e-11, 1e-11);
+    free(before);
+    initial_conditions_free(consistent);
+    school_clear(&setup);
+}
+
+static void a_state_that_is_not_a_number_is_refused_and_kept(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME FISH);
+    school_stir(&setup);
+    struct initial_conditions *consistent;
+    school_ok(initial_conditions_create(&consistent, setup.residual));
+    const struct fish *fish = setup.school->fish;
+    setup.state->y[fish->at.x + 3] = NAN;
+    const double before = setup.state->y[fish->at.ax];
+    assert_int_equal(initial_conditions_solve(consistent, setup.t, setup.state->y, setup.state->yp), STATUS_SOLVER);
+    NEAR(setup.state->y[fish->at.ax], before, 0, 0);
+    // it says when, and which equation
+    assert_non_null(strstr(status_message(), "t = 0.208"));
+    assert_non_null(strstr(status_message(), "fish1"));
+    initial_conditions_free(consistent);
+    school_clear(&setup);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(all_equations_hold_at_the_start_for_every_option),
+        cmocka_unit_test(blocks_left_out_of_the_jacobian_change_no_solution),
+        cmocka_unit_test(all_equations_hold_again_from_any_state),
+        cmocka_unit_test(differential_unknowns_stay_as_they_are),
+        cmocka_unit_test(a_second_solution_changes_nothing),
+        cmocka_unit_test(a_state_that_is_not_a_number_is_refused_and_kept),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

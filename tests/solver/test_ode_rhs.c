@@ -1,0 +1,65 @@
+/* test_direct.c: src/solver/ode_rhs.c. */
+#include "school.h"
+#include "solver/ode_rhs.h"
+
+// one fish, and three different ones in an external flow; both Kutta conditions, a driven head, all control laws
+static const char *const cases[] = {
+    "time: {end: 1, shedding_interval: 0.02}\n"
+    "fish: [{nodes: 7, sheet_points: 13, control: {law: heading, desired_heading: 150}}]\n",
+    "time: {end: 1, shedding_interval: 0.02}\n"
+    "fluid: {velocity: [0.1, -0.05], shear: 0.2, gust: {amplitude: 0.1, frequency: 0.7}}\n"
+    "wake: {kutta: rate, collocation: midpoint}\n"
+    "fish:\n"
+    "  - {nodes: 7, sheet_points: 13, control: {law: heading, desired_heading: 150}}\n"
+    "  - {nodes: 9, length: 0.8, sheet_points: 11, start: {position: [0.2, 0.5]}, drag: {law: linear_quadratic}}\n"
+    "  - {nodes: 6, length: 1.2, sheet_points: 9, start: {position: [0.1, -0.6]}, control: {law: averaged_heading}}\n",
+    "time: {end: 1, shedding_interval: 0.02}\n"
+    "fluid: {velocity: [-1, 0]}\n"
+    "fish: [{nodes: 8, sheet_points: 15, wave: {amplitude: 0}, load: {tip: [1, 2]},\n"
+    "        motion: {driven: head, heave: 0.1, pitch: 10, frequency: 1, speed: 0}}]\n",
+    "time: {end: 1, shedding_interval: 0.02}\n"
+    "wake: {shedding: impulsive, dissipated_circulation: dropped}\n"
+    "fish: [{nodes: 7, sheet_points: 13}, {nodes: 7, sheet_points: 13, start: {position: [0, 0.7]}}]\n",
+};
+
+static void direct_solution_satisfies_the_algebraic_equations(void **state) {
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct setup setup;
+        school_build(&setup, cases[i]);
+        school_stir(&setup);
+        struct ode_rhs *direct;
+        school_ok(ode_rhs_create(&direct, setup.residual));
+        // twice: the second solution reuses the factors of the first
+        for (int pass = 0; pass < 2; pass++) {
+            school_ok(ode_rhs_rates(direct, setup.t, setup.state->y, setup.state->yp));
+            school_ok(residual_evaluate(setup.residual, setup.t, setup.state->y, setup.state->yp, setup.value));
+            // rows of given motions compare with rates that the path gives, all others vanish; forces per mass of the
+            // order 1e5 m s-2 leave their round-off
+            for (int k = 0; k < setup.school->n_unknowns; k++) NEAR(setup.value[k], 0, 1e-9, 0);
+        }
+        assert_int_equal(ode_rhs_solves(direct), 2);
+        ode_rhs_free(direct);
+        school_clear(&setup);
+    }
+}
+
+static void what_is_not_finite_asks_for_a_smaller_step(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, cases[0]);
+    struct ode_rhs *direct;
+    school_ok(ode_rhs_create(&direct, setup.residual));
+    setup.state->y[setup.school->fish[0].at.x + 2] = NAN;
+    assert_int_equal(ode_rhs_rates(direct, 0, setup.state->y, setup.state->yp), STATUS_RETRY);
+    ode_rhs_free(direct);
+    school_clear(&setup);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(direct_solution_satisfies_the_algebraic_equations),
+        cmocka_unit_test(what_is_not_finite_asks_for_a_smaller_step),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

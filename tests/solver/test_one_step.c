@@ -1,0 +1,127 @@
+/* test_fixed.c: src/solver/one_step.c. */
+#include <string.h>
+
+#include "school.h"
+#include "solver/one_step.h"
+
+#define FISH "fish: [{nodes: 7, sheet_points: 13, body: {modulus: 1.0e+4}, drag: {normal: 0, tangential: 0}}]\n"
+
+// one fish; all that couples; a driven head; circulation that is a differential unknown, and jumps
+static const char *const cases[] = {
+    "time: {end: 0.4, shedding_interval: 0.02}\n" FISH,
+    "time: {end: 0.4, shedding_interval: 0.02}\n"
+    "fluid: {velocity: [0.1, -0.05], shear: 0.2}\n"
+    "fish:\n"
+    "  - {nodes: 7, sheet_points: 13, control: {law: heading, desired_heading: 150}}\n"
+    "  - {nodes: 9, length: 0.8, sheet_points: 11, start: {position: [0.2, 0.5]}, drag: {law: linear_quadratic}}\n",
+    "time: {end: 0.4, shedding_interval: 0.02}\n"
+    "fluid: {velocity: [-1, 0]}\n"
+    "fish: [{nodes: 8, sheet_points: 15, wave: {amplitude: 0}, start: {speed: 0},\n"
+    "        motion: {driven: head, heave: 0.1, pitch: 10, frequency: 1, speed: 0}}]\n",
+    "time: {end: 0.4, shedding_interval: 0.02}\nwake: {kutta: rate}\n" FISH,
+    "time: {end: 0.4, shedding_interval: 0.02}\nwake: {shedding: impulsive}\n" FISH,
+};
+
+// where the tail of the last fish is at the end, across the way
+static double tail_at_end(const char *text, const char *solver) {
+    char whole[1024];
+    snprintf(whole, sizeof whole, "%ssolver: {%s}\n", text, solver);
+    struct simulation *const simulation = school_simulation(whole);
+    school_run(simulation, 0.4);
+    const struct fish *fish = &simulation->school->fish[simulation->school->n_fish - 1];
+    const double tail = simulation->state->y[fish->at.y + fish->n_nodes - 1];
+    simulate_free(simulation);
+    return tail;
+}
+
+static void steps_converge_with_the_order_of_the_method(void **state) {
+    (void)state;
+    static const char *const methods[] = {"implicit_euler", "trapezoid"};
+    // the explicit reference solves the same equations to 1e-11
+    const double exact = tail_at_end(cases[0], "method: dormand_prince, rtol: 1.0e-12");
+    for (int order = 1; order <= 2; order++) {
+        double error[2];
+        for (int i = 0; i < 2; i++) {
+            char solver[128];
+            snprintf(solver, sizeof solver, "method: %s, step: %g, rtol: 1.0e-9", methods[order - 1], 0.002 / (1 << i));
+            error[i] = tail_at_end(cases[0], solver) - exact;
+        }
+        const double observed = log2(fabs(error[0] / error[1]));
+        print_message("%s: errors %.2e %.2e, order %.2f\n", methods[order - 1], error[0], error[1], observed);
+        NEAR(observed, order, 0.1, 0);
+    }
+}
+
+static void all_cases_agree_with_the_other_implicit_method(void **state) {
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        const double want = tail_at_end(cases[i], "rtol: 1.0e-9, order: 5");
+        // second order: four times the steps, a sixteenth of the error
+        const double coarse = tail_at_end(cases[i], "method: trapezoid, step: 0.002, rtol: 1.0e-8") - want;
+        const double fine = tail_at_end(cases[i], "method: trapezoid, step: 0.0005, rtol: 1.0e-8") - want;
+        print_message("case %zu: errors %.2e %.2e\n", i, coarse, fine);
+        NEAR(coarse, 0, 3e-5, 0);
+        NEAR(fine, 0, fabs(coarse) / 8 + 2e-8, 0);
+    }
+}
+
+#define STIFF                                     \
+    "time: {end: 0.4, shedding_interval: 0.02}\n" \
+    "fish: [{nodes: 7, sheet_points: 13, body: {modulus: 1.0e+9}}]\n"
+
+static void a_very_stiff_body_needs_no_shorter_steps(void **state) {
+    (void)state;
+    const double exact = tail_at_end(STIFF, "rtol: 1.0e-9, order: 5");
+    // a fourth of the shedding interval, of which an explicit method needs thousands
+    NEAR(tail_at_end(STIFF, "method: trapezoid, step: 0.005"), exact, 1e-5, 0);
+    NEAR(tail_at_end(STIFF, "method: implicit_euler, step: 0.005"), exact, 2e-3, 0);
+}
+
+static void a_jacobian_serves_many_steps_and_counts_tell(void **state) {
+    (void)state;
+    struct simulation *const simulation = school_simulation("time: {end: 0.4, shedding_interval: 0.02}\n" FISH
+                                                            "solver: {method: trapezoid, step: 0.005}\n");
+    school_run(simulation, 0.4);
+    struct integrator_counts counts;
+    simulation->integrator->count(simulation->solver, &counts);
+    assert_int_equal(counts.steps, 80);
+    assert_int_equal(counts.order, 2);
+    NEAR(counts.step_size, 0.005, 0, 0);
+    assert_in_range(counts.newton_iterations, 80, 400);
+    assert_int_equal(counts.residual_evaluations, counts.newton_iterations);
+    assert_in_range(counts.jacobian_evaluations, 1, 20);
+    simulate_free(simulation);
+}
+
+static void fails(const char *text, const char *message) {
+    struct simulation *const simulation = school_simulation(text);
+    enum status status = STATUS_OK;
+    for (int event = 0; event < 50 && status == STATUS_OK; event++) status = simulate_step(simulation);
+    assert_int_equal(status, STATUS_SOLVER);
+    if (!strstr(status_message(), message)) fail_msg("'%s' is not in: %s", message, status_message());
+    simulate_free(simulation);
+}
+
+static void what_does_not_converge_ends_with_the_time(void **state) {
+    (void)state;
+    // half a beat in one step
+    fails(
+        "time: {end: 50, shedding_interval: 0.5}\nsolver: {method: implicit_euler, step: 0.5}\n"
+        "fish: [{nodes: 7, sheet_points: 13, body: {modulus: 1.0e+9}}]\n",
+        "the solver gave up at t = ");
+    fails(
+        "time: {end: 1, shedding_interval: 0.02}\nsolver: {method: trapezoid, step: 0.001, max_steps: 10}\n"
+        "fish: [{nodes: 7, sheet_points: 13}]\n",
+        "20 steps between two events are more than solver.max_steps");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(steps_converge_with_the_order_of_the_method),
+        cmocka_unit_test(all_cases_agree_with_the_other_implicit_method),
+        cmocka_unit_test(a_very_stiff_body_needs_no_shorter_steps),
+        cmocka_unit_test(a_jacobian_serves_many_steps_and_counts_tell),
+        cmocka_unit_test(what_does_not_converge_ends_with_the_time),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

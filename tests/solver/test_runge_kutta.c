@@ -1,0 +1,93 @@
+/* test_explicit.c: src/solver/runge_kutta.c. */
+#include <string.h>
+
+#include "school.h"
+#include "solver/runge_kutta.h"
+
+// without drag: v|v| has a kink in its derivative, at which no method keeps an order above three
+static const char soft[] =
+    "time: {end: 0.4, shedding_interval: 0.02}\n"
+    "solver: {method: %s, step: %.9g, rtol: %.3g, order: 5}\n"
+    "fish: [{nodes: 7, sheet_points: 13, body: {modulus: 1.0e+4},\n"
+    "        drag: {normal: 0, tangential: 0}}]\n";
+
+// where the tail is at the end, across the way
+static double tail_at_end(const char *method, double step, double rtol) {
+    char text[512];
+    snprintf(text, sizeof text, soft, method, step, rtol);
+    struct simulation *const simulation = school_simulation(text);
+    school_run(simulation, 0.4);
+    const struct fish *fish = &simulation->school->fish[0];
+    const double tail = simulation->state->y[fish->at.y + fish->n_nodes - 1];
+    simulate_free(simulation);
+    return tail;
+}
+
+static void fixed_steps_converge_with_the_order_of_the_method(void **state) {
+    (void)state;
+    const double exact = tail_at_end("dormand_prince", 0, 1e-12);
+    // steps small enough to be stable and in the asymptotic range, large enough to stay above round-off
+    static const struct {
+        const char *name;
+        double step, order;
+    } methods[] = {{"euler", 0.00025, 1}, {"heun", 0.0005, 2}, {"rk4", 0.005, 4}, {"dormand_prince", 0.01, 5}};
+    for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
+        const double coarse = tail_at_end(methods[i].name, methods[i].step, 1e-5) - exact;
+        const double fine = tail_at_end(methods[i].name, methods[i].step / 2, 1e-5) - exact;
+        const double order = log2(fabs(coarse / fine));
+        print_message("%s: errors %.2e %.2e, order %.2f\n", methods[i].name, coarse, fine, order);
+        NEAR(order, methods[i].order, 0.3, 0);
+    }
+}
+
+static void explicit_and_implicit_solutions_agree(void **state) {
+    (void)state;
+    // both within some hundred of their tolerances per second
+    NEAR(tail_at_end("dormand_prince", 0, 1e-10), tail_at_end("ida", 0, 1e-10), 1e-7, 0);
+    NEAR(tail_at_end("rk4", 0, 1e-10), tail_at_end("ida", 0, 1e-10), 1e-7, 0);
+    NEAR(tail_at_end("heun", 0, 1e-8), tail_at_end("ida", 0, 1e-10), 1e-5, 0);
+    NEAR(tail_at_end("euler", 0, 1e-6), tail_at_end("ida", 0, 1e-10), 1e-2, 0);
+}
+
+static void a_step_too_large_ends_in_unstable_with_the_time(void **state) {
+    (void)state;
+    struct simulation *const simulation = school_simulation(
+        "time: {end: 1, shedding_interval: 0.02}\n"
+        "solver: {method: rk4, step: 0.02}\n"
+        "fish: [{nodes: 7, sheet_points: 13, body: {modulus: 1.0e+9}}]\n");
+    enum status status = STATUS_OK;
+    for (int event = 0; event < 50 && status == STATUS_OK; event++) status = simulate_step(simulation);
+    assert_int_equal(status, STATUS_SOLVER);
+    assert_non_null(strstr(status_message(), "unstable at t = "));
+    assert_non_null(strstr(status_message(), "solver.method: ida"));
+    simulate_free(simulation);
+}
+
+static void impulses_restart_the_explicit_method_too(void **state) {
+    (void)state;
+    double tail[2];
+    for (int i = 0; i < 2; i++) {
+        char text[512];
+        snprintf(text, sizeof text,
+                 "time: {end: 0.4, shedding_interval: 0.02}\nwake: {shedding: impulsive}\n"
+                 "solver: {method: %s, rtol: 1.0e-9, order: 5}\n"
+                 "fish: [{nodes: 7, sheet_points: 13, body: {modulus: 1.0e+4}}]\n",
+                 i == 0 ? "ida" : "dormand_prince");
+        struct simulation *const simulation = school_simulation(text);
+        school_run(simulation, 0.4);
+        const struct fish *fish = &simulation->school->fish[0];
+        tail[i] = simulation->state->y[fish->at.y + fish->n_nodes - 1];
+        simulate_free(simulation);
+    }
+    NEAR(tail[0], tail[1], 1e-6, 0);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(fixed_steps_converge_with_the_order_of_the_method),
+        cmocka_unit_test(explicit_and_implicit_solutions_agree),
+        cmocka_unit_test(a_step_too_large_ends_in_unstable_with_the_time),
+        cmocka_unit_test(impulses_restart_the_explicit_method_too),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

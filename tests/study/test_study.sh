@@ -1,0 +1,338 @@
+#!/usr/bin/env bash
+# Studies: members, what is skipped and repeated, and what happens when something dies.
+#
+#   tests/study/test_study.sh PROGRAM
+set -uo pipefail
+export LC_ALL=C
+
+program=$(realpath "${1:?usage: tests/study/test_study.sh PROGRAM}")
+scripts=$(realpath "$(dirname "$0")/../../scripts")
+checks=$(realpath "$(dirname "$0")/../checks.sh")
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder" || exit 2
+
+# shellcheck source=tests/checks.sh
+. "$checks"
+
+# The time of the last change of a file, with all digits.
+changed() {
+    stat -c %y "$1"
+}
+
+# ---- a study from begin to end
+
+cat >small.yaml <<'end'
+format: 1
+time: {end: 0.2, shedding_interval: 0.02}
+fish: [{}]
+sweep:
+  - {key: "fish[*].wave.amplitude", values: [0.2, 0.3]}
+  - {keys: [solver.method, solver.max_steps], values: [[ida, 1000], [rk4, 1000], [euler, 2]]}
+end
+run study small.yaml -j 2
+check failed_members_give_exit_code_1 test "$code" = 1
+check failures_are_counted has err '2 of 6 members in small-study are not complete'
+check the_reason_is_printed has out 'member 2 failed: unstable at t = '
+check the_reason_is_kept has small-study/member-0002.failed 'unstable at t = '
+check members_are_numbered_from_0 test -e small-study/member-0000.nc -a -e small-study/member-0005.nc -a \
+    ! -e small-study/member-0006.nc
+check progress_counts_members has err '4 of 6 members done, 2 failed, 0 running  100 %'
+check a_line_per_member test "$(grep -cE '^ +[0-5] +0\.[23] ' out)" = 6
+check results_are_gathered test -s small-study/study.nc
+run info --case small-study/member-0004.nc
+check the_last_axis_is_fastest has out 'amplitude: 0.3'
+check zipped_keys_change_together has out 'method: rk4'
+
+finished=$(changed small-study/member-0001.nc) failed=$(changed small-study/member-0002.nc)
+run study small.yaml -q
+check finished_members_are_passed_over test "$(changed small-study/member-0001.nc)" = "$finished"
+check failed_members_run_again test "$(changed small-study/member-0002.nc)" != "$failed"
+
+cp out table
+run info small-study/study.nc
+check info_tells_the_axes has out '  axis 1      3 values of solver.method, solver.max_steps'
+check info_counts_members has out '  members     6, 4 of them complete'
+check info_prints_the_table_of_the_study cmp <(sed 1,9d out) table
+run info --case small-study/study.nc
+check info_prints_the_case_of_the_study grep -q '^sweep: ' out
+mkdir alone
+cp small-study/member* alone
+run gather alone
+check the_files_of_the_members_are_enough cmp <(sed 's/ small-study/ alone/' table) out
+check gather_writes_study_nc test -s alone/study.nc
+rm alone/member-0003.nc
+echo 'not a result' >alone/member-0000.nc
+run gather alone
+check a_missing_member_is_told grep -qE '^ +3 .* missing$' out
+check an_unreadable_member_is_told has out 'member 0 failed: ./alone/member-0000.nc: cannot be read'
+
+mkdir parts
+run study small.yaml -o parts --members 0-1 -q
+check a_part_ends_with_0 test "$code" = 0 -a ! -s out
+check a_part_runs_its_members_only test -e parts/member-0001.nc -a ! -e parts/member-0002.nc -a ! -e parts/study.nc
+
+# ---- other ways to run the members
+
+if command -v parallel >/dev/null; then
+    seq 0 5 | parallel --will-cite -j 2 "$program" study small.yaml -o many --members {} -q 2>err
+    run gather many
+    check gnu_parallel_runs_them_too cmp <(grep -o '^ *[0-5] .*-[0-9.]*e-' table) <(grep -o '^ *[0-5] .*-[0-9.]*e-' out)
+else
+    skip gnu_parallel 'parallel is missing'
+fi
+check slurm_scripts_are_written "$program" study small.yaml --slurm --bundle 4 -o cluster
+check a_task_has_a_bundle has cluster/array.sbatch '#SBATCH --array=0-1'
+# what a task does, without Slurm
+for task in 0 1; do SLURM_ARRAY_TASK_ID=$task sh cluster/array.sbatch >/dev/null 2>&1; done
+check the_tasks_run_all_members test -e cluster/member-0003.nc -a -e cluster/member-0005.nc -a ! -e cluster/member-0006.nc
+run gather cluster
+check their_results_are_those_of_the_study has err '2 of 6 members in cluster'
+refused no_quotes_in_scripts 2 'cannot stand in a script' study small.yaml --slurm -o "it's"
+refused bundles_of_words 2 '--bundle few: expects a whole number' study small.yaml --slurm --bundle few -o cluster
+
+# ---- folders with something else
+
+refused another_study_is_refused 4 'small-study/member-0000.nc is a result of another study' \
+    study small.yaml --set fish[0].nodes=9 -o small-study
+check nothing_was_changed test "$(changed small-study/member-0001.nc)" = "$finished"
+sed 's/0.2, 0.3/0.2/' small.yaml >shorter.yaml
+run study shorter.yaml -o small-study --force -q
+check force_replaces_it has out 'euler'
+check force_removes_the_rest test ! -e small-study/member-0003.nc
+cp alone/member-0001.nc small-study/
+refused gather_of_two_studies 4 'is a result of another study' gather small-study
+mkdir gathered
+cp alone/study.nc gathered
+refused the_table_of_another_study_is_refused 4 './gathered/study.nc was gathered from another study' \
+    study shorter.yaml -o gathered -q
+run study shorter.yaml -o gathered -q --force
+check force_replaces_it_too test -e gathered/member-0000.nc
+mkdir empty
+refused gather_of_nothing 4 'empty: holds no member of a study that can be read' gather empty
+refused gather_of_no_folder 4 'nowhere: cannot be read: No such file or directory' gather nowhere
+refused folder_is_a_file 4 'small.yaml: cannot make this folder' study small.yaml -o small.yaml
+refused folder_in_no_folder 4 'no/where: cannot make this folder' study small.yaml -o no/where
+
+# ---- wrong input
+
+refused a_wrong_member_is_named 2 'member 1 (time.shedding_interval=0.03):' study small.yaml -o wrong \
+    --set 'sweep=[{key: time.shedding_interval, values: [0.02, 0.03]}]'
+check before_anything_ran test ! -e wrong
+refused check_names_it_too 2 'member 1 (time.shedding_interval=0.03):' check small.yaml \
+    --set 'sweep=[{key: time.shedding_interval, values: [0.02, 0.03]}]'
+run check small.yaml
+check check_counts_members has out '; 6 members'
+# forty values, of which number 37 is wrong: by itself, or with the rest of the case
+forty=$(seq -s, 5 41),3,43,44
+refused a_value_out_of_range_in_member_37 2 'sweep[0].values[37] (fish.nodes): must be from 4 to 10000, got 3' \
+    study small.yaml -o wrong --set "sweep=[{key: \"fish[*].nodes\", values: [$forty]}]"
+forty=$(seq -f '0.%02.0f' -s, 10 46),0.003,0.48,0.49
+refused a_value_that_does_not_fit_in_member_37 2 'member 37 (wake.lifetime=0.003):' \
+    study small.yaml -o wrong --set "sweep=[{key: wake.lifetime, values: [$forty]}]"
+refused members_beyond_the_study 2 '--members 4-6: the study has members 0 to 5' study small.yaml -o parts --members 4-6
+refused members_backwards 2 '--members 3-1: expects the number of a member' study small.yaml -o parts --members 3-1
+refused members_of_words 2 '--members all: expects' study small.yaml -o parts --members all
+refused processes_of_words 2 '-j two: expects a whole number' study small.yaml -o parts -j two
+refused run_refuses_a_sweep 2 'run it with `shoal study`' run small.yaml -o never.nc
+run study small.yaml --set 'sweep=[]' -o single -q
+check without_a_sweep_there_is_one_member test "$code" = 0 -a -e single/member-0000.nc -a ! -e single/member-0001.nc
+
+# ---- convergence
+
+cat >refined.yaml <<'end'
+format: 1
+time: {end: 1.6}
+solver: {rtol: 1e-8}
+fish: [{body: {modulus: 1e5}}]
+sweep:
+  - {key: time.shedding_interval, values: [0.01, 0.04, 0.02], refine: true, expect: {order: 2, within: 0.6}}
+end
+run study refined.yaml -q
+check the_expected_order_gives_exit_code_0 test "$code" = 0
+check orders_are_printed grep -qE '^ +nose +fish1 +m +[0-9.e-]+ +[0-9.e-]+ +- +- +[12]\.[0-9]+ ' out
+check levels_are_sorted_from_coarse_to_fine grep -qE 'unit +0\.04 +0\.02 +0\.01 ' out
+refused another_order_gives_exit_code_3 3 \
+    'in time.shedding_interval, expected 3 +- 0.1' study refined.yaml -o third -q \
+    --set 'sweep=[{key: time.shedding_interval, values: [0.04, 0.02, 0.01], refine: true, expect: {order: 3, within: 0.1}}]'
+check then_everything_is_written_all_the_same test -s third/study.nc
+# a speed that no level comes near: all errors are its own, and the order is none
+run study refined.yaml -o given -q \
+    --set 'sweep=[{key: time.shedding_interval, values: [0.04, 0.02, 0.01], refine: true, reference: {speed: 100}}]'
+check errors_are_against_the_reference grep -qE '^ +speed\* +fish1 +m s-1 +9\.9.e\+01 +9\.9.e\+01 +9\.9.e\+01 +-?0\.00 ' out
+check other_errors_are_against_the_finest grep -qE '^ +nose +fish1 +m +[0-9.e-]+ +[0-9.e-]+ +- ' out
+check the_head_says_so has out "against the finest (*: against the reference of the case)"
+run info given/study.nc
+check info_prints_orders_too grep -qE '^ +speed\* +fish1 ' out
+refused the_order_of_any_quantity_can_be_expected 3 'speed of fish1: observed order' study refined.yaml -o given -q --force \
+    --set 'sweep=[{key: time.shedding_interval, values: [0.04, 0.02, 0.01], refine: true, reference: {speed: 100},
+                   expect: {order: 2, within: 0.6, of: speed}}]'
+run info given/study.nc
+check info_tells_what_was_missed eval 'test "$code" = 0 && has out "missed: speed of fish1: observed order"'
+run study refined.yaml -o groups -q --set time.end=0.08 \
+    --set 'sweep=[{key: solver.rtol, values: [1e-4, 1e-5, 1e-6], refine: true}, {key: solver.order, values: [1, 2]}]'
+check other_axes_make_groups has out 'Refinement of solver.rtol, from member 1 (solver.rtol=1e-4, solver.order=2) on'
+
+# ---- what is expected of members
+
+cat >stated.yaml <<'end'
+format: 1
+time: {end: 0.2, shedding_interval: 0.02}
+fish: [{name: one}, {name: two, start: {position: [0, 3]}}]
+sweep:
+  - {key: "fish[*].wave.amplitude", values: [0.2, 0.3]}
+  - {key: solver.method, values: [ida, rk4]}
+expect:
+  - {of: speed, least: 0.9, most: 1.1}
+  - {of: [nose, tail], fish: two, where: ["fish[*].wave.amplitude=0.30"], spread: 1e-3}
+  - {of: steps, where: [solver.method=rk4], ratio: 3}
+end
+run study stated.yaml -q
+check statements_that_hold_give_exit_code_0 test "$code" = 0
+check each_is_printed grep -qx 'nose of two, 2 values' out
+check with_what_is_and_what_should_be grep -qE '^  met      the least is 0\.9[0-9]*, expected at least 0\.9$' out
+check values_of_all_members_and_fish_count grep -qx 'speed, 8 values' out
+check the_same_number_is_the_same_value grep -qx 'tail of two, 2 values' out
+refused a_statement_that_does_not_hold_gives_exit_code_3 3 'expect[0]: speed: not what the case expects' \
+    study stated.yaml -q -o unstated --set 'expect=[{of: speed, most: 0.5}, {of: nose, fish: one, spread: 0}]'
+check what_is_missed_is_printed grep -qE '^  MISSED   the largest is [01]\.[0-9]*, expected at most 0\.5$' out
+check all_statements_are_judged grep -qE '^  MISSED   they differ by [0-9.e-]+, expected at most 0$' out
+run info unstated/study.nc
+check info_tells_it_too eval 'test "$code" = 0 && has out "missed: expect[0]"'
+refused a_member_that_is_not_complete_misses 3 'expect[0]: speed: not what the case expects; ' \
+    study small.yaml -q -o failing --set 'sweep=[{key: solver.max_steps, values: [1000, 2]}]' --set solver.method=euler \
+    --set 'expect=[{of: speed, least: 0}]'
+check which_member_it_is_is_printed has out '  MISSED   member 1 is not complete'
+run study small.yaml -q -o doomed --set 'expect=[{fails: unstable at, where: [solver.method=euler]},
+    {of: speed, least: 0, where: [solver.method=ida, solver.method=rk4]}]'
+check failures_that_are_expected_give_exit_code_0 eval 'test "$code" = 0 && grep -q "^member 2 failed" out'
+check they_are_counted grep -qx 'failures, 2 members' out
+check several_values_of_a_key_are_alternatives grep -qx 'speed, 4 values' out
+refused a_failure_that_does_not_come_misses 3 'expect[0]: failures: not what' study small.yaml -q -o doomed --force \
+    --set 'expect=[{fails: unstable, where: [solver.method=euler, solver.method=rk4]}]'
+check which_member_does_not_fail_is_printed has out "  MISSED   member 4 has not failed with 'unstable'"
+refused other_words_of_the_reason_miss_too 3 'expect[0]: failures: not what' study small.yaml -q -o doomed --force \
+    --set 'expect=[{fails: no memory, where: [solver.method=euler]}]'
+run study stated.yaml -q -o plain --set 'sweep=[]'
+check without_a_sweep_nothing_is_expected eval 'test "$code" = 0 && ! grep -q Expected out'
+
+# ---- pictures
+
+draws() {  # file
+    rm -f picture.png
+    /usr/bin/python3 "$scripts/plot.py" study "$1" picture.png >drawn && test -s picture.png
+}
+if /usr/bin/python3 -c 'import netCDF4, matplotlib' 2>err; then
+    check a_picture_of_orders draws refined-study/study.nc
+    check a_picture_of_groups draws groups/study.nc
+    check a_picture_of_methods draws small-study/study.nc
+    run study small.yaml -o map -q --set time.end=0.04 --set \
+        'sweep=[{key: "fish[*].body.modulus", values: [1e4, 1e6]}, {key: "fish[*].wave.frequency", values: [1, 2]}]'
+    check a_map_over_two_axes draws map/study.nc
+    run study stated.yaml -o places -q --set time.end=0.04 --set expect=[] --set \
+        'sweep=[{key: "fish[1].start.position", values: [[1, 0.5], [2, 0.5]]}]'
+    check a_map_of_places draws places/study.nc
+    # two of three levels need more steps than they may take
+    run study refined.yaml -o lonely -q --set time.end=0.04 --set time.shedding_interval=0.02 --set solver.method=rk4 \
+        --set solver.max_steps=3 --set 'sweep=[{key: solver.step, values: [0.01, 0.005, 0.0025], refine: true}]'
+    check no_picture_without_errors eval '! draws lonely/study.nc && has check.out "no errors to draw"'
+    run study refined.yaml -o costs -q --set time.end=0.08 --set time.shedding_interval=0.01 --set 'sweep=[{
+        keys: ["fish[*].body.modulus", solver.method, solver.step, solver.rtol],
+        values: [[1e5, ida, 0, 1e-8], [1e5, ida, 0, 1e-4], [1e5, rk4, 1e-3, 1e-5], [1e5, euler, 1e-2, 1e-5]]}]'
+    check a_picture_of_costs draws costs/study.nc
+    check the_reference_does_not_compete has drawn '| 100000 | ida | rtol 0.0001 |'
+    check a_fixed_step_is_a_setting has drawn '| 100000 | rk4 | step 0.001 |'
+    check a_method_without_an_accurate_member_is_named has drawn '| 100000 | euler | none within 0.0001 m |'
+    run compare refined.yaml --set 'sweep=[]' --set time.end=0.08 --repeats 1 -q -o compare.nc
+    check a_picture_of_a_comparison draws compare.nc
+    check no_picture_of_one_run eval '! draws single/member-0000.nc && has check.out "neither a study.nc nor"'
+else
+    skip pictures 'python3-netcdf4 or python3-matplotlib is missing'
+fi
+
+# ---- deaths
+
+# four members that take long; the one with number 0 is short
+cat >long.yaml <<'end'
+format: 1
+time: {end: 60, shedding_interval: 0.02}
+fish: [{}]
+sweep:
+  - {keys: [time.end, time.shedding_interval], values: [[0.2, 0.02], [60, 0.02], [60.02, 0.02], [60.04, 0.02]]}
+end
+
+# Start the study in the background and wait for member 0 to be finished and two others to run.
+start_long() {  # folder
+    "$program" study long.yaml -j 2 -o "$1" >out 2>err </dev/null &
+    study=$!
+    for ((i = 0; i < 200; i++)); do
+        [[ ! -e $1/member-0002.nc ]] || return 0
+        sleep 0.05
+    done
+    echo "the study does not start: $(<err)"
+}
+
+wait_for_end_of() {  # processes...
+    local process
+    for process in "$@"; do
+        for ((i = 0; i < 200; i++)); do
+            kill -0 "$process" 2>/dev/null || break
+            sleep 0.05
+        done
+        kill -0 "$process" 2>/dev/null && return 1
+    done
+    return 0
+}
+
+start_long stopped
+kill -INT "$study"
+code=0
+wait "$study" || code=$?
+check a_signal_stops_a_study test "$code" = 75
+check it_says_what_is_finished has err 'stopped by a signal: 1 of 4 members are finished; the same command goes on'
+run info stopped/member-0001.nc
+check its_members_stop_cleanly has out 'stopped'
+
+start_long killed
+read -ra members <"/proc/$study/task/$study/children"
+kill -KILL "$study"
+wait "$study" 2>/dev/null
+check members_end_with_a_killed_study wait_for_end_of "${members[@]}"
+before=$(changed killed/member-0000.nc)
+run study long.yaml -o killed --members 0 -q
+check what_a_killed_study_finished_stays test "$code" = 0 -a "$(changed killed/member-0000.nc)" = "$before"
+
+start_long shot
+read -ra members <"/proc/$study/task/$study/children"
+kill -KILL "${members[0]}"
+sleep 0.5
+kill -INT "$study"
+wait "$study" 2>/dev/null
+check a_killed_member_is_told grep -q 'killed by signal 9 (Killed)' shot/member-000[123].failed
+check the_others_carry_on test -e shot/member-0003.nc
+run gather shot
+check gather_tells_it_too has out 'failed: killed by signal 9 (Killed)'
+
+# a limit of the size of files is a full disk for the largest member only
+cat >disk.yaml <<'end'
+format: 1
+time: {end: 0.2, shedding_interval: 0.02, output_interval: 0.02}
+fish: [{}]
+sweep:
+  - {keys: ["fish[*].nodes", "fish[*].sheet_points"], values: [[7, 21], [25, 81], [8, 21]]}
+end
+run study disk.yaml -o roomy -q
+largest=$(stat -c %s roomy/member-0001.nc) other=$(stat -c %s roomy/member-0002.nc)
+(
+    ulimit -f $(((largest + other) / 2 / 1024))
+    timeout "$time_limit" "$program" study disk.yaml -o disk -q >out 2>err </dev/null
+    echo $? >code
+)
+check a_full_disk_is_a_failed_member test "$(<code)" = 1
+check it_says_what_could_not_be_written has out 'member 1 failed: ./disk/member-0001.nc: cannot be written at t = '
+check the_other_members_are_complete test "$(grep -c ' complete$' out)" = 2
+run study disk.yaml -o disk -q
+check with_room_the_next_call_completes_it test "$code" = 0
+
+echo "$n_passed passed, $n_failed failed, $n_skipped skipped"
+((n_failed == 0))

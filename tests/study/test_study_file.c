@@ -1,0 +1,320 @@
+/* test_study.c: observed orders, limits and grid convergence indices; tables. What processes do: test_study.sh. */
+#include <netcdf.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/text.h"
+#include "failing_malloc.h"
+#include "near.h"
+#include "study/study.h"
+
+/* Values c + a h^p, in both directions of the plane, for n sizes. */
+static struct study_file_order order_of(int n, const double *sizes, double p) {
+    double values[8][2];
+    for (int i = 0; i < n; i++) {
+        values[i][0] = 3 + 0.7 * pow(sizes[i], p);
+        values[i][1] = -1 - 0.2 * pow(sizes[i], p);
+    }
+    return study_order(n, sizes, (const double(*)[2])values, NULL);
+}
+
+static void a_power_of_the_size_gives_its_order_and_its_limit(void **state) {
+    (void)state;
+    const double halved[] = {0.4, 0.2, 0.1, 0.05}, uneven[] = {0.4, 0.25, 0.1, 0.07};
+    const double orders[] = {1, 2, 2.5, 4};
+    for (int i = 0; i < 4; i++) {
+        const struct study_file_order one = order_of(4, halved, orders[i]), other = order_of(4, uneven, orders[i]);
+        // the differences of the finest levels, 1e-6 of the values at order 4, lose ten digits of sixteen
+        NEAR(one.order, orders[i], 0, 1e-8);
+        NEAR(one.order_before, orders[i], 0, 1e-8);
+        NEAR(other.order, orders[i], 0, 1e-8);
+        NEAR(other.order_before, orders[i], 0, 1e-8);
+        NEAR(one.limit[0], 3, 1e-10, 0);
+        NEAR(other.limit[1], -1, 1e-10, 0);
+        // the index is the safety factor times the true error
+        NEAR(one.index, 1.25 * hypot(0.7, 0.2) * pow(0.05, orders[i]), 0, 1e-6);
+        assert_null(one.objection);
+        assert_null(other.objection);
+    }
+}
+
+static void the_published_example_comes_out(void **state) {
+    (void)state;
+    // Celik et al., Journal of Fluids Engineering 130 (2008) 078001, table 1, first column
+    const double sizes[] = {1.5 * 4 / 3, 1.5, 1}, values[][2] = {{5.863, 0}, {5.972, 0}, {6.063, 0}};
+    const struct study_file_order order = study_order(3, sizes, values, NULL);
+    NEAR(order.order, 1.53, 0.01, 0);  // two digits are printed, of ratios rounded to three
+    NEAR(order.limit[0], 6.1685, 0.0005, 0);
+    NEAR(order.index / 6.063, 0.022, 0.0005, 0);
+    assert_true(isnan(order.order_before));
+}
+
+static void a_given_value_gives_the_order_with_two_levels_each(void **state) {
+    (void)state;
+    // errors of order 2 about (3, -1), but for the finest level: its own error is that of a sum of orders 2 and 1
+    const double sizes[] = {0.4, 0.2, 0.1}, exact[] = {3, -1};
+    const double errors[] = {0.16, 0.04, 0.02};
+    double values[3][2];
+    for (int i = 0; i < 3; i++) {
+        values[i][0] = 3 + 0.6 * errors[i];
+        values[i][1] = -1 + 0.8 * errors[i];
+    }
+    const struct study_file_order order = study_order(3, sizes, (const double(*)[2])values, exact);
+    NEAR(order.order_before, 2, 0, 1e-12);
+    NEAR(order.order, 1, 0, 1e-12);
+    assert_non_null(strstr(order.objection, "changes"));
+    // with order 1 the limit is as far beyond the finest level as that is from the one before
+    NEAR(order.limit[0], 3, 1e-12, 0);
+    NEAR(order.limit[1], -1, 1e-12, 0);
+    NEAR(order.index, 1.25 * 0.02, 0, 1e-12);
+    // without the given value the same levels look otherwise: a ratio of differences of 6
+    NEAR(study_order(3, sizes, (const double(*)[2])values, NULL).order, log2(6), 0, 1e-9);
+}
+
+static void levels_on_both_sides_of_a_given_value_oscillate(void **state) {
+    (void)state;
+    const double sizes[] = {0.4, 0.2, 0.1}, values[][2] = {{1.4, 0}, {1.1, 0}, {0.97, 0}}, exact[] = {1, 0};
+    const struct study_file_order order = study_order(3, sizes, values, exact);
+    assert_non_null(strstr(order.objection, "oscillates"));
+    const double same[][2] = {{1.4, 0}, {1.1, 0}, {1, 0}};
+    assert_non_null(strstr(study_order(3, sizes, same, exact).objection, "equal to rounding"));
+}
+
+static void what_is_not_asymptotic_is_objected_to(void **state) {
+    (void)state;
+    const double sizes[] = {0.8, 0.4, 0.2, 0.1};
+    const struct {
+        double values[4][2];
+        const char *objection;
+    } examples[] = {
+        {{{1, 0}, {2, 0}, {1.5, 0}, {1.75, 0}}, "oscillates"},
+        {{{0, 0}, {1, 0}, {2, 0}, {3, 0}}, "out of range"},    // order 0
+        {{{0, 0}, {1, 0}, {3, 0}, {7, 0}}, "out of range"},    // it diverges: order -1
+        {{{0, 0}, {1, 0}, {1.5, 0}, {1.5625, 0}}, "changes"},  // order 1, then 3
+        {{{0, 0}, {1, 0}, {1, 0}, {1, 0}}, "equal to rounding"},
+        {{{0, 0}, {1, 0}, {NAN, 0}, {1.5, 0}}, "a level is missing"},
+        {{{0, 0}, {NAN, 0}, {1, 0}, {1.5, 0}}, "a level is missing"},
+    };
+    for (size_t i = 0; i < sizeof examples / sizeof *examples; i++) {
+        const struct study_file_order order = study_order(4, sizes, examples[i].values, NULL);
+        if (!order.objection || !strstr(order.objection, examples[i].objection)) {
+            fail_msg("example %zu: %s", i, order.objection ? order.objection : "no objection");
+        }
+    }
+}
+
+static const char refined[] =
+    "format: 1\ntime: {end: 1, shedding_interval: 0.1}\nfish: [{}, {}]\n"
+    "sweep:\n"
+    "  - {key: solver.order, values: [1, 2]}\n"
+    "  - {key: time.shedding_interval, values: [0.05, 0.1, 0.025], refine: true, reference: {speed: 5}}\n";
+
+/* The member of a study whose quantities are 5 + 0.3 h^p, p = 1 + (solver.order), in both directions. */
+static void make_member(struct member_file *member, const struct case_values *study, int m) {
+    double h = NAN;
+    text_number(study->sweep[1].value[sweep_member_value(study, m, 1)], &h);
+    int n = 0;
+    while (member_file_quantity(n)) n++;
+    n *= 2 * study->n_fish;
+    *member = (struct member_file){.number = m, .n_fish = study->n_fish, .status = strdup("complete")};
+    member->value = calloc((size_t)n, sizeof *member->value);
+    for (int i = 0; i < n; i++) member->value[i] = 5 + 0.3 * pow(h, 2 + sweep_member_value(study, m, 0));
+}
+
+/* A value of a variable of an open file. */
+static double value_of(int file, const char *name, size_t i, size_t j, size_t k) {
+    int variable;
+    double value;
+    assert_int_equal(nc_inq_varid(file, name, &variable), NC_NOERR);
+    assert_int_equal(nc_get_var1_double(file, variable, (size_t[]){i, j, k}, &value), NC_NOERR);
+    return value;
+}
+
+static void orders_are_kept_in_study_nc(void **state) {
+    (void)state;
+    struct case_values study, again;
+    assert_int_equal(case_parse(&study, refined, strlen(refined), "refined.yaml", NULL, 0, NULL), STATUS_OK);
+    struct member_file member[6], *read;
+    for (int m = 0; m < 6; m++) make_member(&member[m], &study, m);
+    struct study_file_orders orders;
+    assert_int_equal(study_orders_create(&orders, &study, member), STATUS_OK);
+    char path[] = "/tmp/shoal-study-XXXXXX";
+    close(mkstemp(path));
+    assert_int_equal(study_file_write(path, &study, member, &orders, "test"), STATUS_OK);
+
+    int file, variable;
+    assert_int_equal(nc_open(path, NC_NOWRITE, &file), NC_NOERR);
+    for (size_t g = 0; g < 2; g++) {
+        const double p = 2 + (double)g, e = 0.3 * pow(0.025, p);
+        NEAR(value_of(file, "group_member", g, 0, 0), 3 * (double)g, 0, 0);
+        for (size_t f = 0; f < 2; f++) {
+            NEAR(value_of(file, "order_nose", g, f, 0), p, 1e-6, 0);
+            NEAR(value_of(file, "order_speed", g, f, 0), p, 1e-6, 0);
+            NEAR(value_of(file, "order_before_speed", g, f, 0), p, 1e-6, 0);
+            assert_true(isnan(value_of(file, "order_before_nose", g, f, 0)));
+            NEAR(value_of(file, "limit_nose", g, f, 1), 5, 1e-9, 0);
+            NEAR(value_of(file, "index_tail", g, f, 0), 1.25 * sqrt(2) * e, 0, 1e-5);
+            NEAR(value_of(file, "index_speed", g, f, 0), 1.25 * e, 0, 1e-5);
+            // errors from coarse to fine: from the finest, and from the given value
+            NEAR(value_of(file, "error_com", g, f, 0), sqrt(2) * (0.3 * pow(0.1, p) - e), 0, 1e-9);
+            assert_true(isnan(value_of(file, "error_com", g, f, 2)));
+            NEAR(value_of(file, "error_speed", g, f, 2), e, 0, 1e-9);
+        }
+    }
+    NEAR(value_of(file, "level_value", 0, 0, 0), 0.1, 0, 0);
+    NEAR(value_of(file, "level_size", 2, 0, 0), 0.025, 0, 0);
+    char unit[8] = "";
+    assert_int_equal(nc_inq_varid(file, "index_mean_actuation_power", &variable), NC_NOERR);
+    assert_int_equal(nc_get_att_text(file, variable, "units", unit), NC_NOERR);
+    assert_string_equal(unit, "W");
+    nc_close(file);
+
+    assert_int_equal(study_file_read(path, &again, &read), STATUS_OK);
+    assert_string_equal(again.merged, study.merged);
+    for (int m = 0; m < 6; m++) {
+        assert_string_equal(read[m].status, "complete");
+        const int tail = member_file_quantity_number("tail"), steps = member_file_quantity_number("steps");
+        NEAR(member_file_value(&read[m], tail, 1, 1), member_file_value(&member[m], tail, 1, 1), 0, 0);
+        NEAR(member_file_value(&read[m], steps, 0, 0), member_file_value(&member[m], steps, 0, 0), 0, 0);
+        member_file_free(&member[m]);
+    }
+    // what is not whole is refused
+    assert_int_equal(nc_open(path, NC_WRITE, &file), NC_NOERR);
+    assert_int_equal(nc_redef(file), NC_NOERR);
+    assert_int_equal(nc_rename_var(file, 1, "state"), NC_NOERR);
+    nc_close(file);
+    struct case_values none;
+    struct member_file *nobody;
+    assert_int_equal(study_file_read(path, &none, &nobody), STATUS_FILE);
+    assert_non_null(strstr(status_message(), "not a whole study"));
+    unlink(path);
+    study_members_free(read, 6);
+    study_file_orders_free(&orders);
+    case_free(&study);
+    case_free(&again);
+}
+
+// ---- memory
+
+static const char small[] =
+    "format: 1\nname: small\ntime: {end: 0.02, shedding_interval: 0.02}\nfish: [{nodes: 4, sheet_points: 5}]\n"
+    "sweep: [{key: solver.rtol, values: [1e-3, 1e-4, 1e-5], refine: true}]\n";
+
+/* What fails: each with the case above and a folder. */
+struct attempt {
+    struct case_values study;
+    char folder[64];
+    FILE *nowhere;
+};
+typedef enum status attempt_function(const struct attempt *attempt);
+
+static enum status run_small(const struct attempt *attempt) {
+    const struct study_options options = {.folder = attempt->folder, .command = "test", .last = -1, .n_processes = 2};
+    return study_run(&attempt->study, &options, attempt->nowhere);
+}
+
+static enum status gather_small(const struct attempt *attempt) {
+    return study_gather(attempt->folder, "test", attempt->nowhere);
+}
+
+static enum status inform_of_small(const struct attempt *attempt) {
+    char path[80];
+    snprintf(path, sizeof path, "%s/study.nc", attempt->folder);
+    return study_info(path, attempt->nowhere);
+}
+
+static enum status write_jobs_of_small(const struct attempt *attempt) {
+    return study_slurm(&attempt->study, attempt->folder, 0, attempt->nowhere);
+}
+
+/* Let ever later allocations fail until all succeed. In the processes of members as many succeed again: a member may fail
+ * where the study does not. */
+static void fail_one_by_one(const struct attempt *attempt, attempt_function *function, const char *name, int least) {
+    int n_failed = 0;
+    for (int n = 0;; n += 1 + n / 30) {
+        const int n_before = n_live;
+        n_until_failure = n;
+        const enum status status = function(attempt);
+        const int ran_out = n_until_failure == -1;
+        n_until_failure = -1;
+        if (n_live != n_before) fail_msg("%s: with allocation %d failing %d are left", name, n, n_live - n_before);
+        if (status == STATUS_OK && !ran_out) break;
+        n_failed++;
+        if (status == STATUS_OK) continue;
+        if (status != STATUS_MEMORY && status != STATUS_SOLVER) {
+            fail_msg("%s: with allocation %d failing: %s", name, n, status_message());
+        }
+        assert_true(status_message()[0] != '\0');
+        assert_in_range(n, 0, 100000);
+    }
+    print_message("%s: %d failures\n", name, n_failed);
+    assert_true(n_failed >= least);
+}
+
+static void every_failing_allocation_of_a_study_is_reported_and_leaves_nothing(void **state) {
+    (void)state;
+    struct attempt attempt = {.folder = "/tmp/shoal-study-XXXXXX", .nowhere = fopen("/dev/null", "w")};
+    assert_non_null(mkdtemp(attempt.folder));
+    assert_int_equal(case_parse(&attempt.study, small, strlen(small), "small.yaml", NULL, 0, NULL), STATUS_OK);
+    fail_one_by_one(&attempt, run_small, "study_run", 50);
+    fail_one_by_one(&attempt, gather_small, "study_gather", 50);
+    fail_one_by_one(&attempt, inform_of_small, "study_info", 30);
+    fail_one_by_one(&attempt, write_jobs_of_small, "study_slurm", 1);
+    char command[128];
+    snprintf(command, sizeof command, "rm -r %s", attempt.folder);
+    assert_int_equal(system(command), 0);
+    fclose(attempt.nowhere);
+    case_free(&attempt.study);
+}
+
+static void quantities_of_a_case_are_those_of_a_study(void **state) {
+    (void)state;
+    for (int q = 0; q < SWEEP_N_QUANTITIES; q++) {
+        // the look-up would run beyond the last one
+        const struct member_file_quantity *const quantity =
+            member_file_quantity(member_file_quantity_number(sweep_quantities[q].name));
+        assert_non_null(quantity);
+        assert_int_equal(quantity->of_fish, sweep_quantities[q].of_fish);
+        assert_int_equal(quantity->of_xy, sweep_quantities[q].of_xy);
+    }
+    assert_string_equal(sweep_quantities[SWEEP_NOSE].name, "nose");
+    assert_string_equal(sweep_quantities[SWEEP_TAIL].name, "tail");
+}
+
+static void a_table_has_aligned_columns_and_no_blanks_at_the_end(void **state) {
+    (void)state;
+    struct study_table table;
+    assert_int_equal(study_table_create(&table, 2, 3), STATUS_OK);
+    study_table_set(&table, 0, 0, "a");
+    study_table_set(&table, 0, 1, "%s", "a text that is much too long for a cell of a table");
+    study_table_number(&table, 1, 0, "%.2f", 3.14159);
+    study_table_number(&table, 1, 1, "%.2f", NAN);
+    study_table_set(&table, 1, 2, "end");
+    char *text = NULL;
+    size_t size;
+    FILE *const stream = open_memstream(&text, &size);
+    study_table_print(&table, stream);
+    fclose(stream);
+    assert_string_equal(text,
+                        "   a  a text that is much too long fo\n"
+                        "3.14                                -  end\n");
+    free(text);
+    study_table_free(&table);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_power_of_the_size_gives_its_order_and_its_limit),
+        cmocka_unit_test(the_published_example_comes_out),
+        cmocka_unit_test(a_given_value_gives_the_order_with_two_levels_each),
+        cmocka_unit_test(levels_on_both_sides_of_a_given_value_oscillate),
+        cmocka_unit_test(what_is_not_asymptotic_is_objected_to),
+        cmocka_unit_test(orders_are_kept_in_study_nc),
+        cmocka_unit_test(every_failing_allocation_of_a_study_is_reported_and_leaves_nothing),
+        cmocka_unit_test(quantities_of_a_case_are_those_of_a_study),
+        cmocka_unit_test(a_table_has_aligned_columns_and_no_blanks_at_the_end),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

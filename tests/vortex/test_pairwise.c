@@ -1,0 +1,205 @@
+/* test_mutual.c: the pairs of tiles against every vortex at every other. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "school.h"
+#include "vortex/kernel.h"
+#include "vortex/pairwise.h"
+
+static int n_until_failure = -1;  // -1: never
+
+void *__real_malloc(size_t size);
+void *__wrap_malloc(size_t size);
+
+void *__wrap_malloc(size_t size) {
+    return n_until_failure < 0 || n_until_failure-- > 0 ? __real_malloc(size) : NULL;
+}
+
+enum { MOST = 3000, MOST_GROUPS = 4 };
+
+static struct { double x[MOST], y[MOST], circulation[MOST]; } cloud;
+
+static int scatter(void **state) {
+    (void)state;
+    struct setup random = {.seed = 5};
+    for (int i = 0; i < MOST; i++) {
+        cloud.x[i] = 3 * school_random(&random);
+        cloud.y[i] = school_random(&random);
+        cloud.circulation[i] = school_random(&random);
+    }
+    // two vortices at one place, next to each other and in different tiles
+    const int twins[2][2] = {{3, 4}, {5, 900}};
+    for (int k = 0; k < 2; k++) {
+        cloud.x[twins[k][0]] = cloud.x[twins[k][1]];
+        cloud.y[twins[k][0]] = cloud.y[twins[k][1]];
+    }
+    return 0;
+}
+
+// vortices of one smoothing that follow each other
+struct stretch {
+    int n;
+    double smoothing;
+};
+
+static int n_vortices(int n_groups, const struct stretch *group) {
+    int n = 0;
+    for (int k = 0; k < n_groups; k++) n += group[k].n;
+    return n;
+}
+
+// the first vortices of the cloud, sorted into groups
+static struct vortices grouped(int n_groups, const struct stretch *stretch, struct vortex_group *group) {
+    struct vortices vortices = {.x = cloud.x, .y = cloud.y, .circulation = cloud.circulation, .group = group};
+    for (int k = 0; k < n_groups; k++) {
+        group[k] = (struct vortex_group){{vortices.n, stretch[k].n}, stretch[k].smoothing};
+        vortices.n += stretch[k].n;
+    }
+    vortices.n_groups = n_groups;
+    return vortices;
+}
+
+// added to zero; the caller frees u, and v is behind it
+static double *velocity(int n_groups, const struct stretch *stretch, int threads) {
+    struct vortex_group group[MOST_GROUPS];
+    const struct vortices vortices = grouped(n_groups, stretch, group);
+    double *const u = calloc(2 * (size_t)vortices.n + 1, sizeof *u);
+    assert_non_null(u);
+    school_ok(pairwise_add_velocity(&vortices, threads, u, u + vortices.n));
+    return u;
+}
+
+static void compare(int n_groups, const struct stretch *group) {
+    const int n = n_vortices(n_groups, group);
+    double *const got = velocity(n_groups, group, 1);
+    for (int i = 0; i < n; i++) {
+        double u = 0, v = 0, size = 0;
+        for (int k = 0, j = 0; k < n_groups; k++) {
+            for (const int end = j + group[k].n; j < end; j++) {
+                struct kernel_values unit;
+                kernel_unit(1, cloud.x + i, cloud.y + i, cloud.x[j], cloud.y[j], group[k].smoothing, &unit);
+                u += cloud.circulation[j] * unit.u[0];
+                v += cloud.circulation[j] * unit.v[0];
+                size += fabs(cloud.circulation[j]) * hypot(unit.u[0], unit.v[0]);
+            }
+        }
+        // rounding of the terms, and of sums that grow like the root of their number
+        NEAR(got[i], u, 2e-15 * size, 0);
+        NEAR(got[n + i], v, 2e-15 * size, 0);
+    }
+    free(got);
+}
+
+static void velocities_are_those_of_all_vortices_at_all_others(void **state) {
+    (void)state;
+    const int n[] = {0, 1, 2, 7, 8, 9, 15, 16, 17, 127, 128, 129, 300, 1000};
+    for (size_t k = 0; k < sizeof n / sizeof *n; k++) {
+        for (int s = 0; s < 2; s++) compare(1, &(struct stretch){n[k], s ? 0.2 : 0});
+    }
+}
+
+static void every_group_has_its_own_smoothing(void **state) {
+    (void)state;
+    const struct stretch groups[][MOST_GROUPS] = {
+        {{30, 0.1}, {0, 0.5}, {200, 0.2}, {1, 0.3}},    // all different, one empty, one alone
+        {{150, 0.1}, {70, 0.2}, {33, 0.1}, {19, 0.2}},  // two smoothings that alternate
+        {{100, 0.1}, {100, 0.1}, {100, 0.1}, {9, 0}},   // one for all but a few
+        {{0, 0.1}, {0, 0.1}, {0, 0.2}, {0, 0.3}},       // no vortex at all
+    };
+    for (size_t k = 0; k < sizeof groups / sizeof *groups; k++) compare(MOST_GROUPS, groups[k]);
+}
+
+static void groups_of_one_smoothing_have_the_bits_of_one_group(void **state) {
+    (void)state;
+    const struct stretch three[] = {{100, 0.1}, {31, 0.1}, {200, 0.1}}, one = {331, 0.1};
+    double *const a = velocity(3, three, 1), *const b = velocity(1, &one, 1);
+    assert_memory_equal(a, b, 2 * 331 * sizeof *a);
+    free(a);
+    free(b);
+}
+
+static void vortices_of_one_smoothing_push_each_other_equally(void **state) {
+    (void)state;
+    const int n = 1000;
+    double *const u = velocity(1, &(struct stretch){n, 0.1}, 1), *const v = u + n;
+    double sum_u = 0, sum_v = 0, size = 0;
+    for (int i = 0; i < n; i++) {
+        sum_u += cloud.circulation[i] * u[i];
+        sum_v += cloud.circulation[i] * v[i];
+        size += fabs(cloud.circulation[i] * u[i]) + fabs(cloud.circulation[i] * v[i]);
+    }
+    assert_true(size > 100);
+    NEAR(sum_u, 0, 1e-14 * size, 0);
+    NEAR(sum_v, 0, 1e-14 * size, 0);
+    free(u);
+}
+
+static void threads_change_no_bit(void **state) {
+    (void)state;
+    const struct stretch groups[][2] = {{{1, 0.1}, {0, 0}}, {{300, 0.1}, {77, 0.2}}, {{3000, 0.1}, {0, 0}}};
+    for (size_t k = 0; k < sizeof groups / sizeof *groups; k++) {
+        const size_t size = 2 * (size_t)n_vortices(2, groups[k]) * sizeof(double);
+        double *const one = velocity(2, groups[k], 1);
+        for (int threads = 2; threads <= 5; threads++) {
+            double *const more = velocity(2, groups[k], threads);
+            assert_memory_equal(more, one, size);
+            free(more);
+        }
+        free(one);
+    }
+}
+
+static void velocity_is_added_to_what_is_there(void **state) {
+    (void)state;
+    enum { N = 20 };
+    const struct stretch group = {N, 0.1};
+    double u[N + 1], v[N + 1];
+    for (int i = 0; i <= N; i++) u[i] = v[i] = 100;
+    struct vortex_group all;
+    const struct vortices vortices = grouped(1, &group, &all);
+    school_ok(pairwise_add_velocity(&vortices, 1, u, v));
+    double *const alone = velocity(1, &group, 1);
+    for (int i = 0; i < N; i++) {
+        NEAR(u[i], 100 + alone[i], 0, 0);
+        NEAR(v[i], 100 + alone[N + i], 0, 0);
+    }
+    NEAR(u[N], 100, 0, 0);
+    NEAR(v[N], 100, 0, 0);
+    free(alone);
+}
+
+static void without_memory_nothing_is_added(void **state) {
+    (void)state;
+    enum { N = 20 };
+    const struct stretch group = {N, 0.1};
+    struct vortex_group all;
+    const struct vortices vortices = grouped(1, &group, &all);
+    int n_failures = 0;
+    for (int k = 0;; k++) {
+        double u[N] = {0}, v[N] = {0};
+        n_until_failure = k;
+        const enum status status = pairwise_add_velocity(&vortices, 1, u, v);
+        n_until_failure = -1;
+        if (status == STATUS_OK) break;
+        assert_int_equal(status, STATUS_MEMORY);
+        for (int i = 0; i < N; i++) {
+            NEAR(u[i], 0, 0, 0);
+            NEAR(v[i], 0, 0, 0);
+        }
+        n_failures++;
+    }
+    assert_int_equal(n_failures, 3);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(velocities_are_those_of_all_vortices_at_all_others),
+        cmocka_unit_test(every_group_has_its_own_smoothing),
+        cmocka_unit_test(groups_of_one_smoothing_have_the_bits_of_one_group),
+        cmocka_unit_test(vortices_of_one_smoothing_push_each_other_equally),
+        cmocka_unit_test(threads_change_no_bit),
+        cmocka_unit_test(velocity_is_added_to_what_is_there),
+        cmocka_unit_test(without_memory_nothing_is_added),
+    };
+    return cmocka_run_group_tests(tests, scatter, NULL);
+}

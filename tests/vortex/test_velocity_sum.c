@@ -1,0 +1,86 @@
+/* test_summation.c: the sum by trees against the sum of every vortex. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "near.h"
+#include "vortex/velocity_sum.h"
+
+enum { VORTICES = 4000, TARGETS = 500 };
+
+// rows of vortices, with two smoothings that alternate
+static void make(struct vortices *vortices) {
+    *vortices = (struct vortices){0};
+    for (int row = 0; row < VORTICES / 100; row++) {
+        assert_int_equal(vortices_append(vortices, 100, row % 3 == 0 ? 0.1 : 0.2), STATUS_OK);
+    }
+    for (int i = 0; i < vortices->n; i++) {
+        vortices->x[i] = 0.02 * (i % 100) + 3 * (i / 1000);
+        vortices->y[i] = 0.7 * (i / 100 % 10) + 0.1 * sin(0.3 * i);
+        vortices->circulation[i] = 0.01 * cos(0.1 * i);
+    }
+}
+
+struct result {
+    double x[TARGETS], y[TARGETS], value[5][TARGETS];
+};
+
+static struct induced at(struct result *result, int with_gradient) {
+    for (int i = 0; i < TARGETS; i++) {
+        result->x[i] = 0.025 * i;
+        result->y[i] = 3.3 + 3 * sin(i);
+        for (int k = 0; k < 5; k++) result->value[k][i] = 1;
+    }
+    double *const *const none = (double *[]){NULL, NULL, NULL};
+    double *const gradient[] = {result->value[2], result->value[3], result->value[4]};
+    double *const *const g = with_gradient ? gradient : none;
+    return (struct induced){TARGETS, result->x, result->y, result->value[0], result->value[1], g[0], g[1], g[2]};
+}
+
+static void trees_of_every_smoothing_add_up_to_the_direct_sum(void **state) {
+    (void)state;
+    struct vortices vortices;
+    struct velocity_sum *velocity_sum;
+    make(&vortices);
+    assert_int_equal(velocity_sum_create(&velocity_sum), STATUS_OK);
+    for (int with_gradient = 0; with_gradient < 2; with_gradient++) {
+        const double tolerance = 1e-6;
+        struct result got, want, threads;
+        struct induced targets = at(&want, with_gradient);
+        vortices_induce(&vortices, (struct range){0, vortices.n}, &targets);
+        targets = at(&got, with_gradient);
+        assert_int_equal(velocity_sum_induce(velocity_sum, &vortices, tolerance, 1, &targets), STATUS_OK);
+        // the velocity without cancellation is below 10 m/s, see the first assertion
+        double least = INFINITY, most = 0, error = 0;
+        for (int i = 0; i < TARGETS; i++) {
+            const double u = want.value[0][i] - 1, v = want.value[1][i] - 1;
+            least = fmin(least, hypot(u, v));
+            most = fmax(most, hypot(u, v));
+            error = fmax(error, hypot(got.value[0][i] - want.value[0][i], got.value[1][i] - want.value[1][i]));
+        }
+        assert_true(most > 0.01 && most < 10 && error > 0 && error < tolerance);
+        for (int k = 2; k < 5; k++) NEAR_ARRAY(TARGETS, got.value[k], want.value[k], 50 * tolerance, 0);
+        targets = at(&threads, with_gradient);
+        assert_int_equal(velocity_sum_induce(velocity_sum, &vortices, tolerance, 3, &targets), STATUS_OK);
+        assert_memory_equal(threads.value, got.value, sizeof got.value);
+    }
+    velocity_sum_free(velocity_sum);
+    vortices_free(&vortices);
+}
+
+static void the_tree_is_for_many_vortices_and_a_tolerance(void **state) {
+    (void)state;
+    const struct vortices few = {.n = 1600}, many = {.n = 12800};
+    assert_false(velocity_sum_by_tree(&few, 1600, 1e-7));
+    assert_true(velocity_sum_by_tree(&many, 12800, 1e-7));
+    assert_true(velocity_sum_by_tree(&many, 1728, 1e-7));
+    assert_false(velocity_sum_by_tree(&many, 27, 1e-7));
+    assert_false(velocity_sum_by_tree(&many, 12800, 0));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(trees_of_every_smoothing_add_up_to_the_direct_sum),
+        cmocka_unit_test(the_tree_is_for_many_vortices_and_a_tolerance),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
