@@ -73,7 +73,7 @@ static void stir_wake(struct setup *setup, const struct fish *fish, struct wake 
     for (int i = 0; i < 6; i++) {
         const double along = fish->length * (1.6 - 0.1 * i), across = 0.2 * fish->length * school_random(setup);
         // the oldest one is fading
-        const double age = i == 0 ? setup->school->lifetime - setup->school->fade / 2 : 0.5 * setup->school->lifetime;
+        const double age = i == 0 ? setup->school->lifetime - setup->school->decay / 2 : 0.5 * setup->school->lifetime;
         school_ok(wake_release(wake, fish->start_position[0] + along * back[0] - across * back[1],
                                fish->start_position[1] + along * back[1] + across * back[0], 0.1 * school_random(setup),
                                setup->state->t - age));
@@ -82,7 +82,7 @@ static void stir_wake(struct setup *setup, const struct fish *fish, struct wake 
         wake->u_before[i] = school_random(setup);
         wake->v_before[i] = school_random(setup);
     }
-    wake->dissipated = 0.1 * school_random(setup);
+    wake->removed = 0.1 * school_random(setup);
     wake->shed_before = 0.3 * school_random(setup);
     wake->slip[0] = school_random(setup);
     wake->slip[1] = school_random(setup);

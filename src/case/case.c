@@ -223,7 +223,7 @@ static char *stem(const char *path) {
 
 static enum status derive_all(struct case_values *values, const char *origin) {
     derive(&values->time.output_interval, 10 * values->time.shedding_interval);
-    derive(&values->wake.fade, values->wake.lifetime / 10);
+    derive(&values->wake.decay, values->wake.lifetime / 10);
     derive(&values->wake.tolerance, values->solver.rtol / 100);
     derive(&values->output.wake_interval, values->time.output_interval);
     if (!values->name && !(values->name = stem(origin))) return no_memory();

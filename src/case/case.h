@@ -16,7 +16,7 @@
 enum shedding { SHEDDING_CONTINUOUS, SHEDDING_IMPULSIVE };
 enum kutta { KUTTA_EDGE, KUTTA_RATE };
 enum collocation { COLLOCATION_CHEBYSHEV, COLLOCATION_MIDPOINT };
-enum dissipated { DISSIPATED_RETAINED, DISSIPATED_DROPPED };
+enum removed_circulation { REMOVED_RETAINED, REMOVED_DROPPED };
 enum method {
     METHOD_IDA,
     METHOD_EULER,
@@ -31,7 +31,7 @@ enum profile { PROFILE_JOUKOWSKI, PROFILE_UNIFORM, PROFILE_TABLE };
 enum second_moment { SECOND_MOMENT_ELLIPSE, SECOND_MOMENT_PUBLISHED };
 enum drag_law { DRAG_QUADRATIC, DRAG_LINEAR_QUADRATIC };
 enum extent { EXTENT_THICKNESS, EXTENT_WIDTH };
-enum driven { DRIVEN_NONE, DRIVEN_HEAD, DRIVEN_ALL };
+enum prescribed { PRESCRIBED_NONE, PRESCRIBED_HEAD, PRESCRIBED_ALL };
 enum control_law { CONTROL_NONE, CONTROL_HEADING, CONTROL_AVERAGED_HEADING };
 enum preset { PRESET_NONE, PRESET_PUBLISHED };
 
@@ -58,12 +58,12 @@ struct case_fluid {
 struct case_wake {
     double smoothing, sheet_smoothing; /* fractions of the body length */
     double lifetime;                   /* s */
-    double fade;                       /* s; default a tenth of the lifetime */
+    double decay;                      /* s; default a tenth of the lifetime */
     enum shedding shedding;
     enum kutta kutta;
     double kutta_ramp; /* s */
     enum collocation collocation;
-    enum dissipated dissipated_circulation;
+    enum removed_circulation dissipated_circulation;
     double tolerance; /* lengths per beat; default a hundredth of solver.rtol; 0: exact */
 };
 
@@ -109,7 +109,7 @@ struct case_drag {
 };
 
 struct case_motion {
-    enum driven driven;
+    enum prescribed prescribed;
     double speed;              /* m s-1; default start.speed */
     double heave;              /* m */
     double pitch, pitch_phase; /* degree */
@@ -124,7 +124,7 @@ struct case_control {
     struct case_list desired_heading; /* pairs (s, degree); one number in the case becomes one pair (0, degree);
                                              default one pair (0, start.heading) */
     struct case_list waypoints;       /* pairs (m, m) */
-    double arrival;                   /* body lengths */
+    double acceptance_radius;         /* body lengths */
     double gain, limit, feedforward;
     double rate; /* s-1 */
 };

@@ -84,8 +84,8 @@ static void check_solver(const struct check *check) {
 static void check_wake(const struct check *check) {
     const struct case_wake *const wake = &check->values->wake;
     const struct case_time *const time = &check->values->time;
-    if (wake->fade > wake->lifetime) {
-        complain(check, "wake.fade", "%g s is longer than wake.lifetime, %g s", wake->fade, wake->lifetime);
+    if (wake->decay > wake->lifetime) {
+        complain(check, "wake.fade", "%g s is longer than wake.lifetime, %g s", wake->decay, wake->lifetime);
     }
     if (wake->lifetime < time->shedding_interval) {
         complain(check, "wake.lifetime", "%g s is less than time.shedding_interval, %g s", wake->lifetime,
@@ -152,7 +152,7 @@ static void check_motion(const struct check *check) {
     const struct case_motion *const motion = &check->values->fish[check->fish].motion;
     static const char not_driven[] = "has no effect while motion.driven is none; set it to head or all";
     static const char constant[] = "has no effect while motion.frequency is 0";
-    if (motion->driven == DRIVEN_NONE) {
+    if (motion->prescribed == PRESCRIBED_NONE) {
         if (fabs(motion->heave) > 0) complain(check, "fish.motion.heave", not_driven);
         if (fabs(motion->pitch) > 0) complain(check, "fish.motion.pitch", not_driven);
     } else {

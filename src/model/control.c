@@ -107,7 +107,7 @@ int control_event(const struct fish *fish, struct control_memory *memory, double
     while (steers_to_waypoint(fish, memory)) {
         const double away[2] = {control->waypoint_x[memory->waypoint] - y[fish->at.x],
                                 control->waypoint_y[memory->waypoint] - y[fish->at.y]};
-        if (hypot(away[0], away[1]) > control->arrival) break;
+        if (hypot(away[0], away[1]) > control->acceptance_radius) break;
         // after the last waypoint the course of the last leg is held
         const int before = memory->waypoint - 1;
         const double from[2] = {before >= 0 ? control->waypoint_x[before] : fish->start_position[0],

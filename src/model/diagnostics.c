@@ -40,9 +40,9 @@ static double driving_power(const struct residual *residual, int f, const double
     const struct fish *fish = &residual->school->fish[f];
     const int tail = fish->n_nodes - 1;
     double power = fish->load_tip[0] * y[fish->at.vx + tail] + fish->load_tip[1] * y[fish->at.vy + tail];
-    if (fish->motion.driven == DRIVEN_NONE) return power;
+    if (fish->motion.prescribed == PRESCRIBED_NONE) return power;
     residual_balance(residual, f, y, scratch);
-    for (int k = 0; k < fish_n_driven(fish); k++) {
+    for (int k = 0; k < fish_n_prescribed(fish); k++) {
         power += scratch[fish->at.ax + k] * y[fish->at.vx + k] + scratch[fish->at.ay + k] * y[fish->at.vy + k];
     }
     return power;
@@ -244,7 +244,7 @@ static double total_circulation(const struct residual *residual, const struct st
         const struct wake *wake = &state->wake[f];
         total += bound_sheet_circulation(fish, state->y) + (state->y[fish->at.circulation] - wake->shed_before);
         for (int i = 0; i < wake->n_vortex; i++) total += wake->circulation[i];
-        if (residual->school->dissipated == DISSIPATED_RETAINED) total += wake->dissipated;
+        if (residual->school->removed == REMOVED_RETAINED) total += wake->removed;
     }
     return total;
 }

@@ -70,7 +70,7 @@ static enum status doubles(double **values, int n) {
 static enum status fish_allocate(struct fish *fish) {
     TRY(doubles(&fish->arc, fish->n_nodes));
     TRY(doubles(&fish->mass, fish->n_nodes));
-    double **const per_edge[] = {&fish->height,        &fish->width,           &fish->axial_stiffness,
+    double **const per_edge[] = {&fish->thickness,     &fish->depth,           &fish->axial_stiffness,
                                  &fish->axial_damping, &fish->drag_tangential, &fish->drag_normal,
                                  &fish->added_mass};
     for (size_t i = 0; i < sizeof per_edge / sizeof *per_edge; i++) TRY(doubles(per_edge[i], fish->n_edges));
@@ -93,13 +93,13 @@ static void shape_edges(struct fish *fish, const struct case_fish *from) {
         // both tips are sharp, however the last arc coordinate is rounded
         const double radius =
             k + 1 < fish->n_edges ? joukowski_half_thickness(fish->arc[k + 1], fish->length, from->body.thickness) : 0;
-        fish->width[k] = from->body.width * fish->length;
+        fish->depth[k] = from->body.width * fish->length;
         switch (from->body.profile) {
-            case PROFILE_JOUKOWSKI: fish->height[k] = radius_before + radius; break;
-            case PROFILE_UNIFORM: fish->height[k] = from->body.thickness * fish->length; break;
+            case PROFILE_JOUKOWSKI: fish->thickness[k] = radius_before + radius; break;
+            case PROFILE_UNIFORM: fish->thickness[k] = from->body.thickness * fish->length; break;
             case PROFILE_TABLE:
-                fish->height[k] = from->body.h.value[k];
-                fish->width[k] = from->body.w.value[k];
+                fish->thickness[k] = from->body.h.value[k];
+                fish->depth[k] = from->body.w.value[k];
                 break;
         }
         radius_before = radius;
@@ -112,7 +112,7 @@ static void weigh_body(struct fish *fish, const struct case_fish *from) {
     const double reference = fish->length / (from->reference_nodes - 1), refinement = reference / fish->edge_length;
     double moment_before = 0;
     for (int k = 0; k < fish->n_edges; k++) {
-        const double h = fish->height[k], w = fish->width[k], area = pi * h * w / 4;
+        const double h = fish->thickness[k], w = fish->depth[k], area = pi * h * w / 4;
         const double edge_mass = body->density * area * fish->edge_length;
         fish->mass[k] += edge_mass / 2;
         fish->mass[k + 1] += edge_mass / 2;
@@ -148,7 +148,7 @@ static void set_wave(struct fish *fish, const struct case_fish *from) {
 static void set_drag(struct fish *fish, const struct case_fish *from, double density) {
     const struct case_drag *drag = &from->drag;
     for (int k = 0; k < fish->n_edges; k++) {
-        const double h = fish->height[k], w = fish->width[k], l = fish->edge_length;
+        const double h = fish->thickness[k], w = fish->depth[k], l = fish->edge_length;
         const double across = drag->extent == EXTENT_WIDTH ? w : h;
         fish->drag_tangential[k] = density * pi * drag->tangential * l * (h + w) / 8;
         fish->drag_normal[k] = density * drag->normal * l * across / 2;
@@ -184,7 +184,7 @@ static void set_motion(struct fish *fish, const struct case_fish *from) {
     fish->start_speed = from->start_speed;
     fish->load_tip[0] = from->load_tip[0];
     fish->load_tip[1] = from->load_tip[1];
-    fish->motion = (struct motion){.driven = from->motion.driven,
+    fish->motion = (struct motion){.prescribed = from->motion.prescribed,
                                    .speed = from->motion.speed,
                                    .heave = from->motion.heave,
                                    .pitch = angle_radians(from->motion.pitch),
@@ -192,7 +192,7 @@ static void set_motion(struct fish *fish, const struct case_fish *from) {
                                    .omega = 2 * pi * from->motion.frequency,
                                    .phase = angle_radians(from->motion.phase),
                                    .pivot = from->motion.pivot * from->length};
-    const int given = fish->motion.driven != DRIVEN_NONE && from->motion.frequency > 0;
+    const int given = fish->motion.prescribed != PRESCRIBED_NONE && from->motion.frequency > 0;
     fish->frequency = given ? from->motion.frequency : from->wave.frequency;
     fish->period = fish->frequency > 0 ? 1 / fish->frequency : 0;
 }
@@ -206,7 +206,7 @@ static enum status set_control(struct fish *fish, const struct case_fish *from, 
     to->limit = control->limit;
     to->feedforward = control->feedforward;
     to->rate = control->rate;
-    to->arrival = control->arrival * fish->length;
+    to->acceptance_radius = control->acceptance_radius * fish->length;
     to->n_headings = control->desired_heading.n;
     TRY(doubles(&to->heading_time, to->n_headings));
     TRY(doubles(&to->heading, to->n_headings));
@@ -278,11 +278,11 @@ static void set_fluid(struct school *school, const struct case_values *values) {
     school->gust_omega = 2 * pi * values->fluid.gust_frequency;
     school->interval = values->time.shedding_interval;
     school->lifetime = values->wake.lifetime;
-    school->fade = values->wake.fade;
+    school->decay = values->wake.decay;
     school->shedding = values->wake.shedding;
     school->kutta = values->wake.kutta;
     school->kutta_ramp = values->wake.kutta_ramp;
-    school->dissipated = values->wake.dissipated_circulation;
+    school->removed = values->wake.dissipated_circulation;
     school->wake_tolerance = values->wake.tolerance;
     school->rtol = values->solver.rtol;
     school->threads = values->solver.threads;
@@ -345,8 +345,8 @@ void fish_school_free(struct school *school) {
         void *const owned[] = {fish->name,
                                fish->arc,
                                fish->mass,
-                               fish->height,
-                               fish->width,
+                               fish->thickness,
+                               fish->depth,
                                fish->axial_stiffness,
                                fish->axial_damping,
                                fish->bending_stiffness,
@@ -376,17 +376,17 @@ double fish_rate(const struct school *school, const struct fish *fish) {
     return speed > 0 ? speed / fish->length : 1;
 }
 
-int fish_n_driven(const struct fish *fish) {
-    switch (fish->motion.driven) {
-        case DRIVEN_NONE: return 0;
-        case DRIVEN_HEAD: return 2;
-        case DRIVEN_ALL: return fish->n_nodes;
+int fish_n_prescribed(const struct fish *fish) {
+    switch (fish->motion.prescribed) {
+        case PRESCRIBED_NONE: return 0;
+        case PRESCRIBED_HEAD: return 2;
+        case PRESCRIBED_ALL: return fish->n_nodes;
     }
     return 0;
 }
 
-void fish_driven_node(const struct fish *fish, int k, double t, double position[2], double velocity[2],
-                      double acceleration[2]) {
+void fish_prescribed_node(const struct fish *fish, int k, double t, double position[2], double velocity[2],
+                          double acceleration[2]) {
     const struct motion *motion = &fish->motion;
     const double ahead[2] = {cos(fish->start_heading), sin(fish->start_heading)}, left[2] = {-ahead[1], ahead[0]};
     const double omega = motion->omega;
@@ -406,10 +406,10 @@ void fish_driven_node(const struct fish *fish, int k, double t, double position[
     }
 }
 
-void fish_drive(const struct fish *fish, int n, double t, double *y) {
+void fish_prescribe(const struct fish *fish, int n, double t, double *y) {
     for (int k = 0; k < n; k++) {
         double position[2], velocity[2], acceleration[2];
-        fish_driven_node(fish, k, t, position, velocity, acceleration);
+        fish_prescribed_node(fish, k, t, position, velocity, acceleration);
         y[fish->at.x + k] = position[0];
         y[fish->at.y + k] = position[1];
         y[fish->at.vx + k] = velocity[0];
@@ -419,9 +419,9 @@ void fish_drive(const struct fish *fish, int n, double t, double *y) {
 
 void fish_start(const struct fish *fish, double *y) {
     double *const x = y + fish->at.x, *const z = y + fish->at.y;
-    if (fish->motion.driven != DRIVEN_NONE) {
+    if (fish->motion.prescribed != PRESCRIBED_NONE) {
         // the free nodes behind a driven head start with its rigid motion
-        fish_drive(fish, fish->n_nodes, 0, y);
+        fish_prescribe(fish, fish->n_nodes, 0, y);
         return;
     }
     // the bias of a controlled fish is not known yet: its pose is that of zero bias
@@ -477,7 +477,7 @@ static double gap(int n, const double *x, double margin, int m, const double *y,
 
 static double half_height(const struct fish *fish) {
     double most = 0;
-    for (int k = 0; k < fish->n_edges; k++) most = fmax(most, fish->height[k] / 2);
+    for (int k = 0; k < fish->n_edges; k++) most = fmax(most, fish->thickness[k] / 2);
     return most;
 }
 
@@ -493,7 +493,7 @@ double fish_distance(const struct fish *a, const struct fish *b, const double *y
         const double p[2] = {y[a->at.x + i], y[a->at.y + i]}, q[2] = {y[a->at.x + i + 1], y[a->at.y + i + 1]};
         for (int j = 0; j < b->n_edges; j++) {
             const double r[2] = {y[b->at.x + j], y[b->at.y + j]}, s[2] = {y[b->at.x + j + 1], y[b->at.y + j + 1]};
-            least = fmin(least, segment_to_segment(p, q, r, s) - (a->height[i] + b->height[j]) / 2);
+            least = fmin(least, segment_to_segment(p, q, r, s) - (a->thickness[i] + b->thickness[j]) / 2);
         }
     }
     return fmax(0, least);

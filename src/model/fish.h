@@ -37,7 +37,7 @@ struct layout {
 
 /* A straight rigid motion given in time: doc/model.md, section 5. Angles in rad. */
 struct motion {
-    enum driven driven;
+    enum prescribed prescribed;
     double speed;              /* m s-1 */
     double heave;              /* m */
     double pitch, pitch_phase; /* rad */
@@ -55,7 +55,7 @@ struct control_law_data {
     double *heading;                 /* rad                                         (n_headings) */
     int n_waypoints;                 /* visited in order; replace the table where there are any */
     double *waypoint_x, *waypoint_y; /* m                                        (n_waypoints) */
-    double arrival;                  /* m */
+    double acceptance_radius;        /* m */
     double torque_scale;             /* N m: what the feedforward moment is divided by */
 };
 
@@ -72,8 +72,8 @@ struct fish {
 
     double *arc;               /* arc coordinate of the nodes, m                          (n_nodes) */
     double *mass;              /* kg                                                      (n_nodes) */
-    double *height;            /* thickness across the plane of motion h, m               (n_edges) */
-    double *width;             /* extent out of that plane w, m                           (n_edges) */
+    double *thickness;         /* thickness across the plane of motion h, m               (n_edges) */
+    double *depth;             /* extent out of that plane w, m                           (n_edges) */
     double *axial_stiffness;   /* E A, N                                         (n_edges) */
     double *axial_damping;     /* d_s, kg s-1                                    (n_edges) */
     double *bending_stiffness; /* E I, N m2                                      (n_joints) */
@@ -115,12 +115,12 @@ struct school {
     double velocity[2], shear;  /* m s-1, s-1 */
     double gust[2], gust_omega; /* m s-1 in x and y, rad s-1 */
 
-    double interval;       /* between two events, s */
-    double lifetime, fade; /* of a free vortex, s */
+    double interval;        /* between two events, s */
+    double lifetime, decay; /* of a free vortex, s */
     enum shedding shedding;
     enum kutta kutta;
     double kutta_ramp; /* s */
-    enum dissipated dissipated;
+    enum removed_circulation removed;
     double wake_tolerance; /* error of the velocity of the wakes at the bodies, lengths per beat; 0: none */
 
     double rtol;
@@ -138,18 +138,18 @@ void fish_school_free(struct school *school);
 double fish_mean(const struct stencil *point, const double *value);
 
 /* The number of nodes of the fish, from the nose on, whose motion is given: 0, 2 or all. */
-int fish_n_driven(const struct fish *fish);
+int fish_n_prescribed(const struct fish *fish);
 
 /* Its beats per second, or those of its driven motion; where it has none, the lengths per second at which it, or the
  * stream, goes; 1 where nothing moves. With the length it gives the scale of velocities. */
 double fish_rate(const struct school *school, const struct fish *fish);
 
 /* Position, velocity, acceleration of node k of a driven fish at time t; each an array of x and y. */
-void fish_driven_node(const struct fish *fish, int k, double t, double position[2], double velocity[2],
-                      double acceleration[2]);
+void fish_prescribed_node(const struct fish *fish, int k, double t, double position[2], double velocity[2],
+                          double acceleration[2]);
 
 /* Write position and velocity that the first n nodes of a driven fish have at time t into the vector of all unknowns. */
-void fish_drive(const struct fish *fish, int n, double t, double *y);
+void fish_prescribe(const struct fish *fish, int n, double t, double *y);
 
 /* Write nose to tail positions and velocities of the start into the vector of all unknowns: doc/model.md, 4 and 5. */
 void fish_start(const struct fish *fish, double *y);

@@ -121,8 +121,8 @@ double residual_shed_rate(const struct residual *residual, int f, double t, cons
     return law_of(residual) == BOUND_SHEET_RATE ? residual_kutta_rate(residual, f, t, y) : 0;
 }
 
-double residual_dissipated(const struct residual *residual, int f) {
-    return residual->school->dissipated == DISSIPATED_DROPPED ? residual->state->wake[f].dissipated : 0;
+double residual_removed(const struct residual *residual, int f) {
+    return residual->school->removed == REMOVED_DROPPED ? residual->state->wake[f].removed : 0;
 }
 
 // the moment of the flow matters to a law with feedforward only
@@ -145,9 +145,9 @@ void residual_muscle(struct residual *residual, int f, double t, const double *y
 
 // the rows of a node whose motion is given: its place, velocity and acceleration are the given ones
 static void drive(const struct fish *fish, double t, const double *y, double *value) {
-    for (int k = 0; k < fish_n_driven(fish); k++) {
+    for (int k = 0; k < fish_n_prescribed(fish); k++) {
         double position[2], velocity[2], acceleration[2];
-        fish_driven_node(fish, k, t, position, velocity, acceleration);
+        fish_prescribed_node(fish, k, t, position, velocity, acceleration);
         value[fish->at.x + k] = y[fish->at.x + k] - position[0];
         value[fish->at.y + k] = y[fish->at.y + k] - position[1];
         value[fish->at.vx + k] = y[fish->at.vx + k] - velocity[0];
@@ -193,7 +193,7 @@ static void evaluate_fish(struct residual *residual, int f, double t, const doub
     }
     drive(fish, t, y, value);
     // no penetration, Kelvin, Kutta
-    bound_sheet_residual(fish, residual_dissipated(residual, f), u, v, y, value);
+    bound_sheet_residual(fish, residual_removed(residual, f), u, v, y, value);
     bound_sheet_kutta_residual(fish, law_of(residual), ramp_value(t, school->kutta_ramp), u, v, y, yp, value);
     // the control law
     const double tau = residual_moment(residual, f, y);
@@ -324,7 +324,7 @@ void residual_mask(const struct residual *residual, struct jacobian *jacobian) {
         const struct fish *fish = &residual->school->fish[f];
         for (int row = fish->at.x; row < fish->at.end; row++) {
             const struct unknown_place place = residual_place(residual->school, row);
-            const int driven = place.kind <= UNKNOWN_AY && place.index < fish_n_driven(fish);
+            const int driven = place.kind <= UNKNOWN_AY && place.index < fish_n_prescribed(fish);
             sparse_mask(jacobian->own[f], row, driven);
         }
     }
@@ -356,7 +356,7 @@ struct unknown_place residual_place(const struct school *school, int i) {
 void residual_kinds(const struct residual *residual, double *kind) {
     for (int i = 0; i < residual->school->n_unknowns; i++) {
         const struct unknown_place place = residual_place(residual->school, i);
-        const int driven = place.index < fish_n_driven(&residual->school->fish[place.fish]);
+        const int driven = place.index < fish_n_prescribed(&residual->school->fish[place.fish]);
         kind[i] = 0;
         if (place.kind <= UNKNOWN_VY && !driven) kind[i] = 1;
         if (place.kind == UNKNOWN_CIRCULATION && !residual_shed_is_algebraic(residual)) kind[i] = 1;

@@ -60,8 +60,8 @@ enum status wake_release(struct wake *wake, double x, double y, double circulati
 }
 
 double wake_strength(const struct school *school, double age) {
-    if (school->fade <= 0) return 1;
-    return 1 - ramp_step((age - (school->lifetime - school->fade)) / school->fade);
+    if (school->decay <= 0) return 1;
+    return 1 - ramp_step((age - (school->lifetime - school->decay)) / school->decay);
 }
 
 static double along_path(double x, double u, double u_before, double tau, double interval) {
@@ -77,7 +77,7 @@ void wake_at(const struct wake *wake, const struct school *school, double t, dou
         strength[i] = wake->circulation[i];
     }
     // the oldest ones fade, linearly in time inside an interval
-    for (int i = 0; i < wake->n_vortex && t + school->interval - wake->birth[i] > school->lifetime - school->fade;
+    for (int i = 0; i < wake->n_vortex && t + school->interval - wake->birth[i] > school->lifetime - school->decay;
          i++) {
         const double now = wake_strength(school, t - wake->birth[i]);
         const double next = wake_strength(school, t + school->interval - wake->birth[i]);
@@ -97,13 +97,13 @@ int wake_remove_old(struct wake *wake, const struct school *school, double t) {
     int n_old = 0;
     while (n_old < wake->n_vortex && t - wake->birth[n_old] > school->lifetime - school->interval / 2) n_old++;
     if (n_old == 0) return 0;
-    for (int i = 0; i < n_old; i++) wake->dissipated += wake->circulation[i];
+    for (int i = 0; i < n_old; i++) wake->removed += wake->circulation[i];
     wake->n_vortex -= n_old;
     double **array[N_ARRAYS];
     list_arrays(wake, array);
     for (int i = 0; i < N_ARRAYS; i++)
         memmove(*array[i], *array[i] + n_old, (size_t)wake->n_vortex * sizeof **array[i]);
-    return school->fade <= 0;
+    return school->decay <= 0;
 }
 
 void wake_set_velocity(struct wake *wake, const double *u, const double *v, int n_new) {

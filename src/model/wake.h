@@ -22,7 +22,7 @@ struct wake {
     double *u_before, *v_before; /* and at the event before; W on the first interval  (n_vortex) */
     double *circulation;         /* m2 s-1, constant once released                    (n_vortex) */
     double *birth;               /* time of release, s                                (n_vortex) */
-    double dissipated;           /* circulation of all vortices removed so far, m2 s-1 */
+    double removed;              /* circulation of all vortices removed so far, m2 s-1 */
     double shed_before;          /* circulation shed up to the last event, m2 s-1 */
     double slip[2];              /* velocity of the fluid past the tail at the last event, m s-1 */
 };

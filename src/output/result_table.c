@@ -106,14 +106,14 @@ const struct result_variable result_table[] = {
     {"sheet_smoothing",       {FISH},                 RESULT_REAL,    "m",       "smoothing radius of the bound vortices seen from elsewhere", IN_FISH(sheet_smoothing)},
     {"node_arc",              {FISH, NODE},           RESULT_REAL,    "m",       "arc coordinate of the nodes, from the nose", ARRAY_IN_FISH(arc)},
     {"node_mass",             {FISH, NODE},           RESULT_REAL,    "kg",      "mass of the nodes", ARRAY_IN_FISH(mass)},
-    {"edge_height",           {FISH, EDGE},           RESULT_REAL,    "m",       "thickness of the body in the plane of motion", ARRAY_IN_FISH(height)},
-    {"edge_width",            {FISH, EDGE},           RESULT_REAL,    "m",       "extent of the body out of the plane of motion", ARRAY_IN_FISH(width)},
+    {"edge_height",           {FISH, EDGE},           RESULT_REAL,    "m",       "thickness of the body in the plane of motion", ARRAY_IN_FISH(thickness)},
+    {"edge_width",            {FISH, EDGE},           RESULT_REAL,    "m",       "extent of the body out of the plane of motion", ARRAY_IN_FISH(depth)},
     {"sheet_arc",             {FISH, SHEET},          RESULT_REAL,    "m",       "arc coordinate of the bound vortices, from the nose", GATHERED(gather_sheet_arc)},
     {"sheet_weight",          {FISH, SHEET},          RESULT_REAL,    "m",       "length of body that a bound vortex stands for: circulation over strength", ARRAY_IN_FISH(sheet_weight)},
     {"fluid_density",         {NONE},                 RESULT_REAL,    "kg m-3",  "density of the fluid", IN_SCHOOL(density)},
     {"shedding_interval",     {NONE},                 RESULT_REAL,    "s",       "time between the release of two vortices", IN_SCHOOL(interval)},
     {"wake_lifetime",         {NONE},                 RESULT_REAL,    "s",       "age at which a free vortex is removed", IN_SCHOOL(lifetime)},
-    {"wake_fade",             {NONE},                 RESULT_REAL,    "s",       "last part of its life in which a free vortex fades out", IN_SCHOOL(fade)},
+    {"wake_fade",             {NONE},                 RESULT_REAL,    "s",       "last part of its life in which a free vortex fades out", IN_SCHOOL(decay)},
 
     // the bodies and the fluid
     {"time",                  {TIME},                 RESULT_REAL,    "s",       "time", IN_STATE(t)},

@@ -140,7 +140,7 @@ enum status event_next(struct state *state, struct residual *residual, struct in
     for (int f = 0; f < school->n_fish; f++) {
         const int n_before = state->wake[f].n_vortex;
         const int lost_strength = wake_remove_old(&state->wake[f], school, state->t);
-        const int dropped = school->dissipated == DISSIPATED_DROPPED && state->wake[f].n_vortex != n_before;
+        const int dropped = school->removed == REMOVED_DROPPED && state->wake[f].n_vortex != n_before;
         if (lost_strength || dropped) leave(state, residual, jumped);
     }
     return settle(state, residual, consistent, 1, jumped);

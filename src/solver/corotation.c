@@ -141,7 +141,7 @@ void corotation_set_current(struct corotation *corotation, const double *y) {
     for (int f = 0; f < corotation->n_fish; f++) {
         struct body *body = &corotation->body[f];
         const struct fish *fish = body->fish;
-        if (fish_n_driven(fish) > 0) continue;
+        if (fish_n_prescribed(fish) > 0) continue;
         const double *const place = y + fish->at.x;
         body->moved = 1;
         find_turns(body, place);

@@ -156,9 +156,9 @@ static void assemble(struct ode_rhs *d, const double *y, double *rhs) {
         const double shed = edge ? before : y[fish->at.circulation];
         // right-hand side: what the equations are left with where nothing unknown has strength
         double *const value = residual->scratch;
-        bound_sheet_residual(fish, residual_dissipated(residual, f), u, v, d->still, value);
+        bound_sheet_residual(fish, residual_removed(residual, f), u, v, d->still, value);
         for (int c = 0; c < fish->n_control; c++) rhs[row + c] = -value[fish->at.gamma + c];
-        rhs[row + fish->n_control] = residual_dissipated(residual, f) - shed;
+        rhs[row + fish->n_control] = residual_removed(residual, f) - shed;
         for (int j = 0; j < fish->n_sheet; j++) {
             d->value[(long)(row + j) * d->n + row + fish->n_control] = fish->sheet_weight[j];
         }
@@ -250,10 +250,10 @@ static void assemble_mass(const struct fish *fish, const double *y, double *band
 
 // rows whose acceleration is given become the identity
 static void fix_given(const struct fish *fish, double t, double *band, double *force) {
-    const int n = 2 * fish->n_nodes, n_given = 2 * fish_n_driven(fish);
+    const int n = 2 * fish->n_nodes, n_given = 2 * fish_n_prescribed(fish);
     for (int row = 0; row < n_given; row++) {
         double position[2], velocity[2], acceleration[2];
-        fish_driven_node(fish, row / 2, t, position, velocity, acceleration);
+        fish_prescribed_node(fish, row / 2, t, position, velocity, acceleration);
         const double given = acceleration[row % 2];
         for (int below = row + 1; below < n && below < row + BANDWIDTH; below++) {
             if (below >= n_given) force[below] -= band[BANDWIDTH * below + below - row] * given;
@@ -320,7 +320,8 @@ static void steer(struct ode_rhs *d, int f, double t, double *y) {
 
 enum status ode_rhs_rates(struct ode_rhs *d, double t, double *y, double *yp) {
     const struct school *school = d->residual->school;
-    for (int f = 0; f < school->n_fish; f++) fish_drive(&school->fish[f], fish_n_driven(&school->fish[f]), t, y);
+    for (int f = 0; f < school->n_fish; f++)
+        fish_prescribe(&school->fish[f], fish_n_prescribed(&school->fish[f]), t, y);
     for (int i = 0; i < school->n_unknowns; i++) {
         if (!isfinite(y[i])) return status_fail(STATUS_RETRY, "unknown %d is not finite at t = %g s", i, t);
     }

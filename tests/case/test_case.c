@@ -128,7 +128,7 @@ static void the_defaults_are_those_of_the_reference(void **state) {
     assert_int_equal(s.wake.shedding, SHEDDING_CONTINUOUS);
     assert_int_equal(s.wake.kutta, KUTTA_EDGE);
     assert_int_equal(s.wake.collocation, COLLOCATION_CHEBYSHEV);
-    assert_int_equal(s.wake.dissipated_circulation, DISSIPATED_RETAINED);
+    assert_int_equal(s.wake.dissipated_circulation, REMOVED_RETAINED);
     assert_int_equal(s.solver.method, METHOD_IDA);
     NEAR(s.solver.rtol, 1e-5, 0, 0);
     assert_int_equal(s.solver.order, 2);
@@ -147,7 +147,7 @@ static void the_defaults_are_those_of_the_reference(void **state) {
     NEAR(fish->drag.tangential, 1e-3, 0, 0);
     assert_int_equal(fish->drag.law, DRAG_QUADRATIC);
     NEAR(fish->start_heading, 180, 0, 0);
-    assert_int_equal(fish->motion.driven, DRIVEN_NONE);
+    assert_int_equal(fish->motion.prescribed, PRESCRIBED_NONE);
     assert_int_equal(fish->control.law, CONTROL_NONE);
     assert_int_equal(fish->control.waypoints.n, 0);
     NEAR(fish->control.gain, 2, 0, 0);
@@ -161,7 +161,7 @@ static void derived_defaults_follow_what_they_derive_from(void **state) {
         "fish: [{start: {heading: 30, speed: 2}, wave: {frequency: 4}}, {wave: {frequency: 0}}]\n");
     NEAR(s.time.output_interval, 0.2, 0, 1e-15);
     NEAR(s.output.wake_interval, 0.2, 0, 1e-15);
-    NEAR(s.wake.fade, 0.3, 0, 1e-15);
+    NEAR(s.wake.decay, 0.3, 0, 1e-15);
     assert_string_equal(s.name, "x");
     assert_string_equal(s.fish[0].name, "fish1");
     assert_string_equal(s.fish[1].name, "fish2");
@@ -224,8 +224,8 @@ static void preset_published_sets_the_options_of_the_article(void **state) {
     NEAR(s.wake.kutta_ramp, 0.5, 0, 0);
     assert_int_equal(s.wake.shedding, SHEDDING_IMPULSIVE);
     NEAR(s.wake.sheet_smoothing, 0.01, 0, 0);
-    NEAR(s.wake.fade, 0, 0, 0);
-    assert_int_equal(s.wake.dissipated_circulation, DISSIPATED_DROPPED);
+    NEAR(s.wake.decay, 0, 0, 0);
+    assert_int_equal(s.wake.dissipated_circulation, REMOVED_DROPPED);
     assert_int_equal(s.fish->drag.law, DRAG_QUADRATIC);
     assert_int_equal(s.fish->drag.extent, EXTENT_THICKNESS);
     case_free(&s);

@@ -107,7 +107,7 @@ static void total_circulation_vanishes_at_every_event(void **state) {
         }
         // something has been shed and has vanished
         assert_true(fabs(simulation->state->y[simulation->school->fish[0].at.circulation]) > 1e-4);
-        assert_true(fabs(simulation->state->wake[0].dissipated) > 1e-6);
+        assert_true(fabs(simulation->state->wake[0].removed) > 1e-6);
         simulate_free(simulation);
     }
 }

@@ -46,7 +46,7 @@ static void joukowski_heights_are_those_of_the_mapped_circle(void **state) {
             }
         }
         // rounding, twice that of the arc coordinate where the outline is steep
-        NEAR(fish->height[k - 1], before + r, 1e-13, 0);
+        NEAR(fish->thickness[k - 1], before + r, 1e-13, 0);
         before = r;
     }
     school_clear(&setup);
@@ -98,8 +98,8 @@ static void table_of_heights_is_taken_as_it_is(void **state) {
     school_build(&setup, TIME "fish: [{nodes: 4, body: {profile: table, h: [0.1, 0.2, 0.3], w: [0.3, 0.2, 0.1]}}]\n");
     const struct fish *fish = &setup.school->fish[0];
     const double h[] = {0.1, 0.2, 0.3}, w[] = {0.3, 0.2, 0.1};
-    NEAR_ARRAY(3, fish->height, h, 0, 0);
-    NEAR_ARRAY(3, fish->width, w, 0, 0);
+    NEAR_ARRAY(3, fish->thickness, h, 0, 0);
+    NEAR_ARRAY(3, fish->depth, w, 0, 0);
     const double m = 2000 * pi / 4 / 3;
     const double mass[] = {m * 0.015, m * (0.015 + 0.02), m * (0.02 + 0.015), m * 0.015};
     NEAR_ARRAY(4, fish->mass, mass, 0, 1e-14);
@@ -202,7 +202,7 @@ static void driven_velocity_and_acceleration_are_derivatives(void **state) {
     const double h = 1e-4;
     for (int k = 0; k < fish->n_nodes; k++) {
         double p[3][2], v[3][2], a[3][2];
-        for (int i = 0; i < 3; i++) fish_driven_node(fish, k, 0.37 + (i - 1) * h, p[i], v[i], a[i]);
+        for (int i = 0; i < 3; i++) fish_prescribed_node(fish, k, 0.37 + (i - 1) * h, p[i], v[i], a[i]);
         for (int i = 0; i < 2; i++) {
             // truncation h^2/6 omega^3 with omega = 8
             NEAR(v[1][i], (p[2][i] - p[0][i]) / (2 * h), 1e-6, 0);
@@ -221,12 +221,12 @@ static void driven_body_is_straight_and_turns_about_its_pivot(void **state) {
     const struct fish *fish = &setup.school->fish[0];
     // a quarter period on: heave and pitch are largest; left of the heading 180 degrees is downwards
     double p[2], v[2], a[2], q[2];
-    fish_driven_node(fish, 1, 0.25, p, v, a);
+    fish_prescribed_node(fish, 1, 0.25, p, v, a);
     NEAR(p[0], 1 - 0.5 + 0.25, 1e-14, 0);
     NEAR(p[1], 1 - 0.2, 1e-14, 0);
     NEAR(v[0], -2, 1e-14, 0);
     NEAR(v[1], 0, 1e-14, 0);
-    fish_driven_node(fish, 4, 0.25, q, v, a);
+    fish_prescribed_node(fish, 4, 0.25, q, v, a);
     // the body points from its pivot backwards: the heading 205 degrees turned round
     NEAR(q[0] - p[0], 0.75 * cos(25 * pi / 180), 1e-14, 0);
     NEAR(q[1] - p[1], 0.75 * sin(25 * pi / 180), 1e-14, 0);

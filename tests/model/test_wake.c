@@ -118,7 +118,7 @@ static void old_vortices_go_and_leave_their_circulation(void **state) {
     NEAR(wake->x[0], 4, 0, 0);
     NEAR(wake->y[5], -9, 0, 0);
     NEAR(wake->birth[0], 0.08, 1e-17, 0);
-    NEAR(wake->dissipated, 0.6, 1e-15, 0);
+    NEAR(wake->removed, 0.6, 1e-15, 0);
     assert_int_equal(wake_remove_old(wake, setup.school, 0.16), 0);
     assert_int_equal(wake->n_vortex, 6);
     school_clear(&setup);

@@ -90,7 +90,7 @@ static void constants_are_those_of_the_fish(void **state) {
     NEAR(value_at(file, "body_length", 1, 0, 0, 0), 2, 0, 0);
     NEAR(value_at(file, "frequency", 0, 0, 0, 0), 2, 0, 0);
     NEAR(value_at(file, "shedding_interval", 0, 0, 0, 0), 0.1, 0, 0);
-    NEAR(value_at(file, "edge_height", 1, 2, 0, 0), f->school->fish[1].height[2], 0, 0);
+    NEAR(value_at(file, "edge_height", 1, 2, 0, 0), f->school->fish[1].thickness[2], 0, 0);
     NEAR(value_at(file, "node_mass", 0, 4, 0, 0), f->school->fish[0].mass[4], 0, 0);
     NEAR(value_at(file, "sheet_arc", 1, 4, 0, 0), 2, 0, 1e-15);
     nc_close(file);

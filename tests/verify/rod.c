@@ -120,7 +120,7 @@ static int ascending(const void *a, const void *b) {
 // masses
 static double *lateral_matrix(struct simulation *simulation, int *n) {
     const struct fish *const fish = simulation->school->fish;
-    const int first = fish_n_driven(fish);
+    const int first = fish_n_prescribed(fish);
     struct jacobian *jacobian;
     *n = fish->n_nodes - first;
     double *const matrix = calloc((size_t)(*n * *n), sizeof *matrix);

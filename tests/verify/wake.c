@@ -173,7 +173,7 @@ static void removed_vortices(void) {
     const int removed = 1000 - wake->n_vortex;
     verify_value("a thousand vortices, half grown old: number removed", "ages beyond the lifetime", 501, removed, 0);
     verify_zero("the same: change of circulation with what dissipated, m2/s", "constant",
-                invariants(wake).circulation + wake->dissipated - sum, 1e-10);
+                invariants(wake).circulation + wake->removed - sum, 1e-10);
     simulate_free(simulation);
 }
 
