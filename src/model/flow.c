@@ -40,13 +40,13 @@ static enum status doubles(double **values, int n) {
 
 static enum status make_chunks(struct flow *flow) {
     int n = 0;
-    for (int f = 0; f < flow->school->n_fish; f++) n += vortices_n_chunks(flow->points[f].n);
+    for (int f = 0; f < flow->school->n_fish; f++) n += parallel_n_chunks(flow->points[f].n);
     flow->chunk = calloc((size_t)n, sizeof *flow->chunk);
     if (!flow->chunk) return status_fail(STATUS_MEMORY, "no room for %d pieces of the flow", n);
     for (int f = 0; f < flow->school->n_fish; f++) {
         const struct range points = flow->points[f];
-        for (int i = 0; i < vortices_n_chunks(points.n); i++) {
-            const struct range part = vortices_chunk(i, points.n);
+        for (int i = 0; i < parallel_n_chunks(points.n); i++) {
+            const struct range part = parallel_chunk(i, points.n);
             flow->chunk[flow->n_chunks++] = (struct chunk){f, {points.first + part.first, part.n}};
         }
     }
@@ -274,7 +274,8 @@ static void evaluate(struct flow *flow, int with_gradient) {
         all.v_x = flow->v_x;
     }
     const int n_sources = flow->sheet.n + flow->nascent.n + (flow->has_released ? flow->released.n : 0);
-    const int threads = vortices_threads(flow->school->threads, (double)flow->n_points * n_sources);
+    const int threads = parallel_threads(flow->school->threads, flow->n_chunks, (double)flow->n_points * n_sources,
+                                         PARALLEL_INTERACTIONS);
     const double tolerance = flow->school->wake_tolerance;
     int by_tree = velocity_sum_by_tree(&flow->sheet, flow->n_points, tolerance);
     vortices_zero(&all);
@@ -424,11 +425,12 @@ void flow_influence(const struct flow *flow, int f, int g, struct influence_bloc
 
 // the external flow, the nascent vortices and, where they are not summed by the tree, the sheets at the released ones
 static void others_at_wake(const struct flow *flow, int sheets_too, const struct induced *all) {
-    const int n_chunks = vortices_n_chunks(all->n);
-    const int threads = vortices_threads(flow->school->threads, (double)all->n * flow->sheet.n);
+    const int n_chunks = parallel_n_chunks(all->n);
+    const int threads =
+        parallel_threads(flow->school->threads, n_chunks, (double)all->n * flow->sheet.n, PARALLEL_INTERACTIONS);
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int chunk = 0; chunk < n_chunks; chunk++) {
-        const struct induced at = vortices_targets(all, vortices_chunk(chunk, all->n));
+        const struct induced at = vortices_targets(all, parallel_chunk(chunk, all->n));
         for (int i = 0; i < at.n; i++) flow_external(flow->school, flow->t, at.y[i], &at.u[i], &at.v[i]);
         vortices_induce(&flow->nascent, (struct range){0, flow->nascent.n}, &at);
         if (sheets_too) vortices_induce(&flow->sheet, (struct range){0, flow->sheet.n}, &at);
@@ -440,7 +442,8 @@ enum status flow_at_wake(const struct flow *flow, double *u, double *v) {
     const struct induced at = {.n = released->n, .x = released->x, .y = released->y, .u = u, .v = v};
     const double tolerance = flow->school->wake_tolerance;
     const int by_tree = velocity_sum_by_tree(&flow->sheet, released->n, tolerance);
-    const int threads = vortices_threads(flow->school->threads, (double)released->n * released->n);
+    const int threads =
+        parallel_threads(flow->school->threads, released->n, (double)released->n * released->n, PARALLEL_INTERACTIONS);
     others_at_wake(flow, !by_tree, &at);
     if (by_tree) TRY(velocity_sum_induce(flow->velocity_sum, &flow->sheet, tolerance, threads, &at));
     if (velocity_sum_by_tree(released, released->n, tolerance)) {

@@ -102,7 +102,3 @@ void jacobian_multiply_couplings(const struct jacobian *jacobian, int f, const d
                         unknowns + other->at.gamma, product);
     }
 }
-
-int jacobian_threads(const struct school *school, int least) {
-    return school->n_fish > 1 && school->n_unknowns >= least ? school->threads : 1;
-}

@@ -45,10 +45,4 @@ void jacobian_mask_couplings(struct jacobian *jacobian, int f);
 /* product = what the couplings of fish f make of all unknowns: its equations from ax on        (flow_n_rows). */
 void jacobian_multiply_couplings(const struct jacobian *jacobian, int f, const double *unknowns, double *product);
 
-/* How many threads a loop over the fish is worth: starting them, microseconds, must not cost more than they save. So
- * one where there are fewer unknowns than JACOBIAN_HEAVY in a loop that fills or factorises the blocks, 0.2 microseconds
- * per unknown, or than JACOBIAN_LIGHT in one that only multiplies or solves. */
-enum { JACOBIAN_HEAVY = 200, JACOBIAN_LIGHT = 4000 };
-int jacobian_threads(const struct school *school, int least);
-
 #endif

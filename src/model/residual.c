@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/parallel.h"
 #include "base/ramp.h"
 #include "model/actuation.h"
 #include "model/bound_sheet.h"
@@ -203,8 +204,10 @@ static void evaluate_fish(struct residual *residual, int f, double t, const doub
 enum status residual_evaluate(struct residual *residual, double t, const double *y, const double *yp, double *value) {
     TRY(flow_update_sources(residual->flow, residual->state, t, y));
     flow_velocity(residual->flow);
-#pragma omp parallel for num_threads(jacobian_threads(residual->school, JACOBIAN_LIGHT)) schedule(static)
-    for (int f = 0; f < residual->school->n_fish; f++) evaluate_fish(residual, f, t, y, yp, value);
+    const struct school *school = residual->school;
+    const int threads = parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_UNKNOWNS);
+#pragma omp parallel for num_threads(threads) schedule(static)
+    for (int f = 0; f < school->n_fish; f++) evaluate_fish(residual, f, t, y, yp, value);
     for (int i = 0; i < residual->school->n_unknowns; i++) {
         if (!isfinite(value[i])) {
             const struct unknown_place place = residual_place(residual->school, i);
@@ -300,15 +303,16 @@ static enum status stamp_fish(struct residual *residual, int f, double t, double
 
 enum status residual_jacobian(struct residual *residual, double t, double cj, const double *y,
                               struct jacobian *jacobian) {
-    const int n_fish = residual->school->n_fish;
+    const struct school *school = residual->school;
+    const int threads = parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_MATRICES);
     TRY(flow_update_sources(residual->flow, residual->state, t, y));
     flow_gradient(residual->flow);
     if (jacobian->pattern != residual->pattern) {
         TRY(jacobian_couple(jacobian, residual->coupled, residual->pattern));
     }
     int n_failed = 0;
-#pragma omp parallel for num_threads(jacobian_threads(residual->school, JACOBIAN_HEAVY)) schedule(dynamic)
-    for (int f = 0; f < n_fish; f++) {
+#pragma omp parallel for num_threads(threads) schedule(dynamic)
+    for (int f = 0; f < school->n_fish; f++) {
         struct jacobian_scratch *const jacobian_scratch = &residual->jacobian_scratch[omp_get_thread_num()];
         if (stamp_fish(residual, f, t, cj, y, jacobian_scratch, jacobian) != STATUS_OK) {
 #pragma omp atomic

@@ -132,12 +132,12 @@ static struct induced at_time(const struct wake_interpolation *interpolation, in
 
 // the sums of all released vortices at all points at all times
 static void sum_directly(const struct wake_interpolation *interpolation, int threads) {
-    const int n_tasks = N_TIMES * vortices_n_chunks(interpolation->n_points);
+    const int n_tasks = N_TIMES * parallel_n_chunks(interpolation->n_points);
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
     for (int task = 0; task < n_tasks; task++) {
         const int i = task % N_TIMES;
         const struct induced all = at_time(interpolation, i);
-        const struct induced at = vortices_targets(&all, vortices_chunk(task / N_TIMES, all.n));
+        const struct induced at = vortices_targets(&all, parallel_chunk(task / N_TIMES, all.n));
         vortices_induce(&interpolation->released[i], (struct range){0, interpolation->released[i].n}, &at);
     }
 }
@@ -188,7 +188,7 @@ static enum status make(struct wake_interpolation *interpolation, const struct s
                                   interpolation->released[END].circulation + first);
     }
     const double work = (double)N_TIMES * interpolation->n_points * interpolation->released[0].n;
-    const int threads = vortices_threads(school->threads, work);
+    const int threads = parallel_threads(school->threads, interpolation->n_points, work, PARALLEL_INTERACTIONS);
     const struct near_field_scene scene = {.school = school,
                                            .state = state,
                                            .points = interpolation->points,

@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/parallel.h"
+
 /* Factors with the pivots of an earlier matrix are kept while neither the ratio of the least to the largest pivot nor
  * the reciprocal growth of the entries is worse by more than this than when the pivots were chosen. It is what KLU
  * itself gives away when it chooses them: it takes the diagonal where that is no less than 1e-3 of the largest. */
@@ -120,7 +122,8 @@ static enum status set_up(struct block *block, struct sparse *own) {
 enum status linear_setup(struct linear *linear) {
     const struct jacobian *jacobian = linear->jacobian;
     const struct school *school = jacobian->school;
-#pragma omp parallel for num_threads(jacobian_threads(school, JACOBIAN_HEAVY)) schedule(dynamic)
+    const int threads = parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_MATRICES);
+#pragma omp parallel for num_threads(threads) schedule(dynamic)
     for (int f = 0; f < school->n_fish; f++) {
         linear->block[f].status = set_up(&linear->block[f], jacobian->own[f]);
     }
@@ -136,7 +139,8 @@ enum status linear_setup(struct linear *linear) {
 // x = what the own blocks alone make of b; both may be the same
 static void solve_blocks(struct linear *linear, const double *b, double *x) {
     const struct school *school = linear->jacobian->school;
-#pragma omp parallel for num_threads(jacobian_threads(school, JACOBIAN_LIGHT)) schedule(static)
+    const int threads = parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_UNKNOWNS);
+#pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < school->n_fish; f++) {
         const struct layout *at = &school->fish[f].at;
         const int n = at->end - at->x;
@@ -150,7 +154,8 @@ static void solve_blocks(struct linear *linear, const double *b, double *x) {
 static void multiply(struct linear *linear, const double *v, double *product) {
     const struct jacobian *jacobian = linear->jacobian;
     const struct school *school = jacobian->school;
-#pragma omp parallel for num_threads(jacobian_threads(school, JACOBIAN_LIGHT)) schedule(static)
+    const int threads = parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_UNKNOWNS);
+#pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < school->n_fish; f++) {
         const struct layout *at = &school->fish[f].at;
         struct block *const block = &linear->block[f];

@@ -5,14 +5,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/parallel.h"
 #include "vortex/expansions.h"
 #include "vortex/kernel.h"
 
 enum {
     LEAF = 128,         /* most points of a box that is not halved */
     LEAF_GRADIENT = 64, /* the same for targets that ask for the gradient, whose direct sum costs twice as much */
-    CHUNK = 16,         /* boxes of targets whose far pairs one thread does */
-    SHARED = 64         /* fewer boxes than this are not worth more than one thread */
+    CHUNK = 16          /* boxes of targets whose far pairs one thread does */
 };
 
 // The bound on the error of a pair takes all sources and targets to be as near to each other as their boxes allow. The
@@ -285,7 +285,8 @@ static void gather(struct treecode *tree, int threads) {
     }
     for (int level = boxes->depth - 1; level >= 0; level--) {
         const int first = tree_boxes_level(level), end = tree_boxes_level(level + 1);
-#pragma omp parallel for num_threads(threads) schedule(dynamic) if (end - first >= SHARED)
+#pragma omp parallel for num_threads(parallel_threads(threads, end - first, end - first, PARALLEL_BOXES)) \
+    schedule(dynamic)
         for (int b = first; b < end; b += EXPANSION_LANES / 2) {
             expansions_m2m(boxes, b, end - b < EXPANSION_LANES / 2 ? end - b : EXPANSION_LANES / 2, tree->moments.of);
         }
@@ -308,7 +309,8 @@ static void cross(struct treecode *tree, int threads) {
     }
     for (int level = 0; level < boxes->depth; level++) {
         const int first = tree_boxes_level(level), end = tree_boxes_level(level + 1);
-#pragma omp parallel for num_threads(threads) schedule(dynamic) if (end - first >= SHARED)
+#pragma omp parallel for num_threads(parallel_threads(threads, end - first, end - first, PARALLEL_BOXES)) \
+    schedule(dynamic)
         for (int b = first; b < end; b += EXPANSION_LANES / 2) {
             expansions_l2l(boxes, b, end - b < EXPANSION_LANES / 2 ? end - b : EXPANSION_LANES / 2, tree->series.of);
         }

@@ -93,18 +93,3 @@ void vortices_zero(const struct induced *at) {
         if (values[k]) memset(values[k], 0, (size_t)at->n * sizeof *values[k]);
     }
 }
-
-enum { CHUNK = 16 };
-
-int vortices_n_chunks(int n) {
-    return (n + CHUNK - 1) / CHUNK;
-}
-
-struct range vortices_chunk(int i, int n) {
-    const int first = i * CHUNK, rest = n - first;
-    return (struct range){first, rest < CHUNK ? rest : CHUNK};
-}
-
-int vortices_threads(int threads, double interactions) {
-    return interactions > 30000 ? threads : 1;
-}

@@ -3,12 +3,8 @@
 #ifndef VORTICES_H
 #define VORTICES_H
 
+#include "base/parallel.h"
 #include "base/status.h"
-
-/* A part of an array. */
-struct range {
-    int first, n;
-};
 
 struct vortex_group {
     struct range at;
@@ -50,12 +46,5 @@ struct induced vortices_targets(const struct induced *all, struct range which);
 
 /* Set what the targets have to zero. */
 void vortices_zero(const struct induced *at);
-
-/* Targets are taken in chunks of whole vectors, cut at places that depend on nothing else: chunk i of n targets. */
-int vortices_n_chunks(int n);
-struct range vortices_chunk(int i, int n);
-
-/* How many of the threads a sum of so many interactions is worth: starting them costs as much as some thousand. */
-int vortices_threads(int threads, double interactions);
 
 #endif

@@ -104,7 +104,8 @@ static void threads_change_no_bit(void **state) {
     const char *const texts[] = {FIVE(2), FIVE(3)};
     for (int i = 0; i < 2; i++) {
         build(&more, texts[i]);
-        assert_int_equal(jacobian_threads(more.school, JACOBIAN_HEAVY), i + 2);
+        // large enough for threads
+        assert_true(more.school->n_unknowns >= PARALLEL_MATRICES);
         // recorded, then replayed
         for (int pass = 0; pass < 2; pass++) {
             double *const got = school_dense_jacobian(more.jacobian);
@@ -116,19 +117,6 @@ static void threads_change_no_bit(void **state) {
     }
     free(want);
     school_clear(&one);
-}
-
-static void few_fish_are_not_worth_threads(void **state) {
-    (void)state;
-    struct setup setup;
-    school_build(&setup, TIME "solver: {threads: 3}\nfish: [{}, {start: {position: [0, 2]}}]\n");
-    assert_int_equal(setup.school->n_unknowns, 130);
-    assert_int_equal(jacobian_threads(setup.school, 131), 1);
-    assert_int_equal(jacobian_threads(setup.school, 130), 3);
-    school_clear(&setup);
-    school_build(&setup, TIME "solver: {threads: 3}\nfish: [{}]\n");
-    assert_int_equal(jacobian_threads(setup.school, 0), 1);
-    school_clear(&setup);
 }
 
 static void allocations_that_fail_leave_something_whole(void **state) {
@@ -170,7 +158,6 @@ int main(void) {
         cmocka_unit_test(couplings_multiply_as_the_whole_matrix_without_its_diagonal_blocks),
         cmocka_unit_test(masked_rows_have_no_couplings),
         cmocka_unit_test(threads_change_no_bit),
-        cmocka_unit_test(few_fish_are_not_worth_threads),
         cmocka_unit_test(allocations_that_fail_leave_something_whole),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -98,19 +98,12 @@ static void a_part_of_the_targets_is_theirs(void **state) {
     assert_null(vortices_targets(&plain, (struct range){1, 2}).u_x);
 }
 
-static void small_sums_are_one_threads(void **state) {
-    (void)state;
-    assert_int_equal(vortices_threads(4, 100), 1);
-    assert_int_equal(vortices_threads(4, 1e6), 4);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(neighbours_of_one_smoothing_are_one_group),
         cmocka_unit_test(values_stay_when_the_room_grows),
         cmocka_unit_test(a_range_induces_what_its_vortices_do_one_by_one),
         cmocka_unit_test(a_part_of_the_targets_is_theirs),
-        cmocka_unit_test(small_sums_are_one_threads),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

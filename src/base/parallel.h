@@ -1,0 +1,28 @@
+/* parallel.h: how a loop is shared among threads: the parts it is cut into, and how many threads it is worth. Neither
+ * changes a result: every sum belongs to one part, and the parts depend on the length of the loop alone. Tested by
+ * tests/base/test_parallel.c. */
+#ifndef PARALLEL_H
+#define PARALLEL_H
+
+/* The elements first .. first + n - 1 of an array. */
+struct range {
+    int first, n;
+};
+
+/* An array of n elements is cut into chunks of 16, two of the widest vectors; the last chunk may be shorter. */
+int parallel_n_chunks(int n);
+struct range parallel_chunk(int i, int n);
+
+/* The least work of a loop that several threads do faster than one: starting them and waiting for the last one takes
+ * some microseconds. Measured by `make bench`. */
+enum {
+    PARALLEL_INTERACTIONS = 30000, /* velocities that one vortex induces at one point */
+    PARALLEL_BOXES = 64,           /* boxes of a tree whose expansions are translated */
+    PARALLEL_UNKNOWNS = 4000,      /* unknowns in a loop over fish that multiplies or solves */
+    PARALLEL_MATRICES = 200        /* unknowns in a loop over fish that fills or factorises their matrices */
+};
+
+/* How many of the threads a loop of n iterations is worth, which together do so much work. */
+int parallel_threads(int threads, int n, double work, double min_work);
+
+#endif
