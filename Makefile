@@ -53,7 +53,7 @@ library = $(B)/libshoal.a
 program = $(B)/shoal
 
 # the rooms of src/, lowest first: scripts/check-layers.sh
-rooms           = base case vortex model solver output run study app
+rooms           = base vortex model case solver output run study app
 app_objects     = $(patsubst src/%.c,$(B)/%.o,$(wildcard src/app/*.c))
 library_objects = $(patsubst src/%.c,$(B)/%.o,$(wildcard $(patsubst %,src/%/*.c,$(filter-out app,$(rooms)))))
 

@@ -8,7 +8,7 @@
 set -euo pipefail
 
 # Lowest first. doc/architecture.md says what each is for.
-readonly rooms=(base case vortex model solver output run study app)
+readonly rooms=(base vortex model case solver output run study app)
 
 # Headers (first folder, or name without .h), the beginnings of the functions they declare, and the folders that may use
 # them. base/version asks every library for its version, and calls no other function of it.

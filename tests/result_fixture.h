@@ -43,7 +43,7 @@ static inline void number_consecutively(double *value, size_t n, double first) {
 static inline int set_up(void **state) {
     struct fixture *f = calloc(1, sizeof *f);
     assert_int_equal(case_parse(&f->values, CASE_TEXT, strlen(CASE_TEXT), "case", ".", 0, NULL), STATUS_OK);
-    assert_int_equal(fish_school_create(&f->school, &f->values), STATUS_OK);
+    assert_int_equal(fish_school_create(&f->school, &f->values.school), STATUS_OK);
     assert_int_equal(state_create(&f->state, f->school), STATUS_OK);
     number_consecutively(f->state->y, (size_t)f->school->n_unknowns, 1000);
     for (int i = 0; i < N_FISH; i++) {

@@ -21,7 +21,7 @@ void school_settings(struct case_values *values, const char *text) {
 void school_build(struct setup *setup, const char *text) {
     *setup = (struct setup){.seed = 1};
     school_settings(&setup->values, text);
-    school_ok(fish_school_create(&setup->school, &setup->values));
+    school_ok(fish_school_create(&setup->school, &setup->values.school));
     school_ok(state_create(&setup->state, setup->school));
     school_ok(residual_create(&setup->residual, setup->school, setup->state));
     school_ok(jacobian_create(&setup->jacobian, setup->school));

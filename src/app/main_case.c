@@ -22,11 +22,11 @@ enum status main_check(const struct request *request) {
     struct case_values values;
     TRY(case_read(&values, request->positional, request->n_assignments, request->assignments));
     struct school *school = NULL;
-    enum status status = fish_school_create(&school, &values);
+    enum status status = fish_school_create(&school, &values.school);
     if (status == STATUS_OK) status = check_members(&values);
     if (status == STATUS_OK && !request->quiet) {
         printf("%s: ok: %d fish, %d unknowns, %.6g s in %.0f events", request->positional, school->n_fish,
-               school->n_unknowns, values.time.end, values.time.end / values.time.shedding_interval);
+               school->n_unknowns, values.time.end, values.time.end / values.school.shedding_interval);
         if (values.n_axes > 0) printf("; %d members", sweep_n_members(&values));
         printf("\n");
     }

@@ -31,7 +31,7 @@ static enum status run_settings(const struct case_values *values, const struct r
                                              .data = &progress,
                                              .stop = main_stop_signal()};
     main_catch_signals();
-    main_spread_threads(values->solver.threads);
+    main_spread_threads(values->school.threads);
     const enum status status = simulate_run(values, &options);
     progress_end(&progress);
     TRY(status);

@@ -142,7 +142,7 @@ static enum status read_key(struct reading *reading, const struct key *key, int 
 /* Check the values under defaults.fish by reading them, each once. */
 static enum status check_default_values(struct reading *reading) {
     const struct yaml_node *const defaults = yaml_tree_find(reading->tree.root, "defaults.fish");
-    struct case_fish scratch;
+    struct fish_parameters scratch;
     enum status status = STATUS_OK;
     for (int k = 0; k < case_table_n && status == STATUS_OK; k++) {
         const struct key *const key = &case_table[k];
@@ -164,8 +164,8 @@ static void clear(struct case_values *values) {
     for (int k = 0; k < case_table_n; k++) {
         const struct key *const key = &case_table[k];
         if (!case_table_is_of_fish(key)) case_value_clear(key, case_table_field(key, values, NULL));
-        for (int i = 0; i < values->n_fish && case_table_is_of_fish(key); i++) {
-            case_value_clear(key, case_table_field(key, values, &values->fish[i]));
+        for (int i = 0; i < values->school.n_fish && case_table_is_of_fish(key); i++) {
+            case_value_clear(key, case_table_field(key, values, &values->school.fish[i]));
         }
     }
 }
@@ -181,8 +181,8 @@ static enum status read_keys(struct reading *reading, struct case_values *values
             TRY(read_key(reading, key, 0, values->preset, case_table_field(key, values, NULL)));
             continue;
         }
-        for (int i = 0; i < values->n_fish; i++) {
-            TRY(read_key(reading, key, i, values->preset, case_table_field(key, values, &values->fish[i])));
+        for (int i = 0; i < values->school.n_fish; i++) {
+            TRY(read_key(reading, key, i, values->preset, case_table_field(key, values, &values->school.fish[i])));
         }
     }
     return STATUS_OK;
@@ -195,7 +195,7 @@ static void derive(double *value, double standard) {
     if (isnan(*value)) *value = standard;
 }
 
-static enum status derive_fish(struct case_fish *fish, int index) {
+static enum status derive_fish(struct fish_parameters *fish, int index) {
     derive(&fish->wave.ramp, fish->wave.frequency > 0 ? 1 / fish->wave.frequency : 0);
     derive(&fish->motion.speed, fish->start_speed);
     if (!fish->name) {
@@ -207,7 +207,7 @@ static enum status derive_fish(struct case_fish *fish, int index) {
         double *const pair = calloc(2, sizeof *pair);
         if (!pair) return no_memory();
         pair[1] = fish->start_heading;
-        fish->control.desired_heading = (struct case_list){1, pair};
+        fish->control.desired_heading = (struct number_list){1, pair};
     }
     return STATUS_OK;
 }
@@ -222,12 +222,12 @@ static char *stem(const char *path) {
 }
 
 static enum status derive_all(struct case_values *values, const char *origin) {
-    derive(&values->time.output_interval, 10 * values->time.shedding_interval);
-    derive(&values->wake.decay, values->wake.lifetime / 10);
-    derive(&values->wake.tolerance, values->solver.rtol / 100);
+    derive(&values->time.output_interval, 10 * values->school.shedding_interval);
+    derive(&values->school.wake.decay, values->school.wake.lifetime / 10);
+    derive(&values->school.wake.tolerance, values->school.rtol / 100);
     derive(&values->output.wake_interval, values->time.output_interval);
     if (!values->name && !(values->name = stem(origin))) return no_memory();
-    for (int i = 0; i < values->n_fish; i++) TRY(derive_fish(&values->fish[i], i));
+    for (int i = 0; i < values->school.n_fish; i++) TRY(derive_fish(&values->school.fish[i], i));
     return STATUS_OK;
 }
 
@@ -240,11 +240,11 @@ static enum status fill(struct reading *reading, struct case_values *values) {
     check_keys(tree->root, "", "", NULL, &reading->errors);
     const bool are_keys_known = reading->errors.n == n_before;
 
-    values->n_fish = case_merge_n_fish(tree);
-    if (values->n_fish > CASE_MAX_FISH) values->n_fish = 0;
-    values->fish = calloc((size_t)values->n_fish + 1, sizeof *values->fish);
-    if (!values->fish) {
-        values->n_fish = 0;
+    values->school.n_fish = case_merge_n_fish(tree);
+    if (values->school.n_fish > CASE_MAX_FISH) values->school.n_fish = 0;
+    values->school.fish = calloc((size_t)values->school.n_fish + 1, sizeof *values->school.fish);
+    if (!values->school.fish) {
+        values->school.n_fish = 0;
         return no_memory();
     }
     clear(values);
@@ -329,13 +329,13 @@ void case_free(struct case_values *values) {
         const struct key *const key = &case_table[k];
         if (!case_table_is_value(key)) continue;
         if (!case_table_is_of_fish(key)) case_value_free(key, case_table_field(key, values, NULL));
-        for (int i = 0; i < values->n_fish && case_table_is_of_fish(key); i++) {
-            case_value_free(key, case_table_field(key, values, &values->fish[i]));
+        for (int i = 0; i < values->school.n_fish && case_table_is_of_fish(key); i++) {
+            case_value_free(key, case_table_field(key, values, &values->school.fish[i]));
         }
     }
     sweep_expect_free(values);
     sweep_free(values);
-    free(values->fish);
+    free(values->school.fish);
     free(values->text);
     free(values->merged);
     free(values->study);

@@ -1,78 +1,32 @@
 /* case.h: a case as plain values. One table of keys (src/case_table.c) drives parsing, checking, printing and
  * the reference doc/cases.md. Tested by tests/case/test_case.c and, for bad input, tests/case/test_bad.sh.
  *
- *     text of the case ---yaml---> tree ---merge---> tree ---table---> struct case_values ---check---> const struct school
+ *     text of the case ---yaml---> tree ---merge---> tree ---table---> struct case_values ---check--->
  *     (and its includes)                  preset < include < case file < --set;  defaults.fish < fish[f]
  *
  * Values are in the units of the case file: angles in degrees, lengths in metres or in fractions of the body length as
- * the key's meaning says. */
+ * the key's meaning says. Those that the model needs are in model/parameters.h. */
 #ifndef CASE_H
 #define CASE_H
 
 #include <stdio.h>
 
+#include "base/methods.h"
 #include "base/status.h"
+#include "model/parameters.h"
 
-enum shedding { SHEDDING_CONTINUOUS, SHEDDING_IMPULSIVE };
-enum kutta { KUTTA_EDGE, KUTTA_RATE };
-enum collocation { COLLOCATION_CHEBYSHEV, COLLOCATION_MIDPOINT };
-enum removed_circulation { REMOVED_RETAINED, REMOVED_DROPPED };
-enum method {
-    METHOD_IDA,
-    METHOD_EULER,
-    METHOD_HEUN,
-    METHOD_RK4,
-    METHOD_DORMAND_PRINCE,
-    METHOD_IMPLICIT_EULER,
-    METHOD_TRAPEZOID
-};
 enum precision { PRECISION_DOUBLE, PRECISION_SINGLE };
-enum profile { PROFILE_JOUKOWSKI, PROFILE_UNIFORM, PROFILE_TABLE };
-enum second_moment { SECOND_MOMENT_ELLIPSE, SECOND_MOMENT_PUBLISHED };
-enum drag_law { DRAG_QUADRATIC, DRAG_LINEAR_QUADRATIC };
-enum extent { EXTENT_THICKNESS, EXTENT_WIDTH };
-enum prescribed { PRESCRIBED_NONE, PRESCRIBED_HEAD, PRESCRIBED_ALL };
-enum control_law { CONTROL_NONE, CONTROL_HEADING, CONTROL_AVERAGED_HEADING };
 enum preset { PRESET_NONE, PRESET_PUBLISHED };
 
-/* A list of numbers, or of pairs (then 2 n numbers, pair after pair). Owned by the settings. */
-struct case_list {
-    int n;
-    double *value;
-};
-
 struct case_time {
-    double end, shedding_interval; /* s */
-    double output_interval;        /* s; default ten shedding intervals */
-    double checkpoint_interval;    /* s; 0: none */
-};
-
-struct case_fluid {
-    double density;        /* kg m-3 */
-    double velocity[2];    /* m s-1 */
-    double shear;          /* s-1 */
-    double gust_amplitude; /* m s-1 */
-    double gust_frequency; /* Hz */
-};
-
-struct case_wake {
-    double smoothing, sheet_smoothing; /* fractions of the body length */
-    double lifetime;                   /* s */
-    double decay;                      /* s; default a tenth of the lifetime */
-    enum shedding shedding;
-    enum kutta kutta;
-    double kutta_ramp; /* s */
-    enum collocation collocation;
-    enum removed_circulation dissipated_circulation;
-    double tolerance; /* lengths per beat; default a hundredth of solver.rtol; 0: exact */
+    double end;                 /* s */
+    double output_interval;     /* s; default ten shedding intervals */
+    double checkpoint_interval; /* s; 0: none */
 };
 
 struct case_solver {
     enum method method;
-    double rtol;
     int order;
-    double coupling_distance; /* body lengths of the longest fish */
-    int threads;
     double step;   /* s; 0: adaptive */
     int max_steps; /* per shedding interval */
 };
@@ -81,67 +35,6 @@ struct case_output {
     char *file; /* NULL: the name of the case with .nc, in the working directory */
     enum precision precision;
     double wake_interval; /* s; default the output interval */
-};
-
-struct case_body {
-    enum profile profile;
-    double thickness, width; /* fractions of the body length */
-    struct case_list h, w;   /* m, one value per edge: profile table only */
-    double density;          /* kg m-3 */
-    double modulus;          /* Pa */
-    enum second_moment second_moment;
-    double bending_damping; /* N m s, and N s m-1: doc/model.md, section 3 */
-    double stretching_damping;
-    double relaxation_time; /* s */
-};
-
-struct case_wave {
-    double amplitude, linear, quadratic, number;
-    double frequency; /* Hz */
-    double phase;     /* degree */
-    double ramp;      /* s; default one period (0 when the frequency is 0) */
-};
-
-struct case_drag {
-    double tangential, normal, added_mass;
-    enum drag_law law;
-    enum extent extent;
-};
-
-struct case_motion {
-    enum prescribed prescribed;
-    double speed;              /* m s-1; default start.speed */
-    double heave;              /* m */
-    double pitch, pitch_phase; /* degree */
-    double frequency;          /* Hz */
-    double phase;              /* degree */
-    double pivot;              /* fraction of the body length from the nose */
-};
-
-struct case_control {
-    enum control_law law;
-    double bias;
-    struct case_list desired_heading; /* pairs (s, degree); one number in the case becomes one pair (0, degree);
-                                             default one pair (0, start.heading) */
-    struct case_list waypoints;       /* pairs (m, m) */
-    double acceptance_radius;         /* body lengths */
-    double gain, limit, feedforward;
-    double rate; /* s-1 */
-};
-
-struct case_fish {
-    char *name;    /* default "fish1", "fish2", ... */
-    double length; /* m */
-    int nodes, reference_nodes, sheet_points;
-    struct case_body body;
-    struct case_wave wave;
-    struct case_drag drag;
-    double start_position[2]; /* m */
-    double start_heading;     /* degree */
-    double start_speed;       /* m s-1 */
-    double load_tip[2];       /* N */
-    struct case_motion motion;
-    struct case_control control;
 };
 
 /* What a case can expect something of: quantities that a study gathers from the ends of its members (study_file.h). */
@@ -199,12 +92,9 @@ struct case_values {
     char *name; /* default: the file's name without folder and ending */
     enum preset preset;
     struct case_time time;
-    struct case_fluid fluid;
-    struct case_wake wake;
+    struct school_parameters school;
     struct case_solver solver;
     struct case_output output;
-    int n_fish;
-    struct case_fish *fish;
     int n_axes;
     struct sweep_axis *sweep;
     int n_expectations;

@@ -49,15 +49,16 @@ static void check_multiple(const struct check *check, const char *path, double t
 
 static void check_time(const struct check *check) {
     const struct case_time *const time = &check->values->time;
+    const double shedding = check->values->school.shedding_interval;
     static const char interval[] = "time.shedding_interval";
-    if (time->end / time->shedding_interval > most_events) {
-        complain(check, "time.end", "%g events; the most is %g: raise time.shedding_interval",
-                 time->end / time->shedding_interval, most_events);
+    if (time->end / shedding > most_events) {
+        complain(check, "time.end", "%g events; the most is %g: raise time.shedding_interval", time->end / shedding,
+                 most_events);
         return;
     }
-    check_multiple(check, "time.end", time->end, interval, time->shedding_interval);
-    check_multiple(check, "time.output_interval", time->output_interval, interval, time->shedding_interval);
-    check_multiple(check, "time.checkpoint_interval", time->checkpoint_interval, interval, time->shedding_interval);
+    check_multiple(check, "time.end", time->end, interval, shedding);
+    check_multiple(check, "time.output_interval", time->output_interval, interval, shedding);
+    check_multiple(check, "time.checkpoint_interval", time->checkpoint_interval, interval, shedding);
     check_multiple(check, "output.wake_interval", check->values->output.wake_interval, "time.output_interval",
                    time->output_interval);
 }
@@ -67,7 +68,7 @@ static void check_solver(const struct check *check) {
     const bool is_fixed = solver->method == METHOD_IMPLICIT_EULER || solver->method == METHOD_TRAPEZOID;
     if (is_fixed && solver->step == 0) {
         complain(check, "solver.method", "takes fixed steps only: give solver.step, such as %.9g (s)",
-                 check->values->time.shedding_interval);
+                 check->values->school.shedding_interval);
     }
     if (!(solver->step > 0)) return;
     if (solver->method == METHOD_IDA) {
@@ -75,23 +76,22 @@ static void check_solver(const struct check *check) {
                  "ida chooses its steps itself: remove solver.step, or choose another solver.method");
         return;
     }
-    const double interval = check->values->time.shedding_interval, n = round(interval / solver->step);
+    const double interval = check->values->school.shedding_interval, n = round(interval / solver->step);
     if (n >= 1 && !(fabs(interval - n * solver->step) > 1e-9 * interval)) return;
     complain(check, "solver.step", "%.9g s is not a whole part of time.shedding_interval, %.9g s; the nearest is %.9g",
              solver->step, interval, interval / (n < 1 ? 1 : n));
 }
 
 static void check_wake(const struct check *check) {
-    const struct case_wake *const wake = &check->values->wake;
-    const struct case_time *const time = &check->values->time;
+    const struct wake_parameters *const wake = &check->values->school.wake;
+    const double interval = check->values->school.shedding_interval;
     if (wake->decay > wake->lifetime) {
         complain(check, "wake.fade", "%g s is longer than wake.lifetime, %g s", wake->decay, wake->lifetime);
     }
-    if (wake->lifetime < time->shedding_interval) {
-        complain(check, "wake.lifetime", "%g s is less than time.shedding_interval, %g s", wake->lifetime,
-                 time->shedding_interval);
+    if (wake->lifetime < interval) {
+        complain(check, "wake.lifetime", "%g s is less than time.shedding_interval, %g s", wake->lifetime, interval);
     }
-    const double n_vortices = fmin(wake->lifetime, time->end) / time->shedding_interval;
+    const double n_vortices = fmin(wake->lifetime, check->values->time.end) / interval;
     if (n_vortices > most_vortices) {
         complain(check, "wake.lifetime", "%g vortices in the wake of a fish; the most is %g", n_vortices,
                  most_vortices);
@@ -99,7 +99,7 @@ static void check_wake(const struct check *check) {
 }
 
 static void check_gust(const struct check *check) {
-    const struct case_fluid *const fluid = &check->values->fluid;
+    const struct fluid_parameters *const fluid = &check->values->school.fluid;
     if (fabs(fluid->gust_amplitude) > 0 && fluid->gust_frequency == 0) {
         complain(check, "fluid.gust.amplitude", "has no effect while fluid.gust.frequency is 0");
     }
@@ -108,8 +108,8 @@ static void check_gust(const struct check *check) {
 // ---- fish
 
 /* Complain about a list of a table profile that is missing, too many, or of another length than the edges. */
-static void check_edge_list(const struct check *check, const char *path, const struct case_list *list) {
-    const struct case_fish *const fish = &check->values->fish[check->fish];
+static void check_edge_list(const struct check *check, const char *path, const struct number_list *list) {
+    const struct fish_parameters *const fish = &check->values->school.fish[check->fish];
     bool is_default;
     const bool is_written = case_merge_value(check->tree, path, check->fish, &is_default);
     const bool is_read = list->n > 0 || !is_written;
@@ -122,7 +122,7 @@ static void check_edge_list(const struct check *check, const char *path, const s
 }
 
 /* The largest turning angle that the wave asks of a joint without bias, in radians. */
-static double largest_turn(const struct case_fish *fish) {
+static double largest_turn(const struct fish_parameters *fish) {
     double largest = 0;
     for (int k = 1; k < fish->nodes - 1; k++) {
         const double q = (double)k / (fish->nodes - 1);
@@ -133,7 +133,7 @@ static double largest_turn(const struct case_fish *fish) {
 
 /* The curvature of a joint is 2 tan(angle/2): it has no value at half a turn. */
 static void check_turn(const struct check *check) {
-    const struct case_fish *const fish = &check->values->fish[check->fish];
+    const struct fish_parameters *const fish = &check->values->school.fish[check->fish];
     if (fish->nodes == 0 || fish->reference_nodes == 0) return;
     const bool is_controlled = fish->control.law == CONTROL_HEADING || fish->control.law == CONTROL_AVERAGED_HEADING;
     const double turn = largest_turn(fish) * (1 + (is_controlled ? fish->control.limit : fabs(fish->control.bias)));
@@ -149,7 +149,7 @@ static bool is_idle(double amplitude, double frequency, double phase) {
 }
 
 static void check_motion(const struct check *check) {
-    const struct case_motion *const motion = &check->values->fish[check->fish].motion;
+    const struct motion_parameters *const motion = &check->values->school.fish[check->fish].motion;
     static const char not_driven[] = "has no effect while motion.driven is none; set it to head or all";
     static const char constant[] = "has no effect while motion.frequency is 0";
     if (motion->prescribed == PRESCRIBED_NONE) {
@@ -163,7 +163,7 @@ static void check_motion(const struct check *check) {
 }
 
 static void check_headings(const struct check *check) {
-    const struct case_list *const heading = &check->values->fish[check->fish].control.desired_heading;
+    const struct number_list *const heading = &check->values->school.fish[check->fish].control.desired_heading;
     if (heading->n > 0 && heading->value[0] < 0) {
         complain(check, "fish.control.desired_heading", "the times begin at 0 s, not at %g s", heading->value[0]);
     }
@@ -177,8 +177,8 @@ static void check_headings(const struct check *check) {
 }
 
 static void check_control(const struct check *check) {
-    const struct case_fish *const fish = &check->values->fish[check->fish];
-    const struct case_control *const control = &fish->control;
+    const struct fish_parameters *const fish = &check->values->school.fish[check->fish];
+    const struct control_parameters *const control = &fish->control;
     check_headings(check);
     if (control->law == CONTROL_NONE && control->waypoints.n > 0) {
         complain(check, "fish.control.waypoints", "has no effect while control.law is none; set it to heading");
@@ -193,13 +193,13 @@ static void check_control(const struct check *check) {
         complain(check, "fish.control.law", "needs wave.frequency above 0%s",
                  control->law == CONTROL_HEADING ? ", or feedforward: 0" : "");
     }
-    if (check->values->fluid.density == 0 && has_moment) {
+    if (check->values->school.fluid.density == 0 && has_moment) {
         complain(check, "fish.control.law", "needs fluid.density above 0, or feedforward: 0");
     }
 }
 
 static void check_name(const struct check *check) {
-    const struct case_fish *const fish = check->values->fish;
+    const struct fish_parameters *const fish = check->values->school.fish;
     for (int i = 0; i < check->fish; i++) {
         if (!fish[i].name || !fish[check->fish].name || strcmp(fish[i].name, fish[check->fish].name) != 0) continue;
         complain(check, "fish.name", "fish[%d] is called '%.60s' too; give each fish its own name", i, fish[i].name);
@@ -214,8 +214,8 @@ void case_check(const struct case_values *values, const struct case_tree *tree, 
     check_wake(&check);
     check_gust(&check);
     if (values->name && strchr(values->name, '/')) complain(&check, "name", "cannot contain a '/'");
-    for (check.fish = 0; check.fish < values->n_fish; check.fish++) {
-        const struct case_fish *const fish = &values->fish[check.fish];
+    for (check.fish = 0; check.fish < values->school.n_fish; check.fish++) {
+        const struct fish_parameters *const fish = &values->school.fish[check.fish];
         check_name(&check);
         check_edge_list(&check, "fish.body.h", &fish->body.h);
         check_edge_list(&check, "fish.body.w", &fish->body.w);

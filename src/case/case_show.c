@@ -57,11 +57,11 @@ static bool is_hidden(const struct key *key, const void *field) {
     if (!case_table_is_value(key)) return true;
     if (strcmp(key->path, "preset") == 0) return true;
     if (key->type == TEXT) return !*(char *const *)field;
-    return key->type == NUMBERS && ((const struct case_list *)field)->n == 0;
+    return key->type == NUMBERS && ((const struct number_list *)field)->n == 0;
 }
 
 /* Add every row of the table that belongs to a fish, or with fish NULL every row that belongs to none. */
-static void show_rows(struct text *text, struct case_values *values, struct case_fish *fish) {
+static void show_rows(struct text *text, struct case_values *values, struct fish_parameters *fish) {
     const char *before = NULL;
     for (int k = 0; k < case_table_n; k++) {
         const struct key *const key = &case_table[k];
@@ -107,7 +107,7 @@ static void show_reference(struct text *text, const struct case_values *values, 
         if (isnan(sweep_reference(values, axis, q, 0, 0))) continue;
         text_add(text, "%s%s: [", before, sweep_quantities[q].name);
         before = ", ";
-        for (int f = 0; f < values->n_fish; f++) {
+        for (int f = 0; f < values->school.n_fish; f++) {
             text_add(text, "%s%s", f > 0 ? ", " : "", of_xy ? "[" : "");
             text_add_number(text, sweep_reference(values, axis, q, f, 0));
             if (of_xy) text_add(text, ", ");
@@ -158,7 +158,7 @@ static void show_expectation(struct text *text, const struct case_values *values
     }
     if (one->fish >= 0) {
         text_add(text, ", fish: ");
-        yaml_write_scalar(text, values->fish[one->fish].name);
+        yaml_write_scalar(text, values->school.fish[one->fish].name);
     }
     for (int c = 0; c < one->n_where; c++) {
         const struct sweep_condition *const condition = &one->where[c];
@@ -191,7 +191,7 @@ enum status case_show(const struct case_values *values, char **text) {
     struct text list = {0};
     show_rows(&list, &all, NULL);
     text_add(&list, "\nfish:\n");
-    for (int i = 0; i < all.n_fish; i++) show_rows(&list, &all, &all.fish[i]);
+    for (int i = 0; i < all.school.n_fish; i++) show_rows(&list, &all, &all.school.fish[i]);
     show_sweep(&list, &all);
     *text = NULL;
     if (list.failed) {

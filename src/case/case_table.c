@@ -5,7 +5,7 @@
 #include <string.h>
 
 #define AT(field) offsetof(struct case_values, field)
-#define IN_FISH(field) offsetof(struct case_fish, field)
+#define IN_FISH(field) offsetof(struct fish_parameters, field)
 #define ANY \
     { -INFINITY, INFINITY, false, false }
 #define FROM(least) \
@@ -36,7 +36,7 @@ const struct key case_table[] = {
 
     {"time.end", REAL, AT(time.end), NULL, ABOVE(0), "s", .meaning = "the run goes from time 0 to here",
      .synonyms = "duration t_end tend final_time stop t_final"},
-    {"time.shedding_interval", REAL, AT(time.shedding_interval), "0.01", ABOVE(0), "s",
+    {"time.shedding_interval", REAL, AT(school.shedding_interval), "0.01", ABOVE(0), "s",
      .meaning = "each fish releases a vortex once in this time: the interval between two events",
      .synonyms = "dt delta_t timestep time_step"},
     {"time.output_interval", REAL, AT(time.output_interval), NULL, ABOVE(0), "s",
@@ -46,39 +46,41 @@ const struct key case_table[] = {
      .meaning = "a checkpoint once in this time; a whole multiple of shedding_interval; 0: none",
      .synonyms = "restart_interval checkpoint"},
 
-    {"fluid.density", REAL, AT(fluid.density), "1000", FROM(0), "kg m-3",
+    {"fluid.density", REAL, AT(school.fluid.density), "1000", FROM(0), "kg m-3",
      .meaning = "density of the fluid; 0: no fluid forces", .synonyms = "rho rho_f"},
-    {"fluid.velocity", PAIR, AT(fluid.velocity), "[0, 0]", ANY, "m s-1", .meaning = "uniform external flow",
+    {"fluid.velocity", PAIR, AT(school.fluid.velocity), "[0, 0]", ANY, "m s-1", .meaning = "uniform external flow",
      .synonyms = "current stream flow wind u_inf"},
-    {"fluid.shear", REAL, AT(fluid.shear), "0", ANY, "s-1", .meaning = "adds shear * y to the external flow along x"},
-    {"fluid.gust.amplitude", REAL, AT(fluid.gust_amplitude), "0", ANY, "m s-1",
+    {"fluid.shear", REAL, AT(school.fluid.shear), "0", ANY, "s-1",
+     .meaning = "adds shear * y to the external flow along x"},
+    {"fluid.gust.amplitude", REAL, AT(school.fluid.gust_amplitude), "0", ANY, "m s-1",
      .meaning = "amplitude of a flow across the stream that oscillates in time"},
-    {"fluid.gust.frequency", REAL, AT(fluid.gust_frequency), "0", FROM(0), "Hz", .meaning = "frequency of the gust"},
+    {"fluid.gust.frequency", REAL, AT(school.fluid.gust_frequency), "0", FROM(0), "Hz",
+     .meaning = "frequency of the gust"},
 
-    {"wake.smoothing", REAL, AT(wake.smoothing), "0.2", ABOVE(0), "",
+    {"wake.smoothing", REAL, AT(school.wake.smoothing), "0.2", ABOVE(0), "",
      .meaning = "radius of a free vortex acting on the wake, in body lengths", .synonyms = "delta core blob epsilon"},
-    {"wake.sheet_smoothing", REAL, AT(wake.sheet_smoothing), "0.05", ABOVE(0), "",
+    {"wake.sheet_smoothing", REAL, AT(school.wake.sheet_smoothing), "0.05", ABOVE(0), "",
      .meaning = "radius of a bound vortex acting on the wake and on other fish, in body lengths", .published = "0.01"},
-    {"wake.lifetime", REAL, AT(wake.lifetime), "2", ABOVE(0), "s", .meaning = "age at which a vortex is removed",
+    {"wake.lifetime", REAL, AT(school.wake.lifetime), "2", ABOVE(0), "s", .meaning = "age at which a vortex is removed",
      .synonyms = "life max_age age"},
-    {"wake.fade", REAL, AT(wake.decay), NULL, FROM(0), "s",
+    {"wake.fade", REAL, AT(school.wake.decay), NULL, FROM(0), "s",
      .meaning = "the last part of its life in which a vortex fades out", .derived = "a tenth of the lifetime",
      .published = "0"},
-    {"wake.shedding", CHOICE, AT(wake.shedding), "continuous", ANY, "",
+    {"wake.shedding", CHOICE, AT(school.wake.shedding), "continuous", ANY, "",
      .meaning = "continuous: a nascent vortex grows between events; impulsive: a whole one appears at each",
      .published = "impulsive", .words = WORDS("continuous", "impulsive")},
-    {"wake.kutta", CHOICE, AT(wake.kutta), "edge", ANY, "",
+    {"wake.kutta", CHOICE, AT(school.wake.kutta), "edge", ANY, "",
      .meaning = "edge: the strength at the tail vanishes; rate: it is shed at the rate of the slip",
      .published = "rate", .words = WORDS("edge", "rate"), .synonyms = "kutta_condition"},
-    {"wake.kutta_ramp", REAL, AT(wake.kutta_ramp), "0", FROM(0), "s",
+    {"wake.kutta_ramp", REAL, AT(school.wake.kutta_ramp), "0", FROM(0), "s",
      .meaning = "kutta rate: shedding begins gradually over this time", .published = "0.5"},
-    {"wake.collocation", CHOICE, AT(wake.collocation), "chebyshev", ANY, "",
+    {"wake.collocation", CHOICE, AT(school.wake.collocation), "chebyshev", ANY, "",
      .meaning = "where no penetration is required: chebyshev points or midpoints of the chords",
      .published = "midpoint", .words = WORDS("chebyshev", "midpoint")},
-    {"wake.dissipated_circulation", CHOICE, AT(wake.dissipated_circulation), "retained", ANY, "",
+    {"wake.dissipated_circulation", CHOICE, AT(school.wake.dissipated_circulation), "retained", ANY, "",
      .meaning = "whether the circulation of removed vortices still counts in Kelvin's theorem", .published = "dropped",
      .words = WORDS("retained", "dropped"), .synonyms = "dissipated"},
-    {"wake.tolerance", REAL, AT(wake.tolerance), NULL, FROM_TO(0, 0.01), "",
+    {"wake.tolerance", REAL, AT(school.wake.tolerance), NULL, FROM_TO(0, 0.01), "",
      .meaning = "error allowed in the velocity that far vortices cause, in lengths per beat; 0: every vortex exactly",
      .derived = "a hundredth of solver.rtol", .synonyms = "accuracy theta"},
 
@@ -87,13 +89,13 @@ const struct key case_table[] = {
          "integrator: ida is implicit; implicit_euler and trapezoid are so with fixed steps; the others are explicit",
      .words = WORDS("ida", "euler", "heun", "rk4", "dormand_prince", "implicit_euler", "trapezoid"),
      .synonyms = "integrator scheme"},
-    {"solver.rtol", REAL, AT(solver.rtol), "1e-5", FROM_TO(1e-14, 0.1), "",
+    {"solver.rtol", REAL, AT(school.rtol), "1e-5", FROM_TO(1e-14, 0.1), "",
      .meaning = "relative error allowed per step", .synonyms = "tolerance tol reltol relative_tolerance"},
     {"solver.order", INTEGER, AT(solver.order), "2", FROM_TO(1, 5), "",
      .meaning = "highest order of the implicit integrator"},
-    {"solver.coupling_distance", REAL, AT(solver.coupling_distance), "0.5", FROM(0), "",
+    {"solver.coupling_distance", REAL, AT(school.coupling_distance), "0.5", FROM(0), "",
      .meaning = "fish further apart than this, in lengths of the longest fish, are not coupled in the Jacobian"},
-    {"solver.threads", INTEGER, AT(solver.threads), "1", FROM_TO(1, MOST_THREADS), "", .meaning = "threads used",
+    {"solver.threads", INTEGER, AT(school.threads), "1", FROM_TO(1, MOST_THREADS), "", .meaning = "threads used",
      .synonyms = "n_threads cores processes"},
     {"solver.step", REAL, AT(solver.step), "0", FROM(0), "s",
      .meaning = "fixed step of any integrator but ida; 0: adaptive, of an explicit one only", .synonyms = "step_size"},
@@ -260,7 +262,7 @@ bool case_table_is_value(const struct key *key) {
     return key->type < FILES;
 }
 
-void *case_table_field(const struct key *key, struct case_values *values, struct case_fish *fish) {
+void *case_table_field(const struct key *key, struct case_values *values, struct fish_parameters *fish) {
     return (case_table_is_of_fish(key) ? (char *)fish : (char *)values) + key->offset;
 }
 

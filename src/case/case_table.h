@@ -16,9 +16,9 @@ enum key_type {
     CHOICE,    /* an enum: the place of the word among .words */
     TEXT,      /* char *, owned */
     PAIR,      /* double[2] */
-    NUMBERS,   /* struct case_list of numbers */
-    PAIRS,     /* struct case_list of pairs */
-    HEADING,   /* struct case_list of pairs (time, angle); one number is the pair (0, angle) */
+    NUMBERS,   /* struct number_list of numbers */
+    PAIRS,     /* struct number_list of pairs */
+    HEADING,   /* struct number_list of pairs (time, angle); one number is the pair (0, angle) */
     FILES,     /* include: no place in struct case_values */
     DEFAULTS,  /* defaults: no place in struct case_values */
     AXES,      /* sweep: read by case_sweep.c */
@@ -34,7 +34,7 @@ struct bounds {
 struct key {
     const char *path; /* "time.end"; keys of every fish begin with "fish." */
     enum key_type type;
-    size_t offset;       /* in struct case_values, or in struct case_fish */
+    size_t offset;       /* in struct case_values, or in struct fish_parameters */
     const char *initial; /* the default as YAML; NULL: see derived, or required when that is NULL too */
     struct bounds bounds;
     const char *unit; /* "" where there is none */
@@ -61,7 +61,7 @@ bool case_table_is_of_fish(const struct key *key);
 bool case_table_is_value(const struct key *key);
 
 /* Where the value of a key is; fish is ignored unless the key is of a fish. */
-void *case_table_field(const struct key *key, struct case_values *values, struct case_fish *fish);
+void *case_table_field(const struct key *key, struct case_values *values, struct fish_parameters *fish);
 
 /* The name of a type as the reference calls it, and the range ("0 to 1", "> 0" or ""). */
 const char *case_table_type(const struct key *key);

@@ -27,7 +27,7 @@ void case_value_clear(const struct key *key, void *field) {
         case TEXT: *(char **)field = NULL; break;
         case NUMBERS:
         case PAIRS:
-        case HEADING: *(struct case_list *)field = (struct case_list){0}; break;
+        case HEADING: *(struct number_list *)field = (struct number_list){0}; break;
         case FILES:
         case DEFAULTS:
         case AXES:
@@ -37,7 +37,7 @@ void case_value_clear(const struct key *key, void *field) {
 
 void case_value_free(const struct key *key, void *field) {
     if (key->type == TEXT) free(*(char **)field);
-    if (key->type == NUMBERS || key->type == PAIRS || key->type == HEADING) free(((struct case_list *)field)->value);
+    if (key->type == NUMBERS || key->type == PAIRS || key->type == HEADING) free(((struct number_list *)field)->value);
     case_value_clear(key, field);
 }
 
@@ -179,7 +179,7 @@ static bool read_values(const struct context *context, const struct yaml_node *n
     return is_good;
 }
 
-static enum status read_list(const struct context *context, const struct yaml_node *node, struct case_list *list) {
+static enum status read_list(const struct context *context, const struct yaml_node *node, struct number_list *list) {
     char shown[64];
     if (node->kind != YAML_LIST) {
         yaml_errors_add(context->errors, node->mark, "%s: expects a %s, got %s", context->path,
@@ -194,7 +194,7 @@ static enum status read_list(const struct context *context, const struct yaml_no
     double *const value = calloc(2 * (size_t)node->n, sizeof *value);
     if (!value) return status_fail(STATUS_MEMORY, "no memory for the %d values of %s", node->n, context->path);
     if (read_values(context, node, value)) {
-        *list = (struct case_list){node->n, value};
+        *list = (struct number_list){node->n, value};
     } else {
         free(value);
     }
@@ -202,7 +202,7 @@ static enum status read_list(const struct context *context, const struct yaml_no
 }
 
 /* Read a number, or a list of [time, angle]. */
-static enum status read_heading(const struct context *context, const struct yaml_node *node, struct case_list *list) {
+static enum status read_heading(const struct context *context, const struct yaml_node *node, struct number_list *list) {
     if (node->kind == YAML_LIST && node->n == 0) {
         yaml_errors_add(context->errors, node->mark, "%s: expects at least one pair [time in s, angle in degree]",
                         context->path);
@@ -216,7 +216,7 @@ static enum status read_heading(const struct context *context, const struct yaml
     double *const pair = calloc(2, sizeof *pair);
     if (!pair) return status_fail(STATUS_MEMORY, "no memory for the value of %s", context->path);
     pair[1] = angle;
-    *list = (struct case_list){1, pair};
+    *list = (struct number_list){1, pair};
     return STATUS_OK;
 }
 
@@ -251,7 +251,7 @@ static void write_pair(struct text *text, const double pair[2]) {
     text_add(text, "]");
 }
 
-static void write_list(struct text *text, const struct case_list *list, bool is_of_pairs) {
+static void write_list(struct text *text, const struct number_list *list, bool is_of_pairs) {
     text_add(text, "[");
     for (int i = 0; i < list->n; i++) {
         if (i > 0) text_add(text, ", ");

@@ -68,7 +68,7 @@ static const struct key *find_key(const struct case_values *values, const struct
         return NULL;
     }
     struct case_path path;
-    if (!case_path_parse(&path, node->text, values->n_fish, node->mark, axis->errors)) return NULL;
+    if (!case_path_parse(&path, node->text, values->school.n_fish, node->mark, axis->errors)) return NULL;
     const struct key *const key = case_table_row(path.pattern);
     const bool is_fixed = !key || !case_table_is_value(key);
     if (is_fixed || strcmp(key->path, "format") == 0) {
@@ -120,7 +120,7 @@ static enum status read_value(struct axis *axis, int index, int k, const struct 
             double number[2];
             int whole;
             char *text;
-            struct case_list list;
+            struct number_list list;
         } field;
         char path[256];
         snprintf(path, sizeof path, "%s.values[%d] (%s)", axis->name, index, axis->key[k]->path);

@@ -135,8 +135,8 @@ static double read_number(const struct stating *statement, const char *name, dou
 
 /* Read "fish". */
 static void read_fish(const struct stating *statement, const struct yaml_node *node) {
-    for (int f = 0; f < statement->values->n_fish; f++) {
-        const char *const name = statement->values->fish[f].name;
+    for (int f = 0; f < statement->values->school.n_fish; f++) {
+        const char *const name = statement->values->school.fish[f].name;
         if (node->kind == YAML_SCALAR && name && strcmp(name, node->text) == 0) statement->into->fish = f;
     }
     if (statement->into->fish >= 0) return;

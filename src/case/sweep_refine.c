@@ -115,7 +115,7 @@ static bool read_value(const struct yaml_node *node, int of_xy, double value[2])
 
 /* Read the value of a quantity for all fish, or a list of one for each. */
 static bool read_values(const struct refining *axis, const struct yaml_node *node, int q) {
-    const int n_fish = axis->values->n_fish, of_xy = sweep_quantities[q].of_xy;
+    const int n_fish = axis->values->school.n_fish, of_xy = sweep_quantities[q].of_xy;
     double *const to = axis->into->reference + (long)q * n_fish * 2;
     const bool is_one = read_value(node, of_xy, to);
     if (!is_one && (node->kind != YAML_LIST || node->n != n_fish)) return false;
@@ -133,7 +133,7 @@ static enum status read_reference(const struct refining *axis, const struct yaml
         yaml_errors_add(axis->errors, node->mark, "%s: expects the values of quantities, as in {speed: 1.01}", path);
         return STATUS_OK;
     }
-    const size_t n = (size_t)SWEEP_N_ORDERS * (size_t)axis->values->n_fish * 2;
+    const size_t n = (size_t)SWEEP_N_ORDERS * (size_t)axis->values->school.n_fish * 2;
     axis->into->reference = malloc((n + 1) * sizeof *axis->into->reference);
     if (!axis->into->reference) return status_fail(STATUS_MEMORY, "no memory for the sweep");
     for (size_t i = 0; i < n; i++) axis->into->reference[i] = NAN;
@@ -143,14 +143,14 @@ static enum status read_reference(const struct refining *axis, const struct yaml
         if (q < 0 || read_values(axis, entry->value, q)) continue;
         yaml_errors_add(axis->errors, entry->value->mark, "%s.%s: expects %s%s", path, entry->key,
                         sweep_quantities[q].of_xy ? "[x, y]" : "a number",
-                        axis->values->n_fish > 1 ? ", or a list of one for each fish" : "");
+                        axis->values->school.n_fish > 1 ? ", or a list of one for each fish" : "");
     }
     return STATUS_OK;
 }
 
 double sweep_reference(const struct case_values *study, int axis, int quantity, int fish, int xy) {
     const double *const reference = study->sweep[axis].reference;
-    return reference ? reference[((long)quantity * study->n_fish + fish) * 2 + xy] : NAN;
+    return reference ? reference[((long)quantity * study->school.n_fish + fish) * 2 + xy] : NAN;
 }
 
 // ---- all

@@ -1,4 +1,4 @@
-/* fish.c: from the values of a case to the constant data of every fish. */
+/* fish.c: from the parameters of a school to the constant data of every fish. */
 #include "model/fish.h"
 
 #include <math.h>
@@ -86,7 +86,7 @@ static enum status fish_allocate(struct fish *fish) {
     return STATUS_OK;
 }
 
-static void shape_edges(struct fish *fish, const struct case_fish *from) {
+static void shape_edges(struct fish *fish, const struct fish_parameters *from) {
     for (int k = 0; k < fish->n_nodes; k++) fish->arc[k] = k * fish->edge_length;
     double radius_before = 0;
     for (int k = 0; k < fish->n_edges; k++) {
@@ -107,8 +107,8 @@ static void shape_edges(struct fish *fish, const struct case_fish *from) {
 }
 
 // masses, stiffnesses and damping: doc/model.md, sections 1 and 3
-static void weigh_body(struct fish *fish, const struct case_fish *from) {
-    const struct case_body *body = &from->body;
+static void weigh_body(struct fish *fish, const struct fish_parameters *from) {
+    const struct body_parameters *body = &from->body;
     const double reference = fish->length / (from->reference_nodes - 1), refinement = reference / fish->edge_length;
     double moment_before = 0;
     for (int k = 0; k < fish->n_edges; k++) {
@@ -132,8 +132,8 @@ static void weigh_body(struct fish *fish, const struct case_fish *from) {
     }
 }
 
-static void set_wave(struct fish *fish, const struct case_fish *from) {
-    const struct case_wave *wave = &from->wave;
+static void set_wave(struct fish *fish, const struct fish_parameters *from) {
+    const struct wave_parameters *wave = &from->wave;
     const double reference = fish->length / (from->reference_nodes - 1);
     for (int joint = 0; joint < fish->n_joints; joint++) {
         const double sigma = (joint + 1.0) / fish->n_edges;
@@ -145,8 +145,8 @@ static void set_wave(struct fish *fish, const struct case_fish *from) {
     fish->ramp = wave->ramp;
 }
 
-static void set_drag(struct fish *fish, const struct case_fish *from, double density) {
-    const struct case_drag *drag = &from->drag;
+static void set_drag(struct fish *fish, const struct fish_parameters *from, double density) {
+    const struct drag_parameters *drag = &from->drag;
     for (int k = 0; k < fish->n_edges; k++) {
         const double h = fish->thickness[k], w = fish->depth[k], l = fish->edge_length;
         const double across = drag->extent == EXTENT_WIDTH ? w : h;
@@ -177,7 +177,7 @@ static void place_sheet(struct fish *fish, enum collocation collocation) {
     fish->heading_point = point_at(fish, 1.0 / 3.0);
 }
 
-static void set_motion(struct fish *fish, const struct case_fish *from) {
+static void set_motion(struct fish *fish, const struct fish_parameters *from) {
     fish->start_position[0] = from->start_position[0];
     fish->start_position[1] = from->start_position[1];
     fish->start_heading = angle_radians(from->start_heading);
@@ -197,8 +197,8 @@ static void set_motion(struct fish *fish, const struct case_fish *from) {
     fish->period = fish->frequency > 0 ? 1 / fish->frequency : 0;
 }
 
-static enum status set_control(struct fish *fish, const struct case_fish *from, double density) {
-    const struct case_control *control = &from->control;
+static enum status set_control(struct fish *fish, const struct fish_parameters *from, double density) {
+    const struct control_parameters *control = &from->control;
     struct control_law_data *to = &fish->control;
     to->law = control->law;
     to->bias = control->bias;
@@ -228,7 +228,8 @@ static enum status set_control(struct fish *fish, const struct case_fish *from, 
     return STATUS_OK;
 }
 
-static enum status fish_fill(struct fish *fish, const struct case_values *values, const struct case_fish *from) {
+static enum status fish_fill(struct fish *fish, const struct school_parameters *parameters,
+                             const struct fish_parameters *from) {
     fish->name = strdup(from->name);
     if (!fish->name) return status_fail(STATUS_MEMORY, "no room for the name of a fish");
     fish->n_nodes = from->nodes;
@@ -238,16 +239,16 @@ static enum status fish_fill(struct fish *fish, const struct case_values *values
     fish->n_control = from->sheet_points - 1;
     fish->length = from->length;
     fish->edge_length = fish->length / fish->n_edges;
-    fish->smoothing = values->wake.smoothing * fish->length;
-    fish->sheet_smoothing = values->wake.sheet_smoothing * fish->length;
+    fish->smoothing = parameters->wake.smoothing * fish->length;
+    fish->sheet_smoothing = parameters->wake.sheet_smoothing * fish->length;
     TRY(fish_allocate(fish));
     shape_edges(fish, from);
     weigh_body(fish, from);
     set_wave(fish, from);
-    set_drag(fish, from, values->fluid.density);
-    place_sheet(fish, values->wake.collocation);
+    set_drag(fish, from, parameters->fluid.density);
+    place_sheet(fish, parameters->wake.collocation);
     set_motion(fish, from);
-    return set_control(fish, from, values->fluid.density);
+    return set_control(fish, from, parameters->fluid.density);
 }
 
 static struct layout layout_after(int first, int n_nodes, int n_sheet) {
@@ -264,31 +265,31 @@ static struct layout layout_after(int first, int n_nodes, int n_sheet) {
     return at;
 }
 
-static void set_fluid(struct school *school, const struct case_values *values) {
-    school->density = values->fluid.density;
-    school->velocity[0] = values->fluid.velocity[0];
-    school->velocity[1] = values->fluid.velocity[1];
-    school->shear = values->fluid.shear;
+static void set_fluid(struct school *school, const struct school_parameters *parameters) {
+    school->density = parameters->fluid.density;
+    school->velocity[0] = parameters->fluid.velocity[0];
+    school->velocity[1] = parameters->fluid.velocity[1];
+    school->shear = parameters->fluid.shear;
     // the gust blows to the left of the stream, along y where there is none
     const double stream = hypot(school->velocity[0], school->velocity[1]);
     const double along[2] = {stream > 0 ? school->velocity[0] / stream : 1,
                              stream > 0 ? school->velocity[1] / stream : 0};
-    school->gust[0] = -values->fluid.gust_amplitude * along[1];
-    school->gust[1] = values->fluid.gust_amplitude * along[0];
-    school->gust_omega = 2 * pi * values->fluid.gust_frequency;
-    school->interval = values->time.shedding_interval;
-    school->lifetime = values->wake.lifetime;
-    school->decay = values->wake.decay;
-    school->shedding = values->wake.shedding;
-    school->kutta = values->wake.kutta;
-    school->kutta_ramp = values->wake.kutta_ramp;
-    school->removed = values->wake.dissipated_circulation;
-    school->wake_tolerance = values->wake.tolerance;
-    school->rtol = values->solver.rtol;
-    school->threads = values->solver.threads;
+    school->gust[0] = -parameters->fluid.gust_amplitude * along[1];
+    school->gust[1] = parameters->fluid.gust_amplitude * along[0];
+    school->gust_omega = 2 * pi * parameters->fluid.gust_frequency;
+    school->interval = parameters->shedding_interval;
+    school->lifetime = parameters->wake.lifetime;
+    school->decay = parameters->wake.decay;
+    school->shedding = parameters->wake.shedding;
+    school->kutta = parameters->wake.kutta;
+    school->kutta_ramp = parameters->wake.kutta_ramp;
+    school->removed = parameters->wake.dissipated_circulation;
+    school->wake_tolerance = parameters->wake.tolerance;
+    school->rtol = parameters->rtol;
+    school->threads = parameters->threads;
     double longest = 0;
-    for (int f = 0; f < values->n_fish; f++) longest = fmax(longest, values->fish[f].length);
-    school->coupling_distance = values->solver.coupling_distance * longest;
+    for (int f = 0; f < parameters->n_fish; f++) longest = fmax(longest, parameters->fish[f].length);
+    school->coupling_distance = parameters->coupling_distance * longest;
 }
 
 static enum status refuse_overlap(const struct school *school) {
@@ -310,16 +311,16 @@ static enum status refuse_overlap(const struct school *school) {
     return status;
 }
 
-enum status fish_school_create(struct school **school, const struct case_values *values) {
+enum status fish_school_create(struct school **school, const struct school_parameters *parameters) {
     struct school *new = calloc(1, sizeof *new);
     *school = NULL;
     if (!new) goto no_memory;
-    new->fish = calloc((size_t)values->n_fish, sizeof *new->fish);
+    new->fish = calloc((size_t)parameters->n_fish, sizeof *new->fish);
     if (!new->fish) goto no_memory;
-    new->n_fish = values->n_fish;
-    set_fluid(new, values);
+    new->n_fish = parameters->n_fish;
+    set_fluid(new, parameters);
     for (int f = 0; f < new->n_fish; f++) {
-        if (fish_fill(&new->fish[f], values, &values->fish[f]) != STATUS_OK) goto failed;
+        if (fish_fill(&new->fish[f], parameters, &parameters->fish[f]) != STATUS_OK) goto failed;
         new->fish[f].at = layout_after(new->n_unknowns, new->fish[f].n_nodes, new->fish[f].n_sheet);
         new->n_unknowns = new->fish[f].at.end;
     }
@@ -332,7 +333,7 @@ enum status fish_school_create(struct school **school, const struct case_values 
     return STATUS_OK;
 
 no_memory:
-    status_fail(STATUS_MEMORY, "no room for a school of %d fish", values->n_fish);
+    status_fail(STATUS_MEMORY, "no room for a school of %d fish", parameters->n_fish);
 failed:
     fish_school_free(new);
     return STATUS_MEMORY;

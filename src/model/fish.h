@@ -19,7 +19,7 @@
 #define FISH_H
 
 #include "base/status.h"
-#include "case/case.h"
+#include "model/parameters.h"
 
 /* A fixed weighted mean of at most four nodes: a point that moves with the body. */
 struct stencil {
@@ -128,8 +128,8 @@ struct school {
     int threads;
 };
 
-/* Build the school of a checked case. Fails with STATUS_MEMORY, or STATUS_CASE where fish overlap at the start. */
-enum status fish_school_create(struct school **school, const struct case_values *values);
+/* Build the school of checked parameters. Fails with STATUS_MEMORY, or STATUS_CASE where fish overlap at the start. */
+enum status fish_school_create(struct school **school, const struct school_parameters *parameters);
 
 /* Release the school and all that it owns. Accepts NULL. */
 void fish_school_free(struct school *school);

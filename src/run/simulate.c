@@ -30,9 +30,9 @@ static const struct integrator *integrator_of(enum method method) {
 
 static enum status fill(struct simulation *simulation, const struct case_values *values) {
     simulation->started = wall_clock();
-    simulation->n_events = lround(values->time.end / values->time.shedding_interval);
+    simulation->n_events = lround(values->time.end / values->school.shedding_interval);
     simulation->integrator = integrator_of(values->solver.method);
-    TRY(fish_school_create(&simulation->school, values));
+    TRY(fish_school_create(&simulation->school, &values->school));
     TRY(state_create(&simulation->state, simulation->school));
     TRY(residual_create(&simulation->residual, simulation->school, simulation->state));
     TRY(initial_conditions_create(&simulation->consistent, simulation->residual));
@@ -177,8 +177,8 @@ static enum status run_to_end(struct run *run) {
 
 enum status simulate_run(const struct case_values *values, const struct simulate_options *options) {
     struct run run = {.values = values, .options = options};
-    run.events_per_row = lround(values->time.output_interval / values->time.shedding_interval);
-    run.events_per_wake = lround(values->output.wake_interval / values->time.shedding_interval);
+    run.events_per_row = lround(values->time.output_interval / values->school.shedding_interval);
+    run.events_per_wake = lround(values->output.wake_interval / values->school.shedding_interval);
     const enum status status = run_to_end(&run);
     simulate_free(run.simulation);
     return status;

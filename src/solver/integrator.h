@@ -2,6 +2,7 @@
 #ifndef INTEGRATOR_H
 #define INTEGRATOR_H
 
+#include "base/methods.h"
 #include "base/status.h"
 #include "model/residual.h"
 #include "model/state.h"

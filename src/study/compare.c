@@ -235,10 +235,10 @@ static enum status run_all(struct compare *compare) {
 static double error_of(const struct compare *compare, const struct run *run, int end) {
     if (run->outcome->code != 0) return NAN;
     double most = 0;
-    for (int f = 0; f < compare->values->n_fish; f++) {
+    for (int f = 0; f < compare->values->school.n_fish; f++) {
         const double *const got = run->outcome->place + 4 * f + 2 * end;
         const double *const want = compare->reference.outcome->place + 4 * f + 2 * end;
-        most = fmax(most, hypot(got[0] - want[0], got[1] - want[1]) / compare->values->fish[f].length);
+        most = fmax(most, hypot(got[0] - want[0], got[1] - want[1]) / compare->values->school.fish[f].length);
     }
     return most;
 }
@@ -320,7 +320,7 @@ static enum status compare_all(struct compare *compare, FILE *stream) {
     }
     TRY(make_list(compare));
     TRY(check_list(compare));
-    compare->outcome_bytes = sizeof *compare->shared + 4 * (size_t)compare->values->n_fish * sizeof(double);
+    compare->outcome_bytes = sizeof *compare->shared + 4 * (size_t)compare->values->school.n_fish * sizeof(double);
     compare->shared = mmap(NULL, compare->outcome_bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (compare->shared == MAP_FAILED) {
         compare->shared = NULL;

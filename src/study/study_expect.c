@@ -18,7 +18,7 @@ static struct reach reach_of(const struct case_values *study, const struct membe
     struct reach reach = {.least = {INFINITY, INFINITY}, .most = {-INFINITY, -INFINITY}, .missing = -1};
     for (int m = 0; m < sweep_n_members(study); m++) {
         if (!sweep_expects_of(study, one, m)) continue;
-        for (int f = 0; f < (what->of_fish ? study->n_fish : 1); f++) {
+        for (int f = 0; f < (what->of_fish ? study->school.n_fish : 1); f++) {
             if (one->fish >= 0 && one->fish != f) continue;
             reach.n++;
             for (int k = 0; k < 1 + what->of_xy; k++) {
@@ -48,7 +48,7 @@ static int judge(const struct case_values *study, const struct member_file *memb
     const struct reach reach = reach_of(study, members, one, q);
     const char *const name = sweep_quantities[q].name;
     fprintf(stream, "%s%s%s, %d value%s\n", name, one->fish >= 0 ? " of " : "",
-            one->fish >= 0 ? study->fish[one->fish].name : "", reach.n, reach.n == 1 ? "" : "s");
+            one->fish >= 0 ? study->school.fish[one->fish].name : "", reach.n, reach.n == 1 ? "" : "s");
     if (reach.missing >= 0) {
         fprintf(stream, "  MISSED   member %d is not complete\n", reach.missing);
         return 0;

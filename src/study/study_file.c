@@ -66,7 +66,7 @@ static size_t longest_text(const struct writing *writing) {
         }
     }
     for (int f = 0; f < writing->n_fish; f++) {
-        if (strlen(study->fish[f].name) > most) most = strlen(study->fish[f].name);
+        if (strlen(study->school.fish[f].name) > most) most = strlen(study->school.fish[f].name);
     }
     return most;
 }
@@ -177,7 +177,7 @@ static int write_all(struct writing *writing, const char *command) {
         NETCDF(write_text(writing, own[STATUS].name, m, writing->member[m].status));
     }
     for (int f = 0; f < writing->n_fish; f++) {
-        NETCDF(write_text(writing, own[FISH_NAME].name, f, writing->study->fish[f].name));
+        NETCDF(write_text(writing, own[FISH_NAME].name, f, writing->study->school.fish[f].name));
     }
     for (int a = 0; a < writing->study->n_axes; a++) {
         for (int k = 0; k < writing->study->sweep[a].n_keys; k++) NETCDF(write_key(writing, a, k));
@@ -206,7 +206,7 @@ enum status study_file_write(const char *path, const struct case_values *study, 
                               .member = member,
                               .orders = orders,
                               .n_members = sweep_n_members(study),
-                              .n_fish = study->n_fish};
+                              .n_fish = study->school.n_fish};
     writing.n_text = longest_text(&writing);
     writing.buffer = calloc((size_t)writing.n_members * (size_t)writing.n_fish * 2, sizeof *writing.buffer);
     writing.text = calloc(writing.n_text, 1);

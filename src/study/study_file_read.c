@@ -48,9 +48,9 @@ static void read_quantity(const struct reading *reading, int q) {
     if (nc_get_var_double(reading->file, number, reading->buffer) != NC_NOERR) return;
     const double *from = reading->buffer;
     for (int m = 0; m < reading->n_members; m++) {
-        for (int f = 0; f < (quantity->of_fish ? reading->study->n_fish : 1); f++) {
+        for (int f = 0; f < (quantity->of_fish ? reading->study->school.n_fish : 1); f++) {
             for (int k = 0; k < 1 + quantity->of_xy; k++) {
-                reading->member[m].value[(q * reading->study->n_fish + f) * 2 + k] = *from++;
+                reading->member[m].value[(q * reading->study->school.n_fish + f) * 2 + k] = *from++;
             }
         }
     }
@@ -59,9 +59,9 @@ static void read_quantity(const struct reading *reading, int q) {
 /* Room for a member, and how it ended. */
 static enum status read_member(const struct reading *reading, int m) {
     struct member_file *const member = &reading->member[m];
-    const size_t n_values = (size_t)reading->n_quantities * (size_t)reading->study->n_fish * 2;
+    const size_t n_values = (size_t)reading->n_quantities * (size_t)reading->study->school.n_fish * 2;
     member->number = m;
-    member->n_fish = reading->study->n_fish;
+    member->n_fish = reading->study->school.n_fish;
     member->status = calloc(reading->n_text + 1, 1);
     member->value = malloc((n_values + 1) * sizeof *member->value);
     if (!member->status || !member->value) return no_memory(reading->path);
@@ -84,13 +84,14 @@ static size_t length_of(int file, const char *dimension) {
 
 static enum status read_members(struct reading *reading) {
     if (length_of(reading->file, "member") != (size_t)reading->n_members ||
-        length_of(reading->file, "fish") != (size_t)reading->study->n_fish) {
+        length_of(reading->file, "fish") != (size_t)reading->study->school.n_fish) {
         return not_whole(reading->path, NC_EDIMSIZE);
     }
     reading->n_text = length_of(reading->file, "text");
     while (member_file_quantity(reading->n_quantities)) reading->n_quantities++;
     reading->member = calloc((size_t)reading->n_members, sizeof *reading->member);
-    reading->buffer = calloc((size_t)reading->n_members * (size_t)reading->study->n_fish * 2, sizeof *reading->buffer);
+    reading->buffer =
+        calloc((size_t)reading->n_members * (size_t)reading->study->school.n_fish * 2, sizeof *reading->buffer);
     if (!reading->member || !reading->buffer) return no_memory(reading->path);
     for (int m = 0; m < reading->n_members; m++) TRY(read_member(reading, m));
     for (int q = 0; q < reading->n_quantities; q++) read_quantity(reading, q);

@@ -169,7 +169,7 @@ static void fill_order(struct refinement *refinement, int group, int q, int f) {
 
 enum status study_orders_create(struct study_file_orders *orders, const struct case_values *study,
                                 const struct member_file *members) {
-    *orders = (struct study_file_orders){.n_fish = study->n_fish};
+    *orders = (struct study_file_orders){.n_fish = study->school.n_fish};
     while (orders->axis < study->n_axes && !study->sweep[orders->axis].refine) orders->axis++;
     if (orders->axis == study->n_axes) return STATUS_OK;
     const int n = study->sweep[orders->axis].n_values, n_groups = sweep_n_members(study) / n;
@@ -180,7 +180,7 @@ enum status study_orders_create(struct study_file_orders *orders, const struct c
         find_groups(study, orders);
         for (int g = 0; g < n_groups; g++) {
             for (int q = 0; q < SWEEP_N_ORDERS; q++) {
-                for (int f = 0; f < study->n_fish; f++) fill_order(&refinement, g, q, f);
+                for (int f = 0; f < study->school.n_fish; f++) fill_order(&refinement, g, q, f);
             }
         }
     } else {
@@ -213,7 +213,7 @@ static void fill_row(const struct study_table *table, int row, const struct case
     const int is_given = !isnan(sweep_reference(study, orders->axis, q, f, 0));
     const struct study_file_order *const order = &orders->order[place];
     study_table_set(table, row, 0, "%s%s", sweep_quantities[q].name, is_given ? "*" : "");
-    study_table_set(table, row, 1, "%s", study->fish[f].name);
+    study_table_set(table, row, 1, "%s", study->school.fish[f].name);
     study_table_set(table, row, 2, "%s",
                     member_file_quantity(member_file_quantity_number(sweep_quantities[q].name))->unit);
     for (int i = 0; i < n; i++) study_table_number(table, row, 3 + i, "%.2e", orders->error[place * n + i]);
@@ -229,7 +229,7 @@ static enum status judge(const struct case_values *study, const struct study_fil
                          int f, FILE *stream) {
     const struct sweep_axis *const axis = &study->sweep[orders->axis];
     const struct study_file_order *const order = &orders->order[study_file_orders_place(orders, group, q, f)];
-    const char *const fish = study->fish[f].name, *const quantity = sweep_quantities[q].name;
+    const char *const fish = study->school.fish[f].name, *const quantity = sweep_quantities[q].name;
     if (order->objection) fprintf(stream, "warning: %s of %s: %s\n", quantity, fish, order->objection);
     if (!(axis->order_of >> q & 1) || !(axis->order > 0)) return STATUS_OK;
     const int is_met = fabs(order->order - axis->order) <= axis->within;
@@ -243,7 +243,7 @@ static enum status judge(const struct case_values *study, const struct study_fil
 /* Errors and orders of one group: the members that differ in the refined axis only. */
 static enum status print_group(const struct case_values *study, const struct study_file_orders *orders, int group,
                                FILE *stream) {
-    const int n_fish = study->n_fish, n_rows = SWEEP_N_ORDERS * n_fish;
+    const int n_fish = study->school.n_fish, n_rows = SWEEP_N_ORDERS * n_fish;
     struct study_table table;
     TRY(study_table_create(&table, 1 + n_rows, orders->n_levels + 8));
     fill_head(&table, study, orders);

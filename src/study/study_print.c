@@ -62,7 +62,7 @@ static void fill_row(const struct study_table *table, int row, const struct case
             study_table_set(table, row, c++, "%s", axis->value[value * axis->n_keys + k]);
         }
     }
-    if (with_fish) study_table_set(table, row, c++, "%s", study->fish[f].name);
+    if (with_fish) study_table_set(table, row, c++, "%s", study->school.fish[f].name);
     for (int s = 0; s < N_SHOWN; s++) {
         const int quantity = member_file_quantity_number(shown[s].quantity);
         const double value = member_file_value(member, quantity, member_file_quantity(quantity)->of_fish ? f : 0, 0);
@@ -80,7 +80,8 @@ static void print_reasons(const struct member_file *members, int n, FILE *stream
 }
 
 enum status study_print(const struct case_values *study, const struct member_file *members, FILE *stream) {
-    const int n = sweep_n_members(study), n_fish = study->n_fish < MOST_FISH_SHOWN ? study->n_fish : MOST_FISH_SHOWN;
+    const int n = sweep_n_members(study),
+              n_fish = study->school.n_fish < MOST_FISH_SHOWN ? study->school.n_fish : MOST_FISH_SHOWN;
     int n_columns = 2 + (n_fish > 1) + N_SHOWN;
     for (int a = 0; a < study->n_axes; a++) n_columns += study->sweep[a].n_keys;
     struct study_table table;
@@ -93,7 +94,8 @@ enum status study_print(const struct case_values *study, const struct member_fil
     }
     study_table_print(&table, stream);
     study_table_free(&table);
-    if (n_fish < study->n_fish) fprintf(stream, "The first %d of %d fish; study.nc has all.\n", n_fish, study->n_fish);
+    if (n_fish < study->school.n_fish)
+        fprintf(stream, "The first %d of %d fish; study.nc has all.\n", n_fish, study->school.n_fish);
     print_reasons(members, n, stream);
     return STATUS_OK;
 }

@@ -46,7 +46,7 @@ static enum status write_array(const struct case_values *study, const char *fold
             "last=$((first + %d))\n"
             "[ $last -lt %d ] || last=%d\n"
             "exec '%s' study '%s/study.yaml' -o '%s' --members $first-$last -j 1\n",
-            study->name, n_tasks - 1, study->solver.threads, folder, bundle, sweep_n_members(study), bundle, bundle - 1,
+            study->name, n_tasks - 1, study->school.threads, folder, bundle, sweep_n_members(study), bundle, bundle - 1,
             sweep_n_members(study), sweep_n_members(study) - 1, program, folder, folder);
     return close_file(file, folder);
 }

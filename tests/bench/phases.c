@@ -201,9 +201,9 @@ static void whole_run(const char *cases, const char *name, int threads) {
     const double since = now(), processor_since = processor_time();
     must(simulate_run(&values, &options));
     const double wall = now() - since, processor = processor_time() - processor_since,
-                 interval = values.time.shedding_interval;
+                 interval = values.school.shedding_interval;
     const long n_events = lround(values.time.end / interval);
-    const int n_vortices = values.n_fish * (int)fmin(values.wake.lifetime / interval, (double)n_events);
+    const int n_vortices = values.school.n_fish * (int)fmin(values.school.wake.lifetime / interval, (double)n_events);
     print_row(name, threads, n_vortices, n_events, interval, wall, processor);
     case_free(&values);
     remove("phases.nc");
@@ -237,7 +237,7 @@ static double school(int n_fish, int threads) {
     read_case(&values, text, threads);
     free(text);
     must(simulate_create(&simulation, &values));
-    const long full = lround(values.wake.lifetime / values.time.shedding_interval);
+    const long full = lround(values.school.wake.lifetime / values.school.shedding_interval);
     while (simulation->state->event < full) must(simulate_step(simulation));
     memset(&seen, 0, sizeof seen);
     const double since = now(), processor_since = processor_time();
@@ -245,7 +245,7 @@ static double school(int n_fish, int threads) {
     const double wall = now() - since, processor = processor_time() - processor_since;
     char name[32];
     snprintf(name, sizeof name, "%d fish", n_fish);
-    print_row(name, threads, simulation->residual->flow->released.n, EVENTS, values.time.shedding_interval, wall,
+    print_row(name, threads, simulation->residual->flow->released.n, EVENTS, values.school.shedding_interval, wall,
               processor);
     simulate_free(simulation);
     case_free(&values);

@@ -34,21 +34,21 @@ static void is_refused(const char *text, const char *want) {
     struct case_values values;
     assert_int_equal(case_parse(&values, text, strlen(text), "cases/x.yaml", NULL, 0, NULL), STATUS_CASE);
     if (!strstr(status_message(), want)) fail_msg("the message is\n%.600s\nwithout %s", status_message(), want);
-    assert_null(values.fish);
+    assert_null(values.school.fish);
 }
 
 /* Every value of two cases is the same, bit for bit: written as text with all digits they are. */
 static void are_equal(struct case_values *one, struct case_values *other) {
-    assert_int_equal(one->n_fish, other->n_fish);
+    assert_int_equal(one->school.n_fish, other->school.n_fish);
     for (int k = 0; k < case_table_n; k++) {
         const struct key *const key = &case_table[k];
         if (strcmp(key->path, "preset") == 0 || strcmp(key->path, "output.file") == 0) continue;
-        for (int i = 0; i < (case_table_is_of_fish(key) ? one->n_fish : 1); i++) {
+        for (int i = 0; i < (case_table_is_of_fish(key) ? one->school.n_fish : 1); i++) {
             struct text a = {0}, b = {0};
             text_add(&a, "%s: ", key->path);
             text_add(&b, "%s: ", key->path);
-            case_value_write(&a, key, case_table_field(key, one, &one->fish[i]));
-            case_value_write(&b, key, case_table_field(key, other, &other->fish[i]));
+            case_value_write(&a, key, case_table_field(key, one, &one->school.fish[i]));
+            case_value_write(&b, key, case_table_field(key, other, &other->school.fish[i]));
             assert_string_equal(a.text, b.text);
             text_free(&a);
             text_free(&b);
@@ -65,7 +65,7 @@ static void are_equal(struct case_values *one, struct case_values *other) {
         assert_memory_equal(&one->sweep[i].within, &other->sweep[i].within, sizeof(double));
         assert_int_equal(one->sweep[i].order_of, other->sweep[i].order_of);
         assert_int_equal(one->sweep[i].reference != NULL, other->sweep[i].reference != NULL);
-        for (int k = 0; one->sweep[i].reference && k < SWEEP_N_ORDERS * one->n_fish * 2; k++) {
+        for (int k = 0; one->sweep[i].reference && k < SWEEP_N_ORDERS * one->school.n_fish * 2; k++) {
             const double a = one->sweep[i].reference[k], b = other->sweep[i].reference[k];
             assert_true(a == b || (isnan(a) && isnan(b)));
         }
@@ -120,22 +120,22 @@ static void the_defaults_are_those_of_the_reference(void **state) {
     (void)state;
     struct case_values s = parse(least);
     NEAR(s.time.end, 3, 0, 0);
-    NEAR(s.time.shedding_interval, 0.01, 0, 0);
-    NEAR(s.fluid.density, 1000, 0, 0);
-    NEAR(s.wake.smoothing, 0.2, 0, 0);
-    NEAR(s.wake.sheet_smoothing, 0.05, 0, 0);
-    NEAR(s.wake.lifetime, 2, 0, 0);
-    assert_int_equal(s.wake.shedding, SHEDDING_CONTINUOUS);
-    assert_int_equal(s.wake.kutta, KUTTA_EDGE);
-    assert_int_equal(s.wake.collocation, COLLOCATION_CHEBYSHEV);
-    assert_int_equal(s.wake.dissipated_circulation, REMOVED_RETAINED);
+    NEAR(s.school.shedding_interval, 0.01, 0, 0);
+    NEAR(s.school.fluid.density, 1000, 0, 0);
+    NEAR(s.school.wake.smoothing, 0.2, 0, 0);
+    NEAR(s.school.wake.sheet_smoothing, 0.05, 0, 0);
+    NEAR(s.school.wake.lifetime, 2, 0, 0);
+    assert_int_equal(s.school.wake.shedding, SHEDDING_CONTINUOUS);
+    assert_int_equal(s.school.wake.kutta, KUTTA_EDGE);
+    assert_int_equal(s.school.wake.collocation, COLLOCATION_CHEBYSHEV);
+    assert_int_equal(s.school.wake.dissipated_circulation, REMOVED_RETAINED);
     assert_int_equal(s.solver.method, METHOD_IDA);
-    NEAR(s.solver.rtol, 1e-5, 0, 0);
+    NEAR(s.school.rtol, 1e-5, 0, 0);
     assert_int_equal(s.solver.order, 2);
-    assert_int_equal(s.solver.threads, 1);
+    assert_int_equal(s.school.threads, 1);
     assert_int_equal(s.output.precision, PRECISION_DOUBLE);
     assert_null(s.output.file);
-    const struct case_fish *const fish = s.fish;
+    const struct fish_parameters *const fish = s.school.fish;
     assert_int_equal(fish->nodes, 7);
     assert_int_equal(fish->reference_nodes, 7);
     assert_int_equal(fish->sheet_points, 21);
@@ -161,16 +161,16 @@ static void derived_defaults_follow_what_they_derive_from(void **state) {
         "fish: [{start: {heading: 30, speed: 2}, wave: {frequency: 4}}, {wave: {frequency: 0}}]\n");
     NEAR(s.time.output_interval, 0.2, 0, 1e-15);
     NEAR(s.output.wake_interval, 0.2, 0, 1e-15);
-    NEAR(s.wake.decay, 0.3, 0, 1e-15);
+    NEAR(s.school.wake.decay, 0.3, 0, 1e-15);
     assert_string_equal(s.name, "x");
-    assert_string_equal(s.fish[0].name, "fish1");
-    assert_string_equal(s.fish[1].name, "fish2");
-    NEAR(s.fish[0].wave.ramp, 0.25, 0, 0);
-    NEAR(s.fish[1].wave.ramp, 0, 0, 0);
-    NEAR(s.fish[0].motion.speed, 2, 0, 0);
-    assert_int_equal(s.fish[0].control.desired_heading.n, 1);
-    NEAR(s.fish[0].control.desired_heading.value[0], 0, 0, 0);
-    NEAR(s.fish[0].control.desired_heading.value[1], 30, 0, 0);
+    assert_string_equal(s.school.fish[0].name, "fish1");
+    assert_string_equal(s.school.fish[1].name, "fish2");
+    NEAR(s.school.fish[0].wave.ramp, 0.25, 0, 0);
+    NEAR(s.school.fish[1].wave.ramp, 0, 0, 0);
+    NEAR(s.school.fish[0].motion.speed, 2, 0, 0);
+    assert_int_equal(s.school.fish[0].control.desired_heading.n, 1);
+    NEAR(s.school.fish[0].control.desired_heading.value[0], 0, 0, 0);
+    NEAR(s.school.fish[0].control.desired_heading.value[1], 30, 0, 0);
     case_free(&s);
 }
 
@@ -194,11 +194,11 @@ static void defaults_reach_every_fish_below_its_own_keys(void **state) {
     struct case_values s = parse(
         "format: 1\ntime: {end: 1}\ndefaults: {fish: {nodes: 9, body: {modulus: 1e4, density: 900}}}\n"
         "fish: [{body: {modulus: 1e5}}, {nodes: 5}]\n");
-    assert_int_equal(s.fish[0].nodes, 9);
-    assert_int_equal(s.fish[1].nodes, 5);
-    NEAR(s.fish[0].body.modulus, 1e5, 0, 0);
-    NEAR(s.fish[1].body.modulus, 1e4, 0, 0);
-    NEAR(s.fish[0].body.density, 900, 0, 0);
+    assert_int_equal(s.school.fish[0].nodes, 9);
+    assert_int_equal(s.school.fish[1].nodes, 5);
+    NEAR(s.school.fish[0].body.modulus, 1e5, 0, 0);
+    NEAR(s.school.fish[1].body.modulus, 1e4, 0, 0);
+    NEAR(s.school.fish[0].body.density, 900, 0, 0);
     case_free(&s);
 }
 
@@ -217,17 +217,17 @@ static void preset_published_sets_the_options_of_the_article(void **state) {
     (void)state;
     struct case_values s = parse("format: 1\npreset: published\ntime: {end: 1}\nfish: [{}]\n");
     assert_int_equal(s.preset, PRESET_PUBLISHED);
-    assert_int_equal(s.fish->body.second_moment, SECOND_MOMENT_PUBLISHED);
-    NEAR(s.fish->wave.ramp, 0, 0, 0);
-    assert_int_equal(s.wake.collocation, COLLOCATION_MIDPOINT);
-    assert_int_equal(s.wake.kutta, KUTTA_RATE);
-    NEAR(s.wake.kutta_ramp, 0.5, 0, 0);
-    assert_int_equal(s.wake.shedding, SHEDDING_IMPULSIVE);
-    NEAR(s.wake.sheet_smoothing, 0.01, 0, 0);
-    NEAR(s.wake.decay, 0, 0, 0);
-    assert_int_equal(s.wake.dissipated_circulation, REMOVED_DROPPED);
-    assert_int_equal(s.fish->drag.law, DRAG_QUADRATIC);
-    assert_int_equal(s.fish->drag.extent, EXTENT_THICKNESS);
+    assert_int_equal(s.school.fish->body.second_moment, SECOND_MOMENT_PUBLISHED);
+    NEAR(s.school.fish->wave.ramp, 0, 0, 0);
+    assert_int_equal(s.school.wake.collocation, COLLOCATION_MIDPOINT);
+    assert_int_equal(s.school.wake.kutta, KUTTA_RATE);
+    NEAR(s.school.wake.kutta_ramp, 0.5, 0, 0);
+    assert_int_equal(s.school.wake.shedding, SHEDDING_IMPULSIVE);
+    NEAR(s.school.wake.sheet_smoothing, 0.01, 0, 0);
+    NEAR(s.school.wake.decay, 0, 0, 0);
+    assert_int_equal(s.school.wake.dissipated_circulation, REMOVED_DROPPED);
+    assert_int_equal(s.school.fish->drag.law, DRAG_QUADRATIC);
+    assert_int_equal(s.school.fish->drag.extent, EXTENT_THICKNESS);
     case_free(&s);
 }
 
@@ -236,10 +236,10 @@ static void anything_written_is_stronger_than_the_preset(void **state) {
     struct case_values s = parse(
         "format: 1\npreset: published\ntime: {end: 1}\nwake: {kutta: edge}\n"
         "defaults: {fish: {wave: {ramp: 2}}}\nfish: [{body: {second_moment: ellipse}}]\n");
-    assert_int_equal(s.wake.kutta, KUTTA_EDGE);
-    assert_int_equal(s.wake.collocation, COLLOCATION_MIDPOINT);
-    NEAR(s.fish->wave.ramp, 2, 0, 0);
-    assert_int_equal(s.fish->body.second_moment, SECOND_MOMENT_ELLIPSE);
+    assert_int_equal(s.school.wake.kutta, KUTTA_EDGE);
+    assert_int_equal(s.school.wake.collocation, COLLOCATION_MIDPOINT);
+    NEAR(s.school.fish->wave.ramp, 2, 0, 0);
+    assert_int_equal(s.school.fish->body.second_moment, SECOND_MOMENT_ELLIPSE);
     case_free(&s);
 }
 
@@ -256,16 +256,16 @@ static void every_type_of_value_is_read(void **state) {
         "  - {name: 'a: b', control: {desired_heading: -90}}\n");
     assert_string_equal(s.name, "no");
     NEAR(s.time.end, 2, 0, 0);
-    NEAR_ARRAY(2, s.fluid.velocity, ((const double[]){-1, 0.5}), 0, 0);
-    NEAR(s.fluid.gust_frequency, 2, 0, 0);
-    assert_int_equal(s.fish[0].body.h.n, 4);
-    NEAR_ARRAY(4, s.fish[0].body.w.value, ((const double[]){1, 2, 3, 4}), 0, 0);
-    assert_int_equal(s.fish[0].control.desired_heading.n, 2);
-    NEAR_ARRAY(4, s.fish[0].control.desired_heading.value, ((const double[]){0, 180, 5, 135}), 0, 0);
-    assert_int_equal(s.fish[0].control.waypoints.n, 3);
-    NEAR_ARRAY(6, s.fish[0].control.waypoints.value, ((const double[]){1, 2, 3, 4, 5, 6}), 0, 0);
-    assert_string_equal(s.fish[1].name, "a: b");
-    NEAR(s.fish[1].control.desired_heading.value[1], -90, 0, 0);
+    NEAR_ARRAY(2, s.school.fluid.velocity, ((const double[]){-1, 0.5}), 0, 0);
+    NEAR(s.school.fluid.gust_frequency, 2, 0, 0);
+    assert_int_equal(s.school.fish[0].body.h.n, 4);
+    NEAR_ARRAY(4, s.school.fish[0].body.w.value, ((const double[]){1, 2, 3, 4}), 0, 0);
+    assert_int_equal(s.school.fish[0].control.desired_heading.n, 2);
+    NEAR_ARRAY(4, s.school.fish[0].control.desired_heading.value, ((const double[]){0, 180, 5, 135}), 0, 0);
+    assert_int_equal(s.school.fish[0].control.waypoints.n, 3);
+    NEAR_ARRAY(6, s.school.fish[0].control.waypoints.value, ((const double[]){1, 2, 3, 4, 5, 6}), 0, 0);
+    assert_string_equal(s.school.fish[1].name, "a: b");
+    NEAR(s.school.fish[1].control.desired_heading.value[1], -90, 0, 0);
     case_free(&s);
 }
 
@@ -305,11 +305,11 @@ static void an_include_is_weaker_than_the_file_that_includes_it(void **state) {
                "include: [water.yaml]\nformat: 1\ntime: {end: 1}\nfluid: {velocity: [3, 4]}\nfish: [{}]\n");
     struct case_values s;
     if (case_read(&s, "case.yaml", 0, NULL) != STATUS_OK) fail_msg("%s", status_message());
-    NEAR(s.fluid.density, 1025, 0, 0);
-    NEAR(s.fluid.velocity[0], 3, 0, 0);
-    NEAR(s.wake.lifetime, 4, 0, 0);
-    assert_int_equal(s.n_fish, 1);  // lists replace
-    assert_int_equal(s.fish->nodes, 7);
+    NEAR(s.school.fluid.density, 1025, 0, 0);
+    NEAR(s.school.fluid.velocity[0], 3, 0, 0);
+    NEAR(s.school.wake.lifetime, 4, 0, 0);
+    assert_int_equal(s.school.n_fish, 1);  // lists replace
+    assert_int_equal(s.school.fish->nodes, 7);
     assert_string_equal(s.name, "case");
     assert_non_null(strstr(s.text, "include: [water.yaml]"));
     case_free(&s);
@@ -323,12 +323,12 @@ static void includes_are_relative_to_their_file_and_the_last_is_strongest(void *
     write_file("case.yaml", "include: [below/more.yaml]\nformat: 1\ntime: {end: 1}\nfish: [{}]\n");
     struct case_values s;
     if (case_read(&s, "case.yaml", 0, NULL) != STATUS_OK) fail_msg("%s", status_message());
-    NEAR(s.wake.lifetime, 3, 0, 0);
-    NEAR(s.wake.smoothing, 0.4, 0, 0);
+    NEAR(s.school.wake.lifetime, 3, 0, 0);
+    NEAR(s.school.wake.smoothing, 0.4, 0, 0);
     case_free(&s);
     static const char text[] = "include: [below/more.yaml, water.yaml]\nformat: 1\ntime: {end: 1}\nfish: [{}]\n";
     if (case_parse(&s, text, strlen(text), "memory", *state, 0, NULL)) fail_msg("%s", status_message());
-    NEAR(s.wake.lifetime, 4, 0, 0);
+    NEAR(s.school.wake.lifetime, 4, 0, 0);
     case_free(&s);
 }
 
@@ -357,7 +357,7 @@ static void assignments_are_strongest_and_the_last_counts(void **state) {
     (void)state;
     struct case_values s = parse_with(least, "time.end=5", "fish[0].start.position=[1, 2]", "time.end=6");
     NEAR(s.time.end, 6, 0, 0);
-    NEAR_ARRAY(2, s.fish->start_position, ((const double[]){1, 2}), 0, 0);
+    NEAR_ARRAY(2, s.school.fish->start_position, ((const double[]){1, 2}), 0, 0);
     case_free(&s);
 }
 
@@ -368,25 +368,25 @@ static void a_star_assigns_to_every_fish(void **state) {
     struct case_values s =
         parse_with(text, "fish[*].nodes=13", "fish[2].wave={frequency: 2}", "fish[*].wave.linear=0.5");
     for (int i = 0; i < 3; i++) {
-        assert_int_equal(s.fish[i].nodes, 13);
-        NEAR(s.fish[i].wave.linear, 0.5, 0, 0);
+        assert_int_equal(s.school.fish[i].nodes, 13);
+        NEAR(s.school.fish[i].wave.linear, 0.5, 0, 0);
     }
-    NEAR(s.fish[2].wave.phase, 3, 0, 0);  // a map is merged
-    NEAR(s.fish[2].wave.frequency, 2, 0, 0);
+    NEAR(s.school.fish[2].wave.phase, 3, 0, 0);  // a map is merged
+    NEAR(s.school.fish[2].wave.frequency, 2, 0, 0);
     case_free(&s);
 }
 
 static void assignments_reach_defaults_preset_and_sections(void **state) {
     (void)state;
     struct case_values s = parse_with(least, "defaults.fish.nodes=9", "preset=published", "wake={kutta: edge}");
-    assert_int_equal(s.fish->nodes, 9);
-    assert_int_equal(s.wake.shedding, SHEDDING_IMPULSIVE);
-    assert_int_equal(s.wake.kutta, KUTTA_EDGE);
+    assert_int_equal(s.school.fish->nodes, 9);
+    assert_int_equal(s.school.wake.shedding, SHEDDING_IMPULSIVE);
+    assert_int_equal(s.school.wake.kutta, KUTTA_EDGE);
     case_free(&s);
     s = parse_with(least, "fish=[{name: a}, {name: 'b = c'}]", "fish[1].length=2", "name=x=y");
-    assert_int_equal(s.n_fish, 2);
-    assert_string_equal(s.fish[1].name, "b = c");
-    NEAR(s.fish[1].length, 2, 0, 0);
+    assert_int_equal(s.school.n_fish, 2);
+    assert_string_equal(s.school.fish[1].name, "b = c");
+    NEAR(s.school.fish[1].length, 2, 0, 0);
     assert_string_equal(s.name, "x=y");
     case_free(&s);
 }
@@ -412,7 +412,7 @@ static void a_sweep_keeps_its_values_as_assignments_take_them(void **state) {
     snprintf(assignment, sizeof assignment, "%s=%s", s.sweep[1].key[0].path, s.sweep[1].value[1]);
     case_free(&s);
     s = parse_with(swept, assignment, NULL, NULL);
-    NEAR(s.fish[1].start_position[1], 2, 0, 0);
+    NEAR(s.school.fish[1].start_position[1], 2, 0, 0);
     case_free(&s);
 }
 
@@ -429,11 +429,11 @@ static void members_are_numbered_with_the_last_axis_fastest(void **state) {
     for (int m = 0; m < 6; m++) {
         struct case_values s;
         assert_int_equal(sweep_member(&s, &study, m), STATUS_OK);
-        NEAR(s.time.shedding_interval, 0.1 / (1 << m / 2), 0, 1e-15);
+        NEAR(s.school.shedding_interval, 0.1 / (1 << m / 2), 0, 1e-15);
         // what is derived follows what is swept
         NEAR(s.time.output_interval, 1.0 / (1 << m / 2), 0, 1e-15);
-        assert_int_equal(s.fish[0].nodes, m % 2 ? 9 : 7);
-        assert_string_equal(s.fish[1].name, m % 2 ? "a: b" : "thin");
+        assert_int_equal(s.school.fish[0].nodes, m % 2 ? 9 : 7);
+        assert_string_equal(s.school.fish[1].name, m % 2 ? "a: b" : "thin");
         assert_int_equal(s.n_axes, 0);
         assert_int_equal(s.member, m);
         assert_string_equal(s.study, study.merged);

@@ -261,7 +261,7 @@ static void overlapping_fish_are_refused(void **state) {
     struct case_values values;
     school_settings(&values, TIME "fish: [{}, {start: {position: [0.3, 0.05]}}]\n");
     struct school *school = (struct school *)&values;
-    assert_int_equal(fish_school_create(&school, &values), STATUS_CASE);
+    assert_int_equal(fish_school_create(&school, &values.school), STATUS_CASE);
     assert_null(school);
     assert_non_null(strstr(status_message(), "overlap"));
     case_free(&values);

@@ -18,7 +18,7 @@ typedef enum status create(struct setup *setup, void **made);
 typedef void release(struct setup *setup, void *made);
 
 static enum status create_school(struct setup *setup, void **made) {
-    return fish_school_create((struct school **)made, &setup->values);
+    return fish_school_create((struct school **)made, &setup->values.school);
 }
 static void release_school(struct setup *setup, void *made) {
     (void)setup;

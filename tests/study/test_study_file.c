@@ -117,8 +117,8 @@ static void make_member(struct member_file *member, const struct case_values *st
     text_number(study->sweep[1].value[sweep_member_value(study, m, 1)], &h);
     int n = 0;
     while (member_file_quantity(n)) n++;
-    n *= 2 * study->n_fish;
-    *member = (struct member_file){.number = m, .n_fish = study->n_fish, .status = strdup("complete")};
+    n *= 2 * study->school.n_fish;
+    *member = (struct member_file){.number = m, .n_fish = study->school.n_fish, .status = strdup("complete")};
     member->value = calloc((size_t)n, sizeof *member->value);
     for (int i = 0; i < n; i++) member->value[i] = 5 + 0.3 * pow(h, 2 + sweep_member_value(study, m, 0));
 }

@@ -1,0 +1,114 @@
+/* parameters.h: what describes a school to the model, in plain values with the units of a case file: angles in degrees,
+ * lengths in metres or in fractions of the body length, as the comments say. model/fish turns them into the constant
+ * data of the equations. doc/cases.md explains every value under the key that sets it. */
+#ifndef PARAMETERS_H
+#define PARAMETERS_H
+
+enum shedding { SHEDDING_CONTINUOUS, SHEDDING_IMPULSIVE };
+enum kutta { KUTTA_EDGE, KUTTA_RATE };
+enum collocation { COLLOCATION_CHEBYSHEV, COLLOCATION_MIDPOINT };
+enum removed_circulation { REMOVED_RETAINED, REMOVED_DROPPED };
+enum profile { PROFILE_JOUKOWSKI, PROFILE_UNIFORM, PROFILE_TABLE };
+enum second_moment { SECOND_MOMENT_ELLIPSE, SECOND_MOMENT_PUBLISHED };
+enum drag_law { DRAG_QUADRATIC, DRAG_LINEAR_QUADRATIC };
+enum extent { EXTENT_THICKNESS, EXTENT_WIDTH };
+enum prescribed { PRESCRIBED_NONE, PRESCRIBED_HEAD, PRESCRIBED_ALL };
+enum control_law { CONTROL_NONE, CONTROL_HEADING, CONTROL_AVERAGED_HEADING };
+
+/* A list of numbers, or of pairs (then 2 n numbers, pair after pair). Owned by the structure that it is in. */
+struct number_list {
+    int n;
+    double *value;
+};
+
+struct fluid_parameters {
+    double density;        /* kg m-3 */
+    double velocity[2];    /* m s-1 */
+    double shear;          /* s-1 */
+    double gust_amplitude; /* m s-1 */
+    double gust_frequency; /* Hz */
+};
+
+struct wake_parameters {
+    double smoothing, sheet_smoothing; /* fractions of the body length */
+    double lifetime, decay;            /* s */
+    enum shedding shedding;
+    enum kutta kutta;
+    double kutta_ramp; /* s */
+    enum collocation collocation;
+    enum removed_circulation dissipated_circulation;
+    double tolerance; /* lengths per beat; 0: exact */
+};
+
+struct body_parameters {
+    enum profile profile;
+    double thickness, width; /* fractions of the body length */
+    struct number_list h, w; /* m, one value per edge: profile table only */
+    double density;          /* kg m-3 */
+    double modulus;          /* Pa */
+    enum second_moment second_moment;
+    double bending_damping;    /* N m s, per joint of a body of reference_nodes: doc/model.md, section 3 */
+    double stretching_damping; /* N s m-1, per edge of such a body */
+    double relaxation_time;    /* s */
+};
+
+struct wave_parameters {
+    double amplitude, linear, quadratic, number;
+    double frequency; /* Hz */
+    double phase;     /* degree */
+    double ramp;      /* s */
+};
+
+struct drag_parameters {
+    double tangential, normal, added_mass;
+    enum drag_law law;
+    enum extent extent;
+};
+
+struct motion_parameters {
+    enum prescribed prescribed;
+    double speed;              /* m s-1 */
+    double heave;              /* m */
+    double pitch, pitch_phase; /* degree */
+    double frequency;          /* Hz */
+    double phase;              /* degree */
+    double pivot;              /* fraction of the body length from the nose */
+};
+
+struct control_parameters {
+    enum control_law law;
+    double bias;
+    struct number_list desired_heading; /* pairs (s, degree) */
+    struct number_list waypoints;       /* pairs (m, m) */
+    double acceptance_radius;           /* body lengths */
+    double gain, limit, feedforward;
+    double rate; /* s-1 */
+};
+
+struct fish_parameters {
+    char *name;
+    double length; /* m */
+    int nodes, reference_nodes, sheet_points;
+    struct body_parameters body;
+    struct wave_parameters wave;
+    struct drag_parameters drag;
+    double start_position[2]; /* m */
+    double start_heading;     /* degree */
+    double start_speed;       /* m s-1 */
+    double load_tip[2];       /* N */
+    struct motion_parameters motion;
+    struct control_parameters control;
+};
+
+struct school_parameters {
+    struct fluid_parameters fluid;
+    struct wake_parameters wake;
+    double shedding_interval; /* s */
+    double rtol;              /* of the integrator: doc/numerics.md */
+    double coupling_distance; /* body lengths of the longest fish */
+    int threads;
+    int n_fish;
+    struct fish_parameters *fish; /* (n_fish) */
+};
+
+#endif
