@@ -3,33 +3,9 @@
 
 #include <math.h>
 
+#include "model/edge.h"
+
 static const double unit_speed = 1; /* V1 of the linear-quadratic law, m s-1 */
-
-// an edge's frame and the motion of its midpoint
-struct segment {
-    double length, t[2], n[2];
-    double middle[2], velocity[2], acceleration[2];
-};
-
-static struct segment segment_at(const struct fish *fish, int k, const double *y) {
-    const double *const x = y + fish->at.x + k, *const z = y + fish->at.y + k;
-    const double *const vx = y + fish->at.vx + k, *const vy = y + fish->at.vy + k;
-    const double *const ax = y + fish->at.ax + k, *const ay = y + fish->at.ay + k;
-    const double e[2] = {x[1] - x[0], z[1] - z[0]};
-    struct segment segment = {.length = sqrt(e[0] * e[0] + e[1] * e[1]),
-                              .middle = {(x[0] + x[1]) / 2, (z[0] + z[1]) / 2},
-                              .velocity = {(vx[0] + vx[1]) / 2, (vy[0] + vy[1]) / 2},
-                              .acceleration = {(ax[0] + ax[1]) / 2, (ay[0] + ay[1]) / 2}};
-    segment.t[0] = e[0] / segment.length;
-    segment.t[1] = e[1] / segment.length;
-    segment.n[0] = -segment.t[1];
-    segment.n[1] = segment.t[0];
-    return segment;
-}
-
-static double dot(const double a[2], const double b[2]) {
-    return a[0] * b[0] + a[1] * b[1];
-}
 
 static double speed_law(enum drag_law law, double speed) {
     return speed * (fabs(speed) + (law == DRAG_LINEAR_QUADRATIC ? unit_speed : 0));
@@ -40,16 +16,16 @@ static double speed_law_slope(enum drag_law law, double speed) {
 }
 
 // the drag on an edge that moves with the relative velocity w
-static void drag_force(const struct fish *fish, int k, const struct segment *s, const double w[2], double force[2]) {
-    const double along = fish->drag_tangential[k] * speed_law(fish->drag_law, dot(w, s->t));
-    const double across = fish->drag_normal[k] * speed_law(fish->drag_law, dot(w, s->n));
+static void drag_force(const struct fish *fish, int k, const struct edge *s, const double w[2], double force[2]) {
+    const double along = fish->drag_tangential[k] * speed_law(fish->drag_law, edge_dot(w, s->t));
+    const double across = fish->drag_normal[k] * speed_law(fish->drag_law, edge_dot(w, s->n));
     for (int i = 0; i < 2; i++) force[i] = -along * s->t[i] - across * s->n[i];
 }
 
 // its derivatives with respect to w and to a turn of the edge (dt = n, dn = -t)
-static void drag_slope(const struct fish *fish, int k, const struct segment *s, const double w[2],
+static void drag_slope(const struct fish *fish, int k, const struct edge *s, const double w[2],
                        double by_velocity[2][2], double by_turn[2]) {
-    const double wt = dot(w, s->t), wn = dot(w, s->n);
+    const double wt = edge_dot(w, s->t), wn = edge_dot(w, s->n);
     const double along = fish->drag_tangential[k] * speed_law(fish->drag_law, wt);
     const double across = fish->drag_normal[k] * speed_law(fish->drag_law, wn);
     const double along_slope = fish->drag_tangential[k] * speed_law_slope(fish->drag_law, wt);
@@ -62,7 +38,7 @@ static void drag_slope(const struct fish *fish, int k, const struct segment *s, 
     }
 }
 
-static void relative_velocity(const struct fish *fish, int k, const struct segment *s, const double *u, const double *v,
+static void relative_velocity(const struct fish *fish, int k, const struct edge *s, const double *u, const double *v,
                               double w[2]) {
     w[0] = s->velocity[0] - u[flow_midpoint(fish, k)];
     w[1] = s->velocity[1] - v[flow_midpoint(fish, k)];
@@ -70,11 +46,11 @@ static void relative_velocity(const struct fish *fish, int k, const struct segme
 
 void drag_residual(const struct fish *fish, const double *u, const double *v, const double *y, double *residual) {
     for (int k = 0; k < fish->n_edges; k++) {
-        const struct segment s = segment_at(fish, k, y);
+        const struct edge s = edge_at(fish, k, y);
         double w[2], force[2];
         relative_velocity(fish, k, &s, u, v, w);
         drag_force(fish, k, &s, w, force);
-        const double inertia = fish->added_mass[k] * dot(s.acceleration, s.n);
+        const double inertia = fish->added_mass[k] * edge_dot(s.acceleration, s.n);
         for (int node = k; node <= k + 1; node++) {
             residual[fish->at.ax + node] -= (force[0] - inertia * s.n[0]) / 2;
             residual[fish->at.ay + node] -= (force[1] - inertia * s.n[1]) / 2;
@@ -82,37 +58,26 @@ void drag_residual(const struct fish *fish, const double *u, const double *v, co
     }
 }
 
-// the index of component i (0: x, 1: y) of a node's position, velocity or acceleration
-static int place(const struct fish *fish, int i, int node) {
-    return (i == 0 ? fish->at.x : fish->at.y) + node;
-}
-static int velocity(const struct fish *fish, int i, int node) {
-    return (i == 0 ? fish->at.vx : fish->at.vy) + node;
-}
-static int acceleration(const struct fish *fish, int i, int node) {
-    return (i == 0 ? fish->at.ax : fish->at.ay) + node;
-}
-
 void drag_jacobian(const struct fish *fish, const double *u, const double *v, const double *y,
                    struct sparse *jacobian) {
     for (int k = 0; k < fish->n_edges; k++) {
-        const struct segment s = segment_at(fish, k, y);
+        const struct edge s = edge_at(fish, k, y);
         double w[2], by_velocity[2][2], by_turn[2];
         relative_velocity(fish, k, &s, u, v, w);
         drag_slope(fish, k, &s, w, by_velocity, by_turn);
-        const double an = dot(s.acceleration, s.n), at = dot(s.acceleration, s.t), mu = fish->added_mass[k];
+        const double an = edge_dot(s.acceleration, s.n), at = edge_dot(s.acceleration, s.t), mu = fish->added_mass[k];
         for (int i = 0; i < 2; i++) by_turn[i] += mu * (at * s.n[i] + an * s.t[i]);
         for (int node = k; node <= k + 1; node++) {
             for (int i = 0; i < 2; i++) {
-                const int row = acceleration(fish, i, node);
+                const int row = edge_acceleration(fish, i, node);
                 for (int other = k; other <= k + 1; other++) {
                     const double turn = (other == k ? -1 : 1) / s.length;
                     for (int j = 0; j < 2; j++) {
-                        sparse_add(jacobian, row, place(fish, j, other),
+                        sparse_add(jacobian, row, edge_place(fish, j, other),
                                    -by_turn[i] * turn * s.n[j] / (2 * fish->mass[node]));
-                        sparse_add(jacobian, row, velocity(fish, j, other),
+                        sparse_add(jacobian, row, edge_velocity(fish, j, other),
                                    -by_velocity[i][j] / (4 * fish->mass[node]));
-                        sparse_add(jacobian, row, acceleration(fish, j, other),
+                        sparse_add(jacobian, row, edge_acceleration(fish, j, other),
                                    mu * s.n[i] * s.n[j] / (4 * fish->mass[node]));
                     }
                 }
@@ -124,7 +89,7 @@ void drag_jacobian(const struct fish *fish, const double *u, const double *v, co
 void drag_flow_jacobian(const struct fish *fish, const double *u, const double *v, const struct influence_block *block,
                         const double *y, struct coupling_block *rows) {
     for (int k = 0; k < fish->n_edges; k++) {
-        const struct segment s = segment_at(fish, k, y);
+        const struct edge s = edge_at(fish, k, y);
         double w[2], by_velocity[2][2], by_turn[2];
         relative_velocity(fish, k, &s, u, v, w);
         drag_slope(fish, k, &s, w, by_velocity, by_turn);
@@ -144,7 +109,7 @@ void drag_flow_jacobian(const struct fish *fish, const double *u, const double *
 }
 
 // the drag that the flow causes on edge k: F(v - u) - F(v)
-static void force_of_flow(const struct fish *fish, int k, const struct segment *s, const double *u, const double *v,
+static void force_of_flow(const struct fish *fish, int k, const struct edge *s, const double *u, const double *v,
                           double force[2]) {
     double w[2], still[2];
     relative_velocity(fish, k, s, u, v, w);
@@ -166,7 +131,7 @@ double drag_moment(const struct fish *fish, const double *u, const double *v, co
     double com[2], moment = 0;
     centre_of_mass(fish, y, com);
     for (int k = 0; k < fish->n_edges; k++) {
-        const struct segment s = segment_at(fish, k, y);
+        const struct edge s = edge_at(fish, k, y);
         double force[2];
         force_of_flow(fish, k, &s, u, v, force);
         moment += (s.middle[0] - com[0]) * force[1] - (s.middle[1] - com[1]) * force[0];
@@ -180,7 +145,7 @@ void drag_moment_jacobian(const struct fish *fish, double factor, const double *
     double com[2], total[2] = {0, 0};
     centre_of_mass(fish, y, com);
     for (int k = 0; k < fish->n_edges; k++) {
-        const struct segment s = segment_at(fish, k, y);
+        const struct edge s = edge_at(fish, k, y);
         const double arm[2] = {s.middle[0] - com[0], s.middle[1] - com[1]};
         double force[2], w[2], by_velocity[2][2], by_turn[2], still_velocity[2][2], still_turn[2];
         force_of_flow(fish, k, &s, u, v, force);
@@ -194,9 +159,9 @@ void drag_moment_jacobian(const struct fish *fish, double factor, const double *
             for (int j = 0; j < 2; j++) {
                 const double by_w = arm[0] * (by_velocity[1][j] - still_velocity[1][j]) -
                                     arm[1] * (by_velocity[0][j] - still_velocity[0][j]);
-                sparse_add(jacobian, fish->at.phi0, place(fish, j, other),
+                sparse_add(jacobian, fish->at.phi0, edge_place(fish, j, other),
                            scale * (by_arm[j] / 2 + turn * sign * s.n[j]));
-                sparse_add(jacobian, fish->at.phi0, velocity(fish, j, other), scale * by_w / 2);
+                sparse_add(jacobian, fish->at.phi0, edge_velocity(fish, j, other), scale * by_w / 2);
             }
         }
         total[0] += force[0];
@@ -206,7 +171,7 @@ void drag_moment_jacobian(const struct fish *fish, double factor, const double *
     const double by_com[2] = {-total[1], total[0]};
     for (int node = 0; node < fish->n_nodes; node++) {
         for (int j = 0; j < 2; j++) {
-            sparse_add(jacobian, fish->at.phi0, place(fish, j, node),
+            sparse_add(jacobian, fish->at.phi0, edge_place(fish, j, node),
                        scale * by_com[j] * fish->mass[node] / fish->total_mass);
         }
     }
@@ -219,7 +184,7 @@ void drag_moment_flow_jacobian(const struct fish *fish, double factor, const dou
     double com[2];
     centre_of_mass(fish, y, com);
     for (int k = 0; k < fish->n_edges; k++) {
-        const struct segment s = segment_at(fish, k, y);
+        const struct edge s = edge_at(fish, k, y);
         const double arm[2] = {s.middle[0] - com[0], s.middle[1] - com[1]};
         double w[2], by_velocity[2][2], by_turn[2];
         relative_velocity(fish, k, &s, u, v, w);
@@ -236,11 +201,11 @@ void drag_moment_flow_jacobian(const struct fish *fish, double factor, const dou
 double drag_power(const struct fish *fish, const double *u, const double *v, const double *y) {
     double power = 0;
     for (int k = 0; k < fish->n_edges; k++) {
-        const struct segment s = segment_at(fish, k, y);
+        const struct edge s = edge_at(fish, k, y);
         double w[2], force[2];
         relative_velocity(fish, k, &s, u, v, w);
         drag_force(fish, k, &s, w, force);
-        power += dot(force, s.velocity);
+        power += edge_dot(force, s.velocity);
     }
     return power;
 }
@@ -248,8 +213,8 @@ double drag_power(const struct fish *fish, const double *u, const double *v, con
 double drag_added_mass_power(const struct fish *fish, const double *y) {
     double power = 0;
     for (int k = 0; k < fish->n_edges; k++) {
-        const struct segment s = segment_at(fish, k, y);
-        power -= fish->added_mass[k] * dot(s.acceleration, s.n) * dot(s.velocity, s.n);
+        const struct edge s = edge_at(fish, k, y);
+        power -= fish->added_mass[k] * edge_dot(s.acceleration, s.n) * edge_dot(s.velocity, s.n);
     }
     return power;
 }

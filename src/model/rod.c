@@ -3,28 +3,7 @@
 
 #include <math.h>
 
-// an edge: its vector's length, tangent, normal, and the same of the difference of its nodes' velocities
-struct edge {
-    double length, t[2], n[2];
-    double rate[2];
-};
-
-static struct edge edge_at(const struct fish *fish, int k, const double *y) {
-    const double *const x = y + fish->at.x + k, *const z = y + fish->at.y + k;
-    const double *const vx = y + fish->at.vx + k, *const vy = y + fish->at.vy + k;
-    struct edge edge = {.rate = {vx[1] - vx[0], vy[1] - vy[0]}};
-    const double e[2] = {x[1] - x[0], z[1] - z[0]};
-    edge.length = sqrt(e[0] * e[0] + e[1] * e[1]);
-    edge.t[0] = e[0] / edge.length;
-    edge.t[1] = e[1] / edge.length;
-    edge.n[0] = -edge.t[1];
-    edge.n[1] = edge.t[0];
-    return edge;
-}
-
-static double dot(const double a[2], const double b[2]) {
-    return a[0] * b[0] + a[1] * b[1];
-}
+#include "model/edge.h"
 
 // a joint: turning angle, its gradient and rate, the curvature and its derivatives with respect to the angle
 enum { N_LOCAL = 6 };  // coordinates of the joint's three nodes: x, y of each in turn
@@ -39,7 +18,7 @@ static struct joint joint_at(const struct fish *fish, int j, const double *y) {
     struct joint joint = {.before = edge_at(fish, j, y), .after = edge_at(fish, j + 1, y)};
     const struct edge *a = &joint.before, *b = &joint.after;
     const double sine = a->t[0] * b->t[1] - a->t[1] * b->t[0];
-    const double angle = atan2(sine, dot(a->t, b->t));
+    const double angle = atan2(sine, edge_dot(a->t, b->t));
     joint.curvature = 2 * tan(angle / 2);
     joint.slope = 2 / (1 + cos(angle));
     joint.second = joint.slope * joint.curvature / 2;
@@ -48,7 +27,7 @@ static struct joint joint_at(const struct fish *fish, int j, const double *y) {
         joint.gradient[4 + i] = b->n[i] / b->length;
         joint.gradient[2 + i] = -joint.gradient[i] - joint.gradient[4 + i];
     }
-    joint.angle_rate = dot(b->n, b->rate) / b->length - dot(a->n, a->rate) / a->length;
+    joint.angle_rate = edge_turn_rate(b) - edge_turn_rate(a);
     return joint;
 }
 
@@ -94,7 +73,7 @@ void rod_residual(const struct fish *fish, const double *natural_curvature, cons
     for (int k = 0; k < fish->n_edges; k++) {
         const struct edge edge = edge_at(fish, k, y);
         const double elastic = fish->axial_stiffness[k] * (edge.length / fish->edge_length - 1);
-        const double damping = fish->axial_damping[k] * dot(edge.t, edge.rate);
+        const double damping = fish->axial_damping[k] * edge_dot(edge.t, edge.rate);
         for (int i = 0; i < 2; i++) {
             force[i][k] -= (elastic + damping) * edge.t[i];
             force[i][k + 1] += (elastic + damping) * edge.t[i];
@@ -137,7 +116,7 @@ static void stamp_joint(const struct fish *fish, int j, double natural_curvature
 
 static void stamp_edge(const struct fish *fish, int k, const double *y, struct sparse *jacobian) {
     const struct edge edge = edge_at(fish, k, y);
-    const double stretch_rate = dot(edge.t, edge.rate), turn_rate = dot(edge.n, edge.rate) / edge.length;
+    const double stretch_rate = edge_dot(edge.t, edge.rate), turn_rate = edge_turn_rate(&edge);
     const double tension =
         fish->axial_stiffness[k] * (edge.length / fish->edge_length - 1) + fish->axial_damping[k] * stretch_rate;
     const double stiffness = fish->axial_stiffness[k] / fish->edge_length;
@@ -199,7 +178,7 @@ double rod_damping_power(const struct fish *fish, const double *y) {
     }
     for (int k = 0; k < fish->n_edges; k++) {
         const struct edge edge = edge_at(fish, k, y);
-        const double rate = dot(edge.t, edge.rate);
+        const double rate = edge_dot(edge.t, edge.rate);
         power -= fish->axial_damping[k] * rate * rate;
     }
     return power;
