@@ -3,39 +3,24 @@
 
 #include <math.h>
 
-// the chord between two neighbouring bound vortices: its length, unit tangent and normal
-struct chord {
-    double length, t[2], n[2];
-};
-
-static struct chord chord_at(const struct fish *fish, int c, const double *y) {
-    const double *const x = y + fish->at.x, *const z = y + fish->at.y;
-    const struct stencil *a = &fish->sheet_point[c], *b = &fish->sheet_point[c + 1];
-    const double e[2] = {fish_mean(b, x) - fish_mean(a, x), fish_mean(b, z) - fish_mean(a, z)};
-    struct chord chord = {.length = sqrt(e[0] * e[0] + e[1] * e[1])};
-    chord.t[0] = e[0] / chord.length;
-    chord.t[1] = e[1] / chord.length;
-    chord.n[0] = -chord.t[1];
-    chord.n[1] = chord.t[0];
-    return chord;
-}
-
-// add weight times the derivative of the chord's two ends with respect to the nodes
-static void stamp_ends(const struct fish *fish, int c, int row, const double by_end[2], struct sparse *jacobian) {
-    for (int end = 0; end < 2; end++) {
-        const struct stencil *point = &fish->sheet_point[c + end];
-        const double sign = end == 0 ? -1 : 1;
-        for (int i = 0; i < point->n; i++) {
-            sparse_add(jacobian, row, fish->at.x + point->node[i], sign * point->weight[i] * by_end[0]);
-            sparse_add(jacobian, row, fish->at.y + point->node[i], sign * point->weight[i] * by_end[1]);
+// add the derivative of a row by a vector along the body, through the nodes that the vector depends on
+static void stamp_tangent(const struct fish *fish, const struct tangent *tangent, int row, const double by_vector[2],
+                          struct sparse *jacobian) {
+    const struct stencil *const parts[2] = {&tangent->from, &tangent->to};
+    for (int part = 0; part < 2; part++) {
+        const struct stencil *const end = parts[part];
+        const double sign = part == 0 ? -1 : 1;
+        for (int i = 0; i < end->n; i++) {
+            sparse_add(jacobian, row, fish->at.x + end->node[i], sign * end->weight[i] * by_vector[0]);
+            sparse_add(jacobian, row, fish->at.y + end->node[i], sign * end->weight[i] * by_vector[1]);
         }
     }
 }
 
 void bound_sheet_normal(const struct fish *fish, int c, const double *y, double normal[2]) {
-    const struct chord chord = chord_at(fish, c, y);
-    normal[0] = chord.n[0];
-    normal[1] = chord.n[1];
+    const struct direction body = fish_direction(fish, &fish->control_tangent[c], y);
+    normal[0] = body.n[0];
+    normal[1] = body.n[1];
 }
 
 double bound_sheet_circulation(const struct fish *fish, const double *y) {
@@ -48,10 +33,10 @@ void bound_sheet_residual(const struct fish *fish, double dissipated, const doub
                           double *residual) {
     double *const row = residual + fish->at.gamma;
     for (int c = 0; c < fish->n_control; c++) {
-        const struct chord chord = chord_at(fish, c, y);
+        const struct direction body = fish_direction(fish, &fish->control_tangent[c], y);
         const double slip[2] = {u[c] - fish_mean(&fish->control_point[c], y + fish->at.vx),
                                 v[c] - fish_mean(&fish->control_point[c], y + fish->at.vy)};
-        row[c] = slip[0] * chord.n[0] + slip[1] * chord.n[1];
+        row[c] = slip[0] * body.n[0] + slip[1] * body.n[1];
     }
     row[fish->n_control] = bound_sheet_circulation(fish, y) + y[fish->at.circulation] - dissipated;
 }
@@ -59,18 +44,18 @@ void bound_sheet_residual(const struct fish *fish, double dissipated, const doub
 void bound_sheet_jacobian(const struct fish *fish, const double *u, const double *v, const double *y,
                           struct sparse *jacobian) {
     for (int c = 0; c < fish->n_control; c++) {
-        const struct chord chord = chord_at(fish, c, y);
+        const struct direction body = fish_direction(fish, &fish->control_tangent[c], y);
         const struct stencil *point = &fish->control_point[c];
         const int row = fish->at.gamma + c;
         const double slip[2] = {u[c] - fish_mean(point, y + fish->at.vx), v[c] - fish_mean(point, y + fish->at.vy)};
         for (int i = 0; i < point->n; i++) {
-            sparse_add(jacobian, row, fish->at.vx + point->node[i], -point->weight[i] * chord.n[0]);
-            sparse_add(jacobian, row, fish->at.vy + point->node[i], -point->weight[i] * chord.n[1]);
+            sparse_add(jacobian, row, fish->at.vx + point->node[i], -point->weight[i] * body.n[0]);
+            sparse_add(jacobian, row, fish->at.vy + point->node[i], -point->weight[i] * body.n[1]);
         }
-        // the normal turns with the chord: dn = -t (n.de)/l
-        const double turn = -(slip[0] * chord.t[0] + slip[1] * chord.t[1]) / chord.length;
-        const double by_end[2] = {turn * chord.n[0], turn * chord.n[1]};
-        stamp_ends(fish, c, row, by_end, jacobian);
+        // the normal turns with the tangent e: dn = -t (n.de)/|e|
+        const double turn = -(slip[0] * body.t[0] + slip[1] * body.t[1]) / body.length;
+        const double by_vector[2] = {turn * body.n[0], turn * body.n[1]};
+        stamp_tangent(fish, &fish->control_tangent[c], row, by_vector, jacobian);
     }
     const int kelvin = fish->at.gamma + fish->n_control;
     for (int j = 0; j < fish->n_sheet; j++) sparse_add(jacobian, kelvin, fish->at.gamma + j, fish->sheet_weight[j]);
@@ -84,9 +69,9 @@ void bound_sheet_flow_jacobian(const struct fish *fish, const struct influence_b
     for (int first = 0; first < fish->n_control; first += CHUNK) {
         const int n = fish->n_control - first < CHUNK ? fish->n_control - first : CHUNK;
         for (int c = 0; c < n; c++) {
-            const struct chord chord = chord_at(fish, first + c, y);
-            normal_x[c] = chord.n[0];
-            normal_y[c] = chord.n[1];
+            const struct direction body = fish_direction(fish, &fish->control_tangent[first + c], y);
+            normal_x[c] = body.n[0];
+            normal_y[c] = body.n[1];
         }
         for (int i = 0; i < block->n_columns; i++) {
             const double *const u = block->u + (long)i * block->n_points + first;
@@ -98,19 +83,19 @@ void bound_sheet_flow_jacobian(const struct fish *fish, const struct influence_b
 }
 
 // the fluid's velocity past the tail along the body
-static double slip_along(const struct fish *fish, const struct chord *chord, const double *u, const double *v,
+static double slip_along(const struct fish *fish, const struct direction *body, const double *u, const double *v,
                          const double *y, double slip[2]) {
     const int p = flow_tail(fish), tail = fish->n_nodes - 1;
     slip[0] = u[p] - y[fish->at.vx + tail];
     slip[1] = v[p] - y[fish->at.vy + tail];
-    return slip[0] * chord->t[0] + slip[1] * chord->t[1];
+    return slip[0] * body->t[0] + slip[1] * body->t[1];
 }
 
 double bound_sheet_shedding_rate(const struct fish *fish, double chi, const double *u, const double *v,
                                  const double *y) {
-    const struct chord chord = chord_at(fish, fish->n_control - 1, y);
+    const struct direction body = fish_direction(fish, &fish->tail_tangent, y);
     double slip[2];
-    return chi * y[fish->at.gamma + fish->n_sheet - 1] * slip_along(fish, &chord, u, v, y, slip);
+    return chi * y[fish->at.gamma + fish->n_sheet - 1] * slip_along(fish, &body, u, v, y, slip);
 }
 
 void bound_sheet_kutta_residual(const struct fish *fish, enum bound_sheet_law law, double chi, const double *u,
@@ -134,26 +119,26 @@ void bound_sheet_kutta_jacobian(const struct fish *fish, enum bound_sheet_law la
     }
     sparse_add(jacobian, row, fish->at.circulation, cj);
     if (law == BOUND_SHEET_FROZEN) return;
-    const struct chord chord = chord_at(fish, fish->n_control - 1, y);
+    const struct direction body = fish_direction(fish, &fish->tail_tangent, y);
     double slip[2];
-    const double along = slip_along(fish, &chord, u, v, y, slip);
+    const double along = slip_along(fish, &body, u, v, y, slip);
     const double strength = chi * y[fish->at.gamma + last];
     sparse_add(jacobian, row, fish->at.gamma + last, -chi * along);
-    sparse_add(jacobian, row, fish->at.vx + tail, strength * chord.t[0]);
-    sparse_add(jacobian, row, fish->at.vy + tail, strength * chord.t[1]);
-    // the tangent turns with the chord: dt = n (n.de)/l
-    const double turn = -strength * (slip[0] * chord.n[0] + slip[1] * chord.n[1]) / chord.length;
-    const double by_end[2] = {turn * chord.n[0], turn * chord.n[1]};
-    stamp_ends(fish, fish->n_control - 1, row, by_end, jacobian);
+    sparse_add(jacobian, row, fish->at.vx + tail, strength * body.t[0]);
+    sparse_add(jacobian, row, fish->at.vy + tail, strength * body.t[1]);
+    // the tangent turns with the vector e along it: dt = n (n.de)/|e|
+    const double turn = -strength * (slip[0] * body.n[0] + slip[1] * body.n[1]) / body.length;
+    const double by_vector[2] = {turn * body.n[0], turn * body.n[1]};
+    stamp_tangent(fish, &fish->tail_tangent, row, by_vector, jacobian);
 }
 
 void bound_sheet_kutta_flow_jacobian(const struct fish *fish, double chi, const struct influence_block *block,
                                      const double *y, struct coupling_block *rows) {
-    const struct chord chord = chord_at(fish, fish->n_control - 1, y);
+    const struct direction body = fish_direction(fish, &fish->tail_tangent, y);
     const double strength = chi * y[fish->at.gamma + fish->n_sheet - 1];
     const double *const u = block->u + flow_tail(fish), *const v = block->v + flow_tail(fish);
     double *const row = rows->value + (fish->at.circulation - fish->at.ax);
     for (long i = 0; i < block->n_columns; i++) {
-        row[i * rows->n_rows] -= strength * (chord.t[0] * u[i * block->n_points] + chord.t[1] * v[i * block->n_points]);
+        row[i * rows->n_rows] -= strength * (body.t[0] * u[i * block->n_points] + body.t[1] * v[i * block->n_points]);
     }
 }

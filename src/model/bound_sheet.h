@@ -38,7 +38,7 @@ void bound_sheet_kutta_jacobian(const struct fish *fish, enum bound_sheet_law la
 void bound_sheet_kutta_flow_jacobian(const struct fish *fish, double chi, const struct influence_block *block,
                                      const double *y, struct coupling_block *rows);
 
-/* Unit normal of the chord between the bound vortices c and c + 1. */
+/* Unit normal of the body at control point c. */
 void bound_sheet_normal(const struct fish *fish, int c, const double *y, double normal[2]);
 
 /* Circulation of the bound sheet, m2 s-1. */

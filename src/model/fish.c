@@ -16,6 +16,18 @@ double fish_mean(const struct stencil *point, const double *value) {
     return mean;
 }
 
+struct direction fish_direction(const struct fish *fish, const struct tangent *tangent, const double *y) {
+    const double *const x = y + fish->at.x, *const z = y + fish->at.y;
+    const double e[2] = {fish_mean(&tangent->to, x) - fish_mean(&tangent->from, x),
+                         fish_mean(&tangent->to, z) - fish_mean(&tangent->from, z)};
+    struct direction direction = {.length = sqrt(e[0] * e[0] + e[1] * e[1])};
+    direction.t[0] = e[0] / direction.length;
+    direction.t[1] = e[1] / direction.length;
+    direction.n[0] = -direction.t[1];
+    direction.n[1] = direction.t[0];
+    return direction;
+}
+
 // half thickness of the Joukowski profile at arc coordinate s from the nose
 static double joukowski_half_thickness(double s, double length, double thickness) {
     const double r0 = length * (1 - thickness) / 4, c = r0 * (1 + thickness);
@@ -38,30 +50,6 @@ static double joukowski_half_thickness(double s, double length, double thickness
     return fabs(im * (1 - c * c / (re * re + im * im)));
 }
 
-// the point at fraction sigma of the body, between its two neighbouring nodes
-static struct stencil point_at(const struct fish *fish, double sigma) {
-    const double place = sigma * fish->n_edges;
-    int node = (int)place;
-    if (node > fish->n_edges - 1) node = fish->n_edges - 1;
-    const double weight = place - node;
-    return (struct stencil){.n = 2, .node = {node, node + 1}, .weight = {1 - weight, weight}};
-}
-
-// the point half way between two points; a node that both use appears once
-static struct stencil point_between(const struct stencil *a, const struct stencil *b) {
-    struct stencil mean = {0};
-    const struct stencil *const parts[2] = {a, b};
-    for (int part = 0; part < 2; part++) {
-        for (int i = 0; i < parts[part]->n; i++) {
-            int at = 0;
-            while (at < mean.n && mean.node[at] != parts[part]->node[i]) at++;
-            if (at == mean.n) mean.node[mean.n++] = parts[part]->node[i];
-            mean.weight[at] += parts[part]->weight[i] / 2;
-        }
-    }
-    return mean;
-}
-
 static enum status doubles(double **values, int n) {
     *values = calloc((size_t)(n > 0 ? n : 1), sizeof **values);
     return *values ? STATUS_OK : status_fail(STATUS_MEMORY, "no room for %d numbers of a fish", n);
@@ -80,7 +68,8 @@ static enum status fish_allocate(struct fish *fish) {
     TRY(doubles(&fish->sheet_weight, fish->n_sheet));
     fish->sheet_point = calloc((size_t)fish->n_sheet, sizeof *fish->sheet_point);
     fish->control_point = calloc((size_t)fish->n_control, sizeof *fish->control_point);
-    if (!fish->sheet_point || !fish->control_point) {
+    fish->control_tangent = calloc((size_t)fish->n_control, sizeof *fish->control_tangent);
+    if (!fish->sheet_point || !fish->control_point || !fish->control_tangent) {
         return status_fail(STATUS_MEMORY, "no room for %d points of a sheet", fish->n_sheet);
     }
     return STATUS_OK;
@@ -157,24 +146,37 @@ static void set_drag(struct fish *fish, const struct fish_parameters *from, doub
     fish->drag_law = drag->law;
 }
 
-static void place_sheet(struct fish *fish, enum collocation collocation) {
+// place j of the bound vortices, j + 1/2 of the control points, as a fraction of the length
+static double cosine_place(const struct fish *fish, double j) {
     const int last = fish->n_sheet - 1;
-    double before = 0;
-    for (int j = 0; j <= last; j++) {
-        const double sigma = j == last ? 1 : (1 - cos(pi * j / last)) / 2;
-        fish->sheet_point[j] = point_at(fish, sigma);
-        if (j > 0) {
-            fish->sheet_weight[j - 1] += (sigma - before) * fish->length / 2;
-            fish->sheet_weight[j] += (sigma - before) * fish->length / 2;
-        }
-        before = sigma;
+    return j == last ? 1 : (1 - cos(pi * j / last)) / 2;
+}
+
+static void place_sheet_on_polygon(struct fish *fish, enum collocation collocation) {
+    for (int j = 0; j < fish->n_sheet; j++) {
+        fish->sheet_point[j] = curve_polygon_point(fish->curve, cosine_place(fish, j) * fish->n_edges);
     }
     for (int c = 0; c < fish->n_control; c++) {
+        const struct stencil *const a = &fish->sheet_point[c], *const b = &fish->sheet_point[c + 1];
         fish->control_point[c] = collocation == COLLOCATION_CHEBYSHEV
-                                     ? point_at(fish, (1 - cos(pi * (c + 0.5) / last)) / 2)
-                                     : point_between(&fish->sheet_point[c], &fish->sheet_point[c + 1]);
+                                     ? curve_polygon_point(fish->curve, cosine_place(fish, c + 0.5) * fish->n_edges)
+                                     : curve_polygon_middle(fish->curve, a, b);
+        fish->control_tangent[c] = (struct tangent){.from = *a, .to = *b};
     }
-    fish->heading_point = point_at(fish, 1.0 / 3.0);
+    fish->tail_tangent = fish->control_tangent[fish->n_control - 1];
+}
+
+// bound vortices and control points: doc/model.md, section 6
+static enum status place_sheet(struct fish *fish, enum collocation collocation) {
+    for (int j = 1; j < fish->n_sheet; j++) {
+        const double distance = cosine_place(fish, j) - cosine_place(fish, j - 1);
+        fish->sheet_weight[j - 1] += distance * fish->length / 2;
+        fish->sheet_weight[j] += distance * fish->length / 2;
+    }
+    TRY(curve_create(&fish->curve, fish->n_nodes, 2 * fish->n_sheet, 0));
+    place_sheet_on_polygon(fish, collocation);
+    fish->heading_point = curve_polygon_point(fish->curve, 1.0 / 3.0 * fish->n_edges);
+    return STATUS_OK;
 }
 
 static void set_motion(struct fish *fish, const struct fish_parameters *from) {
@@ -246,7 +248,7 @@ static enum status fish_fill(struct fish *fish, const struct school_parameters *
     weigh_body(fish, from);
     set_wave(fish, from);
     set_drag(fish, from, parameters->fluid.density);
-    place_sheet(fish, parameters->wake.collocation);
+    TRY(place_sheet(fish, parameters->wake.collocation));
     set_motion(fish, from);
     return set_control(fish, from, parameters->fluid.density);
 }
@@ -360,11 +362,13 @@ void fish_school_free(struct school *school) {
                                fish->sheet_weight,
                                fish->sheet_point,
                                fish->control_point,
+                               fish->control_tangent,
                                fish->control.heading_time,
                                fish->control.heading,
                                fish->control.waypoint_x,
                                fish->control.waypoint_y};
         for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
+        curve_free(fish->curve);
     }
     free(school->fish);
     free(school);

@@ -19,14 +19,8 @@
 #define FISH_H
 
 #include "base/status.h"
+#include "model/curve.h"
 #include "model/parameters.h"
-
-/* A fixed weighted mean of at most four nodes: a point that moves with the body. */
-struct stencil {
-    int n;
-    int node[4];
-    double weight[4];
-};
 
 /* First index of each slice in the vector of all unknowns, and one past the last. The equations have the same layout:
  * rows x, y: dx/dt - v; vx, vy: dv/dt - a; ax, ay: law of motion; sheet: M - 1 times no penetration, then Kelvin;
@@ -89,10 +83,13 @@ struct fish {
     double *added_mass;      /* mu, kg                                            (n_edges) */
     enum drag_law drag_law;
 
-    double *sheet_weight;          /* ds_j, m                                     (n_sheet) */
-    struct stencil *sheet_point;   /* the bound vortices                          (n_sheet) */
-    struct stencil *control_point; /* where no penetration is asked for           (n_control) */
-    struct stencil heading_point;  /* the body point at a third of the length */
+    double *sheet_weight;            /* ds_j, m                                     (n_sheet) */
+    struct curve *curve;             /* the line of the body; owns the stencils below */
+    struct stencil *sheet_point;     /* the bound vortices                          (n_sheet) */
+    struct stencil *control_point;   /* where impermeability is required            (n_control) */
+    struct tangent *control_tangent; /* the direction of the body there             (n_control) */
+    struct tangent tail_tangent;     /* and at the tail */
+    struct stencil heading_point;    /* the body point at a third of the length */
 
     double smoothing;       /* of its free vortices, delta, m */
     double sheet_smoothing; /* of its bound sheet seen from elsewhere, m */
@@ -136,6 +133,12 @@ void fish_school_free(struct school *school);
 
 /* sum of weight * value over the nodes of the point. */
 double fish_mean(const struct stencil *point, const double *value);
+
+/* A vector along the body where its nodes are as in y: its length, its unit vector t, and the unit normal n = E3 x t. */
+struct direction {
+    double length, t[2], n[2];
+};
+struct direction fish_direction(const struct fish *fish, const struct tangent *tangent, const double *y);
 
 /* The number of nodes of the fish, from the nose on, whose motion is given: 0, 2 or all. */
 int fish_n_prescribed(const struct fish *fish);

@@ -337,7 +337,7 @@ static void derive_nascent(const struct target *at) {
     const struct flow *flow = at->flow;
     const struct fish *other = &flow->school->fish[at->g];
     const struct range points = flow->points[at->f];
-    const struct stencil tail = {.n = 1, .node = {other->n_nodes - 1}, .weight = {1}};
+    const struct stencil tail = {.n = 1, .node = (const int[]){other->n_nodes - 1}, .weight = (const double[]){1}};
     for (int first = 0; first < points.n; first += KERNEL_CHUNK) {
         const int n = points.n - first < KERNEL_CHUNK ? points.n - first : KERNEL_CHUNK;
         struct kernel_values unit;
@@ -391,8 +391,7 @@ static void derive_sources(const struct target *at) {
 static struct stencil point_stencil(const struct fish *fish, int p) {
     if (p < fish->n_control) return fish->control_point[p];
     if (p == flow_tail(fish)) return fish->sheet_point[fish->n_sheet - 1];
-    const int k = p - fish->n_control;
-    return (struct stencil){.n = 2, .node = {k, k + 1}, .weight = {0.5, 0.5}};
+    return curve_edge_middle(fish->curve, p - fish->n_control);
 }
 
 void flow_derivative(const struct flow *flow, int f, int g, struct influence_block *block) {
