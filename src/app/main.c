@@ -101,7 +101,7 @@ static enum status dispatch(const struct command *command, int argc, char **argv
             status = command->run(&request);
         }
     } else {
-        status = status_fail(STATUS_MEMORY, "no room for the command line");
+        status = status_fail(STATUS_MEMORY, "out of memory: the command line");
     }
     free(command_line);
     free(assignments);

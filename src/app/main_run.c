@@ -47,7 +47,7 @@ enum status main_run(const struct request *request) {
     enum status status = case_runnable(&values);
     if (status == STATUS_OK) {
         char *const path = request->output ? strdup(request->output) : default_path(&values);
-        status = path ? run_settings(&values, request, path) : status_fail(STATUS_MEMORY, "no room for a file name");
+        status = path ? run_settings(&values, request, path) : status_fail(STATUS_MEMORY, "out of memory: a file name");
         free(path);
     }
     case_free(&values);

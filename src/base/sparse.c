@@ -7,7 +7,7 @@
 enum status sparse_create(struct sparse **matrix, int first, int n) {
     struct sparse *new = calloc(1, sizeof *new);
     *matrix = NULL;
-    if (!new) return status_fail(STATUS_MEMORY, "no room for a sparse matrix");
+    if (!new) return status_fail(STATUS_MEMORY, "out of memory: a sparse matrix");
     new->first = first;
     new->n = n;
     new->recording = 1;
@@ -16,7 +16,7 @@ enum status sparse_create(struct sparse **matrix, int first, int n) {
     new->value = calloc(1, sizeof *new->value);
     if (!new->masked || !new->column_start || !new->value) {
         sparse_free(new);
-        return status_fail(STATUS_MEMORY, "no room for a sparse matrix of order %d", n);
+        return status_fail(STATUS_MEMORY, "out of memory: a sparse matrix of order %d", n);
     }
     *matrix = new;
     return STATUS_OK;
@@ -128,7 +128,7 @@ static enum status compile(struct sparse *matrix) {
     if (!order || !by_row || !count || !recorded || !row_index || !value) {
         free(row_index);
         free(value);
-        status = status_fail(STATUS_MEMORY, "no room for %lld entries of a Jacobian", (long long)matrix->n_entries);
+        status = status_fail(STATUS_MEMORY, "out of memory: %lld entries of a Jacobian", (long long)matrix->n_entries);
         goto done;
     }
     const int64_t n_sorted = sort_entries(matrix, order, by_row, count);
@@ -174,6 +174,6 @@ enum status sparse_end(struct sparse *matrix) {
         assert(matrix->next == matrix->n_entries);
         return STATUS_OK;
     }
-    if (matrix->out_of_memory) return status_fail(STATUS_MEMORY, "no room to record a Jacobian");
+    if (matrix->out_of_memory) return status_fail(STATUS_MEMORY, "out of memory: recording a Jacobian");
     return compile(matrix);
 }

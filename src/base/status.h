@@ -11,7 +11,7 @@ enum status {
     STATUS_RETRY = 1,    /* not a number here: a smaller step may help */
     STATUS_CASE = -1,    /* wrong usage or a wrong case */
     STATUS_FILE = -2,    /* a file cannot be read or written */
-    STATUS_MEMORY = -3,  /* no memory */
+    STATUS_MEMORY = -3,  /* out of memory */
     STATUS_SOLVER = -4,  /* the solver gave up */
     STATUS_STOPPED = -5, /* a signal asked the run to stop */
     STATUS_MISSED = -6   /* a stated check was missed */

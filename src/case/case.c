@@ -16,8 +16,8 @@ struct reading {
     struct yaml_errors errors;
 };
 
-static enum status no_memory(void) {
-    return status_fail(STATUS_MEMORY, "no memory for the values of the case");
+static enum status out_of_memory(void) {
+    return status_fail(STATUS_MEMORY, "out of memory: the values of the case");
 }
 
 // ---- keys that nobody knows
@@ -201,11 +201,11 @@ static enum status derive_fish(struct fish_parameters *fish, int index) {
     if (!fish->name) {
         char name[32];
         snprintf(name, sizeof name, "fish%d", index + 1);
-        if (!(fish->name = strdup(name))) return no_memory();
+        if (!(fish->name = strdup(name))) return out_of_memory();
     }
     if (fish->control.desired_heading.n == 0) {
         double *const pair = calloc(2, sizeof *pair);
-        if (!pair) return no_memory();
+        if (!pair) return out_of_memory();
         pair[1] = fish->start_heading;
         fish->control.desired_heading = (struct number_list){1, pair};
     }
@@ -226,7 +226,7 @@ static enum status derive_all(struct case_values *values, const char *origin) {
     derive(&values->school.wake.decay, values->school.wake.lifetime / 10);
     derive(&values->school.wake.tolerance, values->school.rtol / 100);
     derive(&values->output.wake_interval, values->time.output_interval);
-    if (!values->name && !(values->name = stem(origin))) return no_memory();
+    if (!values->name && !(values->name = stem(origin))) return out_of_memory();
     for (int i = 0; i < values->school.n_fish; i++) TRY(derive_fish(&values->school.fish[i], i));
     return STATUS_OK;
 }
@@ -245,7 +245,7 @@ static enum status fill(struct reading *reading, struct case_values *values) {
     values->school.fish = calloc((size_t)values->school.n_fish + 1, sizeof *values->school.fish);
     if (!values->school.fish) {
         values->school.n_fish = 0;
-        return no_memory();
+        return out_of_memory();
     }
     clear(values);
     if (case_merge_n_fish(tree) == 0 && are_keys_known) {
@@ -265,7 +265,7 @@ static enum status fill(struct reading *reading, struct case_values *values) {
 /* Keep the text of the case file. */
 static enum status keep_text(struct case_values *values, const struct yaml_source *source) {
     values->text = malloc(source->length + 1);
-    if (!values->text) return no_memory();
+    if (!values->text) return out_of_memory();
     memcpy(values->text, source->text, source->length);
     values->text[source->length] = '\0';
     return STATUS_OK;
@@ -288,7 +288,7 @@ static enum status keep_merged(struct case_values *values, const struct yaml_nod
     if (!text.failed) return STATUS_OK;
     text_free(&text);
     values->merged = NULL;
-    return no_memory();
+    return out_of_memory();
 }
 
 /* Apply the assignments to a tree that has been read, and fill the settings from it. status: how the reading went. */

@@ -241,7 +241,7 @@ enum status case_runnable(const struct case_values *values) {
                  values->n_axes, values->n_axes == 1 ? 'i' : 'e');
     }
     if (!list.failed && list.length == 0) return STATUS_OK;
-    const enum status status = list.failed ? status_fail(STATUS_MEMORY, "no memory to list the errors of the case")
+    const enum status status = list.failed ? status_fail(STATUS_MEMORY, "out of memory: the list of errors of the case")
                                            : status_fail(STATUS_CASE, "%.*s", (int)(list.length - 1), list.text);
     text_free(&list);
     return status;

@@ -19,13 +19,13 @@ struct open_file {
     const struct open_file *by;
 };
 
-static enum status no_memory(void) {
-    return status_fail(STATUS_MEMORY, "no memory to read the case file");
+static enum status out_of_memory(void) {
+    return status_fail(STATUS_MEMORY, "out of memory: reading the case file");
 }
 
 // ---- sources
 
-/* Add an empty source; NULL if there is no memory. The tree owns it. */
+/* Add an empty source; NULL when out of memory. The tree owns it. */
 static struct yaml_source *add_source(struct case_tree *tree, const char *name) {
     const size_t size = (size_t)(tree->n_sources + 1) * sizeof(struct yaml_source *);
     struct yaml_source **const grown = realloc(tree->source, size);
@@ -54,7 +54,7 @@ void case_merge_free(struct case_tree *tree) {
 static enum status read_bytes(int file, struct yaml_source *source) {
     const size_t capacity = YAML_TREE_BYTES + 1;
     source->text = malloc(capacity);
-    if (!source->text) return no_memory();
+    if (!source->text) return out_of_memory();
     ssize_t n;
     do {
         n = read(file, source->text + source->length, capacity - source->length);
@@ -106,7 +106,7 @@ static bool is_open(const struct open_file *file, const struct open_file *by) {
 static enum status include_path(struct case_tree *tree, const struct yaml_node *node, const char *path,
                                 const struct open_file *by, struct yaml_errors *errors, struct yaml_node **base) {
     struct yaml_source *const source = add_source(tree, path);
-    if (!source) return no_memory();
+    if (!source) return out_of_memory();
     struct open_file self = {.depth = by->depth + 1, .by = by};
     const enum status status = read_file(path, source, &self);
     if (status == STATUS_FILE) {
@@ -138,7 +138,7 @@ static enum status include_entry(struct case_tree *tree, const struct yaml_node 
     struct text path = {0};
     if (node->text[0] != '/') text_add(&path, "%.*s", folder_length(folder), folder);
     text_add(&path, "%s", node->text);
-    const enum status status = path.failed ? no_memory() : include_path(tree, node, path.text, by, errors, base);
+    const enum status status = path.failed ? out_of_memory() : include_path(tree, node, path.text, by, errors, base);
     text_free(&path);
     return status;
 }
@@ -207,7 +207,7 @@ static enum status read_case(struct case_tree *tree, const char *folder, const s
 
 enum status case_merge_read_file(struct case_tree *tree, const char *path, struct yaml_errors *errors) {
     struct yaml_source *const source = add_source(tree, path);
-    if (!source) return no_memory();
+    if (!source) return out_of_memory();
     struct open_file self = {0};
     const enum status status = read_file(path, source, &self);
     if (status == STATUS_FILE) return status_fail(STATUS_FILE, "%s: error: the case file %s", path, status_message());
@@ -218,14 +218,14 @@ enum status case_merge_read_file(struct case_tree *tree, const char *path, struc
 enum status case_merge_read_text(struct case_tree *tree, const char *text, size_t length, const char *origin,
                                  const char *folder, struct yaml_errors *errors) {
     struct yaml_source *const source = add_source(tree, origin);
-    if (!source || !(source->text = malloc(length + 1))) return no_memory();
+    if (!source || !(source->text = malloc(length + 1))) return out_of_memory();
     memcpy(source->text, text, length);
     source->length = length;
     struct text place = {0};
     if (folder && *folder) text_add(&place, "%s/", folder);
     const struct open_file self = {0};
     const enum status status =
-        place.failed ? no_memory() : read_case(tree, place.text ? place.text : "", &self, errors);
+        place.failed ? out_of_memory() : read_case(tree, place.text ? place.text : "", &self, errors);
     text_free(&place);
     return status;
 }
@@ -246,7 +246,7 @@ static enum status put_at(struct yaml_node **node, const char *path, struct yaml
 
     if (!yaml_tree_entry(*node, key, length)) {
         struct yaml_node *const map = yaml_tree_map(mark);
-        const enum status status = map ? yaml_tree_put(*node, key, mark, map) : no_memory();
+        const enum status status = map ? yaml_tree_put(*node, key, mark, map) : out_of_memory();
         if (status != STATUS_OK) {
             yaml_tree_free(value);
             return status;
@@ -261,7 +261,7 @@ static enum status put_in_fish(struct case_tree *tree, const struct case_path *p
     for (int i = 0; i < case_merge_n_fish(tree); i++) {
         if (path->fish != i && path->fish != CASE_EVERY_FISH) continue;
         struct yaml_node *const copy = yaml_tree_copy(value);
-        if (!copy) return no_memory();
+        if (!copy) return out_of_memory();
         TRY(put_at(&school->value->entry[i].value, path->below, value->mark, copy));
     }
     return STATUS_OK;
@@ -288,7 +288,7 @@ static enum status assign(struct case_tree *tree, char *name, const char *text, 
     }
     // nothing after the equals sign is the empty text
     source->text = strdup(text[strspn(text, " ")] ? text : "\"\"");
-    if (!source->text) return no_memory();
+    if (!source->text) return out_of_memory();
     source->length = strlen(source->text);
     struct yaml_node *value = NULL;
     const enum status status = yaml_tree_read(&value, source, errors);
@@ -307,7 +307,7 @@ enum status case_merge_assign(struct case_tree *tree, const char *assignment, st
     char *const name = strdup(assignment);
     if (!source || !name) {
         free(name);
-        return no_memory();
+        return out_of_memory();
     }
     source->one_line = true;
     enum status status = STATUS_OK;

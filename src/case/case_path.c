@@ -10,7 +10,7 @@ void case_path_unknown(struct yaml_errors *errors, struct yaml_mark mark, const 
     struct text hint = {0};
     if (errors->n < YAML_ERRORS_KEPT) case_table_suggest(&hint, section, word, owner);
     yaml_errors_add(errors, mark, "%.150s: unknown key%s", path, hint.text ? hint.text : "");
-    if (hint.failed) errors->no_memory = true;
+    if (hint.failed) errors->out_of_memory = true;
     text_free(&hint);
 }
 

@@ -196,7 +196,7 @@ enum status case_show(const struct case_values *values, char **text) {
     *text = NULL;
     if (list.failed) {
         text_free(&list);
-        return status_fail(STATUS_MEMORY, "no memory to show the case");
+        return status_fail(STATUS_MEMORY, "out of memory: showing the case");
     }
     *text = list.text;
     return STATUS_OK;

@@ -50,7 +50,7 @@ static void report_range(const struct context *context, const struct yaml_node *
     const char *const unit = context->unit;
     yaml_errors_add(context->errors, node->mark, "%s: must be %s%s%s, got %.40s", context->path,
                     range.text ? range.text : "in range", *unit ? " " : "", unit, node->text);
-    if (range.failed) context->errors->no_memory = true;
+    if (range.failed) context->errors->out_of_memory = true;
     text_free(&range);
 }
 
@@ -113,7 +113,7 @@ static void read_choice(const struct context *context, const struct yaml_node *n
     char shown[64];
     struct text range = {0};
     case_table_range(context->key, &range);
-    if (range.failed) context->errors->no_memory = true;
+    if (range.failed) context->errors->out_of_memory = true;
     yaml_errors_add(context->errors, node->mark, "%s: expects one of %s; got %s", context->path,
                     range.text ? range.text : "", yaml_tree_describe(node, shown, sizeof shown));
     text_free(&range);
@@ -138,7 +138,7 @@ static enum status read_text(const struct context *context, const struct yaml_no
         yaml_errors_add(context->errors, node->mark, "%s: longer than %d bytes", context->path,
                         (int)context->key->bounds.most);
     } else if (!(*value = strdup(node->text))) {
-        return status_fail(STATUS_MEMORY, "no memory for the value of %s", context->path);
+        return status_fail(STATUS_MEMORY, "out of memory: the value of %s", context->path);
     }
     return STATUS_OK;
 }
@@ -192,7 +192,7 @@ static enum status read_list(const struct context *context, const struct yaml_no
     }
     if (node->n == 0) return STATUS_OK;
     double *const value = calloc(2 * (size_t)node->n, sizeof *value);
-    if (!value) return status_fail(STATUS_MEMORY, "no memory for the %d values of %s", node->n, context->path);
+    if (!value) return status_fail(STATUS_MEMORY, "out of memory: the %d values of %s", node->n, context->path);
     if (read_values(context, node, value)) {
         *list = (struct number_list){node->n, value};
     } else {
@@ -214,7 +214,7 @@ static enum status read_heading(const struct context *context, const struct yaml
         return STATUS_OK;
     }
     double *const pair = calloc(2, sizeof *pair);
-    if (!pair) return status_fail(STATUS_MEMORY, "no memory for the value of %s", context->path);
+    if (!pair) return status_fail(STATUS_MEMORY, "out of memory: the value of %s", context->path);
     pair[1] = angle;
     *list = (struct number_list){1, pair};
     return STATUS_OK;

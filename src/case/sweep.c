@@ -17,8 +17,8 @@ static const double most_members = 1e5;
 
 enum { MOST_KEYS = 16 /* of one axis */ };
 
-static enum status no_memory(void) {
-    return status_fail(STATUS_MEMORY, "no memory for the sweep");
+static enum status out_of_memory(void) {
+    return status_fail(STATUS_MEMORY, "out of memory: the sweep");
 }
 
 /* One axis on its way: where it is read from, where it goes, and what is known about its keys. */
@@ -89,7 +89,7 @@ static enum status read_key(const struct case_values *values, struct axis *axis,
     swept->unit = key->unit;
     swept->is_number = key->type == REAL || key->type == INTEGER;
     swept->path = strdup(node->text);
-    return swept->path ? STATUS_OK : no_memory();
+    return swept->path ? STATUS_OK : out_of_memory();
 }
 
 /* Read "key", or "keys". */
@@ -105,7 +105,7 @@ static enum status read_axis_keys(const struct case_values *values, struct axis 
         yaml_errors_add(axis->errors, single->mark, "%s: takes key or keys, not both", axis->name);
     }
     axis->into->key = calloc(MOST_KEYS, sizeof *axis->into->key);
-    if (!axis->into->key) return no_memory();
+    if (!axis->into->key) return out_of_memory();
     if (!list) return read_key(values, axis, single);
     for (int k = 0; k < list->n; k++) TRY(read_key(values, axis, list->entry[k].value));
     return STATUS_OK;
@@ -133,7 +133,7 @@ static enum status read_value(struct axis *axis, int index, int k, const struct 
     yaml_write_node(&text, value);
     if (text.failed) {
         text_free(&text);
-        return no_memory();
+        return out_of_memory();
     }
     axis->into->value[index * axis->n_keys + k] = text.text;
     return STATUS_OK;
@@ -148,7 +148,7 @@ static enum status read_values(struct axis *axis) {
         return STATUS_OK;
     }
     axis->into->value = calloc((size_t)list->n * (size_t)axis->n_keys + 1, sizeof *axis->into->value);
-    if (!axis->into->value) return no_memory();
+    if (!axis->into->value) return out_of_memory();
     axis->into->n_values = list->n;
     for (int i = 0; i < list->n; i++) {
         const struct yaml_node *const value = list->entry[i].value;
@@ -190,7 +190,7 @@ enum status sweep_read(struct case_values *values, const struct case_tree *tree,
     }
     if (list->n == 0) return STATUS_OK;
     values->sweep = calloc((size_t)list->n, sizeof *values->sweep);
-    if (!values->sweep) return no_memory();
+    if (!values->sweep) return out_of_memory();
     double n_members = 1;
     for (int i = 0; i < list->n && n_members <= most_members; i++) {
         struct axis axis = {.node = list->entry[i].value, .into = &values->sweep[i], .errors = errors};

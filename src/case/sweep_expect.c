@@ -12,8 +12,8 @@
 
 #include "case/case_check.h"
 
-static enum status no_memory(void) {
-    return status_fail(STATUS_MEMORY, "no memory for what is expected");
+static enum status out_of_memory(void) {
+    return status_fail(STATUS_MEMORY, "out of memory: what is expected");
 }
 
 /* One statement on its way. */
@@ -89,7 +89,7 @@ static enum status read_where(const struct stating *statement, const struct yaml
         return STATUS_OK;
     }
     statement->into->where = calloc((size_t)list->n + 1, sizeof *statement->into->where);
-    if (!statement->into->where) return no_memory();
+    if (!statement->into->where) return out_of_memory();
     for (int i = 0; i < list->n; i++) {
         const struct yaml_node *const node = list->entry[i].value;
         const char *const equals = node->kind == YAML_SCALAR ? strchr(node->text, '=') : NULL;
@@ -101,7 +101,7 @@ static enum status read_where(const struct stating *statement, const struct yaml
             continue;
         }
         condition->value = strdup(equals + 1);
-        if (!condition->value) return no_memory();
+        if (!condition->value) return out_of_memory();
         statement->into->n_where++;
     }
     return STATUS_OK;
@@ -186,7 +186,7 @@ static enum status read_fails(const struct stating *statement, const struct yaml
     }
     sweep_words_check(statement->node, statement->name, "fails, where", statement->errors);
     statement->into->fails = strdup(fails->text);
-    return statement->into->fails ? STATUS_OK : no_memory();
+    return statement->into->fails ? STATUS_OK : out_of_memory();
 }
 
 /* Read one statement into an entry that is zero. */
@@ -225,7 +225,7 @@ enum status sweep_expect_read(struct case_values *values, const struct case_tree
     }
     if (values->n_axes == 0) yaml_errors_add(errors, list->mark, "expect: has no effect without a sweep");
     values->expect = calloc((size_t)list->n + 1, sizeof *values->expect);
-    if (!values->expect) return no_memory();
+    if (!values->expect) return out_of_memory();
     for (int i = 0; i < list->n; i++) {
         struct stating statement = {
             .values = values, .node = list->entry[i].value, .into = &values->expect[i], .errors = errors};

@@ -36,7 +36,7 @@ enum status sweep_member_text(const struct case_values *study, int member, char 
     if (!list.failed) return STATUS_OK;
     text_free(&list);
     *text = NULL;
-    return status_fail(STATUS_MEMORY, "no memory for the values of a member");
+    return status_fail(STATUS_MEMORY, "out of memory: the values of a member");
 }
 
 /* Fill the assignments of a member, and one more that takes the sweep away; returns their number, or -1. */
@@ -78,7 +78,7 @@ static enum status read_member(struct case_values *values, const struct case_val
     values->member = member;
     if (values->text && values->study) return STATUS_OK;
     case_free(values);
-    return status_fail(STATUS_MEMORY, "no memory for the case of member %d", member);
+    return status_fail(STATUS_MEMORY, "out of memory: the case of member %d", member);
 }
 
 enum status sweep_member(struct case_values *values, const struct case_values *study, int member) {
@@ -87,7 +87,7 @@ enum status sweep_member(struct case_values *values, const struct case_values *s
     for (int a = 0; a < study->n_axes; a++) n_keys += study->sweep[a].n_keys;
     char **const assignments = calloc((size_t)n_keys + 1, sizeof *assignments);
     const int n = assignments ? fill_assignments(study, member, assignments) : -1;
-    const enum status status = n < 0 ? status_fail(STATUS_MEMORY, "no memory for the values of member %d", member)
+    const enum status status = n < 0 ? status_fail(STATUS_MEMORY, "out of memory: the values of member %d", member)
                                      : read_member(values, study, member, n, assignments);
     for (int i = 0; assignments && i <= n_keys; i++) free(assignments[i]);
     free(assignments);

@@ -135,7 +135,7 @@ static enum status read_reference(const struct refining *axis, const struct yaml
     }
     const size_t n = (size_t)SWEEP_N_ORDERS * (size_t)axis->values->school.n_fish * 2;
     axis->into->reference = malloc((n + 1) * sizeof *axis->into->reference);
-    if (!axis->into->reference) return status_fail(STATUS_MEMORY, "no memory for the sweep");
+    if (!axis->into->reference) return status_fail(STATUS_MEMORY, "out of memory: the sweep");
     for (size_t i = 0; i < n; i++) axis->into->reference[i] = NAN;
     for (int i = 0; i < node->n; i++) {
         const struct yaml_entry *const entry = &node->entry[i];

@@ -20,7 +20,7 @@ void yaml_errors_add(struct yaml_errors *errors, struct yaml_mark mark, const ch
     va_end(arguments);
     errors->kept[errors->n - 1].mark = mark;
     errors->kept[errors->n - 1].text = strdup(text);
-    if (!errors->kept[errors->n - 1].text) errors->no_memory = true;
+    if (!errors->kept[errors->n - 1].text) errors->out_of_memory = true;
 }
 
 void yaml_errors_free(struct yaml_errors *errors) {
@@ -100,15 +100,15 @@ static void add_error(struct text *list, struct yaml_mark mark, const char *text
 enum status yaml_errors_status(const struct yaml_errors *errors) {
     if (errors->n == 0) return STATUS_OK;
     int order[YAML_ERRORS_KEPT];
-    const int n = errors->no_memory ? 0 : sort(errors, order);
+    const int n = errors->out_of_memory ? 0 : sort(errors, order);
     struct text list = {0};
     for (int i = 0; i < n && i < YAML_ERRORS_SHOWN; i++) {
         add_error(&list, errors->kept[order[i]].mark, errors->kept[order[i]].text);
     }
     if (errors->n > YAML_ERRORS_SHOWN) text_add(&list, "\n... and %d more", errors->n - YAML_ERRORS_SHOWN);
-    if (errors->no_memory || list.failed) {
+    if (errors->out_of_memory || list.failed) {
         text_free(&list);
-        return status_fail(STATUS_MEMORY, "no memory to list the errors of the case");
+        return status_fail(STATUS_MEMORY, "out of memory: the list of errors of the case");
     }
     const enum status status = status_fail(STATUS_CASE, "%s", list.text);
     text_free(&list);

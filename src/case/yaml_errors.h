@@ -38,7 +38,7 @@ struct yaml_errors {
         struct yaml_mark mark;
         char *text;
     } kept[YAML_ERRORS_KEPT];
-    bool no_memory; /* a text could not be kept */
+    bool out_of_memory; /* a text could not be kept */
 };
 
 /* Add an error (printf format, one line without "error:"). A failing allocation is remembered, see below. */

@@ -12,8 +12,8 @@ struct reader {
     struct yaml_errors *errors;
 };
 
-static enum status no_memory(void) {
-    return status_fail(STATUS_MEMORY, "no memory for the tree of a case file");
+static enum status out_of_memory(void) {
+    return status_fail(STATUS_MEMORY, "out of memory: the tree of a case file");
 }
 
 // ---- the tree
@@ -57,7 +57,7 @@ static enum status append(struct yaml_node *node, const char *key, struct yaml_m
 failed:
     free(own_key);
     yaml_tree_free(value);
-    return no_memory();
+    return out_of_memory();
 }
 
 struct yaml_node *yaml_tree_copy(const struct yaml_node *node) {
@@ -168,7 +168,7 @@ static bool is_tab_indented(struct yaml_mark mark) {
 /* Turn an error of libyaml into one of ours. */
 static enum status report_parser(struct reader *reader) {
     const yaml_parser_t *const parser = &reader->parser;
-    if (parser->error == YAML_MEMORY_ERROR) return no_memory();
+    if (parser->error == YAML_MEMORY_ERROR) return out_of_memory();
     const char *const problem = parser->problem ? parser->problem : "not readable";
     struct yaml_mark mark = mark_at(reader, parser->problem_mark);
     if (is_tab_indented(mark)) {
@@ -214,7 +214,7 @@ static enum status read_scalar(struct reader *reader, const yaml_event_t *event,
         yaml_errors_add(reader->errors, mark, "a text cannot contain a zero byte");
     }
     *node = create(YAML_SCALAR, mark);
-    if (!*node || !((*node)->text = strdup(text))) return no_memory();
+    if (!*node || !((*node)->text = strdup(text))) return out_of_memory();
     return STATUS_OK;
 }
 
@@ -305,7 +305,7 @@ static enum status read_node(struct reader *reader, const yaml_event_t *event, i
     }
     const bool is_map = event->type == YAML_MAPPING_START_EVENT;
     *node = create(is_map ? YAML_MAP : YAML_LIST, mark);
-    if (!*node) return no_memory();
+    if (!*node) return out_of_memory();
     if (is_map) {
         refuse_extras(reader, mark, event->data.mapping_start.anchor, event->data.mapping_start.tag);
         return read_map(reader, depth + 1, *node);
@@ -385,7 +385,7 @@ static enum status check_characters(const struct yaml_source *source, struct yam
 /* Read a text that has passed the checks of size and characters. */
 static enum status read_text(struct yaml_node **root, const struct yaml_source *source, struct yaml_errors *errors) {
     struct reader reader = {.source = source, .errors = errors};
-    if (!yaml_parser_initialize(&reader.parser)) return no_memory();
+    if (!yaml_parser_initialize(&reader.parser)) return out_of_memory();
     yaml_parser_set_encoding(&reader.parser, YAML_UTF8_ENCODING);
     const size_t skipped = mark_size(source);
     yaml_parser_set_input_string(&reader.parser, (const unsigned char *)source->text + skipped,

@@ -38,7 +38,7 @@ enum status yaml_tree_read(struct yaml_node **root, const struct yaml_source *so
 /* Release a node and all below it. Accepts NULL. */
 void yaml_tree_free(struct yaml_node *node);
 
-/* A new empty map, or a copy of a whole tree; NULL if there is no memory. */
+/* A new empty map, or a copy of a whole tree; NULL when out of memory. */
 struct yaml_node *yaml_tree_map(struct yaml_mark mark);
 struct yaml_node *yaml_tree_copy(const struct yaml_node *node);
 

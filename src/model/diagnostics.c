@@ -16,7 +16,7 @@ enum status diagnostics_create(struct diagnostics **diagnostics, const struct sc
     if (new) new->fish = calloc((size_t)school->n_fish, sizeof *new->fish);
     if (!new || !new->fish) {
         diagnostics_free(new);
-        return status_fail(STATUS_MEMORY, "no room for the measures of %d fish", school->n_fish);
+        return status_fail(STATUS_MEMORY, "out of memory: the measures of %d fish", school->n_fish);
     }
     *diagnostics = new;
     return STATUS_OK;

@@ -52,7 +52,7 @@ static double joukowski_half_thickness(double s, double length, double thickness
 
 static enum status doubles(double **values, int n) {
     *values = calloc((size_t)(n > 0 ? n : 1), sizeof **values);
-    return *values ? STATUS_OK : status_fail(STATUS_MEMORY, "no room for %d numbers of a fish", n);
+    return *values ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: %d numbers of a fish", n);
 }
 
 static enum status fish_allocate(struct fish *fish) {
@@ -70,7 +70,7 @@ static enum status fish_allocate(struct fish *fish) {
     fish->control_point = calloc((size_t)fish->n_control, sizeof *fish->control_point);
     fish->control_tangent = calloc((size_t)fish->n_control, sizeof *fish->control_tangent);
     if (!fish->sheet_point || !fish->control_point || !fish->control_tangent) {
-        return status_fail(STATUS_MEMORY, "no room for %d points of a sheet", fish->n_sheet);
+        return status_fail(STATUS_MEMORY, "out of memory: %d points of a sheet", fish->n_sheet);
     }
     return STATUS_OK;
 }
@@ -233,7 +233,7 @@ static enum status set_control(struct fish *fish, const struct fish_parameters *
 static enum status fish_fill(struct fish *fish, const struct school_parameters *parameters,
                              const struct fish_parameters *from) {
     fish->name = strdup(from->name);
-    if (!fish->name) return status_fail(STATUS_MEMORY, "no room for the name of a fish");
+    if (!fish->name) return status_fail(STATUS_MEMORY, "out of memory: the name of a fish");
     fish->n_nodes = from->nodes;
     fish->n_edges = from->nodes - 1;
     fish->n_joints = from->nodes - 2;
@@ -296,7 +296,7 @@ static void set_fluid(struct school *school, const struct school_parameters *par
 
 static enum status refuse_overlap(const struct school *school) {
     double *y = calloc((size_t)school->n_unknowns, sizeof *y);
-    if (!y) return status_fail(STATUS_MEMORY, "no room for %d unknowns", school->n_unknowns);
+    if (!y) return status_fail(STATUS_MEMORY, "out of memory: %d unknowns", school->n_unknowns);
     enum status status = STATUS_OK;
     for (int f = 0; f < school->n_fish && status == STATUS_OK; f++) {
         fish_start(&school->fish[f], y);
@@ -335,7 +335,7 @@ enum status fish_school_create(struct school **school, const struct school_param
     return STATUS_OK;
 
 no_memory:
-    status_fail(STATUS_MEMORY, "no room for a school of %d fish", parameters->n_fish);
+    status_fail(STATUS_MEMORY, "out of memory: a school of %d fish", parameters->n_fish);
 failed:
     fish_school_free(new);
     return STATUS_MEMORY;

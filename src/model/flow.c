@@ -35,14 +35,14 @@ int flow_n_columns(const struct fish *other) {
 
 static enum status doubles(double **values, int n) {
     *values = calloc((size_t)n, sizeof **values);
-    return *values ? STATUS_OK : status_fail(STATUS_MEMORY, "no room for %d points of the flow", n);
+    return *values ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: %d points of the flow", n);
 }
 
 static enum status make_chunks(struct flow *flow) {
     int n = 0;
     for (int f = 0; f < flow->school->n_fish; f++) n += parallel_n_chunks(flow->points[f].n);
     flow->chunk = calloc((size_t)n, sizeof *flow->chunk);
-    if (!flow->chunk) return status_fail(STATUS_MEMORY, "no room for %d pieces of the flow", n);
+    if (!flow->chunk) return status_fail(STATUS_MEMORY, "out of memory: %d pieces of the flow", n);
     for (int f = 0; f < flow->school->n_fish; f++) {
         const struct range points = flow->points[f];
         for (int i = 0; i < parallel_n_chunks(points.n); i++) {
@@ -61,7 +61,7 @@ static enum status flow_fill(struct flow *flow) {
     flow->sheet_range = calloc(n_fish, sizeof *flow->sheet_range);
     flow->by_interpolation = calloc(n_fish, sizeof *flow->by_interpolation);
     if (!flow->points || !flow->released_range || !flow->sheet_range || !flow->by_interpolation) {
-        return status_fail(STATUS_MEMORY, "no room for the flow around %d fish", school->n_fish);
+        return status_fail(STATUS_MEMORY, "out of memory: the flow around %d fish", school->n_fish);
     }
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *fish = &school->fish[f];
@@ -85,7 +85,7 @@ static enum status flow_fill(struct flow *flow) {
 enum status flow_create(struct flow **flow, const struct school *school) {
     *flow = NULL;
     struct flow *const new = calloc(1, sizeof *new);
-    if (!new) return status_fail(STATUS_MEMORY, "no room for a flow");
+    if (!new) return status_fail(STATUS_MEMORY, "out of memory: a flow");
     new->school = school;
     new->event = -1;
     const enum status status = flow_fill(new);

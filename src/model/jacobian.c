@@ -23,7 +23,7 @@ enum status jacobian_create(struct jacobian **jacobian, const struct school *sch
 
 no_memory:
     jacobian_free(new);
-    return status_fail(STATUS_MEMORY, "no room for a Jacobian of %d fish", school->n_fish);
+    return status_fail(STATUS_MEMORY, "out of memory: a Jacobian of %d fish", school->n_fish);
 }
 
 void jacobian_free(struct jacobian *jacobian) {
@@ -75,7 +75,7 @@ enum status jacobian_couple(struct jacobian *jacobian, const unsigned char *coup
 
 no_memory:
     memset(jacobian->first, 0, ((size_t)n_fish + 1) * sizeof *jacobian->first);
-    return status_fail(STATUS_MEMORY, "no room for the Jacobian's %d blocks between fish", n);
+    return status_fail(STATUS_MEMORY, "out of memory: the Jacobian's %d blocks between fish", n);
 }
 
 void jacobian_mask_couplings(struct jacobian *jacobian, int f) {

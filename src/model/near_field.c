@@ -119,7 +119,7 @@ static enum status add_near(struct near_field *near_field, const struct wake_int
     if (near_field->n_near == near_field->capacity) {
         const int capacity = 2 * near_field->capacity + 64;
         struct wake_interpolation_n_near *const more = realloc(near_field->near, (size_t)capacity * sizeof *more);
-        if (!more) return status_fail(STATUS_MEMORY, "no room for %d near vortices", capacity);
+        if (!more) return status_fail(STATUS_MEMORY, "out of memory: %d near vortices", capacity);
         near_field->near = more;
         near_field->capacity = capacity;
     }

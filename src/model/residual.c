@@ -48,13 +48,13 @@ static enum status allocate(struct residual *residual) {
     return flow_create(&residual->flow, school);
 
 no_memory:
-    return status_fail(STATUS_MEMORY, "no room for the equations of %d fish", school->n_fish);
+    return status_fail(STATUS_MEMORY, "out of memory: the equations of %d fish", school->n_fish);
 }
 
 enum status residual_create(struct residual **residual, const struct school *school, const struct state *state) {
     *residual = NULL;
     struct residual *const new = calloc(1, sizeof *new);
-    if (!new) return status_fail(STATUS_MEMORY, "no room for the equations");
+    if (!new) return status_fail(STATUS_MEMORY, "out of memory: the equations");
     new->school = school;
     new->state = state;
     const enum status status = allocate(new);
@@ -320,7 +320,7 @@ enum status residual_jacobian(struct residual *residual, double t, double cj, co
         }
     }
     // the thread that failed had the message
-    return n_failed == 0 ? STATUS_OK : status_fail(STATUS_MEMORY, "no room for the Jacobian of %d fish", n_failed);
+    return n_failed == 0 ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: the Jacobian of %d fish", n_failed);
 }
 
 void residual_mask(const struct residual *residual, struct jacobian *jacobian) {

@@ -10,7 +10,7 @@ static enum status history_create(struct history *history, const struct fish *fi
     history->n = 0;
     history->last = -1;
     history->sample = calloc((size_t)history->capacity, sizeof *history->sample);
-    if (!history->sample) return status_fail(STATUS_MEMORY, "no room for %d samples", history->capacity);
+    if (!history->sample) return status_fail(STATUS_MEMORY, "out of memory: %d samples", history->capacity);
     return STATUS_OK;
 }
 
@@ -23,7 +23,7 @@ static enum status fill(struct state *state, const struct school *school) {
     state->history = calloc(n_fish, sizeof *state->history);
     state->balance = calloc(n_fish, sizeof *state->balance);
     if (!state->y || !state->yp || !state->wake || !state->control || !state->history || !state->balance) {
-        return status_fail(STATUS_MEMORY, "no room for the state of %d fish", school->n_fish);
+        return status_fail(STATUS_MEMORY, "out of memory: the state of %d fish", school->n_fish);
     }
     for (int f = 0; f < school->n_fish; f++) {
         TRY(wake_create(&state->wake[f], 16));
@@ -37,7 +37,7 @@ static enum status fill(struct state *state, const struct school *school) {
 enum status state_create(struct state **state, const struct school *school) {
     *state = NULL;
     struct state *const new = calloc(1, sizeof *new);
-    if (!new) return status_fail(STATUS_MEMORY, "no room for a state");
+    if (!new) return status_fail(STATUS_MEMORY, "out of memory: a state");
     const enum status status = fill(new, school);
     if (status != STATUS_OK) {
         state_free(new, school);

@@ -20,7 +20,7 @@ static enum status reserve(struct wake *wake, int capacity) {
     list_arrays(wake, array);
     for (int i = 0; i < N_ARRAYS; i++) {
         double *const more = realloc(*array[i], (size_t)capacity * sizeof *more);
-        if (!more) return status_fail(STATUS_MEMORY, "no room for a wake of %d vortices", capacity);
+        if (!more) return status_fail(STATUS_MEMORY, "out of memory: a wake of %d vortices", capacity);
         *array[i] = more;
     }
     wake->capacity = capacity;

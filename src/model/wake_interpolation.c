@@ -36,7 +36,7 @@ struct wake_interpolation {
 
 static enum status doubles(double **values, int n) {
     *values = calloc((size_t)(n > 0 ? n : 1), sizeof **values);
-    return *values ? STATUS_OK : status_fail(STATUS_MEMORY, "no room for a forecast at %d points", n);
+    return *values ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: a forecast at %d points", n);
 }
 
 static enum status fill(struct wake_interpolation *interpolation) {
@@ -46,7 +46,7 @@ static enum status fill(struct wake_interpolation *interpolation) {
     interpolation->wake = calloc(n_fish, sizeof *interpolation->wake);
     interpolation->bounds = calloc(n_fish, sizeof *interpolation->bounds);
     if (!interpolation->near_field || !interpolation->wake || !interpolation->bounds) {
-        return status_fail(STATUS_MEMORY, "no room for a forecast for %d fish", interpolation->school->n_fish);
+        return status_fail(STATUS_MEMORY, "out of memory: a forecast for %d fish", interpolation->school->n_fish);
     }
     const int n = interpolation->n_points;
     for (int i = 0; i < 6; i++) TRY(doubles(&interpolation->motion[i], n));
@@ -67,7 +67,7 @@ enum status wake_interpolation_create(struct wake_interpolation **interpolation,
                                       const struct range *points) {
     *interpolation = NULL;
     struct wake_interpolation *const new = calloc(1, sizeof *new);
-    if (!new) return status_fail(STATUS_MEMORY, "no room for a forecast");
+    if (!new) return status_fail(STATUS_MEMORY, "out of memory: a forecast");
     new->school = school;
     const struct range last = points[school->n_fish - 1];
     new->n_points = last.first + last.n;
@@ -208,7 +208,7 @@ static enum status make(struct wake_interpolation *interpolation, const struct s
         }
     }
     // a message stays with the thread that wrote it
-    if (status != STATUS_OK) return status_fail(status, "no room for the near vortices of %d fish", school->n_fish);
+    if (status != STATUS_OK) return status_fail(status, "out of memory: the near vortices of %d fish", school->n_fish);
     for (int i = 0; i < N_TIMES; i++) follow(interpolation, time_of[i] * school->interval, interpolation->path[i]);
     TRY(sum(interpolation, threads));
 #pragma omp parallel for num_threads(threads) schedule(dynamic)

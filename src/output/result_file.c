@@ -224,7 +224,7 @@ static enum status creation_failed(const char *path, int code) {
             return status_fail(STATUS_FILE, "%s: the folder cannot be written to (%s): choose another name with -o",
                                path, strerror(code));
         case NC_ENOMEM:
-        case ENOMEM: return status_fail(STATUS_MEMORY, "%s: no memory to write it", path);
+        case ENOMEM: return status_fail(STATUS_MEMORY, "%s: out of memory while writing", path);
         default:
             return status_fail(STATUS_FILE, "%s: cannot be written (%s): choose another place with -o", path,
                                nc_strerror(code));
@@ -326,7 +326,7 @@ enum status result_file_create(struct result_file **store, const char *path, int
     if (temporary == NULL || made == NULL) {
         free(temporary);
         release(made);
-        return status_fail(STATUS_MEMORY, "%s: no memory to write it", path);
+        return status_fail(STATUS_MEMORY, "%s: out of memory while writing", path);
     }
     snprintf(temporary, size, "%s%s.%ld.part", path[0] == '/' ? "" : "./", path, (long)getpid());
 

@@ -21,7 +21,7 @@ struct info {
 
 // ---- reading ----
 
-/* A text attribute of the file, "" if it is missing. The caller frees it; NULL: no memory. */
+/* A text attribute of the file, "" if it is missing. The caller frees it; NULL: out of memory. */
 static char *text_attribute(const struct info *info, const char *name) {
     size_t length;
     if (nc_inq_attlen(info->file, NC_GLOBAL, name, &length) != NC_NOERR) length = 0;
@@ -72,7 +72,7 @@ static enum status open_file(struct info *info) {
         return status_fail(STATUS_FILE, "%s is a folder: name a file that shoal wrote", info->path);
     const int code = nc_open(info->path, NC_NOWRITE, &info->file);
     if (code == NC_NOERR) return STATUS_OK;
-    if (code == NC_ENOMEM) return status_fail(STATUS_MEMORY, "%s: no memory to read it", info->path);
+    if (code == NC_ENOMEM) return status_fail(STATUS_MEMORY, "%s: out of memory while reading", info->path);
     if (code > 0) return status_fail(STATUS_FILE, "%s: cannot be read: %s", info->path, strerror(code));
     return status_fail(STATUS_FILE, "%s: not a NetCDF file (%s): name a file that shoal wrote", info->path,
                        nc_strerror(code));
@@ -87,7 +87,7 @@ static bool is_cut(const struct info *info) {
 
 static enum status print_attribute(const struct info *info, const char *label, const char *name) {
     char *text = text_attribute(info, name);
-    if (text == NULL) return status_fail(STATUS_MEMORY, "%s: no memory to read it", info->path);
+    if (text == NULL) return status_fail(STATUS_MEMORY, "%s: out of memory while reading", info->path);
     if (label)
         fprintf(info->stream, "  %-10s  %s\n", label, text);
     else
@@ -143,7 +143,7 @@ enum { N_COLUMNS = sizeof columns / sizeof *columns };
 
 static enum status print_fish(const struct info *info) {
     char *name = calloc(info->n_name + 1, 1);
-    if (name == NULL) return status_fail(STATUS_MEMORY, "%s: no memory to read it", info->path);
+    if (name == NULL) return status_fail(STATUS_MEMORY, "%s: out of memory while reading", info->path);
     const int width = info->n_name > 4 ? (int)info->n_name : 4;
     const int number = variable_number(info, "fish_name", 2);
 

@@ -59,7 +59,7 @@ static enum status take_velocities(struct state *state, struct residual *residua
     TRY(flow_update_sources(residual->flow, state, state->t, state->y));
     const int n = flow->released.n;
     double *const u = malloc((2 * (size_t)n + 1) * sizeof *u);
-    if (!u) return status_fail(STATUS_MEMORY, "no room for the velocities of %d vortices", n);
+    if (!u) return status_fail(STATUS_MEMORY, "out of memory: the velocities of %d vortices", n);
     double *const v = u + n;
     const enum status status = flow_at_wake(flow, u, v);
     for (int f = 0; f < school->n_fish && status == STATUS_OK; f++) {

@@ -23,7 +23,7 @@ static enum status open_run(struct shoal *run, const char *case_path, int n_assi
 int shoal_open(struct shoal **run, const char *case_path, int n_assignments, const char *const *assignments) {
     *run = NULL;
     struct shoal *const new = calloc(1, sizeof *new);
-    if (!new) return status_fail(STATUS_MEMORY, "no room for a run");
+    if (!new) return status_fail(STATUS_MEMORY, "out of memory: a run");
     const enum status status = open_run(new, case_path, n_assignments, assignments);
     if (status != STATUS_OK) {
         shoal_close(new);

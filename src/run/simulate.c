@@ -48,7 +48,7 @@ static enum status fill(struct simulation *simulation, const struct case_values 
 enum status simulate_create(struct simulation **simulation, const struct case_values *values) {
     *simulation = NULL;
     struct simulation *const new = calloc(1, sizeof *new);
-    if (!new) return status_fail(STATUS_MEMORY, "no room for a simulation");
+    if (!new) return status_fail(STATUS_MEMORY, "out of memory: a simulation");
     const enum status status = fill(new, values);
     if (status != STATUS_OK) {
         simulate_free(new);

@@ -49,7 +49,7 @@ enum status corotation_create(struct corotation **corotation, const struct schoo
 
 no_memory:
     corotation_free(new);
-    return status_fail(STATUS_MEMORY, "no room for the places of %d bodies", school->n_fish);
+    return status_fail(STATUS_MEMORY, "out of memory: the places of %d bodies", school->n_fish);
 }
 
 void corotation_free(struct corotation *corotation) {

@@ -102,7 +102,7 @@ static enum status fill(struct ida *solver) {
     const int n = solver->residual->school->n_unknowns;
     solver->tolerance = calloc((size_t)n, sizeof *solver->tolerance);
     solver->kind = calloc((size_t)n, sizeof *solver->kind);
-    if (!solver->tolerance || !solver->kind) return status_fail(STATUS_MEMORY, "no room for %d tolerances", n);
+    if (!solver->tolerance || !solver->kind) return status_fail(STATUS_MEMORY, "out of memory: %d tolerances", n);
     residual_kinds(solver->residual, solver->kind);
     for (int i = 0; i < n; i++) {
         solver->tolerance[i] = solver->residual->school->rtol * residual_scale(solver->residual, i);
@@ -116,14 +116,14 @@ static enum status fill(struct ida *solver) {
     TRY(sundials_adapter_vector(&solver->kinds, solver->context, n, solver->kind));
     for (int i = 0; i < 2; i++) {
         solver->scratch[i] = N_VClone(solver->y);
-        if (!solver->scratch[i]) return status_fail(STATUS_MEMORY, "no room for a vector of %d unknowns", n);
+        if (!solver->scratch[i]) return status_fail(STATUS_MEMORY, "out of memory: a vector of %d unknowns", n);
     }
     const struct linear_end end = {linear_relative, linear_enough * newton_coefficient};
     TRY(sundials_adapter_linear_create(&solver->linear, solver->context, solver->jacobian, solver->tolerance, end));
     const struct ida_newton_rules rules = {most_iterations, jacobian_cost, leading_coefficient};
     TRY(ida_newton_create(&solver->newton, solver->context, solver->y, solver->residual->school, rules));
     solver->ida = IDACreate(solver->context);
-    if (!solver->ida) return status_fail(STATUS_MEMORY, "no room for IDA");
+    if (!solver->ida) return status_fail(STATUS_MEMORY, "out of memory: IDA");
     return set_up_ida(solver);
 }
 
@@ -131,7 +131,7 @@ static enum status implicit_create(void **solver, struct residual *residual, str
                                    const struct integrator_options *options) {
     *solver = NULL;
     struct ida *const new = calloc(1, sizeof *new);
-    if (!new) return status_fail(STATUS_MEMORY, "no room for the implicit solver");
+    if (!new) return status_fail(STATUS_MEMORY, "out of memory: the implicit solver");
     new->residual = residual;
     new->state = state;
     new->options = *options;

@@ -173,7 +173,7 @@ enum status ida_newton_create(SUNNonlinearSolver *solver, SUNContext context, N_
         !(newton->correction = N_VClone(like)) || !(newton->last = N_VClone(like))) {
         if (!new) free(newton);
         newton_free(new);
-        return status_fail(STATUS_MEMORY, "no room for Newton's iteration");
+        return status_fail(STATUS_MEMORY, "out of memory: Newton's iteration");
     }
     newton->rules = rules;
     N_VConst(0, newton->last);

@@ -85,7 +85,7 @@ static double row_scale(const struct residual *residual, int i) {
 
 static enum status set_up_kinsol(struct initial_conditions *c) {
     c->kinsol = KINCreate(c->context);
-    if (!c->kinsol) return status_fail(STATUS_MEMORY, "no room for KINSOL");
+    if (!c->kinsol) return status_fail(STATUS_MEMORY, "out of memory: KINSOL");
     // a full step of Newton's method on equations that are nearly linear, with a new Jacobian each time
     if (KINSetErrHandlerFn(c->kinsol, sundials_adapter_message, NULL) || KINSetUserData(c->kinsol, c) ||
         KINInit(c->kinsol, algebraic_value, c->solution) ||
@@ -104,7 +104,7 @@ static enum status fill(struct initial_conditions *c) {
                                &c->value, &c->solution_scale, &c->value_scale, &c->start};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         *arrays[i] = calloc((size_t)n, sizeof **arrays[i]);
-        if (!*arrays[i]) return status_fail(STATUS_MEMORY, "no room for a consistent start of %d unknowns", n);
+        if (!*arrays[i]) return status_fail(STATUS_MEMORY, "out of memory: a consistent start of %d unknowns", n);
     }
     for (int i = 0; i < n; i++) {
         c->scale[i] = residual_scale(c->residual, i);
@@ -124,7 +124,7 @@ static enum status fill(struct initial_conditions *c) {
 enum status initial_conditions_create(struct initial_conditions **consistent, struct residual *residual) {
     *consistent = NULL;
     struct initial_conditions *const new = calloc(1, sizeof *new);
-    if (!new) return status_fail(STATUS_MEMORY, "no room for a consistent start");
+    if (!new) return status_fail(STATUS_MEMORY, "out of memory: a consistent start");
     new->residual = residual;
     new->n = residual->school->n_unknowns;
     const enum status status = fill(new);

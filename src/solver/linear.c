@@ -59,7 +59,7 @@ enum status linear_create(struct linear **linear, const struct jacobian *jacobia
 
 no_memory:
     linear_free(new);
-    return status_fail(STATUS_MEMORY, "no room for linear systems of %d unknowns", jacobian->school->n_unknowns);
+    return status_fail(STATUS_MEMORY, "out of memory: linear systems of %d unknowns", jacobian->school->n_unknowns);
 }
 
 void linear_free(struct linear *linear) {
@@ -111,7 +111,7 @@ static enum status set_up(struct block *block, struct sparse *own) {
         block->symbolic = klu_l_analyze(own->n, own->column_start, own->row_index, &block->common);
         block->version = own->version;
     }
-    // what cannot be analysed is singular whatever its values, or there is no memory
+    // what cannot be analysed is singular whatever its values, or memory is out
     if (!block->symbolic) {
         block->version = 0;
         return block->common.status == KLU_OUT_OF_MEMORY ? STATUS_MEMORY : STATUS_SOLVER;
@@ -129,7 +129,7 @@ enum status linear_setup(struct linear *linear) {
     }
     for (int f = 0; f < school->n_fish; f++) {
         const enum status status = linear->block[f].status;
-        if (status == STATUS_MEMORY) return status_fail(status, "no room to factorise the Jacobian");
+        if (status == STATUS_MEMORY) return status_fail(status, "out of memory: factorising the Jacobian");
         if (status != STATUS_OK)
             return status_fail(status, "the Jacobian of fish %s is singular", school->fish[f].name);
     }
@@ -176,7 +176,7 @@ static double dot(const struct linear *linear, const double *a, const double *b)
 static enum status make_room(struct linear *linear, int n) {
     if (n <= linear->n_directions) return STATUS_OK;
     double *const more = realloc(linear->direction, (size_t)n * (size_t)n_unknowns(linear) * sizeof *more);
-    if (!more) return status_fail(STATUS_MEMORY, "no room for %d directions of GMRES", n);
+    if (!more) return status_fail(STATUS_MEMORY, "out of memory: %d directions of GMRES", n);
     linear->direction = more;
     linear->n_directions = n;
     return STATUS_OK;

@@ -65,7 +65,7 @@ static enum status allocate(struct ode_rhs *d) {
     return STATUS_OK;
 
 no_memory:
-    return status_fail(STATUS_MEMORY, "no room for the sheets of %d fish", school->n_fish);
+    return status_fail(STATUS_MEMORY, "out of memory: the sheets of %d fish", school->n_fish);
 }
 
 static enum status analyse(struct ode_rhs *d) {
@@ -76,13 +76,13 @@ static enum status analyse(struct ode_rhs *d) {
     klu_l_defaults(&d->common);
     d->symbolic = klu_l_analyze(d->n, d->column_start, d->row_index, &d->common);
     return d->symbolic ? STATUS_OK
-                       : status_fail(STATUS_MEMORY, "no room to analyse a system of %d sheets' unknowns", d->n);
+                       : status_fail(STATUS_MEMORY, "out of memory: analysing a system of %d sheets' unknowns", d->n);
 }
 
 enum status ode_rhs_create(struct ode_rhs **direct, struct residual *residual) {
     *direct = NULL;
     struct ode_rhs *const new = calloc(1, sizeof *new);
-    if (!new) return status_fail(STATUS_MEMORY, "no room for the direct solution");
+    if (!new) return status_fail(STATUS_MEMORY, "out of memory: the direct solution");
     new->residual = residual;
     enum status status = allocate(new);
     if (status == STATUS_OK) status = analyse(new);

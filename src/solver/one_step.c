@@ -50,7 +50,7 @@ static enum status fill(struct one_step *solver) {
                                &solver->rates, &solver->correction, &solver->right_hand};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         *arrays[i] = calloc((size_t)n, sizeof **arrays[i]);
-        if (!*arrays[i]) return status_fail(STATUS_MEMORY, "no room for %d unknowns", n);
+        if (!*arrays[i]) return status_fail(STATUS_MEMORY, "out of memory: %d unknowns", n);
     }
     residual_kinds(solver->residual, solver->kind);
     for (int i = 0; i < n; i++) {
@@ -67,7 +67,7 @@ static enum status fixed_create(void **solver, struct residual *residual, struct
                                 const struct integrator_options *options) {
     *solver = NULL;
     struct one_step *const new = calloc(1, sizeof *new);
-    if (!new) return status_fail(STATUS_MEMORY, "no room for the implicit solver");
+    if (!new) return status_fail(STATUS_MEMORY, "out of memory: the implicit solver");
     new->residual = residual;
     new->state = state;
     new->options = *options;

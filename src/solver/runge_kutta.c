@@ -116,7 +116,7 @@ static enum status set_up_arkode(struct runge_kutta *solver) {
     void *const arkode = solver->arkode;
     const double step = solver->options.step;
     const ARKodeButcherTable table = table_of(solver->options.method, step <= 0);
-    if (!table) return status_fail(STATUS_MEMORY, "no room for the table of a Runge-Kutta method");
+    if (!table) return status_fail(STATUS_MEMORY, "out of memory: the table of a Runge-Kutta method");
     const int failed = ARKStepSetErrHandlerFn(arkode, sundials_adapter_message, NULL) ||
                        ARKStepSetUserData(arkode, solver) || ARKStepSetTables(arkode, 0, 0, NULL, table) ||
                        ARKStepSVtolerances(arkode, 0, solver->tolerances) || ARKStepSetMaxNumSteps(arkode, -1) ||
@@ -143,7 +143,7 @@ static enum status fill(struct runge_kutta *solver) {
     solver->phi0 = calloc((size_t)solver->residual->school->n_fish, sizeof *solver->phi0);
     solver->shed = calloc((size_t)solver->residual->school->n_fish, sizeof *solver->shed);
     if (!solver->work || !solver->rates || !solver->phi0 || !solver->shed || !solver->tolerance)
-        return status_fail(STATUS_MEMORY, "no room for %d unknowns", n);
+        return status_fail(STATUS_MEMORY, "out of memory: %d unknowns", n);
     // algebraic unknowns have no rate and no error here; an explicit method that does not see velocities goes wrong
     // without a word
     for (int i = 0; i < n; i++) {
@@ -156,7 +156,7 @@ static enum status fill(struct runge_kutta *solver) {
     TRY(sundials_adapter_vector(&solver->y, solver->context, n, solver->state->y));
     TRY(sundials_adapter_vector(&solver->tolerances, solver->context, n, solver->tolerance));
     solver->arkode = ARKStepCreate(rates_callback, NULL, solver->state->t, solver->y, solver->context);
-    if (!solver->arkode) return status_fail(STATUS_MEMORY, "no room for ARKODE");
+    if (!solver->arkode) return status_fail(STATUS_MEMORY, "out of memory: ARKODE");
     return set_up_arkode(solver);
 }
 
@@ -164,7 +164,7 @@ static enum status explicit_create(void **solver, struct residual *residual, str
                                    const struct integrator_options *options) {
     *solver = NULL;
     struct runge_kutta *const new = calloc(1, sizeof *new);
-    if (!new) return status_fail(STATUS_MEMORY, "no room for the explicit solver");
+    if (!new) return status_fail(STATUS_MEMORY, "out of memory: the explicit solver");
     new->residual = residual;
     new->state = state;
     new->options = *options;

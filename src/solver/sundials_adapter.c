@@ -5,13 +5,13 @@
 #include <sundials/sundials_context.h>
 
 enum status sundials_adapter_context(SUNContext *context) {
-    if (SUNContext_Create(NULL, context) != 0) return status_fail(STATUS_MEMORY, "no room for the solvers");
+    if (SUNContext_Create(NULL, context) != 0) return status_fail(STATUS_MEMORY, "out of memory: the solvers");
     return STATUS_OK;
 }
 
 enum status sundials_adapter_vector(N_Vector *vector, SUNContext context, long n, double *values) {
     *vector = N_VMake_Serial(n, values, context);
-    return *vector ? STATUS_OK : status_fail(STATUS_MEMORY, "no room for a vector of %ld unknowns", n);
+    return *vector ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: a vector of %ld unknowns", n);
 }
 
 static SUNMatrix_ID matrix_id(SUNMatrix matrix) {
@@ -49,7 +49,7 @@ enum status sundials_adapter_linear_create(struct sundials_adapter_linear *adapt
     adapter->solver = SUNLinSolNewEmpty(context);
     if (!adapter->matrix || !adapter->solver) {
         sundials_adapter_linear_free(adapter);
-        return status_fail(STATUS_MEMORY, "no room for a linear solver");
+        return status_fail(STATUS_MEMORY, "out of memory: a linear solver");
     }
     adapter->matrix->ops->getid = matrix_id;
     adapter->matrix->ops->zero = matrix_zero;

@@ -199,7 +199,7 @@ static enum status run_once(struct compare *compare, struct run *run) {
         snprintf(compare->shared->reason, REASON_BYTES, "killed by signal %d", WTERMSIG(ended));
     }
     if (!run->outcome) run->outcome = malloc(compare->outcome_bytes);
-    if (!run->outcome) return status_fail(STATUS_MEMORY, "no memory for a run");
+    if (!run->outcome) return status_fail(STATUS_MEMORY, "out of memory: a run");
     memcpy(run->outcome, compare->shared, compare->outcome_bytes);
     run->wall_time[run->n_done++] = run->outcome->wall_time;
     run->is_over = run->outcome->code != 0;
@@ -300,7 +300,7 @@ static void print(const struct compare_file_reference *reference, int n, const s
 
 static enum status report(struct compare *compare, FILE *stream) {
     struct compare_file_row *const row = calloc((size_t)compare->n, sizeof *row);
-    if (!row) return status_fail(STATUS_MEMORY, "no memory for %d rows", compare->n);
+    if (!row) return status_fail(STATUS_MEMORY, "out of memory: %d rows", compare->n);
     for (int i = 0; i < compare->n; i++) fill_row(compare, &compare->run[i], &row[i]);
     const struct compare_file_reference reference = {.rtol = compare->options->reference_rtol,
                                                      .nose_error = error_of(compare, &compare->check, 0),
@@ -324,7 +324,7 @@ static enum status compare_all(struct compare *compare, FILE *stream) {
     compare->shared = mmap(NULL, compare->outcome_bytes, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (compare->shared == MAP_FAILED) {
         compare->shared = NULL;
-        return status_fail(STATUS_MEMORY, "no memory for a run");
+        return status_fail(STATUS_MEMORY, "out of memory: a run");
     }
     TRY(run_all(compare));
     return report(compare, stream);
@@ -332,7 +332,7 @@ static enum status compare_all(struct compare *compare, FILE *stream) {
 
 enum status compare_run(const struct case_values *values, const struct compare_options *options, FILE *stream) {
     struct compare *const compare = calloc(1, sizeof *compare);
-    if (!compare) return status_fail(STATUS_MEMORY, "no memory for a comparison");
+    if (!compare) return status_fail(STATUS_MEMORY, "out of memory: a comparison");
     compare->values = values;
     compare->options = options;
     const enum status status = compare_all(compare, stream);

@@ -201,7 +201,7 @@ enum status compare_file_read(const char *path, struct compare_file_reference *r
     *row = calloc((size_t)*n + 1, sizeof **row);
     if (*row) code = read_all(file, reference, *n, length_of(file, "text"), *row);
     nc_close(file);
-    if (!*row) return status_fail(STATUS_MEMORY, "%s: no memory to read it", path);
+    if (!*row) return status_fail(STATUS_MEMORY, "%s: out of memory while reading", path);
     if (code == NC_NOERR) return STATUS_OK;
     free(*row);
     *row = NULL;

@@ -62,7 +62,7 @@ struct reading {
     struct member_file *member;
 };
 
-/* A text attribute of the file, "" if it is missing; NULL: no memory. The caller frees it. */
+/* A text attribute of the file, "" if it is missing; NULL: out of memory. The caller frees it. */
 static char *text_attribute(int file, const char *name) {
     size_t length;
     if (nc_inq_attlen(file, NC_GLOBAL, name, &length) != NC_NOERR) length = 0;
@@ -155,7 +155,7 @@ static void compute(struct reading *reading, int f) {
 }
 
 static enum status no_memory(const char *path) {
-    return status_fail(STATUS_MEMORY, "%s: no memory to read it", path);
+    return status_fail(STATUS_MEMORY, "%s: out of memory while reading", path);
 }
 
 static enum status read_names(const struct reading *reading, const char *path) {

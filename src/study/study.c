@@ -133,7 +133,7 @@ static enum status look_at_gathered(const struct study *study) {
 
 static enum status plan(struct study *study, int first, int last) {
     study->to_run = calloc((size_t)(last - first + 1), sizeof *study->to_run);
-    if (!study->to_run) return status_fail(STATUS_MEMORY, "no memory for a study of %d members", last - first + 1);
+    if (!study->to_run) return status_fail(STATUS_MEMORY, "out of memory: a study of %d members", last - first + 1);
     study->progress.n_members = last - first + 1;
     for (int number = first; number <= last; number++) TRY(plan_member(study, number));
     if (study->options->last >= 0) return STATUS_OK;
@@ -295,7 +295,7 @@ static enum status run_all(struct study *study) {
     study->report = mmap(NULL, (size_t)study->n_jobs * sizeof *study->report, PROT_READ | PROT_WRITE,
                          MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (study->report == MAP_FAILED) study->report = NULL;
-    if (!study->job || !study->report) return status_fail(STATUS_MEMORY, "no memory for %d processes", study->n_jobs);
+    if (!study->job || !study->report) return status_fail(STATUS_MEMORY, "out of memory: %d processes", study->n_jobs);
     for (int j = 0; j < study->n_jobs; j++) study->job[j].report = &study->report[j];
 
     // a blocked signal waits for us, so that the end of a process is never missed

@@ -55,7 +55,7 @@ enum status study_slurm(const struct case_values *study, const char *folder, int
 
 /* ---- shared by the files of the study only */
 
-/* The path of a file in the folder, or of a member's with an ending such as ".nc"; NULL: no memory. The caller frees
+/* The path of a file in the folder, or of a member's with an ending such as ".nc"; NULL: out of memory. The caller frees
  * it. */
 char *study_path(const char *folder, const char *name);
 char *study_member_path(const char *folder, int member, const char *ending);

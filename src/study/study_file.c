@@ -217,7 +217,7 @@ enum status study_file_write(const char *path, const struct case_values *study, 
         snprintf(temporary, size, "%s.part", path);
         status = write_file(&writing, path, temporary, command);
     } else {
-        status_fail(STATUS_MEMORY, "no memory for %s", path);
+        status_fail(STATUS_MEMORY, "out of memory: %s", path);
     }
     free(writing.buffer);
     free(writing.text);

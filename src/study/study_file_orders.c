@@ -86,7 +86,7 @@ enum status study_file_orders_create(struct study_file_orders *orders, int n_gro
     orders->order = calloc(n, sizeof *orders->order);
     orders->error = calloc(n * (size_t)n_levels, sizeof *orders->error);
     if (!orders->level || !orders->size || !orders->first || !orders->order || !orders->error) {
-        return status_fail(STATUS_MEMORY, "no memory for the orders of %d levels", n_levels);
+        return status_fail(STATUS_MEMORY, "out of memory: the orders of %d levels", n_levels);
     }
     orders->n_groups = n_groups;
     orders->n_levels = n_levels;

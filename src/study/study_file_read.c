@@ -18,7 +18,7 @@ struct reading {
 };
 
 static enum status no_memory(const char *path) {
-    return status_fail(STATUS_MEMORY, "%s: no memory to read it", path);
+    return status_fail(STATUS_MEMORY, "%s: out of memory while reading", path);
 }
 
 static enum status not_whole(const char *path, int code) {

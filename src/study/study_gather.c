@@ -16,7 +16,7 @@ char *study_path(const char *folder, const char *name) {
     if (path) {
         snprintf(path, size, "%s%s/%s", folder[0] == '/' || folder[0] == '.' ? "" : "./", folder, name);
     } else {
-        status_fail(STATUS_MEMORY, "no memory for a file name");
+        status_fail(STATUS_MEMORY, "out of memory: a file name");
     }
     return path;
 }
@@ -38,7 +38,7 @@ static enum status note(struct member_file *member, const char *format, const ch
     snprintf(line, sizeof line, format, text);
     free(member->status);
     member->status = strdup(line);
-    return member->status ? STATUS_OK : status_fail(STATUS_MEMORY, "no memory for the members of a study");
+    return member->status ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: the members of a study");
 }
 
 /* The reason that was kept when a member failed; 0 if there is none. */
@@ -80,7 +80,7 @@ static enum status read_member(struct member_file *member, const struct case_val
 enum status study_members_read(struct member_file **members, const struct case_values *study, const char *folder) {
     const int n = sweep_n_members(study);
     *members = calloc((size_t)n, sizeof **members);
-    if (!*members) return status_fail(STATUS_MEMORY, "no memory for %d members", n);
+    if (!*members) return status_fail(STATUS_MEMORY, "out of memory: %d members", n);
     for (int m = 0; m < n; m++) {
         const enum status status = read_member(&(*members)[m], study, folder, m);
         if (status == STATUS_OK) continue;

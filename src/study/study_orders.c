@@ -184,7 +184,7 @@ enum status study_orders_create(struct study_file_orders *orders, const struct c
             }
         }
     } else {
-        status_fail(STATUS_MEMORY, "no memory for the orders of %d levels", n);
+        status_fail(STATUS_MEMORY, "out of memory: the orders of %d levels", n);
     }
     free(refinement.value);
     return status;

@@ -8,7 +8,7 @@
 
 enum status study_table_create(struct study_table *table, int n_rows, int n_columns) {
     *table = (struct study_table){n_rows, n_columns, calloc((size_t)n_rows * (size_t)n_columns, STUDY_CELL_BYTES)};
-    return table->cell ? STATUS_OK : status_fail(STATUS_MEMORY, "no memory for a table of %d rows", n_rows);
+    return table->cell ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: a table of %d rows", n_rows);
 }
 
 void study_table_free(struct study_table *table) {

@@ -97,7 +97,7 @@ static enum status sorted_fill(struct sorted *sorted, const struct vortices *vor
     return STATUS_OK;
 
 no_memory:
-    return status_fail(STATUS_MEMORY, "no room for the velocities of %d vortices at one another", n);
+    return status_fail(STATUS_MEMORY, "out of memory: the velocities of %d vortices at one another", n);
 }
 
 // the velocities of the vortices of tiles a and b at each other, to those of a share

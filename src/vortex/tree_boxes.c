@@ -12,7 +12,7 @@ struct tree_point {
 static enum status resize(void *memory, size_t n, size_t size) {
     void **const place = memory;
     void *const more = realloc(*place, n * size);
-    if (!more) return status_fail(STATUS_MEMORY, "no memory for a tree of %zu points", n);
+    if (!more) return status_fail(STATUS_MEMORY, "out of memory: a tree of %zu points", n);
     *place = more;
     return STATUS_OK;
 }

@@ -63,14 +63,14 @@ struct treecode {
 static enum status grow(void *memory, size_t n, size_t size) {
     void **const place = memory;
     void *const more = realloc(*place, n * size);
-    if (!more) return status_fail(STATUS_MEMORY, "no memory for %zu bytes of a tree", n * size);
+    if (!more) return status_fail(STATUS_MEMORY, "out of memory: %zu bytes of a tree", n * size);
     *place = more;
     return STATUS_OK;
 }
 
 enum status treecode_create(struct treecode **tree) {
     *tree = calloc(1, sizeof **tree);
-    return *tree ? STATUS_OK : status_fail(STATUS_MEMORY, "no memory for a tree");
+    return *tree ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: a tree");
 }
 
 void treecode_free(struct treecode *tree) {

@@ -19,7 +19,7 @@ struct velocity_sum {
 enum status velocity_sum_create(struct velocity_sum **velocity_sum) {
     *velocity_sum = NULL;
     struct velocity_sum *const new = calloc(1, sizeof *new);
-    if (!new) return status_fail(STATUS_MEMORY, "no room for a sum");
+    if (!new) return status_fail(STATUS_MEMORY, "out of memory: a sum");
     const enum status status = treecode_create(&new->tree);
     if (status != STATUS_OK) {
         velocity_sum_free(new);

@@ -24,7 +24,7 @@ static enum status grow(double **values, int n, int capacity) {
     enum { LINE = 64 };
     const size_t bytes = ((size_t)capacity * sizeof **values + LINE - 1) / LINE * LINE;
     double *const more = aligned_alloc(LINE, bytes);
-    if (!more) return status_fail(STATUS_MEMORY, "no room for %d vortices", capacity);
+    if (!more) return status_fail(STATUS_MEMORY, "out of memory: %d vortices", capacity);
     if (n > 0) memcpy(more, *values, (size_t)n * sizeof *more);
     free(*values);
     *values = more;
@@ -47,7 +47,7 @@ enum status vortices_append(struct vortices *vortices, int n, double smoothing) 
         if (vortices->n_groups == vortices->group_capacity) {
             const int capacity = 2 * vortices->group_capacity + 1;
             struct vortex_group *const more = realloc(vortices->group, (size_t)capacity * sizeof *more);
-            if (!more) return status_fail(STATUS_MEMORY, "no room for %d groups of vortices", capacity);
+            if (!more) return status_fail(STATUS_MEMORY, "out of memory: %d groups of vortices", capacity);
             vortices->group = more;
             vortices->group_capacity = capacity;
         }

@@ -247,7 +247,7 @@ signals() {
     check "SIGKILL: info ends with 0" ended 0
 }
 
-# ---- full disk, closed output, no memory ----
+# ---- full disk, closed output, out of memory ----
 
 limited() {  # ulimit option, its value, arguments
     local option=$1 value=$2

@@ -49,7 +49,7 @@ static void die(const char *what) {
 
 static double *doubles(int n) {
     double *const value = calloc((size_t)n, sizeof *value);
-    if (!value) die("no memory");
+    if (!value) die("out of memory");
     return value;
 }
 
@@ -143,7 +143,7 @@ static struct result compare(const struct points *to, const struct points *from,
     for (int k = 0; k < 5; k++) got[k] = doubles(to->n);
     struct points sample = points(to->n < SAMPLE ? to->n : SAMPLE);
     int *const which = calloc((size_t)sample.n, sizeof *which);
-    if (!which) die("no memory");
+    if (!which) die("out of memory");
     for (int i = 0; i < sample.n; i++) {
         which[i] = (int)((long)i * to->n / sample.n);
         sample.x[i] = to->x[which[i]];

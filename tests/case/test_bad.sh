@@ -175,19 +175,19 @@ set_fails set_twice_the_last_counts 'time.end: expects a number in s, got '"'b'"
 set_fails set_section_to_a_value "--set wake=3: error: wake: expects keys below it, got '3'" wake=3
 expect set_and_bad_file 2 "time.ned: unknown key" crlf.yaml --set nmae=3
 
-# ---- no memory
+# ---- out of memory
 
 # room for a small case, but not for the tree of four megabytes of values
 { echo 'a: ['; repeat 'a,' 2000000; echo ']'; } >values.yaml
 if grep -q __asan_init "$program"; then
-    skip no_memory 'the address sanitizer needs all addresses'
+    skip out_of_memory 'the address sanitizer needs all addresses'
 elif ! (ulimit -v 240000 && "$program" check good.yaml) >out 2>err; then
-    skip no_memory 'even a small case needs more'
+    skip out_of_memory 'even a small case needs more'
 else
     code=0
     (ulimit -v 240000 && exec "$program" check values.yaml) >out 2>err || code=$?
-    if ended_with no_memory 4; then
-        if grep -q 'no memory' err; then pass no_memory; else fail no_memory "$(<err)"; fi
+    if ended_with out_of_memory 4; then
+        if grep -q 'out of memory' err; then pass out_of_memory; else fail out_of_memory "$(<err)"; fi
     fi
 fi
 

@@ -212,7 +212,7 @@ refused a_failure_that_does_not_come_misses 3 'expect[0]: failures: not what' st
     --set 'expect=[{fails: unstable, where: [solver.method=euler, solver.method=rk4]}]'
 check which_member_does_not_fail_is_printed has out "  MISSED   member 4 has not failed with 'unstable'"
 refused other_words_of_the_reason_miss_too 3 'expect[0]: failures: not what' study small.yaml -q -o doomed --force \
-    --set 'expect=[{fails: no memory, where: [solver.method=euler]}]'
+    --set 'expect=[{fails: out of memory, where: [solver.method=euler]}]'
 run study stated.yaml -q -o plain --set 'sweep=[]'
 check without_a_sweep_nothing_is_expected eval 'test "$code" = 0 && ! grep -q Expected out'
 

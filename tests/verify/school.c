@@ -398,7 +398,7 @@ static enum status runge_kutta_run(struct simulation *simulation, double end, in
     const size_t n = (size_t)simulation->school->n_unknowns;
     const double interval = simulation->school->interval, h = interval / steps_per_event;
     double *const scratch = calloc(4 * n, sizeof *scratch);
-    if (!scratch) return status_fail(STATUS_MEMORY, "no room for the stages of %zu unknowns", n);
+    if (!scratch) return status_fail(STATUS_MEMORY, "out of memory: the stages of %zu unknowns", n);
     enum status status = STATUS_OK;
     residual_kinds(simulation->residual, scratch + 3 * n);
     while (status == STATUS_OK && simulation->state->t < end - interval / 2) {
