@@ -301,7 +301,7 @@ static enum status refuse_overlap(const struct school *school) {
     for (int f = 0; f < school->n_fish && status == STATUS_OK; f++) {
         fish_start(&school->fish[f], y);
         for (int g = 0; g < f && status == STATUS_OK; g++) {
-            if (fish_distance(&school->fish[f], &school->fish[g], y, INFINITY) <= 0) {
+            if (fish_distance(&school->fish[f], &school->fish[g], y, 0) <= 0) {
                 status = status_fail(STATUS_CASE,
                                      "error: fish[%d] (%s) and fish[%d] (%s) overlap at the start: change "
                                      "start.position of one of them",
@@ -447,7 +447,7 @@ void fish_start(const struct fish *fish, double *y) {
     }
 }
 
-// least distance of the point p from the segment a b
+// distance of the point p from the segment a b
 static double point_to_segment(const double p[2], const double a[2], const double b[2]) {
     const double e[2] = {b[0] - a[0], b[1] - a[1]}, r[2] = {p[0] - a[0], p[1] - a[1]};
     const double square = e[0] * e[0] + e[1] * e[1];
@@ -480,26 +480,26 @@ static double gap(int n, const double *x, double margin, int m, const double *y,
     return fmax(other_low - high, low - other_high) - margin - other_margin;
 }
 
-static double half_height(const struct fish *fish) {
-    double most = 0;
-    for (int k = 0; k < fish->n_edges; k++) most = fmax(most, fish->thickness[k] / 2);
-    return most;
+static double max_half_thickness(const struct fish *fish) {
+    double max = 0;
+    for (int k = 0; k < fish->n_edges; k++) max = fmax(max, fish->thickness[k] / 2);
+    return max;
 }
 
-double fish_distance(const struct fish *a, const struct fish *b, const double *y, double most) {
-    // most pairs of a school are told apart by the boxes around them
-    const double margin = half_height(a), other = half_height(b);
-    if (gap(a->n_nodes, y + a->at.x, margin, b->n_nodes, y + b->at.x, other) > most ||
-        gap(a->n_nodes, y + a->at.y, margin, b->n_nodes, y + b->at.y, other) > most) {
+double fish_distance(const struct fish *a, const struct fish *b, const double *y, double limit) {
+    // the boxes around the bodies exclude most pairs of a school
+    const double margin = max_half_thickness(a), other = max_half_thickness(b);
+    if (gap(a->n_nodes, y + a->at.x, margin, b->n_nodes, y + b->at.x, other) > limit ||
+        gap(a->n_nodes, y + a->at.y, margin, b->n_nodes, y + b->at.y, other) > limit) {
         return INFINITY;
     }
-    double least = INFINITY;
+    double min = INFINITY;
     for (int i = 0; i < a->n_edges; i++) {
         const double p[2] = {y[a->at.x + i], y[a->at.y + i]}, q[2] = {y[a->at.x + i + 1], y[a->at.y + i + 1]};
         for (int j = 0; j < b->n_edges; j++) {
             const double r[2] = {y[b->at.x + j], y[b->at.y + j]}, s[2] = {y[b->at.x + j + 1], y[b->at.y + j + 1]};
-            least = fmin(least, segment_to_segment(p, q, r, s) - (a->thickness[i] + b->thickness[j]) / 2);
+            min = fmin(min, segment_to_segment(p, q, r, s) - (a->thickness[i] + b->thickness[j]) / 2);
         }
     }
-    return fmax(0, least);
+    return fmax(0, min);
 }

@@ -157,8 +157,8 @@ void fish_prescribe(const struct fish *fish, int n, double t, double *y);
 /* Write nose to tail positions and velocities of the start into the vector of all unknowns: doc/model.md, 4 and 5. */
 void fish_start(const struct fish *fish, double *y);
 
-/* Least distance between the outlines of two bodies at the nodes given in y, 0 where they touch, m; it may be
- * infinite where it is more than most. */
-double fish_distance(const struct fish *a, const struct fish *b, const double *y, double most);
+/* Distance between the outlines of two bodies at the nodes given in y, 0 where they touch, m. A distance above the limit
+ * may be returned as INFINITY: bodies whose boxes are further apart than that are not compared edge by edge. */
+double fish_distance(const struct fish *a, const struct fish *b, const double *y, double limit);
 
 #endif

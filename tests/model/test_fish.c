@@ -244,7 +244,7 @@ static void distance_is_that_of_the_outlines(void **state) {
     // tail at x = 1 to nose at 1.5, half of both heights taken off
     NEAR(fish_distance(&fish[0], &fish[2], setup.state->y, INFINITY), 0.4, 1e-14, 0);
     NEAR(fish_distance(&fish[2], &fish[0], setup.state->y, INFINITY), 0.4, 1e-14, 0);
-    // looked at only where the boxes around them are near enough
+    // not computed where the boxes around them are further apart than the limit
     NEAR(fish_distance(&fish[0], &fish[1], setup.state->y, 0.4 + 1e-12), 0.4, 1e-14, 0);
     NEAR(fish_distance(&fish[0], &fish[1], setup.state->y, 0.3), INFINITY, 0, 0);
     // crossing bodies touch
@@ -254,6 +254,35 @@ static void distance_is_that_of_the_outlines(void **state) {
     }
     NEAR(fish_distance(&fish[0], &fish[1], setup.state->y, INFINITY), 0, 0, 0);
     school_clear(&setup);
+}
+
+// the distance between two edges takes four of these
+static int n_hypot;
+double __real_hypot(double x, double y);
+double __wrap_hypot(double x, double y);
+double __wrap_hypot(double x, double y) {
+    n_hypot++;
+    return __real_hypot(x, y);
+}
+
+static void bodies_in_boxes_apart_are_not_compared_edge_by_edge(void **state) {
+    (void)state;
+    enum { ROWS = 6, COLUMNS = 5 };
+    char text[4000] = TIME "fish:\n";
+    for (int i = 0; i < ROWS * COLUMNS; i++) {
+        const size_t used = strlen(text);
+        snprintf(text + used, sizeof text - used, "  - {start: {position: [%g, %g]}}\n", 1.5 * (i % COLUMNS),
+                 0.6 * (i / COLUMNS));
+    }
+    struct case_values values;
+    struct school *school;
+    school_settings(&values, text);
+    n_hypot = 0;
+    school_ok(fish_school_create(&school, &values.school));
+    const int per_pair = 4 * school->fish->n_edges * school->fish->n_edges;
+    assert_true(n_hypot < per_pair);
+    fish_school_free(school);
+    case_free(&values);
 }
 
 static void overlapping_fish_are_refused(void **state) {
@@ -307,6 +336,7 @@ int main(void) {
         cmocka_unit_test(driven_velocity_and_acceleration_are_derivatives),
         cmocka_unit_test(driven_body_is_straight_and_turns_about_its_pivot),
         cmocka_unit_test(distance_is_that_of_the_outlines),
+        cmocka_unit_test(bodies_in_boxes_apart_are_not_compared_edge_by_edge),
         cmocka_unit_test(overlapping_fish_are_refused),
         cmocka_unit_test(unknowns_stand_fish_after_fish_in_the_documented_order),
         cmocka_unit_test(gust_blows_across_the_stream),
