@@ -238,8 +238,9 @@ void wake_interpolation_update(struct wake_interpolation *interpolation, double 
     for (int f = 0; f < interpolation->school->n_fish; f++) near_field_place(&interpolation->near_field[f], tau, q, 1);
 }
 
-int wake_interpolation_is_valid(struct wake_interpolation *interpolation, int f, const double *x, const double *y) {
-    struct near_field *const near_field = &interpolation->near_field[f];
+int wake_interpolation_is_valid(const struct wake_interpolation *interpolation, int f, const double *x,
+                                const double *y) {
+    const struct near_field *const near_field = &interpolation->near_field[f];
     if (!near_field->serves) return 0;
     const int first = interpolation->points[f].first;
     double square = 0;
@@ -249,8 +250,7 @@ int wake_interpolation_is_valid(struct wake_interpolation *interpolation, int f,
         square = here > square ? here : square;
     }
     // written so that NaN does not pass
-    near_field->serves = near_field->second * square + near_field->drifting * sqrt(square) <= near_field->allowed / 2;
-    return near_field->serves;
+    return near_field->second * square + near_field->drifting * sqrt(square) <= near_field->allowed / 2;
 }
 
 void wake_interpolation_induce(const struct wake_interpolation *interpolation, int f, int first,

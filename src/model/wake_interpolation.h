@@ -45,9 +45,10 @@ enum status wake_interpolation_released(const struct school *school, const struc
 void wake_interpolation_update(struct wake_interpolation *interpolation, double t);
 
 /* Whether the forecast serves the points of fish f where they are now (all its points, in the order of
- * wake_interpolation_build): whether they are close enough to their foretold paths. Where they are not, it serves the fish no more
- * until the next one is made: an iteration that goes back and forth meets one function, not two. */
-int wake_interpolation_is_valid(struct wake_interpolation *interpolation, int f, const double *x, const double *y);
+ * wake_interpolation_build): whether they are close enough to their foretold paths. It depends on nothing else: an
+ * iteration that goes back and forth meets one function, whose steps are below the tolerance. */
+int wake_interpolation_is_valid(const struct wake_interpolation *interpolation, int f, const double *x,
+                                const double *y);
 
 /* Add the foretold velocity (and gradient) at points of fish f; the first of them is point number first of all. */
 void wake_interpolation_induce(const struct wake_interpolation *interpolation, int f, int first,

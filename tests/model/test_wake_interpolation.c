@@ -118,6 +118,37 @@ static void a_body_off_its_path_is_still_within_the_tolerance_or_not_foretold(vo
     simulate_free(simulation);
 }
 
+// the equations at a part q of the interval, as a caller of the solver sees them
+static void equations(const struct simulation *simulation, double q, const double *y, double *value) {
+    struct residual *const residual = simulation->residual;
+    const struct state *const state = simulation->state;
+    school_ok(residual_evaluate(residual, state->t + q * simulation->school->interval, y, state->yp, value));
+}
+
+static void the_equations_do_not_depend_on_what_was_evaluated_before(void **state) {
+    (void)state;
+    struct simulation *const simulation = two_fish(1e-5, 0.01, 0.2);
+    const struct flow *const flow = simulation->residual->flow;
+    const size_t size = (size_t)simulation->school->n_unknowns * sizeof(double);
+    double *const near = later(simulation, 0.5, 0), *const far = later(simulation, 0.5, 0.1);
+    double *const first = malloc(size), *const again = malloc(size);
+    assert_true(first && again);
+    equations(simulation, 0.5, near, first);
+    assert_true(flow->by_interpolation[0] && flow->by_interpolation[1]);
+    // an iterate so far off the paths that every vortex is summed, at the same time and at another
+    for (int i = 0; i < 2; i++) {
+        equations(simulation, 0.5 + 0.2 * i, far, again);
+        assert_true(!flow->by_interpolation[0] && !flow->by_interpolation[1]);
+        equations(simulation, 0.5, near, again);
+        assert_memory_equal(again, first, size);
+    }
+    free(near);
+    free(far);
+    free(first);
+    free(again);
+    simulate_free(simulation);
+}
+
 static void the_gradient_is_that_of_the_foretold_velocity(void **state) {
     (void)state;
     // near vortices too
@@ -198,6 +229,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_error_stays_below_the_tolerance),
         cmocka_unit_test(a_body_off_its_path_is_still_within_the_tolerance_or_not_foretold),
+        cmocka_unit_test(the_equations_do_not_depend_on_what_was_evaluated_before),
         cmocka_unit_test(the_gradient_is_that_of_the_foretold_velocity),
         cmocka_unit_test(no_tolerance_no_forecast),
         cmocka_unit_test(a_run_is_as_exact_as_the_tolerance),
