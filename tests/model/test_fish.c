@@ -233,6 +233,26 @@ static void driven_body_is_straight_and_turns_about_its_pivot(void **state) {
     school_clear(&setup);
 }
 
+static void pitch_is_its_phase_before_heave(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME
+                 "fish: [{start: {heading: 0}, motion: {driven: all, heave: 0.2, pitch: 25, pitch_phase: 90, "
+                 "frequency: 1}}]\n");
+    const struct fish *fish = setup.school->fish;
+    // pitch is largest, to the left, while heave begins: a quarter period later heave is largest and pitch is over
+    const double t[] = {0, 0.25}, pitch[] = {25 * pi / 180, 0}, heave[] = {0, 0.2};
+    for (int i = 0; i < 2; i++) {
+        double nose[2], tail[2], v[2], a[2];
+        fish_prescribed_node(fish, 0, t[i], nose, v, a);
+        fish_prescribed_node(fish, fish->n_nodes - 1, t[i], tail, v, a);
+        NEAR(atan2(nose[1] - tail[1], nose[0] - tail[0]), pitch[i], 1e-15, 0);
+        // the pivot is the nose
+        NEAR(nose[1], heave[i], 1e-15, 0);
+    }
+    school_clear(&setup);
+}
+
 static void distance_is_that_of_the_outlines(void **state) {
     (void)state;
     struct setup setup;
@@ -335,6 +355,7 @@ int main(void) {
         cmocka_unit_test(start_without_ramp_has_the_natural_shape),
         cmocka_unit_test(driven_velocity_and_acceleration_are_derivatives),
         cmocka_unit_test(driven_body_is_straight_and_turns_about_its_pivot),
+        cmocka_unit_test(pitch_is_its_phase_before_heave),
         cmocka_unit_test(distance_is_that_of_the_outlines),
         cmocka_unit_test(bodies_in_boxes_apart_are_not_compared_edge_by_edge),
         cmocka_unit_test(overlapping_fish_are_refused),

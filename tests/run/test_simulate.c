@@ -1,4 +1,5 @@
 /* test_simulate.c: whole short runs: symmetries of the model, events, failures, result files. */
+#include <netcdf.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -211,6 +212,36 @@ static void a_run_tells_its_progress_at_every_event(void **state) {
     assert_int_equal(access(path, R_OK), 0);
 }
 
+/* In *n_vortices the wake_count of the rows 0 to 4, and in *holds_wake whether they hold the vortices too. */
+static void read_wake(const char *path, int n_vortices[5], int holds_wake[5]) {
+    int file, count, x;
+    assert_int_equal(nc_open(path, NC_NOWRITE, &file), NC_NOERR);
+    assert_int_equal(nc_inq_varid(file, "wake_count", &count), NC_NOERR);
+    assert_int_equal(nc_inq_varid(file, "wake_x", &x), NC_NOERR);
+    for (size_t row = 0; row < 5; row++) {
+        double position;
+        assert_int_equal(nc_get_var1_int(file, count, (size_t[]){row, 0}, &n_vortices[row]), NC_NOERR);
+        assert_int_equal(nc_get_var1_double(file, x, (size_t[]){row, 0, 0, 0}, &position), NC_NOERR);
+        holds_wake[row] = !isnan(position);
+    }
+    nc_close(file);
+}
+
+static void the_wake_is_written_at_its_own_interval_and_at_the_end(void **state) {
+    const char *const path = *state;
+    const struct simulate_options options = {.path = path, .overwrite = 1, .command = "test"};
+    run_into(
+        "time: {end: 0.28, shedding_interval: 0.02, output_interval: 0.08}\noutput: {wake_interval: 0.16}\nfish: "
+        "[{}]\n",
+        &options, STATUS_OK);
+    // rows at 0, 0.08, 0.16, 0.24 and at the end, which is on neither interval
+    int n_vortices[5], holds_wake[5];
+    read_wake(path, n_vortices, holds_wake);
+    const int count[] = {0, 4, 8, 12, 14}, held[] = {0, 0, 1, 0, 1};
+    assert_memory_equal(n_vortices, count, sizeof count);
+    assert_memory_equal(holds_wake, held, sizeof held);
+}
+
 static volatile sig_atomic_t stop;
 static void stop_at_the_fifth(const struct simulate_progress *progress, void *data) {
     (void)data;
@@ -259,6 +290,7 @@ int main(void) {
         cmocka_unit_test(places_are_second_order_in_the_shedding_interval),
         cmocka_unit_test(positive_bias_turns_right),
         cmocka_unit_test(a_run_tells_its_progress_at_every_event),
+        cmocka_unit_test(the_wake_is_written_at_its_own_interval_and_at_the_end),
         cmocka_unit_test(a_signal_stops_a_run_at_the_next_event),
         cmocka_unit_test(a_failing_run_says_when_and_keeps_its_file),
     };

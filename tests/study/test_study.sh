@@ -49,6 +49,13 @@ run study small.yaml -q
 check finished_members_are_passed_over test "$(changed small-study/member-0001.nc)" = "$finished"
 check failed_members_run_again test "$(changed small-study/member-0002.nc)" != "$failed"
 
+# the same text of the case, but other defaults: a member of another version of the program
+sed -i 's/modulus: 1000000 /modulus: 2000000 /' small-study/member-0001.nc
+finished=$(changed small-study/member-0001.nc)
+run study small.yaml -q
+check a_member_of_other_defaults_runs_again test "$(changed small-study/member-0001.nc)" != "$finished"
+finished=$(changed small-study/member-0001.nc)
+
 cp out table
 run info small-study/study.nc
 check info_tells_the_axes has out '  axis 1      3 values of solver.method, solver.max_steps'

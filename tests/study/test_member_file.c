@@ -1,0 +1,112 @@
+/* test_member_file.c: the end of a member of a study, and what is computed from its rows. */
+#include "result_fixture.h"
+#include "study/study_file.h"
+
+/* Rows at uneven times. Fish 0 has a period of 0.5 s, which ends in the last four rows, fish 1 one of 1 s, longer than
+ * the run. */
+enum { N_ROWS = 5 };
+static const double row_time[N_ROWS] = {0, 0.3, 0.4, 0.7, 0.8};
+static const double heading[N_ROWS] = {90, 10, 20, 50, 90};
+
+static void read_member(struct fixture *f, struct member_file *member) {
+    struct result_file *const file = create(f);
+    for (int i = 0; i < N_ROWS; i++) {
+        for (int fish = 0; fish < N_FISH; fish++) {
+            f->measured[fish].heading = heading[i];
+            f->measured[fish].com[0] = 1 + 3 * row_time[i] * (fish + 1);
+            f->measured[fish].com[1] = 2 + 5 * row_time[i];
+        }
+        assert_int_equal(append(f, file, row_time[i], 0), STATUS_OK);
+    }
+    assert_int_equal(result_file_close(file, "complete"), STATUS_OK);
+    assert_int_equal(member_file_read(member, f->path), STATUS_OK);
+}
+
+static double value(const struct member_file *member, const char *quantity, int fish, int xy) {
+    return member_file_value(member, member_file_quantity_number(quantity), fish, xy);
+}
+
+static void quantities_of_the_table_are_those_of_the_last_row(void **state) {
+    struct fixture *const f = *state;
+    struct member_file member;
+    read_member(f, &member);
+    assert_string_equal(member.status, "complete");
+    assert_string_equal(member.effective, EFFECTIVE);
+    assert_string_equal(member.fish_name[1], "suédois");
+    NEAR(value(&member, "heading", 1, 0), 90, 0, 0);
+    NEAR(value(&member, "com", 1, 0), 1 + 3 * 0.8 * 2, 0, 1e-15);
+    NEAR(value(&member, "com", 0, 1), 2 + 5 * 0.8, 0, 1e-15);
+    NEAR(value(&member, "speed", 1, 0), f->measured[1].speed, 0, 0);
+    NEAR(value(&member, "steps", 0, 0), 21, 0, 0);
+    member_file_free(&member);
+}
+
+static void nose_and_tail_are_the_ends_of_each_body(void **state) {
+    struct fixture *const f = *state;
+    struct member_file member;
+    read_member(f, &member);
+    for (int fish = 0; fish < N_FISH; fish++) {
+        const struct fish *const of = &f->school->fish[fish];
+        const double *const y = f->state->y;
+        NEAR(value(&member, "nose", fish, 0), y[of->at.x], 0, 0);
+        NEAR(value(&member, "nose", fish, 1), y[of->at.y], 0, 0);
+        NEAR(value(&member, "tail", fish, 0), y[of->at.x + of->n_nodes - 1], 0, 0);
+        NEAR(value(&member, "tail", fish, 1), y[of->at.y + of->n_nodes - 1], 0, 0);
+    }
+    member_file_free(&member);
+}
+
+static void lateral_drift_is_to_the_left_of_the_first_heading(void **state) {
+    struct fixture *const f = *state;
+    struct member_file member;
+    read_member(f, &member);
+    // the first heading is along y: left of it is -x
+    NEAR(value(&member, "lateral_drift", 0, 0), -3 * 0.8, 0, 1e-14);
+    NEAR(value(&member, "lateral_drift", 1, 0), -6 * 0.8, 0, 1e-14);
+    member_file_free(&member);
+}
+
+static void mean_heading_is_that_of_trapezoids_over_the_last_period(void **state) {
+    struct fixture *const f = *state;
+    struct member_file member;
+    read_member(f, &member);
+    const double last_three = 0.1 * 15 + 0.3 * 35 + 0.1 * 70;
+    NEAR(value(&member, "mean_heading", 0, 0), last_three / 0.5, 0, 1e-14);
+    // the whole run
+    NEAR(value(&member, "mean_heading", 1, 0), (0.3 * 50 + last_three) / 0.8, 0, 1e-14);
+    member_file_free(&member);
+}
+
+static void mean_power_is_the_cost_of_transport_times_mass_and_speed(void **state) {
+    struct fixture *const f = *state;
+    struct member_file member;
+    read_member(f, &member);
+    for (int fish = 0; fish < N_FISH; fish++) {
+        NEAR(value(&member, "mean_actuation_power", fish, 0),
+             f->measured[fish].cost_of_transport * f->school->fish[fish].total_mass * f->measured[fish].speed, 0,
+             1e-14);
+    }
+    member_file_free(&member);
+}
+
+static void a_member_without_rows_has_no_values(void **state) {
+    struct fixture *const f = *state;
+    write_file(f, 0);
+    struct member_file member;
+    assert_int_equal(member_file_read(&member, f->path), STATUS_OK);
+    assert_true(isnan(value(&member, "speed", 0, 0)));
+    assert_true(isnan(value(&member, "mean_heading", 1, 0)));
+    member_file_free(&member);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        WITH_FILE(quantities_of_the_table_are_those_of_the_last_row),
+        WITH_FILE(nose_and_tail_are_the_ends_of_each_body),
+        WITH_FILE(lateral_drift_is_to_the_left_of_the_first_heading),
+        WITH_FILE(mean_heading_is_that_of_trapezoids_over_the_last_period),
+        WITH_FILE(mean_power_is_the_cost_of_transport_times_mass_and_speed),
+        WITH_FILE(a_member_without_rows_has_no_values),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
