@@ -1,4 +1,4 @@
-/* diagnostics.c: energies and powers of one instant, means over the last period, the audit over all steps. */
+/* diagnostics.c: energies and powers at one instant, means over the last period, the energy balance over all steps. */
 #include "model/diagnostics.h"
 
 #include <math.h>
@@ -16,7 +16,7 @@ enum status diagnostics_create(struct diagnostics **diagnostics, const struct sc
     if (new) new->fish = calloc((size_t)school->n_fish, sizeof *new->fish);
     if (!new || !new->fish) {
         diagnostics_free(new);
-        return status_fail(STATUS_MEMORY, "out of memory: the measures of %d fish", school->n_fish);
+        return status_fail(STATUS_MEMORY, "out of memory: the diagnostics of %d fish", school->n_fish);
     }
     *diagnostics = new;
     return STATUS_OK;
@@ -35,8 +35,8 @@ static double mass_mean(const struct fish *fish, const double *value) {
     return sum / fish->total_mass;
 }
 
-// what holds the driven nodes on their path, and the load at the tip
-static double driving_power(const struct residual *residual, int f, const double *y, double *scratch) {
+// what holds the prescribed nodes on their path, and the load at the tip
+static double driving_power(struct residual *residual, int f, const double *y, double *scratch) {
     const struct fish *fish = &residual->school->fish[f];
     const int tail = fish->n_nodes - 1;
     double power = fish->load_tip[0] * y[fish->at.vx + tail] + fish->load_tip[1] * y[fish->at.vy + tail];
@@ -48,7 +48,7 @@ static double driving_power(const struct residual *residual, int f, const double
     return power;
 }
 
-struct diagnostics_power diagnostics_power(const struct residual *residual, int f, double t, const double *y,
+struct diagnostics_power diagnostics_power(struct residual *residual, int f, double t, const double *y,
                                            const double *yp) {
     const struct fish *fish = &residual->school->fish[f];
     const double *const u = residual->flow->u + residual->flow->points[f].first;
@@ -74,14 +74,14 @@ static double kinetic_energy(const struct fish *fish, const double *y) {
     return energy;
 }
 
-static double bending_energy(const struct residual *residual, int f, double t, const double *y) {
+static double bending_energy(struct residual *residual, int f, double t, const double *y) {
     const struct fish *fish = &residual->school->fish[f];
     double *const curvature = residual->scratch;
     actuation_curvature(fish, t, y[fish->at.phi0], curvature, curvature + fish->n_joints);
     return rod_bending_energy(fish, curvature, y);
 }
 
-double diagnostics_energy(const struct residual *residual, int f, double t, const double *y) {
+double diagnostics_energy(struct residual *residual, int f, double t, const double *y) {
     const struct fish *fish = &residual->school->fish[f];
     return kinetic_energy(fish, y) + bending_energy(residual, f, t, y) + rod_stretching_energy(fish, y);
 }
@@ -98,8 +98,7 @@ static double newest_area(int n, const double t[3], const double value[3]) {
     return area;
 }
 
-void diagnostics_step(const struct residual *residual, struct state *state, double t, const double *y,
-                      const double *yp) {
+void diagnostics_step(struct residual *residual, struct state *state, double t, const double *y, const double *yp) {
     for (int f = 0; f < residual->school->n_fish; f++) {
         struct energy_balance *balance = &state->balance[f];
         const struct diagnostics_power now = diagnostics_power(residual, f, t, y, yp);
@@ -119,13 +118,13 @@ void diagnostics_step(const struct residual *residual, struct state *state, doub
     }
 }
 
-void diagnostics_before_jump(const struct residual *residual, struct state *state) {
+void diagnostics_before_jump(struct residual *residual, struct state *state) {
     for (int f = 0; f < residual->school->n_fish; f++) {
         state->balance[f].work -= diagnostics_energy(residual, f, state->t, state->y);
     }
 }
 
-void diagnostics_after_jump(const struct residual *residual, struct state *state) {
+void diagnostics_after_jump(struct residual *residual, struct state *state) {
     for (int f = 0; f < residual->school->n_fish; f++) {
         struct energy_balance *balance = &state->balance[f];
         const struct diagnostics_power now = diagnostics_power(residual, f, state->t, state->y, state->yp);
@@ -137,7 +136,7 @@ void diagnostics_after_jump(const struct residual *residual, struct state *state
     }
 }
 
-void diagnostics_start(const struct residual *residual, struct state *state) {
+void diagnostics_start(struct residual *residual, struct state *state) {
     diagnostics_after_jump(residual, state);
     for (int f = 0; f < residual->school->n_fish; f++) {
         state->balance[f].initial_energy = diagnostics_energy(residual, f, state->t, state->y);
@@ -145,7 +144,7 @@ void diagnostics_start(const struct residual *residual, struct state *state) {
     }
 }
 
-void diagnostics_remember(const struct residual *residual, struct state *state) {
+void diagnostics_remember(struct residual *residual, struct state *state) {
     for (int f = 0; f < residual->school->n_fish; f++) {
         const struct fish *fish = &residual->school->fish[f];
         const double *const y = state->y;
@@ -173,16 +172,16 @@ double diagnostics_mean_heading(const struct history *history) {
     return sum / (history->n - 1);
 }
 
-// extent of the tail's path across the way that the fish went
-static double peak_to_peak(const struct history *history, const double way[2], double distance) {
-    double least = INFINITY, most = -INFINITY;
+// extent of the tail's path across the displacement of the fish
+static double peak_to_peak(const struct history *history, const double displacement[2], double distance) {
+    double min = INFINITY, max = -INFINITY;
     for (int age = 0; age < history->n; age++) {
         const double *tail = state_recall(history, age)->tail;
-        const double across = (way[0] * tail[1] - way[1] * tail[0]) / distance;
-        least = fmin(least, across);
-        most = fmax(most, across);
+        const double across = (displacement[0] * tail[1] - displacement[1] * tail[0]) / distance;
+        min = fmin(min, across);
+        max = fmax(max, across);
     }
-    return most - least;
+    return max - min;
 }
 
 // speed, cost of transport and Strouhal number over the last period, or since the start where that is less
@@ -193,11 +192,12 @@ static void diagnostics_period(const struct fish *fish, const struct history *hi
     if (history->n < 2) return;
     const struct sample *new = state_recall(history, 0), *old = state_recall(history, history->n - 1);
     const double duration = (history->n - 1) * interval;
-    const double way[2] = {new->com[0] - old->com[0], new->com[1] - old->com[1]}, distance = hypot(way[0], way[1]);
+    const double displacement[2] = {new->com[0] - old->com[0], new->com[1] - old->com[1]};
+    const double distance = hypot(displacement[0], displacement[1]);
     to->speed = distance / duration;
     if (distance <= 0) return;
     to->cost_of_transport = (new->actuation_work - old->actuation_work) / duration / (fish->total_mass * to->speed);
-    to->strouhal = fish->frequency * peak_to_peak(history, way, distance) / to->speed;
+    to->strouhal = fish->frequency * peak_to_peak(history, displacement, distance) / to->speed;
 }
 
 static double shedding_rate(const struct residual *residual, const struct state *state, int f) {
@@ -205,8 +205,7 @@ static double shedding_rate(const struct residual *residual, const struct state 
     return residual_kutta_rate(residual, f, state->t, state->y);
 }
 
-static void diagnostics_one(const struct residual *residual, const struct state *state, int f,
-                            struct diagnostics_fish *to) {
+static void diagnostics_one(struct residual *residual, const struct state *state, int f, struct diagnostics_fish *to) {
     const struct fish *fish = &residual->school->fish[f];
     const struct history *history = &state->history[f];
     const double *const y = state->y;
@@ -236,7 +235,7 @@ static void diagnostics_one(const struct residual *residual, const struct state 
     to->actuation_work = balance->actuation_work;
 }
 
-// every vortex counted one by one: bound, nascent, free, dissipated
+// every vortex counted one by one: bound, nascent, free, removed
 static double total_circulation(const struct residual *residual, const struct state *state) {
     double total = 0;
     for (int f = 0; f < residual->school->n_fish; f++) {
@@ -249,7 +248,7 @@ static double total_circulation(const struct residual *residual, const struct st
     return total;
 }
 
-void diagnostics_event(const struct residual *residual, const struct state *state, struct diagnostics *diagnostics) {
+void diagnostics_event(struct residual *residual, const struct state *state, struct diagnostics *diagnostics) {
     const struct school *school = residual->school;
     double sum[2] = {0, 0};
     diagnostics->t = state->t;

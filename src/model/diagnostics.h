@@ -1,4 +1,4 @@
-/* diagnostics.h: what a user reads off a state: energies, powers, headings, means. doc/model.md, section 13. Tested by
+/* diagnostics.h: what is derived from a state for the user: energies, powers, headings, means. doc/model.md, section 13. Tested by
  * tests/model/test_diagnostics.c. */
 #ifndef DIAGNOSTICS_H
 #define DIAGNOSTICS_H
@@ -41,31 +41,30 @@ void diagnostics_free(struct diagnostics *diagnostics);
 struct diagnostics_power {
     double actuation, damping, drag, added_mass, driving;
 };
-struct diagnostics_power diagnostics_power(const struct residual *residual, int f, double t, const double *y,
+struct diagnostics_power diagnostics_power(struct residual *residual, int f, double t, const double *y,
                                            const double *yp);
 
 /* Kinetic plus bending plus stretching energy of one fish, J. */
-double diagnostics_energy(const struct residual *residual, int f, double t, const double *y);
+double diagnostics_energy(struct residual *residual, int f, double t, const double *y);
 
-/* Add the powers of the step that ended at t to the audits, by the quadratic through the last three steps. */
-void diagnostics_step(const struct residual *residual, struct state *state, double t, const double *y,
-                      const double *yp);
+/* Add the powers of the step that ended at t to the energy balances, by the quadratic through the last three steps. */
+void diagnostics_step(struct residual *residual, struct state *state, double t, const double *y, const double *yp);
 
-/* Start the audits: at the first event, when the state is consistent. */
-void diagnostics_start(const struct residual *residual, struct state *state);
+/* Start the energy balances: at the first event, when the state is consistent. */
+void diagnostics_start(struct residual *residual, struct state *state);
 
 /* Before and after a jump of the state: the energy that the jump brings counts as work done, and no later step reaches
  * back over it. A bias that jumps, for one, changes the natural curvature and with it the energy of bending. */
-void diagnostics_before_jump(const struct residual *residual, struct state *state);
-void diagnostics_after_jump(const struct residual *residual, struct state *state);
+void diagnostics_before_jump(struct residual *residual, struct state *state);
+void diagnostics_after_jump(struct residual *residual, struct state *state);
 
 /* Mean of the headings in a history, rad, unwrapped. */
 double diagnostics_mean_heading(const struct history *history);
 
 /* Take a sample of every fish into its history; at every event, before diagnostics_event. */
-void diagnostics_remember(const struct residual *residual, struct state *state);
+void diagnostics_remember(struct residual *residual, struct state *state);
 
-/* Fill *measure from the state at its event; the residual must have been evaluated there. */
-void diagnostics_event(const struct residual *residual, const struct state *state, struct diagnostics *diagnostics);
+/* Fill *diagnostics from the state at its event; the residual must have been evaluated there. */
+void diagnostics_event(struct residual *residual, const struct state *state, struct diagnostics *diagnostics);
 
 #endif

@@ -87,7 +87,6 @@ enum status flow_create(struct flow **flow, const struct school *school) {
     struct flow *const new = calloc(1, sizeof *new);
     if (!new) return status_fail(STATUS_MEMORY, "out of memory: a flow");
     new->school = school;
-    new->event = -1;
     const enum status status = flow_fill(new);
     if (status != STATUS_OK) {
         flow_free(new);
@@ -109,7 +108,8 @@ void flow_free(struct flow *flow) {
                            flow->motion[1],   flow->motion[2],
                            flow->motion[3],   flow->released_range,
                            flow->sheet_range, flow->by_interpolation,
-                           flow->opposite};
+                           flow->opposite,    flow->wake_u,
+                           flow->wake_v};
     for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
     vortices_free(&flow->released);
     vortices_free(&flow->nascent);
@@ -147,26 +147,38 @@ static void place_nascent(struct flow *flow, const struct state *state, int f, c
     const struct fish *fish = &flow->school->fish[f];
     const double tail[2] = {y[fish->at.x + fish->n_nodes - 1], y[fish->at.y + fish->n_nodes - 1]};
     double position[2];
-    wake_nascent(&state->wake[f], flow->since, tail, position);
+    wake_nascent(&state->wake[f], flow->t - state->t, tail, position);
     flow->nascent.x[f] = position[0];
     flow->nascent.y[f] = position[1];
     flow->nascent.circulation[f] = y[fish->at.circulation] - state->wake[f].shed_before;
 }
 
-enum status flow_update_sources(struct flow *flow, const struct state *state, double t, const double *y) {
-    const struct school *school = flow->school;
-    if (flow->event != state->event) flow_invalidate(flow);
-    // the released vortices move on known paths: at one time they are the same for every y
-    if (flow->event != state->event || flow->t != t) {
-        flow->event = state->event;
-        flow->t = t;
-        flow->since = t - state->t;
-        flow->has_released = 0;
-        if (flow->is_interpolated) wake_interpolation_update(flow->interpolation, t);
-    }
-    int all_foretold = 1;
-    for (int f = 0; f < school->n_fish; f++) {
-        const struct fish *fish = &school->fish[f];
+// the released vortices where they are at the flow's time
+static enum status place_released(struct flow *flow, const struct state *state) {
+    if (flow->has_released) return STATUS_OK;
+    TRY(wake_interpolation_released(flow->school, state, flow->t - state->t, &flow->released, flow->released_range));
+    flow->has_released = 1;
+    return STATUS_OK;
+}
+
+// forget what was made for other wakes or another time: the released vortices move on known paths, so that at one time
+// they are the same for every y
+static void go_to(struct flow *flow, const struct state *state, double t) {
+    const unsigned long version = state_wake_version(state, flow->school);
+    if (flow->has_sources && flow->version == version && flow->t == t) return;
+    flow->has_sources = 1;
+    flow->has_released = 0;
+    flow->version = version;
+    flow->t = t;
+    if (flow->is_interpolated && flow->interpolated_version != version) flow->is_interpolated = 0;
+    if (flow->is_interpolated) wake_interpolation_update(flow->interpolation, t);
+}
+
+static enum status update_sources(struct flow *flow, const struct state *state, double t, const double *y) {
+    go_to(flow, state, t);
+    int all_interpolated = 1;
+    for (int f = 0; f < flow->school->n_fish; f++) {
+        const struct fish *fish = &flow->school->fish[f];
         at_points(flow, f, y + fish->at.x, flow->x);
         at_points(flow, f, y + fish->at.y, flow->y);
         place_sheet(flow, f, y);
@@ -175,33 +187,29 @@ enum status flow_update_sources(struct flow *flow, const struct state *state, do
         flow->by_interpolation[f] =
             flow->is_interpolated &&
             wake_interpolation_is_valid(flow->interpolation, f, flow->x + first, flow->y + first);
-        all_foretold &= flow->by_interpolation[f];
+        all_interpolated &= flow->by_interpolation[f];
     }
-    if (all_foretold || flow->has_released) return STATUS_OK;
-    TRY(wake_interpolation_released(school, state, flow->since, &flow->released, flow->released_range));
-    flow->has_released = 1;
-    return STATUS_OK;
+    return all_interpolated ? STATUS_OK : place_released(flow, state);
 }
 
-void flow_invalidate(struct flow *flow) {
-    flow->event = -1;
+void flow_sum_exactly(struct flow *flow) {
     flow->is_interpolated = 0;
 }
 
 enum status flow_interpolate(struct flow *flow, const struct state *state) {
     if (!flow->interpolation) return STATUS_OK;
-    const double *const y = state->y;
+    TRY(update_sources(flow, state, state->t, state->y));
     for (int f = 0; f < flow->school->n_fish; f++) {
         const struct layout *at = &flow->school->fish[f].at;
         const int from[4] = {at->vx, at->vy, at->ax, at->ay};
-        for (int i = 0; i < 4; i++) at_points(flow, f, y + from[i], flow->motion[i]);
+        for (int i = 0; i < 4; i++) at_points(flow, f, state->y + from[i], flow->motion[i]);
     }
     const struct wake_interpolation_points points = {flow->x,         flow->y,         flow->motion[0],
                                                      flow->motion[1], flow->motion[2], flow->motion[3]};
     TRY(wake_interpolation_build(flow->interpolation, state, &points));
-    // whatever the time: placed anew, by the forecast
-    flow->t = NAN;
+    wake_interpolation_update(flow->interpolation, flow->t);
     flow->is_interpolated = 1;
+    flow->interpolated_version = flow->version;
     return STATUS_OK;
 }
 
@@ -288,12 +296,16 @@ static void evaluate(struct flow *flow, int with_gradient) {
     for (int c = 0; c < flow->n_chunks; c++) evaluate_chunk(flow, &flow->chunk[c], by_tree, &all);
 }
 
-void flow_velocity(struct flow *flow) {
+enum status flow_velocity(struct flow *flow, const struct state *state, double t, const double *y) {
+    TRY(update_sources(flow, state, t, y));
     evaluate(flow, 0);
+    return STATUS_OK;
 }
 
-void flow_gradient(struct flow *flow) {
+enum status flow_gradient(struct flow *flow, const struct state *state, double t, const double *y) {
+    TRY(update_sources(flow, state, t, y));
     evaluate(flow, 1);
+    return STATUS_OK;
 }
 
 // the derivatives at n points from first on: column c of both components
@@ -436,9 +448,29 @@ static void others_at_wake(const struct flow *flow, int sheets_too, const struct
     }
 }
 
-enum status flow_at_wake(const struct flow *flow, double *u, double *v) {
+static enum status reserve_at_wake(struct flow *flow) {
+    const int n = flow->released.n;
+    if (n <= flow->wake_capacity) return STATUS_OK;
+    double **const both[] = {&flow->wake_u, &flow->wake_v};
+    for (int i = 0; i < 2; i++) {
+        free(*both[i]);
+        *both[i] = calloc((size_t)flow->released.capacity, sizeof **both[i]);
+        if (!*both[i]) {
+            flow->wake_capacity = 0;
+            return status_fail(STATUS_MEMORY, "out of memory: the velocities of %d vortices", n);
+        }
+    }
+    flow->wake_capacity = flow->released.capacity;
+    return STATUS_OK;
+}
+
+enum status flow_at_wake(struct flow *flow, const struct state *state) {
+    TRY(update_sources(flow, state, state->t, state->y));
+    TRY(place_released(flow, state));
+    TRY(reserve_at_wake(flow));
     const struct vortices *const released = &flow->released;
-    const struct induced at = {.n = released->n, .x = released->x, .y = released->y, .u = u, .v = v};
+    const struct induced at = {
+        .n = released->n, .x = released->x, .y = released->y, .u = flow->wake_u, .v = flow->wake_v};
     const double tolerance = flow->school->wake_tolerance;
     const int by_tree = velocity_sum_by_tree(&flow->sheet, released->n, tolerance);
     const int threads =
@@ -448,7 +480,7 @@ enum status flow_at_wake(const struct flow *flow, double *u, double *v) {
     if (velocity_sum_by_tree(released, released->n, tolerance)) {
         return velocity_sum_induce(flow->velocity_sum, released, tolerance, threads, &at);
     }
-    return pairwise_add_velocity(released, threads, u, v);
+    return pairwise_add_velocity(released, threads, flow->wake_u, flow->wake_v);
 }
 
 void flow_slip(const struct flow *flow, int f, const double *y, double slip[2]) {

@@ -25,8 +25,9 @@ struct chunk {
 
 struct flow {
     const struct school *school;
-    double t, since; /* time of the sources, and time since the last event, s */
-    long event;      /* whose wakes are placed; -1: none yet */
+    double t;              /* time of the sources, s */
+    unsigned long version; /* of the wakes that the sources below were made of */
+    int has_sources;       /* whether they have been placed at all */
 
     /* points */
     struct range *points; /* of each fish                                           (n_fish) */
@@ -40,16 +41,19 @@ struct flow {
     struct vortices released;     /* the free vortices of all fish; only where some fish is not foretold */
     struct range *released_range; /* of each fish                                   (n_fish) */
     int has_released;             /* whether they are placed at t */
-    struct vortices nascent;      /* one of each fish                               (n_fish) */
-    struct vortices sheet;        /* the bound vortices of all fish */
-    struct range *sheet_range;    /* of each fish                                   (n_fish) */
-    double *opposite;             /* circulations of the bound vortices with the other sign (sheet.n) */
+    double *wake_u, *wake_v;      /* the velocity at them, after flow_at_wake, m s-1 (released.n) */
+    int wake_capacity;
+    struct vortices nascent;   /* one of each fish                               (n_fish) */
+    struct vortices sheet;     /* the bound vortices of all fish */
+    struct range *sheet_range; /* of each fish                                   (n_fish) */
+    double *opposite;          /* circulations of the bound vortices with the other sign (sheet.n) */
 
     struct velocity_sum *velocity_sum;        /* where wakes or sheets are summed by the tree */
     struct wake_interpolation *interpolation; /* of the released vortices; NULL: they are never foretold */
-    int is_interpolated;                      /* whether there is one for this event */
-    unsigned char *by_interpolation;          /* whether it serves the fish where it is now        (n_fish) */
-    double *motion[4];                        /* velocity and acceleration of the points           (n_points) */
+    int is_interpolated;                      /* whether it was built, for the wakes of this version: */
+    unsigned long interpolated_version;
+    unsigned char *by_interpolation; /* whether it serves the fish where it is now        (n_fish) */
+    double *motion[4];               /* velocity and acceleration of the points           (n_points) */
 };
 
 /* Derivative of the velocity at the points of fish f with respect to the unknowns of fish g, column by column:
@@ -87,33 +91,30 @@ int flow_n_columns(const struct fish *other);
 /* The external flow at height y at time t. */
 void flow_external(const struct school *school, double t, double y, double *u, double *v);
 
-/* Place all sources as they are at time t (at or after the event of the state) for the unknowns y.
- * Fails with STATUS_MEMORY. */
-enum status flow_update_sources(struct flow *flow, const struct state *state, double t, const double *y);
+/* Place all sources where they are at time t (at or after the event of the state) for the unknowns y, and sum the
+ * velocity at all points of all fish; or the velocity with its gradient. Fail with STATUS_MEMORY. */
+enum status flow_velocity(struct flow *flow, const struct state *state, double t, const double *y);
+enum status flow_gradient(struct flow *flow, const struct state *state, double t, const double *y);
 
-/* The wakes have changed since they were last placed. */
-void flow_invalidate(struct flow *flow);
-
-/* Foretell what the released vortices do to the bodies until the next event; from now until flow_invalidate they are not
- * summed up any more for fish that stay near their foretold path. At the event of the state, after flow_update_sources, when the
- * velocities of the wakes are known. Fails with STATUS_MEMORY. */
+/* Interpolate in time what the released vortices cause at the bodies until the next event: from now on, and until the
+ * wakes change, they are summed no more for a fish that stays near the path that it has in the state. At an event, once
+ * the vortices have their velocities. Fails with STATUS_MEMORY. */
 enum status flow_interpolate(struct flow *flow, const struct state *state);
 
-/* The velocity at all points of all fish; with its gradient too. After flow_update_sources. */
-void flow_velocity(struct flow *flow);
-void flow_gradient(struct flow *flow);
+/* Sum every released vortex until the next flow_interpolate. */
+void flow_sum_exactly(struct flow *flow);
 
 /* Fill block with the derivative of the velocity at the points of fish f by the unknowns of fish g. After
  * flow_gradient. */
 void flow_derivative(const struct flow *flow, int f, int g, struct influence_block *block);
 
 /* Fill block with the velocity at the points of fish f that each bound vortex of unit strength, and a nascent vortex of
- * unit circulation, of fish g causes: columns sheet (M_g), shed (1). After flow_update_sources. */
+ * unit circulation, of fish g causes: columns gamma (M_g), circulation (1). With the places of the last velocity. */
 void flow_influence(const struct flow *flow, int f, int g, struct influence_block *block);
 
-/* The velocity (u, v), both (released.n), at the released vortices of all fish. After flow_invalidate and flow_update_sources. Fails
- * with STATUS_MEMORY. */
-enum status flow_at_wake(const struct flow *flow, double *u, double *v);
+/* The velocity of the fluid at the released vortices of all fish at the event of the state: wake_u, wake_v. Fails with
+ * STATUS_MEMORY. */
+enum status flow_at_wake(struct flow *flow, const struct state *state);
 
 /* The fluid's velocity past the tail of fish f, u - v_tail. After flow_velocity. */
 void flow_slip(const struct flow *flow, int f, const double *y, double slip[2]);

@@ -202,8 +202,7 @@ static void evaluate_fish(struct residual *residual, int f, double t, const doub
 }
 
 enum status residual_evaluate(struct residual *residual, double t, const double *y, const double *yp, double *value) {
-    TRY(flow_update_sources(residual->flow, residual->state, t, y));
-    flow_velocity(residual->flow);
+    TRY(flow_velocity(residual->flow, residual->state, t, y));
     const struct school *school = residual->school;
     const int threads = parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_UNKNOWNS);
 #pragma omp parallel for num_threads(threads) schedule(static)
@@ -305,8 +304,7 @@ enum status residual_jacobian(struct residual *residual, double t, double cj, co
                               struct jacobian *jacobian) {
     const struct school *school = residual->school;
     const int threads = parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_MATRICES);
-    TRY(flow_update_sources(residual->flow, residual->state, t, y));
-    flow_gradient(residual->flow);
+    TRY(flow_gradient(residual->flow, residual->state, t, y));
     if (jacobian->pattern != residual->pattern) {
         TRY(jacobian_couple(jacobian, residual->coupled, residual->pattern));
     }

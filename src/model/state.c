@@ -62,6 +62,12 @@ void state_free(struct state *state, const struct school *school) {
     free(state);
 }
 
+unsigned long state_wake_version(const struct state *state, const struct school *school) {
+    unsigned long version = 0;
+    for (int f = 0; f < school->n_fish; f++) version += state->wake[f].version;
+    return version;
+}
+
 void state_remember(struct history *history, const struct sample *sample) {
     history->last = (history->last + 1) % history->capacity;
     history->sample[history->last] = *sample;

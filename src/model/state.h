@@ -1,4 +1,4 @@
-/* state.h: all that changes during a run and that a later run would need to go on: nothing else. Tested by
+/* state.h: all that changes during a run and that a later run needs to continue, and nothing else. Tested by
  * tests/model/test_state.c. */
 #ifndef STATE_H
 #define STATE_H
@@ -20,7 +20,7 @@ struct history {
     struct sample *sample; /* (capacity) */
 };
 
-/* The energy audit of one fish: what went in since the start, summed over the integrator's own steps. */
+/* The energy balance of one fish: the work done since the start, summed over the integrator's own steps. */
 struct energy_balance {
     double initial_energy; /* J */
     double work;           /* of all powers, J */
@@ -45,6 +45,9 @@ enum status state_create(struct state **state, const struct school *school);
 
 /* Release the state and all that it owns. Accepts NULL. */
 void state_free(struct state *state, const struct school *school);
+
+/* Changes whenever a vortex of any wake does. */
+unsigned long state_wake_version(const struct state *state, const struct school *school);
 
 /* Add a sample to a history; the oldest one falls out when it is full. */
 void state_remember(struct history *history, const struct sample *sample);

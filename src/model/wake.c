@@ -51,6 +51,7 @@ int wake_most(const struct school *school, long n_events) {
 enum status wake_release(struct wake *wake, double x, double y, double circulation, double birth) {
     if (wake->n_vortex == wake->capacity) TRY(reserve(wake, 2 * wake->capacity));
     const int i = wake->n_vortex++;
+    wake->version++;
     wake->x[i] = x;
     wake->y[i] = y;
     wake->u[i] = wake->v[i] = wake->u_before[i] = wake->v_before[i] = 0;
@@ -86,28 +87,41 @@ void wake_at(const struct wake *wake, const struct school *school, double t, dou
 }
 
 void wake_advance(struct wake *wake, double interval) {
+    wake->version++;
     for (int i = 0; i < wake->n_vortex; i++) {
         wake->x[i] = along_path(wake->x[i], wake->u[i], wake->u_before[i], interval, interval);
         wake->y[i] = along_path(wake->y[i], wake->v[i], wake->v_before[i], interval, interval);
     }
 }
 
-int wake_remove_old(struct wake *wake, const struct school *school, double t) {
+int wake_n_old(const struct wake *wake, const struct school *school, double t) {
     // ages are multiples of the interval: half of one decides what rounding must not
     int n_old = 0;
     while (n_old < wake->n_vortex && t - wake->birth[n_old] > school->lifetime - school->interval / 2) n_old++;
-    if (n_old == 0) return 0;
+    return n_old;
+}
+
+int wake_removal_jumps(const struct wake *wake, const struct school *school, double t) {
+    const double rounding = 1e-12;  // of an age that is the lifetime
+    const int n_old = wake_n_old(wake, school, t);
+    return n_old > 0 && wake_strength(school, t - wake->birth[n_old - 1]) > rounding;
+}
+
+void wake_remove_old(struct wake *wake, const struct school *school, double t) {
+    const int n_old = wake_n_old(wake, school, t);
+    if (n_old == 0) return;
     for (int i = 0; i < n_old; i++) wake->removed += wake->circulation[i];
+    wake->version++;
     wake->n_vortex -= n_old;
     double **array[N_ARRAYS];
     list_arrays(wake, array);
     for (int i = 0; i < N_ARRAYS; i++)
         memmove(*array[i], *array[i] + n_old, (size_t)wake->n_vortex * sizeof **array[i]);
-    return school->decay <= 0;
 }
 
 void wake_set_velocity(struct wake *wake, const double *u, const double *v, int n_new) {
     const int n_old = wake->n_vortex - n_new;
+    wake->version++;
     memcpy(wake->u_before, wake->u, (size_t)n_old * sizeof *u);
     memcpy(wake->v_before, wake->v, (size_t)n_old * sizeof *v);
     memcpy(wake->u_before + n_old, u + n_old, (size_t)n_new * sizeof *u);

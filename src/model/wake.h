@@ -16,6 +16,8 @@
 #include "model/fish.h"
 
 struct wake {
+    unsigned long
+        version; /* counts the changes of the vortices below: whoever keeps something made of them compares it */
     int n_vortex, capacity;
     double *x, *y;               /* position at the last event, m                     (n_vortex) */
     double *u, *v;               /* velocity W at the last event, m s-1               (n_vortex) */
@@ -47,11 +49,16 @@ void wake_at(const struct wake *wake, const struct school *school, double t, dou
 /* Move all vortices on to the next event. */
 void wake_advance(struct wake *wake, double interval);
 
-/* Remove the vortices released a lifetime or more before t. Returns whether a velocity jumps: something that still had
- * strength was removed. */
-int wake_remove_old(struct wake *wake, const struct school *school, double t);
+/* The number of vortices that were released a lifetime or more before t, and whether one of them still has strength: the
+ * velocity of the fluid jumps when it is removed. */
+int wake_n_old(const struct wake *wake, const struct school *school, double t);
+int wake_removal_jumps(const struct wake *wake, const struct school *school, double t);
 
-/* Take new velocities; a vortex that had none before moves on its first interval with them alone. */
+/* Remove the old vortices. */
+void wake_remove_old(struct wake *wake, const struct school *school, double t);
+
+/* Take new velocities; one of the n_new newest vortices, which had none before, moves on its first interval with them
+ * alone. */
 void wake_set_velocity(struct wake *wake, const double *u, const double *v, int n_new);
 
 /* The part of its circulation that a vortex of this age counts with in velocity sums. */

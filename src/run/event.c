@@ -22,18 +22,17 @@ static enum status release_nascent(struct state *state, const struct school *sch
 }
 
 // impulsive shedding: a vortex appears at the tail
-static enum status release_impulse(struct state *state, struct residual *residual,
-                                   struct initial_conditions *consistent) {
+static enum status release_impulse(struct state *state, struct residual *residual, struct initial_conditions *initial) {
     const struct school *school = residual->school;
     if (school->kutta == KUTTA_EDGE) {
         // with the strength that makes the bound vortex at the tail vanish
         residual->at_impulse = 1;
-        const enum status status = initial_conditions_solve(consistent, state->t, state->y, state->yp);
+        const enum status status = initial_conditions_solve(initial, state->t, state->y, state->yp);
         residual->at_impulse = 0;
         TRY(status);
     } else {
         // with what the rate gives over one interval
-        flow_invalidate(residual->flow);
+        flow_sum_exactly(residual->flow);
         TRY(residual_evaluate(residual, state->t, state->y, state->yp, residual->scratch));
         for (int f = 0; f < school->n_fish; f++) {
             state->y[school->fish[f].at.circulation] +=
@@ -51,30 +50,25 @@ static enum status release_impulse(struct state *state, struct residual *residua
     return STATUS_OK;
 }
 
-// velocities of all free vortices, and the slip at every tail, from the state as it is now
+// velocities of all free vortices, and the slip at every tail, from the state as it is now; n_new: the vortices of each
+// fish that have none yet
 static enum status take_velocities(struct state *state, struct residual *residual, int n_new) {
     const struct school *school = residual->school;
-    const struct flow *const flow = residual->flow;
-    flow_invalidate(residual->flow);
-    TRY(flow_update_sources(residual->flow, state, state->t, state->y));
-    const int n = flow->released.n;
-    double *const u = malloc((2 * (size_t)n + 1) * sizeof *u);
-    if (!u) return status_fail(STATUS_MEMORY, "out of memory: the velocities of %d vortices", n);
-    double *const v = u + n;
-    const enum status status = flow_at_wake(flow, u, v);
-    for (int f = 0; f < school->n_fish && status == STATUS_OK; f++) {
+    struct flow *const flow = residual->flow;
+    TRY(flow_at_wake(flow, state));
+    for (int f = 0; f < school->n_fish; f++) {
         const int first = flow->released_range[f].first;
-        if (state->wake[f].n_vortex > 0) wake_set_velocity(&state->wake[f], u + first, v + first, n_new);
+        if (state->wake[f].n_vortex > 0) {
+            wake_set_velocity(&state->wake[f], flow->wake_u + first, flow->wake_v + first, n_new);
+        }
     }
-    free(u);
-    TRY(status);
-    TRY(flow_interpolate(residual->flow, state));
+    TRY(flow_interpolate(flow, state));
     TRY(residual_evaluate(residual, state->t, state->y, state->yp, residual->scratch));
     for (int f = 0; f < school->n_fish; f++) flow_slip(flow, f, state->y, state->wake[f].slip);
     return STATUS_OK;
 }
 
-// the control of every fish looks around; returns whether a bias jumps
+// the control of every fish takes its decision; returns whether a bias jumps
 static int steer(struct state *state, const struct residual *residual) {
     const struct school *school = residual->school;
     int jumps = 0;
@@ -90,58 +84,59 @@ static int steer(struct state *state, const struct residual *residual) {
     return jumps;
 }
 
-// the state is about to jump: the audits take leave of the energy that it has now, once
-static void leave(struct state *state, const struct residual *residual, int *jumped) {
-    if (!*jumped) diagnostics_before_jump(residual, state);
-    *jumped = 1;
-}
-
-// everything after the wake has its new vortices; *jumped comes in as what has jumped so far
-static enum status settle(struct state *state, struct residual *residual, struct initial_conditions *consistent,
-                          int n_new, int *jumped) {
-    if (*jumped) TRY(initial_conditions_solve(consistent, state->t, state->y, state->yp));
+// what follows once every wake has its new vortices: jumps tells whether the unknowns have become inconsistent, *jumped
+// whether they have, or a control law made them so
+static enum status finish_event(struct state *state, struct residual *residual, struct initial_conditions *initial,
+                                int n_new, int jumps, int *jumped) {
+    if (jumps) TRY(initial_conditions_solve(initial, state->t, state->y, state->yp));
     TRY(take_velocities(state, residual, n_new));
     diagnostics_remember(residual, state);
-    if (steer(state, residual)) {
-        leave(state, residual, jumped);
-        TRY(initial_conditions_solve(consistent, state->t, state->y, state->yp));
+    const int steered = steer(state, residual);
+    if (steered) {
+        if (!jumps) diagnostics_before_jump(residual, state);
+        TRY(initial_conditions_solve(initial, state->t, state->y, state->yp));
         TRY(flow_interpolate(residual->flow, state));
     }
     residual_couple(residual, state->y);
+    *jumped = jumps || steered;
     if (*jumped) diagnostics_after_jump(residual, state);
     return STATUS_OK;
 }
 
-enum status event_start(struct state *state, struct residual *residual, struct initial_conditions *consistent) {
-    int jumped = 1, n_new = 0;
-    TRY(initial_conditions_solve(consistent, state->t, state->y, state->yp));
-    if (residual->school->shedding == SHEDDING_IMPULSIVE) {
-        TRY(release_impulse(state, residual, consistent));
-        n_new = 1;
-    }
-    TRY(settle(state, residual, consistent, n_new, &jumped));
+enum status event_start(struct state *state, struct residual *residual, struct initial_conditions *initial) {
+    const int impulsive = residual->school->shedding == SHEDDING_IMPULSIVE;
+    int jumped;
+    TRY(initial_conditions_solve(initial, state->t, state->y, state->yp));
+    if (impulsive) TRY(release_impulse(state, residual, initial));
+    TRY(finish_event(state, residual, initial, impulsive, 1, &jumped));
     diagnostics_start(residual, state);
     return STATUS_OK;
 }
 
-enum status event_next(struct state *state, struct residual *residual, struct initial_conditions *consistent,
+// whether what happens to the wakes at time t makes a velocity of the fluid, or a circulation, jump
+static int wakes_jump(const struct state *state, const struct school *school, double t) {
+    if (school->shedding == SHEDDING_IMPULSIVE) return 1;
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct wake *wake = &state->wake[f];
+        if (wake_removal_jumps(wake, school, t)) return 1;
+        if (school->removed == REMOVED_DROPPED && wake_n_old(wake, school, t) > 0) return 1;
+    }
+    return 0;
+}
+
+enum status event_next(struct state *state, struct residual *residual, struct initial_conditions *initial,
                        int *jumped) {
     const struct school *school = residual->school;
-    *jumped = 0;
     for (int f = 0; f < school->n_fish; f++) wake_advance(&state->wake[f], school->interval);
     state->event++;
     state->t = (double)state->event * school->interval;
+    const int jumps = wakes_jump(state, school, state->t);
+    if (jumps) diagnostics_before_jump(residual, state);
     if (school->shedding == SHEDDING_IMPULSIVE) {
-        leave(state, residual, jumped);
-        TRY(release_impulse(state, residual, consistent));
+        TRY(release_impulse(state, residual, initial));
     } else {
         TRY(release_nascent(state, school));
     }
-    for (int f = 0; f < school->n_fish; f++) {
-        const int n_before = state->wake[f].n_vortex;
-        const int lost_strength = wake_remove_old(&state->wake[f], school, state->t);
-        const int dropped = school->removed == REMOVED_DROPPED && state->wake[f].n_vortex != n_before;
-        if (lost_strength || dropped) leave(state, residual, jumped);
-    }
-    return settle(state, residual, consistent, 1, jumped);
+    for (int f = 0; f < school->n_fish; f++) wake_remove_old(&state->wake[f], school, state->t);
+    return finish_event(state, residual, initial, 1, jumps, jumped);
 }

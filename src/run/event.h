@@ -1,5 +1,5 @@
-/* event.h: what happens at the times t_n = n Dt: the wake moves on, vortices are released and removed, new velocities
- * are taken, the control looks around. doc/model.md, sections 7 and 8. Tested by tests/run/test_event.c.
+/* event.h: what happens at the times t_n = n Dt: the wake moves on, vortices are released and removed, their velocities
+ * are evaluated, the control decides. doc/model.md, sections 7 and 8. Tested by tests/run/test_event.c.
  *
  *     t_n-1 ---- integrator ----> t_n  | move, shed, remove, (consistent), velocities, control, samples |  ---> t_n+1
  */
@@ -12,11 +12,10 @@
 #include "solver/initial_conditions.h"
 
 /* Make the state at t = 0 consistent and do what belongs to the first event. */
-enum status event_start(struct state *state, struct residual *residual, struct initial_conditions *consistent);
+enum status event_start(struct state *state, struct residual *residual, struct initial_conditions *initial);
 
 /* Do what belongs to the next event; the unknowns have reached its time. *jumped tells whether the unknowns are no
  * longer continuous there: the integrator has to restart. Fails with STATUS_MEMORY or STATUS_SOLVER. */
-enum status event_next(struct state *state, struct residual *residual, struct initial_conditions *consistent,
-                       int *jumped);
+enum status event_next(struct state *state, struct residual *residual, struct initial_conditions *initial, int *jumped);
 
 #endif

@@ -187,7 +187,7 @@ enum status initial_conditions_solve(struct initial_conditions *c, double t, dou
     c->t = t;
     memcpy(c->y, y, (size_t)c->n * sizeof *y);
     memcpy(c->start, y, (size_t)c->n * sizeof *y);
-    flow_invalidate(c->residual->flow);
+    flow_sum_exactly(c->residual->flow);
     refresh(c);
     c->failure = STATUS_OK;
     const int code = KINSol(c->kinsol, c->solution, KIN_NONE, c->solution_scales, c->value_scales);

@@ -33,7 +33,7 @@ struct integrator {
     enum status (*create)(void **solver, struct residual *residual, struct state *state,
                           const struct integrator_options *options);
 
-    /* Go on to time t, the next event. After every step of its own the audits of the state are carried on. Fails with
+    /* Go on to time t, the next event. After every step of its own the energy balances of the state are carried on. Fails with
      * STATUS_SOLVER; the message says at which time, in which unknown, and what was tried. */
     enum status (*advance)(void *solver, double t);
 

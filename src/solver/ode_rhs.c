@@ -125,8 +125,7 @@ static enum status place_flow(struct ode_rhs *d, double t, const double *y) {
         memset(d->still + fish->at.gamma, 0, (size_t)fish->n_sheet * sizeof *y);
         d->still[fish->at.circulation] = state->wake[f].shed_before;
     }
-    TRY(flow_update_sources(d->residual->flow, state, t, d->still));
-    flow_velocity(d->residual->flow);
+    TRY(flow_velocity(d->residual->flow, state, t, d->still));
     for (int f = 0; f < school->n_fish; f++) {
         for (int g = 0; g < school->n_fish; g++) {
             flow_influence(d->residual->flow, f, g, &d->response[f * school->n_fish + g]);

@@ -103,7 +103,7 @@ static void set_rates(struct one_step *solver, double h) {
     const int is_trapezoid = solver->options.method == METHOD_TRAPEZOID;
     for (int i = 0; i < solver->residual->school->n_unknowns; i++) {
         const double change = (state->y[i] - solver->before[i]) / h;
-        // those of algebraic unknowns serve the audits only
+        // those of algebraic unknowns serve the energy balances only
         state->yp[i] = is_trapezoid && solver->kind[i] > 0 ? 2 * change - solver->rates[i] : change;
     }
 }

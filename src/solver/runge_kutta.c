@@ -213,7 +213,7 @@ static enum status unstable(const struct runge_kutta *solver, double t, const ch
                        t, why, step);
 }
 
-// the algebraic unknowns at the end of a step, for the audits and the event
+// the algebraic unknowns at the end of a step, for the energy balances and the event
 static enum status close_step(struct runge_kutta *solver, double before, double reached) {
     struct state *const state = solver->state;
     const struct school *school = solver->residual->school;

@@ -72,11 +72,11 @@ TIMED(JACOBIAN, residual_jacobian,
 TIMED(LINEAR, linear_setup, (struct linear * linear), (linear))
 TIMED(LINEAR, linear_solve, (struct linear * linear, const double *b, double *x), (linear, b, x))
 
-enum status __real_flow_at_wake(const struct flow *flow, double *u, double *v);
-enum status __wrap_flow_at_wake(const struct flow *flow, double *u, double *v);
-enum status __wrap_flow_at_wake(const struct flow *flow, double *u, double *v) {
+enum status __real_flow_at_wake(struct flow *flow, const struct state *state);
+enum status __wrap_flow_at_wake(struct flow *flow, const struct state *state);
+enum status __wrap_flow_at_wake(struct flow *flow, const struct state *state) {
     const double since = now(), n = flow->released.n;
-    const enum status status = __real_flow_at_wake(flow, u, v);
+    const enum status status = __real_flow_at_wake(flow, state);
     left(WAKE, since);
     seen.interactions += n * (n + flow->sheet.n + flow->n_points);
     return status;

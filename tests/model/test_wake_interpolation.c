@@ -35,11 +35,10 @@ static double *later(const struct simulation *simulation, double q, double off) 
     return y;
 }
 
-// the velocity at all points: foretold, or (after flow_invalidate) as every vortex gives it
+// the velocity at all points: foretold, or (after flow_sum_exactly) as every vortex gives it
 static void evaluate(const struct simulation *simulation, double q, const double *y, double *u, double *v) {
     struct flow *const flow = simulation->residual->flow;
-    school_ok(flow_update_sources(flow, simulation->state, simulation->state->t + q * simulation->school->interval, y));
-    flow_velocity(flow);
+    school_ok(flow_velocity(flow, simulation->state, simulation->state->t + q * simulation->school->interval, y));
     memcpy(u, flow->u, (size_t)flow->n_points * sizeof *u);
     memcpy(v, flow->v, (size_t)flow->n_points * sizeof *v);
 }
@@ -54,12 +53,12 @@ static double worst_error(const struct simulation *simulation, double off) {
         const double q = 0.1 * i;
         double *const y = later(simulation, q, off);
         double u[2][POINTS], v[2][POINTS];
-        flow_invalidate(flow);
+        flow_sum_exactly(flow);
         evaluate(simulation, 0, simulation->state->y, u[0], v[0]);
         school_ok(flow_interpolate(flow, simulation->state));
         evaluate(simulation, q, y, u[0], v[0]);
         assert_true(flow->by_interpolation[0] && flow->by_interpolation[1]);
-        flow_invalidate(flow);
+        flow_sum_exactly(flow);
         evaluate(simulation, q, y, u[1], v[1]);
         assert_true(!flow->by_interpolation[0] && !flow->by_interpolation[1]);
         for (int p = 0; p < flow->n_points; p++) worst = fmax(worst, hypot(u[1][p] - u[0][p], v[1][p] - v[0][p]));
@@ -106,7 +105,7 @@ static void a_body_off_its_path_is_still_within_the_tolerance_or_not_foretold(vo
     // far off, every vortex counts as it is
     struct flow *const flow = simulation->residual->flow;
     double *const y = later(simulation, 0.5, 0.1), u[2][POINTS], v[2][POINTS];
-    flow_invalidate(flow);
+    flow_sum_exactly(flow);
     evaluate(simulation, 0.5, y, u[0], v[0]);
     evaluate(simulation, 0, simulation->state->y, u[1], v[1]);
     school_ok(flow_interpolate(flow, simulation->state));

@@ -153,7 +153,7 @@ static struct value largest_value(struct simulation *simulation) {
     const int n = simulation->school->n_unknowns;
     double *const value = allocate(n, sizeof *value);
     struct value most = {0};
-    flow_invalidate(simulation->residual->flow);
+    flow_sum_exactly(simulation->residual->flow);
     if (residual_evaluate(simulation->residual, simulation->state->t, simulation->state->y, simulation->state->yp,
                           value) != STATUS_OK) {
         abort();
@@ -285,7 +285,7 @@ struct correction {
 
 static int value_callback(realtype t, N_Vector y, N_Vector yp, N_Vector value, void *data) {
     const struct correction *const correction = data;
-    flow_invalidate(correction->simulation->residual->flow);
+    flow_sum_exactly(correction->simulation->residual->flow);
     return residual_evaluate(correction->simulation->residual, t, N_VGetArrayPointer(y), N_VGetArrayPointer(yp),
                              N_VGetArrayPointer(value));
 }
@@ -294,7 +294,7 @@ static int jacobian_callback(realtype t, realtype cj, N_Vector y, N_Vector yp, N
                              void *data, N_Vector scratch1, N_Vector scratch2, N_Vector scratch3) {
     (void)yp, (void)value, (void)matrix, (void)scratch1, (void)scratch2, (void)scratch3;
     struct correction *const correction = data;
-    flow_invalidate(correction->simulation->residual->flow);
+    flow_sum_exactly(correction->simulation->residual->flow);
     return residual_jacobian(correction->simulation->residual, t, cj, N_VGetArrayPointer(y), correction->jacobian);
 }
 

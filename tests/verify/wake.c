@@ -33,12 +33,8 @@ static void step(struct simulation *simulation) {
     struct state *const state = simulation->state;
     struct wake *const wake = &state->wake[0];
     struct flow *const flow = simulation->residual->flow;
-    flow_invalidate(flow);
-    if (flow_update_sources(flow, state, state->t, state->y) != STATUS_OK) abort();
-    double *const u = malloc(2 * (size_t)flow->released.n * sizeof *u);
-    if (!u || flow_at_wake(flow, u, u + flow->released.n) != STATUS_OK) abort();
-    wake_set_velocity(wake, u, u + flow->released.n, state->event == 0 ? wake->n_vortex : 0);
-    free(u);
+    if (flow_at_wake(flow, state) != STATUS_OK) abort();
+    wake_set_velocity(wake, flow->wake_u, flow->wake_v, state->event == 0 ? wake->n_vortex : 0);
     wake_advance(wake, simulation->school->interval);
     state->event++;
     state->t = (double)state->event * simulation->school->interval;
