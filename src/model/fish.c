@@ -7,6 +7,7 @@
 
 #include "base/angle.h"
 #include "base/ramp.h"
+#include "model/profile.h"
 
 static const double pi = 3.14159265358979323846;
 
@@ -28,28 +29,6 @@ struct direction fish_direction(const struct fish *fish, const struct tangent *t
     return direction;
 }
 
-// half thickness of the Joukowski profile at arc coordinate s from the nose
-static double joukowski_half_thickness(double s, double length, double thickness) {
-    const double r0 = length * (1 - thickness) / 4, c = r0 * (1 + thickness);
-    const double nose = 2 * r0 * (1 + thickness * thickness) / (thickness - 1);
-    // the chord coordinate falls from tail (theta = 0) to nose (theta = pi): bisect down to neighbouring numbers
-    double low = 0, high = pi;
-    for (;;) {
-        const double theta = (low + high) / 2;
-        if (theta <= low || theta >= high) break;
-        const double re = r0 * (cos(theta) + thickness), im = r0 * sin(theta);
-        const double x = re * (1 + c * c / (re * re + im * im));
-        if (x > nose + s) {
-            low = theta;
-        } else {
-            high = theta;
-        }
-    }
-    const double theta = (low + high) / 2;
-    const double re = r0 * (cos(theta) + thickness), im = r0 * sin(theta);
-    return fabs(im * (1 - c * c / (re * re + im * im)));
-}
-
 static enum status doubles(double **values, int n) {
     *values = calloc((size_t)(n > 0 ? n : 1), sizeof **values);
     return *values ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: %d numbers of a fish", n);
@@ -58,9 +37,9 @@ static enum status doubles(double **values, int n) {
 static enum status fish_allocate(struct fish *fish) {
     TRY(doubles(&fish->arc, fish->n_nodes));
     TRY(doubles(&fish->mass, fish->n_nodes));
-    double **const per_edge[] = {&fish->thickness,     &fish->depth,           &fish->axial_stiffness,
-                                 &fish->axial_damping, &fish->drag_tangential, &fish->drag_normal,
-                                 &fish->added_mass};
+    double **const per_edge[] = {
+        &fish->thickness,     &fish->depth,           &fish->square,      &fish->cube,      &fish->axial_stiffness,
+        &fish->axial_damping, &fish->drag_tangential, &fish->drag_normal, &fish->added_mass};
     for (size_t i = 0; i < sizeof per_edge / sizeof *per_edge; i++) TRY(doubles(per_edge[i], fish->n_edges));
     double **const per_joint[] = {&fish->bending_stiffness, &fish->bending_damping, &fish->wave_amplitude,
                                   &fish->wave_phase};
@@ -77,21 +56,12 @@ static enum status fish_allocate(struct fish *fish) {
 
 static void shape_edges(struct fish *fish, const struct fish_parameters *from) {
     for (int k = 0; k < fish->n_nodes; k++) fish->arc[k] = k * fish->edge_length;
-    double radius_before = 0;
     for (int k = 0; k < fish->n_edges; k++) {
-        // both tips are sharp, however the last arc coordinate is rounded
-        const double radius =
-            k + 1 < fish->n_edges ? joukowski_half_thickness(fish->arc[k + 1], fish->length, from->body.thickness) : 0;
-        fish->depth[k] = from->body.width * fish->length;
-        switch (from->body.profile) {
-            case PROFILE_JOUKOWSKI: fish->thickness[k] = radius_before + radius; break;
-            case PROFILE_UNIFORM: fish->thickness[k] = from->body.thickness * fish->length; break;
-            case PROFILE_TABLE:
-                fish->thickness[k] = from->body.h.value[k];
-                fish->depth[k] = from->body.w.value[k];
-                break;
-        }
-        radius_before = radius;
+        const struct profile_edge edge = profile_edge(from, k);
+        fish->thickness[k] = edge.h;
+        fish->depth[k] = edge.w;
+        fish->square[k] = edge.square;
+        fish->cube[k] = edge.cube;
     }
 }
 
@@ -110,7 +80,7 @@ static void weigh_body(struct fish *fish, const struct fish_parameters *from) {
         fish->axial_damping[k] = body->stretching_damping * refinement +
                                  body->relaxation_time * fish->axial_stiffness[k] / fish->edge_length;
         const double moment = body->second_moment == SECOND_MOMENT_ELLIPSE
-                                  ? pi * w * h * h * h / 64
+                                  ? pi * w * h * h * h / 64 * fish->cube[k]
                                   : body->density * area * reference * w * w / 12;
         if (k > 0) {
             fish->bending_stiffness[k - 1] = body->modulus * (moment_before + moment) / 2;
@@ -138,10 +108,11 @@ static void set_drag(struct fish *fish, const struct fish_parameters *from, doub
     const struct drag_parameters *drag = &from->drag;
     for (int k = 0; k < fish->n_edges; k++) {
         const double h = fish->thickness[k], w = fish->depth[k], l = fish->edge_length;
-        const double across = drag->extent == EXTENT_WIDTH ? w : h;
+        const int wide = drag->extent == EXTENT_WIDTH;
+        const double across = wide ? w : h, square = wide ? 1 : fish->square[k];
         fish->drag_tangential[k] = density * pi * drag->tangential * l * (h + w) / 8;
         fish->drag_normal[k] = density * drag->normal * l * across / 2;
-        fish->added_mass[k] = pi * density * drag->added_mass * across * across * l / 4;
+        fish->added_mass[k] = pi * density * drag->added_mass * across * across * l / 4 * square;
     }
     fish->drag_law = drag->law;
 }
@@ -350,6 +321,8 @@ void fish_school_free(struct school *school) {
                                fish->mass,
                                fish->thickness,
                                fish->depth,
+                               fish->square,
+                               fish->cube,
                                fish->axial_stiffness,
                                fish->axial_damping,
                                fish->bending_stiffness,

@@ -68,6 +68,7 @@ struct fish {
     double *mass;              /* kg                                                      (n_nodes) */
     double *thickness;         /* thickness across the plane of motion h, m               (n_edges) */
     double *depth;             /* extent out of that plane w, m                           (n_edges) */
+    double *square, *cube;     /* mean of h^2 over thickness^2, of h^3 over thickness^3   (n_edges) */
     double *axial_stiffness;   /* E A, N                                         (n_edges) */
     double *axial_damping;     /* d_s, kg s-1                                    (n_edges) */
     double *bending_stiffness; /* E I, N m2                                      (n_joints) */

@@ -9,6 +9,7 @@ enum kutta { KUTTA_EDGE, KUTTA_RATE };
 enum collocation { COLLOCATION_CHEBYSHEV, COLLOCATION_MIDPOINT };
 enum removed_circulation { REMOVED_RETAINED, REMOVED_DROPPED };
 enum profile { PROFILE_JOUKOWSKI, PROFILE_UNIFORM, PROFILE_TABLE };
+enum section { SECTION_MEAN, SECTION_NODES };
 enum second_moment { SECOND_MOMENT_ELLIPSE, SECOND_MOMENT_PUBLISHED };
 enum drag_law { DRAG_QUADRATIC, DRAG_LINEAR_QUADRATIC };
 enum extent { EXTENT_THICKNESS, EXTENT_WIDTH };
@@ -44,6 +45,7 @@ struct body_parameters {
     enum profile profile;
     double thickness, width; /* fractions of the body length */
     struct number_list h, w; /* m, one value per edge: profile table only */
+    enum section section;    /* of an edge: means over it, or over its two nodes */
     double density;          /* kg m-3 */
     double modulus;          /* Pa */
     enum second_moment second_moment;

@@ -218,6 +218,7 @@ static void preset_published_sets_the_options_of_the_article(void **state) {
     struct case_values s = parse("format: 1\npreset: published\ntime: {end: 1}\nfish: [{}]\n");
     assert_int_equal(s.preset, PRESET_PUBLISHED);
     assert_int_equal(s.school.fish->body.second_moment, SECOND_MOMENT_PUBLISHED);
+    assert_int_equal(s.school.fish->body.section, SECTION_NODES);
     NEAR(s.school.fish->wave.ramp, 0, 0, 0);
     assert_int_equal(s.school.wake.collocation, COLLOCATION_MIDPOINT);
     assert_int_equal(s.school.wake.kutta, KUTTA_RATE);

@@ -24,30 +24,37 @@ static void joukowski_body_has_the_mass_of_the_reference(void **state) {
     school_clear(&setup);
 }
 
-static void joukowski_heights_are_those_of_the_mapped_circle(void **state) {
+static void mean_sections_give_the_mass_and_the_stiffness_of_the_foil(void **state) {
     (void)state;
     struct setup setup;
-    school_build(&setup, TIME "fish: [{nodes: 9, length: 1.3, body: {thickness: 0.15}}]\n");
+    school_build(&setup, TIME "fish: [{nodes: 17, body: {section: mean, density: 1000, modulus: 1}}]\n");
     const struct fish *fish = &setup.school->fish[0];
-    // sum of the half thicknesses at both ends of an edge; where theta gives s, z(theta) gives r: check by the inverse,
-    // theta of every node found from s by Newton's method here
-    const double d = 0.15, r0 = 1.3 * (1 - d) / 4, c = r0 * (1 + d), nose = 2 * r0 * (1 + d * d) / (d - 1);
-    double before = 0;
-    for (int k = 1; k < fish->n_nodes; k++) {
-        double r = 0;
-        if (k < fish->n_nodes - 1) {
-            double theta = pi * (1 - k / 8.0);
-            for (int i = 0; i < 60; i++) {
-                const double a = r0 * (cos(theta) + d), b = r0 * sin(theta), m = a * a + b * b;
-                const double x = a + c * c * a / m - (nose + fish->arc[k]);
-                const double by_a = 1 + c * c * (b * b - a * a) / (m * m), by_b = -2 * c * c * a * b / (m * m);
-                theta -= x / (by_a * -r0 * sin(theta) + by_b * r0 * cos(theta));
-                r = fabs(r0 * sin(theta) * (1 - c * c / m));
-            }
-        }
-        // rounding, twice that of the arc coordinate where the outline is steep
-        NEAR(fish->thickness[k - 1], before + r, 1e-13, 0);
-        before = r;
+    // an independent program's mass of the same body
+    NEAR(fish->total_mass, 30.842513753404223, 1e-9, 0);
+    for (int k = 0; k < fish->n_edges; k++) {
+        NEAR(fish->axial_stiffness[k], pi * fish->thickness[k] * 0.25 / 4, 0, 1e-14);
+    }
+    for (int j = 0; j < fish->n_joints; j++) {
+        double moment = 0;
+        for (int k = j; k <= j + 1; k++) moment += pi * 0.25 * pow(fish->thickness[k], 3) * fish->cube[k] / 64 / 2;
+        NEAR(fish->bending_stiffness[j], moment, 0, 1e-14);
+    }
+    school_clear(&setup);
+}
+
+static void added_mass_takes_the_mean_square_of_the_thickness(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME
+                 "fish: [{body: {section: mean}}, {start: {position: [0, 2]}, body: {section: mean}, "
+                 "drag: {extent: width}}]\n");
+    const struct fish *thick = &setup.school->fish[0], *wide = &setup.school->fish[1];
+    for (int k = 0; k < thick->n_edges; k++) {
+        const double h = thick->thickness[k], l = 1.0 / 6;
+        assert_true(thick->square[k] > 1);
+        NEAR(thick->added_mass[k], pi * 1000 * 1.5 * h * h * thick->square[k] * l / 4, 0, 1e-14);
+        NEAR(thick->drag_normal[k], 1000 * 0.5 * l * h / 2, 0, 1e-14);
+        NEAR(wide->added_mass[k], pi * 1000 * 1.5 * 0.25 * 0.25 * l / 4, 0, 1e-14);
     }
     school_clear(&setup);
 }
@@ -344,7 +351,8 @@ static void gust_blows_across_the_stream(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(joukowski_body_has_the_mass_of_the_reference),
-        cmocka_unit_test(joukowski_heights_are_those_of_the_mapped_circle),
+        cmocka_unit_test(mean_sections_give_the_mass_and_the_stiffness_of_the_foil),
+        cmocka_unit_test(added_mass_takes_the_mean_square_of_the_thickness),
         cmocka_unit_test(second_moments_are_the_two_formulas),
         cmocka_unit_test(damping_and_wave_scale_with_refinement),
         cmocka_unit_test(table_of_heights_is_taken_as_it_is),
