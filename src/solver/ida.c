@@ -1,4 +1,4 @@
-/* ida.c: IDA on the residual of the school. */
+/* ida.c: IDA applied to the residual of the school. */
 #include "solver/ida.h"
 
 #include <ida/ida.h>
@@ -10,20 +10,21 @@
 #include "solver/ida_newton.h"
 #include "solver/sundials_adapter.h"
 
-/* Newton ends when its error is this part of the error test's: stiff velocities are outside that test, and an iteration
- * that stopped at IDA's own 0.33 would leave their noise in the accelerations. Measured: doc/numerics.md. */
+/* Newton's iteration has converged when its error is this fraction of the error test's unit. Velocities are outside the
+ * error test: with IDA's default, 0.33, the iteration would leave noise in the accelerations of stiff bodies. Measured:
+ * doc/numerics.md. */
 static const double newton_coefficient = 0.003;
 
-/* A Jacobian serves while its leading coefficient is within this part of the step's (IDA's own is 0.25), and while it
- * saves more than it costs, in iterations. Measured: doc/numerics.md. */
+/* A Jacobian is kept while its leading coefficient is within this fraction of the step's (IDA's default is 0.25), and
+ * while it saves more iterations than its evaluation costs. Measured: doc/numerics.md. */
 static const double cj_change = 0.1;
-static const int jacobian_cost = 5, most_iterations = 6;
+static const int jacobian_cost = 5, max_iterations = 6;
 
-/* Coupled fish are solved for up to this part of the right-hand side, or of what ends Newton's iteration: below that no
- * iteration less is needed. Measured: doc/numerics.md. */
-static const double linear_relative = 1e-4, linear_enough = 0.1;
+/* Tolerances of the linear solver, as fractions of the right-hand side and of the error at which Newton's iteration has
+ * converged: tighter ones save no iteration. Measured: doc/numerics.md. */
+static const double linear_relative = 1e-4, linear_absolute = 0.1;
 
-/* After a restart the method is of order one: its first step is this part of the last one. */
+/* After a restart the order is one: the first step is this fraction of the last one. */
 static const double first_step = 0.3;
 
 struct ida {
@@ -39,8 +40,8 @@ struct ida {
     struct sundials_adapter_linear linear;
     SUNNonlinearSolver newton;
     void *ida;
-    struct integrator_counts before; /* restarts set IDA's own totals to zero */
-    long jacobians; /* evaluated so far: IDA sets its own total to zero only some time after a restart */
+    struct integrator_counts before; /* totals up to the last restart: that sets IDA's own to zero */
+    long jacobians; /* evaluations so far: IDA sets its own total to zero only some time after a restart */
 };
 
 static int residual_callback(realtype t, N_Vector y, N_Vector yp, N_Vector value, void *data) {
@@ -65,7 +66,7 @@ static double leading_coefficient(void *ida) {
     return value;
 }
 
-static void implicit_free(void *data) {
+static void ida_free(void *data) {
     struct ida *const solver = data;
     if (!solver) return;
     if (solver->ida) IDAFree(&solver->ida);
@@ -118,33 +119,33 @@ static enum status fill(struct ida *solver) {
         solver->scratch[i] = N_VClone(solver->y);
         if (!solver->scratch[i]) return status_fail(STATUS_MEMORY, "out of memory: a vector of %d unknowns", n);
     }
-    const struct linear_end end = {linear_relative, linear_enough * newton_coefficient};
-    TRY(sundials_adapter_linear_create(&solver->linear, solver->context, solver->jacobian, solver->tolerance, end));
-    const struct ida_newton_rules rules = {most_iterations, jacobian_cost, leading_coefficient};
+    const struct linear_tolerance linear = {linear_relative, linear_absolute * newton_coefficient};
+    TRY(sundials_adapter_linear_create(&solver->linear, solver->context, solver->jacobian, solver->tolerance, linear));
+    const struct ida_newton_rules rules = {max_iterations, jacobian_cost, leading_coefficient};
     TRY(ida_newton_create(&solver->newton, solver->context, solver->y, solver->residual->school, rules));
     solver->ida = IDACreate(solver->context);
     if (!solver->ida) return status_fail(STATUS_MEMORY, "out of memory: IDA");
     return set_up_ida(solver);
 }
 
-static enum status implicit_create(void **solver, struct residual *residual, struct state *state,
-                                   const struct integrator_options *options) {
+static enum status ida_create(void **solver, struct residual *residual, struct state *state,
+                              const struct integrator_options *options) {
     *solver = NULL;
     struct ida *const new = calloc(1, sizeof *new);
-    if (!new) return status_fail(STATUS_MEMORY, "out of memory: the implicit solver");
+    if (!new) return status_fail(STATUS_MEMORY, "out of memory: IDA's solver");
     new->residual = residual;
     new->state = state;
     new->options = *options;
     const enum status status = fill(new);
     if (status != STATUS_OK) {
-        implicit_free(new);
+        ida_free(new);
         return status;
     }
     *solver = new;
     return STATUS_OK;
 }
 
-static void implicit_count(const void *data, struct integrator_counts *counts) {
+static void ida_count(const void *data, struct integrator_counts *counts) {
     const struct ida *const solver = data;
     long steps, evaluations, setups, error_failures, iterations, convergence_failures;
     int last_order, next_order;
@@ -163,20 +164,20 @@ static void implicit_count(const void *data, struct integrator_counts *counts) {
     counts->order = last_order;
 }
 
-static enum status implicit_restart(void *data) {
+static enum status ida_restart(void *data) {
     struct ida *const solver = data;
-    implicit_count(solver, &solver->before);
+    ida_count(solver, &solver->before);
     residual_kinds(solver->residual, solver->kind);
     if (IDAReInit(solver->ida, solver->state->t, solver->y, solver->yp)) {
         return status_fail(STATUS_SOLVER, "IDA cannot start again: %s", status_message());
     }
-    // IDA's own guess of the first step knows nothing of the body; the last step does
+    // IDA's own guess of the first step ignores how stiff the body is; the last step does not
     const double step = first_step * solver->before.step_size;
     if (step > 0 && IDASetInitStep(solver->ida, step)) return STATUS_SOLVER;
     return STATUS_OK;
 }
 
-// which unknown has the largest estimated error, in units of its tolerance
+// the unknown with the largest estimated error, in units of its tolerance
 static struct unknown_place worst_unknown(const struct ida *solver, double *size) {
     int worst = 0;
     *size = -1;
@@ -196,58 +197,58 @@ static struct unknown_place worst_unknown(const struct ida *solver, double *size
 static const char *reason(int code) {
     switch (code) {
         case IDA_TOO_MUCH_WORK: return "more steps between two events than solver.max_steps: raise it, or solver.rtol";
-        case IDA_TOO_MUCH_ACC: return "the tolerance is below what double precision can hold: raise solver.rtol";
-        case IDA_ERR_FAIL: return "the error test failed again and again or at the least step";
-        case IDA_CONV_FAIL: return "Newton's iteration did not converge with steps down to the least";
+        case IDA_TOO_MUCH_ACC: return "the tolerance is below rounding errors: raise solver.rtol";
+        case IDA_ERR_FAIL: return "the error test failed too often, or with the minimum step";
+        case IDA_CONV_FAIL: return "Newton's iteration did not converge, down to the minimum step";
         case IDA_LSETUP_FAIL: return "the Jacobian is singular";
-        case IDA_REP_RES_ERR: return "the equations had no finite value with steps down to the least";
-        default: return "see the solver's own words";
+        case IDA_REP_RES_ERR: return "the equations had no finite value, down to the minimum step";
+        default: return "see the message of IDA";
     }
 }
 
-static enum status give_up(const struct ida *solver, int code, long steps) {
+static enum status failed(const struct ida *solver, int code, long steps) {
     const struct school *school = solver->residual->school;
     double now = 0, step = 0, size;
     IDAGetCurrentTime(solver->ida, &now);
     IDAGetCurrentStep(solver->ida, &step);
-    // at the limit of steps IDA itself has nothing to say
-    char words[512] = "";
-    if (code != IDA_TOO_MUCH_WORK) snprintf(words, sizeof words, "; IDA: %s", status_message());
+    // the limit of steps is ours: there is no message of IDA
+    char message[512] = "";
+    if (code != IDA_TOO_MUCH_WORK) snprintf(message, sizeof message, "; IDA: %s", status_message());
     const struct unknown_place place = worst_unknown(solver, &size);
-    return status_fail(
-        STATUS_SOLVER,
-        "the solver gave up at t = %.10g s: %s; the worst unknown is %s[%d] of fish %s with an error of "
-        "%.3g tolerances; tried: order %d and below, %ld steps since the last event, the last of %.3g s%s",
-        now, reason(code), place.name, place.index, school->fish[place.fish].name, size, solver->options.order, steps,
-        step, words);
+    return status_fail(STATUS_SOLVER,
+                       "integration failed at t = %.10g s: %s; the largest error is that of %s[%d] of fish %s, %.3g "
+                       "tolerances; tried: "
+                       "orders up to %d, %ld steps since the last event, the last of %.3g s%s",
+                       now, reason(code), place.name, place.index, school->fish[place.fish].name, size,
+                       solver->options.order, steps, step, message);
 }
 
-// Where the next step shall end at the latest: steps that divide the rest of the interval into equal parts keep their
-// size from event to event, and with it the Jacobian.
+// The latest end of the next step. Steps that divide the rest of the interval into equal parts keep their size from
+// event to event, so the Jacobian can be kept too.
 static double next_stop(const struct ida *solver, double now, double end) {
     long steps = 0;
     double step = 0;
     IDAGetNumSteps(solver->ida, &steps);
     IDAGetCurrentStep(solver->ida, &step);
-    // nothing is known before the first step
+    // before the first step there is no step size
     if (steps == 0) return end;
-    // less than IDA itself takes for the end reached
+    // smaller than the difference from the end that IDA ignores
     const double rounding = 1e-14 * end, n_steps = ceil((end - now - rounding) / step);
     return n_steps > 1 ? now + (end - now) / n_steps : end;
 }
 
-static enum status implicit_advance(void *data, double t) {
+static enum status ida_advance(void *data, double t) {
     struct ida *const solver = data;
     struct state *const state = solver->state;
     double reached = state->t;
     for (long steps = 0; reached < t; steps++) {
-        if (steps == solver->options.max_steps) return give_up(solver, IDA_TOO_MUCH_WORK, steps);
+        if (steps == solver->options.max_steps) return failed(solver, IDA_TOO_MUCH_WORK, steps);
         const double stop = next_stop(solver, reached, t);
-        if (IDASetStopTime(solver->ida, stop)) return give_up(solver, IDA_ILL_INPUT, steps);
+        if (IDASetStopTime(solver->ida, stop)) return failed(solver, IDA_ILL_INPUT, steps);
         solver->failure = STATUS_OK;
         const int code = IDASolve(solver->ida, t, &reached, solver->y, solver->yp, IDA_ONE_STEP);
         if (solver->failure < 0) return solver->failure;
-        if (code < 0) return give_up(solver, code, steps);
+        if (code < 0) return failed(solver, code, steps);
         if (code == IDA_TSTOP_RETURN) reached = stop;
         diagnostics_step(solver->residual, state, reached, state->y, state->yp);
     }
@@ -255,8 +256,8 @@ static enum status implicit_advance(void *data, double t) {
 }
 
 const struct integrator ida_integrator = {.name = "ida",
-                                          .create = implicit_create,
-                                          .advance = implicit_advance,
-                                          .restart = implicit_restart,
-                                          .count = implicit_count,
-                                          .free = implicit_free};
+                                          .create = ida_create,
+                                          .advance = ida_advance,
+                                          .restart = ida_restart,
+                                          .count = ida_count,
+                                          .free = ida_free};

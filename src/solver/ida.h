@@ -1,5 +1,5 @@
-/* ida.h: variable-order, variable-step BDF by IDA with the analytic Jacobian and KLU. doc/numerics.md. Tested by
- * tests/solver/test_ida.c. */
+/* ida.h: BDF of variable order and step by IDA, with the analytic Jacobian and our own linear and nonlinear solvers.
+ * doc/numerics.md. Tested by tests/solver/test_ida.c. */
 #ifndef IDA_H
 #define IDA_H
 

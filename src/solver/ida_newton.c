@@ -1,4 +1,4 @@
-/* ida_newton.c: one iteration after another, and what to think of them. */
+/* ida_newton.c: the iteration, its convergence test, and the decision to re-evaluate the Jacobian. */
 #include "solver/ida_newton.h"
 
 #include <math.h>
@@ -8,20 +8,20 @@ struct ida_newton {
     struct ida_newton_rules rules;
     struct corotation *corotation;
     N_Vector correction;
-    N_Vector last;      /* the total correction of the last solution */
-    double coefficient; /* the leading one, then */
+    N_Vector last;      /* total correction of the last solution */
+    double coefficient; /* leading coefficient of the last solution */
 
-    /* given by IDA */
+    /* functions of IDA */
     SUNNonlinSolSysFn residual;
     SUNNonlinSolLSetupFn set_up;
     SUNNonlinSolLSolveFn solve;
 
-    /* of this solution: iterations and failures in all, iterations with the present Jacobian */
+    /* of this solution: total iterations and failures, iterations with the present Jacobian */
     long iterations, failures;
     int done;
     double first; /* size of the first correction */
 
-    /* since the last Jacobian: solutions, their iterations, and those of the last one */
+    /* since the Jacobian was evaluated: solutions, their iterations, iterations of the last solution */
     int n_solutions, n_iterations, n_last;
 };
 
@@ -29,24 +29,24 @@ static struct ida_newton *newton_of(SUNNonlinearSolver solver) {
     return solver->content;
 }
 
-// whether the correction of this size was the last, one more is needed, or the iteration goes nowhere
-static int judge(struct ida_newton *newton, double size, double tolerance) {
+// after a correction of this size: whether the iteration has converged, goes on, or fails
+static int test_convergence(struct ida_newton *newton, double size, double tolerance) {
     if (!isfinite(size)) return SUN_NLS_CONV_RECVR;
     if (newton->done == 1) {
         newton->first = size;
-        // rounding
+        // mere rounding
         return size <= 1e-4 * tolerance ? SUN_NLS_SUCCESS : SUN_NLS_CONTINUE;
     }
     const double rate = pow(size / newton->first, 1.0 / (newton->done - 1));
-    // where corrections are noise of the linear solver they no longer shrink: small ones will do
-    const double to_come = rate < 0.9 ? rate / (1 - rate) : 10;
-    if (size * to_come <= tolerance) return SUN_NLS_SUCCESS;
-    // an old Jacobian may need two iterations before its errors fall
+    // corrections that are noise of the linear solver no longer shrink: accept them when they are small
+    const double remaining = rate < 0.9 ? rate / (1 - rate) : 10;
+    if (size * remaining <= tolerance) return SUN_NLS_SUCCESS;
+    // with an old Jacobian the first two corrections may grow
     if (newton->done > 2 && rate >= 0.9) return SUN_NLS_CONV_RECVR;
-    return newton->done < newton->rules.most_iterations ? SUN_NLS_CONTINUE : SUN_NLS_CONV_RECVR;
+    return newton->done < newton->rules.max_iterations ? SUN_NLS_CONTINUE : SUN_NLS_CONV_RECVR;
 }
 
-// the residual is in newton->correction
+// iterate with the present Jacobian; newton->correction holds the residual
 static int iterate(struct ida_newton *newton, N_Vector total, N_Vector weights, double tolerance, void *ida) {
     double *const values = N_VGetArrayPointer(newton->correction);
     newton->done = 0;
@@ -59,20 +59,20 @@ static int iterate(struct ida_newton *newton, N_Vector total, N_Vector weights, 
         if (code != 0) return code;
         corotation_to_current(newton->corotation, values);
         N_VLinearSum(1, total, 1, newton->correction, total);
-        code = judge(newton, N_VWrmsNorm(newton->correction, weights), tolerance);
+        code = test_convergence(newton, N_VWrmsNorm(newton->correction, weights), tolerance);
         if (code != SUN_NLS_CONTINUE) return code;
         code = newton->residual(total, newton->correction, ida);
         if (code != 0) return code;
     }
 }
 
-// whether a solution with this Jacobian costs more by now than the mean one, the Jacobian's own cost included
+// whether a solution with this Jacobian now costs as much as its mean solution, the cost of the Jacobian included
 static int jacobian_is_stale(const struct ida_newton *newton) {
     return newton->n_last * newton->n_solutions >= newton->n_iterations + newton->rules.jacobian_cost;
 }
 
-// begin where the last solution ended, where the step has not changed since: there the predictor errs by nearly the same
-static void guess(struct ida_newton *newton, N_Vector total, void *ida) {
+// start from the last total correction if the step has not changed: the error of the predictor is nearly the same again
+static void initial_guess(struct ida_newton *newton, N_Vector total, void *ida) {
     const double coefficient = newton->rules.leading_coefficient(ida);
     const int same = fabs(coefficient - newton->coefficient) <= 1e-9 * coefficient;
     N_VScale(same ? 1 : 0, newton->last, total);
@@ -80,16 +80,16 @@ static void guess(struct ida_newton *newton, N_Vector total, void *ida) {
 }
 
 static int newton_solve(SUNNonlinearSolver solver, N_Vector predicted, N_Vector total, N_Vector weights,
-                        realtype tolerance, booleantype renew, void *ida) {
+                        realtype tolerance, booleantype evaluate, void *ida) {
     struct ida_newton *const newton = newton_of(solver);
     newton->iterations = newton->failures = 0;
-    if (jacobian_is_stale(newton)) renew = SUNTRUE;
-    if (!renew) corotation_set_current(newton->corotation, N_VGetArrayPointer(predicted));
-    guess(newton, total, ida);
+    if (jacobian_is_stale(newton)) evaluate = SUNTRUE;
+    if (!evaluate) corotation_set_current(newton->corotation, N_VGetArrayPointer(predicted));
+    initial_guess(newton, total, ida);
     for (booleantype failed = SUNFALSE;; failed = SUNTRUE) {
         int code = newton->residual(total, newton->correction, ida);
         if (code != 0) return code;
-        if (renew) {
+        if (evaluate) {
             booleantype current;
             code = newton->set_up(failed, &current, ida);
             if (code != 0) return code;
@@ -105,15 +105,15 @@ static int newton_solve(SUNNonlinearSolver solver, N_Vector predicted, N_Vector 
             return 0;
         }
         newton->failures++;
-        if (code < 0 || renew) return code;
-        // the same again with a new Jacobian
-        renew = SUNTRUE;
+        if (code < 0 || evaluate) return code;
+        // try again with a new Jacobian
+        evaluate = SUNTRUE;
         N_VConst(0, total);
     }
 }
 
-// IDA starts anew: nothing of what was may show
-static int newton_forget(SUNNonlinearSolver solver) {
+// IDA starts again: discard the history
+static int newton_initialize(SUNNonlinearSolver solver) {
     struct ida_newton *const newton = newton_of(solver);
     newton->coefficient = 0;
     newton->n_solutions = newton->n_iterations = newton->n_last = 0;
@@ -178,7 +178,7 @@ enum status ida_newton_create(SUNNonlinearSolver *solver, SUNContext context, N_
     newton->rules = rules;
     N_VConst(0, newton->last);
     new->ops->gettype = newton_type;
-    new->ops->initialize = newton_forget;
+    new->ops->initialize = newton_initialize;
     new->ops->solve = newton_solve;
     new->ops->free = newton_free;
     new->ops->setsysfn = newton_set_residual;

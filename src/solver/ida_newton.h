@@ -1,5 +1,5 @@
-/* ida_newton.h: Newton's iteration for IDA, with a Jacobian that serves many steps. doc/numerics.md, section 3. Tested by
- * tests/solver/test_ida_newton.c. */
+/* ida_newton.h: Newton's iteration for IDA, with a Jacobian that is kept for many steps. doc/numerics.md, section 3.
+ * Tested by tests/solver/test_ida_newton.c. */
 #ifndef IDA_NEWTON_H
 #define IDA_NEWTON_H
 
@@ -8,16 +8,16 @@
 #include "base/status.h"
 #include "solver/corotation.h"
 
-/* When an iteration ends, and when a Jacobian does. */
+/* When an iteration ends, and when the Jacobian is re-evaluated. */
 struct ida_newton_rules {
-    int most_iterations; /* of one solution */
-    int jacobian_cost;   /* of a Jacobian and its factors, in iterations */
-    /* d(dy/dt)/dy of IDA's present step, s-1: while it stays the same, so does nearly the correction */
+    int max_iterations; /* per solution */
+    int jacobian_cost;  /* of an evaluation with its factorisation, in iterations */
+    /* d(dy/dt)/dy of IDA's present step, s-1: while it is constant, corrections hardly change */
     double (*leading_coefficient)(void *ida);
 };
 
-/* A solver for IDASetNonlinearSolver, to be freed by SUNNonlinSolFree. It holds the unknowns of the school, which must
- * outlive it. Fails with STATUS_MEMORY. */
+/* Create a solver for IDASetNonlinearSolver; SUNNonlinSolFree releases it. Vectors are those of the school, which must
+ * outlive it, and are cloned from like. Fails with STATUS_MEMORY. */
 enum status ida_newton_create(SUNNonlinearSolver *solver, SUNContext context, N_Vector like,
                               const struct school *school, struct ida_newton_rules rules);
 

@@ -1,5 +1,5 @@
-/* initial_conditions.c: Newton's method of KINSOL on the algebraic equations. The differential unknowns take part with the
- * equation that they do not change, so that the Jacobian of the school serves as it is, with their rows masked. */
+/* initial_conditions.c: KINSOL's Newton method on the algebraic equations. The differential unknowns take part with the
+ * equation that they do not change, so that the Jacobian of the school can be used with their rows masked. */
 #include "solver/initial_conditions.h"
 
 #include <kinsol/kinsol.h>
@@ -10,21 +10,22 @@
 
 #include "solver/sundials_adapter.h"
 
-/* Rows are scaled to order one; Newton ends at this norm, or where its steps no longer change the unknowns. */
+/* Rows are scaled to order one; Newton's method has converged at this norm, or when its steps no longer change the
+ * unknowns. */
 static const double tolerance = 1e-14;
 
-/* Coupled fish are solved for up to this part of the right-hand side, so that each step gains as many digits. */
-static const struct linear_end linear_end = {.relative = 1e-10};
+/* Tight, so that no step of Newton's method gains fewer digits than with an exact solution. */
+static const struct linear_tolerance linear_tolerance = {.relative = 1e-10};
 
 struct initial_conditions {
     struct residual *residual;
     struct jacobian *jacobian;
     int n;
     double t;
-    /* all unknowns, no rates, kinds, scales of the unknowns and inverse scales of unknowns and equations          (n) */
+    /* unknowns, rates of zero, kinds, scales of the unknowns, inverse scales of unknowns and of equations      (n) */
     double *y, *zero, *kind, *scale, *solution_scale, *value_scale;
-    double *value;       /* equations as last evaluated                                                 (n) */
-    double *start;       /* where KINSOL begins and ends                                                (n) */
+    double *value;       /* residual of the last evaluation                                             (n) */
+    double *start;       /* initial guess and solution of KINSOL                                        (n) */
     enum status failure; /* of the last callback */
 
     SUNContext context;
@@ -49,14 +50,14 @@ void initial_conditions_free(struct initial_conditions *c) {
     free(c);
 }
 
-// the differential unknowns keep their bits, whatever KINSOL adds
+// the differential unknowns keep their bits, whatever KINSOL adds to them
 static void take_algebraic(const struct initial_conditions *c, const double *from, double *y) {
     for (int i = 0; i < c->n; i++) {
         if (c->kind[i] <= 0) y[i] = from[i];
     }
 }
 
-// F of the algebraic equations for KINSOL
+// the residual of the algebraic equations
 static int algebraic_value(N_Vector solution, N_Vector value, void *data) {
     struct initial_conditions *const c = data;
     double *const to = N_VGetArrayPointer(value);
@@ -75,7 +76,7 @@ static int algebraic_jacobian(N_Vector solution, N_Vector value, SUNMatrix matri
     return c->failure;
 }
 
-// the equations come in accelerations, velocities, circulations and numbers; their scales follow the unknowns'
+// equations are accelerations, velocities, circulations and numbers: most have the scale of the unknown of their row
 static double row_scale(const struct residual *residual, int i) {
     const struct unknown_place place = residual_place(residual->school, i);
     const struct layout *at = &residual->school->fish[place.fish].at;
@@ -86,7 +87,7 @@ static double row_scale(const struct residual *residual, int i) {
 static enum status set_up_kinsol(struct initial_conditions *c) {
     c->kinsol = KINCreate(c->context);
     if (!c->kinsol) return status_fail(STATUS_MEMORY, "out of memory: KINSOL");
-    // a full step of Newton's method on equations that are nearly linear, with a new Jacobian each time
+    // full Newton steps, since the equations are nearly linear, with a new Jacobian each
     if (KINSetErrHandlerFn(c->kinsol, sundials_adapter_message, NULL) || KINSetUserData(c->kinsol, c) ||
         KINInit(c->kinsol, algebraic_value, c->solution) ||
         KINSetLinearSolver(c->kinsol, c->linear.solver, c->linear.matrix) ||
@@ -104,27 +105,27 @@ static enum status fill(struct initial_conditions *c) {
                                &c->value, &c->solution_scale, &c->value_scale, &c->start};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         *arrays[i] = calloc((size_t)n, sizeof **arrays[i]);
-        if (!*arrays[i]) return status_fail(STATUS_MEMORY, "out of memory: a consistent start of %d unknowns", n);
+        if (!*arrays[i]) return status_fail(STATUS_MEMORY, "out of memory: the initial conditions of %d unknowns", n);
     }
     for (int i = 0; i < n; i++) {
         c->scale[i] = residual_scale(c->residual, i);
         c->solution_scale[i] = 1 / c->scale[i];
         c->value_scale[i] = 1 / row_scale(c->residual, i);
-        c->kind[i] = -1;  // not known yet
+        c->kind[i] = -1;  // unknown
     }
     TRY(jacobian_create(&c->jacobian, c->residual->school));
     TRY(sundials_adapter_context(&c->context));
     TRY(sundials_adapter_vector(&c->solution, c->context, n, c->start));
     TRY(sundials_adapter_vector(&c->solution_scales, c->context, n, c->solution_scale));
     TRY(sundials_adapter_vector(&c->value_scales, c->context, n, c->value_scale));
-    TRY(sundials_adapter_linear_create(&c->linear, c->context, c->jacobian, c->scale, linear_end));
+    TRY(sundials_adapter_linear_create(&c->linear, c->context, c->jacobian, c->scale, linear_tolerance));
     return set_up_kinsol(c);
 }
 
-enum status initial_conditions_create(struct initial_conditions **consistent, struct residual *residual) {
-    *consistent = NULL;
+enum status initial_conditions_create(struct initial_conditions **solver, struct residual *residual) {
+    *solver = NULL;
     struct initial_conditions *const new = calloc(1, sizeof *new);
-    if (!new) return status_fail(STATUS_MEMORY, "out of memory: a consistent start");
+    if (!new) return status_fail(STATUS_MEMORY, "out of memory: the initial conditions");
     new->residual = residual;
     new->n = residual->school->n_unknowns;
     const enum status status = fill(new);
@@ -132,12 +133,12 @@ enum status initial_conditions_create(struct initial_conditions **consistent, st
         initial_conditions_free(new);
         return status;
     }
-    *consistent = new;
+    *solver = new;
     return STATUS_OK;
 }
 
-// the kinds of the unknowns may have changed since the last solution: mask the rows of the differential ones
-static void refresh(struct initial_conditions *c) {
+// kinds of unknowns may have changed since the last solution: mask the rows of the differential ones
+static void update_kinds(struct initial_conditions *c) {
     double *const kind = c->value;
     residual_kinds(c->residual, kind);
     if (memcmp(kind, c->kind, (size_t)c->n * sizeof *kind) == 0) return;
@@ -151,14 +152,14 @@ static void refresh(struct initial_conditions *c) {
     }
 }
 
-// what KINSOL could not do, and for which unknown the equation is worst
-static enum status give_up(struct initial_conditions *c, int code) {
+// a message that names the equation with the largest residual
+static enum status failed(struct initial_conditions *c, int code) {
     int worst = 0;
-    double most = -1;
+    double max = -1;
     for (int i = 0; i < c->n; i++) {
         const double size = c->kind[i] > 0 ? 0 : fabs(c->value[i] * c->value_scale[i]);
-        if (!(size <= most)) {
-            most = size;
+        if (!(size <= max)) {
+            max = size;
             worst = i;
         }
     }
@@ -167,12 +168,12 @@ static enum status give_up(struct initial_conditions *c, int code) {
     snprintf(cause, sizeof cause, "%s", status_message());
     return status_fail(
         STATUS_SOLVER,
-        "no consistent state at t = %.10g s: KINSOL ended with code %d; the equation for %s[%d] of fish %s "
-        "is left with %.3g of its scale (%s)",
-        c->t, code, place.name, place.index, c->residual->school->fish[place.fish].name, most, cause);
+        "no consistent initial conditions at t = %.10g s: KINSOL failed with code %d; the largest residual is that of "
+        "%s[%d] of fish %s, %.3g of its scale (%s)",
+        c->t, code, place.name, place.index, c->residual->school->fish[place.fish].name, max, cause);
 }
 
-// rates of the differential unknowns; those of the algebraic ones stay
+// rates of the differential unknowns; those of the algebraic ones keep their values
 static void set_rates(const struct initial_conditions *c, double t, const double *y, double *yp) {
     const struct school *school = c->residual->school;
     for (int f = 0; f < school->n_fish; f++) {
@@ -188,21 +189,21 @@ enum status initial_conditions_solve(struct initial_conditions *c, double t, dou
     memcpy(c->y, y, (size_t)c->n * sizeof *y);
     memcpy(c->start, y, (size_t)c->n * sizeof *y);
     flow_sum_exactly(c->residual->flow);
-    refresh(c);
+    update_kinds(c);
     c->failure = STATUS_OK;
     const int code = KINSol(c->kinsol, c->solution, KIN_NONE, c->solution_scales, c->value_scales);
     long iterations = 0;
     KINGetNumNonlinSolvIters(c->kinsol, &iterations);
     c->iterations += iterations;
     if (c->failure < 0) return c->failure;
-    if (code < 0) return give_up(c, code);
+    if (code < 0) return failed(c, code);
     take_algebraic(c, c->start, y);
-    // the fluid's velocity at the solution serves the rates, and whoever measures the state
+    // the fluid's velocity at the solution is needed for the rates, and for the diagnostics
     TRY(residual_evaluate(c->residual, t, y, yp, c->value));
     set_rates(c, t, y, yp);
     return STATUS_OK;
 }
 
-long initial_conditions_iterations(const struct initial_conditions *consistent) {
-    return consistent->iterations;
+long initial_conditions_iterations(const struct initial_conditions *solver) {
+    return solver->iterations;
 }

@@ -1,5 +1,5 @@
-/* initial_conditions.h: make a state consistent: the algebraic unknowns from the algebraic equations, by KINSOL, the
- * differential ones being given. doc/model.md, section 10. Tested by tests/solver/test_initial_conditions.c. */
+/* initial_conditions.h: consistent initial conditions: KINSOL solves the algebraic equations for the algebraic
+ * unknowns, given the differential ones. doc/model.md, section 10. Tested by tests/solver/test_initial_conditions.c. */
 #ifndef INITIAL_CONDITIONS_H
 #define INITIAL_CONDITIONS_H
 
@@ -8,17 +8,18 @@
 
 struct initial_conditions;
 
-/* The residual must outlive it. Fails with STATUS_MEMORY or STATUS_SOLVER. */
-enum status initial_conditions_create(struct initial_conditions **consistent, struct residual *residual);
+/* Create a solver for a residual, which must outlive it. Fails with STATUS_MEMORY or STATUS_SOLVER. */
+enum status initial_conditions_create(struct initial_conditions **solver, struct residual *residual);
 
 /* Release it. Accepts NULL. */
-void initial_conditions_free(struct initial_conditions *consistent);
+void initial_conditions_free(struct initial_conditions *solver);
 
-/* Solve the algebraic equations for the algebraic unknowns of y, and set the rates yp of the differential ones, at time
- * t. What is algebraic is asked of the residual each time. Fails with STATUS_SOLVER; y and yp are then unchanged. */
-enum status initial_conditions_solve(struct initial_conditions *consistent, double t, double *y, double *yp);
+/* Solve for the algebraic unknowns of y at time t [s], and set the rates yp of the differential ones; both arrays are
+ * (n_unknowns). Which unknowns are algebraic is looked up in the residual each time. Fails with STATUS_SOLVER or
+ * STATUS_MEMORY; y and yp are then unchanged. */
+enum status initial_conditions_solve(struct initial_conditions *solver, double t, double *y, double *yp);
 
 /* Newton iterations so far. */
-long initial_conditions_iterations(const struct initial_conditions *consistent);
+long initial_conditions_iterations(const struct initial_conditions *solver);
 
 #endif

@@ -1,4 +1,4 @@
-/* integrator.h: what every time integrator offers, implicit or explicit. */
+/* integrator.h: the interface of every time integrator, implicit or explicit. */
 #ifndef INTEGRATOR_H
 #define INTEGRATOR_H
 
@@ -8,11 +8,11 @@
 #include "model/state.h"
 #include "solver/initial_conditions.h"
 
-/* Running totals, and the last step. */
+/* Totals since the start, and the last step. */
 struct integrator_counts {
     long steps, residual_evaluations, newton_iterations, jacobian_evaluations;
     long error_test_failures, convergence_failures;
-    long linear_solves; /* of the algebraic unknowns, by an explicit method */
+    long linear_solves; /* for the algebraic unknowns, by an explicit method */
     double step_size;   /* s */
     int order;
 };
@@ -20,24 +20,24 @@ struct integrator_counts {
 /* How to integrate. */
 struct integrator_options {
     enum method method;
-    int order;     /* the most, of the implicit method */
-    double step;   /* fixed, of all other methods, s; 0: adaptive */
-    int max_steps; /* between two events */
+    int order;     /* maximum, of BDF */
+    double step;   /* fixed step of all other methods, s; 0: adaptive */
+    int max_steps; /* maximum between two events */
 };
 
-/* One method. A solver works on the y and yp of a state, and reads its wakes through the residual. */
+/* A family of methods. A solver advances y and yp of a state in place, and reads the wakes through the residual. */
 struct integrator {
     const char *name;
 
-    /* Make a solver for the state as it is; the state has to be consistent. */
+    /* Create a solver for the present state, which must be consistent. Fails with STATUS_MEMORY or STATUS_SOLVER. */
     enum status (*create)(void **solver, struct residual *residual, struct state *state,
                           const struct integrator_options *options);
 
-    /* Go on to time t, the next event. After every step of its own the energy balances of the state are carried on. Fails with
-     * STATUS_SOLVER; the message says at which time, in which unknown, and what was tried. */
+    /* Integrate to time t [s], the next event, and update the energy balance after every step. Fails with
+     * STATUS_SOLVER, and a message that says when and why, or with STATUS_MEMORY; never with STATUS_RETRY. */
     enum status (*advance)(void *solver, double t);
 
-    /* The state has jumped and is consistent again: forget the past. */
+    /* Start again after a jump: the state is consistent, the history is discarded. Fails with STATUS_SOLVER. */
     enum status (*restart)(void *solver);
 
     void (*count)(const void *solver, struct integrator_counts *counts);

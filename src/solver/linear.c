@@ -1,4 +1,4 @@
-/* linear.c: KLU for the blocks, GMRES around them. */
+/* linear.c: KLU for the diagonal blocks, GMRES for the couplings. */
 #include "solver/linear.h"
 
 #include <klu.h>
@@ -8,21 +8,21 @@
 
 #include "base/parallel.h"
 
-/* Factors with the pivots of an earlier matrix are kept while neither the ratio of the least to the largest pivot nor
- * the reciprocal growth of the entries is worse by more than this than when the pivots were chosen. It is what KLU
- * itself gives away when it chooses them: it takes the diagonal where that is no less than 1e-3 of the largest. */
-static const double worse = 1e-3;
+/* The pivots of an earlier matrix are kept while the reciprocal condition estimate and the reciprocal pivot growth are
+ * at least this fraction of what they were when the pivots were chosen. It is what KLU itself gives away when it
+ * chooses pivots: it takes the diagonal where that is at least 1e-3 of the largest entry. */
+static const double min_quality = 1e-3;
 
-/* GMRES keeps at most so many directions; what it has then is handed back, and Newton's iteration judges it. */
-enum { MOST = 40 };
+/* GMRES takes at most this many iterations; Newton's iteration judges what it returns then. */
+enum { MAX_ITERATIONS = 40 };
 
-/* The block of one fish. */
+/* The diagonal block of one fish. */
 struct block {
-    unsigned version; /* of the pattern that was analysed; 0: none */
+    unsigned version; /* of the pattern that is analysed; 0: none */
     klu_l_common common;
     klu_l_symbolic *symbolic;
     klu_l_numeric *numeric;
-    double rcond, rgrowth; /* when its pivots were chosen */
+    double rcond, rgrowth; /* when the pivots were chosen */
     int was_factorised;
     struct linear_counts counts;
     enum status status; /* of the last set-up */
@@ -30,11 +30,11 @@ struct block {
 
 struct linear {
     const struct jacobian *jacobian;
-    struct linear_end end;
+    struct linear_tolerance tolerance;
     double *weight; /* 1/(n_unknowns scale^2)                          (n_unknowns) */
     struct block *block;
-    double *direction; /* an orthonormal basis                              (MOST + 1, n_unknowns) */
-    int n_directions;  /* it has room for */
+    double *direction; /* the Krylov basis, orthonormal    (n_directions, n_unknowns) */
+    int n_directions;  /* allocated */
     long solves, iterations;
 };
 
@@ -43,12 +43,12 @@ static int n_unknowns(const struct linear *linear) {
 }
 
 enum status linear_create(struct linear **linear, const struct jacobian *jacobian, const double *scale,
-                          struct linear_end end) {
+                          struct linear_tolerance tolerance) {
     *linear = NULL;
     struct linear *const new = calloc(1, sizeof *new);
     if (!new) goto no_memory;
     new->jacobian = jacobian;
-    new->end = end;
+    new->tolerance = tolerance;
     new->weight = calloc((size_t)n_unknowns(new), sizeof *new->weight);
     new->block = calloc((size_t)jacobian->school->n_fish, sizeof *new->block);
     if (!new->weight || !new->block) goto no_memory;
@@ -75,15 +75,15 @@ void linear_free(struct linear *linear) {
     free(linear);
 }
 
-// the factors that the last pivots give for the values of now, if they are good
+// factorise with the pivots of the last factorisation; returns whether the factors are good
 static int refactor(struct block *block, struct sparse *own) {
     if (!block->numeric) return 0;
     klu_l_common *const common = &block->common;
     block->counts.refactorisations++;
     return klu_l_refactor(own->column_start, own->row_index, own->value, block->symbolic, block->numeric, common) &&
-           klu_l_rcond(block->symbolic, block->numeric, common) && common->rcond >= worse * block->rcond &&
+           klu_l_rcond(block->symbolic, block->numeric, common) && common->rcond >= min_quality * block->rcond &&
            klu_l_rgrowth(own->column_start, own->row_index, own->value, block->symbolic, block->numeric, common) &&
-           common->rgrowth >= worse * block->rgrowth;
+           common->rgrowth >= min_quality * block->rgrowth;
 }
 
 static enum status factor(struct block *block, struct sparse *own) {
@@ -111,7 +111,7 @@ static enum status set_up(struct block *block, struct sparse *own) {
         block->symbolic = klu_l_analyze(own->n, own->column_start, own->row_index, &block->common);
         block->version = own->version;
     }
-    // what cannot be analysed is singular whatever its values, or memory is out
+    // a block that cannot be analysed is structurally singular, or there is no memory
     if (!block->symbolic) {
         block->version = 0;
         return block->common.status == KLU_OUT_OF_MEMORY ? STATUS_MEMORY : STATUS_SOLVER;
@@ -136,7 +136,7 @@ enum status linear_setup(struct linear *linear) {
     return STATUS_OK;
 }
 
-// x = what the own blocks alone make of b; both may be the same
+// x = D^-1 b with the diagonal blocks D alone; both may be the same array
 static void solve_blocks(struct linear *linear, const double *b, double *x) {
     const struct school *school = linear->jacobian->school;
     const int threads = parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_UNKNOWNS);
@@ -150,7 +150,7 @@ static void solve_blocks(struct linear *linear, const double *b, double *x) {
     }
 }
 
-// product = v plus what the couplings make of v, through the own blocks
+// product = v + D^-1 C v, C being the coupling blocks
 static void multiply(struct linear *linear, const double *v, double *product) {
     const struct jacobian *jacobian = linear->jacobian;
     const struct school *school = jacobian->school;
@@ -172,8 +172,8 @@ static double dot(const struct linear *linear, const double *a, const double *b)
     return sum;
 }
 
-// room for one more direction; growing keeps those that are there
-static enum status make_room(struct linear *linear, int n) {
+// allocate n directions; those that exist keep their values
+static enum status reserve(struct linear *linear, int n) {
     if (n <= linear->n_directions) return STATUS_OK;
     double *const more = realloc(linear->direction, (size_t)n * (size_t)n_unknowns(linear) * sizeof *more);
     if (!more) return status_fail(STATUS_MEMORY, "out of memory: %d directions of GMRES", n);
@@ -182,12 +182,12 @@ static enum status make_room(struct linear *linear, int n) {
     return STATUS_OK;
 }
 
-// Hessenberg matrix of GMRES in columns, made upper triangular by rotations as it grows, and its right-hand side
+// the Hessenberg matrix of GMRES by columns, kept upper triangular by Givens rotations, and its right-hand side
 struct least_squares {
-    double h[MOST][MOST + 1], cosine[MOST], sine[MOST], rhs[MOST + 1];
+    double h[MAX_ITERATIONS][MAX_ITERATIONS + 1], cosine[MAX_ITERATIONS], sine[MAX_ITERATIONS], rhs[MAX_ITERATIONS + 1];
 };
 
-// rotate column j of the matrix; what is left of the right-hand side is then |rhs[j + 1]|
+// rotate column j of the matrix; the norm of the residual is then |rhs[j + 1]|
 static void rotate(struct least_squares *ls, int j) {
     double *const h = ls->h[j];
     for (int i = 0; i < j; i++) {
@@ -203,9 +203,9 @@ static void rotate(struct least_squares *ls, int j) {
     ls->rhs[j] = ls->cosine[j] * ls->rhs[j];
 }
 
-// x = the combination of n directions that leaves the least
+// x = the combination of n directions with the smallest residual
 static void combine(const struct linear *linear, const struct least_squares *ls, int n, double *x) {
-    double factor[MOST];
+    double factor[MAX_ITERATIONS];
     for (int j = n - 1; j >= 0; j--) {
         factor[j] = ls->rhs[j];
         for (int k = j + 1; k < n; k++) factor[j] -= ls->h[k][j] * factor[k];
@@ -218,19 +218,19 @@ static void combine(const struct linear *linear, const struct least_squares *ls,
     }
 }
 
-// the coupled system: x comes in as the solution of the uncoupled one
+// solve the coupled system; x enters as the solution of the uncoupled one
 static enum status solve_coupled(struct linear *linear, double *x) {
     const int n = n_unknowns(linear);
     struct least_squares ls;
     const double start = sqrt(dot(linear, x, x));
-    const double limit = fmax(linear->end.relative * start, linear->end.enough);
+    const double limit = fmax(linear->tolerance.relative * start, linear->tolerance.absolute);
     if (!(start > limit) || !isfinite(start)) return STATUS_OK;
-    TRY(make_room(linear, 1));
+    TRY(reserve(linear, 1));
     for (int i = 0; i < n; i++) linear->direction[i] = x[i] / start;
     ls.rhs[0] = start;
     int j = 0;
-    while (j < MOST && fabs(ls.rhs[j]) > limit) {
-        TRY(make_room(linear, j + 2));
+    while (j < MAX_ITERATIONS && fabs(ls.rhs[j]) > limit) {
+        TRY(reserve(linear, j + 2));
         double *const next = linear->direction + (long)(j + 1) * n;
         multiply(linear, linear->direction + (long)j * n, next);
         for (int k = 0; k <= j; k++) {

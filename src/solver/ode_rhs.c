@@ -1,4 +1,4 @@
-/* ode_rhs.c: sheets, flow, control, accelerations: each a linear solve or a formula. */
+/* ode_rhs.c: sheets, flow, control, accelerations, each by a linear solve or a formula. */
 #include "solver/ode_rhs.h"
 
 #include <klu.h>
@@ -10,8 +10,8 @@
 
 struct ode_rhs {
     struct residual *residual;
-    double *still; /* the unknowns with sheets and nascent vortices of no strength        (n_unknowns) */
-    struct influence_block *response; /* of the points of fish f to the vortices of fish g      (n_fish, n_fish) */
+    double *no_sheets; /* the unknowns with sheets and nascent vortices of no strength    (n_unknowns) */
+    struct influence_block *influence; /* of the vortices of fish g on the points of fish f     (n_fish, n_fish) */
 
     /* the system of all sheets: dense, in compressed columns for KLU */
     int n;
@@ -23,12 +23,12 @@ struct ode_rhs {
     klu_l_numeric *numeric;
     long solves;
 
-    double *band, *force; /* mass and added mass of one fish, and its right-hand side */
+    double *band, *force; /* the mass matrix of one fish, with added mass, and its right-hand side */
 };
 
-enum { BANDWIDTH = 4 }; /* of the mass matrix with x and y of each node together: the diagonal and three below */
+enum { BANDWIDTH = 4 }; /* of the mass matrix, x and y of each node being neighbours: the diagonal and three below */
 
-// with Kutta's edge condition the circulation shed is unknown too
+// with the Kutta condition at the edge the circulation shed is an unknown too
 static int n_strengths(const struct residual *residual, const struct fish *fish) {
     return fish->n_sheet + (residual_shed_is_algebraic(residual) ? 1 : 0);
 }
@@ -36,18 +36,18 @@ static int n_strengths(const struct residual *residual, const struct fish *fish)
 static enum status allocate(struct ode_rhs *d) {
     const struct school *school = d->residual->school;
     const size_t n_fish = (size_t)school->n_fish;
-    int most_nodes = 0;
+    int max_nodes = 0;
     d->first = calloc(n_fish, sizeof *d->first);
-    d->response = calloc(n_fish * n_fish, sizeof *d->response);
-    d->still = calloc((size_t)school->n_unknowns, sizeof *d->still);
-    if (!d->first || !d->response || !d->still) goto no_memory;
+    d->influence = calloc(n_fish * n_fish, sizeof *d->influence);
+    d->no_sheets = calloc((size_t)school->n_unknowns, sizeof *d->no_sheets);
+    if (!d->first || !d->influence || !d->no_sheets) goto no_memory;
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *fish = &school->fish[f];
         d->first[f] = d->n;
         d->n += n_strengths(d->residual, fish);
-        if (fish->n_nodes > most_nodes) most_nodes = fish->n_nodes;
+        if (fish->n_nodes > max_nodes) max_nodes = fish->n_nodes;
         for (int g = 0; g < school->n_fish; g++) {
-            struct influence_block *const block = &d->response[f * school->n_fish + g];
+            struct influence_block *const block = &d->influence[f * school->n_fish + g];
             const size_t size = (size_t)d->residual->flow->points[f].n * (size_t)(school->fish[g].n_sheet + 1);
             block->u = calloc(size, sizeof *block->u);
             block->v = calloc(size, sizeof *block->v);
@@ -59,8 +59,8 @@ static enum status allocate(struct ode_rhs *d) {
     d->row_index = calloc(n * n, sizeof *d->row_index);
     d->value = calloc(n * n, sizeof *d->value);
     d->solution = calloc(n, sizeof *d->solution);
-    d->band = calloc(2 * (size_t)most_nodes * BANDWIDTH, sizeof *d->band);
-    d->force = calloc(2 * (size_t)most_nodes, sizeof *d->force);
+    d->band = calloc(2 * (size_t)max_nodes * BANDWIDTH, sizeof *d->band);
+    d->force = calloc(2 * (size_t)max_nodes, sizeof *d->force);
     if (!d->column_start || !d->row_index || !d->value || !d->solution || !d->band || !d->force) goto no_memory;
     return STATUS_OK;
 
@@ -76,13 +76,13 @@ static enum status analyse(struct ode_rhs *d) {
     klu_l_defaults(&d->common);
     d->symbolic = klu_l_analyze(d->n, d->column_start, d->row_index, &d->common);
     return d->symbolic ? STATUS_OK
-                       : status_fail(STATUS_MEMORY, "out of memory: analysing a system of %d sheets' unknowns", d->n);
+                       : status_fail(STATUS_MEMORY, "out of memory: a system of %d unknowns of the sheets", d->n);
 }
 
-enum status ode_rhs_create(struct ode_rhs **direct, struct residual *residual) {
-    *direct = NULL;
+enum status ode_rhs_create(struct ode_rhs **rhs, struct residual *residual) {
+    *rhs = NULL;
     struct ode_rhs *const new = calloc(1, sizeof *new);
-    if (!new) return status_fail(STATUS_MEMORY, "out of memory: the direct solution");
+    if (!new) return status_fail(STATUS_MEMORY, "out of memory: the right-hand side");
     new->residual = residual;
     enum status status = allocate(new);
     if (status == STATUS_OK) status = analyse(new);
@@ -90,21 +90,21 @@ enum status ode_rhs_create(struct ode_rhs **direct, struct residual *residual) {
         ode_rhs_free(new);
         return status;
     }
-    *direct = new;
+    *rhs = new;
     return STATUS_OK;
 }
 
 void ode_rhs_free(struct ode_rhs *d) {
     if (!d) return;
     const int n_fish = d->residual->school->n_fish;
-    for (int i = 0; d->response && i < n_fish * n_fish; i++) {
-        free(d->response[i].u);
-        free(d->response[i].v);
+    for (int i = 0; d->influence && i < n_fish * n_fish; i++) {
+        free(d->influence[i].u);
+        free(d->influence[i].v);
     }
     if (d->numeric) klu_l_free_numeric(&d->numeric, &d->common);
     if (d->symbolic) klu_l_free_symbolic(&d->symbolic, &d->common);
-    free(d->response);
-    free(d->still);
+    free(d->influence);
+    free(d->no_sheets);
     free(d->first);
     free(d->column_start);
     free(d->row_index);
@@ -115,33 +115,33 @@ void ode_rhs_free(struct ode_rhs *d) {
     free(d);
 }
 
-// the velocity of everything but sheets and nascent vortices, and what each of those adds
-static enum status place_flow(struct ode_rhs *d, double t, const double *y) {
+// the velocity of the fluid without sheets and nascent vortices, and the influence of each of those
+static enum status update_flow(struct ode_rhs *d, double t, const double *y) {
     const struct school *school = d->residual->school;
     const struct state *state = d->residual->state;
-    memcpy(d->still, y, (size_t)school->n_unknowns * sizeof *y);
+    memcpy(d->no_sheets, y, (size_t)school->n_unknowns * sizeof *y);
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *fish = &school->fish[f];
-        memset(d->still + fish->at.gamma, 0, (size_t)fish->n_sheet * sizeof *y);
-        d->still[fish->at.circulation] = state->wake[f].shed_before;
+        memset(d->no_sheets + fish->at.gamma, 0, (size_t)fish->n_sheet * sizeof *y);
+        d->no_sheets[fish->at.circulation] = state->wake[f].shed_before;
     }
-    TRY(flow_velocity(d->residual->flow, state, t, d->still));
+    TRY(flow_velocity(d->residual->flow, state, t, d->no_sheets));
     for (int f = 0; f < school->n_fish; f++) {
         for (int g = 0; g < school->n_fish; g++) {
-            flow_influence(d->residual->flow, f, g, &d->response[f * school->n_fish + g]);
+            flow_influence(d->residual->flow, f, g, &d->influence[f * school->n_fish + g]);
         }
     }
     return STATUS_OK;
 }
 
-// column j of a block at point p, along a direction
+// the influence of vortex j on point p, along a direction
 static double along(const struct influence_block *block, int j, int p, const double direction[2]) {
     const long at = (long)j * block->n_points + p;
     return direction[0] * block->u[at] + direction[1] * block->v[at];
 }
 
-// the system: rows of fish f are its control points, Kelvin, and the edge condition where that holds; columns of fish g
-// are its bound vortices and, with the edge condition, its nascent vortex
+// the system: the rows of a fish are its control points, Kelvin's theorem and, if it holds, the edge condition; the
+// columns of a fish are its bound vortices and, with the edge condition, its nascent vortex
 static void assemble(struct ode_rhs *d, const double *y, double *rhs) {
     const struct residual *residual = d->residual;
     const struct school *school = residual->school;
@@ -153,9 +153,9 @@ static void assemble(struct ode_rhs *d, const double *y, double *rhs) {
         const double *const u = residual->flow->u + first, *const v = residual->flow->v + first;
         const double before = residual->state->wake[f].shed_before;
         const double shed = edge ? before : y[fish->at.circulation];
-        // right-hand side: what the equations are left with where nothing unknown has strength
+        // right-hand side: minus the residual where nothing unknown has strength
         double *const value = residual->scratch;
-        bound_sheet_residual(fish, residual_removed(residual, f), u, v, d->still, value);
+        bound_sheet_residual(fish, residual_removed(residual, f), u, v, d->no_sheets, value);
         for (int c = 0; c < fish->n_control; c++) rhs[row + c] = -value[fish->at.gamma + c];
         rhs[row + fish->n_control] = residual_removed(residual, f) - shed;
         for (int j = 0; j < fish->n_sheet; j++) {
@@ -168,7 +168,7 @@ static void assemble(struct ode_rhs *d, const double *y, double *rhs) {
         }
         for (int g = 0; g < school->n_fish; g++) {
             const struct fish *other = &school->fish[g];
-            const struct influence_block *block = &d->response[f * school->n_fish + g];
+            const struct influence_block *block = &d->influence[f * school->n_fish + g];
             const double known = edge ? 0 : y[other->at.circulation] - residual->state->wake[g].shed_before;
             for (int c = 0; c < fish->n_control; c++) {
                 double normal[2];
@@ -206,14 +206,14 @@ static enum status solve_sheets(struct ode_rhs *d, double *y) {
     return STATUS_OK;
 }
 
-// the velocity at the points with the strengths that have been found
+// add the velocity of the sheets and nascent vortices, now known, at the points
 static void add_sheets(struct ode_rhs *d, const double *y) {
     const struct school *school = d->residual->school;
     struct flow *const flow = d->residual->flow;
     for (int f = 0; f < school->n_fish; f++) {
         for (int g = 0; g < school->n_fish; g++) {
             const struct fish *other = &school->fish[g];
-            const struct influence_block *block = &d->response[f * school->n_fish + g];
+            const struct influence_block *block = &d->influence[f * school->n_fish + g];
             const double nascent = y[other->at.circulation] - d->residual->state->wake[g].shed_before;
             for (int p = 0; p < block->n_points; p++) {
                 const long last = (long)other->n_sheet * block->n_points + p;
@@ -230,7 +230,7 @@ static void add_sheets(struct ode_rhs *d, const double *y) {
     }
 }
 
-// mass and added mass of one fish: rows 2 k and 2 k + 1 are x and y of node k; band[BANDWIDTH row + i] is column row - i
+// the mass matrix of one fish: rows 2 k and 2 k + 1 are x and y of node k; band[BANDWIDTH row + i] is column row - i
 static void assemble_mass(const struct fish *fish, const double *y, double *band) {
     memset(band, 0, 2 * (size_t)fish->n_nodes * BANDWIDTH * sizeof *band);
     for (int k = 0; k < fish->n_nodes; k++) {
@@ -247,7 +247,7 @@ static void assemble_mass(const struct fish *fish, const double *y, double *band
     }
 }
 
-// rows whose acceleration is given become the identity
+// rows of prescribed accelerations become those of the identity
 static void fix_given(const struct fish *fish, double t, double *band, double *force) {
     const int n = 2 * fish->n_nodes, n_given = 2 * fish_n_prescribed(fish);
     for (int row = 0; row < n_given; row++) {
@@ -264,7 +264,7 @@ static void fix_given(const struct fish *fish, double t, double *band, double *f
     }
 }
 
-// Cholesky's factorisation of a band, and both substitutions
+// solve by Cholesky factorisation of the band
 static void solve_band(int n, double *band, double *x) {
     for (int row = 0; row < n; row++) {
         for (int i = BANDWIDTH - 1; i >= 0; i--) {
@@ -288,10 +288,10 @@ static void solve_band(int n, double *band, double *x) {
     }
 }
 
-static void accelerate(struct ode_rhs *d, int f, double t, double *y) {
+static void find_accelerations(struct ode_rhs *d, int f, double t, double *y) {
     const struct fish *fish = &d->residual->school->fish[f];
     double *const value = d->residual->scratch;
-    // with no acceleration the balance is left with minus the forces
+    // without acceleration the balance is minus the forces
     memset(y + fish->at.ax, 0, 2 * (size_t)fish->n_nodes * sizeof *y);
     residual_balance(d->residual, f, y, value);
     for (int k = 0; k < fish->n_nodes; k++) {
@@ -307,11 +307,11 @@ static void accelerate(struct ode_rhs *d, int f, double t, double *y) {
     }
 }
 
-static void steer(struct ode_rhs *d, int f, double t, double *y) {
+static void find_phi0(struct ode_rhs *d, int f, double t, double *y) {
     const struct state *state = d->residual->state;
     const struct fish *fish = &d->residual->school->fish[f];
     double *const value = d->residual->scratch;
-    // the control law is phi0 less a value that does not depend on phi0
+    // the control law is phi0 minus a value that does not depend on phi0
     y[fish->at.phi0] = 0;
     control_residual(fish, &state->control[f], t, t - state->t, residual_moment(d->residual, f, y), y, value);
     y[fish->at.phi0] = -value[fish->at.phi0];
@@ -324,16 +324,16 @@ enum status ode_rhs_rates(struct ode_rhs *d, double t, double *y, double *yp) {
     for (int i = 0; i < school->n_unknowns; i++) {
         if (!isfinite(y[i])) return status_fail(STATUS_RETRY, "unknown %d is not finite at t = %g s", i, t);
     }
-    TRY(place_flow(d, t, y));
+    TRY(update_flow(d, t, y));
     TRY(solve_sheets(d, y));
     add_sheets(d, y);
     memset(yp, 0, (size_t)school->n_unknowns * sizeof *yp);
     for (int f = 0; f < school->n_fish; f++) {
         const struct layout *at = &school->fish[f].at;
         const size_t size = 2 * (size_t)school->fish[f].n_nodes * sizeof *y;
-        steer(d, f, t, y);
+        find_phi0(d, f, t, y);
         residual_muscle(d->residual, f, t, y);
-        accelerate(d, f, t, y);
+        find_accelerations(d, f, t, y);
         memcpy(yp + at->x, y + at->vx, size);
         memcpy(yp + at->vx, y + at->ax, size);
         yp[at->circulation] = residual_shed_is_algebraic(d->residual) ? 0 : residual_shed_rate(d->residual, f, t, y);
@@ -345,6 +345,6 @@ enum status ode_rhs_rates(struct ode_rhs *d, double t, double *y, double *yp) {
     return STATUS_OK;
 }
 
-long ode_rhs_solves(const struct ode_rhs *direct) {
-    return direct->solves;
+long ode_rhs_solves(const struct ode_rhs *rhs) {
+    return rhs->solves;
 }

@@ -1,7 +1,8 @@
-/* ode_rhs.h: the algebraic unknowns one after another by direct linear solves, with no iteration: what an explicit method
- * does at each of its evaluations. doc/model.md, section 10. Tested by tests/solver/test_ode_rhs.c.
+/* ode_rhs.h: the equations as an ordinary differential equation dy/dt = f(t, y), for explicit methods: every evaluation
+ * solves for the algebraic unknowns one after another, without iteration. doc/model.md, section 10. Tested by
+ * tests/solver/test_ode_rhs.c.
  *
- * Positions and velocities given, each step needs only the ones before:
+ * Given positions and velocities, each step needs only those before it:
  *
  *     bound sheets (and, with kutta: edge, the circulation shed) -> velocity of the fluid -> phi0 -> accelerations
  *     dense in the school, KLU with one symbolic analysis                                     banded, fish by fish
@@ -14,15 +15,17 @@
 
 struct ode_rhs;
 
-/* The residual must outlive it. Fails with STATUS_MEMORY. ode_rhs_free accepts NULL. */
-enum status ode_rhs_create(struct ode_rhs **direct, struct residual *residual);
-void ode_rhs_free(struct ode_rhs *direct);
+/* Create the right-hand side for a residual, which must outlive it. Fails with STATUS_MEMORY. ode_rhs_free accepts
+ * NULL. */
+enum status ode_rhs_create(struct ode_rhs **rhs, struct residual *residual);
+void ode_rhs_free(struct ode_rhs *rhs);
 
-/* Fill the algebraic unknowns of y at time t, bring driven nodes onto their given path, and set the rates yp of the
- * differential unknowns (those of the algebraic ones are 0). Returns STATUS_RETRY where a value is not finite. */
-enum status ode_rhs_rates(struct ode_rhs *direct, double t, double *y, double *yp);
+/* Compute the algebraic unknowns of y at time t [s], move prescribed nodes to their given path, and set the rates yp of
+ * the differential unknowns (those of the algebraic ones are 0); both arrays are (n_unknowns). Fails with STATUS_RETRY
+ * if a value is not finite or the system of the sheets is singular, or with STATUS_MEMORY. */
+enum status ode_rhs_rates(struct ode_rhs *rhs, double t, double *y, double *yp);
 
-/* Linear systems of the sheets solved so far. */
-long ode_rhs_solves(const struct ode_rhs *direct);
+/* How many systems of the sheets it has solved so far. */
+long ode_rhs_solves(const struct ode_rhs *rhs);
 
 #endif

@@ -1,4 +1,4 @@
-/* one_step.c: implicit Euler and the trapezoidal rule on the equations as they are. */
+/* one_step.c: implicit Euler and the trapezoidal rule, applied to the residual of the school. */
 #include "solver/one_step.h"
 
 #include <math.h>
@@ -8,16 +8,17 @@
 #include "model/diagnostics.h"
 #include "solver/linear.h"
 
-/* Newton's iteration ends when what is left is this part of the tolerance. */
+/* Newton's iteration has converged when its error is this fraction of the tolerance. */
 static const double newton_coefficient = 0.01;
 
-/* Coupled fish are solved for up to this part of the right-hand side: Newton's iteration loses more with an old Jacobian. */
+/* Tolerance of the linear solver, as a fraction of the right-hand side: an old Jacobian costs Newton's iteration more.
+ * */
 static const double linear_relative = 1e-3;
 
-/* A Jacobian is used on, from step to step, as long as corrections shrink by this factor each. */
+/* A Jacobian is kept, from step to step, while each correction is at most this fraction of the one before. */
 static const double slow_rate = 0.3;
 
-enum { MOST_ITERATIONS = 12 };
+enum { MAX_ITERATIONS = 12 };
 
 struct one_step {
     struct residual *residual;
@@ -25,15 +26,15 @@ struct one_step {
     struct integrator_options options;
     struct jacobian *jacobian;
     struct linear *linear;
-    unsigned pattern;                /* of the residual that the Jacobian has been filled for */
-    double cj;                       /* of the Jacobian that is factorised; 0: there is none */
+    unsigned pattern;                /* of the residual, when the Jacobian was evaluated */
+    double cj;                       /* of the factorised Jacobian; 0: there is none */
     double *kind, *tolerance;        /* kind and absolute tolerance of each unknown     (n_unknowns) */
     double *before, *rates;          /* unknowns and rates at the start of the step     (n_unknowns) */
     double *correction, *right_hand; /* Newton's                                        (n_unknowns) */
     struct integrator_counts counts;
 };
 
-static void fixed_free(void *data) {
+static void one_step_free(void *data) {
     struct one_step *const solver = data;
     if (!solver) return;
     linear_free(solver->linear);
@@ -54,17 +55,18 @@ static enum status fill(struct one_step *solver) {
     }
     residual_kinds(solver->residual, solver->kind);
     for (int i = 0; i < n; i++) {
-        // what Newton leaves of a stiff body's velocities adds up to a momentum that is not there
+        // the errors of Newton's iteration in the velocities of a stiff body add up to a spurious momentum
         solver->tolerance[i] = solver->residual->school->rtol * residual_scale(solver->residual, i) *
                                residual_undamped(solver->residual, i);
     }
     TRY(jacobian_create(&solver->jacobian, solver->residual->school));
     residual_mask(solver->residual, solver->jacobian);
-    return linear_create(&solver->linear, solver->jacobian, solver->tolerance, (struct linear_end){linear_relative, 0});
+    return linear_create(&solver->linear, solver->jacobian, solver->tolerance,
+                         (struct linear_tolerance){linear_relative, 0});
 }
 
-static enum status fixed_create(void **solver, struct residual *residual, struct state *state,
-                                const struct integrator_options *options) {
+static enum status one_step_create(void **solver, struct residual *residual, struct state *state,
+                                   const struct integrator_options *options) {
     *solver = NULL;
     struct one_step *const new = calloc(1, sizeof *new);
     if (!new) return status_fail(STATUS_MEMORY, "out of memory: the implicit solver");
@@ -76,19 +78,19 @@ static enum status fixed_create(void **solver, struct residual *residual, struct
     new->counts.order = options->method == METHOD_TRAPEZOID ? 2 : 1;
     const enum status status = fill(new);
     if (status != STATUS_OK) {
-        fixed_free(new);
+        one_step_free(new);
         return status;
     }
     *solver = new;
     return STATUS_OK;
 }
 
-static void fixed_count(const void *data, struct integrator_counts *counts) {
+static void one_step_count(const void *data, struct integrator_counts *counts) {
     *counts = ((const struct one_step *)data)->counts;
 }
 
-// a one-step method has no past: what a jump changes is which unknowns are differential
-static enum status fixed_restart(void *data) {
+// a one-step method has no history, but a jump may change which unknowns are differential
+static enum status one_step_restart(void *data) {
     struct one_step *const solver = data;
     residual_kinds(solver->residual, solver->kind);
     solver->cj = 0;
@@ -97,13 +99,13 @@ static enum status fixed_restart(void *data) {
 
 // ---- one step
 
-/* The rates that belong to the unknowns at the end of the step. */
+/* The rates at the end of the step, from the unknowns there. */
 static void set_rates(struct one_step *solver, double h) {
     struct state *const state = solver->state;
     const int is_trapezoid = solver->options.method == METHOD_TRAPEZOID;
     for (int i = 0; i < solver->residual->school->n_unknowns; i++) {
         const double change = (state->y[i] - solver->before[i]) / h;
-        // those of algebraic unknowns serve the energy balances only
+        // rates of algebraic unknowns are for the energy balance only
         state->yp[i] = is_trapezoid && solver->kind[i] > 0 ? 2 * change - solver->rates[i] : change;
     }
 }
@@ -121,7 +123,7 @@ static enum status set_up(struct one_step *solver, double t, double cj) {
     return STATUS_OK;
 }
 
-/* One correction of the unknowns; its size in tolerances. */
+/* One correction of the unknowns, and its size in tolerances. */
 static enum status correct(struct one_step *solver, double t, double h, double *size) {
     struct state *const state = solver->state;
     const int n = solver->residual->school->n_unknowns;
@@ -133,27 +135,27 @@ static enum status correct(struct one_step *solver, double t, double h, double *
     *size = 0;
     for (int i = 0; i < n; i++) {
         state->y[i] -= solver->correction[i];
-        // not a number must not pass for small
+        // NaN must not pass for small
         const double weighted = fabs(solver->correction[i]) / solver->tolerance[i];
         if (!(weighted <= *size)) *size = weighted;
     }
     return STATUS_OK;
 }
 
-/* Newton's iteration from the unknowns at the start of the step. *converged: whether it ended well. */
+/* Newton's iteration, starting from the unknowns in the state. */
 static enum status iterate(struct one_step *solver, double t, double h, int *converged) {
     double before = 0;
     *converged = 0;
     const double cj = solver->options.method == METHOD_TRAPEZOID ? 2 / h : 1 / h;
-    for (int i = 0; i < MOST_ITERATIONS; i++) {
+    for (int i = 0; i < MAX_ITERATIONS; i++) {
         if (solver->cj != cj || solver->pattern != solver->residual->pattern) TRY(set_up(solver, t, cj));
         double size = 0;
         TRY(correct(solver, t, h, &size));
         const double rate = i > 0 ? size / before : 0;
-        // what is left after this correction, as far as its rate tells
-        const double left = i > 0 && rate < 0.5 ? size * rate / (1 - rate) : size;
-        // at the floor of rounding corrections shrink no more
-        *converged = left < newton_coefficient || (rate > 0.9 && size < 1);
+        // the error after this correction, estimated from the rate of convergence
+        const double error = i > 0 && rate < 0.5 ? size * rate / (1 - rate) : size;
+        // at the lower bound set by rounding corrections no longer shrink
+        *converged = error < newton_coefficient || (rate > 0.9 && size < 1);
         if (*converged || !isfinite(size)) return STATUS_OK;
         if (rate > slow_rate) solver->cj = 0;
         before = size;
@@ -161,21 +163,21 @@ static enum status iterate(struct one_step *solver, double t, double h, int *con
     return STATUS_OK;
 }
 
-static enum status give_up(const struct one_step *solver, double t) {
+static enum status failed(const struct one_step *solver, double t) {
     return status_fail(STATUS_SOLVER,
-                       "the solver gave up at t = %.10g s: Newton's iteration did not converge with steps of %.3g s: "
-                       "take a smaller solver.step, or solver.method: ida",
+                       "integration failed at t = %.10g s: Newton's iteration did not converge with steps of %.3g s: "
+                       "choose a smaller solver.step, or solver.method: ida",
                        t, solver->options.step);
 }
 
-/* From the state, at time t - h, to time t. */
+/* One step of h to time t. */
 static enum status step(struct one_step *solver, double t, double h) {
     struct state *const state = solver->state;
     const size_t size = (size_t)solver->residual->school->n_unknowns * sizeof *state->y;
     memcpy(solver->before, state->y, size);
     memcpy(solver->rates, state->yp, size);
     int converged = 0;
-    // a second attempt has a Jacobian of its own
+    // a second attempt has a new Jacobian
     for (int attempt = 0; attempt < 2 && !converged; attempt++) {
         memcpy(state->y, solver->before, size);
         const enum status status = iterate(solver, t, h, &converged);
@@ -183,20 +185,20 @@ static enum status step(struct one_step *solver, double t, double h) {
         if (status > 0) converged = 0;
         if (!converged) solver->cj = 0;
     }
-    if (!converged) return give_up(solver, t - h);
+    if (!converged) return failed(solver, t - h);
     set_rates(solver, h);
     solver->counts.steps++;
     diagnostics_step(solver->residual, state, t, state->y, state->yp);
     return STATUS_OK;
 }
 
-static enum status fixed_advance(void *data, double t) {
+static enum status one_step_advance(void *data, double t) {
     struct one_step *const solver = data;
     const double start = solver->state->t, interval = t - start;
     const long n = lround(interval / solver->options.step);
     if (n > solver->options.max_steps) {
         return status_fail(STATUS_SOLVER,
-                           "the solver gave up at t = %.10g s: %ld steps between two events are more than "
+                           "integration failed at t = %.10g s: %ld steps between two events are more than "
                            "solver.max_steps: raise it, or solver.step",
                            start, n);
     }
@@ -206,8 +208,8 @@ static enum status fixed_advance(void *data, double t) {
 }
 
 const struct integrator one_step_integrator = {.name = "implicit, fixed steps",
-                                               .create = fixed_create,
-                                               .advance = fixed_advance,
-                                               .restart = fixed_restart,
-                                               .count = fixed_count,
-                                               .free = fixed_free};
+                                               .create = one_step_create,
+                                               .advance = one_step_advance,
+                                               .restart = one_step_restart,
+                                               .count = one_step_count,
+                                               .free = one_step_free};

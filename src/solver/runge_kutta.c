@@ -1,4 +1,4 @@
-/* runge_kutta.c: ARKStep on the right-hand side that ode_rhs.c computes. */
+/* runge_kutta.c: ARKStep applied to the right-hand side of ode_rhs.c. */
 #include "solver/runge_kutta.h"
 
 #include <arkode/arkode_arkstep.h>
@@ -15,25 +15,25 @@ struct runge_kutta {
     struct residual *residual;
     struct state *state;
     struct integrator_options options;
-    struct ode_rhs *direct;
+    struct ode_rhs *rhs;
     enum status failure; /* of the last right-hand side */
     double *tolerance;   /* absolute tolerance of each unknown                        (n_unknowns) */
 
-    /* the last evaluation: unknowns with the algebraic ones filled in, and their rates */
+    /* the last evaluation: unknowns, algebraic ones included, and rates */
     double *work, *rates; /*                                                           (n_unknowns) */
-    int known;            /* whether there is one */
+    int known;            /* whether they are valid */
     double known_t;
     long known_event;
-    long evaluations;    /* so far */
-    double *phi0, *shed; /* of every fish at the end of the last step                   (n_fish) */
+    long evaluations;           /* so far */
+    double *phi0, *circulation; /* of each fish at the end of the last step              (n_fish) */
 
     SUNContext context;
     N_Vector y, tolerances;
     void *arkode;
-    struct integrator_counts before; /* restarts set ARKODE's own totals to zero */
+    struct integrator_counts before; /* totals up to the last restart: that sets ARKODE's own to zero */
 };
 
-// whether the differential unknowns and the wakes are those of the last evaluation
+// whether time, differential unknowns and wakes are those of the last evaluation
 static int is_known(const struct runge_kutta *solver, double t, const double *y) {
     if (!solver->known || t != solver->known_t || solver->state->event != solver->known_event) return 0;
     for (int f = 0; f < solver->residual->school->n_fish; f++) {
@@ -46,14 +46,14 @@ static int is_known(const struct runge_kutta *solver, double t, const double *y)
     return 1;
 }
 
-// unknowns and rates at one place of the differential unknowns, into work and rates
+// compute work and rates from the differential unknowns in y
 static enum status evaluate(struct runge_kutta *solver, double t, const double *y) {
-    // the end of a step is the start of the next: one evaluation serves both
+    // one evaluation serves the end of a step and the start of the next
     if (is_known(solver, t, y)) return STATUS_OK;
     solver->known = 0;
     solver->evaluations++;
     memcpy(solver->work, y, (size_t)solver->residual->school->n_unknowns * sizeof *y);
-    TRY(ode_rhs_rates(solver->direct, t, solver->work, solver->rates));
+    TRY(ode_rhs_rates(solver->rhs, t, solver->work, solver->rates));
     solver->known = 1;
     solver->known_t = t;
     solver->known_event = solver->state->event;
@@ -70,7 +70,7 @@ static int rates_callback(realtype t, N_Vector y, N_Vector rates, void *data) {
     return solver->failure;
 }
 
-// Euler's method; a second stage gives the error estimate that an adaptive step needs
+// Euler's method; adaptive: with a second stage for the error estimate
 static ARKodeButcherTable euler_table(int adaptive) {
     double c[2] = {0, 1}, a[4] = {0, 0, 1, 0}, b[2] = {1, 0}, heun[2] = {0.5, 0.5};
     return adaptive ? ARKodeButcherTable_Create(2, 1, 2, c, a, b, heun)
@@ -96,17 +96,17 @@ static ARKodeButcherTable table_of(enum method method, int adaptive) {
     return NULL;
 }
 
-static void explicit_free(void *data) {
+static void runge_kutta_free(void *data) {
     struct runge_kutta *const solver = data;
     if (!solver) return;
     if (solver->arkode) ARKStepFree(&solver->arkode);
     if (solver->y) N_VDestroy(solver->y);
     if (solver->tolerances) N_VDestroy(solver->tolerances);
-    ode_rhs_free(solver->direct);
+    ode_rhs_free(solver->rhs);
     free(solver->work);
     free(solver->rates);
     free(solver->phi0);
-    free(solver->shed);
+    free(solver->circulation);
     free(solver->tolerance);
     if (solver->context) SUNContext_Free(&solver->context);
     free(solver);
@@ -116,7 +116,7 @@ static enum status set_up_arkode(struct runge_kutta *solver) {
     void *const arkode = solver->arkode;
     const double step = solver->options.step;
     const ARKodeButcherTable table = table_of(solver->options.method, step <= 0);
-    if (!table) return status_fail(STATUS_MEMORY, "out of memory: the table of a Runge-Kutta method");
+    if (!table) return status_fail(STATUS_MEMORY, "out of memory: the Butcher table of a Runge-Kutta method");
     const int failed = ARKStepSetErrHandlerFn(arkode, sundials_adapter_message, NULL) ||
                        ARKStepSetUserData(arkode, solver) || ARKStepSetTables(arkode, 0, 0, NULL, table) ||
                        ARKStepSVtolerances(arkode, 0, solver->tolerances) || ARKStepSetMaxNumSteps(arkode, -1) ||
@@ -127,11 +127,11 @@ static enum status set_up_arkode(struct runge_kutta *solver) {
     return failed ? status_fail(STATUS_SOLVER, "ARKODE cannot be set up: %s", status_message()) : STATUS_OK;
 }
 
-static void remember(struct runge_kutta *solver) {
+static void keep_algebraic(struct runge_kutta *solver) {
     const struct school *school = solver->residual->school;
     for (int f = 0; f < school->n_fish; f++) {
         solver->phi0[f] = solver->state->y[school->fish[f].at.phi0];
-        solver->shed[f] = solver->state->y[school->fish[f].at.circulation];
+        solver->circulation[f] = solver->state->y[school->fish[f].at.circulation];
     }
 }
 
@@ -141,17 +141,17 @@ static enum status fill(struct runge_kutta *solver) {
     solver->tolerance = calloc((size_t)n, sizeof *solver->tolerance);
     solver->rates = calloc((size_t)n, sizeof *solver->rates);
     solver->phi0 = calloc((size_t)solver->residual->school->n_fish, sizeof *solver->phi0);
-    solver->shed = calloc((size_t)solver->residual->school->n_fish, sizeof *solver->shed);
-    if (!solver->work || !solver->rates || !solver->phi0 || !solver->shed || !solver->tolerance)
+    solver->circulation = calloc((size_t)solver->residual->school->n_fish, sizeof *solver->circulation);
+    if (!solver->work || !solver->rates || !solver->phi0 || !solver->circulation || !solver->tolerance)
         return status_fail(STATUS_MEMORY, "out of memory: %d unknowns", n);
-    // algebraic unknowns have no rate and no error here; an explicit method that does not see velocities goes wrong
-    // without a word
+    // algebraic unknowns have neither rate nor error here; without a tolerance for velocities an explicit method can go
+    // wrong unnoticed
     for (int i = 0; i < n; i++) {
         solver->tolerance[i] = solver->residual->school->rtol * residual_scale(solver->residual, i) *
                                residual_undamped(solver->residual, i);
     }
-    remember(solver);
-    TRY(ode_rhs_create(&solver->direct, solver->residual));
+    keep_algebraic(solver);
+    TRY(ode_rhs_create(&solver->rhs, solver->residual));
     TRY(sundials_adapter_context(&solver->context));
     TRY(sundials_adapter_vector(&solver->y, solver->context, n, solver->state->y));
     TRY(sundials_adapter_vector(&solver->tolerances, solver->context, n, solver->tolerance));
@@ -160,24 +160,24 @@ static enum status fill(struct runge_kutta *solver) {
     return set_up_arkode(solver);
 }
 
-static enum status explicit_create(void **solver, struct residual *residual, struct state *state,
-                                   const struct integrator_options *options) {
+static enum status runge_kutta_create(void **solver, struct residual *residual, struct state *state,
+                                      const struct integrator_options *options) {
     *solver = NULL;
     struct runge_kutta *const new = calloc(1, sizeof *new);
-    if (!new) return status_fail(STATUS_MEMORY, "out of memory: the explicit solver");
+    if (!new) return status_fail(STATUS_MEMORY, "out of memory: ARKODE's solver");
     new->residual = residual;
     new->state = state;
     new->options = *options;
     const enum status status = fill(new);
     if (status != STATUS_OK) {
-        explicit_free(new);
+        runge_kutta_free(new);
         return status;
     }
     *solver = new;
     return STATUS_OK;
 }
 
-static void explicit_count(const void *data, struct integrator_counts *counts) {
+static void runge_kutta_count(const void *data, struct integrator_counts *counts) {
     const struct runge_kutta *const solver = data;
     long steps = 0, error_failures = 0;
     double last_step = 0;
@@ -189,14 +189,14 @@ static void explicit_count(const void *data, struct integrator_counts *counts) {
     counts->residual_evaluations = solver->evaluations;
     counts->error_test_failures += error_failures;
     if (last_step > 0) counts->step_size = last_step;
-    counts->linear_solves = ode_rhs_solves(solver->direct);
+    counts->linear_solves = ode_rhs_solves(solver->rhs);
     counts->order = (int[]){0, 1, 2, 4, 5}[solver->options.method];
 }
 
-static enum status explicit_restart(void *data) {
+static enum status runge_kutta_restart(void *data) {
     struct runge_kutta *const solver = data;
-    explicit_count(solver, &solver->before);
-    remember(solver);
+    runge_kutta_count(solver, &solver->before);
+    keep_algebraic(solver);
     if (ARKStepReInit(solver->arkode, rates_callback, NULL, solver->state->t, solver->y)) {
         return status_fail(STATUS_SOLVER, "ARKODE cannot start again: %s", status_message());
     }
@@ -209,32 +209,32 @@ static enum status unstable(const struct runge_kutta *solver, double t, const ch
     ARKStepGetLastStep(solver->arkode, &step);
     return status_fail(STATUS_SOLVER,
                        "unstable at t = %.10g s: %s with steps of %.3g s; the body is too stiff for an explicit method "
-                       "with such steps: take solver.method: ida, or a smaller solver.step",
+                       "with such steps: choose solver.method: ida, or a smaller solver.step",
                        t, why, step);
 }
 
-// the algebraic unknowns at the end of a step, for the energy balances and the event
+// the algebraic unknowns and all rates at the end of a step, for the energy balance and the event
 static enum status close_step(struct runge_kutta *solver, double before, double reached) {
     struct state *const state = solver->state;
     const struct school *school = solver->residual->school;
     const enum status status = evaluate(solver, reached, state->y);
-    if (status > 0) return unstable(solver, reached, "the solution leaves all numbers");
+    if (status > 0) return unstable(solver, reached, "the solution overflows");
     TRY(status);
     memcpy(state->yp, solver->rates, (size_t)school->n_unknowns * sizeof *state->yp);
-    // the rates of algebraic unknowns that matter are known from their changes only
+    // rates of algebraic unknowns that matter are differences over the step
     for (int f = 0; f < school->n_fish; f++) {
         const struct layout *at = &school->fish[f].at;
         state->yp[at->phi0] = (solver->work[at->phi0] - solver->phi0[f]) / (reached - before);
         if (residual_shed_is_algebraic(solver->residual)) {
-            state->yp[at->circulation] = (solver->work[at->circulation] - solver->shed[f]) / (reached - before);
+            state->yp[at->circulation] = (solver->work[at->circulation] - solver->circulation[f]) / (reached - before);
         }
     }
     memcpy(state->y, solver->work, (size_t)school->n_unknowns * sizeof *state->y);
-    remember(solver);
+    keep_algebraic(solver);
     return STATUS_OK;
 }
 
-static enum status explicit_advance(void *data, double t) {
+static enum status runge_kutta_advance(void *data, double t) {
     struct runge_kutta *const solver = data;
     struct state *const state = solver->state;
     double reached = state->t;
@@ -247,7 +247,7 @@ static enum status explicit_advance(void *data, double t) {
         const double before = reached;
         const int code = ARKStepEvolve(solver->arkode, t, solver->y, &reached, ARK_ONE_STEP);
         if (solver->failure < 0) return solver->failure;
-        if (code < 0) return unstable(solver, reached, "the solution leaves all numbers");
+        if (code < 0) return unstable(solver, reached, "the solution overflows");
         if (code == ARK_TSTOP_RETURN) reached = t;
         TRY(close_step(solver, before, reached));
         diagnostics_step(solver->residual, state, reached, state->y, state->yp);
@@ -256,8 +256,8 @@ static enum status explicit_advance(void *data, double t) {
 }
 
 const struct integrator runge_kutta_integrator = {.name = "explicit Runge-Kutta",
-                                                  .create = explicit_create,
-                                                  .advance = explicit_advance,
-                                                  .restart = explicit_restart,
-                                                  .count = explicit_count,
-                                                  .free = explicit_free};
+                                                  .create = runge_kutta_create,
+                                                  .advance = runge_kutta_advance,
+                                                  .restart = runge_kutta_restart,
+                                                  .count = runge_kutta_count,
+                                                  .free = runge_kutta_free};

@@ -1,11 +1,12 @@
-/* sundials_adapter.c: SUNDIALS objects around our arrays. */
+/* sundials_adapter.c: objects of SUNDIALS that wrap our arrays and our linear solver. */
 #include "solver/sundials_adapter.h"
 
 #include <nvector/nvector_serial.h>
 #include <sundials/sundials_context.h>
 
 enum status sundials_adapter_context(SUNContext *context) {
-    if (SUNContext_Create(NULL, context) != 0) return status_fail(STATUS_MEMORY, "out of memory: the solvers");
+    if (SUNContext_Create(NULL, context) != 0)
+        return status_fail(STATUS_MEMORY, "out of memory: a context of SUNDIALS");
     return STATUS_OK;
 }
 
@@ -19,7 +20,7 @@ static SUNMatrix_ID matrix_id(SUNMatrix matrix) {
     return SUNMATRIX_CUSTOM;
 }
 
-// the Jacobian sets its values to zero itself when it is filled
+// residual_jacobian sets the values to zero itself
 static int matrix_zero(SUNMatrix matrix) {
     (void)matrix;
     return SUNMAT_SUCCESS;
@@ -42,9 +43,9 @@ static int solver_solve(SUNLinearSolver solver, SUNMatrix matrix, N_Vector x, N_
 
 enum status sundials_adapter_linear_create(struct sundials_adapter_linear *adapter, SUNContext context,
                                            const struct jacobian *jacobian, const double *scale,
-                                           struct linear_end end) {
+                                           struct linear_tolerance tolerance) {
     *adapter = (struct sundials_adapter_linear){0};
-    TRY(linear_create(&adapter->linear, jacobian, scale, end));
+    TRY(linear_create(&adapter->linear, jacobian, scale, tolerance));
     adapter->matrix = SUNMatNewEmpty(context);
     adapter->solver = SUNLinSolNewEmpty(context);
     if (!adapter->matrix || !adapter->solver) {
@@ -69,6 +70,6 @@ void sundials_adapter_linear_free(struct sundials_adapter_linear *adapter) {
 
 void sundials_adapter_message(int code, const char *module, const char *function, char *text, void *data) {
     (void)data;
-    // a warning needs no word: what matters comes back as a code
+    // warnings are dropped: what matters also comes back as a code
     if (code < 0) status_fail(STATUS_SOLVER, "%s (%s, %s)", text, module, function);
 }

@@ -1,5 +1,6 @@
-/* sundials_adapter.h: what IDA and KINSOL share: context, vectors, the Jacobian of the school with its linear solver. Tested by
- * tests/solver/test_initial_conditions.c and tests/solver/test_ida.c. */
+/* sundials_adapter.h: the objects of SUNDIALS that IDA, KINSOL and ARKODE need, made from ours: context, vectors, the
+ * Jacobian of the school with its linear solver, error messages. Tested by tests/solver/test_initial_conditions.c and
+ * tests/solver/test_ida.c. */
 #ifndef SUNDIALS_ADAPTER_H
 #define SUNDIALS_ADAPTER_H
 
@@ -11,27 +12,28 @@
 #include "model/jacobian.h"
 #include "solver/linear.h"
 
-/* A Jacobian as SUNDIALS holds it, and the solver of its systems. */
+/* The Jacobian as SUNDIALS sees it, and its linear solver. */
 struct sundials_adapter_linear {
     struct linear *linear;
-    SUNMatrix matrix; /* has nothing of its own: the callback of the solver fills the Jacobian */
+    SUNMatrix matrix; /* empty: the callback for the Jacobian fills ours */
     SUNLinearSolver solver;
 };
 
-/* Fails with STATUS_MEMORY. */
+/* Create a context. Fails with STATUS_MEMORY. */
 enum status sundials_adapter_context(SUNContext *context);
 
-/* A vector around an array that it does not own. Fails with STATUS_MEMORY. */
+/* Create a vector of n values that are not copied; it does not own them. Fails with STATUS_MEMORY. */
 enum status sundials_adapter_vector(N_Vector *vector, SUNContext context, long n, double *values);
 
-/* The solver for a Jacobian that must outlive it; scale and end as in linear_create. To SUNDIALS it is a direct
- * one: IDA scales its solutions when the step has changed since the Jacobian. Fails with STATUS_MEMORY; there is
- * nothing to free then. */
+/* Create the solver for a Jacobian, which must outlive it; scale and tolerance as in linear_create. It declares itself
+ * a direct solver, so that IDA scales its solutions when the step has changed since the Jacobian was evaluated. Fails
+ * with STATUS_MEMORY; there is nothing to free then. sundials_adapter_linear_free accepts a structure of zeros. */
 enum status sundials_adapter_linear_create(struct sundials_adapter_linear *adapter, SUNContext context,
-                                           const struct jacobian *jacobian, const double *scale, struct linear_end end);
+                                           const struct jacobian *jacobian, const double *scale,
+                                           struct linear_tolerance tolerance);
 void sundials_adapter_linear_free(struct sundials_adapter_linear *adapter);
 
-/* Keep the text of an error of SUNDIALS as this thread's message; an error handler. */
+/* Error handler for SUNDIALS: keeps its text as this thread's message. */
 void sundials_adapter_message(int code, const char *module, const char *function, char *text, void *data);
 
 #endif

@@ -1,4 +1,4 @@
-/* test_carry.c: what a field of vectors keeps while it is carried from one shape of a body to another. */
+/* test_corotation.c: what a vector field on a body keeps when it is mapped from one configuration to another. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,26 +13,26 @@ static const char *const text =
     "  - {nodes: 4, sheet_points: 5, start: {position: [0, 2]}, motion: {driven: head, heave: 0.1, frequency: 1}}\n"
     "  - {nodes: 9, sheet_points: 5, length: 0.6, start: {position: [2, 1], heading: 30}}\n";
 
-enum { MOST_NODES = 9 };
+enum { MAX_NODES = 9 };
 
-/* A school before and after its bodies have moved. */
-struct places {
+/* A school in its reference and in its current configuration, and a field with its image. */
+struct configurations {
     struct setup setup;
     struct corotation *corotation;
     int n;
-    double *before, *after, *field, *carried; /* (n each) */
+    double *reference, *current, *field, *image; /* (n each) */
 };
 
-// every edge of every body turns by angle and by up to bend more, then the body goes elsewhere
-static void move(struct places *places, double angle, double bend) {
-    for (int f = 0; f < places->setup.school->n_fish; f++) {
-        const struct fish *fish = &places->setup.school->fish[f];
-        const double *const x = places->before + fish->at.x, *const y = places->before + fish->at.y;
-        double *const to_x = places->after + fish->at.x, *const to_y = places->after + fish->at.y;
+// every edge of every body rotates by angle and by up to bend more, then the body is displaced
+static void move(struct configurations *both, double angle, double bend) {
+    for (int f = 0; f < both->setup.school->n_fish; f++) {
+        const struct fish *fish = &both->setup.school->fish[f];
+        const double *const x = both->reference + fish->at.x, *const y = both->reference + fish->at.y;
+        double *const to_x = both->current + fish->at.x, *const to_y = both->current + fish->at.y;
         to_x[0] = x[0] - 3;
         to_y[0] = y[0] + 0.7;
         for (int k = 0; k < fish->n_edges; k++) {
-            const double turn = angle + bend * school_random(&places->setup);
+            const double turn = angle + bend * school_random(&both->setup);
             const double ex = x[k + 1] - x[k], ey = y[k + 1] - y[k];
             to_x[k + 1] = to_x[k] + cos(turn) * ex - sin(turn) * ey;
             to_y[k + 1] = to_y[k] + sin(turn) * ex + cos(turn) * ey;
@@ -40,35 +40,35 @@ static void move(struct places *places, double angle, double bend) {
     }
 }
 
-static void set_up(struct places *places, double angle, double bend) {
-    school_build(&places->setup, text);
-    school_stir(&places->setup);
-    school_ok(corotation_create(&places->corotation, places->setup.school));
-    places->n = places->setup.school->n_unknowns;
-    double **const arrays[] = {&places->before, &places->after, &places->field, &places->carried};
+static void set_up(struct configurations *both, double angle, double bend) {
+    school_build(&both->setup, text);
+    school_stir(&both->setup);
+    school_ok(corotation_create(&both->corotation, both->setup.school));
+    both->n = both->setup.school->n_unknowns;
+    double **const arrays[] = {&both->reference, &both->current, &both->field, &both->image};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
-        *arrays[i] = calloc((size_t)places->n, sizeof(double));
+        *arrays[i] = calloc((size_t)both->n, sizeof(double));
         assert_non_null(*arrays[i]);
     }
-    memcpy(places->before, places->setup.state->y, (size_t)places->n * sizeof(double));
-    // nothing moves: the derivative of the damping turns with the velocities
+    memcpy(both->reference, both->setup.state->y, (size_t)both->n * sizeof(double));
+    // at rest: the derivative of the damping depends on velocities, which are not rotated here
     for (int f = 0; f < 3; f++) {
-        const struct fish *fish = &places->setup.school->fish[f];
-        memset(places->before + fish->at.vx, 0, 2 * (size_t)fish->n_nodes * sizeof(double));
+        const struct fish *fish = &both->setup.school->fish[f];
+        memset(both->reference + fish->at.vx, 0, 2 * (size_t)fish->n_nodes * sizeof(double));
     }
-    move(places, angle, bend);
-    for (int i = 0; i < places->n; i++) places->carried[i] = places->field[i] = school_random(&places->setup);
-    corotation_set_reference(places->corotation, places->before);
-    corotation_set_current(places->corotation, places->after);
+    move(both, angle, bend);
+    for (int i = 0; i < both->n; i++) both->image[i] = both->field[i] = school_random(&both->setup);
+    corotation_set_reference(both->corotation, both->reference);
+    corotation_set_current(both->corotation, both->current);
 }
 
-static void clear(struct places *places) {
-    corotation_free(places->corotation);
-    free(places->before);
-    free(places->after);
-    free(places->field);
-    free(places->carried);
-    school_clear(&places->setup);
+static void clear(struct configurations *both) {
+    corotation_free(both->corotation);
+    free(both->reference);
+    free(both->current);
+    free(both->field);
+    free(both->image);
+    school_clear(&both->setup);
 }
 
 static double product(const struct fish *fish, const double *a, const double *b) {
@@ -93,114 +93,114 @@ static void rigid(const struct fish *fish, const double *place, int which, doubl
     }
 }
 
-static void there_and_back_changes_nothing(void **state) {
+static void each_map_is_the_inverse_of_the_other(void **state) {
     (void)state;
-    struct places places;
-    set_up(&places, 2.5, 0.4);
-    corotation_to_current(places.corotation, places.carried);
-    assert_true(fabs(places.carried[0] - places.field[0]) > 1e-3);
-    corotation_to_reference(places.corotation, places.carried);
-    // rounding of three rotations there and back
-    NEAR_ARRAY(places.n, places.carried, places.field, 1e-14, 0);
-    clear(&places);
+    struct configurations both;
+    set_up(&both, 2.5, 0.4);
+    corotation_to_current(both.corotation, both.image);
+    assert_true(fabs(both.image[0] - both.field[0]) > 1e-3);
+    corotation_to_reference(both.corotation, both.image);
+    // rounding of three rotations and their inverses
+    NEAR_ARRAY(both.n, both.image, both.field, 1e-14, 0);
+    clear(&both);
 }
 
-static void products_weighted_with_the_masses_are_kept(void **state) {
+static void the_inner_product_weighted_with_masses_is_preserved(void **state) {
     (void)state;
-    struct places places;
-    set_up(&places, -1, 0.4);
-    corotation_to_current(places.corotation, places.carried);
+    struct configurations both;
+    set_up(&both, -1, 0.4);
+    corotation_to_current(both.corotation, both.image);
     for (int f = 0; f < 3; f++) {
-        const struct fish *fish = &places.setup.school->fish[f];
+        const struct fish *fish = &both.setup.school->fish[f];
         const int slices[] = {fish->at.x, fish->at.vx, fish->at.ax};
         for (int i = 0; i < 3; i++) {
-            const double *const a = places.field + slices[i], *const b = places.carried + slices[i];
+            const double *const a = both.field + slices[i], *const b = both.image + slices[i];
             NEAR(product(fish, b, b), product(fish, a, a), 0, 1e-14);
         }
-        NEAR(product(fish, places.carried + fish->at.x, places.carried + fish->at.ax),
-             product(fish, places.field + fish->at.x, places.field + fish->at.ax), 1e-13, 0);
+        NEAR(product(fish, both.image + fish->at.x, both.image + fish->at.ax),
+             product(fish, both.field + fish->at.x, both.field + fish->at.ax), 1e-13, 0);
     }
-    clear(&places);
+    clear(&both);
 }
 
-static void a_rigid_motion_stays_one(void **state) {
+static void a_rigid_motion_is_mapped_to_a_rigid_motion(void **state) {
     (void)state;
-    struct places places;
-    set_up(&places, 0.8, 0.3);
+    struct configurations both;
+    set_up(&both, 0.8, 0.3);
     for (int which = 0; which < 3; which++) {
         for (int f = 0; f < 3; f += 2) {
-            const struct fish *fish = &places.setup.school->fish[f];
-            double want[2 * MOST_NODES];
-            double *const got = places.carried + fish->at.vx;
-            rigid(fish, places.before + fish->at.x, which, got);
+            const struct fish *fish = &both.setup.school->fish[f];
+            double want[2 * MAX_NODES];
+            double *const got = both.image + fish->at.vx;
+            rigid(fish, both.reference + fish->at.x, which, got);
             const double size = product(fish, got, got);
-            corotation_to_current(places.corotation, places.carried);
-            // the same one, but for the moment of inertia, which bending has changed
-            rigid(fish, places.after + fish->at.x, which, want);
+            corotation_to_current(both.corotation, both.image);
+            // the same motion, but for the moment of inertia, which bending has changed
+            rigid(fish, both.current + fish->at.x, which, want);
             const double scale = sqrt(size / product(fish, want, want));
             for (int i = 0; i < 2 * fish->n_nodes; i++) want[i] *= scale;
             NEAR(scale, 1, which < 2 ? 1e-14 : 0.1, 0);
             NEAR_ARRAY(2 * fish->n_nodes, got, want, 1e-14, 0);
         }
     }
-    clear(&places);
+    clear(&both);
 }
 
-static void other_unknowns_and_driven_fish_are_left_alone(void **state) {
+static void other_unknowns_and_fish_with_prescribed_nodes_are_not_mapped(void **state) {
     (void)state;
-    struct places places;
-    set_up(&places, 0.8, 0.3);
-    corotation_to_current(places.corotation, places.carried);
+    struct configurations both;
+    set_up(&both, 0.8, 0.3);
+    corotation_to_current(both.corotation, both.image);
     for (int f = 0; f < 3; f++) {
-        const struct layout *at = &places.setup.school->fish[f].at;
+        const struct layout *at = &both.setup.school->fish[f].at;
         const int first = f == 1 ? at->x : at->gamma;
-        NEAR_ARRAY(at->end - first, places.carried + first, places.field + first, 0, 0);
+        NEAR_ARRAY(at->end - first, both.image + first, both.field + first, 0, 0);
     }
-    // and all fish where no time has passed
-    memcpy(places.carried, places.field, (size_t)places.n * sizeof(double));
-    corotation_set_reference(places.corotation, places.after);
-    corotation_to_current(places.corotation, places.carried);
-    NEAR_ARRAY(places.n, places.carried, places.field, 0, 0);
-    clear(&places);
+    // nor any fish that has not moved since the reference
+    memcpy(both.image, both.field, (size_t)both.n * sizeof(double));
+    corotation_set_reference(both.corotation, both.current);
+    corotation_to_current(both.corotation, both.image);
+    NEAR_ARRAY(both.n, both.image, both.field, 0, 0);
+    clear(&both);
 }
 
-// column by column the elastic derivative of fish f where the bodies were, carried, and where they are
-static void stiffness(struct places *places, int f, const double *y, double *dense) {
-    const struct fish *fish = &places->setup.school->fish[f];
-    const double natural[MOST_NODES] = {0};
+// the elastic part of the Jacobian of fish f, accelerations by positions
+static void stiffness(struct configurations *both, int f, const double *y, double *dense) {
+    const struct fish *fish = &both->setup.school->fish[f];
+    const double natural[MAX_NODES] = {0};
     struct sparse *matrix;
-    school_ok(sparse_create(&matrix, 0, places->n));
+    school_ok(sparse_create(&matrix, 0, both->n));
     sparse_begin(matrix);
     rod_jacobian(fish, natural, natural, y, matrix);
     school_ok(sparse_end(matrix));
     double *const all = school_dense(matrix);
     for (int row = 0; row < 2 * fish->n_nodes; row++) {
         for (int column = 0; column < 2 * fish->n_nodes; column++) {
-            dense[row * 2 * MOST_NODES + column] = all[(fish->at.ax + row) * places->n + fish->at.x + column];
+            dense[row * 2 * MAX_NODES + column] = all[(fish->at.ax + row) * both->n + fish->at.x + column];
         }
     }
     free(all);
     sparse_free(matrix);
 }
 
-// T K T^-1
-static void carried_stiffness(const struct places *places, int f, double *dense) {
-    const struct fish *fish = &places->setup.school->fish[f];
+// K becomes T K T^-1
+static void map_stiffness(const struct configurations *both, int f, double *dense) {
+    const struct fish *fish = &both->setup.school->fish[f];
     const int n = 2 * fish->n_nodes;
-    double result[2 * MOST_NODES * 2 * MOST_NODES];
-    double *const vector = calloc((size_t)places->n, sizeof *vector);
+    double result[2 * MAX_NODES * 2 * MAX_NODES];
+    double *const vector = calloc((size_t)both->n, sizeof *vector);
     assert_non_null(vector);
     for (int column = 0; column < n; column++) {
         for (int i = 0; i < n; i++) vector[fish->at.x + i] = i == column;
-        corotation_to_reference(places->corotation, vector);
+        corotation_to_reference(both->corotation, vector);
         for (int row = 0; row < n; row++) {
             vector[fish->at.ax + row] = 0;
             for (int i = 0; i < n; i++) {
-                vector[fish->at.ax + row] += dense[row * 2 * MOST_NODES + i] * vector[fish->at.x + i];
+                vector[fish->at.ax + row] += dense[row * 2 * MAX_NODES + i] * vector[fish->at.x + i];
             }
         }
-        corotation_to_current(places->corotation, vector);
-        for (int row = 0; row < n; row++) result[row * 2 * MOST_NODES + column] = vector[fish->at.ax + row];
+        corotation_to_current(both->corotation, vector);
+        for (int row = 0; row < n; row++) result[row * 2 * MAX_NODES + column] = vector[fish->at.ax + row];
     }
     free(vector);
     memcpy(dense, result, sizeof result);
@@ -210,81 +210,81 @@ static double largest_difference(int n, const double *a, const double *b) {
     double largest = 0;
     for (int row = 0; row < n; row++) {
         for (int column = 0; column < n; column++) {
-            largest = fmax(largest, fabs(a[row * 2 * MOST_NODES + column] - b[row * 2 * MOST_NODES + column]));
+            largest = fmax(largest, fabs(a[row * 2 * MAX_NODES + column] - b[row * 2 * MAX_NODES + column]));
         }
     }
     return largest;
 }
 
-static void an_elastic_matrix_is_carried_with_the_body(void **state) {
+static void an_elastic_matrix_rotates_with_the_body(void **state) {
     (void)state;
     const double bends[] = {0, 0.02};
     for (int i = 0; i < 2; i++) {
         for (int f = 0; f < 3; f += 2) {
-            struct places places;
-            set_up(&places, 0.3, bends[i]);
-            const int n = 2 * places.setup.school->fish[f].n_nodes;
-            double was[2 * MOST_NODES * 2 * MOST_NODES] = {0}, is[2 * MOST_NODES * 2 * MOST_NODES] = {0};
-            double carried[2 * MOST_NODES * 2 * MOST_NODES];
-            stiffness(&places, f, places.before, was);
-            stiffness(&places, f, places.after, is);
-            memcpy(carried, was, sizeof was);
-            carried_stiffness(&places, f, carried);
-            // after a turn it is the matrix itself; after a bend what is left is half of what an edge has turned
-            // against its neighbours
-            const double error = largest_difference(n, carried, is), without = largest_difference(n, was, is);
+            struct configurations both;
+            set_up(&both, 0.3, bends[i]);
+            const int n = 2 * both.setup.school->fish[f].n_nodes;
+            double old[2 * MAX_NODES * 2 * MAX_NODES] = {0}, new[2 * MAX_NODES * 2 * MAX_NODES] = {0};
+            double mapped[2 * MAX_NODES * 2 * MAX_NODES];
+            stiffness(&both, f, both.reference, old);
+            stiffness(&both, f, both.current, new);
+            memcpy(mapped, old, sizeof old);
+            map_stiffness(&both, f, mapped);
+            // after a rotation it is the matrix itself; after bending the error is half the rotation of an edge
+            // relative to its neighbours
+            const double error = largest_difference(n, mapped, new), without = largest_difference(n, old, new);
             assert_true(error < (bends[i] > 0 ? 0.1 : 1e-12) * without);
-            clear(&places);
+            clear(&both);
         }
     }
 }
 
-static void a_carried_elastic_force_has_no_net_force_and_moment(void **state) {
+static void a_mapped_elastic_force_has_no_net_force_and_moment(void **state) {
     (void)state;
     for (int f = 0; f < 3; f += 2) {
-        struct places places;
-        set_up(&places, 0.3, 0.3);
-        const struct fish *fish = &places.setup.school->fish[f];
+        struct configurations both;
+        set_up(&both, 0.3, 0.3);
+        const struct fish *fish = &both.setup.school->fish[f];
         const int n = 2 * fish->n_nodes;
-        // without tension and moment the derivative itself has none
-        memset(places.before, 0, (size_t)places.n * sizeof(double));
+        // a straight body at rest: its own elastic matrix gives neither net force nor moment
+        memset(both.reference, 0, (size_t)both.n * sizeof(double));
         for (int k = 0; k < fish->n_nodes; k++) {
-            places.before[fish->at.x + k] = k * fish->edge_length;
+            both.reference[fish->at.x + k] = k * fish->edge_length;
         }
-        corotation_set_reference(places.corotation, places.before);
-        corotation_set_current(places.corotation, places.after);
-        double dense[2 * MOST_NODES * 2 * MOST_NODES] = {0}, force[2 * MOST_NODES], motion[2 * MOST_NODES];
-        stiffness(&places, f, places.before, dense);
+        corotation_set_reference(both.corotation, both.reference);
+        corotation_set_current(both.corotation, both.current);
+        double dense[2 * MAX_NODES * 2 * MAX_NODES] = {0}, force[2 * MAX_NODES], motion[2 * MAX_NODES];
+        stiffness(&both, f, both.reference, dense);
         double largest = 0;
         for (int row = 0; row < n; row++) {
-            for (int i = 0; i < n; i++) largest = fmax(largest, fabs(dense[row * 2 * MOST_NODES + i]));
+            for (int i = 0; i < n; i++) largest = fmax(largest, fabs(dense[row * 2 * MAX_NODES + i]));
         }
-        double uncarried = 0;
+        double unmapped = 0;
         for (int pass = 0; pass < 2; pass++) {
-            if (pass == 1) carried_stiffness(&places, f, dense);
+            if (pass == 1) map_stiffness(&both, f, dense);
             for (int column = 0; column < n; column++) {
-                for (int row = 0; row < n; row++) force[row] = dense[row * 2 * MOST_NODES + column];
+                for (int row = 0; row < n; row++) force[row] = dense[row * 2 * MAX_NODES + column];
                 for (int which = 0; which < 3; which++) {
-                    rigid(fish, places.after + fish->at.x, which, motion);
+                    rigid(fish, both.current + fish->at.x, which, motion);
                     const double net = product(fish, motion, force);
-                    if (pass == 0) uncarried = fmax(uncarried, fabs(net));
+                    if (pass == 0) unmapped = fmax(unmapped, fabs(net));
                     if (pass == 1) NEAR(net, 0, 1e-13 * fish->total_mass * largest, 0);
                 }
             }
         }
-        assert_true(uncarried > 1e-3 * fish->total_mass * largest);
-        clear(&places);
+        assert_true(unmapped > 1e-3 * fish->total_mass * largest);
+        clear(&both);
     }
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(there_and_back_changes_nothing),
-        cmocka_unit_test(products_weighted_with_the_masses_are_kept),
-        cmocka_unit_test(a_rigid_motion_stays_one),
-        cmocka_unit_test(other_unknowns_and_driven_fish_are_left_alone),
-        cmocka_unit_test(an_elastic_matrix_is_carried_with_the_body),
-        cmocka_unit_test(a_carried_elastic_force_has_no_net_force_and_moment),
+        cmocka_unit_test(each_map_is_the_inverse_of_the_other),
+        cmocka_unit_test(the_inner_product_weighted_with_masses_is_preserved),
+        cmocka_unit_test(a_rigid_motion_is_mapped_to_a_rigid_motion),
+        cmocka_unit_test(other_unknowns_and_fish_with_prescribed_nodes_are_not_mapped),
+        cmocka_unit_test(an_elastic_matrix_rotates_with_the_body),
+        cmocka_unit_test(a_mapped_elastic_force_has_no_net_force_and_moment),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

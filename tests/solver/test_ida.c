@@ -1,4 +1,4 @@
-/* test_implicit.c: the integrator alone: steps, restarts, failures. */
+/* test_ida.c: steps, restarts, failures. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,7 +13,7 @@ static struct integrator_counts counts_of(const struct simulation *simulation) {
     return counts;
 }
 
-static void a_driven_body_follows_the_given_motion(void **state) {
+static void a_body_with_prescribed_nodes_follows_the_given_motion(void **state) {
     (void)state;
     const char *const texts[] = {
         TIME "fish: [{motion: {driven: head, heave: 0.1, pitch: 10, pitch_phase: 70, frequency: 1, pivot: 0.2}}]\n",
@@ -55,7 +55,7 @@ static void continuous_events_cost_no_restart(void **state) {
     school_run(simulation, 1);
     const struct integrator_counts impulsive = counts_of(simulation);
     assert_true(impulsive.steps > continuous.steps);
-    // every event makes a Jacobian anew
+    // every event evaluates the Jacobian again
     assert_true(impulsive.jacobian_evaluations >= 100);
     simulate_free(simulation);
 }
@@ -74,7 +74,7 @@ static void steps_divide_the_interval_and_keep_the_jacobian(void **state) {
         n_equal += fabs(interval - 0.01) < 1e-13;
         before = now;
     }
-    // but where IDA itself changed the step
+    // except where IDA itself changed the step
     assert_in_range(n_equal, 40, 50);
     assert_true(before.jacobian_evaluations < 50);
     simulate_free(simulation);
@@ -82,8 +82,8 @@ static void steps_divide_the_interval_and_keep_the_jacobian(void **state) {
 
 static void a_very_stiff_body_keeps_its_course(void **state) {
     (void)state;
-    // what an iteration leaves in the equations of motion must have no moment: with half a thousandth of a radian per
-    // second squared the tail would be off by a thousandth of a length
+    // the error of Newton's iteration in the equations of motion must have no moment: an angular acceleration of 5e-4
+    // rad/s2 would move the tail by a thousandth of a length
     double tail[2][2];
     for (int i = 0; i < 2; i++) {
         struct simulation *const simulation =
@@ -118,7 +118,7 @@ static void counts_go_on_across_restarts(void **state) {
     simulate_free(simulation);
 }
 
-static void restart_without_a_jump_goes_the_same_way(void **state) {
+static void a_restart_without_a_jump_does_not_change_the_path(void **state) {
     (void)state;
     double tail[2];
     for (int i = 0; i < 2; i++) {
@@ -151,7 +151,7 @@ static void equations_without_a_finite_value_end_with_time_fish_and_reason(void 
     (void)state;
     struct simulation *const simulation = school_simulation(TIME "fish: [{name: nemo}]\n");
     school_run(simulation, 0.1);
-    // nothing that a smaller step could mend
+    // no smaller step can mend this
     simulation->school->fish[0].drag_normal[2] = NAN;
     assert_int_equal(simulate_step(simulation), STATUS_SOLVER);
     assert_non_null(strstr(status_message(), "t = 0.1"));
@@ -172,12 +172,12 @@ static void an_unreachable_tolerance_ends_with_a_message(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_driven_body_follows_the_given_motion),
+        cmocka_unit_test(a_body_with_prescribed_nodes_follows_the_given_motion),
         cmocka_unit_test(continuous_events_cost_no_restart),
         cmocka_unit_test(steps_divide_the_interval_and_keep_the_jacobian),
         cmocka_unit_test(a_very_stiff_body_keeps_its_course),
         cmocka_unit_test(counts_go_on_across_restarts),
-        cmocka_unit_test(restart_without_a_jump_goes_the_same_way),
+        cmocka_unit_test(a_restart_without_a_jump_does_not_change_the_path),
         cmocka_unit_test(too_many_steps_end_with_time_and_remedy),
         cmocka_unit_test(equations_without_a_finite_value_end_with_time_fish_and_reason),
         cmocka_unit_test(an_unreachable_tolerance_ends_with_a_message),

@@ -1,4 +1,4 @@
-/* test_newton.c: Newton's iteration alone, on equations whose Jacobian is wrong by a known factor. */
+/* test_ida_newton.c: Newton's iteration on equations whose Jacobian is wrong by a known factor. */
 #include <nvector/nvector_serial.h>
 #include <stdlib.h>
 
@@ -6,7 +6,7 @@
 #include "solver/ida_newton.h"
 
 /* The equations y - root + bend (y - root)^2 = 0 for each unknown by itself; the Jacobian that the solver gets is that
- * of the unknowns as they were at the last set-up, times 1 / (1 - wrong): each iteration leaves the part wrong. */
+ * at the last set-up, times 1 / (1 - wrong): each iteration leaves the fraction wrong of the error. */
 struct problem {
     struct setup setup;
     SUNContext context;
@@ -14,7 +14,7 @@ struct problem {
     N_Vector predicted, total, weights;
     double root, bend, wrong;
     double slope;       /* 1 / the Jacobian */
-    double grow;        /* added to wrong at each solution */
+    double growth;      /* added to wrong at each solution */
     double coefficient; /* of the step */
     int n_residuals, n_set_ups, n_bad, never_finite;
 };
@@ -62,11 +62,10 @@ static void set_up(struct problem *problem) {
     problem->weights = N_VNew_Serial(n, problem->context);
     N_VConst(0, problem->predicted);
     N_VConst(1, problem->weights);
-    // the places of a straight body; the first unknown is 0
+    // the positions of a straight body; the first unknown is 0
     const struct fish *fish = problem->setup.school->fish;
     for (int k = 0; k < fish->n_nodes; k++) NV_Ith_S(problem->predicted, fish->at.x + k) = k * fish->edge_length;
-    const struct ida_newton_rules rules = {
-        .most_iterations = 6, .jacobian_cost = 5, .leading_coefficient = coefficient};
+    const struct ida_newton_rules rules = {.max_iterations = 6, .jacobian_cost = 5, .leading_coefficient = coefficient};
     school_ok(ida_newton_create(&problem->solver, problem->context, problem->total, problem->setup.school, rules));
     assert_int_equal(SUNNonlinSolGetType(problem->solver), SUNNONLINEARSOLVER_ROOTFIND);
     assert_int_equal(SUNNonlinSolSetSysFn(problem->solver, residual), 0);
@@ -85,12 +84,12 @@ static void clear(struct problem *problem) {
 }
 
 // solve as IDA does; returns the code, and the iterations
-static int solve(struct problem *problem, double tolerance, int renew, long *iterations) {
+static int solve(struct problem *problem, double tolerance, int evaluate, long *iterations) {
     problem->n_residuals = problem->n_set_ups = problem->n_bad = 0;
-    problem->wrong += problem->grow;
+    problem->wrong += problem->growth;
     N_VConst(0, problem->total);
     const int code = SUNNonlinSolSolve(problem->solver, problem->predicted, problem->total, problem->weights, tolerance,
-                                       renew, problem);
+                                       evaluate, problem);
     assert_int_equal(SUNNonlinSolGetNumIters(problem->solver, iterations), 0);
     return code;
 }
@@ -127,7 +126,7 @@ static void the_error_left_is_below_the_tolerance(void **state) {
             const double rate = fabs(wrongs[i]), left = fabs(error_of(&problem, problem.total));
             NEAR(left, 2 * pow(rate, (double)iterations), 0, 1e-9);
             assert_true(left <= (wrongs[i] > 0 ? 1 : (1 + rate) / (1 - rate)) * tolerances[j]);
-            // and one iteration less would not have done, or is the one that shows the rate
+            // one iteration less is not enough, or cannot show the rate
             assert_true(iterations == 2 || left > rate * rate * tolerances[j]);
             assert_int_equal(SUNNonlinSolGetNumConvFails(problem.solver, &failures), 0);
             assert_int_equal(failures, 0);
@@ -138,7 +137,7 @@ static void the_error_left_is_below_the_tolerance(void **state) {
 
 static void an_old_jacobian_that_does_not_converge_is_replaced(void **state) {
     (void)state;
-    // too slow, away from the root, or not within the most iterations
+    // too slow, divergent, or not within the maximum of iterations
     const double wrongs[] = {0.95, -1.5, 0.8};
     for (size_t i = 0; i < sizeof wrongs / sizeof *wrongs; i++) {
         struct problem problem;
@@ -153,7 +152,7 @@ static void an_old_jacobian_that_does_not_converge_is_replaced(void **state) {
         assert_int_equal(problem.n_bad, 1);
         assert_int_equal(SUNNonlinSolGetNumConvFails(problem.solver, &failures), 0);
         assert_int_equal(failures, 1);
-        // given up as soon as it shows
+        // it fails as soon as the rate shows
         assert_int_equal(iterations, (wrongs[i] == 0.8 ? 6 : 3) + 2);
         NEAR(error_of(&problem, problem.total), 0, 1e-12, 0);
         clear(&problem);
@@ -177,7 +176,7 @@ static void small_corrections_that_do_not_shrink_are_noise(void **state) {
     clear(&problem);
 }
 
-static void what_a_new_jacobian_does_not_mend_asks_for_a_smaller_step(void **state) {
+static void a_failure_with_a_new_jacobian_asks_for_a_smaller_step(void **state) {
     (void)state;
     struct problem problem;
     long iterations;
@@ -196,11 +195,11 @@ static void the_last_correction_is_the_guess_while_the_step_stays(void **state) 
     long iterations;
     set_up(&problem);
     assert_int_equal(solve(&problem, 1e-6, 1, &iterations), 0);
-    // the same correction again: nothing is left to do
+    // the same correction again: the guess is the solution
     problem.wrong = 0.3;
     assert_int_equal(solve(&problem, 1e-6, 0, &iterations), 0);
     assert_int_equal(iterations, 1);
-    // with another step it says nothing
+    // not with another step
     problem.coefficient *= 1.001;
     assert_int_equal(solve(&problem, 1e-3, 0, &iterations), 0);
     assert_true(iterations > 2);
@@ -211,14 +210,14 @@ static void the_last_correction_is_the_guess_while_the_step_stays(void **state) 
     clear(&problem);
 }
 
-static void a_jacobian_that_has_become_dear_is_renewed(void **state) {
+static void a_jacobian_that_has_become_expensive_is_evaluated_again(void **state) {
     (void)state;
     struct problem problem;
     long iterations, before = 0;
     set_up(&problem);
     assert_int_equal(solve(&problem, 1e-6, 1, &iterations), 0);
     int served = 1, spent = (int)iterations;
-    for (problem.grow = 0.01;; served++) {
+    for (problem.growth = 0.01;; served++) {
         before = iterations;
         problem.coefficient *= 2;
         assert_int_equal(solve(&problem, 1e-6, 0, &iterations), 0);
@@ -226,7 +225,7 @@ static void a_jacobian_that_has_become_dear_is_renewed(void **state) {
         spent += (int)iterations;
         assert_true(served < 100);
     }
-    // not after a failure, but when the last solution cost what the mean one does with the Jacobian's price of 5
+    // not after a failure, but when the last solution cost as much as the mean one, the Jacobian's cost of 5 included
     assert_int_equal(problem.n_bad, 0);
     assert_true(before * served >= spent + 5);
     assert_true(before * (served - 1) < spent - before + 5 + served);
@@ -240,9 +239,9 @@ int main(void) {
         cmocka_unit_test(the_error_left_is_below_the_tolerance),
         cmocka_unit_test(an_old_jacobian_that_does_not_converge_is_replaced),
         cmocka_unit_test(small_corrections_that_do_not_shrink_are_noise),
-        cmocka_unit_test(what_a_new_jacobian_does_not_mend_asks_for_a_smaller_step),
+        cmocka_unit_test(a_failure_with_a_new_jacobian_asks_for_a_smaller_step),
         cmocka_unit_test(the_last_correction_is_the_guess_while_the_step_stays),
-        cmocka_unit_test(a_jacobian_that_has_become_dear_is_renewed),
+        cmocka_unit_test(a_jacobian_that_has_become_expensive_is_evaluated_again),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

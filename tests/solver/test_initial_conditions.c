@@ -1,4 +1,4 @@
-/* test_consistent.c: the algebraic unknowns follow from the differential ones: doc/model.md, section 10. */
+/* test_initial_conditions.c: the algebraic unknowns follow from the differential ones. doc/model.md, section 10. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -26,7 +26,7 @@ static const char *const texts[] = {
     TIME
     "fish: [{}, {nodes: 5, length: 0.7, start: {position: [0.2, 0.5]}}, {nodes: 9, start: {position: [0, -0.6]}}]\n"};
 
-/* Newton's iteration with a Jacobian that leaves out how these fish feel each other. */
+/* Newton's iteration with a Jacobian without the blocks that couple these fish. */
 static const char uncoupled[] = TIME
     "solver: {coupling_distance: 0}\n"
     "fish: [{}, {nodes: 5, start: {position: [0.2, 0.5]}}]\n";
@@ -44,7 +44,7 @@ static void check_residual(struct setup *setup, double t, const char *text) {
                                 ? fmax(1, setup->school->fish[place.fish].axial_stiffness[0] * 1e-6)
                                 : 1;
         if (fabs(setup->value[i]) <= 1e-10 * size) continue;
-        print_error("%s: row %s[%d] of fish %d is left with %g\n", text, place.name, place.index, place.fish,
+        print_error("%s: row %s[%d] of fish %d has a residual of %g\n", text, place.name, place.index, place.fish,
                     setup->value[i]);
         fail();
     }
@@ -56,11 +56,11 @@ static void all_equations_hold_at_the_start_for_every_option(void **state) {
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         struct setup setup;
         school_build(&setup, texts[i]);
-        struct initial_conditions *consistent;
-        school_ok(initial_conditions_create(&consistent, setup.residual));
-        school_ok(initial_conditions_solve(consistent, 0, setup.state->y, setup.state->yp));
+        struct initial_conditions *solver;
+        school_ok(initial_conditions_create(&solver, setup.residual));
+        school_ok(initial_conditions_solve(solver, 0, setup.state->y, setup.state->yp));
         check_residual(&setup, 0, texts[i]);
-        initial_conditions_free(consistent);
+        initial_conditions_free(solver);
         school_clear(&setup);
     }
 }
@@ -70,11 +70,11 @@ static void blocks_left_out_of_the_jacobian_change_no_solution(void **state) {
     struct setup setup;
     school_build(&setup, uncoupled);
     assert_int_equal(setup.residual->coupled[1], 0);
-    struct initial_conditions *consistent;
-    school_ok(initial_conditions_create(&consistent, setup.residual));
-    school_ok(initial_conditions_solve(consistent, 0, setup.state->y, setup.state->yp));
+    struct initial_conditions *solver;
+    school_ok(initial_conditions_create(&solver, setup.residual));
+    school_ok(initial_conditions_solve(solver, 0, setup.state->y, setup.state->yp));
     check_residual(&setup, 0, uncoupled);
-    initial_conditions_free(consistent);
+    initial_conditions_free(solver);
     school_clear(&setup);
 }
 
@@ -84,13 +84,13 @@ static void all_equations_hold_again_from_any_state(void **state) {
         struct setup setup;
         school_build(&setup, texts[i]);
         school_stir(&setup);
-        // a driven node has its given motion only where it is solved for: its place and velocity are algebraic
-        struct initial_conditions *consistent;
-        school_ok(initial_conditions_create(&consistent, setup.residual));
-        school_ok(initial_conditions_solve(consistent, setup.t, setup.state->y, setup.state->yp));
-        // rates of algebraic unknowns are no part of any equation
+        // the solver moves prescribed nodes to their given motion: their positions and velocities are algebraic
+        struct initial_conditions *solver;
+        school_ok(initial_conditions_create(&solver, setup.residual));
+        school_ok(initial_conditions_solve(solver, setup.t, setup.state->y, setup.state->yp));
+        // rates of algebraic unknowns appear in no equation
         check_residual(&setup, setup.t, texts[i]);
-        initial_conditions_free(consistent);
+        initial_conditions_free(solver);
         school_clear(&setup);
     }
 }
@@ -106,9 +106,9 @@ static void differential_unknowns_stay_as_they_are(void **state) {
     assert_non_null(before);
     memcpy(before, setup.state->y, (size_t)setup.school->n_unknowns * sizeof *before);
     residual_kinds(setup.residual, kind);
-    struct initial_conditions *consistent;
-    school_ok(initial_conditions_create(&consistent, setup.residual));
-    school_ok(initial_conditions_solve(consistent, setup.t, setup.state->y, setup.state->yp));
+    struct initial_conditions *solver;
+    school_ok(initial_conditions_create(&solver, setup.residual));
+    school_ok(initial_conditions_solve(solver, setup.t, setup.state->y, setup.state->yp));
     int n_differential = 0;
     for (int i = 0; i < setup.school->n_unknowns; i++) {
         if (kind[i] > 0) NEAR(setup.state->y[i], before[i], 0, 0);
@@ -116,8 +116,8 @@ static void differential_unknowns_stay_as_they_are(void **state) {
     }
     // x, v of seven nodes, and the circulation shed
     assert_int_equal(n_differential, 29);
-    assert_true(initial_conditions_iterations(consistent) >= 1);
-    initial_conditions_free(consistent);
+    assert_true(initial_conditions_iterations(solver) >= 1);
+    initial_conditions_free(solver);
     school_clear(&setup);
     free(kind);
     free(before);
@@ -128,17 +128,17 @@ static void a_second_solution_changes_nothing(void **state) {
     struct setup setup;
     school_build(&setup, TIME FISH);
     school_stir(&setup);
-    struct initial_conditions *consistent;
-    school_ok(initial_conditions_create(&consistent, setup.residual));
-    school_ok(initial_conditions_solve(consistent, setup.t, setup.state->y, setup.state->yp));
+    struct initial_conditions *solver;
+    school_ok(initial_conditions_create(&solver, setup.residual));
+    school_ok(initial_conditions_solve(solver, setup.t, setup.state->y, setup.state->yp));
     double *const before = calloc((size_t)setup.school->n_unknowns, sizeof *before);
     assert_non_null(before);
     memcpy(before, setup.state->y, (size_t)setup.school->n_unknowns * sizeof *before);
-    school_ok(initial_conditions_solve(consistent, setup.t, setup.state->y, setup.state->yp));
+    school_ok(initial_conditions_solve(solver, setup.t, setup.state->y, setup.state->yp));
     // rounding of accelerations of a stiff body
     NEAR_ARRAY(setup.school->n_unknowns, setup.state->y, before, 1e-11, 1e-11);
     free(before);
-    initial_conditions_free(consistent);
+    initial_conditions_free(solver);
     school_clear(&setup);
 }
 
@@ -147,17 +147,17 @@ static void a_state_that_is_not_a_number_is_refused_and_kept(void **state) {
     struct setup setup;
     school_build(&setup, TIME FISH);
     school_stir(&setup);
-    struct initial_conditions *consistent;
-    school_ok(initial_conditions_create(&consistent, setup.residual));
+    struct initial_conditions *solver;
+    school_ok(initial_conditions_create(&solver, setup.residual));
     const struct fish *fish = setup.school->fish;
     setup.state->y[fish->at.x + 3] = NAN;
     const double before = setup.state->y[fish->at.ax];
-    assert_int_equal(initial_conditions_solve(consistent, setup.t, setup.state->y, setup.state->yp), STATUS_SOLVER);
+    assert_int_equal(initial_conditions_solve(solver, setup.t, setup.state->y, setup.state->yp), STATUS_SOLVER);
     NEAR(setup.state->y[fish->at.ax], before, 0, 0);
     // it says when, and which equation
     assert_non_null(strstr(status_message(), "t = 0.208"));
     assert_non_null(strstr(status_message(), "fish1"));
-    initial_conditions_free(consistent);
+    initial_conditions_free(solver);
     school_clear(&setup);
 }
 

@@ -1,4 +1,4 @@
-/* test_linear.c: systems with the Jacobian of a school: factors of blocks, coupled fish, threads, failures. */
+/* test_linear.c: linear systems with the Jacobian of a school: factors of blocks, coupled fish, threads, failures. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,7 +10,7 @@
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 
-/* Six fish close together, of different size, one with a driven head; and one far away. */
+/* Six fish close together, of different size, one with a prescribed head; and one far away. */
 #define SCHOOL                                                                                     \
     TIME "solver: {coupling_distance: 0.6}\n"                                                      \
          "fish:\n"                                                                                 \
@@ -48,8 +48,8 @@ static void build(struct system *system, const char *text, double relative) {
         system->b[i] = school_random(&system->setup);
     }
     jacobian_at(system, 370);
-    const struct linear_end end = {.relative = relative};
-    school_ok(linear_create(&system->linear, system->setup.jacobian, system->scale, end));
+    const struct linear_tolerance tolerance = {.relative = relative};
+    school_ok(linear_create(&system->linear, system->setup.jacobian, system->scale, tolerance));
 }
 
 // without the blocks between the fish
@@ -68,10 +68,10 @@ static void clear(struct system *system) {
 // Gauss with row pivoting on rows scaled to one
 static void solve_dense(int n, double *a, double *b) {
     for (int row = 0; row < n; row++) {
-        double most = 0;
-        for (int j = 0; j < n; j++) most = fmax(most, fabs(a[row * n + j]));
-        for (int j = 0; j < n; j++) a[row * n + j] /= most;
-        b[row] /= most;
+        double max = 0;
+        for (int j = 0; j < n; j++) max = fmax(max, fabs(a[row * n + j]));
+        for (int j = 0; j < n; j++) a[row * n + j] /= max;
+        b[row] /= max;
     }
     for (int k = 0; k < n; k++) {
         int pivot = k;
@@ -116,14 +116,14 @@ static double error_of(const struct system *system) {
     return error / size;
 }
 
-static void fish_far_apart_are_solved_for_one_by_one(void **state) {
+static void uncoupled_fish_need_no_iteration(void **state) {
     (void)state;
     struct system system;
     build(&system, SCHOOL, 1e-3);
     uncouple(&system);
     school_ok(linear_setup(system.linear));
     school_ok(linear_solve(system.linear, system.b, system.x));
-    // no iteration: rounding only, condition numbers of 1e6
+    // rounding only, with condition numbers of 1e6
     assert_true(error_of(&system) < 1e-9);
     assert_int_equal(linear_count(system.linear).iterations, 0);
     // in place
@@ -132,7 +132,7 @@ static void fish_far_apart_are_solved_for_one_by_one(void **state) {
     clear(&system);
 }
 
-static void coupled_fish_are_solved_for_to_the_tolerance(void **state) {
+static void coupled_fish_are_solved_to_the_tolerance(void **state) {
     (void)state;
     const double tolerances[] = {1e-1, 1e-3, 1e-6, 1e-10};
     long before = 0;
@@ -145,7 +145,7 @@ static void coupled_fish_are_solved_for_to_the_tolerance(void **state) {
         const double error = error_of(&system);
         const struct linear_counts counts = linear_count(system.linear);
         print_message("tolerance %.0e: %ld iterations, error %.1e\n", tolerances[i], counts.iterations, error);
-        // the error is what is left times the norm of the inverse of a matrix that is near the identity
+        // the error is the residual times the norm of the inverse of a matrix that is close to the identity
         assert_true(error < 10 * tolerances[i]);
         assert_true(counts.iterations > before && counts.iterations < 40);
         before = counts.iterations;
@@ -153,15 +153,15 @@ static void coupled_fish_are_solved_for_to_the_tolerance(void **state) {
     }
 }
 
-static void what_is_small_enough_is_left(void **state) {
+static void a_small_residual_ends_the_iteration(void **state) {
     (void)state;
     struct system system;
     build(&system, SCHOOL, 1e-6);
     linear_free(system.linear);
-    const struct linear_end end = {.relative = 1e-6, .enough = 1e-3};
-    school_ok(linear_create(&system.linear, system.setup.jacobian, system.scale, end));
+    const struct linear_tolerance tolerance = {.relative = 1e-6, .absolute = 1e-3};
+    school_ok(linear_create(&system.linear, system.setup.jacobian, system.scale, tolerance));
     school_ok(linear_setup(system.linear));
-    // right-hand sides ever smaller need ever fewer iterations, in the end none
+    // the smaller the right-hand side, the fewer iterations: in the end none
     long fewest = 40;
     for (double size = 1e3; size > 1e-7; size /= 100) {
         for (int i = 0; i < system.n; i++) system.b[i] = size * school_random(&system.setup);
@@ -170,11 +170,11 @@ static void what_is_small_enough_is_left(void **state) {
         const long iterations = linear_count(system.linear).iterations - before;
         assert_true(iterations <= fewest);
         fewest = iterations;
-        // the error over the scales is some times the root mean square of what is left
+        // the largest error is several times the root mean square of the residual
         const double error = error_of(&system);
         double largest = 0;
         for (int i = 0; i < system.n; i++) largest = fmax(largest, fabs(system.x[i]) / system.scale[i]);
-        assert_true(error < 1e-5 || error * largest < 50 * end.enough);
+        assert_true(error < 1e-5 || error * largest < 50 * tolerance.absolute);
     }
     assert_int_equal(fewest, 0);
     clear(&system);
@@ -211,7 +211,7 @@ static void patterns_are_analysed_once(void **state) {
     clear(&system);
 }
 
-// the values of the own block of fish f, made of two by two pieces: the pivots that are good for a are bad for b
+// fill a diagonal block with 2 x 2 matrices: pivots that are good for some values are bad for others
 static void set_pieces(struct sparse *own, double on_diagonal, double beside) {
     sparse_begin(own);
     for (int i = own->first; i < own->first + own->n; i++) {
@@ -223,15 +223,15 @@ static void set_pieces(struct sparse *own, double on_diagonal, double beside) {
     school_ok(sparse_end(own));
 }
 
-static void factors_that_are_bad_are_made_anew_with_other_pivots(void **state) {
+static void bad_factors_are_replaced_by_ones_with_other_pivots(void **state) {
     (void)state;
     struct system system;
     build(&system, SCHOOL, 1e-6);
     uncouple(&system);
     struct jacobian *const jacobian = system.setup.jacobian;
     for (int f = 0; f < 7; f++) sparse_forget(jacobian->own[f]);
-    // a small change keeps the pivots; a diagonal of 1e-9 that was one does not: refactored with it, nine of sixteen
-    // digits would be lost
+    // a small change keeps the pivots; a diagonal that falls from 1 to 1e-9 does not: with the old pivots nine of
+    // sixteen digits would be lost
     const struct {
         double on_diagonal, beside;
         long factorisations;
@@ -277,7 +277,7 @@ static void a_right_hand_side_without_a_finite_value_asks_for_a_retry(void **sta
     school_ok(linear_setup(system.linear));
     system.b[3] = NAN;
     assert_int_equal(linear_solve(system.linear, system.b, system.x), STATUS_RETRY);
-    // nothing at all is its own solution
+    // zero is the solution for zero
     memset(system.b, 0, (size_t)system.n * sizeof *system.b);
     school_ok(linear_solve(system.linear, system.b, system.x));
     NEAR_ARRAY(system.n, system.x, system.b, 0, 0);
@@ -335,7 +335,7 @@ static void a_school_costs_in_proportion_to_its_couplings(void **state) {
         const double iterations = (double)counts.iterations / TIMES;
         print_message("%d fish, %d couplings: Jacobian %.2f ms, factors %.2f ms, solution %.2f ms, %.1f iterations\n",
                       cases[i].n, system.setup.jacobian->n_couplings, filled, factorised, solved, iterations);
-        // a square has 2 n pairs of neighbours at most, each counted twice; more fish need no more iterations
+        // at most 2 n pairs of neighbours in a square, each counted twice; more fish need no more iterations
         const int all = cases[i].n * (cases[i].n - 1);
         assert_true(system.setup.jacobian->n_couplings <= (i == 4 ? all : 4 * cases[i].n));
         assert_true(iterations >= 1 && iterations <= 15);
@@ -348,14 +348,14 @@ static void threads_change_no_bit(void **state) {
     (void)state;
     double *first = NULL;
     for (int threads = 1; threads <= 3; threads++) {
-        // so many fish that the solutions too are shared
+        // enough fish that threads share the solutions too
         char solver[40], text[8000];
         snprintf(solver, sizeof solver, "solver: {threads: %d}\n", threads);
         lattice(64, 1.4, 0.5, solver, text, sizeof text);
         struct system system;
         build(&system, text, 1e-6);
         assert_true(system.setup.school->n_unknowns >= PARALLEL_UNKNOWNS);
-        // with pivots of their own, then with those
+        // with new pivots, then with the same ones
         for (int pass = 0; pass < 2; pass++) {
             jacobian_at(&system, pass == 0 ? 300 : 370);
             school_ok(linear_setup(system.linear));
@@ -383,8 +383,8 @@ static void allocations_that_fail_are_reported(void **state) {
     for (; status != STATUS_OK; n_failed += status != STATUS_OK) {
         const int n_before = n_live;
         n_until_failure = n_failed;
-        const struct linear_end end = {.relative = 1e-6};
-        status = linear_create(&system.linear, system.setup.jacobian, system.scale, end);
+        const struct linear_tolerance tolerance = {.relative = 1e-6};
+        status = linear_create(&system.linear, system.setup.jacobian, system.scale, tolerance);
         if (status == STATUS_OK) {
             status = linear_setup(system.linear);
             if (status == STATUS_OK) status = linear_solve(system.linear, system.b, system.x);
@@ -405,11 +405,11 @@ static void allocations_that_fail_are_reported(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(fish_far_apart_are_solved_for_one_by_one),
-        cmocka_unit_test(coupled_fish_are_solved_for_to_the_tolerance),
-        cmocka_unit_test(what_is_small_enough_is_left),
+        cmocka_unit_test(uncoupled_fish_need_no_iteration),
+        cmocka_unit_test(coupled_fish_are_solved_to_the_tolerance),
+        cmocka_unit_test(a_small_residual_ends_the_iteration),
         cmocka_unit_test(patterns_are_analysed_once),
-        cmocka_unit_test(factors_that_are_bad_are_made_anew_with_other_pivots),
+        cmocka_unit_test(bad_factors_are_replaced_by_ones_with_other_pivots),
         cmocka_unit_test(a_singular_block_is_final_at_first_and_a_retry_later),
         cmocka_unit_test(a_right_hand_side_without_a_finite_value_asks_for_a_retry),
         cmocka_unit_test(a_school_costs_in_proportion_to_its_couplings),

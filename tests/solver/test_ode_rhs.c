@@ -1,8 +1,8 @@
-/* test_direct.c: src/solver/ode_rhs.c. */
+/* test_ode_rhs.c: the algebraic unknowns and the rates of every option. */
 #include "school.h"
 #include "solver/ode_rhs.h"
 
-// one fish, and three different ones in an external flow; both Kutta conditions, a driven head, all control laws
+// one fish, and three different ones in an external flow; both Kutta conditions, a prescribed head, all control laws
 static const char *const cases[] = {
     "time: {end: 1, shedding_interval: 0.02}\n"
     "fish: [{nodes: 7, sheet_points: 13, control: {law: heading, desired_heading: 150}}]\n",
@@ -22,24 +22,23 @@ static const char *const cases[] = {
     "fish: [{nodes: 7, sheet_points: 13}, {nodes: 7, sheet_points: 13, start: {position: [0, 0.7]}}]\n",
 };
 
-static void direct_solution_satisfies_the_algebraic_equations(void **state) {
+static void all_equations_hold_for_the_computed_unknowns(void **state) {
     (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct setup setup;
         school_build(&setup, cases[i]);
         school_stir(&setup);
-        struct ode_rhs *direct;
-        school_ok(ode_rhs_create(&direct, setup.residual));
+        struct ode_rhs *rhs;
+        school_ok(ode_rhs_create(&rhs, setup.residual));
         // twice: the second solution reuses the factors of the first
         for (int pass = 0; pass < 2; pass++) {
-            school_ok(ode_rhs_rates(direct, setup.t, setup.state->y, setup.state->yp));
+            school_ok(ode_rhs_rates(rhs, setup.t, setup.state->y, setup.state->yp));
             school_ok(residual_evaluate(setup.residual, setup.t, setup.state->y, setup.state->yp, setup.value));
-            // rows of given motions compare with rates that the path gives, all others vanish; forces per mass of the
-            // order 1e5 m s-2 leave their round-off
+            // rounding of forces per mass of the order of 1e5 m s-2
             for (int k = 0; k < setup.school->n_unknowns; k++) NEAR(setup.value[k], 0, 1e-9, 0);
         }
-        assert_int_equal(ode_rhs_solves(direct), 2);
-        ode_rhs_free(direct);
+        assert_int_equal(ode_rhs_solves(rhs), 2);
+        ode_rhs_free(rhs);
         school_clear(&setup);
     }
 }
@@ -48,17 +47,17 @@ static void what_is_not_finite_asks_for_a_smaller_step(void **state) {
     (void)state;
     struct setup setup;
     school_build(&setup, cases[0]);
-    struct ode_rhs *direct;
-    school_ok(ode_rhs_create(&direct, setup.residual));
+    struct ode_rhs *rhs;
+    school_ok(ode_rhs_create(&rhs, setup.residual));
     setup.state->y[setup.school->fish[0].at.x + 2] = NAN;
-    assert_int_equal(ode_rhs_rates(direct, 0, setup.state->y, setup.state->yp), STATUS_RETRY);
-    ode_rhs_free(direct);
+    assert_int_equal(ode_rhs_rates(rhs, 0, setup.state->y, setup.state->yp), STATUS_RETRY);
+    ode_rhs_free(rhs);
     school_clear(&setup);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(direct_solution_satisfies_the_algebraic_equations),
+        cmocka_unit_test(all_equations_hold_for_the_computed_unknowns),
         cmocka_unit_test(what_is_not_finite_asks_for_a_smaller_step),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,4 +1,4 @@
-/* test_fixed.c: src/solver/one_step.c. */
+/* test_one_step.c: order, agreement with the other methods, counts, failures. */
 #include <string.h>
 
 #include "school.h"
@@ -6,7 +6,7 @@
 
 #define FISH "fish: [{nodes: 7, sheet_points: 13, body: {modulus: 1.0e+4}, drag: {normal: 0, tangential: 0}}]\n"
 
-// one fish; all that couples; a driven head; circulation that is a differential unknown, and jumps
+// one fish; coupled fish; a prescribed head; circulation as a differential unknown; jumps
 static const char *const cases[] = {
     "time: {end: 0.4, shedding_interval: 0.02}\n" FISH,
     "time: {end: 0.4, shedding_interval: 0.02}\n"
@@ -22,7 +22,7 @@ static const char *const cases[] = {
     "time: {end: 0.4, shedding_interval: 0.02}\nwake: {shedding: impulsive}\n" FISH,
 };
 
-// where the tail of the last fish is at the end, across the way
+// y of the tail of the last fish at the end
 static double tail_at_end(const char *text, const char *solver) {
     char whole[1024];
     snprintf(whole, sizeof whole, "%ssolver: {%s}\n", text, solver);
@@ -52,7 +52,7 @@ static void steps_converge_with_the_order_of_the_method(void **state) {
     }
 }
 
-static void all_cases_agree_with_the_other_implicit_method(void **state) {
+static void all_cases_agree_with_ida(void **state) {
     (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         const double want = tail_at_end(cases[i], "rtol: 1.0e-9, order: 5");
@@ -72,12 +72,12 @@ static void all_cases_agree_with_the_other_implicit_method(void **state) {
 static void a_very_stiff_body_needs_no_shorter_steps(void **state) {
     (void)state;
     const double exact = tail_at_end(STIFF, "rtol: 1.0e-9, order: 5");
-    // a fourth of the shedding interval, of which an explicit method needs thousands
+    // a quarter of the shedding interval; an explicit method needs thousands of steps per interval
     NEAR(tail_at_end(STIFF, "method: trapezoid, step: 0.005"), exact, 1e-5, 0);
     NEAR(tail_at_end(STIFF, "method: implicit_euler, step: 0.005"), exact, 2e-3, 0);
 }
 
-static void a_jacobian_serves_many_steps_and_counts_tell(void **state) {
+static void a_jacobian_is_kept_for_many_steps(void **state) {
     (void)state;
     struct simulation *const simulation = school_simulation("time: {end: 0.4, shedding_interval: 0.02}\n" FISH
                                                             "solver: {method: trapezoid, step: 0.005}\n");
@@ -102,13 +102,13 @@ static void fails(const char *text, const char *message) {
     simulate_free(simulation);
 }
 
-static void what_does_not_converge_ends_with_the_time(void **state) {
+static void a_failure_tells_the_time(void **state) {
     (void)state;
     // half a beat in one step
     fails(
         "time: {end: 50, shedding_interval: 0.5}\nsolver: {method: implicit_euler, step: 0.5}\n"
         "fish: [{nodes: 7, sheet_points: 13, body: {modulus: 1.0e+9}}]\n",
-        "the solver gave up at t = ");
+        "integration failed at t = ");
     fails(
         "time: {end: 1, shedding_interval: 0.02}\nsolver: {method: trapezoid, step: 0.001, max_steps: 10}\n"
         "fish: [{nodes: 7, sheet_points: 13}]\n",
@@ -118,10 +118,10 @@ static void what_does_not_converge_ends_with_the_time(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(steps_converge_with_the_order_of_the_method),
-        cmocka_unit_test(all_cases_agree_with_the_other_implicit_method),
+        cmocka_unit_test(all_cases_agree_with_ida),
         cmocka_unit_test(a_very_stiff_body_needs_no_shorter_steps),
-        cmocka_unit_test(a_jacobian_serves_many_steps_and_counts_tell),
-        cmocka_unit_test(what_does_not_converge_ends_with_the_time),
+        cmocka_unit_test(a_jacobian_is_kept_for_many_steps),
+        cmocka_unit_test(a_failure_tells_the_time),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-/* test_explicit.c: src/solver/runge_kutta.c. */
+/* test_runge_kutta.c: order, agreement with IDA, restarts, failures. */
 #include <string.h>
 
 #include "school.h"
@@ -11,7 +11,7 @@ static const char soft[] =
     "fish: [{nodes: 7, sheet_points: 13, body: {modulus: 1.0e+4},\n"
     "        drag: {normal: 0, tangential: 0}}]\n";
 
-// where the tail is at the end, across the way
+// y of the tail at the end
 static double tail_at_end(const char *method, double step, double rtol) {
     char text[512];
     snprintf(text, sizeof text, soft, method, step, rtol);
@@ -49,7 +49,7 @@ static void explicit_and_implicit_solutions_agree(void **state) {
     NEAR(tail_at_end("euler", 0, 1e-6), tail_at_end("ida", 0, 1e-10), 1e-2, 0);
 }
 
-static void a_step_too_large_ends_in_unstable_with_the_time(void **state) {
+static void an_unstable_step_ends_with_a_message_that_tells_the_time(void **state) {
     (void)state;
     struct simulation *const simulation = school_simulation(
         "time: {end: 1, shedding_interval: 0.02}\n"
@@ -86,7 +86,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(fixed_steps_converge_with_the_order_of_the_method),
         cmocka_unit_test(explicit_and_implicit_solutions_agree),
-        cmocka_unit_test(a_step_too_large_ends_in_unstable_with_the_time),
+        cmocka_unit_test(an_unstable_step_ends_with_a_message_that_tells_the_time),
         cmocka_unit_test(impulses_restart_the_explicit_method_too),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

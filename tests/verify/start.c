@@ -302,7 +302,7 @@ static int jacobian_callback(realtype t, realtype cj, N_Vector y, N_Vector yp, N
 static int calculate(struct simulation *simulation, double *y, double *yp, double *kind, double *tolerance) {
     const int n = simulation->school->n_unknowns;
     struct correction correction = {.simulation = simulation};
-    const struct linear_end end = {.relative = 1e-10};
+    const struct linear_tolerance linear_tolerance = {.relative = 1e-10};
     double *const values[4] = {y, yp, kind, tolerance};
     SUNContext context;
     N_Vector vector[4];
@@ -311,7 +311,8 @@ static int calculate(struct simulation *simulation, double *y, double *yp, doubl
         if (sundials_adapter_vector(&vector[i], context, n, values[i]) != STATUS_OK) abort();
     }
     if (jacobian_create(&correction.jacobian, simulation->school) != STATUS_OK ||
-        sundials_adapter_linear_create(&correction.linear, context, correction.jacobian, tolerance, end) != STATUS_OK) {
+        sundials_adapter_linear_create(&correction.linear, context, correction.jacobian, tolerance, linear_tolerance) !=
+            STATUS_OK) {
         abort();
     }
     residual_mask(simulation->residual, correction.jacobian);
