@@ -65,15 +65,16 @@ static void check_time(const struct check *check) {
 
 static void check_solver(const struct check *check) {
     const struct case_solver *const solver = &check->values->solver;
-    const bool is_fixed = solver->method == METHOD_IMPLICIT_EULER || solver->method == METHOD_TRAPEZOID;
-    if (is_fixed && solver->step == 0) {
+    if ((int)solver->method < 0) return;  // it could not be read
+    const struct method_properties *const method = &methods_table[solver->method];
+    if (!method->has_adaptive_steps && solver->step == 0) {
         complain(check, "solver.method", "takes fixed steps only: give solver.step, such as %.9g (s)",
                  check->values->school.shedding_interval);
     }
     if (!(solver->step > 0)) return;
-    if (solver->method == METHOD_IDA) {
+    if (!method->has_fixed_steps) {
         complain(check, "solver.step",
-                 "ida chooses its steps itself: remove solver.step, or choose another solver.method");
+                 "%s chooses its steps itself: remove solver.step, or choose another solver.method", method->word);
         return;
     }
     const double interval = check->values->school.shedding_interval, n = round(interval / solver->step);

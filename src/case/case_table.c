@@ -84,10 +84,9 @@ const struct key case_table[] = {
      .meaning = "error allowed in the velocity that far vortices cause, in lengths per beat; 0: every vortex exactly",
      .derived = "a hundredth of solver.rtol", .synonyms = "accuracy theta"},
 
-    {"solver.method", CHOICE, AT(solver.method), "ida", ANY, "",
+    {"solver.method", METHOD, AT(solver.method), "ida", ANY, "",
      .meaning =
          "integrator: ida is implicit; implicit_euler and trapezoid are so with fixed steps; the others are explicit",
-     .words = WORDS("ida", "euler", "heun", "rk4", "dormand_prince", "implicit_euler", "trapezoid"),
      .synonyms = "integrator scheme"},
     {"solver.rtol", REAL, AT(school.rtol), "1e-5", FROM_TO(1e-14, 0.1), "",
      .meaning = "relative error allowed per step", .synonyms = "tolerance tol reltol relative_tolerance"},
@@ -269,20 +268,34 @@ void *case_table_field(const struct key *key, struct case_values *values, struct
     return (case_table_is_of_fish(key) ? (char *)fish : (char *)values) + key->offset;
 }
 
+const char *case_table_word(const struct key *key, int i) {
+    if (key->type == METHOD) return i < methods_n ? methods_table[i].word : NULL;
+    return key->words[i];
+}
+
 const char *case_table_type(const struct key *key) {
-    static const char *const names[] = {[REAL] = "number",          [INTEGER] = "whole number",
-                                        [CHOICE] = "word",          [TEXT] = "text",
-                                        [PAIR] = "[x, y]",          [NUMBERS] = "list of numbers",
-                                        [PAIRS] = "list of [x, y]", [HEADING] = "number or list of [time, angle]",
-                                        [FILES] = "list of files",  [DEFAULTS] = "map",
-                                        [AXES] = "list of axes",    [STATEMENTS] = "list of statements"};
+    static const char *const names[] = {[REAL] = "number",
+                                        [INTEGER] = "whole number",
+                                        [CHOICE] = "word",
+                                        [METHOD] = "word",
+                                        [TEXT] = "text",
+                                        [PAIR] = "[x, y]",
+                                        [NUMBERS] = "list of numbers",
+                                        [PAIRS] = "list of [x, y]",
+                                        [HEADING] = "number or list of [time, angle]",
+                                        [FILES] = "list of files",
+                                        [DEFAULTS] = "map",
+                                        [AXES] = "list of axes",
+                                        [STATEMENTS] = "list of statements"};
     return names[key->type];
 }
 
 void case_table_range(const struct key *key, struct text *range) {
     const struct bounds *const bounds = &key->bounds;
-    if (key->type == CHOICE) {
-        for (int i = 0; key->words[i]; i++) text_add(range, "%s%s", i > 0 ? ", " : "", key->words[i]);
+    if (key->type == CHOICE || key->type == METHOD) {
+        for (int i = 0; case_table_word(key, i); i++) {
+            text_add(range, "%s%s", i > 0 ? ", " : "", case_table_word(key, i));
+        }
         return;
     }
     if (key->type == TEXT || key->type == FILES || isinf(bounds->least)) return;

@@ -14,6 +14,7 @@ enum key_type {
     REAL,      /* double */
     INTEGER,   /* int */
     CHOICE,    /* an enum: the place of the word among .words */
+    METHOD,    /* enum method: the place of the word in the table of methods (base/methods.h) */
     TEXT,      /* char *, owned */
     PAIR,      /* double[2] */
     NUMBERS,   /* struct number_list of numbers */
@@ -62,6 +63,9 @@ bool case_table_is_value(const struct key *key);
 
 /* Where the value of a key is; fish is ignored unless the key is of a fish. */
 void *case_table_field(const struct key *key, struct case_values *values, struct fish_parameters *fish);
+
+/* Word i of a CHOICE or METHOD; NULL past the last. */
+const char *case_table_word(const struct key *key, int i);
 
 /* The name of a type as the reference calls it, and the range ("0 to 1", "> 0" or ""). */
 const char *case_table_type(const struct key *key);

@@ -23,7 +23,8 @@ void case_value_clear(const struct key *key, void *field) {
         case REAL: *(double *)field = NAN; break;
         case PAIR: ((double *)field)[0] = ((double *)field)[1] = NAN; break;
         case INTEGER: *(int *)field = 0; break;
-        case CHOICE: *(int *)field = -1; break;
+        case CHOICE:
+        case METHOD: *(int *)field = -1; break;
         case TEXT: *(char **)field = NULL; break;
         case NUMBERS:
         case PAIRS:
@@ -103,16 +104,16 @@ static void read_integer(const struct context *context, const struct yaml_node *
 // ---- words and texts
 
 static void read_choice(const struct context *context, const struct yaml_node *node, int *value) {
-    const char *const *const words = context->key->words;
-    for (int i = 0; node->kind == YAML_SCALAR && words[i]; i++) {
-        if (strcmp(words[i], node->text) == 0) {
+    const struct key *const key = context->key;
+    for (int i = 0; node->kind == YAML_SCALAR && case_table_word(key, i); i++) {
+        if (strcmp(case_table_word(key, i), node->text) == 0) {
             *value = i;
             return;
         }
     }
     char shown[64];
     struct text range = {0};
-    case_table_range(context->key, &range);
+    case_table_range(key, &range);
     if (range.failed) context->errors->out_of_memory = true;
     yaml_errors_add(context->errors, node->mark, "%s: expects one of %s; got %s", context->path,
                     range.text ? range.text : "", yaml_tree_describe(node, shown, sizeof shown));
@@ -227,7 +228,8 @@ enum status case_value_read(const struct key *key, void *field, const struct yam
     switch (key->type) {
         case REAL: read_number(&context, node, "a number", field); break;
         case INTEGER: read_integer(&context, node, field); break;
-        case CHOICE: read_choice(&context, node, field); break;
+        case CHOICE:
+        case METHOD: read_choice(&context, node, field); break;
         case TEXT: return read_text(&context, node, field);
         case PAIR: read_pair(&context, node, "two numbers [x, y]", field); break;
         case NUMBERS:
@@ -268,7 +270,8 @@ void case_value_write(struct text *text, const struct key *key, const void *fiel
     switch (key->type) {
         case REAL: text_add_number(text, *(const double *)field); break;
         case INTEGER: text_add(text, "%d", *(const int *)field); break;
-        case CHOICE: text_add(text, "%s", key->words[*(const int *)field]); break;
+        case CHOICE:
+        case METHOD: text_add(text, "%s", case_table_word(key, *(const int *)field)); break;
         case TEXT: yaml_write_scalar(text, *(char *const *)field); break;
         case PAIR: write_pair(text, field); break;
         case NUMBERS: write_list(text, field, false); break;

@@ -20,12 +20,8 @@ static double wall_clock(void) {
 }
 
 static const struct integrator *integrator_of(enum method method) {
-    switch (method) {
-        case METHOD_IDA: return &ida_integrator;
-        case METHOD_IMPLICIT_EULER:
-        case METHOD_TRAPEZOID: return &one_step_integrator;
-        default: return &runge_kutta_integrator;
-    }
+    if (!methods_table[method].is_implicit) return &runge_kutta_integrator;
+    return method == METHOD_IDA ? &ida_integrator : &one_step_integrator;
 }
 
 static enum status fill(struct simulation *simulation, const struct case_values *values) {

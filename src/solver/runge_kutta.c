@@ -70,30 +70,12 @@ static int rates_callback(realtype t, N_Vector y, N_Vector rates, void *data) {
     return solver->failure;
 }
 
-// Euler's method; adaptive: with a second stage for the error estimate
-static ARKodeButcherTable euler_table(int adaptive) {
-    double c[2] = {0, 1}, a[4] = {0, 0, 1, 0}, b[2] = {1, 0}, heun[2] = {0.5, 0.5};
-    return adaptive ? ARKodeButcherTable_Create(2, 1, 2, c, a, b, heun)
-                    : ARKodeButcherTable_Create(1, 1, 0, c, a, b, NULL);
-}
-
-// the classical method of order four; adaptive: with Zonneveld's fifth stage for the error estimate
-static ARKodeButcherTable rk4_table(int adaptive) {
-    if (adaptive) return ARKodeButcherTable_LoadERK(ARKODE_ZONNEVELD_5_3_4);
-    double c[4] = {0, 0.5, 0.5, 1}, b[4] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
-    double a[16] = {0, 0, 0, 0, 0.5, 0, 0, 0, 0, 0.5, 0, 0, 0, 0, 1, 0};
-    return ARKodeButcherTable_Create(4, 4, 0, c, a, b, NULL);
-}
-
-static ARKodeButcherTable table_of(enum method method, int adaptive) {
-    switch (method) {
-        case METHOD_EULER: return euler_table(adaptive);
-        case METHOD_HEUN: return ARKodeButcherTable_LoadERK(ARKODE_HEUN_EULER_2_1_2);
-        case METHOD_RK4: return rk4_table(adaptive);
-        case METHOD_DORMAND_PRINCE: return ARKodeButcherTable_LoadERK(ARKODE_DORMAND_PRINCE_7_4_5);
-        default: break;
-    }
-    return NULL;
+// the library only reads the coefficients
+static ARKodeButcherTable tableau_of(enum method method, int adaptive) {
+    const struct method_properties *const properties = &methods_table[method];
+    const struct butcher_tableau *const t = adaptive ? properties->adaptive : properties->fixed;
+    return ARKodeButcherTable_Create(t->n_stages, t->order, t->embedded_order, (double *)t->c, (double *)t->a,
+                                     (double *)t->b, (double *)t->embedded);
 }
 
 static void runge_kutta_free(void *data) {
@@ -115,8 +97,8 @@ static void runge_kutta_free(void *data) {
 static enum status set_up_arkode(struct runge_kutta *solver) {
     void *const arkode = solver->arkode;
     const double step = solver->options.step;
-    const ARKodeButcherTable table = table_of(solver->options.method, step <= 0);
-    if (!table) return status_fail(STATUS_MEMORY, "out of memory: the Butcher table of a Runge-Kutta method");
+    const ARKodeButcherTable table = tableau_of(solver->options.method, step <= 0);
+    if (!table) return status_fail(STATUS_MEMORY, "out of memory: the tableau of a Runge-Kutta method");
     const int failed = ARKStepSetErrHandlerFn(arkode, sundials_adapter_message, NULL) ||
                        ARKStepSetUserData(arkode, solver) || ARKStepSetTables(arkode, 0, 0, NULL, table) ||
                        ARKStepSVtolerances(arkode, 0, solver->tolerances) || ARKStepSetMaxNumSteps(arkode, -1) ||
