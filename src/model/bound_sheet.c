@@ -23,6 +23,14 @@ void bound_sheet_normal(const struct fish *fish, int c, const double *y, double 
     normal[1] = body.n[1];
 }
 
+double bound_sheet_strength(const struct fish *fish, int j, const double *y) {
+    const struct stencil *const slope = &fish->sheet_slope[j];
+    const double per_natural_length = y[fish->at.gamma + j];
+    if (slope->n == 0) return per_natural_length;
+    const double length = hypot(fish_mean(slope, y + fish->at.x), fish_mean(slope, y + fish->at.y));
+    return per_natural_length * fish->edge_length / length;
+}
+
 double bound_sheet_circulation(const struct fish *fish, const double *y) {
     double sum = 0;
     for (int j = 0; j < fish->n_sheet; j++) sum += fish->sheet_weight[j] * y[fish->at.gamma + j];

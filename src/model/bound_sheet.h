@@ -41,6 +41,9 @@ void bound_sheet_kutta_flow_jacobian(const struct fish *fish, double chi, const 
 /* Unit normal of the body at control point c. */
 void bound_sheet_normal(const struct fish *fish, int c, const double *y, double normal[2]);
 
+/* Circulation of bound vortex j per length of the body as it is now, m s-1. */
+double bound_sheet_strength(const struct fish *fish, int j, const double *y);
+
 /* Circulation of the bound sheet, m2 s-1. */
 double bound_sheet_circulation(const struct fish *fish, const double *y);
 

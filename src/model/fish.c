@@ -46,9 +46,10 @@ static enum status fish_allocate(struct fish *fish) {
     for (size_t i = 0; i < sizeof per_joint / sizeof *per_joint; i++) TRY(doubles(per_joint[i], fish->n_joints));
     TRY(doubles(&fish->sheet_weight, fish->n_sheet));
     fish->sheet_point = calloc((size_t)fish->n_sheet, sizeof *fish->sheet_point);
+    fish->sheet_slope = calloc((size_t)fish->n_sheet, sizeof *fish->sheet_slope);
     fish->control_point = calloc((size_t)fish->n_control, sizeof *fish->control_point);
     fish->control_tangent = calloc((size_t)fish->n_control, sizeof *fish->control_tangent);
-    if (!fish->sheet_point || !fish->control_point || !fish->control_tangent) {
+    if (!fish->sheet_point || !fish->sheet_slope || !fish->control_point || !fish->control_tangent) {
         return status_fail(STATUS_MEMORY, "out of memory: %d points of a sheet", fish->n_sheet);
     }
     return STATUS_OK;
@@ -117,10 +118,16 @@ static void set_drag(struct fish *fish, const struct fish_parameters *from, doub
     fish->drag_law = drag->law;
 }
 
-// place j of the bound vortices, j + 1/2 of the control points, as a fraction of the length
+// sigma at j intervals of the angle from the nose
 static double cosine_place(const struct fish *fish, double j) {
     const int last = fish->n_sheet - 1;
     return j == last ? 1 : (1 - cos(pi * j / last)) / 2;
+}
+
+// sigma of a control point
+static double control_place(const struct fish *fish, int c, enum collocation collocation) {
+    if (collocation == COLLOCATION_CHEBYSHEV) return cosine_place(fish, c + 0.5);
+    return (cosine_place(fish, c) + cosine_place(fish, c + 1)) / 2;
 }
 
 static void place_sheet_on_polygon(struct fish *fish, enum collocation collocation) {
@@ -137,15 +144,38 @@ static void place_sheet_on_polygon(struct fish *fish, enum collocation collocati
     fish->tail_tangent = fish->control_tangent[fish->n_control - 1];
 }
 
+static void place_sheet_on_smooth_curve(struct fish *fish, enum collocation collocation) {
+    const int last = fish->n_sheet - 1;
+    for (int j = 0; j <= last; j++) {
+        const double u = cosine_place(fish, j) * fish->n_edges;
+        fish->sheet_point[j] = curve_smooth_point(fish->curve, u);
+        if (j == 0 || j == last) continue;  // where the quadrature has no weight
+        fish->sheet_slope[j] = curve_smooth_slope(fish->curve, u);
+        fish->sheet_weight[j] = fish->length / 2 * sin(pi * j / last) * pi / last;
+    }
+    for (int c = 0; c < last; c++) {
+        const double u = control_place(fish, c, collocation) * fish->n_edges;
+        fish->control_point[c] = curve_smooth_point(fish->curve, u);
+        fish->control_tangent[c].to = curve_smooth_slope(fish->curve, u);
+    }
+    fish->tail_tangent.to = curve_smooth_slope(fish->curve, fish->n_edges);
+}
+
 // bound vortices and control points: doc/model.md, section 6
-static enum status place_sheet(struct fish *fish, enum collocation collocation) {
+static enum status place_sheet(struct fish *fish, const struct wake_parameters *wake) {
     for (int j = 1; j < fish->n_sheet; j++) {
         const double distance = cosine_place(fish, j) - cosine_place(fish, j - 1);
         fish->sheet_weight[j - 1] += distance * fish->length / 2;
         fish->sheet_weight[j] += distance * fish->length / 2;
     }
-    TRY(curve_create(&fish->curve, fish->n_nodes, 2 * fish->n_sheet, 0));
-    place_sheet_on_polygon(fish, collocation);
+    const int is_smooth = wake->curve == BODY_LINE_SMOOTH;
+    TRY(curve_create(&fish->curve, fish->n_nodes, is_smooth ? 1 : 2 * fish->n_sheet,
+                     is_smooth ? 4 * fish->n_sheet : 0));
+    if (is_smooth) {
+        place_sheet_on_smooth_curve(fish, wake->collocation);
+    } else {
+        place_sheet_on_polygon(fish, wake->collocation);
+    }
     fish->heading_point = curve_polygon_point(fish->curve, 1.0 / 3.0 * fish->n_edges);
     return STATUS_OK;
 }
@@ -219,7 +249,7 @@ static enum status fish_fill(struct fish *fish, const struct school_parameters *
     weigh_body(fish, from);
     set_wave(fish, from);
     set_drag(fish, from, parameters->fluid.density);
-    TRY(place_sheet(fish, parameters->wake.collocation));
+    TRY(place_sheet(fish, &parameters->wake));
     set_motion(fish, from);
     return set_control(fish, from, parameters->fluid.density);
 }
@@ -334,6 +364,7 @@ void fish_school_free(struct school *school) {
                                fish->added_mass,
                                fish->sheet_weight,
                                fish->sheet_point,
+                               fish->sheet_slope,
                                fish->control_point,
                                fish->control_tangent,
                                fish->control.heading_time,

@@ -84,9 +84,10 @@ struct fish {
     double *added_mass;      /* mu, kg                                            (n_edges) */
     enum drag_law drag_law;
 
-    double *sheet_weight;            /* ds_j, m                                     (n_sheet) */
+    double *sheet_weight;            /* ds_j: circulation over unknown, m           (n_sheet) */
     struct curve *curve;             /* the line of the body; owns the stencils below */
     struct stencil *sheet_point;     /* the bound vortices                          (n_sheet) */
+    struct stencil *sheet_slope;     /* X' there, per edge; empty: of the length of an edge   (n_sheet) */
     struct stencil *control_point;   /* where impermeability is required            (n_control) */
     struct tangent *control_tangent; /* the direction of the body there             (n_control) */
     struct tangent tail_tangent;     /* and at the tail */

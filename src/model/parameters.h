@@ -6,6 +6,7 @@
 
 enum shedding { SHEDDING_CONTINUOUS, SHEDDING_IMPULSIVE };
 enum kutta { KUTTA_EDGE, KUTTA_RATE };
+enum body_line { BODY_LINE_SMOOTH, BODY_LINE_POLYGON };
 enum collocation { COLLOCATION_CHEBYSHEV, COLLOCATION_MIDPOINT };
 enum removed_circulation { REMOVED_RETAINED, REMOVED_DROPPED };
 enum profile { PROFILE_JOUKOWSKI, PROFILE_UNIFORM, PROFILE_TABLE };
@@ -36,6 +37,7 @@ struct wake_parameters {
     enum shedding shedding;
     enum kutta kutta;
     double kutta_ramp; /* s */
+    enum body_line curve;
     enum collocation collocation;
     enum removed_circulation dissipated_circulation;
     double tolerance; /* lengths per beat; 0: exact */

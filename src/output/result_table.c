@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "model/bound_sheet.h"
 #include "model/rod.h"
 #include "study/compare_file.h"
 #include "study/study_file.h"
@@ -54,7 +55,7 @@ static void gather_sheet_position(const struct result_row *row, int f, double *s
 
 static void gather_sheet_strength(const struct result_row *row, int f, double *slots) {
     const struct fish *fish = &row->school->fish[f];
-    copy(fish->n_sheet, row->state->y + fish->at.gamma, slots);
+    for (int j = 0; j < fish->n_sheet; j++) slots[j] = bound_sheet_strength(fish, j, row->state->y);
 }
 
 static void gather_sheet_arc(const struct result_row *row, int f, double *slots) {
@@ -109,7 +110,7 @@ const struct result_variable result_table[] = {
     {"edge_height",           {FISH, EDGE},           RESULT_REAL,    "m",       "thickness of the body in the plane of motion", ARRAY_IN_FISH(thickness)},
     {"edge_width",            {FISH, EDGE},           RESULT_REAL,    "m",       "extent of the body out of the plane of motion", ARRAY_IN_FISH(depth)},
     {"sheet_arc",             {FISH, SHEET},          RESULT_REAL,    "m",       "arc coordinate of the bound vortices, from the nose", GATHERED(gather_sheet_arc)},
-    {"sheet_weight",          {FISH, SHEET},          RESULT_REAL,    "m",       "length of body that a bound vortex stands for: circulation over strength", ARRAY_IN_FISH(sheet_weight)},
+    {"sheet_weight",          {FISH, SHEET},          RESULT_REAL,    "m",       "natural length of body of a bound vortex: circulation over strength where nothing is stretched", ARRAY_IN_FISH(sheet_weight)},
     {"fluid_density",         {NONE},                 RESULT_REAL,    "kg m-3",  "density of the fluid", IN_SCHOOL(density)},
     {"shedding_interval",     {NONE},                 RESULT_REAL,    "s",       "time between the release of two vortices", IN_SCHOOL(interval)},
     {"wake_lifetime",         {NONE},                 RESULT_REAL,    "s",       "age at which a free vortex is removed", IN_SCHOOL(lifetime)},

@@ -1,4 +1,5 @@
-/* test_sheet.c: no penetration, Kelvin, Kutta; the flat plate in closed form: doc/model.md, sections 6, 7 and 12. */
+/* test_bound_sheet.c: impermeability, Kelvin, Kutta; flat plate and circular arc in closed form: doc/model.md, sections 6,
+ * 7 and 12. */
 #include <stdio.h>
 
 #include "model/bound_sheet.h"
@@ -47,8 +48,16 @@ static void stamp_of_sheet(struct setup *setup, double cj, const double *y, stru
 static void stamps_agree_with_differences(void **state) {
     (void)state;
     const char *const texts[] = {
-        TIME "fish: [{sheet_points: 9}]\n", TIME "wake: {collocation: midpoint}\nfish: [{sheet_points: 21}]\n",
+        TIME "fish: [{sheet_points: 9}]\n",
+        TIME "wake: {collocation: midpoint}\nfish: [{sheet_points: 21}]\n",
         TIME "fluid: {velocity: [0.3, -0.2], shear: 0.7}\nfish: [{sheet_points: 5, nodes: 9}]\n",
+        TIME "wake: {curve: smooth}\nfish: [{sheet_points: 9}]\n",
+        TIME "wake: {curve: smooth, collocation: midpoint}\nfish: [{sheet_points: 15, nodes: 4}]\n",
+        TIME FAR
+        "wake: {curve: smooth}\n"
+        "fish:\n"
+        "  - {sheet_points: 9}\n"
+        "  - {nodes: 5, sheet_points: 13, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n",
         TIME FAR
         "wake: {collocation: midpoint}\n"
         "fish:\n"
@@ -172,6 +181,108 @@ static void chebyshev_points_converge_spectrally(void **state) {
     }
 }
 
+/* The bound circulation, under Kutta's condition, of a body of length 1 at rest in the stream (cos 10, sin 10 degrees).
+ * place gives its nodes as functions of the arc length. What is shed has no velocity. */
+typedef void line(double s, double place[2]);
+static double circulation_of_a_bent_body(line *place, const char *curve, int n_nodes, int m) {
+    char text[512];
+    snprintf(text, sizeof text,
+             TIME
+             "fluid: {velocity: [%.17g, %.17g]}\n"
+             "wake: {curve: %s, smoothing: 1.0e+9}\n"
+             "fish: [{nodes: %d, sheet_points: %d, wave: {amplitude: 0}, start: {speed: 0}}]\n",
+             cos(pi / 18), sin(pi / 18), curve, n_nodes, m);
+    struct setup setup;
+    school_build(&setup, text);
+    const struct fish *fish = setup.school->fish;
+    for (int k = 0; k < n_nodes; k++) {
+        double at[2];
+        place((double)k / (n_nodes - 1), at);
+        setup.state->y[fish->at.x + k] = at[0];
+        setup.state->y[fish->at.y + k] = at[1];
+    }
+    struct initial_conditions *consistent;
+    school_ok(initial_conditions_create(&consistent, setup.residual));
+    school_ok(initial_conditions_solve(consistent, 0, setup.state->y, setup.state->yp));
+    const double circulation = bound_sheet_circulation(fish, setup.state->y);
+    initial_conditions_free(consistent);
+    school_clear(&setup);
+    return circulation;
+}
+
+// an arc of half opening 30 degrees that bulges up; its circulation by Joukowski's map
+static void arc(double s, double place[2]) {
+    const double angle = pi / 6 * (2 * s - 1), radius = 3 / pi;
+    place[0] = radius * (sin(angle) + 0.5);
+    place[1] = radius * (cos(angle) - cos(pi / 6));
+}
+
+static void smooth_curve_has_the_circulation_of_an_arc(void **state) {
+    (void)state;
+    const double exact = -3 / cos(pi / 12) * sin(pi / 18 + pi / 12);
+    const int n_nodes[] = {7, 11, 21, 41};
+    const double allowed[] = {1e-4, 2e-5, 2e-6, 2e-7};
+    for (int i = 0; i < 4; i++) {
+        NEAR(circulation_of_a_bent_body(arc, "smooth", n_nodes[i], 41), exact, 0, allowed[i]);
+    }
+}
+
+// a default fish in mid-beat: the curvature of its full wave, integrated by Simpson's rule
+static void beat(double s, double place[2]) {
+    enum { N = 2000 };
+    double angle = 0;
+    place[0] = place[1] = 0;
+    for (int i = 0; i < N; i++) {
+        double turn[5];
+        for (int k = 0; k < 5; k++) {
+            const double q = s * (i + k / 4.0) / N;
+            turn[k] = s / N * 6 * 0.4 * (q + 0.2 * q * q) * sin(1 - 6 * q);
+        }
+        const double half = angle + (turn[0] + 4 * turn[1] + turn[2]) / 12;
+        const double end = angle + (turn[0] + 4 * turn[1] + 2 * turn[2] + 4 * turn[3] + turn[4]) / 12;
+        place[0] += s / N * (cos(angle) + 4 * cos(half) + cos(end)) / 6;
+        place[1] += s / N * (sin(angle) + 4 * sin(half) + sin(end)) / 6;
+        angle = end;
+    }
+}
+
+static void smooth_curve_and_polygon_of_a_bent_fish_have_one_limit(void **state) {
+    (void)state;
+    const double limit = circulation_of_a_bent_body(beat, "smooth", 641, 65);
+    // about 16 N^-3.5 and 2.5 N^-1.5 on this body
+    const int n_nodes[] = {17, 33, 65};
+    double smooth[3], polygon[3];
+    for (int i = 0; i < 3; i++) {
+        smooth[i] = fabs(circulation_of_a_bent_body(beat, "smooth", n_nodes[i], 65) / limit - 1);
+        polygon[i] = fabs(circulation_of_a_bent_body(beat, "polygon", n_nodes[i], 65) / limit - 1);
+    }
+    assert_true(smooth[0] < 1e-3 && smooth[1] < 1e-4 && smooth[2] < 1e-5);
+    assert_true(log2(smooth[0] / smooth[1]) > 3 && log2(smooth[1] / smooth[2]) > 3);
+    assert_true(polygon[0] > 1e-2 && log2(polygon[1] / polygon[2]) > 1.3);
+    NEAR(circulation_of_a_bent_body(beat, "polygon", 641, 65), limit, 0, 1e-3);
+}
+
+static void strength_is_circulation_per_length_of_the_body_as_it_is(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "wake: {curve: smooth}\nfish: [{sheet_points: 9, length: 1.2, start: {heading: 30}}]\n");
+    const struct fish *fish = setup.school->fish;
+    double *const y = setup.state->y;
+    // stretched by a tenth
+    for (int i = fish->at.x; i < fish->at.vx; i++) y[i] *= 1.1;
+    const double h = pi / 8;
+    for (int j = 1; j < 8; j++) {
+        y[fish->at.gamma + j] = 0.7;
+        const double q = 0.7 * fish->sheet_weight[j];
+        NEAR(bound_sheet_strength(fish, j, y), q / (1.1 * 0.6 * h * sin(j * h)), 0, 1e-13);
+    }
+    // at the ends the quadrature has no weight
+    y[fish->at.gamma + 8] = 0.7;
+    NEAR(bound_sheet_strength(fish, 8, y), 0.7, 0, 0);
+    NEAR(fish->sheet_weight[8], 0.3 * (1 - cos(h)), 1e-15, 0);
+    school_clear(&setup);
+}
+
 static void kelvin_counts_bound_shed_and_dissipated_circulation(void **state) {
     (void)state;
     struct setup setup;
@@ -215,6 +326,9 @@ int main(void) {
         cmocka_unit_test(plate_with_kutta_condition_is_exact_with_chebyshev_points),
         cmocka_unit_test(plate_with_midpoints_converges),
         cmocka_unit_test(chebyshev_points_converge_spectrally),
+        cmocka_unit_test(smooth_curve_has_the_circulation_of_an_arc),
+        cmocka_unit_test(smooth_curve_and_polygon_of_a_bent_fish_have_one_limit),
+        cmocka_unit_test(strength_is_circulation_per_length_of_the_body_as_it_is),
         cmocka_unit_test(kelvin_counts_bound_shed_and_dissipated_circulation),
         cmocka_unit_test(shedding_rate_is_edge_strength_times_slip),
     };

@@ -1,4 +1,5 @@
 /* test_fish.c: shape, mass, stiffness, points and start of a fish: doc/model.md, sections 1, 3, 4, 5, 6. */
+#include <stdio.h>
 #include <string.h>
 
 #include "school.h"
@@ -167,6 +168,29 @@ static void control_points_are_chebyshev_points_or_midpoints_of_chords(void **st
         NEAR(total, 1, 1e-15, 0);
     }
     school_clear(&setup);
+}
+
+static void smooth_curve_has_the_same_places_and_the_weights_of_the_quadrature(void **state) {
+    (void)state;
+    struct setup smooth, polygon;
+    for (int midpoint = 0; midpoint < 2; midpoint++) {
+        char text[2][200];
+        for (int i = 0; i < 2; i++) {
+            snprintf(text[i], sizeof text[i],
+                     TIME "wake: {curve: %s, collocation: %s}\nfish: [{sheet_points: 11, length: 1.2}]\n",
+                     i == 0 ? "smooth" : "polygon", midpoint ? "midpoint" : "chebyshev");
+        }
+        school_build(&smooth, text[0]);
+        school_build(&polygon, text[1]);
+        const struct fish *a = smooth.school->fish, *b = polygon.school->fish;
+        for (int j = 0; j < 11; j++) NEAR(arc_of(a, &a->sheet_point[j]), arc_of(b, &b->sheet_point[j]), 1e-14, 0);
+        for (int c = 0; c < 10; c++) NEAR(arc_of(a, &a->control_point[c]), arc_of(b, &b->control_point[c]), 1e-14, 0);
+        for (int j = 1; j < 10; j++) NEAR(a->sheet_weight[j], 0.06 * pi * sin(0.1 * pi * j), 0, 1e-14);
+        NEAR(a->sheet_weight[0], b->sheet_weight[0], 0, 0);
+        NEAR(a->sheet_weight[10], b->sheet_weight[10], 0, 0);
+        school_clear(&smooth);
+        school_clear(&polygon);
+    }
 }
 
 static void start_is_straight_behind_the_nose_with_one_velocity(void **state) {
@@ -359,6 +383,7 @@ int main(void) {
         cmocka_unit_test(drag_coefficients_follow_the_extent),
         cmocka_unit_test(sheet_points_are_cosine_points_and_weights_add_up_to_the_length),
         cmocka_unit_test(control_points_are_chebyshev_points_or_midpoints_of_chords),
+        cmocka_unit_test(smooth_curve_has_the_same_places_and_the_weights_of_the_quadrature),
         cmocka_unit_test(start_is_straight_behind_the_nose_with_one_velocity),
         cmocka_unit_test(start_without_ramp_has_the_natural_shape),
         cmocka_unit_test(driven_velocity_and_acceleration_are_derivatives),

@@ -21,6 +21,8 @@ static const struct variant {
     {"relaxation time", TIME "fish: [{sheet_points: 9, body: {relaxation_time: 0.1, bending_damping: 2}}]\n"},
     {"load at the tip", TIME "fish: [{sheet_points: 9, load: {tip: [3, -2]}}]\n"},
     {"collocation midpoint", TIME "wake: {collocation: midpoint}\n" FISH},
+    {"smooth curve", TIME "wake: {curve: smooth}\n" FISH},
+    {"smooth curve, kutta rate, midpoint", TIME "wake: {curve: smooth, kutta: rate, collocation: midpoint}\n" FISH},
     {"kutta rate", TIME "wake: {kutta: rate}\n" FISH},
     {"kutta rate with ramp, midpoint", TIME "wake: {kutta: rate, kutta_ramp: 0.5, collocation: midpoint}\n" FISH},
     {"impulsive edge", TIME "wake: {shedding: impulsive}\n" FISH},
