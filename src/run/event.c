@@ -6,6 +6,12 @@
 #include "model/diagnostics.h"
 #include "model/drag.h"
 
+// evaluate the equations; at an event there is no smaller step to try
+static enum status evaluate(struct residual *residual, const struct state *state) {
+    const enum status status = residual_evaluate(residual, state->t, state->y, state->yp, residual->scratch);
+    return status == STATUS_RETRY ? status_fail(STATUS_SOLVER, "%s", status_message()) : status;
+}
+
 // continuous shedding: the nascent vortex is set free where it is, with the strength it has
 static enum status release_nascent(struct state *state, const struct school *school) {
     for (int f = 0; f < school->n_fish; f++) {
@@ -33,7 +39,7 @@ static enum status release_impulse(struct state *state, struct residual *residua
     } else {
         // with what the rate gives over one interval
         flow_sum_exactly(residual->flow);
-        TRY(residual_evaluate(residual, state->t, state->y, state->yp, residual->scratch));
+        TRY(evaluate(residual, state));
         for (int f = 0; f < school->n_fish; f++) {
             state->y[school->fish[f].at.circulation] +=
                 school->interval * residual_kutta_rate(residual, f, state->t, state->y);
@@ -63,7 +69,7 @@ static enum status take_velocities(struct state *state, struct residual *residua
         }
     }
     TRY(flow_interpolate(flow, state));
-    TRY(residual_evaluate(residual, state->t, state->y, state->yp, residual->scratch));
+    TRY(evaluate(residual, state));
     for (int f = 0; f < school->n_fish; f++) flow_slip(flow, f, state->y, state->wake[f].slip);
     return STATUS_OK;
 }

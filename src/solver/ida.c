@@ -87,7 +87,7 @@ static void ida_free(void *data) {
 static enum status set_up_ida(struct ida *solver) {
     const struct school *school = solver->residual->school;
     void *const ida = solver->ida;
-    if (IDASetErrHandlerFn(ida, sundials_adapter_message, NULL) || IDASetUserData(ida, solver) ||
+    if (IDASetErrHandlerFn(ida, sundials_adapter_message, &solver->failure) || IDASetUserData(ida, solver) ||
         IDAInit(ida, residual_callback, solver->state->t, solver->y, solver->yp) ||
         IDASVtolerances(ida, 0, solver->tolerances) || IDASetId(ida, solver->kinds) || IDASetSuppressAlg(ida, 1) ||
         IDASetLinearSolver(ida, solver->linear.solver, solver->linear.matrix) || IDASetJacFn(ida, jacobian_callback) ||
@@ -120,7 +120,8 @@ static enum status fill(struct ida *solver) {
         if (!solver->scratch[i]) return status_fail(STATUS_MEMORY, "out of memory: a vector of %d unknowns", n);
     }
     const struct linear_tolerance linear = {linear_relative, linear_absolute * newton_coefficient};
-    TRY(sundials_adapter_linear_create(&solver->linear, solver->context, solver->jacobian, solver->tolerance, linear));
+    TRY(sundials_adapter_linear_create(&solver->linear, solver->context, solver->jacobian, solver->tolerance, linear,
+                                       &solver->failure));
     const struct ida_newton_rules rules = {max_iterations, jacobian_cost, leading_coefficient};
     TRY(ida_newton_create(&solver->newton, solver->context, solver->y, solver->residual->school, rules));
     solver->ida = IDACreate(solver->context);
@@ -167,7 +168,6 @@ static void ida_count(const void *data, struct integrator_counts *counts) {
 static enum status ida_restart(void *data) {
     struct ida *const solver = data;
     ida_count(solver, &solver->before);
-    residual_kinds(solver->residual, solver->kind);
     if (IDAReInit(solver->ida, solver->state->t, solver->y, solver->yp)) {
         return status_fail(STATUS_SOLVER, "IDA cannot start again: %s", status_message());
     }
@@ -213,7 +213,7 @@ static enum status failed(const struct ida *solver, int code, long steps) {
     IDAGetCurrentStep(solver->ida, &step);
     // the limit of steps is ours: there is no message of IDA
     char message[512] = "";
-    if (code != IDA_TOO_MUCH_WORK) snprintf(message, sizeof message, "; IDA: %s", status_message());
+    if (code != IDA_TOO_MUCH_WORK) snprintf(message, sizeof message, "; %s", status_message());
     const struct unknown_place place = worst_unknown(solver, &size);
     return status_fail(STATUS_SOLVER,
                        "integration failed at t = %.10g s: %s; the largest error is that of %s[%d] of fish %s, %.3g "
@@ -247,7 +247,7 @@ static enum status ida_advance(void *data, double t) {
         if (IDASetStopTime(solver->ida, stop)) return failed(solver, IDA_ILL_INPUT, steps);
         solver->failure = STATUS_OK;
         const int code = IDASolve(solver->ida, t, &reached, solver->y, solver->yp, IDA_ONE_STEP);
-        if (solver->failure < 0) return solver->failure;
+        if (solver->failure == STATUS_MEMORY) return STATUS_MEMORY;
         if (code < 0) return failed(solver, code, steps);
         if (code == IDA_TSTOP_RETURN) reached = stop;
         diagnostics_step(solver->residual, state, reached, state->y, state->yp);

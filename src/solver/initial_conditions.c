@@ -88,7 +88,7 @@ static enum status set_up_kinsol(struct initial_conditions *c) {
     c->kinsol = KINCreate(c->context);
     if (!c->kinsol) return status_fail(STATUS_MEMORY, "out of memory: KINSOL");
     // full Newton steps, since the equations are nearly linear, with a new Jacobian each
-    if (KINSetErrHandlerFn(c->kinsol, sundials_adapter_message, NULL) || KINSetUserData(c->kinsol, c) ||
+    if (KINSetErrHandlerFn(c->kinsol, sundials_adapter_message, &c->failure) || KINSetUserData(c->kinsol, c) ||
         KINInit(c->kinsol, algebraic_value, c->solution) ||
         KINSetLinearSolver(c->kinsol, c->linear.solver, c->linear.matrix) ||
         KINSetJacFn(c->kinsol, algebraic_jacobian) || KINSetMaxSetupCalls(c->kinsol, 1) ||
@@ -118,7 +118,7 @@ static enum status fill(struct initial_conditions *c) {
     TRY(sundials_adapter_vector(&c->solution, c->context, n, c->start));
     TRY(sundials_adapter_vector(&c->solution_scales, c->context, n, c->solution_scale));
     TRY(sundials_adapter_vector(&c->value_scales, c->context, n, c->value_scale));
-    TRY(sundials_adapter_linear_create(&c->linear, c->context, c->jacobian, c->scale, linear_tolerance));
+    TRY(sundials_adapter_linear_create(&c->linear, c->context, c->jacobian, c->scale, linear_tolerance, &c->failure));
     return set_up_kinsol(c);
 }
 
@@ -195,11 +195,14 @@ enum status initial_conditions_solve(struct initial_conditions *c, double t, dou
     long iterations = 0;
     KINGetNumNonlinSolvIters(c->kinsol, &iterations);
     c->iterations += iterations;
-    if (c->failure < 0) return c->failure;
+    if (c->failure == STATUS_MEMORY) return STATUS_MEMORY;
     if (code < 0) return failed(c, code);
-    take_algebraic(c, c->start, y);
     // the fluid's velocity at the solution is needed for the rates, and for the diagnostics
-    TRY(residual_evaluate(c->residual, t, y, yp, c->value));
+    take_algebraic(c, c->start, c->y);
+    c->failure = residual_evaluate(c->residual, t, c->y, c->zero, c->value);
+    if (c->failure == STATUS_MEMORY) return STATUS_MEMORY;
+    if (c->failure != STATUS_OK) return failed(c, code);
+    memcpy(y, c->y, (size_t)c->n * sizeof *y);
     set_rates(c, t, y, yp);
     return STATUS_OK;
 }

@@ -89,10 +89,9 @@ static void one_step_count(const void *data, struct integrator_counts *counts) {
     *counts = ((const struct one_step *)data)->counts;
 }
 
-// a one-step method has no history, but a jump may change which unknowns are differential
+// a one-step method has no history but its Jacobian
 static enum status one_step_restart(void *data) {
     struct one_step *const solver = data;
-    residual_kinds(solver->residual, solver->kind);
     solver->cj = 0;
     return STATUS_OK;
 }

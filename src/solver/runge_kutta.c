@@ -99,7 +99,7 @@ static enum status set_up_arkode(struct runge_kutta *solver) {
     const double step = solver->options.step;
     const ARKodeButcherTable table = tableau_of(solver->options.method, step <= 0);
     if (!table) return status_fail(STATUS_MEMORY, "out of memory: the tableau of a Runge-Kutta method");
-    const int failed = ARKStepSetErrHandlerFn(arkode, sundials_adapter_message, NULL) ||
+    const int failed = ARKStepSetErrHandlerFn(arkode, sundials_adapter_message, &solver->failure) ||
                        ARKStepSetUserData(arkode, solver) || ARKStepSetTables(arkode, 0, 0, NULL, table) ||
                        ARKStepSVtolerances(arkode, 0, solver->tolerances) || ARKStepSetMaxNumSteps(arkode, -1) ||
                        ARKStepSetMaxErrTestFails(arkode, 20) ||
@@ -190,8 +190,8 @@ static enum status unstable(const struct runge_kutta *solver, double t, const ch
     double step = 0;
     ARKStepGetLastStep(solver->arkode, &step);
     return status_fail(STATUS_SOLVER,
-                       "unstable at t = %.10g s: %s with steps of %.3g s; the body is too stiff for an explicit method "
-                       "with such steps: choose solver.method: ida, or a smaller solver.step",
+                       "unstable at t = %.10g s: %s; the last step was %.3g s, with which the body is too stiff for an "
+                       "explicit method: choose solver.method: ida, or a smaller solver.step",
                        t, why, step);
 }
 
@@ -200,7 +200,7 @@ static enum status close_step(struct runge_kutta *solver, double before, double 
     struct state *const state = solver->state;
     const struct school *school = solver->residual->school;
     const enum status status = evaluate(solver, reached, state->y);
-    if (status > 0) return unstable(solver, reached, "the solution overflows");
+    if (status > 0) return unstable(solver, reached, status_message());
     TRY(status);
     memcpy(state->yp, solver->rates, (size_t)school->n_unknowns * sizeof *state->yp);
     // rates of algebraic unknowns that matter are differences over the step
@@ -228,8 +228,8 @@ static enum status runge_kutta_advance(void *data, double t) {
         solver->failure = STATUS_OK;
         const double before = reached;
         const int code = ARKStepEvolve(solver->arkode, t, solver->y, &reached, ARK_ONE_STEP);
-        if (solver->failure < 0) return solver->failure;
-        if (code < 0) return unstable(solver, reached, "the solution overflows");
+        if (solver->failure == STATUS_MEMORY) return STATUS_MEMORY;
+        if (code < 0) return unstable(solver, reached, status_message());
         if (code == ARK_TSTOP_RETURN) reached = t;
         TRY(close_step(solver, before, reached));
         diagnostics_step(solver->residual, state, reached, state->y, state->yp);

@@ -19,6 +19,23 @@ static void events_are_at_exact_multiples_of_the_interval(void **state) {
     simulate_free(simulation);
 }
 
+static void an_event_without_finite_velocities_is_final(void **state) {
+    (void)state;
+    const char *const texts[] = {TIME "fish: [{}]\n", TIME "wake: {shedding: impulsive, kutta: rate}\nfish: [{}]\n"};
+    for (int i = 0; i < 2; i++) {
+        struct simulation *const simulation = school_simulation(texts[i]);
+        struct state *const s = simulation->state;
+        school_run(simulation, 0.1);
+        // the nascent vortex of continuous shedding, the tail of impulsive shedding
+        s->wake[0].slip[0] = NAN;
+        if (i == 1) s->y[simulation->school->fish[0].at.x + 6] = NAN;
+        int jumped;
+        assert_int_equal(event_next(s, simulation->residual, simulation->consistent, &jumped), STATUS_SOLVER);
+        assert_non_null(strstr(status_message(), "has no finite value at t = 0.12"));
+        simulate_free(simulation);
+    }
+}
+
 static void one_vortex_is_released_at_every_event_with_what_was_shed(void **state) {
     (void)state;
     struct simulation *const simulation = school_simulation(TIME "fish: [{}]\n");
@@ -190,6 +207,7 @@ int main(void) {
         cmocka_unit_test(impulses_conserve_circulation_and_meet_kutta),
         cmocka_unit_test(impulses_by_rate_are_the_rate_times_the_interval),
         cmocka_unit_test(waypoints_advance_during_a_run),
+        cmocka_unit_test(an_event_without_finite_velocities_is_final),
         cmocka_unit_test(averaged_heading_changes_the_bias_at_a_bounded_rate),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -156,7 +156,30 @@ static void equations_without_a_finite_value_end_with_time_fish_and_reason(void 
     assert_int_equal(simulate_step(simulation), STATUS_SOLVER);
     assert_non_null(strstr(status_message(), "t = 0.1"));
     assert_non_null(strstr(status_message(), "nemo"));
+    // the cause, not what IDA says about it
+    assert_non_null(strstr(status_message(), "of fish nemo has no finite value at t = 0.1"));
     simulate_free(simulation);
+}
+
+static void kinds_of_unknowns_are_the_same_in_all_intervals(void **state) {
+    (void)state;
+    // IDA and the one-step methods look them up once
+    const char *const texts[] = {TIME "fish: [{}]\n", TIME "wake: {shedding: impulsive}\nfish: [{}]\n",
+                                 TIME "wake: {kutta: rate}\nfish: [{}]\n",
+                                 TIME "wake: {kutta: rate, shedding: impulsive}\nfish: [{}]\n",
+                                 TIME "fish: [{motion: {driven: head, heave: 0.1, frequency: 1}}]\n"};
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        struct simulation *const simulation = school_simulation(texts[i]);
+        double first[65], now[65];
+        assert_int_equal(simulation->school->n_unknowns, 65);
+        residual_kinds(simulation->residual, first);
+        for (int n = 0; n < 3; n++) {
+            school_ok(simulate_step(simulation));
+            residual_kinds(simulation->residual, now);
+            NEAR_ARRAY(65, now, first, 0, 0);
+        }
+        simulate_free(simulation);
+    }
 }
 
 static void an_unreachable_tolerance_ends_with_a_message(void **state) {
@@ -180,6 +203,7 @@ int main(void) {
         cmocka_unit_test(a_restart_without_a_jump_does_not_change_the_path),
         cmocka_unit_test(too_many_steps_end_with_time_and_remedy),
         cmocka_unit_test(equations_without_a_finite_value_end_with_time_fish_and_reason),
+        cmocka_unit_test(kinds_of_unknowns_are_the_same_in_all_intervals),
         cmocka_unit_test(an_unreachable_tolerance_ends_with_a_message),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -157,6 +157,39 @@ static void a_state_that_is_not_a_number_is_refused_and_kept(void **state) {
     // it says when, and which equation
     assert_non_null(strstr(status_message(), "t = 0.208"));
     assert_non_null(strstr(status_message(), "fish1"));
+    // and the cause, not what KINSOL says about it
+    assert_non_null(strstr(status_message(), "of fish fish1 has no finite value"));
+    initial_conditions_free(solver);
+    school_clear(&setup);
+}
+
+static void a_singular_jacobian_is_named(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{name: nemo, sheet_points: 11}]\n");
+    // Kelvin's theorem without circulations, and its residual
+    struct fish *fish = setup.school->fish;
+    for (int j = 0; j < fish->n_sheet; j++) fish->sheet_weight[j] = 0;
+    setup.school->kutta = KUTTA_RATE;
+    setup.state->y[fish->at.circulation] = 1;
+    struct initial_conditions *solver;
+    school_ok(initial_conditions_create(&solver, setup.residual));
+    assert_int_equal(initial_conditions_solve(solver, 0, setup.state->y, setup.state->yp), STATUS_SOLVER);
+    assert_non_null(strstr(status_message(), "the Jacobian of fish nemo is singular"));
+    initial_conditions_free(solver);
+    school_clear(&setup);
+}
+
+static void a_rate_that_is_not_a_number_does_not_matter(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME FISH);
+    const struct fish *fish = setup.school->fish;
+    setup.state->yp[fish->at.x + 1] = NAN;
+    struct initial_conditions *solver;
+    school_ok(initial_conditions_create(&solver, setup.residual));
+    school_ok(initial_conditions_solve(solver, 0, setup.state->y, setup.state->yp));
+    NEAR(setup.state->yp[fish->at.x + 1], setup.state->y[fish->at.vx + 1], 0, 0);
     initial_conditions_free(solver);
     school_clear(&setup);
 }
@@ -169,6 +202,8 @@ int main(void) {
         cmocka_unit_test(differential_unknowns_stay_as_they_are),
         cmocka_unit_test(a_second_solution_changes_nothing),
         cmocka_unit_test(a_state_that_is_not_a_number_is_refused_and_kept),
+        cmocka_unit_test(a_singular_jacobian_is_named),
+        cmocka_unit_test(a_rate_that_is_not_a_number_does_not_matter),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -281,6 +281,7 @@ struct correction {
     struct simulation *simulation;
     struct jacobian *jacobian;
     struct sundials_adapter_linear linear;
+    enum status failure;
 };
 
 static int value_callback(realtype t, N_Vector y, N_Vector yp, N_Vector value, void *data) {
@@ -311,14 +312,14 @@ static int calculate(struct simulation *simulation, double *y, double *yp, doubl
         if (sundials_adapter_vector(&vector[i], context, n, values[i]) != STATUS_OK) abort();
     }
     if (jacobian_create(&correction.jacobian, simulation->school) != STATUS_OK ||
-        sundials_adapter_linear_create(&correction.linear, context, correction.jacobian, tolerance, linear_tolerance) !=
-            STATUS_OK) {
+        sundials_adapter_linear_create(&correction.linear, context, correction.jacobian, tolerance, linear_tolerance,
+                                       &correction.failure) != STATUS_OK) {
         abort();
     }
     residual_mask(simulation->residual, correction.jacobian);
     void *ida = IDACreate(context);
     int code = IDAInit(ida, value_callback, simulation->state->t, vector[0], vector[1]);
-    if (code == 0) code = IDASetErrHandlerFn(ida, sundials_adapter_message, NULL);
+    if (code == 0) code = IDASetErrHandlerFn(ida, sundials_adapter_message, &correction.failure);
     if (code == 0) code = IDASetUserData(ida, &correction);
     if (code == 0) code = IDASVtolerances(ida, 0, vector[3]);
     if (code == 0) code = IDASetId(ida, vector[2]);
