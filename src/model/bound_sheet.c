@@ -37,6 +37,12 @@ double bound_sheet_circulation(const struct fish *fish, const double *y) {
     return sum;
 }
 
+double bound_sheet_end_correction(const struct fish *fish, int c, int j) {
+    const int last = fish->n_sheet - 1;
+    if (j < last - 1) return 0;
+    return (j == last ? -2 : 1) * fish->end_correction[c] * fish->sheet_weight[j];
+}
+
 void bound_sheet_residual(const struct fish *fish, double dissipated, const double *u, const double *v, const double *y,
                           double *residual) {
     double *const row = residual + fish->at.gamma;
@@ -45,6 +51,9 @@ void bound_sheet_residual(const struct fish *fish, double dissipated, const doub
         const double slip[2] = {u[c] - fish_mean(&fish->control_point[c], y + fish->at.vx),
                                 v[c] - fish_mean(&fish->control_point[c], y + fish->at.vy)};
         row[c] = slip[0] * body.n[0] + slip[1] * body.n[1];
+        for (int j = fish->n_sheet - 2; j < fish->n_sheet; j++) {
+            row[c] += bound_sheet_end_correction(fish, c, j) * y[fish->at.gamma + j];
+        }
     }
     row[fish->n_control] = bound_sheet_circulation(fish, y) + y[fish->at.circulation] - dissipated;
 }
@@ -59,6 +68,9 @@ void bound_sheet_jacobian(const struct fish *fish, const double *u, const double
         for (int i = 0; i < point->n; i++) {
             sparse_add(jacobian, row, fish->at.vx + point->node[i], -point->weight[i] * body.n[0]);
             sparse_add(jacobian, row, fish->at.vy + point->node[i], -point->weight[i] * body.n[1]);
+        }
+        for (int j = fish->n_sheet - 2; j < fish->n_sheet; j++) {
+            sparse_add(jacobian, row, fish->at.gamma + j, bound_sheet_end_correction(fish, c, j));
         }
         // the normal turns with the tangent e: dn = -t (n.de)/|e|
         const double turn = -(slip[0] * body.t[0] + slip[1] * body.t[1]) / body.length;

@@ -38,6 +38,9 @@ void bound_sheet_kutta_jacobian(const struct fish *fish, enum bound_sheet_law la
 void bound_sheet_kutta_flow_jacobian(const struct fish *fish, double chi, const struct influence_block *block,
                                      const double *y, struct coupling_block *rows);
 
+/* Derivative of the end correction in the row of control point c by bound vortex j. */
+double bound_sheet_end_correction(const struct fish *fish, int c, int j);
+
 /* Unit normal of the body at control point c. */
 void bound_sheet_normal(const struct fish *fish, int c, const double *y, double normal[2]);
 

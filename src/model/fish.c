@@ -45,6 +45,7 @@ static enum status fish_allocate(struct fish *fish) {
                                   &fish->wave_phase};
     for (size_t i = 0; i < sizeof per_joint / sizeof *per_joint; i++) TRY(doubles(per_joint[i], fish->n_joints));
     TRY(doubles(&fish->sheet_weight, fish->n_sheet));
+    TRY(doubles(&fish->end_correction, fish->n_control));
     fish->sheet_point = calloc((size_t)fish->n_sheet, sizeof *fish->sheet_point);
     fish->sheet_slope = calloc((size_t)fish->n_sheet, sizeof *fish->sheet_slope);
     fish->control_point = calloc((size_t)fish->n_control, sizeof *fish->control_point);
@@ -178,6 +179,21 @@ static enum status place_sheet(struct fish *fish, const struct wake_parameters *
     }
     fish->heading_point = curve_polygon_point(fish->curve, 1.0 / 3.0 * fish->n_edges);
     return STATUS_OK;
+}
+
+void fish_correct_end(struct fish *fish) {
+    const int last = fish->n_sheet - 1;
+    const double h = pi / last, weight = fish->length / 2 * h * sin(pi * (last - 1) / last);
+    for (int c = 0; c < fish->n_control; c++) {
+        const double place = cosine_place(fish, c + 0.5);
+        double quadrature = 0;
+        for (int j = 1; j < last; j++) {
+            const double sigma = cosine_place(fish, j);
+            quadrature += h / 2 * sin(j * h) * sigma / (2 * pi * (place - sigma));
+        }
+        const double exact = (place * log(place / (1 - place)) - 1) / (2 * pi);
+        fish->end_correction[c] = (exact - quadrature) / weight;
+    }
 }
 
 static void set_motion(struct fish *fish, const struct fish_parameters *from) {
@@ -367,6 +383,7 @@ void fish_school_free(struct school *school) {
                                fish->sheet_slope,
                                fish->control_point,
                                fish->control_tangent,
+                               fish->end_correction,
                                fish->control.heading_time,
                                fish->control.heading,
                                fish->control.waypoint_x,

@@ -179,6 +179,11 @@ static void assemble(struct ode_rhs *d, const double *y, double *rhs) {
                 rhs[row + c] -= known * along(block, other->n_sheet, c, normal);
             }
         }
+        for (int c = 0; c < fish->n_control; c++) {
+            for (int j = last - 1; j <= last; j++) {
+                d->value[(long)(row + j) * d->n + row + c] += bound_sheet_end_correction(fish, c, j);
+            }
+        }
     }
 }
 

@@ -69,6 +69,7 @@ static void stamps_agree_with_differences(void **state) {
         for (int l = 0; l < 3; l++) {
             struct setup setup;
             school_build(&setup, texts[i]);
+            if (i == 0) fish_correct_end(setup.school->fish);
             school_stir(&setup);
             law = laws[l];
             school_compare(&setup, value_of_sheet, stamp_of_sheet, texts[i]);
@@ -283,6 +284,36 @@ static void strength_is_circulation_per_length_of_the_body_as_it_is(void **state
     school_clear(&setup);
 }
 
+static void end_correction_makes_a_sheet_that_ends_with_a_step_exact(void **state) {
+    (void)state;
+    // a plate along x at rest with the strength s/L, which is 0 at the tail itself: normal velocity by Cauchy's integral
+    for (int m = 5; m <= 33; m += 14) {
+        char text[200];
+        snprintf(text, sizeof text,
+                 TIME "wake: {curve: smooth}\nfish: [{sheet_points: %d, length: 1.2, start: {speed: 0}}]\n", m);
+        struct setup setup;
+        school_build(&setup, text);
+        struct fish *const fish = setup.school->fish;
+        double *const y = setup.state->y, with[64];
+        for (int j = 1; j < m - 1; j++) y[fish->at.gamma + j] = fish_mean(&fish->sheet_point[j], fish->arc) / 1.2;
+        fish_correct_end(fish);
+        school_flow(&setup, y);
+        const double *u, *v;
+        of_fish(&setup, 0, &u, &v);
+        bound_sheet_residual(fish, 0, u, v, y, setup.value);
+        for (int c = 0; c < m - 1; c++) {
+            const double sigma = fish_mean(&fish->control_point[c], fish->arc) / 1.2;
+            with[c] = (sigma * log(sigma / (1 - sigma)) - 1) / (2 * pi);
+            // the correction is in proportion to the strength next to the tail, not at it
+            const double strength = y[fish->at.gamma + m - 2];
+            setup.value[fish->at.gamma + c] +=
+                (1 / strength - 1) * bound_sheet_end_correction(fish, c, m - 2) * strength;
+        }
+        NEAR_ARRAY(m - 1, setup.value + fish->at.gamma, with, 1e-13, 0);
+        school_clear(&setup);
+    }
+}
+
 static void kelvin_counts_bound_shed_and_dissipated_circulation(void **state) {
     (void)state;
     struct setup setup;
@@ -329,6 +360,7 @@ int main(void) {
         cmocka_unit_test(smooth_curve_has_the_circulation_of_an_arc),
         cmocka_unit_test(smooth_curve_and_polygon_of_a_bent_fish_have_one_limit),
         cmocka_unit_test(strength_is_circulation_per_length_of_the_body_as_it_is),
+        cmocka_unit_test(end_correction_makes_a_sheet_that_ends_with_a_step_exact),
         cmocka_unit_test(kelvin_counts_bound_shed_and_dissipated_circulation),
         cmocka_unit_test(shedding_rate_is_edge_strength_times_slip),
     };
