@@ -1,4 +1,4 @@
-/* result_fixture.h: what the tests of the store share: a folder, a file in it, and everything a row is made of. */
+/* result_fixture.h: what the tests of result files share: a folder, a file in it, and everything a row is made of. */
 #ifndef RESULT_FIXTURE_H
 #define RESULT_FIXTURE_H
 
@@ -15,7 +15,7 @@ enum { N_FISH = 2, N_MEASURED = sizeof(struct diagnostics_fish) / sizeof(double)
 
 #define CASE_TEXT                                                                                      \
     "format: 1\n"                                                                                      \
-    "name: store\n"                                                                                    \
+    "name: result\n"                                                                                   \
     "time: {end: 1, shedding_interval: 0.1}\n"                                                         \
     "fish:\n"                                                                                          \
     "  - {name: leader, nodes: 5, sheet_points: 7, wave: {frequency: 2}, start: {position: [0, 0]}}\n" \
@@ -32,7 +32,7 @@ struct fixture {
     double natural_curvature[8];
     struct diagnostics diagnostics;
     struct diagnostics_fish measured[N_FISH];
-    struct result_counts counts;
+    struct integrator_counts counts;
     char folder[32], path[64];
 };
 
@@ -55,8 +55,15 @@ static inline int set_up(void **state) {
         .school = f->school, .state = f->state, .joints = f->joints, .natural_curvature = f->natural_curvature};
     f->diagnostics =
         (struct diagnostics){.fish = f->measured, .total_circulation = 11, .least_distance = 12, .polarisation = 13};
-    f->counts = (struct result_counts){21, 22, 23, 24, 25, 26, 27, 2, 28};
-    strcpy(f->folder, "/tmp/test_store.XXXXXX");
+    f->counts = (struct integrator_counts){.steps = 21,
+                                           .residual_evaluations = 22,
+                                           .newton_iterations = 23,
+                                           .jacobian_evaluations = 24,
+                                           .error_test_failures = 25,
+                                           .convergence_failures = 26,
+                                           .step_size = 27,
+                                           .order = 2};
+    strcpy(f->folder, "/tmp/test_result.XXXXXX");
     assert_non_null(mkdtemp(f->folder));
     snprintf(f->path, sizeof f->path, "%s/run.nc", f->folder);
     *state = f;
@@ -77,22 +84,29 @@ static inline int tear_down(void **state) {
 // ---- writing ----
 
 static inline struct result_file *create(struct fixture *f) {
-    struct result_file *store;
+    struct result_file *result;
     assert_int_equal(
-        result_file_create(&store, f->path, 0, &f->values, EFFECTIVE, "shoal run case.yaml", f->school, 10), STATUS_OK);
-    return store;
+        result_file_create(&result, f->path, 0, &f->values, EFFECTIVE, "shoal run case.yaml", f->school, 10),
+        STATUS_OK);
+    return result;
 }
 
-static inline enum status append(struct fixture *f, struct result_file *store, double t, int with_wake) {
+static inline enum status append(struct fixture *f, struct result_file *result, double t, int with_wake) {
     f->state->t = t;
-    return result_file_row(store, f->state, &f->residual, &f->diagnostics, &f->counts, with_wake);
+    return result_file_row(result, &(struct result_row){.school = f->school,
+                                                        .state = f->state,
+                                                        .residual = &f->residual,
+                                                        .diagnostics = &f->diagnostics,
+                                                        .counts = &f->counts,
+                                                        .wall_time = 28,
+                                                        .with_wake = with_wake != 0});
 }
 
 /* A whole file with rows at t = 0, 0.5, ... */
 static inline void write_file(struct fixture *f, int n_rows) {
-    struct result_file *store = create(f);
-    for (int i = 0; i < n_rows; i++) assert_int_equal(append(f, store, 0.5 * i, 1), STATUS_OK);
-    assert_int_equal(result_file_close(store, "complete"), STATUS_OK);
+    struct result_file *result = create(f);
+    for (int i = 0; i < n_rows; i++) assert_int_equal(append(f, result, 0.5 * i, 1), STATUS_OK);
+    assert_int_equal(result_file_close(result, "complete"), STATUS_OK);
 }
 
 // ---- reading ----

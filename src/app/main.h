@@ -80,6 +80,9 @@ void main_catch_signals(void);
 /* Where its number then stands; 0 before. */
 const volatile sig_atomic_t *main_stop_signal(void);
 
+/* Print what a file of shoal holds, or the case in it alone. Fails with STATUS_FILE or STATUS_MEMORY. */
+enum status main_print_info(const char *path, int case_only);
+
 /* The commands. */
 enum status main_run(const struct request *request);
 enum status main_demo(const struct request *request);

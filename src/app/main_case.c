@@ -4,9 +4,20 @@
 #include "app/main.h"
 #include "case/case.h"
 #include "model/fish.h"
-#include "output/result_file.h"
+#include "output/result_info.h"
+#include "output/result_kind.h"
+#include "output/result_table.h"
 #include "study/compare.h"
+#include "study/compare_file.h"
 #include "study/study.h"
+
+/* The kinds of files. */
+static const struct result_kind kinds[] = {
+    {"run", "shoal_schema", RESULT_SCHEMA, "case_effective", result_info, result_table_listed},
+    {"study", "shoal_study", STUDY_FILE_SCHEMA, "study_case", study_info, study_file_listed},
+    {"comparison", "shoal_compare", COMPARE_FILE_SCHEMA, "compare_case", compare_info, compare_file_listed},
+};
+enum { N_KINDS = sizeof kinds / sizeof *kinds };
 
 /* Check the case of each member of a study, as `shoal study` will. */
 static enum status check_members(const struct case_values *study) {
@@ -48,7 +59,7 @@ enum status main_show(const struct request *request) {
 
 enum status main_keys(const struct request *request) {
     if (request->of_output) {
-        result_variables(stdout, request->json);
+        result_kind_variables(N_KINDS, kinds, request->json, stdout);
     } else {
         case_keys(stdout, request->json);
     }
@@ -56,9 +67,9 @@ enum status main_keys(const struct request *request) {
 }
 
 enum status main_info(const struct request *request) {
-    enum result_kind kind;
-    TRY(result_info(request->positional, request->case_only, stdout, &kind));
-    if (request->case_only) return STATUS_OK;
-    if (kind == RESULT_STUDY) return study_info(request->positional, stdout);
-    return kind == RESULT_COMPARISON ? compare_info(request->positional, stdout) : STATUS_OK;
+    return main_print_info(request->positional, request->case_only);
+}
+
+enum status main_print_info(const char *path, int case_only) {
+    return result_kind_info(N_KINDS, kinds, path, case_only, stdout);
 }

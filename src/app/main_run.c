@@ -8,7 +8,6 @@
 #include "app/main.h"
 #include "app/progress.h"
 #include "case/case.h"
-#include "output/result_file.h"
 #include "run/simulate.h"
 
 // ---- run
@@ -35,8 +34,7 @@ static enum status run_settings(const struct case_values *values, const struct r
     const enum status status = simulate_run(values, &options);
     progress_end(&progress);
     TRY(status);
-    enum result_kind kind;
-    if (request->verbose) TRY(result_info(path, 0, stdout, &kind));
+    if (request->verbose) TRY(main_print_info(path, 0));
     if (!request->quiet && !request->verbose) printf("%s\n", path);
     return STATUS_OK;
 }

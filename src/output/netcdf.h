@@ -1,22 +1,141 @@
-/* netcdf.h: what the writers of all files share. Only files of store include it. Tested by tests/output/test_result_file.c and
- * tests/study/test_study_file.c. */
+/* netcdf.h: the one place that calls the NetCDF library. A file of ours is written under a temporary name and gets its own
+ * when it is complete; a file that may be anybody's is read with every variable checked. Tested by
+ * tests/output/test_netcdf.c. */
 #ifndef NETCDF_H
 #define NETCDF_H
 
-#include <netcdf.h>
+#include <stdbool.h>
+#include <stddef.h>
 
-/* Leave with NetCDF's error code. */
-#define NETCDF(call)                                     \
-    do {                                                 \
-        const int netcdf_code = (call);                  \
-        if (netcdf_code != NC_NOERR) return netcdf_code; \
-    } while (0)
+#include "base/status.h"
 
-/* An attribute that is a text, of a variable or NC_GLOBAL. NetCDF's error code. */
-int netcdf_text(int file, int variable, const char *name, const char *text);
+enum { NETCDF_MAX_DIMENSIONS = 4 /* of a variable */, NETCDF_GLOBAL = -1 /* attributes of the file */ };
 
-/* The attributes that say where a file comes from: Conventions, title, history (now, and the command line), source (this
- * version and its libraries). NetCDF's error code. */
-int netcdf_origin(int file, const char *title, const char *command);
+enum netcdf_type { NETCDF_TEXT, NETCDF_INT, NETCDF_INT64, NETCDF_FLOAT, NETCDF_DOUBLE };
+
+/* ---- writing
+ *
+ *     netcdf_create, define..., set..., netcdf_end_definitions, write..., netcdf_publish, more of write..., netcdf_finish
+ */
+
+/* A file that is being written. Once a call has failed, later ones do nothing, and code tells why. */
+struct netcdf_writer {
+    const char *path;  /* as the caller names it */
+    char *target;      /* the same for NetCDF; owned */
+    char *temporary;   /* its name before netcdf_publish, NULL after it; owned */
+    int file;          /* NetCDF's number; -1: none */
+    int descriptor;    /* of the same file, for fsync; -1: none */
+    double last_fsync; /* s on the monotonic clock */
+    int code;          /* 0, or the reason of the first failure: see netcdf_reason */
+};
+
+/* A variable to define. */
+struct netcdf_variable {
+    const char *name, *long_name;
+    const char *units; /* of numbers; "" is written as "1" */
+    enum netcdf_type type;
+    int n_dimensions, dimension[NETCDF_MAX_DIMENSIONS]; /* numbers of the dimensions */
+    bool has_gaps;                                      /* NaN marks where there is no value */
+};
+
+/* Fail with STATUS_FILE if no file can be made at path: its folder is missing, it is a folder or device, or it exists and
+ * must not be overwritten. */
+enum status netcdf_check_target(const char *path, bool overwrite);
+
+/* Create a file in the classic format with 64-bit sizes (CDF-5), with the attributes Conventions, title, history (now, and
+ * the command line) and source (this version and its libraries). Fails with STATUS_FILE or STATUS_MEMORY; nothing is then
+ * left, and netcdf_finish does nothing. */
+enum status netcdf_create(struct netcdf_writer *writer, const char *path, const char *title, const char *command);
+
+/* Define a dimension, which grows where the length is 0, or a variable; the number it gets. */
+int netcdf_define_dimension(struct netcdf_writer *writer, const char *name, size_t length);
+int netcdf_define_variable(struct netcdf_writer *writer, const struct netcdf_variable *variable);
+
+/* Set an attribute of a variable, by its number, or of the file: NETCDF_GLOBAL. */
+void netcdf_set_string(struct netcdf_writer *writer, int variable, const char *name, const char *string);
+void netcdf_set_bytes(struct netcdf_writer *writer, int variable, const char *name, size_t n, const char *bytes);
+void netcdf_set_integer(struct netcdf_writer *writer, int variable, const char *name, int value);
+
+/* Values follow. All of them must be written: what is not is undefined. */
+void netcdf_end_definitions(struct netcdf_writer *writer);
+
+/* The number of a variable that has been defined. */
+int netcdf_number(struct netcdf_writer *writer, const char *name);
+
+/* Write count values of a variable from start on, each with one entry per dimension; both NULL: all of it. */
+void netcdf_write_doubles(struct netcdf_writer *writer, int variable, const size_t *start, const size_t *count,
+                          const double *values);
+void netcdf_write_ints(struct netcdf_writer *writer, int variable, const size_t *start, const size_t *count,
+                       const int *values);
+void netcdf_write_longs(struct netcdf_writer *writer, int variable, const size_t *start, const size_t *count,
+                        const long *values);
+void netcdf_write_text(struct netcdf_writer *writer, int variable, const size_t *start, const size_t *count,
+                       const char *values);
+
+/* Show everything to readers, and make it survive a power cut: now, or if this has not been done for a second. NetCDF
+ * writes the number of rows after the rows themselves, so that neither a reader nor a full disk ever sees a part of a
+ * row. */
+void netcdf_sync(struct netcdf_writer *writer, bool now);
+
+/* Make the file survive a power cut and then give it its name. Fails with STATUS_FILE or STATUS_MEMORY, also where a call
+ * before has failed, or where the file exists and must not be overwritten. */
+enum status netcdf_publish(struct netcdf_writer *writer, bool overwrite);
+
+/* Close a published file and open it again after a failure: a header on a full disk has its place already, and counts
+ * whole rows only. */
+void netcdf_reopen(struct netcdf_writer *writer);
+
+/* Close the file and release the writer. Removes a file that has not been published; fails with STATUS_FILE where a call
+ * after netcdf_publish, or closing itself, has failed. */
+enum status netcdf_finish(struct netcdf_writer *writer);
+
+/* What a code means. */
+const char *netcdf_reason(int code);
+
+/* ---- reading: every function fails with STATUS_FILE or STATUS_MEMORY and a message that names the file, and never writes
+ * more than the caller has asked for, whatever the file says */
+
+struct netcdf_reader {
+    const char *path;
+    int file; /* NetCDF's number */
+};
+
+/* A part of a variable: for each of its dimensions the name, the first index and the number of values; ends with NULL. */
+struct netcdf_slice {
+    const char *dimension;
+    size_t first, n;
+};
+
+/* Open a file of the classic formats. Refused is what is no regular file, has a damaged header, or is shorter than its
+ * header says. The path must live as long as the reader. */
+enum status netcdf_open(struct netcdf_reader *reader, const char *path);
+void netcdf_close(struct netcdf_reader *reader);
+
+/* An attribute of the file: a string, "" where it is missing, that the caller frees; or an integer. */
+enum status netcdf_read_string(const struct netcdf_reader *reader, const char *name, char **string);
+enum status netcdf_read_integer(const struct netcdf_reader *reader, const char *name, int missing, int *value);
+
+/* The length of a dimension; refused outside of min to max. */
+enum status netcdf_read_length(const struct netcdf_reader *reader, const char *name, size_t min, size_t max,
+                               size_t *length);
+
+/* Whether the file has a variable of this name. */
+bool netcdf_has(const struct netcdf_reader *reader, const char *name);
+
+/* Read a part of a variable: numbers of any type as doubles, or characters, without a zero at the end. Refused is a
+ * variable that is missing, of the other kind, or has not exactly these dimensions, or not so long. */
+enum status netcdf_read_doubles(const struct netcdf_reader *reader, const char *name, const struct netcdf_slice *slice,
+                                double *values);
+enum status netcdf_read_text(const struct netcdf_reader *reader, const char *name, const struct netcdf_slice *slice,
+                             char *values);
+
+/* ---- shared by the files of netcdf only */
+
+/* The path as NetCDF needs it: "./" keeps it from taking a name for an address or dropping blanks that it begins with.
+ * more: room for a longer ending, bytes. NULL: out of memory. The caller frees it. */
+char *netcdf_local_path(const char *path, size_t more);
+
+/* Check the header of a file and that the file is as long as it says. Fails with STATUS_FILE. */
+enum status netcdf_check_header(const char *path);
 
 #endif

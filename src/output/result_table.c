@@ -1,12 +1,10 @@
-/* result_table.c: the table of variables; definition, writing and the reference doc/output.md loop over it. */
+/* result_table.c: the table of variables. */
 #include "output/result_table.h"
 
 #include <string.h>
 
 #include "model/bound_sheet.h"
 #include "model/rod.h"
-#include "study/compare_file.h"
-#include "study/study_file.h"
 
 // ---- values that have to be put together ----
 
@@ -85,9 +83,10 @@ static void gather_wake_birth(const struct result_row *row, int f, double *slots
 #define ARRAY_IN_FISH(field) IN_FISH(field), .is_pointer = true
 #define IN_STATE(field) .owner = OF_STATE, .offset = offsetof(struct state, field)
 #define IN_WAKE(field) .owner = OF_WAKE, .offset = offsetof(struct wake, field)
-#define IN_MEASURE(field) .owner = OF_MEASURE, .offset = offsetof(struct diagnostics, field)
-#define MEASURED(field) .owner = OF_MEASURED_FISH, .offset = offsetof(struct diagnostics_fish, field)
-#define IN_COUNTS(field) .owner = OF_COUNTS, .offset = offsetof(struct result_counts, field)
+#define IN_DIAGNOSTICS(field) .owner = OF_DIAGNOSTICS, .offset = offsetof(struct diagnostics, field)
+#define OF_EACH_FISH(field) .owner = OF_DIAGNOSTICS_FISH, .offset = offsetof(struct diagnostics_fish, field)
+#define IN_COUNTS(field) .owner = OF_COUNTS, .offset = offsetof(struct integrator_counts, field)
+#define IN_ROW(field) .owner = OF_ROW, .offset = offsetof(struct result_row, field)
 #define GATHERED(function) .gather = function
 
 // clang-format off
@@ -131,31 +130,31 @@ const struct result_variable result_table[] = {
     {"wake_birth",            {TIME, FISH, VORTEX},   RESULT_BULK,    "s",       "time of release of the free vortices", GATHERED(gather_wake_birth)},
 
     // derived quantities of each fish
-    {"com",                   {TIME, FISH, XY},       RESULT_REAL,    "m",       "position of the centre of mass", MEASURED(com)},
-    {"com_velocity",          {TIME, FISH, XY},       RESULT_REAL,    "m s-1",   "velocity of the centre of mass", MEASURED(com_velocity)},
-    {"speed",                 {TIME, FISH},           RESULT_REAL,    "m s-1",   "speed of the centre of mass over the last period", MEASURED(speed)},
-    {"heading",               {TIME, FISH},           RESULT_REAL,    "degree",  "heading, from the x axis towards the y axis, unwrapped", MEASURED(heading)},
-    {"desired_heading",       {TIME, FISH},           RESULT_REAL,    "degree",  "heading that the control law asks for", MEASURED(desired_heading)},
-    {"phi0",                  {TIME, FISH},           RESULT_REAL,    "1",       "bias of the gait: positive turns right", MEASURED(phi0)},
-    {"shed_circulation",      {TIME, FISH},           RESULT_REAL,    "m2 s-1",  "all circulation shed since the start", MEASURED(shed_circulation)},
-    {"shedding_rate",         {TIME, FISH},           RESULT_REAL,    "m2 s-2",  "rate at which circulation is shed", MEASURED(shedding_rate)},
-    {"kinetic_energy",        {TIME, FISH},           RESULT_REAL,    "J",       "kinetic energy of the body", MEASURED(kinetic_energy)},
-    {"bending_energy",        {TIME, FISH},           RESULT_REAL,    "J",       "elastic energy of bending", MEASURED(bending_energy)},
-    {"stretching_energy",     {TIME, FISH},           RESULT_REAL,    "J",       "elastic energy of stretching", MEASURED(stretching_energy)},
-    {"actuation_power",       {TIME, FISH},           RESULT_REAL,    "W",       "power that the muscle puts into the body", MEASURED(actuation_power)},
-    {"damping_power",         {TIME, FISH},           RESULT_REAL,    "W",       "power of the internal damping", MEASURED(damping_power)},
-    {"drag_power",            {TIME, FISH},           RESULT_REAL,    "W",       "power of the drag on the body", MEASURED(drag_power)},
-    {"added_mass_power",      {TIME, FISH},           RESULT_REAL,    "W",       "power of the added mass on the body", MEASURED(added_mass_power)},
-    {"driving_power",         {TIME, FISH},           RESULT_REAL,    "W",       "power of the forces that hold driven nodes to their motion, and of loads", MEASURED(driving_power)},
-    {"energy_audit",          {TIME, FISH},           RESULT_REAL,    "J",       "energy less its first value less the integral of all powers: the error of integration", MEASURED(energy_audit)},
-    {"actuation_work",        {TIME, FISH},           RESULT_REAL,    "J",       "work that the muscle has put into the body since the start", MEASURED(actuation_work)},
-    {"cost_of_transport",     {TIME, FISH},           RESULT_REAL,    "m s-2",   "mean actuation power over mass and speed, over the last period", MEASURED(cost_of_transport)},
-    {"strouhal",              {TIME, FISH},           RESULT_REAL,    "1",       "Strouhal number: frequency times peak-to-peak motion of the tail over speed", MEASURED(strouhal)},
+    {"com",                   {TIME, FISH, XY},       RESULT_REAL,    "m",       "position of the centre of mass", OF_EACH_FISH(com)},
+    {"com_velocity",          {TIME, FISH, XY},       RESULT_REAL,    "m s-1",   "velocity of the centre of mass", OF_EACH_FISH(com_velocity)},
+    {"speed",                 {TIME, FISH},           RESULT_REAL,    "m s-1",   "speed of the centre of mass over the last period", OF_EACH_FISH(speed)},
+    {"heading",               {TIME, FISH},           RESULT_REAL,    "degree",  "heading, from the x axis towards the y axis, unwrapped", OF_EACH_FISH(heading)},
+    {"desired_heading",       {TIME, FISH},           RESULT_REAL,    "degree",  "heading that the control law asks for", OF_EACH_FISH(desired_heading)},
+    {"phi0",                  {TIME, FISH},           RESULT_REAL,    "1",       "bias of the gait: positive turns right", OF_EACH_FISH(phi0)},
+    {"shed_circulation",      {TIME, FISH},           RESULT_REAL,    "m2 s-1",  "all circulation shed since the start", OF_EACH_FISH(shed_circulation)},
+    {"shedding_rate",         {TIME, FISH},           RESULT_REAL,    "m2 s-2",  "rate at which circulation is shed", OF_EACH_FISH(shedding_rate)},
+    {"kinetic_energy",        {TIME, FISH},           RESULT_REAL,    "J",       "kinetic energy of the body", OF_EACH_FISH(kinetic_energy)},
+    {"bending_energy",        {TIME, FISH},           RESULT_REAL,    "J",       "elastic energy of bending", OF_EACH_FISH(bending_energy)},
+    {"stretching_energy",     {TIME, FISH},           RESULT_REAL,    "J",       "elastic energy of stretching", OF_EACH_FISH(stretching_energy)},
+    {"actuation_power",       {TIME, FISH},           RESULT_REAL,    "W",       "power that the muscle puts into the body", OF_EACH_FISH(actuation_power)},
+    {"damping_power",         {TIME, FISH},           RESULT_REAL,    "W",       "power of the internal damping", OF_EACH_FISH(damping_power)},
+    {"drag_power",            {TIME, FISH},           RESULT_REAL,    "W",       "power of the drag on the body", OF_EACH_FISH(drag_power)},
+    {"added_mass_power",      {TIME, FISH},           RESULT_REAL,    "W",       "power of the added mass on the body", OF_EACH_FISH(added_mass_power)},
+    {"driving_power",         {TIME, FISH},           RESULT_REAL,    "W",       "power of the forces that hold driven nodes to their motion, and of loads", OF_EACH_FISH(driving_power)},
+    {"energy_audit",          {TIME, FISH},           RESULT_REAL,    "J",       "energy less its first value less the integral of all powers: the error of integration", OF_EACH_FISH(energy_audit)},
+    {"actuation_work",        {TIME, FISH},           RESULT_REAL,    "J",       "work that the muscle has put into the body since the start", OF_EACH_FISH(actuation_work)},
+    {"cost_of_transport",     {TIME, FISH},           RESULT_REAL,    "m s-2",   "mean actuation power over mass and speed, over the last period", OF_EACH_FISH(cost_of_transport)},
+    {"strouhal",              {TIME, FISH},           RESULT_REAL,    "1",       "Strouhal number: frequency times peak-to-peak motion of the tail over speed", OF_EACH_FISH(strouhal)},
 
     // the school and the solver
-    {"total_circulation",     {TIME},                 RESULT_REAL,    "m2 s-1",  "sum of all bound, free and dissipated circulation: zero but for rounding", IN_MEASURE(total_circulation)},
-    {"least_distance",        {TIME},                 RESULT_REAL,    "m",       "least distance between two bodies", IN_MEASURE(least_distance)},
-    {"polarisation",          {TIME},                 RESULT_REAL,    "1",       "length of the mean unit vector of the headings", IN_MEASURE(polarisation)},
+    {"total_circulation",     {TIME},                 RESULT_REAL,    "m2 s-1",  "sum of all bound, free and dissipated circulation: zero but for rounding", IN_DIAGNOSTICS(total_circulation)},
+    {"least_distance",        {TIME},                 RESULT_REAL,    "m",       "least distance between two bodies", IN_DIAGNOSTICS(least_distance)},
+    {"polarisation",          {TIME},                 RESULT_REAL,    "1",       "length of the mean unit vector of the headings", IN_DIAGNOSTICS(polarisation)},
     {"steps",                 {TIME},                 RESULT_COUNT,   "1",       "steps of the integrator since the start", IN_COUNTS(steps)},
     {"residual_evaluations",  {TIME},                 RESULT_COUNT,   "1",       "evaluations of the residual since the start", IN_COUNTS(residual_evaluations)},
     {"newton_iterations",     {TIME},                 RESULT_COUNT,   "1",       "Newton iterations since the start", IN_COUNTS(newton_iterations)},
@@ -164,10 +163,11 @@ const struct result_variable result_table[] = {
     {"convergence_failures",  {TIME},                 RESULT_COUNT,   "1",       "steps refused because Newton did not converge since the start", IN_COUNTS(convergence_failures)},
     {"step_size",             {TIME},                 RESULT_REAL,    "s",       "last step of the integrator", IN_COUNTS(step_size)},
     {"order",                 {TIME},                 RESULT_INTEGER, "1",       "order of the last step", IN_COUNTS(order)},
-    {"wall_time",             {TIME},                 RESULT_REAL,    "s",       "time the run has taken so far", IN_COUNTS(wall_time)},
+    {"wall_time",             {TIME},                 RESULT_REAL,    "s",       "time the run has taken so far", IN_ROW(wall_time)},
 };
 // clang-format on
 const int result_table_n = sizeof result_table / sizeof *result_table;
+_Static_assert(sizeof result_table / sizeof *result_table <= RESULT_TABLE_MAX, "raise RESULT_TABLE_MAX");
 
 // ---- look-ups ----
 
@@ -198,72 +198,29 @@ const void *result_table_owner(const struct result_row *row, enum result_owner o
         case OF_FISH: return &row->school->fish[f];
         case OF_STATE: return row->state;
         case OF_WAKE: return &row->state->wake[f];
-        case OF_MEASURE: return row->diagnostics;
-        case OF_MEASURED_FISH: return &row->diagnostics->fish[f];
-        default: return row->counts;
+        case OF_DIAGNOSTICS: return row->diagnostics;
+        case OF_DIAGNOSTICS_FISH: return &row->diagnostics->fish[f];
+        case OF_COUNTS: return row->counts;
+        default: return row;
     }
 }
 
-// ---- the reference ----
+// ---- the list of variables
 
 static const char *type_name(enum result_type type) {
     static const char *const name[] = {"double", "double or float", "int", "int64", "char"};
     return name[type];
 }
 
-/* Row i of the reference: the variables of a run, of study.nc, of a comparison; 0 beyond the last. */
-static int listed_row(int i, struct result_listed *listed) {
-    if (i >= result_table_n) {
-        // each table begins where the one before ends
-        int n_study = 0;
-        while (study_file_listed(n_study, listed)) n_study++;
-        const int is_study = i - result_table_n < n_study;
-        if (is_study) study_file_listed(i - result_table_n, listed);
-        const int exists = is_study || compare_file_listed(i - result_table_n - n_study, listed);
-        listed->file = is_study ? "study" : "comparison";
-        return exists;
-    }
+int result_table_listed(int i, struct result_listed *listed) {
+    if (i >= result_table_n) return 0;
     const struct result_variable *const variable = &result_table[i];
-    *listed = (struct result_listed){
-        "run", variable->name, variable->unit, type_name(variable->type), variable->long_name, ""};
+    *listed =
+        (struct result_listed){variable->name, variable->unit, type_name(variable->type), variable->long_name, ""};
     size_t length = 0;
     for (const enum result_dimension *d = variable->dimension; *d != NONE; d++) {
         length += (size_t)snprintf(listed->dimensions + length, sizeof listed->dimensions - length, "%s%s",
                                    length > 0 ? ", " : "", result_table_dimension(*d));
     }
     return 1;
-}
-
-static void print_text(FILE *stream) {
-    const char *before = "run";
-    struct result_listed listed;
-    for (int i = 0; listed_row(i, &listed); i++) {
-        if (strcmp(listed.file, before) != 0) fprintf(stream, "\nIn the file of a %s:\n\n", listed.file);
-        before = listed.file;
-        fprintf(stream, "%-20s  (%s)%*s  %-6s  %s\n", listed.name, listed.dimensions,
-                22 - (int)strlen(listed.dimensions), "", listed.unit, listed.meaning);
-    }
-}
-
-static void print_json(FILE *stream) {
-    struct result_listed listed;
-    for (int i = 0; listed_row(i, &listed); i++) {
-        fprintf(stream, "%s\n  {\"file\": \"%s\", \"name\": \"%s\", \"dimensions\": [", i == 0 ? "[" : ",", listed.file,
-                listed.name);
-        for (const char *word = listed.dimensions; *word; word += strspn(word, ", ")) {
-            const int length = (int)strcspn(word, ",");
-            fprintf(stream, "%s\"%.*s\"", word == listed.dimensions ? "" : ", ", length, word);
-            word += length;
-        }
-        fprintf(stream, "], \"type\": \"%s\", \"unit\": \"%s\", \"meaning\": \"%s\"}", listed.type, listed.unit,
-                listed.meaning);
-    }
-    fprintf(stream, "\n]\n");
-}
-
-void result_variables(FILE *stream, int as_json) {
-    if (as_json)
-        print_json(stream);
-    else
-        print_text(stream);
 }

@@ -1,5 +1,5 @@
-/* result_table.h: the table of what a result file contains and where each value lives. Shared by the files of the store
- * only. Tested by tests/output/test_result_file.c. */
+/* result_table.h: the variables of a result file and where the value of each lives. One table drives definition, writing,
+ * reading and doc/output.md: a new variable is a new row. Tested by tests/output/test_result_file.c. */
 #ifndef RESULT_TABLE_H
 #define RESULT_TABLE_H
 
@@ -8,13 +8,17 @@
 
 #include "model/diagnostics.h"
 #include "model/residual.h"
-#include "output/result_file.h"
+#include "output/result_kind.h"
+#include "solver/integrator.h"
 
-enum { RESULT_SCHEMA = 1 }; /* attribute shoal_schema; grows when a reader of the files has to change */
+enum {
+    RESULT_SCHEMA = 1,     /* attribute shoal_schema; grows when a reader of the files has to change */
+    RESULT_TABLE_MAX = 128 /* no more variables than these */
+};
 
 /* Dimensions; NONE ends a list of them. Slots beyond what a fish has hold NaN. */
 enum result_dimension { NONE, TIME, FISH, NODE, EDGE, JOINT, SHEET, VORTEX, XY, NAME, RESULT_N_DIMENSIONS };
-enum { RESULT_MOST_DIMENSIONS = 4 };
+enum { RESULT_MAX_DIMENSIONS = 4 };
 
 enum result_type {
     RESULT_REAL,    /* double */
@@ -25,21 +29,22 @@ enum result_type {
 };
 
 /* What a value is a part of. */
-enum result_owner { OF_SCHOOL, OF_FISH, OF_STATE, OF_WAKE, OF_MEASURE, OF_MEASURED_FISH, OF_COUNTS };
+enum result_owner { OF_SCHOOL, OF_FISH, OF_STATE, OF_WAKE, OF_DIAGNOSTICS, OF_DIAGNOSTICS_FISH, OF_COUNTS, OF_ROW };
 
-/* All that one row is made of; to write the constants school is enough. */
+/* All that a row is made of; for the constants school is enough. */
 struct result_row {
     const struct school *school;
     const struct state *state;
     const struct residual *residual;
     const struct diagnostics *diagnostics;
-    const struct result_counts *counts;
-    bool with_wake;
+    const struct integrator_counts *counts;
+    double wall_time; /* since the start, s */
+    bool with_wake;   /* else the variables of the wake hold NaN */
 };
 
 struct result_variable {
     const char *name;
-    enum result_dimension dimension[RESULT_MOST_DIMENSIONS + 1]; /* NONE at the end */
+    enum result_dimension dimension[RESULT_MAX_DIMENSIONS + 1]; /* NONE at the end */
     enum result_type type;
     const char *unit; /* "": none, as for text */
     const char *long_name;
@@ -52,14 +57,7 @@ struct result_variable {
     void (*gather)(const struct result_row *row, int f, double *slots);
 };
 
-/* A row of the reference of variables. */
-struct result_listed {
-    const char *file; /* "run", "study" or "comparison" */
-    const char *name, *unit, *type, *meaning;
-    char dimensions[80]; /* "time, fish" */
-};
-
-/* In the order in which they stand in the file; wall_time is the last one: see result_info. */
+/* In the order in which they stand in the file. */
 extern const struct result_variable result_table[];
 extern const int result_table_n;
 
@@ -69,10 +67,13 @@ const char *result_table_dimension(enum result_dimension dimension);
 /* True if the variable has the dimension. */
 bool result_table_has(const struct result_variable *variable, enum result_dimension dimension);
 
-/* How long a dimension is for one fish; 1 for those that no fish has an own length of. */
+/* The length of a dimension for one fish; 1 where it does not depend on the fish. */
 int result_table_length(const struct fish *fish, enum result_dimension dimension);
 
 /* The address of what a value is a part of. */
 const void *result_table_owner(const struct result_row *row, enum result_owner owner, int f);
+
+/* Row i, from 0, of the list of variables; 0 beyond the last. */
+int result_table_listed(int i, struct result_listed *listed);
 
 #endif

@@ -100,17 +100,13 @@ static enum status write_if_due(struct run *run) {
     struct integrator_counts counts;
     simulation->integrator->count(simulation->solver, &counts);
     simulate_measure(simulation);
-    const struct result_counts to = {.steps = counts.steps,
-                                     .residual_evaluations = counts.residual_evaluations,
-                                     .newton_iterations = counts.newton_iterations,
-                                     .jacobian_evaluations = counts.jacobian_evaluations,
-                                     .error_test_failures = counts.error_test_failures,
-                                     .convergence_failures = counts.convergence_failures,
-                                     .step_size = counts.step_size,
-                                     .order = counts.order,
-                                     .wall_time = simulate_wall_time(simulation)};
-    return result_file_row(run->store, simulation->state, simulation->residual, simulation->diagnostics, &to,
-                           event % run->events_per_wake == 0 || last);
+    return result_file_row(run->store, &(struct result_row){.school = simulation->school,
+                                                            .state = simulation->state,
+                                                            .residual = simulation->residual,
+                                                            .diagnostics = simulation->diagnostics,
+                                                            .counts = &counts,
+                                                            .wall_time = simulate_wall_time(simulation),
+                                                            .with_wake = event % run->events_per_wake == 0 || last});
 }
 
 static void tell(const struct run *run) {

@@ -6,13 +6,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
-#include "base/version.h"
 #include "output/netcdf.h"
-#include "output/result_table.h"
-
-enum { PATH_BYTES = 4200 };
 
 /* The numbers of a row. */
 static const struct column {
@@ -53,6 +48,9 @@ static const struct column of_reference[] = {
 };
 enum { N_OF_REFERENCE = sizeof of_reference / sizeof *of_reference };
 
+/* Bytes of the dimension text. */
+enum { TEXT_BYTES = sizeof((struct compare_file_row){0}).status };
+
 /* The value of a column. */
 static double value_of(const struct column *column, const void *from) {
     double value;
@@ -78,132 +76,112 @@ int compare_file_listed(int i, struct result_listed *listed) {
     return 1;
 }
 
-static int define_number(int file, const struct column *column, int n_dimensions, const int *dimension) {
-    const double fill = NAN;
-    int variable;
-    NETCDF(nc_def_var(file, column->name, NC_DOUBLE, n_dimensions, dimension, &variable));
-    NETCDF(netcdf_text(file, variable, "units", column->unit));
-    NETCDF(netcdf_text(file, variable, "long_name", column->long_name));
-    return nc_put_att_double(file, variable, _FillValue, NC_DOUBLE, 1, &fill);
+static void define_number(struct netcdf_writer *writer, const struct column *column, int n_dimensions, int run) {
+    const struct netcdf_variable variable = {.name = column->name,
+                                             .long_name = column->long_name,
+                                             .units = column->unit,
+                                             .type = NETCDF_DOUBLE,
+                                             .n_dimensions = n_dimensions,
+                                             .dimension = {run},
+                                             .has_gaps = true};
+    netcdf_define_variable(writer, &variable);
 }
 
-static int define(int file, const struct case_values *values, int n, const char *command) {
-    const int schema = RESULT_COMPARE_SCHEMA;
-    int run, text, variable;
-    NETCDF(nc_def_dim(file, "run", (size_t)n, &run));
-    NETCDF(nc_def_dim(file, "text", sizeof((struct compare_file_row){0}).status, &text));
-    NETCDF(netcdf_text(file, NC_GLOBAL, "Conventions", "CF-1.10"));
-    NETCDF(netcdf_text(file, NC_GLOBAL, "title", values->name));
-    NETCDF(netcdf_text(file, NC_GLOBAL, "history", command));
-    NETCDF(netcdf_text(file, NC_GLOBAL, "source", version_short()));
-    NETCDF(nc_put_att_int(file, NC_GLOBAL, "shoal_compare", NC_INT, 1, &schema));
-    NETCDF(netcdf_text(file, NC_GLOBAL, "compare_case", values->merged));
+static void define(struct netcdf_writer *writer, const struct case_values *values, int n) {
+    const int run = netcdf_define_dimension(writer, "run", (size_t)n);
+    const int text = netcdf_define_dimension(writer, "text", TEXT_BYTES);
+    netcdf_set_integer(writer, NETCDF_GLOBAL, "shoal_compare", COMPARE_FILE_SCHEMA);
+    netcdf_set_string(writer, NETCDF_GLOBAL, "compare_case", values->merged);
     for (int i = 0; i < N_TEXTS; i++) {
-        NETCDF(nc_def_var(file, texts[i].name, NC_CHAR, 2, (int[]){run, text}, &variable));
-        NETCDF(netcdf_text(file, variable, "long_name", texts[i].long_name));
-        NETCDF(netcdf_text(file, variable, "_Encoding", "utf-8"));
+        const struct netcdf_variable variable = {.name = texts[i].name,
+                                                 .long_name = texts[i].long_name,
+                                                 .type = NETCDF_TEXT,
+                                                 .n_dimensions = 2,
+                                                 .dimension = {run, text}};
+        netcdf_define_variable(writer, &variable);
     }
-    for (int c = 0; c < N_COLUMNS; c++) NETCDF(define_number(file, &columns[c], 1, &run));
-    for (int c = 0; c < N_OF_REFERENCE; c++) NETCDF(define_number(file, &of_reference[c], 0, NULL));
-    return nc_enddef(file);
+    for (int c = 0; c < N_COLUMNS; c++) define_number(writer, &columns[c], 1, run);
+    for (int c = 0; c < N_OF_REFERENCE; c++) define_number(writer, &of_reference[c], 0, run);
+    netcdf_end_definitions(writer);
 }
 
-static int write_text(int file, const char *name, int row, const char *value) {
-    char text[sizeof((struct compare_file_row){0}).status] = {0};
+static void write_text(struct netcdf_writer *writer, const char *name, int row, const char *value) {
+    char text[TEXT_BYTES] = {0};
     snprintf(text, sizeof text, "%s", value);
-    int variable;
-    NETCDF(nc_inq_varid(file, name, &variable));
-    return nc_put_vara_text(file, variable, (size_t[]){(size_t)row, 0}, (size_t[]){1, sizeof text}, text);
+    netcdf_write_text(writer, netcdf_number(writer, name), (size_t[]){(size_t)row, 0}, (size_t[]){1, sizeof text},
+                      text);
 }
 
-static int write_number(int file, const struct column *column, int row, double value) {
-    int variable;
-    NETCDF(nc_inq_varid(file, column->name, &variable));
-    return nc_put_var1_double(file, variable, (size_t[]){(size_t)row}, &value);
+static void write_number(struct netcdf_writer *writer, const struct column *column, int row, double value) {
+    netcdf_write_doubles(writer, netcdf_number(writer, column->name), (size_t[]){(size_t)row}, (size_t[]){1}, &value);
 }
 
-static int write_all(int file, const struct compare_file_reference *reference, int n,
-                     const struct compare_file_row *row) {
+static void write_all(struct netcdf_writer *writer, const struct compare_file_reference *reference, int n,
+                      const struct compare_file_row *row) {
     for (int i = 0; i < n; i++) {
         for (int k = 0; k < N_TEXTS; k++) {
-            NETCDF(write_text(file, texts[k].name, i, (const char *)&row[i] + texts[k].offset));
+            write_text(writer, texts[k].name, i, (const char *)&row[i] + texts[k].offset);
         }
-        for (int c = 0; c < N_COLUMNS; c++) NETCDF(write_number(file, &columns[c], i, value_of(&columns[c], &row[i])));
+        for (int c = 0; c < N_COLUMNS; c++) write_number(writer, &columns[c], i, value_of(&columns[c], &row[i]));
     }
     for (int c = 0; c < N_OF_REFERENCE; c++) {
-        NETCDF(write_number(file, &of_reference[c], 0, value_of(&of_reference[c], reference)));
+        write_number(writer, &of_reference[c], 0, value_of(&of_reference[c], reference));
     }
-    return NC_NOERR;
 }
 
 enum status compare_file_write(const char *path, const struct case_values *values,
                                const struct compare_file_reference *reference, int n,
                                const struct compare_file_row *row, const char *command) {
-    char temporary[PATH_BYTES];
-    // "./" keeps NetCDF from taking the name for an address
-    snprintf(temporary, sizeof temporary, "%s%s.part", path[0] == '/' ? "" : "./", path);
-    int file;
-    int code = nc_create(temporary, NC_CLOBBER | NC_64BIT_DATA, &file);
-    if (code == NC_NOERR) {
-        code = define(file, values, n, command);
-        if (code == NC_NOERR) code = write_all(file, reference, n, row);
-        const int closed = nc_close(file);
-        if (code == NC_NOERR) code = closed;
-    }
-    if (code == NC_NOERR && rename(temporary, path) == 0) return STATUS_OK;
-    unlink(temporary);
-    return status_fail(STATUS_FILE, "%s: cannot be written (%s): choose another place with -o", path,
-                       code == NC_NOERR ? "no renaming there" : nc_strerror(code));
+    struct netcdf_writer writer;
+    TRY(netcdf_create(&writer, path, values->name, command));
+    define(&writer, values, n);
+    write_all(&writer, reference, n, row);
+    const enum status status = netcdf_publish(&writer, true);
+    const enum status finished = netcdf_finish(&writer);
+    return status == STATUS_OK ? finished : status;
 }
 
 // ---- reading
 
-static int read_row(int file, int i, size_t n_text, struct compare_file_row *row) {
-    int variable;
+static enum status read_row(const struct netcdf_reader *reader, size_t i, struct compare_file_row *row) {
     for (int k = 0; k < N_TEXTS; k++) {
         const size_t room = (k == METHOD ? sizeof row->method : sizeof row->status) - 1;
-        NETCDF(nc_inq_varid(file, texts[k].name, &variable));
-        NETCDF(nc_get_vara_text(file, variable, (size_t[]){(size_t)i, 0}, (size_t[]){1, n_text < room ? n_text : room},
-                                (char *)row + texts[k].offset));
+        const struct netcdf_slice slice[] = {{"run", i, 1}, {"text", 0, room}, {NULL}};
+        TRY(netcdf_read_text(reader, texts[k].name, slice, (char *)row + texts[k].offset));
     }
+    const struct netcdf_slice slice[] = {{"run", i, 1}, {NULL}};
     for (int c = 0; c < N_COLUMNS; c++) {
-        NETCDF(nc_inq_varid(file, columns[c].name, &variable));
-        NETCDF(nc_get_var1_double(file, variable, (size_t[]){(size_t)i}, (double *)((char *)row + columns[c].offset)));
+        TRY(netcdf_read_doubles(reader, columns[c].name, slice, (double *)((char *)row + columns[c].offset)));
     }
-    return NC_NOERR;
+    return STATUS_OK;
 }
 
-static int read_all(int file, struct compare_file_reference *reference, int n, size_t n_text,
-                    struct compare_file_row *row) {
-    for (int i = 0; i < n; i++) NETCDF(read_row(file, i, n_text, &row[i]));
+static enum status read_all(const struct netcdf_reader *reader, struct compare_file_reference *reference, int *n,
+                            struct compare_file_row **row) {
+    size_t n_rows, n_text;
+    TRY(netcdf_read_length(reader, "run", 1, 1000000, &n_rows));
+    TRY(netcdf_read_length(reader, "text", TEXT_BYTES, TEXT_BYTES, &n_text));
+    *n = (int)n_rows;
+    *row = calloc(n_rows, sizeof **row);
+    if (!*row) return status_fail(STATUS_MEMORY, "%s: out of memory while reading", reader->path);
+    for (size_t i = 0; i < n_rows; i++) TRY(read_row(reader, i, &(*row)[i]));
+    const struct netcdf_slice slice[] = {{NULL}};
     for (int c = 0; c < N_OF_REFERENCE; c++) {
-        int variable;
-        NETCDF(nc_inq_varid(file, of_reference[c].name, &variable));
-        NETCDF(nc_get_var_double(file, variable, (double *)((char *)reference + of_reference[c].offset)));
+        TRY(netcdf_read_doubles(reader, of_reference[c].name, slice,
+                                (double *)((char *)reference + of_reference[c].offset)));
     }
-    return NC_NOERR;
-}
-
-static size_t length_of(int file, const char *dimension) {
-    int number;
-    size_t length = 0;
-    if (nc_inq_dimid(file, dimension, &number) == NC_NOERR) nc_inq_dimlen(file, number, &length);
-    return length;
+    return STATUS_OK;
 }
 
 enum status compare_file_read(const char *path, struct compare_file_reference *reference, int *n,
                               struct compare_file_row **row) {
     *row = NULL;
-    int file;
-    int code = nc_open(path, NC_NOWRITE, &file);
-    if (code != NC_NOERR) return status_fail(STATUS_FILE, "%s: cannot be read: %s", path, nc_strerror(code));
-    *n = (int)length_of(file, "run");
-    *row = calloc((size_t)*n + 1, sizeof **row);
-    if (*row) code = read_all(file, reference, *n, length_of(file, "text"), *row);
-    nc_close(file);
-    if (!*row) return status_fail(STATUS_MEMORY, "%s: out of memory while reading", path);
-    if (code == NC_NOERR) return STATUS_OK;
+    struct netcdf_reader reader;
+    TRY(netcdf_open(&reader, path));
+    const enum status status = read_all(&reader, reference, n, row);
+    netcdf_close(&reader);
+    if (status == STATUS_OK) return STATUS_OK;
     free(*row);
     *row = NULL;
-    return status_fail(STATUS_FILE, "%s: not a whole comparison: %s", path, nc_strerror(code));
+    return status;
 }

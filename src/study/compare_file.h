@@ -4,6 +4,9 @@
 
 #include "base/status.h"
 #include "case/case.h"
+#include "output/result_kind.h"
+
+enum { COMPARE_FILE_SCHEMA = 1 /* attribute shoal_compare */ };
 
 struct compare_file_row {
     char method[32];               /* "ida2": implicit of order 2; or an explicit method */
@@ -30,11 +33,6 @@ enum status compare_file_read(const char *path, struct compare_file_reference *r
                               struct compare_file_row **row);
 
 /* Row i, from 0, of the reference of its variables; 0 beyond the last. */
-struct result_listed;
 int compare_file_listed(int i, struct result_listed *listed);
-
-/* ---- shared by the files of the store only */
-
-enum { RESULT_COMPARE_SCHEMA = 1 /* attribute shoal_compare */ };
 
 #endif

@@ -1,15 +1,15 @@
-/* study_file_orders.c: the orders of a study of convergence in study.nc. Declared in study_file.h. */
+/* study_file_orders.c: the orders of a study of convergence in study.nc. */
+#include "study/study_file_orders.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/text.h"
-#include "output/netcdf.h"
-#include "output/result_table.h"
-#include "study/study_file.h"
+#include "study/member_file.h"
 
-enum { NAME_BYTES = 64, MEANING_BYTES = 160, MOST_DIMENSIONS = 3 };
+enum { NAME_BYTES = 64, MEANING_BYTES = 160 };
 
 // ---- the table
 
@@ -29,7 +29,7 @@ static const struct single {
 };
 
 /* What there is for each quantity: name and meaning take its name. The dimensions begin with group, fish. */
-enum { ERROR, ORDER_BEFORE, ORDER, LIMIT, INDEX, OBJECTION, N_KINDS };
+enum { ERROR, COARSE_ORDER, ORDER, EXTRAPOLATED, GCI, FLAG, N_KINDS };
 static const struct kind {
     const char *name, *unit, *meaning; /* unit NULL: that of the quantity */
     enum orders_dimension last;        /* a third dimension; GROUP: none */
@@ -68,7 +68,7 @@ int study_file_orders_listed(int i, struct result_listed *listed) {
     fill_name(name[k], NAME_BYTES, kinds[k].name, "Q");
     fill_name(meaning[k], MEANING_BYTES, kinds[k].meaning, "Q");
     *listed = (struct result_listed){.name = name[k],
-                                     .type = k == OBJECTION ? "char" : "double",
+                                     .type = k == FLAG ? "char" : "double",
                                      .unit = kinds[k].unit ? kinds[k].unit : "of Q",
                                      .meaning = meaning[k]};
     const char *const last = kinds[k].last == GROUP ? "" : dimension_names[kinds[k].last];
@@ -108,100 +108,87 @@ int study_file_orders_place(const struct study_file_orders *orders, int group, i
 
 // ---- definition
 
-static int define(int file, const char *name, nc_type type, int n, const int *dimensions, const char *unit,
-                  const char *meaning) {
-    int variable;
-    NETCDF(nc_def_var(file, name, type, n, dimensions, &variable));
-    NETCDF(netcdf_text(file, variable, "long_name", meaning));
-    if (type == NC_CHAR) return netcdf_text(file, variable, "_Encoding", "utf-8");
-    NETCDF(netcdf_text(file, variable, "units", unit));
-    const double fill = NAN;
-    return type == NC_DOUBLE ? nc_put_att_double(file, variable, _FillValue, NC_DOUBLE, 1, &fill) : NC_NOERR;
+static void define(struct netcdf_writer *writer, const char *name, enum netcdf_type type, int n, const int *dimensions,
+                   const char *units, const char *meaning) {
+    struct netcdf_variable variable = {.name = name,
+                                       .long_name = meaning,
+                                       .units = units,
+                                       .type = type,
+                                       .n_dimensions = n,
+                                       .has_gaps = type == NETCDF_DOUBLE};
+    memcpy(variable.dimension, dimensions, (size_t)n * sizeof *dimensions);
+    netcdf_define_variable(writer, &variable);
 }
 
-static int define_quantity(int file, int q, const int dimensions[N_ORDERS_DIMENSIONS]) {
+static void define_quantity(struct netcdf_writer *writer, int q, const int dimensions[N_ORDERS_DIMENSIONS]) {
     const struct sweep_quantity *const quantity = &sweep_quantities[q];
+    const char *const own_units = member_file_quantity(member_file_quantity_number(quantity->name))->unit;
     for (int k = 0; k < N_KINDS; k++) {
         char name[NAME_BYTES], meaning[MEANING_BYTES];
         fill_name(name, sizeof name, kinds[k].name, quantity->name);
         fill_name(meaning, sizeof meaning, kinds[k].meaning, quantity->name);
         const enum orders_dimension last = last_of(k, quantity->of_xy);
-        const int of_variable[MOST_DIMENSIONS] = {dimensions[GROUP], dimensions[ORDERS_FISH], dimensions[last]};
-        const char *const unit =
-            kinds[k].unit ? kinds[k].unit : member_file_quantity(member_file_quantity_number(quantity->name))->unit;
-        NETCDF(define(file, name, k == OBJECTION ? NC_CHAR : NC_DOUBLE, last == GROUP ? 2 : 3, of_variable, unit,
-                      meaning));
+        const int of_variable[] = {dimensions[GROUP], dimensions[ORDERS_FISH], dimensions[last]};
+        define(writer, name, k == FLAG ? NETCDF_TEXT : NETCDF_DOUBLE, last == GROUP ? 2 : 3, of_variable,
+               kinds[k].unit ? kinds[k].unit : own_units, meaning);
     }
-    return NC_NOERR;
 }
 
-int study_file_orders_define(int file, const struct case_values *study, const struct study_file_orders *orders,
-                             const int dimensions[3]) {
-    if (orders->n_groups == 0) return NC_NOERR;
+void study_file_orders_define(struct netcdf_writer *writer, const struct case_values *study,
+                              const struct study_file_orders *orders, const int dimensions[3]) {
+    if (orders->n_groups == 0) return;
     int all[N_ORDERS_DIMENSIONS] = {0, 0, dimensions[0], dimensions[1], dimensions[2]};
-    NETCDF(nc_def_dim(file, dimension_names[GROUP], (size_t)orders->n_groups, &all[GROUP]));
-    NETCDF(nc_def_dim(file, dimension_names[LEVEL], (size_t)orders->n_levels, &all[LEVEL]));
+    all[GROUP] = netcdf_define_dimension(writer, dimension_names[GROUP], (size_t)orders->n_groups);
+    all[LEVEL] = netcdf_define_dimension(writer, dimension_names[LEVEL], (size_t)orders->n_levels);
     const char *const key_unit = study->sweep[orders->axis].key[0].unit;
     for (int i = 0; i < N_SINGLE; i++) {
-        NETCDF(define(file, singles[i].name, i == GROUP_MEMBER ? NC_INT : NC_DOUBLE, 1, &all[singles[i].dimension],
-                      i == GROUP_MEMBER || !*key_unit ? "1" : key_unit, singles[i].meaning));
+        define(writer, singles[i].name, i == GROUP_MEMBER ? NETCDF_INT : NETCDF_DOUBLE, 1, &all[singles[i].dimension],
+               i == GROUP_MEMBER ? "1" : key_unit, singles[i].meaning);
     }
-    for (int q = 0; q < SWEEP_N_ORDERS; q++) NETCDF(define_quantity(file, q, all));
-    return NC_NOERR;
+    for (int q = 0; q < SWEEP_N_ORDERS; q++) define_quantity(writer, q, all);
 }
 
 // ---- writing
 
-static int write_numbers(int file, const char *name, const size_t *start, const size_t *count, const double *value) {
-    int variable;
-    NETCDF(nc_inq_varid(file, name, &variable));
-    return nc_put_vara_double(file, variable, start, count, value);
-}
-
 /* One quantity of one fish of a group. */
-static int write_order(int file, const struct study_file_orders *orders, int group, int q, int f, size_t n_text) {
+static void write_order(struct netcdf_writer *writer, const struct study_file_orders *orders, int group, int q, int f,
+                        size_t n_text, char *text) {
     const int place = study_file_orders_place(orders, group, q, f);
     const struct study_file_order *const order = &orders->order[place];
     const double *const values[] = {[ERROR] = orders->error + (long)place * orders->n_levels,
-                                    [ORDER_BEFORE] = &order->order_before,
+                                    [COARSE_ORDER] = &order->coarse_order,
                                     [ORDER] = &order->order,
-                                    [LIMIT] = order->limit,
-                                    [INDEX] = &order->index};
+                                    [EXTRAPOLATED] = order->extrapolated,
+                                    [GCI] = &order->gci};
     const size_t start[] = {(size_t)group, (size_t)f, 0};
     const struct sweep_quantity *const quantity = &sweep_quantities[q];
     char name[NAME_BYTES];
-    for (int k = 0; k < OBJECTION; k++) {
-        const size_t n_last = k == ERROR ? (size_t)orders->n_levels : k == LIMIT && quantity->of_xy ? 2 : 1;
+    for (int k = 0; k < FLAG; k++) {
+        const size_t n_last = k == ERROR ? (size_t)orders->n_levels : k == EXTRAPOLATED && quantity->of_xy ? 2 : 1;
         fill_name(name, sizeof name, kinds[k].name, quantity->name);
-        NETCDF(write_numbers(file, name, start, (size_t[]){1, 1, n_last}, values[k]));
+        netcdf_write_doubles(writer, netcdf_number(writer, name), start, (size_t[]){1, 1, n_last}, values[k]);
     }
-    if (!order->objection) return NC_NOERR;
-    int variable;
-    fill_name(name, sizeof name, kinds[OBJECTION].name, quantity->name);
-    NETCDF(nc_inq_varid(file, name, &variable));
-    const size_t length = strlen(order->objection);
-    return nc_put_vara_text(file, variable, start, (size_t[]){1, 1, length < n_text ? length : n_text},
-                            order->objection);
+    fill_name(name, sizeof name, kinds[FLAG].name, quantity->name);
+    memset(text, 0, n_text);
+    snprintf(text, n_text, "%s", order->flag ? order->flag : "");
+    netcdf_write_text(writer, netcdf_number(writer, name), start, (size_t[]){1, 1, n_text}, text);
 }
 
-int study_file_orders_write(int file, const struct case_values *study, const struct study_file_orders *orders,
-                            size_t n_text) {
-    if (orders->n_groups == 0) return NC_NOERR;
+void study_file_orders_write(struct netcdf_writer *writer, const struct case_values *study,
+                             const struct study_file_orders *orders, size_t n_text, char *text) {
+    if (orders->n_groups == 0) return;
+    const struct sweep_axis *const axis = &study->sweep[orders->axis];
+    const int value_number = netcdf_number(writer, singles[LEVEL_VALUE].name);
     for (int i = 0; i < orders->n_levels; i++) {
-        const struct sweep_axis *const axis = &study->sweep[orders->axis];
         double value = NAN;
         text_number(axis->value[orders->level[i] * axis->n_keys], &value);
-        const size_t start[] = {(size_t)i}, count[] = {1};
-        NETCDF(write_numbers(file, singles[LEVEL_VALUE].name, start, count, &value));
-        NETCDF(write_numbers(file, singles[LEVEL_SIZE].name, start, count, &orders->size[i]));
+        netcdf_write_doubles(writer, value_number, (size_t[]){(size_t)i}, (size_t[]){1}, &value);
     }
-    int variable;
-    NETCDF(nc_inq_varid(file, singles[GROUP_MEMBER].name, &variable));
-    NETCDF(nc_put_var_int(file, variable, orders->first));
+    netcdf_write_doubles(writer, netcdf_number(writer, singles[LEVEL_SIZE].name), NULL, NULL, orders->size);
+    netcdf_write_ints(writer, netcdf_number(writer, singles[GROUP_MEMBER].name), NULL, NULL, orders->first);
     for (int g = 0; g < orders->n_groups; g++) {
         for (int q = 0; q < SWEEP_N_ORDERS; q++) {
-            for (int f = 0; f < orders->n_fish; f++) NETCDF(write_order(file, orders, g, q, f, n_text));
+            for (int f = 0; f < orders->n_fish; f++) write_order(writer, orders, g, q, f, n_text, text);
         }
     }
-    return NC_NOERR;
 }

@@ -66,31 +66,31 @@ static double two_levels(const double *h, const double (*f)[2], const double *ex
 }
 
 struct study_file_order study_order(int n, const double *sizes, const double (*values)[2], const double *reference) {
-    struct study_file_order result = {.order_before = NAN};
+    struct study_file_order result = {.coarse_order = NAN};
     int is_oscillating, was_oscillating;
     if (reference) {
         result.order = two_levels(sizes + n - 2, values + n - 2, reference, &is_oscillating);
-        result.order_before = two_levels(sizes + n - 3, values + n - 3, reference, &was_oscillating);
+        result.coarse_order = two_levels(sizes + n - 3, values + n - 3, reference, &was_oscillating);
     } else {
         result.order = three_levels(sizes + n - 3, values + n - 3, &is_oscillating);
-        if (n > 3) result.order_before = three_levels(sizes + n - 4, values + n - 4, &was_oscillating);
+        if (n > 3) result.coarse_order = three_levels(sizes + n - 4, values + n - 4, &was_oscillating);
     }
     const double part = 1 / (pow(sizes[n - 2] / sizes[n - 1], result.order) - 1);
     const double *const f1 = values[n - 1], *const f2 = values[n - 2];
-    for (int k = 0; k < 2; k++) result.limit[k] = f1[k] + (f1[k] - f2[k]) * part;
-    result.index = safety_factor * hypot(f1[0] - f2[0], f1[1] - f2[1]) * fabs(part);
+    for (int k = 0; k < 2; k++) result.extrapolated[k] = f1[k] + (f1[k] - f2[k]) * part;
+    result.gci = safety_factor * hypot(f1[0] - f2[0], f1[1] - f2[1]) * fabs(part);
     double sum = 0;
     for (int i = 0; i < n; i++) sum += values[i][0] + values[i][1];
     if (isnan(sum)) {
-        result.objection = "a level is missing";
+        result.flag = "a level is missing";
     } else if (isnan(result.order)) {
-        result.objection = "levels are equal to rounding";
+        result.flag = "levels are equal to rounding";
     } else if (is_oscillating) {
-        result.objection = "oscillates: not in the asymptotic range";
+        result.flag = "oscillates: not in the asymptotic range";
     } else if (result.order < least_order || result.order > most_order) {
-        result.objection = "order out of range: not in the asymptotic range";
-    } else if (fabs(result.order - result.order_before) > most_change) {
-        result.objection = "order still changes: not in the asymptotic range";
+        result.flag = "order out of range: not in the asymptotic range";
+    } else if (fabs(result.order - result.coarse_order) > most_change) {
+        result.flag = "order still changes: not in the asymptotic range";
     }
     return result;
 }
@@ -217,11 +217,11 @@ static void fill_row(const struct study_table *table, int row, const struct case
     study_table_set(table, row, 2, "%s",
                     member_file_quantity(member_file_quantity_number(sweep_quantities[q].name))->unit);
     for (int i = 0; i < n; i++) study_table_number(table, row, 3 + i, "%.2e", orders->error[place * n + i]);
-    study_table_number(table, row, n + 3, "%.2f", order->order_before);
+    study_table_number(table, row, n + 3, "%.2f", order->coarse_order);
     study_table_number(table, row, n + 4, "%.2f", order->order);
-    study_table_number(table, row, n + 5, "%.9g", order->limit[0]);
-    if (sweep_quantities[q].of_xy) study_table_number(table, row, n + 6, "%.9g", order->limit[1]);
-    study_table_number(table, row, n + 7, "%.1e", order->index);
+    study_table_number(table, row, n + 5, "%.9g", order->extrapolated[0]);
+    if (sweep_quantities[q].of_xy) study_table_number(table, row, n + 6, "%.9g", order->extrapolated[1]);
+    study_table_number(table, row, n + 7, "%.1e", order->gci);
 }
 
 /* Say what is wrong with the order of a quantity of a fish; STATUS_MISSED if it is not what the case expects. */
@@ -230,7 +230,7 @@ static enum status judge(const struct case_values *study, const struct study_fil
     const struct sweep_axis *const axis = &study->sweep[orders->axis];
     const struct study_file_order *const order = &orders->order[study_file_orders_place(orders, group, q, f)];
     const char *const fish = study->school.fish[f].name, *const quantity = sweep_quantities[q].name;
-    if (order->objection) fprintf(stream, "warning: %s of %s: %s\n", quantity, fish, order->objection);
+    if (order->flag) fprintf(stream, "warning: %s of %s: %s\n", quantity, fish, order->flag);
     if (!(axis->order_of >> q & 1) || !(axis->order > 0)) return STATUS_OK;
     const int is_met = fabs(order->order - axis->order) <= axis->within;
     fprintf(stream, "%s: order of %s of %s is %.2f, expected %g +- %g\n", is_met ? "met" : "MISSED", quantity, fish,

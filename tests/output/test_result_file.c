@@ -1,4 +1,4 @@
-/* test_store.c: writing the result file: what stands in it, when it can be read, and how it fails. */
+/* test_result_file.c: writing a result: what is in it, when it can be read, and how it fails. */
 #include <signal.h>
 #include <sys/resource.h>
 
@@ -68,7 +68,7 @@ static void attributes_name_the_case_the_program_and_the_conventions(void **stat
     write_file(f, 1);
     const int file = open_to_read(f);
     assert_string_equal(text_of(file, NC_GLOBAL, "Conventions"), "CF-1.10");
-    assert_string_equal(text_of(file, NC_GLOBAL, "title"), "store");
+    assert_string_equal(text_of(file, NC_GLOBAL, "title"), "result");
     assert_string_equal(text_of(file, NC_GLOBAL, "case_text"), CASE_TEXT);
     assert_string_equal(text_of(file, NC_GLOBAL, "case_effective"), EFFECTIVE);
     assert_string_equal(text_of(file, NC_GLOBAL, "run_status"), "complete");
@@ -175,7 +175,7 @@ static void every_measured_quantity_of_a_fish_has_a_variable(void **state) {
     (void)state;
     bool stored[N_MEASURED] = {false};
     for (int i = 0; i < result_table_n; i++) {
-        if (result_table[i].owner != OF_MEASURED_FISH) continue;
+        if (result_table[i].owner != OF_DIAGNOSTICS_FISH) continue;
         const size_t first = result_table[i].offset / sizeof(double),
                      n = result_table_has(&result_table[i], XY) ? 2 : 1;
         for (size_t k = first; k < first + n; k++) stored[k] = true;
@@ -186,13 +186,13 @@ static void every_measured_quantity_of_a_fish_has_a_variable(void **state) {
 static void wake_is_oldest_first_and_can_be_left_out(void **state) {
     struct fixture *f = *state;
     struct wake *wake = &f->state->wake[1];
-    struct result_file *store = create(f);
-    assert_int_equal(append(f, store, 0, 1), STATUS_OK);
+    struct result_file *result = create(f);
+    assert_int_equal(append(f, result, 0, 1), STATUS_OK);
     assert_int_equal(wake_release(wake, 1, 2, 3, 0.1), STATUS_OK);
     assert_int_equal(wake_release(wake, 4, 5, 6, 0.2), STATUS_OK);
-    assert_int_equal(append(f, store, 0.2, 1), STATUS_OK);
-    assert_int_equal(append(f, store, 0.3, 0), STATUS_OK);
-    assert_int_equal(result_file_close(store, "complete"), STATUS_OK);
+    assert_int_equal(append(f, result, 0.2, 1), STATUS_OK);
+    assert_int_equal(append(f, result, 0.3, 0), STATUS_OK);
+    assert_int_equal(result_file_close(result, "complete"), STATUS_OK);
 
     const int file = open_to_read(f);
     NEAR(value_at(file, "wake_count", 0, 1, 0, 0), 0, 0, 0);
@@ -233,8 +233,8 @@ static void long_status_is_cut(void **state) {
     memset(reason, 'x', sizeof reason);
     memcpy(reason, "failed: ", 8);
     reason[sizeof reason - 1] = '\0';
-    struct result_file *store = create(f);
-    assert_int_equal(result_file_close(store, reason), STATUS_OK);
+    struct result_file *result = create(f);
+    assert_int_equal(result_file_close(result, reason), STATUS_OK);
     const int file = open_to_read(f);
     assert_memory_equal(text_of(file, NC_GLOBAL, "run_status"), reason, 255);
     assert_int_equal(strlen(text_of(file, NC_GLOBAL, "run_status")), 255);
@@ -245,7 +245,7 @@ static void long_status_is_cut(void **state) {
 
 static void file_can_be_read_between_rows(void **state) {
     struct fixture *f = *state;
-    struct result_file *store = create(f);
+    struct result_file *result = create(f);
     for (size_t n = 0; n < 4; n++) {
         const int file = open_to_read(f);
         assert_int_equal(length_of(file, "time"), n);
@@ -255,9 +255,9 @@ static void file_can_be_read_between_rows(void **state) {
             NEAR(value_at(file, "wall_time", n - 1, 0, 0, 0), 28, 0, 0);
         }
         nc_close(file);
-        assert_int_equal(append(f, store, (double)n, 1), STATUS_OK);
+        assert_int_equal(append(f, result, (double)n, 1), STATUS_OK);
     }
-    assert_int_equal(result_file_close(store, "stopped"), STATUS_OK);
+    assert_int_equal(result_file_close(result, "stopped"), STATUS_OK);
 }
 
 static void closing_nothing_is_allowed(void **state) {
@@ -268,10 +268,10 @@ static void closing_nothing_is_allowed(void **state) {
 // ---- failures ----
 
 static void assert_refused(struct fixture *f, const char *path, int overwrite, const char *part) {
-    struct result_file *store;
-    assert_int_equal(result_file_create(&store, path, overwrite, &f->values, EFFECTIVE, "", f->school, 10),
+    struct result_file *result;
+    assert_int_equal(result_file_create(&result, path, overwrite, &f->values, EFFECTIVE, "", f->school, 10),
                      STATUS_FILE);
-    assert_null(store);
+    assert_null(result);
     assert_message(path);
     assert_message(part);
 }
@@ -292,9 +292,9 @@ static void existing_file_stays_untouched(void **state) {
 static void existing_file_is_replaced_when_asked(void **state) {
     struct fixture *f = *state;
     write_file(f, 3);
-    struct result_file *store;
-    assert_int_equal(result_file_create(&store, f->path, 1, &f->values, EFFECTIVE, "", f->school, 10), STATUS_OK);
-    assert_int_equal(result_file_close(store, "complete"), STATUS_OK);
+    struct result_file *result;
+    assert_int_equal(result_file_create(&result, f->path, 1, &f->values, EFFECTIVE, "", f->school, 10), STATUS_OK);
+    assert_int_equal(result_file_close(result, "complete"), STATUS_OK);
     const int file = open_to_read(f);
     assert_int_equal(length_of(file, "time"), 0);
     nc_close(file);
@@ -327,8 +327,8 @@ static void full_disk_leaves_no_file_without_a_header(void **state) {
     struct fixture *f = *state;
     for (rlim_t size = 0; size < 20000; size += 3000) {
         const rlim_t before = limit_file_size(size);
-        struct result_file *store;
-        const enum status status = result_file_create(&store, f->path, 0, &f->values, EFFECTIVE, "", f->school, 10);
+        struct result_file *result;
+        const enum status status = result_file_create(&result, f->path, 0, &f->values, EFFECTIVE, "", f->school, 10);
         limit_file_size(before);
         assert_int_equal(status, STATUS_FILE);
         assert_message("File too large");
@@ -338,15 +338,15 @@ static void full_disk_leaves_no_file_without_a_header(void **state) {
 
 static void full_disk_keeps_the_rows_before(void **state) {
     struct fixture *f = *state;
-    struct result_file *store = create(f);
+    struct result_file *result = create(f);
     const rlim_t before = limit_file_size(100000);
     int n_rows = 0;
     enum status status;
-    while ((status = append(f, store, n_rows, 1)) == STATUS_OK) n_rows++;
+    while ((status = append(f, result, n_rows, 1)) == STATUS_OK) n_rows++;
     assert_int_equal(status, STATUS_FILE);
     assert_message(f->path);
     assert_message("File too large");
-    assert_int_equal(result_file_close(store, "failed: no room"), STATUS_OK);
+    assert_int_equal(result_file_close(result, "failed: no room"), STATUS_OK);
     limit_file_size(before);
 
     assert_in_range(n_rows, 5, 1000);
@@ -359,30 +359,30 @@ static void full_disk_keeps_the_rows_before(void **state) {
 
 static void too_many_vortices_are_refused(void **state) {
     struct fixture *f = *state;
-    struct result_file *store = create(f);
+    struct result_file *result = create(f);
     for (int i = 0; i <= wake_most(f->school, 10); i++)
         assert_int_equal(wake_release(&f->state->wake[0], 0, 0, 0, 0), STATUS_OK);
-    assert_int_equal(append(f, store, 0, 1), STATUS_FILE);
+    assert_int_equal(append(f, result, 0, 1), STATUS_FILE);
     assert_message("room for");
-    assert_int_equal(result_file_close(store, "failed"), STATUS_OK);
+    assert_int_equal(result_file_close(result, "failed"), STATUS_OK);
 }
 
 static void no_memory_leaves_no_file(void **state) {
     struct fixture *f = *state;
-    struct result_file *store;
+    struct result_file *result;
     enum status status = STATUS_MEMORY;
     for (int i = 1; status != STATUS_OK; i++) {
         failing_allocation = i;
-        status = result_file_create(&store, f->path, 0, &f->values, EFFECTIVE, "", f->school, 10);
+        status = result_file_create(&result, f->path, 0, &f->values, EFFECTIVE, "", f->school, 10);
         const bool has_failed = failing_allocation == 0;
         failing_allocation = 0;
         if (!has_failed) break;
         assert_int_equal(status, STATUS_MEMORY);
-        assert_null(store);
+        assert_null(result);
         assert_int_not_equal(access(f->path, F_OK), 0);
     }
     assert_int_equal(status, STATUS_OK);
-    assert_int_equal(result_file_close(store, "complete"), STATUS_OK);
+    assert_int_equal(result_file_close(result, "complete"), STATUS_OK);
 }
 
 int main(void) {

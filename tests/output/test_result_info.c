@@ -1,22 +1,23 @@
-/* test_store_info.c: reading the result file, the reference of its variables, and the version it names. */
+/* test_result_info.c: the summary of a result, the list of its variables, and the version it names. */
 #include <sys/stat.h>
 
 #include "base/version.h"
+#include "output/result_info.h"
+#include "output/result_kind.h"
 #include "output/result_table.h"
 #include "result_fixture.h"
-#include "study/compare_file.h"
-#include "study/study_file.h"
 
 // ---- info ----
 
-/* What result_info prints, or "" when it fails. */
+static const struct result_kind run = {"run",       "shoal_schema",     RESULT_SCHEMA, "case_effective",
+                                       result_info, result_table_listed};
+
+/* What is printed, or "" when it fails. */
 static const char *info(const char *path, int case_only, enum status *status) {
     static char text[8192];
     memset(text, 0, sizeof text);
     FILE *stream = fmemopen(text, sizeof text - 1, "w");
-    enum result_kind kind = RESULT_COMPARISON;
-    *status = result_info(path, case_only, stream, &kind);
-    if (*status == STATUS_OK) assert_int_equal(kind, RESULT_RUN);
+    *status = result_kind_info(1, &run, path, case_only, stream);
     fclose(stream);
     return text;
 }
@@ -27,7 +28,7 @@ static void info_sums_up(void **state) {
     enum status status;
     const char *text = info(f->path, 0, &status);
     assert_int_equal(status, STATUS_OK);
-    const char *const parts[] = {"store", "complete", "3, from t = 0 s to 1 s", "leader", "suédois", "2.10 per event"};
+    const char *const parts[] = {"result", "complete", "3, from t = 0 s to 1 s", "leader", "suédois", "2.10 per event"};
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
         if (strstr(text, parts[i]) == NULL) fail_msg("\"%s\" is not in\n%s", parts[i], text);
     assert_null(strstr(text, "nan"));
@@ -112,25 +113,21 @@ static void info_refuses_a_file_that_was_cut(void **state) {
     }
 }
 
-// ---- the reference and the version ----
+// ---- the list of variables and the version ----
 
-static void reference_has_one_line_per_variable(void **state) {
+static void the_list_has_one_line_per_variable(void **state) {
     (void)state;
-    struct result_listed listed;
-    int n_study = 0, n_compare = 0;
-    while (study_file_listed(n_study, &listed)) n_study++;
-    while (compare_file_listed(n_compare, &listed)) n_compare++;
-    assert_true(n_study > 10 && n_compare > 10);
+    const struct result_kind kinds[] = {run, run};
     for (int as_json = 0; as_json < 2; as_json++) {
-        static char text[32768];
+        static char text[65536];
         memset(text, 0, sizeof text);
         FILE *stream = fmemopen(text, sizeof text - 1, "w");
-        result_variables(stream, as_json);
+        result_kind_variables(2, kinds, as_json, stream);
         fclose(stream);
         int n_lines = 0;
         for (const char *c = text; *c; c++) n_lines += *c == '\n';
-        // the text has a heading of three lines for each of two further files
-        assert_int_equal(n_lines, result_table_n + n_study + n_compare + (as_json ? 2 : 6));
+        // the text has a heading of three lines for the further file
+        assert_int_equal(n_lines, 2 * result_table_n + (as_json ? 2 : 3));
         assert_non_null(strstr(
             text, as_json ? "\"dimensions\": [\"time\", \"fish\", \"node\", \"xy\"]" : "(time, fish, node, xy)"));
     }
@@ -157,7 +154,7 @@ int main(void) {
         WITH_FILE(info_refuses_other_files),
         WITH_FILE(info_refuses_another_schema),
         WITH_FILE(info_refuses_a_file_that_was_cut),
-        cmocka_unit_test(reference_has_one_line_per_variable),
+        cmocka_unit_test(the_list_has_one_line_per_variable),
         cmocka_unit_test(version_names_every_library),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

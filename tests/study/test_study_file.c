@@ -28,15 +28,15 @@ static void a_power_of_the_size_gives_its_order_and_its_limit(void **state) {
         const struct study_file_order one = order_of(4, halved, orders[i]), other = order_of(4, uneven, orders[i]);
         // the differences of the finest levels, 1e-6 of the values at order 4, lose ten digits of sixteen
         NEAR(one.order, orders[i], 0, 1e-8);
-        NEAR(one.order_before, orders[i], 0, 1e-8);
+        NEAR(one.coarse_order, orders[i], 0, 1e-8);
         NEAR(other.order, orders[i], 0, 1e-8);
-        NEAR(other.order_before, orders[i], 0, 1e-8);
-        NEAR(one.limit[0], 3, 1e-10, 0);
-        NEAR(other.limit[1], -1, 1e-10, 0);
+        NEAR(other.coarse_order, orders[i], 0, 1e-8);
+        NEAR(one.extrapolated[0], 3, 1e-10, 0);
+        NEAR(other.extrapolated[1], -1, 1e-10, 0);
         // the index is the safety factor times the true error
-        NEAR(one.index, 1.25 * hypot(0.7, 0.2) * pow(0.05, orders[i]), 0, 1e-6);
-        assert_null(one.objection);
-        assert_null(other.objection);
+        NEAR(one.gci, 1.25 * hypot(0.7, 0.2) * pow(0.05, orders[i]), 0, 1e-6);
+        assert_null(one.flag);
+        assert_null(other.flag);
     }
 }
 
@@ -46,9 +46,9 @@ static void the_published_example_comes_out(void **state) {
     const double sizes[] = {1.5 * 4 / 3, 1.5, 1}, values[][2] = {{5.863, 0}, {5.972, 0}, {6.063, 0}};
     const struct study_file_order order = study_order(3, sizes, values, NULL);
     NEAR(order.order, 1.53, 0.01, 0);  // two digits are printed, of ratios rounded to three
-    NEAR(order.limit[0], 6.1685, 0.0005, 0);
-    NEAR(order.index / 6.063, 0.022, 0.0005, 0);
-    assert_true(isnan(order.order_before));
+    NEAR(order.extrapolated[0], 6.1685, 0.0005, 0);
+    NEAR(order.gci / 6.063, 0.022, 0.0005, 0);
+    assert_true(isnan(order.coarse_order));
 }
 
 static void a_given_value_gives_the_order_with_two_levels_each(void **state) {
@@ -62,13 +62,13 @@ static void a_given_value_gives_the_order_with_two_levels_each(void **state) {
         values[i][1] = -1 + 0.8 * errors[i];
     }
     const struct study_file_order order = study_order(3, sizes, (const double(*)[2])values, exact);
-    NEAR(order.order_before, 2, 0, 1e-12);
+    NEAR(order.coarse_order, 2, 0, 1e-12);
     NEAR(order.order, 1, 0, 1e-12);
-    assert_non_null(strstr(order.objection, "changes"));
+    assert_non_null(strstr(order.flag, "changes"));
     // with order 1 the limit is as far beyond the finest level as that is from the one before
-    NEAR(order.limit[0], 3, 1e-12, 0);
-    NEAR(order.limit[1], -1, 1e-12, 0);
-    NEAR(order.index, 1.25 * 0.02, 0, 1e-12);
+    NEAR(order.extrapolated[0], 3, 1e-12, 0);
+    NEAR(order.extrapolated[1], -1, 1e-12, 0);
+    NEAR(order.gci, 1.25 * 0.02, 0, 1e-12);
     // without the given value the same levels look otherwise: a ratio of differences of 6
     NEAR(study_order(3, sizes, (const double(*)[2])values, NULL).order, log2(6), 0, 1e-9);
 }
@@ -77,17 +77,17 @@ static void levels_on_both_sides_of_a_given_value_oscillate(void **state) {
     (void)state;
     const double sizes[] = {0.4, 0.2, 0.1}, values[][2] = {{1.4, 0}, {1.1, 0}, {0.97, 0}}, exact[] = {1, 0};
     const struct study_file_order order = study_order(3, sizes, values, exact);
-    assert_non_null(strstr(order.objection, "oscillates"));
+    assert_non_null(strstr(order.flag, "oscillates"));
     const double same[][2] = {{1.4, 0}, {1.1, 0}, {1, 0}};
-    assert_non_null(strstr(study_order(3, sizes, same, exact).objection, "equal to rounding"));
+    assert_non_null(strstr(study_order(3, sizes, same, exact).flag, "equal to rounding"));
 }
 
-static void what_is_not_asymptotic_is_objected_to(void **state) {
+static void what_is_not_asymptotic_is_flagged(void **state) {
     (void)state;
     const double sizes[] = {0.8, 0.4, 0.2, 0.1};
     const struct {
         double values[4][2];
-        const char *objection;
+        const char *flag;
     } examples[] = {
         {{{1, 0}, {2, 0}, {1.5, 0}, {1.75, 0}}, "oscillates"},
         {{{0, 0}, {1, 0}, {2, 0}, {3, 0}}, "out of range"},    // order 0
@@ -99,8 +99,8 @@ static void what_is_not_asymptotic_is_objected_to(void **state) {
     };
     for (size_t i = 0; i < sizeof examples / sizeof *examples; i++) {
         const struct study_file_order order = study_order(4, sizes, examples[i].values, NULL);
-        if (!order.objection || !strstr(order.objection, examples[i].objection)) {
-            fail_msg("example %zu: %s", i, order.objection ? order.objection : "no objection");
+        if (!order.flag || !strstr(order.flag, examples[i].flag)) {
+            fail_msg("example %zu: %s", i, order.flag ? order.flag : "no flag");
         }
     }
 }
@@ -188,7 +188,7 @@ static void orders_are_kept_in_study_nc(void **state) {
     struct case_values none;
     struct member_file *nobody;
     assert_int_equal(study_file_read(path, &none, &nobody), STATUS_FILE);
-    assert_non_null(strstr(status_message(), "not a whole study"));
+    assert_non_null(strstr(status_message(), "make the study's file again"));
     unlink(path);
     study_members_free(read, 6);
     study_file_orders_free(&orders);
@@ -310,7 +310,7 @@ int main(void) {
         cmocka_unit_test(the_published_example_comes_out),
         cmocka_unit_test(a_given_value_gives_the_order_with_two_levels_each),
         cmocka_unit_test(levels_on_both_sides_of_a_given_value_oscillate),
-        cmocka_unit_test(what_is_not_asymptotic_is_objected_to),
+        cmocka_unit_test(what_is_not_asymptotic_is_flagged),
         cmocka_unit_test(orders_are_kept_in_study_nc),
         cmocka_unit_test(every_failing_allocation_of_a_study_is_reported_and_leaves_nothing),
         cmocka_unit_test(quantities_of_a_case_are_those_of_a_study),
