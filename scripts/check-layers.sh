@@ -15,12 +15,12 @@ readonly rooms=(base vortex model case solver output run study app)
 readonly outside='
 sundials|ida|kinsol|arkode|nvector|sunmatrix|sunlinsol|sunnonlinsol : IDA KIN ARK ERK N_V SUN : solver
 klu|amd|colamd|btf|SuiteSparse_config|lapacke|cblas : klu_ LAPACKE_ cblas_ : solver
-netcdf : nc_ : output study
+netcdf : nc_ : output
 yaml : yaml_parser_ yaml_event_ : case
 '
 
 # Rooms that are still being put in order.
-readonly pending='case output study app'
+readonly pending='case study app'
 
 cd "$(dirname "$0")/.."
 build=${1:-build}

@@ -187,22 +187,26 @@ int netcdf_number(struct netcdf_writer *writer, const char *name) {
 
 void netcdf_write_doubles(struct netcdf_writer *writer, int variable, const size_t *start, const size_t *count,
                           const double *values) {
-    CALL(writer, nc_put_vara_double(writer->file, variable, start, count, values));
+    CALL(writer, count ? nc_put_vara_double(writer->file, variable, start, count, values)
+                       : nc_put_var_double(writer->file, variable, values));
 }
 
 void netcdf_write_ints(struct netcdf_writer *writer, int variable, const size_t *start, const size_t *count,
                        const int *values) {
-    CALL(writer, nc_put_vara_int(writer->file, variable, start, count, values));
+    CALL(writer, count ? nc_put_vara_int(writer->file, variable, start, count, values)
+                       : nc_put_var_int(writer->file, variable, values));
 }
 
 void netcdf_write_longs(struct netcdf_writer *writer, int variable, const size_t *start, const size_t *count,
                         const long *values) {
-    CALL(writer, nc_put_vara_long(writer->file, variable, start, count, values));
+    CALL(writer, count ? nc_put_vara_long(writer->file, variable, start, count, values)
+                       : nc_put_var_long(writer->file, variable, values));
 }
 
 void netcdf_write_text(struct netcdf_writer *writer, int variable, const size_t *start, const size_t *count,
                        const char *values) {
-    CALL(writer, nc_put_vara_text(writer->file, variable, start, count, values));
+    CALL(writer, count ? nc_put_vara_text(writer->file, variable, start, count, values)
+                       : nc_put_var_text(writer->file, variable, values));
 }
 
 // ---- on disk

@@ -1,5 +1,5 @@
-/* netcdf.h: the one place that calls the NetCDF library. A file of ours is written under a temporary name and gets its own
- * when it is complete; a file that may be anybody's is read with every variable checked. Tested by
+/* netcdf.h: the one place that calls the NetCDF library. A file of ours is written under a temporary name and gets its
+ * own when it is complete; a file that may be anybody's is read with every variable checked. Tested by
  * tests/output/test_netcdf.c. */
 #ifndef NETCDF_H
 #define NETCDF_H
@@ -15,8 +15,7 @@ enum netcdf_type { NETCDF_TEXT, NETCDF_INT, NETCDF_INT64, NETCDF_FLOAT, NETCDF_D
 
 /* ---- writing
  *
- *     netcdf_create, define..., set..., netcdf_end_definitions, write..., netcdf_publish, more of write..., netcdf_finish
- */
+ *     netcdf_create, define..., set..., netcdf_end_definitions, write..., netcdf_publish, write..., netcdf_finish */
 
 /* A file that is being written. Once a call has failed, later ones do nothing, and code tells why. */
 struct netcdf_writer {
@@ -38,13 +37,13 @@ struct netcdf_variable {
     bool has_gaps;                                      /* NaN marks where there is no value */
 };
 
-/* Fail with STATUS_FILE if no file can be made at path: its folder is missing, it is a folder or device, or it exists and
- * must not be overwritten. */
+/* Fail with STATUS_FILE if no file can be made at path: its folder is missing, it is a folder or device, or it exists
+ * and must not be overwritten. */
 enum status netcdf_check_target(const char *path, bool overwrite);
 
-/* Create a file in the classic format with 64-bit sizes (CDF-5), with the attributes Conventions, title, history (now, and
- * the command line) and source (this version and its libraries). Fails with STATUS_FILE or STATUS_MEMORY; nothing is then
- * left, and netcdf_finish does nothing. */
+/* Create a file in the classic format with 64-bit sizes (CDF-5), with the attributes Conventions, title, history (now,
+ * and the command line) and source (this version and its libraries). Fails with STATUS_FILE or STATUS_MEMORY; nothing
+ * is then left, and netcdf_finish does nothing. */
 enum status netcdf_create(struct netcdf_writer *writer, const char *path, const char *title, const char *command);
 
 /* Define a dimension, which grows where the length is 0, or a variable; the number it gets. */
@@ -77,30 +76,31 @@ void netcdf_write_text(struct netcdf_writer *writer, int variable, const size_t 
  * row. */
 void netcdf_sync(struct netcdf_writer *writer, bool now);
 
-/* Make the file survive a power cut and then give it its name. Fails with STATUS_FILE or STATUS_MEMORY, also where a call
- * before has failed, or where the file exists and must not be overwritten. */
+/* Make the file survive a power cut and then give it its name. Fails with STATUS_FILE or STATUS_MEMORY, also where a
+ * call before has failed, or where the file exists and must not be overwritten. */
 enum status netcdf_publish(struct netcdf_writer *writer, bool overwrite);
 
 /* Close a published file and open it again after a failure: a header on a full disk has its place already, and counts
  * whole rows only. */
 void netcdf_reopen(struct netcdf_writer *writer);
 
-/* Close the file and release the writer. Removes a file that has not been published; fails with STATUS_FILE where a call
- * after netcdf_publish, or closing itself, has failed. */
+/* Close the file and release the writer. Removes a file that has not been published; fails with STATUS_FILE where a
+ * call after netcdf_publish, or closing itself, has failed. */
 enum status netcdf_finish(struct netcdf_writer *writer);
 
 /* What a code means. */
 const char *netcdf_reason(int code);
 
-/* ---- reading: every function fails with STATUS_FILE or STATUS_MEMORY and a message that names the file, and never writes
- * more than the caller has asked for, whatever the file says */
+/* ---- reading: every function fails with STATUS_FILE or STATUS_MEMORY and a message that names the file, and never
+ * writes more than the caller has asked for, whatever the file says */
 
 struct netcdf_reader {
     const char *path;
     int file; /* NetCDF's number */
 };
 
-/* A part of a variable: for each of its dimensions the name, the first index and the number of values; ends with NULL. */
+/* A part of a variable: for each of its dimensions the name, the first index and the number of values; ends with
+ * NULL. */
 struct netcdf_slice {
     const char *dimension;
     size_t first, n;

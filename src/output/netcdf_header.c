@@ -1,4 +1,4 @@
-/* netcdf_header.c: is a file whole? NetCDF reads what is missing at its end as zeros, and trusts the sizes that it says.
+/* netcdf_header.c: is a file whole? NetCDF reads what is missing at its end as zeros, and trusts its sizes.
  *
  *     header    = "CDF" version  n_rows  dimensions  attributes  variables
  *     list      = tag  n  n entries; both 0: none          tag: DIMENSION, ATTRIBUTE, VARIABLE
@@ -7,8 +7,8 @@
  *     variable  = name  n  n numbers of dimensions  attributes  type  size  begin
  *     name      = n  n bytes
  *
- * All numbers are big-endian; tags and types have 4 bytes, begin 8 (4 in version 1), others 4 (8 in version 5). Names and
- * values are filled up to 4 bytes. A row holds one entry of each variable that grows, one after the other.
+ * All numbers are big-endian; tags and types have 4 bytes, begin 8 (4 in version 1), others 4 (8 in version 5). Names
+ * and values are filled up to 4 bytes. A row holds one entry of each variable that grows, one after the other.
  * https://docs.unidata.ucar.edu/netcdf-c/current/file_format_specifications.html */
 #include <errno.h>
 #include <netcdf.h>

@@ -1,5 +1,5 @@
-/* result_file.h: writing the file of a run. doc/output.md lists what is in it. Tested by tests/output/test_result_file.c.
- */
+/* result_file.h: writing the file of a run. doc/output.md lists what is in it. Tested by
+ * tests/output/test_result_file.c. / */
 #ifndef RESULT_FILE_H
 #define RESULT_FILE_H
 
@@ -13,10 +13,10 @@ struct result_file; /* an open result file */
 /* Fail with STATUS_FILE if no file can be made at path, for instance because it exists and must not be overwritten. */
 enum status result_file_check(const char *path, int overwrite);
 
-/* Create the file at path, with the constants of the school. overwrite: replace one that exists, else that is an error. The
- * file gets its name when its header is complete, so that a failure leaves nothing half made. effective: the complete case
- * (case_show); command: the command line, for the attribute history; n_events: of the whole run, without the one at the
- * start. Fails with STATUS_FILE or STATUS_MEMORY; *result is then NULL. */
+/* Create the file at path, with the constants of the school. overwrite: replace one that exists, else that is an error.
+ * The file gets its name when its header is complete, so that a failure leaves nothing half made. effective: the
+ * complete case (case_show); command: the command line, for the attribute history; n_events: of the whole run, without
+ * the one at the start. Fails with STATUS_FILE or STATUS_MEMORY; *result is then NULL. */
 enum status result_file_create(struct result_file **result, const char *path, int overwrite,
                                const struct case_values *values, const char *effective, const char *command,
                                const struct school *school, long n_events);
@@ -24,7 +24,8 @@ enum status result_file_create(struct result_file **result, const char *path, in
 /* Append one row. Readers see it at once; a power cut costs the rows of the last second. Fails with STATUS_FILE. */
 enum status result_file_row(struct result_file *result, const struct result_row *row);
 
-/* Set the attribute run_status ("complete", "failed: why", "stopped") and close. Accepts NULL. Fails with STATUS_FILE. */
+/* Set the attribute run_status ("complete", "failed: why", "stopped") and close. Accepts NULL. Fails with
+ * STATUS_FILE. */
 enum status result_file_close(struct result_file *result, const char *run_status);
 
 #endif

@@ -1,5 +1,5 @@
-/* result_kind.h: the kinds of files that shoal writes, and what is the same for all of them: the summary that `shoal info`
- * prints, and the list of variables that `shoal keys --output` prints. The program has one table of its kinds, in
+/* result_kind.h: the kinds of files that shoal writes, and what is the same for all of them: the summary that `shoal
+ * info` prints, and the list of variables that `shoal keys --output` prints. The program has one table of its kinds, in
  * app/main_case.c. Tested by tests/output/test_result_info.c. */
 #ifndef RESULT_KIND_H
 #define RESULT_KIND_H

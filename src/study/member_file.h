@@ -29,9 +29,9 @@ struct member_file {
     double *value; /* see member_file_value; NaN: unknown                       (n quantities, n_fish, xy) */
 };
 
-/* Read the file of a member. A variable that gives a quantity may be missing, as in the file of an earlier version. Fails
- * with STATUS_FILE (no file, not a whole one, other variables than shoal writes) or STATUS_MEMORY; *member then owns
- * nothing. */
+/* Read the file of a member. A variable that gives a quantity may be missing, as in the file of an earlier version.
+ * Fails with STATUS_FILE (no file, not a whole one, other variables than shoal writes) or STATUS_MEMORY; *member then
+ * owns nothing. */
 enum status member_file_read(struct member_file *member, const char *path);
 
 /* Make room for the values of a member with n_fish, NaN at first. Fails with STATUS_MEMORY. */

@@ -49,7 +49,7 @@ static const char *const phase_name[N_PHASES] = {"wake",   "field",   "residual"
 static struct {
     double time[N_PHASES];
     double interactions; /* of the floor */
-    struct result_counts counts;
+    struct integrator_counts counts;
 } seen;
 
 static void left(int phase, double since) {
@@ -106,19 +106,13 @@ void __wrap_diagnostics_step(const struct residual *residual, struct state *stat
     left(MEASURE, since);
 }
 
-enum status __real_result_file_row(struct result_file *store, const struct state *state,
-                                   const struct residual *residual, const struct diagnostics *diagnostics,
-                                   const struct result_counts *counts, int with_wake);
-enum status __wrap_result_file_row(struct result_file *store, const struct state *state,
-                                   const struct residual *residual, const struct diagnostics *diagnostics,
-                                   const struct result_counts *counts, int with_wake);
-enum status __wrap_result_file_row(struct result_file *store, const struct state *state,
-                                   const struct residual *residual, const struct diagnostics *diagnostics,
-                                   const struct result_counts *counts, int with_wake) {
+enum status __real_result_file_row(struct result_file *result, const struct result_row *row);
+enum status __wrap_result_file_row(struct result_file *result, const struct result_row *row);
+enum status __wrap_result_file_row(struct result_file *result, const struct result_row *row) {
     const double since = now();
-    const enum status status = __real_result_file_row(store, state, residual, diagnostics, counts, with_wake);
+    const enum status status = __real_result_file_row(result, row);
     left(OUTPUT, since);
-    seen.counts = *counts;
+    seen.counts = *row->counts;
     return status;
 }
 
