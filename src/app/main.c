@@ -140,6 +140,8 @@ static void print_message(const char *message) {
 
 int main(int argc, char **argv) {
     main_wait_briefly(argv);
+    // whoever started the program may ignore the ends of his own children; we wait for ours
+    signal(SIGCHLD, SIG_DFL);
     enum status status = choose(argc, argv);
     if (status == STATUS_OK && (fflush(stdout) != 0 || ferror(stdout))) {
         status = status_fail(STATUS_FILE, "cannot write to standard output");

@@ -15,7 +15,8 @@ static const struct option_help all_options[] = {
     {'o', "output", "PATH",
      "where the result goes: a file (default: the case's output.file, or its name with .nc), for a study a folder "
      "(default: its name with -study), for a comparison a file (default: none)"},
-    {'j', "processes", "N", "run N members at once (default: one per processor)"},
+    {'j', "processes", "N",
+     "run N members at once (default: the processors that the program may use, divided by solver.threads)"},
     {OPTION_SLURM, "slurm", NULL, "run nothing, but write the scripts of a Slurm array job into the folder"},
     {OPTION_BUNDLE, "bundle", "N", "with --slurm: N members a task"},
     {OPTION_METHODS, "methods", "LIST",

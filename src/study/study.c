@@ -3,6 +3,7 @@
 #include "study/study.h"
 
 #include <errno.h>
+#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -36,7 +37,8 @@ struct study {
     struct job *job;       /* (n_jobs) */
     struct report *report; /* shared memory                                        (n_jobs) */
     int n_to_run, n_next;
-    int *to_run; /* numbers of the members that are not finished                    (n_to_run) */
+    int most_threads; /* of one member */
+    int *to_run;      /* numbers of the members that are not finished                    (n_to_run) */
     struct study_progress progress;
     struct timespec started;
     int is_stopping;
@@ -83,7 +85,10 @@ static enum status plan_member(struct study *study, int number) {
     int is_finished = 0;
     if (!path) status = STATUS_MEMORY;
     if (status == STATUS_OK) status = look_at(study, &values, path, &is_finished);
-    if (status == STATUS_OK && !is_finished) study->to_run[study->n_to_run++] = number;
+    if (status == STATUS_OK && !is_finished) {
+        study->to_run[study->n_to_run++] = number;
+        if (values.school.threads > study->most_threads) study->most_threads = values.school.threads;
+    }
     if (is_finished) study->progress.n_done++;
     free(path);
     case_free(&values);
@@ -171,11 +176,25 @@ static enum status run_member(const struct study *study, const struct job *job) 
     return status;
 }
 
-/* Never returns. */
+/* Let every signal that asks the study to stop do the same here, not only the first: a signal to the whole process group
+ * comes once from outside and once more from the study. */
+static void keep_handlers(void) {
+    const int numbers[] = {SIGINT, SIGTERM};
+    for (int i = 0; i < 2; i++) {
+        struct sigaction action;
+        sigaction(numbers[i], NULL, &action);
+        action.sa_flags &= ~(int)SA_RESETHAND;
+        sigaction(numbers[i], &action, NULL);
+    }
+}
+
+/* Never returns. mask: the signals that a member blocks. */
 static void be_member(const struct study *study, const struct job *job, pid_t parent, const sigset_t *mask) {
     // a study that is killed takes its members with it
     prctl(PR_SET_PDEATHSIG, SIGTERM);
-    if (getppid() != parent) _exit(status_exit_code(STATUS_STOPPED));
+    // once the study has been asked to stop its handlers are gone
+    if (is_stopped(study) || getppid() != parent) _exit(status_exit_code(STATUS_STOPPED));
+    keep_handlers();
     sigprocmask(SIG_SETMASK, mask, NULL);
     const enum status status = run_member(study, job);
     if (status != STATUS_OK) snprintf(job->report->reason, REASON_BYTES, "%s", status_message());
@@ -187,8 +206,13 @@ static enum status start(struct study *study, struct job *job, const sigset_t *m
     *job->report = (struct report){0};
     const pid_t parent = getpid();
     fflush(NULL);
+    // no signal comes before the member is ready for it
+    sigset_t all, before;
+    sigfillset(&all);
+    sigprocmask(SIG_BLOCK, &all, &before);
     const pid_t process = fork();
     if (process == 0) be_member(study, job, parent, mask);
+    sigprocmask(SIG_SETMASK, &before, NULL);
     if (process < 0) return status_fail(STATUS_FILE, "cannot start a process: %s: use fewer with -j", strerror(errno));
     job->process = process;
     return STATUS_OK;
@@ -311,6 +335,14 @@ static enum status run_all(struct study *study) {
                        study->progress.n_done, study->progress.n_members);
 }
 
+/* How many members run at once: as many as there are processors for their threads, of those that we may use. */
+static int n_at_once(const struct study *study) {
+    int n = study->options->n_processes;
+    if (n == 0) n = omp_get_num_procs() / (study->most_threads > 1 ? study->most_threads : 1);
+    if (n < 1) n = 1;
+    return n < study->n_to_run ? n : study->n_to_run;
+}
+
 static enum status run_and_report(struct study *study, FILE *stream) {
     const struct study_options *const options = study->options;
     const int n = sweep_n_members(study->values), is_part = options->last >= 0;
@@ -320,8 +352,7 @@ static enum status run_and_report(struct study *study, FILE *stream) {
     }
     TRY(plan(study, first, last));
     TRY(make_folder(options->folder));
-    study->n_jobs = options->n_processes > 0 ? options->n_processes : (int)sysconf(_SC_NPROCESSORS_ONLN);
-    if (study->n_jobs > study->n_to_run) study->n_jobs = study->n_to_run;
+    study->n_jobs = n_at_once(study);
     if (study->n_jobs > 0) TRY(run_all(study));
     if (!is_part) return study_report(study->values, options->folder, options->command, stream);
     if (study->progress.n_failed == 0) return STATUS_OK;

@@ -29,7 +29,7 @@ struct study_progress {
 struct study_options {
     const char *folder;
     const char *command; /* command line, for the files' history */
-    int n_processes;     /* at once; 0: one per processor */
+    int n_processes;     /* at once; 0: the usable processors, shared by the threads of the members */
     int first, last;     /* members to run; last -1: all, and then the results are gathered and printed */
     int force;           /* remove the results of another study from the folder */
     void (*progress)(const struct study_progress *progress, void *data); /* may be NULL */

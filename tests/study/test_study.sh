@@ -300,6 +300,47 @@ check it_says_what_is_finished has err 'stopped by a signal: 1 of 4 members are 
 run info stopped/member-0001.nc
 check its_members_stop_cleanly has out 'stopped'
 
+# whoever stops a whole group tells each member twice: the study passes the signal on
+set -m
+"$program" study long.yaml -j 2 -o grouped -q --set "fish[*].nodes=101" --set "fish[*].sheet_points=201" \
+    >out 2>err </dev/null &
+study=$!
+set +m
+for ((i = 0; i < 200; i++)); do
+    [[ ! -s grouped/member-0001.nc ]] || break
+    sleep 0.05
+done
+kill -TERM -- "-$study"
+code=0
+wait "$study" || code=$?
+check a_signal_to_the_group_stops_a_study test "$code" = 75
+run info grouped/member-0001.nc
+check its_members_end_at_an_event has out '  status      stopped'
+check no_member_has_failed_by_it test ! -e grouped/member-0000.failed -a ! -e grouped/member-0001.failed
+
+# what started the program may ignore the ends of its own children
+code=0
+timeout -k 1 20 env --ignore-signal=CHLD "$program" study small.yaml -o ignored -q >out 2>err </dev/null || code=$?
+check a_study_sees_its_members_end_all_the_same eval 'test "$code" = 1 && has err "2 of 6 members in ignored"'
+
+# a processor for each thread of each member, of the processors that the program may use
+running() {  # arguments: the most members that run at once
+    run study long.yaml --force --set 'sweep=[{key: time.end, values: [4, 4.02, 4.04]}]' "$@"
+    sed -n 's/.* failed, \([0-9]*\) running .*/\1/p' err | sort -n | tail -1
+}
+processor=$(taskset -cp $$ | sed 's/.*: \([0-9]*\).*/\1/')
+taskset -p $$ >mask
+taskset -cp "$processor" $$ >/dev/null
+check one_processor_runs_one_member test "$(running -o one)" = 1
+taskset -p "$(sed 's/.* //' mask)" $$ >/dev/null
+if (($(nproc) > 1)); then
+    check more_processors_run_more_members test "$(running -o more)" -gt 1
+    check members_of_many_threads_share_them test "$(running -o threads --threads "$(nproc)")" = 1
+    check the_command_line_decides test "$(running -o many --threads "$(nproc)" -j 2)" = 2
+else
+    skip processors 'there is one only'
+fi
+
 start_long killed
 read -ra members <"/proc/$study/task/$study/children"
 kill -KILL "$study"
