@@ -84,7 +84,8 @@ const struct key case_table[] = {
      .meaning = "whether the circulation of removed vortices still counts in Kelvin's theorem", .published = "dropped",
      .words = WORDS("retained", "dropped"), .synonyms = "dissipated"},
     {"wake.tolerance", REAL, AT(school.wake.tolerance), NULL, FROM_TO(0, 0.01), "",
-     .meaning = "error allowed in the velocity that far vortices cause, in lengths per beat; 0: every vortex exactly",
+     .meaning =
+         "estimated error allowed in the velocity that far vortices induce, in lengths per beat; 0: sum every vortex",
      .derived = "a hundredth of solver.rtol", .synonyms = "accuracy theta"},
 
     {"solver.method", METHOD, AT(solver.method), "ida", ANY, "",

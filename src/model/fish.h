@@ -121,7 +121,7 @@ struct school {
     enum kutta kutta;
     double kutta_ramp; /* s */
     enum removed_circulation removed;
-    double wake_tolerance; /* error of the velocity of the wakes at the bodies, lengths per beat; 0: none */
+    double wake_tolerance; /* estimated error of the velocity of the wakes at the bodies, lengths per beat; 0: none */
 
     double rtol;
     double coupling_distance; /* m */

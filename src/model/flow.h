@@ -38,7 +38,7 @@ struct flow {
     double *u_x, *u_y, *v_x; /* gradient, after flow_gradient, s-1                 (n_points) */
 
     /* sources */
-    struct vortices released;     /* the free vortices of all fish; only where some fish is not foretold */
+    struct vortices released;     /* the free vortices of all fish; placed only where a fish is not interpolated */
     struct range *released_range; /* of each fish                                   (n_fish) */
     int has_released;             /* whether they are placed at t */
     double *wake_u, *wake_v;      /* the velocity at them, after flow_at_wake, m s-1 (released.n) */
@@ -49,7 +49,7 @@ struct flow {
     double *opposite;          /* circulations of the bound vortices with the other sign (sheet.n) */
 
     struct velocity_sum *velocity_sum;        /* where wakes or sheets are summed by the tree */
-    struct wake_interpolation *interpolation; /* of the released vortices; NULL: they are never foretold */
+    struct wake_interpolation *interpolation; /* of the released vortices; NULL: they are never interpolated */
     int is_interpolated;                      /* whether it was built, for the wakes of this version: */
     unsigned long interpolated_version;
     unsigned char *by_interpolation; /* whether it serves the fish where it is now        (n_fish) */

@@ -1,5 +1,14 @@
-/* wake_interpolation_outlook.h: which of the released vortices are near to a body: too near for a cubic in time. doc/numerics.md,
- * section 13. Only wake_interpolation.c uses it. Tested by tests/model/test_wake_interpolation.c. */
+/* near_field.h: which of the released vortices are in the near field of a body: those for which an interpolation in time
+ * (wake_interpolation.h) would be too inaccurate. doc/numerics.md, section 13. Tested by tests/model/test_near_field.c.
+ *
+ * The error of the interpolated velocity at a point whose drift, the distance from its predicted path, is d:
+ *
+ *     error + by_drift d + by_drift_square d^2,      summed over the vortices of the far field
+ *
+ * Each of the three is an ESTIMATE, a tenth of a rigorous bound. The bound takes every vortex at its closest and fastest,
+ * and all of them with one sign; in wakes it is 50 to 1000 times the true error. A far field is accepted while the
+ * estimate is below the tolerance, so a cluster of vortices of one sign, all of them at their closest, can exceed the
+ * tolerance, by a factor of 1.65 in the tests; the bound excludes a factor of ten. */
 #ifndef NEAR_FIELD_H
 #define NEAR_FIELD_H
 
@@ -13,54 +22,58 @@ struct near_field_bounds {
     double speed;           /* m s-1 */
     double acceleration;    /* m s-2 */
     double strength;        /* sum of the absolute values, m2 s-1 */
-    double fading;          /* sum of the absolute changes in the interval, m2 s-1 */
+    double decay;           /* sum of the absolute changes in the interval, m2 s-1 */
 };
 
-/* Bounds of what a vortex contributes to errors, see struct near_field. */
-struct near_field_part {
-    double error, second, drifting;
+/* The estimated error of the interpolated velocity: see above. */
+struct near_field_error {
+    double error;           /* on the predicted path, m s-1 */
+    double by_drift;        /* of the gradient, s-1 */
+    double by_drift_square; /* half the second derivatives of the velocity, m-1 s-1 */
 };
 
-/* A vortex that is near to a body: its path x + tau u + tau^2 a/2, and its strength as it counts in sums. */
-struct wake_interpolation_n_near {
-    struct near_field_part part; /* what it would contribute if it were far */
-    double x[2], u[2], a[2];     /* at the event */
-    double strength, change;     /* at the event, and until the end of the interval, m2 s-1 */
-    double smoothing;            /* m */
+/* A vortex in the near field: its path x + tau u + tau^2 a/2, and its strength as it counts in sums. */
+struct near_field_vortex {
+    struct near_field_error error; /* what it would contribute to the far field */
+    double x[2], u[2], a[2];       /* at the event */
+    double strength, change;       /* at the event, and until the end of the interval, m2 s-1 */
+    double smoothing;              /* m */
 };
 
-/* What is foretold for one fish. */
+/* The near and the far field of one fish. */
 struct near_field {
-    int serves;      /* 0: so much is near that nothing is foretold */
-    double allowed;  /* error of the velocity, m s-1 */
-    double second;   /* of the far vortices: bound of half the second derivatives of the velocity, m-1 s-1 */
-    double drifting; /* and of the error of the gradient, s-1 */
+    int is_interpolated;         /* 0: so many vortices are near that summing all of them costs less */
+    double tolerance;            /* of the velocity, m s-1 */
+    struct near_field_error far; /* sum over the far field */
     int n_near, capacity;
-    struct wake_interpolation_n_near *near;
-    struct vortices now; /* the near ones, where near_field_place has put them */
+    struct near_field_vortex *near; /* (n_near) */
+    struct vortices vortices;       /* the near ones, where near_field_update has put them */
 };
 
-/* What all fish see at the beginning of an interval. */
-struct near_field_scene {
+/* Bodies and wakes at the beginning of an interval. */
+struct near_field_input {
     const struct school *school;
     const struct state *state;
-    const struct range *points;             /* of each fish                           (n_fish) */
-    double *const *motion;                  /* of all points: x y, u v, a b           (6 of n_points) */
-    const struct near_field_bounds *bounds; /* of each wake                           (n_fish) */
-    const struct range *wake;               /* the released vortices of each fish     (n_fish) */
-    const double *before, *after;           /* strengths at both ends of the interval (n_released) */
+    const struct range *points;                  /* of each fish                           (n_fish) */
+    double *const *motion;                       /* of all points: x y, u v, a b           (6 of n_points) */
+    const struct near_field_bounds *bounds;      /* of each wake                           (n_fish) */
+    const struct range *wake;                    /* the released vortices of each fish     (n_fish) */
+    const double *strength_start, *strength_end; /* at both ends of the interval         (n_released) */
     int n_released;
 };
 
-/* before and after: the strengths of this wake's vortices at both ends of the interval, s. */
-struct near_field_bounds near_field_bound_wake(const struct wake *wake, double interval, const double *before,
-                                               const double *after);
+/* The strengths are those of this wake's vortices at both ends of the interval, s. */
+struct near_field_bounds near_field_bound_wake(const struct wake *wake, double interval, const double *strength_start,
+                                               const double *strength_end);
 
-/* Decide for fish f which vortices are near. Fails with STATUS_MEMORY. */
-enum status near_field_find(struct near_field *near_field, const struct near_field_scene *scene, int f);
+/* Divide the released vortices into the near and the far field of fish f. Fails with STATUS_MEMORY. */
+enum status near_field_find(struct near_field *near_field, const struct near_field_input *input, int f);
 
-/* Put the near vortices where they are at the time tau, q of the interval, with their strengths times a factor. */
-void near_field_place(struct near_field *near_field, double tau, double q, double factor);
+/* Whether the far field is accurate enough at points whose drift, m, has at most this square. */
+int near_field_is_valid(const struct near_field *near_field, double drift_square);
+
+/* Move the near vortices to the time tau, q of the interval, with their strengths times a factor. */
+void near_field_update(struct near_field *near_field, double tau, double q, double factor);
 
 /* Release what it owns; accepts a zeroed one. */
 void near_field_free(struct near_field *near_field);

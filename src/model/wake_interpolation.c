@@ -1,4 +1,4 @@
-/* wake_interpolation.c: cubics in time for the far vortices, the near ones as they are. */
+/* wake_interpolation.c: cubics in time for the far field, exact sums for the near field. */
 #include "model/wake_interpolation.h"
 
 #include <math.h>
@@ -10,21 +10,21 @@
 
 enum { N_TIMES = 4, END = N_TIMES - 1 };
 
-/* The times, as parts of the interval: of all four with both ends these have the least largest |product of (q - time)|,
- * (3 - 2 sqrt(2))/16: the cubic_error of wake_interpolation_outlook.c. */
+/* The times, as parts of the interval: of all four that include both ends, these have the smallest maximum of |product of
+ * (q - time)|, (3 - 2 sqrt(2))/16: the cubic_error of near_field.c. */
 static const double time_of[N_TIMES] = {0, 0.29289321881345248, 0.70710678118654752, 1};
 
 struct wake_interpolation {
     const struct school *school;
-    double start, q;        /* time of the event, s; part of the interval that has passed */
+    double start, q;        /* time of the event, s; now, as part of the interval */
     double weight[N_TIMES]; /* of the values at the four times, now */
     int n_points;
     const struct range *points;    /* of each fish                                    (n_fish) */
     struct near_field *near_field; /*                                                    (n_fish) */
 
     double *motion[6];                                  /* of all points at the event: x y, u v, a b (n_points) */
-    double *now[2];                                     /* where they are foretold to be now, m      (n_points) */
-    double *path[N_TIMES][2];                           /* and at the times of the forecast          (n_points) */
+    double *predicted[2];                               /* their predicted positions now, m          (n_points) */
+    double *path[N_TIMES][2];                           /* and at the four times                     (n_points) */
     double *velocity_u[N_TIMES], *velocity_v[N_TIMES];  /* of the fluid there, m s-1                 (n_points) */
     double *u_x[N_TIMES], *u_y[N_TIMES], *v_x[N_TIMES]; /* its gradient at both ends, s-1          (n_points) */
 
@@ -36,21 +36,22 @@ struct wake_interpolation {
 
 static enum status doubles(double **values, int n) {
     *values = calloc((size_t)(n > 0 ? n : 1), sizeof **values);
-    return *values ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: a forecast at %d points", n);
+    return *values ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: the wakes' velocity at %d points", n);
 }
 
-static enum status fill(struct wake_interpolation *interpolation) {
+static enum status allocate(struct wake_interpolation *interpolation) {
     TRY(velocity_sum_create(&interpolation->velocity_sum));
     const size_t n_fish = (size_t)interpolation->school->n_fish;
     interpolation->near_field = calloc(n_fish, sizeof *interpolation->near_field);
     interpolation->wake = calloc(n_fish, sizeof *interpolation->wake);
     interpolation->bounds = calloc(n_fish, sizeof *interpolation->bounds);
     if (!interpolation->near_field || !interpolation->wake || !interpolation->bounds) {
-        return status_fail(STATUS_MEMORY, "out of memory: a forecast for %d fish", interpolation->school->n_fish);
+        return status_fail(STATUS_MEMORY, "out of memory: the wakes' velocity at %d fish",
+                           interpolation->school->n_fish);
     }
     const int n = interpolation->n_points;
     for (int i = 0; i < 6; i++) TRY(doubles(&interpolation->motion[i], n));
-    for (int i = 0; i < 2; i++) TRY(doubles(&interpolation->now[i], n));
+    for (int i = 0; i < 2; i++) TRY(doubles(&interpolation->predicted[i], n));
     for (int i = 0; i < N_TIMES; i++) {
         for (int k = 0; k < 2; k++) TRY(doubles(&interpolation->path[i][k], n));
         TRY(doubles(&interpolation->velocity_u[i], n));
@@ -67,12 +68,12 @@ enum status wake_interpolation_create(struct wake_interpolation **interpolation,
                                       const struct range *points) {
     *interpolation = NULL;
     struct wake_interpolation *const new = calloc(1, sizeof *new);
-    if (!new) return status_fail(STATUS_MEMORY, "out of memory: a forecast");
+    if (!new) return status_fail(STATUS_MEMORY, "out of memory: the interpolation of wakes");
     new->school = school;
     const struct range last = points[school->n_fish - 1];
     new->n_points = last.first + last.n;
     new->points = points;
-    const enum status status = fill(new);
+    const enum status status = allocate(new);
     if (status != STATUS_OK) {
         wake_interpolation_free(new);
         return status;
@@ -84,7 +85,7 @@ enum status wake_interpolation_create(struct wake_interpolation **interpolation,
 void wake_interpolation_free(struct wake_interpolation *interpolation) {
     if (!interpolation) return;
     for (int i = 0; i < 6; i++) free(interpolation->motion[i]);
-    for (int i = 0; i < 2; i++) free(interpolation->now[i]);
+    for (int i = 0; i < 2; i++) free(interpolation->predicted[i]);
     for (int i = 0; i < N_TIMES; i++) {
         for (int k = 0; k < 2; k++) free(interpolation->path[i][k]);
         double *const at_points[] = {interpolation->velocity_u[i], interpolation->velocity_v[i], interpolation->u_x[i],
@@ -102,8 +103,8 @@ void wake_interpolation_free(struct wake_interpolation *interpolation) {
     free(interpolation);
 }
 
-// where all points are on their foretold paths
-static void follow(const struct wake_interpolation *interpolation, double tau, double *const path[2]) {
+// the predicted positions of all points
+static void predict(const struct wake_interpolation *interpolation, double tau, double *const path[2]) {
     for (int k = 0; k < 2; k++) {
         const double *const x = interpolation->motion[k], *const u = interpolation->motion[2 + k],
                             *const a = interpolation->motion[4 + k];
@@ -124,28 +125,29 @@ enum status wake_interpolation_released(const struct school *school, const struc
     return STATUS_OK;
 }
 
-static struct induced at_time(const struct wake_interpolation *interpolation, int i) {
+static struct induced targets_at(const struct wake_interpolation *interpolation, int i) {
     return (struct induced){interpolation->n_points,      interpolation->path[i][0],    interpolation->path[i][1],
                             interpolation->velocity_u[i], interpolation->velocity_v[i], interpolation->u_x[i],
                             interpolation->u_y[i],        interpolation->v_x[i]};
 }
 
-// the sums of all released vortices at all points at all times
+// every released vortex at every point at all times
 static void sum_directly(const struct wake_interpolation *interpolation, int threads) {
     const int n_tasks = N_TIMES * parallel_n_chunks(interpolation->n_points);
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
     for (int task = 0; task < n_tasks; task++) {
         const int i = task % N_TIMES;
-        const struct induced all = at_time(interpolation, i);
+        const struct induced all = targets_at(interpolation, i);
         const struct induced at = vortices_targets(&all, parallel_chunk(task / N_TIMES, all.n));
         vortices_induce(&interpolation->released[i], (struct range){0, interpolation->released[i].n}, &at);
     }
 }
 
+// what the released vortices induce at all points at all times
 static enum status sum(const struct wake_interpolation *interpolation, int threads) {
     const double tolerance = interpolation->school->wake_tolerance;
     for (int i = 0; i < N_TIMES; i++) {
-        const struct induced at = at_time(interpolation, i);
+        const struct induced at = targets_at(interpolation, i);
         vortices_zero(&at);
     }
     if (!velocity_sum_by_tree(&interpolation->released[0], interpolation->n_points, tolerance)) {
@@ -153,55 +155,55 @@ static enum status sum(const struct wake_interpolation *interpolation, int threa
         return STATUS_OK;
     }
     for (int i = 0; i < N_TIMES; i++) {
-        const struct induced at = at_time(interpolation, i);
+        const struct induced at = targets_at(interpolation, i);
         TRY(velocity_sum_induce(interpolation->velocity_sum, &interpolation->released[i], tolerance, threads, &at));
     }
     return STATUS_OK;
 }
 
-// take what is near to a fish out of the sums of all times again
-static void take_near(struct wake_interpolation *interpolation, int f) {
+// subtract the near field of a fish from the sums of all times
+static void subtract_near(struct wake_interpolation *interpolation, int f) {
     struct near_field *const near_field = &interpolation->near_field[f];
-    if (!near_field->serves || near_field->n_near == 0) return;
+    if (!near_field->is_interpolated || near_field->n_near == 0) return;
     for (int i = 0; i < N_TIMES; i++) {
-        const struct induced all = at_time(interpolation, i), at = vortices_targets(&all, interpolation->points[f]);
-        near_field_place(near_field, time_of[i] * interpolation->school->interval, time_of[i], -1);
-        vortices_induce(&near_field->now, (struct range){0, near_field->n_near}, &at);
+        const struct induced all = targets_at(interpolation, i), at = vortices_targets(&all, interpolation->points[f]);
+        near_field_update(near_field, time_of[i] * interpolation->school->interval, time_of[i], -1);
+        vortices_induce(&near_field->vortices, (struct range){0, near_field->n_near}, &at);
     }
 }
 
-static enum status make(struct wake_interpolation *interpolation, const struct state *state,
-                        const struct wake_interpolation_points *points) {
+// the released vortices at the four times, and what holds for each wake
+static enum status place_wakes(struct wake_interpolation *interpolation, const struct state *state) {
     const struct school *const school = interpolation->school;
-    const double *const motion[6] = {points->x, points->y, points->u, points->v, points->a, points->b};
-    for (int k = 0; k < 6; k++)
-        memcpy(interpolation->motion[k], motion[k], (size_t)interpolation->n_points * sizeof(double));
-    interpolation->start = state->t;
+    const struct vortices *const released = interpolation->released;
     for (int i = 0; i < N_TIMES; i++) {
         TRY(wake_interpolation_released(school, state, time_of[i] * school->interval, &interpolation->released[i],
                                         interpolation->wake));
     }
     for (int g = 0; g < school->n_fish; g++) {
         const int first = interpolation->wake[g].first;
-        interpolation->bounds[g] =
-            near_field_bound_wake(&state->wake[g], school->interval, interpolation->released[0].circulation + first,
-                                  interpolation->released[END].circulation + first);
+        interpolation->bounds[g] = near_field_bound_wake(
+            &state->wake[g], school->interval, released[0].circulation + first, released[END].circulation + first);
     }
-    const double work = (double)N_TIMES * interpolation->n_points * interpolation->released[0].n;
-    const int threads = parallel_threads(school->threads, interpolation->n_points, work, PARALLEL_INTERACTIONS);
-    const struct near_field_scene scene = {.school = school,
+    return STATUS_OK;
+}
+
+// divide the wakes into the near and the far field of every fish
+static enum status find_near_fields(struct wake_interpolation *interpolation, const struct state *state, int threads) {
+    const struct school *const school = interpolation->school;
+    const struct near_field_input input = {.school = school,
                                            .state = state,
                                            .points = interpolation->points,
                                            .motion = interpolation->motion,
                                            .bounds = interpolation->bounds,
                                            .wake = interpolation->wake,
-                                           .before = interpolation->released[0].circulation,
-                                           .after = interpolation->released[END].circulation,
+                                           .strength_start = interpolation->released[0].circulation,
+                                           .strength_end = interpolation->released[END].circulation,
                                            .n_released = interpolation->released[0].n};
     enum status status = STATUS_OK;
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
     for (int f = 0; f < school->n_fish; f++) {
-        const enum status here = near_field_find(&interpolation->near_field[f], &scene, f);
+        const enum status here = near_field_find(&interpolation->near_field[f], &input, f);
         if (here != STATUS_OK) {
 #pragma omp atomic write
             status = here;
@@ -209,18 +211,33 @@ static enum status make(struct wake_interpolation *interpolation, const struct s
     }
     // a message stays with the thread that wrote it
     if (status != STATUS_OK) return status_fail(status, "out of memory: the near vortices of %d fish", school->n_fish);
-    for (int i = 0; i < N_TIMES; i++) follow(interpolation, time_of[i] * school->interval, interpolation->path[i]);
+    return STATUS_OK;
+}
+
+static enum status build(struct wake_interpolation *interpolation, const struct state *state,
+                         const struct wake_interpolation_points *points) {
+    const struct school *const school = interpolation->school;
+    const int n_points = interpolation->n_points;
+    const double *const motion[6] = {points->x, points->y, points->u, points->v, points->a, points->b};
+    for (int k = 0; k < 6; k++) memcpy(interpolation->motion[k], motion[k], (size_t)n_points * sizeof(double));
+    interpolation->start = state->t;
+    TRY(place_wakes(interpolation, state));
+    const double work = (double)N_TIMES * n_points * interpolation->released[0].n;
+    const int threads = parallel_threads(school->threads, n_points, work, PARALLEL_INTERACTIONS);
+    TRY(find_near_fields(interpolation, state, threads));
+    for (int i = 0; i < N_TIMES; i++) predict(interpolation, time_of[i] * school->interval, interpolation->path[i]);
     TRY(sum(interpolation, threads));
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
-    for (int f = 0; f < school->n_fish; f++) take_near(interpolation, f);
+    for (int f = 0; f < school->n_fish; f++) subtract_near(interpolation, f);
     return STATUS_OK;
 }
 
 enum status wake_interpolation_build(struct wake_interpolation *interpolation, const struct state *state,
                                      const struct wake_interpolation_points *points) {
-    const enum status status = make(interpolation, state, points);
-    for (int f = 0; status != STATUS_OK && f < interpolation->school->n_fish; f++)
-        interpolation->near_field[f].serves = 0;
+    const enum status status = build(interpolation, state, points);
+    for (int f = 0; status != STATUS_OK && f < interpolation->school->n_fish; f++) {
+        interpolation->near_field[f].is_interpolated = 0;
+    }
     return status;
 }
 
@@ -234,23 +251,21 @@ void wake_interpolation_update(struct wake_interpolation *interpolation, double 
             if (k != i) interpolation->weight[i] *= (q - time_of[k]) / (time_of[i] - time_of[k]);
         }
     }
-    follow(interpolation, tau, interpolation->now);
-    for (int f = 0; f < interpolation->school->n_fish; f++) near_field_place(&interpolation->near_field[f], tau, q, 1);
+    predict(interpolation, tau, interpolation->predicted);
+    for (int f = 0; f < interpolation->school->n_fish; f++) near_field_update(&interpolation->near_field[f], tau, q, 1);
 }
 
 int wake_interpolation_is_valid(const struct wake_interpolation *interpolation, int f, const double *x,
                                 const double *y) {
-    const struct near_field *const near_field = &interpolation->near_field[f];
-    if (!near_field->serves) return 0;
     const int first = interpolation->points[f].first;
-    double square = 0;
+    double drift_square = 0;
     for (int p = 0; p < interpolation->points[f].n; p++) {
-        const double dx = x[p] - interpolation->now[0][first + p], dy = y[p] - interpolation->now[1][first + p];
+        const double dx = x[p] - interpolation->predicted[0][first + p];
+        const double dy = y[p] - interpolation->predicted[1][first + p];
         const double here = dx * dx + dy * dy;
-        square = here > square ? here : square;
+        drift_square = here > drift_square ? here : drift_square;
     }
-    // written so that NaN does not pass
-    return near_field->second * square + near_field->drifting * sqrt(square) <= near_field->allowed / 2;
+    return near_field_is_valid(&interpolation->near_field[f], drift_square);
 }
 
 void wake_interpolation_induce(const struct wake_interpolation *interpolation, int f, int first,
@@ -258,7 +273,7 @@ void wake_interpolation_induce(const struct wake_interpolation *interpolation, i
     const double q = interpolation->q;
     for (int i = 0; i < at->n; i++) {
         const int p = first + i;
-        const double dx = at->x[i] - interpolation->now[0][p], dy = at->y[i] - interpolation->now[1][p];
+        const double dx = at->x[i] - interpolation->predicted[0][p], dy = at->y[i] - interpolation->predicted[1][p];
         const double u_x = (1 - q) * interpolation->u_x[0][p] + q * interpolation->u_x[END][p];
         const double u_y = (1 - q) * interpolation->u_y[0][p] + q * interpolation->u_y[END][p];
         const double v_x = (1 - q) * interpolation->v_x[0][p] + q * interpolation->v_x[END][p];
@@ -275,10 +290,10 @@ void wake_interpolation_induce(const struct wake_interpolation *interpolation, i
             at->v_x[i] += v_x;
         }
     }
-    const struct vortices *const near = &interpolation->near_field[f].now;
+    const struct vortices *const near = &interpolation->near_field[f].vortices;
     vortices_induce(near, (struct range){0, near->n}, at);
 }
 
 int wake_interpolation_n_near(const struct wake_interpolation *interpolation, int f) {
-    return interpolation->near_field[f].serves ? interpolation->near_field[f].n_near : -1;
+    return interpolation->near_field[f].is_interpolated ? interpolation->near_field[f].n_near : -1;
 }

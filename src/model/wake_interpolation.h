@@ -1,13 +1,14 @@
-/* wake_interpolation.h: the velocity that the released vortices of all fish cause at the points of the bodies, foretold at an
- * event for the whole interval that follows. doc/numerics.md, section 13. Tested by tests/model/test_wake_interpolation.c.
+/* wake_interpolation.h: the velocity that the released vortices of all fish induce at the points of the bodies,
+ * interpolated in time between two events. doc/numerics.md, section 13. Tested by tests/model/test_wake_interpolation.c.
  *
  * Between two events t_n and t_n + Dt the vortices move on known paths, and a point of a body stays close to the path
- * X(t) that its position, velocity and acceleration at t_n give. With tau = t - t_n, q = tau/Dt:
+ * X(t) that its position, velocity and acceleration at t_n predict. With tau = t - t_n, q = tau/Dt:
  *
- *     u(x, t) = sum_i l_i(q) U_i + ((1 - q) G_0 + q G_3) (x - X(t)) + the vortices that are near
+ *     u(x, t) = sum_i l_i(q) U_i + ((1 - q) G_0 + q G_3) (x - X(t)) + the near field
  *
  * U_i: velocity at X at four times (i = 0 .. 3) from the beginning to the end, of all vortices but the near ones; l_i: the
- * cubics that are 1 at one of them and 0 at the others; G_i: its gradient. A vortex is near where its part of the error of this would be too large. */
+ * cubics that are 1 at one of them and 0 at the others; G_i: its gradient; x - X(t): the drift of the point. The near
+ * field (near_field.h) is summed exactly. */
 #ifndef WAKE_INTERPOLATION_H
 #define WAKE_INTERPOLATION_H
 
@@ -24,15 +25,15 @@ struct wake_interpolation_points {
     const double *a, *b; /* acceleration in x and y, m s-2 */
 };
 
-/* points, those of each fish (n_fish), stay the caller's and must outlive the forecast. Fails with STATUS_MEMORY;
+/* points, those of each fish (n_fish), stay the caller's and must outlive the interpolation. Fails with STATUS_MEMORY;
  * wake_interpolation_free accepts NULL. */
 enum status wake_interpolation_create(struct wake_interpolation **interpolation, const struct school *school,
                                       const struct range *points);
 void wake_interpolation_free(struct wake_interpolation *interpolation);
 
-/* Foretell the interval that begins at the state's event, for points that are there now. The error of the velocity stays
- * below the school's wake tolerance times one length per beat of the fish. Fails with STATUS_MEMORY: it holds for no
- * fish then. */
+/* Interpolate the interval that begins at the state's event, for points that are there now. The estimated error of the
+ * velocity (near_field.h) stays below the school's wake tolerance times one length per beat of the fish. Fails with
+ * STATUS_MEMORY: it is valid for no fish then. */
 enum status wake_interpolation_build(struct wake_interpolation *interpolation, const struct state *state,
                                      const struct wake_interpolation_points *points);
 
@@ -44,17 +45,17 @@ enum status wake_interpolation_released(const struct school *school, const struc
 /* Go to the time t in that interval. */
 void wake_interpolation_update(struct wake_interpolation *interpolation, double t);
 
-/* Whether the forecast serves the points of fish f where they are now (all its points, in the order of
- * wake_interpolation_build): whether they are close enough to their foretold paths. It depends on nothing else: an
- * iteration that goes back and forth meets one function, whose steps are below the tolerance. */
+/* Whether the interpolation is valid at the points of fish f, all of them in the order of wake_interpolation_build:
+ * whether their drift is small enough. It depends on the time and on the points alone, not on earlier calls, so that the
+ * equations are a function of time and unknowns; where it changes, the velocity changes by less than the tolerance. */
 int wake_interpolation_is_valid(const struct wake_interpolation *interpolation, int f, const double *x,
                                 const double *y);
 
-/* Add the foretold velocity (and gradient) at points of fish f; the first of them is point number first of all. */
+/* Add the interpolated velocity (and gradient) at points of fish f; the first of them is point number first of all. */
 void wake_interpolation_induce(const struct wake_interpolation *interpolation, int f, int first,
                                const struct induced *at);
 
-/* How many of the released vortices are near to fish f; -1 where so many are that nothing was foretold for it. */
+/* The number of vortices in the near field of fish f; -1 where so many are near that the fish has no interpolation. */
 int wake_interpolation_n_near(const struct wake_interpolation *interpolation, int f);
 
 #endif

@@ -1,11 +1,11 @@
-/* test_forecast.c: the foretold velocity against the sum over every vortex: doc/numerics.md, section 13. */
+/* test_wake_interpolation.c: the interpolated velocity against the sum over every vortex: doc/numerics.md, section 13. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "school.h"
 
-// one fish behind the other, in its wake, while the oldest vortices fade
+// one fish in the wake of another, while the oldest vortices decay
 static struct simulation *two_fish(double tolerance, double interval, double smoothing) {
     char text[512];
     snprintf(text, sizeof text,
@@ -18,8 +18,8 @@ static struct simulation *two_fish(double tolerance, double interval, double smo
     return simulation;
 }
 
-// the unknowns at a part q of the interval: positions on the foretold path and a little off it, in a fixed pattern
-static double *later(const struct simulation *simulation, double q, double off) {
+// the unknowns at a part q of the interval: positions on the predicted path, or off it by a drift in a fixed pattern
+static double *later(const struct simulation *simulation, double q, double drift) {
     const struct state *const state = simulation->state;
     const double tau = q * simulation->school->interval;
     double *const y = malloc((size_t)simulation->school->n_unknowns * sizeof *y);
@@ -29,13 +29,13 @@ static double *later(const struct simulation *simulation, double q, double off) 
         const struct fish *const fish = &simulation->school->fish[f];
         for (int i = 0; i < 2 * fish->n_nodes; i++) {
             const double v = y[fish->at.vx + i], a = y[fish->at.ax + i];
-            y[fish->at.x + i] += tau * (v + tau / 2 * a) + off * sin(7 * i + f);
+            y[fish->at.x + i] += tau * (v + tau / 2 * a) + drift * sin(7 * i + f);
         }
     }
     return y;
 }
 
-// the velocity at all points: foretold, or (after flow_sum_exactly) as every vortex gives it
+// the velocity at all points: interpolated, or (after flow_sum_exactly) the sum over every vortex
 static void evaluate(const struct simulation *simulation, double q, const double *y, double *u, double *v) {
     struct flow *const flow = simulation->residual->flow;
     school_ok(flow_velocity(flow, simulation->state, simulation->state->t + q * simulation->school->interval, y));
@@ -45,13 +45,13 @@ static void evaluate(const struct simulation *simulation, double q, const double
 
 enum { POINTS = 64 };
 
-static double worst_error(const struct simulation *simulation, double off) {
+static double worst_error(const struct simulation *simulation, double drift) {
     struct flow *const flow = simulation->residual->flow;
     assert_true(flow->n_points <= POINTS);
     double worst = 0;
     for (int i = 0; i <= 10; i++) {
         const double q = 0.1 * i;
-        double *const y = later(simulation, q, off);
+        double *const y = later(simulation, q, drift);
         double u[2][POINTS], v[2][POINTS];
         flow_sum_exactly(flow);
         evaluate(simulation, 0, simulation->state->y, u[0], v[0]);
@@ -82,7 +82,7 @@ static void the_error_stays_below_the_tolerance(void **state) {
             const struct wake_interpolation *const interpolation = simulation->residual->flow->interpolation;
             const int n_near =
                 wake_interpolation_n_near(interpolation, 0) + wake_interpolation_n_near(interpolation, 1);
-            // length and frequency are 1; an error of nothing would mean that nothing was foretold
+            // length and frequency are 1; an error of nothing would mean that nothing was interpolated
             if (error > tolerance || error == 0) {
                 print_error("interval %g, smoothing %g, tolerance %g: error %g with %d near vortices\n",
                             wakes[w].interval, wakes[w].smoothing, tolerance, error, n_near);
@@ -96,13 +96,13 @@ static void the_error_stays_below_the_tolerance(void **state) {
     }
 }
 
-static void a_body_off_its_path_is_still_within_the_tolerance_or_not_foretold(void **state) {
+static void with_drift_the_error_is_below_the_tolerance_or_every_vortex_is_summed(void **state) {
     (void)state;
     struct simulation *const simulation = two_fish(1e-5, 0.01, 0.2);
-    // with a gradient of 1 and a second derivative of 10 (in s and m): 1e-4 off is 1e-7 more
-    const double off = 1e-4, error = worst_error(simulation, off);
+    // a gradient of 1 and a second derivative of 10 (in s and m): a drift of 1e-4 adds 1e-7
+    const double error = worst_error(simulation, 1e-4);
     assert_true(error > 0 && error < 1e-5);
-    // far off, every vortex counts as it is
+    // with a large drift every vortex is summed
     struct flow *const flow = simulation->residual->flow;
     double *const y = later(simulation, 0.5, 0.1), u[2][POINTS], v[2][POINTS];
     flow_sum_exactly(flow);
@@ -134,7 +134,7 @@ static void the_equations_do_not_depend_on_what_was_evaluated_before(void **stat
     assert_true(first && again);
     equations(simulation, 0.5, near, first);
     assert_true(flow->by_interpolation[0] && flow->by_interpolation[1]);
-    // an iterate so far off the paths that every vortex is summed, at the same time and at another
+    // an iterate with so much drift that every vortex is summed, at the same time and at another
     for (int i = 0; i < 2; i++) {
         equations(simulation, 0.5 + 0.2 * i, far, again);
         assert_true(!flow->by_interpolation[0] && !flow->by_interpolation[1]);
@@ -148,7 +148,7 @@ static void the_equations_do_not_depend_on_what_was_evaluated_before(void **stat
     simulate_free(simulation);
 }
 
-static void the_gradient_is_that_of_the_foretold_velocity(void **state) {
+static void the_gradient_is_that_of_the_interpolated_velocity(void **state) {
     (void)state;
     // near vortices too
     struct simulation *const simulation = two_fish(1e-6, 0.02, 0.2);
@@ -180,7 +180,7 @@ static void the_gradient_is_that_of_the_foretold_velocity(void **state) {
     simulate_free(simulation);
 }
 
-static void no_tolerance_no_forecast(void **state) {
+static void without_a_tolerance_nothing_is_interpolated(void **state) {
     (void)state;
     struct simulation *const simulation = two_fish(0, 0.02, 0.2);
     struct flow *const flow = simulation->residual->flow;
@@ -212,25 +212,25 @@ static void run(const char *solver, double *x) {
 
 static void a_run_is_as_exact_as_the_tolerance(void **state) {
     (void)state;
-    double exact[8], foretold[8], coarse[8], threads[8];
+    double exact[8], interpolated[8], coarse[8], threads[8];
     run("}\nwake: {tolerance: 0", exact);
-    run("}\nwake: {tolerance: 1e-7", foretold);
+    run("}\nwake: {tolerance: 1e-7", interpolated);
     run(", threads: 3}\nwake: {tolerance: 1e-7", threads);
     run("}\nwake: {tolerance: 1e-3", coarse);
     // beside the tolerance of the wake, that of the solver
-    NEAR_ARRAY(8, foretold, exact, 1e-7, 0);
+    NEAR_ARRAY(8, interpolated, exact, 1e-7, 0);
     NEAR_ARRAY(8, coarse, exact, 1e-3, 0);
-    NEAR_ARRAY(8, threads, foretold, 0, 0);
-    assert_true(memcmp(foretold, exact, sizeof exact) != 0);
+    NEAR_ARRAY(8, threads, interpolated, 0, 0);
+    assert_true(memcmp(interpolated, exact, sizeof exact) != 0);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_error_stays_below_the_tolerance),
-        cmocka_unit_test(a_body_off_its_path_is_still_within_the_tolerance_or_not_foretold),
+        cmocka_unit_test(with_drift_the_error_is_below_the_tolerance_or_every_vortex_is_summed),
         cmocka_unit_test(the_equations_do_not_depend_on_what_was_evaluated_before),
-        cmocka_unit_test(the_gradient_is_that_of_the_foretold_velocity),
-        cmocka_unit_test(no_tolerance_no_forecast),
+        cmocka_unit_test(the_gradient_is_that_of_the_interpolated_velocity),
+        cmocka_unit_test(without_a_tolerance_nothing_is_interpolated),
         cmocka_unit_test(a_run_is_as_exact_as_the_tolerance),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
