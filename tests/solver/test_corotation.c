@@ -146,6 +146,48 @@ static void a_rigid_motion_is_mapped_to_a_rigid_motion(void **state) {
     clear(&both);
 }
 
+// clear the end nodes of a, make it orthogonal to n fields that are orthonormal, and normalise it
+static void orthonormalise(const struct fish *fish, int n, double basis[][2 * MAX_NODES], double *a) {
+    const int last = fish->n_nodes - 1;
+    a[0] = a[last] = a[last + 1] = a[2 * last + 1] = 0;
+    // twice, against rounding
+    for (int i = 0; i < 2 * n; i++) {
+        const double component = product(fish, basis[i % n], a);
+        for (int k = 0; k < 2 * fish->n_nodes; k++) a[k] -= component * basis[i % n][k];
+    }
+    const double size = sqrt(product(fish, a, a));
+    for (int k = 0; k < 2 * fish->n_nodes; k++) a[k] /= size;
+}
+
+static void a_node_rotates_by_the_mean_of_its_edges(void **state) {
+    (void)state;
+    struct configurations both;
+    set_up(&both, 0, 0);
+    const struct fish *fish = &both.setup.school->fish[2];
+    double *const x = both.current + fish->at.x, *const y = both.current + fish->at.y;
+    const double *const from_x = both.reference + fish->at.x, *const from_y = both.reference + fish->at.y;
+    // neighbouring edges rotate in opposite senses: inner nodes do not rotate at all
+    for (int k = 0; k < fish->n_edges; k++) {
+        const double angle = k % 2 == 0 ? 0.3 : -0.3;
+        const double ex = from_x[k + 1] - from_x[k], ey = from_y[k + 1] - from_y[k];
+        x[k + 1] = x[k] + cos(angle) * ex - sin(angle) * ey;
+        y[k + 1] = y[k] + sin(angle) * ex + cos(angle) * ey;
+    }
+    corotation_set_current(both.corotation, both.current);
+    // a field on inner nodes that is orthogonal to the rigid motions of both bodies: nothing maps it but these rotations
+    double basis[4][2 * MAX_NODES], want[2 * MAX_NODES];
+    for (int i = 0; i < 4; i++) {
+        rigid(fish, (i < 3 ? both.reference : both.current) + fish->at.x, i < 3 ? i : 2, basis[i]);
+        orthonormalise(fish, i, basis, basis[i]);
+    }
+    double *const image = both.image + fish->at.vx;
+    orthonormalise(fish, 4, basis, image);
+    memcpy(want, image, 2 * (size_t)fish->n_nodes * sizeof *want);
+    corotation_to_current(both.corotation, both.image);
+    NEAR_ARRAY(2 * fish->n_nodes, image, want, 1e-13, 0);
+    clear(&both);
+}
+
 static void other_unknowns_and_fish_with_prescribed_nodes_are_not_mapped(void **state) {
     (void)state;
     struct configurations both;
@@ -282,6 +324,7 @@ int main(void) {
         cmocka_unit_test(each_map_is_the_inverse_of_the_other),
         cmocka_unit_test(the_inner_product_weighted_with_masses_is_preserved),
         cmocka_unit_test(a_rigid_motion_is_mapped_to_a_rigid_motion),
+        cmocka_unit_test(a_node_rotates_by_the_mean_of_its_edges),
         cmocka_unit_test(other_unknowns_and_fish_with_prescribed_nodes_are_not_mapped),
         cmocka_unit_test(an_elastic_matrix_rotates_with_the_body),
         cmocka_unit_test(a_mapped_elastic_force_has_no_net_force_and_moment),

@@ -212,13 +212,13 @@ static void patterns_are_analysed_once(void **state) {
 }
 
 // fill a diagonal block with 2 x 2 matrices: pivots that are good for some values are bad for others
-static void set_pieces(struct sparse *own, double on_diagonal, double beside) {
+static void set_pieces(struct sparse *own, double on_diagonal, double above, double below) {
     sparse_begin(own);
     for (int i = own->first; i < own->first + own->n; i++) {
         const int even = (i - own->first) % 2 == 0, partner = even ? i + 1 : i - 1;
         const int alone = partner >= own->first + own->n;
         sparse_add(own, i, i, alone ? 1 : on_diagonal);
-        if (!alone) sparse_add(own, i, partner, even ? beside : -beside);
+        if (!alone) sparse_add(own, i, partner, even ? above : below);
     }
     school_ok(sparse_end(own));
 }
@@ -237,11 +237,63 @@ static void bad_factors_are_replaced_by_ones_with_other_pivots(void **state) {
         long factorisations;
     } passes[] = {{1, 0.5, 7}, {0.9, 0.6, 7}, {1e-9, 1, 14}, {2e-9, 1, 14}, {1, 1e-9, 21}};
     for (size_t i = 0; i < sizeof passes / sizeof *passes; i++) {
-        for (int f = 0; f < 7; f++) set_pieces(jacobian->own[f], passes[i].on_diagonal, passes[i].beside);
+        for (int f = 0; f < 7; f++)
+            set_pieces(jacobian->own[f], passes[i].on_diagonal, passes[i].beside, -passes[i].beside);
         school_ok(linear_setup(system.linear));
         assert_int_equal(linear_count(system.linear).factorisations, passes[i].factorisations);
         school_ok(linear_solve(system.linear, system.b, system.x));
         assert_true(error_of(&system) < 1e-14);
+    }
+    clear(&system);
+}
+
+static void a_block_that_becomes_nearly_singular_gets_new_pivots(void **state) {
+    (void)state;
+    struct system system;
+    build(&system, SCHOOL, 1e-6);
+    uncouple(&system);
+    struct jacobian *const jacobian = system.setup.jacobian;
+    for (int f = 0; f < 7; f++) sparse_forget(jacobian->own[f]);
+    // (1 s; s 1): one pivot falls to 2 (1 - s) while no entry grows
+    const struct {
+        double s;
+        long factorisations;
+    } passes[] = {{0.5, 7}, {0.9, 7}, {1 - 1e-5, 14}, {1 - 2e-5, 14}, {1 - 1e-9, 21}};
+    for (size_t i = 0; i < sizeof passes / sizeof *passes; i++) {
+        for (int f = 0; f < 7; f++) set_pieces(jacobian->own[f], 1, passes[i].s, passes[i].s);
+        school_ok(linear_setup(system.linear));
+        assert_int_equal(linear_count(system.linear).factorisations, passes[i].factorisations);
+    }
+    clear(&system);
+}
+
+// a block in which a first pivot e makes another entry of its factors grow to 1/e, and a pivot of 2e-9 hides e from the
+// reciprocal condition estimate
+static void set_growth(struct sparse *own, double e) {
+    const double growing[3][3] = {{e, 0, 1}, {1, 1, 0}, {1, 1, 1}};
+    const double singular[2][2] = {{1, 1 - 1e-9}, {1 - 1e-9, 1}};
+    const int n = own->first;
+    sparse_begin(own);
+    for (int i = 0; i < 9; i++) sparse_add(own, n + i / 3, n + i % 3, growing[i / 3][i % 3]);
+    for (int i = 0; i < 4; i++) sparse_add(own, n + 3 + i / 2, n + 3 + i % 2, singular[i / 2][i % 2]);
+    for (int i = n + 5; i < n + own->n; i++) sparse_add(own, i, i, 1);
+    school_ok(sparse_end(own));
+}
+
+static void a_block_whose_factors_grow_gets_new_pivots(void **state) {
+    (void)state;
+    struct system system;
+    build(&system, SCHOOL, 1e-6);
+    uncouple(&system);
+    struct jacobian *const jacobian = system.setup.jacobian;
+    for (int f = 0; f < 7; f++) sparse_forget(jacobian->own[f]);
+    const double e[] = {1, 0.5, 1e-5};
+    // six of seven: in the fish with a prescribed head these rows are masked
+    const long factorisations[] = {7, 7, 13};
+    for (int i = 0; i < 3; i++) {
+        for (int f = 0; f < 7; f++) set_growth(jacobian->own[f], e[i]);
+        school_ok(linear_setup(system.linear));
+        assert_int_equal(linear_count(system.linear).factorisations, factorisations[i]);
     }
     clear(&system);
 }
@@ -257,7 +309,7 @@ static void a_singular_block_is_final_at_first_and_a_retry_later(void **state) {
     const enum status want[] = {STATUS_SOLVER, STATUS_OK, STATUS_RETRY, STATUS_OK};
     for (int i = 0; i < 4; i++) {
         // (1 1; 1 1) has no inverse
-        for (int f = 0; f < 7; f++) set_pieces(jacobian->own[f], 1, f == 5 ? 0.5 : 0.25);
+        for (int f = 0; f < 7; f++) set_pieces(jacobian->own[f], 1, f == 5 ? 0.5 : 0.25, f == 5 ? -0.5 : -0.25);
         struct sparse *const own = jacobian->own[5];
         for (int k = 0; k + 1 < own->n; k += 2) {
             for (int64_t e = own->column_start[k]; e < own->column_start[k + 2]; e++) {
@@ -410,6 +462,8 @@ int main(void) {
         cmocka_unit_test(a_small_residual_ends_the_iteration),
         cmocka_unit_test(patterns_are_analysed_once),
         cmocka_unit_test(bad_factors_are_replaced_by_ones_with_other_pivots),
+        cmocka_unit_test(a_block_that_becomes_nearly_singular_gets_new_pivots),
+        cmocka_unit_test(a_block_whose_factors_grow_gets_new_pivots),
         cmocka_unit_test(a_singular_block_is_final_at_first_and_a_retry_later),
         cmocka_unit_test(a_right_hand_side_without_a_finite_value_asks_for_a_retry),
         cmocka_unit_test(a_school_costs_in_proportion_to_its_couplings),

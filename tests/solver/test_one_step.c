@@ -93,6 +93,30 @@ static void a_jacobian_is_kept_for_many_steps(void **state) {
     simulate_free(simulation);
 }
 
+static void rates_of_algebraic_unknowns_are_differences_over_the_step(void **state) {
+    (void)state;
+    static const char *const methods[] = {"implicit_euler", "trapezoid"};
+    for (int i = 0; i < 2; i++) {
+        char text[512];
+        snprintf(text, sizeof text,
+                 "time: {end: 1, shedding_interval: 0.005}\nsolver: {method: %s, step: 0.005}\n"
+                 "fish: [{wave: {ramp: 0}, control: {law: heading, desired_heading: 150}}]\n",
+                 methods[i]);
+        struct simulation *const simulation = school_simulation(text);
+        const struct layout *at = &simulation->school->fish[0].at;
+        const double *const y = simulation->state->y, *const yp = simulation->state->yp;
+        for (int n = 0; n < 20; n++) {
+            const double phi0 = y[at->phi0], circulation = y[at->circulation];
+            school_ok(simulate_step(simulation));
+            // one step in each interval
+            NEAR(yp[at->phi0], (y[at->phi0] - phi0) / 0.005, 1e-12, 1e-12);
+            NEAR(yp[at->circulation], (y[at->circulation] - circulation) / 0.005, 1e-12, 1e-12);
+        }
+        assert_true(fabs(yp[at->phi0]) > 1e-3 && fabs(yp[at->circulation]) > 1e-3);
+        simulate_free(simulation);
+    }
+}
+
 static void fails(const char *text, const char *message) {
     struct simulation *const simulation = school_simulation(text);
     enum status status = STATUS_OK;
@@ -121,6 +145,7 @@ int main(void) {
         cmocka_unit_test(all_cases_agree_with_ida),
         cmocka_unit_test(a_very_stiff_body_needs_no_shorter_steps),
         cmocka_unit_test(a_jacobian_is_kept_for_many_steps),
+        cmocka_unit_test(rates_of_algebraic_unknowns_are_differences_over_the_step),
         cmocka_unit_test(a_failure_tells_the_time),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
