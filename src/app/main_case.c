@@ -3,6 +3,10 @@
 
 #include "app/main.h"
 #include "case/case.h"
+#include "case/case_keys.h"
+#include "case/case_member.h"
+#include "case/case_show.h"
+#include "case/sweep_members.h"
 #include "model/fish.h"
 #include "output/result_info.h"
 #include "output/result_kind.h"
@@ -23,7 +27,7 @@ enum { N_KINDS = sizeof kinds / sizeof *kinds };
 static enum status check_members(const struct case_values *study) {
     for (int m = 0; study->n_axes > 0 && m < sweep_n_members(study); m++) {
         struct case_values member;
-        TRY(sweep_member(&member, study, m));
+        TRY(case_member(&member, study, m));
         case_free(&member);
     }
     return STATUS_OK;

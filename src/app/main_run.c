@@ -8,6 +8,7 @@
 #include "app/main.h"
 #include "app/progress.h"
 #include "case/case.h"
+#include "case/sweep_members.h"
 #include "run/simulate.h"
 
 // ---- run
@@ -42,7 +43,7 @@ static enum status run_settings(const struct case_values *values, const struct r
 enum status main_run(const struct request *request) {
     struct case_values values;
     TRY(case_read(&values, request->positional, request->n_assignments, request->assignments));
-    enum status status = case_runnable(&values);
+    enum status status = sweep_refuse(&values);
     if (status == STATUS_OK) {
         char *const path = request->output ? strdup(request->output) : default_path(&values);
         status = path ? run_settings(&values, request, path) : status_fail(STATUS_MEMORY, "out of memory: a file name");

@@ -7,7 +7,12 @@
 #include <string.h>
 
 #include "case/case_check.h"
+#include "case/case_merge.h"
+#include "case/case_path.h"
+#include "case/case_table.h"
 #include "case/case_value.h"
+#include "case/sweep.h"
+#include "case/sweep_expect.h"
 #include "case/yaml_write.h"
 
 /* A case on its way from the text to its values. */
@@ -255,8 +260,8 @@ static enum status fill(struct reading *reading, struct case_values *values) {
     TRY(check_default_values(reading));
     TRY(read_keys(reading, values));
     TRY(derive_all(values, tree->source[0]->name));
-    TRY(sweep_read(values, tree, &reading->errors));
-    TRY(sweep_expect_read(values, tree, &reading->errors));
+    TRY(sweep_read(values, tree->root, &reading->errors));
+    TRY(sweep_expect_read(values, tree->root, &reading->errors));
     // an unknown key may be a known one misspelt: then its value is not the one that would be checked here
     if (are_keys_known) case_check(values, tree, &reading->errors);
     return STATUS_OK;

@@ -1,4 +1,4 @@
-/* case_check.c: relations between keys, and what this version does not run yet. */
+/* case_check.c: relations between keys. */
 #include "case/case_check.h"
 
 #include <math.h>
@@ -58,7 +58,6 @@ static void check_time(const struct check *check) {
     }
     check_multiple(check, "time.end", time->end, interval, shedding);
     check_multiple(check, "time.output_interval", time->output_interval, interval, shedding);
-    check_multiple(check, "time.checkpoint_interval", time->checkpoint_interval, interval, shedding);
     check_multiple(check, "output.wake_interval", check->values->output.wake_interval, "time.output_interval",
                    time->output_interval);
 }
@@ -224,26 +223,4 @@ void case_check(const struct case_values *values, const struct case_tree *tree, 
         check_motion(&check);
         check_control(&check);
     }
-}
-
-// ---- what this version does not run
-
-enum status case_runnable(const struct case_values *values) {
-    struct text list = {0};
-    if (values->time.checkpoint_interval > 0) {
-        text_add(&list,
-                 "error: time.checkpoint_interval: checkpoints are not in this version yet: "
-                 "remove time.checkpoint_interval\n");
-    }
-    if (values->n_axes > 0) {
-        text_add(&list,
-                 "error: sweep: `shoal run` runs one case; this case has a sweep of %d ax%cs: run it with "
-                 "`shoal study`, or take the sweep away with --set 'sweep=[]'\n",
-                 values->n_axes, values->n_axes == 1 ? 'i' : 'e');
-    }
-    if (!list.failed && list.length == 0) return STATUS_OK;
-    const enum status status = list.failed ? status_fail(STATUS_MEMORY, "out of memory: the list of errors of the case")
-                                           : status_fail(STATUS_CASE, "%.*s", (int)(list.length - 1), list.text);
-    text_free(&list);
-    return status;
 }

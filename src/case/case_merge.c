@@ -1,4 +1,4 @@
-/* case_tree.c: reads the case file and its includes, lays them over each other, and applies assignments. */
+/* case_merge.c: reads the case file and its includes, lays them over each other, and applies assignments. */
 #include "case/case_merge.h"
 
 #include <errno.h>
@@ -8,6 +8,9 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include "case/case_path.h"
+#include "case/case_table.h"
 
 enum { MOST_INCLUDES = 64, MOST_INCLUDE_DEPTH = 8 };
 

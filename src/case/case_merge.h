@@ -1,4 +1,4 @@
-/* case_tree.h: one tree from a case file, its includes and the assignments of the command line; and paths into it.
+/* case_merge.h: one tree from a case file, its includes and the assignments of the command line.
  * Tested by tests/case/test_case.c.
  *
  * The tree keeps what is strongest: assignments, then the case file, then its includes (the last one first). Defaults
@@ -6,10 +6,9 @@
 #ifndef CASE_MERGE_H
 #define CASE_MERGE_H
 
-#include "case/case_table.h"
-#include "case/yaml_tree.h"
+#include <stdbool.h>
 
-enum { CASE_MAX_FISH = 10000 };
+#include "case/yaml_tree.h"
 
 struct case_tree {
     struct yaml_node *root; /* a map; NULL if something could not be read */
@@ -37,24 +36,5 @@ const struct yaml_node *case_merge_value(const struct case_tree *tree, const cha
 
 /* Where a message about a path should point: at its value, or at the nearest that is written around it. */
 struct yaml_mark case_merge_mark(const struct case_tree *tree, const char *path, int fish);
-
-/* ---- paths as --set and sweep take them */
-
-enum { CASE_NO_FISH = -1, CASE_EVERY_FISH = -2 };
-
-struct case_path {
-    char pattern[80];  /* "fish.wave.frequency" for fish[2].wave.frequency; a row or a section of the table */
-    int fish;          /* index, CASE_EVERY_FISH or CASE_NO_FISH */
-    const char *below; /* "wave.frequency": points into the text that was parsed */
-};
-
-/* Parse a path and check that it exists; false after adding what is wrong to errors. */
-bool case_path_parse(struct case_path *path, const char *text, int n_fish, struct yaml_mark mark,
-                     struct yaml_errors *errors);
-
-/* Add the error "path: unknown key; did you mean ...?" for a word under a section of the table (see
- * case_table_suggest for section and owner). */
-void case_path_unknown(struct yaml_errors *errors, struct yaml_mark mark, const char *path, const char *section,
-                       const char *word, const char *owner);
 
 #endif

@@ -1,14 +1,17 @@
-/* case_path.c: paths such as fish[2].wave.frequency, as --set and sweep take them. Declared in case_tree.h. */
+/* case_path.c: a path word by word along the table of keys. */
+#include "case/case_path.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "case/case_merge.h"
+#include "case/case_suggest.h"
+#include "case/case_table.h"
 
 void case_path_unknown(struct yaml_errors *errors, struct yaml_mark mark, const char *path, const char *section,
                        const char *word, const char *owner) {
     struct text hint = {0};
-    if (errors->n < YAML_ERRORS_KEPT) case_table_suggest(&hint, section, word, owner);
+    if (errors->n < YAML_ERRORS_KEPT) case_suggest(&hint, section, word, owner);
     yaml_errors_add(errors, mark, "%.150s: unknown key%s", path, hint.text ? hint.text : "");
     if (hint.failed) errors->out_of_memory = true;
     text_free(&hint);
@@ -37,7 +40,8 @@ static const char *parse_index(struct case_path *path, const char *text, int n_f
     return text + 2 + length;
 }
 
-/* Check the words of a path below a section of the table one by one. text is the whole path, for messages; owner as in case_table_suggest. */
+/* Check the words of a path below a section of the table one by one. text: the whole path, for messages; owner: as in
+ * case_suggest.h. */
 static bool check_words(struct case_path *path, const char *words, const char *text, const char *owner,
                         struct yaml_mark mark, struct yaml_errors *errors) {
     for (;;) {

@@ -1,4 +1,6 @@
-/* case_suggest.c: what a user may have meant by an unknown key. Declared in case_table.h. */
+/* case_suggest.c: the key of the table with the least edit distance. */
+#include "case/case_suggest.h"
+
 #include <limits.h>
 #include <string.h>
 
@@ -108,7 +110,7 @@ static void add_words(struct text *hint, const char *section) {
     }
 }
 
-void case_table_suggest(struct text *hint, const char *section, const char *word, const char *owner) {
+void case_suggest(struct text *hint, const char *section, const char *word, const char *owner) {
     struct candidate best = {{0}, {0}, INT_MAX, INT_MAX};
     for (int i = 0; i < case_table_n; i++) {
         const char *const path = case_table[i].path;

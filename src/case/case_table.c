@@ -42,9 +42,6 @@ const struct key case_table[] = {
     {"time.output_interval", REAL, AT(time.output_interval), NULL, ABOVE(0), "s",
      .meaning = "a row of output once in this time; a whole multiple of shedding_interval",
      .derived = "ten shedding intervals", .synonyms = "output_every save_interval dt_out"},
-    {"time.checkpoint_interval", REAL, AT(time.checkpoint_interval), "0", FROM(0), "s",
-     .meaning = "a checkpoint once in this time; a whole multiple of shedding_interval; 0: none",
-     .synonyms = "restart_interval checkpoint"},
 
     {"fluid.density", REAL, AT(school.fluid.density), "1000", FROM(0), "kg m-3",
      .meaning = "density of the fluid; 0: no fluid forces", .synonyms = "rho rho_f"},

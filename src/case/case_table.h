@@ -1,6 +1,4 @@
-/* case_table.h: the one table of keys of a case file, and the look-ups in it. Tested by tests/case/test_case.c.
- *
- * Shared by the files src/settings*.c only. */
+/* case_table.h: the one table of keys of a case file, and the look-ups in it. Tested by tests/case/test_case.c. */
 #ifndef CASE_TABLE_H
 #define CASE_TABLE_H
 
@@ -8,7 +6,9 @@
 #include <stddef.h>
 
 #include "base/text.h"
-#include "case/case.h"
+#include "case/case_values.h"
+
+enum { CASE_MAX_FISH = 10000 };
 
 enum key_type {
     REAL,      /* double */
@@ -22,8 +22,8 @@ enum key_type {
     HEADING,   /* struct number_list of pairs (time, angle); one number is the pair (0, angle) */
     FILES,     /* include: no place in struct case_values */
     DEFAULTS,  /* defaults: no place in struct case_values */
-    AXES,      /* sweep: read by case_sweep.c */
-    STATEMENTS /* expect: read by case_expect.c */
+    AXES,      /* sweep: read by sweep.c */
+    STATEMENTS /* expect: read by sweep_expect.c */
 };
 
 /* What a number, or each number of a list, may be; for a TEXT, most is the largest number of bytes. */
@@ -70,9 +70,5 @@ const char *case_table_word(const struct key *key, int i);
 /* The name of a type as the reference calls it, and the range ("0 to 1", "> 0" or ""). */
 const char *case_table_type(const struct key *key);
 void case_table_range(const struct key *key, struct text *range);
-
-/* Add what the user may have meant by an unknown word under a section ("" is the top, "fish.body" that of fish): "; did
- * you mean 'modulus'?". owner is how messages call the fish the word belongs to ("fish[2]"), or NULL. */
-void case_table_suggest(struct text *hint, const char *section, const char *word, const char *owner);
 
 #endif

@@ -1,16 +1,20 @@
-/* case_sweep.c: the axes of a study. Declared in case_check.h.
+/* sweep.c: the axes of a study.
  *
  *     - {key: solver.rtol, values: [1e-4, 1e-5]}                                       one key
  *     - {keys: [fish[*].nodes, fish[*].sheet_points], values: [[7, 21], [13, 41]]}     two that change together
- *     - {key: ..., values: ..., refine: true}                                          resolutions: case_refine.c
+ *     - {key: ..., values: ..., refine: true}                                          resolutions: sweep_refine.c
  *
  * A value is checked here as if it were given to its key, and kept as the text that --set will get. */
+#include "case/sweep.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "case/case_check.h"
+#include "case/case_path.h"
 #include "case/case_value.h"
+#include "case/sweep_members.h"
+#include "case/sweep_refine.h"
 #include "case/yaml_write.h"
 
 static const double most_members = 1e5;
@@ -174,15 +178,15 @@ static enum status read_axis(const struct case_values *values, struct axis *axis
         yaml_errors_add(axis->errors, axis->node->mark, "%s: expects {key: PATH, values: [...]}", axis->name);
         return STATUS_OK;
     }
-    sweep_words_check(axis->node, axis->name, "key, keys, values, refine, expect, reference", axis->errors);
+    yaml_tree_check_keys(axis->node, axis->name, "key, keys, values, refine, expect, reference", axis->errors);
     TRY(read_axis_keys(values, axis));
     if (axis->n_keys == 0) return STATUS_OK;
     TRY(read_values(axis));
     return sweep_refine_read(values, axis->into, axis->key[0], axis->name, axis->node, axis->errors);
 }
 
-enum status sweep_read(struct case_values *values, const struct case_tree *tree, struct yaml_errors *errors) {
-    const struct yaml_node *const list = yaml_tree_find(tree->root, "sweep");
+enum status sweep_read(struct case_values *values, const struct yaml_node *root, struct yaml_errors *errors) {
+    const struct yaml_node *const list = yaml_tree_find(root, "sweep");
     if (!list) return STATUS_OK;
     if (list->kind != YAML_LIST) {
         yaml_errors_add(errors, list->mark, "sweep: expects a list of axes, each {key: PATH, values: [...]}");

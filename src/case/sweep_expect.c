@@ -1,16 +1,20 @@
-/* case_expect.c: what a study expects of the ends of its members. Declared in case_check.h.
+/* sweep_expect.c: statements, read and matched with members.
  *
  *     - {of: speed, fish: leader, least: 0.99, most: 1.01}                 every value
  *     - {of: [nose, tail], spread: 1e-5}                                   all values together
  *     - {of: steps, where: ["solver.method=ida"], ratio: 1.5}              of some members
  *     - {fails: unstable, where: ["solver.method=euler"]}                  that are not complete, with reason
  */
+#include "case/sweep_expect.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "case/case_check.h"
+#include "base/text.h"
+#include "case/sweep_members.h"
+#include "case/sweep_quantity.h"
 
 static enum status out_of_memory(void) {
     return status_fail(STATUS_MEMORY, "out of memory: what is expected");
@@ -184,7 +188,7 @@ static enum status read_fails(const struct stating *statement, const struct yaml
                         statement->name);
         return STATUS_OK;
     }
-    sweep_words_check(statement->node, statement->name, "fails, where", statement->errors);
+    yaml_tree_check_keys(statement->node, statement->name, "fails, where", statement->errors);
     statement->into->fails = strdup(fails->text);
     return statement->into->fails ? STATUS_OK : out_of_memory();
 }
@@ -203,8 +207,8 @@ static enum status read_statement(const struct stating *statement) {
     if (fails) {
         TRY(read_fails(statement, fails));
     } else {
-        sweep_words_check(statement->node, statement->name, "of, fish, where, least, most, spread, ratio, fails",
-                          statement->errors);
+        yaml_tree_check_keys(statement->node, statement->name, "of, fish, where, least, most, spread, ratio, fails",
+                             statement->errors);
         if (fish) read_fish(statement, fish);
         read_bounds(statement, yaml_tree_find(statement->node, "of"));
     }
@@ -215,10 +219,10 @@ static enum status read_statement(const struct stating *statement) {
     return STATUS_OK;
 }
 
-enum status sweep_expect_read(struct case_values *values, const struct case_tree *tree, struct yaml_errors *errors) {
-    const struct yaml_node *const list = yaml_tree_find(tree->root, "expect");
+enum status sweep_expect_read(struct case_values *values, const struct yaml_node *root, struct yaml_errors *errors) {
+    const struct yaml_node *const list = yaml_tree_find(root, "expect");
     // a member, or a run with --set 'sweep=[]', expects nothing
-    if (!list || (values->n_axes == 0 && yaml_tree_find(tree->root, "sweep"))) return STATUS_OK;
+    if (!list || (values->n_axes == 0 && yaml_tree_find(root, "sweep"))) return STATUS_OK;
     if (list->kind != YAML_LIST) {
         yaml_errors_add(errors, list->mark, "expect: expects a list of statements, each {of: QUANTITY, least: ...}");
         return STATUS_OK;

@@ -1,39 +1,45 @@
-/* sweep_quantity.c: the quantities that a case can expect something of. Declared in case.h and case_check.h. */
+/* sweep_quantity.c: the table of quantities. */
+#include "case/sweep_quantity.h"
+
+#include <stdio.h>
 #include <string.h>
 
-#include "case/case_check.h"
+#include "base/text.h"
 
 const struct sweep_quantity sweep_quantities[SWEEP_N_QUANTITIES] = {
-    {"nose", 1, 1},
-    {"tail", 1, 1},
-    {"com", 1, 1},
-    {"speed", 1, 0},
-    {"mean_heading", 1, 0},
-    {"shed_circulation", 1, 0},
-    {"cost_of_transport", 1, 0},
-    {"mean_actuation_power", 1, 0},
-    {"lateral_drift", 1, 0},
-    {"strouhal", 1, 0},
-    {"energy_audit", 1, 0},
-    {"steps", 0, 0},
-    {"residual_evaluations", 0, 0},
-    {"jacobian_evaluations", 0, 0},
-    {"wall_time", 0, 0},
+    {"nose", 1, 1, "m", "position of the nose at the end"},
+    {"tail", 1, 1, "m", "position of the tail at the end"},
+    {"com", 1, 1, NULL, NULL},
+    {"speed", 1, 0, NULL, NULL},
+    {"mean_heading", 1, 0, "degree", "mean of the heading over the last period"},
+    {"shed_circulation", 1, 0, NULL, NULL},
+    {"cost_of_transport", 1, 0, NULL, NULL},
+    {"mean_actuation_power", 1, 0, "W", "mean power of the muscle over the last period"},
+    {"lateral_drift", 1, 0, "m", "displacement of the centre of mass across the first heading, to the left"},
+    {"strouhal", 1, 0, NULL, NULL},
+    {"energy_audit", 1, 0, NULL, NULL},
+    {"steps", 0, 0, NULL, NULL},
+    {"residual_evaluations", 0, 0, NULL, NULL},
+    {"jacobian_evaluations", 0, 0, NULL, NULL},
+    {"wall_time", 0, 0, NULL, NULL},
 };
+
+int sweep_quantity_find(const char *name, int n_known) {
+    for (int q = 0; q < n_known; q++) {
+        if (strcmp(sweep_quantities[q].name, name) == 0) return q;
+    }
+    return -1;
+}
 
 int sweep_quantity_read(const char *name, struct yaml_mark mark, const char *path, int n_known,
                         struct yaml_errors *errors) {
+    const int found = sweep_quantity_find(name, n_known);
+    if (found >= 0) return found;
     struct text known = {0};
-    for (int q = 0; q < n_known; q++) {
-        if (strcmp(sweep_quantities[q].name, name) != 0) {
-            text_add(&known, "%s%s", q > 0 ? ", " : "", sweep_quantities[q].name);
-            continue;
-        }
-        text_free(&known);
-        return q;
-    }
+    for (int q = 0; q < n_known; q++) text_add(&known, "%s%s", q > 0 ? ", " : "", sweep_quantities[q].name);
     yaml_errors_add(errors, mark, "%s: '%.40s' is no quantity; known here: %s", path, name,
                     known.text ? known.text : "");
+    if (known.failed) errors->out_of_memory = true;
     text_free(&known);
     return -1;
 }
@@ -54,19 +60,4 @@ unsigned sweep_quantities_read(const struct yaml_node *of, const char *path, int
     }
     if (n == 0) yaml_errors_add(errors, of->mark, "%s: expects the name of a quantity, or a list of names", place);
     return all;
-}
-
-void sweep_words_check(const struct yaml_node *map, const char *path, const char *known, struct yaml_errors *errors) {
-    for (int i = 0; i < map->n; i++) {
-        const struct yaml_entry *const entry = &map->entry[i];
-        const size_t length = strlen(entry->key);
-        bool is_known = false;
-        for (const char *word = known; *word && !is_known; word += strspn(word, ", ")) {
-            const size_t n = strcspn(word, ",");
-            is_known = n == length && strncmp(word, entry->key, n) == 0;
-            word += n;
-        }
-        if (is_known) continue;
-        yaml_errors_add(errors, entry->mark, "%s.%.40s: unknown key; known here: %s", path, entry->key, known);
-    }
 }

@@ -1,15 +1,19 @@
-/* case_refine.c: an axis of resolutions, and what is known or expected of its errors. Declared in case_check.h.
+/* sweep_refine.c: what an axis of resolutions can say besides its values.
  *
  *     refine: true
  *     reference: {speed: 1.014, nose: [-1.6, 0.01]}       given values, which errors and orders are taken against
  *     expect: {order: 2, within: 0.2, of: [nose, speed]}
  */
+#include "case/sweep_refine.h"
+
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "case/case_check.h"
-#include "case/case_value.h"
+#include "base/text.h"
+#include "case/sweep_members.h"
+#include "case/sweep_quantity.h"
 
 enum { LEAST_LEVELS = 3 };
 
@@ -93,7 +97,7 @@ static void read_expect(const struct refining *axis, const struct yaml_node *exp
     }
     char path[64];
     snprintf(path, sizeof path, "%s.expect", axis->name);
-    sweep_words_check(expect, path, "order, within, of", axis->errors);
+    yaml_tree_check_keys(expect, path, "order, within, of", axis->errors);
     axis->into->order = read_positive(axis, expect, "order");
     axis->into->within = read_positive(axis, expect, "within");
     const struct yaml_node *const of = yaml_tree_find(expect, "of");

@@ -412,3 +412,19 @@ enum status yaml_tree_read(struct yaml_node **root, const struct yaml_source *so
     }
     return status;
 }
+
+void yaml_tree_check_keys(const struct yaml_node *map, const char *path, const char *known,
+                          struct yaml_errors *errors) {
+    for (int i = 0; i < map->n; i++) {
+        const struct yaml_entry *const entry = &map->entry[i];
+        const size_t length = strlen(entry->key);
+        bool is_known = false;
+        for (const char *word = known; *word && !is_known; word += strspn(word, ", ")) {
+            const size_t n = strcspn(word, ",");
+            is_known = n == length && strncmp(word, entry->key, n) == 0;
+            word += n;
+        }
+        if (is_known) continue;
+        yaml_errors_add(errors, entry->mark, "%s.%.40s: unknown key; known here: %s", path, entry->key, known);
+    }
+}

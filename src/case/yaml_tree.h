@@ -55,6 +55,9 @@ enum status yaml_tree_merge(struct yaml_node **base, struct yaml_node *over);
 /* The same for one key of a map. */
 enum status yaml_tree_put(struct yaml_node *map, const char *key, struct yaml_mark mark, struct yaml_node *value);
 
+/* Add an error for each key of a map that is not among the known ones, "key, values"; path is that of the map. */
+void yaml_tree_check_keys(const struct yaml_node *map, const char *path, const char *known, struct yaml_errors *errors);
+
 /* "a map of keys", "a list of 3", "'text'" or "nothing": for messages, kept in buffer and returned. */
 const char *yaml_tree_describe(const struct yaml_node *node, char *buffer, size_t size);
 

@@ -4,7 +4,6 @@
 
 #include "base/text.h"
 #include "case/yaml_tree.h"
-#include "case/yaml_write.h"
 
 /* Add a string, in quotes where YAML needs them. */
 void yaml_write_scalar(struct text *text, const char *scalar);

@@ -6,6 +6,7 @@
 
 #include "base/version.h"
 #include "case/case.h"
+#include "case/sweep_members.h"
 #include "run/simulate.h"
 
 struct shoal {
@@ -16,7 +17,7 @@ struct shoal {
 static enum status open_run(struct shoal *run, const char *case_path, int n_assignments,
                             const char *const *assignments) {
     TRY(case_read(&run->values, case_path, n_assignments, assignments));
-    TRY(case_runnable(&run->values));
+    TRY(sweep_refuse(&run->values));
     return simulate_create(&run->simulation, &run->values);
 }
 

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "case/case_show.h"
 #include "output/result_file.h"
 #include "run/event.h"
 #include "solver/ida.h"

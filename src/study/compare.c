@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "base/text.h"
+#include "case/sweep_members.h"
 #include "run/simulate.h"
 #include "study/compare_file.h"
 
@@ -115,7 +116,7 @@ static enum status case_of(const struct compare *compare, const struct run *run,
     const char *const assignments[] = {method, step, order, value};
     const char *const text = compare->values->merged;
     TRY(case_parse(values, text, strlen(text), compare->values->name, NULL, 4, assignments));
-    const enum status status = case_runnable(values);
+    const enum status status = sweep_refuse(values);
     if (status != STATUS_OK) case_free(values);
     return status;
 }

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "case/sweep_quantity.h"
 #include "output/netcdf.h"
 #include "output/result_table.h"
 
@@ -13,13 +14,7 @@ enum { MAX_FISH = 1000000 };
 
 // ---- the table of quantities: first what is in the last row of a result, then what is computed
 
-static const struct member_file_quantity computed[] = {
-    {"nose", "m", "position of the nose at the end", 1, 1, 1},
-    {"tail", "m", "position of the tail at the end", 1, 1, 1},
-    {"lateral_drift", "m", "displacement of the centre of mass across the first heading, to the left", 1, 0, 1},
-    {"mean_heading", "degree", "mean of the heading over the last period", 1, 0, 1},
-    {"mean_actuation_power", "W", "mean power of the muscle over the last period", 1, 0, 1},
-};
+static const char *const computed[] = {"nose", "tail", "lateral_drift", "mean_heading", "mean_actuation_power"};
 enum { NOSE, TAIL, DRIFT, MEAN_HEADING, MEAN_POWER, N_COMPUTED };
 
 /* True for (time), (time, fish) and (time, fish, xy). */
@@ -39,7 +34,12 @@ const struct member_file_quantity *member_file_quantity(int i) {
             all[n++] = (struct member_file_quantity){
                 from->name, from->unit, from->long_name, result_table_has(from, FISH), result_table_has(from, XY), 0};
         }
-        for (int c = 0; c < N_COMPUTED; c++) all[n++] = computed[c];
+        for (int c = 0; c < N_COMPUTED; c++) {
+            const struct sweep_quantity *const from =
+                &sweep_quantities[sweep_quantity_find(computed[c], SWEEP_N_QUANTITIES)];
+            all[n++] =
+                (struct member_file_quantity){from->name, from->unit, from->meaning, from->of_fish, from->of_xy, 1};
+        }
     }
     return i < n ? &all[i] : NULL;
 }

@@ -13,6 +13,9 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "case/case_member.h"
+#include "case/case_show.h"
+#include "case/sweep_members.h"
 #include "run/simulate.h"
 
 enum { REASON_BYTES = 2048 };
@@ -79,8 +82,8 @@ static enum status look_at(const struct study *study, const struct case_values *
 /* Check the case of a member and enter it in the list unless it is finished. */
 static enum status plan_member(struct study *study, int number) {
     struct case_values values;
-    TRY(sweep_member(&values, study->values, number));
-    enum status status = case_runnable(&values);
+    TRY(case_member(&values, study->values, number));
+    enum status status = STATUS_OK;
     char *const path = study_member_path(study->options->folder, number, ".nc");
     int is_finished = 0;
     if (!path) status = STATUS_MEMORY;
@@ -162,7 +165,7 @@ static void tell_part(const struct simulate_progress *now, void *data) {
 
 static enum status run_member(const struct study *study, const struct job *job) {
     struct case_values values;
-    TRY(sweep_member(&values, study->values, job->member));
+    TRY(case_member(&values, study->values, job->member));
     char *const path = study_member_path(study->options->folder, job->member, ".nc");
     const struct simulate_options options = {.path = path,
                                              .overwrite = 1,

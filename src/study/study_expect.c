@@ -2,6 +2,9 @@
 #include <math.h>
 #include <string.h>
 
+#include "case/sweep_expect.h"
+#include "case/sweep_members.h"
+#include "case/sweep_quantity.h"
 #include "study/study.h"
 
 /* The values that a statement is about, of one quantity. */

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/text.h"
+#include "case/sweep_members.h"
 #include "output/netcdf.h"
 
 enum { MIN_TEXT = 64 /* bytes of the flag of an order */, NAME_BYTES = 256 };

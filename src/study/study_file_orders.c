@@ -7,6 +7,8 @@
 #include <string.h>
 
 #include "base/text.h"
+#include "case/sweep_members.h"
+#include "case/sweep_quantity.h"
 #include "study/member_file.h"
 
 enum { NAME_BYTES = 64, MEANING_BYTES = 160 };

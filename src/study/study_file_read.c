@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "case/sweep_members.h"
 #include "output/netcdf.h"
 #include "study/study_file.h"
 

@@ -5,6 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "case/sweep_members.h"
 #include "study/study.h"
 
 enum { REASON_BYTES = 2048 };

@@ -12,6 +12,9 @@
 #include <string.h>
 
 #include "base/text.h"
+#include "case/sweep_members.h"
+#include "case/sweep_quantity.h"
+#include "case/sweep_refine.h"
 #include "study/study.h"
 
 static const double safety_factor = 1.25;

@@ -1,6 +1,7 @@
 /* study_print.c: the table of members. Declared in study.h. */
 #include <string.h>
 
+#include "case/sweep_members.h"
 #include "study/study.h"
 
 enum { MOST_FISH_SHOWN = 4 };

@@ -6,6 +6,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "case/case_member.h"
+#include "case/sweep_members.h"
 #include "study/study.h"
 
 enum { MOST_TASKS = 1000 /* Slurm's own default is 1001 */ };
@@ -88,7 +90,7 @@ enum status study_slurm(const struct case_values *study, const char *folder, int
     const int n_tasks = (n + bundle - 1) / bundle;
     for (int m = 0; m < n; m++) {
         struct case_values member;
-        TRY(sweep_member(&member, study, m));
+        TRY(case_member(&member, study, m));
         case_free(&member);
     }
     char place[PATH_MAX], program[PATH_MAX];

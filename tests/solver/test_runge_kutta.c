@@ -1,4 +1,5 @@
 /* test_runge_kutta.c: order, agreement with IDA, restarts, failures. */
+#include <stdio.h>
 #include <string.h>
 
 #include "school.h"

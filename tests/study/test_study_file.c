@@ -6,6 +6,8 @@
 #include <unistd.h>
 
 #include "base/text.h"
+#include "case/sweep_members.h"
+#include "case/sweep_quantity.h"
 #include "failing_malloc.h"
 #include "near.h"
 #include "study/study.h"

@@ -1,0 +1,12 @@
+/* case_member.h: the case of one member of a study. Tested by tests/case/test_case.c. */
+#ifndef CASE_MEMBER_H
+#define CASE_MEMBER_H
+
+#include "base/status.h"
+#include "case/case_values.h"
+
+/* Fill *values with the case of one member: the study's, with the member's values set as --set sets them and without
+ * a sweep. Fails with STATUS_CASE, naming the member, or with STATUS_MEMORY. Free with case_free. */
+enum status case_member(struct case_values *values, const struct case_values *study, int member);
+
+#endif

@@ -1,0 +1,26 @@
+/* case_path.h: paths such as fish[2].wave.frequency, as --set and sweep take them. Tested by tests/case/test_case.c. */
+#ifndef CASE_PATH_H
+#define CASE_PATH_H
+
+#include <stdbool.h>
+
+#include "case/yaml_errors.h"
+
+enum { CASE_NO_FISH = -1, CASE_EVERY_FISH = -2 };
+
+struct case_path {
+    char pattern[80];  /* "fish.wave.frequency" for fish[2].wave.frequency; a row or a section of the table */
+    int fish;          /* index, CASE_EVERY_FISH or CASE_NO_FISH */
+    const char *below; /* "wave.frequency": points into the text that was parsed */
+};
+
+/* Parse a path and check that it exists; false after adding what is wrong to errors. */
+bool case_path_parse(struct case_path *path, const char *text, int n_fish, struct yaml_mark mark,
+                     struct yaml_errors *errors);
+
+/* Add the error "path: unknown key; did you mean ...?" for a word under a section of the table. section and owner: as in
+ * case_suggest.h. */
+void case_path_unknown(struct yaml_errors *errors, struct yaml_mark mark, const char *path, const char *section,
+                       const char *word, const char *owner);
+
+#endif

@@ -1,0 +1,12 @@
+/* case_show.h: a case written out in full. Tested by tests/case/test_case.c. */
+#ifndef CASE_SHOW_H
+#define CASE_SHOW_H
+
+#include "base/status.h"
+#include "case/case_values.h"
+
+/* The whole case with every key and its value, as a case file that reads back to the same values bit for bit. The
+ * caller frees *text. Fails with STATUS_MEMORY. */
+enum status case_show(const struct case_values *values, char **text);
+
+#endif

@@ -1,0 +1,52 @@
+/* case_values.h: a case as plain values, in the units of the case file: angles in degrees, lengths in metres or in
+ * fractions of the body length, as the meaning of the key says. Those that the model needs are in model/parameters.h,
+ * the axes of a study in sweep_members.h, what is expected of its members in sweep_expect.h. */
+#ifndef CASE_VALUES_H
+#define CASE_VALUES_H
+
+#include "base/methods.h"
+#include "model/parameters.h"
+
+enum precision { PRECISION_DOUBLE, PRECISION_SINGLE };
+enum preset { PRESET_NONE, PRESET_PUBLISHED };
+
+struct case_time {
+    double end;             /* s */
+    double output_interval; /* s; default ten shedding intervals */
+};
+
+struct case_solver {
+    enum method method;
+    int order;
+    double step;   /* s; 0: adaptive */
+    int max_steps; /* per shedding interval */
+};
+
+struct case_output {
+    char *file; /* NULL: the name of the case with .nc, in the working directory */
+    enum precision precision;
+    double wake_interval; /* s; default the output interval */
+};
+
+struct sweep_axis;
+struct sweep_expectation;
+
+struct case_values {
+    int format;
+    char *name; /* default: the file's name without folder and ending */
+    enum preset preset;
+    struct case_time time;
+    struct school_parameters school;
+    struct case_solver solver;
+    struct case_output output;
+    int n_axes;
+    struct sweep_axis *sweep; /* (n_axes) */
+    int n_expectations;
+    struct sweep_expectation *expect; /* (n_expectations) */
+    char *text;                       /* the text of the case file as read (without its includes) */
+    char *merged; /* what the case file, its includes and the assignments say, as one text: defaults are not in it */
+    char *study;  /* of a member of a study: the merged text of the study; else NULL */
+    int member;   /* its number, from 0 */
+};
+
+#endif

@@ -1,0 +1,36 @@
+/* sweep_expect.h: what a study expects of the ends of its members. Tested by tests/case/test_case.c. */
+#ifndef SWEEP_EXPECT_H
+#define SWEEP_EXPECT_H
+
+#include "base/status.h"
+#include "case/case_values.h"
+#include "case/yaml_tree.h"
+
+/* A key of the sweep has a value. */
+struct sweep_condition {
+    int axis, key;
+    char *value;
+};
+
+/* A statement about the ends of members: of all, or of those that have the values of where. */
+struct sweep_expectation {
+    char *fails; /* they fail, and their reasons have these words in them; nothing else is then said. NULL: no */
+    unsigned of; /* bit q: of quantity q */
+    int fish;    /* -1: of all */
+    int n_where;
+    struct sweep_condition *where; /* one of each key must hold                (n_where) */
+    double least, most;            /* of each value; NaN: no bound, as below */
+    double spread; /* from the least to the largest value; of points, the diagonal of the box around them */
+    double ratio;  /* of the largest value to the least */
+};
+
+/* Read the statements of a case whose sweep has been read. Fails with STATUS_MEMORY only. */
+enum status sweep_expect_read(struct case_values *values, const struct yaml_node *root, struct yaml_errors *errors);
+
+/* Release the statements. */
+void sweep_expect_free(struct case_values *values);
+
+/* Whether a statement is about a member. */
+int sweep_expects_of(const struct case_values *study, const struct sweep_expectation *one, int member);
+
+#endif

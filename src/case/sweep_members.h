@@ -1,0 +1,45 @@
+/* sweep_members.h: the axes of a study, and the members that they make: each combination of their values. Tested by
+ * tests/case/test_case.c. */
+#ifndef SWEEP_MEMBERS_H
+#define SWEEP_MEMBERS_H
+
+#include "base/status.h"
+#include "base/text.h"
+#include "case/case_values.h"
+
+/* A key that an axis of a sweep changes. */
+struct sweep_key {
+    char *path;       /* as --set takes it */
+    const char *unit; /* of the table of keys */
+    int is_number;    /* each value is one number */
+};
+
+/* One axis of a sweep. It changes one key, or several together. */
+struct sweep_axis {
+    int n_keys;
+    struct sweep_key *key; /* (n_keys) */
+    int n_values;
+    char **value;         /* value i of key k is value[i * n_keys + k], a text as --set takes it (n_values * n_keys) */
+    int refine;           /* the values are resolutions of the first key: a study of convergence */
+    double order, within; /* what is expected of the observed order: order +- within; NaN: nothing */
+    unsigned order_of;    /* bit q: of quantity q */
+    double *reference;    /* see sweep_reference; NULL: none */
+};
+
+/* Fails with STATUS_CASE, and says what to do, where a case is a study and not one run. */
+enum status sweep_refuse(const struct case_values *values);
+
+/* The number of members of the study: the product of the axes; 1 without a sweep. */
+int sweep_n_members(const struct case_values *study);
+
+/* Which value of an axis a member has. The last axis runs fastest. */
+int sweep_member_value(const struct case_values *study, int member, int axis);
+
+/* Add "solver.rtol=1e-5": what --set takes to give key k of an axis the value of this number. */
+void sweep_add_assignment(struct text *text, const struct sweep_axis *axis, int value, int k);
+
+/* "solver.rtol=1e-5, fish[*].nodes=7": what one member sets. Empty without a sweep. The caller frees *text. Fails with
+ * STATUS_MEMORY. */
+enum status sweep_member_text(const struct case_values *study, int member, char **text);
+
+#endif
