@@ -6,7 +6,7 @@
 
 static const double two_pi = 6.28318530717958647692;
 
-/* Interpolation for a fish with more near vortices than this, and more than a third of all, costs more than it saves. */
+/* Interpolation costs more than it saves where there are more near vortices than this, and more than a third of all. */
 enum { FEW = 32 };
 
 /* The largest error of the cubic through the times of wake_interpolation.c, over the fourth derivative / 4!. */
@@ -173,8 +173,8 @@ static int exponent_bin(double number, int n) {
     return exponent + n - 1 > 0 ? exponent + n - 1 : 0;
 }
 
-/* Of the vortices that may be near, move those to the far field whose errors, the smallest first, add up to no more than
- * max_error. Sorted by powers of two only. */
+/* Of the vortices that may be near, move those to the far field whose errors, the smallest first, add up to max_error
+ * at most. Sorted by powers of two only. */
 static void move_to_far(struct near_field *near_field, double max_error) {
     enum { BINS = 64 };
     double sum[BINS] = {0};

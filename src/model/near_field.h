@@ -1,14 +1,14 @@
-/* near_field.h: which of the released vortices are in the near field of a body: those for which an interpolation in time
- * (wake_interpolation.h) would be too inaccurate. doc/numerics.md, section 13. Tested by tests/model/test_near_field.c.
+/* near_field.h: which of the released vortices are in the near field of a body: those for which interpolation in time
+ * (wake_interpolation.h) is too inaccurate. doc/numerics.md, section 13. Tested by tests/model/test_near_field.c.
  *
  * The error of the interpolated velocity at a point whose drift, the distance from its predicted path, is d:
  *
  *     error + by_drift d + by_drift_square d^2,      summed over the vortices of the far field
  *
- * Each of the three is an ESTIMATE, a tenth of a rigorous bound. The bound takes every vortex at its closest and fastest,
- * and all of them with one sign; in wakes it is 50 to 1000 times the true error. A far field is accepted while the
- * estimate is below the tolerance, so a cluster of vortices of one sign, all of them at their closest, can exceed the
- * tolerance, by a factor of 1.65 in the tests; the bound excludes a factor of ten. */
+ * Each of the three is an ESTIMATE, a tenth of a bound. The bound takes every vortex at its closest and fastest, and
+ * all of them with one sign; in wakes it is 50 to 1000 times the true error. The estimate is held below the tolerance. So
+ * a cluster of vortices of one sign, all of them at their closest, can exceed the tolerance: 1.65 times in the tests, and
+ * never ten times. */
 #ifndef NEAR_FIELD_H
 #define NEAR_FIELD_H
 

@@ -10,8 +10,8 @@
 
 enum { N_TIMES = 4, END = N_TIMES - 1 };
 
-/* The times, as parts of the interval: of all four that include both ends, these have the smallest maximum of |product of
- * (q - time)|, (3 - 2 sqrt(2))/16: the cubic_error of near_field.c. */
+/* The times, as parts of the interval: of all four that include both ends, these have the smallest maximum of the
+ * product of |q - time|, (3 - 2 sqrt(2))/16: the cubic_error of near_field.c. */
 static const double time_of[N_TIMES] = {0, 0.29289321881345248, 0.70710678118654752, 1};
 
 struct wake_interpolation {

@@ -1,14 +1,15 @@
 /* wake_interpolation.h: the velocity that the released vortices of all fish induce at the points of the bodies,
- * interpolated in time between two events. doc/numerics.md, section 13. Tested by tests/model/test_wake_interpolation.c.
+ * interpolated in time between two events. doc/numerics.md, section 13. Tested by
+ * tests/model/test_wake_interpolation.c.
  *
  * Between two events t_n and t_n + Dt the vortices move on known paths, and a point of a body stays close to the path
  * X(t) that its position, velocity and acceleration at t_n predict. With tau = t - t_n, q = tau/Dt:
  *
  *     u(x, t) = sum_i l_i(q) U_i + ((1 - q) G_0 + q G_3) (x - X(t)) + the near field
  *
- * U_i: velocity at X at four times (i = 0 .. 3) from the beginning to the end, of all vortices but the near ones; l_i: the
- * cubics that are 1 at one of them and 0 at the others; G_i: its gradient; x - X(t): the drift of the point. The near
- * field (near_field.h) is summed exactly. */
+ * U_i: velocity at X at four times (i = 0 .. 3) from the beginning to the end, of all vortices but the near ones; l_i:
+ * the cubics that are 1 at one of them and 0 at the others; G_i: its gradient; x - X(t): the drift of the point. The
+ * near field (near_field.h) is summed exactly. */
 #ifndef WAKE_INTERPOLATION_H
 #define WAKE_INTERPOLATION_H
 
@@ -46,7 +47,7 @@ enum status wake_interpolation_released(const struct school *school, const struc
 void wake_interpolation_update(struct wake_interpolation *interpolation, double t);
 
 /* Whether the interpolation is valid at the points of fish f, all of them in the order of wake_interpolation_build:
- * whether their drift is small enough. It depends on the time and on the points alone, not on earlier calls, so that the
+ * whether their drift is small enough. It depends on the time and the points alone, not on earlier calls, so that the
  * equations are a function of time and unknowns; where it changes, the velocity changes by less than the tolerance. */
 int wake_interpolation_is_valid(const struct wake_interpolation *interpolation, int f, const double *x,
                                 const double *y);

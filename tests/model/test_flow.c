@@ -1,4 +1,5 @@
 /* test_flow.c: which sources every point feels, and the derivatives of what it feels: doc/model.md, sections 6 to 9. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -101,6 +102,83 @@ static void wake_vortices_feel_everything_with_smoothed_sheets(void **state) {
             NEAR(v[i], want_v, 1e-13, 0);
         }
     }
+    school_clear(&setup);
+}
+
+enum { MANY_FISH = 30, MANY_SHEET = 100, MANY_VORTICES = 70 };
+
+// a school whose sheets and wakes are so large that they are summed by the tree where the tolerance is not 0
+static void build_many(struct setup *setup) {
+    char text[4096];
+    size_t used = (size_t)snprintf(text, sizeof text, TIME "defaults: {fish: {sheet_points: %d}}\nfish:\n", MANY_SHEET);
+    for (int f = 0; f < MANY_FISH; f++) {
+        used += (size_t)snprintf(text + used, sizeof text - used, "  - {start: {position: [%g, %g]}}\n",
+                                 1.4 * (f % 6) + 0.1 * (f / 6), 0.5 * (f / 6));
+        assert_true(used < sizeof text);
+    }
+    school_build(setup, text);
+    school_stir(setup);
+    setup->t = setup->state->t;
+    for (int f = 0; f < MANY_FISH; f++) {
+        const double *const nose = setup->school->fish[f].start_position;
+        struct wake *const wake = &setup->state->wake[f];
+        while (wake->n_vortex < MANY_VORTICES) {
+            school_ok(wake_release(wake, nose[0] + 1.1 + school_random(setup), nose[1] + 0.2 * school_random(setup),
+                                   0.1 * school_random(setup), setup->state->t));
+        }
+    }
+}
+
+// the largest difference of two fields of n velocities each
+static double difference(int n, const double *u, const double *v, const double *other_u, const double *other_v) {
+    double worst = 0;
+    for (int i = 0; i < n; i++) worst = fmax(worst, hypot(u[i] - other_u[i], v[i] - other_v[i]));
+    return worst;
+}
+
+static void by_tree_every_point_feels_the_same_sources(void **state) {
+    (void)state;
+    struct setup setup;
+    build_many(&setup);
+    struct flow *const flow = setup.residual->flow;
+    const size_t n = (size_t)flow->n_points;
+    double *const u = malloc(2 * n * sizeof *u), *const v = u + n;
+    assert_non_null(u);
+    setup.school->wake_tolerance = 0;
+    assert_false(velocity_sum_by_tree(&flow->sheet, flow->n_points, setup.school->wake_tolerance));
+    school_ok(flow_velocity(flow, setup.state, setup.t, setup.state->y));
+    memcpy(u, flow->u, n * sizeof *u);
+    memcpy(v, flow->v, n * sizeof *v);
+    // the sheets that a point does not feel, or feels with another smoothing, are subtracted from the sum of all
+    setup.school->wake_tolerance = 1e-6;
+    assert_true(velocity_sum_by_tree(&flow->sheet, flow->n_points, setup.school->wake_tolerance));
+    school_ok(flow_velocity(flow, setup.state, setup.t, setup.state->y));
+    // a tenth of the tolerance times what the sheets would cause if nothing cancelled, some ten lengths per beat
+    const double error = difference(flow->n_points, u, v, flow->u, flow->v);
+    assert_true(error > 0 && error < 1e-6);
+    free(u);
+    school_clear(&setup);
+}
+
+static void by_tree_wake_vortices_feel_every_sheet_once(void **state) {
+    (void)state;
+    struct setup setup;
+    build_many(&setup);
+    struct flow *const flow = setup.residual->flow;
+    const size_t n = MANY_FISH * MANY_VORTICES;
+    double *const u = malloc(2 * n * sizeof *u), *const v = u + n;
+    assert_non_null(u);
+    setup.school->wake_tolerance = 0;
+    school_ok(flow_at_wake(flow, setup.state));
+    assert_int_equal(flow->released.n, (int)n);
+    memcpy(u, flow->wake_u, n * sizeof *u);
+    memcpy(v, flow->wake_v, n * sizeof *v);
+    setup.school->wake_tolerance = 1e-6;
+    assert_true(velocity_sum_by_tree(&flow->sheet, flow->released.n, setup.school->wake_tolerance));
+    school_ok(flow_at_wake(flow, setup.state));
+    const double error = difference((int)n, u, v, flow->wake_u, flow->wake_v);
+    assert_true(error > 0 && error < 1e-6);
+    free(u);
     school_clear(&setup);
 }
 
@@ -219,6 +297,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_point_feels_the_sources_that_the_model_says),
         cmocka_unit_test(wake_vortices_feel_everything_with_smoothed_sheets),
+        cmocka_unit_test(by_tree_every_point_feels_the_same_sources),
+        cmocka_unit_test(by_tree_wake_vortices_feel_every_sheet_once),
         cmocka_unit_test(external_flow_is_stream_plus_shear_plus_gust),
         cmocka_unit_test(derivative_by_every_unknown_agrees_with_differences),
         cmocka_unit_test(changed_wakes_are_placed_again),
