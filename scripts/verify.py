@@ -45,7 +45,8 @@ The elastic body of model.md 1 to 3 without fluid: large deflections, vibrations
 must conserve."""),
     "sheet": ("Sheet alone", """\
 The bound vortex sheet of model.md 6 on bodies that move as given: its strength against closed forms, and how the two
-ways of choosing control points converge."""),
+ways of choosing control points converge. On bent bodies the smooth curve is compared with the polygon (chebyshev and
+midpoint are the control points of the polygon)."""),
     "wake": ("Wake alone", """\
 Free vortices without a body, model.md 8: translation, rotation, the growth of a perturbed row, and the invariants of a
 wake that is left alone."""),
@@ -90,6 +91,10 @@ FIGURE = {
     "conservation": ("Struck free rod: what is conserved", "solver.rtol", "relative change", {"scale": "log"}),
     "sheet_plate": ("Flat plate: strength of the sheet", "sheet points M", "relative error", {"slopes": [-1]}),
     "sheet_arc": ("Circular arc: circulation", "sheet points M", "relative error", {"slopes": [-1]}),
+    "sheet_nodes": ("Circulation of bent bodies, 65 sheet points", "nodes N", "relative error",
+                    {"slopes": [-1.5, -3.5]}),
+    "sheet_points": ("Bent fish of 17 nodes against itself with 129 sheet points", "sheet points M", "relative error",
+                     {"scale": "semilog"}),
     "sheet_condition": ("Condition number of the sheet's equations", "sheet points M", "condition number",
                         {"scale": "log"}),
     "wake_order": ("Free vortices: order in Dt", "interval Dt [s]", "error", {"slopes": [2]}),

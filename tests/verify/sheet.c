@@ -1,11 +1,12 @@
-/* bound_sheet.c: the section "sheet": the bound sheet alone against the closed forms of thin plates and circular arcs.
+/* sheet.c: the section "sheet": the bound sheet alone against the closed forms of thin plates and circular arcs, and bent
+ * fish against themselves with many nodes.
  *
- * The rows "no penetration" and Kelvin of the residual are linear in the strengths: probing the residual with unit
+ * The rows of impermeability and Kelvin of the residual are linear in the strengths: probing the residual with unit
  * strengths gives their matrix, and a dense solver of this file solves it. So what is measured is the discretisation
  * and not the tolerance of a solver.
  *
- *     no circulation:  M - 1 times no penetration, sum of q_j = 0
- *     steady Kutta:    M - 1 times no penetration, q_{M-1} = 0: the starting vortex is infinitely far away
+ *     no circulation:  M - 1 times impermeability, sum of q_j = 0
+ *     steady Kutta:    M - 1 times impermeability, q_{M-1} = 0: the starting vortex is infinitely far away
  */
 #include <complex.h>
 #include <math.h>
@@ -19,7 +20,13 @@
 static const double pi = 3.14159265358979323846;
 static const double incidence = 10 * 3.14159265358979323846 / 180; /* of a stream of 1 m/s on a body of length 1 m */
 
-static const char *const schemes[] = {"chebyshev", "midpoint"};
+/* The line through the nodes, and where it is impermeable. */
+struct scheme {
+    const char *name, *curve, *collocation;
+};
+static const struct scheme schemes[] = {
+    {"chebyshev", "polygon", "chebyshev"}, {"midpoint", "polygon", "midpoint"}, {"smooth", "smooth", "chebyshev"}};
+enum { CHEBYSHEV, MIDPOINT, SMOOTH, N_SCHEMES };
 enum closure { NO_CIRCULATION, STEADY_KUTTA };
 static const char *const closures[] = {"no circulation", "Kutta"};
 
@@ -117,17 +124,17 @@ static void probe_solve(struct probe *probe, enum closure closure) {
 }
 
 /* A body with n_nodes nodes and n points of its sheet; kutta: rate sheds nothing at the start. */
-static struct probe probe_open(const char *scheme, int n, int n_nodes, const char *driven) {
+static struct probe probe_open(const struct scheme *scheme, int n, int n_nodes, const char *driven) {
     struct probe probe = {.n = n};
     probe.simulation = verify_open(
         "format: 1\n"
         "time: {end: 1, shedding_interval: 0.1, output_interval: 1}\n"
         "fluid: {velocity: [%.17g, %.17g]}\n"
-        "wake: {kutta: rate, collocation: %s}\n"
+        "wake: {kutta: rate, curve: %s, collocation: %s}\n"
         "fish:\n"
         "  - {nodes: %d, sheet_points: %d, wave: {amplitude: 0}, start: {heading: 180, speed: 0},\n"
         "     motion: {driven: %s, speed: 0}}\n",
-        cos(incidence), sin(incidence), scheme, n_nodes, n, driven);
+        cos(incidence), sin(incidence), scheme->curve, scheme->collocation, n_nodes, n, driven);
     probe.fish = &probe.simulation->school->fish[0];
     probe.matrix = numbers(n * n);
     probe.inverse = numbers(n * n);
@@ -148,6 +155,16 @@ static double probe_circulation(const struct probe *probe) {
     double sum = 0;
     for (int j = 0; j < probe->n; j++) sum += probe->fish->sheet_weight[j] * probe->sheet[j];
     return sum;
+}
+
+/* The strength of the sheet at bound vortex j, gamma_j. */
+static double probe_strength(const struct probe *probe, int j) {
+    double *const y = numbers(probe->simulation->school->n_unknowns);
+    memcpy(y, probe->simulation->state->y, (size_t)probe->simulation->school->n_unknowns * sizeof *y);
+    y[probe->fish->at.gamma + j] = probe->sheet[j];
+    const double strength = bound_sheet_strength(probe->fish, j, y);
+    free(y);
+    return strength;
 }
 
 /* How far q_j is from the circulation that the strength density(s) puts on an interval pi/(M-1) of the angle theta,
@@ -171,7 +188,7 @@ static double probe_error(const struct probe *probe, enum closure closure, doubl
 struct errors {
     double strength, middle; /* of q_j between the tips, and in the middle */
     double circulation;
-    double unknown; /* of gamma_j where theta = pi/4, relative */
+    double gamma; /* of gamma_j where theta = pi/4, relative */
 };
 
 static struct errors probe_errors(struct probe *probe, enum closure closure, double (*density)(enum closure, double),
@@ -182,7 +199,7 @@ static struct errors probe_errors(struct probe *probe, enum closure closure, dou
     return (struct errors){.strength = probe_error(probe, closure, density, 0),
                            .middle = probe_error(probe, closure, density, 1),
                            .circulation = fabs(probe_circulation(probe) - (closure == STEADY_KUTTA ? circulation : 0)),
-                           .unknown = fabs(probe->sheet[quarter] / density(closure, s) - 1)};
+                           .gamma = fabs(probe_strength(probe, quarter) / density(closure, s) - 1)};
 }
 
 // ---- the flat plate
@@ -193,7 +210,7 @@ static double plate_strength(enum closure closure, double s) {
     return -2 * sin(incidence) * (0.5 - s) / sqrt(s * (1 - s));
 }
 
-static struct errors plate_errors(const char *scheme, enum closure closure, int n) {
+static struct errors plate_errors(const struct scheme *scheme, enum closure closure, int n) {
     struct probe probe = probe_open(scheme, n, 4, "all");
     const struct errors errors = probe_errors(&probe, closure, plate_strength, -pi * sin(incidence));
     probe_close(&probe);
@@ -201,18 +218,28 @@ static struct errors plate_errors(const char *scheme, enum closure closure, int 
 }
 
 static void chebyshev_on_a_plate(enum closure closure, const char *source) {
-    const struct errors errors = plate_errors("chebyshev", closure, 33), twice = plate_errors("chebyshev", closure, 65);
+    const struct errors errors = plate_errors(&schemes[CHEBYSHEV], closure, 33),
+                        twice = plate_errors(&schemes[CHEBYSHEV], closure, 65);
     verify_zero(verify_text("plate, %s, chebyshev, M = 33: error of q_j", closures[closure]), source, errors.strength,
                 1e-10);
     // ds_j is half the distance of the neighbours and no weight of the quadrature: sin(pi/(M-1)) stands for pi/(M-1)
     verify_order(verify_text("plate, %s, chebyshev: order of gamma_j = q_j/ds_j", closures[closure]), source,
-                 verify_order_of_errors(errors.unknown, twice.unknown), 1.9, 2.1);
+                 verify_order_of_errors(errors.gamma, twice.gamma), 1.9, 2.1);
     verify_show(verify_text("plate, %s, chebyshev, M = 33: error of gamma_j", closures[closure]),
-                "relative: (pi/(M-1))/sin(pi/(M-1)) - 1", errors.unknown);
+                "relative: (pi/(M-1))/sin(pi/(M-1)) - 1", errors.gamma);
+}
+
+static void smooth_on_a_plate(enum closure closure, const char *source) {
+    const struct errors errors = plate_errors(&schemes[SMOOTH], closure, 33);
+    verify_zero(verify_text("plate, %s, smooth, M = 33: error of q_j", closures[closure]), source, errors.strength,
+                1e-10);
+    verify_zero(verify_text("plate, %s, smooth, M = 33: error of gamma_j", closures[closure]), source, errors.gamma,
+                1e-10);
 }
 
 static void midpoint_on_a_plate(enum closure closure, const char *source) {
-    const struct errors coarse = plate_errors("midpoint", closure, 33), fine = plate_errors("midpoint", closure, 65);
+    const struct errors coarse = plate_errors(&schemes[MIDPOINT], closure, 33),
+                        fine = plate_errors(&schemes[MIDPOINT], closure, 65);
     verify_show(verify_text("plate, %s, midpoint, M = 33: error of q_j", closures[closure]), source, coarse.middle);
     verify_order(verify_text("plate, %s, midpoint: order of q_j, 0.15 < s/L < 0.85", closures[closure]), source,
                  verify_order_of_errors(coarse.middle, fine.middle), 0.9, 1.1);
@@ -223,18 +250,18 @@ static void midpoint_on_a_plate(enum closure closure, const char *source) {
 /* With q_{M-1} = 0 the matrix is Cauchy's: sum q = 2 pi U sin(alpha) (sum of control points - sum of vortices), which
  * is exact for both schemes at every M. */
 static void circulation_of_a_plate(void) {
-    for (int scheme = 0; scheme < 2; scheme++) {
-        verify_zero(verify_text("plate, Kutta, %s, M = 33: error of circulation", schemes[scheme]),
-                    "Gamma = pi L U sin(alpha)", plate_errors(schemes[scheme], STEADY_KUTTA, 33).circulation, 1e-10);
+    for (int scheme = 0; scheme < N_SCHEMES; scheme++) {
+        verify_zero(verify_text("plate, Kutta, %s, M = 33: error of circulation", schemes[scheme].name),
+                    "Gamma = pi L U sin(alpha)", plate_errors(&schemes[scheme], STEADY_KUTTA, 33).circulation, 1e-10);
     }
 }
 
 static void figure_of_the_plate(void) {
-    for (int scheme = 0; scheme < 2; scheme++) {
+    for (int scheme = 0; scheme <= MIDPOINT; scheme++) {
         for (int closure = NO_CIRCULATION; closure <= STEADY_KUTTA; closure++) {
             for (int n = 9; n <= 129; n = 2 * n - 1) {
-                const struct errors errors = plate_errors(schemes[scheme], (enum closure)closure, n);
-                verify_point("sheet_plate", verify_text("%s, %s", schemes[scheme], closures[closure]), n,
+                const struct errors errors = plate_errors(&schemes[scheme], (enum closure)closure, n);
+                verify_point("sheet_plate", verify_text("%s, %s", schemes[scheme].name, closures[closure]), n,
                              errors.middle);
             }
         }
@@ -243,7 +270,7 @@ static void figure_of_the_plate(void) {
 
 /* What the program itself solves at the start is the same: the rate of Kutta's condition has not shed anything yet. */
 static void start_of_a_run(void) {
-    struct probe probe = probe_open("chebyshev", 33, 4, "all");
+    struct probe probe = probe_open(&schemes[CHEBYSHEV], 33, 4, "all");
     probe_solve(&probe, NO_CIRCULATION);
     double largest = 0;
     for (int j = 0; j < probe.n; j++) {
@@ -266,14 +293,14 @@ static double condition(const struct probe *probe, int with_circulations) {
 
 static void conditions(void) {
     const int most = verify_is_fast() ? 33 : 129;
-    for (int scheme = 0; scheme < 2; scheme++) {
+    for (int scheme = 0; scheme <= MIDPOINT; scheme++) {
         for (int n = 9; n <= most; n = 2 * n - 1) {
-            struct probe probe = probe_open(schemes[scheme], n, 4, "all");
+            struct probe probe = probe_open(&schemes[scheme], n, 4, "all");
             probe_solve(&probe, NO_CIRCULATION);
-            verify_show(verify_text("condition of the sheet's system, %s, M = %d", schemes[scheme], n),
-                        "one-norm; no penetration and Kelvin for gamma_j, L = 1 m", condition(&probe, 0));
-            verify_point("sheet_condition", verify_text("%s, gamma_j", schemes[scheme]), n, condition(&probe, 0));
-            verify_point("sheet_condition", verify_text("%s, q_j", schemes[scheme]), n, condition(&probe, 1));
+            verify_show(verify_text("condition of the sheet's system, %s, M = %d", schemes[scheme].name, n),
+                        "one-norm; impermeability and Kelvin for gamma_j, L = 1 m", condition(&probe, 0));
+            verify_point("sheet_condition", verify_text("%s, gamma_j", schemes[scheme].name), n, condition(&probe, 0));
+            verify_point("sheet_condition", verify_text("%s, q_j", schemes[scheme].name), n, condition(&probe, 1));
             probe_close(&probe);
         }
     }
@@ -320,14 +347,28 @@ static double arc_circulation(void) {
     return -4 * pi * a / cos(quarter) * sin(incidence + quarter);
 }
 
-static struct errors arc_errors(const char *scheme, enum closure closure, int n, int n_nodes) {
+/* A place on a body of length 1 at the fraction s of its length. */
+typedef double complex line(double s);
+
+static double complex arc_line(double s) {
+    double complex tangent;
+    return arc_place(s, &tangent);
+}
+
+/* A free body whose nodes lie on a line. */
+static struct probe probe_open_bent(const struct scheme *scheme, int n, int n_nodes, line *place) {
     struct probe probe = probe_open(scheme, n, n_nodes, "none");
+    double *const y = probe.simulation->state->y;
     for (int k = 0; k < n_nodes; k++) {
-        double complex tangent;
-        const double complex z = arc_place((double)k / (n_nodes - 1), &tangent);
-        probe.simulation->state->y[probe.fish->at.x + k] = creal(z);
-        probe.simulation->state->y[probe.fish->at.y + k] = cimag(z);
+        const double complex z = place((double)k / (n_nodes - 1));
+        y[probe.fish->at.x + k] = creal(z);
+        y[probe.fish->at.y + k] = cimag(z);
     }
+    return probe;
+}
+
+static struct errors arc_errors(const struct scheme *scheme, enum closure closure, int n, int n_nodes) {
+    struct probe probe = probe_open_bent(scheme, n, n_nodes, arc_line);
     const struct errors errors = probe_errors(&probe, closure, arc_strength, arc_circulation());
     probe_close(&probe);
     return errors;
@@ -335,28 +376,28 @@ static struct errors arc_errors(const char *scheme, enum closure closure, int n,
 
 static void figure_of_the_arc(void) {
     const int n_nodes[] = {7, 65, 1025};
-    for (int scheme = 0; scheme < 2; scheme++) {
+    for (int scheme = 0; scheme < N_SCHEMES; scheme++) {
         for (int body = 0; body < 3; body++) {
             for (int n = 9; n <= 129; n = 2 * n - 1) {
-                verify_point("sheet_arc", verify_text("%s, %d nodes", schemes[scheme], n_nodes[body]), n,
-                             arc_errors(schemes[scheme], STEADY_KUTTA, n, n_nodes[body]).circulation);
+                verify_point("sheet_arc", verify_text("%s, %d nodes", schemes[scheme].name, n_nodes[body]), n,
+                             arc_errors(&schemes[scheme], STEADY_KUTTA, n, n_nodes[body]).circulation);
             }
         }
     }
 }
 
-/* The body between its nodes is straight. With 1025 nodes its corners add a few per cent to the errors at M = 33
+/* Of the polygon. The body between its nodes is straight. With 1025 nodes its corners add a few per cent to the errors at M = 33
  * (figure sheet_arc: with 257 nodes 14 % of that of the circulation, with 65 more than half of it). */
 static void circular_arc(void) {
     static const char source[] = "Joukowski's map of a circle, exact";
     const int n_nodes = 1025;
-    for (int scheme = 0; scheme < 2; scheme++) {
+    for (int scheme = 0; scheme <= MIDPOINT; scheme++) {
         // chebyshev: the normal is the chord's, which is the body's in the middle of the chord, a step squared away
         const double order = scheme == 0 ? 2 : 1, slack = scheme == 0 ? 0.2 : 0.1;
-        const char *const name = schemes[scheme];
+        const char *const name = schemes[scheme].name;
         for (int closure = NO_CIRCULATION; closure <= STEADY_KUTTA; closure++) {
-            const struct errors coarse = arc_errors(name, (enum closure)closure, 17, n_nodes);
-            const struct errors fine = arc_errors(name, (enum closure)closure, 33, n_nodes);
+            const struct errors coarse = arc_errors(&schemes[scheme], (enum closure)closure, 17, n_nodes);
+            const struct errors fine = arc_errors(&schemes[scheme], (enum closure)closure, 33, n_nodes);
             verify_show(verify_text("arc, %s, %s, M = 33: error of q_j", closures[closure], name), source, fine.middle);
             verify_order(verify_text("arc, %s, %s: order of q_j, 0.15 < s/L < 0.85", closures[closure], name), source,
                          verify_order_of_errors(coarse.middle, fine.middle), order - slack, order + slack);
@@ -368,7 +409,135 @@ static void circular_arc(void) {
         }
     }
     verify_show("arc, Kutta, chebyshev, 7 nodes, M = 21: error of circulation", source,
-                arc_errors("chebyshev", STEADY_KUTTA, 21, 7).circulation);
+                arc_errors(&schemes[CHEBYSHEV], STEADY_KUTTA, 21, 7).circulation);
+}
+
+/* The smooth curve through few nodes of the arc. */
+static void smooth_arc(void) {
+    static const char source[] = "Joukowski's map of a circle, exact";
+    static const int n_nodes[] = {7, 11, 21, 41};
+    static const double bounds[] = {1e-4, 2e-5, 2e-6, 2e-7};
+    struct errors errors[4];
+    for (int i = 0; i < 4; i++) {
+        errors[i] = arc_errors(&schemes[SMOOTH], STEADY_KUTTA, 41, n_nodes[i]);
+        const struct errors polygon = arc_errors(&schemes[CHEBYSHEV], STEADY_KUTTA, 41, n_nodes[i]);
+        verify_zero(verify_text("arc, Kutta, smooth, N = %d, M = 41: error of circulation / U L", n_nodes[i]), source,
+                    errors[i].circulation, bounds[i]);
+        verify_show(verify_text("arc, Kutta, polygon, N = %d, M = 41: error of circulation / U L", n_nodes[i]), source,
+                    polygon.circulation);
+        verify_show(verify_text("arc, Kutta, smooth, N = %d, M = 41: error of gamma_j", n_nodes[i]), source,
+                    errors[i].gamma);
+        verify_show(verify_text("arc, Kutta, polygon, N = %d, M = 41: error of gamma_j", n_nodes[i]), source,
+                    polygon.gamma);
+    }
+    verify_order("arc, Kutta, smooth: order of circulation in N", source,
+                 log(errors[2].circulation / errors[3].circulation) / log(40.0 / 20.0), 3, 4);
+}
+
+// ---- a bent fish
+
+/* A default fish in mid-beat: the curvature 6 A (s + 0.2 s^2) sin(1 - 6 s) of its wave, by Simpson's rule. */
+static double complex beat_line(double s) {
+    enum { N_PIECES = 2000 };
+    double angle = 0;
+    double complex z = 0;
+    for (int i = 0; i < N_PIECES; i++) {
+        double turn[5];
+        for (int k = 0; k < 5; k++) {
+            const double q = s * (i + k / 4.0) / N_PIECES;
+            turn[k] = s / N_PIECES * 6 * 0.4 * (q + 0.2 * q * q) * sin(1 - 6 * q);
+        }
+        const double middle = angle + (turn[0] + 4 * turn[1] + turn[2]) / 12;
+        const double end = middle + (turn[2] + 4 * turn[3] + turn[4]) / 12;
+        z += s / N_PIECES * (cexp(I * angle) + 4 * cexp(I * middle) + cexp(I * end)) / 6;
+        angle = end;
+    }
+    return z;
+}
+
+/* Differences of the circulation of two bent fish, and of gamma where theta = pi/4, both relative. */
+static struct errors beat_errors(const struct scheme *scheme, int n, int n_nodes, const struct probe *reference) {
+    struct probe probe = probe_open_bent(scheme, n, n_nodes, beat_line);
+    probe_solve(&probe, STEADY_KUTTA);
+    const double gamma = probe_strength(&probe, (n - 1) / 4), want = probe_strength(reference, (reference->n - 1) / 4);
+    const struct errors errors = {.circulation = fabs(probe_circulation(&probe) / probe_circulation(reference) - 1),
+                                  .gamma = fabs(gamma / want - 1)};
+    probe_close(&probe);
+    return errors;
+}
+
+static void bent_fish(void) {
+    static const char source[] = "the same with N = 641, smooth";
+    static const int n_nodes[] = {9, 17, 33, 65};
+    static const double bounds[] = {1e-2, 1e-3, 1e-4, 1e-5};
+    struct probe reference = probe_open_bent(&schemes[SMOOTH], 65, 641, beat_line);
+    probe_solve(&reference, STEADY_KUTTA);
+    double error[4], polygon[4];
+    for (int i = 0; i < 4; i++) {
+        error[i] = beat_errors(&schemes[SMOOTH], 65, n_nodes[i], &reference).circulation;
+        polygon[i] = beat_errors(&schemes[CHEBYSHEV], 65, n_nodes[i], &reference).circulation;
+        verify_zero(verify_text("bent fish, smooth, N = %d, M = 65: circulation, relative", n_nodes[i]), source,
+                    error[i], bounds[i]);
+        verify_show(verify_text("bent fish, polygon, N = %d, M = 65: circulation, relative", n_nodes[i]), source,
+                    polygon[i]);
+    }
+    verify_order("bent fish, smooth: order of circulation in N", source, verify_order_of_errors(error[2], error[3]), 3,
+                 4);
+    verify_order("bent fish, polygon: order of circulation in N", source,
+                 verify_order_of_errors(polygon[2], polygon[3]), 1.2, 1.8);
+    probe_close(&reference);
+}
+
+/* How the sheet on a body of 17 nodes converges in M: against itself with 129 points. */
+static void points_of_a_bent_fish(void) {
+    static const int lines[] = {SMOOTH, CHEBYSHEV};
+    for (int i = 0; i < 2; i++) {
+        const struct scheme *const scheme = &schemes[lines[i]];
+        struct probe reference = probe_open_bent(scheme, 129, 17, beat_line);
+        probe_solve(&reference, STEADY_KUTTA);
+        for (int n = 17; n <= 33; n += 16) {
+            const struct errors errors = beat_errors(scheme, n, 17, &reference);
+            const char *const source = "the same with M = 129";
+            const double bound = n == 17 ? 1e-5 : 1e-9;
+            if (lines[i] == SMOOTH) {
+                verify_zero(verify_text("bent fish, smooth, N = 17, M = %d: circulation, relative", n), source,
+                            errors.circulation, bound);
+                verify_zero(verify_text("bent fish, smooth, N = 17, M = %d: gamma_j, relative", n), source,
+                            errors.gamma, bound);
+            } else {
+                verify_show(verify_text("bent fish, polygon, N = 17, M = %d: circulation, relative", n), source,
+                            errors.circulation);
+                verify_show(verify_text("bent fish, polygon, N = 17, M = %d: gamma_j, relative", n), source,
+                            errors.gamma);
+            }
+        }
+        probe_close(&reference);
+    }
+}
+
+static void figures_of_the_curve(void) {
+    static const int lines[] = {SMOOTH, CHEBYSHEV};
+    struct probe nodes = probe_open_bent(&schemes[SMOOTH], 65, 641, beat_line);
+    probe_solve(&nodes, STEADY_KUTTA);
+    for (int i = 0; i < 2; i++) {
+        const struct scheme *const scheme = &schemes[lines[i]];
+        struct probe points = probe_open_bent(scheme, 129, 17, beat_line);
+        probe_solve(&points, STEADY_KUTTA);
+        for (int n = 6; n <= 96; n *= 2) {
+            verify_point("sheet_nodes", verify_text("arc, %s", scheme->curve), n + 1,
+                         arc_errors(scheme, STEADY_KUTTA, 65, n + 1).circulation);
+            verify_point("sheet_nodes", verify_text("bent fish, %s", scheme->curve), n + 1,
+                         beat_errors(scheme, 65, n + 1, &nodes).circulation);
+        }
+        for (int n = 9; n <= 65; n += 8) {
+            verify_point("sheet_points", verify_text("%s, circulation", scheme->curve), n,
+                         beat_errors(scheme, n, 17, &points).circulation);
+            verify_point("sheet_points", verify_text("%s, gamma_j", scheme->curve), n,
+                         beat_errors(scheme, n, 17, &points).gamma);
+        }
+        probe_close(&points);
+    }
+    probe_close(&nodes);
 }
 
 void verify_sheet(void) {
@@ -376,13 +545,18 @@ void verify_sheet(void) {
                                           "gamma = 2 U sin(alpha) sqrt((L - s)/s)"};
     for (int closure = NO_CIRCULATION; closure <= STEADY_KUTTA; closure++) {
         chebyshev_on_a_plate((enum closure)closure, sources[closure]);
+        smooth_on_a_plate((enum closure)closure, sources[closure]);
         midpoint_on_a_plate((enum closure)closure, sources[closure]);
     }
     circulation_of_a_plate();
     start_of_a_run();
     conditions();
     circular_arc();
+    smooth_arc();
+    bent_fish();
+    points_of_a_bent_fish();
     if (verify_is_fast()) return;
     figure_of_the_plate();
     figure_of_the_arc();
+    figures_of_the_curve();
 }
