@@ -20,7 +20,7 @@ yaml : yaml_parser_ yaml_event_ : case
 '
 
 # Rooms that are still being put in order.
-readonly pending='study app'
+readonly pending='study'
 
 cd "$(dirname "$0")/.."
 build=${1:-build}

@@ -1,35 +1,15 @@
-/* main.c: chooses a command, catches signals, and prints errors: the only place that does. Results go to stdout,
- * progress and messages to stderr. */
-#include "app/main.h"
-
+/* main.c: chooses a command and prints errors: the only place that does. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "app/main_commands.h"
+#include "app/main_options.h"
+#include "app/main_signals.h"
+#include "app/main_threads.h"
 #include "base/version.h"
 
-/* ---- signals ---- */
-
-static volatile sig_atomic_t stop_signal;
-
-static void on_signal(int number) {
-    stop_signal = number;
-}
-
-void main_catch_signals(void) {
-    struct sigaction action = {.sa_handler = on_signal};
-    sigemptyset(&action.sa_mask);
-    action.sa_flags = (int)SA_RESETHAND; /* a second one ends the program at once */
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
-    /* a full disk or a file limit is an error to report, not a death */
-    signal(SIGXFSZ, SIG_IGN);
-}
-
-const volatile sig_atomic_t *main_stop_signal(void) {
-    return &stop_signal;
-}
-
-/* ---- the commands ---- */
+// ---- the commands
 
 static const struct command commands[] = {
     {"run",
@@ -140,8 +120,7 @@ static void print_message(const char *message) {
 
 int main(int argc, char **argv) {
     main_wait_briefly(argv);
-    // whoever started the program may ignore the ends of his own children; we wait for ours
-    signal(SIGCHLD, SIG_DFL);
+    main_reset_signals();
     enum status status = choose(argc, argv);
     if (status == STATUS_OK && (fflush(stdout) != 0 || ferror(stdout))) {
         status = status_fail(STATUS_FILE, "cannot write to standard output");

@@ -1,7 +1,7 @@
-/* main_case.c: looking at cases and at results. Declared in main.h. */
+/* main_case.c: looking at cases and at results. */
 #include <stdlib.h>
 
-#include "app/main.h"
+#include "app/main_commands.h"
 #include "case/case.h"
 #include "case/case_keys.h"
 #include "case/case_member.h"

@@ -1,9 +1,10 @@
-/* main_options.c: the options of the commands. Declared in main.h. */
+/* main_options.c: the options of the commands. */
+#include "app/main_options.h"
+
 #include <getopt.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include "app/main.h"
 
 /* One option: its names, the word for its argument (NULL: none), and what it means. */
 struct option_help {

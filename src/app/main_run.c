@@ -1,11 +1,13 @@
-/* main_run.c: running a case; the demonstration. Declared in main.h. */
+/* main_run.c: running a case; the demonstration. */
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "app/main.h"
+#include "app/main_commands.h"
+#include "app/main_signals.h"
+#include "app/main_threads.h"
 #include "app/progress.h"
 #include "case/case.h"
 #include "case/sweep_members.h"

@@ -1,8 +1,9 @@
-/* main_study.c: many runs from one case. Declared in main.h. */
+/* main_study.c: many runs from one case. */
 #include <stdlib.h>
 #include <unistd.h>
 
-#include "app/main.h"
+#include "app/main_commands.h"
+#include "app/main_signals.h"
 #include "app/progress.h"
 #include "case/case.h"
 #include "study/compare.h"

@@ -1,13 +1,13 @@
-/* main_threads.c: where the threads of a run wait, and on which processors. Declared in main.h. */
+/* main_threads.c: where the threads of a run wait, and on which processors. */
 // for the sets of processors, which are Linux's own
 #define _GNU_SOURCE
+#include "app/main_threads.h"
+
 #include <omp.h>
 #include <pthread.h>
 #include <sched.h>
 #include <stdlib.h>
 #include <unistd.h>
-
-#include "app/main.h"
 
 void main_wait_briefly(char **argv) {
     if (getenv("OMP_WAIT_POLICY") || getenv("GOMP_SPINCOUNT")) return;

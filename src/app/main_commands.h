@@ -1,0 +1,26 @@
+/* main_commands.h: the commands of the program. Each takes what the command line says, prints results to stdout and
+ * progress to stderr, and fails with any status. Tested by tests/app/test_command.sh and tests/study.
+ *
+ *     main_run.c      run, demo
+ *     main_study.c    study, gather, compare
+ *     main_case.c     check, show, keys, info */
+#ifndef MAIN_COMMANDS_H
+#define MAIN_COMMANDS_H
+
+#include "app/main_options.h"
+#include "base/status.h"
+
+enum status main_run(const struct request *request);
+enum status main_demo(const struct request *request);
+enum status main_study(const struct request *request);
+enum status main_gather(const struct request *request);
+enum status main_compare(const struct request *request);
+enum status main_check(const struct request *request);
+enum status main_show(const struct request *request);
+enum status main_keys(const struct request *request);
+enum status main_info(const struct request *request);
+
+/* Print what a file of shoal holds, or the case in it alone. Fails with STATUS_FILE or STATUS_MEMORY. */
+enum status main_print_info(const char *path, int case_only);
+
+#endif

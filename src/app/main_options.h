@@ -1,0 +1,55 @@
+/* main_options.h: what follows a command on the command line, and the help on it. Tested by tests/app/test_command.sh. */
+#ifndef MAIN_OPTIONS_H
+#define MAIN_OPTIONS_H
+
+#include "base/status.h"
+
+/* Options without a letter of their own. */
+enum option_code {
+    OPTION_SET = 256,
+    OPTION_THREADS,
+    OPTION_FORCE,
+    OPTION_JSON,
+    OPTION_OUTPUT,
+    OPTION_CASE,
+    OPTION_MEMBERS,
+    OPTION_METHODS,
+    OPTION_RTOL,
+    OPTION_STEPS,
+    OPTION_REPEATS,
+    OPTION_REFERENCE,
+    OPTION_LIMIT,
+    OPTION_SLURM,
+    OPTION_BUNDLE
+};
+
+/* What the command line says. A text is NULL where its option is not given. */
+struct request {
+    const char *command_line;
+    const char *output;
+    int quiet, verbose, force, json, of_output, case_only;
+    int n_assignments;
+    const char **assignments; /* the texts of --set */
+    char threads[64];         /* --threads as an assignment */
+    const char *processes, *members;
+    const char *methods, *rtols, *steps, *repeats, *reference_rtol, *limit, *bundle;
+    int slurm;
+    const char *positional;
+};
+
+/* One command: its name, what follows it, one sentence, the codes of its options, and the function that does it. */
+struct command {
+    const char *name, *positional, *summary;
+    int options[16]; /* 0 at the end */
+    enum status (*run)(const struct request *request);
+};
+
+/* Read the options of a command, argv[0] being its name, into *request, whose assignments have room for argc texts.
+ * Returns -1 once the help of the command has been printed; else 0, and *status is STATUS_CASE where they are wrong. */
+int main_parse(const struct command *command, int argc, char **argv, struct request *request, enum status *status);
+
+/* Fail with STATUS_CASE: the problem (a printf format with one %s for the word) and where the help is; command may be
+ * NULL. */
+enum status main_usage(const struct command *command, const char *format, const char *word);
+
+#endif

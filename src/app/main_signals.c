@@ -1,0 +1,28 @@
+/* main_signals.c: signals are noted, and the work looks at the note. */
+#include "app/main_signals.h"
+
+#include <stddef.h>
+
+static volatile sig_atomic_t stop_signal;
+
+static void on_signal(int number) {
+    stop_signal = number;
+}
+
+void main_reset_signals(void) {
+    signal(SIGCHLD, SIG_DFL);
+}
+
+void main_catch_signals(void) {
+    struct sigaction action = {.sa_handler = on_signal};
+    sigemptyset(&action.sa_mask);
+    action.sa_flags = (int)SA_RESETHAND;
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+    // a full disk or a file limit is an error to report, not a death
+    signal(SIGXFSZ, SIG_IGN);
+}
+
+const volatile sig_atomic_t *main_stop_signal(void) {
+    return &stop_signal;
+}
