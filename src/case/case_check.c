@@ -4,7 +4,10 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+
+#include "case/case_table.h"
 
 static const double most_events = 1e9, most_vortices = 1e7 /* of one fish */;
 
@@ -162,6 +165,23 @@ static void check_motion(const struct check *check) {
     }
 }
 
+/* A speed that the chosen law of drag does not use; a case that `shoal show` printed has every key with its default. */
+static void check_drag(const struct check *check) {
+    const struct fish_parameters *const fish = &check->values->school.fish[check->fish];
+    const struct drag_parameters *const drag = &fish->drag;
+    static const char path[] = "fish.drag.linear_speed";
+    const bool is_given = fabs(drag->linear_speed - strtod(case_table_row(path)->initial, NULL)) > 0;
+    if (is_given && drag->law != DRAG_LINEAR_QUADRATIC) {
+        complain(check, path, "is for 'law: linear_quadratic' only; remove it");
+    } else if (is_given && fish->force == FORCE_PUBLISHED) {
+        complain(check, path, "is for 'force: reactive' only; in the published law it is 1 m/s");
+    } else if (drag->law == DRAG_LINEAR_QUADRATIC && fish->force == FORCE_REACTIVE && drag->linear_speed > 0 &&
+               fish->wave.frequency == 0) {
+        complain(check, "fish.drag.law",
+                 "needs wave.frequency above 0, for its linear_speed is in lengths per beat; choose quadratic");
+    }
+}
+
 static void check_headings(const struct check *check) {
     const struct number_list *const heading = &check->values->school.fish[check->fish].control.desired_heading;
     if (heading->n > 0 && heading->value[0] < 0) {
@@ -220,6 +240,7 @@ void case_check(const struct case_values *values, const struct case_tree *tree, 
         check_edge_list(&check, "fish.body.h", &fish->body.h);
         check_edge_list(&check, "fish.body.w", &fish->body.w);
         check_turn(&check);
+        check_drag(&check);
         check_motion(&check);
         check_control(&check);
     }

@@ -169,14 +169,21 @@ const struct key case_table[] = {
      .meaning = "the wave grows to its amplitude over this time",
      .derived = "one period, 1/frequency (0 when the frequency is 0)", .published = "0"},
 
+    {"fish.force", CHOICE, IN_FISH(force), "published", ANY, "",
+     .meaning = "force of the fluid that the body accelerates: reactive: from its kinetic energy, with what leaves at "
+                "the tail; published: added mass across each edge",
+     .published = "published", .words = WORDS("reactive", "published")},
+
     {"fish.drag.tangential", REAL, IN_FISH(drag.tangential), "1e-3", FROM(0), "", .meaning = "coefficient of friction",
      .synonyms = "friction c_f cf"},
     {"fish.drag.normal", REAL, IN_FISH(drag.normal), "0.5", FROM(0), "",
      .meaning = "coefficient of drag across the body", .synonyms = "c_d cd lateral"},
     {"fish.drag.added_mass", REAL, IN_FISH(drag.added_mass), "1.5", FROM(0), "", .meaning = "coefficient of added mass",
      .synonyms = "c_a ca"},
-    {"fish.drag.law", CHOICE, IN_FISH(drag.law), "quadratic", ANY, "", .meaning = "v |v|, or v (1 m/s + |v|)",
+    {"fish.drag.law", CHOICE, IN_FISH(drag.law), "quadratic", ANY, "", .meaning = "v |v|, or v (V1 + |v|)",
      .published = "quadratic", .words = WORDS("quadratic", "linear_quadratic")},
+    {"fish.drag.linear_speed", REAL, IN_FISH(drag.linear_speed), "1", FROM(0), "",
+     .meaning = "V1 of the law linear_quadratic, in lengths per beat; with force published it is 1 m/s"},
     {"fish.drag.extent", CHOICE, IN_FISH(drag.extent), "thickness", ANY, "",
      .meaning = "the height of the body that a motion across it meets", .published = "thickness",
      .words = WORDS("thickness", "width")},

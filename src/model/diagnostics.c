@@ -7,7 +7,7 @@
 #include "base/angle.h"
 #include "model/actuation.h"
 #include "model/bound_sheet.h"
-#include "model/drag.h"
+#include "model/fluid_force.h"
 #include "model/rod.h"
 
 enum status diagnostics_create(struct diagnostics **diagnostics, const struct school *school) {
@@ -51,8 +51,8 @@ static double driving_power(struct residual *residual, int f, const double *y, d
 struct diagnostics_power diagnostics_power(struct residual *residual, int f, double t, const double *y,
                                            const double *yp) {
     const struct fish *fish = &residual->school->fish[f];
-    const double *const u = residual->flow->u + residual->flow->points[f].first;
-    const double *const v = residual->flow->v + residual->flow->points[f].first;
+    const struct flow_at_body flow = flow_at_body(residual->flow, f);
+    const struct fluid_power fluid = fluid_force_power(fish, &flow, y);
     // natural curvature, its derivative and its rate at this very state
     double *const curvature = residual->scratch, *const by_phi0 = curvature + fish->n_joints;
     actuation_curvature(fish, t, y[fish->at.phi0], curvature, by_phi0);
@@ -60,8 +60,9 @@ struct diagnostics_power diagnostics_power(struct residual *residual, int f, dou
     actuation_rate(fish, t, y[fish->at.phi0], yp[fish->at.phi0], rate);
     return (struct diagnostics_power){.actuation = rod_actuation_power(fish, curvature, rate, y),
                                       .damping = rod_damping_power(fish, y),
-                                      .drag = drag_power(fish, u, v, y),
-                                      .added_mass = drag_added_mass_power(fish, y),
+                                      .drag = fluid.drag,
+                                      .added_mass = fluid.added_mass,
+                                      .wake = fluid.wake,
                                       .driving = driving_power(residual, f, y, residual->scratch)};
 }
 
@@ -87,7 +88,7 @@ double diagnostics_energy(struct residual *residual, int f, double t, const doub
 }
 
 static double total_power(const struct diagnostics_power *power) {
-    return power->actuation + power->damping + power->drag + power->added_mass + power->driving;
+    return power->actuation + power->damping + power->drag + power->added_mass + power->wake + power->driving;
 }
 
 // integral over the newest interval of the quadratic through three values, or the line through two
@@ -223,11 +224,14 @@ static void diagnostics_one(struct residual *residual, const struct state *state
     to->kinetic_energy = kinetic_energy(fish, y);
     to->bending_energy = bending_energy(residual, f, state->t, y);
     to->stretching_energy = rod_stretching_energy(fish, y);
+    const struct flow_at_body flow = flow_at_body(residual->flow, f);
+    to->added_mass_energy = fluid_force_added_mass_energy(fish, &flow, y);
     const struct diagnostics_power power = diagnostics_power(residual, f, state->t, y, state->yp);
     to->actuation_power = power.actuation;
     to->damping_power = power.damping;
     to->drag_power = power.drag;
     to->added_mass_power = power.added_mass;
+    to->wake_power = power.wake;
     to->driving_power = power.driving;
     const struct energy_balance *balance = &state->balance[f];
     to->energy_audit =

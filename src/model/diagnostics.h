@@ -14,11 +14,12 @@ struct diagnostics_fish {
     double heading;                 /* degree, unwrapped */
     double desired_heading;         /* degree */
     double phi0;
-    double shed_circulation;                                                            /* m2 s-1 */
-    double shedding_rate;                                                               /* m2 s-2 */
-    double kinetic_energy, bending_energy, stretching_energy;                           /* J */
-    double actuation_power, damping_power, drag_power, added_mass_power, driving_power; /* W */
-    double energy_audit;                                                                /* J */
+    double shed_circulation;                                  /* m2 s-1 */
+    double shedding_rate;                                     /* m2 s-2 */
+    double kinetic_energy, bending_energy, stretching_energy; /* J */
+    double added_mass_energy;                                 /* of the fluid that the body accelerates, J */
+    double actuation_power, damping_power, drag_power, added_mass_power, wake_power, driving_power; /* W */
+    double energy_audit;                                                                            /* J */
     double actuation_work;    /* put in by the muscle since the start, J */
     double cost_of_transport; /* mean actuation power over mass and speed, m s-2 */
     double strouhal;          /* frequency times peak-to-peak of the tail over speed */
@@ -39,7 +40,7 @@ void diagnostics_free(struct diagnostics *diagnostics);
 
 /* Powers of one fish, W, from the unknowns, their rates and the fluid's velocity in the last residual evaluated. */
 struct diagnostics_power {
-    double actuation, damping, drag, added_mass, driving;
+    double actuation, damping, drag, added_mass, wake, driving;
 };
 struct diagnostics_power diagnostics_power(struct residual *residual, int f, double t, const double *y,
                                            const double *yp);

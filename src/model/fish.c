@@ -38,8 +38,8 @@ static enum status fish_allocate(struct fish *fish) {
     TRY(doubles(&fish->arc, fish->n_nodes));
     TRY(doubles(&fish->mass, fish->n_nodes));
     double **const per_edge[] = {
-        &fish->thickness,     &fish->depth,           &fish->square,      &fish->cube,      &fish->axial_stiffness,
-        &fish->axial_damping, &fish->drag_tangential, &fish->drag_normal, &fish->added_mass};
+        &fish->thickness,     &fish->depth,           &fish->square,      &fish->cube,       &fish->axial_stiffness,
+        &fish->axial_damping, &fish->drag_tangential, &fish->drag_normal, &fish->added_mass, &fish->displaced_mass};
     for (size_t i = 0; i < sizeof per_edge / sizeof *per_edge; i++) TRY(doubles(per_edge[i], fish->n_edges));
     double **const per_joint[] = {&fish->bending_stiffness, &fish->bending_damping, &fish->wave_amplitude,
                                   &fish->wave_phase};
@@ -106,17 +106,24 @@ static void set_wave(struct fish *fish, const struct fish_parameters *from) {
     fish->ramp = wave->ramp;
 }
 
-static void set_drag(struct fish *fish, const struct fish_parameters *from, double density) {
+// drag, added mass and what leaves at the tail: doc/model.md, section 9
+static void set_fluid_forces(struct fish *fish, const struct fish_parameters *from, double density) {
     const struct drag_parameters *drag = &from->drag;
+    const int wide = drag->extent == EXTENT_WIDTH, published = from->force == FORCE_PUBLISHED;
     for (int k = 0; k < fish->n_edges; k++) {
         const double h = fish->thickness[k], w = fish->depth[k], l = fish->edge_length;
-        const int wide = drag->extent == EXTENT_WIDTH;
         const double across = wide ? w : h, square = wide ? 1 : fish->square[k];
-        fish->drag_tangential[k] = density * pi * drag->tangential * l * (h + w) / 8;
+        fish->drag_tangential[k] = density * pi * drag->tangential * l * (h + w) / (published ? 8 : 4);
         fish->drag_normal[k] = density * drag->normal * l * across / 2;
         fish->added_mass[k] = pi * density * drag->added_mass * across * across * l / 4 * square;
+        fish->displaced_mass[k] = density * pi * h * w / 4 * l;
     }
-    fish->drag_law = drag->law;
+    fish->force = from->force;
+    const double at_tail = wide ? fish->depth[fish->n_edges - 1] : profile_tail_thickness(from);
+    fish->tail_added_mass = published ? 0 : pi * density * drag->added_mass * at_tail * at_tail / 4;
+    // the published law has 1 m s-1
+    const double linear_speed = published ? 1 : drag->linear_speed * fish->length * from->wave.frequency;
+    fish->linear_speed = drag->law == DRAG_LINEAR_QUADRATIC ? linear_speed : 0;
 }
 
 // sigma at j intervals of the angle from the nose
@@ -264,7 +271,7 @@ static enum status fish_fill(struct fish *fish, const struct school_parameters *
     shape_edges(fish, from);
     weigh_body(fish, from);
     set_wave(fish, from);
-    set_drag(fish, from, parameters->fluid.density);
+    set_fluid_forces(fish, from, parameters->fluid.density);
     TRY(place_sheet(fish, &parameters->wake));
     set_motion(fish, from);
     return set_control(fish, from, parameters->fluid.density);
@@ -378,6 +385,7 @@ void fish_school_free(struct school *school) {
                                fish->drag_tangential,
                                fish->drag_normal,
                                fish->added_mass,
+                               fish->displaced_mass,
                                fish->sheet_weight,
                                fish->sheet_point,
                                fish->sheet_slope,

@@ -79,10 +79,13 @@ struct fish {
     double omega;           /* rad s-1 */
     double ramp;            /* s */
 
+    enum force force;
     double *drag_tangential; /* c_t, kg m-1                                       (n_edges) */
     double *drag_normal;     /* c_n, kg m-1                                       (n_edges) */
     double *added_mass;      /* mu, kg                                            (n_edges) */
-    enum drag_law drag_law;
+    double *displaced_mass;  /* rho_f A lbar, kg                                  (n_edges) */
+    double tail_added_mass;  /* m_L, kg m-1; 0: nothing leaves at the tail */
+    double linear_speed;     /* V1 of the drag law v (V1 + |v|), m s-1; 0: v |v| */
 
     double *sheet_weight;            /* ds_j: circulation over unknown, m           (n_sheet) */
     struct curve *curve;             /* the line of the body; owns the stencils below */

@@ -123,6 +123,25 @@ void flow_external(const struct school *school, double t, double y, double *u, d
     *v = school->velocity[1] + gust * school->gust[1];
 }
 
+void flow_external_acceleration(const struct school *school, double t, double acceleration[2]) {
+    const double angle = school->gust_omega * t, rate = school->gust_omega * cos(angle);
+    acceleration[0] = school->shear * (school->velocity[1] + sin(angle) * school->gust[1]) + rate * school->gust[0];
+    acceleration[1] = rate * school->gust[1];
+}
+
+struct flow_at_body flow_at_body(const struct flow *flow, int f) {
+    const int first = flow->points[f].first;
+    struct flow_at_body at = {.u = flow->u + first, .v = flow->v + first};
+    flow_external_acceleration(flow->school, flow->t, at.acceleration);
+    return at;
+}
+
+void flow_relative_velocity(const struct fish *fish, int edge, const double velocity[2], const double *u,
+                            const double *v, double w[2]) {
+    w[0] = velocity[0] - u[flow_midpoint(fish, edge)];
+    w[1] = velocity[1] - v[flow_midpoint(fish, edge)];
+}
+
 // what the points of a fish have of a quantity that its nodes have
 static void at_points(const struct flow *flow, int f, const double *of_nodes, double *of_points) {
     const struct fish *fish = &flow->school->fish[f];

@@ -91,6 +91,20 @@ int flow_n_columns(const struct fish *other);
 /* The external flow at height y at time t. */
 void flow_external(const struct school *school, double t, double y, double *u, double *v);
 
+/* The acceleration Du/Dt of a particle of the external flow at time t, the same everywhere, m s-2. */
+void flow_external_acceleration(const struct school *school, double t, double acceleration[2]);
+
+/* What a body feels of the flow as it was last summed. */
+struct flow_at_body {
+    const double *u, *v;    /* velocity at its points, m s-1 (flow_n_points) */
+    double acceleration[2]; /* of the external flow, m s-2 */
+};
+struct flow_at_body flow_at_body(const struct flow *flow, int f);
+
+/* Velocity of the midpoint of an edge, which moves with the given one, relative to the fluid: w. */
+void flow_relative_velocity(const struct fish *fish, int edge, const double velocity[2], const double *u,
+                            const double *v, double w[2]);
+
 /* Place all sources where they are at time t (at or after the event of the state) for the unknowns y, and sum the
  * velocity at all points of all fish; or the velocity with its gradient. Fail with STATUS_MEMORY. */
 enum status flow_velocity(struct flow *flow, const struct state *state, double t, const double *y);

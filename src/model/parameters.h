@@ -12,6 +12,7 @@ enum removed_circulation { REMOVED_RETAINED, REMOVED_DROPPED };
 enum profile { PROFILE_JOUKOWSKI, PROFILE_UNIFORM, PROFILE_TABLE };
 enum section { SECTION_MEAN, SECTION_NODES };
 enum second_moment { SECOND_MOMENT_ELLIPSE, SECOND_MOMENT_PUBLISHED };
+enum force { FORCE_REACTIVE, FORCE_PUBLISHED };
 enum drag_law { DRAG_QUADRATIC, DRAG_LINEAR_QUADRATIC };
 enum extent { EXTENT_THICKNESS, EXTENT_WIDTH };
 enum prescribed { PRESCRIBED_NONE, PRESCRIBED_HEAD, PRESCRIBED_ALL };
@@ -66,6 +67,7 @@ struct wave_parameters {
 struct drag_parameters {
     double tangential, normal, added_mass;
     enum drag_law law;
+    double linear_speed; /* lengths per beat: force reactive, law linear_quadratic */
     enum extent extent;
 };
 
@@ -95,6 +97,7 @@ struct fish_parameters {
     int nodes, reference_nodes, sheet_points;
     struct body_parameters body;
     struct wave_parameters wave;
+    enum force force; /* of the fluid on the body */
     struct drag_parameters drag;
     double start_position[2]; /* m */
     double start_heading;     /* degree */

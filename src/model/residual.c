@@ -11,6 +11,7 @@
 #include "model/actuation.h"
 #include "model/bound_sheet.h"
 #include "model/drag.h"
+#include "model/fluid_force.h"
 #include "model/rod.h"
 
 static enum status allocate(struct residual *residual) {
@@ -159,15 +160,15 @@ static void drive(const struct fish *fish, double t, const double *y, double *va
 }
 
 // rows ax, ay: m a less all forces, N
-static void balance(const struct residual *residual, int f, const double *u, const double *v, const double *y,
-                    double *value) {
+static void balance(const struct residual *residual, int f, const double *y, double *value) {
     const struct fish *fish = &residual->school->fish[f];
+    const struct flow_at_body flow = flow_at_body(residual->flow, f);
     for (int k = 0; k < fish->n_nodes; k++) {
         value[fish->at.ax + k] = fish->mass[k] * y[fish->at.ax + k];
         value[fish->at.ay + k] = fish->mass[k] * y[fish->at.ay + k];
     }
     rod_residual(fish, residual->natural_curvature + residual->joints[f].first, y, value);
-    drag_residual(fish, u, v, y, value);
+    fluid_force_residual(fish, &flow, y, value);
     value[fish->at.ax + fish->n_nodes - 1] -= fish->load_tip[0];
     value[fish->at.ay + fish->n_nodes - 1] -= fish->load_tip[1];
 }
@@ -187,7 +188,7 @@ static void evaluate_fish(struct residual *residual, int f, double t, const doub
     }
     // the law of motion, per mass
     residual_muscle(residual, f, t, y);
-    balance(residual, f, u, v, y, value);
+    balance(residual, f, y, value);
     for (int k = 0; k < fish->n_nodes; k++) {
         value[fish->at.ax + k] /= fish->mass[k];
         value[fish->at.ay + k] /= fish->mass[k];
@@ -218,26 +219,24 @@ enum status residual_evaluate(struct residual *residual, double t, const double 
 }
 
 void residual_balance(const struct residual *residual, int f, const double *y, double *value) {
-    const int first = residual->flow->points[f].first;
-    balance(residual, f, residual->flow->u + first, residual->flow->v + first, y, value);
+    balance(residual, f, y, value);
 }
 
 // the equations of fish f by what moves with fish g and comes through the velocity of the fluid
 static void stamp_flow(const struct residual *residual, int f, int g, double t, double by_tau, const double *y,
                        struct influence_block *block, struct coupling_block *rows) {
     const struct fish *fish = &residual->school->fish[f];
-    const double *const u = residual->flow->u + residual->flow->points[f].first;
-    const double *const v = residual->flow->v + residual->flow->points[f].first;
+    const struct flow_at_body flow = flow_at_body(residual->flow, f);
     rows->n_rows = flow_n_rows(fish);
     rows->n_columns = flow_n_columns(&residual->school->fish[g]);
     memset(rows->value, 0, (size_t)rows->n_rows * (size_t)rows->n_columns * sizeof *rows->value);
     flow_derivative(residual->flow, f, g, block);
-    drag_flow_jacobian(fish, u, v, block, y, rows);
+    fluid_force_flow_jacobian(fish, &flow, block, y, rows);
     bound_sheet_flow_jacobian(fish, block, y, rows);
     if (law_of(residual) == BOUND_SHEET_RATE) {
         bound_sheet_kutta_flow_jacobian(fish, ramp_value(t, residual->school->kutta_ramp), block, y, rows);
     }
-    if (feels_moment(fish)) drag_moment_flow_jacobian(fish, by_tau, u, v, block, y, rows);
+    if (feels_moment(fish)) drag_moment_flow_jacobian(fish, by_tau, flow.u, flow.v, block, y, rows);
 }
 
 // add the rows of a fish by its own unknowns to its block: those entries that may differ from zero. The midpoint of an
@@ -282,7 +281,8 @@ static enum status stamp_fish(struct residual *residual, int f, double t, double
     }
     residual_muscle(residual, f, t, y);
     rod_jacobian(fish, residual->natural_curvature + joints, residual->curvature_by_phi0 + joints, y, own);
-    drag_jacobian(fish, u, v, y, own);
+    const struct flow_at_body flow = flow_at_body(residual->flow, f);
+    fluid_force_jacobian(fish, &flow, y, own);
     bound_sheet_jacobian(fish, u, v, y, own);
     bound_sheet_kutta_jacobian(fish, law_of(residual), ramp_value(t, school->kutta_ramp), cj, u, v, y, own);
     const double tau = residual_moment(residual, f, y);

@@ -33,6 +33,16 @@ static const struct variant {
     {"extent width", TIME "fish: [{sheet_points: 9, drag: {extent: width, tangential: 0.1}}]\n"},
     {"stream, shear, gust", TIME "fluid: {velocity: [0.3, -0.2], shear: 0.7, gust: {amplitude: 0.4, frequency: 1.3}}\n"
                                  "fish: [{sheet_points: 9, control: {law: heading}}]\n"},
+    {"reactive", TIME "fish: [{sheet_points: 9, force: reactive, body: {section: mean}}]\n"},
+    {"reactive, extent width, linear-quadratic drag, stream, shear, gust",
+     TIME "fluid: {velocity: [0.3, -0.2], shear: 0.7, gust: {amplitude: 0.4, frequency: 1.3}}\n"
+          "fish: [{sheet_points: 9, force: reactive, control: {law: heading},\n"
+          "        drag: {extent: width, law: linear_quadratic, linear_speed: 0.5}}]\n"},
+    {"reactive, midpoint, kutta rate, backwards",
+     TIME "wake: {kutta: rate, collocation: midpoint}\n"
+          "fish: [{sheet_points: 9, force: reactive, drag: {extent: width}, start: {speed: -2}}]\n"},
+    {"reactive, driven head", TIME "fish: [{sheet_points: 9, force: reactive, drag: {extent: width},\n"
+                                   "        motion: {driven: head, heave: 0.1, pitch: 10, frequency: 1}}]\n"},
     {"bias", TIME "fish: [{sheet_points: 9, control: {bias: 0.2}}]\n"},
     {"heading", TIME "fish: [{sheet_points: 9, control: {law: heading, desired_heading: 150}}]\n"},
     {"heading without feedforward",
@@ -57,6 +67,13 @@ static const struct variant {
               "     drag: {law: linear_quadratic, extent: width}, control: {law: averaged_heading}}\n"
               "  - {nodes: 9, sheet_points: 11, length: 1.2, start: {position: [0.1, -0.6], heading: 200},\n"
               "     motion: {driven: head, heave: 0.1, frequency: 1}}\n"},
+    {"three fish, reactive",
+     TIME FAR "fluid: {velocity: [0.1, 0.05], shear: 0.2}\n"
+              "defaults: {fish: {force: reactive, drag: {extent: width}}}\n"
+              "fish:\n"
+              "  - {sheet_points: 9}\n"
+              "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"
+              "  - {nodes: 9, sheet_points: 11, force: published, start: {position: [0.1, -0.6], heading: 200}}\n"},
     {"three fish, kutta rate, midpoint, waypoints",
      TIME FAR "wake: {kutta: rate, collocation: midpoint}\n"
               "fish:\n"
