@@ -81,6 +81,11 @@ static const struct variant {
               "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"
               "  - {nodes: 9, sheet_points: 11, length: 1.2, start: {position: [0.1, -0.6], heading: 200},\n"
               "     body: {second_moment: published}, control: {law: heading}}\n"},
+    {"two fish, smooth curve",
+     TIME FAR "wake: {curve: smooth}\n"
+              "fish:\n"
+              "  - {sheet_points: 9, control: {law: heading, desired_heading: 150}}\n"
+              "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"},
     {"two fish, impulsive", TIME FAR "preset: published\n"
                                      "fish:\n"
                                      "  - {sheet_points: 9}\n"

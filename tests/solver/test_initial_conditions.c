@@ -14,6 +14,7 @@ static const char *const texts[] = {
     TIME "wake: {kutta: rate, kutta_ramp: 0.5, collocation: midpoint}\n" FISH,
     TIME "wake: {collocation: midpoint, dissipated_circulation: dropped, fade: 0}\n" FISH,
     TIME "wake: {shedding: impulsive}\n" FISH,
+    TIME "wake: {curve: smooth}\n" FISH,
     TIME "preset: published\n" FISH,
     TIME
     "fluid: {velocity: [0.3, -0.2], shear: 0.7, gust: {amplitude: 0.4, frequency: 1.3}}\n"
