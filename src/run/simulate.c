@@ -10,19 +10,12 @@
 #include "case/case_show.h"
 #include "output/result_file.h"
 #include "run/event.h"
-#include "solver/ida.h"
-#include "solver/one_step.h"
-#include "solver/runge_kutta.h"
+#include "solver/integrator_table.h"
 
 static double wall_clock(void) {
     struct timespec now;
     clock_gettime(CLOCK_MONOTONIC, &now);
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
-static const struct integrator *integrator_of(enum method method) {
-    if (!methods_table[method].is_implicit) return &runge_kutta_integrator;
-    return method == METHOD_IDA ? &ida_integrator : &one_step_integrator;
 }
 
 static enum status fill(struct simulation *simulation, const struct case_values *values) {

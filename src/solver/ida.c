@@ -255,9 +255,5 @@ static enum status ida_advance(void *data, double t) {
     return STATUS_OK;
 }
 
-const struct integrator ida_integrator = {.name = "ida",
-                                          .create = ida_create,
-                                          .advance = ida_advance,
-                                          .restart = ida_restart,
-                                          .count = ida_count,
-                                          .free = ida_free};
+const struct integrator ida_integrator = {
+    .create = ida_create, .advance = ida_advance, .restart = ida_restart, .count = ida_count, .free = ida_free};

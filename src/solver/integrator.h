@@ -27,8 +27,6 @@ struct integrator_options {
 
 /* A family of methods. A solver advances y and yp of a state in place, and reads the wakes through the residual. */
 struct integrator {
-    const char *name;
-
     /* Create a solver for the present state, which must be consistent. Fails with STATUS_MEMORY or STATUS_SOLVER. */
     enum status (*create)(void **solver, struct residual *residual, struct state *state,
                           const struct integrator_options *options);

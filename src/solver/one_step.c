@@ -75,7 +75,7 @@ static enum status one_step_create(void **solver, struct residual *residual, str
     new->options = *options;
     new->pattern = residual->pattern;
     new->counts.step_size = options->step;
-    new->counts.order = options->method == METHOD_TRAPEZOID ? 2 : 1;
+    new->counts.order = methods_table[options->method].order;
     const enum status status = fill(new);
     if (status != STATUS_OK) {
         one_step_free(new);
@@ -206,8 +206,7 @@ static enum status one_step_advance(void *data, double t) {
     return STATUS_OK;
 }
 
-const struct integrator one_step_integrator = {.name = "implicit, fixed steps",
-                                               .create = one_step_create,
+const struct integrator one_step_integrator = {.create = one_step_create,
                                                .advance = one_step_advance,
                                                .restart = one_step_restart,
                                                .count = one_step_count,

@@ -172,7 +172,7 @@ static void runge_kutta_count(const void *data, struct integrator_counts *counts
     counts->error_test_failures += error_failures;
     if (last_step > 0) counts->step_size = last_step;
     counts->linear_solves = ode_rhs_solves(solver->rhs);
-    counts->order = (int[]){0, 1, 2, 4, 5}[solver->options.method];
+    counts->order = methods_table[solver->options.method].order;
 }
 
 static enum status runge_kutta_restart(void *data) {
@@ -237,8 +237,7 @@ static enum status runge_kutta_advance(void *data, double t) {
     return STATUS_OK;
 }
 
-const struct integrator runge_kutta_integrator = {.name = "explicit Runge-Kutta",
-                                                  .create = runge_kutta_create,
+const struct integrator runge_kutta_integrator = {.create = runge_kutta_create,
                                                   .advance = runge_kutta_advance,
                                                   .restart = runge_kutta_restart,
                                                   .count = runge_kutta_count,

@@ -1,0 +1,17 @@
+/* integrator_table.c: the table. */
+#include "solver/integrator_table.h"
+
+#include "solver/ida.h"
+#include "solver/one_step.h"
+#include "solver/runge_kutta.h"
+
+// of the implicit methods: an explicit one is a tableau for runge_kutta
+static const struct integrator *const implicit[] = {
+    [METHOD_IDA] = &ida_integrator,
+    [METHOD_IMPLICIT_EULER] = &one_step_integrator,
+    [METHOD_TRAPEZOID] = &one_step_integrator,
+};
+
+const struct integrator *integrator_of(enum method method) {
+    return methods_table[method].is_implicit ? implicit[method] : &runge_kutta_integrator;
+}
