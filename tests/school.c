@@ -82,6 +82,13 @@ static void stir_wake(struct setup *setup, const struct fish *fish, struct wake 
         wake->u_before[i] = school_random(setup);
         wake->v_before[i] = school_random(setup);
     }
+    if (wake->has_markers) {
+        // the newest one not far from the tail
+        const double tail = fish->length * (1 + 0.05);
+        wake->x[5] = fish->start_position[0] + tail * back[0];
+        wake->y[5] = fish->start_position[1] + tail * back[1];
+        wake_set_tail(wake, (const double[]){school_random(setup), school_random(setup)}, back);
+    }
     wake->removed = 0.1 * school_random(setup);
     wake->shed_before = 0.3 * school_random(setup);
     wake->slip[0] = school_random(setup);

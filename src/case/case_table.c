@@ -58,14 +58,21 @@ const struct key case_table[] = {
      .meaning = "radius of a free vortex acting on the wake, in body lengths", .synonyms = "delta core blob epsilon"},
     {"wake.sheet_smoothing", REAL, AT(school.wake.sheet_smoothing), "0.05", ABOVE(0), "",
      .meaning = "radius of a bound vortex acting on the wake and on other fish, in body lengths", .published = "0.01"},
+    {"wake.taper", REAL, AT(school.wake.taper), "0", FROM(0), "",
+     .meaning = "shedding sheet: distance from the tail over which a body sees its wake's radius grow from 0, in body "
+                "lengths; 0: no taper"},
+    {"wake.taper_beside", REAL, AT(school.wake.taper_beside), "0", FROM(0), "",
+     .meaning = "shedding sheet: the same for vortices beside the body, in body lengths"},
     {"wake.lifetime", REAL, AT(school.wake.lifetime), "2", ABOVE(0), "s", .meaning = "age at which a vortex is removed",
      .synonyms = "life max_age age"},
     {"wake.fade", REAL, AT(school.wake.decay), NULL, FROM(0), "s",
      .meaning = "the last part of its life in which a vortex fades out", .derived = "a tenth of the lifetime",
      .published = "0"},
     {"wake.shedding", CHOICE, AT(school.wake.shedding), "continuous", ANY, "",
-     .meaning = "continuous: a nascent vortex grows between events; impulsive: a whole one appears at each",
-     .published = "impulsive", .words = WORDS("continuous", "impulsive")},
+     .meaning =
+         "sheet: a vortex sheet grows from the tail; continuous: a nascent vortex grows between events; impulsive: "
+         "a whole one appears at each",
+     .published = "impulsive", .words = WORDS("continuous", "impulsive", "sheet")},
     {"wake.kutta", CHOICE, AT(school.wake.kutta), "edge", ANY, "",
      .meaning = "edge: the strength at the tail vanishes; rate: it is shed at the rate of the slip",
      .published = "rate", .words = WORDS("edge", "rate"), .synonyms = "kutta_condition"},

@@ -246,7 +246,7 @@ static double total_circulation(const struct residual *residual, const struct st
         const struct fish *fish = &residual->school->fish[f];
         const struct wake *wake = &state->wake[f];
         total += bound_sheet_circulation(fish, state->y) + (state->y[fish->at.circulation] - wake->shed_before);
-        for (int i = 0; i < wake->n_vortex; i++) total += wake->circulation[i];
+        for (int i = 0; i < wake_n_sources(wake); i++) total += wake_source(wake, i);
         if (residual->school->removed == REMOVED_RETAINED) total += wake->removed;
     }
     return total;

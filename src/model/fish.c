@@ -267,6 +267,8 @@ static enum status fish_fill(struct fish *fish, const struct school_parameters *
     fish->edge_length = fish->length / fish->n_edges;
     fish->smoothing = parameters->wake.smoothing * fish->length;
     fish->sheet_smoothing = parameters->wake.sheet_smoothing * fish->length;
+    fish->taper = parameters->wake.taper * fish->length;
+    fish->taper_beside = parameters->wake.taper_beside * fish->length;
     TRY(fish_allocate(fish));
     shape_edges(fish, from);
     weigh_body(fish, from);

@@ -98,6 +98,8 @@ struct fish {
     struct stencil heading_point;    /* the body point at a third of the length */
 
     double smoothing;       /* of its free vortices, delta, m */
+    double taper;           /* distance from the tail over which the own body sees it grow from 0 to delta, m */
+    double taper_beside;    /* the same for vortices beside the body, m */
     double sheet_smoothing; /* of its bound sheet seen from elsewhere, m */
 
     double start_position[2]; /* of the nose, m */

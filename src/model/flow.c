@@ -60,7 +60,11 @@ static enum status flow_fill(struct flow *flow) {
     flow->released_range = calloc(n_fish, sizeof *flow->released_range);
     flow->sheet_range = calloc(n_fish, sizeof *flow->sheet_range);
     flow->by_interpolation = calloc(n_fish, sizeof *flow->by_interpolation);
-    if (!flow->points || !flow->released_range || !flow->sheet_range || !flow->by_interpolation) {
+    flow->wake_range = calloc(n_fish, sizeof *flow->wake_range);
+    flow->middles = calloc(n_fish, sizeof *flow->middles);
+    flow->free_sheet = calloc(n_fish, sizeof *flow->free_sheet);
+    if (!flow->points || !flow->released_range || !flow->sheet_range || !flow->by_interpolation || !flow->wake_range ||
+        !flow->middles || !flow->free_sheet) {
         return status_fail(STATUS_MEMORY, "out of memory: the flow around %d fish", school->n_fish);
     }
     for (int f = 0; f < school->n_fish; f++) {
@@ -77,6 +81,13 @@ static enum status flow_fill(struct flow *flow) {
     for (size_t i = 0; i < sizeof at_points / sizeof *at_points; i++) TRY(doubles(at_points[i], flow->n_points));
     TRY(make_chunks(flow));
     TRY(doubles(&flow->opposite, flow->sheet.n));
+    TRY(doubles(&flow->sheet_square, flow->sheet.n));
+    for (int f = 0; f < school->n_fish; f++) {
+        for (int j = 0; j < flow->sheet_range[f].n; j++) {
+            const double smoothing = free_sheet_bound_smoothing(&school->fish[f], j);
+            flow->sheet_square[flow->sheet_range[f].first + j] = smoothing * smoothing;
+        }
+    }
     TRY(velocity_sum_create(&flow->velocity_sum));
     if (school->wake_tolerance <= 0) return STATUS_OK;
     return wake_interpolation_create(&flow->interpolation, school, flow->points);
@@ -100,18 +111,36 @@ void flow_free(struct flow *flow) {
     if (!flow) return;
     wake_interpolation_free(flow->interpolation);
     velocity_sum_free(flow->velocity_sum);
-    void *const owned[] = {flow->points,      flow->chunk,
-                           flow->x,           flow->y,
-                           flow->u,           flow->v,
-                           flow->u_x,         flow->u_y,
-                           flow->v_x,         flow->motion[0],
-                           flow->motion[1],   flow->motion[2],
-                           flow->motion[3],   flow->released_range,
-                           flow->sheet_range, flow->by_interpolation,
-                           flow->opposite,    flow->wake_u,
+    for (int f = 0; f < flow->school->n_fish; f++) {
+        if (flow->middles) wake_free(&flow->middles[f]);
+        if (flow->free_sheet) free_sheet_free(&flow->free_sheet[f]);
+    }
+    void *const owned[] = {flow->points,
+                           flow->chunk,
+                           flow->x,
+                           flow->y,
+                           flow->u,
+                           flow->v,
+                           flow->u_x,
+                           flow->u_y,
+                           flow->v_x,
+                           flow->motion[0],
+                           flow->motion[1],
+                           flow->motion[2],
+                           flow->motion[3],
+                           flow->middles,
+                           flow->free_sheet,
+                           flow->released_range,
+                           flow->wake_range,
+                           flow->sheet_range,
+                           flow->by_interpolation,
+                           flow->opposite,
+                           flow->sheet_square,
+                           flow->wake_u,
                            flow->wake_v};
     for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
     vortices_free(&flow->released);
+    vortices_free(&flow->markers);
     vortices_free(&flow->nascent);
     vortices_free(&flow->sheet);
     free(flow);
@@ -162,39 +191,73 @@ static void place_sheet(struct flow *flow, int f, const double *y) {
     }
 }
 
+static int has_free_sheets(const struct flow *flow) {
+    return flow->school->shedding == SHEDDING_SHEET;
+}
+
+// the wakes as vortices that everybody sees: those in the queues, or the middles of the stretches between markers
+static const struct wake *seen_wakes(const struct flow *flow, const struct state *state) {
+    return has_free_sheets(flow) ? flow->middles : state->wake;
+}
+
 static void place_nascent(struct flow *flow, const struct state *state, int f, const double *y) {
     const struct fish *fish = &flow->school->fish[f];
+    const struct wake *const wake = &state->wake[f];
     const double tail[2] = {y[fish->at.x + fish->n_nodes - 1], y[fish->at.y + fish->n_nodes - 1]};
+    const double circulation = y[fish->at.circulation] - wake->shed_before, tau = flow->t - state->t;
     double position[2];
-    wake_nascent(&state->wake[f], flow->t - state->t, tail, position);
+    if (has_free_sheets(flow)) {
+        free_sheet_nascent_point(wake, flow->school->interval, tau, tail, 0.5, position);
+        free_sheet_place_nascent(&flow->free_sheet[f], fish, wake, flow->school->interval, tau, tail, circulation);
+    } else {
+        wake_nascent(wake, tau, tail, position);
+    }
     flow->nascent.x[f] = position[0];
     flow->nascent.y[f] = position[1];
-    flow->nascent.circulation[f] = y[fish->at.circulation] - state->wake[f].shed_before;
+    flow->nascent.circulation[f] = circulation;
 }
 
 // the released vortices where they are at the flow's time
 static enum status place_released(struct flow *flow, const struct state *state) {
     if (flow->has_released) return STATUS_OK;
-    TRY(wake_interpolation_released(flow->school, state, flow->t - state->t, &flow->released, flow->released_range));
+    TRY(wake_interpolation_released(flow->school, seen_wakes(flow, state), state->t, flow->t - state->t,
+                                    &flow->released, flow->released_range));
     flow->has_released = 1;
     return STATUS_OK;
 }
 
-// forget what was made for other wakes or another time: the released vortices move on known paths, so that at one time
-// they are the same for every y
-static void go_to(struct flow *flow, const struct state *state, double t) {
-    const unsigned long version = state_wake_version(state, flow->school);
-    if (flow->has_sources && flow->version == version && flow->t == t) return;
-    flow->has_sources = 1;
+// what the free sheets are made of from now until the next event
+static enum status build_free_sheets(struct flow *flow, const struct state *state) {
+    for (int f = 0; f < flow->school->n_fish; f++) {
+        TRY(free_sheet_middles(&state->wake[f], &flow->middles[f]));
+        TRY(free_sheet_build(&flow->free_sheet[f], &flow->school->fish[f], flow->school, &state->wake[f]));
+    }
+    return STATUS_OK;
+}
+
+// drop what was made for other wakes or another time: the released vortices move on known paths, so that at one time they
+// are the same for every y
+static enum status go_to(struct flow *flow, const struct state *state, double t) {
+    const struct school *school = flow->school;
+    const unsigned long version = state_wake_version(state, school);
+    const int is_new = !flow->has_sources || flow->version != version;
+    if (!is_new && flow->t == t) return STATUS_OK;
+    flow->has_sources = 0;
     flow->has_released = 0;
+    if (is_new && has_free_sheets(flow)) TRY(build_free_sheets(flow, state));
     flow->version = version;
     flow->t = t;
-    if (flow->is_interpolated && flow->interpolated_version != version) flow->is_interpolated = 0;
+    for (int f = 0; has_free_sheets(flow) && f < school->n_fish; f++) {
+        free_sheet_place(&flow->free_sheet[f], school, &state->wake[f], &flow->middles[f], state->t, t - state->t);
+    }
+    if (flow->interpolated_version != version) flow->is_interpolated = 0;
     if (flow->is_interpolated) wake_interpolation_update(flow->interpolation, t);
+    flow->has_sources = 1;
+    return STATUS_OK;
 }
 
 static enum status update_sources(struct flow *flow, const struct state *state, double t, const double *y) {
-    go_to(flow, state, t);
+    TRY(go_to(flow, state, t));
     int all_interpolated = 1;
     for (int f = 0; f < flow->school->n_fish; f++) {
         const struct fish *fish = &flow->school->fish[f];
@@ -225,7 +288,7 @@ enum status flow_interpolate(struct flow *flow, const struct state *state) {
     }
     const struct wake_interpolation_points points = {flow->x,         flow->y,         flow->motion[0],
                                                      flow->motion[1], flow->motion[2], flow->motion[3]};
-    TRY(wake_interpolation_build(flow->interpolation, state, &points));
+    TRY(wake_interpolation_build(flow->interpolation, seen_wakes(flow, state), state->t, &points));
     wake_interpolation_update(flow->interpolation, flow->t);
     flow->is_interpolated = 1;
     flow->interpolated_version = flow->version;
@@ -274,6 +337,22 @@ static void induce_sheets(const struct flow *flow, const struct chunk *chunk, in
     induce_own(flow, chunk, tail, fish->sheet_smoothing, flow->sheet.circulation, all);
 }
 
+// what the control points of a fish see of its own free sheet besides what everybody sees
+static void induce_free_sheet(const struct flow *flow, const struct chunk *chunk, const struct induced *all) {
+    const struct free_sheet *const sheet = &flow->free_sheet[chunk->fish];
+    const struct range control = {flow->points[chunk->fish].first, flow->school->fish[chunk->fish].n_control};
+    const struct range which = overlap(chunk, control);
+    if (which.n <= 0) return;
+    const struct induced at = vortices_targets(all, which);
+    if (at.u_x) {
+        kernel_add_gradient_each(at.n, at.x, at.y, sheet->n, sheet->x, sheet->y, sheet->circulation, sheet->square,
+                                 at.u, at.v, at.u_x, at.u_y, at.v_x);
+    } else {
+        kernel_add_velocity_each(at.n, at.x, at.y, sheet->n, sheet->x, sheet->y, sheet->circulation, sheet->square,
+                                 at.u, at.v);
+    }
+}
+
 static void evaluate_chunk(const struct flow *flow, const struct chunk *chunk, int by_tree, const struct induced *all) {
     const struct school *school = flow->school;
     const struct induced at = vortices_targets(all, chunk->at);
@@ -291,6 +370,7 @@ static void evaluate_chunk(const struct flow *flow, const struct chunk *chunk, i
     }
     vortices_induce(&flow->nascent, (struct range){0, flow->nascent.n}, &at);
     induce_sheets(flow, chunk, by_tree, all);
+    if (has_free_sheets(flow)) induce_free_sheet(flow, chunk, all);
 }
 
 static void evaluate(struct flow *flow, int with_gradient) {
@@ -346,13 +426,13 @@ static void add_motion(const struct influence_block *block, const struct fish *o
     }
 }
 
-// the velocity per strength of one source, into column c
-static void set_strength(const struct influence_block *block, int c, int first, int n, const struct kernel_values *unit,
+// add the velocity per strength of one source to column c
+static void add_strength(const struct influence_block *block, int c, int first, int n, const struct kernel_values *unit,
                          double weight) {
     const struct part to = part_of(block, c, first);
     for (int i = 0; i < n; i++) {
-        to.u[i] = unit->u[i] * weight;
-        to.v[i] = unit->v[i] * weight;
+        to.u[i] += unit->u[i] * weight;
+        to.v[i] += unit->v[i] * weight;
     }
 }
 
@@ -363,21 +443,46 @@ struct target {
     const struct influence_block *block;
 };
 
-// the nascent vortex of fish g at all points of fish f
+// one source of the nascent vortex, or stretch, of a fish: what part of its circulation it has, and of the motion of the
+// tail
+struct nascent_source {
+    double x, y, smoothing, part, follows;
+};
+
+// a source at a range of the points of fish f
+static void derive_nascent_source(const struct target *at, struct range points, const struct nascent_source *source) {
+    const struct flow *flow = at->flow;
+    const struct fish *other = &flow->school->fish[at->g];
+    const struct stencil tail = {.n = 1, .node = (const int[]){other->n_nodes - 1}, .weight = (const double[]){1}};
+    const int here = flow->points[at->f].first, end = points.first + points.n;
+    for (int first = points.first; first < end; first += KERNEL_CHUNK) {
+        const int n = end - first < KERNEL_CHUNK ? end - first : KERNEL_CHUNK;
+        struct kernel_values unit;
+        kernel_unit(n, flow->x + here + first, flow->y + here + first, source->x, source->y, source->smoothing, &unit);
+        add_strength(at->block, at->block->n_columns - 1, first, n, &unit, source->part);
+        if (at->with_places) {
+            add_motion(at->block, other, &tail, first, n, &unit,
+                       -source->part * source->follows * flow->nascent.circulation[at->g]);
+        }
+    }
+}
+
+// the nascent vortex or stretch of fish g at all points of fish f
 static void derive_nascent(const struct target *at) {
     const struct flow *flow = at->flow;
     const struct fish *other = &flow->school->fish[at->g];
-    const struct range points = flow->points[at->f];
-    const struct stencil tail = {.n = 1, .node = (const int[]){other->n_nodes - 1}, .weight = (const double[]){1}};
-    for (int first = 0; first < points.n; first += KERNEL_CHUNK) {
-        const int n = points.n - first < KERNEL_CHUNK ? points.n - first : KERNEL_CHUNK;
-        struct kernel_values unit;
-        kernel_unit(n, flow->x + points.first + first, flow->y + points.first + first, flow->nascent.x[at->g],
-                    flow->nascent.y[at->g], other->smoothing, &unit);
-        set_strength(at->block, at->block->n_columns - 1, first, n, &unit, 1);
-        if (at->with_places) {
-            add_motion(at->block, other, &tail, first, n, &unit, -flow->nascent.circulation[at->g]);
-        }
+    const int n_points = flow->points[at->f].n, is_sheet = has_free_sheets(flow);
+    // the own control points see the stretch point by point, everybody else its middle
+    const int n_own = is_sheet && at->f == at->g ? other->n_control : 0;
+    const struct nascent_source whole = {flow->nascent.x[at->g], flow->nascent.y[at->g], other->smoothing, 1,
+                                         is_sheet ? 0.5 : 1};
+    derive_nascent_source(at, (struct range){n_own, n_points - n_own}, &whole);
+    const struct free_sheet *const sheet = is_sheet ? &flow->free_sheet[at->g] : NULL;
+    for (int i = 0; n_own > 0 && i < FREE_SHEET_PANEL; i++) {
+        const int source = sheet->n - (FREE_SHEET_PANEL + 1) + i;
+        const struct nascent_source point = {sheet->x[source], sheet->y[source], 0, free_sheet_part[i],
+                                             1 - free_sheet_xi[i]};
+        derive_nascent_source(at, (struct range){0, n_own}, &point);
     }
 }
 
@@ -393,7 +498,7 @@ static void derive_sheet(const struct target *at, struct range points, double sm
             struct kernel_values unit;
             kernel_unit(n, flow->x + here + first, flow->y + here + first, flow->sheet.x[sheet + j],
                         flow->sheet.y[sheet + j], smoothing, &unit);
-            set_strength(at->block, strength + j, first, n, &unit, other->sheet_weight[j]);
+            add_strength(at->block, strength + j, first, n, &unit, other->sheet_weight[j]);
             if (at->with_places) {
                 add_motion(at->block, other, &other->sheet_point[j], first, n, &unit,
                            -flow->sheet.circulation[sheet + j]);
@@ -453,7 +558,17 @@ void flow_influence(const struct flow *flow, int f, int g, struct influence_bloc
     derive_sources(&(struct target){flow, f, g, 0, block});
 }
 
-// the external flow, the nascent vortices and, where they are not summed by the tree, the sheets at the released ones
+// the bound sheets at free vortices; markers see them with a smoothing that vanishes at the edges
+static void sheets_at_wake(const struct flow *flow, const struct induced *at) {
+    if (has_free_sheets(flow)) {
+        kernel_add_velocity_each(at->n, at->x, at->y, flow->sheet.n, flow->sheet.x, flow->sheet.y,
+                                 flow->sheet.circulation, flow->sheet_square, at->u, at->v);
+    } else {
+        vortices_induce(&flow->sheet, (struct range){0, flow->sheet.n}, at);
+    }
+}
+
+// the external flow, the nascent vortices and, where they are not summed by the tree, the sheets at the free vortices
 static void others_at_wake(const struct flow *flow, int sheets_too, const struct induced *all) {
     const int n_chunks = parallel_n_chunks(all->n);
     const int threads =
@@ -462,44 +577,67 @@ static void others_at_wake(const struct flow *flow, int sheets_too, const struct
     for (int chunk = 0; chunk < n_chunks; chunk++) {
         const struct induced at = vortices_targets(all, parallel_chunk(chunk, all->n));
         for (int i = 0; i < at.n; i++) flow_external(flow->school, flow->t, at.y[i], &at.u[i], &at.v[i]);
-        vortices_induce(&flow->nascent, (struct range){0, flow->nascent.n}, &at);
-        if (sheets_too) vortices_induce(&flow->sheet, (struct range){0, flow->sheet.n}, &at);
+        // the newest markers have the nascent stretches
+        if (!has_free_sheets(flow)) vortices_induce(&flow->nascent, (struct range){0, flow->nascent.n}, &at);
+        if (sheets_too) sheets_at_wake(flow, &at);
     }
 }
 
-static enum status reserve_at_wake(struct flow *flow) {
-    const int n = flow->released.n;
+static enum status reserve_at_wake(struct flow *flow, int n) {
     if (n <= flow->wake_capacity) return STATUS_OK;
+    const int capacity = n + n / 2;
     double **const both[] = {&flow->wake_u, &flow->wake_v};
+    flow->wake_capacity = 0;
     for (int i = 0; i < 2; i++) {
         free(*both[i]);
-        *both[i] = calloc((size_t)flow->released.capacity, sizeof **both[i]);
-        if (!*both[i]) {
-            flow->wake_capacity = 0;
-            return status_fail(STATUS_MEMORY, "out of memory: the velocities of %d vortices", n);
-        }
+        *both[i] = calloc((size_t)capacity, sizeof **both[i]);
+        if (!*both[i]) return status_fail(STATUS_MEMORY, "out of memory: the velocities of %d vortices", n);
     }
-    flow->wake_capacity = flow->released.capacity;
+    flow->wake_capacity = capacity;
+    return STATUS_OK;
+}
+
+// the markers of all fish where they are at the event
+static enum status place_markers(struct flow *flow, const struct state *state) {
+    struct vortices *const markers = &flow->markers;
+    vortices_clear(markers);
+    for (int f = 0; f < flow->school->n_fish; f++) {
+        const struct wake *const wake = &state->wake[f];
+        const int first = markers->n, n = wake->n_vortex;
+        flow->wake_range[f] = (struct range){first, n};
+        TRY(vortices_append(markers, n, flow->school->fish[f].smoothing));
+        if (n == 0) continue;
+        memcpy(markers->x + first, wake->x, (size_t)n * sizeof *markers->x);
+        memcpy(markers->y + first, wake->y, (size_t)n * sizeof *markers->y);
+        free_sheet_strengths(wake, flow->school, state->t, flow->nascent.circulation[f], markers->circulation + first);
+    }
+    return STATUS_OK;
+}
+
+// the free vortices that move: those of the queues, or markers
+static enum status place_moving(struct flow *flow, const struct state *state) {
+    if (has_free_sheets(flow)) return place_markers(flow, state);
+    memcpy(flow->wake_range, flow->released_range, (size_t)flow->school->n_fish * sizeof *flow->wake_range);
     return STATUS_OK;
 }
 
 enum status flow_at_wake(struct flow *flow, const struct state *state) {
     TRY(update_sources(flow, state, state->t, state->y));
     TRY(place_released(flow, state));
-    TRY(reserve_at_wake(flow));
-    const struct vortices *const released = &flow->released;
-    const struct induced at = {
-        .n = released->n, .x = released->x, .y = released->y, .u = flow->wake_u, .v = flow->wake_v};
+    TRY(place_moving(flow, state));
+    const struct vortices *const moving = has_free_sheets(flow) ? &flow->markers : &flow->released;
+    TRY(reserve_at_wake(flow, moving->n));
+    const struct induced at = {.n = moving->n, .x = moving->x, .y = moving->y, .u = flow->wake_u, .v = flow->wake_v};
     const double tolerance = flow->school->wake_tolerance;
-    const int by_tree = velocity_sum_by_tree(&flow->sheet, released->n, tolerance);
+    const int by_tree = !has_free_sheets(flow) && velocity_sum_by_tree(&flow->sheet, moving->n, tolerance);
     const int threads =
-        parallel_threads(flow->school->threads, released->n, (double)released->n * released->n, PARALLEL_INTERACTIONS);
+        parallel_threads(flow->school->threads, moving->n, (double)moving->n * moving->n, PARALLEL_INTERACTIONS);
     others_at_wake(flow, !by_tree, &at);
     if (by_tree) TRY(velocity_sum_induce(flow->velocity_sum, &flow->sheet, tolerance, threads, &at));
-    if (velocity_sum_by_tree(released, released->n, tolerance)) {
-        return velocity_sum_induce(flow->velocity_sum, released, tolerance, threads, &at);
+    if (velocity_sum_by_tree(moving, moving->n, tolerance)) {
+        return velocity_sum_induce(flow->velocity_sum, moving, tolerance, threads, &at);
     }
-    return pairwise_add_velocity(released, threads, flow->wake_u, flow->wake_v);
+    return pairwise_add_velocity(moving, threads, flow->wake_u, flow->wake_v);
 }
 
 void flow_slip(const struct flow *flow, int f, const double *y, double slip[2]) {

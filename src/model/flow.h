@@ -6,12 +6,14 @@
  *     | control points (M-1)          | edge midpoints (N-1)  | tail (1)                         |
  *     | all; own with no smoothing    | those of other fish   | all, with sheet_smoothing        |
  *
- * The sources: per fish its free vortices, released ones and the nascent one, and its bound vortices. */
+ * The sources: per fish its free vortices, released ones and the nascent one, and its bound vortices. With shedding: sheet the
+ * free vortices are the middles of the stretches of a sheet, and the control points of the own fish see more (free_sheet.h). */
 #ifndef FLOW_H
 #define FLOW_H
 
 #include "base/status.h"
 #include "model/fish.h"
+#include "model/free_sheet.h"
 #include "model/state.h"
 #include "model/wake_interpolation.h"
 #include "vortex/velocity_sum.h"
@@ -38,14 +40,20 @@ struct flow {
     double *u_x, *u_y, *v_x; /* gradient, after flow_gradient, s-1                 (n_points) */
 
     /* sources */
-    struct vortices released;     /* the free vortices of all fish; placed only where a fish is not interpolated */
-    struct range *released_range; /* of each fish                                   (n_fish) */
-    int has_released;             /* whether they are placed at t */
-    double *wake_u, *wake_v;      /* the velocity at them, after flow_at_wake, m s-1 (released.n) */
+    /* with shedding: sheet, what others see of each free sheet, as a wake of vortices; else it is not used (n_fish) */
+    struct wake *middles;
+    struct free_sheet *free_sheet; /* and what the own body sees besides                (n_fish) */
+    struct vortices released;      /* the free vortices of all fish; placed only where a fish is not interpolated */
+    struct range *released_range;  /* of each fish                                   (n_fish) */
+    int has_released;              /* whether they are placed at t */
+    struct vortices markers;       /* of all fish, at the last flow_at_wake */
+    struct range *wake_range;      /* what each fish has of the following arrays         (n_fish) */
+    double *wake_u, *wake_v;       /* velocity at vortices or markers, after flow_at_wake, m s-1 */
     int wake_capacity;
     struct vortices nascent;   /* one of each fish                               (n_fish) */
     struct vortices sheet;     /* the bound vortices of all fish */
     struct range *sheet_range; /* of each fish                                   (n_fish) */
+    double *sheet_square;      /* of the smoothing with which markers see them, m2 (sheet.n) */
     double *opposite;          /* circulations of the bound vortices with the other sign (sheet.n) */
 
     struct velocity_sum *velocity_sum;        /* where wakes or sheets are summed by the tree */
@@ -126,8 +134,8 @@ void flow_derivative(const struct flow *flow, int f, int g, struct influence_blo
  * unit circulation, of fish g causes: columns gamma (M_g), circulation (1). With the places of the last velocity. */
 void flow_influence(const struct flow *flow, int f, int g, struct influence_block *block);
 
-/* The velocity of the fluid at the released vortices of all fish at the event of the state: wake_u, wake_v. Fails with
- * STATUS_MEMORY. */
+/* The velocity of the fluid at the released vortices, or markers, of all fish at the event of the state: wake_u, wake_v, of
+ * fish f from wake_range[f].first on. Fails with STATUS_MEMORY. */
 enum status flow_at_wake(struct flow *flow, const struct state *state);
 
 /* The fluid's velocity past the tail of fish f, u - v_tail. After flow_velocity. */

@@ -135,7 +135,7 @@ static void add_to_far(struct near_field *near_field, const struct near_field_er
 // the vortices of one wake: those with an error up to max_error go to the far field, the others may be near
 static enum status divide_wake(const struct near_field_input *input, int g, const struct body *body, double max_error,
                                struct near_field *near_field) {
-    const struct wake *const wake = &input->state->wake[g];
+    const struct wake *const wake = &input->wakes[g];
     const struct near_field_bounds *const bounds = &input->bounds[g];
     const double h = input->school->interval, smoothing = input->school->fish[g].smoothing;
     const double acceleration = body->acceleration + bounds->acceleration;

@@ -13,7 +13,7 @@
 #define NEAR_FIELD_H
 
 #include "base/status.h"
-#include "model/state.h"
+#include "model/wake.h"
 #include "vortex/vortices.h"
 
 /* What holds for all vortices of a wake. */
@@ -53,7 +53,7 @@ struct near_field {
 /* Bodies and wakes at the beginning of an interval. */
 struct near_field_input {
     const struct school *school;
-    const struct state *state;
+    const struct wake *wakes;                    /* (n_fish) */
     const struct range *points;                  /* of each fish                           (n_fish) */
     double *const *motion;                       /* of all points: x y, u v, a b           (6 of n_points) */
     const struct near_field_bounds *bounds;      /* of each wake                           (n_fish) */

@@ -4,7 +4,7 @@
 #ifndef PARAMETERS_H
 #define PARAMETERS_H
 
-enum shedding { SHEDDING_CONTINUOUS, SHEDDING_IMPULSIVE };
+enum shedding { SHEDDING_CONTINUOUS, SHEDDING_IMPULSIVE, SHEDDING_SHEET };
 enum kutta { KUTTA_EDGE, KUTTA_RATE };
 enum body_line { BODY_LINE_SMOOTH, BODY_LINE_POLYGON };
 enum collocation { COLLOCATION_CHEBYSHEV, COLLOCATION_MIDPOINT };
@@ -34,6 +34,7 @@ struct fluid_parameters {
 
 struct wake_parameters {
     double smoothing, sheet_smoothing; /* fractions of the body length */
+    double taper, taper_beside;        /* fractions of the body length */
     double lifetime, decay;            /* s */
     enum shedding shedding;
     enum kutta kutta;

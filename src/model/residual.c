@@ -103,7 +103,9 @@ int residual_couple(struct residual *residual, const double *y) {
 
 static enum bound_sheet_law law_of(const struct residual *residual) {
     const struct school *school = residual->school;
-    if (school->shedding == SHEDDING_IMPULSIVE && !(residual->at_impulse && school->kutta == KUTTA_EDGE)) {
+    if (residual->shed_now == SHED_IS_GIVEN) return BOUND_SHEET_FROZEN;
+    if (school->shedding == SHEDDING_IMPULSIVE &&
+        !(residual->shed_now == SHED_BY_IMPULSE && school->kutta == KUTTA_EDGE)) {
         return BOUND_SHEET_FROZEN;
     }
     return school->kutta == KUTTA_EDGE ? BOUND_SHEET_EDGE : BOUND_SHEET_RATE;

@@ -8,12 +8,16 @@
 #include "model/jacobian.h"
 #include "model/state.h"
 
+/* What determines the circulation that has been shed: the law of the case; Kutta's condition, while an impulsive event is
+ * solved; nothing, it is given: before the first marker of a free sheet is born. */
+enum shed_now { SHED_BY_LAW, SHED_BY_IMPULSE, SHED_IS_GIVEN };
+
 /* What the equations need besides the unknowns; workspace that holds nothing a restart would miss. */
 struct residual {
     const struct school *school;
     const struct state *state; /* wakes, control memory, time of the last event */
     struct flow *flow;
-    int at_impulse;         /* an impulsive event is being solved: Kutta's condition determines the circulation shed */
+    enum shed_now shed_now; /* what determines the circulation shed */
     unsigned pattern;       /* changes whenever coupled does */
     unsigned char *coupled; /* whether the Jacobian holds the block of fish g in the rows of fish f (n_fish, n_fish) */
 

@@ -27,6 +27,7 @@ static enum status fill(struct state *state, const struct school *school) {
     }
     for (int f = 0; f < school->n_fish; f++) {
         TRY(wake_create(&state->wake[f], 16));
+        state->wake[f].has_markers = school->shedding == SHEDDING_SHEET;
         TRY(history_create(&state->history[f], &school->fish[f], school->interval));
         state->control[f].held_heading = school->fish[f].start_heading;
         fish_start(&school->fish[f], state->y);

@@ -48,6 +48,12 @@ int wake_most(const struct school *school, long n_events) {
     return (int)fmin(fmin(in_a_lifetime, ever), 2e9);
 }
 
+enum status wake_resize(struct wake *wake, int n) {
+    if (n > wake->capacity) TRY(reserve(wake, n + n / 2));
+    wake->n_vortex = n;
+    return STATUS_OK;
+}
+
 enum status wake_release(struct wake *wake, double x, double y, double circulation, double birth) {
     if (wake->n_vortex == wake->capacity) TRY(reserve(wake, 2 * wake->capacity));
     const int i = wake->n_vortex++;
@@ -65,8 +71,33 @@ double wake_strength(const struct school *school, double age) {
     return 1 - ramp_step((age - (school->lifetime - school->decay)) / school->decay);
 }
 
+void wake_set_tail(struct wake *wake, const double velocity[2], const double tangent[2]) {
+    wake->version++;
+    memcpy(wake->tail_velocity, velocity, sizeof wake->tail_velocity);
+    memcpy(wake->tail_tangent, tangent, sizeof wake->tail_tangent);
+}
+
 static double along_path(double x, double u, double u_before, double tau, double interval) {
     return x + tau * u + tau * tau / (2 * interval) * (u - u_before);
+}
+
+void wake_marker(const struct wake *wake, int i, double interval, double tau, double position[2]) {
+    position[0] = along_path(wake->x[i], wake->u[i], wake->u_before[i], tau, interval);
+    position[1] = along_path(wake->y[i], wake->v[i], wake->v_before[i], tau, interval);
+}
+
+double wake_circulation(const struct wake *wake, int i) {
+    if (!wake->has_markers) return wake->circulation[i];
+    const int older = i > 0 ? i - 1 : 0, newer = i + 1 < wake->n_vortex ? i + 1 : i;
+    return (wake->circulation[newer] - wake->circulation[older]) / 2;
+}
+
+int wake_n_sources(const struct wake *wake) {
+    return wake->has_markers && wake->n_vortex > 0 ? wake->n_vortex - 1 : wake->n_vortex;
+}
+
+double wake_source(const struct wake *wake, int i) {
+    return wake->has_markers ? wake->circulation[i + 1] - wake->circulation[i] : wake->circulation[i];
 }
 
 void wake_at(const struct wake *wake, const struct school *school, double t, double tau, double *x, double *y,
@@ -96,21 +127,25 @@ void wake_advance(struct wake *wake, double interval) {
 
 int wake_n_old(const struct wake *wake, const struct school *school, double t) {
     // ages are multiples of the interval: half of one decides what rounding must not
+    // a stretch is as old as its newer marker
+    const int newer = wake->has_markers;
     int n_old = 0;
-    while (n_old < wake->n_vortex && t - wake->birth[n_old] > school->lifetime - school->interval / 2) n_old++;
+    while (n_old + newer < wake->n_vortex && t - wake->birth[n_old + newer] > school->lifetime - school->interval / 2) {
+        n_old++;
+    }
     return n_old;
 }
 
 int wake_removal_jumps(const struct wake *wake, const struct school *school, double t) {
     const double rounding = 1e-12;  // of an age that is the lifetime
     const int n_old = wake_n_old(wake, school, t);
-    return n_old > 0 && wake_strength(school, t - wake->birth[n_old - 1]) > rounding;
+    return n_old > 0 && wake_strength(school, t - wake->birth[n_old - 1 + wake->has_markers]) > rounding;
 }
 
 void wake_remove_old(struct wake *wake, const struct school *school, double t) {
     const int n_old = wake_n_old(wake, school, t);
     if (n_old == 0) return;
-    for (int i = 0; i < n_old; i++) wake->removed += wake->circulation[i];
+    for (int i = 0; i < n_old; i++) wake->removed += wake_source(wake, i);
     wake->version++;
     wake->n_vortex -= n_old;
     double **array[N_ARRAYS];

@@ -19,14 +19,16 @@ struct wake {
     unsigned long
         version; /* counts the changes of the vortices below: whoever keeps something made of them compares it */
     int n_vortex, capacity;
-    double *x, *y;               /* position at the last event, m                     (n_vortex) */
-    double *u, *v;               /* velocity W at the last event, m s-1               (n_vortex) */
-    double *u_before, *v_before; /* and at the event before; W on the first interval  (n_vortex) */
-    double *circulation;         /* m2 s-1, constant once released                    (n_vortex) */
-    double *birth;               /* time of release, s                                (n_vortex) */
-    double removed;              /* circulation of all vortices removed so far, m2 s-1 */
-    double shed_before;          /* circulation shed up to the last event, m2 s-1 */
-    double slip[2];              /* velocity of the fluid past the tail at the last event, m s-1 */
+    double *x, *y;                            /* position at the last event, m                     (n_vortex) */
+    double *u, *v;                            /* velocity W at the last event, m s-1               (n_vortex) */
+    double *u_before, *v_before;              /* and at the event before; W on the first interval  (n_vortex) */
+    double *circulation;                      /* m2 s-1, constant once released; of a marker: its label (n_vortex) */
+    double *birth;                            /* time of release, s                                (n_vortex) */
+    int has_markers;                          /* the queue holds markers of a sheet: free_sheet.h */
+    double tail_velocity[2], tail_tangent[2]; /* at the last event, m s-1 and 1; with markers only */
+    double removed;                           /* circulation of all vortices removed so far, m2 s-1 */
+    double shed_before;                       /* circulation shed up to the last event, m2 s-1 */
+    double slip[2];                           /* velocity of the fluid past the tail at the last event, m s-1 */
 };
 
 /* An empty wake. Fails with STATUS_MEMORY. */
@@ -37,6 +39,9 @@ void wake_free(struct wake *wake);
 
 /* The most vortices that one fish can own during n_events events. */
 int wake_most(const struct school *school, long n_events);
+
+/* Note how the tail moves and points as an interval begins: what the smoothing of a free sheet tapers towards. */
+void wake_set_tail(struct wake *wake, const double velocity[2], const double tangent[2]);
 
 /* Add a vortex at the end of the queue. The wake grows when full. Fails with STATUS_MEMORY; it is then unchanged. */
 enum status wake_release(struct wake *wake, double x, double y, double circulation, double birth);
@@ -49,7 +54,21 @@ void wake_at(const struct wake *wake, const struct school *school, double t, dou
 /* Move all vortices on to the next event. */
 void wake_advance(struct wake *wake, double interval);
 
-/* The number of vortices that were released a lifetime or more before t, and whether one of them still has strength: the
+/* Make room for n vortices without values, in place of those it has. Fails with STATUS_MEMORY. */
+enum status wake_resize(struct wake *wake, int n);
+
+/* Where vortex or marker i is at the time tau after the last event. */
+void wake_marker(const struct wake *wake, int i, double interval, double tau, double position[2]);
+
+/* The circulation that vortex i stands for: its own, or half of both stretches that meet in a marker. */
+double wake_circulation(const struct wake *wake, int i);
+
+/* The number of vortices, or of stretches between markers, and the circulation of one. */
+int wake_n_sources(const struct wake *wake);
+double wake_source(const struct wake *wake, int i);
+
+/* The number of vortices that were released a lifetime or more before t (of markers: those whose stretch towards the next
+ * one was), and whether one of them still has strength: the
  * velocity of the fluid jumps when it is removed. */
 int wake_n_old(const struct wake *wake, const struct school *school, double t);
 int wake_removal_jumps(const struct wake *wake, const struct school *school, double t);

@@ -112,15 +112,14 @@ static void predict(const struct wake_interpolation *interpolation, double tau, 
     }
 }
 
-enum status wake_interpolation_released(const struct school *school, const struct state *state, double tau,
+enum status wake_interpolation_released(const struct school *school, const struct wake *wakes, double t, double tau,
                                         struct vortices *released, struct range *wake) {
     vortices_clear(released);
     for (int g = 0; g < school->n_fish; g++) {
-        wake[g] = (struct range){released->n, state->wake[g].n_vortex};
+        wake[g] = (struct range){released->n, wakes[g].n_vortex};
         TRY(vortices_append(released, wake[g].n, school->fish[g].smoothing));
         const int first = wake[g].first;
-        wake_at(&state->wake[g], school, state->t, tau, released->x + first, released->y + first,
-                released->circulation + first);
+        wake_at(&wakes[g], school, t, tau, released->x + first, released->y + first, released->circulation + first);
     }
     return STATUS_OK;
 }
@@ -173,26 +172,26 @@ static void subtract_near(struct wake_interpolation *interpolation, int f) {
 }
 
 // the released vortices at the four times, and what holds for each wake
-static enum status place_wakes(struct wake_interpolation *interpolation, const struct state *state) {
+static enum status place_wakes(struct wake_interpolation *interpolation, const struct wake *wakes, double t) {
     const struct school *const school = interpolation->school;
     const struct vortices *const released = interpolation->released;
     for (int i = 0; i < N_TIMES; i++) {
-        TRY(wake_interpolation_released(school, state, time_of[i] * school->interval, &interpolation->released[i],
+        TRY(wake_interpolation_released(school, wakes, t, time_of[i] * school->interval, &interpolation->released[i],
                                         interpolation->wake));
     }
     for (int g = 0; g < school->n_fish; g++) {
         const int first = interpolation->wake[g].first;
-        interpolation->bounds[g] = near_field_bound_wake(
-            &state->wake[g], school->interval, released[0].circulation + first, released[END].circulation + first);
+        interpolation->bounds[g] = near_field_bound_wake(&wakes[g], school->interval, released[0].circulation + first,
+                                                         released[END].circulation + first);
     }
     return STATUS_OK;
 }
 
 // divide the wakes into the near and the far field of every fish
-static enum status find_near_fields(struct wake_interpolation *interpolation, const struct state *state, int threads) {
+static enum status find_near_fields(struct wake_interpolation *interpolation, const struct wake *wakes, int threads) {
     const struct school *const school = interpolation->school;
     const struct near_field_input input = {.school = school,
-                                           .state = state,
+                                           .wakes = wakes,
                                            .points = interpolation->points,
                                            .motion = interpolation->motion,
                                            .bounds = interpolation->bounds,
@@ -214,17 +213,17 @@ static enum status find_near_fields(struct wake_interpolation *interpolation, co
     return STATUS_OK;
 }
 
-static enum status build(struct wake_interpolation *interpolation, const struct state *state,
+static enum status build(struct wake_interpolation *interpolation, const struct wake *wakes, double t,
                          const struct wake_interpolation_points *points) {
     const struct school *const school = interpolation->school;
     const int n_points = interpolation->n_points;
     const double *const motion[6] = {points->x, points->y, points->u, points->v, points->a, points->b};
     for (int k = 0; k < 6; k++) memcpy(interpolation->motion[k], motion[k], (size_t)n_points * sizeof(double));
-    interpolation->start = state->t;
-    TRY(place_wakes(interpolation, state));
+    interpolation->start = t;
+    TRY(place_wakes(interpolation, wakes, t));
     const double work = (double)N_TIMES * n_points * interpolation->released[0].n;
     const int threads = parallel_threads(school->threads, n_points, work, PARALLEL_INTERACTIONS);
-    TRY(find_near_fields(interpolation, state, threads));
+    TRY(find_near_fields(interpolation, wakes, threads));
     for (int i = 0; i < N_TIMES; i++) predict(interpolation, time_of[i] * school->interval, interpolation->path[i]);
     TRY(sum(interpolation, threads));
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
@@ -232,9 +231,9 @@ static enum status build(struct wake_interpolation *interpolation, const struct 
     return STATUS_OK;
 }
 
-enum status wake_interpolation_build(struct wake_interpolation *interpolation, const struct state *state,
+enum status wake_interpolation_build(struct wake_interpolation *interpolation, const struct wake *wakes, double t,
                                      const struct wake_interpolation_points *points) {
-    const enum status status = build(interpolation, state, points);
+    const enum status status = build(interpolation, wakes, t, points);
     for (int f = 0; status != STATUS_OK && f < interpolation->school->n_fish; f++) {
         interpolation->near_field[f].is_interpolated = 0;
     }

@@ -14,7 +14,7 @@
 #define WAKE_INTERPOLATION_H
 
 #include "base/status.h"
-#include "model/state.h"
+#include "model/wake.h"
 #include "vortex/vortices.h"
 
 struct wake_interpolation;
@@ -32,15 +32,15 @@ enum status wake_interpolation_create(struct wake_interpolation **interpolation,
                                       const struct range *points);
 void wake_interpolation_free(struct wake_interpolation *interpolation);
 
-/* Interpolate the interval that begins at the state's event, for points that are there now. The estimated error of the
+/* Interpolate the interval that begins with the event at time t, for points that are there now; wakes: of each fish. The estimated error of the
  * velocity (near_field.h) stays below the school's wake tolerance times one length per beat of the fish. Fails with
  * STATUS_MEMORY: it is valid for no fish then. */
-enum status wake_interpolation_build(struct wake_interpolation *interpolation, const struct state *state,
+enum status wake_interpolation_build(struct wake_interpolation *interpolation, const struct wake *wakes, double t,
                                      const struct wake_interpolation_points *points);
 
-/* The released vortices of all fish at the time tau after the event of the state; wake: those of each fish (n_fish).
+/* The released vortices of all wakes (n_fish) at the time tau after the event at time t; wake: those of each fish (n_fish).
  * Fails with STATUS_MEMORY. */
-enum status wake_interpolation_released(const struct school *school, const struct state *state, double tau,
+enum status wake_interpolation_released(const struct school *school, const struct wake *wakes, double t, double tau,
                                         struct vortices *released, struct range *wake);
 
 /* Go to the time t in that interval. */

@@ -68,7 +68,7 @@ static void gather_wake_position(const struct result_row *row, int f, double *sl
 
 static void gather_wake_circulation(const struct result_row *row, int f, double *slots) {
     const struct wake *wake = &row->state->wake[f];
-    if (row->with_wake) copy(wake->n_vortex, wake->circulation, slots);
+    for (int i = 0; row->with_wake && i < wake->n_vortex; i++) slots[i] = wake_circulation(wake, i);
 }
 
 static void gather_wake_birth(const struct result_row *row, int f, double *slots) {

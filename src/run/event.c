@@ -1,7 +1,7 @@
 /* event.c: from the end of one interval to the start of the next. */
 #include "run/event.h"
 
-#include <stdlib.h>
+#include <math.h>
 
 #include "model/diagnostics.h"
 #include "model/drag.h"
@@ -32,9 +32,9 @@ static enum status release_impulse(struct state *state, struct residual *residua
     const struct school *school = residual->school;
     if (school->kutta == KUTTA_EDGE) {
         // with the strength that makes the bound vortex at the tail vanish
-        residual->at_impulse = 1;
+        residual->shed_now = SHED_BY_IMPULSE;
         const enum status status = initial_conditions_solve(initial, state->t, state->y, state->yp);
-        residual->at_impulse = 0;
+        residual->shed_now = SHED_BY_LAW;
         TRY(status);
     } else {
         // with what the rate gives over one interval
@@ -56,21 +56,58 @@ static enum status release_impulse(struct state *state, struct residual *residua
     return STATUS_OK;
 }
 
-// velocities of all free vortices, and the slip at every tail, from the state as it is now; n_new: the vortices of each
-// fish that have none yet
+// a free sheet: a marker is born at the tail
+static enum status release_markers(struct state *state, const struct school *school) {
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *fish = &school->fish[f];
+        struct wake *wake = &state->wake[f];
+        const int last = fish->n_nodes - 1;
+        wake->shed_before = state->y[fish->at.circulation];
+        TRY(wake_release(wake, state->y[fish->at.x + last], state->y[fish->at.y + last], wake->shed_before, state->t));
+    }
+    return STATUS_OK;
+}
+
+// A newborn marker starts with the velocity of the fluid at the tail. Of the slip, the part along the body that points
+// forwards is left out: a tail that goes backwards would lay the sheet on the body.
+static void start_marker(const struct fish *fish, struct state *state, int f, double *u, double *v) {
+    const int last = fish->n_nodes - 1;
+    struct wake *const wake = &state->wake[f];
+    const double *const y = state->y;
+    const double velocity[2] = {y[fish->at.vx + last], y[fish->at.vy + last]};
+    const struct direction tail = fish_direction(fish, &fish->tail_tangent, y);
+    wake->slip[0] = *u - velocity[0];
+    wake->slip[1] = *v - velocity[1];
+    const double forwards = fmax(0, -(wake->slip[0] * tail.t[0] + wake->slip[1] * tail.t[1]));
+    *u += forwards * tail.t[0];
+    *v += forwards * tail.t[1];
+    wake_set_tail(wake, velocity, tail.t);
+}
+
+// the velocities of all free vortices from the state as it is now; n_new: the vortices of each fish that have none yet
 static enum status take_velocities(struct state *state, struct residual *residual, int n_new) {
     const struct school *school = residual->school;
     struct flow *const flow = residual->flow;
     TRY(flow_at_wake(flow, state));
     for (int f = 0; f < school->n_fish; f++) {
-        const int first = flow->released_range[f].first;
+        const int first = flow->wake_range[f].first, newest = first + state->wake[f].n_vortex - 1;
+        if (state->wake[f].has_markers) {
+            start_marker(&school->fish[f], state, f, &flow->wake_u[newest], &flow->wake_v[newest]);
+        }
         if (state->wake[f].n_vortex > 0) {
             wake_set_velocity(&state->wake[f], flow->wake_u + first, flow->wake_v + first, n_new);
         }
     }
-    TRY(flow_interpolate(flow, state));
+    return STATUS_OK;
+}
+
+// the flow as it will be during the next interval, and the slip at every tail
+static enum status take_flow(struct state *state, struct residual *residual) {
+    TRY(flow_interpolate(residual->flow, state));
     TRY(evaluate(residual, state));
-    for (int f = 0; f < school->n_fish; f++) flow_slip(flow, f, state->y, state->wake[f].slip);
+    for (int f = 0; f < residual->school->n_fish; f++) {
+        if (!state->wake[f].has_markers) flow_slip(residual->flow, f, state->y, state->wake[f].slip);
+    }
     return STATUS_OK;
 }
 
@@ -90,12 +127,11 @@ static int steer(struct state *state, const struct residual *residual) {
     return jumps;
 }
 
-// what follows once every wake has its new vortices: jumps tells whether the unknowns have become inconsistent, *jumped
-// whether they have, or a control law made them so
+// what follows once every free vortex has its velocity: jumps tells whether the unknowns have jumped, *jumped whether they
+// have, or a control law makes them
 static enum status finish_event(struct state *state, struct residual *residual, struct initial_conditions *initial,
-                                int n_new, int jumps, int *jumped) {
-    if (jumps) TRY(initial_conditions_solve(initial, state->t, state->y, state->yp));
-    TRY(take_velocities(state, residual, n_new));
+                                int jumps, int *jumped) {
+    TRY(take_flow(state, residual));
     diagnostics_remember(residual, state);
     const int steered = steer(state, residual);
     if (steered) {
@@ -109,12 +145,26 @@ static enum status finish_event(struct state *state, struct residual *residual, 
     return STATUS_OK;
 }
 
+// the first markers, from the flow before anything has been shed
+static enum status start_sheets(struct state *state, struct residual *residual, struct initial_conditions *initial) {
+    residual->shed_now = SHED_IS_GIVEN;
+    enum status status = initial_conditions_solve(initial, state->t, state->y, state->yp);
+    if (status == STATUS_OK) status = release_markers(state, residual->school);
+    if (status == STATUS_OK) status = take_velocities(state, residual, 1);
+    residual->shed_now = SHED_BY_LAW;
+    return status;
+}
+
 enum status event_start(struct state *state, struct residual *residual, struct initial_conditions *initial) {
-    const int impulsive = residual->school->shedding == SHEDDING_IMPULSIVE;
     int jumped;
+    if (residual->school->shedding == SHEDDING_SHEET) TRY(start_sheets(state, residual, initial));
     TRY(initial_conditions_solve(initial, state->t, state->y, state->yp));
-    if (impulsive) TRY(release_impulse(state, residual, initial));
-    TRY(finish_event(state, residual, initial, impulsive, 1, &jumped));
+    if (residual->school->shedding == SHEDDING_IMPULSIVE) {
+        TRY(release_impulse(state, residual, initial));
+        TRY(initial_conditions_solve(initial, state->t, state->y, state->yp));
+        TRY(take_velocities(state, residual, 1));
+    }
+    TRY(finish_event(state, residual, initial, 1, &jumped));
     diagnostics_start(residual, state);
     return STATUS_OK;
 }
@@ -140,9 +190,13 @@ enum status event_next(struct state *state, struct residual *residual, struct in
     if (jumps) diagnostics_before_jump(residual, state);
     if (school->shedding == SHEDDING_IMPULSIVE) {
         TRY(release_impulse(state, residual, initial));
+    } else if (school->shedding == SHEDDING_SHEET) {
+        TRY(release_markers(state, school));
     } else {
         TRY(release_nascent(state, school));
     }
     for (int f = 0; f < school->n_fish; f++) wake_remove_old(&state->wake[f], school, state->t);
-    return finish_event(state, residual, initial, 1, jumps, jumped);
+    if (jumps) TRY(initial_conditions_solve(initial, state->t, state->y, state->yp));
+    TRY(take_velocities(state, residual, 1));
+    return finish_event(state, residual, initial, jumps, jumped);
 }

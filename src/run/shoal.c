@@ -77,7 +77,7 @@ void shoal_vortices(const struct shoal *run, int fish, double *x, double *y, dou
     if (size == 0) return;
     memcpy(x, wake->x, size);
     memcpy(y, wake->y, size);
-    memcpy(circulation, wake->circulation, size);
+    for (int i = 0; i < wake->n_vortex; i++) circulation[i] = wake_circulation(wake, i);
 }
 
 const char *shoal_message(void) {

@@ -159,6 +159,40 @@ void kernel_add_pairwise(const struct kernel_tile *a, const struct kernel_tile *
     kernel_variant(0)->mutual(a, b, square_of(smoothing));
 }
 
+KERNEL_WIDE void kernel_add_velocity_each(int n_targets, const double *restrict x, const double *restrict y,
+                                          int n_sources, const double *restrict source_x,
+                                          const double *restrict source_y, const double *restrict circulation,
+                                          const double *restrict square, double *restrict u, double *restrict v) {
+    for (int j = 0; j < n_sources; j++) {
+        const double g = inverse_two_pi * circulation[j], e = square[j] + 1e-150;
+        for (int i = 0; i < n_targets; i++) {
+            const double rx = x[i] - source_x[j], ry = y[i] - source_y[j];
+            const double h = g / (rx * rx + ry * ry + e);
+            u[i] -= h * ry;
+            v[i] += h * rx;
+        }
+    }
+}
+
+KERNEL_WIDE void kernel_add_gradient_each(int n_targets, const double *restrict x, const double *restrict y,
+                                          int n_sources, const double *restrict source_x,
+                                          const double *restrict source_y, const double *restrict circulation,
+                                          const double *restrict square, double *restrict u, double *restrict v,
+                                          double *restrict u_x, double *restrict u_y, double *restrict v_x) {
+    for (int j = 0; j < n_sources; j++) {
+        const double g = inverse_two_pi * circulation[j], e = square[j] + 1e-150;
+        for (int i = 0; i < n_targets; i++) {
+            const double rx = x[i] - source_x[j], ry = y[i] - source_y[j];
+            const double inverse = 1 / (rx * rx + ry * ry + e), h = g * inverse, twice = 2 * h * inverse;
+            u[i] -= h * ry;
+            v[i] += h * rx;
+            u_x[i] += twice * rx * ry;
+            u_y[i] += twice * ry * ry - h;
+            v_x[i] += h - twice * rx * rx;
+        }
+    }
+}
+
 KERNEL_WIDE void kernel_unit(int n, const double *x, const double *y, double source_x, double source_y,
                              double smoothing, struct kernel_values *values) {
     const double square = square_of(smoothing);

@@ -32,6 +32,14 @@ void kernel_add_gradient(int n_targets, const double *x, const double *y, int n_
                          const double *source_y, const double *circulation, double smoothing, double *u, double *v,
                          double *u_x, double *u_y, double *v_x);
 
+/* The same for sources with a smoothing each, of which the squares [m2] are given (n_sources). */
+void kernel_add_velocity_each(int n_targets, const double *x, const double *y, int n_sources, const double *source_x,
+                              const double *source_y, const double *circulation, const double *square, double *u,
+                              double *v);
+void kernel_add_gradient_each(int n_targets, const double *x, const double *y, int n_sources, const double *source_x,
+                              const double *source_y, const double *circulation, const double *square, double *u,
+                              double *v, double *u_x, double *u_y, double *v_x);
+
 /* Vortices that feel each other. */
 struct kernel_tile {
     int n;                             /* a multiple of 16, at most KERNEL_TILE; vortices of strength 0 fill it up */

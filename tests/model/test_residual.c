@@ -86,6 +86,13 @@ static const struct variant {
               "fish:\n"
               "  - {sheet_points: 9, control: {law: heading, desired_heading: 150}}\n"
               "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"},
+    {"free sheet", TIME "wake: {shedding: sheet, smoothing: 0.1, taper: 0.4, taper_beside: 0.1}\n" FISH},
+    {"three fish with free sheets",
+     TIME FAR "wake: {shedding: sheet, taper: 0.4, taper_beside: 0.1, curve: smooth}\n"
+              "fish:\n"
+              "  - {sheet_points: 9, control: {law: heading, desired_heading: 150}}\n"
+              "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"
+              "  - {nodes: 9, sheet_points: 11, length: 1.2, start: {position: [0.1, -0.6], heading: 200}}\n"},
     {"two fish, impulsive", TIME FAR "preset: published\n"
                                      "fish:\n"
                                      "  - {sheet_points: 9}\n"
@@ -104,7 +111,7 @@ static void jacobian_agrees_with_differences_for_every_option(void **state) {
         school_stir(&setup);
         school_compare(&setup, value_of_school, NULL, variants[i].name);
         if (setup.school->shedding == SHEDDING_IMPULSIVE) {
-            setup.residual->at_impulse = 1;
+            setup.residual->shed_now = SHED_BY_IMPULSE;
             school_compare(&setup, value_of_school, NULL, variants[i].name);
         }
         school_clear(&setup);
@@ -193,7 +200,7 @@ static void circulation_shed_is_differential_only_with_a_rate(void **state) {
         struct setup setup;
         school_build(&setup, cases[i].text);
         assert_int_equal(residual_shed_is_algebraic(setup.residual), cases[i].algebraic);
-        setup.residual->at_impulse = 1;
+        setup.residual->shed_now = SHED_BY_IMPULSE;
         assert_int_equal(residual_shed_is_algebraic(setup.residual), cases[i].algebraic_at_impulse);
         school_clear(&setup);
     }

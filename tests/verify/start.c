@@ -214,7 +214,7 @@ static void examine(struct simulation *simulation, struct worst *worst) {
     worst->condition = fmin(worst->condition, condition_of(simulation));
     // an impulsive event with kutta: edge solves for the circulation shed, too
     if (school->shedding == SHEDDING_IMPULSIVE) {
-        simulation->residual->at_impulse = 1;
+        simulation->residual->shed_now = SHED_BY_IMPULSE;
         worst->impulse = fmin(worst->impulse, condition_of(simulation));
     }
     worst->n++;

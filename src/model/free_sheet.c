@@ -1,0 +1,193 @@
+/* free_sheet.c: the middles of stretches, the strengths of markers, and the points that the own body sees. */
+#include "model/free_sheet.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/ramp.h"
+
+/* Gauss-Legendre on [0, 1]: eta = 0.0694318, 0.3300095, 0.6699905, 0.9305682 with weights w; xi = eta^2, part = 2 eta w. */
+const double free_sheet_xi[FREE_SHEET_PANEL] = {0.004820780989426014, 0.10890625570683385, 0.44888729929169013,
+                                                0.8659570925834785};
+const double free_sheet_part[FREE_SHEET_PANEL] = {0.024152203412833233, 0.215214082271785, 0.4369310725907612,
+                                                  0.32370264172462043};
+
+enum {
+    GRADED = 1,  // stretches with graded points, the newest ones
+    PAIRED = 4   // stretches up to this one have two points, older ones their middle
+};
+static const double pair_xi[2] = {0.21132486540518712, 0.78867513459481288};  // Gauss-Legendre
+
+void free_sheet_free(struct free_sheet *sheet) {
+    double *const owned[] = {sheet->xi, sheet->part, sheet->smoothing[0], sheet->smoothing[1],
+                             sheet->x,  sheet->y,    sheet->circulation,  sheet->square};
+    for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
+    free(sheet->stretch);
+    *sheet = (struct free_sheet){0};
+}
+
+static enum status reserve(struct free_sheet *sheet, int n) {
+    if (n <= sheet->capacity) return STATUS_OK;
+    const int capacity = n + n / 2;
+    free_sheet_free(sheet);
+    double **const all[] = {&sheet->xi, &sheet->part, &sheet->smoothing[0], &sheet->smoothing[1],
+                            &sheet->x,  &sheet->y,    &sheet->circulation,  &sheet->square};
+    sheet->stretch = calloc((size_t)capacity, sizeof *sheet->stretch);
+    int failed = !sheet->stretch;
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+        *all[i] = calloc((size_t)capacity, sizeof **all[i]);
+        failed |= !*all[i];
+    }
+    if (failed) return status_fail(STATUS_MEMORY, "out of memory: %d points of a free sheet", n);
+    sheet->capacity = capacity;
+    return STATUS_OK;
+}
+
+enum status free_sheet_middles(const struct wake *markers, struct wake *middles) {
+    const int n = wake_n_sources(markers);
+    TRY(wake_resize(middles, n));
+    const double *const from[] = {markers->x, markers->y, markers->u, markers->v, markers->u_before, markers->v_before};
+    double *const to[] = {middles->x, middles->y, middles->u, middles->v, middles->u_before, middles->v_before};
+    for (int k = 0; k < 6; k++) {
+        for (int i = 0; i < n; i++) to[k][i] = (from[k][i] + from[k][i + 1]) / 2;
+    }
+    for (int i = 0; i < n; i++) {
+        middles->circulation[i] = wake_source(markers, i);
+        middles->birth[i] = markers->birth[i + 1];
+    }
+    return STATUS_OK;
+}
+
+void free_sheet_strengths(const struct wake *markers, const struct school *school, double t, double nascent,
+                          double *strength) {
+    const int n = markers->n_vortex;
+    for (int i = 0; i < n; i++) strength[i] = 0;
+    for (int i = 0; i + 1 < n; i++) {
+        const double stretch =
+            (markers->circulation[i + 1] - markers->circulation[i]) * wake_strength(school, t - markers->birth[i + 1]);
+        strength[i] += stretch / 2;
+        strength[i + 1] += stretch / 2;
+    }
+    // the nascent stretch has no length yet: both of its halves are here
+    if (n > 0) strength[n - 1] += nascent;
+}
+
+// the smoothing at a displacement from the tail, tangent being the direction of the body there
+static double tapered(const struct fish *fish, const double from_tail[2], const double tangent[2]) {
+    if (fish->taper <= 0) return fish->smoothing;
+    const double square = from_tail[0] * from_tail[0] + from_tail[1] * from_tail[1];
+    if (square <= 0) return 0;
+    const double cosine = (from_tail[0] * tangent[0] + from_tail[1] * tangent[1]) / sqrt(square);
+    const double behind = ramp_step(1 + 2 * cosine);
+    const double length = fish->taper * behind + fish->taper_beside * (1 - behind);
+    return length > 0 ? fish->smoothing * -expm1(-square / (length * length)) : fish->smoothing;
+}
+
+// the point at xi of the way from the newer to the older end of a stretch, tau after the event
+static void point_of(const struct wake *markers, int stretch, double xi, double interval, double tau, double point[2]) {
+    double newer[2], older[2];
+    wake_marker(markers, stretch + 1, interval, tau, newer);
+    wake_marker(markers, stretch, interval, tau, older);
+    for (int i = 0; i < 2; i++) point[i] = (1 - xi) * newer[i] + xi * older[i];
+}
+
+static void add(struct free_sheet *sheet, const struct fish *fish, const struct wake *markers, double interval,
+                int stretch, double xi, double part) {
+    const int i = sheet->n++;
+    sheet->stretch[i] = stretch;
+    sheet->xi[i] = xi;
+    sheet->part[i] = part;
+    if (part < 0) {
+        sheet->smoothing[0][i] = sheet->smoothing[1][i] = fish->smoothing;
+        return;
+    }
+    // the tail is where the newest marker was born, and goes on as it went then
+    const int newest = markers->n_vortex - 1;
+    for (int end = 0; end < 2; end++) {
+        const double tau = end * interval;
+        const double tail[2] = {markers->x[newest] + tau * markers->tail_velocity[0],
+                                markers->y[newest] + tau * markers->tail_velocity[1]};
+        double point[2];
+        point_of(markers, stretch, xi, interval, tau, point);
+        const double from_tail[2] = {point[0] - tail[0], point[1] - tail[1]};
+        sheet->smoothing[end][i] = tapered(fish, from_tail, markers->tail_tangent);
+    }
+}
+
+// whether the smoothing of a source is the full one to rounding, so that the own body may see what others see
+static int is_untapered(const struct free_sheet *sheet, const struct fish *fish, int i) {
+    const double rounding = 1e-13;
+    return fish->smoothing - sheet->smoothing[0][i] <= rounding * fish->smoothing &&
+           fish->smoothing - sheet->smoothing[1][i] <= rounding * fish->smoothing;
+}
+
+enum status free_sheet_build(struct free_sheet *sheet, const struct fish *fish, const struct school *school,
+                             const struct wake *markers) {
+    const int n_stretches = markers->n_vortex - 1;
+    TRY(reserve(sheet, 2 * (n_stretches > 0 ? n_stretches : 0) + 4 * FREE_SHEET_PANEL + 1));
+    sheet->n = 0;
+    const double interval = school->interval;
+    for (int i = n_stretches - 1; i >= 0; i--) {
+        const int age = n_stretches - i;  // 1: the newest one
+        if (age <= GRADED) {
+            for (int k = 0; k < FREE_SHEET_PANEL; k++) {
+                add(sheet, fish, markers, interval, i, free_sheet_xi[k], free_sheet_part[k]);
+            }
+        } else if (age <= PAIRED) {
+            for (int k = 0; k < 2; k++) add(sheet, fish, markers, interval, i, pair_xi[k], 0.5);
+        } else {
+            add(sheet, fish, markers, interval, i, 0.5, 1);
+            if (is_untapered(sheet, fish, sheet->n - 1)) {
+                sheet->n--;
+                continue;
+            }
+        }
+        add(sheet, fish, markers, interval, i, 0.5, -1);
+    }
+    sheet->n += FREE_SHEET_PANEL + 1;
+    return STATUS_OK;
+}
+
+void free_sheet_place(struct free_sheet *sheet, const struct school *school, const struct wake *markers,
+                      const struct wake *middles, double t, double tau) {
+    const double q = tau / school->interval;
+    for (int i = 0; i < sheet->n - (FREE_SHEET_PANEL + 1); i++) {
+        const int stretch = sheet->stretch[i];
+        double point[2];
+        point_of(markers, stretch, sheet->xi[i], school->interval, tau, point);
+        const double age = t - middles->birth[stretch];
+        const double now = wake_strength(school, age), next = wake_strength(school, age + school->interval);
+        const double smoothing = (1 - q) * sheet->smoothing[0][i] + q * sheet->smoothing[1][i];
+        sheet->x[i] = point[0];
+        sheet->y[i] = point[1];
+        sheet->circulation[i] = sheet->part[i] * middles->circulation[stretch] * (now + q * (next - now));
+        sheet->square[i] = smoothing * smoothing;
+    }
+}
+
+void free_sheet_nascent_point(const struct wake *markers, double interval, double tau, const double tail[2], double xi,
+                              double point[2]) {
+    double newest[2] = {tail[0], tail[1]};
+    if (markers->n_vortex > 0) wake_marker(markers, markers->n_vortex - 1, interval, tau, newest);
+    for (int k = 0; k < 2; k++) point[k] = (1 - xi) * tail[k] + xi * newest[k];
+}
+
+void free_sheet_place_nascent(struct free_sheet *sheet, const struct fish *fish, const struct wake *markers,
+                              double interval, double tau, const double tail[2], double circulation) {
+    const int first = sheet->n - (FREE_SHEET_PANEL + 1);
+    for (int i = 0; i <= FREE_SHEET_PANEL; i++) {
+        const int is_middle = i == FREE_SHEET_PANEL;
+        double point[2];
+        free_sheet_nascent_point(markers, interval, tau, tail, is_middle ? 0.5 : free_sheet_xi[i], point);
+        sheet->x[first + i] = point[0];
+        sheet->y[first + i] = point[1];
+        sheet->circulation[first + i] = (is_middle ? -1 : free_sheet_part[i]) * circulation;
+        sheet->square[first + i] = is_middle ? fish->smoothing * fish->smoothing : 0;
+    }
+}
+
+double free_sheet_bound_smoothing(const struct fish *fish, int j) {
+    const double pi = 3.14159265358979323846, step = pi / (fish->n_sheet - 1);
+    const int is_end = j == 0 || j == fish->n_sheet - 1;
+    return fish->sheet_smoothing * sin(is_end ? step / 2 : j * step);
+}
