@@ -2,6 +2,7 @@
 #include <sys/stat.h>
 
 #include "base/version.h"
+#include "crafted_file.h"
 #include "output/result_info.h"
 #include "output/result_kind.h"
 #include "output/result_table.h"
@@ -113,6 +114,31 @@ static void info_refuses_a_file_that_was_cut(void **state) {
     }
 }
 
+static void info_refuses_variables_that_do_not_fit(void **state) {
+    struct fixture *f = *state;
+    write_file(f, 3);
+    size_t n;
+    char *const bytes = read_bytes(f->path, &n), name[NC_MAX_NAME + 1];
+    int n_refused = 0;
+    for (int i = 0; name_of_variable(f->path, i, name); i++) {
+        for (enum craft how = 0; how < N_CRAFTS; how++) {
+            craft_variable(f->path, name, how);
+            enum status status;
+            info(f->path, 0, &status);
+            if (status == STATUS_FILE) {
+                assert_message(f->path);
+                n_refused++;
+            } else {
+                assert_int_equal(status, STATUS_OK);
+            }
+            write_bytes(f->path, n, bytes);
+        }
+    }
+    // 24 variables are printed
+    assert_true(n_refused >= 24 * N_CRAFTS);
+    free(bytes);
+}
+
 // ---- the list of variables and the version ----
 
 static void the_list_has_one_line_per_variable(void **state) {
@@ -154,6 +180,7 @@ int main(void) {
         WITH_FILE(info_refuses_other_files),
         WITH_FILE(info_refuses_another_schema),
         WITH_FILE(info_refuses_a_file_that_was_cut),
+        WITH_FILE(info_refuses_variables_that_do_not_fit),
         cmocka_unit_test(the_list_has_one_line_per_variable),
         cmocka_unit_test(version_names_every_library),
     };

@@ -1,4 +1,5 @@
 /* test_member_file.c: the end of a member of a study, and what is computed from its rows. */
+#include "crafted_file.h"
 #include "result_fixture.h"
 #include "study/member_file.h"
 
@@ -98,6 +99,86 @@ static void a_member_without_rows_has_no_values(void **state) {
     member_file_free(&member);
 }
 
+// ---- files that are not whole, or not ours
+
+static void a_member_that_was_cut_is_refused(void **state) {
+    struct fixture *const f = *state;
+    struct member_file member;
+    read_member(f, &member);
+    member_file_free(&member);
+    size_t n;
+    char *const bytes = read_bytes(f->path, &n);
+    while (n > 0 && bytes[n - 1] == 0) n--;  // the last value, 28, ends with zeros
+    // the header with its status is whole in most of them
+    for (size_t length = n - 1; length > 0; length -= length < 97 ? length : 97) {
+        write_bytes(f->path, length, bytes);
+        if (member_file_read(&member, f->path) != STATUS_FILE) fail_msg("%zu of %zu bytes are a member", length, n);
+        assert_message(f->path);
+        assert_null(member.status);
+    }
+    free(bytes);
+}
+
+/* Whether a member cannot be read without this variable. */
+static bool is_needed(const char *name) {
+    static const char *const needed[] = {
+        "time", "x", "n_nodes", "heading", "com", "frequency", "cost_of_transport", "body_mass", "speed"};
+    for (size_t i = 0; i < sizeof needed / sizeof *needed; i++)
+        if (strcmp(needed[i], name) == 0) return true;
+    return false;
+}
+
+static bool is_quantity(const char *name) {
+    for (int q = 0; member_file_quantity(q); q++)
+        if (strcmp(member_file_quantity(q)->name, name) == 0) return true;
+    return false;
+}
+
+static void a_variable_that_does_not_fit_is_refused(void **state) {
+    struct fixture *const f = *state;
+    struct member_file member;
+    read_member(f, &member);
+    member_file_free(&member);
+    size_t n;
+    char *const bytes = read_bytes(f->path, &n), name[NC_MAX_NAME + 1];
+    int n_refused = 0;
+    for (int i = 0; name_of_variable(f->path, i, name); i++) {
+        for (enum craft how = 0; how < N_CRAFTS; how++) {
+            craft_variable(f->path, name, how);
+            const enum status status = member_file_read(&member, f->path);
+            const bool must_fail = is_needed(name) || (is_quantity(name) && how != MISSING);
+            if (status != STATUS_FILE && must_fail) fail_msg("%s, %d: not refused", name, how);
+            if (status == STATUS_FILE) {
+                assert_message(f->path);
+                n_refused++;
+            } else {
+                assert_int_equal(status, STATUS_OK);
+                if (is_quantity(name)) assert_true(isnan(value(&member, name, 0, 0)));
+                member_file_free(&member);
+            }
+            write_bytes(f->path, n, bytes);
+        }
+    }
+    assert_true(n_refused > 150);
+    free(bytes);
+}
+
+static void a_body_cannot_have_more_nodes_than_there_are_places(void **state) {
+    struct fixture *const f = *state;
+    const int wrong[] = {8, 0, -1, 2147483647};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        write_file(f, 2);
+        int file;
+        assert_int_equal(nc_open(f->path, NC_WRITE, &file), NC_NOERR);
+        assert_int_equal(nc_put_var1_int(file, number_of(file, "n_nodes"), (size_t[]){1}, &wrong[i]), NC_NOERR);
+        nc_close(file);
+        struct member_file member;
+        assert_int_equal(member_file_read(&member, f->path), STATUS_FILE);
+        assert_message("nodes");
+        unlink(f->path);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         WITH_FILE(quantities_of_the_table_are_those_of_the_last_row),
@@ -106,6 +187,9 @@ int main(void) {
         WITH_FILE(mean_heading_is_that_of_trapezoids_over_the_last_period),
         WITH_FILE(mean_power_is_the_cost_of_transport_times_mass_and_speed),
         WITH_FILE(a_member_without_rows_has_no_values),
+        WITH_FILE(a_member_that_was_cut_is_refused),
+        WITH_FILE(a_variable_that_does_not_fit_is_refused),
+        WITH_FILE(a_body_cannot_have_more_nodes_than_there_are_places),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "case/sweep_members.h"
 #include "case/sweep_quantity.h"
+#include "crafted_file.h"
 #include "failing_malloc.h"
 #include "near.h"
 #include "study/study.h"
@@ -198,6 +199,48 @@ static void orders_are_kept_in_study_nc(void **state) {
     case_free(&again);
 }
 
+static void a_study_nc_that_does_not_fit_is_refused(void **state) {
+    (void)state;
+    struct case_values study;
+    assert_int_equal(case_parse(&study, refined, strlen(refined), "refined.yaml", NULL, 0, NULL), STATUS_OK);
+    struct member_file member[6];
+    for (int m = 0; m < 6; m++) make_member(&member[m], &study, m);
+    struct study_file_orders orders;
+    assert_int_equal(study_orders_create(&orders, &study, member), STATUS_OK);
+    char path[] = "/tmp/shoal-study-XXXXXX";
+    close(mkstemp(path));
+    assert_int_equal(study_file_write(path, &study, member, &orders, "test"), STATUS_OK);
+
+    size_t n;
+    char *const bytes = read_bytes(path, &n), name[NC_MAX_NAME + 1];
+    for (int i = 0; name_of_variable(path, i, name); i++) {
+        for (enum craft how = 0; how < N_CRAFTS; how++) {
+            craft_variable(path, name, how);
+            struct case_values again;
+            struct member_file *read;
+            int is_read = strcmp(name, "status") == 0 && how != LONG_DIMENSION;
+            for (int q = 0; member_file_quantity(q) && how != MISSING; q++) {
+                is_read = is_read || strcmp(member_file_quantity(q)->name, name) == 0;
+            }
+            const enum status status = study_file_read(path, &again, &read);
+            if (is_read && status != STATUS_FILE) fail_msg("%s, %d: not refused", name, how);
+            if (status == STATUS_FILE) {
+                assert_non_null(strstr(status_message(), path));
+            } else {
+                assert_int_equal(status, STATUS_OK);
+                study_members_free(read, 6);
+                case_free(&again);
+            }
+            write_bytes(path, n, bytes);
+        }
+    }
+    free(bytes);
+    unlink(path);
+    for (int m = 0; m < 6; m++) member_file_free(&member[m]);
+    study_file_orders_free(&orders);
+    case_free(&study);
+}
+
 // ---- memory
 
 static const char small[] =
@@ -314,6 +357,7 @@ int main(void) {
         cmocka_unit_test(levels_on_both_sides_of_a_given_value_oscillate),
         cmocka_unit_test(what_is_not_asymptotic_is_flagged),
         cmocka_unit_test(orders_are_kept_in_study_nc),
+        cmocka_unit_test(a_study_nc_that_does_not_fit_is_refused),
         cmocka_unit_test(every_failing_allocation_of_a_study_is_reported_and_leaves_nothing),
         cmocka_unit_test(quantities_of_a_case_are_those_of_a_study),
         cmocka_unit_test(a_table_has_aligned_columns_and_no_blanks_at_the_end),
