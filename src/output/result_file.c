@@ -194,10 +194,6 @@ static struct result_file *allocate(const struct school *school, long n_events) 
     return NULL;
 }
 
-enum status result_file_check(const char *path, int overwrite) {
-    return netcdf_check_target(path, overwrite);
-}
-
 enum status result_file_create(struct result_file **result, const char *path, int overwrite,
                                const struct case_values *values, const char *effective, const char *command,
                                const struct school *school, long n_events) {

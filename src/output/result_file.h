@@ -10,9 +10,6 @@
 
 struct result_file; /* an open result file */
 
-/* Fail with STATUS_FILE if no file can be made at path, for instance because it exists and must not be overwritten. */
-enum status result_file_check(const char *path, int overwrite);
-
 /* Create the file at path, with the constants of the school. overwrite: replace one that exists, else that is an error.
  * The file gets its name when its header is complete, so that a failure leaves nothing half made. effective: the
  * complete case (case_show); command: the command line, for the attribute history; n_events: of the whole run, without

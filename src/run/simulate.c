@@ -8,6 +8,7 @@
 #include <time.h>
 
 #include "case/case_show.h"
+#include "output/netcdf.h"
 #include "output/result_file.h"
 #include "run/event.h"
 #include "solver/integrator_table.h"
@@ -81,7 +82,7 @@ struct run {
     const struct case_values *values;
     const struct simulate_options *options;
     struct simulation *simulation;
-    struct result_file *store;
+    struct result_file *result;
     long events_per_row, events_per_wake;
 };
 
@@ -94,13 +95,13 @@ static enum status write_if_due(struct run *run) {
     struct integrator_counts counts;
     simulation->integrator->count(simulation->solver, &counts);
     simulate_measure(simulation);
-    return result_file_row(run->store, &(struct result_row){.school = simulation->school,
-                                                            .state = simulation->state,
-                                                            .residual = simulation->residual,
-                                                            .diagnostics = simulation->diagnostics,
-                                                            .counts = &counts,
-                                                            .wall_time = simulate_wall_time(simulation),
-                                                            .with_wake = event % run->events_per_wake == 0 || last});
+    return result_file_row(run->result, &(struct result_row){.school = simulation->school,
+                                                             .state = simulation->state,
+                                                             .residual = simulation->residual,
+                                                             .diagnostics = simulation->diagnostics,
+                                                             .counts = &counts,
+                                                             .wall_time = simulate_wall_time(simulation),
+                                                             .with_wake = event % run->events_per_wake == 0 || last});
 }
 
 static void tell(const struct run *run) {
@@ -131,19 +132,20 @@ static enum status loop(struct run *run) {
     return STATUS_OK;
 }
 
-static enum status open_store(struct run *run) {
+static enum status open_result(struct run *run) {
     char *effective = NULL;
     TRY(case_show(run->values, &effective));
     const enum status status =
-        result_file_create(&run->store, run->options->path, run->options->overwrite, run->values, effective,
+        result_file_create(&run->result, run->options->path, run->options->overwrite, run->values, effective,
                            run->options->command, run->simulation->school, run->simulation->n_events);
     free(effective);
     return status;
 }
 
 static enum status run_to_end(struct run *run) {
+    TRY(netcdf_check_target(run->options->path, run->options->overwrite));
     TRY(simulate_create(&run->simulation, run->values));
-    TRY(open_store(run));
+    TRY(open_result(run));
     const enum status status = loop(run);
     // the reason of a failure is the message; closing must not lose it
     char reason[4096];
@@ -156,7 +158,7 @@ static enum status run_to_end(struct run *run) {
     } else {
         snprintf(run_status, sizeof run_status, "failed: %s", reason);
     }
-    const enum status closed = result_file_close(run->store, run_status);
+    const enum status closed = result_file_close(run->result, run_status);
     if (status == STATUS_OK) return closed;
     return status_fail(status, "%s", reason);
 }

@@ -67,7 +67,8 @@ static enum status read_member(struct member_file *member, const struct case_val
         status = member_file_read(member, path);
         if (status == STATUS_FILE) {
             status = note(member, "failed: %s", status_message());
-        } else if (status == STATUS_OK && (strcmp(member->study, study->merged) != 0 || member->number != number)) {
+        } else if (status == STATUS_OK && (strcmp(member->study, study->merged) != 0 || member->number != number ||
+                                           member->n_fish != study->school.n_fish)) {
             status = status_fail(STATUS_FILE, "%s is a result of another study than the first file there", path);
         }
     }

@@ -278,6 +278,32 @@ static int remove_path(void **state) {
     return unlink(*state);
 }
 
+// ---- before the start
+
+static int n_schools;
+
+enum status __real_fish_school_create(struct school **school, const void *parameters);
+enum status __wrap_fish_school_create(struct school **school, const void *parameters);
+enum status __wrap_fish_school_create(struct school **school, const void *parameters) {
+    n_schools++;
+    return __real_fish_school_create(school, parameters);
+}
+
+static void a_result_that_cannot_be_written_is_told_before_the_start(void **state) {
+    const char *const places[][2] = {{*state, "exists"}, {"/no/folder/run.nc", "there is no folder"}};
+    struct case_values values;
+    const char *const text = "format: 1\n" TIME "fish: [" LEFT "]\n";
+    assert_int_equal(case_parse(&values, text, strlen(text), "case", NULL, 0, NULL), STATUS_OK);
+    for (int i = 0; i < 2; i++) {
+        const struct simulate_options options = {.path = places[i][0], .overwrite = 0, .command = "test"};
+        n_schools = 0;
+        assert_int_equal(simulate_run(&values, &options), STATUS_FILE);
+        assert_non_null(strstr(status_message(), places[i][1]));
+        assert_int_equal(n_schools, 0);
+    }
+    case_free(&values);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(order_of_the_fish_does_not_matter),
@@ -293,6 +319,7 @@ int main(void) {
         cmocka_unit_test(the_wake_is_written_at_its_own_interval_and_at_the_end),
         cmocka_unit_test(a_signal_stops_a_run_at_the_next_event),
         cmocka_unit_test(a_failing_run_says_when_and_keeps_its_file),
+        cmocka_unit_test(a_result_that_cannot_be_written_is_told_before_the_start),
     };
     return cmocka_run_group_tests(tests, make_path, remove_path);
 }

@@ -38,6 +38,7 @@ static void quantities_of_the_table_are_those_of_the_last_row(void **state) {
     NEAR(value(&member, "com", 0, 1), 2 + 5 * 0.8, 0, 1e-15);
     NEAR(value(&member, "speed", 1, 0), f->measured[1].speed, 0, 0);
     NEAR(value(&member, "steps", 0, 0), 21, 0, 0);
+    assert_true(isnan(value(&member, "speed", N_FISH, 0)));  // no such fish
     member_file_free(&member);
 }
 
