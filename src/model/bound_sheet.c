@@ -43,7 +43,7 @@ double bound_sheet_end_correction(const struct fish *fish, int c, int j) {
     return (j == last ? -2 : 1) * fish->end_correction[c] * fish->sheet_weight[j];
 }
 
-void bound_sheet_residual(const struct fish *fish, double dissipated, const double *u, const double *v, const double *y,
+void bound_sheet_residual(const struct fish *fish, double removed, const double *u, const double *v, const double *y,
                           double *residual) {
     double *const row = residual + fish->at.gamma;
     for (int c = 0; c < fish->n_control; c++) {
@@ -55,7 +55,7 @@ void bound_sheet_residual(const struct fish *fish, double dissipated, const doub
             row[c] += bound_sheet_end_correction(fish, c, j) * y[fish->at.gamma + j];
         }
     }
-    row[fish->n_control] = bound_sheet_circulation(fish, y) + y[fish->at.circulation] - dissipated;
+    row[fish->n_control] = bound_sheet_circulation(fish, y) + y[fish->at.circulation] - removed;
 }
 
 void bound_sheet_jacobian(const struct fish *fish, const double *u, const double *v, const double *y,

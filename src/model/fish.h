@@ -23,7 +23,7 @@
 #include "model/parameters.h"
 
 /* First index of each slice in the vector of all unknowns, and one past the last. The equations have the same layout:
- * rows x, y: dx/dt - v; vx, vy: dv/dt - a; ax, ay: law of motion; sheet: M - 1 times no penetration, then Kelvin;
+ * rows x, y: dx/dt - v; vx, vy: dv/dt - a; ax, ay: law of motion; sheet: M - 1 times impermeability, then Kelvin;
  * shed: Kutta; phi0: control law. */
 struct layout {
     int x, y, vx, vy, ax, ay, gamma, circulation, phi0, end;

@@ -196,7 +196,7 @@ static void evaluate_fish(struct residual *residual, int f, double t, const doub
         value[fish->at.ay + k] /= fish->mass[k];
     }
     drive(fish, t, y, value);
-    // no penetration, Kelvin, Kutta
+    // impermeability, Kelvin, Kutta
     bound_sheet_residual(fish, residual_removed(residual, f), u, v, y, value);
     bound_sheet_kutta_residual(fish, law_of(residual), ramp_value(t, school->kutta_ramp), u, v, y, yp, value);
     // the control law

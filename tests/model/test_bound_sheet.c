@@ -16,7 +16,7 @@ static void of_fish(struct setup *setup, int f, const double **u, const double *
     *v = setup->residual->flow->v + setup->residual->flow->points[f].first;
 }
 
-static const double dissipated = 0.3, chi = 0.6;
+static const double removed = 0.3, chi = 0.6;
 static enum bound_sheet_law law; /* of the pass that is compared */
 
 static void value_of_sheet(struct setup *setup, const double *y, const double *yp, double *value) {
@@ -24,7 +24,7 @@ static void value_of_sheet(struct setup *setup, const double *y, const double *y
     for (int f = 0; f < setup->school->n_fish; f++) {
         const double *u, *v;
         of_fish(setup, f, &u, &v);
-        bound_sheet_residual(&setup->school->fish[f], dissipated, u, v, y, value);
+        bound_sheet_residual(&setup->school->fish[f], removed, u, v, y, value);
         bound_sheet_kutta_residual(&setup->school->fish[f], law, chi, u, v, y, yp, value);
     }
 }
