@@ -241,6 +241,25 @@ static void a_study_nc_that_does_not_fit_is_refused(void **state) {
     case_free(&study);
 }
 
+static void levels_of_points_are_their_distances_from_coarse_to_fine(void **state) {
+    (void)state;
+    static const char text[] =
+        "format: 1\ntime: {end: 1}\nfish: [{}]\n"
+        "sweep: [{key: \"fish[*].nodes\", values: [9, 5, 17], refine: true}]\n";
+    struct case_values study;
+    assert_int_equal(case_parse(&study, text, strlen(text), "points.yaml", NULL, 0, NULL), STATUS_OK);
+    const struct member_file missing[3] = {{.status = ""}, {.status = ""}, {.status = ""}};
+    struct study_file_orders orders;
+    assert_int_equal(study_orders_create(&orders, &study, missing), STATUS_OK);
+    assert_int_equal(orders.n_levels, 3);
+    const double sizes[] = {1.0 / 4, 1.0 / 8, 1.0 / 16};
+    const int levels[] = {1, 0, 2};
+    NEAR_ARRAY(3, orders.size, sizes, 0, 0);
+    assert_memory_equal(orders.level, levels, sizeof levels);
+    study_file_orders_free(&orders);
+    case_free(&study);
+}
+
 // ---- memory
 
 static const char small[] =
@@ -358,6 +377,7 @@ int main(void) {
         cmocka_unit_test(what_is_not_asymptotic_is_flagged),
         cmocka_unit_test(orders_are_kept_in_study_nc),
         cmocka_unit_test(a_study_nc_that_does_not_fit_is_refused),
+        cmocka_unit_test(levels_of_points_are_their_distances_from_coarse_to_fine),
         cmocka_unit_test(every_failing_allocation_of_a_study_is_reported_and_leaves_nothing),
         cmocka_unit_test(quantities_of_a_case_are_those_of_a_study),
         cmocka_unit_test(a_table_has_aligned_columns_and_no_blanks_at_the_end),

@@ -1,0 +1,111 @@
+/* test_study_expect.c: statements about the ends of members: when they hold, and what is printed. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "near.h"
+#include "study/study.h"
+
+enum { N_MEMBERS = 3, N_FISH = 2 };
+
+/* Three members, whose noses of the second fish are the corners of a triangle with sides of 3 and 4. */
+static const double corner[N_MEMBERS][2] = {{1, 1}, {1, 5}, {4, 5}};
+static const double speed[N_MEMBERS][N_FISH] = {{2, 3}, {4, 2.5}, {2, 2}};
+
+static void set(struct member_file *member, const char *quantity, int fish, int xy, double value) {
+    member->value[(member_file_quantity_number(quantity) * N_FISH + fish) * 2 + xy] = value;
+}
+
+/* Whether a statement holds; *printed, which the caller frees, is what it says. */
+static enum status holds(const char *statement, const char *status_of_the_last, char **printed) {
+    char text[512];
+    snprintf(text, sizeof text,
+             "format: 1\ntime: {end: 1}\nfish: [{name: a}, {name: b, start: {position: [0, 3]}}]\n"
+             "sweep: [{key: solver.order, values: [1, 2, 3]}]\nexpect: [%s]\n",
+             statement);
+    struct case_values study;
+    if (case_parse(&study, text, strlen(text), "stated.yaml", NULL, 0, NULL) != STATUS_OK) {
+        fail_msg("%s", status_message());
+    }
+    int n = 0;
+    while (member_file_quantity(n)) n++;
+    struct member_file member[N_MEMBERS];
+    for (int m = 0; m < N_MEMBERS; m++) {
+        member[m] = (struct member_file){.number = m, .n_fish = N_FISH, .status = strdup("complete")};
+        member[m].value = calloc((size_t)n * N_FISH * 2, sizeof *member[m].value);
+        for (int k = 0; k < 2; k++) set(&member[m], "nose", 1, k, corner[m][k]);
+        for (int f = 0; f < N_FISH; f++) set(&member[m], "speed", f, 0, speed[m][f]);
+    }
+    free(member[N_MEMBERS - 1].status);
+    member[N_MEMBERS - 1].status = strdup(status_of_the_last);
+
+    size_t size;
+    FILE *const stream = open_memstream(printed, &size);
+    const enum status status = study_expect(&study, member, stream);
+    fclose(stream);
+    for (int m = 0; m < N_MEMBERS; m++) member_file_free(&member[m]);
+    case_free(&study);
+    return status;
+}
+
+static void check(const char *statement, const char *status_of_the_last, enum status want, const char *line) {
+    char *printed;
+    const enum status status = holds(statement, status_of_the_last, &printed);
+    if (status != want || !strstr(printed, line)) {
+        fail_msg("%s: status %d, want %d; '%s' in:\n%s", statement, status, want, line, printed);
+    }
+    free(printed);
+}
+
+static void bounds_hold_for_all_fish_of_all_members_the_bounds_included(void **state) {
+    (void)state;
+    check("{of: speed, least: 2, most: 4}", "complete", STATUS_OK, "speed, 6 values\n");
+    check("{of: speed, least: 2.01}", "complete", STATUS_MISSED, "MISSED   the least is 2, expected at least 2.01");
+    check("{of: speed, most: 3.99}", "complete", STATUS_MISSED, "MISSED   the largest is 4, expected at most 3.99");
+}
+
+static void a_statement_may_be_about_one_fish_and_some_members(void **state) {
+    (void)state;
+    check("{of: speed, fish: b, most: 3}", "complete", STATUS_OK, "speed of b, 3 values\n");
+    check("{of: speed, where: [solver.order=2, solver.order=3], least: 2}", "complete", STATUS_OK, "speed, 4 values\n");
+    check("{of: speed, fish: b, where: [solver.order=2], least: 2.5, most: 2.5}", "complete", STATUS_OK, "1 value\n");
+}
+
+static void a_spread_of_points_is_the_diagonal_of_the_box_around_them(void **state) {
+    (void)state;
+    check("{of: nose, fish: b, spread: 5}", "complete", STATUS_OK, "met      they differ by 5, expected at most 5");
+    check("{of: nose, fish: b, spread: 4.99}", "complete", STATUS_MISSED, "MISSED   they differ by 5");
+    check("{of: speed, spread: 2}", "complete", STATUS_OK, "met      they differ by 2");
+}
+
+static void a_ratio_is_the_largest_over_the_least(void **state) {
+    (void)state;
+    check("{of: speed, ratio: 2}", "complete", STATUS_OK, "met      the largest over the least is 2");
+    check("{of: speed, ratio: 1.99}", "complete", STATUS_MISSED, "MISSED   the largest over the least is 2");
+}
+
+static void a_member_that_is_not_complete_misses_whatever_its_values(void **state) {
+    (void)state;
+    check("{of: speed, least: 0}", "stopped", STATUS_MISSED, "MISSED   member 2 is not complete");
+    check("{of: speed, least: 0, where: [solver.order=1, solver.order=2]}", "stopped", STATUS_OK, "4 values");
+}
+
+static void failures_are_expected_by_a_part_of_their_words(void **state) {
+    (void)state;
+    check("{fails: unstable, where: [solver.order=3]}", "failed: unstable at t = 1", STATUS_OK, "failures, 1 member\n");
+    check("{fails: singular, where: [solver.order=3]}", "failed: unstable at t = 1", STATUS_MISSED,
+          "MISSED   member 2 has not failed with 'singular'");
+    check("{fails: unstable}", "failed: unstable at t = 1", STATUS_MISSED, "MISSED   member 1 has not failed");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(bounds_hold_for_all_fish_of_all_members_the_bounds_included),
+        cmocka_unit_test(a_statement_may_be_about_one_fish_and_some_members),
+        cmocka_unit_test(a_spread_of_points_is_the_diagonal_of_the_box_around_them),
+        cmocka_unit_test(a_ratio_is_the_largest_over_the_least),
+        cmocka_unit_test(a_member_that_is_not_complete_misses_whatever_its_values),
+        cmocka_unit_test(failures_are_expected_by_a_part_of_their_words),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
