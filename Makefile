@@ -76,7 +76,7 @@ commit := $(shell test -e .git && git describe --always --dirty --abbrev=12 --ex
 # make again, on all cores unless told otherwise
 parallel = $(MAKE) --no-print-directory $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
-.PHONY: all demo test test-slurm tests verify bench style format docs install uninstall clean deps help FORCE
+.PHONY: all demo test test-slurm tests verify mutants bench style format docs install uninstall clean deps help FORCE
 
 ## Everyday
 
@@ -120,6 +120,10 @@ style: all $(generated_docs)  ## check format, layers, names and the generated d
 	    diff -u "$$document" "$(B)/$$document" || { echo "$$document is out of date: run 'make docs'" >&2; exit 1; }; \
 	done
 
+mutants: deps  ## see that the tests notice errors: 50 small ones are built in, one at a time (minutes)
+	@$(parallel) tests
+	@scripts/mutants.py
+
 format:  ## lay out all C files as `make style` wants them
 	$(quiet)clang-format -i $(c_files)
 
@@ -139,7 +143,7 @@ install: $(program) $(library)  ## install program, library, header, cases, scri
 	$(quiet)install -m 644 $(library) '$(DESTDIR)$(prefix)/lib'
 	$(quiet)install -m 644 cases/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases'
 	$(quiet)install -m 644 cases/studies/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases/studies'
-	$(quiet)install -m 755 $(filter-out scripts/make-% scripts/verify.py scripts/numerics.py,$(wildcard scripts/*.py)) '$(DESTDIR)$(prefix)/share/shoal/scripts'
+	$(quiet)install -m 755 $(filter-out scripts/make-% scripts/verify.py scripts/numerics.py scripts/mutants.py,$(wildcard scripts/*.py)) '$(DESTDIR)$(prefix)/share/shoal/scripts'
 	$(quiet)install -m 644 LICENSE doc/*.md '$(DESTDIR)$(prefix)/share/shoal/doc'
 	$(quiet)printf '%s\n' 'prefix=$(prefix)' 'Name: shoal' 'Description: Swimming of fish and schools with their wakes' \
 	    'Version: $(VERSION)' 'Cflags: -I$${prefix}/include' 'Libs: -L$${prefix}/lib -lshoal $(libraries) -fopenmp' \

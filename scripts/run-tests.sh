@@ -9,7 +9,7 @@
 # The last line printed is the sum: "N passed, N failed, N skipped".
 set -euo pipefail
 
-readonly time_limit=300  # seconds for one test
+readonly time_limit=${TIME_LIMIT:-300}  # seconds for one test
 readonly at_once=2
 
 if (($# < 1)); then
