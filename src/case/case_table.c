@@ -206,7 +206,9 @@ const struct key case_table[] = {
      .synonyms = "force"},
 
     {"fish.motion.driven", CHOICE, IN_FISH(motion.prescribed), "none", ANY, "",
-     .meaning = "what moves as given instead of freely: nothing, the first two nodes, or the whole straight body",
+     .meaning =
+         "what moves as prescribed instead of freely: nothing; the nose, with the direction of the first edge; or "
+         "the whole straight body",
      .words = WORDS("none", "head", "all"), .synonyms = "drive prescribed"},
     {"fish.motion.speed", REAL, IN_FISH(motion.speed), NULL, ANY, "m s-1", .meaning = "speed along start.heading",
      .derived = "start.speed"},

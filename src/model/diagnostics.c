@@ -7,6 +7,7 @@
 #include "base/angle.h"
 #include "model/actuation.h"
 #include "model/bound_sheet.h"
+#include "model/clamp.h"
 #include "model/fluid_force.h"
 #include "model/rod.h"
 
@@ -35,12 +36,13 @@ static double mass_mean(const struct fish *fish, const double *value) {
     return sum / fish->total_mass;
 }
 
-// what holds the prescribed nodes on their path, and the load at the tip
-static double driving_power(struct residual *residual, int f, const double *y, double *scratch) {
+// what holds the prescribed nodes on their path, turns a clamped head, and the load at the tip
+static double driving_power(struct residual *residual, int f, double t, const double *y, double *scratch) {
     const struct fish *fish = &residual->school->fish[f];
     const int tail = fish->n_nodes - 1;
     double power = fish->load_tip[0] * y[fish->at.vx + tail] + fish->load_tip[1] * y[fish->at.vy + tail];
     if (fish->motion.prescribed == PRESCRIBED_NONE) return power;
+    power += clamp_driving_power(fish, t, y);
     residual_balance(residual, f, y, scratch);
     for (int k = 0; k < fish_n_prescribed(fish); k++) {
         power += scratch[fish->at.ax + k] * y[fish->at.vx + k] + scratch[fish->at.ay + k] * y[fish->at.vy + k];
@@ -59,11 +61,11 @@ struct diagnostics_power diagnostics_power(struct residual *residual, int f, dou
     double *const rate = by_phi0;
     actuation_rate(fish, t, y[fish->at.phi0], yp[fish->at.phi0], rate);
     return (struct diagnostics_power){.actuation = rod_actuation_power(fish, curvature, rate, y),
-                                      .damping = rod_damping_power(fish, y),
+                                      .damping = rod_damping_power(fish, y) + clamp_damping_power(fish, t, y),
                                       .drag = fluid.drag,
                                       .added_mass = fluid.added_mass,
                                       .wake = fluid.wake,
-                                      .driving = driving_power(residual, f, y, residual->scratch)};
+                                      .driving = driving_power(residual, f, t, y, residual->scratch)};
 }
 
 static double kinetic_energy(const struct fish *fish, const double *y) {
@@ -79,7 +81,7 @@ static double bending_energy(struct residual *residual, int f, double t, const d
     const struct fish *fish = &residual->school->fish[f];
     double *const curvature = residual->scratch;
     actuation_curvature(fish, t, y[fish->at.phi0], curvature, curvature + fish->n_joints);
-    return rod_bending_energy(fish, curvature, y);
+    return rod_bending_energy(fish, curvature, y) + clamp_energy(fish, t, y);
 }
 
 double diagnostics_energy(struct residual *residual, int f, double t, const double *y) {

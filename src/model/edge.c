@@ -28,6 +28,14 @@ double edge_dot(const double a[2], const double b[2]) {
     return a[0] * b[0] + a[1] * b[1];
 }
 
+struct bend edge_bend(const double before[2], const double after[2]) {
+    const double sine = before[0] * after[1] - before[1] * after[0];
+    const double angle = atan2(sine, edge_dot(before, after));
+    struct bend bend = {.curvature = 2 * tan(angle / 2), .slope = 2 / (1 + cos(angle))};
+    bend.second = bend.slope * bend.curvature / 2;
+    return bend;
+}
+
 int edge_place(const struct fish *fish, int i, int node) {
     return (i == 0 ? fish->at.x : fish->at.y) + node;
 }

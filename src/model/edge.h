@@ -20,6 +20,13 @@ double edge_turn_rate(const struct edge *edge);
 
 double edge_dot(const double a[2], const double b[2]);
 
+/* The angle between two unit vectors, from before to after, and the measure of curvature that the body's joints have:
+ * kappa = 2 tan(angle/2), with its first and second derivative by the angle. */
+struct bend {
+    double curvature, slope, second;
+};
+struct bend edge_bend(const double before[2], const double after[2]);
+
 /* Index of component i (0: x, 1: y) of the position, velocity or acceleration of a node among all unknowns. */
 int edge_place(const struct fish *fish, int i, int node);
 int edge_velocity(const struct fish *fish, int i, int node);

@@ -67,6 +67,14 @@ static void shape_edges(struct fish *fish, const struct fish_parameters *from) {
     }
 }
 
+// what holds a prescribed head: a joint of half the length of the others. doc/model.md, section 2
+static void clamp_head(struct fish *fish, const struct fish_parameters *from, double stiffness, double refinement) {
+    const struct body_parameters *body = &from->body;
+    fish->has_clamp = from->motion.prescribed == PRESCRIBED_HEAD && body->section == SECTION_MEAN;
+    fish->clamp_stiffness = 2 * stiffness / fish->edge_length;
+    fish->clamp_damping = 2 * (body->bending_damping * refinement) + body->relaxation_time * fish->clamp_stiffness;
+}
+
 // masses, stiffnesses and damping: doc/model.md, sections 1 and 3
 static void weigh_body(struct fish *fish, const struct fish_parameters *from) {
     const struct body_parameters *body = &from->body;
@@ -89,6 +97,7 @@ static void weigh_body(struct fish *fish, const struct fish_parameters *from) {
             fish->bending_damping[k - 1] = body->bending_damping * refinement +
                                            body->relaxation_time * fish->bending_stiffness[k - 1] / fish->edge_length;
         }
+        if (k == 0) clamp_head(fish, from, body->modulus * moment, refinement);
         moment_before = moment;
     }
 }
@@ -415,10 +424,27 @@ double fish_rate(const struct school *school, const struct fish *fish) {
 int fish_n_prescribed(const struct fish *fish) {
     switch (fish->motion.prescribed) {
         case PRESCRIBED_NONE: return 0;
-        case PRESCRIBED_HEAD: return 2;
+        case PRESCRIBED_HEAD: return fish->has_clamp ? 1 : 2;
         case PRESCRIBED_ALL: return fish->n_nodes;
     }
     return 0;
+}
+
+// angle of the heading of the prescribed motion, its rate and the rate of that
+static void prescribed_heading(const struct fish *fish, double t, double heading[3]) {
+    const struct motion *motion = &fish->motion;
+    const double omega = motion->omega, angle = omega * t + motion->phase, pitch_angle = angle + motion->pitch_phase;
+    heading[0] = fish->start_heading + motion->pitch * sin(pitch_angle);
+    heading[1] = motion->pitch * omega * cos(pitch_angle);
+    heading[2] = -omega * omega * motion->pitch * sin(pitch_angle);
+}
+
+void fish_prescribed_direction(const struct fish *fish, double t, double direction[2], double *rate) {
+    double heading[3];
+    prescribed_heading(fish, t, heading);
+    direction[0] = -cos(heading[0]);
+    direction[1] = -sin(heading[0]);
+    *rate = heading[1];
 }
 
 void fish_prescribed_node(const struct fish *fish, int k, double t, double position[2], double velocity[2],
@@ -426,13 +452,13 @@ void fish_prescribed_node(const struct fish *fish, int k, double t, double posit
     const struct motion *motion = &fish->motion;
     const double ahead[2] = {cos(fish->start_heading), sin(fish->start_heading)}, left[2] = {-ahead[1], ahead[0]};
     const double omega = motion->omega;
-    const double angle = omega * t + motion->phase, pitch_angle = angle + motion->pitch_phase;
+    const double angle = omega * t + motion->phase;
     const double heave = motion->heave * sin(angle), heave_rate = motion->heave * omega * cos(angle);
-    const double heading = fish->start_heading + motion->pitch * sin(pitch_angle);
-    const double rate = motion->pitch * omega * cos(pitch_angle);
     const double heave_change = -omega * omega * heave;
-    const double rate_change = -omega * omega * motion->pitch * sin(pitch_angle);
-    const double along[2] = {cos(heading), sin(heading)}, across[2] = {-along[1], along[0]};
+    double heading[3];
+    prescribed_heading(fish, t, heading);
+    const double rate = heading[1], rate_change = heading[2];
+    const double along[2] = {cos(heading[0]), sin(heading[0])}, across[2] = {-along[1], along[0]};
     const double arm = motion->pivot - fish->arc[k];
     for (int i = 0; i < 2; i++) {
         position[i] =

@@ -73,6 +73,9 @@ struct fish {
     double *axial_damping;     /* d_s, kg s-1                                    (n_edges) */
     double *bending_stiffness; /* E I, N m2                                      (n_joints) */
     double *bending_damping;   /* d_b, N m s                                    (n_joints) */
+    int has_clamp;             /* prescribed head: the direction of edge 0 is held by a joint at the nose: */
+    double clamp_stiffness;    /* 2 E I/lbar, N m */
+    double clamp_damping;      /* N m s */
 
     double *wave_amplitude; /* A (lbar/l_ref) (c1 sigma + c2 sigma^2)             (n_joints) */
     double *wave_phase;     /* beta sigma + phase, rad                            (n_joints) */
@@ -151,12 +154,15 @@ struct direction fish_direction(const struct fish *fish, const struct tangent *t
 /* Set the end correction, for a sheet whose strength at the tail is that of the wake. */
 void fish_correct_end(struct fish *fish);
 
-/* The number of nodes of the fish, from the nose on, whose motion is given: 0, 2 or all. */
+/* The number of nodes of the fish, from the nose on, whose motion is given: 0, 1, 2 or all. */
 int fish_n_prescribed(const struct fish *fish);
 
 /* Its beats per second, or those of its driven motion; where it has none, the lengths per second at which it, or the
  * stream, goes; 1 where nothing moves. With the length it gives the scale of velocities. */
 double fish_rate(const struct school *school, const struct fish *fish);
+
+/* The direction from nose to tail of the prescribed motion at time t, and the rate at which it turns, rad s-1. */
+void fish_prescribed_direction(const struct fish *fish, double t, double direction[2], double *rate);
 
 /* Position, velocity, acceleration of node k of a driven fish at time t; each an array of x and y. */
 void fish_prescribed_node(const struct fish *fish, int k, double t, double position[2], double velocity[2],

@@ -10,6 +10,7 @@
 #include "base/ramp.h"
 #include "model/actuation.h"
 #include "model/bound_sheet.h"
+#include "model/clamp.h"
 #include "model/drag.h"
 #include "model/fluid_force.h"
 #include "model/rod.h"
@@ -170,6 +171,7 @@ static void balance(const struct residual *residual, int f, const double *y, dou
         value[fish->at.ay + k] = fish->mass[k] * y[fish->at.ay + k];
     }
     rod_residual(fish, residual->natural_curvature + residual->joints[f].first, y, value);
+    clamp_residual(fish, residual->flow->t, y, value);
     fluid_force_residual(fish, &flow, y, value);
     value[fish->at.ax + fish->n_nodes - 1] -= fish->load_tip[0];
     value[fish->at.ay + fish->n_nodes - 1] -= fish->load_tip[1];
@@ -284,6 +286,7 @@ static enum status stamp_fish(struct residual *residual, int f, double t, double
     residual_muscle(residual, f, t, y);
     rod_jacobian(fish, residual->natural_curvature + joints, residual->curvature_by_phi0 + joints, y, own);
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
+    clamp_jacobian(fish, t, y, own);
     fluid_force_jacobian(fish, &flow, y, own);
     bound_sheet_jacobian(fish, u, v, y, own);
     bound_sheet_kutta_jacobian(fish, law_of(residual), ramp_value(t, school->kutta_ramp), cj, u, v, y, own);

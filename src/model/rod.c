@@ -9,19 +9,15 @@
 enum { N_LOCAL = 6 };  // coordinates of the joint's three nodes: x, y of each in turn
 struct joint {
     struct edge before, after;
-    double curvature, slope, second; /* kappa, dkappa/dphi, d2kappa/dphi2 */
-    double gradient[N_LOCAL];        /* dphi/dx */
-    double angle_rate;               /* dphi/dt */
+    struct bend bend;
+    double gradient[N_LOCAL]; /* dphi/dx */
+    double angle_rate;        /* dphi/dt */
 };
 
 static struct joint joint_at(const struct fish *fish, int j, const double *y) {
     struct joint joint = {.before = edge_at(fish, j, y), .after = edge_at(fish, j + 1, y)};
     const struct edge *a = &joint.before, *b = &joint.after;
-    const double sine = a->t[0] * b->t[1] - a->t[1] * b->t[0];
-    const double angle = atan2(sine, edge_dot(a->t, b->t));
-    joint.curvature = 2 * tan(angle / 2);
-    joint.slope = 2 / (1 + cos(angle));
-    joint.second = joint.slope * joint.curvature / 2;
+    joint.bend = edge_bend(a->t, b->t);
     for (int i = 0; i < 2; i++) {
         joint.gradient[i] = a->n[i] / a->length;
         joint.gradient[4 + i] = b->n[i] / b->length;
@@ -59,15 +55,15 @@ static double bending_moment(const struct fish *fish, int j, double curvature, d
 }
 
 void rod_curvature(const struct fish *fish, const double *y, double *curvature) {
-    for (int j = 0; j < fish->n_joints; j++) curvature[j] = joint_at(fish, j, y).curvature;
+    for (int j = 0; j < fish->n_joints; j++) curvature[j] = joint_at(fish, j, y).bend.curvature;
 }
 
 void rod_residual(const struct fish *fish, const double *natural_curvature, const double *y, double *residual) {
     double *const force[2] = {residual + fish->at.ax, residual + fish->at.ay};
     for (int j = 0; j < fish->n_joints; j++) {
         const struct joint joint = joint_at(fish, j, y);
-        const double elastic = bending_moment(fish, j, joint.curvature, natural_curvature[j]) * joint.slope;
-        const double damping = fish->bending_damping[j] * joint.slope * joint.slope * joint.angle_rate;
+        const double elastic = bending_moment(fish, j, joint.bend.curvature, natural_curvature[j]) * joint.bend.slope;
+        const double damping = fish->bending_damping[j] * joint.bend.slope * joint.bend.slope * joint.angle_rate;
         for (int i = 0; i < N_LOCAL; i++) force[i % 2][j + i / 2] += (elastic + damping) * joint.gradient[i];
     }
     for (int k = 0; k < fish->n_edges; k++) {
@@ -87,11 +83,11 @@ static void stamp_joint(const struct fish *fish, int j, double natural_curvature
     double hessian[N_LOCAL][N_LOCAL], turned[N_LOCAL];
     joint_hessian(&joint, hessian);
     const double stiffness = fish->bending_stiffness[j] / fish->edge_length, d = fish->bending_damping[j];
-    const double moment = bending_moment(fish, j, joint.curvature, natural_curvature);
-    const double first = moment * joint.slope + d * joint.slope * joint.slope * joint.angle_rate;
-    const double second = stiffness * joint.slope * joint.slope + moment * joint.second +
-                          2 * d * joint.slope * joint.second * joint.angle_rate;
-    const double rate = d * joint.slope * joint.slope;
+    const double moment = bending_moment(fish, j, joint.bend.curvature, natural_curvature);
+    const double first = moment * joint.bend.slope + d * joint.bend.slope * joint.bend.slope * joint.angle_rate;
+    const double second = stiffness * joint.bend.slope * joint.bend.slope + moment * joint.bend.second +
+                          2 * d * joint.bend.slope * joint.bend.second * joint.angle_rate;
+    const double rate = d * joint.bend.slope * joint.bend.slope;
     // derivative of the angle's rate with respect to positions: hessian times velocity
     for (int i = 0; i < N_LOCAL; i++) {
         turned[i] = 0;
@@ -110,7 +106,7 @@ static void stamp_joint(const struct fish *fish, int j, double natural_curvature
             sparse_add(jacobian, row, (k % 2 == 0 ? fish->at.vx : fish->at.vy) + other,
                        rate * b[i] * b[k] / fish->mass[node]);
         }
-        sparse_add(jacobian, row, fish->at.phi0, -stiffness * joint.slope * by_phi0 * b[i] / fish->mass[node]);
+        sparse_add(jacobian, row, fish->at.phi0, -stiffness * joint.bend.slope * by_phi0 * b[i] / fish->mass[node]);
     }
 }
 
@@ -145,7 +141,7 @@ void rod_jacobian(const struct fish *fish, const double *natural_curvature, cons
 double rod_bending_energy(const struct fish *fish, const double *natural_curvature, const double *y) {
     double energy = 0;
     for (int j = 0; j < fish->n_joints; j++) {
-        const double excess = joint_at(fish, j, y).curvature - natural_curvature[j];
+        const double excess = joint_at(fish, j, y).bend.curvature - natural_curvature[j];
         energy += fish->bending_stiffness[j] * excess * excess / (2 * fish->edge_length);
     }
     return energy;
@@ -164,7 +160,7 @@ double rod_actuation_power(const struct fish *fish, const double *natural_curvat
                            const double *y) {
     double power = 0;
     for (int j = 0; j < fish->n_joints; j++) {
-        power -= bending_moment(fish, j, joint_at(fish, j, y).curvature, natural_curvature[j]) * curvature_rate[j];
+        power -= bending_moment(fish, j, joint_at(fish, j, y).bend.curvature, natural_curvature[j]) * curvature_rate[j];
     }
     return power;
 }
@@ -173,7 +169,7 @@ double rod_damping_power(const struct fish *fish, const double *y) {
     double power = 0;
     for (int j = 0; j < fish->n_joints; j++) {
         const struct joint joint = joint_at(fish, j, y);
-        const double rate = joint.slope * joint.angle_rate;
+        const double rate = joint.bend.slope * joint.angle_rate;
         power -= fish->bending_damping[j] * rate * rate;
     }
     for (int k = 0; k < fish->n_edges; k++) {

@@ -55,6 +55,9 @@ static const struct variant {
      TIME "fish: [{sheet_points: 9, control: {law: averaged_heading, waypoints: [[-3, 1]]}}]\n"},
     {"driven head", TIME "fish: [{sheet_points: 9, motion: {driven: head, heave: 0.1, pitch: 10, pitch_phase: 70, "
                          "frequency: 1, pivot: 0.2}}]\n"},
+    {"clamped head",
+     TIME "fish: [{sheet_points: 9, body: {section: mean, relaxation_time: 0.05}, force: reactive,\n"
+          "        motion: {driven: head, heave: 0.1, pitch: 10, pitch_phase: 70, frequency: 1, pivot: 0.2}}]\n"},
     {"driven body", TIME "fish: [{sheet_points: 9, motion: {driven: all, heave: 0.1, pitch: 10, frequency: 1}}]\n"},
     {"driven head, kutta rate, load",
      TIME "wake: {kutta: rate}\n"
