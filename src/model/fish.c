@@ -178,6 +178,22 @@ static void place_sheet_on_smooth_curve(struct fish *fish, enum collocation coll
     fish->tail_tangent.to = curve_smooth_slope(fish->curve, fish->n_edges);
 }
 
+// E_c, for a sheet whose strength at the tail is that of the wake
+static void correct_end(struct fish *fish) {
+    const int last = fish->n_sheet - 1;
+    const double h = pi / last, weight = fish->length / 2 * h * sin(pi * (last - 1) / last);
+    for (int c = 0; c < fish->n_control; c++) {
+        const double place = cosine_place(fish, c + 0.5);
+        double quadrature = 0;
+        for (int j = 1; j < last; j++) {
+            const double sigma = cosine_place(fish, j);
+            quadrature += h / 2 * sin(j * h) * sigma / (2 * pi * (place - sigma));
+        }
+        const double exact = (place * log(place / (1 - place)) - 1) / (2 * pi);
+        fish->end_correction[c] = (exact - quadrature) / weight;
+    }
+}
+
 // bound vortices and control points: doc/model.md, section 6
 static enum status place_sheet(struct fish *fish, const struct wake_parameters *wake) {
     for (int j = 1; j < fish->n_sheet; j++) {
@@ -193,23 +209,9 @@ static enum status place_sheet(struct fish *fish, const struct wake_parameters *
     } else {
         place_sheet_on_polygon(fish, wake->collocation);
     }
+    if (wake->shedding == SHEDDING_SHEET) correct_end(fish);
     fish->heading_point = curve_polygon_point(fish->curve, 1.0 / 3.0 * fish->n_edges);
     return STATUS_OK;
-}
-
-void fish_correct_end(struct fish *fish) {
-    const int last = fish->n_sheet - 1;
-    const double h = pi / last, weight = fish->length / 2 * h * sin(pi * (last - 1) / last);
-    for (int c = 0; c < fish->n_control; c++) {
-        const double place = cosine_place(fish, c + 0.5);
-        double quadrature = 0;
-        for (int j = 1; j < last; j++) {
-            const double sigma = cosine_place(fish, j);
-            quadrature += h / 2 * sin(j * h) * sigma / (2 * pi * (place - sigma));
-        }
-        const double exact = (place * log(place / (1 - place)) - 1) / (2 * pi);
-        fish->end_correction[c] = (exact - quadrature) / weight;
-    }
 }
 
 static void set_motion(struct fish *fish, const struct fish_parameters *from) {

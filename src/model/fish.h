@@ -97,7 +97,7 @@ struct fish {
     struct stencil *control_point;   /* where impermeability is required            (n_control) */
     struct tangent *control_tangent; /* the direction of the body there             (n_control) */
     struct tangent tail_tangent;     /* and at the tail */
-    double *end_correction;          /* E_c, m-1; 0 where the sheet's strength vanishes at the tail (n_control) */
+    double *end_correction;          /* E_c of shedding: sheet, else 0, m-1              (n_control) */
     struct stencil heading_point;    /* the body point at a third of the length */
 
     double smoothing;       /* of its free vortices, delta, m */
@@ -150,9 +150,6 @@ struct direction {
     double length, t[2], n[2];
 };
 struct direction fish_direction(const struct fish *fish, const struct tangent *tangent, const double *y);
-
-/* Set the end correction, for a sheet whose strength at the tail is that of the wake. */
-void fish_correct_end(struct fish *fish);
 
 /* The number of nodes of the fish, from the nose on, whose motion is given: 0, 1, 2 or all. */
 int fish_n_prescribed(const struct fish *fish);

@@ -52,6 +52,7 @@ static void stamps_agree_with_differences(void **state) {
         TIME "wake: {collocation: midpoint}\nfish: [{sheet_points: 21}]\n",
         TIME "fluid: {velocity: [0.3, -0.2], shear: 0.7}\nfish: [{sheet_points: 5, nodes: 9}]\n",
         TIME "wake: {curve: smooth}\nfish: [{sheet_points: 9}]\n",
+        TIME "wake: {shedding: sheet}\nfish: [{sheet_points: 9}]\n",
         TIME "wake: {curve: smooth, collocation: midpoint}\nfish: [{sheet_points: 15, nodes: 4}]\n",
         TIME FAR
         "wake: {curve: smooth}\n"
@@ -69,7 +70,6 @@ static void stamps_agree_with_differences(void **state) {
         for (int l = 0; l < 3; l++) {
             struct setup setup;
             school_build(&setup, texts[i]);
-            if (i == 0) fish_correct_end(setup.school->fish);
             school_stir(&setup);
             law = laws[l];
             school_compare(&setup, value_of_sheet, stamp_of_sheet, texts[i]);
@@ -290,13 +290,14 @@ static void end_correction_makes_a_sheet_that_ends_with_a_step_exact(void **stat
     for (int m = 5; m <= 33; m += 14) {
         char text[200];
         snprintf(text, sizeof text,
-                 TIME "wake: {curve: smooth}\nfish: [{sheet_points: %d, length: 1.2, start: {speed: 0}}]\n", m);
+                 TIME
+                 "wake: {curve: smooth, shedding: sheet}\nfish: [{sheet_points: %d, length: 1.2, start: {speed: 0}}]\n",
+                 m);
         struct setup setup;
         school_build(&setup, text);
-        struct fish *const fish = setup.school->fish;
+        const struct fish *fish = setup.school->fish;
         double *const y = setup.state->y, with[64];
         for (int j = 1; j < m - 1; j++) y[fish->at.gamma + j] = fish_mean(&fish->sheet_point[j], fish->arc) / 1.2;
-        fish_correct_end(fish);
         school_flow(&setup, y);
         const double *u, *v;
         of_fish(&setup, 0, &u, &v);
