@@ -138,8 +138,8 @@ expect:
 | `fish` | the name of a fish; without it the values of all fish count |
 | `where` | members that have these values, one of each key that is named; without it all members |
 | `least`, `most` | bounds of every value |
-| `spread` | a bound of the difference between the largest and the least value; of positions, of the diagonal of the box around them |
-| `ratio` | a bound of the largest value over the least |
+| `spread` | a bound of the difference between the largest and the smallest value; of positions, of the diagonal of the box around them |
+| `ratio` | a bound of the largest over the smallest absolute value; not met where a value is 0 or signs differ |
 | `fails` | stands alone or with `where`: the members fail, and these words are in their reasons; they then count as they should be, and do not make the exit code 1 |
 
 Quantities are those with orders, and `lateral_drift`, `strouhal`, `energy_audit`, `steps`, `residual_evaluations`,

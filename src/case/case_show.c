@@ -175,8 +175,8 @@ static void show_expectation(struct text *text, const struct case_values *values
     }
     if (one->n_where > 0) text_add(text, "]");
     if (!one->fails) {
-        show_bound(text, "least", one->least);
-        show_bound(text, "most", one->most);
+        show_bound(text, "least", one->min);
+        show_bound(text, "most", one->max);
         show_bound(text, "spread", one->spread);
         show_bound(text, "ratio", one->ratio);
     }

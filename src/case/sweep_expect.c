@@ -157,7 +157,7 @@ static void check_quantities(const struct stating *statement) {
             yaml_errors_add(statement->errors, statement->node->mark, "%s.fish: %s has no value for each fish",
                             statement->name, quantity->name);
         }
-        if (quantity->of_xy && !(isnan(one->least) && isnan(one->most) && isnan(one->ratio))) {
+        if (quantity->of_xy && !(isnan(one->min) && isnan(one->max) && isnan(one->ratio))) {
             yaml_errors_add(statement->errors, statement->node->mark,
                             "%s: %s is a point, of which only spread is known", statement->name, quantity->name);
         }
@@ -168,8 +168,8 @@ static void check_quantities(const struct stating *statement) {
 static void read_bounds(const struct stating *statement, const struct yaml_node *of) {
     struct sweep_expectation *const into = statement->into;
     if (of) into->of = sweep_quantities_read(of, statement->name, SWEEP_N_QUANTITIES, statement->errors);
-    into->least = read_number(statement, "least", -INFINITY);
-    into->most = read_number(statement, "most", -INFINITY);
+    into->min = read_number(statement, "least", -INFINITY);
+    into->max = read_number(statement, "most", -INFINITY);
     into->spread = read_number(statement, "spread", 0);
     into->ratio = read_number(statement, "ratio", 1);
     const bool says_something = yaml_tree_find(statement->node, "least") || yaml_tree_find(statement->node, "most") ||

@@ -19,9 +19,9 @@ struct sweep_expectation {
     int fish;    /* -1: of all */
     int n_where;
     struct sweep_condition *where; /* one of each key must hold                (n_where) */
-    double least, most;            /* of each value; NaN: no bound, as below */
-    double spread; /* from the least to the largest value; of points, the diagonal of the box around them */
-    double ratio;  /* of the largest value to the least */
+    double min, max;               /* of each value; NaN: no bound, as below */
+    double spread;                 /* of the values; of points, the diagonal of the box around them */
+    double ratio; /* of the largest to the smallest absolute value; values of both signs, or 0, have none */
 };
 
 /* Read the statements of a case whose sweep has been read. Fails with STATUS_MEMORY only. */

@@ -8,63 +8,69 @@
 #include "study/study.h"
 
 /* The values that a statement is about, of one quantity. */
-struct reach {
+struct extrema {
     int n;
-    double least[2], most[2]; /* x and y of points */
-    int missing;              /* a member that has no value; -1: none */
+    double min[2], max[2]; /* x and y of points */
+    int missing;           /* a member that has no value; -1: none */
 };
 
-static struct reach reach_of(const struct case_values *study, const struct member_file *members,
-                             const struct sweep_expectation *one, int q) {
+static struct extrema extrema_of(const struct case_values *study, const struct member_file *members,
+                                 const struct sweep_expectation *one, int q) {
     const struct sweep_quantity *const what = &sweep_quantities[q];
     const int quantity = member_file_quantity_number(what->name);
-    struct reach reach = {.least = {INFINITY, INFINITY}, .most = {-INFINITY, -INFINITY}, .missing = -1};
+    struct extrema extrema = {.min = {INFINITY, INFINITY}, .max = {-INFINITY, -INFINITY}, .missing = -1};
     for (int m = 0; m < sweep_n_members(study); m++) {
         if (!sweep_expects_of(study, one, m)) continue;
         for (int f = 0; f < (what->of_fish ? study->school.n_fish : 1); f++) {
             if (one->fish >= 0 && one->fish != f) continue;
-            reach.n++;
+            extrema.n++;
             for (int k = 0; k < 1 + what->of_xy; k++) {
                 const double value = member_file_value(&members[m], quantity, f, k);
-                if (isnan(value) || strcmp(members[m].status, "complete") != 0) reach.missing = m;
-                reach.least[k] = fmin(reach.least[k], value);
-                reach.most[k] = fmax(reach.most[k], value);
+                if (isnan(value) || strcmp(members[m].status, "complete") != 0) extrema.missing = m;
+                extrema.min[k] = fmin(extrema.min[k], value);
+                extrema.max[k] = fmax(extrema.max[k], value);
             }
         }
     }
-    return reach;
+    return extrema;
 }
 
-/* One bound: print what is and what should be; whether it holds. NaN is no bound. */
-static int holds(const char *what, double value, const char *word, double bound, FILE *stream) {
+/* The ratio of the largest to the smallest absolute value; infinite where the signs differ or a value is 0. */
+static double ratio_of(double min, double max) {
+    if (min > 0) return max / min;
+    return max < 0 ? min / max : INFINITY;
+}
+
+/* Print a value and its bound; whether it holds. NaN is no bound. */
+static int test_bound(const char *what, double value, const char *word, double bound, FILE *stream) {
     if (isnan(bound)) return 1;
-    const int is_least = strcmp(word, "least") == 0;
-    const int is_met = is_least ? value >= bound : value <= bound;
-    fprintf(stream, "  %-8s %s %.9g, expected at %s %.9g\n", is_met ? "met" : "MISSED", what, value,
-            is_least ? "least" : "most", bound);
+    const int is_lower = strcmp(word, "least") == 0;
+    const int is_met = is_lower ? value >= bound : value <= bound;
+    fprintf(stream, "  %-8s %s %.9g, expected at %s %.9g\n", is_met ? "met" : "MISSED", what, value, word, bound);
     return is_met;
 }
 
 /* Whether a statement holds for a quantity. */
-static int judge(const struct case_values *study, const struct member_file *members, int number, int q, FILE *stream) {
+static int test_quantity(const struct case_values *study, const struct member_file *members, int number, int q,
+                         FILE *stream) {
     const struct sweep_expectation *const one = &study->expect[number];
-    const struct reach reach = reach_of(study, members, one, q);
+    const struct extrema extrema = extrema_of(study, members, one, q);
     const char *const name = sweep_quantities[q].name;
     fprintf(stream, "%s%s%s, %d value%s\n", name, one->fish >= 0 ? " of " : "",
-            one->fish >= 0 ? study->school.fish[one->fish].name : "", reach.n, reach.n == 1 ? "" : "s");
-    if (reach.missing >= 0) {
-        fprintf(stream, "  MISSED   member %d is not complete\n", reach.missing);
+            one->fish >= 0 ? study->school.fish[one->fish].name : "", extrema.n, extrema.n == 1 ? "" : "s");
+    if (extrema.missing >= 0) {
+        fprintf(stream, "  MISSED   member %d is not complete\n", extrema.missing);
         return 0;
     }
     // of a number the second direction is empty
-    const double width = reach.most[0] - reach.least[0];
-    const double height = sweep_quantities[q].of_xy ? reach.most[1] - reach.least[1] : 0;
+    const double width = extrema.max[0] - extrema.min[0];
+    const double height = sweep_quantities[q].of_xy ? extrema.max[1] - extrema.min[1] : 0;
     // all are printed
     const int n_met =
-        holds("the least is", reach.least[0], "least", one->least, stream) +
-        holds("the largest is", reach.most[0], "most", one->most, stream) +
-        holds("they differ by", hypot(width, height), "most", one->spread, stream) +
-        holds("the largest over the least is", reach.most[0] / reach.least[0], "most", one->ratio, stream);
+        test_bound("the smallest is", extrema.min[0], "least", one->min, stream) +
+        test_bound("the largest is", extrema.max[0], "most", one->max, stream) +
+        test_bound("they differ by", hypot(width, height), "most", one->spread, stream) +
+        test_bound("their ratio is", ratio_of(extrema.min[0], extrema.max[0]), "most", one->ratio, stream);
     return n_met == 4;
 }
 
@@ -83,8 +89,8 @@ int study_expects_failure(const struct case_values *study, const struct member_f
 }
 
 /* Whether all members that a statement is about have failed as it says. */
-static int judge_failures(const struct case_values *study, const struct member_file *members,
-                          const struct sweep_expectation *one, FILE *stream) {
+static int test_failures(const struct case_values *study, const struct member_file *members,
+                         const struct sweep_expectation *one, FILE *stream) {
     int n = 0, wrong = -1;
     for (int m = 0; m < sweep_n_members(study); m++) {
         if (!sweep_expects_of(study, one, m)) continue;
@@ -103,14 +109,14 @@ static int judge_failures(const struct case_values *study, const struct member_f
 // ---- all statements
 
 /* Whether a statement holds; if not, *what is the first thing that does not. */
-static int judge_all(const struct case_values *study, const struct member_file *members, int number, const char **what,
-                     FILE *stream) {
+static int test_statement(const struct case_values *study, const struct member_file *members, int number,
+                          const char **what, FILE *stream) {
     const struct sweep_expectation *const one = &study->expect[number];
     *what = "failures";
-    if (one->fails) return judge_failures(study, members, one, stream);
+    if (one->fails) return test_failures(study, members, one, stream);
     int are_met = 1;
     for (int q = 0; q < SWEEP_N_QUANTITIES; q++) {
-        if (!(one->of >> q & 1) || judge(study, members, number, q, stream)) continue;
+        if (!(one->of >> q & 1) || test_quantity(study, members, number, q, stream)) continue;
         if (are_met) *what = sweep_quantities[q].name;
         are_met = 0;
     }
@@ -122,7 +128,7 @@ enum status study_expect(const struct case_values *study, const struct member_fi
     const char *first_what = "", *what;
     if (study->n_expectations > 0) fprintf(stream, "\nExpected:\n");
     for (int i = 0; i < study->n_expectations; i++) {
-        if (judge_all(study, members, i, &what, stream) || n_missed++ > 0) continue;
+        if (test_statement(study, members, i, &what, stream) || n_missed++ > 0) continue;
         first = i;
         first_what = what;
     }

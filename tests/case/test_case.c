@@ -94,7 +94,7 @@ static void are_equal(struct case_values *one, struct case_values *other) {
             assert_int_equal(a->where[c].key, b->where[c].key);
             assert_string_equal(a->where[c].value, b->where[c].value);
         }
-        const double *const from = &a->least, *const to = &b->least;
+        const double *const from = &a->min, *const to = &b->min;
         for (int k = 0; k < 4; k++) assert_true(from[k] == to[k] || (isnan(from[k]) && isnan(to[k])));
     }
 }

@@ -11,6 +11,7 @@ enum { N_MEMBERS = 3, N_FISH = 2 };
 /* Three members, whose noses of the second fish are the corners of a triangle with sides of 3 and 4. */
 static const double corner[N_MEMBERS][2] = {{1, 1}, {1, 5}, {4, 5}};
 static const double speed[N_MEMBERS][N_FISH] = {{2, 3}, {4, 2.5}, {2, 2}};
+static const double drift[N_MEMBERS][N_FISH] = {{-1, -1}, {-1.5, 0}, {-2, 1}};
 
 static void set(struct member_file *member, const char *quantity, int fish, int xy, double value) {
     member->value[(member_file_quantity_number(quantity) * N_FISH + fish) * 2 + xy] = value;
@@ -34,7 +35,10 @@ static enum status holds(const char *statement, const char *status_of_the_last, 
         member[m] = (struct member_file){.number = m, .n_fish = N_FISH, .status = strdup("complete")};
         member[m].value = calloc((size_t)n * N_FISH * 2, sizeof *member[m].value);
         for (int k = 0; k < 2; k++) set(&member[m], "nose", 1, k, corner[m][k]);
-        for (int f = 0; f < N_FISH; f++) set(&member[m], "speed", f, 0, speed[m][f]);
+        for (int f = 0; f < N_FISH; f++) {
+            set(&member[m], "speed", f, 0, speed[m][f]);
+            set(&member[m], "lateral_drift", f, 0, drift[m][f]);
+        }
     }
     free(member[N_MEMBERS - 1].status);
     member[N_MEMBERS - 1].status = strdup(status_of_the_last);
@@ -60,7 +64,7 @@ static void check(const char *statement, const char *status_of_the_last, enum st
 static void bounds_hold_for_all_fish_of_all_members_the_bounds_included(void **state) {
     (void)state;
     check("{of: speed, least: 2, most: 4}", "complete", STATUS_OK, "speed, 6 values\n");
-    check("{of: speed, least: 2.01}", "complete", STATUS_MISSED, "MISSED   the least is 2, expected at least 2.01");
+    check("{of: speed, least: 2.01}", "complete", STATUS_MISSED, "MISSED   the smallest is 2, expected at least 2.01");
     check("{of: speed, most: 3.99}", "complete", STATUS_MISSED, "MISSED   the largest is 4, expected at most 3.99");
 }
 
@@ -78,10 +82,23 @@ static void a_spread_of_points_is_the_diagonal_of_the_box_around_them(void **sta
     check("{of: speed, spread: 2}", "complete", STATUS_OK, "met      they differ by 2");
 }
 
-static void a_ratio_is_the_largest_over_the_least(void **state) {
+static void a_ratio_is_one_of_absolute_values(void **state) {
     (void)state;
-    check("{of: speed, ratio: 2}", "complete", STATUS_OK, "met      the largest over the least is 2");
-    check("{of: speed, ratio: 1.99}", "complete", STATUS_MISSED, "MISSED   the largest over the least is 2");
+    check("{of: speed, ratio: 2}", "complete", STATUS_OK, "met      their ratio is 2");
+    check("{of: speed, ratio: 1.99}", "complete", STATUS_MISSED, "MISSED   their ratio is 2");
+    check("{of: lateral_drift, fish: a, ratio: 2}", "complete", STATUS_OK, "met      their ratio is 2");
+    check("{of: lateral_drift, fish: a, ratio: 1.99}", "complete", STATUS_MISSED, "MISSED   their ratio is 2");
+}
+
+static void values_of_both_signs_or_zero_miss_every_ratio(void **state) {
+    (void)state;
+    static const char missed[] = "MISSED   their ratio is inf";
+    check("{of: lateral_drift, ratio: 1e9, fish: b, where: [solver.order=1, solver.order=3]}", "complete",
+          STATUS_MISSED, missed);
+    check("{of: lateral_drift, ratio: 1e9, fish: b, where: [solver.order=1, solver.order=2]}", "complete",
+          STATUS_MISSED, missed);
+    check("{of: lateral_drift, ratio: 1e9, fish: b, where: [solver.order=2, solver.order=3]}", "complete",
+          STATUS_MISSED, missed);
 }
 
 static void a_member_that_is_not_complete_misses_whatever_its_values(void **state) {
@@ -103,7 +120,8 @@ int main(void) {
         cmocka_unit_test(bounds_hold_for_all_fish_of_all_members_the_bounds_included),
         cmocka_unit_test(a_statement_may_be_about_one_fish_and_some_members),
         cmocka_unit_test(a_spread_of_points_is_the_diagonal_of_the_box_around_them),
-        cmocka_unit_test(a_ratio_is_the_largest_over_the_least),
+        cmocka_unit_test(a_ratio_is_one_of_absolute_values),
+        cmocka_unit_test(values_of_both_signs_or_zero_miss_every_ratio),
         cmocka_unit_test(a_member_that_is_not_complete_misses_whatever_its_values),
         cmocka_unit_test(failures_are_expected_by_a_part_of_their_words),
     };
