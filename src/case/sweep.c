@@ -195,6 +195,7 @@ enum status sweep_read(struct case_values *values, const struct yaml_node *root,
     if (list->n == 0) return STATUS_OK;
     values->sweep = calloc((size_t)list->n, sizeof *values->sweep);
     if (!values->sweep) return out_of_memory();
+    const int n_before = errors->n;
     double n_members = 1;
     for (int i = 0; i < list->n && n_members <= most_members; i++) {
         struct axis axis = {.node = list->entry[i].value, .into = &values->sweep[i], .errors = errors};
@@ -207,5 +208,7 @@ enum status sweep_read(struct case_values *values, const struct yaml_node *root,
     if (n_members > most_members) {
         yaml_errors_add(errors, list->mark, "sweep: %.0f members or more; the most is %.0f", n_members, most_members);
     }
+    // axes with values that are missing, or too many of them, must not be counted through
+    if (errors->n > n_before) sweep_free(values);
     return STATUS_OK;
 }

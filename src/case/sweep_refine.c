@@ -120,8 +120,8 @@ static bool read_value(const struct yaml_node *node, int of_xy, double value[2])
 /* Read the value of a quantity for all fish, or a list of one for each. */
 static bool read_values(const struct refining *axis, const struct yaml_node *node, int q) {
     const int n_fish = axis->values->school.n_fish, of_xy = sweep_quantities[q].of_xy;
-    double *const to = axis->into->reference + (long)q * n_fish * 2;
-    const bool is_one = read_value(node, of_xy, to);
+    double *const to = axis->into->reference + (long)q * n_fish * 2, one[2];
+    const bool is_one = read_value(node, of_xy, one);
     if (!is_one && (node->kind != YAML_LIST || node->n != n_fish)) return false;
     for (int f = 0; f < n_fish; f++) {
         if (!read_value(is_one ? node : node->entry[f].value, of_xy, to + 2 * f)) return false;

@@ -129,6 +129,11 @@ expect twenty_thousand_fish 2 'fish: more than 10000 fish' school.yaml
 { cat good.yaml; printf '    control: {law: heading, waypoints: ['; repeat '[1, 2], ' 20000; echo ']}'; } |
     sed 's/  - {name: b.*/  - name: b/' >waypoints.yaml
 expect twenty_thousand_waypoints 2 'fish[1].control.waypoints: more than 10000 values' waypoints.yaml
+{ echo 'format: 1'; echo 'time: {end: 1}'; echo 'fish: [{}]'; echo 'sweep:'
+  for key in solver.order solver.max_steps; do echo "  - {key: $key, values: [$(repeat '1,' 50000)]}"; done
+  echo 'expect: [{of: speed, least: 0, where: [solver.order=1]}]'; } >members.yaml
+expect members_beyond_integers 2 'members.yaml:5:3: error: sweep: 2500000000 members or more; the most is 100000' members.yaml
+if [[ $(grep -c error: err) == 1 ]]; then pass only_their_number_is_wrong; else fail only_their_number_is_wrong "$(cut -c1-200 err)"; fi
 { cat good.yaml; printf 'name: '; repeat x 300; echo; } >name.yaml
 expect name_of_300_bytes 2 'name.yaml:6:7: error: name: longer than 200 bytes' name.yaml
 

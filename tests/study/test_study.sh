@@ -197,7 +197,7 @@ end
 run study stated.yaml -q
 check statements_that_hold_give_exit_code_0 test "$code" = 0
 check each_is_printed grep -qx 'nose of two, 2 values' out
-check with_what_is_and_what_should_be grep -qE '^  met      the least is 0\.9[0-9]*, expected at least 0\.9$' out
+check with_what_is_and_what_should_be grep -qE '^  met      the smallest is 0\.9[0-9]*, expected at least 0\.9$' out
 check values_of_all_members_and_fish_count grep -qx 'speed, 8 values' out
 check the_same_number_is_the_same_value grep -qx 'tail of two, 2 values' out
 refused a_statement_that_does_not_hold_gives_exit_code_3 3 'expect[0]: speed: not what the case expects' \
