@@ -1,18 +1,18 @@
 #!/usr/bin/python3
-"""Measure the tables of doc/numerics.md anew and print them as markdown.
+"""Measure the tables of doc/numerics.md and print them as markdown.
 
     scripts/numerics.py counts       cost of an event against the stiffness of the body
     scripts/numerics.py stiffness    error against the stiffness of the body
     scripts/numerics.py tolerance    error and cost against solver.rtol
     scripts/numerics.py order        error and cost against solver.order, for a soft and a stiff body
     scripts/numerics.py interval     error against time.shedding_interval, and its observed order
-    scripts/numerics.py events       cost of starting the integrator anew at every event
+    scripts/numerics.py events       cost of restarting the integrator at every event
     scripts/numerics.py start        cost of a muscle that starts at once
     scripts/numerics.py explicit     cost of the explicit methods against the stiffness of the body
     scripts/numerics.py coupling     cost of two fish near each other, coupled in the Jacobian and not
     scripts/numerics.py school       cost of an event against the number of fish
-    scripts/numerics.py coupled      cost against the end of the iteration for coupled fish: builds variants, minutes
-    scripts/numerics.py energy       energy audit against solver.rtol
+    scripts/numerics.py coupled      cost against the tolerances of the linear solver: builds variants, takes minutes
+    scripts/numerics.py energy       energy balance against solver.rtol
     scripts/numerics.py constants    error and cost with other constants in the source: builds variants, takes minutes
     scripts/numerics.py threads      the same bits for any number of threads
 
@@ -34,7 +34,7 @@ from shoal_results import Results, np
 
 HERE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 
-# One fish: all that is not said is the default, doc/cases.md.
+# One fish: everything else has its default value, doc/cases.md.
 ONE = """\
 format: 1
 time: {end: 2, shedding_interval: 0.01, output_interval: 2}
@@ -62,7 +62,7 @@ class Bench:
         self.folder = tempfile.mkdtemp(prefix="shoal-numerics-")
 
     def run(self, text, *assignments, program=None):
-        """The result of a case with some keys set anew; None where the solver gave up."""
+        """The result of a case with some keys changed; None where integration failed."""
         case, result = os.path.join(self.folder, "case.yaml"), os.path.join(self.folder, "result.nc")
         with open(case, "w", encoding="utf-8") as file:
             file.write(text)
@@ -79,7 +79,7 @@ class Bench:
         return Results(result)
 
     def seconds(self, text, *assignments):
-        """Processor time of a run, the least of three, s."""
+        """CPU time of a run, the smallest of three, s."""
         times = []
         for _ in range(3):
             before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
@@ -97,7 +97,7 @@ class Bench:
         with open(path, encoding="utf-8") as source:
             text, n_places = re.subn(old, new, source.read())
         if n_places == 0:
-            sys.exit(f"numerics.py: src/{file} holds nothing like '{old}'")
+            sys.exit(f"numerics.py: nothing in src/{file} matches '{old}'")
         with open(path, "w", encoding="utf-8") as source:
             source.write(text)
         subprocess.run(["make", "-j", str(os.cpu_count())], cwd=tree, check=True, stdout=subprocess.DEVNULL)
@@ -188,17 +188,17 @@ def order(bench):
     for modulus in (1e6, 1e10):
         stiff = [PUBLISHED_MOMENT, f"fish[*].body.modulus={modulus:g}"]
         reference = ends(bench.run(ONE, *stiff, "solver.rtol=1e-9"))
-        for most in range(1, 6):
-            run = bench.run(ONE, *stiff, f"solver.order={most}")
+        for highest in range(1, 6):
+            run = bench.run(ONE, *stiff, f"solver.order={highest}")
             if run:
-                rows.append([power(modulus), most, short(distance(ends(run)[1], reference[1])), *per_event(run)])
+                rows.append([power(modulus), highest, short(distance(ends(run)[1], reference[1])), *per_event(run)])
             else:
-                rows.append([power(modulus), most, "gave up", "", "", ""])
+                rows.append([power(modulus), highest, "failed", "", "", ""])
     table(["modulus [Pa]", "order", "tail [m]", *COUNTS], rows)
 
 
 def interval(bench):
-    # up to 1.6 s no vortex fades; every interval divides this time
+    # until 1.6 s no vortex decays; every interval divides this time
     values, rows = [], []
     sizes = (0.08, 0.04, 0.02, 0.01, 0.005, 0.0025)
     for size in sizes:
@@ -230,7 +230,7 @@ def start(bench):
     for modulus in (1e4, 1e6, 1e8):
         for ramp in (0, 0.25, 1):
             run = bench.run(ONE, PUBLISHED_MOMENT, f"fish[*].body.modulus={modulus:g}", f"fish[*].wave.ramp={ramp:g}")
-            rows.append([power(modulus), f"{ramp:g}", *(per_event(run) if run else ["gave up", "", ""])])
+            rows.append([power(modulus), f"{ramp:g}", *(per_event(run) if run else ["failed", "", ""])])
     table(["modulus [Pa]", "ramp [s]", *COUNTS], rows)
 
 
@@ -248,17 +248,18 @@ def explicit(bench):
 
 def coupling(bench):
     rows = []
-    for layout, gaps in (("beside", (0.1, 0.2, 0.3, 0.5, 0.75, 1, 1.5, 2)), ("behind", (0.1, 0.2, 0.5, 1, 2))):
+    for layout, gaps in (("side by side", (0.1, 0.2, 0.3, 0.5, 0.75, 1, 1.5, 2)),
+                         ("one after the other", (0.1, 0.2, 0.5, 1, 2))):
         for gap in gaps:
-            # 0.25: the height of two fish, and what they draw together in four seconds
-            place = f"[0, {gap + 0.25:g}]" if layout == "beside" else f"[{gap + 1:g}, 0]"
+            # 0.25: the thickness of two fish, and how much closer they get in four seconds
+            place = f"[0, {gap + 0.25:g}]" if layout == "side by side" else f"[{gap + 1:g}, 0]"
             runs, times = [], []
             for reach in (0, 100):
                 keys = f"fish[1].start.position={place}", f"solver.coupling_distance={reach}"
                 runs.append(bench.run(PAIR, *keys))
                 times.append(bench.seconds(PAIR, *keys))
             if None in runs:
-                rows.append([layout, f"{gap:g}", *["gave up"] * 6])
+                rows.append([layout, f"{gap:g}", *["failed"] * 6])
                 continue
             (_, apart, apart_jacobians), (_, coupled, coupled_jacobians) = (per_event(run) for run in runs)
             rows.append([layout, f"{gap:g}", f"{runs[1]['least_distance'][-1]:.2f}", apart, coupled, apart_jacobians,
@@ -283,39 +284,40 @@ def school(bench):
                               (9, (1.3, 0.4), 0), (9, (1.3, 0.4), 0.5), (9, (1.3, 0.4), 100)):
         case, key = lattice(n, spacing, 0.5), f"solver.coupling_distance={reach}"
         run = bench.run(case, key)
-        cost = [*per_event(run), f"{1000 * bench.seconds(case, key) / 50:.1f}"] if run else ["gave up", "", "", ""]
+        cost = [*per_event(run), f"{1000 * bench.seconds(case, key) / 50:.1f}"] if run else ["failed", "", "", ""]
         rows.append([n, f"{spacing[0]:g} x {spacing[1]:g}", reach, *cost])
-    table(["fish", "spacing [L]", "coupling distance [L]", *COUNTS, "processor time of an event [ms]"], rows)
+    table(["fish", "spacing [L]", "coupling distance [L]", *COUNTS, "CPU time of an event [ms]"], rows)
 
 
 def energy(bench):
     rows = []
     for rtol in (1e-3, 1e-4, 1e-5, 1e-6, 1e-7):
         run = bench.run(ONE, f"solver.rtol={rtol:g}", "time.output_interval=0.1")
-        audit, work = np.abs(run["energy_audit"][:, 0]).max(), run["actuation_work"][-1, 0]
-        rows.append([power(rtol), short(audit), f"{work:.4f}", short(audit / abs(work)),
+        residual, work = np.abs(run["energy_audit"][:, 0]).max(), run["actuation_work"][-1, 0]
+        rows.append([power(rtol), short(residual), f"{work:.4f}", short(residual / abs(work)),
                      short(np.abs(run["total_circulation"]).max())])
-    table(["rtol", "largest audit [J]", "work of the muscle [J]", "audit over work", "total circulation [m2/s]"], rows)
+    table(["rtol", "largest residual [J]", "work of the muscle [J]", "residual over work",
+           "total circulation [m2/s]"], rows)
 
 
-# What to change: its name, the file, what stands there, what to write instead.
+# Variants of the program: name, file, pattern of the old text, new text.
 NEWTON, CJ = r"(newton_coefficient =) [^;]+;", r"(cj_change =) [^;]+;"
-COST, MOST = r"(jacobian_cost =) \d+,", r"(most_iterations =) \d+;"
-PLACE, SPEED = r"(case UNKNOWN_Y: return) [^ ]+ \* length", r"(case UNKNOWN_VY: return) [^ ]+ \* length"
+COST, MAX = r"(jacobian_cost =) \d+,", r"(max_iterations =) \d+;"
+POSITION, VELOCITY = r"(case UNKNOWN_Y: return) [^ ]+ \* length", r"(case UNKNOWN_VY: return) [^ ]+ \* length"
 VARIANTS = [
-    ("Newton coefficient 0.33", "implicit.c", NEWTON, r"\1 0.33;"),
-    ("Newton coefficient 0.03", "implicit.c", NEWTON, r"\1 0.03;"),
-    ("Newton coefficient 0.0003", "implicit.c", NEWTON, r"\1 0.0003;"),
-    ("at most 4 iterations", "implicit.c", MOST, r"\1 4;"),
-    ("cost of a Jacobian 2", "implicit.c", COST, r"\1 2,"),
-    ("cost of a Jacobian 20", "implicit.c", COST, r"\1 20,"),
-    ("change of cj 0.25", "implicit.c", CJ, r"\1 0.25;"),
-    ("nothing carried", "carry.c", r"(body->moved =) 1;", r"\1 0;"),
-    ("no guess", "newton.c", r"same \? 1 : 0", r"same ? 0 : 0"),
-    ("steps as they come", "implicit.c", r"n_steps > 1 \?", r"n_steps < 0 ?"),
-    ("scale of x 0.018 L", "residual.c", PLACE, r"\1 0.018 * length"),
-    ("scale of v 10 L f", "residual.c", SPEED, r"\1 10 * length"),
-    ("scale of v 0.1 L f", "residual.c", SPEED, r"\1 0.1 * length"),
+    ("Newton coefficient 0.33", "solver/ida.c", NEWTON, r"\1 0.33;"),
+    ("Newton coefficient 0.03", "solver/ida.c", NEWTON, r"\1 0.03;"),
+    ("Newton coefficient 0.0003", "solver/ida.c", NEWTON, r"\1 0.0003;"),
+    ("at most 4 iterations", "solver/ida.c", MAX, r"\1 4;"),
+    ("cost of a Jacobian 2", "solver/ida.c", COST, r"\1 2,"),
+    ("cost of a Jacobian 20", "solver/ida.c", COST, r"\1 20,"),
+    ("change of cj 0.25", "solver/ida.c", CJ, r"\1 0.25;"),
+    ("no corotation", "solver/corotation.c", r"(body->has_moved =) 1;", r"\1 0;"),
+    ("no initial guess", "solver/ida_newton.c", r"same \? 1 : 0", r"same ? 0 : 0"),
+    ("stop at events only", "solver/ida.c", r"n_steps > 1 \?", r"n_steps < 0 ?"),
+    ("scale of x 0.018 L", "model/residual.c", POSITION, r"\1 0.018 * length"),
+    ("scale of v 10 L f", "model/residual.c", VELOCITY, r"\1 10 * length"),
+    ("scale of v 0.1 L f", "model/residual.c", VELOCITY, r"\1 0.1 * length"),
 ]
 
 
@@ -328,32 +330,33 @@ def constants(bench):
         tail = ends(bench.run(ONE, *stiff, "solver.rtol=1e-9"))[1]
         for name, program in programs:
             run = bench.run(ONE, *stiff, program=program)
-            what = [short(distance(ends(run)[1], tail)), *per_event(run)] if run else ["gave up", "", "", ""]
+            what = [short(distance(ends(run)[1], tail)), *per_event(run)] if run else ["failed", "", "", ""]
             rows.append([name, power(modulus), *what])
     table(["constant", "modulus [Pa]", "tail [m]", *COUNTS], rows)
 
 
-# Where the iteration for coupled fish ends: part of the right-hand side, part of what ends Newton's.
-ENDS = [(relative, enough) for enough in (0, 0.1) for relative in ("1e-1", "1e-2", "1e-3", "1e-4", "1e-10")]
+# Tolerances of the linear solver: fractions of the right-hand side, and of the error at which Newton's iteration ends.
+TOLERANCES = [(relative, absolute) for absolute in (0, 0.1) for relative in ("1e-1", "1e-2", "1e-3", "1e-4", "1e-10")]
 
 
 def coupled(bench):
     rows = []
     place = "fish[1].start.position=[0, 0.3]"
-    for relative, enough in ENDS:
-        program = bench.variant("implicit.c", r"linear_relative = [^,]+, linear_enough = [^;]+;",
-                                f"linear_relative = {relative}, linear_enough = {enough};")
-        runs = [bench.run(PAIR, place, f"fish[*].body.modulus={modulus}", program=program) for modulus in ("1e6", "1e9")]
-        rows.append([relative, enough, *(cell for run in runs for cell in per_event(run)[1:])])
-    table(["relative", "of Newton's", "Newton iterations, 1e6 Pa", "Jacobians", "Newton iterations, 1e9 Pa", "Jacobians"],
-          rows)
+    for relative, absolute in TOLERANCES:
+        program = bench.variant("solver/ida.c", r"linear_relative = [^,]+, linear_absolute = [^;]+;",
+                                f"linear_relative = {relative}, linear_absolute = {absolute};")
+        runs = [bench.run(PAIR, place, f"fish[*].body.modulus={modulus}", program=program)
+                for modulus in ("1e6", "1e9")]
+        rows.append([relative, absolute, *(cell for run in runs for cell in per_event(run)[1:])])
+    table(["relative", "absolute", *("Newton iterations, 1e6 Pa", "Jacobians"),
+           *("Newton iterations, 1e9 Pa", "Jacobians")], rows)
 
 
 def threads(bench):
     rows = []
     reference = None
     for n in (1, 2, 3):
-        # enough fish that every loop is shared
+        # enough fish that threads share every loop
         run = bench.run(lattice(64, (1.4, 0.6), 0.1), f"solver.threads={n}")
         x = run["x"].tobytes() + run["wake_x"].tobytes()
         reference = reference or x

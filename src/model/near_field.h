@@ -1,5 +1,5 @@
 /* near_field.h: which of the released vortices are in the near field of a body: those for which interpolation in time
- * (wake_interpolation.h) is too inaccurate. doc/numerics.md, section 13. Tested by tests/model/test_near_field.c.
+ * (wake_interpolation.h) is too inaccurate. doc/numerics.md, section 12. Tested by tests/model/test_near_field.c.
  *
  * The error of the interpolated velocity at a point whose drift, the distance from its predicted path, is d:
  *

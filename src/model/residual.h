@@ -95,8 +95,8 @@ void residual_kinds(const struct residual *residual, double *kind);
 /* The scale of unknown i, in its unit: what the error tolerance is relative to. */
 double residual_scale(const struct residual *residual, int i);
 
-/* The part of its scale that a method takes which sees velocities: the scale of velocities lets the vibrations of a stiff
- * body pass, since IDA damps them. With this it is the positions' scale times 2 pi f; 1 for other unknowns. */
+/* The factor on the scale of unknown i for methods that do not damp the vibrations of a stiff body: velocities then have
+ * the scale 0.1 L f, about that of the positions times 2 pi f, instead of one that never binds; 1 for other unknowns. */
 double residual_undamped(const struct residual *residual, int i);
 
 /* Where unknown i belongs. */

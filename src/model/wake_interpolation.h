@@ -1,5 +1,5 @@
 /* wake_interpolation.h: the velocity that the released vortices of all fish induce at the points of the bodies,
- * interpolated in time between two events. doc/numerics.md, section 13. Tested by
+ * interpolated in time between two events. doc/numerics.md, section 12. Tested by
  * tests/model/test_wake_interpolation.c.
  *
  * Between two events t_n and t_n + Dt the vortices move on known paths, and a point of a body stays close to the path

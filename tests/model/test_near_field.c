@@ -1,4 +1,4 @@
-/* test_near_field.c: the estimated errors of the far field against true ones: doc/numerics.md, section 13. */
+/* test_near_field.c: the estimated errors of the far field against true ones: doc/numerics.md, section 12. */
 #include <string.h>
 
 #include "model/near_field.h"

@@ -187,6 +187,10 @@ static void unknowns_have_names_kinds_and_scales(void **state) {
     NEAR(residual_scale(setup.residual, b->y), 2 * residual_scale(setup.residual, a->y), 0, 1e-14);
     NEAR(residual_scale(setup.residual, b->vx), 2 * residual_scale(setup.residual, a->vx), 0, 1e-14);
     NEAR(residual_scale(setup.residual, b->circulation), 4 * residual_scale(setup.residual, a->circulation), 0, 1e-14);
+    // velocities of methods without damping: ten times the scale of the positions in the time 1/f, f = 1 Hz
+    NEAR(residual_scale(setup.residual, a->vx) * residual_undamped(setup.residual, a->vx),
+         10 * residual_scale(setup.residual, a->x), 0, 1e-14);
+    NEAR(residual_undamped(setup.residual, a->x), 1, 0, 0);
     school_clear(&setup);
 }
 

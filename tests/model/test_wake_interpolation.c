@@ -1,4 +1,4 @@
-/* test_wake_interpolation.c: the interpolated velocity against the sum over every vortex: doc/numerics.md, section 13. */
+/* test_wake_interpolation.c: the interpolated velocity against the sum over every vortex: doc/numerics.md, section 12. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
