@@ -13,7 +13,8 @@
 #include "output/result_table.h"
 #include "study/compare.h"
 #include "study/compare_file.h"
-#include "study/study.h"
+#include "study/study_file.h"
+#include "study/study_gather.h"
 
 /* The kinds of files. */
 static const struct result_kind kinds[] = {

@@ -1,4 +1,5 @@
-/* main_options.h: what follows a command on the command line, and the help on it. Tested by tests/app/test_command.sh. */
+/* main_options.h: what follows a command on the command line, and the help on it. Tested by
+ * tests/app/test_command.sh. */
 #ifndef MAIN_OPTIONS_H
 #define MAIN_OPTIONS_H
 

@@ -1,5 +1,6 @@
 /* main_run.c: running a case; the demonstration. */
 #include <limits.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>

@@ -8,6 +8,8 @@
 #include "case/case.h"
 #include "study/compare.h"
 #include "study/study.h"
+#include "study/study_gather.h"
+#include "study/study_slurm.h"
 
 // ---- study, gather
 
@@ -44,9 +46,14 @@ static enum status run_study(const struct case_values *values, const struct requ
     if (request->processes) TRY(read_count("-j", request->processes, &options.n_processes));
     if (request->members) TRY(read_range(request->members, &options.first, &options.last));
     main_catch_signals();
-    const enum status status = study_run(values, &options, stdout);
+    int n_failed;
+    const enum status status = study_run(values, &options, &n_failed);
     progress_end(&progress);
-    return status;
+    TRY(status);
+    if (options.last < 0) return study_report(values, folder, request->command_line, stdout);
+    if (n_failed == 0) return STATUS_OK;
+    return status_fail(STATUS_SOLVER, "%d of %d members failed; %s/member-*.failed say why", n_failed,
+                       options.last - options.first + 1, folder);
 }
 
 enum status main_study(const struct request *request) {

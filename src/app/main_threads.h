@@ -3,9 +3,9 @@
 #define MAIN_THREADS_H
 
 /* Let threads that wait for others spin for microseconds only and then sleep. OpenMP's own choice is to spin for
- * milliseconds: where threads share a core, with each other or with other programs, each of the thousands of short loops
- * of a run then lasts that long. OpenMP reads its choice when the program is loaded, so this starts the program again with
- * GOMP_SPINCOUNT, unless that or OMP_WAIT_POLICY is set. */
+ * milliseconds: where threads share a core, with each other or with other programs, each of the thousands of short
+ * loops of a run then lasts that long. OpenMP reads its choice when the program is loaded, so this starts the program
+ * again with GOMP_SPINCOUNT, unless that or OMP_WAIT_POLICY is set. */
 void main_wait_briefly(char **argv);
 
 /* Give each thread its own part of the processors that this process may use: a thread that has slept is easily woken on

@@ -4,19 +4,20 @@
 
 #include <errno.h>
 #include <omp.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
-#include <sys/stat.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
+#include "case/case.h"
 #include "case/case_member.h"
-#include "case/case_show.h"
-#include "case/sweep_members.h"
 #include "run/simulate.h"
+#include "study/study_folder.h"
+#include "study/study_plan.h"
 
 enum { REASON_BYTES = 2048 };
 
@@ -39,9 +40,8 @@ struct study {
     int n_jobs;
     struct job *job;       /* (n_jobs) */
     struct report *report; /* shared memory                                        (n_jobs) */
-    int n_to_run, n_next;
-    int most_threads; /* of one member */
-    int *to_run;      /* numbers of the members that are not finished                    (n_to_run) */
+    struct study_plan plan;
+    int n_next; /* index in the plan of the next member to start */
     struct study_progress progress;
     struct timespec started;
     int is_stopping;
@@ -49,112 +49,6 @@ struct study {
 
 static int is_stopped(const struct study *study) {
     return study->options->stop && *study->options->stop;
-}
-
-// ---- what there is to do
-
-/* Find out whether a member is finished, and refuse the result of another study. settings: the member's case. */
-static enum status look_at(const struct study *study, const struct case_values *values, const char *path,
-                           int *is_finished) {
-    struct member_file member;
-    *is_finished = 0;
-    if (access(path, F_OK) != 0) return STATUS_OK;
-    const enum status read = member_file_read(&member, path);
-    if (read == STATUS_FILE) return STATUS_OK;  // cut off by a crash: it runs again
-    TRY(read);
-    enum status status = STATUS_OK;
-    char *effective = NULL;
-    if (strcmp(member.study, study->values->merged) == 0 && member.number == values->member) {
-        status = case_show(values, &effective);
-        *is_finished =
-            status == STATUS_OK && strcmp(member.status, "complete") == 0 && strcmp(member.effective, effective) == 0;
-    } else if (!study->options->force) {
-        status = status_fail(STATUS_FILE,
-                             "%s is a result of another study, or of this one before its case was changed: choose "
-                             "another folder with -o, or replace what is there with --force",
-                             path);
-    }
-    free(effective);
-    member_file_free(&member);
-    return status;
-}
-
-/* Check the case of a member and enter it in the list unless it is finished. */
-static enum status plan_member(struct study *study, int number) {
-    struct case_values values;
-    TRY(case_member(&values, study->values, number));
-    enum status status = STATUS_OK;
-    char *const path = study_member_path(study->options->folder, number, ".nc");
-    int is_finished = 0;
-    if (!path) status = STATUS_MEMORY;
-    if (status == STATUS_OK) status = look_at(study, &values, path, &is_finished);
-    if (status == STATUS_OK && !is_finished) {
-        study->to_run[study->n_to_run++] = number;
-        if (values.school.threads > study->most_threads) study->most_threads = values.school.threads;
-    }
-    if (is_finished) study->progress.n_done++;
-    free(path);
-    case_free(&values);
-    return status;
-}
-
-/* Remove what other studies have left behind the last member of this one. */
-static enum status clear_rest(const struct study *study) {
-    for (int number = sweep_n_members(study->values);; number++) {
-        char *const path = study_member_path(study->options->folder, number, ".nc");
-        if (!path) return STATUS_MEMORY;
-        const int exists = access(path, F_OK) == 0;
-        if (exists && study->options->force) unlink(path);
-        if (exists && !study->options->force) {
-            status_fail(STATUS_FILE,
-                        "%s is a result of another study: choose another folder with -o, or remove it with --force",
-                        path);
-        }
-        free(path);
-        if (!exists) return STATUS_OK;
-        if (!study->options->force) return STATUS_FILE;
-    }
-}
-
-/* Refuse to replace what another study has gathered there; a file that cannot be read is none. */
-static enum status look_at_gathered(const struct study *study) {
-    char *const path = study_path(study->options->folder, "study.nc");
-    if (!path) return STATUS_MEMORY;
-    struct case_values values;
-    struct member_file *members;
-    enum status status = access(path, F_OK) == 0 ? study_file_read(path, &values, &members) : STATUS_FILE;
-    if (status == STATUS_OK) {
-        if (strcmp(values.merged, study->values->merged) != 0) {
-            status = status_fail(STATUS_FILE,
-                                 "%s was gathered from another study, or from this one before its case was changed: "
-                                 "choose another folder with -o, or replace what is there with --force",
-                                 path);
-        }
-        study_members_free(members, sweep_n_members(&values));
-        case_free(&values);
-    } else if (status != STATUS_MEMORY) {
-        status = STATUS_OK;
-    }
-    free(path);
-    return status;
-}
-
-static enum status plan(struct study *study, int first, int last) {
-    study->to_run = calloc((size_t)(last - first + 1), sizeof *study->to_run);
-    if (!study->to_run) return status_fail(STATUS_MEMORY, "out of memory: a study of %d members", last - first + 1);
-    study->progress.n_members = last - first + 1;
-    for (int number = first; number <= last; number++) TRY(plan_member(study, number));
-    if (study->options->last >= 0) return STATUS_OK;
-    if (!study->options->force) TRY(look_at_gathered(study));
-    return clear_rest(study);
-}
-
-static enum status make_folder(const char *folder) {
-    struct stat facts;
-    if (mkdir(folder, 0777) == 0) return STATUS_OK;
-    if (errno == EEXIST && stat(folder, &facts) == 0 && S_ISDIR(facts.st_mode)) return STATUS_OK;
-    return status_fail(STATUS_FILE, "%s: cannot make this folder (%s): choose another one with -o", folder,
-                       strerror(errno));
 }
 
 // ---- one member, in its own process
@@ -166,7 +60,7 @@ static void tell_part(const struct simulate_progress *now, void *data) {
 static enum status run_member(const struct study *study, const struct job *job) {
     struct case_values values;
     TRY(case_member(&values, study->values, job->member));
-    char *const path = study_member_path(study->options->folder, job->member, ".nc");
+    char *const path = study_folder_member(study->options->folder, job->member, ".nc");
     const struct simulate_options options = {.path = path,
                                              .overwrite = 1,
                                              .command = study->options->command,
@@ -179,8 +73,8 @@ static enum status run_member(const struct study *study, const struct job *job) 
     return status;
 }
 
-/* Let every signal that asks the study to stop do the same here, not only the first: a signal to the whole process group
- * comes once from outside and once more from the study. */
+/* Let every signal that asks the study to stop do the same here, not only the first: a signal to the whole process
+ * group comes once from outside and once more from the study. */
 static void keep_handlers(void) {
     const int numbers[] = {SIGINT, SIGTERM};
     for (int i = 0; i < 2; i++) {
@@ -205,7 +99,7 @@ static void be_member(const struct study *study, const struct job *job, pid_t pa
 }
 
 static enum status start(struct study *study, struct job *job, const sigset_t *mask) {
-    job->member = study->to_run[study->n_next++];
+    job->member = study->plan.member[study->n_next++];
     *job->report = (struct report){0};
     const pid_t parent = getpid();
     fflush(NULL);
@@ -223,22 +117,6 @@ static enum status start(struct study *study, struct job *job, const sigset_t *m
 
 // ---- all members
 
-/* Keep the reason of a failure beside the result, or remove what an earlier call has kept there. */
-static enum status keep_reason(const struct study *study, int member, const char *reason) {
-    char *const path = study_member_path(study->options->folder, member, ".failed");
-    if (!path) return STATUS_MEMORY;
-    // nothing can be done about a full disk here: the result file says "running" or "failed" itself
-    FILE *const file = reason ? fopen(path, "w") : NULL;
-    if (file) {
-        fprintf(file, "%s\n", reason);
-        fclose(file);
-    } else {
-        unlink(path);
-    }
-    free(path);
-    return STATUS_OK;
-}
-
 /* Note how a member ended. */
 static enum status finish(struct study *study, struct job *job, int outcome) {
     job->process = 0;
@@ -246,14 +124,14 @@ static enum status finish(struct study *study, struct job *job, int outcome) {
     if (code == status_exit_code(STATUS_STOPPED)) return STATUS_OK;
     if (code == 0) {
         study->progress.n_done++;
-        return keep_reason(study, job->member, NULL);
+        return study_folder_set_reason(study->options->folder, job->member, NULL);
     }
     study->progress.n_failed++;
     if (WIFSIGNALED(outcome)) {
         snprintf(job->report->reason, REASON_BYTES, "killed by signal %d (%s)", WTERMSIG(outcome),
                  strsignal(WTERMSIG(outcome)));
     }
-    return keep_reason(study, job->member, job->report->reason);
+    return study_folder_set_reason(study->options->folder, job->member, job->report->reason);
 }
 
 static int n_running(const struct study *study) {
@@ -273,7 +151,7 @@ static void tell(struct study *study) {
     const double almost = 0.99;  // a member is done when its process is
     double work = study->n_next - progress->n_running;
     for (int j = 0; j < study->n_jobs; j++) work += study->job[j].process ? almost * study->job[j].report->part : 0;
-    progress->part = study->n_to_run > 0 ? work / study->n_to_run : 1;
+    progress->part = study->plan.n > 0 ? work / study->plan.n : 1;
     study->options->progress(progress, study->options->data);
 }
 
@@ -306,7 +184,7 @@ static enum status loop(struct study *study, const sigset_t *mask) {
     for (;;) {
         if (is_stopped(study) || status != STATUS_OK) stop_all(study);
         for (int j = 0; j < study->n_jobs && !study->is_stopping && status == STATUS_OK; j++) {
-            if (study->job[j].process == 0 && study->n_next < study->n_to_run)
+            if (study->job[j].process == 0 && study->n_next < study->plan.n)
                 status = start(study, &study->job[j], mask);
         }
         tell(study);
@@ -341,34 +219,28 @@ static enum status run_all(struct study *study) {
 /* How many members run at once: as many as there are processors for their threads, of those that we may use. */
 static int n_at_once(const struct study *study) {
     int n = study->options->n_processes;
-    if (n == 0) n = omp_get_num_procs() / (study->most_threads > 1 ? study->most_threads : 1);
+    if (n == 0) n = omp_get_num_procs() / study->plan.max_threads;
     if (n < 1) n = 1;
-    return n < study->n_to_run ? n : study->n_to_run;
+    return n < study->plan.n ? n : study->plan.n;
 }
 
-static enum status run_and_report(struct study *study, FILE *stream) {
+static enum status plan_and_run(struct study *study) {
     const struct study_options *const options = study->options;
-    const int n = sweep_n_members(study->values), is_part = options->last >= 0;
-    const int first = is_part ? options->first : 0, last = is_part ? options->last : n - 1;
-    if (first < 0 || first > last || last >= n) {
-        return status_fail(STATUS_CASE, "--members %d-%d: the study has members 0 to %d", first, last, n - 1);
-    }
-    TRY(plan(study, first, last));
-    TRY(make_folder(options->folder));
+    TRY(study_plan_create(&study->plan, study->values, options->folder, options->first, options->last, options->force));
+    study->progress.n_members = study->plan.n_members;
+    study->progress.n_done = study->plan.n_done;
+    TRY(study_folder_create(options->folder));
     study->n_jobs = n_at_once(study);
-    if (study->n_jobs > 0) TRY(run_all(study));
-    if (!is_part) return study_report(study->values, options->folder, options->command, stream);
-    if (study->progress.n_failed == 0) return STATUS_OK;
-    return status_fail(STATUS_SOLVER, "%d of %d members failed; %s/member-*.failed say why", study->progress.n_failed,
-                       last - first + 1, options->folder);
+    return study->n_jobs > 0 ? run_all(study) : STATUS_OK;
 }
 
-enum status study_run(const struct case_values *values, const struct study_options *options, FILE *stream) {
+enum status study_run(const struct case_values *values, const struct study_options *options, int *n_failed) {
     struct study study = {.values = values, .options = options};
     clock_gettime(CLOCK_MONOTONIC, &study.started);
-    const enum status status = run_and_report(&study, stream);
+    const enum status status = plan_and_run(&study);
+    *n_failed = study.progress.n_failed;
     if (study.report) munmap(study.report, (size_t)study.n_jobs * sizeof *study.report);
     free(study.job);
-    free(study.to_run);
+    study_plan_free(&study.plan);
     return status;
 }

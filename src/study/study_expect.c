@@ -1,11 +1,12 @@
-/* study_expect.c: what the case expects of the ends of its members. Declared in study.h. */
+/* study_expect.c: what the case expects of the ends of its members. */
+#include "study/study_expect.h"
+
 #include <math.h>
 #include <string.h>
 
 #include "case/sweep_expect.h"
 #include "case/sweep_members.h"
 #include "case/sweep_quantity.h"
-#include "study/study.h"
 
 /* The values that a statement is about, of one quantity. */
 struct extrema {

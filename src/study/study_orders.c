@@ -1,12 +1,14 @@
-/* study_orders.c: a study of convergence: orders observed along the axis that is refined. Declared in study.h.
+/* study_orders.c: a study of convergence: orders observed along the axis that is refined.
  *
  * P. J. Roache, Annual Review of Fluid Mechanics 29 (1997) 123-160: with h1 < h2 < h3, r21 = h2/h1, r32 = h3/h2 and
  * values f1, f2, f3 the order p solves
  *
  *     |f3 - f2| / |f2 - f1| = r21^p (r32^p - 1) / (r21^p - 1),
  *
- * the limit is f1 + (f1 - f2) / (r21^p - 1), and the index 1.25 |f1 - f2| / (r21^p - 1). Where the exact value f is given,
- * p is log(|f2 - f| / |f1 - f|) / log r21 instead. */
+ * the limit is f1 + (f1 - f2) / (r21^p - 1), and the index 1.25 |f1 - f2| / (r21^p - 1). Where the exact value f is
+ * given, p is log(|f2 - f| / |f1 - f|) / log r21 instead. */
+#include "study/study_orders.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,7 +17,7 @@
 #include "case/sweep_members.h"
 #include "case/sweep_quantity.h"
 #include "case/sweep_refine.h"
-#include "study/study.h"
+#include "study/study_table.h"
 
 static const double safety_factor = 1.25;
 

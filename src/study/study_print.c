@@ -1,8 +1,10 @@
-/* study_print.c: the table of members. Declared in study.h. */
+/* study_print.c: the table of members. */
+#include "study/study_print.h"
+
 #include <string.h>
 
 #include "case/sweep_members.h"
-#include "study/study.h"
+#include "study/study_table.h"
 
 enum { MOST_FISH_SHOWN = 4 };
 

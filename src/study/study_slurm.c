@@ -1,4 +1,6 @@
-/* study_slurm.c: a study as an array job of Slurm. Declared in study.h. */
+/* study_slurm.c: a study as an array job of Slurm. */
+#include "study/study_slurm.h"
+
 #include <errno.h>
 #include <limits.h>
 #include <stdlib.h>
@@ -6,9 +8,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "case/case.h"
 #include "case/case_member.h"
 #include "case/sweep_members.h"
-#include "study/study.h"
+#include "study/study_folder.h"
 
 enum { MOST_TASKS = 1000 /* Slurm's own default is 1001 */ };
 
@@ -94,10 +97,7 @@ enum status study_slurm(const struct case_values *study, const char *folder, int
         case_free(&member);
     }
     char place[PATH_MAX], program[PATH_MAX];
-    if (mkdir(folder, 0777) != 0 && errno != EEXIST) {
-        return status_fail(STATUS_FILE, "%s: cannot make this folder (%s): choose another one with -o", folder,
-                           strerror(errno));
-    }
+    TRY(study_folder_create(folder));
     if (!realpath(folder, place) || !realpath("/proc/self/exe", program)) {
         return status_fail(STATUS_FILE, "%s: its full path cannot be found: %s", folder, strerror(errno));
     }

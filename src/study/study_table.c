@@ -1,10 +1,10 @@
-/* study_table.c: tables of texts. Declared in study.h. */
+/* study_table.c: tables of texts. */
+#include "study/study_table.h"
+
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include "study/study.h"
 
 enum status study_table_create(struct study_table *table, int n_rows, int n_columns) {
     *table = (struct study_table){n_rows, n_columns, calloc((size_t)n_rows * (size_t)n_columns, STUDY_CELL_BYTES)};

@@ -325,7 +325,7 @@ check a_study_sees_its_members_end_all_the_same eval 'test "$code" = 1 && has er
 
 # a processor for each thread of each member, of the processors that the program may use
 running() {  # arguments: the most members that run at once
-    run study long.yaml --force --set 'sweep=[{key: time.end, values: [4, 4.02, 4.04]}]' "$@"
+    run study long.yaml --force --set 'sweep=[{key: time.end, values: [16, 16.02, 16.04]}]' "$@"
     sed -n 's/.* failed, \([0-9]*\) running .*/\1/p' err | sort -n | tail -1
 }
 processor=$(taskset -cp $$ | sed 's/.*: \([0-9]*\).*/\1/')

@@ -12,6 +12,12 @@
 #include "failing_malloc.h"
 #include "near.h"
 #include "study/study.h"
+#include "study/study_file.h"
+#include "study/study_folder.h"
+#include "study/study_gather.h"
+#include "study/study_orders.h"
+#include "study/study_slurm.h"
+#include "study/study_table.h"
 
 /* Values c + a h^p, in both directions of the plane, for n sizes. */
 static struct study_file_order order_of(int n, const double *sizes, double p) {
@@ -193,7 +199,7 @@ static void orders_are_kept_in_study_nc(void **state) {
     assert_int_equal(study_file_read(path, &none, &nobody), STATUS_FILE);
     assert_non_null(strstr(status_message(), "make the study's file again"));
     unlink(path);
-    study_members_free(read, 6);
+    study_folder_free_members(read, 6);
     study_file_orders_free(&orders);
     case_free(&study);
     case_free(&again);
@@ -228,7 +234,7 @@ static void a_study_nc_that_does_not_fit_is_refused(void **state) {
                 assert_non_null(strstr(status_message(), path));
             } else {
                 assert_int_equal(status, STATUS_OK);
-                study_members_free(read, 6);
+                study_folder_free_members(read, 6);
                 case_free(&again);
             }
             write_bytes(path, n, bytes);
@@ -276,7 +282,9 @@ typedef enum status attempt_function(const struct attempt *attempt);
 
 static enum status run_small(const struct attempt *attempt) {
     const struct study_options options = {.folder = attempt->folder, .command = "test", .last = -1, .n_processes = 2};
-    return study_run(&attempt->study, &options, attempt->nowhere);
+    int n_failed;
+    TRY(study_run(&attempt->study, &options, &n_failed));
+    return study_report(&attempt->study, attempt->folder, "test", attempt->nowhere);
 }
 
 static enum status gather_small(const struct attempt *attempt) {

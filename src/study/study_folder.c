@@ -1,0 +1,142 @@
+/* study_folder.c: the files of the members, by their names. */
+#include "study/study_folder.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "case/sweep_members.h"
+
+enum { REASON_BYTES = 2048 };
+
+enum status study_folder_create(const char *folder) {
+    struct stat facts;
+    if (mkdir(folder, 0777) == 0) return STATUS_OK;
+    if (errno == EEXIST && stat(folder, &facts) == 0 && S_ISDIR(facts.st_mode)) return STATUS_OK;
+    return status_fail(STATUS_FILE, "%s: cannot make this folder (%s): choose another one with -o", folder,
+                       strerror(errno));
+}
+
+char *study_folder_path(const char *folder, const char *name) {
+    // "./" keeps NetCDF from taking the name for an address
+    const size_t size = strlen(folder) + strlen(name) + 8;
+    char *const path = malloc(size);
+    if (path) {
+        snprintf(path, size, "%s%s/%s", folder[0] == '/' || folder[0] == '.' ? "" : "./", folder, name);
+    } else {
+        status_fail(STATUS_MEMORY, "out of memory: a file name");
+    }
+    return path;
+}
+
+char *study_folder_member(const char *folder, int member, const char *ending) {
+    char name[64];
+    snprintf(name, sizeof name, "member-%04d%s", member, ending);
+    return study_folder_path(folder, name);
+}
+
+void study_folder_free_members(struct member_file *members, int n) {
+    for (int m = 0; members && m < n; m++) member_file_free(&members[m]);
+    free(members);
+}
+
+/* Replace the status of a member. */
+static enum status note(struct member_file *member, const char *format, const char *text) {
+    char line[REASON_BYTES + 16];
+    snprintf(line, sizeof line, format, text);
+    free(member->status);
+    member->status = strdup(line);
+    return member->status ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: the members of a study");
+}
+
+enum status study_folder_set_reason(const char *folder, int member, const char *reason) {
+    char *const path = study_folder_member(folder, member, ".failed");
+    if (!path) return STATUS_MEMORY;
+    // nothing can be done about a full disk here: the result file says "running" or "failed" itself
+    FILE *const file = reason ? fopen(path, "w") : NULL;
+    if (file) {
+        fprintf(file, "%s\n", reason);
+        fclose(file);
+    } else {
+        unlink(path);
+    }
+    free(path);
+    return STATUS_OK;
+}
+
+/* The reason that was kept when a member failed; 0 if there is none. */
+static int read_reason(const char *folder, int number, char reason[REASON_BYTES]) {
+    char *const path = study_folder_member(folder, number, ".failed");
+    FILE *const file = path ? fopen(path, "r") : NULL;
+    free(path);
+    if (!file) return 0;
+    const size_t length = fread(reason, 1, REASON_BYTES - 1, file);
+    fclose(file);
+    reason[length] = '\0';
+    reason[strcspn(reason, "\n")] = '\0';
+    return 1;
+}
+
+/* Read one member and how it ended. */
+static enum status read_member(struct member_file *member, const struct case_values *study, const char *folder,
+                               int number) {
+    char *const path = study_folder_member(folder, number, ".nc");
+    if (!path) return STATUS_MEMORY;
+    enum status status = STATUS_OK;
+    if (access(path, F_OK) != 0) {
+        status = note(member, "%s", "missing");
+    } else {
+        status = member_file_read(member, path);
+        if (status == STATUS_FILE) {
+            status = note(member, "failed: %s", status_message());
+        } else if (status == STATUS_OK && (strcmp(member->study, study->merged) != 0 || member->number != number ||
+                                           member->n_fish != study->school.n_fish)) {
+            status = status_fail(STATUS_FILE, "%s is a result of another study than the first file there", path);
+        }
+    }
+    free(path);
+    TRY(status);
+    char reason[REASON_BYTES];
+    if (strcmp(member->status, "complete") == 0 || !read_reason(folder, number, reason)) return STATUS_OK;
+    return note(member, "failed: %s", reason);
+}
+
+enum status study_folder_read_members(struct member_file **members, const struct case_values *study,
+                                      const char *folder) {
+    const int n = sweep_n_members(study);
+    *members = calloc((size_t)n, sizeof **members);
+    if (!*members) return status_fail(STATUS_MEMORY, "out of memory: %d members", n);
+    for (int m = 0; m < n; m++) {
+        const enum status status = read_member(&(*members)[m], study, folder, m);
+        if (status == STATUS_OK) continue;
+        study_folder_free_members(*members, n);
+        *members = NULL;
+        return status;
+    }
+    return STATUS_OK;
+}
+
+enum status study_folder_find_study(const char *folder, char **text) {
+    DIR *const entries = opendir(folder);
+    if (!entries) return status_fail(STATUS_FILE, "%s: cannot be read: %s", folder, strerror(errno));
+    *text = NULL;
+    for (const struct dirent *entry; !*text && (entry = readdir(entries));) {
+        int number, length = 0;
+        if (sscanf(entry->d_name, "member-%d.nc%n", &number, &length) != 1 || entry->d_name[length] || !length)
+            continue;
+        char *const path = study_folder_member(folder, number, ".nc");
+        struct member_file member;
+        if (path && member_file_read(&member, path) == STATUS_OK) {
+            if (member.number >= 0) *text = strdup(member.study);
+            member_file_free(&member);
+        }
+        free(path);
+    }
+    closedir(entries);
+    if (*text) return STATUS_OK;
+    return status_fail(STATUS_FILE, "%s: holds no member of a study that can be read", folder);
+}

@@ -1,0 +1,21 @@
+/* study_gather.h: from the files of the members to study.nc and the tables. Tested by tests/study/test_study.sh. */
+#ifndef STUDY_GATHER_H
+#define STUDY_GATHER_H
+
+#include <stdio.h>
+
+#include "base/status.h"
+#include "case/case_values.h"
+
+/* Make study.nc from the files of the members in a folder, and print the members, orders and statements. Fails with
+ * STATUS_FILE (a file belongs to another study, or study.nc cannot be written), STATUS_SOLVER (some members are not
+ * complete), STATUS_MISSED (another order or value than the case expects) or STATUS_MEMORY. */
+enum status study_report(const struct case_values *study, const char *folder, const char *command, FILE *stream);
+
+/* The same for the study that the members in the folder belong to. */
+enum status study_gather(const char *folder, const char *command, FILE *stream);
+
+/* Print what a study.nc holds: axes, members and orders. Fails with STATUS_FILE or STATUS_MEMORY. */
+enum status study_info(const char *path, FILE *stream);
+
+#endif

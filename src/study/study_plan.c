@@ -1,0 +1,129 @@
+/* study_plan.c: looks at what the folder holds already. */
+#include "study/study_plan.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "case/case.h"
+#include "case/case_member.h"
+#include "case/case_show.h"
+#include "case/sweep_members.h"
+#include "study/study_file.h"
+#include "study/study_folder.h"
+
+/* What is looked at. */
+struct planning {
+    const struct case_values *study;
+    const char *folder;
+    int force;
+};
+
+/* Find out whether a member is finished, and refuse the result of another study. settings: the member's case. */
+static enum status look_at(const struct planning *planning, const struct case_values *values, const char *path,
+                           int *is_finished) {
+    struct member_file member;
+    *is_finished = 0;
+    if (access(path, F_OK) != 0) return STATUS_OK;
+    const enum status read = member_file_read(&member, path);
+    if (read == STATUS_FILE) return STATUS_OK;  // cut off by a crash: it runs again
+    TRY(read);
+    enum status status = STATUS_OK;
+    char *effective = NULL;
+    if (strcmp(member.study, planning->study->merged) == 0 && member.number == values->member) {
+        status = case_show(values, &effective);
+        *is_finished =
+            status == STATUS_OK && strcmp(member.status, "complete") == 0 && strcmp(member.effective, effective) == 0;
+    } else if (!planning->force) {
+        status = status_fail(STATUS_FILE,
+                             "%s is a result of another study, or of this one before its case was changed: choose "
+                             "another folder with -o, or replace what is there with --force",
+                             path);
+    }
+    free(effective);
+    member_file_free(&member);
+    return status;
+}
+
+/* Check the case of a member and enter it in the list unless it is finished. */
+static enum status plan_member(const struct planning *planning, struct study_plan *plan, int number) {
+    struct case_values values;
+    TRY(case_member(&values, planning->study, number));
+    enum status status = STATUS_OK;
+    char *const path = study_folder_member(planning->folder, number, ".nc");
+    int is_finished = 0;
+    if (!path) status = STATUS_MEMORY;
+    if (status == STATUS_OK) status = look_at(planning, &values, path, &is_finished);
+    if (status == STATUS_OK && !is_finished) {
+        plan->member[plan->n++] = number;
+        if (values.school.threads > plan->max_threads) plan->max_threads = values.school.threads;
+    }
+    if (is_finished) plan->n_done++;
+    free(path);
+    case_free(&values);
+    return status;
+}
+
+/* Remove what other studies have left behind the last member of this one. */
+static enum status clear_rest(const struct planning *planning) {
+    for (int number = sweep_n_members(planning->study);; number++) {
+        char *const path = study_folder_member(planning->folder, number, ".nc");
+        if (!path) return STATUS_MEMORY;
+        const int exists = access(path, F_OK) == 0;
+        if (exists && planning->force) unlink(path);
+        if (exists && !planning->force) {
+            status_fail(STATUS_FILE,
+                        "%s is a result of another study: choose another folder with -o, or remove it with --force",
+                        path);
+        }
+        free(path);
+        if (!exists) return STATUS_OK;
+        if (!planning->force) return STATUS_FILE;
+    }
+}
+
+/* Refuse to replace what another study has gathered there; a file that cannot be read is none. */
+static enum status look_at_gathered(const struct planning *planning) {
+    char *const path = study_folder_path(planning->folder, "study.nc");
+    if (!path) return STATUS_MEMORY;
+    struct case_values values;
+    struct member_file *members;
+    enum status status = access(path, F_OK) == 0 ? study_file_read(path, &values, &members) : STATUS_FILE;
+    if (status == STATUS_OK) {
+        if (strcmp(values.merged, planning->study->merged) != 0) {
+            status = status_fail(STATUS_FILE,
+                                 "%s was gathered from another study, or from this one before its case was changed: "
+                                 "choose another folder with -o, or replace what is there with --force",
+                                 path);
+        }
+        study_folder_free_members(members, sweep_n_members(&values));
+        case_free(&values);
+    } else if (status != STATUS_MEMORY) {
+        status = STATUS_OK;
+    }
+    free(path);
+    return status;
+}
+
+enum status study_plan_create(struct study_plan *plan, const struct case_values *study, const char *folder, int first,
+                              int last, int force) {
+    const struct planning planning = {study, folder, force};
+    const int n = sweep_n_members(study), is_part = last >= 0;
+    *plan = (struct study_plan){.max_threads = 1};
+    if (!is_part) last = n - 1;
+    if (first < 0 || first > last || last >= n) {
+        return status_fail(STATUS_CASE, "--members %d-%d: the study has members 0 to %d", first, last, n - 1);
+    }
+    plan->n_members = last - first + 1;
+    plan->member = calloc((size_t)plan->n_members, sizeof *plan->member);
+    if (!plan->member) return status_fail(STATUS_MEMORY, "out of memory for a study of %d members", plan->n_members);
+    for (int number = first; number <= last; number++) TRY(plan_member(&planning, plan, number));
+    if (is_part) return STATUS_OK;
+    if (!force) TRY(look_at_gathered(&planning));
+    return clear_rest(&planning);
+}
+
+void study_plan_free(struct study_plan *plan) {
+    free(plan->member);
+    *plan = (struct study_plan){0};
+}
