@@ -176,15 +176,21 @@ static bool is_netcdf(FILE *file) {
     return is_known;
 }
 
+static uint64_t size_of(FILE *file) {
+    fseeko(file, 0, SEEK_END);
+    return (uint64_t)ftello(file);
+}
+
 enum status netcdf_check_header(const char *path) {
     struct header header = {.file = fopen(path, "rb")};
     if (!header.file) return status_fail(STATUS_FILE, "%s: cannot be read: %s", path, strerror(errno));
     enum status status = STATUS_OK;
     if (is_netcdf(header.file)) {
-        fseeko(header.file, 0, SEEK_END);
-        header.size = (uint64_t)ftello(header.file);
+        header.size = size_of(header.file);
         rewind(header.file);
         read_header(&header);
+        // a row that was added meanwhile counts in the header, which was read after the size
+        header.size = size_of(header.file);
         if (header.is_damaged) {
             status = status_fail(STATUS_FILE, "%s: cannot be read: its header is damaged", path);
         } else if (!has_all_values(&header)) {
