@@ -7,7 +7,7 @@ import sys
 INTRODUCTION = """\
 # The result file
 
-<!-- Written by `make docs` from the table in src/result_table.c and the words in scripts/make-output-doc.py. -->
+<!-- Written by `make docs` from the table in src/output/result_table.c and the words in scripts/make-output-doc.py. -->
 
 `shoal run CASE` writes one NetCDF file, in the classic format with 64-bit sizes (CDF-5): every NetCDF library since
 4.4 reads it, and a run that is killed or fills the disk loses none of the rows written before. The file contains all
@@ -42,20 +42,20 @@ Pictures: `scripts/plot.py demo.nc`, `scripts/plot.py time demo.nc`, `scripts/an
 |---|---|
 | `time` | rows written so far: one per `time.output_interval`, the first at t = 0 |
 | `fish` | fish, in the order of the case |
-| `node`, `edge`, `joint` | of the fish with most nodes N: N, N - 1, N - 2; node 0 is the nose |
-| `sheet` | bound vortices of the fish with most of them |
-| `vortex` | slots for free vortices: the most that one fish can own |
+| `node`, `edge`, `joint` | N, N - 1, N - 2, for the N nodes of the fish that has most; node 0 is the nose |
+| `sheet` | bound vortices of the fish that has most |
+| `vortex` | slots for free vortices: the largest number that one fish can have |
 | `xy` | 2: x, then y |
-| `name` | bytes of the longest name of a fish |
+| `name` | bytes of the longest fish name |
 
 A shorter fish uses the first slots only, `n_nodes`, `n_edges`, `n_joints`, `n_sheet` of them. All other slots hold NaN,
-which is the `_FillValue` too; a derived quantity that is not defined yet (a mean over a beat in the first beat, the
+which is also the `_FillValue`; a derived quantity that is not defined yet (a mean over a beat in the first beat, the
 distance between the bodies of one fish) is NaN as well.
 
-The wake: `wake_count` says how many free vortices a fish owns; they stand in the first slots, oldest first. A vortex
+The wake: `wake_count` says how many free vortices a fish has; they are in the first slots, oldest first. A vortex
 moves up when an older one is removed, so a slot is not a vortex; `wake_birth` tells them apart. With
 `output.wake_interval` longer than `time.output_interval` the rows between hold NaN in `wake_x`, `wake_circulation` and
-`wake_birth`; `wake_count` is always right. `wake_circulation` is what was shed; what counts in the flow fades over the
+`wake_birth`; `wake_count` is always right. `wake_circulation` is what was shed; what acts on the flow decays over the
 last `wake_fade` seconds of `wake_lifetime` (doc/model.md, section 8). The vortex that grows at the tail has no slot
 until it is released.
 
@@ -65,14 +65,17 @@ derived quantities stay double.
 ## While it is being written
 
 Each row shows up when it is complete: the file can be opened at any time, also by several readers. A reader that keeps
-it open sees new rows after it has opened it anew. The attribute `run_status` says how things stand:
+it open sees new rows when it opens it again. The attribute `run_status` says how far the run is:
 
 | `run_status` | meaning |
 |---|---|
 | `running` | the run goes on, or was killed |
 | `complete` | the run reached `time.end` |
 | `stopped` | a signal stopped it; the rows are good |
-| `failed: ...` | the solver or the disk gave up, for this reason; the rows are good |
+| `failed: ...` | the integration or the writing failed, for this reason; the rows are good |
+
+A file whose end is missing, for instance because it was cut while it was copied, is refused by every command and script;
+a study runs such a member again.
 
 ## Repeating a run
 
@@ -92,10 +95,10 @@ gives the same numbers, bit for bit with the same program (only `wall_time` and 
 | `title` | name of the case |
 | `history` | when the file was made, by which command |
 | `source` | program, commit, versions of the libraries |
-| `shoal_schema` | 1; a program that meets another number does not know the file |
+| `shoal_schema` | 1; a program that expects another number cannot read the file |
 | `run_status`, `case_text`, `case_effective` | see above |
 
-Every variable has `long_name` and, unless it is text, `units`. `fish_name`, `node_arc` and `sheet_arc` are coordinates.
+Every variable has `long_name` and, unless it is a string, `units`. `fish_name`, `node_arc` and `sheet_arc` are coordinates.
 """
 
 # Title of a section, and which variables belong to it, by their dimensions.
@@ -107,7 +110,7 @@ SECTIONS = [
 ]
 
 
-# What stands before the variables of the other files.
+# The words before the variables of the other files.
 OTHERS = {
     "study": """
 ## The file of a study
@@ -116,12 +119,11 @@ OTHERS = {
 its sweep, `shoal_study` is 1. For each swept key there is a variable over `member`, named like the key with `_` for `.`
 and without brackets; its `long_name` is the path, its `axis` the number of its axis, and `refine` is 1 where that is
 refined. Every variable over (time), (time, fish) or (time, fish, xy) of a result file is there with its last row, over
-(member), (member, fish) or (member, fish, xy). Further there are those below; a member that is not complete has NaN where
-its file has no rows.
+(member), (member, fish) or (member, fish, xy). It also has the variables below; a member without rows has NaN.
 
-With a refined axis there is one variable of each of the last six kinds for each of the quantities Q: `nose`, `tail`, `com`,
+With a refined axis, each of the last six kinds has one variable for each of the quantities Q: `nose`, `tail`, `com`,
 `speed`, `mean_heading`, `shed_circulation`, `cost_of_transport`, `mean_actuation_power`; the order of the nose is
-`order_nose`. A group is what the other axes leave of the study: members that differ in the refined key only.
+`order_nose`. A group is a set of members that differ in the refined key only.
 """,
     "comparison": """
 ## The file of a comparison

@@ -38,10 +38,13 @@ class Results:
         self.time = self["time"]
         if self.time.size == 0:
             raise FileError(f"{path}: the run has not written a row yet")
+        # what is missing at the end of a file reads as zero; this is the last value of a row and never zero
+        if self.read("wall_time", -1) == 0:
+            raise FileError(f"{path}: the end of the file is missing: was it copied completely?")
         self.n_fish = self.data.dimensions["fish"].size
         self.names = list(self["fish_name"])
         self.n_nodes = self["n_nodes"].astype(int)
-        self.edge_height = self["edge_height"]
+        self.thickness = self["edge_height"]
         self.title = getattr(self.data, "title", "")
 
     def __getitem__(self, name):
@@ -64,10 +67,10 @@ class Results:
 
     def outline(self, row, fish):
         """The outline of one fish as a closed polygon (n, 2)."""
-        return outline(self.nodes(row, fish), self.edge_height[fish, : self.n_nodes[fish] - 1])
+        return outline(self.nodes(row, fish), self.thickness[fish, : self.n_nodes[fish] - 1])
 
     def wake(self, row):
-        """All free vortices of a row: positions (n, 2) and circulations (n), faded as they count in the flow."""
+        """All free vortices of a row: positions (n, 2) and circulations (n), decayed as they act on the flow."""
         circulation = self.read("wake_circulation", row).ravel()
         birth = self.read("wake_birth", row).ravel()
         position = self.read("wake_x", row).reshape(-1, 2)
@@ -75,11 +78,11 @@ class Results:
         return position[used], circulation[used] * self.remaining(self.time[row] - birth[used])
 
     def remaining(self, age):
-        """The part of its circulation that a vortex of some age still counts with: doc/model.md, section 8."""
-        lifetime, fade = float(self["wake_lifetime"]), float(self["wake_fade"])
-        if fade == 0:
+        """The part of its circulation that a vortex of some age still has: doc/model.md, section 8."""
+        lifetime, decay = float(self["wake_lifetime"]), float(self["wake_fade"])
+        if decay == 0:
             return np.ones_like(age)
-        return ramp_step((lifetime - age) / fade)
+        return ramp_step((lifetime - age) / decay)
 
     def rows_with_wake(self):
         """The rows in which the wake was written, or has nothing to write."""
@@ -133,15 +136,15 @@ def centreline(nodes, at):
     return points, np.column_stack([-tangent[:, 1], tangent[:, 0]])
 
 
-def half_thickness(height, at):
-    """Half the thickness at arc coordinates from 0 to 1, from the heights of the edges; zero at nose and tail.
+def half_thickness(thickness, at):
+    """Half the thickness at arc coordinates from 0 to 1, from that of the edges; zero at nose and tail.
 
     Over the angle whose cosine runs along the body, a blunt nose is as smooth as a sine: what is interpolated is the
-    ratio to the sine, mirrored at both ends. The height of an edge is the sum of the half thicknesses at its nodes.
+    ratio to the sine, mirrored at both ends. The thickness of an edge is the sum of the half thicknesses at its nodes.
     """
-    at_nodes = np.arccos(np.linspace(1, -1, height.size + 1))
+    at_nodes = np.arccos(np.linspace(1, -1, thickness.size + 1))
     angle = np.arccos((np.cos(at_nodes[1:]) + np.cos(at_nodes[:-1])) / 2)
-    ratio = height / (np.sin(at_nodes[1:]) + np.sin(at_nodes[:-1]))
+    ratio = thickness / (np.sin(at_nodes[1:]) + np.sin(at_nodes[:-1]))
     knots = np.concatenate([[-angle[0]], angle, [2 * np.pi - angle[-1]]])
     values = np.concatenate([[ratio[0]], ratio, [ratio[-1]]])
     slopes = np.gradient(values, knots)
@@ -149,9 +152,9 @@ def half_thickness(height, at):
     return np.sin(where) * np.maximum(hermite(knots, values, slopes, where), 0)
 
 
-def outline(nodes, height, n=80):
+def outline(nodes, thickness, n=80):
     """The outline of a body as a closed polygon: a smooth curve through the nodes, as thick as the edges are."""
     at = (1 - np.cos(np.linspace(0, np.pi, n))) / 2  # dense at nose and tail
     points, normals = centreline(nodes, at)
-    half = half_thickness(height, at)[:, None]
+    half = half_thickness(thickness, at)[:, None]
     return np.concatenate([points + half * normals, (points - half * normals)[-2:0:-1]])

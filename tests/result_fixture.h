@@ -11,7 +11,7 @@
 #include "near.h"
 #include "output/result_file.h"
 
-enum { N_FISH = 2, N_MEASURED = sizeof(struct diagnostics_fish) / sizeof(double) };
+enum { N_FISH = 2, N_OF_FISH = sizeof(struct diagnostics_fish) / sizeof(double) };
 
 #define CASE_TEXT                                                                                      \
     "format: 1\n"                                                                                      \
@@ -31,7 +31,7 @@ struct fixture {
     struct range joints[N_FISH];
     double natural_curvature[8];
     struct diagnostics diagnostics;
-    struct diagnostics_fish measured[N_FISH];
+    struct diagnostics_fish of_fish[N_FISH];
     struct integrator_counts counts;
     char folder[32], path[64];
 };
@@ -48,13 +48,13 @@ static inline int set_up(void **state) {
     number_consecutively(f->state->y, (size_t)f->school->n_unknowns, 1000);
     for (int i = 0; i < N_FISH; i++) {
         f->joints[i] = (struct range){i == 0 ? 0 : 3, f->school->fish[i].n_joints};
-        number_consecutively((double *)&f->measured[i], N_MEASURED, 100.0 * (i + 1));
+        number_consecutively((double *)&f->of_fish[i], N_OF_FISH, 100.0 * (i + 1));
     }
     number_consecutively(f->natural_curvature, 8, 1);
     f->residual = (struct residual){
         .school = f->school, .state = f->state, .joints = f->joints, .natural_curvature = f->natural_curvature};
     f->diagnostics =
-        (struct diagnostics){.fish = f->measured, .total_circulation = 11, .least_distance = 12, .polarisation = 13};
+        (struct diagnostics){.fish = f->of_fish, .total_circulation = 11, .least_distance = 12, .polarisation = 13};
     f->counts = (struct integrator_counts){.steps = 21,
                                            .residual_evaluations = 22,
                                            .newton_iterations = 23,

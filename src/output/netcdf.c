@@ -97,7 +97,7 @@ enum status netcdf_check_target(const char *path, bool overwrite) {
 // ---- definitions
 
 /* Where the file comes from. */
-static void set_origin(struct netcdf_writer *writer, const char *title, const char *command) {
+static void write_origin(struct netcdf_writer *writer, const char *title, const char *command) {
     char libraries[VERSION_LENGTH], source[2 * VERSION_LENGTH], history[HISTORY_LENGTH], date[32];
     version_libraries(libraries);
     snprintf(source, sizeof source, "%s, %s", version_short(), libraries);
@@ -105,10 +105,10 @@ static void set_origin(struct netcdf_writer *writer, const char *title, const ch
     struct tm utc;
     strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
     snprintf(history, sizeof history, "%s %s", date, command);
-    netcdf_set_string(writer, NETCDF_GLOBAL, "Conventions", "CF-1.10");
-    netcdf_set_string(writer, NETCDF_GLOBAL, "title", title);
-    netcdf_set_string(writer, NETCDF_GLOBAL, "history", history);
-    netcdf_set_string(writer, NETCDF_GLOBAL, "source", source);
+    netcdf_write_string(writer, NETCDF_GLOBAL, "Conventions", "CF-1.10");
+    netcdf_write_string(writer, NETCDF_GLOBAL, "title", title);
+    netcdf_write_string(writer, NETCDF_GLOBAL, "history", history);
+    netcdf_write_string(writer, NETCDF_GLOBAL, "source", source);
 }
 
 enum status netcdf_create(struct netcdf_writer *writer, const char *path, const char *title, const char *command) {
@@ -123,7 +123,7 @@ enum status netcdf_create(struct netcdf_writer *writer, const char *path, const 
         CALL(writer, nc__create(writer->temporary, NC_CLOBBER | NC_64BIT_DATA, 0, &buffer_bytes, &writer->file));
         if (writer->code == NC_NOERR) writer->descriptor = open(writer->temporary, O_RDONLY | O_CLOEXEC);
         if (writer->code == NC_NOERR && writer->descriptor < 0) writer->code = errno;
-        set_origin(writer, title, command);
+        write_origin(writer, title, command);
     } else {
         writer->code = ENOMEM;
     }
@@ -148,26 +148,26 @@ int netcdf_define_variable(struct netcdf_writer *writer, const struct netcdf_var
     const nc_type type = types[variable->type];
     int number = 0;
     CALL(writer, nc_def_var(writer->file, variable->name, type, variable->n_dimensions, variable->dimension, &number));
-    netcdf_set_string(writer, number, "long_name", variable->long_name);
+    netcdf_write_string(writer, number, "long_name", variable->long_name);
     if (type == NC_CHAR) {
-        netcdf_set_string(writer, number, "_Encoding", "utf-8");
+        netcdf_write_string(writer, number, "_Encoding", "utf-8");
         return number;
     }
-    netcdf_set_string(writer, number, "units", *variable->units ? variable->units : "1");
+    netcdf_write_string(writer, number, "units", *variable->units ? variable->units : "1");
     const double gap = NAN;
     if (variable->has_gaps) CALL(writer, nc_put_att_double(writer->file, number, _FillValue, type, 1, &gap));
     return number;
 }
 
-void netcdf_set_bytes(struct netcdf_writer *writer, int variable, const char *name, size_t n, const char *bytes) {
+void netcdf_write_bytes(struct netcdf_writer *writer, int variable, const char *name, size_t n, const char *bytes) {
     CALL(writer, nc_put_att_text(writer->file, variable, name, n, bytes));
 }
 
-void netcdf_set_string(struct netcdf_writer *writer, int variable, const char *name, const char *string) {
-    netcdf_set_bytes(writer, variable, name, strlen(string), string);
+void netcdf_write_string(struct netcdf_writer *writer, int variable, const char *name, const char *string) {
+    netcdf_write_bytes(writer, variable, name, strlen(string), string);
 }
 
-void netcdf_set_integer(struct netcdf_writer *writer, int variable, const char *name, int value) {
+void netcdf_write_integer(struct netcdf_writer *writer, int variable, const char *name, int value) {
     CALL(writer, nc_put_att_int(writer->file, variable, name, NC_INT, 1, &value));
 }
 

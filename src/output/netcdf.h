@@ -15,7 +15,7 @@ enum netcdf_type { NETCDF_TEXT, NETCDF_INT, NETCDF_INT64, NETCDF_FLOAT, NETCDF_D
 
 /* ---- writing
  *
- *     netcdf_create, define..., set..., netcdf_end_definitions, write..., netcdf_publish, write..., netcdf_finish */
+ *     netcdf_create, define..., netcdf_end_definitions, write..., netcdf_publish, write..., netcdf_finish */
 
 /* A file that is being written. Once a call has failed, later ones do nothing, and code tells why. */
 struct netcdf_writer {
@@ -50,10 +50,11 @@ enum status netcdf_create(struct netcdf_writer *writer, const char *path, const 
 int netcdf_define_dimension(struct netcdf_writer *writer, const char *name, size_t length);
 int netcdf_define_variable(struct netcdf_writer *writer, const struct netcdf_variable *variable);
 
-/* Set an attribute of a variable, by its number, or of the file: NETCDF_GLOBAL. */
-void netcdf_set_string(struct netcdf_writer *writer, int variable, const char *name, const char *string);
-void netcdf_set_bytes(struct netcdf_writer *writer, int variable, const char *name, size_t n, const char *bytes);
-void netcdf_set_integer(struct netcdf_writer *writer, int variable, const char *name, int value);
+/* Write an attribute of a variable, by its number, or of the file (NETCDF_GLOBAL): before netcdf_end_definitions, or
+ * later one of no more bytes than before. */
+void netcdf_write_string(struct netcdf_writer *writer, int variable, const char *name, const char *string);
+void netcdf_write_bytes(struct netcdf_writer *writer, int variable, const char *name, size_t n, const char *bytes);
+void netcdf_write_integer(struct netcdf_writer *writer, int variable, const char *name, int value);
 
 /* Values follow. All of them must be written: what is not is undefined. */
 void netcdf_end_definitions(struct netcdf_writer *writer);

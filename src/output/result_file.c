@@ -57,10 +57,10 @@ static enum netcdf_type type_in_file(enum result_type type, enum precision preci
 }
 
 /* The attribute run_status, in the space that is kept for it; a longer string is cut. */
-static void set_run_status(struct result_file *result, const char *run_status) {
+static void write_run_status(struct result_file *result, const char *run_status) {
     char bytes[STATUS_LENGTH] = {0};
     snprintf(bytes, sizeof bytes, "%s", run_status);
-    netcdf_set_bytes(&result->writer, NETCDF_GLOBAL, "run_status", sizeof bytes, bytes);
+    netcdf_write_bytes(&result->writer, NETCDF_GLOBAL, "run_status", sizeof bytes, bytes);
 }
 
 /* The variables that name the slots of another one. */
@@ -82,20 +82,20 @@ static void define_variable(struct result_file *result, int i, const int *dimens
     to_define.has_gaps = of_fish && (to_define.type == NETCDF_DOUBLE || to_define.type == NETCDF_FLOAT);
     result->number[i] = netcdf_define_variable(&result->writer, &to_define);
     if (of_fish && !is_text)
-        netcdf_set_string(&result->writer, result->number[i], "coordinates", coordinates_of(variable));
+        netcdf_write_string(&result->writer, result->number[i], "coordinates", coordinates_of(variable));
 }
 
 /* The attributes; the text of the case makes a result repeatable. */
-static void set_attributes(struct result_file *result, const struct case_values *values, const char *effective) {
+static void write_attributes(struct result_file *result, const struct case_values *values, const char *effective) {
     struct netcdf_writer *const writer = &result->writer;
-    netcdf_set_integer(writer, NETCDF_GLOBAL, "shoal_schema", RESULT_SCHEMA);
-    set_run_status(result, "running");
-    netcdf_set_string(writer, NETCDF_GLOBAL, "case_text", values->text);
+    netcdf_write_integer(writer, NETCDF_GLOBAL, "shoal_schema", RESULT_SCHEMA);
+    write_run_status(result, "running");
+    netcdf_write_string(writer, NETCDF_GLOBAL, "case_text", values->text);
     if (values->study) {
-        netcdf_set_string(writer, NETCDF_GLOBAL, "study_case", values->study);
-        netcdf_set_integer(writer, NETCDF_GLOBAL, "study_member", values->member);
+        netcdf_write_string(writer, NETCDF_GLOBAL, "study_case", values->study);
+        netcdf_write_integer(writer, NETCDF_GLOBAL, "study_member", values->member);
     }
-    netcdf_set_string(writer, NETCDF_GLOBAL, "case_effective", effective);
+    netcdf_write_string(writer, NETCDF_GLOBAL, "case_effective", effective);
 }
 
 static void define_all(struct result_file *result, const struct case_values *values, const char *effective) {
@@ -104,7 +104,7 @@ static void define_all(struct result_file *result, const struct case_values *val
         dimension_number[d] =
             netcdf_define_dimension(&result->writer, result_table_dimension(d), d == TIME ? 0 : result->length[d]);
     for (int i = 0; i < result_table_n; i++) define_variable(result, i, dimension_number, values->output.precision);
-    set_attributes(result, values, effective);
+    write_attributes(result, values, effective);
     netcdf_end_definitions(&result->writer);
 }
 
@@ -238,14 +238,14 @@ enum status result_file_close(struct result_file *result, const char *run_status
     struct netcdf_writer *const writer = &result->writer;
     // what NetCDF holds after a failed write cannot be written
     if (writer->code != 0) netcdf_reopen(writer);
-    set_run_status(result, run_status);
+    write_run_status(result, run_status);
     netcdf_sync(writer, true);
     enum status status = STATUS_OK;
     if (writer->code != 0) {
         status = status_fail(STATUS_FILE, "%s: cannot be closed (%s): its last rows may be missing", writer->path,
                              netcdf_reason(writer->code));
         netcdf_reopen(writer);
-        set_run_status(result, "failed: the last rows could not be written");
+        write_run_status(result, "failed: the last rows could not be written");
     }
     const enum status finished = netcdf_finish(writer);
     release(result);

@@ -57,7 +57,7 @@ struct result_variable {
     void (*gather)(const struct result_row *row, int f, double *slots);
 };
 
-/* In the order in which they stand in the file. */
+/* In the order in which they are in the file; wall_time is the last, by which scripts see that a file is whole. */
 extern const struct result_variable result_table[];
 extern const int result_table_n;
 

@@ -90,8 +90,8 @@ static void define_number(struct netcdf_writer *writer, const struct column *col
 static void define(struct netcdf_writer *writer, const struct case_values *values, int n) {
     const int run = netcdf_define_dimension(writer, "run", (size_t)n);
     const int text = netcdf_define_dimension(writer, "text", TEXT_BYTES);
-    netcdf_set_integer(writer, NETCDF_GLOBAL, "shoal_compare", COMPARE_FILE_SCHEMA);
-    netcdf_set_string(writer, NETCDF_GLOBAL, "compare_case", values->merged);
+    netcdf_write_integer(writer, NETCDF_GLOBAL, "shoal_compare", COMPARE_FILE_SCHEMA);
+    netcdf_write_string(writer, NETCDF_GLOBAL, "compare_case", values->merged);
     for (int i = 0; i < N_TEXTS; i++) {
         const struct netcdf_variable variable = {.name = texts[i].name,
                                                  .long_name = texts[i].long_name,

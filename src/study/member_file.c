@@ -58,16 +58,12 @@ int member_file_n_quantities(void) {
 
 // ---- values
 
-static double *place(const struct member_file *member, int quantity, int fish, int xy) {
+double *member_file_place(const struct member_file *member, int quantity, int fish, int xy) {
     return &member->value[(quantity * member->n_fish + fish) * 2 + xy];
 }
 
 double member_file_value(const struct member_file *member, int quantity, int fish, int xy) {
-    return member->value && fish < member->n_fish ? *place(member, quantity, fish, xy) : NAN;
-}
-
-void member_file_set_value(const struct member_file *member, int quantity, int fish, int xy, double value) {
-    *place(member, quantity, fish, xy) = value;
+    return member->value && fish < member->n_fish ? *member_file_place(member, quantity, fish, xy) : NAN;
 }
 
 enum status member_file_create_values(struct member_file *member, int n_fish) {
@@ -101,7 +97,7 @@ static enum status read_quantity(const struct reading *reading, int q) {
     TRY(netcdf_read_doubles(&reading->reader, quantity->name, slice, reading->values));
     const double *from = reading->values;
     for (int f = 0; f < (quantity->of_fish ? reading->member->n_fish : 1); f++) {
-        for (int k = 0; k < 1 + quantity->of_xy; k++) member_file_set_value(reading->member, q, f, k, *from++);
+        for (int k = 0; k < 1 + quantity->of_xy; k++) *member_file_place(reading->member, q, f, k) = *from++;
     }
     return STATUS_OK;
 }
@@ -181,10 +177,11 @@ static enum status compute_mean_power(const struct reading *reading, size_t f, d
 static enum status compute(const struct reading *reading, int f) {
     const int first = member_file_n_quantities() - N_COMPUTED;
     const struct member_file *const member = reading->member;
-    TRY(compute_ends(reading, (size_t)f, place(member, first + NOSE, f, 0), place(member, first + TAIL, f, 0)));
-    TRY(compute_drift(reading, (size_t)f, place(member, first + DRIFT, f, 0)));
-    TRY(compute_mean_heading(reading, (size_t)f, place(member, first + MEAN_HEADING, f, 0)));
-    return compute_mean_power(reading, (size_t)f, place(member, first + MEAN_POWER, f, 0));
+    TRY(compute_ends(reading, (size_t)f, member_file_place(member, first + NOSE, f, 0),
+                     member_file_place(member, first + TAIL, f, 0)));
+    TRY(compute_drift(reading, (size_t)f, member_file_place(member, first + DRIFT, f, 0)));
+    TRY(compute_mean_heading(reading, (size_t)f, member_file_place(member, first + MEAN_HEADING, f, 0)));
+    return compute_mean_power(reading, (size_t)f, member_file_place(member, first + MEAN_POWER, f, 0));
 }
 
 static enum status read_attributes(struct reading *reading) {

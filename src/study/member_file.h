@@ -42,6 +42,8 @@ void member_file_free(struct member_file *member);
 
 /* One value; NaN where the member has none. fish and xy are 0 where the quantity does not depend on them. */
 double member_file_value(const struct member_file *member, int quantity, int fish, int xy);
-void member_file_set_value(const struct member_file *member, int quantity, int fish, int xy, double value);
+
+/* Where that value is; it must exist. */
+double *member_file_place(const struct member_file *member, int quantity, int fish, int xy);
 
 #endif

@@ -103,8 +103,8 @@ static void define_key(struct writing *writing, int a, int k) {
     variable_name(axis->key[k].path, name);
     const int number = define(writing, name, axis->key[k].is_number ? NETCDF_DOUBLE : NETCDF_TEXT,
                               writing->member_dimension, axis->key[k].path, axis->key[k].unit);
-    netcdf_set_integer(&writing->writer, number, "axis", a);
-    if (k == 0 && axis->refine) netcdf_set_integer(&writing->writer, number, "refine", 1);
+    netcdf_write_integer(&writing->writer, number, "axis", a);
+    if (k == 0 && axis->refine) netcdf_write_integer(&writing->writer, number, "refine", 1);
 }
 
 static void define_all(struct writing *writing) {
@@ -114,8 +114,8 @@ static void define_all(struct writing *writing) {
     writing->fish_dimension = netcdf_define_dimension(writer, "fish", (size_t)writing->n_fish);
     writing->xy_dimension = netcdf_define_dimension(writer, "xy", 2);
     writing->text_dimension = netcdf_define_dimension(writer, "text", writing->n_text);
-    netcdf_set_integer(writer, NETCDF_GLOBAL, "shoal_study", STUDY_FILE_SCHEMA);
-    netcdf_set_string(writer, NETCDF_GLOBAL, "study_case", study->merged);
+    netcdf_write_integer(writer, NETCDF_GLOBAL, "shoal_study", STUDY_FILE_SCHEMA);
+    netcdf_write_string(writer, NETCDF_GLOBAL, "study_case", study->merged);
     for (int i = 0; i < N_OWN; i++) {
         define(writing, own[i].name, i == MEMBER ? NETCDF_INT : NETCDF_TEXT,
                i == FISH_NAME ? writing->fish_dimension : writing->member_dimension, own[i].meaning, "1");

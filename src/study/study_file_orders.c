@@ -26,8 +26,8 @@ static const struct single {
     enum orders_dimension dimension;
 } singles[N_SINGLE] = {
     {"level_value", "value of the refined key, from coarse to fine", LEVEL},
-    {"level_size", "what goes to zero: the value, or 1/(n - 1) of n points", LEVEL},
-    {"group_member", "the first member of each group: those that differ in the refined key only", GROUP},
+    {"level_size", "grid spacing: the value, or 1/(n - 1) of n points", LEVEL},
+    {"group_member", "first member of each group: members that differ in the refined key only", GROUP},
 };
 
 /* What there is for each quantity: name and meaning take its name. The dimensions begin with group, fish. */
@@ -36,15 +36,16 @@ static const struct kind {
     const char *name, *unit, *meaning; /* unit NULL: that of the quantity */
     enum orders_dimension last;        /* a third dimension; GROUP: none */
 } kinds[N_KINDS] = {
-    {"error_%s", NULL, "distance of %s from the finest level, or from the reference that the case gives", LEVEL},
-    {"order_before_%s", "1", "order of %s observed with the levels before the finest", GROUP},
-    {"order_%s", "1", "order of %s observed with the finest levels", GROUP},
-    {"limit_%s", NULL, "limit of %s by Richardson's extrapolation (xy: of positions only)", ORDERS_XY},
-    {"index_%s", NULL, "grid convergence index: the finest %s is expected to be off by less", GROUP},
-    {"objection_%s", "", "why the levels of %s are not in the asymptotic range; empty: they are", ORDERS_TEXT},
+    {"error_%s", NULL, "error of %s: its distance from the finest level, or from the reference that the case gives",
+     LEVEL},
+    {"order_before_%s", "1", "observed order of %s of the next coarser levels", GROUP},
+    {"order_%s", "1", "observed order of %s of the finest levels", GROUP},
+    {"limit_%s", NULL, "%s extrapolated to zero spacing by Richardson's method (xy: of positions only)", ORDERS_XY},
+    {"index_%s", NULL, "grid convergence index (GCI): bound of the error of %s at the finest level", GROUP},
+    {"objection_%s", "", "why the levels of %s are not in the asymptotic range; empty where they are", ORDERS_TEXT},
 };
 
-// the third dimension of a quantity's variable: a limit has directions only where the quantity has
+// the third dimension of a quantity's variable: an extrapolated value has directions only where the quantity has
 static enum orders_dimension last_of(int kind, int of_xy) {
     return kinds[kind].last == ORDERS_XY && !of_xy ? GROUP : kinds[kind].last;
 }
@@ -83,11 +84,11 @@ int study_file_orders_listed(int i, struct result_listed *listed) {
 enum status study_file_orders_create(struct study_file_orders *orders, int n_groups, int n_levels) {
     const size_t n = (size_t)n_groups * SWEEP_N_ORDERS * (size_t)orders->n_fish;
     orders->level = calloc((size_t)n_levels, sizeof *orders->level);
-    orders->size = calloc((size_t)n_levels, sizeof *orders->size);
+    orders->grid_spacing = calloc((size_t)n_levels, sizeof *orders->grid_spacing);
     orders->first = calloc((size_t)n_groups, sizeof *orders->first);
     orders->order = calloc(n, sizeof *orders->order);
     orders->error = calloc(n * (size_t)n_levels, sizeof *orders->error);
-    if (!orders->level || !orders->size || !orders->first || !orders->order || !orders->error) {
+    if (!orders->level || !orders->grid_spacing || !orders->first || !orders->order || !orders->error) {
         return status_fail(STATUS_MEMORY, "out of memory: the orders of %d levels", n_levels);
     }
     orders->n_groups = n_groups;
@@ -97,7 +98,7 @@ enum status study_file_orders_create(struct study_file_orders *orders, int n_gro
 
 void study_file_orders_free(struct study_file_orders *orders) {
     free(orders->level);
-    free(orders->size);
+    free(orders->grid_spacing);
     free(orders->first);
     free(orders->order);
     free(orders->error);
@@ -186,7 +187,7 @@ void study_file_orders_write(struct netcdf_writer *writer, const struct case_val
         text_number(axis->value[orders->level[i] * axis->n_keys], &value);
         netcdf_write_doubles(writer, value_number, (size_t[]){(size_t)i}, (size_t[]){1}, &value);
     }
-    netcdf_write_doubles(writer, netcdf_number(writer, singles[LEVEL_SIZE].name), NULL, NULL, orders->size);
+    netcdf_write_doubles(writer, netcdf_number(writer, singles[LEVEL_SIZE].name), NULL, NULL, orders->grid_spacing);
     netcdf_write_ints(writer, netcdf_number(writer, singles[GROUP_MEMBER].name), NULL, NULL, orders->first);
     for (int g = 0; g < orders->n_groups; g++) {
         for (int q = 0; q < SWEEP_N_ORDERS; q++) {

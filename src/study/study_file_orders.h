@@ -22,7 +22,7 @@ struct study_file_order {
 struct study_file_orders {
     int axis, n_groups, n_levels, n_fish; /* no groups: no axis is refined, and nothing below */
     int *level;                           /* number of a value of the axis, from coarse to fine  (n_levels) */
-    double *size;                         /* what goes to zero                                   (n_levels) */
+    double *grid_spacing;                 /* the value of the axis, or 1/(n - 1) of n points      (n_levels) */
     int *first;                           /* the first member of each group                      (n_groups) */
     struct study_file_order *order;       /* (n_groups, SWEEP_N_ORDERS, n_fish) */
     double

@@ -43,7 +43,7 @@ static enum status read_quantity(const struct reading *reading, int q) {
     for (size_t m = 0; m < reading->n_members; m++) {
         for (int f = 0; f < (quantity->of_fish ? n_fish : 1); f++) {
             for (int k = 0; k < 1 + quantity->of_xy; k++) {
-                member_file_set_value(&reading->member[m], q, f, k, *from++);
+                *member_file_place(&reading->member[m], q, f, k) = *from++;
             }
         }
     }

@@ -124,11 +124,11 @@ static void sort_levels(const struct case_values *study, struct study_file_order
     for (int i = 0; i < orders->n_levels; i++) {
         const double size = size_of(&study->sweep[orders->axis], i);
         int j = i;
-        for (; j > 0 && orders->size[j - 1] < size; j--) {
-            orders->size[j] = orders->size[j - 1];
+        for (; j > 0 && orders->grid_spacing[j - 1] < size; j--) {
+            orders->grid_spacing[j] = orders->grid_spacing[j - 1];
             orders->level[j] = orders->level[j - 1];
         }
-        orders->size[j] = size;
+        orders->grid_spacing[j] = size;
         orders->level[j] = i;
     }
 }
@@ -169,7 +169,8 @@ static void fill_order(struct refinement *refinement, int group, int q, int f) {
         const double error = hypot(refinement->value[i][0] - exact[0], refinement->value[i][1] - exact[1]);
         orders->error[place * n + i] = i < n - 1 || is_given ? error : NAN;
     }
-    orders->order[place] = study_order(n, orders->size, (const double(*)[2])refinement->value, is_given ? given : NULL);
+    orders->order[place] =
+        study_order(n, orders->grid_spacing, (const double(*)[2])refinement->value, is_given ? given : NULL);
 }
 
 enum status study_orders_create(struct study_file_orders *orders, const struct case_values *study,

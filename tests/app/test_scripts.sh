@@ -63,6 +63,8 @@ ncgen -o other.nc <<<'netcdf other { dimensions: x = 1; }'
 refuses 4 "no such file" plot.py nothing.nc
 refuses 4 "not a result file" plot.py text.nc
 refuses 4 "not one of shoal" plot.py other.nc
+head -c -100 run.nc >cut.nc
+refuses 4 "the end of the file is missing" plot.py cut.nc
 refuses 4 "no folder" plot.py run.nc no/such.png
 refuses 2 "such" plot.py run.nc picture.such
 refuses 2 "required" plot.py gait

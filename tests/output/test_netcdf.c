@@ -91,7 +91,7 @@ static enum status write_file(const char *path, bool overwrite) {
         &writer, &(struct netcdf_variable){"count", "a count", "", NETCDF_INT, 1, {fish}, false});
     const int names = netcdf_define_variable(
         &writer, &(struct netcdf_variable){"names", "names", "", NETCDF_TEXT, 2, {fish, name}, false});
-    netcdf_set_integer(&writer, NETCDF_GLOBAL, "number", 7);
+    netcdf_write_integer(&writer, NETCDF_GLOBAL, "number", 7);
     netcdf_end_definitions(&writer);
     netcdf_write_ints(&writer, count, NULL, NULL, (int[]){4, 5});
     netcdf_write_text(&writer, names, NULL, NULL, "first2nd\0\0");

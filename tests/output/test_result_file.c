@@ -16,7 +16,7 @@ void *__wrap_calloc(size_t n, size_t size) {
     return __real_calloc(n, size);
 }
 
-// ---- what stands in the file ----
+// ---- what is in the file ----
 
 static void format_is_cdf5(void **state) {
     struct fixture *f = *state;
@@ -150,17 +150,17 @@ static void unused_slots_hold_nan(void **state) {
     nc_close(file);
 }
 
-static void derived_quantities_stand_under_their_names(void **state) {
+static void derived_quantities_have_their_names(void **state) {
     struct fixture *f = *state;
     write_file(f, 2);
     const int file = open_to_read(f);
     NEAR(value_at(file, "time", 1, 0, 0, 0), 0.5, 0, 0);
-    NEAR(value_at(file, "com", 1, 0, 1, 0), f->measured[0].com[1], 0, 0);
-    NEAR(value_at(file, "com_velocity", 1, 1, 0, 0), f->measured[1].com_velocity[0], 0, 0);
-    NEAR(value_at(file, "speed", 1, 1, 0, 0), f->measured[1].speed, 0, 0);
-    NEAR(value_at(file, "heading", 1, 0, 0, 0), f->measured[0].heading, 0, 0);
-    NEAR(value_at(file, "energy_audit", 1, 1, 0, 0), f->measured[1].energy_audit, 0, 0);
-    NEAR(value_at(file, "strouhal", 1, 0, 0, 0), f->measured[0].strouhal, 0, 0);
+    NEAR(value_at(file, "com", 1, 0, 1, 0), f->of_fish[0].com[1], 0, 0);
+    NEAR(value_at(file, "com_velocity", 1, 1, 0, 0), f->of_fish[1].com_velocity[0], 0, 0);
+    NEAR(value_at(file, "speed", 1, 1, 0, 0), f->of_fish[1].speed, 0, 0);
+    NEAR(value_at(file, "heading", 1, 0, 0, 0), f->of_fish[0].heading, 0, 0);
+    NEAR(value_at(file, "energy_audit", 1, 1, 0, 0), f->of_fish[1].energy_audit, 0, 0);
+    NEAR(value_at(file, "strouhal", 1, 0, 0, 0), f->of_fish[0].strouhal, 0, 0);
     NEAR(value_at(file, "total_circulation", 1, 0, 0, 0), 11, 0, 0);
     NEAR(value_at(file, "least_distance", 1, 0, 0, 0), 12, 0, 0);
     NEAR(value_at(file, "polarisation", 1, 0, 0, 0), 13, 0, 0);
@@ -171,16 +171,16 @@ static void derived_quantities_stand_under_their_names(void **state) {
     nc_close(file);
 }
 
-static void every_measured_quantity_of_a_fish_has_a_variable(void **state) {
+static void every_diagnostic_of_a_fish_has_a_variable(void **state) {
     (void)state;
-    bool stored[N_MEASURED] = {false};
+    bool is_written[N_OF_FISH] = {false};
     for (int i = 0; i < result_table_n; i++) {
         if (result_table[i].owner != OF_DIAGNOSTICS_FISH) continue;
         const size_t first = result_table[i].offset / sizeof(double),
                      n = result_table_has(&result_table[i], XY) ? 2 : 1;
-        for (size_t k = first; k < first + n; k++) stored[k] = true;
+        for (size_t k = first; k < first + n; k++) is_written[k] = true;
     }
-    for (size_t k = 0; k < N_MEASURED; k++) assert_true(stored[k]);
+    for (size_t k = 0; k < N_OF_FISH; k++) assert_true(is_written[k]);
 }
 
 static void wake_is_oldest_first_and_can_be_left_out(void **state) {
@@ -396,8 +396,8 @@ int main(void) {
         WITH_FILE(sheet_starts_at_the_nose_and_ends_at_the_tail),
         WITH_FILE(curvature_of_a_right_angle_is_two),
         WITH_FILE(unused_slots_hold_nan),
-        WITH_FILE(derived_quantities_stand_under_their_names),
-        cmocka_unit_test(every_measured_quantity_of_a_fish_has_a_variable),
+        WITH_FILE(derived_quantities_have_their_names),
+        cmocka_unit_test(every_diagnostic_of_a_fish_has_a_variable),
         WITH_FILE(wake_is_oldest_first_and_can_be_left_out),
         WITH_FILE(single_precision_keeps_time_and_scalars_double),
         WITH_FILE(long_status_is_cut),

@@ -13,9 +13,9 @@ static void read_member(struct fixture *f, struct member_file *member) {
     struct result_file *const file = create(f);
     for (int i = 0; i < N_ROWS; i++) {
         for (int fish = 0; fish < N_FISH; fish++) {
-            f->measured[fish].heading = heading[i];
-            f->measured[fish].com[0] = 1 + 3 * row_time[i] * (fish + 1);
-            f->measured[fish].com[1] = 2 + 5 * row_time[i];
+            f->of_fish[fish].heading = heading[i];
+            f->of_fish[fish].com[0] = 1 + 3 * row_time[i] * (fish + 1);
+            f->of_fish[fish].com[1] = 2 + 5 * row_time[i];
         }
         assert_int_equal(append(f, file, row_time[i], 0), STATUS_OK);
     }
@@ -36,7 +36,7 @@ static void quantities_of_the_table_are_those_of_the_last_row(void **state) {
     NEAR(value(&member, "heading", 1, 0), 90, 0, 0);
     NEAR(value(&member, "com", 1, 0), 1 + 3 * 0.8 * 2, 0, 1e-15);
     NEAR(value(&member, "com", 0, 1), 2 + 5 * 0.8, 0, 1e-15);
-    NEAR(value(&member, "speed", 1, 0), f->measured[1].speed, 0, 0);
+    NEAR(value(&member, "speed", 1, 0), f->of_fish[1].speed, 0, 0);
     NEAR(value(&member, "steps", 0, 0), 21, 0, 0);
     assert_true(isnan(value(&member, "speed", N_FISH, 0)));  // no such fish
     member_file_free(&member);
@@ -84,8 +84,7 @@ static void mean_power_is_the_cost_of_transport_times_mass_and_speed(void **stat
     read_member(f, &member);
     for (int fish = 0; fish < N_FISH; fish++) {
         NEAR(value(&member, "mean_actuation_power", fish, 0),
-             f->measured[fish].cost_of_transport * f->school->fish[fish].total_mass * f->measured[fish].speed, 0,
-             1e-14);
+             f->of_fish[fish].cost_of_transport * f->school->fish[fish].total_mass * f->of_fish[fish].speed, 0, 1e-14);
     }
     member_file_free(&member);
 }

@@ -1,4 +1,4 @@
-/* test_study.c: observed orders, limits and grid convergence indices; tables. What processes do: test_study.sh. */
+/* test_study_file.c: observed orders, extrapolated values and grid convergence indices; study.nc; tables. What processes do: test_study.sh. */
 #include <netcdf.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -260,7 +260,7 @@ static void levels_of_points_are_their_distances_from_coarse_to_fine(void **stat
     assert_int_equal(orders.n_levels, 3);
     const double sizes[] = {1.0 / 4, 1.0 / 8, 1.0 / 16};
     const int levels[] = {1, 0, 2};
-    NEAR_ARRAY(3, orders.size, sizes, 0, 0);
+    NEAR_ARRAY(3, orders.grid_spacing, sizes, 0, 0);
     assert_memory_equal(orders.level, levels, sizeof levels);
     study_file_orders_free(&orders);
     case_free(&study);
@@ -301,9 +301,9 @@ static enum status write_jobs_of_small(const struct attempt *attempt) {
     return study_slurm(&attempt->study, attempt->folder, 0, attempt->nowhere);
 }
 
-/* Let ever later allocations fail until all succeed. In the processes of members as many succeed again: a member may fail
- * where the study does not. */
-static void fail_one_by_one(const struct attempt *attempt, attempt_function *function, const char *name, int least) {
+/* Let ever later allocations fail until all succeed. In the processes of members as many succeed again: a member may
+ * fail where the study does not. */
+static void fail_one_by_one(const struct attempt *attempt, attempt_function *function, const char *name, int min) {
     int n_failed = 0;
     for (int n = 0;; n += 1 + n / 30) {
         const int n_before = n_live;
@@ -322,7 +322,7 @@ static void fail_one_by_one(const struct attempt *attempt, attempt_function *fun
         assert_in_range(n, 0, 100000);
     }
     print_message("%s: %d failures\n", name, n_failed);
-    assert_true(n_failed >= least);
+    assert_true(n_failed >= min);
 }
 
 static void every_failing_allocation_of_a_study_is_reported_and_leaves_nothing(void **state) {
@@ -360,7 +360,7 @@ static void a_table_has_aligned_columns_and_no_blanks_at_the_end(void **state) {
     struct study_table table;
     assert_int_equal(study_table_create(&table, 2, 3), STATUS_OK);
     study_table_set(&table, 0, 0, "a");
-    study_table_set(&table, 0, 1, "%s", "a text that is much too long for a cell of a table");
+    study_table_set(&table, 0, 1, "%s", "a string that is too long for a cell of a table");
     study_table_number(&table, 1, 0, "%.2f", 3.14159);
     study_table_number(&table, 1, 1, "%.2f", NAN);
     study_table_set(&table, 1, 2, "end");
@@ -370,7 +370,7 @@ static void a_table_has_aligned_columns_and_no_blanks_at_the_end(void **state) {
     study_table_print(&table, stream);
     fclose(stream);
     assert_string_equal(text,
-                        "   a  a text that is much too long fo\n"
+                        "   a  a string that is too long for a\n"
                         "3.14                                -  end\n");
     free(text);
     study_table_free(&table);
