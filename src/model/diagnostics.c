@@ -249,7 +249,11 @@ static double total_circulation(const struct residual *residual, const struct st
         const struct wake *wake = &state->wake[f];
         total += bound_sheet_circulation(fish, state->y) + (state->y[fish->at.circulation] - wake->shed_before);
         for (int i = 0; i < wake_n_sources(wake); i++) total += wake_source(wake, i);
+        // what has been lost still counts, or has been given back to the body
         if (residual->school->removed == REMOVED_RETAINED) total += wake->removed;
+        if (residual->school->removed == REMOVED_DROPPED) {
+            total += wake->removed - residual_lost(residual, f, state->t);
+        }
     }
     return total;
 }

@@ -155,12 +155,11 @@ void free_sheet_place(struct free_sheet *sheet, const struct school *school, con
         const int stretch = sheet->stretch[i];
         double point[2];
         point_of(markers, stretch, sheet->xi[i], school->interval, tau, point);
-        const double age = t - middles->birth[stretch];
-        const double now = wake_strength(school, age), next = wake_strength(school, age + school->interval);
+        const double strength = wake_strength_within(school, t - middles->birth[stretch], q);
         const double smoothing = (1 - q) * sheet->smoothing[0][i] + q * sheet->smoothing[1][i];
         sheet->x[i] = point[0];
         sheet->y[i] = point[1];
-        sheet->circulation[i] = sheet->part[i] * middles->circulation[stretch] * (now + q * (next - now));
+        sheet->circulation[i] = sheet->part[i] * middles->circulation[stretch] * strength;
         sheet->square[i] = smoothing * smoothing;
     }
 }

@@ -126,8 +126,10 @@ double residual_shed_rate(const struct residual *residual, int f, double t, cons
     return law_of(residual) == BOUND_SHEET_RATE ? residual_kutta_rate(residual, f, t, y) : 0;
 }
 
-double residual_removed(const struct residual *residual, int f) {
-    return residual->school->removed == REMOVED_DROPPED ? residual->state->wake[f].removed : 0;
+double residual_lost(const struct residual *residual, int f, double t) {
+    const struct school *school = residual->school;
+    const struct state *state = residual->state;
+    return school->removed == REMOVED_DROPPED ? wake_lost(&state->wake[f], school, state->t, t - state->t) : 0;
 }
 
 // the moment of the flow matters to a law with feedforward only
@@ -199,7 +201,7 @@ static void evaluate_fish(struct residual *residual, int f, double t, const doub
     }
     drive(fish, t, y, value);
     // impermeability, Kelvin, Kutta
-    bound_sheet_residual(fish, residual_removed(residual, f), u, v, y, value);
+    bound_sheet_residual(fish, residual_lost(residual, f, t), u, v, y, value);
     bound_sheet_kutta_residual(fish, law_of(residual), ramp_value(t, school->kutta_ramp), u, v, y, yp, value);
     // the control law
     const double tau = residual_moment(residual, f, y);

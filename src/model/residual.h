@@ -84,7 +84,7 @@ double residual_kutta_rate(const struct residual *residual, int f, double t, con
 double residual_shed_rate(const struct residual *residual, int f, double t, const double *y);
 
 /* Circulation that no longer counts in Kelvin's equation of fish f, m2 s-1. */
-double residual_removed(const struct residual *residual, int f);
+double residual_lost(const struct residual *residual, int f, double t);
 
 /* Mask the rows of the Jacobian whose equation is a given motion, and no others. */
 void residual_mask(const struct residual *residual, struct jacobian *jacobian);

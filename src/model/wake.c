@@ -66,9 +66,22 @@ enum status wake_release(struct wake *wake, double x, double y, double circulati
     return STATUS_OK;
 }
 
+// without decay a vortex of continuous shedding is removed within its last interval
+static int fades_in_one_interval(const struct school *school) {
+    return school->decay <= 0 && school->shedding != SHEDDING_IMPULSIVE;
+}
+
 double wake_strength(const struct school *school, double age) {
+    const double left = school->lifetime - age;
+    if (fades_in_one_interval(school)) return fmax(0, fmin(1, left / school->interval));
     if (school->decay <= 0) return 1;
-    return 1 - ramp_step((age - (school->lifetime - school->decay)) / school->decay);
+    // it stands for what was shed around half an interval before its release
+    return 1 - ramp_step((school->interval / 2 + school->decay - left) / school->decay);
+}
+
+// the age from which on the strength may be less than 1 within an interval
+static double age_of_decay(const struct school *school) {
+    return school->lifetime - fmax(school->decay + school->interval / 2, school->interval);
 }
 
 void wake_set_tail(struct wake *wake, const double velocity[2], const double tangent[2]) {
@@ -100,6 +113,11 @@ double wake_source(const struct wake *wake, int i) {
     return wake->has_markers ? wake->circulation[i + 1] - wake->circulation[i] : wake->circulation[i];
 }
 
+double wake_strength_within(const struct school *school, double age, double q) {
+    const double now = wake_strength(school, age), next = wake_strength(school, age + school->interval);
+    return now + q * (next - now);
+}
+
 void wake_at(const struct wake *wake, const struct school *school, double t, double tau, double *x, double *y,
              double *strength) {
     const double q = tau / school->interval;
@@ -108,13 +126,21 @@ void wake_at(const struct wake *wake, const struct school *school, double t, dou
         y[i] = along_path(wake->y[i], wake->v[i], wake->v_before[i], tau, school->interval);
         strength[i] = wake->circulation[i];
     }
-    // the oldest ones fade, linearly in time inside an interval
-    for (int i = 0; i < wake->n_vortex && t + school->interval - wake->birth[i] > school->lifetime - school->decay;
-         i++) {
-        const double now = wake_strength(school, t - wake->birth[i]);
-        const double next = wake_strength(school, t + school->interval - wake->birth[i]);
-        strength[i] *= now + q * (next - now);
+    for (int i = 0; i < wake->n_vortex; i++) {
+        const double age = t - wake->birth[i];
+        if (age + school->interval <= age_of_decay(school)) break;
+        strength[i] *= wake_strength_within(school, age, q);
     }
+}
+
+double wake_lost(const struct wake *wake, const struct school *school, double t, double tau) {
+    double lost = wake->removed;
+    for (int i = 0; i < wake_n_sources(wake); i++) {
+        const double age = t - wake->birth[i + wake->has_markers];
+        if (age + school->interval <= age_of_decay(school)) break;
+        lost += wake_source(wake, i) * (1 - wake_strength_within(school, age, tau / school->interval));
+    }
+    return lost;
 }
 
 void wake_advance(struct wake *wake, double interval) {
@@ -126,20 +152,15 @@ void wake_advance(struct wake *wake, double interval) {
 }
 
 int wake_n_old(const struct wake *wake, const struct school *school, double t) {
-    // ages are multiples of the interval: half of one decides what rounding must not
+    // ages are multiples of the interval: a part of one decides what rounding must not
+    const double rounding = school->interval * (fades_in_one_interval(school) ? 1e-6 : 0.5);
     // a stretch is as old as its newer marker
     const int newer = wake->has_markers;
     int n_old = 0;
-    while (n_old + newer < wake->n_vortex && t - wake->birth[n_old + newer] > school->lifetime - school->interval / 2) {
+    while (n_old + newer < wake->n_vortex && t - wake->birth[n_old + newer] > school->lifetime - rounding) {
         n_old++;
     }
     return n_old;
-}
-
-int wake_removal_jumps(const struct wake *wake, const struct school *school, double t) {
-    const double rounding = 1e-12;  // of an age that is the lifetime
-    const int n_old = wake_n_old(wake, school, t);
-    return n_old > 0 && wake_strength(school, t - wake->birth[n_old - 1 + wake->has_markers]) > rounding;
 }
 
 void wake_remove_old(struct wake *wake, const struct school *school, double t) {

@@ -51,6 +51,9 @@ enum status wake_release(struct wake *wake, double x, double y, double circulati
 void wake_at(const struct wake *wake, const struct school *school, double t, double tau, double *x, double *y,
              double *strength);
 
+/* The circulation that no longer acts, tau after the event at time t: of vortices removed, and what has decayed. */
+double wake_lost(const struct wake *wake, const struct school *school, double t, double tau);
+
 /* Move all vortices on to the next event. */
 void wake_advance(struct wake *wake, double interval);
 
@@ -67,11 +70,9 @@ double wake_circulation(const struct wake *wake, int i);
 int wake_n_sources(const struct wake *wake);
 double wake_source(const struct wake *wake, int i);
 
-/* The number of vortices that were released a lifetime or more before t (of markers: those whose stretch towards the next
- * one was), and whether one of them still has strength: the
- * velocity of the fluid jumps when it is removed. */
+/* The number of vortices that were released a lifetime or more before t; of markers, those whose stretch towards the next
+ * one was. Except with impulsive shedding they have no strength left. */
 int wake_n_old(const struct wake *wake, const struct school *school, double t);
-int wake_removal_jumps(const struct wake *wake, const struct school *school, double t);
 
 /* Remove the old vortices. */
 void wake_remove_old(struct wake *wake, const struct school *school, double t);
@@ -82,6 +83,9 @@ void wake_set_velocity(struct wake *wake, const double *u, const double *v, int 
 
 /* The part of its circulation that a vortex of this age counts with in velocity sums. */
 double wake_strength(const struct school *school, double age);
+
+/* The same for one whose age is this at an event, at the part q of the interval that follows: linear. */
+double wake_strength_within(const struct school *school, double age, double q);
 
 /* Where the nascent vortex is: the tail's position plus tau slip/2. */
 void wake_nascent(const struct wake *wake, double tau, const double tail[2], double position[2]);

@@ -169,26 +169,15 @@ enum status event_start(struct state *state, struct residual *residual, struct i
     return STATUS_OK;
 }
 
-// whether what happens to the wakes at time t makes a velocity of the fluid, or a circulation, jump
-static int wakes_jump(const struct state *state, const struct school *school, double t) {
-    if (school->shedding == SHEDDING_IMPULSIVE) return 1;
-    for (int f = 0; f < school->n_fish; f++) {
-        const struct wake *wake = &state->wake[f];
-        if (wake_removal_jumps(wake, school, t)) return 1;
-        if (school->removed == REMOVED_DROPPED && wake_n_old(wake, school, t) > 0) return 1;
-    }
-    return 0;
-}
-
 enum status event_next(struct state *state, struct residual *residual, struct initial_conditions *initial,
                        int *jumped) {
     const struct school *school = residual->school;
     for (int f = 0; f < school->n_fish; f++) wake_advance(&state->wake[f], school->interval);
     state->event++;
     state->t = (double)state->event * school->interval;
-    const int jumps = wakes_jump(state, school, state->t);
+    const int jumps = school->shedding == SHEDDING_IMPULSIVE;
     if (jumps) diagnostics_before_jump(residual, state);
-    if (school->shedding == SHEDDING_IMPULSIVE) {
+    if (jumps) {
         TRY(release_impulse(state, residual, initial));
     } else if (school->shedding == SHEDDING_SHEET) {
         TRY(release_markers(state, school));

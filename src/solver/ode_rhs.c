@@ -142,7 +142,7 @@ static double along(const struct influence_block *block, int j, int p, const dou
 
 // the system: the rows of a fish are its control points, Kelvin's theorem and, if it holds, the edge condition; the
 // columns of a fish are its bound vortices and, with the edge condition, its nascent vortex
-static void assemble(struct ode_rhs *d, const double *y, double *rhs) {
+static void assemble(struct ode_rhs *d, double t, const double *y, double *rhs) {
     const struct residual *residual = d->residual;
     const struct school *school = residual->school;
     const int edge = residual_shed_is_algebraic(residual);
@@ -155,9 +155,9 @@ static void assemble(struct ode_rhs *d, const double *y, double *rhs) {
         const double shed = edge ? before : y[fish->at.circulation];
         // right-hand side: minus the residual where nothing unknown has strength
         double *const value = residual->scratch;
-        bound_sheet_residual(fish, residual_removed(residual, f), u, v, d->no_sheets, value);
+        bound_sheet_residual(fish, residual_lost(residual, f, t), u, v, d->no_sheets, value);
         for (int c = 0; c < fish->n_control; c++) rhs[row + c] = -value[fish->at.gamma + c];
-        rhs[row + fish->n_control] = residual_removed(residual, f) - shed;
+        rhs[row + fish->n_control] = residual_lost(residual, f, t) - shed;
         for (int j = 0; j < fish->n_sheet; j++) {
             d->value[(long)(row + j) * d->n + row + fish->n_control] = fish->sheet_weight[j];
         }
@@ -187,10 +187,10 @@ static void assemble(struct ode_rhs *d, const double *y, double *rhs) {
     }
 }
 
-static enum status solve_sheets(struct ode_rhs *d, double *y) {
+static enum status solve_sheets(struct ode_rhs *d, double t, double *y) {
     const struct residual *residual = d->residual;
     const struct school *school = residual->school;
-    assemble(d, y, d->solution);
+    assemble(d, t, y, d->solution);
     int solved = 0;
     if (d->numeric) {
         solved = (int)klu_l_refactor(d->column_start, d->row_index, d->value, d->symbolic, d->numeric, &d->common);
@@ -330,7 +330,7 @@ enum status ode_rhs_rates(struct ode_rhs *d, double t, double *y, double *yp) {
         if (!isfinite(y[i])) return status_fail(STATUS_RETRY, "unknown %d is not finite at t = %g s", i, t);
     }
     TRY(update_flow(d, t, y));
-    TRY(solve_sheets(d, y));
+    TRY(solve_sheets(d, t, y));
     add_sheets(d, y);
     memset(yp, 0, (size_t)school->n_unknowns * sizeof *yp);
     for (int f = 0; f < school->n_fish; f++) {

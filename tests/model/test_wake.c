@@ -93,15 +93,15 @@ static void strength_fades_as_the_ramp_over_the_last_part_of_life(void **state) 
     (void)state;
     struct setup setup;
     school_build(&setup, TIME "wake: {lifetime: 1, fade: 0.4}\nfish: [{}]\n");
-    for (int i = 0; i <= 4; i++) NEAR(wake_strength(setup.school, 0.6 + 0.1 * i), 1 - ramp_step(0.25 * i), 1e-14, 0);
+    for (int i = 0; i <= 4; i++) NEAR(wake_strength(setup.school, 0.59 + 0.1 * i), 1 - ramp_step(0.25 * i), 1e-14, 0);
     NEAR(wake_strength(setup.school, 0.5), 1, 0, 0);
     // inside an interval linear between its ends
     struct wake *wake = &setup.state->wake[0];
     school_ok(wake_release(wake, 0, 0, 2, 0));
     double x, y, at[3];
     for (int i = 0; i < 3; i++) wake_at(wake, setup.school, 0.8, 0.01 * i, &x, &y, &at[i]);
-    NEAR(at[0], 2 * (1 - ramp_step(0.5)), 1e-14, 0);
-    NEAR(at[2], 2 * (1 - ramp_step(0.55)), 1e-14, 0);
+    NEAR(at[0], 2 * (1 - ramp_step(0.525)), 1e-14, 0);
+    NEAR(at[2], 2 * (1 - ramp_step(0.575)), 1e-14, 0);
     NEAR(at[1], (at[0] + at[2]) / 2, 1e-15, 0);
     school_clear(&setup);
 }
@@ -112,32 +112,36 @@ static void old_vortices_go_and_leave_their_circulation(void **state) {
     school_build(&setup, TIME "wake: {lifetime: 0.1}\nfish: [{}]\n");
     struct wake *wake = &setup.state->wake[0];
     for (int i = 1; i <= 9; i++) school_ok(wake_release(wake, i, -i, 0.1 * i, 0.02 * i));
-    // at 0.16 those of 0.02, 0.04 and, exactly a lifetime old, 0.06 go; they had faded: nothing jumps
-    assert_int_equal(wake_removal_jumps(wake, setup.school, 0.16), 0);
+    // at 0.16 those of 0.02, 0.04 and, exactly a lifetime old, 0.06 go; nothing is left of them
+    NEAR(wake_strength(setup.school, 0.1), 0, 0, 0);
     wake_remove_old(wake, setup.school, 0.16);
     assert_int_equal(wake->n_vortex, 6);
     NEAR(wake->x[0], 4, 0, 0);
     NEAR(wake->y[5], -9, 0, 0);
     NEAR(wake->birth[0], 0.08, 1e-17, 0);
     NEAR(wake->removed, 0.6, 1e-15, 0);
-    assert_int_equal(wake_removal_jumps(wake, setup.school, 0.16), 0);
     wake_remove_old(wake, setup.school, 0.16);
     assert_int_equal(wake->n_vortex, 6);
     school_clear(&setup);
 }
 
-static void removal_without_fade_is_a_jump(void **state) {
+static void without_fade_a_vortex_vanishes_within_one_interval(void **state) {
     (void)state;
     struct setup setup;
-    school_build(&setup, TIME "wake: {lifetime: 0.1, fade: 0}\nfish: [{}]\n");
+    school_build(&setup, TIME "wake: {lifetime: 0.105, fade: 0}\nfish: [{}]\n");
     struct wake *wake = &setup.state->wake[0];
-    school_ok(wake_release(wake, 0, 0, 1, 0));
-    NEAR(wake_strength(setup.school, 0.0999), 1, 0, 0);
-    assert_int_equal(wake_removal_jumps(wake, setup.school, 0.08), 0);
-    wake_remove_old(wake, setup.school, 0.08);
-    assert_int_equal(wake_removal_jumps(wake, setup.school, 0.1), 1);
+    school_ok(wake_release(wake, 0, 0, 2, 0));
+    NEAR(wake_strength(setup.school, 0.08), 1, 0, 0);
+    NEAR(wake_strength(setup.school, 0.1), 0.25, 1e-14, 0);
+    // it stays until nothing is left of it, and what it has lost counts meanwhile
     wake_remove_old(wake, setup.school, 0.1);
+    assert_int_equal(wake->n_vortex, 1);
+    NEAR(wake_lost(wake, setup.school, 0.1, 0), 1.5, 1e-13, 0);
+    NEAR(wake_lost(wake, setup.school, 0.1, 0.01), 1.75, 1e-13, 0);
+    NEAR(wake_lost(wake, setup.school, 0.1, 0.02), 2, 1e-13, 0);
+    wake_remove_old(wake, setup.school, 0.12);
     assert_int_equal(wake->n_vortex, 0);
+    NEAR(wake_lost(wake, setup.school, 0.12, 0), 2, 0, 0);
     school_clear(&setup);
 }
 
@@ -168,7 +172,7 @@ int main(void) {
         cmocka_unit_test(new_velocities_push_the_old_ones_back),
         cmocka_unit_test(strength_fades_as_the_ramp_over_the_last_part_of_life),
         cmocka_unit_test(old_vortices_go_and_leave_their_circulation),
-        cmocka_unit_test(removal_without_fade_is_a_jump),
+        cmocka_unit_test(without_fade_a_vortex_vanishes_within_one_interval),
         cmocka_unit_test(most_is_enough_and_not_too_much),
         cmocka_unit_test(nascent_vortex_is_the_centroid_of_what_was_shed),
     };
