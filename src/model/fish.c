@@ -286,7 +286,6 @@ static enum status fish_fill(struct fish *fish, const struct school_parameters *
     set_wave(fish, from);
     set_fluid_forces(fish, from, parameters->fluid.density);
     TRY(place_sheet(fish, &parameters->wake));
-    if (parameters->wake.shedding == SHEDDING_SHEET) fish_correct_end(fish);
     set_motion(fish, from);
     return set_control(fish, from, parameters->fluid.density);
 }
