@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Measure the program: inner loops, fast sums, where the time of runs goes, schools, whole processes.
+# Measure the program: inner loops, fast multipole sums, where the time of runs goes, schools, whole processes.
 #
 #   scripts/bench.sh BUILD      BUILD: the folder with shoal and bench/
 #
-# Exit code 3 if a limit is missed. doc/performance.md explains the numbers. Run it on a machine that does nothing else.
+# Exit code 3 if a limit is missed. doc/performance.md explains the numbers. Run it on an idle machine.
 set -euo pipefail
 
 build=$(realpath "${1:?usage: scripts/bench.sh BUILD}")
@@ -12,19 +12,20 @@ cases=$(realpath "$(dirname "$0")/../cases")
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
-# The threads of a program of ours that measures: as those of the program itself (src/app/main_threads.c).
+
+# Run a program of tests/bench with threads like those of shoal (src/app/main_threads.c).
 bench() {
     local name=$1
     shift
     GOMP_SPINCOUNT=1000 OMP_PROC_BIND=true "$build/bench/$name" "$@"
 }
 
-# A heading over a table.
+# Print the heading of a table.
 heading() {
     printf '\n== %s\n\n' "$1"
 }
 
-# Run a command; print wall seconds, processor seconds and peak memory in MB.
+# Run a command; print wall seconds, CPU seconds and peak memory in MB.
 measured() {
     /usr/bin/python3 - "$@" <<'PYTHON'
 import resource, subprocess, sys, time
@@ -43,8 +44,8 @@ per_event() {
     "$program" info run.nc | awk -v name="$1" '$1 == name { print $3 }'
 }
 
-# A case of 64 fish: rows a length apart, every second one shifted and in antiphase, three lengths from nose to nose in a
-# row. Closer ones run into each other within 10 s.
+# A case of 64 fish: rows a length apart, every second row shifted and in antiphase, three lengths from nose to nose in a
+# row. Closer fish collide within 10 s.
 school_of_64() {
     printf 'format: 1\ntime: {end: 10, shedding_interval: 0.01, output_interval: 0.1}\noutput: {wake_interval: 1}\n'
     printf 'defaults: {fish: {control: {law: heading}}}\nfish:\n'
@@ -57,23 +58,23 @@ school_of_64() {
     done
 }
 
-# Judge a number against its limit: what, number, limit.
-judge() {
-    local verdict=ok
+# Compare a number with its limit: what, number, limit.
+check_limit() {
+    local result=ok
     if awk "BEGIN { exit !($2 > $3) }"; then
-        verdict=MISSED
+        result=MISSED
         missed=1
     fi
-    printf '%-58s %10s %10s  %s\n' "$1" "$2" "$3" "$verdict"
+    printf '%-58s %10s %10s  %s\n' "$1" "$2" "$3" "$result"
 }
 
 # Run a case and print its line: name, file, threads. Leaves its wall clock in $wall.
 whole_run() {
-    local name=$1 case=$2 threads=$3 processor memory simulated
-    read -r wall processor memory < <(measured "$program" run "$case" -q --force --threads "$threads" -o run.nc)
+    local name=$1 case=$2 threads=$3 cpu memory simulated
+    read -r wall cpu memory < <(measured "$program" run "$case" -q --force --threads "$threads" -o run.nc)
     [[ -n ${memory-} ]] || exit 1
     simulated=$("$program" info run.nc | sed -n 's/.* to \([0-9.]*\) s;.*/\1/p')
-    printf '%-12s %7s %8s %8s %8.2f %7s %7s %7s %7s\n' "$name" "$threads" "$wall" "$processor" \
+    printf '%-12s %7s %8s %8s %8.2f %7s %7s %7s %7s\n' "$name" "$threads" "$wall" "$cpu" \
         "$(awk "BEGIN { print $simulated / $wall }")" "$memory" "$(per_event steps)" \
         "$(per_event newton_iterations)" "$(per_event jacobian_evaluations)"
 }
@@ -81,8 +82,8 @@ whole_run() {
 missed=0
 heading 'Inner loops (tests/bench/kernels.c)'
 bench kernels
-heading 'Fast sums (tests/bench/tree.c)'
-bench tree
+heading 'Fast multipole sums (tests/bench/treecode.c)'
+bench treecode
 heading 'Where the time goes (tests/bench/phases.c)'
 bench phases "$cases" | tee phases.txt
 heading 'Schools with full wakes (tests/bench/phases.c)'
@@ -111,11 +112,11 @@ done
 
 heading 'Limits'
 printf '%-58s %10s %10s\n' '' here limit
-judge 'single_free, 20 s: wall s' "$single" 1
-judge 'diamond, 25 s, 2 threads: wall s' "$two" 5
-judge 'diamond, 2 threads: times the floor' "$(awk '$1 == "diamond" && $2 == 2 { print $7 }' phases.txt)" 2.5
-judge 'diamond: time with 2 threads over time with 1' "$(awk "BEGIN { printf \"%.2f\", $two / $one }")" 0.556
-judge 'diamond: output, % of the time' "$(awk '$1 == "diamond" && $2 == 1 { print $15 }' phases.txt)" 3
-judge '64 fish, 10 s, 2 threads: wall s' "$school" 40
-judge '256 fish: time per event over that of 64' "$(awk '/^256 fish take/ { print $4 }' schools.txt)" 6
+check_limit 'single_free, 20 s: wall s' "$single" 1
+check_limit 'diamond, 25 s, 2 threads: wall s' "$two" 5
+check_limit 'diamond, 2 threads: times the lower bound' "$(awk '$1 == "diamond" && $2 == 2 { print $7 }' phases.txt)" 2.5
+check_limit 'diamond: time with 2 threads over time with 1' "$(awk "BEGIN { printf \"%.2f\", $two / $one }")" 0.556
+check_limit 'diamond: output, % of the time' "$(awk '$1 == "diamond" && $2 == 1 { print $15 }' phases.txt)" 3
+check_limit '64 fish, 10 s, 2 threads: wall s' "$school" 40
+check_limit '256 fish: time per event over that of 64' "$(awk '/^256 fish take/ { print $4 }' schools.txt)" 6
 exit $((missed ? 3 : 0))

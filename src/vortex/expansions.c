@@ -63,7 +63,7 @@ static const double inverse_factorial[DEGREES] = {
     1.2256174391283858e-48,
 };
 
-// ---- series of several boxes, one in each lane ----
+// ---- expansions of several boxes, one in each lane ----
 
 // the number of coefficients with m - n = k
 INLINE int depth(struct expansion_order order, int k) {
@@ -96,11 +96,11 @@ INLINE void lane_read(lanes *re, lanes *im, int lane, const double *from, int n)
     }
 }
 
-// put a series into one lane, with 0 for degrees that it lacks
-INLINE void block_read(struct block *block, struct expansion_order order, int lane, const struct expansion *series) {
+// put an expansion into one lane, with 0 for degrees that it lacks
+INLINE void block_read(struct block *block, struct expansion_order order, int lane, const struct expansion *expansion) {
     static const double zero[2 * DEPTH];
-    const struct expansion_order own = series->order;
-    const double *from = series->value;
+    const struct expansion_order own = expansion->order;
+    const double *from = expansion->value;
     for (int k = 0; k <= order.harmonic; k++) {
         const int n = depth(order, k), all = k <= own.harmonic ? depth(own, k) : 0, end = n < all ? n : all;
         lane_read(block->re[k], block->im[k], lane, from, end);
@@ -109,17 +109,17 @@ INLINE void block_read(struct block *block, struct expansion_order order, int la
     }
 }
 
-// add the coefficients of one lane to a series that has at least the degrees of order
-INLINE void block_add(const struct expansion *series, struct expansion_order order, const struct block *block,
+// add the coefficients of one lane to an expansion that has at min the degrees of order
+INLINE void block_add(const struct expansion *expansion, struct expansion_order order, const struct block *block,
                       int lane) {
-    double *to = series->value;
+    double *to = expansion->value;
     for (int k = 0; k <= order.harmonic; k++) {
         const double *const re = (const double *)block->re[k] + lane, *const im = (const double *)block->im[k] + lane;
         for (int n = 0; n < depth(order, k); n++) {
             to[2 * n] += re[n * LANES];
             to[2 * n + 1] += im[n * LANES];
         }
-        to += 2 * depth(series->order, k);
+        to += 2 * depth(expansion->order, k);
     }
 }
 
@@ -151,9 +151,9 @@ INLINE double sum(const lanes *value) {
     return ((a[0] + a[1]) + (a[2] + a[3])) + ((a[4] + a[5]) + (a[6] + a[7]));
 }
 
-// ---- points to moments ----
+// ---- P2M: points to multipole expansions ----
 
-// n points from first on; the rest of the lanes is the last one with no weight
+// n points from first on; the other lanes hold the last point, with no weight
 INLINE void points_read(lanes *block, const double *value, int n, int is_weight) {
     if (n >= LANES) {
         memcpy(block, value, sizeof *block);
@@ -162,9 +162,9 @@ INLINE void points_read(lanes *block, const double *value, int n, int is_weight)
     }
 }
 
-KERNEL_WIDE void expansions_p2m(const struct tree_boxes *boxes, int box, const struct expansion *moments) {
+KERNEL_WIDE void expansions_p2m(const struct tree_boxes *boxes, int box, const struct expansion *multipole) {
     const struct tree_box *const own = &boxes->box[box];
-    const struct expansion_order order = moments->order;
+    const struct expansion_order order = multipole->order;
     struct block block;
     block_clear(&block, order);
     const double inverse = 1 / own->radius;
@@ -202,7 +202,7 @@ KERNEL_WIDE void expansions_p2m(const struct tree_boxes *boxes, int box, const s
             re1 = next1;
         }
     }
-    double *to = moments->value;
+    double *to = multipole->value;
     for (int k = 0; k <= order.harmonic; k++) {
         for (int n = 0; n < depth(order, k); n++) {
             *to++ = sum(&block.re[k][n]);
@@ -211,7 +211,7 @@ KERNEL_WIDE void expansions_p2m(const struct tree_boxes *boxes, int box, const s
     }
 }
 
-// ---- from the centre of a box to that of another ----
+// ---- M2M and L2L: from the centre of a box to that of another ----
 
 // all terms (m, n) up to the mixed degree, of which a block holds half
 struct square {
@@ -238,9 +238,9 @@ INLINE void add_product(lanes *re, lanes *im, const lanes *other_re, const lanes
     *im += *d_re * b + *d_im * a;
 }
 
-// Moments about a centre moved by d: mu_m = sum_i binomial(m, i) d^(m-i) mu_i, as repeated sums. Degrees are stride
-// apart.
-INLINE void moments_shift(lanes *re, lanes *im, int stride, int degree, const lanes *d_re, const lanes *d_im) {
+// Multipole coefficients about a centre moved by d: M_m = sum_i binomial(m, i) d^(m-i) M_i, as repeated sums. Degrees
+// are stride apart.
+INLINE void multipole_shift(lanes *re, lanes *im, int stride, int degree, const lanes *d_re, const lanes *d_im) {
     for (int s = degree - 1; s >= 0; s--) {
         for (int i = s; i < degree; i++) {
             const int from = i * stride, to = from + stride;
@@ -249,8 +249,8 @@ INLINE void moments_shift(lanes *re, lanes *im, int stride, int degree, const la
     }
 }
 
-// Coefficients about a centre moved by d, those up to last: c_a = sum_i binomial(i, a) d^(i-a) c_i.
-INLINE void series_shift(lanes *re, lanes *im, int stride, int degree, int last, const lanes *d_re, const lanes *d_im) {
+// Local coefficients about a centre moved by d, those up to last: L_a = sum_i binomial(i, a) d^(i-a) L_i.
+INLINE void local_shift(lanes *re, lanes *im, int stride, int degree, int last, const lanes *d_re, const lanes *d_im) {
     for (int s = 0; s < degree && s <= last; s++) {
         for (int i = degree - 1; i >= s; i--) {
             const int to = i * stride, from = to + stride;
@@ -260,17 +260,17 @@ INLINE void series_shift(lanes *re, lanes *im, int stride, int degree, int last,
 }
 
 KERNEL_WIDE void expansions_m2m(const struct tree_boxes *boxes, int parent, int n_parents,
-                                const struct expansion *moments) {
+                                const struct expansion *multipole) {
     struct expansion_order order = {-1, 0};
-    for (int i = 0; i < n_parents; i++) order = expansion_order_max(order, moments[parent + i].order);
+    for (int i = 0; i < n_parents; i++) order = expansion_order_max(order, multipole[parent + i].order);
     if (order.harmonic < 0) return;
     struct block block;
     block_clear(&block, order);
     lanes d_re = {0}, d_im = {0}, scale = {0}, zero = {0};
     for (int i = 0; i < 2 * n_parents; i++) {
         const int child = 2 * parent + 1 + i;
-        if (moments[parent + i / 2].order.harmonic < 0) continue;
-        block_read(&block, order, i, &moments[child]);
+        if (multipole[parent + i / 2].order.harmonic < 0) continue;
+        block_read(&block, order, i, &multipole[child]);
         const struct tree_box *const from = &boxes->box[child], *const to = &boxes->box[parent + i / 2];
         d_re[i] = (to->x - from->x) / to->radius;
         d_im[i] = (to->y - from->y) / to->radius;
@@ -282,12 +282,12 @@ KERNEL_WIDE void expansions_m2m(const struct tree_boxes *boxes, int parent, int 
     const lanes back = -d_im;
     // by d' in z', for every m; then by d in z, for every n
     for (int m = 0; m <= order.mixed; m++) {
-        moments_shift(&square.re[0][m], &square.im[0][m], MIXED, order.mixed - m, &d_re, &back);
+        multipole_shift(&square.re[0][m], &square.im[0][m], MIXED, order.mixed - m, &d_re, &back);
     }
     for (int n = 1; 2 * n <= order.mixed; n++) {
-        moments_shift(square.re[n], square.im[n], 1, order.mixed - n, &d_re, &d_im);
+        multipole_shift(square.re[n], square.im[n], 1, order.mixed - n, &d_re, &d_im);
     }
-    moments_shift(block.re[0], block.im[0], DEPTH, order.harmonic, &d_re, &d_im);
+    multipole_shift(block.re[0], block.im[0], DEPTH, order.harmonic, &d_re, &d_im);
     for (int n = 1; 2 * n <= order.mixed; n++) {
         for (int m = n; m + n <= order.mixed; m++) {
             block.re[m - n][n] = square.re[n][m];
@@ -295,9 +295,9 @@ KERNEL_WIDE void expansions_m2m(const struct tree_boxes *boxes, int parent, int 
         }
     }
     for (int i = 0; i < n_parents; i++) {
-        const struct expansion_order own = moments[parent + i].order;
+        const struct expansion_order own = multipole[parent + i].order;
         if (own.harmonic < 0) continue;
-        double *to = moments[parent + i].value;
+        double *to = multipole[parent + i].value;
         for (int k = 0; k <= own.harmonic; k++) {
             for (int n = 0; n < depth(own, k); n++) {
                 *to++ = block.re[k][n][2 * i] + block.re[k][n][2 * i + 1];
@@ -308,16 +308,16 @@ KERNEL_WIDE void expansions_m2m(const struct tree_boxes *boxes, int parent, int 
 }
 
 KERNEL_WIDE void expansions_l2l(const struct tree_boxes *boxes, int parent, int n_parents,
-                                const struct expansion *series) {
+                                const struct expansion *local) {
     struct expansion_order order = {-1, 0};
-    for (int i = 0; i < n_parents; i++) order = expansion_order_max(order, series[parent + i].order);
+    for (int i = 0; i < n_parents; i++) order = expansion_order_max(order, local[parent + i].order);
     if (order.harmonic < 0) return;
     struct block block;
     block_clear(&block, order);
     lanes d_re = {0}, d_im = {0}, scale = {0}, zero = {0};
     for (int i = 0; i < 2 * n_parents; i++) {
-        if (series[parent + i / 2].order.harmonic < 0) continue;
-        block_read(&block, order, i, &series[parent + i / 2]);
+        if (local[parent + i / 2].order.harmonic < 0) continue;
+        block_read(&block, order, i, &local[parent + i / 2]);
         const struct tree_box *const from = &boxes->box[parent + i / 2], *const to = &boxes->box[2 * parent + 1 + i];
         d_re[i] = (to->x - from->x) / from->radius;
         d_im[i] = (to->y - from->y) / from->radius;
@@ -327,14 +327,14 @@ KERNEL_WIDE void expansions_l2l(const struct tree_boxes *boxes, int parent, int 
     square_read(&square, &block, order.mixed);
     const lanes back = -d_im;
     // by d in z, for every b; then by d' in z', for every a, as far as a >= b
-    series_shift(block.re[0], block.im[0], DEPTH, order.harmonic, order.harmonic, &d_re, &d_im);
+    local_shift(block.re[0], block.im[0], DEPTH, order.harmonic, order.harmonic, &d_re, &d_im);
     for (int b = 1; b <= order.mixed; b++) {
-        series_shift(square.re[b], square.im[b], 1, order.mixed - b, order.mixed, &d_re, &d_im);
+        local_shift(square.re[b], square.im[b], 1, order.mixed - b, order.mixed, &d_re, &d_im);
     }
     for (int a = 1; a <= order.mixed; a++) {
         square.re[0][a] = block.re[a][0];
         square.im[0][a] = block.im[a][0];
-        series_shift(&square.re[0][a], &square.im[0][a], MIXED, order.mixed - a, a, &d_re, &back);
+        local_shift(&square.re[0][a], &square.im[0][a], MIXED, order.mixed - a, a, &d_re, &back);
         for (int b = 0; b <= a && a + b <= order.mixed; b++) {
             block.re[a - b][b] = square.re[b][a];
             block.im[a - b][b] = square.im[b][a];
@@ -342,12 +342,12 @@ KERNEL_WIDE void expansions_l2l(const struct tree_boxes *boxes, int parent, int 
     }
     block_scale(&block, order, &scale, &zero, 0);
     for (int i = 0; i < 2 * n_parents; i++) {
-        const struct expansion_order from = series[parent + i / 2].order;
-        if (from.harmonic >= 0) block_add(&series[2 * parent + 1 + i], from, &block, i);
+        const struct expansion_order from = local[parent + i / 2].order;
+        if (from.harmonic >= 0) block_add(&local[2 * parent + 1 + i], from, &block, i);
     }
 }
 
-// ---- from sources to targets ----
+// ---- M2L: multipole to local expansions ----
 
 // D_kl = D_lk = k! l! d_kl at [k - l][l]
 struct derivatives {
@@ -375,43 +375,46 @@ INLINE void differentiate(struct derivatives *out, struct expansion_order order,
     }
 }
 
-// sum[i] += sum_j d[i + j] moment[j], i + j < n
-INLINE void correlate(int n, const lanes *d_re, const lanes *d_im, const lanes *moment_re, const lanes *moment_im,
-                      lanes *sum_re, lanes *sum_im) {
+// sum[i] += sum_j d[i + j] m[j], i + j < n
+INLINE void correlate(int n, const lanes *d_re, const lanes *d_im, const lanes *m_re, const lanes *m_im, lanes *sum_re,
+                      lanes *sum_im) {
 #pragma GCC unroll 16
     for (int i = 0; i < n; i++) {
         lanes re = sum_re[i], im = sum_im[i];
 #pragma GCC unroll 16
         for (int j = 0; i + j < n; j++) {
-            re += d_re[i + j] * moment_re[j];
-            im += d_im[i + j] * moment_im[j];
+            re += d_re[i + j] * m_re[j];
+            im += d_im[i + j] * m_im[j];
         }
         sum_re[i] = re;
         sum_im[i] = im;
     }
 }
 
-// All coefficients with a - b = alpha: the sum over all moments. Those with m - n = mu and their conjugates meet D with
-// k - l = alpha + mu and alpha - mu, and in each only the sum b + n matters.
-INLINE void cross_sums(const struct derivatives *with, const struct block *moments, struct expansion_order order,
-                       int alpha, struct block *result) {
+// All local coefficients with a - b = alpha: the sum over all multipole coefficients. Those with m - n = mu and their
+// conjugates are multiplied by D with k - l = alpha + mu and alpha - mu, and in each only the sum b + n matters.
+INLINE void m2l_sums(const struct derivatives *derivatives, const struct block *multipole, struct expansion_order order,
+                     int alpha, struct block *result) {
     lanes *const re = result->re[alpha], *const im = result->im[alpha];
     for (int b = 0; b < depth(order, alpha); b++) re[b] = im[b] = (lanes){0};
     // harmonic terms above the mixed degree
     const int rest = order.mixed - alpha;
     for (int mu = rest < 0 ? 0 : rest + 1; mu <= order.harmonic - alpha; mu++) {
-        correlate(1, with->d[alpha + mu], with->d[alpha + mu], moments->re[mu], moments->im[mu], re, im);
+        correlate(1, derivatives->d[alpha + mu], derivatives->d[alpha + mu], multipole->re[mu], multipole->im[mu], re,
+                  im);
     }
-    if (rest >= 0) correlate(rest / 2 + 1, with->d[alpha], with->d[alpha], moments->re[0], moments->im[0], re, im);
+    if (rest >= 0)
+        correlate(rest / 2 + 1, derivatives->d[alpha], derivatives->d[alpha], multipole->re[0], multipole->im[0], re,
+                  im);
     for (int mu = 1; mu <= rest; mu++) {
-        const int n = (rest - mu) / 2 + 1, least = alpha < mu ? alpha : mu;
-        const lanes *const d = with->d[alpha + mu], *const other = with->d[alpha + mu - 2 * least] + least;
+        const int n = (rest - mu) / 2 + 1, min = alpha < mu ? alpha : mu;
+        const lanes *const d = derivatives->d[alpha + mu], *const other = derivatives->d[alpha + mu - 2 * min] + min;
         lanes d_re[DEPTH], d_im[DEPTH];
         for (int i = 0; i < n; i++) {
             d_re[i] = d[i] + other[i];
             d_im[i] = d[i] - other[i];
         }
-        const lanes *const from_re = moments->re[mu], *const from_im = moments->im[mu];
+        const lanes *const from_re = multipole->re[mu], *const from_im = multipole->im[mu];
         switch (n) {  // sums of known length have no loops
             case 1: correlate(1, d_re, d_im, from_re, from_im, re, im); break;
             case 2: correlate(2, d_re, d_im, from_re, from_im, re, im); break;
@@ -427,15 +430,15 @@ INLINE void cross_sums(const struct derivatives *with, const struct block *momen
 }
 
 // n <= LANES pairs
-INLINE void cross(const struct tree_boxes *targets, const struct tree_boxes *sources, double smoothing, int n,
-                  const struct expansions_far *far, const struct expansion *moments, const struct expansion *series) {
-    struct expansion_order order = far[0].order;
-    for (int i = 1; i < n; i++) order = expansion_order_max(order, far[i].order);
+INLINE void m2l(const struct tree_boxes *targets, const struct tree_boxes *sources, double smoothing, int n,
+                const struct expansions_pair *pair, const struct expansion *multipole, const struct expansion *local) {
+    struct expansion_order order = pair[0].order;
+    for (int i = 1; i < n; i++) order = expansion_order_max(order, pair[i].order);
     struct block block;
     lanes c = {0}, source_re = {0}, source_im = {0}, target_re = {0}, target_im = {0};
     for (int i = 0; i < n; i++) {
-        const struct tree_box *const to = &targets->box[far[i].target], *const from = &sources->box[far[i].source];
-        block_read(&block, order, i, &moments[far[i].source]);
+        const struct tree_box *const to = &targets->box[pair[i].target], *const from = &sources->box[pair[i].source];
+        block_read(&block, order, i, &multipole[pair[i].source]);
         const double rx = to->x - from->x, ry = to->y - from->y;
         const double distance = sqrt(rx * rx + ry * ry);
         const double scale = sqrt(rx * rx + ry * ry + smoothing * smoothing);
@@ -449,23 +452,23 @@ INLINE void cross(const struct tree_boxes *targets, const struct tree_boxes *sou
     const struct expansion none = {.order = {-1, 0}};
     for (int i = n; i < LANES; i++) block_read(&block, order, i, &none);
     block_scale(&block, order, &source_re, &source_im, 1);
-    struct derivatives with;
-    differentiate(&with, order, &c);
+    struct derivatives derivatives;
+    differentiate(&derivatives, order, &c);
     struct block result;
-    for (int alpha = 0; alpha <= order.harmonic; alpha++) cross_sums(&with, &block, order, alpha, &result);
+    for (int alpha = 0; alpha <= order.harmonic; alpha++) m2l_sums(&derivatives, &block, order, alpha, &result);
     block_scale(&result, order, &target_re, &target_im, 1);
-    for (int i = 0; i < n; i++) block_add(&series[far[i].target], far[i].order, &result, i);
+    for (int i = 0; i < n; i++) block_add(&local[pair[i].target], pair[i].order, &result, i);
 }
 
 KERNEL_WIDE void expansions_m2l(const struct tree_boxes *targets, const struct tree_boxes *sources, double smoothing,
-                                int n, const struct expansions_far *far, const struct expansion *moments,
-                                const struct expansion *series) {
+                                int n, const struct expansions_pair *pair, const struct expansion *multipole,
+                                const struct expansion *local) {
     for (int i = 0; i < n; i += LANES) {
-        cross(targets, sources, smoothing, n - i < LANES ? n - i : LANES, far + i, moments, series);
+        m2l(targets, sources, smoothing, n - i < LANES ? n - i : LANES, pair + i, multipole, local);
     }
 }
 
-// ---- series to points ----
+// ---- L2P: local expansions to points ----
 
 // With t the place and q = t t': Phi = A_0(q) + 2 Re sum_k t^k A_k(q). A_k and its derivatives at q; the second one is
 // halved.
@@ -489,34 +492,34 @@ INLINE void horner(lanes sum_of[2], const lanes *x, const lanes *y, double facto
 }
 
 // dPhi/dz at points (x, y) in units of the radius
-INLINE void field(const struct expansion *series, const lanes *x, const lanes *y, lanes f[2]) {
+INLINE void field(const struct expansion *local, const lanes *x, const lanes *y, lanes f[2]) {
     const lanes square = *x * *x + *y * *y;
     lanes p[2] = {{0}, {0}}, q[2] = {{0}, {0}};  // sum_k k t^(k-1) A_k, sum_k t^k A_k'
     lanes re[3], im[3];
-    const double *value = series->value + 2 * expansions_size(series->order);
-    for (int k = series->order.harmonic; k > 0; k--) {
-        const int n = depth(series->order, k);
+    const double *value = local->value + 2 * expansions_size(local->order);
+    for (int k = local->order.harmonic; k > 0; k--) {
+        const int n = depth(local->order, k);
         value -= 2 * n;
         row_sums(n, value, &square, re, im, 1);
         horner(p, x, y, k, &re[0], &im[0]);
         horner(q, x, y, 1, &re[1], &im[1]);
     }
-    row_sums(depth(series->order, 0), series->value, &square, re, im, 1);
+    row_sums(depth(local->order, 0), local->value, &square, re, im, 1);
     const lanes slope = re[1] + 2 * (q[0] * *x - q[1] * *y);
     f[0] = p[0] + *x * slope;
     f[1] = p[1] - *y * slope;
 }
 
-// and its derivatives by z, f_z, and by z', f_c, which is real
-INLINE void field_gradient(const struct expansion *series, const lanes *x, const lanes *y, lanes f[2], lanes f_z[2],
+// dPhi/dz and its derivatives by z, f_z, and by z', f_c, which is real
+INLINE void field_gradient(const struct expansion *local, const lanes *x, const lanes *y, lanes f[2], lanes f_z[2],
                            lanes *f_c) {
     const lanes square = *x * *x + *y * *y;
     // sums over k of k t^(k-1) A_k, k (k-1) t^(k-2) A_k, k t^(k-1) A_k', t^k A_k', t^k A_k''/2
     lanes p[2] = {{0}, {0}}, pp[2] = {{0}, {0}}, pq[2] = {{0}, {0}}, q[2] = {{0}, {0}}, qq[2] = {{0}, {0}};
     lanes re[3], im[3];
-    const double *value = series->value + 2 * expansions_size(series->order);
-    for (int k = series->order.harmonic; k > 0; k--) {
-        const int n = depth(series->order, k);
+    const double *value = local->value + 2 * expansions_size(local->order);
+    for (int k = local->order.harmonic; k > 0; k--) {
+        const int n = depth(local->order, k);
         value -= 2 * n;
         row_sums(n, value, &square, re, im, 2);
         if (k > 1) horner(pp, x, y, k * (k - 1), &re[0], &im[0]);
@@ -525,7 +528,7 @@ INLINE void field_gradient(const struct expansion *series, const lanes *x, const
         horner(q, x, y, 1, &re[1], &im[1]);
         horner(qq, x, y, 1, &re[2], &im[2]);
     }
-    row_sums(depth(series->order, 0), series->value, &square, re, im, 2);
+    row_sums(depth(local->order, 0), local->value, &square, re, im, 2);
     const lanes slope = re[1] + 2 * (q[0] * *x - q[1] * *y);
     const lanes bend = 2 * (re[2] + 2 * (qq[0] * *x - qq[1] * *y));
     f[0] = p[0] + *x * slope;
@@ -539,7 +542,7 @@ INLINE void points_add(double *value, const lanes *block, int n) {
     for (int i = 0; i < LANES && i < n; i++) value[i] += (*block)[i];
 }
 
-KERNEL_WIDE void expansions_l2p(const struct tree_boxes *boxes, int box, const struct expansion *series, double *u,
+KERNEL_WIDE void expansions_l2p(const struct tree_boxes *boxes, int box, const struct expansion *local, double *u,
                                 double *v, double *const gradient[3]) {
     const struct tree_box *const own = &boxes->box[box];
     const double inverse = 1 / own->radius, unit = inverse / two_pi;
@@ -551,14 +554,14 @@ KERNEL_WIDE void expansions_l2p(const struct tree_boxes *boxes, int box, const s
         x = (x - own->x) * inverse;
         y = (y - own->y) * inverse;
         if (gradient) {
-            field_gradient(series, &x, &y, f, f_z, &f_c);
+            field_gradient(local, &x, &y, f, f_z, &f_c);
             const lanes u_x = f_z[1] * unit * inverse;
             const lanes u_y = (f_z[0] - f_c) * unit * inverse, v_x = (f_z[0] + f_c) * unit * inverse;
             points_add(gradient[0] + first, &u_x, n);
             points_add(gradient[1] + first, &u_y, n);
             points_add(gradient[2] + first, &v_x, n);
         } else {
-            field(series, &x, &y, f);
+            field(local, &x, &y, f);
         }
         const lanes to_u = f[1] * unit, to_v = f[0] * unit;
         points_add(u + first, &to_u, n);

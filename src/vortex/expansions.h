@@ -1,4 +1,5 @@
-/* expansions.h: the far field of boxes of vortices, as series in z = x + i y and its conjugate z'. Part of treecode.h.
+/* expansions.h: multipole and local expansions of the velocity of boxes of vortices, series in z = x + i y and its
+ * conjugate z'. Part of treecode.h.
  *
  * The potential of a smoothed vortex is Phi = log(z z' + e^2), its velocity u - i v = -i/(2 pi) dPhi/dz. For a box s of
  * sources around c_s and a box t of targets around c_t let R = c_t - c_s and S = sqrt(|R|^2 + e^2). With the
@@ -6,8 +7,8 @@
  *
  *     Phi = log S^2 + log(1 + 2 c Re(t + s) + |t + s|^2) = log S^2 + sum_kl d_kl (t + s)^k (t + s)'^l,
  *
- * where d_kl = d_lk is a real function of c alone. So the moments M_mn = sum_j Gamma_j s^m s'^n / (m! n!) of the
- * sources give the coefficients at the targets,
+ * where d_kl = d_lk is a real function of c alone. So the coefficients M_mn = sum_j Gamma_j s^m s'^n / (m! n!) of the
+ * multipole expansion of the sources give those of the local expansion at the targets,
  *
  *     L_ab = 1/(a! b!) sum_mn D_(a+m)(b+n) M_mn,         D_kl = k! l! d_kl.
  *
@@ -21,24 +22,24 @@
 #include "vortex/tree_boxes.h"
 
 enum {
-    EXPANSION_HARMONIC = 40, /* greatest degree of harmonic terms */
-    EXPANSION_MIXED = 26,    /* greatest degree of mixed terms */
+    EXPANSION_HARMONIC = 40, /* highest degree of harmonic terms */
+    EXPANSION_MIXED = 26,    /* highest degree of mixed terms */
     EXPANSION_LANES = 8      /* boxes or points that are handled together */
 };
 
-/* Degrees that a series goes to: harmonic >= mixed; harmonic < 0: no series; mixed < 2: no mixed terms. */
+/* Highest degrees of an expansion: harmonic >= mixed; harmonic < 0: no expansion; mixed < 2: no mixed terms. */
 struct expansion_order {
     int harmonic, mixed;
 };
 
-/* A series of a box; lengths are in units of the radius of the box. Row n holds the coefficients m >= n: row 0 up to
- * m = harmonic, row n up to m + n = mixed. Each is a pair re, im. */
+/* An expansion about the centre of a box; lengths are in units of the radius of the box. Row n holds the coefficients m
+ * >= n: row 0 up to m = harmonic, row n up to m + n = mixed. Each is a pair re, im. */
 struct expansion {
     struct expansion_order order;
     double *value; /* (2 expansions_size) */
 };
 
-/* The greater degrees of both. */
+/* The higher degrees of both. */
 static inline struct expansion_order expansion_order_max(struct expansion_order a, struct expansion_order b) {
     return (struct expansion_order){a.harmonic > b.harmonic ? a.harmonic : b.harmonic,
                                     a.mixed > b.mixed ? a.mixed : b.mixed};
@@ -47,30 +48,33 @@ static inline struct expansion_order expansion_order_max(struct expansion_order 
 /* The number of complex coefficients. */
 int expansions_size(struct expansion_order order);
 
-/* Set the moments of a box from its points. */
-void expansions_p2m(const struct tree_boxes *boxes, int box, const struct expansion *moments);
+/* P2M: set the multipole expansion of a box from its points. */
+void expansions_p2m(const struct tree_boxes *boxes, int box, const struct expansion *multipole);
 
-/* Set the moments of n_parents <= EXPANSION_LANES / 2 boxes, from parent on, from those of their halves. Parents without a
- * series are left out; halves have the degrees of their parent or more. */
-void expansions_m2m(const struct tree_boxes *boxes, int parent, int n_parents, const struct expansion *moments);
+/* M2M: set the multipole expansions of n_parents <= EXPANSION_LANES / 2 boxes, from parent on, from those of their
+ * halves. Parents without an expansion are left out; halves have the degrees of their parent or higher ones. multipole:
+ * of all boxes. */
+void expansions_m2m(const struct tree_boxes *boxes, int parent, int n_parents, const struct expansion *multipole);
 
-/* A box of sources seen by a box of targets. */
-struct expansions_far {
+/* A box of sources in the far field of a box of targets. */
+struct expansions_pair {
     int target, source;
     struct expansion_order order; /* of D */
 };
 
-/* Add n boxes of sources to the series of boxes of targets, whose degrees are at least those of far. */
+/* M2L: add the multipole expansions of n boxes of sources to the local expansions of boxes of targets, whose degrees
+ * are at least those of their pairs. multipole, local: of all boxes. */
 void expansions_m2l(const struct tree_boxes *targets, const struct tree_boxes *sources, double smoothing, int n,
-                    const struct expansions_far *far, const struct expansion *moments, const struct expansion *series);
+                    const struct expansions_pair *pair, const struct expansion *multipole,
+                    const struct expansion *local);
 
-/* Add to the series of the halves of n_parents <= EXPANSION_LANES / 2 boxes, from parent on, those of the parents, whose
- * degrees are not greater. */
-void expansions_l2l(const struct tree_boxes *boxes, int parent, int n_parents, const struct expansion *series);
+/* L2L: add to the local expansions of the halves of n_parents <= EXPANSION_LANES / 2 boxes, from parent on, those of
+ * the parents, whose degrees are not higher. local: of all boxes. */
+void expansions_l2l(const struct tree_boxes *boxes, int parent, int n_parents, const struct expansion *local);
 
-/* Add the velocity of a series at the sorted points of its box to u, v, which begin with the first of all points;
- * gradient: NULL or u_x, u_y, v_x, the same. */
-void expansions_l2p(const struct tree_boxes *boxes, int box, const struct expansion *series, double *u, double *v,
+/* L2P: add the velocity of a local expansion at the sorted points of its box to u, v, which begin with the first of all
+ * points; gradient: NULL or u_x, u_y, v_x, the same. */
+void expansions_l2p(const struct tree_boxes *boxes, int box, const struct expansion *local, double *u, double *v,
                     double *const gradient[3]);
 
 #endif

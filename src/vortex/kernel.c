@@ -1,4 +1,4 @@
-/* kernel.c: three widths of the same loops, and the choice between them. */
+/* kernel.c: the same loops for three widths of vectors, and the choice between them. */
 #include "vortex/kernel.h"
 
 #include <stddef.h>
@@ -46,7 +46,7 @@ static inline two sum(two a, two b, two *error) {
     return s;
 }
 
-// the first 26 digits of 53, rounded; the rest, with a sign, has 26 too
+// the first 26 digits of 53, rounded; the others, with a sign, are 26 too
 static inline two upper(two a) {
     return (two)(((two_bits)a + (1 << 26)) & -((uint64_t)1 << 27));
 }
@@ -84,7 +84,7 @@ static inline two fused(two a, two b, two c) {
 #define FUSED(a, b, c) fused(a, b, c)
 #include "vortex/kernel_loops.h"
 
-// ---- the choice
+// ---- the choice of a variant
 
 const struct kernel_variant *kernel_variant(int i) {
     const struct kernel_variant *found[3];
@@ -97,23 +97,23 @@ const struct kernel_variant *kernel_variant(int i) {
     return i < n ? found[i] : NULL;
 }
 
-// A source on a target has no velocity there: a number that is small, but whose square is not zero, keeps 0/0 away. At
-// distances that matter it changes no bit.
+// A source induces no velocity at its own place: a small number, whose square is not zero, avoids 0/0. At distances
+// that matter it changes no bit.
 static double square_of(double smoothing) {
     return smoothing * smoothing + 1e-150;
 }
 
-// Targets behind the last whole 16 are copied into 8 or 16 places, which the last of them fills up.
-struct rest {
-    int first, n, n_places;
+// The targets after the last whole 16 are copied into 8 or 16, which the last of them fills up.
+struct remainder {
+    int first, n, n_filled;
     double x[2 * BLOCK], y[2 * BLOCK], sum[5][2 * BLOCK];
 };
 
-static void rest_take(struct rest *rest, int n_targets, const double *x, const double *y) {
+static void remainder_load(struct remainder *rest, int n_targets, const double *x, const double *y) {
     rest->n = n_targets % (2 * BLOCK);
     rest->first = n_targets - rest->n;
-    rest->n_places = rest->n <= BLOCK ? BLOCK : 2 * BLOCK;
-    for (int i = 0; i < rest->n_places; i++) {
+    rest->n_filled = rest->n <= BLOCK ? BLOCK : 2 * BLOCK;
+    for (int i = 0; i < rest->n_filled; i++) {
         const int from = rest->first + (i < rest->n ? i : rest->n - 1);
         rest->x[i] = x[from];
         rest->y[i] = y[from];
@@ -121,7 +121,7 @@ static void rest_take(struct rest *rest, int n_targets, const double *x, const d
     memset(rest->sum, 0, sizeof rest->sum);
 }
 
-static void rest_add(const struct rest *rest, int k, double *value) {
+static void remainder_add(const struct remainder *rest, int k, double *value) {
     for (int i = 0; i < rest->n; i++) value[rest->first + i] += rest->sum[k][i];
 }
 
@@ -130,13 +130,13 @@ void kernel_add_velocity(int n_targets, const double *x, const double *y, int n_
     const struct kernel_variant *const variant = kernel_variant(0);
     const struct kernel_sources sources = {n_sources, source_x, source_y, circulation, square_of(smoothing)};
     const int whole = n_targets - n_targets % (2 * BLOCK);
-    struct rest rest;
+    struct remainder rest;
     variant->velocity(whole, x, y, &sources, u, v);
     if (whole == n_targets) return;
-    rest_take(&rest, n_targets, x, y);
-    variant->velocity(rest.n_places, rest.x, rest.y, &sources, rest.sum[0], rest.sum[1]);
-    rest_add(&rest, 0, u);
-    rest_add(&rest, 1, v);
+    remainder_load(&rest, n_targets, x, y);
+    variant->velocity(rest.n_filled, rest.x, rest.y, &sources, rest.sum[0], rest.sum[1]);
+    remainder_add(&rest, 0, u);
+    remainder_add(&rest, 1, v);
 }
 
 void kernel_add_gradient(int n_targets, const double *x, const double *y, int n_sources, const double *source_x,
@@ -146,17 +146,17 @@ void kernel_add_gradient(int n_targets, const double *x, const double *y, int n_
     const struct kernel_sources sources = {n_sources, source_x, source_y, circulation, square_of(smoothing)};
     const int whole = n_targets - n_targets % (2 * BLOCK);
     double *const to[5] = {u, v, u_x, u_y, v_x};
-    struct rest rest;
+    struct remainder rest;
     variant->gradient(whole, x, y, &sources, u, v, u_x, u_y, v_x);
     if (whole == n_targets) return;
-    rest_take(&rest, n_targets, x, y);
-    variant->gradient(rest.n_places, rest.x, rest.y, &sources, rest.sum[0], rest.sum[1], rest.sum[2], rest.sum[3],
+    remainder_load(&rest, n_targets, x, y);
+    variant->gradient(rest.n_filled, rest.x, rest.y, &sources, rest.sum[0], rest.sum[1], rest.sum[2], rest.sum[3],
                       rest.sum[4]);
-    for (int k = 0; k < 5; k++) rest_add(&rest, k, to[k]);
+    for (int k = 0; k < 5; k++) remainder_add(&rest, k, to[k]);
 }
 
 void kernel_add_pairwise(const struct kernel_tile *a, const struct kernel_tile *b, double smoothing) {
-    kernel_variant(0)->mutual(a, b, square_of(smoothing));
+    kernel_variant(0)->pairwise(a, b, square_of(smoothing));
 }
 
 KERNEL_WIDE void kernel_add_velocity_each(int n_targets, const double *restrict x, const double *restrict y,

@@ -1,17 +1,17 @@
-/* kernel.h: the velocity of smoothed point vortices at points, the inner loop of everything. doc/model.md, first
+/* kernel.h: the velocity that smoothed point vortices induce at points, the innermost loops. doc/model.md, first
  * paragraph: K_e(r) = (-r_y, r_x) / (2 pi (|r|^2 + e^2)). Tested by tests/vortex/test_kernel.c.
  *
  * Every target sums over the sources in their order, and every operation is rounded as written here, so the results
  * have the same bits on every x86-64, whatever the width of its vectors:
  *
- * - |r|^2 + e^2 and the sums are made of fused products, a b + c with one rounding. They are written as such; the
- *   compiler fuses nothing. A processor without them computes the same bits, slowly.
- * - Targets are taken in blocks of 16. Of one block, targets i and i + 8 share a division, 1/(d_i d_i+8): the last bits
- *   of a target depend on the one it shares with. Where 8 targets or fewer are left, each has its own division; so have
- *   all targets of a gradient. Lengths between 1e-75 and 1e75 m do not overflow.
+ * - |r|^2 + e^2 and the sums are fused products, a b + c with one rounding. They are written as such; the compiler
+ *   fuses nothing. A processor without them computes the same bits, slowly.
+ * - Targets are taken in blocks of 16. In a block, targets i and i + 8 share a division, 1/(d_i d_i+8): the last bits
+ *   of a target depend on the other. Where 8 targets or fewer are left, each has its own division; so have all targets
+ *   of a gradient. Lengths between 1e-75 and 1e75 m do not overflow.
  *
- * Arrays are separate for x and y and need no alignment: the sources go to all lanes of a vector one by one, and a
- * block of targets is read once for all of them. */
+ * Arrays are separate for x and y and need no alignment: each source is copied to all lanes of a vector, and a block of
+ * targets is read once for all sources. */
 #ifndef KERNEL_H
 #define KERNEL_H
 
@@ -40,7 +40,7 @@ void kernel_add_gradient_each(int n_targets, const double *x, const double *y, i
                               const double *source_y, const double *circulation, const double *square, double *u,
                               double *v, double *u_x, double *u_y, double *v_x);
 
-/* Vortices that feel each other. */
+/* Vortices of a pairwise sum. */
 struct kernel_tile {
     int n;                             /* a multiple of 16, at most KERNEL_TILE; vortices of strength 0 fill it up */
     const double *x, *y, *circulation; /* place, m, and circulation, m2 s-1 (n) */
@@ -48,8 +48,8 @@ struct kernel_tile {
 };
 enum { KERNEL_TILE = 128 };
 
-/* Add the velocities of the vortices of two different tiles at one another: K is odd, so a pair has one division for
- * both. */
+/* Add the velocities that the vortices of two different tiles induce at each other: K is odd, so a pair takes one
+ * division. */
 void kernel_add_pairwise(const struct kernel_tile *a, const struct kernel_tile *b, double smoothing);
 
 /* Velocity and gradient at a chunk of targets. */
@@ -59,7 +59,7 @@ struct kernel_values {
     double u_x[KERNEL_CHUNK], u_y[KERNEL_CHUNK], v_x[KERNEL_CHUNK];
 };
 
-/* What one source of unit circulation causes at n <= KERNEL_CHUNK targets. */
+/* What one source of unit circulation induces at n <= KERNEL_CHUNK targets. */
 void kernel_unit(int n, const double *x, const double *y, double source_x, double source_y, double smoothing,
                  struct kernel_values *values);
 
@@ -75,7 +75,7 @@ void kernel_multiply(int n_rows, int n_columns, const double *matrix, const doub
 struct kernel_sources {
     int n;
     const double *x, *y, *circulation;
-    double square; /* e^2, and a little */
+    double square; /* e^2, plus a number that keeps a source on a target from dividing by 0 */
 };
 
 /* The loops, for one width of vectors; the functions above use the fastest that the processor has. Targets are a
@@ -86,7 +86,7 @@ struct kernel_variant {
                      double *v);
     void (*gradient)(int n, const double *x, const double *y, const struct kernel_sources *sources, double *u,
                      double *v, double *u_x, double *u_y, double *v_x);
-    void (*mutual)(const struct kernel_tile *a, const struct kernel_tile *b, double square);
+    void (*pairwise)(const struct kernel_tile *a, const struct kernel_tile *b, double square);
 };
 
 /* Variant i of those that this processor has, the fastest first; NULL if there are no more. */

@@ -108,13 +108,13 @@ static TARGET void VARIANT(gradient)(int n, const double *x, const double *y, co
     }
 }
 
-// Vortices i and i + BLOCK of a stay in vectors while those of b pass by one at a time. What comes back to the latter
-// is summed over all blocks of a in BLOCK lanes each, and over the lanes at the end.
-static TARGET void VARIANT(mutual)(const struct kernel_tile *a, const struct kernel_tile *b, double square_value) {
-    double back_u[KERNEL_TILE * BLOCK] __attribute__((aligned(64)));
-    double back_v[KERNEL_TILE * BLOCK] __attribute__((aligned(64)));
-    memset(back_u, 0, (size_t)b->n * BLOCK * sizeof *back_u);
-    memset(back_v, 0, (size_t)b->n * BLOCK * sizeof *back_v);
+// Vortices i and i + BLOCK of a are kept in vectors while those of b are taken one at a time. The velocities at the
+// latter are summed over all blocks of a in BLOCK lanes each, and over the lanes at the end.
+static TARGET void VARIANT(pairwise)(const struct kernel_tile *a, const struct kernel_tile *b, double square_value) {
+    double sum_u[KERNEL_TILE * BLOCK] __attribute__((aligned(64)));
+    double sum_v[KERNEL_TILE * BLOCK] __attribute__((aligned(64)));
+    memset(sum_u, 0, (size_t)b->n * BLOCK * sizeof *sum_u);
+    memset(sum_v, 0, (size_t)b->n * BLOCK * sizeof *sum_v);
     const lanes square = VARIANT(all)(square_value);
     for (int first = 0; first < a->n; first += 2 * BLOCK) {
         for (int lane = 0; lane < BLOCK; lane += VARIANT(width)) {
@@ -134,7 +134,7 @@ static TARGET void VARIANT(mutual)(const struct kernel_tile *a, const struct ker
                 v0 = FUSED(gb, kx0, v0);
                 u1 = FUSED(gb, ky1, u1);
                 v1 = FUSED(gb, kx1, v1);
-                double *const to_u = back_u + BLOCK * j + lane, *const to_v = back_v + BLOCK * j + lane;
+                double *const to_u = sum_u + BLOCK * j + lane, *const to_v = sum_v + BLOCK * j + lane;
                 VARIANT(put)(to_u, FUSED(ga0, ky0, FUSED(ga1, ky1, VARIANT(get)(to_u))));
                 VARIANT(put)(to_v, FUSED(ga0, kx0, FUSED(ga1, kx1, VARIANT(get)(to_v))));
             }
@@ -145,13 +145,13 @@ static TARGET void VARIANT(mutual)(const struct kernel_tile *a, const struct ker
         }
     }
     for (int j = 0; j < b->n; j++) {
-        b->u[j] += inverse_two_pi * sum_of_block(back_u + BLOCK * j);
-        b->v[j] -= inverse_two_pi * sum_of_block(back_v + BLOCK * j);
+        b->u[j] += inverse_two_pi * sum_of_block(sum_u + BLOCK * j);
+        b->v[j] -= inverse_two_pi * sum_of_block(sum_v + BLOCK * j);
     }
 }
 
 static const struct kernel_variant VARIANT(loops) = {
-    .name = VARIANT_NAME, .velocity = VARIANT(velocity), .gradient = VARIANT(gradient), .mutual = VARIANT(mutual)};
+    .name = VARIANT_NAME, .velocity = VARIANT(velocity), .gradient = VARIANT(gradient), .pairwise = VARIANT(pairwise)};
 
 #undef VARIANT
 #undef VARIANT_NAME

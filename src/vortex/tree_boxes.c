@@ -1,4 +1,4 @@
-/* tree_boxes.c: halve by the longer side of the box, at the median. */
+/* tree_boxes.c: boxes are halved across their longer side, at the median. */
 #include "vortex/tree_boxes.h"
 
 #include <math.h>
@@ -6,14 +6,14 @@
 
 struct tree_point {
     double at[2], weight;
-    int place;
+    int index;
 };
 
 static enum status resize(void *memory, size_t n, size_t size) {
-    void **const place = memory;
-    void *const more = realloc(*place, n * size);
+    void **const pointer = memory;
+    void *const more = realloc(*pointer, n * size);
     if (!more) return status_fail(STATUS_MEMORY, "out of memory: a tree of %zu points", n);
-    *place = more;
+    *pointer = more;
     return STATUS_OK;
 }
 
@@ -21,7 +21,7 @@ static enum status reserve(struct tree_boxes *boxes, int n, int n_boxes) {
     if (n > boxes->capacity) {
         const size_t capacity = (size_t)n + (size_t)n / 2;
         boxes->capacity = 0;
-        TRY(resize(&boxes->place, capacity, sizeof *boxes->place));
+        TRY(resize(&boxes->index, capacity, sizeof *boxes->index));
         TRY(resize(&boxes->x, capacity, sizeof *boxes->x));
         TRY(resize(&boxes->y, capacity, sizeof *boxes->y));
         TRY(resize(&boxes->weight, capacity, sizeof *boxes->weight));
@@ -36,7 +36,7 @@ static enum status reserve(struct tree_boxes *boxes, int n, int n_boxes) {
     return STATUS_OK;
 }
 
-// Reorder the points so that those before the middle are not greater, and those behind it not less, along one axis.
+// Reorder the points so that along one axis those before the middle are not greater, and those after it not less.
 static void halve(struct tree_point *point, int n, int middle, int axis) {
     int low = 0, high = n - 1;
     while (low < high) {
@@ -78,7 +78,7 @@ static int enclose(struct tree_box *box, const struct tree_point *point) {
         const double distance = rx * rx + ry * ry;
         square = distance > square ? distance : square;
     }
-    // where all points are one, the series still divide by the radius
+    // expansions divide by the radius even if all points coincide
     box->radius = fmax(sqrt(square), 1e-100);
     return high[1] - low[1] > high[0] - low[0];
 }
@@ -93,7 +93,7 @@ enum status tree_boxes_fill(struct tree_boxes *boxes, int n, const double *x, co
     TRY(reserve(boxes, n, n_boxes));
     struct tree_point *const point = boxes->work;
     for (int i = 0; i < n; i++) {
-        point[i] = (struct tree_point){.at = {x[i], y[i]}, .weight = weight ? weight[i] : 0, .place = i};
+        point[i] = (struct tree_point){.at = {x[i], y[i]}, .weight = weight ? weight[i] : 0, .index = i};
     }
     boxes->box[0] = (struct tree_box){.first = 0, .n = n};
     for (int i = 0; i < n_boxes; i++) {
@@ -109,7 +109,7 @@ enum status tree_boxes_fill(struct tree_boxes *boxes, int n, const double *x, co
         boxes->x[i] = point[i].at[0];
         boxes->y[i] = point[i].at[1];
         boxes->weight[i] = point[i].weight;
-        boxes->place[i] = point[i].place;
+        boxes->index[i] = point[i].index;
     }
     boxes->n = n;
     boxes->depth = depth;
@@ -119,7 +119,7 @@ enum status tree_boxes_fill(struct tree_boxes *boxes, int n, const double *x, co
 
 void tree_boxes_clear(struct tree_boxes *boxes) {
     free(boxes->box);
-    free(boxes->place);
+    free(boxes->index);
     free(boxes->x);
     free(boxes->y);
     free(boxes->weight);

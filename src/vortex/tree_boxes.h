@@ -1,12 +1,12 @@
-/* tree_boxes.h: points in nested boxes, each of two halves with equally many points. Part of treecode.h.
+/* tree_boxes.h: points sorted into nested boxes, each of two halves with equally many points. Part of treecode.h.
  *
  * Boxes are numbered from the largest down; 1 and 2 are the halves of 0, box i has the halves 2 i + 1 and 2 i + 2:
  *
  *     level 0                  0
- *     level 1          1               2           all boxes of a level hold the same number of points, give or take 1
+ *     level 1          1               2           all boxes of a level hold the same number of points, or one more
  *     level 2      3       4       5       6       depth = 2: the boxes 3 .. 6 are leaves
  *
- * The points of a box are a range of the sorted arrays. */
+ * The points of a box are consecutive in the sorted arrays. */
 #ifndef TREE_BOXES_H
 #define TREE_BOXES_H
 
@@ -21,7 +21,7 @@ struct tree_box {
 struct tree_boxes {
     int n, depth, n_boxes;   /* n_boxes = 2^(depth + 1) - 1; 0 where n = 0 */
     struct tree_box *box;    /*                                          (n_boxes) */
-    int *place;              /* of the sorted point in the caller's arrays     (n) */
+    int *index;              /* of each sorted point in the caller's arrays    (n) */
     double *x, *y, *weight;  /* sorted                                         (n) */
     struct tree_point *work; /*                                                (n) */
     int capacity, box_capacity;
@@ -32,8 +32,8 @@ static inline int tree_boxes_level(int level) {
     return (1 << level) - 1;
 }
 
-/* Sort n points with a weight (NULL: all 0) into boxes; leaves hold at most leaf points. The memory is kept for the
- * next time. Fails with STATUS_MEMORY; boxes is then empty. */
+/* Sort n points with weights (NULL: all 0) into boxes; leaves hold at most leaf points. The memory is kept for the next
+ * call. Fails with STATUS_MEMORY; boxes is then empty. */
 enum status tree_boxes_fill(struct tree_boxes *boxes, int n, const double *x, const double *y, const double *weight,
                             int leaf);
 

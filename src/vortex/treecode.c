@@ -1,4 +1,4 @@
-/* treecode.c: which boxes interact how, and all steps of a sum. */
+/* treecode.c: which boxes interact how, and all passes of a sum. */
 #include "vortex/treecode.h"
 
 #include <math.h>
@@ -10,44 +10,44 @@
 #include "vortex/kernel.h"
 
 enum {
-    LEAF = 128,         /* most points of a box that is not halved */
-    LEAF_GRADIENT = 64, /* the same for targets that ask for the gradient, whose direct sum costs twice as much */
-    CHUNK = 16          /* boxes of targets whose far pairs one thread does */
+    LEAF = 128,         /* the largest number of points in a box that is not halved */
+    LEAF_GRADIENT = 64, /* the same for targets of a gradient, whose direct sum costs twice as much */
+    CHUNK = 16          /* boxes of targets whose far pairs one thread takes at once */
 };
 
-// The bound on the error of a pair takes all sources and targets to be as near to each other as their boxes allow. The
-// true errors are so much smaller (tests/vortex/test_treecode.c) that the bound is held to this many tolerances.
-static const double allowance = 4;
+// The bound on the error of a pair takes all sources and targets to be as near to each other as their boxes allow. True
+// errors are so much smaller (tests/vortex/test_treecode.c) that the bound may be this many tolerances.
+static const double bound_per_tolerance = 4;
 
 // boxes that interact by a direct sum
-struct near {
+struct near_pair {
     int target, source;
 };
 
-// series of all boxes of a tree
-struct many_series {
+// the expansions of all boxes of a tree
+struct expansions {
     struct expansion *of; /* of each box    (capacity) */
     double *value;        /* of all   (value_capacity) */
     int capacity;
     size_t value_capacity;
 };
 
-// Which terms may be left out. Half of the tolerance is for all terms above the harmonic degree p, half for the mixed
-// ones above the degree q.
+// Where an expansion may be truncated. Half of the tolerance is for all terms above the harmonic degree p, half for the
+// mixed ones above the degree q.
 struct limits {
     double tolerance;                                        /* for which these are */
-    double theta[EXPANSION_HARMONIC + 1];                    /* greatest theta for p */
-    double eta[EXPANSION_HARMONIC + 1][EXPANSION_MIXED + 1]; /* greatest e^2/S^2 for p and q */
+    double theta[EXPANSION_HARMONIC + 1];                    /* largest theta for p */
+    double eta[EXPANSION_HARMONIC + 1][EXPANSION_MIXED + 1]; /* largest e^2/S^2 for p and q */
 };
 
 struct treecode {
     struct tree_boxes sources, targets;
     double smoothing;
-    struct many_series moments, series;
+    struct expansions multipole, local; /* of the sources and the targets */
 
     // pairs as they are found, and sorted by their target
-    struct expansions_far *far, *far_sorted;
-    struct near *near, *near_sorted;
+    struct expansions_pair *far, *far_sorted;
+    struct near_pair *near, *near_sorted;
     int n_far, n_near, far_capacity, near_capacity;
     int *far_first, *near_first; /* where the pairs of each target box begin (n_boxes + 1 of the targets) */
     int first_capacity;
@@ -61,10 +61,10 @@ struct treecode {
 // ---- memory ----
 
 static enum status grow(void *memory, size_t n, size_t size) {
-    void **const place = memory;
-    void *const more = realloc(*place, n * size);
+    void **const pointer = memory;
+    void *const more = realloc(*pointer, n * size);
     if (!more) return status_fail(STATUS_MEMORY, "out of memory: %zu bytes of a tree", n * size);
-    *place = more;
+    *pointer = more;
     return STATUS_OK;
 }
 
@@ -77,24 +77,24 @@ void treecode_free(struct treecode *tree) {
     if (!tree) return;
     tree_boxes_clear(&tree->sources);
     tree_boxes_clear(&tree->targets);
-    void *const owned[] = {tree->moments.of, tree->moments.value, tree->series.of, tree->series.value,
-                           tree->far,        tree->far_sorted,    tree->near,      tree->near_sorted,
-                           tree->far_first,  tree->near_first,    tree->sum};
+    void *const owned[] = {tree->multipole.of, tree->multipole.value, tree->local.of, tree->local.value,
+                           tree->far,          tree->far_sorted,      tree->near,     tree->near_sorted,
+                           tree->far_first,    tree->near_first,      tree->sum};
     for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
     free(tree);
 }
 
 // ---- which degrees a pair needs ----
 
-// whether the terms above a degree may be left out: (1 + theta) theta^p / (1 - theta) <= tolerance / 2
+// whether an expansion may be truncated above a degree: (1 + theta) theta^p / (1 - theta) <= tolerance / 2
 static int is_small(double theta, int degree, double tolerance) {
     double power = (1 + theta) / (1 - theta);
     for (int i = 0; i < degree; i++) power *= theta;
     return power <= tolerance / 2;
 }
 
-// The greatest eta = e^2/S^2 for which the mixed terms above degree q may be left out: (1 + theta) times the sum of
-// n (n - 1)/2 eta theta^(n-1) over n > q, at most tolerance / 2. The ratio of its terms falls from the first to the last.
+// The largest eta = e^2/S^2 for which the mixed terms above degree q may be left out: (1 + theta) times the sum of
+// n (n - 1)/2 eta theta^(n-1) over n > q, at most tolerance / 2. The ratio of successive terms decreases.
 static double eta_limit(double theta, int q, double tolerance) {
     const double ratio = theta * (q + 2) / q;
     if (ratio >= 1) return 0;
@@ -122,7 +122,7 @@ static void find_limits(struct limits *limits, double tolerance) {
     }
 }
 
-// The degrees for theta and eta; 0 if there are none that are enough. The gradient loses one degree.
+// The degrees for theta and eta; returns 0 if the highest are too low. The gradient loses one degree.
 static int find_order(const struct limits *limits, int with_gradient, double theta, double eta,
                       struct expansion_order *order) {
     if (!(theta <= limits->theta[EXPANSION_HARMONIC - with_gradient])) return 0;
@@ -133,7 +133,7 @@ static int find_order(const struct limits *limits, int with_gradient, double the
     return order->mixed <= EXPANSION_MIXED;
 }
 
-// time of a pair by series, in interactions of the direct sum; fitted to measurements
+// time of a pair by expansions, in interactions of the direct sum; fitted to measurements
 static double far_cost(struct expansion_order order) {
     const double p = order.harmonic, q = order.mixed;
     return 100 + 0.7 * p * p + (4 + 0.1 * q) * q * q;
@@ -149,9 +149,9 @@ static enum status add_far(struct treecode *tree, int target, int source, struct
         TRY(grow(&tree->far_sorted, (size_t)capacity, sizeof *tree->far_sorted));
         tree->far_capacity = capacity;
     }
-    tree->far[tree->n_far++] = (struct expansions_far){target, source, order};
-    tree->moments.of[source].order = expansion_order_max(tree->moments.of[source].order, order);
-    tree->series.of[target].order = expansion_order_max(tree->series.of[target].order, order);
+    tree->far[tree->n_far++] = (struct expansions_pair){target, source, order};
+    tree->multipole.of[source].order = expansion_order_max(tree->multipole.of[source].order, order);
+    tree->local.of[target].order = expansion_order_max(tree->local.of[target].order, order);
     return STATUS_OK;
 }
 
@@ -163,7 +163,7 @@ static enum status add_near(struct treecode *tree, int target, int source) {
         TRY(grow(&tree->near_sorted, (size_t)capacity, sizeof *tree->near_sorted));
         tree->near_capacity = capacity;
     }
-    tree->near[tree->n_near++] = (struct near){target, source};
+    tree->near[tree->n_near++] = (struct near_pair){target, source};
     return STATUS_OK;
 }
 
@@ -192,7 +192,7 @@ static enum status pair_up(struct treecode *tree, int with_gradient, int target,
 
 // Pairs with the same degrees are best done together. No two pairs are the same, so the order is unique.
 static int compare_far(const void *left, const void *right) {
-    const struct expansions_far *const a = left, *const b = right;
+    const struct expansions_pair *const a = left, *const b = right;
     if (a->order.mixed != b->order.mixed) return b->order.mixed - a->order.mixed;
     if (a->order.harmonic != b->order.harmonic) return b->order.harmonic - a->order.harmonic;
     if (a->target != b->target) return a->target - b->target;
@@ -220,32 +220,33 @@ static void sort_pairs(struct treecode *tree) {
     }
 }
 
-static enum status reset_series(struct many_series *many, int n_boxes) {
-    if (n_boxes > many->capacity) {
-        many->capacity = 0;
-        TRY(grow(&many->of, (size_t)n_boxes, sizeof *many->of));
-        many->capacity = n_boxes;
+static enum status reset_orders(struct expansions *expansions, int n_boxes) {
+    if (n_boxes > expansions->capacity) {
+        expansions->capacity = 0;
+        TRY(grow(&expansions->of, (size_t)n_boxes, sizeof *expansions->of));
+        expansions->capacity = n_boxes;
     }
-    for (int i = 0; i < n_boxes; i++) many->of[i].order = (struct expansion_order){-1, 0};
+    for (int i = 0; i < n_boxes; i++) expansions->of[i].order = (struct expansion_order){-1, 0};
     return STATUS_OK;
 }
 
-// halves need the degrees of the whole; then give every box its place
-static enum status place_series(struct many_series *many, int n_boxes) {
+// halves need the degrees of the whole; then give every box its values
+static enum status allocate_values(struct expansions *expansions, int n_boxes) {
     size_t n = 0;
     for (int i = 0; i < n_boxes; i++) {
-        if (i > 0) many->of[i].order = expansion_order_max(many->of[i].order, many->of[(i - 1) / 2].order);
-        n += 2 * (size_t)expansions_size(many->of[i].order);
+        if (i > 0)
+            expansions->of[i].order = expansion_order_max(expansions->of[i].order, expansions->of[(i - 1) / 2].order);
+        n += 2 * (size_t)expansions_size(expansions->of[i].order);
     }
-    if (n > many->value_capacity) {
-        many->value_capacity = 0;
-        TRY(grow(&many->value, n + n / 2, sizeof *many->value));
-        many->value_capacity = n + n / 2;
+    if (n > expansions->value_capacity) {
+        expansions->value_capacity = 0;
+        TRY(grow(&expansions->value, n + n / 2, sizeof *expansions->value));
+        expansions->value_capacity = n + n / 2;
     }
     n = 0;
     for (int i = 0; i < n_boxes; i++) {
-        many->of[i].value = many->value + n;
-        n += 2 * (size_t)expansions_size(many->of[i].order);
+        expansions->of[i].value = expansions->value + n;
+        n += 2 * (size_t)expansions_size(expansions->of[i].order);
     }
     return STATUS_OK;
 }
@@ -265,64 +266,71 @@ static enum status plan(struct treecode *tree, int n_targets, const double *x, c
         TRY(grow(&tree->sum, n_sum + n_sum / 2, sizeof *tree->sum));
         tree->sum_capacity = n_sum + n_sum / 2;
     }
-    TRY(reset_series(&tree->moments, tree->sources.n_boxes));
-    TRY(reset_series(&tree->series, n_boxes));
+    TRY(reset_orders(&tree->multipole, tree->sources.n_boxes));
+    TRY(reset_orders(&tree->local, n_boxes));
     tree->n_far = tree->n_near = 0;
     TRY(pair_up(tree, with_gradient, 0, 0));
     sort_pairs(tree);
-    TRY(place_series(&tree->moments, tree->sources.n_boxes));
-    return place_series(&tree->series, n_boxes);
+    TRY(allocate_values(&tree->multipole, tree->sources.n_boxes));
+    return allocate_values(&tree->local, n_boxes);
 }
 
 // ---- the sum ----
 
-static void gather(struct treecode *tree, int threads) {
+// P2M and M2M
+static void upward_pass(struct treecode *tree, int threads) {
     const struct tree_boxes *const boxes = &tree->sources;
     const int first_leaf = tree_boxes_level(boxes->depth);
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
     for (int b = first_leaf; b < boxes->n_boxes; b++) {
-        if (tree->moments.of[b].order.harmonic >= 0) expansions_p2m(boxes, b, &tree->moments.of[b]);
+        if (tree->multipole.of[b].order.harmonic >= 0) expansions_p2m(boxes, b, &tree->multipole.of[b]);
     }
     for (int level = boxes->depth - 1; level >= 0; level--) {
         const int first = tree_boxes_level(level), end = tree_boxes_level(level + 1);
 #pragma omp parallel for num_threads(parallel_threads(threads, end - first, end - first, PARALLEL_BOXES)) \
     schedule(dynamic)
         for (int b = first; b < end; b += EXPANSION_LANES / 2) {
-            expansions_m2m(boxes, b, end - b < EXPANSION_LANES / 2 ? end - b : EXPANSION_LANES / 2, tree->moments.of);
+            expansions_m2m(boxes, b, end - b < EXPANSION_LANES / 2 ? end - b : EXPANSION_LANES / 2, tree->multipole.of);
         }
     }
 }
 
-static void cross(struct treecode *tree, int threads) {
+// M2L
+static void far_field(struct treecode *tree, int threads) {
     const struct tree_boxes *const boxes = &tree->targets;
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
     for (int b = 0; b < boxes->n_boxes; b += CHUNK) {
         const int end = b + CHUNK < boxes->n_boxes ? b + CHUNK : boxes->n_boxes;
         for (int i = b; i < end; i++) {
-            const struct expansion *const series = &tree->series.of[i];
-            if (series->order.harmonic < 0) continue;
-            memset(series->value, 0, 2 * (size_t)expansions_size(series->order) * sizeof *series->value);
+            const struct expansion *const local = &tree->local.of[i];
+            if (local->order.harmonic < 0) continue;
+            memset(local->value, 0, 2 * (size_t)expansions_size(local->order) * sizeof *local->value);
         }
         const int first = tree->far_first[b];
         expansions_m2l(boxes, &tree->sources, tree->smoothing, tree->far_first[end] - first, tree->far_sorted + first,
-                       tree->moments.of, tree->series.of);
+                       tree->multipole.of, tree->local.of);
     }
+}
+
+// L2L
+static void downward_pass(struct treecode *tree, int threads) {
+    const struct tree_boxes *const boxes = &tree->targets;
     for (int level = 0; level < boxes->depth; level++) {
         const int first = tree_boxes_level(level), end = tree_boxes_level(level + 1);
 #pragma omp parallel for num_threads(parallel_threads(threads, end - first, end - first, PARALLEL_BOXES)) \
     schedule(dynamic)
         for (int b = first; b < end; b += EXPANSION_LANES / 2) {
-            expansions_l2l(boxes, b, end - b < EXPANSION_LANES / 2 ? end - b : EXPANSION_LANES / 2, tree->series.of);
+            expansions_l2l(boxes, b, end - b < EXPANSION_LANES / 2 ? end - b : EXPANSION_LANES / 2, tree->local.of);
         }
     }
 }
 
-// the direct sums of the points of a leaf with all boxes near one box that holds it
-static void add_near_sums(const struct treecode *tree, int leaf, int box, double *const sum[5]) {
+// the direct sums at the points of a leaf over all boxes near one box that contains it
+static void add_near_field(const struct treecode *tree, int leaf, int box, double *const sum[5]) {
     const struct tree_boxes *const targets = &tree->targets, *const sources = &tree->sources;
     const int t = targets->box[leaf].first, n = targets->box[leaf].n;
     for (int i = tree->near_first[box]; i < tree->near_first[box + 1];) {
-        // boxes whose points follow each other are one
+        // boxes whose points are consecutive are one
         const int s = sources->box[tree->near_sorted[i].source].first;
         int end = s;
         while (i < tree->near_first[box + 1] && sources->box[tree->near_sorted[i].source].first == end) {
@@ -339,7 +347,8 @@ static void add_near_sums(const struct treecode *tree, int leaf, int box, double
     }
 }
 
-static void spread(struct treecode *tree, int threads, double *const sum[5], double *const out[5]) {
+// L2P and the near field
+static void evaluate_leaves(struct treecode *tree, int threads, double *const sum[5], double *const out[5]) {
     const struct tree_boxes *const boxes = &tree->targets;
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
     for (int leaf = tree_boxes_level(boxes->depth); leaf < boxes->n_boxes; leaf++) {
@@ -347,17 +356,18 @@ static void spread(struct treecode *tree, int threads, double *const sum[5], dou
         const int end = own->first + own->n;
         for (int k = 0; k < 5 && sum[k]; k++) memset(sum[k] + own->first, 0, (size_t)own->n * sizeof *sum[k]);
         for (int box = leaf;; box = (box - 1) / 2) {
-            add_near_sums(tree, leaf, box, sum);
+            add_near_field(tree, leaf, box, sum);
             if (box == 0) break;
         }
-        if (tree->series.of[leaf].order.harmonic >= 0) {
-            expansions_l2p(boxes, leaf, &tree->series.of[leaf], sum[0], sum[1], sum[2] ? sum + 2 : NULL);
+        if (tree->local.of[leaf].order.harmonic >= 0) {
+            expansions_l2p(boxes, leaf, &tree->local.of[leaf], sum[0], sum[1], sum[2] ? sum + 2 : NULL);
         }
         for (int k = 0; k < 5 && sum[k]; k++) {
-            for (int i = own->first; i < end; i++) out[k][boxes->place[i]] += sum[k][i];
+            for (int i = own->first; i < end; i++) out[k][boxes->index[i]] += sum[k][i];
         }
     }
 }
+
 static enum status add(struct treecode *tree, int n_targets, const double *x, const double *y, int threads,
                        double *const out[5]) {
     if (n_targets == 0 || tree->sources.n == 0) return STATUS_OK;
@@ -365,16 +375,17 @@ static enum status add(struct treecode *tree, int n_targets, const double *x, co
     TRY(plan(tree, n_targets, x, y, with_gradient));
     double *sum[5] = {0};
     for (int k = 0; k < 5 && out[k]; k++) sum[k] = tree->sum + (size_t)k * (size_t)n_targets;
-    gather(tree, threads);
-    cross(tree, threads);
-    spread(tree, threads, sum, out);
+    upward_pass(tree, threads);
+    far_field(tree, threads);
+    downward_pass(tree, threads);
+    evaluate_leaves(tree, threads, sum, out);
     return STATUS_OK;
 }
 
 enum status treecode_build(struct treecode *tree, int n, const double *x, const double *y, const double *circulation,
                            double smoothing, double tolerance) {
     tree->smoothing = smoothing;
-    find_limits(&tree->limits, allowance * tolerance);
+    find_limits(&tree->limits, bound_per_tolerance * tolerance);
     return tree_boxes_fill(&tree->sources, n, x, y, circulation, LEAF);
 }
 

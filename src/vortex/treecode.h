@@ -1,17 +1,24 @@
-/* treecode.h: the velocity of many smoothed vortices at many points in less than n^2 time, to a stated error.
- * doc/performance.md, section "Fast summation". Tested by tests/vortex/test_treecode.c.
+/* treecode.h: the velocity of many smoothed vortices at many points in less than n^2 time, to a given tolerance.
+ * doc/performance.md, section "Fast multipole sums". Tested by tests/vortex/test_treecode.c.
  *
- * Vortices and targets are sorted into boxes (tree_boxes.h). Two boxes that are far from each other interact by series
- * (expansions.h), whose degrees are chosen for every pair so that they meet the tolerance; boxes near each other by
- * the direct sum of kernel.h. At every target x
+ * Vortices and targets are sorted into boxes (tree_boxes.h). Boxes that are far from each other interact by multipole
+ * and local expansions (expansions.h), whose degrees are chosen for every pair to meet the tolerance; boxes near each
+ * other by the direct sum of kernel.h:
+ *
+ *     upward pass      P2M in the leaves of the sources, M2M from halves to wholes
+ *     far field        M2L from boxes of sources to boxes of targets
+ *     downward pass    L2L from wholes to halves
+ *     leaves           L2P, and the direct sums of the near field
+ *
+ * At every target x
  *
  *     |error of the velocity| <= tolerance A,      A = sum_j |Gamma_j| / (2 pi sqrt(|x - x_j|^2 + e^2)):
  *
- * A is about the velocity that the vortices would have if nothing cancelled. That is what tests hold it to; the bound
- * that the degrees are chosen by is 4 times more, errors in wakes are 100 times less. The error of a gradient is at
+ * A is about the velocity that the vortices would have if nothing cancelled. The tests check this error; the bound by
+ * which the degrees are chosen is 4 times larger, errors in wakes are 100 times smaller. The error of a gradient is at
  * most 50 tolerance sum_j |Gamma_j| / (2 pi (|x - x_j|^2 + e^2)). Rounding adds some 1e-15 of the same sums.
  *
- * The sums are in an order that depends on the points only: same bits for any number of threads. */
+ * The order of the sums depends on the points only: the bits are the same for any number of threads. */
 #ifndef TREECODE_H
 #define TREECODE_H
 
@@ -19,13 +26,13 @@
 
 struct treecode;
 
-/* An empty tree. Memory grows as needed and is kept for the next call. Fails with STATUS_MEMORY. treecode_free accepts
+/* An empty tree. Memory grows as needed and is kept for the next call. Fails with STATUS_MEMORY; treecode_free accepts
  * NULL. */
 enum status treecode_create(struct treecode **tree);
 void treecode_free(struct treecode *tree);
 
-/* Put n vortices of one smoothing length into the tree, in place of those it had; the arrays are copied. tolerance:
- * see above; 1e-13 is the least that makes sense. Fails with STATUS_MEMORY: the tree is then empty. */
+/* Fill the tree with n vortices of one smoothing length; those it had are removed. The arrays are copied. tolerance:
+ * see above; below 1e-13 rounding is larger. Fails with STATUS_MEMORY: the tree is then empty. */
 enum status treecode_build(struct treecode *tree, int n, const double *x, const double *y, const double *circulation,
                            double smoothing, double tolerance);
 

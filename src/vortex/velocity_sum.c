@@ -1,4 +1,4 @@
-/* velocity_sum.c: one tree after another for the vortices of each smoothing. */
+/* velocity_sum.c: one tree for the vortices of each smoothing. */
 #include "vortex/velocity_sum.h"
 
 #include <stdlib.h>
@@ -6,18 +6,18 @@
 
 #include "vortex/treecode.h"
 
-/* Where the tree is faster than direct sums: at least so many vortices, and so many interactions. Measured by
- * `make bench`; the ways differ little near these numbers. */
-static const int fewest_vortices = 1000;
-static const double fewest_interactions = 6e6;
+/* The tree is faster than the direct sum from so many vortices and so many interactions on. Measured by `make bench`;
+ * near these numbers the difference is small. */
+static const int min_vortices = 1000;
+static const double min_interactions = 6e6;
 
 struct velocity_sum {
     struct treecode *tree;
-    struct vortices gathered; /* those of one smoothing */
+    struct vortices alike; /* those of one smoothing */
 };
 
-enum status velocity_sum_create(struct velocity_sum **velocity_sum) {
-    *velocity_sum = NULL;
+enum status velocity_sum_create(struct velocity_sum **sum) {
+    *sum = NULL;
     struct velocity_sum *const new = calloc(1, sizeof *new);
     if (!new) return status_fail(STATUS_MEMORY, "out of memory: a sum");
     const enum status status = treecode_create(&new->tree);
@@ -25,19 +25,19 @@ enum status velocity_sum_create(struct velocity_sum **velocity_sum) {
         velocity_sum_free(new);
         return status;
     }
-    *velocity_sum = new;
+    *sum = new;
     return STATUS_OK;
 }
 
-void velocity_sum_free(struct velocity_sum *velocity_sum) {
-    if (!velocity_sum) return;
-    treecode_free(velocity_sum->tree);
-    vortices_free(&velocity_sum->gathered);
-    free(velocity_sum);
+void velocity_sum_free(struct velocity_sum *sum) {
+    if (!sum) return;
+    treecode_free(sum->tree);
+    vortices_free(&sum->alike);
+    free(sum);
 }
 
 int velocity_sum_by_tree(const struct vortices *vortices, int n_targets, double tolerance) {
-    return tolerance > 0 && vortices->n >= fewest_vortices && (double)vortices->n * n_targets >= fewest_interactions;
+    return tolerance > 0 && vortices->n >= min_vortices && (double)vortices->n * n_targets >= min_interactions;
 }
 
 // whether an earlier group has the smoothing of group k
@@ -47,9 +47,9 @@ static int is_done(const struct vortices *vortices, int k) {
     return first < k;
 }
 
-// all vortices with the smoothing of group k
-static enum status gather(struct velocity_sum *velocity_sum, const struct vortices *vortices, int k) {
-    struct vortices *const all = &velocity_sum->gathered;
+// select all vortices with the smoothing of group k
+static enum status select_alike(struct velocity_sum *sum, const struct vortices *vortices, int k) {
+    struct vortices *const all = &sum->alike;
     vortices_clear(all);
     for (int g = k; g < vortices->n_groups; g++) {
         const struct vortex_group *const group = &vortices->group[g];
@@ -64,19 +64,19 @@ static enum status gather(struct velocity_sum *velocity_sum, const struct vortic
     return STATUS_OK;
 }
 
-enum status velocity_sum_induce(struct velocity_sum *velocity_sum, const struct vortices *vortices, double tolerance,
+enum status velocity_sum_induce(struct velocity_sum *sum, const struct vortices *vortices, double tolerance,
                                 int threads, const struct induced *at) {
     for (int k = 0; k < vortices->n_groups; k++) {
         if (is_done(vortices, k)) continue;
-        TRY(gather(velocity_sum, vortices, k));
-        const struct vortices *const all = &velocity_sum->gathered;
-        TRY(treecode_build(velocity_sum->tree, all->n, all->x, all->y, all->circulation, vortices->group[k].smoothing,
+        TRY(select_alike(sum, vortices, k));
+        const struct vortices *const all = &sum->alike;
+        TRY(treecode_build(sum->tree, all->n, all->x, all->y, all->circulation, vortices->group[k].smoothing,
                            tolerance / 10));
         if (at->u_x) {
-            TRY(treecode_add_gradient(velocity_sum->tree, at->n, at->x, at->y, threads, at->u, at->v, at->u_x, at->u_y,
+            TRY(treecode_add_gradient(sum->tree, at->n, at->x, at->y, threads, at->u, at->v, at->u_x, at->u_y,
                                       at->v_x));
         } else {
-            TRY(treecode_add_velocity(velocity_sum->tree, at->n, at->x, at->y, threads, at->u, at->v));
+            TRY(treecode_add_velocity(sum->tree, at->n, at->x, at->y, threads, at->u, at->v));
         }
     }
     return STATUS_OK;

@@ -1,5 +1,6 @@
-/* velocity_sum.h: what many vortices cause at many points: every vortex at every point, or by the tree where that is faster and
- * a tolerance allows it. doc/performance.md. Tested by tests/vortex/test_velocity_sum.c. */
+/* velocity_sum.h: the velocity that many vortices induce at many points, summed by the tree where that is faster than
+ * the direct sum and a tolerance allows it. doc/performance.md, section "Fast multipole sums". Tested by
+ * tests/vortex/test_velocity_sum.c. */
 #ifndef VELOCITY_SUM_H
 #define VELOCITY_SUM_H
 
@@ -9,17 +10,17 @@
 struct velocity_sum; /* workspace, kept for the next sum */
 
 /* Fails with STATUS_MEMORY; velocity_sum_free accepts NULL. */
-enum status velocity_sum_create(struct velocity_sum **velocity_sum);
-void velocity_sum_free(struct velocity_sum *velocity_sum);
+enum status velocity_sum_create(struct velocity_sum **sum);
+void velocity_sum_free(struct velocity_sum *sum);
 
-/* Whether the tree is the faster way for so many vortices and targets, and the tolerance not 0. */
+/* Whether the tree is faster for so many vortices and targets, and the tolerance is not 0. */
 int velocity_sum_by_tree(const struct vortices *vortices, int n_targets, double tolerance);
 
-/* Add to the targets what all vortices cause, by the tree. The error of the velocity at a target is at most a tenth of
- * the tolerance, times the velocity that the vortices would cause there if nothing cancelled, sum |Gamma| / (2 pi
+/* Add to the targets what all vortices induce, by the tree. The error of the velocity at a target is at most a tenth of
+ * the tolerance, times the velocity that the vortices would induce there if nothing cancelled, sum |Gamma| / (2 pi
  * sqrt(r^2 + e^2)), which is up to some ten lengths per beat in a school. The same bits for any number of threads.
  * Fails with STATUS_MEMORY. */
-enum status velocity_sum_induce(struct velocity_sum *velocity_sum, const struct vortices *vortices, double tolerance,
+enum status velocity_sum_induce(struct velocity_sum *sum, const struct vortices *vortices, double tolerance,
                                 int threads, const struct induced *at);
 
 #endif

@@ -20,7 +20,7 @@ struct vortices {
     struct vortex_group *group; /* (n_groups) */
 };
 
-/* Where velocity, and its gradient where u_x is not NULL, are wanted, and where they are added; all arrays (n).
+/* Points at which a velocity, and its gradient where u_x is not NULL, are induced and added; all arrays (n).
  * u_x = du/dx = -dv/dy, u_y = du/dy, v_x = dv/dx. */
 struct induced {
     int n;
@@ -32,19 +32,19 @@ struct induced {
 /* Release what the vortices own. Accepts a zeroed struct, as all functions here do. */
 void vortices_free(struct vortices *vortices);
 
-/* None left; the room stays. */
+/* Remove all vortices; the memory is kept. */
 void vortices_clear(struct vortices *vortices);
 
-/* Add n vortices with no values yet at the end. Fails with STATUS_MEMORY; nothing is changed then. */
+/* Append n vortices whose values are not set. Fails with STATUS_MEMORY; nothing is changed then. */
 enum status vortices_append(struct vortices *vortices, int n, double smoothing);
 
-/* Add what the vortices of a range cause at the targets, group after group. */
+/* Add what the vortices of a range induce at the targets, group after group. */
 void vortices_induce(const struct vortices *vortices, struct range which, const struct induced *at);
 
-/* The targets first .. first + n - 1 of others. */
+/* A range of the targets. */
 struct induced vortices_targets(const struct induced *all, struct range which);
 
-/* Set what the targets have to zero. */
+/* Set the velocities and gradients of the targets to zero. */
 void vortices_zero(const struct induced *at);
 
 #endif

@@ -1,11 +1,11 @@
-/* kernels.c: how many interactions of a vortex with a point the program does in a second: the loops of src/vortex/kernel.c on
- * one core, for every variant that this processor has, and whole wakes at themselves (src/vortex/pairwise.c) with more threads.
- * A pair that feels each other counts twice. Printed by `make bench`.
+/* kernels.c: how many velocities of one vortex at one point the program computes in a second: the loops of
+ * src/vortex/kernel.c on one core, for every variant that this processor has, and whole wakes at themselves
+ * (src/vortex/pairwise.c) with more threads. A pair of the pairwise sum counts twice. Printed by `make bench`.
  *
- * The first two rows say what the processor can do with vectors of that width: products, and divisions, of numbers in
+ * The first two rows are the speed of the processor with vectors of that width: products and divisions of numbers in
  * registers. A velocity takes 5.5 products (some with a sum) and half a division, two velocities of a pair at each
- * other 9.5 and half a division. The machine may be shared: each rate is the best of many short runs, and rates compare
- * inside one run of this program only. */
+ * other 9.5 and half a division. The machine may be shared: each rate is the best of many short runs, and only rates
+ * of one run of this program can be compared. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,27 +14,27 @@
 #include "vortex/kernel.h"
 #include "vortex/pairwise.h"
 
-enum { MOST = 3200, N_RUNS = 50 };
+enum { MAX = 3200, N_RUNS = 50 };
 static const double per_run = 1e6; /* interactions at least */
 
-static struct { double x[MOST], y[MOST], circulation[MOST], u[MOST], v[MOST], u_x[MOST], u_y[MOST], v_x[MOST]; } cloud;
+static struct { double x[MAX], y[MAX], circulation[MAX], u[MAX], v[MAX], u_x[MAX], u_y[MAX], v_x[MAX]; } cloud;
 
-/* What is timed: some use of a variant for n and m things. */
+/* What is timed: a use of a variant with two sizes n and m. */
 typedef void some_use(const struct kernel_variant *variant, int n, int m);
 
 // ---- the processor
 
 // 10 n m operations on vectors, none of which waits for another
-#define OPERATIONS(name, target, width, operation)                                                   \
-    target static void name(int n, int m) {                                                          \
-        typedef double lanes __attribute__((vector_size(width * sizeof(double))));                   \
-        lanes a = 1.1 - (lanes){0}, b = 1.3 - (lanes){0};                                            \
-        for (long i = 0; i < (long)n * m; i++) {                                                     \
-            _Pragma("GCC unroll 10") for (int k = 0; k < 10; k++) {                                  \
-                const lanes result = a operation b;                                                  \
-                __asm__ volatile("" : "+x"(a), "+x"(b) : "x"(result)); /* it must not be left out */ \
-            }                                                                                        \
-        }                                                                                            \
+#define OPERATIONS(name, target, width, operation)                                                      \
+    target static void name(int n, int m) {                                                             \
+        typedef double lanes __attribute__((vector_size(width * sizeof(double))));                      \
+        lanes a = 1.1 - (lanes){0}, b = 1.3 - (lanes){0};                                               \
+        for (long i = 0; i < (long)n * m; i++) {                                                        \
+            _Pragma("GCC unroll 10") for (int k = 0; k < 10; k++) {                                     \
+                const lanes result = a operation b;                                                     \
+                __asm__ volatile("" : "+x"(a), "+x"(b) : "x"(result)); /* must not be optimised away */ \
+            }                                                                                           \
+        }                                                                                               \
     }
 OPERATIONS(products_avx512, __attribute__((target("avx512f"))), 8, *)
 OPERATIONS(products_avx2, __attribute__((target("avx2"))), 4, *)
@@ -86,7 +86,7 @@ static void tiles(const struct kernel_variant *variant, int n, int m) {
             cloud.u + first, cloud.v + first,
         };
     }
-    variant->mutual(&tile[0], &tile[1], 0.04);
+    variant->pairwise(&tile[0], &tile[1], 0.04);
 }
 
 // ---- whole wakes
@@ -141,7 +141,7 @@ static void print_variants(void) {
         {"64 with 64", tiles, 64, 64, 2 * 64 * 64},
     };
     const struct kernel_variant *variant;
-    printf("%-32s", "1e9 per processor second");
+    printf("%-32s", "1e9 per CPU second");
     for (int i = 0; (variant = kernel_variant(i)); i++) printf(" %9s", variant->name);
     printf("\n");
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
@@ -170,7 +170,7 @@ static void print_threads(void) {
 }
 
 int main(void) {
-    for (int i = 0; i < MOST; i++) {
+    for (int i = 0; i < MAX; i++) {
         cloud.x[i] = rand() / (double)RAND_MAX;
         cloud.y[i] = rand() / (double)RAND_MAX;
         cloud.circulation[i] = rand() / (double)RAND_MAX - 0.5;

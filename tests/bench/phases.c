@@ -1,17 +1,17 @@
 /* phases.c: where the time of a run goes, and how it grows with the school. `make bench` prints it.
  *
- *   phases CASES           single_free and diamond whole, with one thread and with two: events and simulated time per
- *                          second of wall clock, the ratio to the floor, the parts of the time
+ *   phases CASES           single_free and diamond, with one thread and with two: time per event, simulated time per
+ *                          second of wall clock, the ratio to the lower bound, the parts of the time
  *   phases CASES --schools schools of 1, 4, 16, 64 and 256 fish with full wakes: time and memory per event
  *
- * CASES is the folder of the cases. The linker sends the calls of the functions below through a clock: nothing of this is
- * in the program. The floor is the time that the interactions of an event take which no method of this accuracy leaves
- * out, at the best rate that this machine showed in the same run, on all cores used:
+ * CASES is the folder of the cases. The linker wraps the functions below in a clock, which is not in the program. The
+ * lower bound is the time of the interactions of an event that no method of this accuracy can avoid, at the best rate
+ * that this machine reached in the same run, on all cores used:
  *
  *     wake on wake (n^2), sheets on wake (n M), wake on bodies once (n P), sheets on bodies at every residual (P M)
  *
- * with n vortices, M bound vortices and P points of bodies of the whole school. Direct sums: a school that is summed by
- * a tree can go below it. */
+ * with n vortices, M bound vortices and P points of bodies of the whole school, all by direct sums: a school that is
+ * summed by the tree can be faster. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -36,23 +36,23 @@ static double now(void) {
     return read_clock(CLOCK_MONOTONIC);
 }
 
-/* Of all threads together: what a busy machine stretches least. */
-static double processor_time(void) {
+/* Of all threads together: a busy machine changes it least. */
+static double cpu_time(void) {
     return read_clock(CLOCK_PROCESS_CPUTIME_ID);
 }
 
 // ---- the clock
 
-enum { WAKE, FIELD, RESIDUAL, JACOBIAN, LINEAR, MEASURE, OUTPUT, N_PHASES };
-static const char *const phase_name[N_PHASES] = {"wake",   "field",   "residual", "Jacobian",
-                                                 "linear", "measure", "output"};
+enum { WAKE, INTERPOLATION, RESIDUAL, JACOBIAN, LINEAR, DIAGNOSTICS, OUTPUT, N_PHASES };
+static const char *const phase_name[N_PHASES] = {"wake",   "interpolation", "residual", "Jacobian",
+                                                 "linear", "diagnostics",   "output"};
 static struct {
     double time[N_PHASES];
-    double interactions; /* of the floor */
+    double interactions; /* of the lower bound */
     struct integrator_counts counts;
 } seen;
 
-static void left(int phase, double since) {
+static void add_time(int phase, double since) {
     seen.time[phase] += now() - since;
 }
 
@@ -62,10 +62,10 @@ static void left(int phase, double since) {
     enum status __wrap_##name parameters {                  \
         const double since = now();                         \
         const enum status status = __real_##name arguments; \
-        left(phase, since);                                 \
+        add_time(phase, since);                             \
         return status;                                      \
     }
-TIMED(FIELD, flow_interpolate, (struct flow * flow, const struct state *state), (flow, state))
+TIMED(INTERPOLATION, flow_interpolate, (struct flow * flow, const struct state *state), (flow, state))
 TIMED(JACOBIAN, residual_jacobian,
       (struct residual * residual, double t, double cj, const double *y, struct jacobian *jacobian),
       (residual, t, cj, y, jacobian))
@@ -77,7 +77,7 @@ enum status __wrap_flow_at_wake(struct flow *flow, const struct state *state);
 enum status __wrap_flow_at_wake(struct flow *flow, const struct state *state) {
     const double since = now(), n = flow->released.n;
     const enum status status = __real_flow_at_wake(flow, state);
-    left(WAKE, since);
+    add_time(WAKE, since);
     seen.interactions += n * (n + flow->sheet.n + flow->n_points);
     return status;
 }
@@ -90,7 +90,7 @@ enum status __wrap_residual_evaluate(struct residual *residual, double t, const 
                                      double *value) {
     const double since = now();
     const enum status status = __real_residual_evaluate(residual, t, y, yp, value);
-    left(RESIDUAL, since);
+    add_time(RESIDUAL, since);
     seen.interactions += (double)residual->flow->n_points * residual->flow->sheet.n;
     return status;
 }
@@ -103,7 +103,7 @@ void __wrap_diagnostics_step(const struct residual *residual, struct state *stat
                              const double *yp) {
     const double since = now();
     __real_diagnostics_step(residual, state, t, y, yp);
-    left(MEASURE, since);
+    add_time(DIAGNOSTICS, since);
 }
 
 enum status __real_result_file_row(struct result_file *result, const struct result_row *row);
@@ -111,7 +111,7 @@ enum status __wrap_result_file_row(struct result_file *result, const struct resu
 enum status __wrap_result_file_row(struct result_file *result, const struct result_row *row) {
     const double since = now();
     const enum status status = __real_result_file_row(result, row);
-    left(OUTPUT, since);
+    add_time(OUTPUT, since);
     seen.counts = *row->counts;
     return status;
 }
@@ -157,23 +157,23 @@ static void read_case(struct case_values *values, const char *text, int threads)
 }
 
 static void print_head(void) {
-    printf("%-12s %7s %8s %8s %8s %8s %8s %7s ", "", "threads", "vortices", "wall ms", "cpu ms", "x real", "x floor",
+    printf("%-12s %7s %8s %8s %8s %8s %8s %7s ", "", "threads", "vortices", "wall ms", "cpu ms", "x real", "x bound",
            "memory");
-    for (int i = 0; i < N_PHASES; i++) printf(" %8s", phase_name[i]);
+    for (int i = 0; i < N_PHASES; i++) printf(" %13s", phase_name[i]);
     printf(" %8s\n%-12s %7s %8s %8s %8s %8s %8s %7s  %% of the time\n", "rest", "", "", "", "/event", "/event", "time",
            "", "MB");
 }
 
 static void print_row(const char *name, int threads, int n_vortices, long n_events, double interval, double wall,
-                      double processor) {
+                      double cpu) {
     const long cores = sysconf(_SC_NPROCESSORS_ONLN);
     const double rate = best_rate() * (double)(threads < cores ? threads : cores);
     printf("%-12s %7d %8d %8.3f %8.3f %8.3g %8.2f %7.0f ", name, threads, n_vortices, 1e3 * wall / (double)n_events,
-           1e3 * processor / (double)n_events, (double)n_events * interval / wall, wall * rate / seen.interactions,
+           1e3 * cpu / (double)n_events, (double)n_events * interval / wall, wall * rate / seen.interactions,
            peak_memory());
     double rest = 1;
     for (int i = 0; i < N_PHASES; i++) {
-        printf(" %8.1f", 100 * seen.time[i] / wall);
+        printf(" %13.1f", 100 * seen.time[i] / wall);
         rest -= seen.time[i] / wall;
     }
     printf(" %8.1f\n", 100 * rest);
@@ -192,13 +192,12 @@ static void whole_run(const char *cases, const char *name, int threads) {
     must(case_read(&values, path, 1, assignments));
     memset(&seen, 0, sizeof seen);
     const struct simulate_options options = {.path = "phases.nc", .overwrite = 1, .command = "phases"};
-    const double since = now(), processor_since = processor_time();
+    const double since = now(), cpu_since = cpu_time();
     must(simulate_run(&values, &options));
-    const double wall = now() - since, processor = processor_time() - processor_since,
-                 interval = values.school.shedding_interval;
+    const double wall = now() - since, cpu = cpu_time() - cpu_since, interval = values.school.shedding_interval;
     const long n_events = lround(values.time.end / interval);
     const int n_vortices = values.school.n_fish * (int)fmin(values.school.wake.lifetime / interval, (double)n_events);
-    print_row(name, threads, n_vortices, n_events, interval, wall, processor);
+    print_row(name, threads, n_vortices, n_events, interval, wall, cpu);
     case_free(&values);
     remove("phases.nc");
 }
@@ -234,13 +233,13 @@ static double school(int n_fish, int threads) {
     const long full = lround(values.school.wake.lifetime / values.school.shedding_interval);
     while (simulation->state->event < full) must(simulate_step(simulation));
     memset(&seen, 0, sizeof seen);
-    const double since = now(), processor_since = processor_time();
+    const double since = now(), cpu_since = cpu_time();
     for (int i = 0; i < EVENTS; i++) must(simulate_step(simulation));
-    const double wall = now() - since, processor = processor_time() - processor_since;
+    const double wall = now() - since, cpu = cpu_time() - cpu_since;
     char name[32];
     snprintf(name, sizeof name, "%d fish", n_fish);
     print_row(name, threads, simulation->residual->flow->released.n, EVENTS, values.school.shedding_interval, wall,
-              processor);
+              cpu);
     simulate_free(simulation);
     case_free(&values);
     return 1e3 * wall / EVENTS;

@@ -141,8 +141,8 @@ static struct near_field_error ratios(double speed, double acceleration, double 
 static void errors_are_below_ten_estimates_and_not_far_below(void **state) {
     (void)state;
     // A single pole reaches 1/sqrt(2) of the bound, and less because the bound lets vortices come closer in the
-    // interval than they are at its beginning. The motions: all terms matter; acceleration matters most; half of the way to the
-    // point is covered.
+    // interval than they are at its beginning. The motions: all terms matter; acceleration matters most; half of the
+    // way to the point is covered.
     const struct {
         double speed, acceleration, smoothing, end, least;
     } rows[] = {{1, 1.3, 0, 1, 0.6}, {0, 50, 0, 1, 0.6},  {1, 1.3, 0, 0, 0.6}, {1, 50, 0, 0, 0.3},

@@ -149,7 +149,7 @@ static void all_variants_give_the_same_bits(void **state) {
             // the upper halves of 7 and 8 are those of the second tile
             const struct kernel_tile a = {32, x, y, circulation, got[7], got[8]};
             const struct kernel_tile b = {16, source_x, source_y, circulation + 32, got[7] + 32, got[8] + 32};
-            variant->mutual(&a, &b, sources.square);
+            variant->pairwise(&a, &b, sources.square);
             if (k == 0) memcpy(want, got, sizeof want);
             assert_memory_equal(got, want, sizeof want);
             n_variants++;
@@ -158,7 +158,7 @@ static void all_variants_give_the_same_bits(void **state) {
     }
 }
 
-static void a_variant_is_there_on_any_processor(void **state) {
+static void every_processor_has_a_variant(void **state) {
     (void)state;
     int n = 0;
     while (kernel_variant(n)) n++;
@@ -166,7 +166,7 @@ static void a_variant_is_there_on_any_processor(void **state) {
     assert_null(kernel_variant(n + 1));
 }
 
-static void a_tile_and_another_feel_each_other(void **state) {
+static void two_tiles_induce_velocities_at_each_other(void **state) {
     (void)state;
     enum { N_A = 16, N_B = 32 };
     double u[N_A] = {0}, v[N_A] = {0}, back_u[N_B] = {0}, back_v[N_B] = {0};
@@ -201,7 +201,7 @@ static void a_tile_may_be_as_large_as_promised(void **state) {
     const struct kernel_tile b = {KERNEL_TILE,     x + KERNEL_TILE, y + KERNEL_TILE,
                                   g + KERNEL_TILE, u + KERNEL_TILE, v + KERNEL_TILE};
     kernel_add_pairwise(&a, &b, 0.1);
-    // neither tile feels itself, so the impulse of both together is what is left: none
+    // neither tile acts on itself, so the impulse of both together is zero
     double sum_u = 0, sum_v = 0, size = 0;
     for (int i = 0; i < 2 * KERNEL_TILE; i++) {
         sum_u += g[i] * u[i];
@@ -285,12 +285,12 @@ static void unit_sources_at_many_targets_have_the_bits_of_one_by_one(void **stat
 
 static void product_with_a_matrix_adds_column_after_column(void **state) {
     (void)state;
-    enum { ROWS = 19, MOST = 9 };
+    enum { ROWS = 19, MAX = 9 };
     struct setup random = {.seed = 5};
-    double matrix[ROWS * MOST], vector[MOST];
-    for (int i = 0; i < ROWS * MOST; i++) matrix[i] = school_random(&random);
-    for (int i = 0; i < MOST; i++) vector[i] = school_random(&random);
-    for (int n = 0; n <= MOST; n++) {
+    double matrix[ROWS * MAX], vector[MAX];
+    for (int i = 0; i < ROWS * MAX; i++) matrix[i] = school_random(&random);
+    for (int i = 0; i < MAX; i++) vector[i] = school_random(&random);
+    for (int n = 0; n <= MAX; n++) {
         double got[ROWS], want[ROWS];
         for (int r = 0; r < ROWS; r++) got[r] = want[r] = 1;
         for (int c = 0; c < n; c++) {
@@ -320,8 +320,8 @@ int main(void) {
         cmocka_unit_test(velocity_has_the_promised_bits_for_any_number_of_targets),
         cmocka_unit_test(whole_blocks_do_not_depend_on_other_targets),
         cmocka_unit_test(all_variants_give_the_same_bits),
-        cmocka_unit_test(a_variant_is_there_on_any_processor),
-        cmocka_unit_test(a_tile_and_another_feel_each_other),
+        cmocka_unit_test(every_processor_has_a_variant),
+        cmocka_unit_test(two_tiles_induce_velocities_at_each_other),
         cmocka_unit_test(a_tile_may_be_as_large_as_promised),
         cmocka_unit_test(velocity_is_added_to_what_is_there_and_writes_nothing_else),
         cmocka_unit_test(gradient_is_that_of_the_velocity),

@@ -1,4 +1,4 @@
-/* test_mutual.c: the pairs of tiles against every vortex at every other. */
+/* test_pairwise.c: the pairs of tiles against every vortex at every other. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -15,14 +15,14 @@ void *__wrap_malloc(size_t size) {
     return n_until_failure < 0 || n_until_failure-- > 0 ? __real_malloc(size) : NULL;
 }
 
-enum { MOST = 3000, MOST_GROUPS = 4 };
+enum { MAX = 3000, MAX_GROUPS = 4 };
 
-static struct { double x[MOST], y[MOST], circulation[MOST]; } cloud;
+static struct { double x[MAX], y[MAX], circulation[MAX]; } cloud;
 
 static int scatter(void **state) {
     (void)state;
     struct setup random = {.seed = 5};
-    for (int i = 0; i < MOST; i++) {
+    for (int i = 0; i < MAX; i++) {
         cloud.x[i] = 3 * school_random(&random);
         cloud.y[i] = school_random(&random);
         cloud.circulation[i] = school_random(&random);
@@ -36,7 +36,7 @@ static int scatter(void **state) {
     return 0;
 }
 
-// vortices of one smoothing that follow each other
+// consecutive vortices of one smoothing
 struct stretch {
     int n;
     double smoothing;
@@ -59,9 +59,9 @@ static struct vortices grouped(int n_groups, const struct stretch *stretch, stru
     return vortices;
 }
 
-// added to zero; the caller frees u, and v is behind it
+// added to zero; the caller frees u, and v follows it
 static double *velocity(int n_groups, const struct stretch *stretch, int threads) {
-    struct vortex_group group[MOST_GROUPS];
+    struct vortex_group group[MAX_GROUPS];
     const struct vortices vortices = grouped(n_groups, stretch, group);
     double *const u = calloc(2 * (size_t)vortices.n + 1, sizeof *u);
     assert_non_null(u);
@@ -100,13 +100,13 @@ static void velocities_are_those_of_all_vortices_at_all_others(void **state) {
 
 static void every_group_has_its_own_smoothing(void **state) {
     (void)state;
-    const struct stretch groups[][MOST_GROUPS] = {
+    const struct stretch groups[][MAX_GROUPS] = {
         {{30, 0.1}, {0, 0.5}, {200, 0.2}, {1, 0.3}},    // all different, one empty, one alone
         {{150, 0.1}, {70, 0.2}, {33, 0.1}, {19, 0.2}},  // two smoothings that alternate
         {{100, 0.1}, {100, 0.1}, {100, 0.1}, {9, 0}},   // one for all but a few
         {{0, 0.1}, {0, 0.1}, {0, 0.2}, {0, 0.3}},       // no vortex at all
     };
-    for (size_t k = 0; k < sizeof groups / sizeof *groups; k++) compare(MOST_GROUPS, groups[k]);
+    for (size_t k = 0; k < sizeof groups / sizeof *groups; k++) compare(MAX_GROUPS, groups[k]);
 }
 
 static void groups_of_one_smoothing_have_the_bits_of_one_group(void **state) {
@@ -118,7 +118,7 @@ static void groups_of_one_smoothing_have_the_bits_of_one_group(void **state) {
     free(b);
 }
 
-static void vortices_of_one_smoothing_push_each_other_equally(void **state) {
+static void the_impulse_of_vortices_of_one_smoothing_is_zero(void **state) {
     (void)state;
     const int n = 1000;
     double *const u = velocity(1, &(struct stretch){n, 0.1}, 1), *const v = u + n;
@@ -196,7 +196,7 @@ int main(void) {
         cmocka_unit_test(velocities_are_those_of_all_vortices_at_all_others),
         cmocka_unit_test(every_group_has_its_own_smoothing),
         cmocka_unit_test(groups_of_one_smoothing_have_the_bits_of_one_group),
-        cmocka_unit_test(vortices_of_one_smoothing_push_each_other_equally),
+        cmocka_unit_test(the_impulse_of_vortices_of_one_smoothing_is_zero),
         cmocka_unit_test(threads_change_no_bit),
         cmocka_unit_test(velocity_is_added_to_what_is_there),
         cmocka_unit_test(without_memory_nothing_is_added),

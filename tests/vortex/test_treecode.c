@@ -1,4 +1,4 @@
-/* test_tree.c: the tree against direct sums, on wakes and on what could go wrong. */
+/* test_treecode.c: the tree against direct sums, on wakes and on difficult distributions. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -7,9 +7,9 @@
 #include "vortex/kernel.h"
 #include "vortex/treecode.h"
 
-enum { MOST = 6400 };
+enum { MAX = 6400 };
 
-static double x[MOST], y[MOST], circulation[MOST];
+static double x[MAX], y[MAX], circulation[MAX];
 
 // ---- where vortices lie ----
 
@@ -32,7 +32,7 @@ static void square(int i) {
     put(i, at_x, 30 * random_number(), random_number() - 0.5);
 }
 
-// wakes of 100 vortices, 2 lengths long, behind fish 1.5 lengths apart
+// wakes of 100 vortices, 2 lengths long, of fish 1.5 lengths apart
 static void strips(int i) {
     const int fish = i / 100;
     const double along = 0.02 * (i % 100);
@@ -50,7 +50,7 @@ static void line(int i) {
     put(i, 30 * random_number(), 7, 1);
 }
 
-// Heaps of 32, so that the points of a box lie at its ends: the worst for series.
+// Heaps of 32, so that the points of a box lie at its ends: the worst for expansions.
 static void heaps(int i) {
     const double at_x = i / 32 % 12 + 1e-3 * random_number();
     put(i, at_x, i / 384 + 1e-3 * random_number(), 1);
@@ -81,10 +81,10 @@ static struct treecode *build(int n, double smoothing, double tolerance) {
 // ---- errors ----
 
 struct errors {
-    double velocity, gradient; /* the greatest ones, in units of A and of the same sum for the gradient */
+    double velocity, gradient; /* the largest ones, in units of A and of the same sum for the gradient */
 };
 
-// not fmax, which forgets what is not a number
+// not fmax, which ignores NaN
 static void keep_worse(double *worst, double error) {
     if (!(error <= *worst)) *worst = error;
 }
@@ -92,10 +92,10 @@ static void keep_worse(double *worst, double error) {
 // at every seventh target
 static struct errors errors(int n, double smoothing, double tolerance, int n_targets, const double *at_x,
                             const double *at_y) {
-    static double got[5][MOST], want[5];
+    static double got[5][MAX], want[5];
     memset(got, 0, sizeof got);
     struct treecode *const tree = build(n, smoothing, tolerance);
-    double u[MOST] = {0}, v[MOST] = {0};
+    double u[MAX] = {0}, v[MAX] = {0};
     assert_int_equal(treecode_add_velocity(tree, n_targets, at_x, at_y, 1, u, v), STATUS_OK);
     assert_int_equal(treecode_add_gradient(tree, n_targets, at_x, at_y, 1, got[0], got[1], got[2], got[3], got[4]),
                      STATUS_OK);
@@ -143,7 +143,7 @@ static void errors_are_below_the_tolerance_and_not_far_below(void **state) {
     double worst[N_TOLERANCES] = {0};
     for (int c = 0; c < N_CLOUDS; c++) {
         const struct cloud *const cloud = &clouds[c];
-        struct errors most = {0};  // in tolerances
+        struct errors max = {0};  // in tolerances
         fill(cloud->n, cloud->place);
         for (int t = 0; t < N_TOLERANCES; t++) {
             const struct errors now = errors(cloud->n, cloud->smoothing, tolerances[t], cloud->n, x, y);
@@ -151,13 +151,13 @@ static void errors_are_below_the_tolerance_and_not_far_below(void **state) {
             NEAR(now.velocity, 0, tolerances[t] + 1e-14, 0);
             NEAR(now.gradient, 0, 50 * tolerances[t] + 1e-13, 0);
             keep_worse(&worst[t], now.velocity);
-            keep_worse(&most.velocity, now.velocity / tolerances[t]);
-            keep_worse(&most.gradient, now.gradient / tolerances[t]);
+            keep_worse(&max.velocity, now.velocity / tolerances[t]);
+            keep_worse(&max.gradient, now.gradient / tolerances[t]);
         }
         print_message("%-9s smoothing %-5g errors in tolerances: velocity %.3f, gradient %.3f\n", cloud->name,
-                      cloud->smoothing, most.velocity, most.gradient);
+                      cloud->smoothing, max.velocity, max.gradient);
     }
-    // the degrees are not higher than the worst of these clouds needs
+    // the degrees are no higher than the worst of these clouds needs
     for (int t = 0; t < N_TOLERANCES; t++) assert_true(worst[t] > tolerances[t] / 50);
 }
 
@@ -220,14 +220,14 @@ static void a_vortex_adds_nothing_at_itself(void **state) {
 
 static void threads_do_not_change_a_bit(void **state) {
     (void)state;
-    static double one[5][MOST], more[5][MOST];
-    fill(MOST, strips);
-    struct treecode *const tree = build(MOST, 0.2, 1e-8);
+    static double one[5][MAX], more[5][MAX];
+    fill(MAX, strips);
+    struct treecode *const tree = build(MAX, 0.2, 1e-8);
     memset(one, 0, sizeof one);
-    assert_int_equal(treecode_add_gradient(tree, MOST, x, y, 1, one[0], one[1], one[2], one[3], one[4]), STATUS_OK);
+    assert_int_equal(treecode_add_gradient(tree, MAX, x, y, 1, one[0], one[1], one[2], one[3], one[4]), STATUS_OK);
     for (int threads = 2; threads < 5; threads++) {
         memset(more, 0, sizeof more);
-        assert_int_equal(treecode_add_gradient(tree, MOST, x, y, threads, more[0], more[1], more[2], more[3], more[4]),
+        assert_int_equal(treecode_add_gradient(tree, MAX, x, y, threads, more[0], more[1], more[2], more[3], more[4]),
                          STATUS_OK);
         assert_memory_equal(more, one, sizeof one);
     }
@@ -236,7 +236,7 @@ static void threads_do_not_change_a_bit(void **state) {
 
 static void a_tree_may_be_built_again(void **state) {
     (void)state;
-    static double fresh[2][MOST], again[2][MOST];
+    static double fresh[2][MAX], again[2][MAX];
     memset(fresh, 0, sizeof fresh);
     memset(again, 0, sizeof again);
     fill(2000, square);
@@ -266,7 +266,7 @@ static enum status make_and_add(double *u, double *v) {
 
 static void without_memory_nothing_is_added_and_nothing_leaks(void **state) {
     (void)state;
-    static double u[MOST], v[MOST];
+    static double u[MAX], v[MAX];
     memset(u, 0, sizeof u);
     memset(v, 0, sizeof v);
     fill(3000, square);
@@ -287,7 +287,7 @@ static void without_memory_nothing_is_added_and_nothing_leaks(void **state) {
 
 static void a_second_sum_needs_no_more_memory(void **state) {
     (void)state;
-    static double u[MOST], v[MOST];
+    static double u[MAX], v[MAX];
     fill(3000, square);
     struct treecode *const tree = build(3000, 0.2, 1e-8);
     assert_int_equal(treecode_add_velocity(tree, 3000, x, y, 1, u, v), STATUS_OK);
@@ -297,15 +297,15 @@ static void a_second_sum_needs_no_more_memory(void **state) {
     n_until_failure = -1;
     assert_int_equal(built, STATUS_OK);
     assert_int_equal(added, STATUS_OK);
-    // one that needs more and does not get it leaves an empty tree, which can be filled later
-    fill(MOST, strips);
+    // a call that needs more memory and fails leaves an empty tree, which can be filled later
+    fill(MAX, strips);
     n_until_failure = 0;
-    assert_int_equal(treecode_build(tree, MOST, x, y, circulation, 0.2, 1e-8), STATUS_MEMORY);
+    assert_int_equal(treecode_build(tree, MAX, x, y, circulation, 0.2, 1e-8), STATUS_MEMORY);
     n_until_failure = -1;
     const double before = u[0];
     assert_int_equal(treecode_add_velocity(tree, 3000, x, y, 1, u, v), STATUS_OK);
     NEAR(u[0], before, 0, 0);
-    assert_int_equal(treecode_build(tree, MOST, x, y, circulation, 0.2, 1e-8), STATUS_OK);
+    assert_int_equal(treecode_build(tree, MAX, x, y, circulation, 0.2, 1e-8), STATUS_OK);
     assert_int_equal(treecode_add_velocity(tree, 3000, x, y, 1, u, v), STATUS_OK);
     assert_true(u[0] != before);
     treecode_free(tree);

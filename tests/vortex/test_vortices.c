@@ -1,4 +1,4 @@
-/* test_vortices.c: groups of one smoothing, and what they induce. */
+/* test_vortices.c: groups of one smoothing, and the velocity that they induce. */
 #include <stdlib.h>
 
 #include "near.h"
@@ -44,7 +44,7 @@ static void neighbours_of_one_smoothing_are_one_group(void **state) {
     vortices_free(&vortices);
 }
 
-static void values_stay_when_the_room_grows(void **state) {
+static void values_are_kept_when_the_capacity_grows(void **state) {
     (void)state;
     struct vortices vortices;
     make(&vortices);
@@ -86,7 +86,7 @@ static void a_range_induces_what_its_vortices_do_one_by_one(void **state) {
     vortices_free(&vortices);
 }
 
-static void a_part_of_the_targets_is_theirs(void **state) {
+static void a_range_of_the_targets_points_into_all(void **state) {
     (void)state;
     double value[7][4] = {{0}};
     const struct induced all = {4, value[0], value[1], value[2], value[3], value[4], value[5], value[6]};
@@ -101,9 +101,9 @@ static void a_part_of_the_targets_is_theirs(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(neighbours_of_one_smoothing_are_one_group),
-        cmocka_unit_test(values_stay_when_the_room_grows),
+        cmocka_unit_test(values_are_kept_when_the_capacity_grows),
         cmocka_unit_test(a_range_induces_what_its_vortices_do_one_by_one),
-        cmocka_unit_test(a_part_of_the_targets_is_theirs),
+        cmocka_unit_test(a_range_of_the_targets_points_into_all),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

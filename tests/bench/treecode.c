@@ -1,9 +1,11 @@
-/* bench/tree.c: the tree against the direct sum of kernel.h: time, error, memory. `make bench`; the tables of
- * doc/performance.md, section "Fast summation".
+/* treecode.c: the tree against the direct sum of kernel.h: time, error, memory. `make bench`; the tables of
+ * doc/performance.md, section "Fast multipole sums".
  *
- * Wakes of 200 vortices, 2 lengths long, behind fish 1.5 lengths apart in a square school; lengths are those of a fish.
- * Times are the least of several runs, ms: processor time on one core, wall clock on more. A tree's time is that of
+ * Wakes of 200 vortices, 2 lengths long, of fish 1.5 lengths apart in a square school; lengths are those of a fish.
+ * Times are the shortest of several runs, ms: CPU time on one core, wall clock on more. A tree's time is that of
  * treecode_build and the sum together. The direct sum is timed on at most 2048 targets and scaled. */
+#include "vortex/treecode.h"
+
 #include <malloc.h>
 #include <math.h>
 #include <stdint.h>
@@ -13,7 +15,6 @@
 #include <time.h>
 
 #include "vortex/kernel.h"
-#include "vortex/treecode.h"
 
 enum { REPEAT = 7, SAMPLE = 2048 };
 
@@ -24,8 +25,8 @@ struct points {
 
 struct result {
     double direct, alone, shared; /* ms */
-    double error, relative;       /* greatest error: of the greatest velocity; in units of A, treecode.h */
-    double gradient;              /* greatest error of the gradient of the greatest one; 0 without */
+    double error, relative;       /* largest error: relative to the largest velocity; in units of A, treecode.h */
+    double gradient;              /* largest error of the gradient, relative to the largest one; 0 without */
     double megabytes;             /* of the tree */
 };
 
@@ -43,7 +44,7 @@ static double milliseconds(clockid_t clock) {
 }
 
 static void die(const char *what) {
-    fprintf(stderr, "bench/tree: %s\n", what);
+    fprintf(stderr, "treecode: %s\n", what);
     exit(1);
 }
 
