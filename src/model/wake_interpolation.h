@@ -32,14 +32,14 @@ enum status wake_interpolation_create(struct wake_interpolation **interpolation,
                                       const struct range *points);
 void wake_interpolation_free(struct wake_interpolation *interpolation);
 
-/* Interpolate the interval that begins with the event at time t, for points that are there now; wakes: of each fish. The estimated error of the
- * velocity (near_field.h) stays below the school's wake tolerance times one length per beat of the fish. Fails with
- * STATUS_MEMORY: it is valid for no fish then. */
+/* Interpolate the interval that begins with the event at time t, for points that are there now; wakes: of each fish.
+ * The estimated error of the velocity (near_field.h) stays below the school's wake tolerance times one length per beat
+ * of the fish. Fails with STATUS_MEMORY: it is valid for no fish then. */
 enum status wake_interpolation_build(struct wake_interpolation *interpolation, const struct wake *wakes, double t,
                                      const struct wake_interpolation_points *points);
 
-/* The released vortices of all wakes (n_fish) at the time tau after the event at time t; wake: those of each fish (n_fish).
- * Fails with STATUS_MEMORY. */
+/* The released vortices of all wakes (n_fish) at the time tau after the event at time t; wake: those of each fish
+ * (n_fish). Fails with STATUS_MEMORY. */
 enum status wake_interpolation_released(const struct school *school, const struct wake *wakes, double t, double tau,
                                         struct vortices *released, struct range *wake);
 

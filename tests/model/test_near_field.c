@@ -55,7 +55,7 @@ static void divide(double mean, double smoothing, double tolerance) {
     scene.bounds = near_field_bound_wake(wake, school->interval, start, end);
     if (scene.one_by_one) scene.bounds.strength = INFINITY;
     const struct near_field_input input = {.school = school,
-                                           .state = scene.setup.state,
+                                           .wakes = wake,
                                            .points = &point,
                                            .motion = motion,
                                            .bounds = &scene.bounds,
