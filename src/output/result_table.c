@@ -201,7 +201,7 @@ const struct result_variable result_table[] = {
     {"driving_power",         {TIME, FISH},           RESULT_REAL,    "W",      IN_FISH_DIAGNOSTICS(driving_power),
      .long_name = "power of the forces that hold prescribed nodes to their motion, and of loads"},
     {"energy_audit",          {TIME, FISH},           RESULT_REAL,    "J",      IN_FISH_DIAGNOSTICS(energy_audit),
-     .long_name = "energy balance: change of energy minus the integral of all powers, which is the error of integration"},
+     .long_name = "energy balance: change of energy minus the integral of all powers, an error of integration"},
     {"actuation_work",        {TIME, FISH},           RESULT_REAL,    "J",      IN_FISH_DIAGNOSTICS(actuation_work),
      .long_name = "work of the muscle on the body since the start"},
     {"cost_of_transport",     {TIME, FISH},           RESULT_REAL,    "m s-2",  IN_FISH_DIAGNOSTICS(cost_of_transport),
