@@ -3,8 +3,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "case/case.h"
 #include "near.h"
-#include "study/study.h"
+#include "study/member_file.h"
+#include "study/study_expect.h"
 
 enum { N_MEMBERS = 3, N_FISH = 2 };
 
