@@ -193,7 +193,7 @@ def main():
     arguments = parser.parse_args()
     table = read_table()
     mutants = [mutant for mutant in table if not arguments.ID or mutant.name in arguments.ID]
-    wrong = list(faults(mutants)) + [f"{ID}: no such mutant" for ID in arguments.ID if ID not in [m.name for m in table]]
+    wrong = list(faults(table)) + [f"{ID}: no such mutant" for ID in arguments.ID if ID not in [m.name for m in table]]
     if wrong:
         give_up(wrong)
 
