@@ -9,7 +9,7 @@
 
 #include "case/case_table.h"
 
-static const double most_events = 1e9, most_vortices = 1e7 /* of one fish */;
+static const double max_events = 1e9, max_vortices = 1e7 /* of one fish */;
 
 /* The case that is checked, and where complaints go. fish: the one under check. */
 struct check {
@@ -54,9 +54,9 @@ static void check_time(const struct check *check) {
     const struct case_time *const time = &check->values->time;
     const double shedding = check->values->school.shedding_interval;
     static const char interval[] = "time.shedding_interval";
-    if (time->end / shedding > most_events) {
+    if (time->end / shedding > max_events) {
         complain(check, "time.end", "%g events; the most is %g: raise time.shedding_interval", time->end / shedding,
-                 most_events);
+                 max_events);
         return;
     }
     check_multiple(check, "time.end", time->end, interval, shedding);
@@ -95,9 +95,8 @@ static void check_wake(const struct check *check) {
         complain(check, "wake.lifetime", "%g s is less than time.shedding_interval, %g s", wake->lifetime, interval);
     }
     const double n_vortices = fmin(wake->lifetime, check->values->time.end) / interval;
-    if (n_vortices > most_vortices) {
-        complain(check, "wake.lifetime", "%g vortices in the wake of a fish; the most is %g", n_vortices,
-                 most_vortices);
+    if (n_vortices > max_vortices) {
+        complain(check, "wake.lifetime", "%g vortices in the wake of a fish; the most is %g", n_vortices, max_vortices);
     }
 }
 

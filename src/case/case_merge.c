@@ -12,7 +12,7 @@
 #include "case/case_path.h"
 #include "case/case_table.h"
 
-enum { MOST_INCLUDES = 64, MOST_INCLUDE_DEPTH = 8 };
+enum { MAX_INCLUDES = 64, MAX_INCLUDE_DEPTH = 8 };
 
 /* The files that are being read, innermost first: an include that is among them includes itself. */
 struct open_file {
@@ -133,9 +133,9 @@ static enum status include_entry(struct case_tree *tree, const struct yaml_node 
         yaml_errors_add(errors, node->mark, "include: expects a list of file names, as in [water.yaml]");
         return STATUS_OK;
     }
-    if (by->depth == MOST_INCLUDE_DEPTH || tree->n_sources > MOST_INCLUDES) {
+    if (by->depth == MAX_INCLUDE_DEPTH || tree->n_sources > MAX_INCLUDES) {
         yaml_errors_add(errors, node->mark, "include: more than %d files, or files that include each other %d deep",
-                        MOST_INCLUDES, MOST_INCLUDE_DEPTH);
+                        MAX_INCLUDES, MAX_INCLUDE_DEPTH);
         return STATUS_OK;
     }
     struct text path = {0};

@@ -60,7 +60,7 @@ static void show_key(struct text *text, const struct key *key, const void *field
 static bool is_hidden(const struct key *key, const void *field) {
     if (!case_table_is_value(key)) return true;
     if (strcmp(key->path, "preset") == 0) return true;
-    if (key->type == TEXT) return !*(char *const *)field;
+    if (key->type == STRING) return !*(char *const *)field;
     return key->type == NUMBERS && ((const struct number_list *)field)->n == 0;
 }
 

@@ -1,4 +1,4 @@
-/* case_suggest.c: the key of the table with the least edit distance. */
+/* case_suggest.c: the key of the table with the smallest edit distance. */
 #include "case/case_suggest.h"
 
 #include <limits.h>
@@ -20,7 +20,7 @@ static char lower(char c) {
     return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
 }
 
-static int least(int a, int b) {
+static int smaller(int a, int b) {
     return a < b ? a : b;
 }
 
@@ -33,21 +33,21 @@ static int edit_distance(const char *a, size_t n, const char *b, size_t m) {
     for (size_t i = 1; i <= n; i++) {
         for (size_t j = 1; j <= m; j++) {
             const int change = d[i - 1][j - 1] + (lower(a[i - 1]) != lower(b[j - 1]));
-            d[i][j] = least(change, least(d[i - 1][j], d[i][j - 1]) + 1);
+            d[i][j] = smaller(change, smaller(d[i - 1][j], d[i][j - 1]) + 1);
             const bool is_swap =
                 i > 1 && j > 1 && lower(a[i - 1]) == lower(b[j - 2]) && lower(a[i - 2]) == lower(b[j - 1]);
-            if (is_swap) d[i][j] = least(d[i][j], d[i - 2][j - 2] + 1);
+            if (is_swap) d[i][j] = smaller(d[i][j], d[i - 2][j - 2] + 1);
         }
     }
     return d[n][m];
 }
 
-/* The least distance of a word to any of some words separated by blanks. */
+/* The smallest distance of a word to any of some words separated by blanks. */
 static int distance_to_any(const char *word, const char *words) {
     int distance = INT_MAX;
     while (words && *words) {
         const size_t length = strcspn(words, " ");
-        distance = least(distance, edit_distance(word, strlen(word), words, length));
+        distance = smaller(distance, edit_distance(word, strlen(word), words, length));
         words += length + strspn(words + length, " ");
     }
     return distance;
@@ -64,7 +64,7 @@ static void consider(struct candidate *best, const struct key *key, size_t end, 
 
     one.distance = edit_distance(word, strlen(word), one.word, strlen(one.word));
     const bool is_leaf = key->path[end] == '\0';
-    if (is_leaf) one.distance = least(one.distance, distance_to_any(word, key->synonyms));
+    if (is_leaf) one.distance = smaller(one.distance, distance_to_any(word, key->synonyms));
     const size_t here = strlen(section);
     if (strcmp(one.section, section) == 0) {
         one.remoteness = 0;
@@ -119,7 +119,7 @@ void case_suggest(struct text *hint, const char *section, const char *word, cons
         }
     }
     const int length = (int)strnlen(word, WORD);
-    const int allowed = length < 4 ? length / 2 : least(3, length / 3);
+    const int allowed = length < 4 ? length / 2 : smaller(3, length / 3);
     if (best.distance > allowed) {
         add_words(hint, section);
         return;

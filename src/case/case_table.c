@@ -8,24 +8,24 @@
 #define IN_FISH(field) offsetof(struct fish_parameters, field)
 #define ANY \
     { -INFINITY, INFINITY, false, false }
-#define FROM(least) \
-    { least, INFINITY, false, false }
-#define ABOVE(least) \
-    { least, INFINITY, true, false }
-#define FROM_TO(least, most) \
-    { least, most, false, false }
-#define BETWEEN(least, most) \
-    { least, most, true, true }
+#define FROM(min) \
+    { min, INFINITY, false, false }
+#define ABOVE(min) \
+    { min, INFINITY, true, false }
+#define FROM_TO(min, max) \
+    { min, max, false, false }
+#define BETWEEN(min, max) \
+    { min, max, true, true }
 #define WORDS(...)          \
     (const char *const[]) { \
         __VA_ARGS__, NULL   \
     }
 
-enum { NAME_BYTES = 200, FILE_BYTES = 4000, MOST_NODES = 10000, MOST_THREADS = 1024, MOST_STEPS = 1000000000 };
+enum { NAME_BYTES = 200, FILE_BYTES = 4000, MAX_NODES = 10000, MAX_THREADS = 1024, MAX_STEPS = 1000000000 };
 
 const struct key case_table[] = {
     {"format", INTEGER, AT(format), NULL, FROM_TO(1, 1), "", .meaning = "version of the case file format; write 1"},
-    {"name", TEXT, AT(name), NULL, FROM_TO(1, NAME_BYTES), "", .meaning = "name of the case",
+    {"name", STRING, AT(name), NULL, FROM_TO(1, NAME_BYTES), "", .meaning = "name of the case",
      .derived = "the file's name without its ending", .synonyms = "title case"},
     {"include", FILES, 0, "[]", FROM_TO(1, FILE_BYTES), "",
      .meaning = "case files read before this one, relative to it; what this file says is stronger",
@@ -102,14 +102,14 @@ const struct key case_table[] = {
      .meaning = "highest order of the implicit integrator"},
     {"solver.coupling_distance", REAL, AT(school.coupling_distance), "0.5", FROM(0), "",
      .meaning = "fish further apart than this, in lengths of the longest fish, are not coupled in the Jacobian"},
-    {"solver.threads", INTEGER, AT(school.threads), "1", FROM_TO(1, MOST_THREADS), "", .meaning = "threads used",
+    {"solver.threads", INTEGER, AT(school.threads), "1", FROM_TO(1, MAX_THREADS), "", .meaning = "threads used",
      .synonyms = "n_threads cores processes"},
     {"solver.step", REAL, AT(solver.step), "0", FROM(0), "s",
      .meaning = "fixed step of any integrator but ida; 0: adaptive, of an explicit one only", .synonyms = "step_size"},
-    {"solver.max_steps", INTEGER, AT(solver.max_steps), "10000", FROM_TO(1, MOST_STEPS), "",
+    {"solver.max_steps", INTEGER, AT(solver.max_steps), "10000", FROM_TO(1, MAX_STEPS), "",
      .meaning = "the solver gives up after this many steps between two events", .synonyms = "mxstep"},
 
-    {"output.file", TEXT, AT(output.file), NULL, FROM_TO(1, FILE_BYTES), "", .meaning = "NetCDF file to write",
+    {"output.file", STRING, AT(output.file), NULL, FROM_TO(1, FILE_BYTES), "", .meaning = "NetCDF file to write",
      .derived = "the name of the case with .nc", .synonyms = "path filename"},
     {"output.precision", CHOICE, AT(output.precision), "double", ANY, "", .meaning = "of the numbers in the file",
      .words = WORDS("double", "single")},
@@ -121,14 +121,14 @@ const struct key case_table[] = {
      .meaning = "defaults: {fish: {...}}: keys that every fish takes unless it has its own",
      .synonyms = "default common shared"},
 
-    {"fish.name", TEXT, IN_FISH(name), NULL, FROM_TO(1, NAME_BYTES), "",
+    {"fish.name", STRING, IN_FISH(name), NULL, FROM_TO(1, NAME_BYTES), "",
      .meaning = "name of the fish, its own in the school", .derived = "fish1, fish2, ..."},
     {"fish.length", REAL, IN_FISH(length), "1", ABOVE(0), "m", .meaning = "body length L", .synonyms = "size chord"},
-    {"fish.nodes", INTEGER, IN_FISH(nodes), "7", FROM_TO(4, MOST_NODES), "", .meaning = "nodes of the body",
+    {"fish.nodes", INTEGER, IN_FISH(nodes), "7", FROM_TO(4, MAX_NODES), "", .meaning = "nodes of the body",
      .synonyms = "n_nodes segments points resolution"},
-    {"fish.reference_nodes", INTEGER, IN_FISH(reference_nodes), "7", FROM_TO(2, MOST_NODES), "",
+    {"fish.reference_nodes", INTEGER, IN_FISH(reference_nodes), "7", FROM_TO(2, MAX_NODES), "",
      .meaning = "number of nodes for which wave.amplitude and the dampings are stated"},
-    {"fish.sheet_points", INTEGER, IN_FISH(sheet_points), "21", FROM_TO(5, MOST_NODES), "",
+    {"fish.sheet_points", INTEGER, IN_FISH(sheet_points), "21", FROM_TO(5, MAX_NODES), "",
      .meaning = "vortices of the bound sheet", .synonyms = "vortices panels bound_vortices"},
 
     {"fish.body.profile", CHOICE, IN_FISH(body.profile), "joukowski", ANY, "",
@@ -295,7 +295,7 @@ const char *case_table_type(const struct key *key) {
                                         [INTEGER] = "whole number",
                                         [CHOICE] = "word",
                                         [METHOD] = "word",
-                                        [TEXT] = "text",
+                                        [STRING] = "text",
                                         [PAIR] = "[x, y]",
                                         [NUMBERS] = "list of numbers",
                                         [PAIRS] = "list of [x, y]",
@@ -315,18 +315,18 @@ void case_table_range(const struct key *key, struct text *range) {
         }
         return;
     }
-    if (key->type == TEXT || key->type == FILES || isinf(bounds->least)) return;
-    if (bounds->least == bounds->most) {
-        text_add_number(range, bounds->least);
+    if (key->type == STRING || key->type == FILES || isinf(bounds->min)) return;
+    if (bounds->min == bounds->max) {
+        text_add_number(range, bounds->min);
         return;
     }
-    if (isinf(bounds->most)) {
-        text_add(range, bounds->is_least_open ? "above " : "at least ");
-        text_add_number(range, bounds->least);
+    if (isinf(bounds->max)) {
+        text_add(range, bounds->is_min_open ? "above " : "at least ");
+        text_add_number(range, bounds->min);
         return;
     }
-    text_add(range, bounds->is_least_open ? "between " : "from ");
-    text_add_number(range, bounds->least);
-    text_add(range, bounds->is_least_open ? " and " : " to ");
-    text_add_number(range, bounds->most);
+    text_add(range, bounds->is_min_open ? "between " : "from ");
+    text_add_number(range, bounds->min);
+    text_add(range, bounds->is_min_open ? " and " : " to ");
+    text_add_number(range, bounds->max);
 }

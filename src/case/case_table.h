@@ -15,7 +15,7 @@ enum key_type {
     INTEGER,   /* int */
     CHOICE,    /* an enum: the place of the word among .words */
     METHOD,    /* enum method: the place of the word in the table of methods (base/methods.h) */
-    TEXT,      /* char *, owned */
+    STRING,    /* char *, owned */
     PAIR,      /* double[2] */
     NUMBERS,   /* struct number_list of numbers */
     PAIRS,     /* struct number_list of pairs */
@@ -26,10 +26,10 @@ enum key_type {
     STATEMENTS /* expect: read by sweep_expect.c */
 };
 
-/* What a number, or each number of a list, may be; for a TEXT, most is the largest number of bytes. */
+/* What a number, or each number of a list, may be; of a STRING, max is the largest number of bytes. */
 struct bounds {
-    double least, most;
-    bool is_least_open, is_most_open; /* the bound itself is refused */
+    double min, max;
+    bool is_min_open, is_max_open; /* the bound itself is refused */
 };
 
 struct key {

@@ -8,7 +8,7 @@
 
 #include "case/yaml_write.h"
 
-enum { MOST_VALUES = 10000 /* of one list */ };
+enum { MAX_VALUES = 10000 /* of one list */ };
 
 /* A value being read, and where complaints go. */
 struct context {
@@ -25,7 +25,7 @@ void case_value_clear(const struct key *key, void *field) {
         case INTEGER: *(int *)field = 0; break;
         case CHOICE:
         case METHOD: *(int *)field = -1; break;
-        case TEXT: *(char **)field = NULL; break;
+        case STRING: *(char **)field = NULL; break;
         case NUMBERS:
         case PAIRS:
         case HEADING: *(struct number_list *)field = (struct number_list){0}; break;
@@ -37,7 +37,7 @@ void case_value_clear(const struct key *key, void *field) {
 }
 
 void case_value_free(const struct key *key, void *field) {
-    if (key->type == TEXT) free(*(char **)field);
+    if (key->type == STRING) free(*(char **)field);
     if (key->type == NUMBERS || key->type == PAIRS || key->type == HEADING) free(((struct number_list *)field)->value);
     case_value_clear(key, field);
 }
@@ -56,8 +56,8 @@ static void report_range(const struct context *context, const struct yaml_node *
 }
 
 static bool is_in(const struct bounds *bounds, double value) {
-    if (bounds->is_least_open ? value <= bounds->least : value < bounds->least) return false;
-    return bounds->is_most_open ? value < bounds->most : value <= bounds->most;
+    if (bounds->is_min_open ? value <= bounds->min : value < bounds->min) return false;
+    return bounds->is_max_open ? value < bounds->max : value <= bounds->max;
 }
 
 /* Read one number in the range of the key. what: "a number", "two numbers [x, y]": how the whole value should look. */
@@ -135,9 +135,9 @@ static enum status read_text(const struct context *context, const struct yaml_no
                         yaml_tree_describe(node, shown, sizeof shown));
     } else if (has_control(node->text)) {
         yaml_errors_add(context->errors, node->mark, "%s: must be one line without control characters", context->path);
-    } else if ((double)strlen(node->text) > context->key->bounds.most) {
+    } else if ((double)strlen(node->text) > context->key->bounds.max) {
         yaml_errors_add(context->errors, node->mark, "%s: longer than %d bytes", context->path,
-                        (int)context->key->bounds.most);
+                        (int)context->key->bounds.max);
     } else if (!(*value = strdup(node->text))) {
         return status_fail(STATUS_MEMORY, "out of memory: the value of %s", context->path);
     }
@@ -187,8 +187,8 @@ static enum status read_list(const struct context *context, const struct yaml_no
                         case_table_type(context->key), yaml_tree_describe(node, shown, sizeof shown));
         return STATUS_OK;
     }
-    if (node->n > MOST_VALUES) {
-        yaml_errors_add(context->errors, node->mark, "%s: more than %d values", context->path, MOST_VALUES);
+    if (node->n > MAX_VALUES) {
+        yaml_errors_add(context->errors, node->mark, "%s: more than %d values", context->path, MAX_VALUES);
         return STATUS_OK;
     }
     if (node->n == 0) return STATUS_OK;
@@ -230,7 +230,7 @@ enum status case_value_read(const struct key *key, void *field, const struct yam
         case INTEGER: read_integer(&context, node, field); break;
         case CHOICE:
         case METHOD: read_choice(&context, node, field); break;
-        case TEXT: return read_text(&context, node, field);
+        case STRING: return read_text(&context, node, field);
         case PAIR: read_pair(&context, node, "two numbers [x, y]", field); break;
         case NUMBERS:
         case PAIRS: return read_list(&context, node, field);
@@ -272,7 +272,7 @@ void case_value_write(struct text *text, const struct key *key, const void *fiel
         case INTEGER: text_add(text, "%d", *(const int *)field); break;
         case CHOICE:
         case METHOD: text_add(text, "%s", case_table_word(key, *(const int *)field)); break;
-        case TEXT: yaml_write_scalar(text, *(char *const *)field); break;
+        case STRING: yaml_write_scalar(text, *(char *const *)field); break;
         case PAIR: write_pair(text, field); break;
         case NUMBERS: write_list(text, field, false); break;
         case PAIRS:

@@ -17,9 +17,9 @@
 #include "case/sweep_refine.h"
 #include "case/yaml_write.h"
 
-static const double most_members = 1e5;
+static const double max_members = 1e5;
 
-enum { MOST_KEYS = 16 /* of one axis */ };
+enum { MAX_KEYS = 16 /* of one axis */ };
 
 static enum status out_of_memory(void) {
     return status_fail(STATUS_MEMORY, "out of memory: the sweep");
@@ -32,7 +32,7 @@ struct axis {
     struct sweep_axis *into;
     bool is_zipped; /* written with "keys" */
     int n_keys;     /* as written; those that are wrong are NULL */
-    const struct key *key[MOST_KEYS];
+    const struct key *key[MAX_KEYS];
     struct yaml_errors *errors;
 };
 
@@ -100,15 +100,15 @@ static enum status read_key(const struct case_values *values, struct axis *axis,
 static enum status read_axis_keys(const struct case_values *values, struct axis *axis) {
     const struct yaml_node *const list = yaml_tree_find(axis->node, "keys");
     axis->is_zipped = list != NULL;
-    if (list && (list->kind != YAML_LIST || list->n == 0 || list->n > MOST_KEYS)) {
-        yaml_errors_add(axis->errors, list->mark, "%s.keys: expects a list of 1 to %d paths", axis->name, MOST_KEYS);
+    if (list && (list->kind != YAML_LIST || list->n == 0 || list->n > MAX_KEYS)) {
+        yaml_errors_add(axis->errors, list->mark, "%s.keys: expects a list of 1 to %d paths", axis->name, MAX_KEYS);
         return STATUS_OK;
     }
     const struct yaml_node *const single = yaml_tree_find(axis->node, "key");
     if (list && single) {
         yaml_errors_add(axis->errors, single->mark, "%s: takes key or keys, not both", axis->name);
     }
-    axis->into->key = calloc(MOST_KEYS, sizeof *axis->into->key);
+    axis->into->key = calloc(MAX_KEYS, sizeof *axis->into->key);
     if (!axis->into->key) return out_of_memory();
     if (!list) return read_key(values, axis, single);
     for (int k = 0; k < list->n; k++) TRY(read_key(values, axis, list->entry[k].value));
@@ -197,7 +197,7 @@ enum status sweep_read(struct case_values *values, const struct yaml_node *root,
     if (!values->sweep) return out_of_memory();
     const int n_before = errors->n;
     double n_members = 1;
-    for (int i = 0; i < list->n && n_members <= most_members; i++) {
+    for (int i = 0; i < list->n && n_members <= max_members; i++) {
         struct axis axis = {.node = list->entry[i].value, .into = &values->sweep[i], .errors = errors};
         snprintf(axis.name, sizeof axis.name, "sweep[%d]", i);
         const enum status status = read_axis(values, &axis);
@@ -205,8 +205,8 @@ enum status sweep_read(struct case_values *values, const struct yaml_node *root,
         values->n_axes++;
         TRY(status);
     }
-    if (n_members > most_members) {
-        yaml_errors_add(errors, list->mark, "sweep: %.0f members or more; the most is %.0f", n_members, most_members);
+    if (n_members > max_members) {
+        yaml_errors_add(errors, list->mark, "sweep: %.0f members or more; the most is %.0f", n_members, max_members);
     }
     // axes with values that are missing, or too many of them, must not be counted through
     if (errors->n > n_before) sweep_free(values);

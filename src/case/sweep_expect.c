@@ -124,16 +124,16 @@ static void check_members(const struct stating *statement, const struct yaml_nod
 // ---- what
 
 /* Read a number of the statement; NaN if it is not there. */
-static double read_number(const struct stating *statement, const char *name, double least) {
+static double read_number(const struct stating *statement, const char *name, double min) {
     const struct yaml_node *const node = yaml_tree_find(statement->node, name);
     double number;
     if (!node) return NAN;
-    if (node->kind == YAML_SCALAR && text_number(node->text, &number) && isfinite(number) && number >= least)
+    if (node->kind == YAML_SCALAR && text_number(node->text, &number) && isfinite(number) && number >= min)
         return number;
     yaml_errors_add(statement->errors, node->mark, "%s.%s: expects a number%s", statement->name, name,
-                    least == 0   ? " from 0 on"
-                    : least == 1 ? " from 1 on"
-                                 : "");
+                    min == 0   ? " from 0 on"
+                    : min == 1 ? " from 1 on"
+                               : "");
     return NAN;
 }
 

@@ -15,7 +15,7 @@
 #include "case/sweep_members.h"
 #include "case/sweep_quantity.h"
 
-enum { LEAST_LEVELS = 3 };
+enum { MIN_LEVELS = 3 };
 
 /* An axis on its way. */
 struct refining {
@@ -56,9 +56,9 @@ static void check_refine(const struct refining *axis, const struct key *key, con
         }
         n_different += is_new;
     }
-    if (n_different < LEAST_LEVELS || n_different < into->n_values) {
+    if (n_different < MIN_LEVELS || n_different < into->n_values) {
         yaml_errors_add(axis->errors, node->mark, "%s.refine: expects at least %d values, all different", axis->name,
-                        LEAST_LEVELS);
+                        MIN_LEVELS);
     }
 }
 

@@ -19,7 +19,7 @@
 
 // ---- the fixture
 
-static const char least[] = "format: 1\ntime: {end: 3}\nfish: [{}]\n";
+static const char minimal[] = "format: 1\ntime: {end: 3}\nfish: [{}]\n";
 
 /* Parse a text that must be good, with up to three assignments (NULL: none). */
 static struct case_values parse_with(const char *text, const char *first, const char *second, const char *third) {
@@ -125,7 +125,7 @@ static void write_file(const char *path, const char *text) {
 
 static void the_defaults_are_those_of_the_reference(void **state) {
     (void)state;
-    struct case_values s = parse(least);
+    struct case_values s = parse(minimal);
     NEAR(s.time.end, 3, 0, 0);
     NEAR(s.school.shedding_interval, 0.01, 0, 0);
     NEAR(s.school.fluid.density, 1000, 0, 0);
@@ -183,7 +183,7 @@ static void derived_defaults_follow_what_they_derive_from(void **state) {
 
 static void every_default_of_the_table_is_a_value_of_its_key(void **state) {
     (void)state;
-    struct case_values s = parse(least), published = parse_with(least, "preset=published", NULL, NULL);
+    struct case_values s = parse(minimal), published = parse_with(minimal, "preset=published", NULL, NULL);
     case_free(&s);
     case_free(&published);
     for (int k = 0; k < case_table_n; k++) {
@@ -363,7 +363,7 @@ static void a_case_that_cannot_be_read_is_a_file_error(void **state) {
 
 static void assignments_are_strongest_and_the_last_counts(void **state) {
     (void)state;
-    struct case_values s = parse_with(least, "time.end=5", "fish[0].start.position=[1, 2]", "time.end=6");
+    struct case_values s = parse_with(minimal, "time.end=5", "fish[0].start.position=[1, 2]", "time.end=6");
     NEAR(s.time.end, 6, 0, 0);
     NEAR_ARRAY(2, s.school.fish->start_position, ((const double[]){1, 2}), 0, 0);
     case_free(&s);
@@ -386,12 +386,12 @@ static void a_star_assigns_to_every_fish(void **state) {
 
 static void assignments_reach_defaults_preset_and_sections(void **state) {
     (void)state;
-    struct case_values s = parse_with(least, "defaults.fish.nodes=9", "preset=published", "wake={kutta: edge}");
+    struct case_values s = parse_with(minimal, "defaults.fish.nodes=9", "preset=published", "wake={kutta: edge}");
     assert_int_equal(s.school.fish->nodes, 9);
     assert_int_equal(s.school.wake.shedding, SHEDDING_IMPULSIVE);
     assert_int_equal(s.school.wake.kutta, KUTTA_EDGE);
     case_free(&s);
-    s = parse_with(least, "fish=[{name: a}, {name: 'b = c'}]", "fish[1].length=2", "name=x=y");
+    s = parse_with(minimal, "fish=[{name: a}, {name: 'b = c'}]", "fish[1].length=2", "name=x=y");
     assert_int_equal(s.school.n_fish, 2);
     assert_string_equal(s.school.fish[1].name, "b = c");
     NEAR(s.school.fish[1].length, 2, 0, 0);
@@ -547,7 +547,7 @@ static void a_wrong_member_is_named(void **state) {
 
 static void a_sweep_is_refused_as_one_run_with_a_remedy(void **state) {
     (void)state;
-    struct case_values s = parse(least);
+    struct case_values s = parse(minimal);
     assert_int_equal(sweep_refuse(&s), STATUS_OK);
     case_free(&s);
     s = parse(swept);
@@ -561,7 +561,7 @@ static void a_sweep_is_refused_as_one_run_with_a_remedy(void **state) {
 static void a_case_shown_reads_back_bit_for_bit(void **state) {
     (void)state;
     static const char *const cases[] = {
-        least,
+        minimal,
         swept,
         zipped,
         refined,
@@ -591,7 +591,7 @@ static void a_case_shown_reads_back_bit_for_bit(void **state) {
 
 static void a_shown_case_has_neither_preset_nor_defaults(void **state) {
     (void)state;
-    struct case_values s = parse_with(least, "preset=published", "defaults.fish.nodes=9", NULL);
+    struct case_values s = parse_with(minimal, "preset=published", "defaults.fish.nodes=9", NULL);
     char *shown;
     assert_int_equal(case_show(&s, &shown), STATUS_OK);
     assert_null(strstr(shown, "preset"));
