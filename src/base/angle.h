@@ -2,7 +2,7 @@
 #ifndef ANGLE_H
 #define ANGLE_H
 
-/* The angle [rad] less a whole number of turns, in [-pi, pi]. */
+/* The angle [rad] minus an integer number of turns, in [-pi, pi]. */
 double angle_wrap(double angle);
 
 /* Radians of an angle in degrees, and back. */

@@ -1,5 +1,5 @@
-/* parallel.h: how a loop is shared among threads: the parts it is cut into, and how many threads it is worth. Neither
- * changes a result: every sum belongs to one part, and the parts depend on the length of the loop alone. Tested by
+/* parallel.h: how a loop is shared among threads: into which chunks, and whether several threads are worth it. Neither
+ * changes a result: every sum belongs to one chunk, and the chunks depend on the length of the loop alone. Tested by
  * tests/base/test_parallel.c. */
 #ifndef PARALLEL_H
 #define PARALLEL_H
@@ -13,8 +13,8 @@ struct range {
 int parallel_n_chunks(int n);
 struct range parallel_chunk(int i, int n);
 
-/* The least work of a loop that several threads do faster than one: starting them and waiting for the last one takes
- * some microseconds. Measured by `make bench`. */
+/* The minimum work of a loop for which several threads are faster than one: starting them and waiting for the last one
+ * takes some microseconds. Measured by `make bench`. */
 enum {
     PARALLEL_INTERACTIONS = 30000, /* velocities that one vortex induces at one point */
     PARALLEL_BOXES = 64,           /* boxes of a tree whose expansions are translated */
@@ -22,7 +22,7 @@ enum {
     PARALLEL_MATRICES = 200        /* unknowns in a loop over fish that fills or factorises their matrices */
 };
 
-/* How many of the threads a loop of n iterations is worth, which together do so much work. */
+/* The number of threads to use for a loop of n iterations with this much work in total: one or all. */
 int parallel_threads(int threads, int n, double work, double min_work);
 
 #endif

@@ -1,4 +1,4 @@
-/* sparse.c: record the order of additions once, replay it ever after. */
+/* sparse.c: the order of additions is recorded once and replayed afterwards. */
 #include "base/sparse.h"
 
 #include <stdlib.h>
@@ -54,7 +54,7 @@ static int grow(struct sparse *matrix) {
     if (row) matrix->entry_row = row;
     int *column = realloc(matrix->entry_column, (size_t)capacity * sizeof *column);
     if (column) matrix->entry_column = column;
-    // while recording, a slot's place keeps the value
+    // while recording, the array of slots holds the values
     int64_t *slot = realloc(matrix->slot, (size_t)capacity * sizeof *slot);
     if (slot) matrix->slot = slot;
     if (!row || !column || !slot) return 0;
@@ -91,11 +91,11 @@ void sparse_begin(struct sparse *matrix) {
     }
 }
 
-static int counts(const struct sparse *matrix, int64_t entry) {
+static int is_kept(const struct sparse *matrix, int64_t entry) {
     return entry < matrix->n_masked || !sparse_is_masked(matrix, matrix->entry_row[entry]);
 }
 
-// the numbers of the entries that count, in the order of columns, then rows: two counting sorts; returns how many
+// the indices of the entries of unmasked rows, sorted by column, then row, by two counting sorts; returns their number
 static int64_t sort_entries(const struct sparse *matrix, int64_t *order, int64_t *by_row, int64_t *count) {
     const int64_t n = matrix->n;
     int64_t n_sorted = 0;
@@ -105,18 +105,18 @@ static int64_t sort_entries(const struct sparse *matrix, int64_t *order, int64_t
     for (int64_t i = 0; i < matrix->n_entries; i++) by_row[count[matrix->entry_row[i] - matrix->first]++] = i;
     memset(count, 0, (size_t)(n + 1) * sizeof *count);
     for (int64_t i = 0; i < matrix->n_entries; i++) {
-        if (counts(matrix, i)) count[matrix->entry_column[i] - matrix->first + 1]++;
+        if (is_kept(matrix, i)) count[matrix->entry_column[i] - matrix->first + 1]++;
     }
     for (int64_t c = 0; c < n; c++) count[c + 1] += count[c];
     for (int64_t i = 0; i < matrix->n_entries; i++) {
-        if (!counts(matrix, by_row[i])) continue;
+        if (!is_kept(matrix, by_row[i])) continue;
         order[count[matrix->entry_column[by_row[i]] - matrix->first]++] = by_row[i];
         n_sorted++;
     }
     return n_sorted;
 }
 
-// give every distinct entry its place in the compressed columns, and every record its slot
+// give every distinct entry its place in the compressed columns, and every recorded addition its slot
 static enum status compile(struct sparse *matrix) {
     const size_t n_entries = (size_t)matrix->n_entries + 1;
     int64_t *order = malloc(n_entries * sizeof *order), *by_row = malloc(n_entries * sizeof *by_row);

@@ -1,8 +1,8 @@
 /* sparse.h: a square sparse matrix that is filled by adding values in a fixed order. Tested by tests/base/test_sparse.c.
  *
- * The first pass after sparse_forget records which (row, column) every addition meets; sparse_end compiles the
- * compressed columns from it. Later passes replay: the i-th addition goes straight to its slot. So the order of the
- * additions must not depend on values; built without NDEBUG, every replayed addition is compared with the recorded one.
+ * The first pass after sparse_forget records the row and column of every addition; sparse_end builds the compressed
+ * columns from the record. Later passes replay it: the i-th addition goes straight to its slot. So the order of the
+ * additions must not depend on values; without NDEBUG, every addition of a replay is compared with the record.
  *
  *     sparse_begin -> sparse_add, sparse_add, ... -> sparse_end -> column_start, row_index, value
  */
@@ -15,19 +15,19 @@
 #include "base/status.h"
 
 struct sparse {
-    int first; /* the number that rows and columns begin with where they are added */
-    int n;     /* rows and columns */
+    int first; /* index of the first row and column, in additions */
+    int n;     /* order */
 
-    /* the matrix in compressed columns, rows and columns counted from 0; rows rise inside a column */
+    /* the matrix in compressed columns, indices from 0; rows ascend within a column */
     int64_t n_nonzeros;
     int64_t *column_start; /* (n + 1) */
     int64_t *row_index;    /* (n_nonzeros) */
-    double *value;         /* (n_nonzeros + 1); the last takes what falls into masked rows */
-    unsigned version;      /* changes with every new pattern */
+    double *value;         /* (n_nonzeros + 1); the last collects additions to masked rows */
+    unsigned version;      /* incremented with every new pattern */
 
     /* the record */
     int recording, out_of_memory;
-    int n_masked; /* the first entries: the ones of masked rows */
+    int n_masked; /* number of ones of masked rows, which are the first entries */
     int64_t n_entries, capacity, next;
     int *entry_row, *entry_column; /* (n_entries) */
     int64_t *slot;                 /* (n_entries) */
@@ -43,11 +43,11 @@ void sparse_free(struct sparse *matrix);
 /* Forget the pattern: the next pass records a new one. */
 void sparse_forget(struct sparse *matrix);
 
-/* A masked row is that of the identity: additions to it fall away. A change makes the next pass record. */
+/* A masked row is that of the identity: additions to it are ignored. After a change the next pass records. */
 void sparse_mask(struct sparse *matrix, int row, int masked);
 int sparse_is_masked(const struct sparse *matrix, int row);
 
-/* Start a pass: all values are zero but the ones of masked rows. */
+/* Start a pass: all values become zero, except the ones of masked rows. */
 void sparse_begin(struct sparse *matrix);
 
 /* Add to one entry; sparse_record does so while recording. */

@@ -7,13 +7,13 @@
 static _Thread_local char message[65536];
 
 enum status status_fail(enum status status, const char *format, ...) {
-    // the arguments may point into the old message, so write to another place first
-    static _Thread_local char fresh[sizeof message];
+    // the arguments may point into the old message, so write elsewhere first
+    static _Thread_local char new_message[sizeof message];
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(fresh, sizeof fresh, format, arguments);
+    vsnprintf(new_message, sizeof new_message, format, arguments);
     va_end(arguments);
-    snprintf(message, sizeof message, "%s", fresh);
+    snprintf(message, sizeof message, "%s", new_message);
     return status;
 }
 

@@ -1,7 +1,7 @@
-/* status.h: how errors travel. Tested by tests/base/test_status.c.
+/* status.h: how errors are passed on. Tested by tests/base/test_status.c.
  *
  * Zero is success; positive means "retry with a smaller step"; negative is final. These are the signs that the
- * callbacks of SUNDIALS use, so a status can be handed through them unchanged. The place that knows the cause calls
+ * callbacks of SUNDIALS use, so a status passes through them unchanged. The place that knows the cause calls
  * status_fail with a sentence that a user can act on; everything above it uses TRY; only main prints. */
 #ifndef STATUS_H
 #define STATUS_H
@@ -12,9 +12,9 @@ enum status {
     STATUS_CASE = -1,    /* wrong usage or a wrong case */
     STATUS_FILE = -2,    /* a file cannot be read or written */
     STATUS_MEMORY = -3,  /* out of memory */
-    STATUS_SOLVER = -4,  /* the solver gave up */
+    STATUS_SOLVER = -4,  /* the integration failed */
     STATUS_STOPPED = -5, /* a signal asked the run to stop */
-    STATUS_MISSED = -6   /* a stated check was missed */
+    STATUS_MISSED = -6   /* an expectation of the case is not met */
 };
 
 /* Keep the message (printf format; long ones are cut) for this thread and return the status. */
@@ -23,11 +23,11 @@ enum status status_fail(enum status status, const char *format, ...) __attribute
 /* The message of the last status_fail of this thread, or "". Valid until the next status_fail of this thread. */
 const char *status_message(void);
 
-/* The exit code of the program that stands for a status: 0, 1 (solver), 2 (case, usage), 3 (missed), 4 (file, memory),
+/* The exit code of the program for a status: 0, 1 (solver), 2 (case, usage), 3 (missed), 4 (file, memory),
  * 75 (stopped by a signal). */
 int status_exit_code(enum status status);
 
-/* Hand a failure to the caller. */
+/* Return a failure to the caller. */
 #define TRY(expression)                                 \
     do {                                                \
         const enum status try_status = (expression);    \

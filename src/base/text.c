@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Make room for more bytes and a zero. */
+/* Reserve more bytes and a zero. */
 static bool grow(struct text *text, size_t more) {
     if (text->failed) return false;
     if (text->length + more < text->capacity) return true;
@@ -39,8 +39,8 @@ void text_free(struct text *text) {
     *text = (struct text){0};
 }
 
-/* Take the "C" locale for this thread; hand the result to restore_locale. */
-static locale_t take_c_locale(locale_t *c_locale) {
+/* Switch this thread to the "C" locale; pass the result to restore_locale. */
+static locale_t use_c_locale(locale_t *c_locale) {
     *c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
     return uselocale(*c_locale);
 }
@@ -52,7 +52,7 @@ static void restore_locale(locale_t before, locale_t c_locale) {
 
 void text_add_number(struct text *text, double number) {
     locale_t c_locale;
-    const locale_t before = take_c_locale(&c_locale);
+    const locale_t before = use_c_locale(&c_locale);
     char digits[40];
     for (int precision = 15; precision <= 17; precision++) {
         snprintf(digits, sizeof digits, "%.*g", precision, number);
@@ -69,7 +69,7 @@ static int skip_digits(const char **text) {
     return n;
 }
 
-/* True for: sign, digits with a point among them, exponent; no more and no less. */
+/* True for a sign, digits with at most one point, and an exponent, of which sign and exponent are optional. */
 static bool is_number(const char *text) {
     if (*text == '+' || *text == '-') text++;
     int n = skip_digits(&text);
@@ -89,7 +89,7 @@ static bool is_number(const char *text) {
 bool text_number(const char *text, double *number) {
     if (!is_number(text)) return false;
     locale_t c_locale;
-    const locale_t before = take_c_locale(&c_locale);
+    const locale_t before = use_c_locale(&c_locale);
     *number = strtod(text, NULL);
     restore_locale(before, c_locale);
     return true;

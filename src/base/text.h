@@ -1,4 +1,4 @@
-/* text.h: a text that grows, and values written as YAML; numbers as text and back. Tested by tests/case/test_yaml.c.
+/* text.h: strings that grow, and numbers as strings and back. Tested by tests/case/test_yaml.c.
  *
  * Numbers are written and read with a decimal point whatever the locale of the process is. */
 #ifndef TEXT_H
@@ -14,16 +14,17 @@ struct text {
     bool failed;
 };
 
+/* Append (printf format). */
 void text_add(struct text *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* Add the shortest text that reads back as exactly this number. */
+/* Append the shortest decimal that reads back as exactly this number. */
 void text_add_number(struct text *text, double number);
 
-/* Release the text and zero it. */
+/* Release the string and zero it. */
 void text_free(struct text *text);
 
-/* Read a decimal number; all of the text must belong to it. Too large a number becomes an infinity. False if the text
- * is no number; nan, inf and hexadecimal digits are none. */
+/* Read a decimal number, which must be the whole string. One that is too large becomes an infinity. False if the string
+ * is not a number; nan, inf and hexadecimal digits are not. */
 bool text_number(const char *text, double *number);
 
 #endif

@@ -1,10 +1,10 @@
-/* version.h: which program this is and which libraries it runs with. Tested by tests/output/test_result_file.c. */
+/* version.h: the version of the program and of the libraries it runs with. Tested by tests/output/test_result_file.c. */
 #ifndef VERSION_H
 #define VERSION_H
 
 #include <stddef.h>
 
-enum { VERSION_LENGTH = 256 }; /* bytes that hold the longest text of this module */
+enum { VERSION_LENGTH = 256 }; /* bytes of the longest string below */
 
 /* "shoal 0.1.0 (commit 0123456789ab)" */
 const char *version_short(void);

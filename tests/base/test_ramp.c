@@ -1,4 +1,4 @@
-/* test_smooth.c: the ramp of doc/model.md, section 4, and angles. */
+/* test_ramp.c: the ramp of doc/model.md, section 4, and angles. */
 #include "base/angle.h"
 #include "base/ramp.h"
 #include "near.h"
@@ -40,7 +40,7 @@ static void ramp_of_no_duration_is_one_at_all_times(void **state) {
     NEAR(ramp_value(1, 2), 0.5, 1e-15, 0);
 }
 
-static void wrap_takes_whole_turns_off(void **state) {
+static void wrap_removes_full_turns(void **state) {
     (void)state;
     const double pi = acos(-1);
     for (int turns = -3; turns <= 3; turns++) {
@@ -64,7 +64,7 @@ int main(void) {
         cmocka_unit_test(rate_is_the_derivative),
         cmocka_unit_test(three_derivatives_vanish_at_both_ends),
         cmocka_unit_test(ramp_of_no_duration_is_one_at_all_times),
-        cmocka_unit_test(wrap_takes_whole_turns_off),
+        cmocka_unit_test(wrap_removes_full_turns),
         cmocka_unit_test(degrees_and_radians_are_inverse),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
