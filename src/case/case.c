@@ -15,7 +15,7 @@
 #include "case/sweep_expect.h"
 #include "case/yaml_write.h"
 
-/* A case on its way from the text to its values. */
+/* A case being read. */
 struct reading {
     struct case_tree tree;
     struct yaml_errors errors;
@@ -25,7 +25,7 @@ static enum status out_of_memory(void) {
     return status_fail(STATUS_MEMORY, "out of memory: the values of the case");
 }
 
-// ---- keys that nobody knows
+// ---- unknown keys
 
 /* Complain about the unknown keys of a map, and of the maps below it. section: its place in the table ("" is the top);
  * path: how messages call it; owner: the fish it belongs to, or NULL. */
@@ -236,7 +236,7 @@ static enum status derive_all(struct case_values *values, const char *origin) {
     return STATUS_OK;
 }
 
-// ---- the whole case
+// ---- the case as a whole
 
 /* Turn the tree into values. Fails with STATUS_MEMORY only; what is wrong is added to the errors. */
 static enum status fill(struct reading *reading, struct case_values *values) {
@@ -262,7 +262,7 @@ static enum status fill(struct reading *reading, struct case_values *values) {
     TRY(derive_all(values, tree->source[0]->name));
     TRY(sweep_read(values, tree->root, &reading->errors));
     TRY(sweep_expect_read(values, tree->root, &reading->errors));
-    // an unknown key may be a known one misspelt: then its value is not the one that would be checked here
+    // an unknown key may be a known one misspelt, whose value would be missing here
     if (are_keys_known) case_check(values, tree, &reading->errors);
     return STATUS_OK;
 }
@@ -296,7 +296,7 @@ static enum status keep_merged(struct case_values *values, const struct yaml_nod
     return out_of_memory();
 }
 
-/* Apply the assignments to a tree that has been read, and fill the settings from it. status: how the reading went. */
+/* Apply the assignments to a tree that has been read, and fill the values from it. status: of reading the tree. */
 static enum status finish(struct reading *reading, enum status status, struct case_values *values, int n_assignments,
                           const char *const *assignments) {
     if (status == STATUS_OK && reading->tree.root) {

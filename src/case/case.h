@@ -11,12 +11,12 @@
 #include "base/status.h"
 #include "case/case_values.h"
 
-/* Read the case file at path, apply the n_assignments texts "path=value" in order, check everything and fill *values.
+/* Read the case file at path, apply the n_assignments strings "path=value" in order, check everything and fill *values.
  * Fails with STATUS_FILE (cannot be read) or STATUS_CASE; the message then lists up to 20 errors in the form of a
  * compiler, each with a caret under its place. *values then owns nothing. Free with case_free. */
 enum status case_read(struct case_values *values, const char *path, int n_assignments, const char *const *assignments);
 
-/* The same from a text in memory; origin stands for the file name in messages, folder (NULL or "": the working
+/* The same from a string; origin is its name in messages, folder (NULL or "": the working
  * directory) is where includes are looked up. */
 enum status case_parse(struct case_values *values, const char *text, size_t length, const char *origin,
                        const char *folder, int n_assignments, const char *const *assignments);

@@ -11,7 +11,7 @@
 
 static const double max_events = 1e9, max_vortices = 1e7 /* of one fish */;
 
-/* The case that is checked, and where complaints go. fish: the one under check. */
+/* The case that is checked, and the list that errors are added to. fish: the one being checked. */
 struct check {
     const struct case_values *values;
     const struct case_tree *tree;
@@ -37,7 +37,7 @@ __attribute__((format(printf, 3, 4))) static void complain(const struct check *c
 
 // ---- time and wake
 
-/* Complain unless a time is a whole multiple of a unit; name: the path of the unit. */
+/* Complain unless a time is an integer multiple of a unit; name: the path of the unit. */
 static void check_multiple(const struct check *check, const char *path, double time, const char *name, double unit) {
     const double n = round(time / unit);
     if (!(fabs(time - n * unit) > 1e-9 * time)) return;  // not a number: complained about already
@@ -46,7 +46,7 @@ static void check_multiple(const struct check *check, const char *path, double t
         return;
     }
     const double below = floor(time / unit);
-    complain(check, path, "%.9g s is not a whole multiple of %s, %.9g s; the nearest are %.9g and %.9g", time, name,
+    complain(check, path, "%.9g s is not an integer multiple of %s, %.9g s; the nearest are %.9g and %.9g", time, name,
              unit, (below < 1 ? 1 : below) * unit, (below + 1) * unit);
 }
 
@@ -55,7 +55,7 @@ static void check_time(const struct check *check) {
     const double shedding = check->values->school.shedding_interval;
     static const char interval[] = "time.shedding_interval";
     if (time->end / shedding > max_events) {
-        complain(check, "time.end", "%g events; the most is %g: raise time.shedding_interval", time->end / shedding,
+        complain(check, "time.end", "%g events; the maximum is %g: raise time.shedding_interval", time->end / shedding,
                  max_events);
         return;
     }
@@ -81,8 +81,9 @@ static void check_solver(const struct check *check) {
     }
     const double interval = check->values->school.shedding_interval, n = round(interval / solver->step);
     if (n >= 1 && !(fabs(interval - n * solver->step) > 1e-9 * interval)) return;
-    complain(check, "solver.step", "%.9g s is not a whole part of time.shedding_interval, %.9g s; the nearest is %.9g",
-             solver->step, interval, interval / (n < 1 ? 1 : n));
+    complain(check, "solver.step",
+             "%.9g s does not divide time.shedding_interval, %.9g s; the nearest that does is %.9g", solver->step,
+             interval, interval / (n < 1 ? 1 : n));
 }
 
 static void check_wake(const struct check *check) {
@@ -96,7 +97,8 @@ static void check_wake(const struct check *check) {
     }
     const double n_vortices = fmin(wake->lifetime, check->values->time.end) / interval;
     if (n_vortices > max_vortices) {
-        complain(check, "wake.lifetime", "%g vortices in the wake of a fish; the most is %g", n_vortices, max_vortices);
+        complain(check, "wake.lifetime", "%g vortices in the wake of a fish; the maximum is %g", n_vortices,
+                 max_vortices);
     }
 }
 
@@ -109,7 +111,7 @@ static void check_gust(const struct check *check) {
 
 // ---- fish
 
-/* Complain about a list of a table profile that is missing, too many, or of another length than the edges. */
+/* Complain about a list of a table profile that is missing, out of place, or not of one value per edge. */
 static void check_edge_list(const struct check *check, const char *path, const struct number_list *list) {
     const struct fish_parameters *const fish = &check->values->school.fish[check->fish];
     bool is_default;
@@ -120,10 +122,10 @@ static void check_edge_list(const struct check *check, const char *path, const s
                  fish->nodes, list->n);
     }
     const bool is_other = fish->body.profile == PROFILE_JOUKOWSKI || fish->body.profile == PROFILE_UNIFORM;
-    if (is_other && list->n > 0) complain(check, path, "is for 'profile: table' only; remove it");
+    if (is_other && list->n > 0) complain(check, path, "is for 'profile: table' only: remove it");
 }
 
-/* The largest turning angle that the wave asks of a joint without bias, in radians. */
+/* The largest turning angle of a joint in the wave, without steering bias, in radians. */
 static double largest_turn(const struct fish_parameters *fish) {
     double largest = 0;
     for (int k = 1; k < fish->nodes - 1; k++) {
@@ -133,7 +135,7 @@ static double largest_turn(const struct fish_parameters *fish) {
     return largest * fabs(fish->wave.amplitude) * (fish->reference_nodes - 1) / (fish->nodes - 1);
 }
 
-/* The curvature of a joint is 2 tan(angle/2): it has no value at half a turn. */
+/* The curvature of a joint is 2 tan(angle/2), which is singular at half a turn. */
 static void check_turn(const struct check *check) {
     const struct fish_parameters *const fish = &check->values->school.fish[check->fish];
     if (fish->nodes == 0 || fish->reference_nodes == 0) return;
@@ -152,11 +154,11 @@ static bool is_idle(double amplitude, double frequency, double phase) {
 
 static void check_motion(const struct check *check) {
     const struct motion_parameters *const motion = &check->values->school.fish[check->fish].motion;
-    static const char not_driven[] = "has no effect while motion.driven is none; set it to head or all";
+    static const char not_prescribed[] = "has no effect while motion.driven is none; set it to head or all";
     static const char constant[] = "has no effect while motion.frequency is 0";
     if (motion->prescribed == PRESCRIBED_NONE) {
-        if (fabs(motion->heave) > 0) complain(check, "fish.motion.heave", not_driven);
-        if (fabs(motion->pitch) > 0) complain(check, "fish.motion.pitch", not_driven);
+        if (fabs(motion->heave) > 0) complain(check, "fish.motion.heave", not_prescribed);
+        if (fabs(motion->pitch) > 0) complain(check, "fish.motion.pitch", not_prescribed);
     } else {
         const double phase = motion->phase + motion->pitch_phase;
         if (is_idle(motion->heave, motion->frequency, motion->phase)) complain(check, "fish.motion.heave", constant);
@@ -205,7 +207,7 @@ static void check_control(const struct check *check) {
     if (control->law != CONTROL_HEADING && control->law != CONTROL_AVERAGED_HEADING) return;
 
     if (fabs(control->bias) > 0) {
-        complain(check, "fish.control.bias", "is for 'law: none' only; the law sets the bias itself");
+        complain(check, "fish.control.bias", "is for 'law: none' only: this law sets the steering bias itself");
     }
     const bool has_moment = fabs(control->feedforward) > 0;
     if (fish->wave.frequency == 0 && (has_moment || control->law == CONTROL_AVERAGED_HEADING)) {
@@ -221,7 +223,7 @@ static void check_name(const struct check *check) {
     const struct fish_parameters *const fish = check->values->school.fish;
     for (int i = 0; i < check->fish; i++) {
         if (!fish[i].name || !fish[check->fish].name || strcmp(fish[i].name, fish[check->fish].name) != 0) continue;
-        complain(check, "fish.name", "fish[%d] is called '%.60s' too; give each fish its own name", i, fish[i].name);
+        complain(check, "fish.name", "fish[%d] has the name '%.60s' too; names must be unique", i, fish[i].name);
         return;
     }
 }

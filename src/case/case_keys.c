@@ -3,10 +3,13 @@
 
 #include <string.h>
 
+#include "base/methods.h"
 #include "case/case_table.h"
 
-/* What stands in the column "default". */
-static const char *initial_text(const struct key *key) {
+enum { METHOD_BYTES = 200 };
+
+/* The text of the column "default". */
+static const char *default_text(const struct key *key) {
     if (key->derived) return key->derived;
     return key->initial ? key->initial : "required";
 }
@@ -20,6 +23,23 @@ static const char *fish_rest(const struct key *key) {
     return case_table_is_of_fish(key) ? key->path + strlen("fish") : key->path;
 }
 
+/* What a method is: "explicit, order 2, fixed or adaptive steps: Heun's method". */
+static void describe_method(const struct method_properties *method, char *text, size_t size) {
+    const char *const steps = !method->has_fixed_steps      ? "adaptive"
+                              : !method->has_adaptive_steps ? "fixed"
+                                                            : "fixed or adaptive";
+    snprintf(text, size, "%s, order %s%d, %s steps: %s", method->is_implicit ? "implicit" : "explicit",
+             method == &methods_table[METHOD_IDA] ? "1 to " : "", method->order, steps, method->help);
+}
+
+static void print_methods(FILE *stream) {
+    for (int i = 0; i < methods_n; i++) {
+        char text[METHOD_BYTES];
+        describe_method(&methods_table[i], text, sizeof text);
+        fprintf(stream, "    %s: %s\n", methods_table[i].word, text);
+    }
+}
+
 static void print_text(FILE *stream) {
     for (int k = 0; k < case_table_n; k++) {
         const struct key *const key = &case_table[k];
@@ -28,16 +48,17 @@ static void print_text(FILE *stream) {
         const bool has_range = range.length > 0;
         fprintf(stream, "%s%s: %s\n    %s%s%s%s%s; default: %s", fish_mark(key), fish_rest(key), key->meaning,
                 case_table_type(key), *key->unit ? " in " : "", key->unit, has_range ? ", " : "",
-                has_range ? range.text : "", initial_text(key));
+                has_range ? range.text : "", default_text(key));
         if (key->published) fprintf(stream, " (preset published: %s)", key->published);
         fprintf(stream, "\n");
+        if (key->type == METHOD) print_methods(stream);
         text_free(&range);
     }
 }
 
-/* Print a string of JSON, or null. */
-static void print_string(FILE *stream, const char *name, const char *text) {
-    fprintf(stream, ", \"%s\": ", name);
+/* Print a member of an object of JSON: a string, or null. */
+static void print_string(FILE *stream, const char *before, const char *name, const char *text) {
+    fprintf(stream, "%s\"%s\": ", before, name);
     if (!text) {
         fprintf(stream, "null");
         return;
@@ -50,19 +71,31 @@ static void print_string(FILE *stream, const char *name, const char *text) {
     fputc('"', stream);
 }
 
+/* Add "words", what each word of the methods means, to a key. */
+static void print_words(FILE *stream) {
+    fprintf(stream, ", \"words\": {");
+    for (int i = 0; i < methods_n; i++) {
+        char text[METHOD_BYTES];
+        describe_method(&methods_table[i], text, sizeof text);
+        print_string(stream, i > 0 ? ", " : "", methods_table[i].word, text);
+    }
+    fprintf(stream, "}");
+}
+
 static void print_json(FILE *stream) {
     for (int k = 0; k < case_table_n; k++) {
         const struct key *const key = &case_table[k];
         struct text range = {0};
         case_table_range(key, &range);
         fprintf(stream, "%s{\"path\": \"%s\"", k > 0 ? ",\n " : "[", key->path);
-        print_string(stream, "type", case_table_type(key));
-        print_string(stream, "default", key->initial);
-        print_string(stream, "derived", key->derived);
-        print_string(stream, "published", key->published);
-        print_string(stream, "range", range.text ? range.text : "");
-        print_string(stream, "unit", key->unit);
-        print_string(stream, "meaning", key->meaning);
+        print_string(stream, ", ", "type", case_table_type(key));
+        print_string(stream, ", ", "default", key->initial);
+        print_string(stream, ", ", "derived", key->derived);
+        print_string(stream, ", ", "published", key->published);
+        print_string(stream, ", ", "range", range.text ? range.text : "");
+        print_string(stream, ", ", "unit", key->unit);
+        print_string(stream, ", ", "meaning", key->meaning);
+        if (key->type == METHOD) print_words(stream);
         fprintf(stream, "}");
         text_free(&range);
     }

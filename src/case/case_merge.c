@@ -1,4 +1,4 @@
-/* case_merge.c: reads the case file and its includes, lays them over each other, and applies assignments. */
+/* case_merge.c: reads the case file and its includes, merges them, and applies assignments. */
 #include "case/case_merge.h"
 
 #include <errno.h>
@@ -14,7 +14,7 @@
 
 enum { MAX_INCLUDES = 64, MAX_INCLUDE_DEPTH = 8 };
 
-/* The files that are being read, innermost first: an include that is among them includes itself. */
+/* The files that are being read, innermost first. A file that includes itself is found among them. */
 struct open_file {
     dev_t device;
     ino_t inode;
@@ -53,7 +53,7 @@ void case_merge_free(struct case_tree *tree) {
     *tree = (struct case_tree){0};
 }
 
-/* Read at most one byte more than a case file may have. */
+/* Read at most one byte more than the limit for a case file. */
 static enum status read_bytes(int file, struct yaml_source *source) {
     const size_t capacity = YAML_TREE_BYTES + 1;
     source->text = malloc(capacity);
@@ -97,7 +97,7 @@ static int folder_length(const char *path) {
     return slash ? (int)(slash - path) + 1 : 0;
 }
 
-/* True if a file is being read already. */
+/* True if a file is being read already: it includes itself. */
 static bool is_open(const struct open_file *file, const struct open_file *by) {
     for (; by; by = by->by) {
         if (by->device == file->device && by->inode == file->inode) return true;
@@ -105,7 +105,7 @@ static bool is_open(const struct open_file *file, const struct open_file *by) {
     return false;
 }
 
-/* Read one included file of a known path and lay it over *base. */
+/* Read the included file at a path and merge it over *base. */
 static enum status include_path(struct case_tree *tree, const struct yaml_node *node, const char *path,
                                 const struct open_file *by, struct yaml_errors *errors, struct yaml_node **base) {
     struct yaml_source *const source = add_source(tree, path);
@@ -126,7 +126,7 @@ static enum status include_path(struct case_tree *tree, const struct yaml_node *
     return root ? yaml_tree_merge(base, root) : STATUS_OK;
 }
 
-/* Read what one entry of an include list names. Relative names begin at the folder, which ends at its last slash. */
+/* Read the file that an entry of an include list names, relative to the folder, which ends at its last slash. */
 static enum status include_entry(struct case_tree *tree, const struct yaml_node *node, const char *folder,
                                  const struct open_file *by, struct yaml_errors *errors, struct yaml_node **base) {
     if (node->kind != YAML_SCALAR || node->text[0] == '\0') {
@@ -134,8 +134,8 @@ static enum status include_entry(struct case_tree *tree, const struct yaml_node 
         return STATUS_OK;
     }
     if (by->depth == MAX_INCLUDE_DEPTH || tree->n_sources > MAX_INCLUDES) {
-        yaml_errors_add(errors, node->mark, "include: more than %d files, or files that include each other %d deep",
-                        MAX_INCLUDES, MAX_INCLUDE_DEPTH);
+        yaml_errors_add(errors, node->mark, "include: more than %d files, or nested more than %d deep", MAX_INCLUDES,
+                        MAX_INCLUDE_DEPTH);
         return STATUS_OK;
     }
     struct text path = {0};
@@ -146,7 +146,7 @@ static enum status include_entry(struct case_tree *tree, const struct yaml_node 
     return status;
 }
 
-/* Take the include list out of *root, read the files and lay *root over them. */
+/* Remove the include list from *root, read the files and merge *root over them. */
 static enum status read_includes(struct case_tree *tree, const char *folder, const struct open_file *self,
                                  struct yaml_errors *errors, struct yaml_node **root) {
     struct yaml_entry *const entry = yaml_tree_entry(*root, "include", strlen("include"));
@@ -174,7 +174,7 @@ static enum status read_includes(struct case_tree *tree, const char *folder, con
     return status;
 }
 
-/* Turn a text and what it includes into a tree; *root stays NULL if the text itself is wrong. */
+/* Parse a source and what it includes into a tree; *root stays NULL if the source itself is wrong. */
 static enum status read_source(struct case_tree *tree, const struct yaml_source *source, const char *folder,
                                const struct open_file *self, struct yaml_errors *errors, struct yaml_node **root) {
     const enum status status = yaml_tree_read(root, source, errors);
@@ -235,10 +235,10 @@ enum status case_merge_read_text(struct case_tree *tree, const char *text, size_
 
 // ---- assignments
 
-/* Merge a value into *node at a path of keys; "" is the node itself. Takes the value. */
+/* Merge a value into *node at a path of keys; "" is the node itself. Takes ownership of the value. */
 static enum status put_at(struct yaml_node **node, const char *path, struct yaml_mark mark, struct yaml_node *value) {
     if (*path == '\0') return yaml_tree_merge(node, value);
-    if ((*node)->kind != YAML_MAP) {  // that will be reported in its own place
+    if ((*node)->kind != YAML_MAP) {  // that is reported when its section is read
         yaml_tree_free(value);
         return STATUS_OK;
     }
@@ -270,7 +270,7 @@ static enum status put_in_fish(struct case_tree *tree, const struct case_path *p
     return STATUS_OK;
 }
 
-/* Put a value where a path says. Takes the value. */
+/* Put a value at a path. Takes ownership of the value. */
 static enum status put(struct case_tree *tree, const struct case_path *path, struct yaml_node *value) {
     if (path->fish == CASE_NO_FISH) return put_at(&tree->root, path->below, value->mark, value);
     const enum status status = put_in_fish(tree, path, value);
@@ -278,7 +278,7 @@ static enum status put(struct case_tree *tree, const struct case_path *path, str
     return status;
 }
 
-/* Apply an assignment whose text before the equals sign is name. */
+/* Apply an assignment: name is what stands before the equals sign, text what follows it. */
 static enum status assign(struct case_tree *tree, char *name, const char *text, struct yaml_source *source,
                           struct yaml_errors *errors) {
     const struct yaml_mark mark = {source, 1, 1};
@@ -286,10 +286,10 @@ static enum status assign(struct case_tree *tree, char *name, const char *text, 
     if (!case_path_parse(&path, name, case_merge_n_fish(tree), mark, errors)) return STATUS_OK;
     const struct key *const key = case_table_row(path.pattern);
     if (key && key->type == FILES) {
-        yaml_errors_add(errors, mark, "%s: stands in a case file only", name);
+        yaml_errors_add(errors, mark, "%s: is allowed in case files only", name);
         return STATUS_OK;
     }
-    // nothing after the equals sign is the empty text
+    // nothing after the equals sign is the empty string
     source->text = strdup(text[strspn(text, " ")] ? text : "\"\"");
     if (!source->text) return out_of_memory();
     source->length = strlen(source->text);
@@ -326,7 +326,7 @@ enum status case_merge_assign(struct case_tree *tree, const char *assignment, st
     return status;
 }
 
-// ---- look-ups
+// ---- queries
 
 int case_merge_n_fish(const struct case_tree *tree) {
     const struct yaml_node *const school = yaml_tree_find(tree->root, "fish");

@@ -1,8 +1,8 @@
 /* case_merge.h: one tree from a case file, its includes and the assignments of the command line.
  * Tested by tests/case/test_case.c.
  *
- * The tree keeps what is strongest: assignments, then the case file, then its includes (the last one first). Defaults
- * are not merged into the fish but looked up after them, so that no value is ever copied. */
+ * The tree holds the values with the highest precedence: assignments, then the case file, then its includes (the last
+ * one first). defaults.fish is not merged into the fish: a key is looked up there if the fish does not have it. */
 #ifndef CASE_MERGE_H
 #define CASE_MERGE_H
 
@@ -16,8 +16,8 @@ struct case_tree {
     struct yaml_source **source; /* the case file first */
 };
 
-/* Read a case from a file, or from a text of which origin is the name and folder ("" or NULL: the working directory)
- * the place where includes are looked up. Zero the tree before. What is wrong with the case is added to errors, and
+/* Read a case from a file, or from a string: origin is its name in messages, folder (NULL or "": the working directory)
+ * is where its includes are. Zero the tree before. What is wrong with the case is added to errors, and
  * tree->root is then NULL. Fails with STATUS_FILE (the case file cannot be read) or STATUS_MEMORY only. */
 enum status case_merge_read_file(struct case_tree *tree, const char *path, struct yaml_errors *errors);
 enum status case_merge_read_text(struct case_tree *tree, const char *text, size_t length, const char *origin,
@@ -29,12 +29,12 @@ enum status case_merge_assign(struct case_tree *tree, const char *assignment, st
 /* Release all that the tree owns and zero it. */
 void case_merge_free(struct case_tree *tree);
 
-/* The number of fish, and what is written at a path ("time.end", "fish.nodes") for one fish (ignored for other paths):
- * among its own keys or, with *is_default, under defaults.fish; NULL if nowhere. */
+/* The number of fish, and the node at a path ("time.end", "fish.nodes") for one fish (ignored for other paths): among
+ * its own keys or, with *is_default, under defaults.fish; NULL if there is none. */
 int case_merge_n_fish(const struct case_tree *tree);
 const struct yaml_node *case_merge_value(const struct case_tree *tree, const char *path, int fish, bool *is_default);
 
-/* Where a message about a path should point: at its value, or at the nearest that is written around it. */
+/* The place that a message about a path points at: its value, or the innermost section around it that is written. */
 struct yaml_mark case_merge_mark(const struct case_tree *tree, const char *path, int fish);
 
 #endif

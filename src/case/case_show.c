@@ -14,7 +14,7 @@
 
 enum { COMMENT_COLUMN = 40 };
 
-/* The number of characters since the last end of line. */
+/* The number of characters in the last line. */
 static size_t column(const struct text *text) {
     size_t n = 0;
     while (n < text->length && text->text[text->length - 1 - n] != '\n') n++;
@@ -56,7 +56,7 @@ static void show_key(struct text *text, const struct key *key, const void *field
     text_add(text, "\n");
 }
 
-/* True if a key is left out: it has been applied already, or it has no value. */
+/* True if a key is omitted: it has been applied already, or it has no value. */
 static bool is_hidden(const struct key *key, const void *field) {
     if (!case_table_is_value(key)) return true;
     if (strcmp(key->path, "preset") == 0) return true;
@@ -78,7 +78,7 @@ static void show_rows(struct text *text, struct case_values *values, struct fish
     }
 }
 
-/* Add "[a, b]", or without brackets where there is one only. */
+/* Add "[a, b]", or "a" without brackets if there is only one. */
 static void show_group(struct text *text, const struct sweep_axis *axis, int value) {
     if (axis->n_keys > 1) text_add(text, "[");
     for (int k = 0; k < axis->n_keys && !text->failed; k++) {
@@ -103,7 +103,7 @@ static void show_quantities(struct text *text, unsigned all) {
     text_add(text, "]");
 }
 
-/* Add the given values of an axis, one for each fish: {speed: [1, 1.1], nose: [[0, 1], [0, 2]]}. */
+/* Add the reference values of an axis, one for each fish: {speed: [1, 1.1], nose: [[0, 1], [0, 2]]}. */
 static void show_reference(struct text *text, const struct case_values *values, int axis) {
     const char *before = "    reference: {";
     for (int q = 0; q < SWEEP_N_ORDERS; q++) {
@@ -146,7 +146,7 @@ static void show_axis(struct text *text, const struct case_values *values, int a
     text_add(text, "}\n");
 }
 
-/* Add a bound of a statement. */
+/* Add a bound of an expectation. */
 static void show_bound(struct text *text, const char *name, double bound) {
     if (isnan(bound)) return;
     text_add(text, ", %s: ", name);

@@ -6,13 +6,13 @@
 
 #include "case/case_table.h"
 
-enum { WORD = 40 /* longer words are like no key */ };
+enum { WORD = 40 /* no key has a longer word */ };
 
 /* One word of a path of the table: "body" or "modulus" of "fish.body.modulus". */
 struct candidate {
     char word[WORD + 1];
     char section[80]; /* "fish.body"; "" at the top */
-    int distance;     /* edits from what the user wrote */
+    int distance;     /* edits from the word of the user */
     int remoteness;   /* 0: a sibling, 1: below, 2: elsewhere */
 };
 
@@ -53,7 +53,7 @@ static int distance_to_any(const char *word, const char *words) {
     return distance;
 }
 
-/* Take the candidate for the word of a path that ends at end, if it is nearer than the best so far. */
+/* Consider the word of a path that ends at end: it becomes the best if it is nearer than the best so far. */
 static void consider(struct candidate *best, const struct key *key, size_t end, const char *section, const char *word) {
     size_t begin = end;
     while (begin > 0 && key->path[begin - 1] != '.') begin--;
@@ -75,7 +75,7 @@ static void consider(struct candidate *best, const struct key *key, size_t end, 
     if (is_nearer || (one.distance == best->distance && one.remoteness < best->remoteness)) *best = one;
 }
 
-/* Say where the candidate stands: "fish[2].body" or "time". */
+/* Add the section of the candidate: "fish[2].body" or "time". */
 static void add_section(struct text *hint, const struct candidate *candidate, const char *owner) {
     const char *const section = candidate->section;
     const bool is_of_fish = strncmp(section, "fish", 4) == 0 && (section[4] == '\0' || section[4] == '.');
@@ -93,12 +93,12 @@ static void add_section(struct text *hint, const struct candidate *candidate, co
     }
 }
 
-/* List the words that can stand in a section. */
+/* List the words of a section. */
 static void add_words(struct text *hint, const char *section) {
     const size_t here = section[0] ? strlen(section) + 1 : 0;
     size_t last_length = 0;
     const char *last = "";
-    text_add(hint, "; known here:");
+    text_add(hint, "; known keys:");
     for (int i = 0; i < case_table_n; i++) {
         const char *const path = case_table[i].path;
         if (here > 0 && (strncmp(path, section, here - 1) != 0 || path[here - 1] != '.')) continue;

@@ -1,4 +1,4 @@
-/* case_table.h: the one table of keys of a case file, and the look-ups in it. Tested by tests/case/test_case.c. */
+/* case_table.h: the table of the keys of a case file, and queries of it. Tested by tests/case/test_case.c. */
 #ifndef CASE_TABLE_H
 #define CASE_TABLE_H
 
@@ -13,23 +13,23 @@ enum { CASE_MAX_FISH = 10000 };
 enum key_type {
     REAL,      /* double */
     INTEGER,   /* int */
-    CHOICE,    /* an enum: the place of the word among .words */
-    METHOD,    /* enum method: the place of the word in the table of methods (base/methods.h) */
+    CHOICE,    /* an enum: the index of the word in .words */
+    METHOD,    /* enum method: the index of the word in the table of methods (base/methods.h) */
     STRING,    /* char *, owned */
     PAIR,      /* double[2] */
     NUMBERS,   /* struct number_list of numbers */
     PAIRS,     /* struct number_list of pairs */
     HEADING,   /* struct number_list of pairs (time, angle); one number is the pair (0, angle) */
-    FILES,     /* include: no place in struct case_values */
-    DEFAULTS,  /* defaults: no place in struct case_values */
+    FILES,     /* include: no field in struct case_values */
+    DEFAULTS,  /* defaults: no field in struct case_values */
     AXES,      /* sweep: read by sweep.c */
     STATEMENTS /* expect: read by sweep_expect.c */
 };
 
-/* What a number, or each number of a list, may be; of a STRING, max is the largest number of bytes. */
+/* The range of a number, or of each number of a list; of a STRING, max is the maximum number of bytes. */
 struct bounds {
     double min, max;
-    bool is_min_open, is_max_open; /* the bound itself is refused */
+    bool is_min_open, is_max_open; /* the bound itself is excluded */
 };
 
 struct key {
@@ -43,7 +43,7 @@ struct key {
     const char *derived;      /* how the program computes the default, in words */
     const char *published;    /* the default under preset: published, where it differs */
     const char *const *words; /* of a CHOICE, in the order of its enum, NULL at the end */
-    const char *synonyms;     /* words that people write instead, separated by blanks */
+    const char *synonyms;     /* words that users write instead, separated by blanks */
 };
 
 extern const struct key case_table[];
@@ -52,22 +52,22 @@ extern const int case_table_n;
 /* The row of a path without indices ("fish.nodes"); NULL if there is none. */
 const struct key *case_table_row(const char *path);
 
-/* True if keys of the table begin with "path.", as for "fish.body". */
+/* True if a path is a section, such as "fish.body": keys of the table begin with "path.". */
 bool case_table_is_section(const char *path);
 
-/* True if the key stands under every fish. */
+/* True if every fish has the key. */
 bool case_table_is_of_fish(const struct key *key);
 
-/* True if a key has one value, with a place in struct case_values; false from FILES on. */
+/* True if the key has one value and a field in struct case_values; false from FILES on. */
 bool case_table_is_value(const struct key *key);
 
-/* Where the value of a key is; fish is ignored unless the key is of a fish. */
+/* The field of a key; fish is ignored unless the key is of a fish. */
 void *case_table_field(const struct key *key, struct case_values *values, struct fish_parameters *fish);
 
 /* Word i of a CHOICE or METHOD; NULL past the last. */
 const char *case_table_word(const struct key *key, int i);
 
-/* The name of a type as the reference calls it, and the range ("0 to 1", "> 0" or ""). */
+/* The type of a key in the words of the reference, and its range ("0 to 1", "> 0" or ""). */
 const char *case_table_type(const struct key *key);
 void case_table_range(const struct key *key, struct text *range);
 

@@ -10,11 +10,11 @@
 
 enum { MAX_VALUES = 10000 /* of one list */ };
 
-/* A value being read, and where complaints go. */
+/* A value being read, and the list that errors are added to. */
 struct context {
     const struct key *key;
     const char *path;
-    const char *unit; /* "" if the text of the messages has it */
+    const char *unit; /* "" if the message has it already */
     struct yaml_errors *errors;
 };
 
@@ -60,7 +60,7 @@ static bool is_in(const struct bounds *bounds, double value) {
     return bounds->is_max_open ? value < bounds->max : value <= bounds->max;
 }
 
-/* Read one number in the range of the key. what: "a number", "two numbers [x, y]": how the whole value should look. */
+/* Read one number in the range of the key. what: "a number", "two numbers [x, y]": the form that messages ask for. */
 static bool read_number(const struct context *context, const struct yaml_node *node, const char *what, double *value) {
     char shown[64];
     const char *const unit = context->unit;
@@ -83,7 +83,7 @@ static bool read_number(const struct context *context, const struct yaml_node *n
 }
 
 /* True for a sign and digits only. */
-static bool is_whole(const char *text) {
+static bool has_digits_only(const char *text) {
     if (*text == '+' || *text == '-') text++;
     return *text != '\0' && strspn(text, "0123456789") == strlen(text);
 }
@@ -91,8 +91,8 @@ static bool is_whole(const char *text) {
 static void read_integer(const struct context *context, const struct yaml_node *node, int *value) {
     char shown[64];
     double number;
-    if (node->kind != YAML_SCALAR || !is_whole(node->text) || !text_number(node->text, &number)) {
-        yaml_errors_add(context->errors, node->mark, "%s: expects a whole number, got %s", context->path,
+    if (node->kind != YAML_SCALAR || !has_digits_only(node->text) || !text_number(node->text, &number)) {
+        yaml_errors_add(context->errors, node->mark, "%s: expects an integer, got %s", context->path,
                         yaml_tree_describe(node, shown, sizeof shown));
     } else if (!is_in(&context->key->bounds, number) || number < INT_MIN || number > INT_MAX) {
         report_range(context, node);
@@ -101,7 +101,7 @@ static void read_integer(const struct context *context, const struct yaml_node *
     }
 }
 
-// ---- words and texts
+// ---- words and strings
 
 static void read_choice(const struct context *context, const struct yaml_node *node, int *value) {
     const struct key *const key = context->key;
@@ -120,7 +120,7 @@ static void read_choice(const struct context *context, const struct yaml_node *n
     text_free(&range);
 }
 
-/* True for texts with characters that end a line or move the cursor. */
+/* True for strings with characters that end a line or move the cursor. */
 static bool has_control(const char *text) {
     for (const char *c = text; *c; c++) {
         if ((unsigned char)*c < ' ' || *c == 0x7F) return true;
@@ -128,10 +128,10 @@ static bool has_control(const char *text) {
     return strstr(text, "\xC2\x85") || strstr(text, "\xE2\x80\xA8") || strstr(text, "\xE2\x80\xA9");
 }
 
-static enum status read_text(const struct context *context, const struct yaml_node *node, char **value) {
+static enum status read_string(const struct context *context, const struct yaml_node *node, char **value) {
     char shown[64];
     if (node->kind != YAML_SCALAR || node->text[0] == '\0') {
-        yaml_errors_add(context->errors, node->mark, "%s: expects a text, got %s", context->path,
+        yaml_errors_add(context->errors, node->mark, "%s: expects a string, got %s", context->path,
                         yaml_tree_describe(node, shown, sizeof shown));
     } else if (has_control(node->text)) {
         yaml_errors_add(context->errors, node->mark, "%s: must be one line without control characters", context->path);
@@ -230,7 +230,7 @@ enum status case_value_read(const struct key *key, void *field, const struct yam
         case INTEGER: read_integer(&context, node, field); break;
         case CHOICE:
         case METHOD: read_choice(&context, node, field); break;
-        case STRING: return read_text(&context, node, field);
+        case STRING: return read_string(&context, node, field);
         case PAIR: read_pair(&context, node, "two numbers [x, y]", field); break;
         case NUMBERS:
         case PAIRS: return read_list(&context, node, field);

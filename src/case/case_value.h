@@ -1,7 +1,7 @@
-/* case_value.h: one value of a case, by its row of the table. Tested by tests/case/test_case.c.
+/* case_value.h: one value of a case: how each type of key is read, written and released. Tested by tests/case/test_case.c.
  *
- * A field that has not been read holds NaN, -1 (word), 0 or an empty list: a comparison with it is false, so that a
- * check of several keys is silent about a value that has been complained about already. */
+ * A field that has not been read is NaN, -1 (word), 0, NULL or an empty list: comparisons with it are false, so that a
+ * check of several keys does not complain of a value that has been reported already. */
 #ifndef CASE_VALUE_H
 #define CASE_VALUE_H
 
@@ -11,7 +11,7 @@
 /* Mark a field as not read. */
 void case_value_clear(const struct key *key, void *field);
 
-/* Read a node into a cleared field. What is wrong is added to errors, in which path names the key; the field then stays
+/* Read a node into a cleared field. An error is added to errors with path as the name of the key; the field then stays
  * cleared. Fails with STATUS_MEMORY only. */
 enum status case_value_read(const struct key *key, void *field, const struct yaml_node *node, const char *path,
                             struct yaml_errors *errors);

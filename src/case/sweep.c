@@ -4,7 +4,7 @@
  *     - {keys: [fish[*].nodes, fish[*].sheet_points], values: [[7, 21], [13, 41]]}     two that change together
  *     - {key: ..., values: ..., refine: true}                                          resolutions: sweep_refine.c
  *
- * A value is checked here as if it were given to its key, and kept as the text that --set will get. */
+ * A value is checked as a value of its key, and kept as the string that --set takes. */
 #include "case/sweep.h"
 
 #include <stdio.h>
@@ -25,7 +25,7 @@ static enum status out_of_memory(void) {
     return status_fail(STATUS_MEMORY, "out of memory: the sweep");
 }
 
-/* One axis on its way: where it is read from, where it goes, and what is known about its keys. */
+/* An axis being read. */
 struct axis {
     char name[32]; /* "sweep[1]" */
     const struct yaml_node *node;
@@ -76,8 +76,7 @@ static const struct key *find_key(const struct case_values *values, const struct
     const struct key *const key = case_table_row(path.pattern);
     const bool is_fixed = !key || !case_table_is_value(key);
     if (is_fixed || strcmp(key->path, "format") == 0) {
-        yaml_errors_add(axis->errors, node->mark, "%s.key: '%.60s' is not a value that can be swept", axis->name,
-                        node->text);
+        yaml_errors_add(axis->errors, node->mark, "%s.key: '%.60s' cannot be swept", axis->name, node->text);
         return NULL;
     }
     check_twice(values, axis, node);
@@ -122,7 +121,7 @@ static enum status read_value(struct axis *axis, int index, int k, const struct 
     if (axis->key[k]) {
         union {
             double number[2];
-            int whole;
+            int integer;
             char *text;
             struct number_list list;
         } field;
@@ -206,7 +205,7 @@ enum status sweep_read(struct case_values *values, const struct yaml_node *root,
         TRY(status);
     }
     if (n_members > max_members) {
-        yaml_errors_add(errors, list->mark, "sweep: %.0f members or more; the most is %.0f", n_members, max_members);
+        yaml_errors_add(errors, list->mark, "sweep: %.0f members or more; the maximum is %.0f", n_members, max_members);
     }
     // axes with values that are missing, or too many of them, must not be counted through
     if (errors->n > n_before) sweep_free(values);

@@ -20,7 +20,7 @@ static enum status out_of_memory(void) {
     return status_fail(STATUS_MEMORY, "out of memory: what is expected");
 }
 
-/* One statement on its way. */
+/* An expectation being read. */
 struct stating {
     const struct case_values *values;
     char name[32]; /* "expect[1]" */
@@ -43,7 +43,7 @@ void sweep_expect_free(struct case_values *values) {
 
 // ---- which members
 
-/* True if two texts of a value are the same, blanks apart, or the same number. */
+/* True if two strings are the same number, or the same but for blanks and quotes. */
 static bool are_same(const char *one, const char *other) {
     double a, b;
     if (text_number(one, &a) && text_number(other, &b)) return a == b;

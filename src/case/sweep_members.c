@@ -7,7 +7,7 @@ enum status sweep_refuse(const struct case_values *values) {
     if (values->n_axes == 0) return STATUS_OK;
     return status_fail(STATUS_CASE,
                        "error: sweep: `shoal run` runs one case; this case has a sweep of %d ax%cs: run it with "
-                       "`shoal study`, or take the sweep away with --set 'sweep=[]'",
+                       "`shoal study`, or remove the sweep with --set 'sweep=[]'",
                        values->n_axes, values->n_axes == 1 ? 'i' : 'e');
 }
 

@@ -19,7 +19,7 @@ struct sweep_axis {
     int n_keys;
     struct sweep_key *key; /* (n_keys) */
     int n_values;
-    char **value;         /* value i of key k is value[i * n_keys + k], a text as --set takes it (n_values * n_keys) */
+    char **value;         /* value i of key k is value[i * n_keys + k], as --set takes it     (n_values * n_keys) */
     int refine;           /* the values are resolutions of the first key: a study of convergence */
     double order, within; /* what is expected of the observed order: order +- within; NaN: nothing */
     unsigned order_of;    /* bit q: of quantity q */

@@ -37,7 +37,7 @@ int sweep_quantity_read(const char *name, struct yaml_mark mark, const char *pat
     if (found >= 0) return found;
     struct text known = {0};
     for (int q = 0; q < n_known; q++) text_add(&known, "%s%s", q > 0 ? ", " : "", sweep_quantities[q].name);
-    yaml_errors_add(errors, mark, "%s: '%.40s' is no quantity; known here: %s", path, name,
+    yaml_errors_add(errors, mark, "%s: '%.40s' is not a quantity; known quantities: %s", path, name,
                     known.text ? known.text : "");
     if (known.failed) errors->out_of_memory = true;
     text_free(&known);

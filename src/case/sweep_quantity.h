@@ -23,11 +23,11 @@ extern const struct sweep_quantity sweep_quantities[SWEEP_N_QUANTITIES];
 /* The number of a quantity among the first n_known; -1 if none of them has this name. */
 int sweep_quantity_find(const char *name, int n_known);
 
-/* The same for a name that stands in a case; -1 after adding to errors that path names none. */
+/* The same for a name in a case; -1 after adding an error, with path as the place of the name. */
 int sweep_quantity_read(const char *name, struct yaml_mark mark, const char *path, int n_known,
                         struct yaml_errors *errors);
 
-/* The same for a name or a list of names under path.of, as a set: bit q stands for quantity q. */
+/* The same for a name or a list of names under path.of, as a set: bit q is set for quantity q. */
 unsigned sweep_quantities_read(const struct yaml_node *of, const char *path, int n_known, struct yaml_errors *errors);
 
 #endif

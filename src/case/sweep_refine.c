@@ -17,7 +17,7 @@
 
 enum { MIN_LEVELS = 3 };
 
-/* An axis on its way. */
+/* An axis being read. */
 struct refining {
     const struct case_values *values;
     struct sweep_axis *into;
@@ -41,7 +41,7 @@ static void check_refine(const struct refining *axis, const struct key *key, con
     if (!key) return;
     if (!is_resolution(key)) {
         yaml_errors_add(axis->errors, node->mark,
-                        "%s.refine: '%.60s' is no resolution; these are: time.shedding_interval, solver.rtol, "
+                        "%s.refine: '%.60s' is not a resolution; these are: time.shedding_interval, solver.rtol, "
                         "solver.step, fish[*].nodes, fish[*].sheet_points",
                         axis->name, into->key[0].path);
         return;

@@ -1,4 +1,4 @@
-/* yaml_tree.c: from the events of libyaml to a tree, with every limit and refusal on the way. */
+/* yaml_tree.c: a tree from the events of libyaml, with its limits and refusals. */
 #include "case/yaml_tree.h"
 
 #include <stdio.h>
@@ -142,14 +142,15 @@ static const char *remedy(const char *problem) {
          "the indentation of this line differs from the lines above, or a quote or bracket is open"},
         {"did not find expected '-' indicator", "every entry of this list must begin with '- ' in the same column"},
         {"mapping values are not allowed in this context",
-         "a key cannot stand here: check the indentation, and put a text that contains ': ' in quotes"},
+         "a key is not allowed here: check the indentation, and quote strings that contain ': '"},
         {"could not find expected ':'", "a key ends with ':' and a blank"},
         {"did not find expected ',' or ']'",
          "a list that begins with '[' needs ',' between its values and ']' at its end"},
         {"did not find expected ',' or '}'",
-         "a map that begins with '{' needs ',' between its keys and '}' at its end; a text with brackets needs quotes"},
+         "a map that begins with '{' needs ',' between its keys and '}' at its end; a string with brackets needs "
+         "quotes"},
         {"found unexpected end of stream", "the quote that begins here is not closed"},
-        {"found character that cannot start any token", "put a text that begins with this character in quotes"},
+        {"found character that cannot start any token", "quote strings that begin with this character"},
     };
     for (size_t i = 0; i < sizeof remedies / sizeof *remedies; i++) {
         if (strcmp(problem, remedies[i][0]) == 0) return remedies[i][1];
@@ -157,7 +158,7 @@ static const char *remedy(const char *problem) {
     return "this is not valid YAML";
 }
 
-/* True if a tab stands among the blanks that begin the line of a mark. */
+/* True if the indentation of the line of a mark contains a tab. */
 static bool is_tab_indented(struct yaml_mark mark) {
     const char *place = mark.source->text, *const end = place + mark.source->length;
     for (int line = 1; line < mark.line && place < end; place++) line += *place == '\n';
@@ -211,7 +212,7 @@ static enum status read_scalar(struct reader *reader, const yaml_event_t *event,
     const char *const text = (const char *)event->data.scalar.value;
     refuse_extras(reader, mark, event->data.scalar.anchor, event->data.scalar.tag);
     if (strlen(text) != event->data.scalar.length) {
-        yaml_errors_add(reader->errors, mark, "a text cannot contain a zero byte");
+        yaml_errors_add(reader->errors, mark, "a string cannot contain a zero byte");
     }
     *node = create(YAML_SCALAR, mark);
     if (!*node || !((*node)->text = strdup(text))) return out_of_memory();
@@ -371,8 +372,8 @@ static enum status check_characters(const struct yaml_source *source, struct yam
                                 (code >= 0x7F && code < 0xA0 && code != 0x85) || code == 0xFFFE || code == 0xFFFF;
         if (code < 0 || is_control) {
             yaml_errors_add(errors, mark,
-                            code < 0 ? "not a text in UTF-8 (byte 0x%02X); is this a case file?"
-                                     : "not a text (control character 0x%02X); is this a case file?",
+                            code < 0 ? "not valid UTF-8 (byte 0x%02X); is this a case file?"
+                                     : "not a text file (control character 0x%02X); is this a case file?",
                             text[i]);
             return STATUS_CASE;
         }
@@ -382,7 +383,7 @@ static enum status check_characters(const struct yaml_source *source, struct yam
     return STATUS_OK;
 }
 
-/* Read a text that has passed the checks of size and characters. */
+/* Parse a source that has passed the checks of size and characters. */
 static enum status read_text(struct yaml_node **root, const struct yaml_source *source, struct yaml_errors *errors) {
     struct reader reader = {.source = source, .errors = errors};
     if (!yaml_parser_initialize(&reader.parser)) return out_of_memory();
@@ -425,6 +426,6 @@ void yaml_tree_check_keys(const struct yaml_node *map, const char *path, const c
             word += n;
         }
         if (is_known) continue;
-        yaml_errors_add(errors, entry->mark, "%s.%.40s: unknown key; known here: %s", path, entry->key, known);
+        yaml_errors_add(errors, entry->mark, "%s.%.40s: unknown key; known keys: %s", path, entry->key, known);
     }
 }

@@ -1,12 +1,12 @@
-/* yaml_tree.h: a subset of YAML read into a tree that knows where everything stands. Tested by tests/case/test_yaml.c.
+/* yaml_tree.h: a subset of YAML, read into a tree in which every node has its place in the source. Tested by tests/case/test_yaml.c.
  *
  *     time: {end: 3}          map -- "time" -- map -- "end" -- scalar "3"
  *     fish:                    |
  *       - nodes: 7             +-- "fish" -- list -- map -- "nodes" -- scalar "7"
  *
  * Maps, lists and scalars only: anchors, aliases, tags, merge keys, duplicate keys and further documents are refused.
- * A scalar is its text: what it means is decided by who asks for it, never by YAML. Only events of libyaml are used:
- * its loader takes quadratic time on hostile input. (Not "yaml.h": that is the name of libyaml's own header.) */
+ * A scalar is a string, which the key interprets, never YAML. Only the events of libyaml are used: its loader takes
+ * quadratic time on hostile input. (The name "yaml.h" is that of libyaml's header.) */
 #ifndef YAML_TREE_H
 #define YAML_TREE_H
 
@@ -20,7 +20,7 @@ enum yaml_kind { YAML_SCALAR, YAML_LIST, YAML_MAP };
 struct yaml_node {
     enum yaml_kind kind;
     struct yaml_mark mark;
-    char *text;               /* of a scalar, UTF-8 */
+    char *text;               /* string of a scalar, UTF-8 */
     int n, capacity;          /* entries of a list or map */
     struct yaml_entry *entry; /* in the order of the text */
 };
@@ -31,7 +31,7 @@ struct yaml_entry {
     struct yaml_node *value;
 };
 
-/* Read a text. Fails with STATUS_CASE after adding what is wrong to errors, or with STATUS_MEMORY; *root is then NULL.
+/* Parse a source. Fails with STATUS_CASE after adding what is wrong to errors, or with STATUS_MEMORY; *root is then NULL.
  * The nodes point at the source. Free with yaml_tree_free. */
 enum status yaml_tree_read(struct yaml_node **root, const struct yaml_source *source, struct yaml_errors *errors);
 
@@ -48,7 +48,7 @@ struct yaml_entry *yaml_tree_entry(const struct yaml_node *map, const char *key,
 /* The node at a path of keys like "time.end"; NULL if there is none. */
 const struct yaml_node *yaml_tree_find(const struct yaml_node *map, const char *path);
 
-/* Lay *over* onto *base: maps are merged key by key, anything else replaces what was there. Takes over, also when it
+/* Merge over onto *base: maps are merged key by key, anything else is replaced. Takes ownership of over, also when it
  * fails with STATUS_MEMORY. */
 enum status yaml_tree_merge(struct yaml_node **base, struct yaml_node *over);
 

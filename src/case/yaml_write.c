@@ -4,13 +4,13 @@
 #include <stdbool.h>
 #include <string.h>
 
-/* True for the characters that mean nothing to YAML, in any place. */
+/* True for the characters that are never special in YAML. */
 static bool is_ordinary(char c) {
     const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
     return letter || (c >= '0' && c <= '9') || (c != '\0' && strchr("_./+-", c));
 }
 
-/* True if a text can stand in YAML without quotes, also inside [ ] and { }. */
+/* True if a string needs no quotes in YAML, also inside [ ] and { }. */
 static bool is_plain(const char *scalar) {
     if (!is_ordinary(*scalar) || strcmp(scalar, "-") == 0 || strncmp(scalar, "- ", 2) == 0) return false;
     if (strncmp(scalar, "---", 3) == 0 || strncmp(scalar, "...", 3) == 0) return false;

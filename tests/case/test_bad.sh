@@ -3,8 +3,8 @@
 #
 #   tests/case/test_bad.sh PROGRAM
 #
-# tests/bad/x.yaml is checked against tests/bad/x.expected, all that stands on standard error; the exit code is 2. Other
-# files are made here. To write the expected messages anew (then read the difference!): WRITE=1 tests/case/test_bad.sh PROGRAM
+# tests/bad/x.yaml is checked against tests/bad/x.expected, all of standard error; the exit code is 2. Other
+# files are made here. To write the expected messages again (then read the difference!): WRITE=1 tests/case/test_bad.sh PROGRAM
 set -uo pipefail
 export LC_ALL=C
 
@@ -100,13 +100,13 @@ fi
 expect empty_file 2 'empty.yaml:1:1: error: the file is empty; a case needs at least format, time and fish' empty.yaml
 expect no_bytes_ever 2 'the file is empty' /dev/null
 printf 'format: 1\nname: "\0\1\2"\n' >binary.yaml
-expect binary_file 2 'binary.yaml:2:8: error: not a text (control character 0x00); is this a case file?' binary.yaml
+expect binary_file 2 'binary.yaml:2:8: error: not a text file (control character 0x00); is this a case file?' binary.yaml
 printf 'format: 1\nname: caf\351\n' >latin1.yaml
-expect latin1_file 2 'latin1.yaml:2:10: error: not a text in UTF-8 (byte 0xE9)' latin1.yaml
+expect latin1_file 2 'latin1.yaml:2:10: error: not valid UTF-8 (byte 0xE9)' latin1.yaml
 printf '\377\376f\0o\0' >utf16.yaml
-expect utf16_file 2 'utf16.yaml:1:1: error: not a text in UTF-8 (byte 0xFF)' utf16.yaml
+expect utf16_file 2 'utf16.yaml:1:1: error: not valid UTF-8 (byte 0xFF)' utf16.yaml
 printf 'name: \355\240\200\n' >surrogate.yaml
-expect surrogate_in_utf8 2 'surrogate.yaml:1:7: error: not a text in UTF-8' surrogate.yaml
+expect surrogate_in_utf8 2 'surrogate.yaml:1:7: error: not valid UTF-8' surrogate.yaml
 printf 'format: 1\r\ntime:\r\n  end: 1\r\n  ned: 2\r\n' >crlf.yaml
 expect lines_that_end_in_crlf 2 "crlf.yaml:4:3: error: time.ned: unknown key; did you mean 'end'?" crlf.yaml
 printf '\357\273\277formt: 1\n' >mark.yaml
@@ -132,13 +132,13 @@ expect twenty_thousand_waypoints 2 'fish[1].control.waypoints: more than 10000 v
 { echo 'format: 1'; echo 'time: {end: 1}'; echo 'fish: [{}]'; echo 'sweep:'
   for key in solver.order solver.max_steps; do echo "  - {key: $key, values: [$(repeat '1,' 50000)]}"; done
   echo 'expect: [{of: speed, least: 0, where: [solver.order=1]}]'; } >members.yaml
-expect members_beyond_integers 2 'members.yaml:5:3: error: sweep: 2500000000 members or more; the most is 100000' members.yaml
+expect members_beyond_integers 2 'members.yaml:5:3: error: sweep: 2500000000 members or more; the maximum is 100000' members.yaml
 if [[ $(grep -c error: err) == 1 ]]; then pass only_their_number_is_wrong; else fail only_their_number_is_wrong "$(cut -c1-200 err)"; fi
 { cat good.yaml; printf 'name: '; repeat x 300; echo; } >name.yaml
 expect name_of_300_bytes 2 'name.yaml:6:7: error: name: longer than 200 bytes' name.yaml
 
 for ((i = 0; i < 12; i++)); do echo "include: [chain$((i + 1)).yaml]" >"chain$i.yaml"; done
-expect includes_too_deep 2 'include: more than 64 files, or files that include each other 8 deep' chain0.yaml
+expect includes_too_deep 2 'include: more than 64 files, or nested more than 8 deep' chain0.yaml
 printf 'include: [two.yaml, two.yaml]\n' >one.yaml
 printf 'include: [one.yaml]\n' >two.yaml
 expect includes_in_a_circle 2 'two.yaml:1:11: error: include: one.yaml includes itself' one.yaml
@@ -160,7 +160,7 @@ set_fails set_unknown_key \
 set_fails set_unknown_section "--set tiem.end=3: error: tiem.end: unknown key; did you mean 'time'?" tiem.end=3
 set_fails set_no_equals_sign '--set time.end: error: expects PATH=VALUE, as in --set time.end=3' time.end
 set_fails set_nothing '--set : error: expects PATH=VALUE' ''
-set_fails set_no_path '--set =3: error: : unknown key; known here: format, name' =3
+set_fails set_no_path '--set =3: error: : unknown key; known keys: format, name' =3
 set_fails set_index_out_of_range 'fish[2]: there is no such fish; the case has 2, the last is fish[1]' 'fish[2].nodes=7'
 set_fails set_index_huge 'fish[99999999999999999999]: there is no such fish' 'fish[99999999999999999999].nodes=7'
 set_fails set_index_negative 'fish[-1].nodes: expects the number of a fish' 'fish[-1].nodes=7'
@@ -174,7 +174,7 @@ set_fails set_empty '--set time.end=: error: time.end: expects a number in s, go
 set_fails set_bad_yaml "needs ',' between its values and ']' at its end" 'fish[0].start.position=[1'
 set_fails set_only_a_comment "expects a value after the '='" 'name=# eel'
 set_fails set_unknown_key_in_map "fish[0].wave.amplitud: unknown key; did you mean 'amplitude'?" 'fish[0].wave={amplitud: 1}'
-set_fails set_include '--set include=[a.yaml]: error: include: stands in a case file only' 'include=[a.yaml]'
+set_fails set_include '--set include=[a.yaml]: error: include: is allowed in case files only' 'include=[a.yaml]'
 set_fails set_inconsistent '--set wake.fade=3: error: wake.fade: 3 s is longer than wake.lifetime, 2 s' wake.fade=3
 set_fails set_twice_the_last_counts 'time.end: expects a number in s, got '"'b'" time.end=1 time.end=b
 set_fails set_section_to_a_value "--set wake=3: error: wake: expects keys below it, got '3'" wake=3
@@ -182,7 +182,7 @@ expect set_and_bad_file 2 "time.ned: unknown key" crlf.yaml --set nmae=3
 
 # ---- out of memory
 
-# room for a small case, but not for the tree of four megabytes of values
+# enough for a small case, but not for the tree of four megabytes of values
 { echo 'a: ['; repeat 'a,' 2000000; echo ']'; } >values.yaml
 if grep -q __asan_init "$program"; then
     skip out_of_memory 'the address sanitizer needs all addresses'

@@ -1,4 +1,4 @@
-/* test_settings.c: defaults, presets, includes, assignments, sweeps; and that a case shown reads back the same. What is
+/* test_case.c: defaults, presets, includes, assignments, sweeps; and that a case shown reads back the same. What is
  * wrong with a case is tested by test_bad.sh. */
 #include <stdlib.h>
 #include <string.h>
@@ -21,7 +21,7 @@
 
 static const char minimal[] = "format: 1\ntime: {end: 3}\nfish: [{}]\n";
 
-/* Parse a text that must be good, with up to three assignments (NULL: none). */
+/* Parse a case that must be good, with up to three assignments (NULL: none). */
 static struct case_values parse_with(const char *text, const char *first, const char *second, const char *third) {
     const char *const assignments[] = {first, second, third};
     int n = 0;
@@ -36,7 +36,7 @@ static struct case_values parse(const char *text) {
     return parse_with(text, NULL, NULL, NULL);
 }
 
-/* Parse a text that must be refused with a message that contains some words. */
+/* Parse a case that must be refused with a message that contains these words. */
 static void is_refused(const char *text, const char *want) {
     struct case_values values;
     assert_int_equal(case_parse(&values, text, strlen(text), "cases/x.yaml", NULL, 0, NULL), STATUS_CASE);
@@ -101,7 +101,7 @@ static void are_equal(struct case_values *one, struct case_values *other) {
 
 /* A folder for files, made by the setup of a test. */
 static int make_folder(void **state) {
-    char *const folder = strdup("/tmp/shoal-settings-XXXXXX");
+    char *const folder = strdup("/tmp/shoal-case-XXXXXX");
     *state = folder;
     return folder && mkdtemp(folder) && chdir(folder) == 0 ? 0 : -1;
 }
@@ -239,7 +239,7 @@ static void preset_published_sets_the_options_of_the_article(void **state) {
     case_free(&s);
 }
 
-static void anything_written_is_stronger_than_the_preset(void **state) {
+static void keys_in_the_case_override_the_preset(void **state) {
     (void)state;
     struct case_values s = parse(
         "format: 1\npreset: published\ntime: {end: 1}\nwake: {kutta: edge}\n"
@@ -292,7 +292,8 @@ static void multiples_are_recognised_despite_rounding(void **state) {
 
 static void errors_of_all_stages_are_listed_together(void **state) {
     (void)state;
-    is_refused("format: 1\ntime: {end: 1.005}\nfish: [{length: x}, {nodes: 1}]\n", "time.end: 1.005 s is not a whole");
+    is_refused("format: 1\ntime: {end: 1.005}\nfish: [{length: x}, {nodes: 1}]\n",
+               "time.end: 1.005 s is not an integer");
     assert_non_null(strstr(status_message(), "fish[0].length: expects a number in m, got 'x'"));
     assert_non_null(strstr(status_message(), "fish[1].nodes: must be from 4"));
 }
@@ -455,7 +456,7 @@ static void members_are_numbered_with_the_last_axis_fastest(void **state) {
     case_free(&study);
 }
 
-static void the_merged_text_is_the_whole_study(void **state) {
+static void the_merged_text_is_the_complete_study(void **state) {
     (void)state;
     struct case_values study = parse_with(zipped, "fish[0].length=2", "wake.fade=0.1", NULL);
     struct case_values again;
@@ -541,7 +542,8 @@ static void a_wrong_member_is_named(void **state) {
     case_free(&s);
     assert_int_equal(case_member(&s, &study, 1), STATUS_CASE);
     assert_non_null(strstr(status_message(), "member 1 (time.shedding_interval=0.3):\n"));
-    assert_non_null(strstr(status_message(), "time.end: 1 s is not a whole multiple of time.shedding_interval, 0.3 s"));
+    assert_non_null(
+        strstr(status_message(), "time.end: 1 s is not an integer multiple of time.shedding_interval, 0.3 s"));
     case_free(&study);
 }
 
@@ -692,7 +694,7 @@ int main(void) {
         cmocka_unit_test(defaults_reach_every_fish_below_its_own_keys),
         cmocka_unit_test(a_wrong_default_is_reported_once_even_if_unused),
         cmocka_unit_test(preset_published_sets_the_options_of_the_article),
-        cmocka_unit_test(anything_written_is_stronger_than_the_preset),
+        cmocka_unit_test(keys_in_the_case_override_the_preset),
         cmocka_unit_test(every_type_of_value_is_read),
         cmocka_unit_test(multiples_are_recognised_despite_rounding),
         cmocka_unit_test(errors_of_all_stages_are_listed_together),
@@ -708,7 +710,7 @@ int main(void) {
         cmocka_unit_test(assignments_reach_defaults_preset_and_sections),
         cmocka_unit_test(a_sweep_keeps_its_values_as_assignments_take_them),
         cmocka_unit_test(members_are_numbered_with_the_last_axis_fastest),
-        cmocka_unit_test(the_merged_text_is_the_whole_study),
+        cmocka_unit_test(the_merged_text_is_the_complete_study),
         cmocka_unit_test(a_reference_is_given_for_all_fish_or_for_each),
         cmocka_unit_test(a_statement_is_about_the_members_with_its_values),
         cmocka_unit_test(a_wrong_member_is_named),

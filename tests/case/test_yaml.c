@@ -1,4 +1,4 @@
-/* test_yaml.c: the tree of a text, its places, what is refused, and how values are written. */
+/* test_yaml.c: the tree of a source and its places, what is refused, and how values are written. */
 #include <locale.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -20,7 +20,7 @@ struct fixture {
     enum status status;
 };
 
-/* Read a text of some bytes as the file "x.yaml". */
+/* Parse some bytes as the file "x.yaml". */
 static void read_bytes(struct fixture *fixture, const char *text, size_t length) {
     *fixture = (struct fixture){.source = {"x.yaml", (char *)text, length, 0, false}};
     fixture->status = yaml_tree_read(&fixture->root, &fixture->source, &fixture->errors);
@@ -100,10 +100,10 @@ static void keys_and_values_know_their_places(void **state) {
 
 static void a_text_without_values_has_no_root(void **state) {
     (void)state;
-    static const char *const texts[] = {"", "\n\n", "# nothing\n", "---\n...\n"};
-    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+    static const char *const strings[] = {"", "\n\n", "# nothing\n", "---\n...\n"};
+    for (size_t i = 0; i < sizeof strings / sizeof *strings; i++) {
         struct fixture f;
-        read_text(&f, texts[i]);
+        read_text(&f, strings[i]);
         assert_int_equal(f.status, STATUS_OK);
         if (f.root) assert_string_equal(f.root->text, "");
         release(&f);
@@ -147,19 +147,19 @@ static void what_is_not_in_the_subset_is_refused_with_its_place(void **state) {
         {"[a]: 1\n", "x.yaml:1:1: error: a key must be a plain word"},
         {"? {a: 1}\n: 1\n", "x.yaml:1:3: error: a key must be a plain word"},
         {"a:\n\tb: 1\n", "x.yaml:2:1: error: the line is indented with a tab; use blanks"},
-        {"a: 1\n  b: 2\n", "x.yaml:2:4: error: a key cannot stand here"},
+        {"a: 1\n  b: 2\n", "x.yaml:2:4: error: a key is not allowed here"},
         {"a: [1, 2\nb: 3\n", "needs ',' between its values and ']' at its end"},
         {"a: \"b\nc: 1\n", "x.yaml:1:4: error: the quote that begins here is not closed"},
-        {"a: \"b\\0c\"\n", "x.yaml:1:4: error: a text cannot contain a zero byte"},
-        {"a: 1\nb: \x01\n", "x.yaml:2:4: error: not a text (control character 0x01)"},
-        {"a: \xFF\n", "x.yaml:1:4: error: not a text in UTF-8 (byte 0xFF)"},
-        {"a: \xC3", "x.yaml:1:4: error: not a text in UTF-8 (byte 0xC3)"},
-        {"a: \xED\xA0\x80\n", "x.yaml:1:4: error: not a text in UTF-8"},
-        {"a: \xC0\x80\n", "x.yaml:1:4: error: not a text in UTF-8"},
-        {"a: \xF4\x90\x80\x80\n", "x.yaml:1:4: error: not a text in UTF-8"},
+        {"a: \"b\\0c\"\n", "x.yaml:1:4: error: a string cannot contain a zero byte"},
+        {"a: 1\nb: \x01\n", "x.yaml:2:4: error: not a text file (control character 0x01)"},
+        {"a: \xFF\n", "x.yaml:1:4: error: not valid UTF-8 (byte 0xFF)"},
+        {"a: \xC3", "x.yaml:1:4: error: not valid UTF-8 (byte 0xC3)"},
+        {"a: \xED\xA0\x80\n", "x.yaml:1:4: error: not valid UTF-8"},
+        {"a: \xC0\x80\n", "x.yaml:1:4: error: not valid UTF-8"},
+        {"a: \xF4\x90\x80\x80\n", "x.yaml:1:4: error: not valid UTF-8"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) is_refused(cases[i][0], strlen(cases[i][0]), cases[i][1]);
-    is_refused("a: \0", 4, "x.yaml:1:4: error: not a text (control character 0x00)");
+    is_refused("a: \0", 4, "x.yaml:1:4: error: not a text file (control character 0x00)");
 }
 
 static void all_refusals_of_a_text_are_listed(void **state) {
@@ -218,7 +218,7 @@ static void a_copy_is_equal_and_its_own(void **state) {
     yaml_tree_free(copy);
 }
 
-static void a_failing_allocation_leaves_nothing_behind(void **state) {
+static void a_failed_allocation_leaves_nothing_allocated(void **state) {
     (void)state;
     static const char text[] = "a: {x: 1, y: [1, 2, {b: c}]}\nb: &a 1\nc: [1, 2, 3, 4, 5, 6]\n";
     const int n_before = n_live;
@@ -284,7 +284,7 @@ static void of_a_long_line_the_neighbourhood_is_shown(void **state) {
     yaml_errors_free(&errors);
 }
 
-static void a_place_behind_the_text_is_harmless(void **state) {
+static void a_place_after_the_end_is_harmless(void **state) {
     (void)state;
     struct yaml_source source = {"x.yaml", (char *)"a", 1, 0, false};
     struct yaml_errors errors = {0};
@@ -294,9 +294,9 @@ static void a_place_behind_the_text_is_harmless(void **state) {
     yaml_errors_free(&errors);
 }
 
-// ---- numbers and texts
+// ---- numbers and strings
 
-static void numbers_are_decimal_and_whole_texts(void **state) {
+static void numbers_are_decimal_and_whole_strings(void **state) {
     (void)state;
     static const char *const good[] = {"0", "-1", "+2.5", "1.", ".5", "1e5", "1.0e+5", "2.0E5", "1e-320", "007"};
     static const double values[] = {0, -1, 2.5, 1, 0.5, 1e5, 1e5, 2e5, 1e-320, 7};
@@ -362,19 +362,19 @@ static void the_locale_does_not_matter(void **state) {
 
 static void texts_of_any_kind_are_written_so_that_they_read_back(void **state) {
     (void)state;
-    static const char *const texts[] = {"eel", "a b",  "a: b", "#x",   "x #y", "",      " a", "a ",        "-",
-                                        "- a", "---",  "...",  "a,b",  "[a]",  "{",     "*a", "&a",        "!a",
-                                        "'a'", "a\"b", "a\\b", "a\nb", "a\tb", "größe", "?a", "fish[*].x", "%a",
-                                        "@a",  "`a",   "|",    ">",    "a:",   "<<",    "~",  "a?b",       "\x7f"};
-    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+    static const char *const strings[] = {"eel", "a b",  "a: b", "#x",   "x #y", "",      " a", "a ",        "-",
+                                          "- a", "---",  "...",  "a,b",  "[a]",  "{",     "*a", "&a",        "!a",
+                                          "'a'", "a\"b", "a\\b", "a\nb", "a\tb", "größe", "?a", "fish[*].x", "%a",
+                                          "@a",  "`a",   "|",    ">",    "a:",   "<<",    "~",  "a?b",       "\x7f"};
+    for (size_t i = 0; i < sizeof strings / sizeof *strings; i++) {
         struct text text = {0};
         text_add(&text, "[");
-        yaml_write_scalar(&text, texts[i]);
+        yaml_write_scalar(&text, strings[i]);
         text_add(&text, "]\n");
         struct fixture f;
         read_text(&f, text.text);
         assert_int_equal(f.status, STATUS_OK);
-        assert_string_equal(f.root->entry[0].value->text, texts[i]);
+        assert_string_equal(f.root->entry[0].value->text, strings[i]);
         release(&f);
         text_free(&text);
     }
@@ -395,12 +395,12 @@ int main(void) {
         cmocka_unit_test(find_follows_a_path_of_keys),
         cmocka_unit_test(merging_joins_maps_and_replaces_the_rest),
         cmocka_unit_test(a_copy_is_equal_and_its_own),
-        cmocka_unit_test(a_failing_allocation_leaves_nothing_behind),
+        cmocka_unit_test(a_failed_allocation_leaves_nothing_allocated),
         cmocka_unit_test(errors_are_listed_by_place_with_a_caret),
         cmocka_unit_test(twenty_errors_are_listed_and_the_rest_counted),
         cmocka_unit_test(of_a_long_line_the_neighbourhood_is_shown),
-        cmocka_unit_test(a_place_behind_the_text_is_harmless),
-        cmocka_unit_test(numbers_are_decimal_and_whole_texts),
+        cmocka_unit_test(a_place_after_the_end_is_harmless),
+        cmocka_unit_test(numbers_are_decimal_and_whole_strings),
         cmocka_unit_test(a_written_number_reads_back_bit_for_bit),
         cmocka_unit_test(a_number_is_written_with_no_more_digits_than_needed),
         cmocka_unit_test(the_locale_does_not_matter),
