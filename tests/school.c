@@ -106,6 +106,8 @@ void school_stir(struct setup *setup) {
         stir_wake(setup, fish, &state->wake[f]);
         state->control[f].phi0 = 0.2 * school_random(setup);
         state->control[f].phi0_rate = school_random(setup);
+        state->control[f].moment = 0.1 + 0.05 * f;
+        state->control[f].moment_rate = -0.7;
     }
     residual_couple(setup->residual, state->y);
 }

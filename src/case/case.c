@@ -201,7 +201,9 @@ static void derive(double *value, double standard) {
 }
 
 static enum status derive_fish(struct fish_parameters *fish, int index) {
-    derive(&fish->wave.ramp, fish->wave.frequency > 0 ? 1 / fish->wave.frequency : 0);
+    const double period = fish->wave.frequency > 0 ? 1 / fish->wave.frequency : 0;
+    derive(&fish->wave.ramp, period);
+    derive(&fish->control.filter, period);
     derive(&fish->motion.speed, fish->start_speed);
     if (!fish->name) {
         char name[32];

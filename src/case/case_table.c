@@ -247,7 +247,10 @@ const struct key case_table[] = {
     {"fish.control.limit", REAL, IN_FISH(control.limit), "0.5", ABOVE(0), "",
      .meaning = "maximum of the steering bias"},
     {"fish.control.feedforward", REAL, IN_FISH(control.feedforward), "1", ANY, "",
-     .meaning = "weight of the moment that the flow exerts (feedforward)"},
+     .meaning = "weight of the moment that the flow exerts (feedforward), a moving mean"},
+    {"fish.control.filter", REAL, IN_FISH(control.filter), NULL, FROM(0), "s",
+     .meaning = "time constant of that mean; 0: the moment at the last event",
+     .derived = "one period, 1/wave.frequency (0 when the frequency is 0)"},
     {"fish.control.rate", REAL, IN_FISH(control.rate), "2", ABOVE(0), "s-1",
      .meaning = "averaged_heading: maximum rate of change of the steering bias"},
 

@@ -5,6 +5,10 @@
 
 #include "base/angle.h"
 
+int control_feels_moment(const struct fish *fish) {
+    return fish->control.law != CONTROL_NONE && fabs(fish->control.feedforward) > 0;
+}
+
 // from the body point at a third of the length to the nose
 static void head_vector(const struct fish *fish, const double *y, double head[2]) {
     const double *const x = y + fish->at.x, *const z = y + fish->at.y;
@@ -44,34 +48,41 @@ double control_desired_heading(const struct fish *fish, const struct control_mem
 }
 
 // what the hyperbolic tangent of the law is taken of
-static double law_argument(const struct fish *fish, const struct control_memory *memory, double t, double tau,
+static double law_argument(const struct fish *fish, const struct control_memory *memory, double t, double moment,
                            double heading, const double *y) {
     const double error = angle_wrap(heading - control_desired_heading(fish, memory, t, y));
-    return fish->control.feedforward * tau + fish->control.gain * error;
+    return fish->control.feedforward * moment + fish->control.gain * error;
 }
 
-double control_law(const struct fish *fish, const struct control_memory *memory, double t, double tau, double heading,
-                   const double *y) {
-    return fish->control.limit * tanh(law_argument(fish, memory, t, tau, heading, y));
+double control_law(const struct fish *fish, const struct control_memory *memory, double t, double moment,
+                   double heading, const double *y) {
+    return fish->control.limit * tanh(law_argument(fish, memory, t, moment, heading, y));
 }
 
-void control_residual(const struct fish *fish, const struct control_memory *memory, double t, double since, double tau,
+// tau_f between two events
+static double moment_at(const struct control_memory *memory, double since) {
+    return memory->moment + since * memory->moment_rate;
+}
+
+void control_residual(const struct fish *fish, const struct control_memory *memory, double t, double since,
                       const double *y, double *residual) {
     double value = fish->control.bias;
     switch (fish->control.law) {
         case CONTROL_NONE: break;
-        case CONTROL_HEADING: value = control_law(fish, memory, t, tau, control_heading(fish, y), y); break;
+        case CONTROL_HEADING:
+            value = control_law(fish, memory, t, moment_at(memory, since), control_heading(fish, y), y);
+            break;
         case CONTROL_AVERAGED_HEADING: value = memory->phi0 + since * memory->phi0_rate; break;
     }
     residual[fish->at.phi0] = y[fish->at.phi0] - value;
 }
 
-double control_jacobian(const struct fish *fish, const struct control_memory *memory, double t, double tau,
-                        const double *y, struct sparse *jacobian) {
+void control_jacobian(const struct fish *fish, const struct control_memory *memory, double t, double since,
+                      const double *y, struct sparse *jacobian) {
     const int row = fish->at.phi0;
     sparse_add(jacobian, row, fish->at.phi0, 1);
-    if (fish->control.law != CONTROL_HEADING) return 0;
-    const double tangent = tanh(law_argument(fish, memory, t, tau, control_heading(fish, y), y));
+    if (fish->control.law != CONTROL_HEADING) return;
+    const double tangent = tanh(law_argument(fish, memory, t, moment_at(memory, since), control_heading(fish, y), y));
     const double slope = fish->control.limit * (1 - tangent * tangent);
 
     // the heading turns with the head vector (hx, hy): dh = (hx dhy - hy dhx)/|h|^2
@@ -97,7 +108,16 @@ double control_jacobian(const struct fish *fish, const struct control_memory *me
     }
     sparse_add(jacobian, row, fish->at.x, gain * by_nose[0]);
     sparse_add(jacobian, row, fish->at.y, gain * by_nose[1]);
-    return -slope * fish->control.feedforward;
+}
+
+void control_advance(struct control_memory *memory, double interval) {
+    memory->phi0 += interval * memory->phi0_rate;
+    memory->moment += interval * memory->moment_rate;
+}
+
+// the moving mean changes by a part of its distance from the newest value, linearly until the next event
+static void take_moment(const struct fish *fish, struct control_memory *memory, double interval, double tau) {
+    memory->moment_rate = fish->control.filter_share * (tau - memory->moment) / interval;
 }
 
 int control_event(const struct fish *fish, struct control_memory *memory, double t, double interval, double tau,
@@ -117,10 +137,9 @@ int control_event(const struct fish *fish, struct control_memory *memory, double
         memory->waypoint++;
         jumps = control->law == CONTROL_HEADING;
     }
+    take_moment(fish, memory, interval, tau);
     if (control->law != CONTROL_AVERAGED_HEADING) return jumps;
-    memory->phi0 += interval * memory->phi0_rate;
-    if (t <= 0) memory->phi0 = 0;
-    const double target = control_law(fish, memory, t, tau, mean_heading, y);
+    const double target = control_law(fish, memory, t, moment_at(memory, interval), mean_heading, y);
     memory->phi0_rate = fmax(-control->rate, fmin(control->rate, (target - memory->phi0) / interval));
     return 0;
 }

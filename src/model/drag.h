@@ -3,7 +3,6 @@
 #ifndef DRAG_H
 #define DRAG_H
 
-#include "base/sparse.h"
 #include "model/edge.h"
 #include "model/fish.h"
 #include "model/flow.h"
@@ -19,12 +18,5 @@ void drag_slope(const struct fish *fish, int k, const struct edge *s, const doub
 /* tau: the moment about the centre of mass of the drag that the flow causes, sum (x - x_cm) x (F(v - u) - F(v)), over
  * its scale; dimensionless. */
 double drag_moment(const struct fish *fish, const double *u, const double *v, const double *y);
-
-/* Add factor times the derivative of drag_moment to the row phi0: what depends on the body itself, and what
- * comes through the fluid's velocity. */
-void drag_moment_jacobian(const struct fish *fish, double factor, const double *u, const double *v, const double *y,
-                          struct sparse *jacobian);
-void drag_moment_flow_jacobian(const struct fish *fish, double factor, const double *u, const double *v,
-                               const struct influence_block *block, const double *y, struct coupling_block *rows);
 
 #endif

@@ -234,7 +234,8 @@ static void set_motion(struct fish *fish, const struct fish_parameters *from) {
     fish->period = fish->frequency > 0 ? 1 / fish->frequency : 0;
 }
 
-static enum status set_control(struct fish *fish, const struct fish_parameters *from, double density) {
+static enum status set_control(struct fish *fish, const struct fish_parameters *from,
+                               const struct school_parameters *parameters) {
     const struct control_parameters *control = &from->control;
     struct control_law_data *to = &fish->control;
     to->law = control->law;
@@ -242,6 +243,7 @@ static enum status set_control(struct fish *fish, const struct fish_parameters *
     to->gain = control->gain;
     to->limit = control->limit;
     to->feedforward = control->feedforward;
+    to->filter_share = -expm1(-parameters->shedding_interval / control->filter);
     to->rate = control->rate;
     to->acceptance_radius = control->acceptance_radius * fish->length;
     to->n_headings = control->desired_heading.n;
@@ -260,8 +262,8 @@ static enum status set_control(struct fish *fish, const struct fish_parameters *
     }
     // rho_f w L^2 (L f)^2
     const double beat_speed = fish->length * from->wave.frequency;
-    to->torque_scale =
-        density * from->body.width * fish->length * fish->length * fish->length * beat_speed * beat_speed;
+    to->torque_scale = parameters->fluid.density * from->body.width * fish->length * fish->length * fish->length *
+                       beat_speed * beat_speed;
     return STATUS_OK;
 }
 
@@ -287,7 +289,7 @@ static enum status fish_fill(struct fish *fish, const struct school_parameters *
     set_fluid_forces(fish, from, parameters->fluid.density);
     TRY(place_sheet(fish, &parameters->wake));
     set_motion(fish, from);
-    return set_control(fish, from, parameters->fluid.density);
+    return set_control(fish, from, parameters);
 }
 
 static struct layout layout_after(int first, int n_nodes, int n_sheet) {

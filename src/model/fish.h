@@ -51,6 +51,7 @@ struct control_law_data {
     double *waypoint_x, *waypoint_y; /* m                                        (n_waypoints) */
     double acceptance_radius;        /* m */
     double torque_scale;             /* N m: what the feedforward moment is divided by */
+    double filter_share;             /* of the newest moment in its moving mean: 1 - exp(-Dt/T_f) */
 };
 
 struct fish {

@@ -26,7 +26,7 @@ int flow_column(const struct fish *other, int c) {
 }
 
 int flow_n_rows(const struct fish *fish) {
-    return fish->at.end - fish->at.ax;
+    return fish->at.phi0 - fish->at.ax;
 }
 
 int flow_n_columns(const struct fish *other) {

@@ -72,7 +72,7 @@ struct influence_block {
 };
 
 /* Derivative of the equations of fish f that feel the fluid with respect to the same unknowns of fish g, column by
- * column: row r is the equation at.ax + r of fish f, so rows are ax, ay, sheet, shed, phi0. */
+ * column: row r is the equation at.ax + r of fish f, so rows are ax, ay, gamma, circulation. */
 struct coupling_block {
     int n_rows, n_columns;
     double *value; /* (n_columns, n_rows) */

@@ -80,7 +80,7 @@ no_memory:
 
 void jacobian_mask_couplings(struct jacobian *jacobian, int f) {
     const struct layout *at = &jacobian->school->fish[f].at;
-    for (int row = at->ax; row < at->end; row++) {
+    for (int row = at->ax; row < at->phi0; row++) {
         if (!sparse_is_masked(jacobian->own[f], row)) continue;
         for (int i = jacobian->first[f]; i < jacobian->first[f + 1]; i++) {
             const struct coupling_block *rows = &jacobian->coupling[i].rows;
@@ -91,7 +91,7 @@ void jacobian_mask_couplings(struct jacobian *jacobian, int f) {
 
 void jacobian_multiply_couplings(const struct jacobian *jacobian, int f, const double *unknowns, double *product) {
     const struct school *school = jacobian->school;
-    memset(product, 0, (size_t)flow_n_rows(&school->fish[f]) * sizeof *product);
+    memset(product, 0, (size_t)(school->fish[f].at.end - school->fish[f].at.ax) * sizeof *product);
     for (int i = jacobian->first[f]; i < jacobian->first[f + 1]; i++) {
         const struct fish *other = &school->fish[jacobian->coupling[i].other];
         const struct coupling_block *rows = &jacobian->coupling[i].rows;

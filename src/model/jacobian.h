@@ -3,8 +3,8 @@
  *
  *            unknowns of    fish 0       fish 1       fish 2
  *     equations of fish 0 | own 0      | rows 0 by 1 |            |      fish 0 and 1 are coupled;
- *                  fish 1 | rows 1 by 0| own 1       |            |      rows: ax ... phi0 by x, y, sheet, shed only
- *                  fish 2 |            |             | own 2      |      (struct coupling_block) */
+ *                  fish 1 | rows 1 by 0| own 1       |            |      rows: ax ... circulation by x, y, gamma,
+ *                  fish 2 |            |             | own 2      |      circulation only (struct coupling_block) */
 #ifndef JACOBIAN_H
 #define JACOBIAN_H
 
@@ -42,7 +42,7 @@ enum status jacobian_couple(struct jacobian *jacobian, const unsigned char *coup
 /* Set the rows of the couplings of fish f to zero that are masked in its own block. */
 void jacobian_mask_couplings(struct jacobian *jacobian, int f);
 
-/* product = what the couplings of fish f make of all unknowns: its equations from ax on        (flow_n_rows). */
+/* product = what the couplings of fish f make of all unknowns: its equations from ax to the end. */
 void jacobian_multiply_couplings(const struct jacobian *jacobian, int f, const double *unknowns, double *product);
 
 #endif

@@ -89,7 +89,8 @@ struct control_parameters {
     struct number_list waypoints;       /* pairs (m, m) */
     double acceptance_radius;           /* body lengths */
     double gain, limit, feedforward;
-    double rate; /* s-1 */
+    double filter; /* s */
+    double rate;   /* s-1 */
 };
 
 struct fish_parameters {

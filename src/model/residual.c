@@ -11,7 +11,6 @@
 #include "model/actuation.h"
 #include "model/bound_sheet.h"
 #include "model/clamp.h"
-#include "model/drag.h"
 #include "model/fluid_force.h"
 #include "model/rod.h"
 
@@ -132,17 +131,6 @@ double residual_lost(const struct residual *residual, int f, double t) {
     return school->removed == REMOVED_DROPPED ? wake_lost(&state->wake[f], school, state->t, t - state->t) : 0;
 }
 
-// the moment of the flow matters to a law with feedforward only
-static int feels_moment(const struct fish *fish) {
-    return fish->control.law == CONTROL_HEADING && fish->control.feedforward != 0;
-}
-
-double residual_moment(const struct residual *residual, int f, const double *y) {
-    const struct fish *fish = &residual->school->fish[f];
-    const int first = residual->flow->points[f].first;
-    return feels_moment(fish) ? drag_moment(fish, residual->flow->u + first, residual->flow->v + first, y) : 0;
-}
-
 void residual_muscle(struct residual *residual, int f, double t, const double *y) {
     const struct fish *fish = &residual->school->fish[f];
     const int first = residual->joints[f].first;
@@ -204,8 +192,7 @@ static void evaluate_fish(struct residual *residual, int f, double t, const doub
     bound_sheet_residual(fish, residual_lost(residual, f, t), u, v, y, value);
     bound_sheet_kutta_residual(fish, law_of(residual), ramp_value(t, school->kutta_ramp), u, v, y, yp, value);
     // the control law
-    const double tau = residual_moment(residual, f, y);
-    control_residual(fish, &state->control[f], t, t - state->t, tau, y, value);
+    control_residual(fish, &state->control[f], t, t - state->t, y, value);
 }
 
 enum status residual_evaluate(struct residual *residual, double t, const double *y, const double *yp, double *value) {
@@ -229,7 +216,7 @@ void residual_balance(const struct residual *residual, int f, const double *y, d
 }
 
 // the equations of fish f by what moves with fish g and comes through the velocity of the fluid
-static void stamp_flow(const struct residual *residual, int f, int g, double t, double by_tau, const double *y,
+static void stamp_flow(const struct residual *residual, int f, int g, double t, const double *y,
                        struct influence_block *block, struct coupling_block *rows) {
     const struct fish *fish = &residual->school->fish[f];
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
@@ -242,7 +229,6 @@ static void stamp_flow(const struct residual *residual, int f, int g, double t, 
     if (law_of(residual) == BOUND_SHEET_RATE) {
         bound_sheet_kutta_flow_jacobian(fish, ramp_value(t, residual->school->kutta_ramp), block, y, rows);
     }
-    if (feels_moment(fish)) drag_moment_flow_jacobian(fish, by_tau, flow.u, flow.v, block, y, rows);
 }
 
 // add the rows of a fish by its own unknowns to its block: those entries that may differ from zero. The midpoint of an
@@ -250,7 +236,7 @@ static void stamp_flow(const struct residual *residual, int f, int g, double t, 
 static void add_own(const struct residual *residual, const struct fish *fish, const struct coupling_block *rows,
                     struct sparse *own) {
     const int n_nodes = fish->n_nodes, n_places = 2 * n_nodes;
-    const int rate = law_of(residual) == BOUND_SHEET_RATE, moment = feels_moment(fish);
+    const int rate = law_of(residual) == BOUND_SHEET_RATE;
     for (int c = 0; c < rows->n_columns; c++) {
         const double *const value = rows->value + (long)c * rows->n_rows;
         const int column = flow_column(fish, c), node = c % n_nodes;
@@ -263,7 +249,6 @@ static void add_own(const struct residual *residual, const struct fish *fish, co
         }
         for (int k = 0; k < fish->n_control; k++) sparse_add(own, fish->at.gamma + k, column, value[n_places + k]);
         if (rate) sparse_add(own, fish->at.circulation, column, value[fish->at.circulation - fish->at.ax]);
-        if (moment && !is_sheet) sparse_add(own, fish->at.phi0, column, value[fish->at.phi0 - fish->at.ax]);
     }
 }
 
@@ -292,16 +277,14 @@ static enum status stamp_fish(struct residual *residual, int f, double t, double
     fluid_force_jacobian(fish, &flow, y, own);
     bound_sheet_jacobian(fish, u, v, y, own);
     bound_sheet_kutta_jacobian(fish, law_of(residual), ramp_value(t, school->kutta_ramp), cj, u, v, y, own);
-    const double tau = residual_moment(residual, f, y);
-    const double by_tau = control_jacobian(fish, &residual->state->control[f], t, tau, y, own);
-    if (feels_moment(fish)) drag_moment_jacobian(fish, by_tau, u, v, y, own);
+    control_jacobian(fish, &residual->state->control[f], t, t - residual->state->t, y, own);
 
     // what comes through the velocity of the fluid: by the fish's own unknowns, and by those of the fish it couples to
-    stamp_flow(residual, f, f, t, by_tau, y, &jacobian_scratch->block, &jacobian_scratch->rows);
+    stamp_flow(residual, f, f, t, y, &jacobian_scratch->block, &jacobian_scratch->rows);
     add_own(residual, fish, &jacobian_scratch->rows, own);
     for (int i = jacobian->first[f]; i < jacobian->first[f + 1]; i++) {
         struct jacobian_coupling *const coupling = &jacobian->coupling[i];
-        stamp_flow(residual, f, coupling->other, t, by_tau, y, &jacobian_scratch->block, &coupling->rows);
+        stamp_flow(residual, f, coupling->other, t, y, &jacobian_scratch->block, &coupling->rows);
     }
     jacobian_mask_couplings(jacobian, f);
     return sparse_end(own);

@@ -68,10 +68,9 @@ enum status residual_evaluate(struct residual *residual, double t, const double 
 enum status residual_jacobian(struct residual *residual, double t, double cj, const double *y,
                               struct jacobian *jacobian);
 
-/* The parts of an evaluation, for who solves the equations one after another: the natural curvature of fish f for the
- * phi0 in y, and the dimensionless moment of the flow on it where its control law feels one (else 0). */
+/* Part of an evaluation, for who solves the equations one after another: the natural curvature of fish f for the phi0
+ * in y. */
 void residual_muscle(struct residual *residual, int f, double t, const double *y);
-double residual_moment(const struct residual *residual, int f, const double *y);
 
 /* The rows ax, ay of fish f in N, before given motions replace them: m a less all forces. With the fluid's velocity and
  * the natural curvature of the last evaluation. */

@@ -118,7 +118,7 @@ static int steer(struct state *state, const struct residual *residual) {
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *fish = &school->fish[f];
         const int first = residual->flow->points[f].first;
-        const double tau = fish->control.torque_scale > 0
+        const double tau = control_feels_moment(fish)
                                ? drag_moment(fish, residual->flow->u + first, residual->flow->v + first, state->y)
                                : 0;
         jumps |= control_event(fish, &state->control[f], state->t, school->interval, tau,
@@ -172,7 +172,10 @@ enum status event_start(struct state *state, struct residual *residual, struct i
 enum status event_next(struct state *state, struct residual *residual, struct initial_conditions *initial,
                        int *jumped) {
     const struct school *school = residual->school;
-    for (int f = 0; f < school->n_fish; f++) wake_advance(&state->wake[f], school->interval);
+    for (int f = 0; f < school->n_fish; f++) {
+        wake_advance(&state->wake[f], school->interval);
+        control_advance(&state->control[f], school->interval);
+    }
     state->event++;
     state->t = (double)state->event * school->interval;
     const int jumps = school->shedding == SHEDDING_IMPULSIVE;

@@ -318,7 +318,7 @@ static void find_phi0(struct ode_rhs *d, int f, double t, double *y) {
     double *const value = d->residual->scratch;
     // the control law is phi0 minus a value that does not depend on phi0
     y[fish->at.phi0] = 0;
-    control_residual(fish, &state->control[f], t, t - state->t, residual_moment(d->residual, f, y), y, value);
+    control_residual(fish, &state->control[f], t, t - state->t, y, value);
     y[fish->at.phi0] = -value[fish->at.phi0];
 }
 

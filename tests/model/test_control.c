@@ -52,7 +52,7 @@ static void without_a_law_the_bias_is_the_given_one(void **state) {
     school_build(&setup, TIME "fish: [{control: {bias: 0.25}}]\n");
     const struct fish *fish = setup.school->fish;
     setup.state->y[fish->at.phi0] = 0.3;
-    control_residual(fish, &setup.state->control[0], 1, 0.01, 5, setup.state->y, setup.value);
+    control_residual(fish, &setup.state->control[0], 1, 0.01, setup.state->y, setup.value);
     NEAR(setup.value[fish->at.phi0], 0.05, 1e-16, 0);
     school_clear(&setup);
 }
@@ -103,6 +103,7 @@ static void averaged_heading_moves_the_bias_with_bounded_rate(void **state) {
     double before = 0;
     int n_bounded = 0;
     for (int n = 0; n < 30; n++) {
+        control_advance(memory, interval);
         control_event(fish, memory, n * interval, interval, 0, heading, setup.state->y);
         NEAR(memory->phi0, before, 1e-15, 0);
         assert_true(fabs(memory->phi0_rate) <= 2);
@@ -110,7 +111,7 @@ static void averaged_heading_moves_the_bias_with_bounded_rate(void **state) {
         before = memory->phi0 + interval * memory->phi0_rate;
         // between two events the bias is linear in time
         setup.state->y[fish->at.phi0] = memory->phi0 + 0.3 * interval * memory->phi0_rate;
-        control_residual(fish, memory, (n + 0.3) * interval, 0.3 * interval, 9, setup.state->y, setup.value);
+        control_residual(fish, memory, (n + 0.3) * interval, 0.3 * interval, setup.state->y, setup.value);
         NEAR(setup.value[fish->at.phi0], 0, 1e-15, 0);
     }
     // 0.498 at 2 per second: 12 intervals in full and one in part
@@ -119,24 +120,62 @@ static void averaged_heading_moves_the_bias_with_bounded_rate(void **state) {
     school_clear(&setup);
 }
 
-// tau is given here: a function of one coordinate, so that its derivative counts too
-static double some_moment(const struct fish *fish, const double *y) {
-    return 0.1 + 0.3 * (y[fish->at.vx] - 0.2);
+// what a law with feedforward 1 makes of the filtered moment alone: the fish is on its desired heading
+static double moment_seen(struct setup *setup, double since) {
+    const struct fish *fish = setup->school->fish;
+    setup->state->y[fish->at.phi0] = 0;
+    control_residual(fish, &setup->state->control[0], 0, since, setup->state->y, setup->value);
+    return atanh(-setup->value[fish->at.phi0] / fish->control.limit);
+}
+
+static void feedforward_acts_through_a_moving_mean(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{control: {law: heading, feedforward: 1, filter: 0.4}}]\n");
+    const struct fish *fish = setup.school->fish;
+    struct control_memory *memory = &setup.state->control[0];
+    const double interval = 0.02, share = 1 - exp(-interval / 0.4), tau[] = {0.3, -0.2, 0.5};
+    double before = 0;  // there is none before t = 0, which is an event
+    for (int n = 0; n < 3; n++) {
+        control_advance(memory, interval);
+        assert_int_equal(control_event(fish, memory, n * interval, interval, tau[n], 0, setup.state->y), 0);
+        const double after = before + share * (tau[n] - before);
+        NEAR(moment_seen(&setup, 0), before, 1e-14, 0);
+        NEAR(moment_seen(&setup, 0.3 * interval), before + 0.3 * (after - before), 1e-14, 0);
+        NEAR(moment_seen(&setup, interval), after, 1e-14, 0);
+        before = after;
+    }
+    // the default is one period; without time constant the mean is the newest value
+    school_clear(&setup);
+    school_build(&setup, TIME "fish: [{wave: {frequency: 2}, control: {law: heading}}]\n");
+    NEAR(setup.school->fish[0].control.filter_share, 1 - exp(-0.04), 1e-15, 0);
+    school_clear(&setup);
+    school_build(&setup, TIME "fish: [{control: {law: heading, filter: 0}}]\n");
+    NEAR(setup.school->fish[0].control.filter_share, 1, 0, 0);
+    school_clear(&setup);
+}
+
+static void averaged_heading_takes_the_newest_mean_of_the_moment(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup,
+                 TIME "fish: [{control: {law: averaged_heading, rate: 1.0e+9, feedforward: 0.7, filter: 0.4}}]\n");
+    const struct fish *fish = setup.school->fish;
+    struct control_memory *memory = &setup.state->control[0];
+    control_event(fish, memory, 0, 0.02, 0.3, pi, setup.state->y);
+    const double mean = 0.3 * (1 - exp(-0.05));
+    NEAR(memory->phi0_rate, 0.5 * tanh(0.7 * mean) / 0.02, 1e-13, 0);
+    school_clear(&setup);
 }
 
 static void value_of_control(struct setup *setup, const double *y, const double *yp, double *value) {
     (void)yp;
-    const struct fish *fish = setup->school->fish;
-    control_residual(fish, &setup->state->control[0], setup->t, setup->t - setup->state->t, some_moment(fish, y), y,
-                     value);
+    control_residual(setup->school->fish, &setup->state->control[0], setup->t, setup->t - setup->state->t, y, value);
 }
 
 static void stamp_of_control(struct setup *setup, double cj, const double *y, struct sparse *jacobian) {
     (void)cj;
-    const struct fish *fish = setup->school->fish;
-    const double by_tau =
-        control_jacobian(fish, &setup->state->control[0], setup->t, some_moment(fish, y), y, jacobian);
-    sparse_add(jacobian, fish->at.phi0, fish->at.vx, 0.3 * by_tau);
+    control_jacobian(setup->school->fish, &setup->state->control[0], setup->t, setup->t - setup->state->t, y, jacobian);
 }
 
 static void stamp_agrees_with_differences(void **state) {
@@ -167,6 +206,8 @@ int main(void) {
         cmocka_unit_test(waypoints_are_visited_in_order_and_the_last_course_is_held),
         cmocka_unit_test(waypoints_close_together_are_passed_at_one_event),
         cmocka_unit_test(averaged_heading_moves_the_bias_with_bounded_rate),
+        cmocka_unit_test(feedforward_acts_through_a_moving_mean),
+        cmocka_unit_test(averaged_heading_takes_the_newest_mean_of_the_moment),
         cmocka_unit_test(stamp_agrees_with_differences),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

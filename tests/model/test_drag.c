@@ -3,63 +3,12 @@
 #include "school.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
-#define FAR "solver: {coupling_distance: 100}\n"
 
 static const double *flow_u(const struct setup *setup, int f) {
     return setup->residual->flow->u + setup->residual->flow->points[f].first;
 }
 static const double *flow_v(const struct setup *setup, int f) {
     return setup->residual->flow->v + setup->residual->flow->points[f].first;
-}
-
-// the moment's row, with a factor, in the row of the bias
-static const double factor = -0.7;
-
-static void value_of_moment(struct setup *setup, const double *y, const double *yp, double *value) {
-    (void)yp;
-    school_flow(setup, y);
-    for (int f = 0; f < setup->school->n_fish; f++) {
-        const struct fish *fish = &setup->school->fish[f];
-        value[fish->at.phi0] = factor * drag_moment(fish, flow_u(setup, f), flow_v(setup, f), y);
-    }
-}
-
-static void jacobian_of_moment(struct setup *setup, double cj, const double *y, struct sparse *jacobian) {
-    (void)cj;
-    for (int f = 0; f < setup->school->n_fish; f++) {
-        const struct fish *fish = &setup->school->fish[f];
-        const double *const u = flow_u(setup, f), *const v = flow_v(setup, f);
-        drag_moment_jacobian(fish, factor, u, v, y, jacobian);
-        for (int g = 0; g < setup->school->n_fish; g++) {
-            struct jacobian_scratch *const through = school_stamping(setup, f, g);
-            drag_moment_flow_jacobian(fish, factor, u, v, &through->block, y, &through->rows);
-            school_add_rows(setup, f, g, jacobian);
-        }
-    }
-}
-
-static void jacobian_of_the_moment_agrees_with_differences(void **state) {
-    (void)state;
-    const char *const texts[] = {
-        TIME "fish: [{sheet_points: 9}]\n",
-        TIME "fish: [{sheet_points: 9, drag: {law: linear_quadratic, tangential: 0.3}}]\n",
-        TIME "fish: [{sheet_points: 9, drag: {extent: width, tangential: 0.3}}]\n",
-        TIME
-        "fluid: {velocity: [0.3, -0.2], shear: 0.7, gust: {amplitude: 0.4, frequency: 1.3}}\n"
-        "fish: [{sheet_points: 9, drag: {law: linear_quadratic, extent: width}}]\n",
-        TIME FAR
-        "fish:\n"
-        "  - {sheet_points: 9}\n"
-        "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170},\n"
-        "     drag: {law: linear_quadratic, extent: width}}\n"
-        "  - {nodes: 9, sheet_points: 11, length: 1.2, start: {position: [0.1, -0.6], heading: 200}}\n"};
-    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
-        struct setup setup;
-        school_build(&setup, texts[i]);
-        school_stir(&setup);
-        school_compare(&setup, value_of_moment, jacobian_of_moment, texts[i]);
-        school_clear(&setup);
-    }
 }
 
 static void slope_of_the_force_agrees_with_differences(void **state) {
@@ -130,7 +79,6 @@ static void moment_is_that_of_the_forces_that_the_flow_adds(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(jacobian_of_the_moment_agrees_with_differences),
         cmocka_unit_test(slope_of_the_force_agrees_with_differences),
         cmocka_unit_test(moment_is_that_of_the_forces_that_the_flow_adds),
     };

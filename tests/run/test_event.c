@@ -198,6 +198,36 @@ static void averaged_heading_changes_the_bias_at_a_bounded_rate(void **state) {
     simulate_free(simulation);
 }
 
+// nodes and phi0 at the end of 0.3 s of a turn across a stream that shears, with a modulus and a method
+static void turn_with_feedforward(const char *modulus, const char *solver, double place[14], double *phi0) {
+    char text[400];
+    snprintf(text, sizeof text,
+             "time: {end: 1, shedding_interval: 0.02}\nsolver: {%s}\nfluid: {velocity: [0.3, 0.2], shear: 2}\n"
+             "fish: [{body: {modulus: %s},\n"
+             "        control: {law: heading, desired_heading: 160, filter: 0.1, feedforward: 200}}]\n",
+             solver, modulus);
+    struct simulation *const simulation = school_simulation(text);
+    school_run(simulation, 0.3);
+    const struct fish *fish = simulation->school->fish;
+    memcpy(place, simulation->state->y + fish->at.x, 14 * sizeof *place);
+    *phi0 = simulation->state->y[fish->at.phi0];
+    // the mean of the moment is part of what the law sees
+    assert_true(200 * fabs(simulation->state->control[0].moment) > 0.01);
+    simulate_free(simulation);
+}
+
+static void feedforward_does_not_depend_on_the_integrator(void **state) {
+    (void)state;
+    const char *const cases[][2] = {{"1.0e+4", "method: rk4, step: 5.0e-4"}, {"1.0e+6", "method: rk4, step: 1.0e-4"}};
+    for (int i = 0; i < 2; i++) {
+        double place[2][14], phi0[2];
+        turn_with_feedforward(cases[i][0], "rtol: 1.0e-5", place[0], &phi0[0]);
+        turn_with_feedforward(cases[i][0], cases[i][1], place[1], &phi0[1]);
+        NEAR_ARRAY(14, place[0], place[1], 2e-5, 0);
+        NEAR(phi0[0], phi0[1], 2e-5, 0);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(events_are_at_exact_multiples_of_the_interval),
@@ -209,6 +239,7 @@ int main(void) {
         cmocka_unit_test(waypoints_advance_during_a_run),
         cmocka_unit_test(an_event_without_finite_velocities_is_final),
         cmocka_unit_test(averaged_heading_changes_the_bias_at_a_bounded_rate),
+        cmocka_unit_test(feedforward_does_not_depend_on_the_integrator),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
