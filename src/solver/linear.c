@@ -8,9 +8,13 @@
 
 #include "base/parallel.h"
 
+/* A pivot is the diagonal entry, which keeps the factors sparse, if that is at least this fraction of the largest entry
+ * of its column: KLU's default. Where the reciprocal pivot growth then is below the minimum, the digits that are left
+ * may be too few for Newton's iteration, as in soft rods of many nodes, and pivots are the largest entries instead. */
+static const double diagonal_tolerance = 1e-3, min_growth = 1e-6;
+
 /* The pivots of an earlier matrix are kept while the reciprocal condition estimate and the reciprocal pivot growth are
- * at least this fraction of what they were when the pivots were chosen. It is what KLU itself gives away when it
- * chooses pivots: it takes the diagonal where that is at least 1e-3 of the largest entry. */
+ * at least this fraction of what they were when the pivots were chosen. */
 static const double min_quality = 1e-3;
 
 /* GMRES takes at most this many iterations; Newton's iteration judges what it returns then. */
@@ -86,9 +90,11 @@ static int refactor(struct block *block, struct sparse *own) {
            common->rgrowth >= min_quality * block->rgrowth;
 }
 
-static enum status factor(struct block *block, struct sparse *own) {
+// choose pivots: of at least this fraction of the largest entry
+static enum status factor(struct block *block, struct sparse *own, double tolerance) {
     klu_l_common *const common = &block->common;
     klu_l_free_numeric(&block->numeric, common);
+    common->tol = tolerance;
     block->counts.factorisations++;
     block->numeric = klu_l_factor(own->column_start, own->row_index, own->value, block->symbolic, common);
     if (!block->numeric) {
@@ -116,7 +122,9 @@ static enum status set_up(struct block *block, struct sparse *own) {
         block->version = 0;
         return block->common.status == KLU_OUT_OF_MEMORY ? STATUS_MEMORY : STATUS_SOLVER;
     }
-    return refactor(block, own) ? STATUS_OK : factor(block, own);
+    if (refactor(block, own)) return STATUS_OK;
+    const enum status status = factor(block, own, diagonal_tolerance);
+    return status == STATUS_OK && block->rgrowth < min_growth ? factor(block, own, 1) : status;
 }
 
 enum status linear_setup(struct linear *linear) {
