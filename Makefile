@@ -137,11 +137,12 @@ deps:  ## install the packages that are missing (nothing to do: no output)
 
 install: $(program) $(library)  ## install program, library, header, cases, scripts and documents
 	$(say) INST '$(DESTDIR)$(prefix)'
-	$(quiet)install -d $(addprefix '$(DESTDIR)$(prefix)'/,bin include lib/pkgconfig $(addprefix share/shoal/,cases/studies scripts doc))
+	$(quiet)install -d $(addprefix '$(DESTDIR)$(prefix)'/,bin include lib/pkgconfig $(addprefix share/shoal/,cases/include cases/studies scripts doc))
 	$(quiet)install -m 755 $(program) '$(DESTDIR)$(prefix)/bin'
 	$(quiet)install -m 644 include/shoal.h '$(DESTDIR)$(prefix)/include'
 	$(quiet)install -m 644 $(library) '$(DESTDIR)$(prefix)/lib'
 	$(quiet)install -m 644 cases/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases'
+	$(quiet)install -m 644 cases/include/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases/include'
 	$(quiet)install -m 644 cases/studies/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases/studies'
 	$(quiet)install -m 755 $(filter-out scripts/make-% scripts/verify.py scripts/numerics.py scripts/mutants.py,$(wildcard scripts/*.py)) '$(DESTDIR)$(prefix)/share/shoal/scripts'
 	$(quiet)install -m 644 LICENSE doc/*.md '$(DESTDIR)$(prefix)/share/shoal/doc'

@@ -17,6 +17,7 @@ enum { N_FISH = 2, N_OF_FISH = sizeof(struct diagnostics_fish) / sizeof(double) 
     "format: 1\n"                                                                                      \
     "name: result\n"                                                                                   \
     "time: {end: 1, shedding_interval: 0.1}\n"                                                         \
+    "wake: {shedding: continuous, taper: 0, taper_beside: 0}\n"                                        \
     "fish:\n"                                                                                          \
     "  - {name: leader, nodes: 5, sheet_points: 7, wave: {frequency: 2}, start: {position: [0, 0]}}\n" \
     "  - {name: suédois, nodes: 7, sheet_points: 5, length: 2, start: {position: [0, 5]}}\n"

@@ -202,6 +202,8 @@ static void derive(double *value, double standard) {
 
 static enum status derive_fish(struct fish_parameters *fish, int index) {
     const double period = fish->wave.frequency > 0 ? 1 / fish->wave.frequency : 0;
+    if (fish->sheet_points == 0) fish->sheet_points = fish->nodes > 17 ? 2 * fish->nodes - 1 : 33;
+    derive(&fish->body.relaxation_time, period / 1000);
     derive(&fish->wave.ramp, period);
     derive(&fish->control.filter, period);
     derive(&fish->motion.speed, fish->start_speed);
