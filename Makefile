@@ -45,7 +45,7 @@ shoal_cflags   = -std=c11 -ffp-contract=off -fno-math-errno -fopenmp -Wall -Wext
                  $(sanitize) $(CFLAGS)
 libraries      = -lsundials_ida -lsundials_kinsol -lsundials_arkode -lsundials_sunlinsolklu \
                  -lsundials_sunmatrixsparse -lsundials_nvecserial -lklu -lamd -lcolamd -lbtf -lsuitesparseconfig \
-                 -lnetcdf -lyaml -lz -lm
+                 -llapacke -llapack -lblas -lnetcdf -lyaml -lz -lm
 
 # objects.a holds every function for the program and the tests; libshoal.a, which is installed, shares shoal_* only
 objects = $(B)/objects.a

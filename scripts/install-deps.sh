@@ -5,7 +5,7 @@ set -euo pipefail
 
 readonly packages=(
     gcc make libc6-dev
-    libsundials-dev libsuitesparse-dev libnetcdf-dev libyaml-dev zlib1g-dev
+    libsundials-dev libsuitesparse-dev liblapacke-dev liblapack-dev libblas-dev libnetcdf-dev libyaml-dev zlib1g-dev
     libcmocka-dev netcdf-bin clang-format  # tests and style
     python3 python3-matplotlib python3-netcdf4 python3-xarray ffmpeg  # pictures and movies
     "$@"                                   # what a target needs beyond that

@@ -1,7 +1,7 @@
 /* ode_rhs.c: sheets, flow, control, accelerations, each by a linear solve or a formula. */
 #include "solver/ode_rhs.h"
 
-#include <klu.h>
+#include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,17 +13,15 @@ struct ode_rhs {
     double *no_sheets; /* the unknowns with sheets and nascent vortices of no strength    (n_unknowns) */
     struct influence_block *influence; /* of the vortices of fish g on the points of fish f     (n_fish, n_fish) */
 
-    /* the system of all sheets: dense, in compressed columns for KLU */
+    /* the system of all sheets, dense, column after column */
     int n;
-    int *first; /* row and column of the first unknown of each fish                       (n_fish) */
-    int64_t *column_start, *row_index;
-    double *value, *solution;
-    klu_l_common common;
-    klu_l_symbolic *symbolic;
-    klu_l_numeric *numeric;
+    int *first;                /* row and column of the first unknown of each fish                      (n_fish) */
+    double *matrix, *solution; /* the solution enters as the right-hand side                       (n, n), (n) */
+    lapack_int *pivot;         /*                                                                           (n) */
     long solves;
 
-    double *band, *force; /* the mass matrix of one fish, with added mass, and its right-hand side */
+    /* the mass matrix of one fish, with added mass: its lower band, column after column; and its right-hand side */
+    double *band, *force;
 };
 
 enum { BANDWIDTH = 4 }; /* of the mass matrix, x and y of each node being neighbours: the diagonal and three below */
@@ -55,28 +53,16 @@ static enum status allocate(struct ode_rhs *d) {
         }
     }
     const size_t n = (size_t)d->n;
-    d->column_start = calloc(n + 1, sizeof *d->column_start);
-    d->row_index = calloc(n * n, sizeof *d->row_index);
-    d->value = calloc(n * n, sizeof *d->value);
+    d->matrix = calloc(n * n, sizeof *d->matrix);
+    d->pivot = calloc(n, sizeof *d->pivot);
     d->solution = calloc(n, sizeof *d->solution);
     d->band = calloc(2 * (size_t)max_nodes * BANDWIDTH, sizeof *d->band);
     d->force = calloc(2 * (size_t)max_nodes, sizeof *d->force);
-    if (!d->column_start || !d->row_index || !d->value || !d->solution || !d->band || !d->force) goto no_memory;
+    if (!d->matrix || !d->pivot || !d->solution || !d->band || !d->force) goto no_memory;
     return STATUS_OK;
 
 no_memory:
     return status_fail(STATUS_MEMORY, "out of memory: the sheets of %d fish", school->n_fish);
-}
-
-static enum status analyse(struct ode_rhs *d) {
-    for (int64_t column = 0; column < d->n; column++) {
-        d->column_start[column + 1] = (column + 1) * d->n;
-        for (int64_t row = 0; row < d->n; row++) d->row_index[column * d->n + row] = row;
-    }
-    klu_l_defaults(&d->common);
-    d->symbolic = klu_l_analyze(d->n, d->column_start, d->row_index, &d->common);
-    return d->symbolic ? STATUS_OK
-                       : status_fail(STATUS_MEMORY, "out of memory: a system of %d unknowns of the sheets", d->n);
 }
 
 enum status ode_rhs_create(struct ode_rhs **rhs, struct residual *residual) {
@@ -84,8 +70,7 @@ enum status ode_rhs_create(struct ode_rhs **rhs, struct residual *residual) {
     struct ode_rhs *const new = calloc(1, sizeof *new);
     if (!new) return status_fail(STATUS_MEMORY, "out of memory: the right-hand side");
     new->residual = residual;
-    enum status status = allocate(new);
-    if (status == STATUS_OK) status = analyse(new);
+    const enum status status = allocate(new);
     if (status != STATUS_OK) {
         ode_rhs_free(new);
         return status;
@@ -101,14 +86,11 @@ void ode_rhs_free(struct ode_rhs *d) {
         free(d->influence[i].u);
         free(d->influence[i].v);
     }
-    if (d->numeric) klu_l_free_numeric(&d->numeric, &d->common);
-    if (d->symbolic) klu_l_free_symbolic(&d->symbolic, &d->common);
     free(d->influence);
     free(d->no_sheets);
     free(d->first);
-    free(d->column_start);
-    free(d->row_index);
-    free(d->value);
+    free(d->matrix);
+    free(d->pivot);
     free(d->solution);
     free(d->band);
     free(d->force);
@@ -140,67 +122,65 @@ static double along(const struct influence_block *block, int j, int p, const dou
     return direction[0] * block->u[at] + direction[1] * block->v[at];
 }
 
-// the system: the rows of a fish are its control points, Kelvin's theorem and, if it holds, the edge condition; the
-// columns of a fish are its bound vortices and, with the edge condition, its nascent vortex
-static void assemble(struct ode_rhs *d, double t, const double *y, double *rhs) {
+static double *entry(const struct ode_rhs *d, int row, int column) {
+    return &d->matrix[(long)column * d->n + row];
+}
+
+// what fish f contributes to its own rows, and the right-hand side: minus the residual where nothing unknown has strength
+static void assemble_own(struct ode_rhs *d, int f, double t, const double *y, double *rhs) {
     const struct residual *residual = d->residual;
-    const struct school *school = residual->school;
+    const struct fish *fish = &residual->school->fish[f];
     const int edge = residual_shed_is_algebraic(residual);
-    memset(d->value, 0, (size_t)d->n * (size_t)d->n * sizeof *d->value);
-    for (int f = 0; f < school->n_fish; f++) {
-        const struct fish *fish = &school->fish[f];
-        const int first = residual->flow->points[f].first, row = d->first[f], last = fish->n_sheet - 1;
-        const double *const u = residual->flow->u + first, *const v = residual->flow->v + first;
-        const double before = residual->state->wake[f].shed_before;
-        const double shed = edge ? before : y[fish->at.circulation];
-        // right-hand side: minus the residual where nothing unknown has strength
-        double *const value = residual->scratch;
-        bound_sheet_residual(fish, residual_lost(residual, f, t), u, v, d->no_sheets, value);
-        for (int c = 0; c < fish->n_control; c++) rhs[row + c] = -value[fish->at.gamma + c];
-        rhs[row + fish->n_control] = residual_lost(residual, f, t) - shed;
-        for (int j = 0; j < fish->n_sheet; j++) {
-            d->value[(long)(row + j) * d->n + row + fish->n_control] = fish->sheet_weight[j];
-        }
-        if (edge) {
-            d->value[(long)(row + fish->n_sheet) * d->n + row + fish->n_control] = 1;
-            d->value[(long)(row + last) * d->n + row + fish->n_sheet] = fish->sheet_weight[last];
-            rhs[row + fish->n_sheet] = 0;
-        }
-        for (int g = 0; g < school->n_fish; g++) {
-            const struct fish *other = &school->fish[g];
-            const struct influence_block *block = &d->influence[f * school->n_fish + g];
-            const double known = edge ? 0 : y[other->at.circulation] - residual->state->wake[g].shed_before;
-            for (int c = 0; c < fish->n_control; c++) {
-                double normal[2];
-                bound_sheet_normal(fish, c, y, normal);
-                for (int j = 0; j < n_strengths(residual, other); j++) {
-                    d->value[(long)(d->first[g] + j) * d->n + row + c] = along(block, j, c, normal);
-                }
-                rhs[row + c] -= known * along(block, other->n_sheet, c, normal);
-            }
-        }
-        for (int c = 0; c < fish->n_control; c++) {
-            for (int j = last - 1; j <= last; j++) {
-                d->value[(long)(row + j) * d->n + row + c] += bound_sheet_end_correction(fish, c, j);
-            }
-        }
+    const int first = residual->flow->points[f].first, row = d->first[f], last = fish->n_sheet - 1;
+    const double shed = edge ? residual->state->wake[f].shed_before : y[fish->at.circulation];
+    double *const value = residual->scratch;
+    bound_sheet_residual(fish, residual_lost(residual, f, t), residual->flow->u + first, residual->flow->v + first,
+                         d->no_sheets, value);
+    for (int c = 0; c < fish->n_control; c++) {
+        rhs[row + c] = -value[fish->at.gamma + c];
+        for (int j = last - 1; j <= last; j++) *entry(d, row + c, row + j) += bound_sheet_end_correction(fish, c, j);
+    }
+    const int kelvin = row + fish->n_control;
+    rhs[kelvin] = residual_lost(residual, f, t) - shed;
+    for (int j = 0; j < fish->n_sheet; j++) *entry(d, kelvin, row + j) = fish->sheet_weight[j];
+    if (edge) {
+        *entry(d, kelvin, row + fish->n_sheet) = 1;
+        *entry(d, row + fish->n_sheet, row + last) = fish->sheet_weight[last];
+        rhs[row + fish->n_sheet] = 0;
     }
 }
 
+// the vortices of fish g in the equations for the control points of fish f
+static void assemble_influence(struct ode_rhs *d, int f, int g, const double *y, double *rhs) {
+    const struct residual *residual = d->residual;
+    const struct fish *fish = &residual->school->fish[f], *other = &residual->school->fish[g];
+    const struct influence_block *block = &d->influence[f * residual->school->n_fish + g];
+    const int edge = residual_shed_is_algebraic(residual);
+    const double known = edge ? 0 : y[other->at.circulation] - residual->state->wake[g].shed_before;
+    for (int c = 0; c < fish->n_control; c++) {
+        double normal[2];
+        bound_sheet_normal(fish, c, y, normal);
+        for (int j = 0; j < n_strengths(residual, other); j++) {
+            *entry(d, d->first[f] + c, d->first[g] + j) += along(block, j, c, normal);
+        }
+        rhs[d->first[f] + c] -= known * along(block, other->n_sheet, c, normal);
+    }
+}
+
+// the system: the rows of a fish are its control points, Kelvin's theorem and, if it holds, the edge condition; the
+// columns of a fish are its bound vortices and, with the edge condition, its nascent vortex
 static enum status solve_sheets(struct ode_rhs *d, double t, double *y) {
     const struct residual *residual = d->residual;
     const struct school *school = residual->school;
-    assemble(d, t, y, d->solution);
-    int solved = 0;
-    if (d->numeric) {
-        solved = (int)klu_l_refactor(d->column_start, d->row_index, d->value, d->symbolic, d->numeric, &d->common);
-    } else {
-        d->numeric = klu_l_factor(d->column_start, d->row_index, d->value, d->symbolic, &d->common);
-        solved = d->numeric != NULL;
+    memset(d->matrix, 0, (size_t)d->n * (size_t)d->n * sizeof *d->matrix);
+    for (int f = 0; f < school->n_fish; f++) {
+        assemble_own(d, f, t, y, d->solution);
+        for (int g = 0; g < school->n_fish; g++) assemble_influence(d, f, g, y, d->solution);
     }
-    solved = solved && klu_l_solve(d->symbolic, d->numeric, d->n, 1, d->solution, &d->common);
-    if (!solved) return status_fail(STATUS_RETRY, "the system of the bound sheets is singular");
     d->solves++;
+    if (LAPACKE_dgesv(LAPACK_COL_MAJOR, d->n, 1, d->matrix, d->n, d->pivot, d->solution, d->n) != 0) {
+        return status_fail(STATUS_RETRY, "the system of the bound sheets has no finite solution at t = %g s", t);
+    }
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *fish = &school->fish[f];
         memcpy(y + fish->at.gamma, d->solution + d->first[f], (size_t)fish->n_sheet * sizeof *y);
@@ -235,65 +215,44 @@ static void add_sheets(struct ode_rhs *d, const double *y) {
     }
 }
 
-// the mass matrix of one fish: rows 2 k and 2 k + 1 are x and y of node k; band[BANDWIDTH row + i] is column row - i
+// an entry of the mass matrix, row not above column; rows 2 k and 2 k + 1 are x and y of node k
+static double *mass_entry(double *band, int row, int column) {
+    return &band[BANDWIDTH * column + row - column];
+}
+
 static void assemble_mass(const struct fish *fish, const double *y, double *band) {
     memset(band, 0, 2 * (size_t)fish->n_nodes * BANDWIDTH * sizeof *band);
     for (int k = 0; k < fish->n_nodes; k++) {
-        for (int i = 0; i < 2; i++) band[BANDWIDTH * (2 * k + i)] = fish->mass[k];
+        for (int i = 2 * k; i < 2 * k + 2; i++) *mass_entry(band, i, i) = fish->mass[k];
     }
     for (int k = 0; k < fish->n_edges; k++) {
         const double e[2] = {y[fish->at.x + k + 1] - y[fish->at.x + k], y[fish->at.y + k + 1] - y[fish->at.y + k]};
         const double length = sqrt(e[0] * e[0] + e[1] * e[1]), n[2] = {-e[1] / length, e[0] / length};
         for (int row = 0; row < 4; row++) {
             for (int column = 0; column <= row; column++) {
-                band[BANDWIDTH * (2 * k + row) + row - column] += fish->added_mass[k] * n[row % 2] * n[column % 2] / 4;
+                *mass_entry(band, 2 * k + row, 2 * k + column) += fish->added_mass[k] * n[row % 2] * n[column % 2] / 4;
             }
         }
     }
 }
 
-// rows of prescribed accelerations become those of the identity
+// rows and columns of prescribed accelerations, which come first, become those of the identity
 static void fix_given(const struct fish *fish, double t, double *band, double *force) {
     const int n = 2 * fish->n_nodes, n_given = 2 * fish_n_prescribed(fish);
-    for (int row = 0; row < n_given; row++) {
+    for (int given = 0; given < n_given; given++) {
         double position[2], velocity[2], acceleration[2];
-        fish_prescribed_node(fish, row / 2, t, position, velocity, acceleration);
-        const double given = acceleration[row % 2];
-        for (int below = row + 1; below < n && below < row + BANDWIDTH; below++) {
-            if (below >= n_given) force[below] -= band[BANDWIDTH * below + below - row] * given;
-            band[BANDWIDTH * below + below - row] = 0;
+        fish_prescribed_node(fish, given / 2, t, position, velocity, acceleration);
+        for (int row = given + 1; row < n && row < given + BANDWIDTH; row++) {
+            double *const entry = mass_entry(band, row, given);
+            if (row >= n_given) force[row] -= *entry * acceleration[given % 2];
+            *entry = 0;
         }
-        for (int i = 1; i < BANDWIDTH; i++) band[BANDWIDTH * row + i] = 0;
-        band[BANDWIDTH * row] = 1;
-        force[row] = given;
+        *mass_entry(band, given, given) = 1;
+        force[given] = acceleration[given % 2];
     }
 }
 
-// solve by Cholesky factorisation of the band
-static void solve_band(int n, double *band, double *x) {
-    for (int row = 0; row < n; row++) {
-        for (int i = BANDWIDTH - 1; i >= 0; i--) {
-            const int column = row - i;
-            if (column < 0) continue;
-            double sum = band[BANDWIDTH * row + i];
-            for (int k = row - BANDWIDTH + 1 > 0 ? row - BANDWIDTH + 1 : 0; k < column; k++) {
-                if (column - k < BANDWIDTH)
-                    sum -= band[BANDWIDTH * row + row - k] * band[BANDWIDTH * column + column - k];
-            }
-            band[BANDWIDTH * row + i] = i == 0 ? sqrt(sum) : sum / band[BANDWIDTH * column];
-        }
-    }
-    for (int row = 0; row < n; row++) {
-        for (int i = 1; i < BANDWIDTH && i <= row; i++) x[row] -= band[BANDWIDTH * row + i] * x[row - i];
-        x[row] /= band[BANDWIDTH * row];
-    }
-    for (int row = n - 1; row >= 0; row--) {
-        for (int i = 1; i < BANDWIDTH && row + i < n; i++) x[row] -= band[BANDWIDTH * (row + i) + i] * x[row + i];
-        x[row] /= band[BANDWIDTH * row];
-    }
-}
-
-static void find_accelerations(struct ode_rhs *d, int f, double t, double *y) {
+static enum status find_accelerations(struct ode_rhs *d, int f, double t, double *y) {
     const struct fish *fish = &d->residual->school->fish[f];
     double *const value = d->residual->scratch;
     // without acceleration the balance is minus the forces
@@ -305,11 +264,16 @@ static void find_accelerations(struct ode_rhs *d, int f, double t, double *y) {
     }
     assemble_mass(fish, y, d->band);
     fix_given(fish, t, d->band, d->force);
-    solve_band(2 * fish->n_nodes, d->band, d->force);
+    const lapack_int n = 2 * fish->n_nodes;
+    if (LAPACKE_dpbsv(LAPACK_COL_MAJOR, 'L', n, BANDWIDTH - 1, 1, d->band, BANDWIDTH, d->force, n) != 0) {
+        return status_fail(STATUS_RETRY, "the accelerations of fish %s have no finite solution at t = %g s", fish->name,
+                           t);
+    }
     for (int k = 0; k < fish->n_nodes; k++) {
         y[fish->at.ax + k] = d->force[2 * k];
         y[fish->at.ay + k] = d->force[2 * k + 1];
     }
+    return STATUS_OK;
 }
 
 static void find_phi0(struct ode_rhs *d, int f, double t, double *y) {
@@ -338,7 +302,7 @@ enum status ode_rhs_rates(struct ode_rhs *d, double t, double *y, double *yp) {
         const size_t size = 2 * (size_t)school->fish[f].n_nodes * sizeof *y;
         find_phi0(d, f, t, y);
         residual_muscle(d->residual, f, t, y);
-        find_accelerations(d, f, t, y);
+        TRY(find_accelerations(d, f, t, y));
         memcpy(yp + at->x, y + at->vx, size);
         memcpy(yp + at->vx, y + at->ax, size);
         yp[at->circulation] = residual_shed_is_algebraic(d->residual) ? 0 : residual_shed_rate(d->residual, f, t, y);

@@ -5,7 +5,7 @@
  * Given positions and velocities, each step needs only those before it:
  *
  *     bound sheets (and, with kutta: edge, the circulation shed) -> velocity of the fluid -> phi0 -> accelerations
- *     dense in the school, KLU with one symbolic analysis                                     banded, fish by fish
+ *     dense in the school                                                                     banded, fish by fish
  */
 #ifndef ODE_RHS_H
 #define ODE_RHS_H
@@ -22,7 +22,7 @@ void ode_rhs_free(struct ode_rhs *rhs);
 
 /* Compute the algebraic unknowns of y at time t [s], move prescribed nodes to their given path, and set the rates yp of
  * the differential unknowns (those of the algebraic ones are 0); both arrays are (n_unknowns). Fails with STATUS_RETRY
- * if a value is not finite or the system of the sheets is singular, or with STATUS_MEMORY. */
+ * if a value is not finite or a system has no solution, or with STATUS_MEMORY. */
 enum status ode_rhs_rates(struct ode_rhs *rhs, double t, double *y, double *yp);
 
 /* How many systems of the sheets it has solved so far. */

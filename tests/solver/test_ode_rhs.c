@@ -1,4 +1,6 @@
 /* test_ode_rhs.c: the algebraic unknowns and the rates of every option. */
+#include <string.h>
+
 #include "school.h"
 #include "solver/ode_rhs.h"
 
@@ -59,10 +61,29 @@ static void what_is_not_finite_asks_for_a_smaller_step(void **state) {
     school_clear(&setup);
 }
 
+static void a_singular_system_asks_for_a_smaller_step(void **state) {
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        struct setup setup;
+        school_build(&setup, cases[0]);
+        struct fish *fish = setup.school->fish;
+        // Kelvin's theorem without circulations; a node without mass
+        for (int j = 0; i == 0 && j < fish->n_sheet; j++) fish->sheet_weight[j] = 0;
+        if (i == 1) fish->mass[3] = fish->added_mass[2] = fish->added_mass[3] = 0;
+        struct ode_rhs *rhs;
+        school_ok(ode_rhs_create(&rhs, setup.residual));
+        assert_int_equal(ode_rhs_rates(rhs, 0, setup.state->y, setup.state->yp), STATUS_RETRY);
+        assert_non_null(strstr(status_message(), i == 0 ? "the bound sheets" : "the accelerations of fish fish1"));
+        ode_rhs_free(rhs);
+        school_clear(&setup);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(all_equations_hold_for_the_computed_unknowns),
         cmocka_unit_test(what_is_not_finite_asks_for_a_smaller_step),
+        cmocka_unit_test(a_singular_system_asks_for_a_smaller_step),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
