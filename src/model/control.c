@@ -26,6 +26,12 @@ static int steers_to_waypoint(const struct fish *fish, const struct control_memo
     return memory->waypoint < fish->control.n_waypoints;
 }
 
+// from the nose to the waypoint that is steered to
+static void to_waypoint(const struct fish *fish, const struct control_memory *memory, const double *y, double away[2]) {
+    away[0] = fish->control.waypoint_x[memory->waypoint] - y[fish->at.x];
+    away[1] = fish->control.waypoint_y[memory->waypoint] - y[fish->at.y];
+}
+
 static double heading_in_table(const struct control_law_data *control, double t) {
     const int last = control->n_headings - 1;
     if (t <= control->heading_time[0]) return control->heading[0];
@@ -43,8 +49,9 @@ double control_desired_heading(const struct fish *fish, const struct control_mem
     const struct control_law_data *control = &fish->control;
     if (control->n_waypoints == 0) return heading_in_table(control, t);
     if (!steers_to_waypoint(fish, memory)) return memory->held_heading;
-    return atan2(control->waypoint_y[memory->waypoint] - y[fish->at.y],
-                 control->waypoint_x[memory->waypoint] - y[fish->at.x]);
+    double away[2];
+    to_waypoint(fish, memory, y, away);
+    return atan2(away[1], away[0]);
 }
 
 // what the hyperbolic tangent of the law is taken of
@@ -77,6 +84,44 @@ void control_residual(const struct fish *fish, const struct control_memory *memo
     residual[fish->at.phi0] = y[fish->at.phi0] - value;
 }
 
+// how fast the table's heading changes, rad s-1
+static double table_rate(const struct control_law_data *control, double t) {
+    for (int i = 0; i + 1 < control->n_headings; i++) {
+        const double start = control->heading_time[i], end = control->heading_time[i + 1];
+        if (start <= t && t < end) return (control->heading[i + 1] - control->heading[i]) / (end - start);
+    }
+    return 0;
+}
+
+// the rate at which a vector turns
+static double turn_rate(const double vector[2], const double rate[2]) {
+    return (vector[0] * rate[1] - vector[1] * rate[0]) / (vector[0] * vector[0] + vector[1] * vector[1]);
+}
+
+static double desired_heading_rate(const struct fish *fish, const struct control_memory *memory, double t,
+                                   const double *y) {
+    if (fish->control.n_waypoints == 0) return table_rate(&fish->control, t);
+    if (!steers_to_waypoint(fish, memory)) return 0;
+    double away[2];
+    to_waypoint(fish, memory, y, away);
+    const double rate[2] = {-y[fish->at.vx], -y[fish->at.vy]};
+    return turn_rate(away, rate);
+}
+
+double control_rate(const struct fish *fish, const struct control_memory *memory, double t, double since,
+                    const double *y) {
+    if (fish->control.law == CONTROL_NONE) return 0;
+    if (fish->control.law == CONTROL_AVERAGED_HEADING) return memory->phi0_rate;
+    double head[2], rate[2];
+    head_vector(fish, y, head);
+    rate[0] = y[fish->at.vx] - fish_mean(&fish->heading_point, y + fish->at.vx);
+    rate[1] = y[fish->at.vy] - fish_mean(&fish->heading_point, y + fish->at.vy);
+    const double error_rate = turn_rate(head, rate) - desired_heading_rate(fish, memory, t, y);
+    const double tangent = tanh(law_argument(fish, memory, t, moment_at(memory, since), control_heading(fish, y), y));
+    return fish->control.limit * (1 - tangent * tangent) *
+           (fish->control.feedforward * memory->moment_rate + fish->control.gain * error_rate);
+}
+
 void control_jacobian(const struct fish *fish, const struct control_memory *memory, double t, double since,
                       const double *y, struct sparse *jacobian) {
     const int row = fish->at.phi0;
@@ -100,8 +145,8 @@ void control_jacobian(const struct fish *fish, const struct control_memory *memo
     // so does the direction to the waypoint with the nose; without one the entries are there and zero
     double by_nose[2] = {0, 0};
     if (fish->control.n_waypoints > 0 && steers_to_waypoint(fish, memory)) {
-        const double away[2] = {fish->control.waypoint_x[memory->waypoint] - y[fish->at.x],
-                                fish->control.waypoint_y[memory->waypoint] - y[fish->at.y]};
+        double away[2];
+        to_waypoint(fish, memory, y, away);
         const double distance = away[0] * away[0] + away[1] * away[1];
         by_nose[0] = away[1] / distance;
         by_nose[1] = -away[0] / distance;
@@ -125,8 +170,8 @@ int control_event(const struct fish *fish, struct control_memory *memory, double
     const struct control_law_data *control = &fish->control;
     int jumps = 0;
     while (steers_to_waypoint(fish, memory)) {
-        const double away[2] = {control->waypoint_x[memory->waypoint] - y[fish->at.x],
-                                control->waypoint_y[memory->waypoint] - y[fish->at.y]};
+        double away[2];
+        to_waypoint(fish, memory, y, away);
         if (hypot(away[0], away[1]) > control->acceptance_radius) break;
         // after the last waypoint the course of the last leg is held
         const int before = memory->waypoint - 1;

@@ -31,6 +31,10 @@ double control_law(const struct fish *fish, const struct control_memory *memory,
 void control_residual(const struct fish *fish, const struct control_memory *memory, double t, double since,
                       const double *y, double *residual);
 
+/* dphi0/dt between events, s-1. */
+double control_rate(const struct fish *fish, const struct control_memory *memory, double t, double since,
+                    const double *y);
+
 /* Add the derivatives of control_residual. */
 void control_jacobian(const struct fish *fish, const struct control_memory *memory, double t, double since,
                       const double *y, struct sparse *jacobian);

@@ -50,8 +50,7 @@ static double driving_power(struct residual *residual, int f, double t, const do
     return power;
 }
 
-struct diagnostics_power diagnostics_power(struct residual *residual, int f, double t, const double *y,
-                                           const double *yp) {
+struct diagnostics_power diagnostics_power(struct residual *residual, int f, double t, const double *y) {
     const struct fish *fish = &residual->school->fish[f];
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
     const struct fluid_power fluid = fluid_force_power(fish, &flow, y);
@@ -59,7 +58,9 @@ struct diagnostics_power diagnostics_power(struct residual *residual, int f, dou
     double *const curvature = residual->scratch, *const by_phi0 = curvature + fish->n_joints;
     actuation_curvature(fish, t, y[fish->at.phi0], curvature, by_phi0);
     double *const rate = by_phi0;
-    actuation_rate(fish, t, y[fish->at.phi0], yp[fish->at.phi0], rate);
+    const struct state *const state = residual->state;
+    const double phi0_rate = control_rate(fish, &state->control[f], t, t - state->t, y);
+    actuation_rate(fish, t, y[fish->at.phi0], phi0_rate, rate);
     return (struct diagnostics_power){.actuation = rod_actuation_power(fish, curvature, rate, y),
                                       .damping = rod_damping_power(fish, y) + clamp_damping_power(fish, t, y),
                                       .drag = fluid.drag,
@@ -101,10 +102,10 @@ static double newest_area(int n, const double t[3], const double value[3]) {
     return area;
 }
 
-void diagnostics_step(struct residual *residual, struct state *state, double t, const double *y, const double *yp) {
+void diagnostics_step(struct residual *residual, struct state *state, double t, const double *y) {
     for (int f = 0; f < residual->school->n_fish; f++) {
         struct energy_balance *balance = &state->balance[f];
-        const struct diagnostics_power now = diagnostics_power(residual, f, t, y, yp);
+        const struct diagnostics_power now = diagnostics_power(residual, f, t, y);
         const double times[3] = {t, balance->t[0], balance->t[1]};
         const double power[3] = {total_power(&now), balance->power[0], balance->power[1]};
         const double actuation[3] = {now.actuation, balance->actuation_power[0], balance->actuation_power[1]};
@@ -127,15 +128,19 @@ void diagnostics_before_jump(struct residual *residual, struct state *state) {
     }
 }
 
+void diagnostics_begin(struct residual *residual, struct state *state, int f) {
+    struct energy_balance *balance = &state->balance[f];
+    const struct diagnostics_power now = diagnostics_power(residual, f, state->t, state->y);
+    balance->n = 1;
+    balance->t[0] = state->t;
+    balance->power[0] = total_power(&now);
+    balance->actuation_power[0] = now.actuation;
+}
+
 void diagnostics_after_jump(struct residual *residual, struct state *state) {
     for (int f = 0; f < residual->school->n_fish; f++) {
-        struct energy_balance *balance = &state->balance[f];
-        const struct diagnostics_power now = diagnostics_power(residual, f, state->t, state->y, state->yp);
-        balance->work += diagnostics_energy(residual, f, state->t, state->y);
-        balance->n = 1;
-        balance->t[0] = state->t;
-        balance->power[0] = total_power(&now);
-        balance->actuation_power[0] = now.actuation;
+        state->balance[f].work += diagnostics_energy(residual, f, state->t, state->y);
+        diagnostics_begin(residual, state, f);
     }
 }
 
@@ -228,7 +233,7 @@ static void diagnostics_one(struct residual *residual, const struct state *state
     to->stretching_energy = rod_stretching_energy(fish, y);
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
     to->added_mass_energy = fluid_force_added_mass_energy(fish, &flow, y);
-    const struct diagnostics_power power = diagnostics_power(residual, f, state->t, y, state->yp);
+    const struct diagnostics_power power = diagnostics_power(residual, f, state->t, y);
     to->actuation_power = power.actuation;
     to->damping_power = power.damping;
     to->drag_power = power.drag;

@@ -38,21 +38,24 @@ struct diagnostics {
 enum status diagnostics_create(struct diagnostics **diagnostics, const struct school *school);
 void diagnostics_free(struct diagnostics *diagnostics);
 
-/* Powers of one fish, W, from the unknowns, their rates and the fluid's velocity in the last residual evaluated. */
+/* Powers of one fish, W, from the unknowns and the fluid's velocity in the last residual evaluated. */
 struct diagnostics_power {
     double actuation, damping, drag, added_mass, wake, driving;
 };
-struct diagnostics_power diagnostics_power(struct residual *residual, int f, double t, const double *y,
-                                           const double *yp);
+struct diagnostics_power diagnostics_power(struct residual *residual, int f, double t, const double *y);
 
 /* Kinetic plus bending plus stretching energy of one fish, J. */
 double diagnostics_energy(struct residual *residual, int f, double t, const double *y);
 
 /* Add the powers of the step that ended at t to the energy balances, by the quadratic through the last three steps. */
-void diagnostics_step(struct residual *residual, struct state *state, double t, const double *y, const double *yp);
+void diagnostics_step(struct residual *residual, struct state *state, double t, const double *y);
 
 /* Start the energy balances: at the first event, when the state is consistent. */
 void diagnostics_start(struct residual *residual, struct state *state);
+
+/* At an event at which powers of fish f jump and its state does not, say because its bias takes another rate: the next
+ * step's integral begins with the powers as they are now. */
+void diagnostics_begin(struct residual *residual, struct state *state, int f);
 
 /* Before and after a jump of the state: the energy that the jump brings counts as work done, and no later step reaches
  * back over it. A bias that jumps, for one, changes the natural curvature and with it the energy of bending. */

@@ -112,7 +112,7 @@ static enum status take_flow(struct state *state, struct residual *residual) {
 }
 
 // the control of every fish takes its decision; returns whether a bias jumps
-static int steer(struct state *state, const struct residual *residual) {
+static int steer(struct state *state, struct residual *residual) {
     const struct school *school = residual->school;
     int jumps = 0;
     for (int f = 0; f < school->n_fish; f++) {
@@ -121,8 +121,12 @@ static int steer(struct state *state, const struct residual *residual) {
         const double tau = control_feels_moment(fish)
                                ? drag_moment(fish, residual->flow->u + first, residual->flow->v + first, state->y)
                                : 0;
-        jumps |= control_event(fish, &state->control[f], state->t, school->interval, tau,
+        struct control_memory *const memory = &state->control[f];
+        const double rate = control_rate(fish, memory, state->t, 0, state->y);
+        jumps |= control_event(fish, memory, state->t, school->interval, tau,
                                diagnostics_mean_heading(&state->history[f]), state->y);
+        const double change = control_rate(fish, memory, state->t, 0, state->y) - rate;
+        if (fabs(change) > 0) diagnostics_begin(residual, state, f);
     }
     return jumps;
 }

@@ -250,7 +250,7 @@ static enum status ida_advance(void *data, double t) {
         if (solver->failure == STATUS_MEMORY) return STATUS_MEMORY;
         if (code < 0) return failed(solver, code, steps);
         if (code == IDA_TSTOP_RETURN) reached = stop;
-        diagnostics_step(solver->residual, state, reached, state->y, state->yp);
+        diagnostics_step(solver->residual, state, reached, state->y);
     }
     return STATUS_OK;
 }

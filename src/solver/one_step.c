@@ -104,7 +104,7 @@ static void set_rates(struct one_step *solver, double h) {
     const int is_trapezoid = solver->options.method == METHOD_TRAPEZOID;
     for (int i = 0; i < solver->residual->school->n_unknowns; i++) {
         const double change = (state->y[i] - solver->before[i]) / h;
-        // rates of algebraic unknowns are for the energy balance only
+        // of the algebraic unknowns only the circulation's is read
         state->yp[i] = is_trapezoid && solver->kind[i] > 0 ? 2 * change - solver->rates[i] : change;
     }
 }
@@ -187,7 +187,7 @@ static enum status step(struct one_step *solver, double t, double h) {
     if (!converged) return failed(solver, t - h);
     set_rates(solver, h);
     solver->counts.steps++;
-    diagnostics_step(solver->residual, state, t, state->y, state->yp);
+    diagnostics_step(solver->residual, state, t, state->y);
     return STATUS_OK;
 }
 

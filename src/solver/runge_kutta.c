@@ -24,8 +24,8 @@ struct runge_kutta {
     int known;            /* whether they are valid */
     double known_t;
     long known_event;
-    long evaluations;           /* so far */
-    double *phi0, *circulation; /* of each fish at the end of the last step              (n_fish) */
+    long evaluations;    /* so far */
+    double *circulation; /* of each fish at the end of the last step                     (n_fish) */
 
     SUNContext context;
     N_Vector y, tolerances;
@@ -87,7 +87,6 @@ static void runge_kutta_free(void *data) {
     ode_rhs_free(solver->rhs);
     free(solver->work);
     free(solver->rates);
-    free(solver->phi0);
     free(solver->circulation);
     free(solver->tolerance);
     if (solver->context) SUNContext_Free(&solver->context);
@@ -109,10 +108,9 @@ static enum status set_up_arkode(struct runge_kutta *solver) {
     return failed ? status_fail(STATUS_SOLVER, "ARKODE cannot be set up: %s", status_message()) : STATUS_OK;
 }
 
-static void keep_algebraic(struct runge_kutta *solver) {
+static void keep_circulation(struct runge_kutta *solver) {
     const struct school *school = solver->residual->school;
     for (int f = 0; f < school->n_fish; f++) {
-        solver->phi0[f] = solver->state->y[school->fish[f].at.phi0];
         solver->circulation[f] = solver->state->y[school->fish[f].at.circulation];
     }
 }
@@ -122,9 +120,8 @@ static enum status fill(struct runge_kutta *solver) {
     solver->work = calloc((size_t)n, sizeof *solver->work);
     solver->tolerance = calloc((size_t)n, sizeof *solver->tolerance);
     solver->rates = calloc((size_t)n, sizeof *solver->rates);
-    solver->phi0 = calloc((size_t)solver->residual->school->n_fish, sizeof *solver->phi0);
     solver->circulation = calloc((size_t)solver->residual->school->n_fish, sizeof *solver->circulation);
-    if (!solver->work || !solver->rates || !solver->phi0 || !solver->circulation || !solver->tolerance)
+    if (!solver->work || !solver->rates || !solver->circulation || !solver->tolerance)
         return status_fail(STATUS_MEMORY, "out of memory: %d unknowns", n);
     // algebraic unknowns have neither rate nor error here; without a tolerance for velocities an explicit method can go
     // wrong unnoticed
@@ -132,7 +129,7 @@ static enum status fill(struct runge_kutta *solver) {
         solver->tolerance[i] = solver->residual->school->rtol * residual_scale(solver->residual, i) *
                                residual_undamped(solver->residual, i);
     }
-    keep_algebraic(solver);
+    keep_circulation(solver);
     TRY(ode_rhs_create(&solver->rhs, solver->residual));
     TRY(sundials_adapter_context(&solver->context));
     TRY(sundials_adapter_vector(&solver->y, solver->context, n, solver->state->y));
@@ -178,7 +175,7 @@ static void runge_kutta_count(const void *data, struct integrator_counts *counts
 static enum status runge_kutta_restart(void *data) {
     struct runge_kutta *const solver = data;
     runge_kutta_count(solver, &solver->before);
-    keep_algebraic(solver);
+    keep_circulation(solver);
     if (ARKStepReInit(solver->arkode, rates_callback, NULL, solver->state->t, solver->y)) {
         return status_fail(STATUS_SOLVER, "ARKODE cannot start again: %s", status_message());
     }
@@ -203,16 +200,15 @@ static enum status close_step(struct runge_kutta *solver, double before, double 
     if (status > 0) return unstable(solver, reached, status_message());
     TRY(status);
     memcpy(state->yp, solver->rates, (size_t)school->n_unknowns * sizeof *state->yp);
-    // rates of algebraic unknowns that matter are differences over the step
+    // that of an algebraic circulation is a difference over the step
     for (int f = 0; f < school->n_fish; f++) {
         const struct layout *at = &school->fish[f].at;
-        state->yp[at->phi0] = (solver->work[at->phi0] - solver->phi0[f]) / (reached - before);
         if (residual_shed_is_algebraic(solver->residual)) {
             state->yp[at->circulation] = (solver->work[at->circulation] - solver->circulation[f]) / (reached - before);
         }
     }
     memcpy(state->y, solver->work, (size_t)school->n_unknowns * sizeof *state->y);
-    keep_algebraic(solver);
+    keep_circulation(solver);
     return STATUS_OK;
 }
 
@@ -232,7 +228,7 @@ static enum status runge_kutta_advance(void *data, double t) {
         if (code < 0) return unstable(solver, reached, status_message());
         if (code == ARK_TSTOP_RETURN) reached = t;
         TRY(close_step(solver, before, reached));
-        diagnostics_step(solver->residual, state, reached, state->y, state->yp);
+        diagnostics_step(solver->residual, state, reached, state->y);
     }
     return STATUS_OK;
 }

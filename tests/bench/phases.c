@@ -95,14 +95,11 @@ enum status __wrap_residual_evaluate(struct residual *residual, double t, const 
     return status;
 }
 
-void __real_diagnostics_step(const struct residual *residual, struct state *state, double t, const double *y,
-                             const double *yp);
-void __wrap_diagnostics_step(const struct residual *residual, struct state *state, double t, const double *y,
-                             const double *yp);
-void __wrap_diagnostics_step(const struct residual *residual, struct state *state, double t, const double *y,
-                             const double *yp) {
+void __real_diagnostics_step(const struct residual *residual, struct state *state, double t, const double *y);
+void __wrap_diagnostics_step(const struct residual *residual, struct state *state, double t, const double *y);
+void __wrap_diagnostics_step(const struct residual *residual, struct state *state, double t, const double *y) {
     const double since = now();
-    __real_diagnostics_step(residual, state, t, y, yp);
+    __real_diagnostics_step(residual, state, t, y);
     add_time(DIAGNOSTICS, since);
 }
 

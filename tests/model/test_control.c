@@ -168,6 +168,38 @@ static void averaged_heading_takes_the_newest_mean_of_the_moment(void **state) {
     school_clear(&setup);
 }
 
+static void rate_is_that_of_the_bias_of_a_moving_fish(void **state) {
+    (void)state;
+    const char *const texts[] = {
+        TIME "fish: [{control: {bias: 0.2}}]\n",
+        TIME "fish: [{nodes: 8, control: {law: heading, desired_heading: 150}}]\n",
+        TIME "fish: [{control: {law: heading, desired_heading: [[0, 180], [1, 120]]}}]\n",
+        TIME "fish: [{control: {law: heading, waypoints: [[-3, 1], [-4, 5]]}}]\n",
+        TIME "fish: [{control: {law: averaged_heading}}]\n",
+    };
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        struct setup setup;
+        school_build(&setup, texts[i]);
+        school_stir(&setup);
+        const struct fish *fish = setup.school->fish;
+        const struct control_memory *memory = &setup.state->control[0];
+        const double since = setup.t - setup.state->t, h = 1e-6;
+        double *const y = setup.state->y, phi0[2];
+        const double rate = control_rate(fish, memory, setup.t, since, y);
+        for (int side = 0; side < 2; side++) {
+            // every node goes on with its velocity
+            for (int k = 0; k < 2 * fish->n_nodes; k++)
+                y[fish->at.x + k] += (side == 0 ? -h : 2 * h) * y[fish->at.vx + k];
+            y[fish->at.phi0] = 0;
+            const double step = side == 0 ? -h : h;
+            control_residual(fish, memory, setup.t + step, since + step, y, setup.value);
+            phi0[side] = -setup.value[fish->at.phi0];
+        }
+        NEAR(rate, (phi0[1] - phi0[0]) / (2 * h), 1e-8, 1e-8);
+        school_clear(&setup);
+    }
+}
+
 static void value_of_control(struct setup *setup, const double *y, const double *yp, double *value) {
     (void)yp;
     control_residual(setup->school->fish, &setup->state->control[0], setup->t, setup->t - setup->state->t, y, value);
@@ -208,6 +240,7 @@ int main(void) {
         cmocka_unit_test(averaged_heading_moves_the_bias_with_bounded_rate),
         cmocka_unit_test(feedforward_acts_through_a_moving_mean),
         cmocka_unit_test(averaged_heading_takes_the_newest_mean_of_the_moment),
+        cmocka_unit_test(rate_is_that_of_the_bias_of_a_moving_fish),
         cmocka_unit_test(stamp_agrees_with_differences),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
