@@ -102,6 +102,29 @@ static void check_wake(const struct check *check) {
     }
 }
 
+/* Keys that the way of shedding does not use, and combinations that have no meaning. */
+static void check_shedding(const struct check *check) {
+    const struct wake_parameters *const wake = &check->values->school.wake;
+    if (wake->shedding == SHEDDING_SHEET) {
+        if (wake->kutta == KUTTA_RATE) {
+            complain(check, "wake.kutta",
+                     "a free sheet begins with the strength that vanishes at the edge: use 'edge', or another "
+                     "wake.shedding");
+        }
+        if (wake->collocation == COLLOCATION_MIDPOINT) {
+            complain(check, "wake.collocation",
+                     "the end correction of a free sheet is that of chebyshev points: use 'chebyshev', or another "
+                     "wake.shedding");
+        }
+    } else if (wake->shedding == SHEDDING_CONTINUOUS || wake->shedding == SHEDDING_IMPULSIVE) {
+        const char *const paths[] = {"wake.taper", "wake.taper_beside"};
+        const double lengths[] = {wake->taper, wake->taper_beside};
+        for (int i = 0; i < 2; i++) {
+            if (lengths[i] > 0) complain(check, paths[i], "only 'wake.shedding: sheet' has a taper: remove it");
+        }
+    }
+}
+
 static void check_gust(const struct check *check) {
     const struct fluid_parameters *const fluid = &check->values->school.fluid;
     if (fabs(fluid->gust_amplitude) > 0 && fluid->gust_frequency == 0) {
@@ -233,6 +256,7 @@ void case_check(const struct case_values *values, const struct case_tree *tree, 
     check_time(&check);
     check_solver(&check);
     check_wake(&check);
+    check_shedding(&check);
     check_gust(&check);
     if (values->name && strchr(values->name, '/')) complain(&check, "name", "cannot contain a '/'");
     for (check.fish = 0; check.fish < values->school.n_fish; check.fish++) {

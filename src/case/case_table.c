@@ -61,12 +61,13 @@ const struct key case_table[] = {
      .meaning = "smoothing radius of a bound vortex for the velocity that it induces at the wake and at other fish, in "
                 "body lengths",
      .published = "0.01"},
-    {"wake.taper", REAL, AT(school.wake.taper), "0.4", FROM(0), "",
+    {"wake.taper", REAL, AT(school.wake.taper), NULL, FROM(0), "",
      .meaning = "shedding sheet: distance from the tail over which the smoothing radius of the wake, as the body sees "
                 "it, grows from 0, in body lengths; 0: no taper",
-     .published = "0"},
-    {"wake.taper_beside", REAL, AT(school.wake.taper_beside), "0.1", FROM(0), "",
-     .meaning = "shedding sheet: the same distance for vortices beside the body, in body lengths", .published = "0"},
+     .derived = "0.4 with shedding sheet, else 0"},
+    {"wake.taper_beside", REAL, AT(school.wake.taper_beside), NULL, FROM(0), "",
+     .meaning = "shedding sheet: the same distance for vortices beside the body, in body lengths",
+     .derived = "0.1 with shedding sheet, else 0"},
     {"wake.lifetime", REAL, AT(school.wake.lifetime), "2", ABOVE(0), "s", .meaning = "age at which a vortex is removed",
      .synonyms = "life max_age age"},
     {"wake.fade", REAL, AT(school.wake.decay), NULL, FROM(0), "s",
