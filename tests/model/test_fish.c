@@ -336,6 +336,52 @@ static void bodies_in_boxes_apart_are_not_compared_edge_by_edge(void **state) {
     case_free(&values);
 }
 
+/* The same by points along the bodies, SAMPLES to an edge; too large by less than the distance between two of them. */
+enum { SAMPLES = 200 };
+static double sampled_distance(const struct fish *a, const struct fish *b, const double *y) {
+    double least = INFINITY;
+    for (int i = 0; i <= SAMPLES * a->n_edges; i++) {
+        const int k = i < SAMPLES * a->n_edges ? i / SAMPLES : a->n_edges - 1;
+        const double q = (double)i / SAMPLES - k, px = (1 - q) * y[a->at.x + k] + q * y[a->at.x + k + 1],
+                     py = (1 - q) * y[a->at.y + k] + q * y[a->at.y + k + 1];
+        for (int j = 0; j <= SAMPLES * b->n_edges; j++) {
+            const int l = j < SAMPLES * b->n_edges ? j / SAMPLES : b->n_edges - 1;
+            const double r = (double)j / SAMPLES - l;
+            least = fmin(least, hypot((1 - r) * y[b->at.x + l] + r * y[b->at.x + l + 1] - px,
+                                      (1 - r) * y[b->at.y + l] + r * y[b->at.y + l + 1] - py));
+        }
+    }
+    return fmax(0, least - (a->thickness[0] + b->thickness[0]) / 2);
+}
+
+static void distance_of_bent_bodies_is_the_least_of_their_points(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME
+                 "defaults: {fish: {nodes: 4, sheet_points: 5, body: {profile: uniform, thickness: 0.02}}}\n"
+                 "fish: [{}, {length: 0.7, start: {position: [0, 0.5]}}]\n");
+    const struct fish *a = &setup.school->fish[0], *b = &setup.school->fish[1];
+    double *const y = setup.state->y;
+    int n_touching = 0;
+    for (int example = 0; example < 60; example++) {
+        for (int k = 0; k < 4; k++) {
+            y[a->at.x + k] = k / 3.0 + 0.1 * school_random(&setup);
+            y[a->at.y + k] = 0.3 * school_random(&setup);
+            y[b->at.x + k] = 0.5 + 0.6 * school_random(&setup);
+            y[b->at.y + k] = 0.4 + 0.4 * school_random(&setup);
+        }
+        // edges are up to 1.4 long
+        const double want = sampled_distance(a, b, y), spacing = 1.4 / SAMPLES;
+        const double got = fish_distance(a, b, y, INFINITY);
+        assert_true(got <= want + 1e-14 && got >= want - spacing);
+        NEAR(fish_distance(b, a, y, INFINITY), got, 1e-15, 0);
+        n_touching += got <= 0;
+    }
+    print_message("%d of 60 pairs touch\n", n_touching);
+    assert_in_range(n_touching, 10, 50);
+    school_clear(&setup);
+}
+
 static void overlapping_fish_are_refused(void **state) {
     (void)state;
     struct case_values values;
@@ -390,6 +436,7 @@ int main(void) {
         cmocka_unit_test(driven_body_is_straight_and_turns_about_its_pivot),
         cmocka_unit_test(pitch_is_its_phase_before_heave),
         cmocka_unit_test(distance_is_that_of_the_outlines),
+        cmocka_unit_test(distance_of_bent_bodies_is_the_least_of_their_points),
         cmocka_unit_test(bodies_in_boxes_apart_are_not_compared_edge_by_edge),
         cmocka_unit_test(overlapping_fish_are_refused),
         cmocka_unit_test(unknowns_stand_fish_after_fish_in_the_documented_order),
