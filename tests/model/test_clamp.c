@@ -123,6 +123,20 @@ static void head_has_one_prescribed_node_and_published_sections_two(void **state
     school_clear(&setup);
 }
 
+static void clamp_is_the_joint_of_half_a_cell(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(
+        &setup, TIME
+        "fish: [{nodes: 9, body: {section: mean, profile: uniform, bending_damping: 2, relaxation_time: 0.1}, " HEAD
+        "}]\n");
+    const struct fish *fish = setup.school->fish;
+    // the joints have the modulus times the second moment
+    NEAR(fish->clamp_stiffness, 2 * fish->bending_stiffness[0] / fish->edge_length, 0, 1e-14);
+    NEAR(fish->clamp_damping, 2 * fish->bending_damping[0], 0, 1e-14);
+    school_clear(&setup);
+}
+
 static void given_direction_is_that_of_the_prescribed_nodes(void **state) {
     (void)state;
     struct setup setup;
@@ -228,6 +242,7 @@ int main(void) {
         cmocka_unit_test(powers_are_what_the_energy_and_the_nodes_do_not_take_up),
         cmocka_unit_test(energy_audit_of_a_clamped_fish_closes),
         cmocka_unit_test(head_has_one_prescribed_node_and_published_sections_two),
+        cmocka_unit_test(clamp_is_the_joint_of_half_a_cell),
         cmocka_unit_test(given_direction_is_that_of_the_prescribed_nodes),
         cmocka_unit_test(frequency_of_a_clamped_beam_is_of_second_order_in_its_whole_length),
         cmocka_unit_test(moment_of_a_tilt_is_that_of_half_a_cell),

@@ -109,6 +109,26 @@ static void a_bias_that_moves_across_impulses_keeps_the_balance(void **state) {
     assert_true(published.worst <= 0.01 * published.put_in);
 }
 
+static void after_a_jump_the_balance_goes_on_from_the_powers_of_then(void **state) {
+    (void)state;
+    struct simulation *const simulation =
+        school_simulation(TIME "wake: {shedding: impulsive}\nfish: [{body: {modulus: 1.0e+5}, wave: {ramp: 0}}]\n");
+    for (int n = 1; n <= 5; n++) {
+        school_ok(simulate_step(simulation));
+        simulate_measure(simulation);
+        const struct diagnostics_fish *const fish = &simulation->diagnostics->fish[0];
+        const struct energy_balance *const balance = &simulation->state->balance[0];
+        const double total = fish->actuation_power + fish->damping_power + fish->drag_power + fish->added_mass_power +
+                             fish->wake_power + fish->driving_power;
+        // every impulse is a jump
+        assert_int_equal(balance->n, 1);
+        NEAR(balance->t[0], simulation->state->t, 0, 0);
+        NEAR(balance->power[0], total, 1e-9, 1e-9);
+        NEAR(balance->actuation_power[0], fish->actuation_power, 1e-9, 1e-9);
+    }
+    simulate_free(simulation);
+}
+
 static void total_circulation_vanishes_at_every_event(void **state) {
     (void)state;
     const char *const texts[] = {
@@ -212,6 +232,12 @@ static void speed_and_strouhal_number_are_those_of_a_driven_plate(void **state) 
     const double pi = acos(-1), heave = 0.1 * 4 * pi;
     NEAR(fish->com_velocity[0], 1.5 * cos(pi / 3) - heave * sin(pi / 3), 1e-9, 0);
     NEAR(fish->com_velocity[1], 1.5 * sin(pi / 3) + heave * cos(pi / 3), 1e-9, 0);
+    // heave is over at the end
+    const struct fish *const body = simulation->school->fish;
+    double behind = 0;
+    for (int k = 0; k < body->n_nodes; k++) behind += body->mass[k] * body->arc[k] / body->total_mass;
+    NEAR(fish->com[0], (1.5 - behind) * cos(pi / 3), 1e-9, 0);
+    NEAR(fish->com[1], (1.5 - behind) * sin(pi / 3), 1e-9, 0);
     simulate_free(simulation);
 }
 
@@ -258,6 +284,7 @@ int main(void) {
         cmocka_unit_test(powers_are_integrated_with_third_order),
         cmocka_unit_test(energy_audit_closes_with_every_kind_of_power),
         cmocka_unit_test(a_bias_that_moves_across_impulses_keeps_the_balance),
+        cmocka_unit_test(after_a_jump_the_balance_goes_on_from_the_powers_of_then),
         cmocka_unit_test(total_circulation_vanishes_at_every_event),
         cmocka_unit_test(momentum_is_constant_without_fluid),
         cmocka_unit_test(mean_heading_is_the_trapezoidal_mean),

@@ -194,6 +194,20 @@ static void external_flow_is_stream_plus_shear_plus_gust(void **state) {
     school_clear(&setup);
 }
 
+static void external_acceleration_is_that_of_a_particle_of_the_fluid(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TWO);
+    const double t = 0.3, h = 1e-5, y = 2;
+    double u[3], v[3], acceleration[2];
+    for (int i = 0; i < 3; i++) flow_external(setup.school, t + (i - 1) * h, y, &u[i], &v[i]);
+    flow_external_acceleration(setup.school, t, acceleration);
+    // the velocity changes with time, and as the particle moves across the shear; cut off: h^2 (2 pi)^3 0.2/6
+    NEAR(acceleration[0], (u[2] - u[0]) / (2 * h) + 0.3 * v[1], 1e-8, 0);
+    NEAR(acceleration[1], (v[2] - v[0]) / (2 * h), 1e-8, 0);
+    school_clear(&setup);
+}
+
 // the velocity at all points of fish f, u then v, when unknown i is moved by step
 static void velocity_at(struct setup *setup, int i, double step, double *velocity) {
     struct flow *flow = setup->residual->flow;
@@ -300,6 +314,7 @@ int main(void) {
         cmocka_unit_test(by_tree_every_point_feels_the_same_sources),
         cmocka_unit_test(by_tree_wake_vortices_feel_every_sheet_once),
         cmocka_unit_test(external_flow_is_stream_plus_shear_plus_gust),
+        cmocka_unit_test(external_acceleration_is_that_of_a_particle_of_the_fluid),
         cmocka_unit_test(derivative_by_every_unknown_agrees_with_differences),
         cmocka_unit_test(changed_wakes_are_placed_again),
         cmocka_unit_test(gradient_pass_leaves_the_velocity_as_it_is),
