@@ -558,6 +558,14 @@ void flow_influence(const struct flow *flow, int f, int g, struct influence_bloc
     derive_sources(&(struct target){flow, f, g, 0, block});
 }
 
+void flow_nascent_influence(const struct flow *flow, int f, struct influence_block *block) {
+    block->n_points = flow->points[f].n;
+    block->n_columns = 1;
+    memset(block->u, 0, (size_t)block->n_points * sizeof *block->u);
+    memset(block->v, 0, (size_t)block->n_points * sizeof *block->v);
+    derive_nascent(&(struct target){flow, f, f, 0, block});
+}
+
 // the bound sheets at free vortices; markers see them with a smoothing that vanishes at the edges
 static void sheets_at_wake(const struct flow *flow, const struct induced *at) {
     if (has_free_sheets(flow)) {

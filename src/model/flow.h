@@ -134,6 +134,10 @@ void flow_derivative(const struct flow *flow, int f, int g, struct influence_blo
  * unit circulation, of fish g causes: columns gamma (M_g), circulation (1). With the places of the last velocity. */
 void flow_influence(const struct flow *flow, int f, int g, struct influence_block *block);
 
+/* Fill block, of one column, with the velocity at the points of fish f that its own nascent vortex or stretch of unit
+ * circulation causes. With the places of the last velocity. */
+void flow_nascent_influence(const struct flow *flow, int f, struct influence_block *block);
+
 /* The velocity of the fluid at the released vortices, or markers, of all fish at the event of the state: wake_u, wake_v, of
  * fish f from wake_range[f].first on. Fails with STATUS_MEMORY. */
 enum status flow_at_wake(struct flow *flow, const struct state *state);

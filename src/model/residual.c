@@ -311,6 +311,23 @@ enum status residual_jacobian(struct residual *residual, double t, double cj, co
     return n_failed == 0 ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: the Jacobian of %d fish", n_failed);
 }
 
+void residual_by_shed(struct residual *residual, const double *y, double *value) {
+    const struct school *school = residual->school;
+    const int threads = parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_UNKNOWNS);
+#pragma omp parallel for num_threads(threads) schedule(static)
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *fish = &school->fish[f];
+        struct jacobian_scratch *const scratch = &residual->jacobian_scratch[omp_get_thread_num()];
+        flow_nascent_influence(residual->flow, f, &scratch->block);
+        scratch->rows.n_rows = flow_n_rows(fish);
+        scratch->rows.n_columns = 1;
+        memset(scratch->rows.value, 0, (size_t)scratch->rows.n_rows * sizeof *scratch->rows.value);
+        bound_sheet_flow_jacobian(fish, &scratch->block, y, &scratch->rows);
+        memcpy(value + fish->at.gamma, scratch->rows.value + (fish->at.gamma - fish->at.ax),
+               (size_t)fish->n_control * sizeof *value);
+    }
+}
+
 void residual_mask(const struct residual *residual, struct jacobian *jacobian) {
     for (int f = 0; f < residual->school->n_fish; f++) {
         const struct fish *fish = &residual->school->fish[f];

@@ -68,6 +68,11 @@ enum status residual_evaluate(struct residual *residual, double t, const double 
 enum status residual_jacobian(struct residual *residual, double t, double cj, const double *y,
                               struct jacobian *jacobian);
 
+/* The derivatives of impermeability at the control points of every fish by the circulation that it has shed itself, in
+ * the rows of those equations of value (n_unknowns); the others stay as they are. With the flow of the last evaluation,
+ * at the unknowns y. They are what changes most from step to step where the nascent stretch of a free sheet grows. */
+void residual_by_shed(struct residual *residual, const double *y, double *value);
+
 /* Part of an evaluation, for who solves the equations one after another: the natural curvature of fish f for the phi0
  * in y. */
 void residual_muscle(struct residual *residual, int f, double t, const double *y);

@@ -28,6 +28,9 @@ struct block {
     klu_l_numeric *numeric;
     double rcond, rgrowth; /* when the pivots were chosen */
     int was_factorised;
+    /* the change of one column since then: */
+    int is_updated;
+    double *update; /* D^-1 times the change over 1 plus its element of that column's unknown  (unknowns of the fish) */
     struct linear_counts counts;
     enum status status; /* of the last set-up */
 };
@@ -57,7 +60,11 @@ enum status linear_create(struct linear **linear, const struct jacobian *jacobia
     new->block = calloc((size_t)jacobian->school->n_fish, sizeof *new->block);
     if (!new->weight || !new->block) goto no_memory;
     for (int i = 0; i < n_unknowns(new); i++) new->weight[i] = 1 / (n_unknowns(new) * scale[i] * scale[i]);
-    for (int f = 0; f < jacobian->school->n_fish; f++) klu_l_defaults(&new->block[f].common);
+    for (int f = 0; f < jacobian->school->n_fish; f++) {
+        klu_l_defaults(&new->block[f].common);
+        new->block[f].update = calloc((size_t)jacobian->own[f]->n, sizeof(double));
+        if (!new->block[f].update) goto no_memory;
+    }
     *linear = new;
     return STATUS_OK;
 
@@ -72,6 +79,7 @@ void linear_free(struct linear *linear) {
         struct block *const block = &linear->block[f];
         klu_l_free_numeric(&block->numeric, &block->common);
         klu_l_free_symbolic(&block->symbolic, &block->common);
+        free(block->update);
     }
     free(linear->block);
     free(linear->weight);
@@ -110,6 +118,7 @@ static enum status factor(struct block *block, struct sparse *own, double tolera
 }
 
 static enum status set_up(struct block *block, struct sparse *own) {
+    block->is_updated = 0;
     if (block->version != own->version) {
         klu_l_free_numeric(&block->numeric, &block->common);
         klu_l_free_symbolic(&block->symbolic, &block->common);
@@ -144,6 +153,45 @@ enum status linear_setup(struct linear *linear) {
     return STATUS_OK;
 }
 
+// x becomes D^-1 x for one fish; x begins with its first unknown
+static void solve_block(const struct linear *linear, int f, double *x) {
+    const struct layout *at = &linear->jacobian->school->fish[f].at;
+    struct block *const block = &linear->block[f];
+    const int n = at->end - at->x;
+    klu_l_solve(block->symbolic, block->numeric, n, 1, x, &block->common);
+    if (!block->is_updated) return;
+    const double shed = x[at->circulation - at->x];
+    for (int i = 0; i < n; i++) x[i] -= shed * block->update[i];
+}
+
+// the change of the column of the circulation shed, in rows of the block
+static void find_change(const struct fish *fish, const struct sparse *own, const double *value, double *change) {
+    const int column = fish->at.circulation - fish->at.x, first = fish->at.gamma - fish->at.x;
+    memset(change, 0, (size_t)own->n * sizeof *change);
+    for (int c = 0; c < fish->n_control; c++) change[first + c] = value[fish->at.gamma + c];
+    for (int64_t i = own->column_start[column]; i < own->column_start[column + 1]; i++) {
+        const int64_t row = own->row_index[i];
+        if (row >= first && row < first + fish->n_control) change[row] -= own->value[i];
+    }
+}
+
+void linear_update_shed(struct linear *linear, const double *value) {
+    const struct jacobian *jacobian = linear->jacobian;
+    const struct school *school = jacobian->school;
+    const int threads = parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_UNKNOWNS);
+#pragma omp parallel for num_threads(threads) schedule(static)
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *fish = &school->fish[f];
+        struct block *const block = &linear->block[f];
+        find_change(fish, jacobian->own[f], value, block->update);
+        block->is_updated = 0;
+        solve_block(linear, f, block->update);
+        const double divisor = 1 + block->update[fish->at.circulation - fish->at.x];
+        for (int i = 0; i < jacobian->own[f]->n; i++) block->update[i] /= divisor;
+        block->is_updated = 1;
+    }
+}
+
 // x = D^-1 b with the diagonal blocks D alone; both may be the same array
 static void solve_blocks(struct linear *linear, const double *b, double *x) {
     const struct school *school = linear->jacobian->school;
@@ -152,9 +200,8 @@ static void solve_blocks(struct linear *linear, const double *b, double *x) {
     for (int f = 0; f < school->n_fish; f++) {
         const struct layout *at = &school->fish[f].at;
         const int n = at->end - at->x;
-        struct block *const block = &linear->block[f];
         if (x != b) memcpy(x + at->x, b + at->x, (size_t)n * sizeof *x);
-        klu_l_solve(block->symbolic, block->numeric, n, 1, x + at->x, &block->common);
+        solve_block(linear, f, x + at->x);
     }
 }
 
@@ -166,10 +213,9 @@ static void multiply(struct linear *linear, const double *v, double *product) {
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < school->n_fish; f++) {
         const struct layout *at = &school->fish[f].at;
-        struct block *const block = &linear->block[f];
         memset(product + at->x, 0, (size_t)(at->ax - at->x) * sizeof *product);
         jacobian_multiply_couplings(jacobian, f, v, product + at->ax);
-        klu_l_solve(block->symbolic, block->numeric, at->end - at->x, 1, product + at->x, &block->common);
+        solve_block(linear, f, product + at->x);
         for (int i = at->x; i < at->end; i++) product[i] += v[i];
     }
 }

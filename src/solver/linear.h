@@ -2,7 +2,7 @@
  * preconditioned with these factors, solves for fish that are coupled. doc/numerics.md, section 6. Tested by
  * tests/solver/test_linear.c.
  *
- *     linear_setup after each new Jacobian -> linear_solve, linear_solve, ... */
+ *     linear_setup after each new Jacobian -> linear_solve, linear_update_shed, linear_solve, ... */
 #ifndef LINEAR_H
 #define LINEAR_H
 
@@ -35,6 +35,12 @@ void linear_free(struct linear *linear);
 /* Factorise the diagonal blocks with their present values. Fails with STATUS_MEMORY, and for a singular block with
  * STATUS_SOLVER if it has never been factorised, else with STATUS_RETRY. */
 enum status linear_setup(struct linear *linear);
+
+/* From now on, until the next linear_setup, solve with other derivatives of impermeability by the circulation that the
+ * same fish has shed: those in the rows of these equations of value (n_unknowns). The factors stay: the solutions are
+ * corrected by a matrix of rank one for each fish (Sherman and Morrison). Where that matrix is singular, they are not
+ * finite. After linear_setup. */
+void linear_update_shed(struct linear *linear, const double *value);
 
 /* Solve J x = b. Both arrays are (n_unknowns) and may be the same one. Fails with STATUS_RETRY if x is not finite, or
  * with STATUS_MEMORY. */

@@ -211,6 +211,58 @@ static void patterns_are_analysed_once(void **state) {
     clear(&system);
 }
 
+// write derivatives of impermeability by the circulation shed into the blocks; returns how much they differ
+static double replace(struct system *system, const double *by_shed) {
+    double change = 0;
+    for (int f = 0; f < system->setup.school->n_fish; f++) {
+        const struct layout *const at = &system->setup.school->fish[f].at;
+        struct sparse *const own = system->setup.jacobian->own[f];
+        const int column = at->circulation - at->x, kelvin = at->circulation - 1;
+        for (int64_t e = own->column_start[column]; e < own->column_start[column + 1]; e++) {
+            const int64_t row = at->x + own->row_index[e];
+            if (row < at->gamma || row >= kelvin) continue;
+            change = fmax(change, fabs(by_shed[row] - own->value[e]));
+            own->value[e] = by_shed[row];
+        }
+    }
+    return change;
+}
+
+static void the_column_of_the_circulation_shed_can_be_updated(void **state) {
+    (void)state;
+    for (int coupled = 0; coupled < 2; coupled++) {
+        struct system system;
+        build(&system, "wake: {shedding: sheet, taper: 0.4, taper_beside: 0.1, curve: smooth}\n" SCHOOL, 1e-13);
+        struct setup *const setup = &system.setup;
+        if (!coupled) uncouple(&system);
+        school_ok(linear_setup(system.linear));
+        school_ok(linear_solve(system.linear, system.b, system.x));
+        assert_true(error_of(&system) < 1e-9);
+        // twice: an update takes the place of the last one
+        double *const by_shed = calloc((size_t)system.n, sizeof *by_shed);
+        assert_non_null(by_shed);
+        for (int i = 0; i < 2; i++) {
+            setup->t += setup->school->interval / 4;
+            school_ok(residual_evaluate(setup->residual, setup->t, setup->state->y, setup->state->yp, setup->value));
+            residual_by_shed(setup->residual, setup->state->y, by_shed);
+            linear_update_shed(system.linear, by_shed);
+        }
+        // it is that of the Jacobian that is evaluated now, and another one than that of the factors
+        assert_true(replace(&system, by_shed) > 0.01);
+        assert_true(error_of(&system) > 1e-5);
+        school_ok(linear_solve(system.linear, system.b, system.x));
+        assert_true(error_of(&system) < 1e-9);
+        jacobian_at(&system, 370);
+        assert_true(replace(&system, by_shed) == 0);
+        // factors of a new matrix have no update
+        school_ok(linear_setup(system.linear));
+        school_ok(linear_solve(system.linear, system.b, system.x));
+        assert_true(error_of(&system) < 1e-9);
+        free(by_shed);
+        clear(&system);
+    }
+}
+
 // fill a diagonal block with 2 x 2 matrices: pivots that are good for some values are bad for others
 static void set_pieces(struct sparse *own, double on_diagonal, double above, double below) {
     sparse_begin(own);
@@ -461,6 +513,7 @@ int main(void) {
         cmocka_unit_test(coupled_fish_are_solved_to_the_tolerance),
         cmocka_unit_test(a_small_residual_ends_the_iteration),
         cmocka_unit_test(patterns_are_analysed_once),
+        cmocka_unit_test(the_column_of_the_circulation_shed_can_be_updated),
         cmocka_unit_test(bad_factors_are_replaced_by_ones_with_other_pivots),
         cmocka_unit_test(a_block_that_becomes_nearly_singular_gets_new_pivots),
         cmocka_unit_test(a_block_whose_factors_grow_gets_new_pivots),
