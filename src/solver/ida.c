@@ -60,10 +60,21 @@ static int jacobian_callback(realtype t, realtype cj, N_Vector y, N_Vector yp, N
     return solver->failure;
 }
 
-static double leading_coefficient(void *ida) {
+static double leading_coefficient(void *data) {
+    const struct ida *const solver = data;
     double value = 0;
-    IDAGetCurrentCj(ida, &value);
+    IDAGetCurrentCj(solver->ida, &value);
     return value;
+}
+
+// a stretch of a free sheet grows at the tail from nothing in every interval
+static void update_jacobian(void *data) {
+    struct ida *const solver = data;
+    double *const by_shed = N_VGetArrayPointer(solver->scratch[1]);
+    N_Vector y;
+    IDAGetCurrentY(solver->ida, &y);
+    residual_by_shed(solver->residual, N_VGetArrayPointer(y), by_shed);
+    linear_update_shed(solver->linear.linear, by_shed);
 }
 
 static void ida_free(void *data) {
@@ -122,7 +133,12 @@ static enum status fill(struct ida *solver) {
     const struct linear_tolerance linear = {linear_relative, linear_absolute * newton_coefficient};
     TRY(sundials_adapter_linear_create(&solver->linear, solver->context, solver->jacobian, solver->tolerance, linear,
                                        &solver->failure));
-    const struct ida_newton_rules rules = {max_iterations, jacobian_cost, leading_coefficient};
+    const struct ida_newton_rules rules = {
+        .max_iterations = max_iterations,
+        .jacobian_cost = jacobian_cost,
+        .data = solver,
+        .leading_coefficient = leading_coefficient,
+        .update = solver->residual->school->shedding == SHEDDING_SHEET ? update_jacobian : NULL};
     TRY(ida_newton_create(&solver->newton, solver->context, solver->y, solver->residual->school, rules));
     solver->ida = IDACreate(solver->context);
     if (!solver->ida) return status_fail(STATUS_MEMORY, "out of memory: IDA");

@@ -72,8 +72,8 @@ static int jacobian_is_stale(const struct ida_newton *newton) {
 }
 
 // start from the last total correction if the step has not changed: the error of the predictor is nearly the same again
-static void initial_guess(struct ida_newton *newton, N_Vector total, void *ida) {
-    const double coefficient = newton->rules.leading_coefficient(ida);
+static void initial_guess(struct ida_newton *newton, N_Vector total) {
+    const double coefficient = newton->rules.leading_coefficient(newton->rules.data);
     const int same = fabs(coefficient - newton->coefficient) <= 1e-9 * coefficient;
     N_VScale(same ? 1 : 0, newton->last, total);
     newton->coefficient = coefficient;
@@ -85,7 +85,7 @@ static int newton_solve(SUNNonlinearSolver solver, N_Vector predicted, N_Vector 
     newton->iterations = newton->failures = 0;
     if (jacobian_is_stale(newton)) evaluate = SUNTRUE;
     if (!evaluate) corotation_set_current(newton->corotation, N_VGetArrayPointer(predicted));
-    initial_guess(newton, total, ida);
+    initial_guess(newton, total);
     for (booleantype failed = SUNFALSE;; failed = SUNTRUE) {
         int code = newton->residual(total, newton->correction, ida);
         if (code != 0) return code;
@@ -95,6 +95,8 @@ static int newton_solve(SUNNonlinearSolver solver, N_Vector predicted, N_Vector 
             if (code != 0) return code;
             corotation_set_reference(newton->corotation, N_VGetArrayPointer(predicted));
             newton->n_solutions = newton->n_iterations = 0;
+        } else if (newton->rules.update) {
+            newton->rules.update(newton->rules.data);
         }
         code = iterate(newton, total, weights, tolerance, ida);
         if (code == 0) {

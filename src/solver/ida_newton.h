@@ -12,8 +12,11 @@
 struct ida_newton_rules {
     int max_iterations; /* per solution */
     int jacobian_cost;  /* of an evaluation with its factorisation, in iterations */
+    void *data;         /* of the functions below */
     /* d(dy/dt)/dy of IDA's present step, s-1: while it is constant, corrections hardly change */
-    double (*leading_coefficient)(void *ida);
+    double (*leading_coefficient)(void *data);
+    /* bring an old Jacobian up to date where that is cheap, after an evaluation of the residual; NULL: nothing is */
+    void (*update)(void *data);
 };
 
 /* Create a solver for IDASetNonlinearSolver; SUNNonlinSolFree releases it. Vectors are those of the school, which must

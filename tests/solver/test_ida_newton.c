@@ -16,7 +16,8 @@ struct problem {
     double slope;       /* 1 / the Jacobian */
     double growth;      /* added to wrong at each solution */
     double coefficient; /* of the step */
-    int n_residuals, n_set_ups, n_bad, never_finite;
+    int n_residuals, n_set_ups, n_bad, n_updates, never_finite;
+    double updated; /* how wrong the Jacobian is after an update; 0: there are none */
 };
 
 static double error_of(const struct problem *problem, N_Vector total) {
@@ -52,8 +53,16 @@ static double coefficient(void *data) {
     return problem->coefficient;
 }
 
+static void update(void *data) {
+    struct problem *const problem = data;
+    // the residual has been evaluated at the guess
+    assert_int_equal(problem->n_residuals, 1);
+    problem->n_updates++;
+    problem->wrong = problem->updated;
+}
+
 static void set_up(struct problem *problem) {
-    *problem = (struct problem){.root = 1, .coefficient = 100};
+    *problem = (struct problem){.root = 1, .coefficient = 100, .updated = problem->updated};
     school_build(&problem->setup, "time: {end: 1}\nfish: [{nodes: 4, sheet_points: 5}]\n");
     const int n = problem->setup.school->n_unknowns;
     assert_int_equal(SUNContext_Create(NULL, &problem->context), 0);
@@ -65,7 +74,11 @@ static void set_up(struct problem *problem) {
     // the positions of a straight body; the first unknown is 0
     const struct fish *fish = problem->setup.school->fish;
     for (int k = 0; k < fish->n_nodes; k++) NV_Ith_S(problem->predicted, fish->at.x + k) = k * fish->edge_length;
-    const struct ida_newton_rules rules = {.max_iterations = 6, .jacobian_cost = 5, .leading_coefficient = coefficient};
+    const struct ida_newton_rules rules = {.max_iterations = 6,
+                                           .jacobian_cost = 5,
+                                           .data = problem,
+                                           .leading_coefficient = coefficient,
+                                           .update = problem->updated > 0 ? update : NULL};
     school_ok(ida_newton_create(&problem->solver, problem->context, problem->total, problem->setup.school, rules));
     assert_int_equal(SUNNonlinSolGetType(problem->solver), SUNNONLINEARSOLVER_ROOTFIND);
     assert_int_equal(SUNNonlinSolSetSysFn(problem->solver, residual), 0);
@@ -85,7 +98,7 @@ static void clear(struct problem *problem) {
 
 // solve as IDA does; returns the code, and the iterations
 static int solve(struct problem *problem, double tolerance, int evaluate, long *iterations) {
-    problem->n_residuals = problem->n_set_ups = problem->n_bad = 0;
+    problem->n_residuals = problem->n_set_ups = problem->n_bad = problem->n_updates = 0;
     problem->wrong += problem->growth;
     N_VConst(0, problem->total);
     const int code = SUNNonlinSolSolve(problem->solver, problem->predicted, problem->total, problem->weights, tolerance,
@@ -96,7 +109,7 @@ static int solve(struct problem *problem, double tolerance, int evaluate, long *
 
 static void an_exact_jacobian_needs_two_iterations(void **state) {
     (void)state;
-    struct problem problem;
+    struct problem problem = {.updated = 0};
     long iterations;
     set_up(&problem);
     assert_int_equal(solve(&problem, 1e-6, 1, &iterations), 0);
@@ -114,7 +127,7 @@ static void the_error_left_is_below_the_tolerance(void **state) {
     const double tolerances[] = {1e-2, 4e-3};
     for (size_t i = 0; i < sizeof wrongs / sizeof *wrongs; i++) {
         for (int j = 0; j < 2; j++) {
-            struct problem problem;
+            struct problem problem = {.updated = 0};
             long iterations, failures;
             set_up(&problem);
             assert_int_equal(solve(&problem, 1e-6, 1, &iterations), 0);
@@ -140,7 +153,7 @@ static void an_old_jacobian_that_does_not_converge_is_replaced(void **state) {
     // too slow, divergent, or not within the maximum of iterations
     const double wrongs[] = {0.95, -1.5, 0.8};
     for (size_t i = 0; i < sizeof wrongs / sizeof *wrongs; i++) {
-        struct problem problem;
+        struct problem problem = {.updated = 0};
         long iterations, failures;
         set_up(&problem);
         assert_int_equal(solve(&problem, 1e-6, 1, &iterations), 0);
@@ -159,9 +172,28 @@ static void an_old_jacobian_that_does_not_converge_is_replaced(void **state) {
     }
 }
 
+static void an_old_jacobian_is_updated_once_in_a_solution(void **state) {
+    (void)state;
+    struct problem problem = {.updated = 0.01};
+    long iterations;
+    set_up(&problem);
+    // a new one is not
+    assert_int_equal(solve(&problem, 1e-6, 1, &iterations), 0);
+    assert_int_equal(problem.n_updates, 0);
+    // without the update this one would not converge
+    problem.root = 2;
+    problem.coefficient *= 2;
+    problem.wrong = 0.95;
+    assert_int_equal(solve(&problem, 1e-6, 0, &iterations), 0);
+    assert_int_equal(problem.n_updates, 1);
+    assert_int_equal(problem.n_set_ups, 0);
+    assert_true(iterations <= 4);
+    clear(&problem);
+}
+
 static void small_corrections_that_do_not_shrink_are_noise(void **state) {
     (void)state;
-    struct problem problem;
+    struct problem problem = {.updated = 0};
     long iterations, failures;
     set_up(&problem);
     assert_int_equal(solve(&problem, 1e-6, 1, &iterations), 0);
@@ -178,7 +210,7 @@ static void small_corrections_that_do_not_shrink_are_noise(void **state) {
 
 static void a_failure_with_a_new_jacobian_asks_for_a_smaller_step(void **state) {
     (void)state;
-    struct problem problem;
+    struct problem problem = {.updated = 0};
     long iterations;
     set_up(&problem);
     // no root: y^2 + ... stays above zero
@@ -191,7 +223,7 @@ static void a_failure_with_a_new_jacobian_asks_for_a_smaller_step(void **state) 
 
 static void the_last_correction_is_the_guess_while_the_step_stays(void **state) {
     (void)state;
-    struct problem problem;
+    struct problem problem = {.updated = 0};
     long iterations;
     set_up(&problem);
     assert_int_equal(solve(&problem, 1e-6, 1, &iterations), 0);
@@ -212,7 +244,7 @@ static void the_last_correction_is_the_guess_while_the_step_stays(void **state) 
 
 static void a_jacobian_that_has_become_expensive_is_evaluated_again(void **state) {
     (void)state;
-    struct problem problem;
+    struct problem problem = {.updated = 0};
     long iterations, before = 0;
     set_up(&problem);
     assert_int_equal(solve(&problem, 1e-6, 1, &iterations), 0);
@@ -238,6 +270,7 @@ int main(void) {
         cmocka_unit_test(an_exact_jacobian_needs_two_iterations),
         cmocka_unit_test(the_error_left_is_below_the_tolerance),
         cmocka_unit_test(an_old_jacobian_that_does_not_converge_is_replaced),
+        cmocka_unit_test(an_old_jacobian_is_updated_once_in_a_solution),
         cmocka_unit_test(small_corrections_that_do_not_shrink_are_noise),
         cmocka_unit_test(a_failure_with_a_new_jacobian_asks_for_a_smaller_step),
         cmocka_unit_test(the_last_correction_is_the_guess_while_the_step_stays),
