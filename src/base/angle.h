@@ -1,4 +1,4 @@
-/* angle.h: angles in radians and degrees. Tested by tests/base/test_ramp.c. */
+/* angle.h: angles in radians and degrees. Tested by tests/base/test_angle.c. */
 #ifndef ANGLE_H
 #define ANGLE_H
 

@@ -1,4 +1,4 @@
-/* text.h: strings that grow, and numbers as strings and back. Tested by tests/case/test_yaml.c.
+/* text.h: strings that grow, and numbers as strings and back. Tested by tests/base/test_text.c.
  *
  * Numbers are written and read with a decimal point whatever the locale of the process is. */
 #ifndef TEXT_H

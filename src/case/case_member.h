@@ -1,4 +1,4 @@
-/* case_member.h: the case of one member of a study. Tested by tests/case/test_case.c. */
+/* case_member.h: the case of one member of a study. Tested by tests/case/test_sweep.c. */
 #ifndef CASE_MEMBER_H
 #define CASE_MEMBER_H
 

@@ -1,4 +1,4 @@
-/* sweep.h: the sweep of a case file. Tested by tests/case/test_case.c. */
+/* sweep.h: the sweep of a case file. Tested by tests/case/test_sweep.c. */
 #ifndef SWEEP_H
 #define SWEEP_H
 

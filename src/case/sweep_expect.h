@@ -1,4 +1,4 @@
-/* sweep_expect.h: what a study expects of the ends of its members. Tested by tests/case/test_case.c. */
+/* sweep_expect.h: what a study expects of the ends of its members. Tested by tests/case/test_sweep.c. */
 #ifndef SWEEP_EXPECT_H
 #define SWEEP_EXPECT_H
 

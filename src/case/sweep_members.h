@@ -1,5 +1,5 @@
 /* sweep_members.h: the axes of a study, and the members that they make: each combination of their values. Tested by
- * tests/case/test_case.c. */
+ * tests/case/test_sweep.c. */
 #ifndef SWEEP_MEMBERS_H
 #define SWEEP_MEMBERS_H
 

@@ -1,5 +1,5 @@
 /* sweep_refine.h: an axis of resolutions, and what is known or expected of its errors. Tested by
- * tests/case/test_case.c. */
+ * tests/case/test_sweep.c. */
 #ifndef SWEEP_REFINE_H
 #define SWEEP_REFINE_H
 

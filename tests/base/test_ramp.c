@@ -1,5 +1,4 @@
-/* test_ramp.c: the ramp of doc/model.md, section 4, and angles. */
-#include "base/angle.h"
+/* test_ramp.c: the ramp of doc/model.md, section 4. */
 #include "base/ramp.h"
 #include "near.h"
 
@@ -40,32 +39,12 @@ static void ramp_of_no_duration_is_one_at_all_times(void **state) {
     NEAR(ramp_value(1, 2), 0.5, 1e-15, 0);
 }
 
-static void wrap_removes_full_turns(void **state) {
-    (void)state;
-    const double pi = acos(-1);
-    for (int turns = -3; turns <= 3; turns++) {
-        for (double angle = -3; angle <= 3; angle += 0.5) {
-            // rounding of up to three turns
-            NEAR(angle_wrap(angle + 2 * pi * turns), angle, 1e-14, 0);
-        }
-    }
-    NEAR(fabs(angle_wrap(pi)), pi, 0, 1e-15);
-}
-
-static void degrees_and_radians_are_inverse(void **state) {
-    (void)state;
-    NEAR(angle_radians(180), acos(-1), 0, 1e-15);
-    NEAR(angle_degrees(angle_radians(37.5)), 37.5, 0, 1e-15);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(step_goes_from_zero_to_one_symmetrically),
         cmocka_unit_test(rate_is_the_derivative),
         cmocka_unit_test(three_derivatives_vanish_at_both_ends),
         cmocka_unit_test(ramp_of_no_duration_is_one_at_all_times),
-        cmocka_unit_test(wrap_removes_full_turns),
-        cmocka_unit_test(degrees_and_radians_are_inverse),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

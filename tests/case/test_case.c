@@ -1,5 +1,5 @@
-/* test_case.c: defaults, presets, includes, assignments, sweeps; and that a case shown reads back the same. What is
- * wrong with a case is tested by test_bad.sh. */
+/* test_case.c: defaults, presets, includes, assignments; and that a case shown reads back the same. Sweeps are tested by
+ * test_sweep.c, wrong cases by test_bad.sh. */
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -9,32 +9,11 @@
 #include "case/case_member.h"
 #include "case/case_show.h"
 #include "case/case_table.h"
-#include "case/case_value.h"
-#include "case/sweep_expect.h"
-#include "case/sweep_members.h"
-#include "case/sweep_quantity.h"
-#include "case/sweep_refine.h"
+#include "case_fixture.h"
 #include "failing_malloc.h"
 #include "near.h"
 
 // ---- the fixture
-
-static const char minimal[] = "format: 1\ntime: {end: 3}\nfish: [{}]\n";
-
-/* Parse a case that must be good, with up to three assignments (NULL: none). */
-static struct case_values parse_with(const char *text, const char *first, const char *second, const char *third) {
-    const char *const assignments[] = {first, second, third};
-    int n = 0;
-    while (n < 3 && assignments[n]) n++;
-    struct case_values values;
-    const enum status status = case_parse(&values, text, strlen(text), "cases/x.yaml", NULL, n, assignments);
-    if (status != STATUS_OK) fail_msg("%s", status_message());
-    return values;
-}
-
-static struct case_values parse(const char *text) {
-    return parse_with(text, NULL, NULL, NULL);
-}
 
 /* Parse a case that must be refused with a message that contains these words. */
 static void is_refused(const char *text, const char *want) {
@@ -42,61 +21,6 @@ static void is_refused(const char *text, const char *want) {
     assert_int_equal(case_parse(&values, text, strlen(text), "cases/x.yaml", NULL, 0, NULL), STATUS_CASE);
     if (!strstr(status_message(), want)) fail_msg("the message is\n%.600s\nwithout %s", status_message(), want);
     assert_null(values.school.fish);
-}
-
-/* Every value of two cases is the same, bit for bit: written as text with all digits they are. */
-static void are_equal(struct case_values *one, struct case_values *other) {
-    assert_int_equal(one->school.n_fish, other->school.n_fish);
-    for (int k = 0; k < case_table_n; k++) {
-        const struct key *const key = &case_table[k];
-        if (strcmp(key->path, "preset") == 0 || strcmp(key->path, "output.file") == 0) continue;
-        for (int i = 0; i < (case_table_is_of_fish(key) ? one->school.n_fish : 1); i++) {
-            struct text a = {0}, b = {0};
-            text_add(&a, "%s: ", key->path);
-            text_add(&b, "%s: ", key->path);
-            case_value_write(&a, key, case_table_field(key, one, &one->school.fish[i]));
-            case_value_write(&b, key, case_table_field(key, other, &other->school.fish[i]));
-            assert_string_equal(a.text, b.text);
-            text_free(&a);
-            text_free(&b);
-        }
-    }
-    assert_int_equal(one->n_axes, other->n_axes);
-    for (int i = 0; i < one->n_axes; i++) {
-        assert_int_equal(one->sweep[i].n_keys, other->sweep[i].n_keys);
-        for (int k = 0; k < one->sweep[i].n_keys; k++) {
-            assert_string_equal(one->sweep[i].key[k].path, other->sweep[i].key[k].path);
-        }
-        assert_int_equal(one->sweep[i].refine, other->sweep[i].refine);
-        assert_memory_equal(&one->sweep[i].order, &other->sweep[i].order, sizeof(double));
-        assert_memory_equal(&one->sweep[i].within, &other->sweep[i].within, sizeof(double));
-        assert_int_equal(one->sweep[i].order_of, other->sweep[i].order_of);
-        assert_int_equal(one->sweep[i].reference != NULL, other->sweep[i].reference != NULL);
-        for (int k = 0; one->sweep[i].reference && k < SWEEP_N_ORDERS * one->school.n_fish * 2; k++) {
-            const double a = one->sweep[i].reference[k], b = other->sweep[i].reference[k];
-            assert_true(a == b || (isnan(a) && isnan(b)));
-        }
-        assert_int_equal(one->sweep[i].n_values, other->sweep[i].n_values);
-        for (int j = 0; j < one->sweep[i].n_values * one->sweep[i].n_keys; j++) {
-            assert_string_equal(one->sweep[i].value[j], other->sweep[i].value[j]);
-        }
-    }
-    assert_int_equal(one->n_expectations, other->n_expectations);
-    for (int i = 0; i < one->n_expectations; i++) {
-        const struct sweep_expectation *const a = &one->expect[i], *const b = &other->expect[i];
-        assert_int_equal(a->of, b->of);
-        assert_int_equal(a->fails != NULL, b->fails != NULL);
-        if (a->fails) assert_string_equal(a->fails, b->fails);
-        assert_int_equal(a->fish, b->fish);
-        assert_int_equal(a->n_where, b->n_where);
-        for (int c = 0; c < a->n_where; c++) {
-            assert_int_equal(a->where[c].axis, b->where[c].axis);
-            assert_int_equal(a->where[c].key, b->where[c].key);
-            assert_string_equal(a->where[c].value, b->where[c].value);
-        }
-        const double *const from = &a->min, *const to = &b->min;
-        for (int k = 0; k < 4; k++) assert_true(from[k] == to[k] || (isnan(from[k]) && isnan(to[k])));
-    }
 }
 
 /* A folder for files, made by the setup of a test. */
@@ -412,164 +336,6 @@ static void assignments_reach_defaults_preset_and_sections(void **state) {
     case_free(&s);
 }
 
-// ---- sweeps and what runs
-
-static const char swept[] =
-    "format: 1\ntime: {end: 1}\nfish: [{}, {}]\n"
-    "sweep:\n"
-    "  - {key: 'fish[*].body.modulus', values: [1e4, 1e6, 1.0e+8]}\n"
-    "  - {key: 'fish[1].start.position', values: [[0, 1], [0, 2]]}\n"
-    "  - {key: wake.kutta, values: [edge, rate]}\n";
-
-static void a_sweep_keeps_its_values_as_assignments_take_them(void **state) {
-    (void)state;
-    struct case_values s = parse(swept);
-    assert_int_equal(s.n_axes, 3);
-    assert_string_equal(s.sweep[0].key[0].path, "fish[*].body.modulus");
-    assert_int_equal(s.sweep[0].n_values, 3);
-    assert_string_equal(s.sweep[0].value[2], "1.0e+8");
-    assert_string_equal(s.sweep[1].value[1], "[0, 2]");
-    char assignment[100];
-    snprintf(assignment, sizeof assignment, "%s=%s", s.sweep[1].key[0].path, s.sweep[1].value[1]);
-    case_free(&s);
-    s = parse_with(swept, assignment, NULL, NULL);
-    NEAR(s.school.fish[1].start_position[1], 2, 0, 0);
-    case_free(&s);
-}
-
-static const char zipped[] =
-    "time: {end: 1, shedding_interval: 0.1}\nformat: 1\nfish: [{}, {}]\n"
-    "sweep:\n"
-    "  - {key: time.shedding_interval, values: [0.1, 0.05, 0.025], refine: true, expect: {order: 2, within: 0.2}}\n"
-    "  - {keys: ['fish[*].nodes', 'fish[1].name'], values: [[7, thin], [9, 'a: b']]}\n";
-
-static void members_are_numbered_with_the_last_axis_fastest(void **state) {
-    (void)state;
-    struct case_values study = parse(zipped);
-    assert_int_equal(sweep_n_members(&study), 6);
-    for (int m = 0; m < 6; m++) {
-        struct case_values s;
-        assert_int_equal(case_member(&s, &study, m), STATUS_OK);
-        NEAR(s.school.shedding_interval, 0.1 / (1 << m / 2), 0, 1e-15);
-        // what is derived follows what is swept
-        NEAR(s.time.output_interval, 1.0 / (1 << m / 2), 0, 1e-15);
-        assert_int_equal(s.school.fish[0].nodes, m % 2 ? 9 : 7);
-        assert_string_equal(s.school.fish[1].name, m % 2 ? "a: b" : "thin");
-        assert_int_equal(s.n_axes, 0);
-        assert_int_equal(s.member, m);
-        assert_string_equal(s.study, study.merged);
-        assert_string_equal(s.text, study.text);
-        case_free(&s);
-    }
-    char *text;
-    assert_int_equal(sweep_member_text(&study, 3, &text), STATUS_OK);
-    assert_string_equal(text, "time.shedding_interval=0.05, fish[*].nodes=9, fish[1].name=\"a: b\"");
-    free(text);
-    case_free(&study);
-}
-
-static void the_merged_text_is_the_complete_study(void **state) {
-    (void)state;
-    struct case_values study = parse_with(zipped, "fish[0].length=2", "wake.fade=0.1", NULL);
-    struct case_values again;
-    assert_int_equal(case_parse(&again, study.merged, strlen(study.merged), "other.yaml", NULL, 0, NULL), STATUS_OK);
-    are_equal(&study, &again);
-    assert_string_equal(again.merged, study.merged);
-    case_free(&study);
-    case_free(&again);
-}
-
-static const char refined[] =
-    "time: {end: 1, shedding_interval: 0.1}\nformat: 1\nfish: [{}, {}]\n"
-    "sweep:\n"
-    "  - key: solver.rtol\n"
-    "    values: [1e-3, 1e-4, 1e-5]\n"
-    "    refine: true\n"
-    "    reference: {speed: 1.25, nose: [[1, 2], [3, 4]], com: [5, 6], mean_heading: [7, 8]}\n"
-    "    expect: {order: 0.8, within: 0.2, of: [speed, com]}\n";
-
-static void a_reference_is_given_for_all_fish_or_for_each(void **state) {
-    (void)state;
-    struct case_values s = parse(refined);
-    // quantities in the order of the table: nose, tail, com, speed, mean_heading
-    for (int f = 0; f < 2; f++) {
-        for (int k = 0; k < 2; k++) {
-            NEAR(sweep_reference(&s, 0, 0, f, k), 1 + 2 * f + k, 0, 0);
-            assert_true(isnan(sweep_reference(&s, 0, 1, f, k)));
-            NEAR(sweep_reference(&s, 0, 2, f, k), 5 + k, 0, 0);
-        }
-        NEAR(sweep_reference(&s, 0, 3, f, 0), 1.25, 0, 0);
-        NEAR(sweep_reference(&s, 0, 4, f, 0), 7 + f, 0, 0);
-    }
-    assert_int_equal(s.sweep[0].order_of, 1 << 3 | 1 << 2);
-    case_free(&s);
-    s = parse(zipped);
-    assert_true(isnan(sweep_reference(&s, 0, 0, 0, 0)));
-    assert_int_equal(s.sweep[0].order_of, 1 << SWEEP_NOSE | 1 << SWEEP_TAIL);
-    case_free(&s);
-}
-
-static const char stated[] =
-    "time: {end: 1, shedding_interval: 0.1}\nformat: 1\nfish: [{name: a}, {name: 'b: c'}]\n"
-    "sweep:\n"
-    "  - {keys: [solver.method, solver.rtol], values: [[ida, 1e-3], [rk4, 1e-4], [ida, 1e-4]]}\n"
-    "  - {key: 'fish[1].start.position', values: [[0, 1], [0, 2]]}\n"
-    "expect:\n"
-    "  - {of: speed, fish: 'b: c', least: 1, most: 2, ratio: 3}\n"
-    "  - {of: [nose, tail], spread: 0, where: ['solver.rtol=0.0001', 'fish[1].start.position=[0,2]']}\n"
-    "  - {of: steps, least: -1, where: [solver.method=ida]}\n"
-    "  - {fails: 'is: unstable', where: [solver.rtol=1e-3, 'fish[1].start.position=[0, 2]', solver.method=rk4,\n"
-    "      solver.method=ida]}\n";
-
-static void a_statement_is_about_the_members_with_its_values(void **state) {
-    (void)state;
-    struct case_values s = parse(stated);
-    assert_int_equal(s.n_expectations, 4);
-    assert_string_equal(s.expect[3].fails, "is: unstable");
-    assert_null(s.expect[0].fails);
-    assert_int_equal(s.expect[0].of, 1 << 3);
-    assert_int_equal(s.expect[0].fish, 1);
-    assert_int_equal(s.expect[1].fish, -1);
-    assert_int_equal(s.expect[1].of, 1 << SWEEP_NOSE | 1 << SWEEP_TAIL);
-    NEAR(s.expect[0].ratio, 3, 0, 0);
-    assert_true(isnan(s.expect[0].spread));
-    // members: (ida 1e-3, 1), (.., 2), (rk4 1e-4, 1), (.., 2), (ida 1e-4, 1), (.., 2)
-    static const int are_meant[4][6] = {{1, 1, 1, 1, 1, 1}, {0, 0, 0, 1, 0, 1}, {1, 1, 0, 0, 1, 1}, {0, 1, 0, 0, 0, 0}};
-    for (int i = 0; i < 4; i++) {
-        for (int m = 0; m < 6; m++) assert_int_equal(sweep_expects_of(&s, &s.expect[i], m), are_meant[i][m]);
-    }
-    struct case_values member;
-    assert_int_equal(case_member(&member, &s, 2), STATUS_OK);
-    assert_int_equal(member.n_expectations, 0);
-    case_free(&member);
-    case_free(&s);
-}
-
-static void a_wrong_member_is_named(void **state) {
-    (void)state;
-    struct case_values study =
-        parse("format: 1\ntime: {end: 1}\nfish: [{}]\nsweep: [{key: time.shedding_interval, values: [0.1, 0.3]}]\n");
-    struct case_values s;
-    assert_int_equal(case_member(&s, &study, 0), STATUS_OK);
-    case_free(&s);
-    assert_int_equal(case_member(&s, &study, 1), STATUS_CASE);
-    assert_non_null(strstr(status_message(), "member 1 (time.shedding_interval=0.3):\n"));
-    assert_non_null(
-        strstr(status_message(), "time.end: 1 s is not an integer multiple of time.shedding_interval, 0.3 s"));
-    case_free(&study);
-}
-
-static void a_sweep_is_refused_as_one_run_with_a_remedy(void **state) {
-    (void)state;
-    struct case_values s = parse(minimal);
-    assert_int_equal(sweep_refuse(&s), STATUS_OK);
-    case_free(&s);
-    s = parse(swept);
-    assert_int_equal(sweep_refuse(&s), STATUS_CASE);
-    assert_non_null(strstr(status_message(), "`shoal run` runs one case; this case has a sweep of 3 axes"));
-    case_free(&s);
-}
-
 // ---- showing
 
 static void a_case_shown_reads_back_bit_for_bit(void **state) {
@@ -720,13 +486,6 @@ int main(void) {
         cmocka_unit_test(assignments_are_strongest_and_the_last_counts),
         cmocka_unit_test(a_star_assigns_to_every_fish),
         cmocka_unit_test(assignments_reach_defaults_preset_and_sections),
-        cmocka_unit_test(a_sweep_keeps_its_values_as_assignments_take_them),
-        cmocka_unit_test(members_are_numbered_with_the_last_axis_fastest),
-        cmocka_unit_test(the_merged_text_is_the_complete_study),
-        cmocka_unit_test(a_reference_is_given_for_all_fish_or_for_each),
-        cmocka_unit_test(a_statement_is_about_the_members_with_its_values),
-        cmocka_unit_test(a_wrong_member_is_named),
-        cmocka_unit_test(a_sweep_is_refused_as_one_run_with_a_remedy),
         cmocka_unit_test(a_case_shown_reads_back_bit_for_bit),
         cmocka_unit_test(a_shown_case_has_neither_preset_nor_defaults),
         cmocka_unit_test(the_table_of_keys_is_valid_text_and_json),

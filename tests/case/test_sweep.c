@@ -1,0 +1,143 @@
+/* test_sweep.c: axes and their members, references, and the members that an expectation is about. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "case/case_member.h"
+#include "case/sweep_refine.h"
+#include "case_fixture.h"
+
+static void a_sweep_keeps_its_values_as_assignments_take_them(void **state) {
+    (void)state;
+    struct case_values s = parse(swept);
+    assert_int_equal(s.n_axes, 3);
+    assert_string_equal(s.sweep[0].key[0].path, "fish[*].body.modulus");
+    assert_int_equal(s.sweep[0].n_values, 3);
+    assert_string_equal(s.sweep[0].value[2], "1.0e+8");
+    assert_string_equal(s.sweep[1].value[1], "[0, 2]");
+    char assignment[100];
+    snprintf(assignment, sizeof assignment, "%s=%s", s.sweep[1].key[0].path, s.sweep[1].value[1]);
+    case_free(&s);
+    s = parse_with(swept, assignment, NULL, NULL);
+    NEAR(s.school.fish[1].start_position[1], 2, 0, 0);
+    case_free(&s);
+}
+
+static void members_are_numbered_with_the_last_axis_fastest(void **state) {
+    (void)state;
+    struct case_values study = parse(zipped);
+    assert_int_equal(sweep_n_members(&study), 6);
+    for (int m = 0; m < 6; m++) {
+        struct case_values s;
+        assert_int_equal(case_member(&s, &study, m), STATUS_OK);
+        NEAR(s.school.shedding_interval, 0.1 / (1 << m / 2), 0, 1e-15);
+        // what is derived follows what is swept
+        NEAR(s.time.output_interval, 1.0 / (1 << m / 2), 0, 1e-15);
+        assert_int_equal(s.school.fish[0].nodes, m % 2 ? 9 : 7);
+        assert_string_equal(s.school.fish[1].name, m % 2 ? "a: b" : "thin");
+        assert_int_equal(s.n_axes, 0);
+        assert_int_equal(s.member, m);
+        assert_string_equal(s.study, study.merged);
+        assert_string_equal(s.text, study.text);
+        case_free(&s);
+    }
+    char *text;
+    assert_int_equal(sweep_member_text(&study, 3, &text), STATUS_OK);
+    assert_string_equal(text, "time.shedding_interval=0.05, fish[*].nodes=9, fish[1].name=\"a: b\"");
+    free(text);
+    case_free(&study);
+}
+
+static void the_merged_text_is_the_complete_study(void **state) {
+    (void)state;
+    struct case_values study = parse_with(zipped, "fish[0].length=2", "wake.fade=0.1", NULL);
+    struct case_values again;
+    assert_int_equal(case_parse(&again, study.merged, strlen(study.merged), "other.yaml", NULL, 0, NULL), STATUS_OK);
+    are_equal(&study, &again);
+    assert_string_equal(again.merged, study.merged);
+    case_free(&study);
+    case_free(&again);
+}
+
+static void a_reference_is_given_for_all_fish_or_for_each(void **state) {
+    (void)state;
+    struct case_values s = parse(refined);
+    // quantities in the order of the table: nose, tail, com, speed, mean_heading
+    for (int f = 0; f < 2; f++) {
+        for (int k = 0; k < 2; k++) {
+            NEAR(sweep_reference(&s, 0, 0, f, k), 1 + 2 * f + k, 0, 0);
+            assert_true(isnan(sweep_reference(&s, 0, 1, f, k)));
+            NEAR(sweep_reference(&s, 0, 2, f, k), 5 + k, 0, 0);
+        }
+        NEAR(sweep_reference(&s, 0, 3, f, 0), 1.25, 0, 0);
+        NEAR(sweep_reference(&s, 0, 4, f, 0), 7 + f, 0, 0);
+    }
+    assert_int_equal(s.sweep[0].order_of, 1 << 3 | 1 << 2);
+    case_free(&s);
+    s = parse(zipped);
+    assert_true(isnan(sweep_reference(&s, 0, 0, 0, 0)));
+    assert_int_equal(s.sweep[0].order_of, 1 << SWEEP_NOSE | 1 << SWEEP_TAIL);
+    case_free(&s);
+}
+
+static void a_statement_is_about_the_members_with_its_values(void **state) {
+    (void)state;
+    struct case_values s = parse(stated);
+    assert_int_equal(s.n_expectations, 4);
+    assert_string_equal(s.expect[3].fails, "is: unstable");
+    assert_null(s.expect[0].fails);
+    assert_int_equal(s.expect[0].of, 1 << 3);
+    assert_int_equal(s.expect[0].fish, 1);
+    assert_int_equal(s.expect[1].fish, -1);
+    assert_int_equal(s.expect[1].of, 1 << SWEEP_NOSE | 1 << SWEEP_TAIL);
+    NEAR(s.expect[0].ratio, 3, 0, 0);
+    assert_true(isnan(s.expect[0].spread));
+    // members: (ida 1e-3, 1), (.., 2), (rk4 1e-4, 1), (.., 2), (ida 1e-4, 1), (.., 2)
+    static const int are_meant[4][6] = {{1, 1, 1, 1, 1, 1}, {0, 0, 0, 1, 0, 1}, {1, 1, 0, 0, 1, 1}, {0, 1, 0, 0, 0, 0}};
+    for (int i = 0; i < 4; i++) {
+        for (int m = 0; m < 6; m++) assert_int_equal(sweep_expects_of(&s, &s.expect[i], m), are_meant[i][m]);
+    }
+    struct case_values member;
+    assert_int_equal(case_member(&member, &s, 2), STATUS_OK);
+    assert_int_equal(member.n_expectations, 0);
+    case_free(&member);
+    case_free(&s);
+}
+
+static void a_wrong_member_is_named(void **state) {
+    (void)state;
+    struct case_values study =
+        parse("format: 1\ntime: {end: 1}\nfish: [{}]\nsweep: [{key: time.shedding_interval, values: [0.1, 0.3]}]\n");
+    struct case_values s;
+    assert_int_equal(case_member(&s, &study, 0), STATUS_OK);
+    case_free(&s);
+    assert_int_equal(case_member(&s, &study, 1), STATUS_CASE);
+    assert_non_null(strstr(status_message(), "member 1 (time.shedding_interval=0.3):\n"));
+    assert_non_null(
+        strstr(status_message(), "time.end: 1 s is not an integer multiple of time.shedding_interval, 0.3 s"));
+    case_free(&study);
+}
+
+static void a_sweep_is_refused_as_one_run_with_a_remedy(void **state) {
+    (void)state;
+    struct case_values s = parse(minimal);
+    assert_int_equal(sweep_refuse(&s), STATUS_OK);
+    case_free(&s);
+    s = parse(swept);
+    assert_int_equal(sweep_refuse(&s), STATUS_CASE);
+    assert_non_null(strstr(status_message(), "`shoal run` runs one case; this case has a sweep of 3 axes"));
+    case_free(&s);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_sweep_keeps_its_values_as_assignments_take_them),
+        cmocka_unit_test(members_are_numbered_with_the_last_axis_fastest),
+        cmocka_unit_test(the_merged_text_is_the_complete_study),
+        cmocka_unit_test(a_reference_is_given_for_all_fish_or_for_each),
+        cmocka_unit_test(a_statement_is_about_the_members_with_its_values),
+        cmocka_unit_test(a_wrong_member_is_named),
+        cmocka_unit_test(a_sweep_is_refused_as_one_run_with_a_remedy),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
