@@ -3,6 +3,7 @@
 
 import json
 import sys
+import textwrap
 
 INTRODUCTION = """\
 # Case files
@@ -116,8 +117,7 @@ key is a resolution (`time.shedding_interval`, `solver.rtol`, `solver.step`, `no
 | `expect: {order: 2, within: 0.2, of: [nose, speed]}` | the study ends with exit code 3 if an order is not within these bounds; without `of`, the orders of nose and tail are checked |
 | `reference: {speed: 1.014, nose: [-1.6, 0.01]}` | errors and orders of these quantities refer to these values instead of the finest level: those of an exact solution, or of much finer levels. In a school a value may be a list with one for each fish |
 
-Orders are those of `nose`, `tail`, `com`, `speed`, `mean_heading`, `shed_circulation`, `cost_of_transport` and
-`mean_actuation_power`. `shoal study` runs a sweep; `shoal run` refuses one.
+Orders are those of ORDERS. `shoal study` runs a sweep; `shoal run` refuses one.
 
 ### expect
 
@@ -142,8 +142,7 @@ expect:
 | `ratio` | upper bound of the largest over the smallest absolute value; not met where a value is 0 or signs differ |
 | `fails` | alone or with `where`: the members fail, with these words in their messages; such failures do not make the exit code 1 |
 
-Quantities are those with orders, and `lateral_drift`, `strouhal`, `energy_audit`, `steps`, `residual_evaluations`,
-`jacobian_evaluations`, `wall_time`. `shoal run` ignores `expect`.
+Quantities are those with orders, and QUANTITIES. `shoal run` ignores `expect`.
 
 ## The subset of YAML
 
@@ -186,6 +185,10 @@ def code(text):
     return f"`{text}`" if text else ""
 
 
+def listed(names):
+    return ", ".join(code(name) for name in names[:-1]) + " and " + code(names[-1])
+
+
 def default(key):
     if key["derived"] is not None:
         return f"*{key['derived']}*"
@@ -223,13 +226,17 @@ def table(section, keys):
 
 
 def main():
+    keys = json.load(sys.stdin)
     sections = {}
-    for key in json.load(sys.stdin):
+    for key in keys:
         sections.setdefault(section_of(key), []).append(key)
     missing = sections.keys() ^ SECTIONS.keys()
     if missing:
         sys.exit(f"make-cases-doc.py: SECTIONS differs from the table of keys in: {', '.join(sorted(missing))}")
-    print(INTRODUCTION, end="")
+    expect = next(key for key in keys if key["path"] == "expect")
+    for line in INTRODUCTION.splitlines():
+        whole = line.replace("ORDERS", listed(expect["orders"])).replace("QUANTITIES", listed(expect["quantities"]))
+        print(line if whole == line else textwrap.fill(whole, 120, break_on_hyphens=False))
     for section, keys in sections.items():
         print("\n".join(table(section, keys)))
 

@@ -5,6 +5,7 @@
 
 #include "base/methods.h"
 #include "case/case_table.h"
+#include "case/sweep_quantity.h"
 
 enum { METHOD_BYTES = 200 };
 
@@ -82,6 +83,15 @@ static void print_words(FILE *stream) {
     fprintf(stream, "}");
 }
 
+/* Add "orders" and "quantities", all names with and without orders of convergence, to a key. */
+static void print_quantities(FILE *stream) {
+    for (int q = 0; q < SWEEP_N_QUANTITIES; q++) {
+        const char *const before = q == 0 ? ", \"orders\": [" : q == SWEEP_N_ORDERS ? "], \"quantities\": [" : ", ";
+        fprintf(stream, "%s\"%s\"", before, sweep_quantities[q].name);
+    }
+    fprintf(stream, "]");
+}
+
 static void print_json(FILE *stream) {
     for (int k = 0; k < case_table_n; k++) {
         const struct key *const key = &case_table[k];
@@ -96,6 +106,7 @@ static void print_json(FILE *stream) {
         print_string(stream, ", ", "unit", key->unit);
         print_string(stream, ", ", "meaning", key->meaning);
         if (key->type == METHOD) print_words(stream);
+        if (key->type == EXPECTATIONS) print_quantities(stream);
         fprintf(stream, "}");
         text_free(&range);
     }

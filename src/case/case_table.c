@@ -141,7 +141,7 @@ const struct key case_table[] = {
      .words = WORDS("joukowski", "uniform", "table"), .synonyms = "shape"},
     {"fish.body.thickness", REAL, IN_FISH(body.thickness), "0.2", BETWEEN(0, 1), "",
      .meaning = "joukowski: parameter d of the foil; uniform: thickness over length"},
-    {"fish.body.width", REAL, IN_FISH(body.width), "0.25", ABOVE(0), "",
+    {"fish.body.width", REAL, IN_FISH(body.depth), "0.25", ABOVE(0), "",
      .meaning = "depth of the body (its span, out of the plane of motion) over length"},
     {"fish.body.h", NUMBERS, IN_FISH(body.h), "[]", ABOVE(0), "m", .meaning = "profile table: thickness of every edge",
      .synonyms = "height heights"},
@@ -264,7 +264,7 @@ const struct key case_table[] = {
          "axes of a study, {key: PATH, values: [...]} or {keys: [...], values: [[...], ...]}; `shoal study` runs "
          "their product",
      .synonyms = "study parameters scan"},
-    {"expect", STATEMENTS, 0, "[]", ANY, "",
+    {"expect", EXPECTATIONS, 0, "[]", ANY, "",
      .meaning = "expectations of the ends of a study's members, {of: QUANTITY, least: ..., most: ...}; `shoal study` "
                 "checks them",
      .synonyms = "expected check assert"},
@@ -317,7 +317,7 @@ const char *case_table_type(const struct key *key) {
                                         [FILES] = "list of files",
                                         [DEFAULTS] = "map",
                                         [AXES] = "list of axes",
-                                        [STATEMENTS] = "list of statements"};
+                                        [EXPECTATIONS] = "list of expectations"};
     return names[key->type];
 }
 

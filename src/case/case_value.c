@@ -32,7 +32,7 @@ void case_value_clear(const struct key *key, void *field) {
         case FILES:
         case DEFAULTS:
         case AXES:
-        case STATEMENTS: break;
+        case EXPECTATIONS: break;
     }
 }
 
@@ -238,7 +238,7 @@ enum status case_value_read(const struct key *key, void *field, const struct yam
         case FILES:
         case DEFAULTS:
         case AXES:
-        case STATEMENTS: break;
+        case EXPECTATIONS: break;
     }
     return STATUS_OK;
 }
@@ -280,6 +280,6 @@ void case_value_write(struct text *text, const struct key *key, const void *fiel
         case FILES:
         case DEFAULTS:
         case AXES:
-        case STATEMENTS: break;
+        case EXPECTATIONS: break;
     }
 }

@@ -1,4 +1,4 @@
-/* sweep_expect.c: statements, read and matched with members.
+/* sweep_expect.c: expectations, read and matched with members.
  *
  *     - {of: speed, fish: leader, least: 0.99, most: 1.01}                 every value
  *     - {of: [nose, tail], spread: 1e-5}                                   all values together
@@ -21,7 +21,7 @@ static enum status out_of_memory(void) {
 }
 
 /* An expectation being read. */
-struct stating {
+struct reading {
     const struct case_values *values;
     char name[32]; /* "expect[1]" */
     const struct yaml_node *node;
@@ -86,51 +86,50 @@ static bool find_key(const struct case_values *values, const char *text, size_t 
 }
 
 /* Read "where". */
-static enum status read_where(const struct stating *statement, const struct yaml_node *list) {
+static enum status read_where(const struct reading *reading, const struct yaml_node *list) {
     if (list->kind != YAML_LIST) {
-        yaml_errors_add(statement->errors, list->mark, "%s.where: expects a list, as in [\"solver.method=ida\"]",
-                        statement->name);
+        yaml_errors_add(reading->errors, list->mark, "%s.where: expects a list, as in [\"solver.method=ida\"]",
+                        reading->name);
         return STATUS_OK;
     }
-    statement->into->where = calloc((size_t)list->n + 1, sizeof *statement->into->where);
-    if (!statement->into->where) return out_of_memory();
+    reading->into->where = calloc((size_t)list->n + 1, sizeof *reading->into->where);
+    if (!reading->into->where) return out_of_memory();
     for (int i = 0; i < list->n; i++) {
         const struct yaml_node *const node = list->entry[i].value;
         const char *const equals = node->kind == YAML_SCALAR ? strchr(node->text, '=') : NULL;
-        struct sweep_condition *const condition = &statement->into->where[statement->into->n_where];
-        if (!equals || !find_key(statement->values, node->text, (size_t)(equals - node->text), condition)) {
-            yaml_errors_add(statement->errors, node->mark,
+        struct sweep_condition *const condition = &reading->into->where[reading->into->n_where];
+        if (!equals || !find_key(reading->values, node->text, (size_t)(equals - node->text), condition)) {
+            yaml_errors_add(reading->errors, node->mark,
                             "%s.where: expects PATH=VALUE with a key of the sweep, as in \"solver.method=ida\"",
-                            statement->name);
+                            reading->name);
             continue;
         }
         condition->value = strdup(equals + 1);
         if (!condition->value) return out_of_memory();
-        statement->into->n_where++;
+        reading->into->n_where++;
     }
     return STATUS_OK;
 }
 
 /* Complain if no member is meant. */
-static void check_members(const struct stating *statement, const struct yaml_node *where) {
-    const int n = sweep_n_members(statement->values);
+static void check_members(const struct reading *reading, const struct yaml_node *where) {
+    const int n = sweep_n_members(reading->values);
     for (int m = 0; m < n; m++) {
-        if (sweep_expects_of(statement->values, statement->into, m)) return;
+        if (sweep_expects_of(reading->values, reading->into, m)) return;
     }
-    yaml_errors_add(statement->errors, where->mark, "%s.where: no member of the sweep has these values",
-                    statement->name);
+    yaml_errors_add(reading->errors, where->mark, "%s.where: no member of the sweep has these values", reading->name);
 }
 
 // ---- what
 
-/* Read a number of the statement; NaN if it is not there. */
-static double read_number(const struct stating *statement, const char *name, double min) {
-    const struct yaml_node *const node = yaml_tree_find(statement->node, name);
+/* Read a number of the expectation; NaN if it is not there. */
+static double read_number(const struct reading *reading, const char *name, double min) {
+    const struct yaml_node *const node = yaml_tree_find(reading->node, name);
     double number;
     if (!node) return NAN;
     if (node->kind == YAML_SCALAR && text_number(node->text, &number) && isfinite(number) && number >= min)
         return number;
-    yaml_errors_add(statement->errors, node->mark, "%s.%s: expects a number%s", statement->name, name,
+    yaml_errors_add(reading->errors, node->mark, "%s.%s: expects a number%s", reading->name, name,
                     min == 0   ? " from 0 on"
                     : min == 1 ? " from 1 on"
                                : "");
@@ -138,84 +137,84 @@ static double read_number(const struct stating *statement, const char *name, dou
 }
 
 /* Read "fish". */
-static void read_fish(const struct stating *statement, const struct yaml_node *node) {
-    for (int f = 0; f < statement->values->school.n_fish; f++) {
-        const char *const name = statement->values->school.fish[f].name;
-        if (node->kind == YAML_SCALAR && name && strcmp(name, node->text) == 0) statement->into->fish = f;
+static void read_fish(const struct reading *reading, const struct yaml_node *node) {
+    for (int f = 0; f < reading->values->school.n_fish; f++) {
+        const char *const name = reading->values->school.fish[f].name;
+        if (node->kind == YAML_SCALAR && name && strcmp(name, node->text) == 0) reading->into->fish = f;
     }
-    if (statement->into->fish >= 0) return;
-    yaml_errors_add(statement->errors, node->mark, "%s.fish: expects the name of a fish", statement->name);
+    if (reading->into->fish >= 0) return;
+    yaml_errors_add(reading->errors, node->mark, "%s.fish: expects the name of a fish", reading->name);
 }
 
 /* Complain about what a quantity does not have. */
-static void check_quantities(const struct stating *statement) {
-    const struct sweep_expectation *const one = statement->into;
+static void check_quantities(const struct reading *reading) {
+    const struct sweep_expectation *const one = reading->into;
     for (int q = 0; q < SWEEP_N_QUANTITIES; q++) {
         const struct sweep_quantity *const quantity = &sweep_quantities[q];
         if (!(one->of >> q & 1)) continue;
         if (one->fish >= 0 && !quantity->of_fish) {
-            yaml_errors_add(statement->errors, statement->node->mark, "%s.fish: %s has no value for each fish",
-                            statement->name, quantity->name);
+            yaml_errors_add(reading->errors, reading->node->mark, "%s.fish: %s has no value for each fish",
+                            reading->name, quantity->name);
         }
         if (quantity->of_xy && !(isnan(one->min) && isnan(one->max) && isnan(one->ratio))) {
-            yaml_errors_add(statement->errors, statement->node->mark,
-                            "%s: %s is a point, of which only spread is known", statement->name, quantity->name);
+            yaml_errors_add(reading->errors, reading->node->mark, "%s: %s is a point, of which only spread is known",
+                            reading->name, quantity->name);
         }
     }
 }
 
 /* Read the quantities and their bounds. */
-static void read_bounds(const struct stating *statement, const struct yaml_node *of) {
-    struct sweep_expectation *const into = statement->into;
-    if (of) into->of = sweep_quantities_read(of, statement->name, SWEEP_N_QUANTITIES, statement->errors);
-    into->min = read_number(statement, "least", -INFINITY);
-    into->max = read_number(statement, "most", -INFINITY);
-    into->spread = read_number(statement, "spread", 0);
-    into->ratio = read_number(statement, "ratio", 1);
-    const bool says_something = yaml_tree_find(statement->node, "least") || yaml_tree_find(statement->node, "most") ||
-                                yaml_tree_find(statement->node, "spread") || yaml_tree_find(statement->node, "ratio");
+static void read_bounds(const struct reading *reading, const struct yaml_node *of) {
+    struct sweep_expectation *const into = reading->into;
+    if (of) into->of = sweep_quantities_read(of, reading->name, SWEEP_N_QUANTITIES, reading->errors);
+    into->min = read_number(reading, "least", -INFINITY);
+    into->max = read_number(reading, "most", -INFINITY);
+    into->spread = read_number(reading, "spread", 0);
+    into->ratio = read_number(reading, "ratio", 1);
+    const bool says_something = yaml_tree_find(reading->node, "least") || yaml_tree_find(reading->node, "most") ||
+                                yaml_tree_find(reading->node, "spread") || yaml_tree_find(reading->node, "ratio");
     if (!of || !says_something) {
-        yaml_errors_add(statement->errors, statement->node->mark,
-                        "%s: expects of, and at least one of least, most, spread, ratio", statement->name);
+        yaml_errors_add(reading->errors, reading->node->mark,
+                        "%s: expects of, and at least one of least, most, spread, ratio", reading->name);
     }
-    check_quantities(statement);
+    check_quantities(reading);
 }
 
 /* Read "fails". */
-static enum status read_fails(const struct stating *statement, const struct yaml_node *fails) {
+static enum status read_fails(const struct reading *reading, const struct yaml_node *fails) {
     if (fails->kind != YAML_SCALAR || !*fails->text) {
-        yaml_errors_add(statement->errors, fails->mark, "%s.fails: expects words of the reason, as in unstable",
-                        statement->name);
+        yaml_errors_add(reading->errors, fails->mark, "%s.fails: expects words of the reason, as in unstable",
+                        reading->name);
         return STATUS_OK;
     }
-    yaml_tree_check_keys(statement->node, statement->name, "fails, where", statement->errors);
-    statement->into->fails = strdup(fails->text);
-    return statement->into->fails ? STATUS_OK : out_of_memory();
+    yaml_tree_check_keys(reading->node, reading->name, "fails, where", reading->errors);
+    reading->into->fails = strdup(fails->text);
+    return reading->into->fails ? STATUS_OK : out_of_memory();
 }
 
-/* Read one statement into an entry that is zero. */
-static enum status read_statement(const struct stating *statement) {
-    statement->into->fish = -1;
-    if (statement->node->kind != YAML_MAP) {
-        yaml_errors_add(statement->errors, statement->node->mark, "%s: expects {of: QUANTITY, least: ..., most: ...}",
-                        statement->name);
+/* Read one expectation into an entry that is zero. */
+static enum status read_expectation(const struct reading *reading) {
+    reading->into->fish = -1;
+    if (reading->node->kind != YAML_MAP) {
+        yaml_errors_add(reading->errors, reading->node->mark, "%s: expects {of: QUANTITY, least: ..., most: ...}",
+                        reading->name);
         return STATUS_OK;
     }
-    const struct yaml_node *const fails = yaml_tree_find(statement->node, "fails"),
-                                  *const fish = yaml_tree_find(statement->node, "fish"),
-                                  *const where = yaml_tree_find(statement->node, "where");
+    const struct yaml_node *const fails = yaml_tree_find(reading->node, "fails"),
+                                  *const fish = yaml_tree_find(reading->node, "fish"),
+                                  *const where = yaml_tree_find(reading->node, "where");
     if (fails) {
-        TRY(read_fails(statement, fails));
+        TRY(read_fails(reading, fails));
     } else {
-        yaml_tree_check_keys(statement->node, statement->name, "of, fish, where, least, most, spread, ratio, fails",
-                             statement->errors);
-        if (fish) read_fish(statement, fish);
-        read_bounds(statement, yaml_tree_find(statement->node, "of"));
+        yaml_tree_check_keys(reading->node, reading->name, "of, fish, where, least, most, spread, ratio, fails",
+                             reading->errors);
+        if (fish) read_fish(reading, fish);
+        read_bounds(reading, yaml_tree_find(reading->node, "of"));
     }
     if (!where) return STATUS_OK;
-    const int n_before = statement->errors->n;
-    TRY(read_where(statement, where));
-    if (statement->errors->n == n_before) check_members(statement, where);
+    const int n_before = reading->errors->n;
+    TRY(read_where(reading, where));
+    if (reading->errors->n == n_before) check_members(reading, where);
     return STATUS_OK;
 }
 
@@ -224,18 +223,18 @@ enum status sweep_expect_read(struct case_values *values, const struct yaml_node
     // a member, or a run with --set 'sweep=[]', expects nothing
     if (!list || (values->n_axes == 0 && yaml_tree_find(root, "sweep"))) return STATUS_OK;
     if (list->kind != YAML_LIST) {
-        yaml_errors_add(errors, list->mark, "expect: expects a list of statements, each {of: QUANTITY, least: ...}");
+        yaml_errors_add(errors, list->mark, "expect: expects a list, as in [{of: QUANTITY, least: ...}]");
         return STATUS_OK;
     }
     if (values->n_axes == 0) yaml_errors_add(errors, list->mark, "expect: has no effect without a sweep");
     values->expect = calloc((size_t)list->n + 1, sizeof *values->expect);
     if (!values->expect) return out_of_memory();
     for (int i = 0; i < list->n; i++) {
-        struct stating statement = {
+        struct reading reading = {
             .values = values, .node = list->entry[i].value, .into = &values->expect[i], .errors = errors};
-        snprintf(statement.name, sizeof statement.name, "expect[%d]", i);
+        snprintf(reading.name, sizeof reading.name, "expect[%d]", i);
         values->n_expectations++;
-        TRY(read_statement(&statement));
+        TRY(read_expectation(&reading));
     }
     return STATUS_OK;
 }

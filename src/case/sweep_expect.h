@@ -6,15 +6,15 @@
 #include "case/case_values.h"
 #include "case/yaml_tree.h"
 
-/* A key of the sweep has a value. */
+/* The condition that a key of the sweep has a value. */
 struct sweep_condition {
     int axis, key;
     char *value;
 };
 
-/* A statement about the ends of members: of all, or of those that have the values of where. */
+/* An expectation of the ends of members: of all, or of those that have the values of where. */
 struct sweep_expectation {
-    char *fails; /* they fail, and their reasons have these words in them; nothing else is then said. NULL: no */
+    char *fails; /* they fail with these words in their messages, and nothing else is expected; NULL: they do not */
     unsigned of; /* bit q: of quantity q */
     int fish;    /* -1: of all */
     int n_where;
@@ -24,13 +24,13 @@ struct sweep_expectation {
     double ratio; /* of the largest to the smallest absolute value; values of both signs, or 0, have none */
 };
 
-/* Read the statements of a case whose sweep has been read. Fails with STATUS_MEMORY only. */
+/* Read the expectations of a case whose sweep has been read. Fails with STATUS_MEMORY only. */
 enum status sweep_expect_read(struct case_values *values, const struct yaml_node *root, struct yaml_errors *errors);
 
-/* Release the statements. */
+/* Release the expectations. */
 void sweep_expect_free(struct case_values *values);
 
-/* Whether a statement is about a member. */
+/* Whether an expectation is about a member. */
 int sweep_expects_of(const struct case_values *study, const struct sweep_expectation *one, int member);
 
 #endif

@@ -118,7 +118,7 @@ static void set_wave(struct fish *fish, const struct fish_parameters *from) {
 // drag, added mass and what leaves at the tail: doc/model.md, section 9
 static void set_fluid_forces(struct fish *fish, const struct fish_parameters *from, double density) {
     const struct drag_parameters *drag = &from->drag;
-    const int wide = drag->extent == EXTENT_WIDTH, published = from->force == FORCE_PUBLISHED;
+    const int wide = drag->extent == EXTENT_DEPTH, published = from->force == FORCE_PUBLISHED;
     for (int k = 0; k < fish->n_edges; k++) {
         const double h = fish->thickness[k], w = fish->depth[k], l = fish->edge_length;
         const double across = wide ? w : h, square = wide ? 1 : fish->square[k];
@@ -262,7 +262,7 @@ static enum status set_control(struct fish *fish, const struct fish_parameters *
     }
     // rho_f w L^2 (L f)^2
     const double beat_speed = fish->length * from->wave.frequency;
-    to->torque_scale = parameters->fluid.density * from->body.width * fish->length * fish->length * fish->length *
+    to->torque_scale = parameters->fluid.density * from->body.depth * fish->length * fish->length * fish->length *
                        beat_speed * beat_speed;
     return STATUS_OK;
 }

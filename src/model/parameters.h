@@ -14,7 +14,7 @@ enum section { SECTION_MEAN, SECTION_NODES };
 enum second_moment { SECOND_MOMENT_ELLIPSE, SECOND_MOMENT_PUBLISHED };
 enum force { FORCE_REACTIVE, FORCE_PUBLISHED };
 enum drag_law { DRAG_QUADRATIC, DRAG_LINEAR_QUADRATIC };
-enum extent { EXTENT_THICKNESS, EXTENT_WIDTH };
+enum extent { EXTENT_THICKNESS, EXTENT_DEPTH };
 enum prescribed { PRESCRIBED_NONE, PRESCRIBED_HEAD, PRESCRIBED_ALL };
 enum control_law { CONTROL_NONE, CONTROL_HEADING, CONTROL_AVERAGED_HEADING };
 
@@ -47,7 +47,7 @@ struct wake_parameters {
 
 struct body_parameters {
     enum profile profile;
-    double thickness, width; /* fractions of the body length */
+    double thickness, depth; /* fractions of the body length; the depth is the span, out of the plane of motion */
     struct number_list h, w; /* m, one value per edge: profile table only */
     enum section section;    /* of an edge: means over it, or over its two nodes */
     double density;          /* kg m-3 */

@@ -79,7 +79,7 @@ static struct profile_edge joukowski_edge(const struct fish_parameters *fish, in
     const int n_edges = fish->nodes - 1;
     const double edge_length = fish->length / n_edges, from = k * edge_length, to = (k + 1) * edge_length;
     const struct joukowski foil = joukowski(fish->length, fish->body.thickness);
-    struct profile_edge edge = {.w = fish->body.width * fish->length, .square = 1, .cube = 1};
+    struct profile_edge edge = {.w = fish->body.depth * fish->length, .square = 1, .cube = 1};
     if (fish->body.section == SECTION_MEAN) {
         double mean[3];
         joukowski_means(&foil, from, k + 1 < n_edges ? to : fish->length, mean);
@@ -101,7 +101,7 @@ struct profile_edge profile_edge(const struct fish_parameters *fish, int k) {
         case PROFILE_JOUKOWSKI: return joukowski_edge(fish, k);
         case PROFILE_UNIFORM:
             edge.h = body->thickness * fish->length;
-            edge.w = body->width * fish->length;
+            edge.w = body->depth * fish->length;
             break;
         case PROFILE_TABLE:
             edge.h = body->h.value[k];

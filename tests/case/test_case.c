@@ -86,7 +86,7 @@ static void the_defaults_are_those_of_the_reference(void **state) {
     NEAR(fish->drag.tangential, 4e-3, 0, 0);
     NEAR(fish->drag.normal, 1, 0, 0);
     NEAR(fish->drag.added_mass, 1, 0, 0);
-    assert_int_equal(fish->drag.extent, EXTENT_WIDTH);
+    assert_int_equal(fish->drag.extent, EXTENT_DEPTH);
     assert_int_equal(fish->drag.law, DRAG_QUADRATIC);
     NEAR(fish->start_heading, 180, 0, 0);
     NEAR(fish->start_speed, 0, 0, 0);

@@ -80,7 +80,7 @@ static void a_reference_is_given_for_all_fish_or_for_each(void **state) {
     case_free(&s);
 }
 
-static void a_statement_is_about_the_members_with_its_values(void **state) {
+static void an_expectation_is_about_the_members_with_its_values(void **state) {
     (void)state;
     struct case_values s = parse(stated);
     assert_int_equal(s.n_expectations, 4);
@@ -135,7 +135,7 @@ int main(void) {
         cmocka_unit_test(members_are_numbered_with_the_last_axis_fastest),
         cmocka_unit_test(the_merged_text_is_the_complete_study),
         cmocka_unit_test(a_reference_is_given_for_all_fish_or_for_each),
-        cmocka_unit_test(a_statement_is_about_the_members_with_its_values),
+        cmocka_unit_test(an_expectation_is_about_the_members_with_its_values),
         cmocka_unit_test(a_wrong_member_is_named),
         cmocka_unit_test(a_sweep_is_refused_as_one_run_with_a_remedy),
     };

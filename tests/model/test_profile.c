@@ -8,7 +8,7 @@ static struct fish_parameters foil(int nodes, double thickness, enum section sec
     return (struct fish_parameters){
         .length = 1.3,
         .nodes = nodes,
-        .body = {.profile = PROFILE_JOUKOWSKI, .thickness = thickness, .width = 0.25, .section = section}};
+        .body = {.profile = PROFILE_JOUKOWSKI, .thickness = thickness, .depth = 0.25, .section = section}};
 }
 
 static void joukowski_heights_are_those_of_the_mapped_circle(void **state) {
