@@ -43,6 +43,11 @@ SECTIONS = {
     "rod": ("Rod alone", """\
 The elastic body of model.md 1 to 3 without fluid: large deflections, vibrations, and what a body that nothing touches
 must conserve."""),
+    "force": ("Force of the fluid", """\
+The reactive force of model.md 9 in still fluid: free vortices are smoothed so far that they cause nothing, bodies have
+no drag and no damping. A fish gains nothing from fluid at rest whatever its gait; what is in body and fluid together is
+what the muscle put in; a wave that runs backwards takes the body back; and plates meet results by hand and Lighthill's
+thrust."""),
     "sheet": ("Sheet alone", """\
 The bound vortex sheet of model.md 6 on bodies that move as given: its strength against closed forms, and how the two
 ways of choosing control points converge. On bent bodies the smooth curve is compared with the polygon (chebyshev and
@@ -89,6 +94,8 @@ FIGURE = {
     "frequencies": ("Frequencies of beams", "nodes N", "relative error of beta L", {"slopes": [-2]}),
     "natural shape": ("Chain with natural curvature", "nodes N", "relative error of the chord", {"slopes": [-2]}),
     "conservation": ("Struck free rod: what is conserved", "solver.rtol", "relative change", {"scale": "log"}),
+    "energy of body and fluid": ("Energy of body and fluid", "mean step [s]", "change over the energy",
+                                 {"slopes": [2]}),
     "sheet_plate": ("Flat plate: strength of the sheet", "sheet points M", "relative error", {"slopes": [-1]}),
     "sheet_arc": ("Circular arc: circulation", "sheet points M", "relative error", {"slopes": [-1]}),
     "sheet_nodes": ("Circulation of bent bodies, 65 sheet points", "nodes N", "relative error",

@@ -14,9 +14,9 @@ static const char *section;
 static const struct {
     const char *name;
     void (*run)(void);
-} sections[] = {{"rod", verify_rod},     {"sheet", verify_sheet},   {"wake", verify_wake},
-                {"plate", verify_plate}, {"school", verify_school}, {"symmetry", verify_symmetry},
-                {"start", verify_start}, {"energy", verify_energy}};
+} sections[] = {{"rod", verify_rod},           {"force", verify_force}, {"sheet", verify_sheet},
+                {"wake", verify_wake},         {"plate", verify_plate}, {"school", verify_school},
+                {"symmetry", verify_symmetry}, {"start", verify_start}, {"energy", verify_energy}};
 
 int verify_is_fast(void) {
     return fast;

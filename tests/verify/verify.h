@@ -11,6 +11,7 @@
 
 /* The sections, in the order of doc/verification.md; each is in a file of its own. */
 void verify_rod(void);
+void verify_force(void);
 void verify_sheet(void);
 void verify_wake(void);
 void verify_plate(void);
