@@ -177,7 +177,7 @@ static void every_create_fails_cleanly_at_every_allocation(void **state) {
                {create_wake, release_wake, "wake", 8},
                {create_implicit, release_implicit, "implicit", 7},
                {create_direct, release_direct, "direct", 17},
-               {create_explicit, release_explicit, "explicit", 23},
+               {create_explicit, release_explicit, "explicit", 22},
                {create_fixed, release_fixed, "fixed", 10},
                {create_simulation, release_simulation, "simulation", 100}};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
