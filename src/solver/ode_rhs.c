@@ -126,7 +126,8 @@ static double *entry(const struct ode_rhs *d, int row, int column) {
     return &d->matrix[(long)column * d->n + row];
 }
 
-// what fish f contributes to its own rows, and the right-hand side: minus the residual where nothing unknown has strength
+// what fish f contributes to its own rows, and the right-hand side: minus the residual where nothing unknown has
+// strength
 static void assemble_own(struct ode_rhs *d, int f, double t, const double *y, double *rhs) {
     const struct residual *residual = d->residual;
     const struct fish *fish = &residual->school->fish[f];

@@ -26,17 +26,18 @@ enum status sundials_adapter_context(SUNContext *context);
 /* Create a vector of n values that are not copied; it does not own them. Fails with STATUS_MEMORY. */
 enum status sundials_adapter_vector(N_Vector *vector, SUNContext context, long n, double *values);
 
-/* Create the solver for a Jacobian, which must outlive it; scale and tolerance as in linear_create. It declares itself a
- * direct solver, so that IDA scales its solutions when the step has changed since the Jacobian was evaluated. *failure,
- * which must outlive it too, receives the status of each set-up and each solution. The adapter must stay where it is.
- * Fails with STATUS_MEMORY; there is nothing to free then. sundials_adapter_linear_free accepts a structure of zeros. */
+/* Create the solver for a Jacobian, which must outlive it; scale and tolerance as in linear_create. It declares itself
+ * a direct solver, so that IDA scales its solutions when the step has changed since the Jacobian was evaluated.
+ * *failure, which must outlive it too, receives the status of each set-up and each solution. The adapter must stay
+ * where it is. Fails with STATUS_MEMORY; there is nothing to free then. sundials_adapter_linear_free accepts a
+ * structure of zeros. */
 enum status sundials_adapter_linear_create(struct sundials_adapter_linear *adapter, SUNContext context,
                                            const struct jacobian *jacobian, const double *scale,
                                            struct linear_tolerance tolerance, enum status *failure);
 void sundials_adapter_linear_free(struct sundials_adapter_linear *adapter);
 
-/* Error handler for SUNDIALS; data is the status of the last callback. If the callback failed, its message is the cause and
- * stays; else the text of SUNDIALS becomes this thread's message. */
+/* Error handler for SUNDIALS; data is the status of the last callback. If the callback failed, its message is the cause
+ * and stays; else the text of SUNDIALS becomes this thread's message. */
 void sundials_adapter_message(int code, const char *module, const char *function, char *text, void *data);
 
 #endif

@@ -174,7 +174,8 @@ static void a_node_rotates_by_the_mean_of_its_edges(void **state) {
         y[k + 1] = y[k] + sin(angle) * ex + cos(angle) * ey;
     }
     corotation_set_current(both.corotation, both.current);
-    // a field on inner nodes that is orthogonal to the rigid motions of both bodies: nothing maps it but these rotations
+    // a field on inner nodes that is orthogonal to the rigid motions of both bodies: nothing maps it but these
+    // rotations
     double basis[4][2 * MAX_NODES], want[2 * MAX_NODES];
     for (int i = 0; i < 4; i++) {
         rigid(fish, (i < 3 ? both.reference : both.current) + fish->at.x, i < 3 ? i : 2, basis[i]);

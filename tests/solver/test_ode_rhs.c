@@ -4,8 +4,8 @@
 #include "school.h"
 #include "solver/ode_rhs.h"
 
-// one fish, and three different ones in an external flow; both Kutta conditions and lines of the sheet, a prescribed head,
-// all control laws
+// one fish, and three different ones in an external flow; both Kutta conditions and lines of the sheet, a prescribed
+// head, all control laws
 static const char *const cases[] = {
     "time: {end: 1, shedding_interval: 0.02}\n"
     "fish: [{nodes: 7, sheet_points: 13, control: {law: heading, desired_heading: 150}}]\n",
