@@ -16,7 +16,7 @@ that a picture needs and the case itself.
 ## Opening it
 
     shoal info demo.nc                 # a summary: status, fish, last values, work of the solver
-    shoal info demo-study/study.nc     # of a study: axes, members, orders of convergence; also of a comparison
+    shoal info demo-study/study.nc     # of a study: axes, members, orders of convergence; of a comparison: its table
     ncdump -h demo.nc                  # everything that is in the file
     ncdump -v speed,heading demo.nc
 
@@ -124,12 +124,10 @@ refined. Every variable over (time), (time, fish) or (time, fish, xy) of a resul
 With a refined axis, each of the last six kinds has one variable for each of the quantities Q: `nose`, `tail`, `com`,
 `speed`, `mean_heading`, `shed_circulation`, `cost_of_transport`, `mean_actuation_power`; the order of the nose is
 `order_nose`. A group is a set of members that differ in the refined key only.
-""",
-    "comparison": """
-## The file of a comparison
 
-`shoal compare -o FILE` writes one row for each method with each tolerance or step. Attribute `compare_case` is the case,
-`shoal_compare` is 1.
+`shoal compare -o FILE` writes the same file: its one axis sets `solver.method`, `solver.order`, `solver.rtol` and
+`solver.step`. Member 0 is the reference, member 1 shows how good that is, and of the others those with equal values are
+repeats. Only such a study has `nose_error` and `tail_error`.
 """,
 }
 

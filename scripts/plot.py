@@ -255,7 +255,7 @@ def plot_time(results, options):
 
 
 def plot_study(path, options):
-    """Errors, costs or maps of a study.nc, or of the file of a comparison."""
+    """Errors, costs or maps of a study.nc, or of a comparison of methods."""
     figure = pyplot.figure(figsize=(WIDTH, 3.4), layout="constrained")
     plot_study_module.draw(path, figure)
     return figure

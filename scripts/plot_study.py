@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Pictures of studies and comparisons: study.nc of `shoal study`, and the file of `shoal compare`. Used by plot.py.
+"""Pictures of studies: study.nc of `shoal study`, and the file of `shoal compare`, which is one. Used by plot.py.
 
     a refined axis                  errors against resolution, with triangles of slope 1 and 2
     solver.method as an axis        cost against the first axis, a line per method; where there are several settings of a
@@ -26,8 +26,13 @@ NAMES = {
 }
 
 
+# What a comparison of methods sets: its one axis, first the reference and how good that is, then each round of repeats.
+COMPARISON = ["solver_method", "solver_order", "solver_rtol", "solver_step"]
+N_REFERENCES = 2
+
+
 class Study:
-    """A study.nc or the file of a comparison, with its axes."""
+    """A study.nc, with its axes."""
 
     def __init__(self, path):
         self.path = path
@@ -35,11 +40,11 @@ class Study:
             self.data = netCDF4.Dataset(path)
         except OSError as error:
             raise FileError(f"{path}: cannot be read ({error.strerror or error})") from error
-        self.is_comparison = hasattr(self.data, "shoal_compare")
-        if not self.is_comparison and not hasattr(self.data, "shoal_study"):
-            raise FileError(f"{path}: neither a study.nc nor the file of a comparison")
+        if not hasattr(self.data, "shoal_study"):
+            raise FileError(f"{path}: not the file of a study or of a comparison")
         keys = [v for v in self.data.variables.values() if hasattr(v, "axis")]
         self.axes = [[v for v in keys if v.axis == a] for a in sorted({v.axis for v in keys})]
+        self.is_comparison = [[v.name for v in axis] for axis in self.axes] == [COMPARISON]
         self.complete = self["status"] == "complete"
 
     def __getitem__(self, name):
@@ -263,14 +268,23 @@ def plot_lines(study, figure):
 
 def plot_comparison(study, figure):
     """Work and precision: the error of the tail against wall time and evaluations, a line per method."""
-    method = study["method"]
+    repeats = {}  # of each setting, in the order of the first round
+    for m in range(N_REFERENCES, study.complete.size):
+        repeats.setdefault(tuple(study[name][m] for name in COMPARISON), []).append(m)
+    lines = {}
+    for (word, order, _, step), members in repeats.items():
+        if study.complete[members].all():
+            label = f"ida{order:.0f}" if word == "ida" else word
+            lines.setdefault(label, {}).setdefault(step > 0, []).append(members)
+    error = np.max(study["tail_error"], axis=1)
     panels = figure.subplots(1, 2, sharey=True)
-    for axes, name in zip(panels, ["wall_time", "evaluations"]):
-        for i, word in enumerate(dict.fromkeys(method)):
-            rows = (method == word) & study.complete
-            if not rows.any():
-                continue
-            axes.loglog(study[name][rows], study["tail_error"][rows], label=word, **style(i))
+    for axes, name in zip(panels, ["wall_time", "residual_evaluations"]):
+        for i, (label, by_step) in enumerate(lines.items()):
+            # fixed and adaptive steps of a method are two lines that look alike
+            for points in by_step.values():
+                cost = [np.median(study[name][members]) for members in points]
+                axes.loglog(cost, [error[members[0]] for members in points], label=label, **style(i))
+                label = None
         axes.set_xlabel({"wall_time": "wall time [s]"}.get(name, "evaluations of the equations"))
         axes.grid(which="major", lw=0.3, color="#cccccc")
         if name == "wall_time":

@@ -20,7 +20,8 @@ static const struct command commands[] = {
     {"study",
      "CASE",
      "run every member of a case's sweep, and gather what they end with",
-     {'o', 'j', OPTION_MEMBERS, OPTION_SLURM, OPTION_BUNDLE, OPTION_FORCE, OPTION_SET, OPTION_THREADS, 'q', 'h'},
+     {'o', 'j', OPTION_LIMIT, OPTION_MEMBERS, OPTION_SLURM, OPTION_BUNDLE, OPTION_FORCE, OPTION_SET, OPTION_THREADS,
+      'q', 'h'},
      main_study},
     {"gather", "FOLDER", "make study.nc and its table from the files of the members", {'h'}, main_gather},
     {"compare",
@@ -40,7 +41,7 @@ static const struct command commands[] = {
      "list all keys of a case, or all variables of a result",
      {OPTION_JSON, OPTION_OUTPUT, 'h'},
      main_keys},
-    {"info", "FILE.nc", "say what the file of a run, a study or a comparison holds", {OPTION_CASE, 'h'}, main_info},
+    {"info", "FILE.nc", "say what the file of a run or a study holds", {OPTION_CASE, 'h'}, main_info},
     {"demo", NULL, "let a fish swim: write demo.nc and demo.png here", {'q', 'h'}, main_demo},
 };
 enum { N_COMMANDS = sizeof commands / sizeof *commands };

@@ -11,8 +11,6 @@
 #include "output/result_info.h"
 #include "output/result_kind.h"
 #include "output/result_table.h"
-#include "study/compare.h"
-#include "study/compare_file.h"
 #include "study/study_file.h"
 #include "study/study_gather.h"
 
@@ -20,7 +18,6 @@
 static const struct result_kind kinds[] = {
     {"run", "shoal_schema", RESULT_SCHEMA, "case_effective", result_info, result_table_listed},
     {"study", "shoal_study", STUDY_FILE_SCHEMA, "study_case", study_info, study_file_listed},
-    {"comparison", "shoal_compare", COMPARE_FILE_SCHEMA, "compare_case", compare_info, compare_file_listed},
 };
 enum { N_KINDS = sizeof kinds / sizeof *kinds };
 

@@ -6,6 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/text.h"
+#include "study/study_compare.h"
+
 /* One option: its names, the word for its argument (NULL: none), and what it means. */
 struct option_help {
     int code;
@@ -20,14 +23,13 @@ static const struct option_help all_options[] = {
      "run N members at once (default: the processors that the program may use, divided by solver.threads)"},
     {OPTION_SLURM, "slurm", NULL, "run nothing, but write the scripts of a Slurm array job into the folder"},
     {OPTION_BUNDLE, "bundle", "N", "with --slurm: N members a task"},
-    {OPTION_METHODS, "methods", "LIST",
-     "methods to compare: ida1 to ida5 (implicit, of this order), euler, heun, rk4, dormand_prince, and with --steps "
-     "implicit_euler and trapezoid"},
+    {OPTION_METHODS, "methods", "LIST", "methods to compare: "},
     {OPTION_RTOL, "rtol", "LIST", "tolerances to compare (1e-3,1e-4,1e-5,1e-6,1e-7)"},
     {OPTION_STEPS, "steps", "LIST", "fixed steps for all methods but ida instead of tolerances, s"},
     {OPTION_REPEATS, "repeats", "N", "run each that often; the wall time is the median (3)"},
     {OPTION_REFERENCE, "reference-rtol", "X", "tolerance of the reference, which is ida5 (1e-9)"},
-    {OPTION_LIMIT, "limit", "SECONDS", "give a run up after this wall time (60)"},
+    {OPTION_LIMIT, "limit", "SECONDS",
+     "end a run that takes longer than this wall time: it has failed (study: no limit, compare: 60)"},
     {OPTION_MEMBERS, "members", "A-B", "run these members only (or one: A), and gather nothing"},
     {OPTION_FORCE, "force", NULL, "replace a result that exists"},
     {OPTION_SET, "set", "PATH=VALUE", "set a key, as in --set fish[0].wave.frequency=1.2 or --set fish[*].nodes=13"},
@@ -48,6 +50,13 @@ static const struct option_help *option_of(int code) {
     return option;
 }
 
+static void print_methods(FILE *stream) {
+    struct text words = {0};
+    study_compare_words(&words);
+    if (words.text) fputs(words.text, stream);
+    text_free(&words);
+}
+
 static void print_command_help(const struct command *command, FILE *stream) {
     fprintf(stream, "shoal %s: %s\n\nUsage: shoal %s [OPTIONS]%s%s\n\n", command->name, command->summary, command->name,
             command->positional ? " " : "", command->positional ? command->positional : "");
@@ -57,7 +66,9 @@ static void print_command_help(const struct command *command, FILE *stream) {
         snprintf(names, sizeof names, "%s--%s%s%s", option->code < OPTION_SET ? "-x, " : "    ", option->name,
                  option->argument ? " " : "", option->argument ? option->argument : "");
         if (option->code < OPTION_SET) names[1] = (char)option->code;
-        fprintf(stream, "  %-22s %s\n", names, option->meaning);
+        fprintf(stream, "  %-22s %s", names, option->meaning);
+        if (option->code == OPTION_METHODS) print_methods(stream);
+        fprintf(stream, "\n");
     }
 }
 

@@ -1,27 +1,35 @@
 /* main_study.c: many runs from one case. */
 #include <stdlib.h>
-#include <unistd.h>
 
 #include "app/main_commands.h"
 #include "app/main_signals.h"
 #include "app/progress.h"
 #include "case/case.h"
-#include "study/compare.h"
+#include "output/netcdf.h"
 #include "study/study.h"
+#include "study/study_compare.h"
 #include "study/study_gather.h"
 #include "study/study_slurm.h"
 
 // ---- study, gather
 
-/* A whole number from 0 on of an option. */
+/* An integer from 0 on of an option. */
 static enum status read_count(const char *option, const char *text, int *count) {
     char *end;
     const long number = strtol(text, &end, 10);
     if (end == text || *end || number < 0 || number > 1000000) {
-        return status_fail(STATUS_CASE, "%s %s: expects a whole number", option, text);
+        return status_fail(STATUS_CASE, "%s %s: expects an integer", option, text);
     }
     *count = (int)number;
     return STATUS_OK;
+}
+
+/* A positive number of an option; the default where it is not given. */
+static enum status read_number(const char *option, const char *text, double standard, double *number) {
+    char *end = NULL;
+    *number = text ? strtod(text, &end) : standard;
+    if (*number > 0 && (!text || (end != text && *end == '\0'))) return STATUS_OK;
+    return status_fail(STATUS_CASE, "%s %s: expects a number above 0", option, text);
 }
 
 /* "3", or "3-7". */
@@ -44,13 +52,14 @@ static enum status run_study(const struct case_values *values, const struct requ
                                     .data = &progress,
                                     .stop = main_stop_signal()};
     if (request->processes) TRY(read_count("-j", request->processes, &options.n_processes));
+    if (request->limit) TRY(read_number("--limit", request->limit, 0, &options.limit));
     if (request->members) TRY(read_range(request->members, &options.first, &options.last));
     main_catch_signals();
     int n_failed;
     const enum status status = study_run(values, &options, &n_failed);
     progress_end(&progress);
     TRY(status);
-    if (options.last < 0) return study_report(values, folder, request->command_line, stdout);
+    if (options.last < 0) return study_report(values, folder, NULL, request->command_line, stdout);
     if (n_failed == 0) return STATUS_OK;
     return status_fail(STATUS_SOLVER, "%d of %d members failed; %s/member-*.failed say why", n_failed,
                        options.last - options.first + 1, folder);
@@ -77,34 +86,35 @@ enum status main_gather(const struct request *request) {
 
 // ---- compare
 
-/* A positive number of an option; the default where it is not given. */
-static enum status read_number(const char *option, const char *text, double standard, double *number) {
-    char *end = NULL;
-    *number = text ? strtod(text, &end) : standard;
-    if (*number > 0 && (!text || (end != text && *end == '\0'))) return STATUS_OK;
-    return status_fail(STATUS_CASE, "%s %s: expects a number above 0", option, text);
+static enum status run_comparison(const struct case_values *values, const struct request *request,
+                                  const struct study_compare_options *options, double limit) {
+    struct progress progress;
+    progress_start(&progress);
+    const struct study_options run = {.command = request->command_line,
+                                      .limit = limit,
+                                      .progress = request->quiet ? NULL : progress_study,
+                                      .data = &progress,
+                                      .stop = main_stop_signal()};
+    main_catch_signals();
+    const enum status status = study_compare(values, options, &run, stdout);
+    progress_end(&progress);
+    return status;
 }
 
 enum status main_compare(const struct request *request) {
-    struct compare_options options = {.methods = request->methods,
-                                      .rtols = request->rtols,
-                                      .steps = request->steps,
-                                      .repeats = 3,
-                                      .path = request->output,
-                                      .command = request->command_line,
-                                      .quiet = request->quiet,
-                                      .stop = main_stop_signal()};
+    struct study_compare_options options = {.methods = request->methods,
+                                            .rtols = request->rtols,
+                                            .steps = request->steps,
+                                            .repeats = 3,
+                                            .path = request->output};
+    double limit;
     if (request->repeats) TRY(read_count("--repeats", request->repeats, &options.repeats));
     TRY(read_number("--reference-rtol", request->reference_rtol, 1e-9, &options.reference_rtol));
-    TRY(read_number("--limit", request->limit, 60, &options.limit));
-    if (request->output && !request->force && access(request->output, F_OK) == 0) {
-        return status_fail(STATUS_FILE, "%s exists: choose another name with -o or allow replacing it with --force",
-                           request->output);
-    }
+    TRY(read_number("--limit", request->limit, 60, &limit));
+    if (request->output) TRY(netcdf_check_target(request->output, request->force));
     struct case_values values;
     TRY(case_read(&values, request->positional, request->n_assignments, request->assignments));
-    main_catch_signals();
-    const enum status status = compare_run(&values, &options, stdout);
+    const enum status status = run_comparison(&values, request, &options, limit);
     case_free(&values);
     return status;
 }

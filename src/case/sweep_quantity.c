@@ -22,6 +22,8 @@ const struct sweep_quantity sweep_quantities[SWEEP_N_QUANTITIES] = {
     {"residual_evaluations", 0, 0, NULL, NULL},
     {"jacobian_evaluations", 0, 0, NULL, NULL},
     {"wall_time", 0, 0, NULL, NULL},
+    {"nose_error", 1, 0, "1", "distance of the nose from that of the reference of a comparison, in body lengths"},
+    {"tail_error", 1, 0, "1", "distance of the tail from that of the reference of a comparison, in body lengths"},
 };
 
 int sweep_quantity_find(const char *name, int n_known) {

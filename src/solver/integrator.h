@@ -12,8 +12,7 @@
 struct integrator_counts {
     long steps, residual_evaluations, newton_iterations, jacobian_evaluations;
     long error_test_failures, convergence_failures;
-    long linear_solves; /* for the algebraic unknowns, by an explicit method */
-    double step_size;   /* s */
+    double step_size; /* s */
     int order;
 };
 

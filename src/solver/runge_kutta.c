@@ -168,7 +168,6 @@ static void runge_kutta_count(const void *data, struct integrator_counts *counts
     counts->residual_evaluations = solver->evaluations;
     counts->error_test_failures += error_failures;
     if (last_step > 0) counts->step_size = last_step;
-    counts->linear_solves = ode_rhs_solves(solver->rhs);
     counts->order = methods_table[solver->options.method].order;
 }
 

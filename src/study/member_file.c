@@ -14,8 +14,9 @@ enum { MAX_FISH = 1000000 };
 
 // ---- the table of quantities: first what is in the last row of a result, then what is computed
 
-static const char *const computed[] = {"nose", "tail", "lateral_drift", "mean_heading", "mean_actuation_power"};
-enum { NOSE, TAIL, DRIFT, MEAN_HEADING, MEAN_POWER, N_COMPUTED };
+static const char *const computed[] = {
+    "nose", "tail", "lateral_drift", "mean_heading", "mean_actuation_power", "nose_error", "tail_error"};
+enum { NOSE, TAIL, DRIFT, MEAN_HEADING, MEAN_POWER, NOSE_ERROR, TAIL_ERROR, N_COMPUTED };
 
 /* True for (time), (time, fish) and (time, fish, xy). */
 static int has_end(const struct result_variable *variable) {
@@ -32,13 +33,14 @@ const struct member_file_quantity *member_file_quantity(int i) {
             const struct result_variable *const from = &result_table[v];
             if (!has_end(from)) continue;
             all[n++] = (struct member_file_quantity){
-                from->name, from->unit, from->long_name, result_table_has(from, FISH), result_table_has(from, XY), 0};
+                from->name, from->unit, from->long_name, result_table_has(from, FISH), result_table_has(from, XY),
+                0,          0};
         }
         for (int c = 0; c < N_COMPUTED; c++) {
             const struct sweep_quantity *const from =
                 &sweep_quantities[sweep_quantity_find(computed[c], SWEEP_N_QUANTITIES)];
-            all[n++] =
-                (struct member_file_quantity){from->name, from->unit, from->meaning, from->of_fish, from->of_xy, 1};
+            all[n++] = (struct member_file_quantity){from->name,  from->unit, from->meaning,  from->of_fish,
+                                                     from->of_xy, 1,          c >= NOSE_ERROR};
         }
     }
     return i < n ? &all[i] : NULL;

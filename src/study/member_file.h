@@ -10,6 +10,7 @@ struct member_file_quantity {
     const char *name, *unit, *long_name;
     int of_fish, of_xy; /* one value for every fish; for every direction */
     int is_computed;    /* not the last row of a variable of a result */
+    int of_comparison;  /* NaN but for the members of a comparison: study_comparison.h */
 };
 
 /* Quantity number i, from 0; NULL beyond the last. */

@@ -24,6 +24,7 @@ enum { REASON_BYTES = 2048 };
 /* What a process tells the study; in memory that both see. */
 struct report {
     double part; /* of its run */
+    double t;    /* s */
     char reason[REASON_BYTES];
 };
 
@@ -31,6 +32,8 @@ struct report {
 struct job {
     pid_t process; /* 0: none */
     int member;
+    struct timespec started;
+    int is_late; /* it has been told to stop: see study_options.limit */
     struct report *report;
 };
 
@@ -45,16 +48,25 @@ struct study {
     struct study_progress progress;
     struct timespec started;
     int is_stopping;
+    const struct job *required; /* a required member that has failed; NULL: none has */
 };
 
 static int is_stopped(const struct study *study) {
     return study->options->stop && *study->options->stop;
 }
 
+static double seconds_since(const struct timespec *start) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)(now.tv_sec - start->tv_sec) + 1e-9 * (double)(now.tv_nsec - start->tv_nsec);
+}
+
 // ---- one member, in its own process
 
 static void tell_part(const struct simulate_progress *now, void *data) {
-    ((struct report *)data)->part = now->t / now->end;
+    struct report *const report = data;
+    report->part = now->t / now->end;
+    report->t = now->t;
 }
 
 static enum status run_member(const struct study *study, const struct job *job) {
@@ -100,6 +112,8 @@ static void be_member(const struct study *study, const struct job *job, pid_t pa
 
 static enum status start(struct study *study, struct job *job, const sigset_t *mask) {
     job->member = study->plan.member[study->n_next++];
+    job->is_late = 0;
+    clock_gettime(CLOCK_MONOTONIC, &job->started);
     *job->report = (struct report){0};
     const pid_t parent = getpid();
     fflush(NULL);
@@ -121,13 +135,17 @@ static enum status start(struct study *study, struct job *job, const sigset_t *m
 static enum status finish(struct study *study, struct job *job, int outcome) {
     job->process = 0;
     const int code = WIFEXITED(outcome) ? WEXITSTATUS(outcome) : -1;
-    if (code == status_exit_code(STATUS_STOPPED)) return STATUS_OK;
+    if (code == status_exit_code(STATUS_STOPPED) && !job->is_late) return STATUS_OK;
     if (code == 0) {
         study->progress.n_done++;
         return study_folder_set_reason(study->options->folder, job->member, NULL);
     }
     study->progress.n_failed++;
-    if (WIFSIGNALED(outcome)) {
+    if (job->member < study->options->n_required) study->required = job;
+    if (job->is_late) {
+        snprintf(job->report->reason, REASON_BYTES, "too slow: at t = %.4g s after %.3g s", job->report->t,
+                 seconds_since(&job->started));
+    } else if (WIFSIGNALED(outcome)) {
         snprintf(job->report->reason, REASON_BYTES, "killed by signal %d (%s)", WTERMSIG(outcome),
                  strsignal(WTERMSIG(outcome)));
     }
@@ -143,10 +161,7 @@ static int n_running(const struct study *study) {
 static void tell(struct study *study) {
     if (!study->options->progress) return;
     struct study_progress *const progress = &study->progress;
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    progress->wall_time =
-        (double)(now.tv_sec - study->started.tv_sec) + 1e-9 * (double)(now.tv_nsec - study->started.tv_nsec);
+    progress->wall_time = seconds_since(&study->started);
     progress->n_running = n_running(study);
     const double almost = 0.99;  // a member is done when its process is
     double work = study->n_next - progress->n_running;
@@ -161,6 +176,16 @@ static void stop_all(struct study *study) {
     study->is_stopping = 1;
     for (int j = 0; j < study->n_jobs; j++) {
         if (study->job[j].process) kill(study->job[j].process, SIGTERM);
+    }
+}
+
+/* Ask those to stop, once, that take longer than they may. */
+static void stop_late(struct study *study) {
+    for (int j = 0; j < study->n_jobs && study->options->limit > 0; j++) {
+        struct job *const job = &study->job[j];
+        if (!job->process || job->is_late || seconds_since(&job->started) <= study->options->limit) continue;
+        job->is_late = 1;
+        kill(job->process, SIGTERM);
     }
 }
 
@@ -182,7 +207,8 @@ static enum status loop(struct study *study, const sigset_t *mask) {
     const struct timespec patience = {.tv_nsec = 200000000};
     enum status status = STATUS_OK;
     for (;;) {
-        if (is_stopped(study) || status != STATUS_OK) stop_all(study);
+        if (is_stopped(study) || study->required || status != STATUS_OK) stop_all(study);
+        stop_late(study);
         for (int j = 0; j < study->n_jobs && !study->is_stopping && status == STATUS_OK; j++) {
             if (study->job[j].process == 0 && study->n_next < study->plan.n)
                 status = start(study, &study->job[j], mask);
@@ -211,6 +237,10 @@ static enum status run_all(struct study *study) {
     const enum status status = loop(study, &before);
     sigprocmask(SIG_SETMASK, &before, NULL);
     TRY(status);
+    if (study->required) {
+        return status_fail(STATUS_SOLVER, "member %d failed: %s", study->required->member,
+                           study->required->report->reason);
+    }
     if (!is_stopped(study)) return STATUS_OK;
     return status_fail(STATUS_STOPPED, "stopped by a signal: %d of %d members are finished; the same command goes on",
                        study->progress.n_done, study->progress.n_members);

@@ -23,6 +23,8 @@ struct study_options {
     const char *command; /* command line, for the files' history */
     int n_processes;     /* at once; 0: the usable processors, shared by the threads of the members */
     int first, last;     /* members to run; last -1: all */
+    int n_required;      /* once one of the first so many members fails, no more are started */
+    double limit;        /* wall time after which a member counts as failed, s; 0: none */
     int force;           /* remove the results of another study from the folder */
     void (*progress)(const struct study_progress *progress, void *data); /* may be NULL */
     void *data;
@@ -31,7 +33,7 @@ struct study_options {
 
 /* Run what is not finished; *n_failed of them have failed, and the folder says why. Fails with STATUS_CASE (a member is
  * no valid case: nothing has run), STATUS_FILE (the folder holds something else, or no process can be started),
- * STATUS_STOPPED or STATUS_MEMORY. */
+ * STATUS_SOLVER (a required member has failed), STATUS_STOPPED or STATUS_MEMORY. */
 enum status study_run(const struct case_values *values, const struct study_options *options, int *n_failed);
 
 #endif

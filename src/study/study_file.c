@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "case/sweep_members.h"
 #include "output/netcdf.h"
+#include "study/study_comparison.h"
 
 enum { MIN_TEXT = 64 /* bytes of the flag of an order */, NAME_BYTES = 256 };
 
@@ -97,6 +98,11 @@ static void define_quantity(struct writing *writing, const struct member_file_qu
     netcdf_define_variable(&writing->writer, &variable);
 }
 
+/* Whether the file of a study has a quantity. */
+static bool has_quantity(const struct case_values *study, const struct member_file_quantity *quantity) {
+    return !quantity->of_comparison || study_comparison_is(study);
+}
+
 static void define_key(struct writing *writing, int a, int k) {
     const struct sweep_axis *const axis = &writing->study->sweep[a];
     char name[NAME_BYTES];
@@ -123,7 +129,9 @@ static void define_all(struct writing *writing) {
     for (int a = 0; a < study->n_axes; a++) {
         for (int k = 0; k < study->sweep[a].n_keys; k++) define_key(writing, a, k);
     }
-    for (int q = 0; member_file_quantity(q); q++) define_quantity(writing, member_file_quantity(q));
+    for (int q = 0; member_file_quantity(q); q++) {
+        if (has_quantity(study, member_file_quantity(q))) define_quantity(writing, member_file_quantity(q));
+    }
     const int of_orders[] = {writing->fish_dimension, writing->xy_dimension, writing->text_dimension};
     study_file_orders_define(writer, study, writing->orders, of_orders);
     netcdf_end_definitions(writer);
@@ -176,7 +184,9 @@ static void write_all(struct writing *writing) {
     for (int a = 0; a < study->n_axes; a++) {
         for (int k = 0; k < study->sweep[a].n_keys; k++) write_key(writing, a, k);
     }
-    for (int q = 0; member_file_quantity(q); q++) write_quantity(writing, q);
+    for (int q = 0; member_file_quantity(q); q++) {
+        if (has_quantity(study, member_file_quantity(q))) write_quantity(writing, q);
+    }
     study_file_orders_write(&writing->writer, study, writing->orders, writing->n_text, writing->text);
 }
 

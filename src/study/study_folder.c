@@ -21,6 +21,14 @@ enum status study_folder_create(const char *folder) {
                        strerror(errno));
 }
 
+void study_folder_remove(const char *folder) {
+    DIR *const entries = opendir(folder);
+    if (!entries) return;
+    for (const struct dirent *entry; (entry = readdir(entries));) unlinkat(dirfd(entries), entry->d_name, 0);
+    closedir(entries);
+    rmdir(folder);
+}
+
 char *study_folder_path(const char *folder, const char *name) {
     // "./" keeps NetCDF from taking the name for an address
     const size_t size = strlen(folder) + strlen(name) + 8;

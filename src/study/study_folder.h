@@ -13,6 +13,9 @@
 /* Make the folder unless it is there. Fails with STATUS_FILE. */
 enum status study_folder_create(const char *folder);
 
+/* Remove the folder with all files in it. */
+void study_folder_remove(const char *folder);
+
 /* The path of a file in the folder, or of a member's with an ending such as ".nc"; NULL: out of memory. The caller
  * frees it. */
 char *study_folder_path(const char *folder, const char *name);

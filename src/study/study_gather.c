@@ -6,6 +6,7 @@
 
 #include "case/case.h"
 #include "case/sweep_members.h"
+#include "study/study_comparison.h"
 #include "study/study_expect.h"
 #include "study/study_file.h"
 #include "study/study_folder.h"
@@ -25,13 +26,9 @@ static enum status say_what_failed(const struct case_values *study, const struct
                        n_failed, n, folder);
 }
 
-static enum status write_study(const struct case_values *study, const struct member_file *members,
-                               const struct study_file_orders *orders, const char *folder, const char *command) {
-    char *const path = study_folder_path(folder, "study.nc");
-    if (!path) return STATUS_MEMORY;
-    const enum status status = study_file_write(path, study, members, orders, command);
-    free(path);
-    return status;
+static enum status print_members(const struct case_values *study, const struct member_file *members, FILE *stream) {
+    return study_comparison_is(study) ? study_comparison_print(study, members, stream)
+                                      : study_print(study, members, stream);
 }
 
 /* Print orders and statements; the first that is missed counts. */
@@ -43,25 +40,31 @@ static enum status print_expected(const struct case_values *study, const struct 
     return of_orders == STATUS_OK ? of_members : of_orders;
 }
 
-/* Print all, write study.nc, then judge. */
-static enum status report(const struct case_values *study, const struct member_file *members,
-                          const struct study_file_orders *orders, const char *folder, const char *command,
-                          FILE *stream) {
-    TRY(study_print(study, members, stream));
-    TRY(write_study(study, members, orders, folder, command));
-    const enum status expected = print_expected(study, members, orders, stream);
-    if (expected == STATUS_OK) TRY(say_what_failed(study, members, folder));
-    return expected;
-}
-
-enum status study_report(const struct case_values *study, const char *folder, const char *command, FILE *stream) {
-    struct member_file *members;
-    TRY(study_folder_read_members(&members, study, folder));
+/* Print all and write the file, before anything that is missed ends the report. */
+static enum status report(const struct case_values *study, const struct member_file *members, const char *path,
+                          const char *command, FILE *stream) {
     struct study_file_orders orders;
     enum status status = study_orders_create(&orders, study, members);
-    if (status == STATUS_OK) status = report(study, members, &orders, folder, command, stream);
+    if (status == STATUS_OK) status = print_members(study, members, stream);
+    if (status == STATUS_OK) status = study_file_write(path, study, members, &orders, command);
+    if (status == STATUS_OK) status = print_expected(study, members, &orders, stream);
     study_file_orders_free(&orders);
-    study_folder_free_members(members, sweep_n_members(study));
+    return status;
+}
+
+enum status study_report(const struct case_values *study, const char *folder, const char *path, const char *command,
+                         FILE *stream) {
+    struct member_file *members;
+    char *const standard = study_folder_path(folder, "study.nc");
+    if (!standard) return STATUS_MEMORY;
+    enum status status = study_folder_read_members(&members, study, folder);
+    if (status == STATUS_OK) {
+        study_comparison_fill_errors(study, members);
+        status = report(study, members, path ? path : standard, command, stream);
+        if (status == STATUS_OK) status = say_what_failed(study, members, folder);
+        study_folder_free_members(members, sweep_n_members(study));
+    }
+    free(standard);
     return status;
 }
 
@@ -72,7 +75,7 @@ enum status study_gather(const char *folder, const char *command, FILE *stream) 
     enum status status = case_parse(&study, text, strlen(text), folder, NULL, 0, NULL);
     free(text);
     TRY(status);
-    status = study_report(&study, folder, command, stream);
+    status = study_report(&study, folder, NULL, command, stream);
     case_free(&study);
     return status;
 }
@@ -98,7 +101,7 @@ enum status study_info(const char *path, FILE *stream) {
     TRY(study_file_read(path, &study, &members));
     print_head(&study, members, stream);
     struct study_file_orders orders;
-    enum status status = study_print(&study, members, stream);
+    enum status status = print_members(&study, members, stream);
     if (status == STATUS_OK) {
         status = study_orders_create(&orders, &study, members);
         if (status == STATUS_OK) status = print_expected(&study, members, &orders, stream);

@@ -7,10 +7,12 @@
 #include "base/status.h"
 #include "case/case_values.h"
 
-/* Make study.nc from the files of the members in a folder, and print the members, orders and statements. Fails with
+/* Make the file of a study, FOLDER/study.nc unless path is another one, from the files of the members in a folder, and
+ * print the members (of a comparison of methods: the comparison), orders and statements. Fails with
  * STATUS_FILE (a file belongs to another study, or study.nc cannot be written), STATUS_SOLVER (some members are not
  * complete), STATUS_MISSED (another order or value than the case expects) or STATUS_MEMORY. */
-enum status study_report(const struct case_values *study, const char *folder, const char *command, FILE *stream);
+enum status study_report(const struct case_values *study, const char *folder, const char *path, const char *command,
+                         FILE *stream);
 
 /* The same for the study that the members in the folder belong to. */
 enum status study_gather(const char *folder, const char *command, FILE *stream);

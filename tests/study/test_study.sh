@@ -96,7 +96,7 @@ check the_tasks_run_all_members test -e cluster/member-0003.nc -a -e cluster/mem
 run gather cluster
 check their_results_are_those_of_the_study has err '2 of 6 members in cluster'
 refused no_quotes_in_scripts 2 'cannot stand in a script' study small.yaml --slurm -o "it's"
-refused bundles_of_words 2 '--bundle few: expects a whole number' study small.yaml --slurm --bundle few -o cluster
+refused bundles_of_words 2 '--bundle few: expects an integer' study small.yaml --slurm --bundle few -o cluster
 
 # ---- folders with something else
 
@@ -140,8 +140,11 @@ refused a_value_that_does_not_fit_in_member_37 2 'member 37 (wake.lifetime=0.003
 refused members_beyond_the_study 2 '--members 4-6: the study has members 0 to 5' study small.yaml -o parts --members 4-6
 refused members_backwards 2 '--members 3-1: expects the number of a member' study small.yaml -o parts --members 3-1
 refused members_of_words 2 '--members all: expects' study small.yaml -o parts --members all
-refused processes_of_words 2 '-j two: expects a whole number' study small.yaml -o parts -j two
+refused processes_of_words 2 '-j two: expects an integer' study small.yaml -o parts -j two
 refused run_refuses_a_sweep 2 'run it with `shoal study`' run small.yaml -o never.nc
+run study small.yaml --limit 0.4 -o slow -q --set time.end=2000 --set 'sweep=[{key: solver.rtol, values: [1e-5]}]'
+check a_member_that_takes_too_long_has_failed eval 'test "$code" = 1 && has out "member 0 failed: too slow: at t = "'
+refused limit_of_nothing 2 '--limit 0: expects a number above 0' study small.yaml --limit 0
 run study small.yaml --set 'sweep=[]' -o single -q
 check without_a_sweep_there_is_one_member test "$code" = 0 -a -e single/member-0000.nc -a ! -e single/member-0001.nc
 
@@ -252,7 +255,7 @@ if /usr/bin/python3 -c 'import netCDF4, matplotlib' 2>err; then
     check a_method_without_an_accurate_member_is_named has drawn '| 100000 | euler | none within 0.0001 m |'
     run compare refined.yaml --set 'sweep=[]' --set time.end=0.08 --repeats 1 -q -o compare.nc
     check a_picture_of_a_comparison draws compare.nc
-    check no_picture_of_one_run eval '! draws single/member-0000.nc && has check.out "neither a study.nc nor"'
+    check no_picture_of_one_run eval '! draws single/member-0000.nc && has check.out "not the file of a study or of a comparison"'
 else
     skip pictures 'python3-netcdf4 or python3-matplotlib is missing'
 fi

@@ -1,0 +1,186 @@
+/* test_study_comparison.c: the table of a comparison, and comparisons without memory. What processes do:
+ * test_compare.sh. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "case/case.h"
+#include "case/sweep_members.h"
+#include "failing_malloc.h"
+#include "near.h"
+#include "study/study_compare.h"
+#include "study/study_comparison.h"
+#include "study/study_file.h"
+#include "study/study_folder.h"
+
+#define CASE "format: 1\nname: small\ntime: {end: 0.02, shedding_interval: 0.02}\n"
+#define ROW_A "[rk4, 4, 1e-5, 0.01]"
+#define ROW_B "[ida, 2, 1e-3, 0]"
+
+/* Two fish of lengths 2 and 0.5; a four times, b three times. */
+static const char repeated[] = CASE
+    "fish: [{length: 2}, {length: 0.5, start: {position: [0, 9]}}]\n"
+    "sweep: [{keys: [solver.method, solver.order, solver.rtol, solver.step],\n"
+    "    values: [[ida, 5, 1e-9, 0], [ida, 5, 1e-8, 0], " ROW_A ", " ROW_B ", " ROW_A ", " ROW_B ", " ROW_A ", " ROW_B
+    ", " ROW_A "]}]\n";
+static const double wall_times[] = {100, 90, 2, 3, 10, 1, 1, 20, 3};
+enum { N_MEMBERS = sizeof wall_times / sizeof *wall_times };
+
+static struct case_values parse(const char *text) {
+    struct case_values values;
+    assert_int_equal(case_parse(&values, text, strlen(text), "small.yaml", NULL, 0, NULL), STATUS_OK);
+    return values;
+}
+
+static double *at(const struct member_file *member, const char *quantity, int fish, int xy) {
+    return member_file_place(member, member_file_quantity_number(quantity), fish, xy);
+}
+
+/* Complete members with these wall times, and noses that are off by their numbers. */
+static struct member_file *members_of(const struct case_values *study) {
+    assert_int_equal(sweep_n_members(study), N_MEMBERS);
+    struct member_file *const members = calloc(N_MEMBERS, sizeof *members);
+    assert_non_null(members);
+    for (int m = 0; m < N_MEMBERS; m++) {
+        members[m].status = strdup("complete");
+        assert_int_equal(member_file_create_values(&members[m], 2), STATUS_OK);
+        *at(&members[m], "wall_time", 0, 0) = wall_times[m];
+        for (int f = 0; f < 2; f++) {
+            *at(&members[m], "nose", f, 0) = 7 + 3 * m;
+            *at(&members[m], "nose", f, 1) = 5 + 4 * m;
+            for (int k = 0; k < 2; k++) *at(&members[m], "tail", f, k) = f == 0 ? 1 + m : 1;
+        }
+    }
+    return members;
+}
+
+static const char *print(const struct case_values *study, const struct member_file *members) {
+    static char text[4096];
+    memset(text, 0, sizeof text);
+    FILE *const stream = fmemopen(text, sizeof text - 1, "w");
+    assert_int_equal(study_comparison_print(study, members, stream), STATUS_OK);
+    fclose(stream);
+    return text;
+}
+
+static void assert_has(const char *text, const char *part) {
+    if (!strstr(text, part)) fail_msg("\"%s\" is not in\n%s", part, text);
+}
+
+static void errors_are_distances_from_the_first_member_in_lengths(void **state) {
+    (void)state;
+    struct case_values study = parse(repeated);
+    struct member_file *const members = members_of(&study);
+    study_comparison_fill_errors(&study, members);
+    NEAR(*at(&members[0], "nose_error", 1, 0), 0, 0, 0);
+    NEAR(*at(&members[4], "nose_error", 0, 0), 5 * 4 / 2.0, 0, 1e-15);
+    NEAR(*at(&members[4], "nose_error", 1, 0), 5 * 4 / 0.5, 0, 1e-15);
+    NEAR(*at(&members[4], "tail_error", 0, 0), 4 * sqrt(2) / 2, 0, 1e-15);
+    NEAR(*at(&members[4], "tail_error", 1, 0), 0, 0, 0);
+    // the table shows the fish with the larger error
+    assert_has(print(&study, members), "ida5, rtol 1e-8 is off by 1.0e+01 (nose) and 7.1e-01 (tail) lengths");
+    study_folder_free_members(members, N_MEMBERS);
+    case_free(&study);
+}
+
+static void the_wall_time_is_the_median_of_the_repeats(void **state) {
+    (void)state;
+    struct case_values study = parse(repeated);
+    struct member_file *const members = members_of(&study);
+    const char *text = print(&study, members);
+    assert_has(text, "\n   rk4     -  0.01        -        -  2.500 ");  // 1, 2, 3, 10
+    assert_has(text, "\n  ida2  1e-3     -        -        -  3.000 ");  // 1, 3, 20
+    // what has failed has no time, and is said once
+    for (int m = 2; m < N_MEMBERS; m += 2) {
+        free(members[m].status);
+        members[m].status = strdup("failed: too slow");
+    }
+    text = print(&study, members);
+    assert_has(text, "\n   rk4     -  0.01        -        -      - ");
+    assert_has(text, "failed\n  ida2");
+    assert_has(text, "complete\nrk4, step 0.01 failed: too slow\n");
+    assert_null(strstr(strstr(text, "too slow") + 1, "too slow"));
+    study_folder_free_members(members, N_MEMBERS);
+    case_free(&study);
+}
+
+static void only_a_sweep_of_these_keys_is_a_comparison(void **state) {
+    (void)state;
+    static const char *const sweeps[] = {
+        "",
+        "sweep: [{key: solver.rtol, values: [1e-3, 1e-4, 1e-5]}]\n",
+        "sweep: [{keys: [solver.method, solver.order, solver.rtol, solver.step], values: [" ROW_B ", " ROW_B "]}]\n",
+        "sweep: [{keys: [solver.order, solver.method, solver.rtol, solver.step],\n"
+        "    values: [[5, ida, 1e-9, 0], [5, ida, 1e-8, 0], [2, ida, 1e-3, 0]]}]\n",
+        "sweep: [{keys: [solver.method, solver.order, solver.rtol, solver.step], values: [" ROW_B ", " ROW_B ", " ROW_B
+        "]}, {key: \"fish[*].nodes\", values: [7]}]\n",
+    };
+    for (size_t i = 0; i < sizeof sweeps / sizeof *sweeps; i++) {
+        char text[1024];
+        snprintf(text, sizeof text, CASE "fish: [{}]\n%s", sweeps[i]);
+        struct case_values study = parse(text);
+        assert_false(study_comparison_is(&study));
+        case_free(&study);
+    }
+    struct case_values study = parse(repeated);
+    assert_true(study_comparison_is(&study));
+    case_free(&study);
+}
+
+/* Compare, and read the file that this leaves. */
+static enum status compare(const struct case_values *values, const char *path, FILE *nowhere) {
+    const struct study_compare_options options = {
+        .methods = "ida2,rk4", .rtols = "1e-3", .repeats = 1, .reference_rtol = 1e-6, .path = path};
+    const struct study_options run = {.command = "test"};
+    TRY(study_compare(values, &options, &run, nowhere));
+    struct case_values study;
+    struct member_file *members;
+    TRY(study_file_read(path, &study, &members));
+    const int n = sweep_n_members(&study);
+    const double error = *at(&members[n - 1], "tail_error", 0, 0);
+    const enum status printed = study_comparison_print(&study, members, nowhere);
+    if (printed == STATUS_OK && strcmp(members[n - 1].status, "complete") == 0) assert_true(error > 0 && error < 1e-3);
+    study_folder_free_members(members, n);
+    case_free(&study);
+    return printed;
+}
+
+static void every_failing_allocation_is_reported_and_leaves_nothing(void **state) {
+    (void)state;
+    struct case_values values = parse(CASE "fish: [{nodes: 4, sheet_points: 5}]\n");
+    char path[] = "/tmp/shoal-comparison-XXXXXX";
+    close(mkstemp(path));
+    FILE *const nowhere = fopen("/dev/null", "w");
+    int n_failed = 0;
+    // where the comparison itself has memory enough, its processes, which begin with what is left, may not
+    for (int n = 0;; n += 1 + n / 30) {
+        const int n_before = n_live;
+        n_until_failure = n;
+        const enum status status = compare(&values, path, nowhere);
+        const int ran_out = n_until_failure == -1;
+        n_until_failure = -1;
+        assert_int_equal(n_live, n_before);
+        if (status == STATUS_OK && !ran_out) break;
+        n_failed++;
+        if (status != STATUS_OK) {
+            assert_true(status == STATUS_MEMORY || status == STATUS_SOLVER);
+            assert_true(status_message()[0] != '\0');
+        }
+        assert_in_range(n, 0, 100000);
+    }
+    assert_true(n_failed > 50);
+    fclose(nowhere);
+    unlink(path);
+    case_free(&values);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(errors_are_distances_from_the_first_member_in_lengths),
+        cmocka_unit_test(the_wall_time_is_the_median_of_the_repeats),
+        cmocka_unit_test(only_a_sweep_of_these_keys_is_a_comparison),
+        cmocka_unit_test(every_failing_allocation_is_reported_and_leaves_nothing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
