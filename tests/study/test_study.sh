@@ -8,6 +8,7 @@ export LC_ALL=C
 program=$(realpath "${1:?usage: tests/study/test_study.sh PROGRAM}")
 scripts=$(realpath "$(dirname "$0")/../../scripts")
 checks=$(realpath "$(dirname "$0")/../checks.sh")
+article=$(realpath "$(dirname "$0")/../../cases/include/article.yaml")
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder" || exit 2
@@ -150,8 +151,9 @@ check without_a_sweep_there_is_one_member test "$code" = 0 -a -e single/member-0
 
 # ---- convergence
 
-cat >refined.yaml <<'end'
+cat >refined.yaml <<end
 format: 1
+include: ["$article"]
 time: {end: 1.6}
 solver: {rtol: 1e-8}
 fish: [{body: {modulus: 1e5}}]
@@ -185,8 +187,9 @@ check other_axes_make_groups has out 'Refinement of solver.rtol, from member 1 (
 
 # ---- what is expected of members
 
-cat >stated.yaml <<'end'
+cat >stated.yaml <<end
 format: 1
+include: ["$article"]
 time: {end: 0.2, shedding_interval: 0.02}
 fish: [{name: one}, {name: two, start: {position: [0, 3]}}]
 sweep:
