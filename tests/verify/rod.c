@@ -21,10 +21,11 @@ static const double thin = 1e-3;  // m: at the largest load the strain is 1e-6: 
 
 // the uniform rod behind its nose at the origin, along the x axis; without damping and fluid. Nodes, thickness,
 // modulus, relaxation time
-#define ROD                                                                                       \
-    "fluid: {density: 0}\nwake: {lifetime: 100}\nfish:\n  - nodes: %d\n    sheet_points: 5\n"     \
-    "    drag: {tangential: 0, normal: 0, added_mass: 0}\n    start: {speed: 0}\n"                \
-    "    body: {profile: uniform, section: mean, thickness: %g, density: 2000, modulus: %.17g,\n" \
+#define ROD                                                                                                           \
+    "fluid: {density: 0}\nwake: {lifetime: 100, shedding: continuous, taper: 0, taper_beside: 0}\nfish:\n  - nodes: " \
+    "%d\n    sheet_points: 5\n"                                                                                       \
+    "    drag: {tangential: 0, normal: 0, added_mass: 0}\n    start: {speed: 0}\n"                                    \
+    "    body: {profile: uniform, section: mean, thickness: %g, density: 2000, modulus: %.17g,\n"                     \
     "           bending_damping: 0, stretching_damping: 0, relaxation_time: %g}\n"
 #define PASSIVE "    wave: {amplitude: 0, frequency: 0}\n"
 
