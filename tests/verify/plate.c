@@ -1,11 +1,11 @@
 /* plate.c: the section "plate": a rigid plate and the wake that it sheds, against the linear theory of thin foils:
  * Wagner's impulsive start and a heaving plate. Length L = 1 m, speed U = 1 m/s.
  *
- * Linear theory has a vortex sheet that begins at the edge itself. The program has vortices of radius delta
- * (smoothing), the newest at half the distance w Dt that the fluid goes past the tail in one interval. Near the edge
- * their effect on the bound circulation is an integral with 1/sqrt(distance): smoothing takes a part of order
- * sqrt(delta/L) off it, one vortex at the centroid instead of a sheet a part of order sqrt(U Dt/L). That is what the
- * studies below show. */
+ * Linear theory has a vortex sheet that begins at the edge itself. So has the program by default (shedding: sheet); the
+ * checks at default settings hold for it. With shedding: continuous it has vortices of radius delta (smoothing), the
+ * newest at half the distance w Dt that the fluid goes past the tail in one interval. Near the edge their effect on the
+ * bound circulation is an integral with 1/sqrt(distance): smoothing takes a part of order sqrt(delta/L) off it, one vortex
+ * at the centroid instead of a sheet a part of order sqrt(U Dt/L). That is what the studies of point vortices show. */
 #include <complex.h>
 #include <math.h>
 #include <stdio.h>
@@ -21,16 +21,20 @@ static const double pi = 3.14159265358979323846;
 struct resolution {
     double interval, smoothing, sheet_smoothing; /* s, L, L */
     int n_sheet;
-    const char *kutta, *collocation;
+    const char *kutta, *collocation, *shedding;
 };
 
 /* Radii far below the distance of the vortices, and bound vortices closer to each other at the edge, (pi/M)^2/4
  * lengths, than the newest free one is to it: what is left is the error of the interval. */
 static struct resolution point_vortices(double interval) {
-    return (struct resolution){interval, 1e-5, 0.05, 81, "edge", "chebyshev"};
+    return (struct resolution){interval, 1e-5, 0.05, 81, "edge", "chebyshev", "continuous"};
 }
 
-static const struct resolution defaults = {0.01, 0.2, 0.05, 21, "edge", "chebyshev"};
+/* What a case gets that says nothing, at U Dt = 0.01 L. */
+static const struct resolution defaults = {0.01, 0.1, 0.05, 33, "edge", "chebyshev", "sheet"};
+
+/* One nascent vortex, smoothed also next to the edge: the default of the first edition of the model. */
+static const struct resolution smoothed = {0.01, 0.2, 0.05, 21, "edge", "chebyshev", "continuous"};
 
 /* A straight driven plate; motion: further keys of it. */
 static struct simulation *open_plate(const struct resolution *with, double end, const double velocity[2],
@@ -39,13 +43,14 @@ static struct simulation *open_plate(const struct resolution *with, double end, 
         "format: 1\n"
         "time: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
         "fluid: {velocity: [%.17g, %.17g]}\n"
-        "wake: {smoothing: %.17g, sheet_smoothing: %.17g, lifetime: 1000, kutta: %s, collocation: %s}\n"
+        "wake: {smoothing: %.17g, sheet_smoothing: %.17g, lifetime: 1000, kutta: %s, collocation: %s, "
+        "shedding: %s}\n"
         "solver: {rtol: 1e-6}\n"
         "fish:\n"
         "  - {nodes: 4, sheet_points: %d, wave: {amplitude: 0}, start: {heading: 180, speed: 0},\n"
         "     motion: {driven: all, %s}}\n",
         end, with->interval, with->interval, velocity[0], velocity[1], with->smoothing, with->sheet_smoothing,
-        with->kutta, with->collocation, with->n_sheet, motion);
+        with->kutta, with->collocation, with->shedding, with->n_sheet, motion);
 }
 
 static double bound_circulation(const struct simulation *simulation) {
@@ -149,6 +154,26 @@ static void start_values(void) {
     simulate_free(simulation);
 }
 
+/* At default settings. */
+static void start_by_default(void) {
+    static const double s[] = {1, 2, 5, 10};
+    struct simulation *const simulation = start_plate(&defaults, 10);
+    for (int i = 0; i < 4; i++) {
+        verify_relative(verify_text("impulsive start at default settings: G(%g), Dt = 0.01 s", s[i]), wagner,
+                        exact_growth(s[i]), grown(simulation, s[i]), 0.015);
+    }
+    simulate_free(simulation);
+    double error[3];
+    for (int i = 0; i < 3; i++) {
+        struct resolution with = defaults;
+        with.interval = 0.02 / (1 << i);
+        error[i] = start_error(with, 2);
+        verify_point("wagner_interval", "default", with.interval, fabs(error[i]));
+    }
+    verify_show("impulsive start at default settings: error of G(2), Dt = 0.02 s", wagner, error[0]);
+    verify_show("impulsive start at default settings: error of G(2), Dt = 0.005 s", wagner, error[2]);
+}
+
 static void order_in_the_interval(void) {
     double error[6];
     const int n = verify_is_fast() ? 3 : 5;
@@ -174,8 +199,9 @@ static void order_in_the_smoothing(void) {
     verify_order("impulsive start: order of G(2) in smoothing",
                  "reached: 1/2, as the plate feels the newest vortices less",
                  verify_order_of_errors(error[n - 2], error[n - 1]), 0.4, 0.6);
-    verify_show("impulsive start: error of G(2), smoothing 0.2 (default)", wagner, start_error(defaults, 2));
-    verify_show("impulsive start: error of G(10), smoothing 0.2 (default)", wagner, start_error(defaults, 10));
+    verify_show("impulsive start: error of G(1), continuous, smoothing 0.2", wagner, start_error(smoothed, 1));
+    verify_show("impulsive start: error of G(2), continuous, smoothing 0.2", wagner, start_error(smoothed, 2));
+    verify_show("impulsive start: error of G(10), continuous, smoothing 0.2", wagner, start_error(smoothed, 10));
     // the bound sheet moves the wake along the plate only, by a part of the order of the incidence squared
     struct resolution other = defaults;
     other.sheet_smoothing = 0.01;
@@ -217,7 +243,7 @@ static void figure_of_the_start(void) {
     for (int i = 1; i <= 20; i++) {
         const double s = 0.5 * i;
         verify_point("wagner", "exact", s, exact_growth(s));
-        verify_point("wagner", "smoothing 0.2 (default)", s, grown(both[0], s));
+        verify_point("wagner", "default, Dt = 0.01 s", s, grown(both[0], s));
         verify_point("wagner", "point vortices, Dt = 0.005 s", s, grown(both[1], s));
     }
     simulate_free(both[0]);
@@ -244,29 +270,60 @@ static void solve_normal(double sums[4][5]) {
     }
 }
 
-/* Obtained over exact ratio: a heaving plate with n intervals a period, fitted over the second period with a sine and,
- * for what is left of the start, a straight line. It starts at its lowest point with no velocity. */
-static double complex heave(double k, int n, struct resolution with) {
+/* Lift over the velocity of heave: added mass, and 2 pi U b C(k). */
+static double complex exact_lift(double k) {
+    const double complex h0 = j0(k) - I * y0(k), h1 = j1(k) - I * y1(k), theodorsen = h1 / (h1 + I * h0);
+    const double half = 0.5, omega = k / half;
+    return pi * half * half * I * omega + 2 * pi * half * theodorsen;
+}
+
+/* sum of circulation times x over everything that has circulation: its rate is the lift over the density. */
+static double impulse(const struct simulation *simulation) {
+    const struct fish *const fish = &simulation->school->fish[0];
+    const struct wake *const wake = &simulation->state->wake[0];
+    const double *const y = simulation->state->y;
+    double sum = 0;
+    for (int j = 0; j < fish->n_sheet; j++) {
+        sum += fish->sheet_weight[j] * y[fish->at.gamma + j] * fish_mean(&fish->sheet_point[j], y + fish->at.x);
+    }
+    for (int i = 0; i < wake_n_sources(wake); i++) {
+        sum += wake_source(wake, i) * (wake->has_markers ? (wake->x[i] + wake->x[i + 1]) / 2 : wake->x[i]);
+    }
+    return sum;
+}
+
+/* Obtained over exact: the bound circulation and the lift of a heaving plate with n intervals a period, each fitted over
+ * the second period with a sine and, for what is left of the start, a straight line. It starts at its lowest point with no
+ * velocity. */
+struct heaving {
+    double complex circulation, lift;
+};
+static struct heaving heave(double k, int n, struct resolution with) {
     const double omega = 2 * k, period = 2 * pi / omega, velocity = 0.01, still[2] = {0, 0};
     with.interval = period / n;
     char motion[160];
     snprintf(motion, sizeof motion, "speed: 1, heave: %.17g, frequency: %.17g, phase: -90", velocity / omega,
              1 / period);
     struct simulation *const simulation = open_plate(&with, 2 * period, still, motion);
-    double sums[4][5] = {0};
+    double sums[2][4][5] = {0};
     for (int step = 1; step <= 2 * n; step++) {
         verify_run(simulation, step * with.interval);
         if (step <= n) continue;
         const double angle = omega * simulation->state->t - pi / 2; /* the velocity's: its cosine */
-        const double value[5] = {cos(angle), sin(angle), 1, (double)step / n - 1.5, bound_circulation(simulation)};
-        for (int i = 0; i < 4; i++) {
-            for (int j = 0; j < 5; j++) sums[i][j] += value[i] * value[j];
+        const double measured[2] = {bound_circulation(simulation), impulse(simulation)};
+        for (int what = 0; what < 2; what++) {
+            const double value[5] = {cos(angle), sin(angle), 1, (double)step / n - 1.5, measured[what]};
+            for (int i = 0; i < 4; i++) {
+                for (int j = 0; j < 5; j++) sums[what][i][j] += value[i] * value[j];
+            }
         }
     }
     simulate_free(simulation);
-    solve_normal(sums);
+    for (int what = 0; what < 2; what++) solve_normal(sums[what]);
+    const double complex circulation = sums[0][0][4] - I * sums[0][1][4], moment = sums[1][0][4] - I * sums[1][1][4];
     // swimming towards -x a motion to the left, to -y, is a stream from below: it turns the sheet clockwise
-    return -(sums[0][4] - I * sums[1][4]) / (pi * velocity) / exact_ratio(k);
+    return (struct heaving){-circulation / (pi * velocity) / exact_ratio(k),
+                            I * omega * moment / velocity / exact_lift(k)};
 }
 
 static double degrees(double complex z) {
@@ -275,7 +332,7 @@ static double degrees(double complex z) {
 
 static void heave_check(double k, int n) {
     static const char theory[] = "2i exp(-ik)/(pi k (H1(k) + i H0(k))), Theodorsen";
-    const double complex exact = exact_ratio(k), obtained = heave(k, n, point_vortices(0));
+    const double complex exact = exact_ratio(k), obtained = heave(k, n, point_vortices(0)).circulation;
     verify_relative(verify_text("heaving plate, k = %g: amplitude, %d intervals a period", k, n), theory, cabs(exact),
                     cabs(exact * obtained), 0.01);
     verify_value(verify_text("heaving plate, k = %g: phase, degrees", k), theory, degrees(exact),
@@ -286,25 +343,44 @@ static void heave_study(void) {
     double error[4];
     for (int i = 0; i < 3; i++) {
         const int n = 250 << i;
-        const double complex obtained = heave(0.5, n, point_vortices(0));
+        const double complex obtained = heave(0.5, n, point_vortices(0)).circulation;
         error[i] = cabs(obtained - 1);
         verify_point("heave_interval", "amplitude", pi * 2 / n, fabs(cabs(obtained) - 1));
         verify_point("heave_interval", "phase / rad", pi * 2 / n, fabs(carg(obtained)));
     }
     verify_order("heaving plate, k = 0.5: order in Dt, smoothing 1e-5", "reached: 1/2, as for the impulsive start",
                  verify_order_of_errors(error[1], error[2]), 0.4, 0.6);
-    for (int i = 0; i < 3; i++) {
-        const double k = i == 0 ? 0.1 : i == 1 ? 0.5 : 1;
-        const double complex obtained = heave(k, 250, defaults);
-        verify_show(verify_text("heaving plate, k = %g, smoothing 0.2 (default): amplitude", k), "over the exact one",
-                    cabs(obtained));
-        verify_show(verify_text("heaving plate, k = %g, smoothing 0.2 (default): phase", k),
-                    "degrees ahead of the exact one", degrees(obtained));
+    const double complex single = heave(1, 314, smoothed).circulation;
+    verify_show("heaving plate, k = 1, continuous, smoothing 0.2: amplitude", "over the exact one", cabs(single));
+    verify_show("heaving plate, k = 1, continuous, smoothing 0.2: phase", "degrees ahead of the exact one",
+                degrees(single));
+}
+
+/* At default settings, U Dt = 0.01 L or, for the slowest, 0.02. */
+static void heave_by_default(void) {
+    static const double k[] = {0.1, 0.25, 0.5, 1, 2};
+    for (int i = verify_is_fast() ? 4 : 0; i < 5; i++) {
+        const double interval = k[i] < 0.2 ? 0.02 : 0.01;
+        const struct heaving got = heave(k[i], (int)lround(pi / k[i] / interval), defaults);
+        const double complex of[2] = {got.circulation, got.lift};
+        static const char *const name[2] = {"circulation", "lift"};
+        static const char *const theory[2] = {"2i exp(-ik)/(pi k (H1(k) + i H0(k))), Theodorsen",
+                                              "pi b^2 i omega + 2 pi U b C(k), Theodorsen"};
+        for (int what = 0; what < 2; what++) {
+            verify_relative(
+                verify_text("heaving plate at default settings, k = %g: amplitude of the %s", k[i], name[what]),
+                theory[what], 1, cabs(of[what]), 0.015);
+            verify_zero(
+                verify_text("heaving plate at default settings, k = %g: phase of the %s, degrees", k[i], name[what]),
+                theory[what], degrees(of[what]), 1);
+        }
     }
 }
 
 void verify_plate(void) {
     exact_values();
+    start_by_default();
+    heave_by_default();
     start_values();
     order_in_the_interval();
     order_in_the_smoothing();
