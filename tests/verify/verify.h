@@ -51,7 +51,11 @@ double verify_slope(int n, const double *x, const double *y);
 /* A text (printf format) that lives until the next one is made. */
 const char *verify_text(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
-/* Open a case given as text (printf format), with at most 16 kB; the section ends with the message where that fails. */
+/* A text with this line has the defaults of the second edition of the model. */
+#define VERIFY_SECOND "# second edition\n"
+
+/* Open a case given as text (printf format), with at most 16 kB, and without VERIFY_SECOND or a preset with the defaults of
+ * the first edition (tests/data/first_edition.yaml); the section ends with the message where that fails. */
 struct simulation *verify_open(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 /* Step until the time has come; the section ends with the message where that fails. */
