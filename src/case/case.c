@@ -207,6 +207,7 @@ static enum status derive_fish(struct fish_parameters *fish, int index) {
     derive(&fish->wave.ramp, period);
     derive(&fish->control.filter, period);
     derive(&fish->motion.speed, fish->start_speed);
+    if ((int)fish->control.law < 0) fish->control.law = fish->control.waypoints.n > 0 ? CONTROL_COURSE : CONTROL_NONE;
     if (!fish->name) {
         char name[32];
         snprintf(name, sizeof name, "fish%d", index + 1);

@@ -162,7 +162,7 @@ static double largest_turn(const struct fish_parameters *fish) {
 static void check_turn(const struct check *check) {
     const struct fish_parameters *const fish = &check->values->school.fish[check->fish];
     if (fish->nodes == 0 || fish->reference_nodes == 0) return;
-    const bool is_controlled = fish->control.law == CONTROL_HEADING || fish->control.law == CONTROL_AVERAGED_HEADING;
+    const bool is_controlled = (int)fish->control.law > CONTROL_NONE;
     const double turn = largest_turn(fish) * (1 + (is_controlled ? fish->control.limit : fabs(fish->control.bias)));
     if (turn >= 3.14159) {
         complain(check, "fish.wave.amplitude", "the wave turns a joint by up to %.3g rad; it must stay below 3.14",
@@ -189,15 +189,25 @@ static void check_motion(const struct check *check) {
     }
 }
 
-/* A speed that the chosen law of drag does not use; a case that `shoal show` printed has every key with its default. */
+/* True if a number of the fish is neither the default of its key nor that of the preset: a case that `shoal show` printed
+ * has every key, and no preset. False for what could not be read. */
+static bool is_given(const struct check *check, const char *path) {
+    const struct key *const key = case_table_row(path);
+    const char *const fish = (const char *)&check->values->school.fish[check->fish];
+    const double value = *(const double *)(fish + key->offset);
+    const double initial = strtod(key->initial, NULL);
+    const double published = key->published ? strtod(key->published, NULL) : initial;
+    return fabs(value - initial) > 0 && fabs(value - published) > 0;
+}
+
 static void check_drag(const struct check *check) {
     const struct fish_parameters *const fish = &check->values->school.fish[check->fish];
     const struct drag_parameters *const drag = &fish->drag;
     static const char path[] = "fish.drag.linear_speed";
-    const bool is_given = fabs(drag->linear_speed - strtod(case_table_row(path)->initial, NULL)) > 0;
-    if (is_given && drag->law != DRAG_LINEAR_QUADRATIC) {
+    const bool has_speed = is_given(check, path);
+    if (has_speed && drag->law != DRAG_LINEAR_QUADRATIC) {
         complain(check, path, "is for 'law: linear_quadratic' only; remove it");
-    } else if (is_given && fish->force == FORCE_PUBLISHED) {
+    } else if (has_speed && fish->force == FORCE_PUBLISHED) {
         complain(check, path, "is for 'force: reactive' only; in the published law it is 1 m/s");
     } else if (drag->law == DRAG_LINEAR_QUADRATIC && fish->force == FORCE_REACTIVE && drag->linear_speed > 0 &&
                fish->wave.frequency == 0) {
@@ -220,24 +230,66 @@ static void check_headings(const struct check *check) {
     }
 }
 
+/* Keys that some laws only use. */
+static const struct {
+    const char *path;
+    unsigned laws; /* bits 1 << enum control_law */
+} law_keys[] = {{"fish.control.gain", 1U << CONTROL_HEADING | 1U << CONTROL_AVERAGED_HEADING | 1U << CONTROL_COURSE},
+                {"fish.control.limit", 1U << CONTROL_HEADING | 1U << CONTROL_AVERAGED_HEADING | 1U << CONTROL_COURSE},
+                {"fish.control.feedforward", 1U << CONTROL_HEADING | 1U << CONTROL_AVERAGED_HEADING},
+                {"fish.control.damping", 1U << CONTROL_COURSE},
+                {"fish.control.rate", 1U << CONTROL_AVERAGED_HEADING | 1U << CONTROL_COURSE}};
+
+/* True if the law takes the moment of the flow. */
+static bool has_moment(const struct control_parameters *control) {
+    const bool is_of_heading = control->law == CONTROL_HEADING || control->law == CONTROL_AVERAGED_HEADING;
+    return is_of_heading && fabs(control->feedforward) > 0;
+}
+
+/* Complain about values that the chosen law does not use. */
+static void check_law_keys(const struct check *check) {
+    const struct fish_parameters *const fish = &check->values->school.fish[check->fish];
+    const struct control_parameters *const control = &fish->control;
+    const char *const law = case_table_word(case_table_row("fish.control.law"), (int)control->law);
+    for (size_t i = 0; i < sizeof law_keys / sizeof *law_keys; i++) {
+        if (law_keys[i].laws >> control->law & 1U || !is_given(check, law_keys[i].path)) continue;
+        complain(check, law_keys[i].path, "has no effect with 'law: %s'; remove it", law);
+    }
+    const double period = fish->wave.frequency > 0 ? 1 / fish->wave.frequency : 0;
+    if (!has_moment(control) && fabs(control->filter - period) > 0) {
+        complain(check, "fish.control.filter", "has no effect without feedforward; remove it");
+    }
+    if (control->waypoints.n == 0 && is_given(check, "fish.control.arrival")) {
+        complain(check, "fish.control.arrival", "has no effect without control.waypoints; remove it");
+    }
+    const struct number_list *const heading = &control->desired_heading;
+    if (heading->n == 0) return;
+    const bool is_start = heading->n == 1 && !(fabs(heading->value[1] - fish->start_heading) > 0);
+    if (control->law == CONTROL_NONE && !is_start) {
+        complain(check, "fish.control.desired_heading", "has no effect with 'law: none'; choose a law, or remove it");
+    } else if (control->waypoints.n > 0 && !is_start) {
+        complain(check, "fish.control.desired_heading", "has no effect with control.waypoints; remove one of them");
+    }
+}
+
 static void check_control(const struct check *check) {
     const struct fish_parameters *const fish = &check->values->school.fish[check->fish];
     const struct control_parameters *const control = &fish->control;
     check_headings(check);
     if (control->law == CONTROL_NONE && control->waypoints.n > 0) {
-        complain(check, "fish.control.waypoints", "has no effect while control.law is none; set it to heading");
+        complain(check, "fish.control.waypoints", "has no effect with 'law: none'; remove the law, or choose course");
     }
-    if (control->law != CONTROL_HEADING && control->law != CONTROL_AVERAGED_HEADING) return;
+    check_law_keys(check);
+    if (control->law == CONTROL_NONE) return;
 
     if (fabs(control->bias) > 0) {
         complain(check, "fish.control.bias", "is for 'law: none' only: this law sets the steering bias itself");
     }
-    const bool has_moment = fabs(control->feedforward) > 0;
-    if (fish->wave.frequency == 0 && (has_moment || control->law == CONTROL_AVERAGED_HEADING)) {
+    if (fish->wave.frequency == 0 && (has_moment(control) || control->law != CONTROL_HEADING)) {
         complain(check, "fish.control.law", "needs wave.frequency above 0%s",
                  control->law == CONTROL_HEADING ? ", or feedforward: 0" : "");
     }
-    if (check->values->school.fluid.density == 0 && has_moment) {
+    if (check->values->school.fluid.density == 0 && has_moment(control)) {
         complain(check, "fish.control.law", "needs fluid.density above 0, or feedforward: 0");
     }
 }

@@ -234,10 +234,11 @@ const struct key case_table[] = {
     {"fish.motion.pivot", REAL, IN_FISH(motion.pivot), "0", FROM_TO(0, 1), "",
      .meaning = "pitch axis, in body lengths from the nose"},
 
-    {"fish.control.law", CHOICE, IN_FISH(control.law), "none", ANY, "",
-     .meaning = "what sets the steering bias: the key bias, the error of the heading, or the error of the heading "
-                "averaged over a period",
-     .words = WORDS("none", "heading", "averaged_heading"), .synonyms = "controller type"},
+    {"fish.control.law", CHOICE, IN_FISH(control.law), NULL, ANY, "",
+     .meaning = "what sets the steering bias: the key bias, the error of the heading, the error of the heading "
+                "averaged over a period, or the error of the course over the last period",
+     .words = WORDS("none", "heading", "averaged_heading", "course"), .synonyms = "controller type",
+     .derived = "course where there are waypoints, else none"},
     {"fish.control.bias", REAL, IN_FISH(control.bias), "0", ANY, "",
      .meaning = "law none: the steering bias; positive turns right", .synonyms = "phi0 offset"},
     {"fish.control.desired_heading", HEADING, IN_FISH(control.desired_heading), NULL, ANY, "degree",
@@ -249,15 +250,18 @@ const struct key case_table[] = {
      .meaning = "acceptance radius of a waypoint, in body lengths", .synonyms = "radius"},
     {"fish.control.gain", REAL, IN_FISH(control.gain), "2", ANY, "",
      .meaning = "proportional gain: weight of the error of the heading", .synonyms = "k_p kp proportional"},
+    {"fish.control.damping", REAL, IN_FISH(control.damping), "1", ANY, "",
+     .meaning = "course: weight of the rate of change of the course, in rad per period",
+     .synonyms = "k_d kd derivative"},
     {"fish.control.limit", REAL, IN_FISH(control.limit), "0.5", ABOVE(0), "",
      .meaning = "maximum of the steering bias"},
-    {"fish.control.feedforward", REAL, IN_FISH(control.feedforward), "1", ANY, "",
-     .meaning = "weight of the moment that the flow exerts (feedforward), a moving mean"},
+    {"fish.control.feedforward", REAL, IN_FISH(control.feedforward), "0", ANY, "",
+     .meaning = "weight of the moment that the flow exerts (feedforward), a moving mean", .published = "1"},
     {"fish.control.filter", REAL, IN_FISH(control.filter), NULL, FROM(0), "s",
      .meaning = "time constant of that mean; 0: the moment at the last event",
      .derived = "one period, 1/wave.frequency (0 when the frequency is 0)"},
     {"fish.control.rate", REAL, IN_FISH(control.rate), "2", ABOVE(0), "s-1",
-     .meaning = "averaged_heading: maximum rate of change of the steering bias"},
+     .meaning = "averaged_heading, course: maximum rate of change of the steering bias"},
 
     {"sweep", AXES, 0, "[]", ANY, "",
      .meaning =

@@ -54,16 +54,15 @@ double control_desired_heading(const struct fish *fish, const struct control_mem
     return atan2(away[1], away[0]);
 }
 
-// what the hyperbolic tangent of the law is taken of
-static double law_argument(const struct fish *fish, const struct control_memory *memory, double t, double moment,
-                           double heading, const double *y) {
-    const double error = angle_wrap(heading - control_desired_heading(fish, memory, t, y));
-    return fish->control.feedforward * moment + fish->control.gain * error;
+// what the hyperbolic tangent of the laws is taken of
+static double law_argument(const struct fish *fish, const struct control_memory *memory, double t, double direction,
+                           double more, const double *y) {
+    return fish->control.gain * angle_wrap(direction - control_desired_heading(fish, memory, t, y)) + more;
 }
 
-double control_law(const struct fish *fish, const struct control_memory *memory, double t, double moment,
-                   double heading, const double *y) {
-    return fish->control.limit * tanh(law_argument(fish, memory, t, moment, heading, y));
+double control_law(const struct fish *fish, const struct control_memory *memory, double t, double direction,
+                   double more, const double *y) {
+    return fish->control.limit * tanh(law_argument(fish, memory, t, direction, more, y));
 }
 
 // tau_f between two events
@@ -71,15 +70,21 @@ static double moment_at(const struct control_memory *memory, double since) {
     return memory->moment + since * memory->moment_rate;
 }
 
+// law heading, between two events
+static double heading_argument(const struct fish *fish, const struct control_memory *memory, double t, double since,
+                               const double *y) {
+    const double feedforward = fish->control.feedforward * moment_at(memory, since);
+    return law_argument(fish, memory, t, control_heading(fish, y), feedforward, y);
+}
+
 void control_residual(const struct fish *fish, const struct control_memory *memory, double t, double since,
                       const double *y, double *residual) {
     double value = fish->control.bias;
     switch (fish->control.law) {
         case CONTROL_NONE: break;
-        case CONTROL_HEADING:
-            value = control_law(fish, memory, t, moment_at(memory, since), control_heading(fish, y), y);
-            break;
-        case CONTROL_AVERAGED_HEADING: value = memory->phi0 + since * memory->phi0_rate; break;
+        case CONTROL_HEADING: value = fish->control.limit * tanh(heading_argument(fish, memory, t, since, y)); break;
+        case CONTROL_AVERAGED_HEADING:
+        case CONTROL_COURSE: value = memory->phi0 + since * memory->phi0_rate; break;
     }
     residual[fish->at.phi0] = y[fish->at.phi0] - value;
 }
@@ -111,13 +116,13 @@ static double desired_heading_rate(const struct fish *fish, const struct control
 double control_rate(const struct fish *fish, const struct control_memory *memory, double t, double since,
                     const double *y) {
     if (fish->control.law == CONTROL_NONE) return 0;
-    if (fish->control.law == CONTROL_AVERAGED_HEADING) return memory->phi0_rate;
+    if (fish->control.law != CONTROL_HEADING) return memory->phi0_rate;
     double head[2], rate[2];
     head_vector(fish, y, head);
     rate[0] = y[fish->at.vx] - fish_mean(&fish->heading_point, y + fish->at.vx);
     rate[1] = y[fish->at.vy] - fish_mean(&fish->heading_point, y + fish->at.vy);
     const double error_rate = turn_rate(head, rate) - desired_heading_rate(fish, memory, t, y);
-    const double tangent = tanh(law_argument(fish, memory, t, moment_at(memory, since), control_heading(fish, y), y));
+    const double tangent = tanh(heading_argument(fish, memory, t, since, y));
     return fish->control.limit * (1 - tangent * tangent) *
            (fish->control.feedforward * memory->moment_rate + fish->control.gain * error_rate);
 }
@@ -127,7 +132,7 @@ void control_jacobian(const struct fish *fish, const struct control_memory *memo
     const int row = fish->at.phi0;
     sparse_add(jacobian, row, fish->at.phi0, 1);
     if (fish->control.law != CONTROL_HEADING) return;
-    const double tangent = tanh(law_argument(fish, memory, t, moment_at(memory, since), control_heading(fish, y), y));
+    const double tangent = tanh(heading_argument(fish, memory, t, since, y));
     const double slope = fish->control.limit * (1 - tangent * tangent);
 
     // the heading turns with the head vector (hx, hy): dh = (hx dhy - hy dhx)/|h|^2
@@ -160,16 +165,11 @@ void control_advance(struct control_memory *memory, double interval) {
     memory->moment += interval * memory->moment_rate;
 }
 
-// the moving mean changes by a part of its distance from the newest value, linearly until the next event
-static void take_moment(const struct fish *fish, struct control_memory *memory, double interval, double tau) {
-    memory->moment_rate = fish->control.filter_share * (tau - memory->moment) / interval;
-}
-
-int control_event(const struct fish *fish, struct control_memory *memory, double t, double interval, double tau,
-                  double mean_heading, const double *y) {
+// Pass the waypoints that have been reached; returns whether there are any.
+static int pass_waypoints(const struct fish *fish, struct control_memory *memory, const double *y) {
     const struct control_law_data *control = &fish->control;
-    int jumps = 0;
-    while (steers_to_waypoint(fish, memory)) {
+    int passed = 0;
+    for (; steers_to_waypoint(fish, memory); memory->waypoint++, passed = 1) {
         double away[2];
         to_waypoint(fish, memory, y, away);
         if (hypot(away[0], away[1]) > control->acceptance_radius) break;
@@ -179,12 +179,31 @@ int control_event(const struct fish *fish, struct control_memory *memory, double
                                 before >= 0 ? control->waypoint_y[before] : fish->start_position[1]};
         memory->held_heading =
             atan2(control->waypoint_y[memory->waypoint] - from[1], control->waypoint_x[memory->waypoint] - from[0]);
-        memory->waypoint++;
-        jumps = control->law == CONTROL_HEADING;
     }
-    take_moment(fish, memory, interval, tau);
-    if (control->law != CONTROL_AVERAGED_HEADING) return jumps;
-    const double target = control_law(fish, memory, t, moment_at(memory, interval), mean_heading, y);
-    memory->phi0_rate = fmax(-control->rate, fmin(control->rate, (target - memory->phi0) / interval));
+    return passed;
+}
+
+// where phi0 of a law that decides at events goes; without a course yet it stays
+static double target_of(const struct fish *fish, const struct control_memory *memory, const struct control_view *view,
+                        const double *y) {
+    const struct control_law_data *control = &fish->control;
+    if (control->law == CONTROL_COURSE) {
+        if (!view->has_course) return memory->phi0;
+        const double damping = control->damping * fish->period * view->course_rate;
+        return control_law(fish, memory, view->t, view->course, damping, y);
+    }
+    const double feedforward = control->feedforward * moment_at(memory, view->interval);
+    return control_law(fish, memory, view->t, view->mean_heading, feedforward, y);
+}
+
+int control_event(const struct fish *fish, struct control_memory *memory, const struct control_view *view,
+                  const double *y) {
+    const int passed = pass_waypoints(fish, memory, y);
+    // the moving mean changes by a part of its distance from the newest value, linearly until the next event
+    memory->moment_rate = fish->control.filter_share * (view->moment - memory->moment) / view->interval;
+    if (fish->control.law == CONTROL_NONE) return 0;
+    if (fish->control.law == CONTROL_HEADING) return passed;
+    const double most = fish->control.rate, target = target_of(fish, memory, view, y);
+    memory->phi0_rate = fmax(-most, fmin(most, (target - memory->phi0) / view->interval));
     return 0;
 }

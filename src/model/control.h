@@ -10,8 +10,17 @@
 struct control_memory {
     int waypoint;               /* the next one to visit; the number of waypoints once all are visited */
     double held_heading;        /* desired heading after the last waypoint, rad */
-    double phi0, phi0_rate;     /* averaged_heading: value at the last event and its rate until the next, s-1 */
+    double phi0, phi0_rate;     /* laws that decide at events: value at the last and its rate until the next, s-1 */
     double moment, moment_rate; /* tau_f, the same way; moment is dimensionless */
+};
+
+/* What a law sees at an event. */
+struct control_view {
+    double t, interval;         /* of the event, and from it to the next, s */
+    double moment;              /* tau, that of the flow */
+    double mean_heading;        /* over the last period, rad */
+    int has_course;             /* whether the fish has moved for a whole period: */
+    double course, course_rate; /* the direction in which it went in it, rad, and the rate of that, rad s-1 */
 };
 
 /* Whether the law takes a moment of the flow. */
@@ -23,9 +32,9 @@ double control_heading(const struct fish *fish, const double *y);
 /* The desired heading at time t, rad. */
 double control_desired_heading(const struct fish *fish, const struct control_memory *memory, double t, const double *y);
 
-/* The value of the law for a heading, its error against the desired one wrapped, and the filtered moment tau_f. */
-double control_law(const struct fish *fish, const struct control_memory *memory, double t, double moment,
-                   double heading, const double *y);
+/* limit tanh(gain wrap(direction - desired heading) + more): the value of the laws, for a heading or a course. */
+double control_law(const struct fish *fish, const struct control_memory *memory, double t, double direction,
+                   double more, const double *y);
 
 /* The equation for phi0 at time t, since seconds after the last event. */
 void control_residual(const struct fish *fish, const struct control_memory *memory, double t, double since,
@@ -43,10 +52,9 @@ void control_jacobian(const struct fish *fish, const struct control_memory *memo
  * for there. */
 void control_advance(struct control_memory *memory, double interval);
 
-/* At an event, after control_advance: pass waypoints that have been reached, take the moment tau of the flow into its
- * mean, and set out towards the law's value (averaged_heading: with the mean heading of the last period). interval is
- * the time to the next event. Returns whether phi0 jumps. */
-int control_event(const struct fish *fish, struct control_memory *memory, double t, double interval, double tau,
-                  double mean_heading, const double *y);
+/* At an event, after control_advance: pass waypoints that have been reached, take the moment of the flow into its mean,
+ * and set out towards the value of a law that decides at events. Returns whether phi0 jumps. */
+int control_event(const struct fish *fish, struct control_memory *memory, const struct control_view *view,
+                  const double *y);
 
 #endif

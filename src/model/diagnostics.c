@@ -163,12 +163,26 @@ void diagnostics_remember(struct residual *residual, struct state *state) {
             heading = before + angle_wrap(heading - before);
         }
         const int tail = fish->n_nodes - 1;
-        const struct sample sample = {.com = {mass_mean(fish, y + fish->at.x), mass_mean(fish, y + fish->at.y)},
-                                      .tail = {y[fish->at.x + tail], y[fish->at.y + tail]},
-                                      .heading = heading,
-                                      .actuation_work = state->balance[f].actuation_work};
+        struct sample sample = {.com = {mass_mean(fish, y + fish->at.x), mass_mean(fish, y + fish->at.y)},
+                                .velocity = {mass_mean(fish, y + fish->at.vx), mass_mean(fish, y + fish->at.vy)},
+                                .tail = {y[fish->at.x + tail], y[fish->at.y + tail]},
+                                .heading = heading,
+                                .actuation_work = state->balance[f].actuation_work};
+        flow_external(residual->school, state->t, sample.com[1], &sample.stream[0], &sample.stream[1]);
         state_remember(history, &sample);
     }
+}
+
+int diagnostics_course(const struct history *history, double *course, double *rate) {
+    if (history->n < 2 || history->n < history->capacity) return 0;
+    const struct sample *new = state_recall(history, 0), *old = state_recall(history, history->n - 1);
+    const double way[2] = {new->com[0] - old->com[0], new->com[1] - old->com[1]};
+    const double change[2] = {new->velocity[0] - old->velocity[0], new->velocity[1] - old->velocity[1]};
+    const double square = way[0] * way[0] + way[1] * way[1];
+    if (square <= 0) return 0;
+    *course = atan2(way[1], way[0]);
+    *rate = (way[0] * change[1] - way[1] * change[0]) / square;
+    return 1;
 }
 
 double diagnostics_mean_heading(const struct history *history) {

@@ -62,6 +62,10 @@ void diagnostics_begin(struct residual *residual, struct state *state, int f);
 void diagnostics_before_jump(struct residual *residual, struct state *state);
 void diagnostics_after_jump(struct residual *residual, struct state *state);
 
+/* The direction in which the centre of mass has gone in the last period, rad, and the rate at which that direction
+ * changes, rad s-1. Returns whether there is one: not before a whole period has passed, nor where it has not moved. */
+int diagnostics_course(const struct history *history, double *course, double *rate);
+
 /* Mean of the headings in a history, rad, unwrapped. */
 double diagnostics_mean_heading(const struct history *history);
 

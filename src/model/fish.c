@@ -241,6 +241,7 @@ static enum status set_control(struct fish *fish, const struct fish_parameters *
     to->law = control->law;
     to->bias = control->bias;
     to->gain = control->gain;
+    to->damping = control->damping;
     to->limit = control->limit;
     to->feedforward = control->feedforward;
     to->filter_share = -expm1(-parameters->shedding_interval / control->filter);

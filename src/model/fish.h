@@ -42,7 +42,7 @@ struct motion {
 /* Heading control: doc/model.md, section 11. Angles in rad. */
 struct control_law_data {
     enum control_law law;
-    double bias, gain, limit, feedforward;
+    double bias, gain, damping, limit, feedforward;
     double rate;                     /* s-1 */
     int n_headings;                  /* a table of desired headings, linear between its times */
     double *heading_time;            /* s                                           (n_headings) */

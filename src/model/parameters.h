@@ -16,7 +16,7 @@ enum force { FORCE_REACTIVE, FORCE_PUBLISHED };
 enum drag_law { DRAG_QUADRATIC, DRAG_LINEAR_QUADRATIC };
 enum extent { EXTENT_THICKNESS, EXTENT_DEPTH };
 enum prescribed { PRESCRIBED_NONE, PRESCRIBED_HEAD, PRESCRIBED_ALL };
-enum control_law { CONTROL_NONE, CONTROL_HEADING, CONTROL_AVERAGED_HEADING };
+enum control_law { CONTROL_NONE, CONTROL_HEADING, CONTROL_AVERAGED_HEADING, CONTROL_COURSE };
 
 /* A list of numbers, or of pairs (then 2 n numbers, pair after pair). Owned by the structure that it is in. */
 struct number_list {
@@ -88,7 +88,7 @@ struct control_parameters {
     struct number_list desired_heading; /* pairs (s, degree) */
     struct number_list waypoints;       /* pairs (m, m) */
     double acceptance_radius;           /* body lengths */
-    double gain, limit, feedforward;
+    double gain, damping, limit, feedforward;
     double filter; /* s */
     double rate;   /* s-1 */
 };

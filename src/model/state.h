@@ -11,6 +11,8 @@
 /* What one fish did at the events of the last period, for means over it: a ring of samples. */
 struct sample {
     double com[2], tail[2]; /* m */
+    double velocity[2];     /* of the centre of mass, m s-1 */
+    double stream[2];       /* the external flow there, m s-1 */
     double heading;         /* rad, unwrapped */
     double actuation_work;  /* since the start, J */
 };

@@ -111,21 +111,29 @@ static enum status take_flow(struct state *state, struct residual *residual) {
     return STATUS_OK;
 }
 
+// what the law of fish f sees
+static struct control_view view_of(const struct state *state, const struct residual *residual, int f) {
+    const struct fish *fish = &residual->school->fish[f];
+    const struct flow_at_body flow = flow_at_body(residual->flow, f);
+    struct control_view view = {.t = state->t,
+                                .interval = residual->school->interval,
+                                .mean_heading = diagnostics_mean_heading(&state->history[f])};
+    if (control_feels_moment(fish)) view.moment = drag_moment(fish, flow.u, flow.v, state->y);
+    view.has_course = diagnostics_course(&state->history[f], &view.course, &view.course_rate);
+    return view;
+}
+
 // the control of every fish takes its decision; returns whether a bias jumps
 static int steer(struct state *state, struct residual *residual) {
     const struct school *school = residual->school;
     int jumps = 0;
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *fish = &school->fish[f];
-        const int first = residual->flow->points[f].first;
-        const double tau = control_feels_moment(fish)
-                               ? drag_moment(fish, residual->flow->u + first, residual->flow->v + first, state->y)
-                               : 0;
         struct control_memory *const memory = &state->control[f];
-        const double rate = control_rate(fish, memory, state->t, 0, state->y);
-        jumps |= control_event(fish, memory, state->t, school->interval, tau,
-                               diagnostics_mean_heading(&state->history[f]), state->y);
-        const double change = control_rate(fish, memory, state->t, 0, state->y) - rate;
+        const struct control_view view = view_of(state, residual, f);
+        const double before = control_rate(fish, memory, state->t, 0, state->y);
+        jumps |= control_event(fish, memory, &view, state->y);
+        const double change = control_rate(fish, memory, state->t, 0, state->y) - before;
         if (fabs(change) > 0) diagnostics_begin(residual, state, f);
     }
     return jumps;

@@ -101,7 +101,8 @@ static void derived_defaults_follow_what_they_derive_from(void **state) {
     (void)state;
     struct case_values s = parse(
         "format: 1\ntime: {end: 1, shedding_interval: 0.02}\nwake: {lifetime: 3}\n"
-        "fish: [{start: {heading: 30, speed: 2}, wave: {frequency: 4}}, {wave: {frequency: 0}}]\n");
+        "fish: [{start: {heading: 30, speed: 2}, wave: {frequency: 4}}, {wave: {frequency: 0}},\n"
+        "  {control: {waypoints: [[1, 2]]}}]\n");
     NEAR(s.time.output_interval, 0.2, 0, 1e-15);
     NEAR(s.output.wake_interval, 0.2, 0, 1e-15);
     NEAR(s.school.wake.decay, 0.3, 0, 1e-15);
@@ -111,6 +112,10 @@ static void derived_defaults_follow_what_they_derive_from(void **state) {
     NEAR(s.school.fish[0].wave.ramp, 0.25, 0, 0);
     NEAR(s.school.fish[1].wave.ramp, 0, 0, 0);
     NEAR(s.school.fish[0].motion.speed, 2, 0, 0);
+    NEAR(s.school.fish[0].control.filter, 0.25, 0, 0);
+    NEAR(s.school.fish[1].control.filter, 0, 0, 0);
+    assert_int_equal(s.school.fish[2].control.law, CONTROL_COURSE);
+    assert_int_equal(s.school.fish[1].control.law, CONTROL_NONE);
     assert_int_equal(s.school.fish[0].control.desired_heading.n, 1);
     NEAR(s.school.fish[0].control.desired_heading.value[0], 0, 0, 0);
     NEAR(s.school.fish[0].control.desired_heading.value[1], 30, 0, 0);
@@ -196,8 +201,9 @@ static void every_type_of_value_is_read(void **state) {
         "fish:\n"
         "  - nodes: 5\n"
         "    body: {profile: table, h: [0.1, 0.2, 0.2, 0.1], w: [1, 2, 3, 4]}\n"
-        "    control: {law: heading, desired_heading: [[0, 180], [5, 135]], waypoints: [[1, 2], [3, 4], [5, 6]]}\n"
-        "  - {name: 'a: b', control: {desired_heading: -90}}\n");
+        "    control: {law: heading, desired_heading: [[0, 180], [5, 135]]}\n"
+        "  - {name: 'a: b', control: {law: heading, desired_heading: -90}}\n"
+        "  - {control: {waypoints: [[1, 2], [3, 4], [5, 6]]}}\n");
     assert_string_equal(s.name, "no");
     NEAR(s.time.end, 2, 0, 0);
     NEAR_ARRAY(2, s.school.fluid.velocity, ((const double[]){-1, 0.5}), 0, 0);
@@ -206,8 +212,8 @@ static void every_type_of_value_is_read(void **state) {
     NEAR_ARRAY(4, s.school.fish[0].body.w.value, ((const double[]){1, 2, 3, 4}), 0, 0);
     assert_int_equal(s.school.fish[0].control.desired_heading.n, 2);
     NEAR_ARRAY(4, s.school.fish[0].control.desired_heading.value, ((const double[]){0, 180, 5, 135}), 0, 0);
-    assert_int_equal(s.school.fish[0].control.waypoints.n, 3);
-    NEAR_ARRAY(6, s.school.fish[0].control.waypoints.value, ((const double[]){1, 2, 3, 4, 5, 6}), 0, 0);
+    assert_int_equal(s.school.fish[2].control.waypoints.n, 3);
+    NEAR_ARRAY(6, s.school.fish[2].control.waypoints.value, ((const double[]){1, 2, 3, 4, 5, 6}), 0, 0);
     assert_string_equal(s.school.fish[1].name, "a: b");
     NEAR(s.school.fish[1].control.desired_heading.value[1], -90, 0, 0);
     case_free(&s);
@@ -351,8 +357,12 @@ static void a_case_shown_reads_back_bit_for_bit(void **state) {
         "defaults: {fish: {length: 0.1, start: {position: [-0.0, 1e-320]}}}\n"
         "fish:\n"
         "  - {nodes: 4, body: {profile: table, h: [0.1, 0.2, 0.3], w: [1e-7, 1e7, 12345.678901234567]}}\n"
-        "  - {name: '#2', control: {law: averaged_heading, desired_heading: [[0, 1], [0.1, 2]], waypoints: [[1, "
-        "2]]}}\n",
+        "  - {name: '#2', control: {law: averaged_heading, desired_heading: [[0, 1], [0.1, 2]], filter: 3}}\n"
+        "  - {control: {waypoints: [[1, 2]], damping: 0.3}}\n",
+        // without the preset, whose feedforward is 1; one fish for each law, some with their own frequency
+        "format: 1\ntime: {end: 1}\nfish: [{wave: {frequency: 0}, control: {bias: 0.1}},\n"
+        "  {wave: {frequency: 3}, control: {law: heading, feedforward: 0.2}},\n"
+        "  {start: {heading: 20}, control: {law: averaged_heading}}, {control: {law: course}}]\n",
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct case_values first = parse(cases[i]);
@@ -408,7 +418,7 @@ static void every_failing_allocation_is_reported_and_leaves_nothing(void **state
     write_file("case.yaml",
                "include: [water.yaml]\nformat: 1\ntime: {end: 1}\ndefaults: {fish: {name: a}}\n"
                "fish:\n  - {nodes: 4, body: {profile: table, h: [1, 2, 3], w: [1, 2, 3]}}\n"
-               "  - {name: b, control: {desired_heading: 3}}\n"
+               "  - {name: b, control: {law: heading, desired_heading: 3}}\n"
                "sweep: [{keys: ['fish[*].nodes', solver.order], values: [[4, 1], [4, 2]]},\n"
                "  {key: solver.rtol, values: [0.1, 1e-3, 1e-4], refine: true, reference: {speed: 1}}]\n"
                "expect: [{of: speed, where: [solver.order=1], least: 0}, {fails: a}]\n");

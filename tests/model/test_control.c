@@ -35,14 +35,13 @@ static void headings_in_time_are_linear_between_their_times(void **state) {
 static void law_turns_towards_the_desired_heading_the_short_way(void **state) {
     (void)state;
     struct setup setup;
-    school_build(&setup, TIME
-                 "fish: [{control: {law: heading, desired_heading: 170, gain: 3, limit: 0.4, feedforward: 0.5}}]\n");
+    school_build(&setup, TIME "fish: [{control: {law: heading, desired_heading: 170, gain: 3, limit: 0.4}}]\n");
     const struct fish *fish = setup.school->fish;
     const struct control_memory *memory = &setup.state->control[0];
     // heading -175 = 185 degrees: 15 degrees too far left, so the bias is positive and turns right
-    NEAR(control_law(fish, memory, 0, 0, -175 * pi / 180, setup.state->y), 0.4 * tanh(3 * 15 * pi / 180), 1e-14, 0);
-    NEAR(control_law(fish, memory, 0, 0.2, 170 * pi / 180, setup.state->y), 0.4 * tanh(0.1), 1e-14, 0);
-    assert_true(fabs(control_law(fish, memory, 0, 1e3, 0, setup.state->y)) <= 0.4);
+    NEAR(control_law(fish, memory, 0, -175 * pi / 180, 0, setup.state->y), 0.4 * tanh(3 * 15 * pi / 180), 1e-14, 0);
+    NEAR(control_law(fish, memory, 0, 170 * pi / 180, 0.2, setup.state->y), 0.4 * tanh(0.2), 1e-14, 0);
+    assert_true(fabs(control_law(fish, memory, 0, 0, 1e3, setup.state->y)) <= 0.4);
     school_clear(&setup);
 }
 
@@ -65,22 +64,22 @@ static void waypoints_are_visited_in_order_and_the_last_course_is_held(void **st
     struct control_memory *memory = &setup.state->control[0];
     double *const y = setup.state->y;
     NEAR(fabs(control_desired_heading(fish, memory, 0, y)), pi, 1e-14, 0);
-    assert_int_equal(control_event(fish, memory, 0.1, 0.02, 0, 0, y), 0);
+    assert_int_equal(control_event(fish, memory, &(struct control_view){.t = 0.1, .interval = 0.02}, y), 0);
     // 0.41 away: not yet; 0.39: on to the next, which jumps
     y[fish->at.x] = -1.59;
-    assert_int_equal(control_event(fish, memory, 0.2, 0.02, 0, 0, y), 0);
+    assert_int_equal(control_event(fish, memory, &(struct control_view){.t = 0.2, .interval = 0.02}, y), 0);
     assert_int_equal(memory->waypoint, 0);
     y[fish->at.x] = -1.61;
-    assert_int_equal(control_event(fish, memory, 0.3, 0.02, 0, 0, y), 1);
+    assert_int_equal(control_event(fish, memory, &(struct control_view){.t = 0.3, .interval = 0.02}, y), 1);
     assert_int_equal(memory->waypoint, 1);
     NEAR(control_desired_heading(fish, memory, 0, y), atan2(3, -0.39), 1e-14, 0);
     y[fish->at.y] = 2.95;
-    assert_int_equal(control_event(fish, memory, 0.4, 0.02, 0, 0, y), 1);
+    assert_int_equal(control_event(fish, memory, &(struct control_view){.t = 0.4, .interval = 0.02}, y), 1);
     assert_int_equal(memory->waypoint, 2);
     // from one waypoint to the other, wherever the fish is by now
     y[fish->at.x] = 7;
     NEAR(control_desired_heading(fish, memory, 0, y), pi / 2, 1e-14, 0);
-    assert_int_equal(control_event(fish, memory, 0.5, 0.02, 0, 0, y), 0);
+    assert_int_equal(control_event(fish, memory, &(struct control_view){.t = 0.5, .interval = 0.02}, y), 0);
     school_clear(&setup);
 }
 
@@ -88,7 +87,8 @@ static void waypoints_close_together_are_passed_at_one_event(void **state) {
     (void)state;
     struct setup setup;
     school_build(&setup, TIME "fish: [{control: {law: heading, waypoints: [[-0.1, 0], [-0.2, 0], [-3, 0]]}}]\n");
-    assert_int_equal(control_event(setup.school->fish, &setup.state->control[0], 0.1, 0.02, 0, 0, setup.state->y), 1);
+    const struct control_view view = {.t = 0.1, .interval = 0.02};
+    assert_int_equal(control_event(setup.school->fish, &setup.state->control[0], &view, setup.state->y), 1);
     assert_int_equal(setup.state->control[0].waypoint, 2);
     school_clear(&setup);
 }
@@ -104,7 +104,8 @@ static void averaged_heading_moves_the_bias_with_bounded_rate(void **state) {
     int n_bounded = 0;
     for (int n = 0; n < 30; n++) {
         control_advance(memory, interval);
-        control_event(fish, memory, n * interval, interval, 0, heading, setup.state->y);
+        const struct control_view view = {.t = n * interval, .interval = interval, .mean_heading = heading};
+        control_event(fish, memory, &view, setup.state->y);
         NEAR(memory->phi0, before, 1e-15, 0);
         assert_true(fabs(memory->phi0_rate) <= 2);
         n_bounded += memory->phi0_rate == 2;
@@ -138,7 +139,8 @@ static void feedforward_acts_through_a_moving_mean(void **state) {
     double before = 0;  // there is none before t = 0, which is an event
     for (int n = 0; n < 3; n++) {
         control_advance(memory, interval);
-        assert_int_equal(control_event(fish, memory, n * interval, interval, tau[n], 0, setup.state->y), 0);
+        const struct control_view view = {.t = n * interval, .interval = interval, .moment = tau[n]};
+        assert_int_equal(control_event(fish, memory, &view, setup.state->y), 0);
         const double after = before + share * (tau[n] - before);
         NEAR(moment_seen(&setup, 0), before, 1e-14, 0);
         NEAR(moment_seen(&setup, 0.3 * interval), before + 0.3 * (after - before), 1e-14, 0);
@@ -147,10 +149,10 @@ static void feedforward_acts_through_a_moving_mean(void **state) {
     }
     // the default is one period; without time constant the mean is the newest value
     school_clear(&setup);
-    school_build(&setup, TIME "fish: [{wave: {frequency: 2}, control: {law: heading}}]\n");
+    school_build(&setup, TIME "fish: [{wave: {frequency: 2}, control: {law: heading, feedforward: 1}}]\n");
     NEAR(setup.school->fish[0].control.filter_share, 1 - exp(-0.04), 1e-15, 0);
     school_clear(&setup);
-    school_build(&setup, TIME "fish: [{control: {law: heading, filter: 0}}]\n");
+    school_build(&setup, TIME "fish: [{control: {law: heading, feedforward: 1, filter: 0}}]\n");
     NEAR(setup.school->fish[0].control.filter_share, 1, 0, 0);
     school_clear(&setup);
 }
@@ -162,9 +164,38 @@ static void averaged_heading_takes_the_newest_mean_of_the_moment(void **state) {
                  TIME "fish: [{control: {law: averaged_heading, rate: 1.0e+9, feedforward: 0.7, filter: 0.4}}]\n");
     const struct fish *fish = setup.school->fish;
     struct control_memory *memory = &setup.state->control[0];
-    control_event(fish, memory, 0, 0.02, 0.3, pi, setup.state->y);
+    const struct control_view view = {.interval = 0.02, .moment = 0.3, .mean_heading = pi};
+    control_event(fish, memory, &view, setup.state->y);
     const double mean = 0.3 * (1 - exp(-0.05));
     NEAR(memory->phi0_rate, 0.5 * tanh(0.7 * mean) / 0.02, 1e-13, 0);
+    school_clear(&setup);
+}
+
+static void course_is_damped_and_waits_for_a_whole_period(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME
+                 "fish: [{wave: {frequency: 2}, control: {law: course, desired_heading: 90, gain: 0.7, damping: 1.5,\n"
+                 "        rate: 1.0e+9, limit: 0.4}}]\n");
+    const struct fish *fish = setup.school->fish;
+    struct control_memory *memory = &setup.state->control[0];
+    struct control_view view = {
+        .t = 3, .interval = 0.02, .moment = 5, .mean_heading = 9, .course = 2, .course_rate = -3};
+    assert_int_equal(control_event(fish, memory, &view, setup.state->y), 0);
+    NEAR(memory->phi0_rate, 0, 0, 0);
+    view.has_course = 1;
+    control_event(fish, memory, &view, setup.state->y);
+    // neither the moment nor the heading counts; the period is half a second
+    const double target = 0.4 * tanh(0.7 * (2 - pi / 2) + 1.5 * 0.5 * -3);
+    NEAR(memory->phi0_rate, target / 0.02, 1e-12, 1e-14);
+    control_advance(memory, 0.02);
+    NEAR(memory->phi0, target, 1e-15, 0);
+    control_residual(fish, memory, 3.03, 0.01, setup.state->y, setup.value);
+    NEAR(setup.value[fish->at.phi0], setup.state->y[fish->at.phi0] - target - 0.01 * target / 0.02, 1e-14, 0);
+    // at most rate per second
+    setup.school->fish[0].control.rate = 2;
+    control_event(fish, memory, &(struct control_view){.interval = 0.02, .has_course = 1, .course = 2}, setup.state->y);
+    NEAR(memory->phi0_rate, 2, 0, 0);
     school_clear(&setup);
 }
 
@@ -240,6 +271,7 @@ int main(void) {
         cmocka_unit_test(averaged_heading_moves_the_bias_with_bounded_rate),
         cmocka_unit_test(feedforward_acts_through_a_moving_mean),
         cmocka_unit_test(averaged_heading_takes_the_newest_mean_of_the_moment),
+        cmocka_unit_test(course_is_damped_and_waits_for_a_whole_period),
         cmocka_unit_test(rate_is_that_of_the_bias_of_a_moving_fish),
         cmocka_unit_test(stamp_agrees_with_differences),
     };

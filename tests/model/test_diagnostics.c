@@ -217,6 +217,25 @@ static void mean_heading_is_the_trapezoidal_mean(void **state) {
     NEAR(diagnostics_mean_heading(&history), (0.5 + 2 + 4 + 8 + 2.5) / 4, 1e-15, 0);
 }
 
+static void course_is_the_direction_of_the_way_in_the_last_period(void **state) {
+    (void)state;
+    struct sample sample[3] = {
+        {.com = {1, 0}, .velocity = {0.2, 0.1}}, {.com = {5, 5}}, {.com = {-1, 2}, .velocity = {0.5, 0}}};
+    struct history history = {.capacity = 3, .n = 2, .last = 1, .sample = sample};
+    double course, rate;
+    // not before a whole period has passed, nor where there is none
+    assert_int_equal(diagnostics_course(&history, &course, &rate), 0);
+    assert_int_equal(diagnostics_course(&(struct history){.capacity = 1, .n = 1, .sample = sample}, &course, &rate), 0);
+    history.n = 3;
+    history.last = 2;
+    assert_int_equal(diagnostics_course(&history, &course, &rate), 1);
+    NEAR(course, acos(-1) * 3 / 4, 1e-15, 0);
+    // (-2, 2) x (0.3, -0.1)/8
+    NEAR(rate, (-2 * -0.1 - 2 * 0.3) / 8, 1e-16, 1e-14);
+    sample[2] = sample[0];
+    assert_int_equal(diagnostics_course(&history, &course, &rate), 0);
+}
+
 static void speed_and_strouhal_number_are_those_of_a_driven_plate(void **state) {
     (void)state;
     // askew, so that both coordinates of the tail count
@@ -288,6 +307,7 @@ int main(void) {
         cmocka_unit_test(total_circulation_vanishes_at_every_event),
         cmocka_unit_test(momentum_is_constant_without_fluid),
         cmocka_unit_test(mean_heading_is_the_trapezoidal_mean),
+        cmocka_unit_test(course_is_the_direction_of_the_way_in_the_last_period),
         cmocka_unit_test(speed_and_strouhal_number_are_those_of_a_driven_plate),
         cmocka_unit_test(heading_is_unwrapped),
         cmocka_unit_test(polarisation_and_least_distance_are_those_of_the_school),

@@ -228,6 +228,19 @@ static void feedforward_does_not_depend_on_the_integrator(void **state) {
     }
 }
 
+static void a_fish_reaches_its_waypoints(void **state) {
+    (void)state;
+    struct simulation *const simulation = school_simulation(
+        SCHOOL_SECOND
+        "time: {end: 30, shedding_interval: 0.02}\nfish: [{control: {waypoints: [[-4, 1], [-8, -1], [-12, 0]]}}]\n");
+    const struct state *s = simulation->state;
+    assert_int_equal(simulation->school->fish[0].control.law, CONTROL_COURSE);
+    while (s->control[0].waypoint < 3 && s->t < 22) school_ok(simulate_step(simulation));
+    print_message("all waypoints at t = %g s\n", s->t);
+    assert_int_equal(s->control[0].waypoint, 3);
+    simulate_free(simulation);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(events_are_at_exact_multiples_of_the_interval),
@@ -239,6 +252,7 @@ int main(void) {
         cmocka_unit_test(waypoints_advance_during_a_run),
         cmocka_unit_test(an_event_without_finite_velocities_is_final),
         cmocka_unit_test(averaged_heading_changes_the_bias_at_a_bounded_rate),
+        cmocka_unit_test(a_fish_reaches_its_waypoints),
         cmocka_unit_test(feedforward_does_not_depend_on_the_integrator),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
