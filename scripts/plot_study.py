@@ -84,14 +84,14 @@ def legend_above(axes, figure, n_columns):
 
 
 def slope_triangles(axes, x, lowest, sign):
-    """Triangles of slope 1 and 2 below all lines, which go from the least to the largest x."""
+    """Triangles of slope 1 and 2 below all lines, which go from the smallest to the largest x."""
     span = max(x) / min(x)
     width = min(2.0, span**0.25)
     low = lowest / width**2 / 4
     for order, place in [(1, 0.05), (2, 0.5)]:
         left, right = min(x) * span**place, min(x) * span**place * width
         top = low * width**order
-        # the upright side stands where the error is larger
+        # the upright side is where the error is larger
         upright = right if sign > 0 else left
         axes.plot([left, right, upright, left if sign > 0 else right], [low, low, top, low], color="#666666", lw=0.8)
         axes.annotate(
@@ -211,7 +211,7 @@ def plot_methods(study, over, figure):
 
 
 def digits_for(values):
-    """How many digits behind the point tell values apart."""
+    """How many digits after the point distinguish the values."""
     spread = np.ptp(values)
     return int(np.clip(2 - np.floor(np.log10(spread)), 0, 12)) if spread > 0 else 4
 

@@ -16,38 +16,43 @@ static const struct command commands[] = {
      "CASE",
      "run a case and write its result",
      {'o', OPTION_FORCE, OPTION_SET, OPTION_THREADS, 'q', 'v', 'h'},
+     "file of the result (default: output.file of the case, or its name with .nc)",
      main_run},
     {"study",
      "CASE",
-     "run every member of a case's sweep, and gather what they end with",
+     "run all members of a sweep and gather their results",
      {'o', 'j', OPTION_LIMIT, OPTION_MEMBERS, OPTION_SLURM, OPTION_BUNDLE, OPTION_FORCE, OPTION_SET, OPTION_THREADS,
       'q', 'h'},
+     "folder of the study (default: the name of the case with -study)",
      main_study},
-    {"gather", "FOLDER", "make study.nc and its table from the files of the members", {'h'}, main_gather},
+    {"gather", "FOLDER", "make study.nc and its table again from the files of the members", {'h'}, NULL, main_gather},
     {"compare",
      "CASE",
-     "compare methods of integration: error against cost",
+     "compare integration methods: error against cost",
      {'o', OPTION_FORCE, OPTION_METHODS, OPTION_RTOL, OPTION_STEPS, OPTION_REPEATS, OPTION_REFERENCE, OPTION_LIMIT,
       OPTION_SET, OPTION_THREADS, 'q', 'h'},
+     "file to write, as the study.nc of a study (default: none)",
      main_compare},
     {"check",
      "CASE",
-     "check a case and say everything that is wrong with it",
+     "check a case and list everything that is wrong with it",
      {OPTION_SET, OPTION_THREADS, 'q', 'h'},
+     NULL,
      main_check},
-    {"show", "CASE", "print every key of a case with its value", {OPTION_SET, OPTION_THREADS, 'h'}, main_show},
+    {"show", "CASE", "print a case with all keys and their values", {OPTION_SET, OPTION_THREADS, 'h'}, NULL, main_show},
     {"keys",
      NULL,
-     "list all keys of a case, or all variables of a result",
+     "list all keys of cases, or all variables of result files",
      {OPTION_JSON, OPTION_OUTPUT, 'h'},
+     NULL,
      main_keys},
-    {"info", "FILE.nc", "say what the file of a run or a study holds", {OPTION_CASE, 'h'}, main_info},
-    {"demo", NULL, "let a fish swim: write demo.nc and demo.png here", {'q', 'h'}, main_demo},
+    {"info", "FILE.nc", "summarise the file of a run or a study", {OPTION_CASE, 'h'}, NULL, main_info},
+    {"demo", NULL, "let a fish swim: write demo.nc and demo.png in this folder", {'q', 'h'}, NULL, main_demo},
 };
 enum { N_COMMANDS = sizeof commands / sizeof *commands };
 
 static void print_help(FILE *stream) {
-    fputs("shoal: flexible swimmers and their schools\n\nUsage: shoal COMMAND [OPTIONS] [FILE]\n\n", stream);
+    fputs("shoal: schools of flexible swimmers\n\nUsage: shoal COMMAND [OPTIONS] [FILE]\n\n", stream);
     for (int i = 0; i < N_COMMANDS; i++) {
         fprintf(stream, "  %-8s%-8s%s\n", commands[i].name, commands[i].positional ? commands[i].positional : "",
                 commands[i].summary);
@@ -55,8 +60,8 @@ static void print_help(FILE *stream) {
     fputs(
         "\n  shoal COMMAND --help    the options of a command\n"
         "  shoal --version         versions of the program and its libraries\n\n"
-        "Exit codes: 0 done, 1 the solver gave up, 2 usage or case error, 3 a stated check missed, 4 file error,\n"
-        "75 stopped by a signal.\n",
+        "Exit codes: 0 success, 1 integration failed, 2 wrong usage or wrong case, 3 an expectation is not met,\n"
+        "4 file or memory error, 75 stopped by a signal.\n",
         stream);
 }
 
@@ -77,7 +82,7 @@ static enum status dispatch(const struct command *command, int argc, char **argv
     enum status status = STATUS_OK;
     if (command_line && assignments) {
         struct request request = {.command_line = command_line, .assignments = assignments};
-        // getopt starts behind the command's name
+        // getopt starts after the name of the command
         if (main_parse(command, argc - 1, argv + 1, &request, &status) == 0 && status == STATUS_OK) {
             status = command->run(&request);
         }

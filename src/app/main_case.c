@@ -1,4 +1,4 @@
-/* main_case.c: looking at cases and at results. */
+/* main_case.c: inspect cases and results. */
 #include <stdlib.h>
 
 #include "app/main_commands.h"

@@ -9,37 +9,35 @@
 #include "base/text.h"
 #include "study/study_compare.h"
 
-/* One option: its names, the word for its argument (NULL: none), and what it means. */
+/* One option: its names, the word for its argument (NULL: none), and what it means; NULL: each command says so. */
 struct option_help {
     int code;
     const char *name, *argument, *meaning;
 };
 
 static const struct option_help all_options[] = {
-    {'o', "output", "PATH",
-     "where the result goes: a file (default: the case's output.file, or its name with .nc), for a study a folder "
-     "(default: its name with -study), for a comparison a file (default: none)"},
-    {'j', "processes", "N",
-     "run N members at once (default: the processors that the program may use, divided by solver.threads)"},
-    {OPTION_SLURM, "slurm", NULL, "run nothing, but write the scripts of a Slurm array job into the folder"},
-    {OPTION_BUNDLE, "bundle", "N", "with --slurm: N members a task"},
-    {OPTION_METHODS, "methods", "LIST", "methods to compare: "},
-    {OPTION_RTOL, "rtol", "LIST", "tolerances to compare (1e-3,1e-4,1e-5,1e-6,1e-7)"},
-    {OPTION_STEPS, "steps", "LIST", "fixed steps for all methods but ida instead of tolerances, s"},
-    {OPTION_REPEATS, "repeats", "N", "run each that often; the wall time is the median (3)"},
-    {OPTION_REFERENCE, "reference-rtol", "X", "tolerance of the reference, which is ida5 (1e-9)"},
+    {'o', "output", "PATH", NULL},
+    {'j', "processes", "N", "members to run at once (default: available processors / solver.threads)"},
+    {OPTION_SLURM, "slurm", NULL, "run nothing: write the scripts of a Slurm array job into the folder"},
+    {OPTION_BUNDLE, "bundle", "N", "with --slurm: members per task (default: 1; more where there are over 1000)"},
+    {OPTION_METHODS, "methods", "LIST", "methods to compare, separated by commas: "},
+    {OPTION_RTOL, "rtol", "LIST", "tolerances, separated by commas (default: 1e-3,1e-4,1e-5,1e-6,1e-7)"},
+    {OPTION_STEPS, "steps", "LIST",
+     "fixed steps in s, separated by commas, of all methods but ida (default: adaptive steps)"},
+    {OPTION_REPEATS, "repeats", "N", "runs of each setting; the wall time is their median (default: 3)"},
+    {OPTION_REFERENCE, "reference-rtol", "X", "tolerance of the reference, which is ida5 (default: 1e-9)"},
     {OPTION_LIMIT, "limit", "SECONDS",
-     "end a run that takes longer than this wall time: it has failed (study: no limit, compare: 60)"},
-    {OPTION_MEMBERS, "members", "A-B", "run these members only (or one: A), and gather nothing"},
-    {OPTION_FORCE, "force", NULL, "replace a result that exists"},
-    {OPTION_SET, "set", "PATH=VALUE", "set a key, as in --set fish[0].wave.frequency=1.2 or --set fish[*].nodes=13"},
-    {OPTION_THREADS, "threads", "N", "the same as --set solver.threads=N"},
-    {'q', "quiet", NULL, "no progress and no summary"},
-    {'v', "verbose", NULL, "print the counts of the solver at the end"},
-    {OPTION_JSON, "json", NULL, "print as JSON"},
-    {OPTION_OUTPUT, "output", NULL, "list the variables of a result file instead of the keys of a case"},
-    {OPTION_CASE, "case", NULL, "print the complete case that made the file, and nothing else"},
-    {'h', "help", NULL, "this text"},
+     "longest wall time of a run; one that takes longer is stopped and has failed (default: none; compare: 60)"},
+    {OPTION_MEMBERS, "members", "A-B", "run only member A, or members A to B, and do not gather"},
+    {OPTION_FORCE, "force", NULL, "overwrite existing results"},
+    {OPTION_SET, "set", "KEY=VALUE", "set a key of the case: fish[0].wave.frequency=1.2, fish[*].nodes=13"},
+    {OPTION_THREADS, "threads", "N", "threads of a run: the same as --set solver.threads=N"},
+    {'q', "quiet", NULL, "print no progress and no summary"},
+    {'v', "verbose", NULL, "print a summary of the result at the end"},
+    {OPTION_JSON, "json", NULL, "print JSON"},
+    {OPTION_OUTPUT, "output", NULL, "list the variables of result files instead of the keys of cases"},
+    {OPTION_CASE, "case", NULL, "print only the complete case that made the file"},
+    {'h', "help", NULL, "print this help"},
 };
 
 enum { N_OPTIONS = sizeof all_options / sizeof *all_options };
@@ -50,11 +48,30 @@ static const struct option_help *option_of(int code) {
     return option;
 }
 
-static void print_methods(FILE *stream) {
-    struct text words = {0};
-    study_compare_words(&words);
-    if (words.text) fputs(words.text, stream);
-    text_free(&words);
+/* Print a sentence in lines of at most 100 characters, of which all but the first begin at the same column. */
+static void print_wrapped(const char *sentence, FILE *stream) {
+    enum { COLUMN = 27, WIDTH = 100 };
+    int column = COLUMN;
+    while (*sentence) {
+        const int length = (int)strcspn(sentence, " ");
+        if (column > COLUMN && column + 1 + length > WIDTH) {
+            fprintf(stream, "\n%*s", COLUMN, "");
+            column = COLUMN;
+        } else if (column > COLUMN) {
+            fputc(' ', stream);
+            column++;
+        }
+        fprintf(stream, "%.*s", length, sentence);
+        column += length;
+        sentence += length + (sentence[length] == ' ');
+    }
+    fputc('\n', stream);
+}
+
+/* What an option means to a command; the caller frees *meaning. */
+static void write_meaning(const struct command *command, const struct option_help *option, struct text *meaning) {
+    text_add(meaning, "%s", option->meaning ? option->meaning : command->output);
+    if (option->code == OPTION_METHODS) study_compare_words(meaning);
 }
 
 static void print_command_help(const struct command *command, FILE *stream) {
@@ -66,9 +83,11 @@ static void print_command_help(const struct command *command, FILE *stream) {
         snprintf(names, sizeof names, "%s--%s%s%s", option->code < OPTION_SET ? "-x, " : "    ", option->name,
                  option->argument ? " " : "", option->argument ? option->argument : "");
         if (option->code < OPTION_SET) names[1] = (char)option->code;
-        fprintf(stream, "  %-22s %s", names, option->meaning);
-        if (option->code == OPTION_METHODS) print_methods(stream);
-        fprintf(stream, "\n");
+        fprintf(stream, "  %-24s ", names);
+        struct text meaning = {0};
+        write_meaning(command, option, &meaning);
+        print_wrapped(meaning.text ? meaning.text : "", stream);
+        text_free(&meaning);
     }
 }
 

@@ -24,13 +24,13 @@ enum option_code {
     OPTION_BUNDLE
 };
 
-/* What the command line says. A text is NULL where its option is not given. */
+/* What the command line says. A string is NULL where its option is not given. */
 struct request {
     const char *command_line;
     const char *output;
     int quiet, verbose, force, json, of_output, case_only;
     int n_assignments;
-    const char **assignments; /* the texts of --set */
+    const char **assignments; /* of --set, "KEY=VALUE" */
     char threads[64];         /* --threads as an assignment */
     const char *processes, *members;
     const char *methods, *rtols, *steps, *repeats, *reference_rtol, *limit, *bundle;
@@ -38,14 +38,16 @@ struct request {
     const char *positional;
 };
 
-/* One command: its name, what follows it, one sentence, the codes of its options, and the function that does it. */
+/* One command: its name, what follows it, one sentence, the codes of its options, what --output means to it, and the
+ * function that does it. */
 struct command {
     const char *name, *positional, *summary;
     int options[16]; /* 0 at the end */
+    const char *output;
     enum status (*run)(const struct request *request);
 };
 
-/* Read the options of a command, argv[0] being its name, into *request, whose assignments have room for argc texts.
+/* Read the options of a command, argv[0] being its name, into *request, whose assignments have room for argc strings.
  * Returns -1 once the help of the command has been printed; else 0, and *status is STATUS_CASE where they are wrong. */
 int main_parse(const struct command *command, int argc, char **argv, struct request *request, enum status *status);
 

@@ -1,4 +1,4 @@
-/* main_run.c: running a case; the demonstration. */
+/* main_run.c: run a case; the demonstration. */
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -24,7 +24,7 @@ static char *default_path(const struct case_values *values) {
     return path;
 }
 
-static enum status run_settings(const struct case_values *values, const struct request *request, const char *path) {
+static enum status run_case(const struct case_values *values, const struct request *request, const char *path) {
     struct progress progress;
     progress_start(&progress);
     const struct simulate_options options = {.path = path,
@@ -49,7 +49,7 @@ enum status main_run(const struct request *request) {
     enum status status = sweep_refuse(&values);
     if (status == STATUS_OK) {
         char *const path = request->output ? strdup(request->output) : default_path(&values);
-        status = path ? run_settings(&values, request, path) : status_fail(STATUS_MEMORY, "out of memory: a file name");
+        status = path ? run_case(&values, request, path) : status_fail(STATUS_MEMORY, "out of memory: a file name");
         free(path);
     }
     case_free(&values);
@@ -58,7 +58,7 @@ enum status main_run(const struct request *request) {
 
 // ---- demo
 
-// the folder that holds cases and scripts: that of the sources, or share/shoal beside an installed program
+// find the folder of cases and scripts: that of the sources, or share/shoal next to an installed program
 static enum status find_share(char share[PATH_MAX]) {
     char program[PATH_MAX];
     const ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);

@@ -1,4 +1,4 @@
-/* main_signals.c: signals are noted, and the work looks at the note. */
+/* main_signals.c: a handler stores the number of the signal, and the work looks at it. */
 #include "app/main_signals.h"
 
 #include <stddef.h>

@@ -13,7 +13,7 @@
 
 // ---- study, gather
 
-/* An integer from 0 on of an option. */
+/* The value of an option: an integer that is not negative. */
 static enum status read_count(const char *option, const char *text, int *count) {
     char *end;
     const long number = strtol(text, &end, 10);
@@ -24,7 +24,7 @@ static enum status read_count(const char *option, const char *text, int *count) 
     return STATUS_OK;
 }
 
-/* A positive number of an option; the default where it is not given. */
+/* The value of an option: a positive number; the default where the option is not given. */
 static enum status read_number(const char *option, const char *text, double standard, double *number) {
     char *end = NULL;
     *number = text ? strtod(text, &end) : standard;

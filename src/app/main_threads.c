@@ -11,7 +11,7 @@
 
 void main_wait_briefly(char **argv) {
     if (getenv("OMP_WAIT_POLICY") || getenv("GOMP_SPINCOUNT")) return;
-    // if the program cannot be started again it goes on as it is
+    // if the program cannot be started again it continues as it is
     if (setenv("GOMP_SPINCOUNT", "1000", 1) == 0) execv("/proc/self/exe", argv);
 }
 
@@ -35,7 +35,7 @@ void main_spread_threads(int threads) {
     if (sched_getaffinity(0, sizeof all, &all) != 0 || CPU_COUNT(&all) < threads) return;
 #pragma omp parallel num_threads(threads)
     {
-        // where this cannot be, the system chooses
+        // if this fails, the system chooses
         const cpu_set_t part = part_of(&all, omp_get_thread_num(), omp_get_num_threads());
         pthread_setaffinity_np(pthread_self(), sizeof part, &part);
     }

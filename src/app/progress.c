@@ -15,7 +15,7 @@ static void print_line(const struct simulate_progress *now) {
             100 * done, (double)now->steps / (double)now->event, now->n_vortices, now->t / now->wall_time, left);
 }
 
-/* True if a line is due; on a terminal the cursor then stands at its begin. */
+/* True if a line is due; on a terminal the cursor is then at its start. */
 static int is_due(struct progress *progress, double part, double wall_time) {
     if (progress->terminal) {
         if (wall_time - progress->drawn_at < 0.2) return 0;
@@ -24,7 +24,7 @@ static int is_due(struct progress *progress, double part, double wall_time) {
         fputs("\r", stderr);
         return 1;
     }
-    // a little over, so that a whole tenth is not missed by rounding
+    // a little more, so that rounding does not miss a tenth
     const int tenth = (int)(10 * part + 1e-9);
     if (tenth <= progress->tenth) return 0;
     progress->tenth = tenth;

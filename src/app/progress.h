@@ -8,20 +8,20 @@
 struct progress {
     int terminal;    /* stderr is one */
     double drawn_at; /* wall time of the run when the line was last drawn, s */
-    int tenth;       /* of the run that has been told in a log */
-    int drawn;       /* a line stands on the terminal */
+    int tenth;       /* of the run that a log last reported */
+    int drawn;       /* there is a line on the terminal */
 };
 
-/* Ready for a run. */
+/* Start a run. */
 void progress_start(struct progress *progress);
 
-/* Tell how far it is; data is a struct progress. Fits simulate_options.progress. */
+/* Report how far it is; data is a struct progress. Fits simulate_options.progress. */
 void progress_show(const struct simulate_progress *now, void *data);
 
 /* The same for the members of a study. Fits study_options.progress. */
 void progress_study(const struct study_progress *now, void *data);
 
-/* Clear the line of a terminal, so that what is printed next stands alone. */
+/* Clear the line of a terminal, so that what is printed next has a line of its own. */
 void progress_end(struct progress *progress);
 
 #endif

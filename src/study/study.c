@@ -1,4 +1,4 @@
-/* study.c: running the members of a study, some at a time. */
+/* study.c: run the members of a study, some at a time. */
 #define _DEFAULT_SOURCE  // MAP_ANONYMOUS
 #include "study/study.h"
 
@@ -21,7 +21,7 @@
 
 enum { REASON_BYTES = 2048 };
 
-/* What a process tells the study; in memory that both see. */
+/* What a process reports to the study, in shared memory. */
 struct report {
     double part; /* of its run */
     double t;    /* s */
@@ -33,7 +33,7 @@ struct job {
     pid_t process; /* 0: none */
     int member;
     struct timespec started;
-    int is_late; /* it has been told to stop: see study_options.limit */
+    int is_late; /* it has been asked to stop: see study_options.limit */
     struct report *report;
 };
 
@@ -63,7 +63,7 @@ static double seconds_since(const struct timespec *start) {
 
 // ---- one member, in its own process
 
-static void tell_part(const struct simulate_progress *now, void *data) {
+static void report_progress(const struct simulate_progress *now, void *data) {
     struct report *const report = data;
     report->part = now->t / now->end;
     report->t = now->t;
@@ -76,7 +76,7 @@ static enum status run_member(const struct study *study, const struct job *job) 
     const struct simulate_options options = {.path = path,
                                              .overwrite = 1,
                                              .command = study->options->command,
-                                             .progress = tell_part,
+                                             .progress = report_progress,
                                              .data = job->report,
                                              .stop = study->options->stop};
     const enum status status = path ? simulate_run(&values, &options) : STATUS_MEMORY;
@@ -99,7 +99,7 @@ static void keep_handlers(void) {
 
 /* Never returns. mask: the signals that a member blocks. */
 static void be_member(const struct study *study, const struct job *job, pid_t parent, const sigset_t *mask) {
-    // a study that is killed takes its members with it
+    // a killed study stops its members
     prctl(PR_SET_PDEATHSIG, SIGTERM);
     // once the study has been asked to stop its handlers are gone
     if (is_stopped(study) || getppid() != parent) _exit(status_exit_code(STATUS_STOPPED));
@@ -131,7 +131,7 @@ static enum status start(struct study *study, struct job *job, const sigset_t *m
 
 // ---- all members
 
-/* Note how a member ended. */
+/* Record how a member ended. */
 static enum status finish(struct study *study, struct job *job, int outcome) {
     job->process = 0;
     const int code = WIFEXITED(outcome) ? WEXITSTATUS(outcome) : -1;
@@ -158,7 +158,7 @@ static int n_running(const struct study *study) {
     return n;
 }
 
-static void tell(struct study *study) {
+static void show_progress(struct study *study) {
     if (!study->options->progress) return;
     struct study_progress *const progress = &study->progress;
     progress->wall_time = seconds_since(&study->started);
@@ -213,7 +213,7 @@ static enum status loop(struct study *study, const sigset_t *mask) {
             if (study->job[j].process == 0 && study->n_next < study->plan.n)
                 status = start(study, &study->job[j], mask);
         }
-        tell(study);
+        show_progress(study);
         if (n_running(study) == 0) return status;
         sigtimedwait(&ended, NULL, &patience);
         const enum status collected = collect(study);
@@ -229,7 +229,7 @@ static enum status run_all(struct study *study) {
     if (!study->job || !study->report) return status_fail(STATUS_MEMORY, "out of memory: %d processes", study->n_jobs);
     for (int j = 0; j < study->n_jobs; j++) study->job[j].report = &study->report[j];
 
-    // a blocked signal waits for us, so that the end of a process is never missed
+    // a blocked signal stays pending, so that the end of a process is never missed
     sigset_t ended, before;
     sigemptyset(&ended);
     sigaddset(&ended, SIGCHLD);

@@ -1,4 +1,4 @@
-/* study_compare.c: writes the sweep of a comparison, and runs it. */
+/* study_compare.c: write the sweep of a comparison, and run it. */
 #define _DEFAULT_SOURCE  // mkdtemp
 #include "study/study_compare.h"
 
@@ -38,7 +38,7 @@ static void add_standard_methods(struct text *text) {
 }
 
 void study_compare_words(struct text *text) {
-    text_add(text, "ida1 to ida%d (ida of this order)", methods_table[METHOD_IDA].order);
+    text_add(text, "ida1 to ida%d (ida with this highest order)", methods_table[METHOD_IDA].order);
     for (int i = 0; i < methods_n; i++) {
         if (i != METHOD_IDA && methods_table[i].has_adaptive_steps) text_add(text, ", %s", methods_table[i].word);
     }

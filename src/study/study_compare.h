@@ -1,9 +1,9 @@
 /* study_compare.h: methods of integration times tolerances or steps on one case: error, wall time and counts. Tested by
  * tests/study/test_compare.sh.
  *
- * This is a study with a reference (study_comparison.h) in a folder of its own, which is removed at the end. Its members
- * run one at a time, and the repeats follow each other round after round, so that the noise of the machine hits all
- * alike. */
+ * This is a study with a reference (study_comparison.h) in a folder of its own, which is removed at the end. Its
+ * members run one at a time, and the repeats follow each other round after round, so that the noise of the machine hits
+ * all alike. */
 #ifndef STUDY_COMPARE_H
 #define STUDY_COMPARE_H
 

@@ -1,4 +1,4 @@
-/* study_expect.c: what the case expects of the ends of its members. */
+/* study_expect.c: test what the case expects of its members. */
 #include "study/study_expect.h"
 
 #include <math.h>
@@ -8,7 +8,7 @@
 #include "case/sweep_members.h"
 #include "case/sweep_quantity.h"
 
-/* The values that a statement is about, of one quantity. */
+/* The smallest and the largest of the values of a quantity that an expectation is about. */
 struct extrema {
     int n;
     double min[2], max[2]; /* x and y of points */
@@ -42,7 +42,7 @@ static double ratio_of(double min, double max) {
     return max < 0 ? min / max : INFINITY;
 }
 
-/* Print a value and its bound; whether it holds. NaN is no bound. */
+/* Print a value and its bound; whether the bound is met. NaN is no bound. */
 static int test_bound(const char *what, double value, const char *word, double bound, FILE *stream) {
     if (isnan(bound)) return 1;
     const int is_lower = strcmp(word, "least") == 0;
@@ -51,7 +51,7 @@ static int test_bound(const char *what, double value, const char *word, double b
     return is_met;
 }
 
-/* Whether a statement holds for a quantity. */
+/* Whether an expectation of a quantity is met. */
 static int test_quantity(const struct case_values *study, const struct member_file *members, int number, int q,
                          FILE *stream) {
     const struct sweep_expectation *const one = &study->expect[number];
@@ -63,19 +63,19 @@ static int test_quantity(const struct case_values *study, const struct member_fi
         fprintf(stream, "  MISSED   member %d is not complete\n", extrema.missing);
         return 0;
     }
-    // of a number the second direction is empty
-    const double width = extrema.max[0] - extrema.min[0];
-    const double height = sweep_quantities[q].of_xy ? extrema.max[1] - extrema.min[1] : 0;
-    // all are printed
+    // a number has no second direction
+    const double span_x = extrema.max[0] - extrema.min[0];
+    const double span_y = sweep_quantities[q].of_xy ? extrema.max[1] - extrema.min[1] : 0;
+    // each is printed
     const int n_met =
         test_bound("the smallest is", extrema.min[0], "least", one->min, stream) +
         test_bound("the largest is", extrema.max[0], "most", one->max, stream) +
-        test_bound("they differ by", hypot(width, height), "most", one->spread, stream) +
+        test_bound("they differ by", hypot(span_x, span_y), "most", one->spread, stream) +
         test_bound("their ratio is", ratio_of(extrema.min[0], extrema.max[0]), "most", one->ratio, stream);
     return n_met == 4;
 }
 
-// ---- members that are to fail
+// ---- members that must fail
 
 static int has_failed(const struct member_file *member, const char *words) {
     return strncmp(member->status, "failed", strlen("failed")) == 0 && strstr(member->status, words) != NULL;
@@ -89,7 +89,7 @@ int study_expects_failure(const struct case_values *study, const struct member_f
     return 0;
 }
 
-/* Whether all members that a statement is about have failed as it says. */
+/* Whether all members that an expectation is about have failed as it says. */
 static int test_failures(const struct case_values *study, const struct member_file *members,
                          const struct sweep_expectation *one, FILE *stream) {
     int n = 0, wrong = -1;
@@ -107,11 +107,11 @@ static int test_failures(const struct case_values *study, const struct member_fi
     return wrong < 0;
 }
 
-// ---- all statements
+// ---- all expectations
 
-/* Whether a statement holds; if not, *what is the first thing that does not. */
-static int test_statement(const struct case_values *study, const struct member_file *members, int number,
-                          const char **what, FILE *stream) {
+/* Whether an expectation is met; if not, *what is the first quantity that misses it. */
+static int test_expectation(const struct case_values *study, const struct member_file *members, int number,
+                            const char **what, FILE *stream) {
     const struct sweep_expectation *const one = &study->expect[number];
     *what = "failures";
     if (one->fails) return test_failures(study, members, one, stream);
@@ -129,11 +129,11 @@ enum status study_expect(const struct case_values *study, const struct member_fi
     const char *first_what = "", *what;
     if (study->n_expectations > 0) fprintf(stream, "\nExpected:\n");
     for (int i = 0; i < study->n_expectations; i++) {
-        if (test_statement(study, members, i, &what, stream) || n_missed++ > 0) continue;
+        if (test_expectation(study, members, i, &what, stream) || n_missed++ > 0) continue;
         first = i;
         first_what = what;
     }
     if (n_missed == 0) return STATUS_OK;
-    return status_fail(STATUS_MISSED, "expect[%d]: %s: not what the case expects%s; the output says what is", first,
-                       first_what, n_missed > 1 ? ", nor are others" : "");
+    return status_fail(STATUS_MISSED, "expect[%d]: %s: not what the case expects%s: see the output", first, first_what,
+                       n_missed > 1 ? ", nor are others" : "");
 }

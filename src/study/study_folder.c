@@ -53,7 +53,7 @@ void study_folder_free_members(struct member_file *members, int n) {
 }
 
 /* Replace the status of a member. */
-static enum status note(struct member_file *member, const char *format, const char *text) {
+static enum status replace_status(struct member_file *member, const char *format, const char *text) {
     char line[REASON_BYTES + 16];
     snprintf(line, sizeof line, format, text);
     free(member->status);
@@ -76,7 +76,7 @@ enum status study_folder_set_reason(const char *folder, int member, const char *
     return STATUS_OK;
 }
 
-/* The reason that was kept when a member failed; 0 if there is none. */
+/* Read why a member failed; 0 if there is no reason. */
 static int read_reason(const char *folder, int number, char reason[REASON_BYTES]) {
     char *const path = study_folder_member(folder, number, ".failed");
     FILE *const file = path ? fopen(path, "r") : NULL;
@@ -96,11 +96,11 @@ static enum status read_member(struct member_file *member, const struct case_val
     if (!path) return STATUS_MEMORY;
     enum status status = STATUS_OK;
     if (access(path, F_OK) != 0) {
-        status = note(member, "%s", "missing");
+        status = replace_status(member, "%s", "missing");
     } else {
         status = member_file_read(member, path);
         if (status == STATUS_FILE) {
-            status = note(member, "failed: %s", status_message());
+            status = replace_status(member, "failed: %s", status_message());
         } else if (status == STATUS_OK && (strcmp(member->study, study->merged) != 0 || member->number != number ||
                                            member->n_fish != study->school.n_fish)) {
             status = status_fail(STATUS_FILE, "%s is a result of another study than the first file there", path);
@@ -110,7 +110,7 @@ static enum status read_member(struct member_file *member, const struct case_val
     TRY(status);
     char reason[REASON_BYTES];
     if (strcmp(member->status, "complete") == 0 || !read_reason(folder, number, reason)) return STATUS_OK;
-    return note(member, "failed: %s", reason);
+    return replace_status(member, "failed: %s", reason);
 }
 
 enum status study_folder_read_members(struct member_file **members, const struct case_values *study,

@@ -1,4 +1,4 @@
-/* study_folder.h: the folder of a study, and what lies in it. Tested by tests/study/test_study.sh.
+/* study_folder.h: the folder of a study, and the files in it. Tested by tests/study/test_study.sh.
  *
  *     FOLDER/member-0000.nc       the result of each member; it holds the study and the member's number
  *     FOLDER/member-0003.failed   why a member failed
@@ -21,8 +21,8 @@ void study_folder_remove(const char *folder);
 char *study_folder_path(const char *folder, const char *name);
 char *study_folder_member(const char *folder, int member, const char *ending);
 
-/* Keep the reason of a failure beside the result of a member; NULL: remove what an earlier run has left there. Fails
- * with STATUS_MEMORY. */
+/* Keep the reason of a failure next to the result of a member; NULL: remove that of an earlier run. Fails with
+ * STATUS_MEMORY. */
 enum status study_folder_set_reason(const char *folder, int member, const char *reason);
 
 /* The ends of all members in the folder. A file that cannot be read counts as a member that failed. The caller frees

@@ -1,4 +1,4 @@
-/* study_gather.c: reads the files, writes study.nc, prints. */
+/* study_gather.c: read the files, write study.nc, print. */
 #include "study/study_gather.h"
 
 #include <stdlib.h>
@@ -13,9 +13,9 @@
 #include "study/study_orders.h"
 #include "study/study_print.h"
 
-/* Say how many members are not complete, but for those that are not to be. */
-static enum status say_what_failed(const struct case_values *study, const struct member_file *members,
-                                   const char *folder) {
+/* Fail if members are not complete that the case does not expect to fail. */
+static enum status test_completeness(const struct case_values *study, const struct member_file *members,
+                                     const char *folder) {
     const int n = sweep_n_members(study);
     int n_failed = 0;
     for (int m = 0; m < n; m++) {
@@ -31,7 +31,7 @@ static enum status print_members(const struct case_values *study, const struct m
                                       : study_print(study, members, stream);
 }
 
-/* Print orders and statements; the first that is missed counts. */
+/* Print orders and expectations; the first that is missed counts. */
 static enum status print_expected(const struct case_values *study, const struct member_file *members,
                                   const struct study_file_orders *orders, FILE *stream) {
     const enum status of_orders = study_orders_print(study, orders, stream);
@@ -61,7 +61,7 @@ enum status study_report(const struct case_values *study, const char *folder, co
     if (status == STATUS_OK) {
         study_comparison_fill_errors(study, members);
         status = report(study, members, path ? path : standard, command, stream);
-        if (status == STATUS_OK) status = say_what_failed(study, members, folder);
+        if (status == STATUS_OK) status = test_completeness(study, members, folder);
         study_folder_free_members(members, sweep_n_members(study));
     }
     free(standard);
@@ -107,7 +107,7 @@ enum status study_info(const char *path, FILE *stream) {
         if (status == STATUS_OK) status = print_expected(&study, members, &orders, stream);
         study_file_orders_free(&orders);
     }
-    // what is missed has been said before; here it is a part of what the file holds
+    // that an expectation is missed is a part of what the file holds
     if (status == STATUS_MISSED) fprintf(stream, "missed: %s\n", status_message());
     study_folder_free_members(members, sweep_n_members(&study));
     case_free(&study);

@@ -8,7 +8,7 @@
 #include "case/case_values.h"
 
 /* Make the file of a study, FOLDER/study.nc unless path is another one, from the files of the members in a folder, and
- * print the members (of a comparison of methods: the comparison), orders and statements. Fails with
+ * print the members (of a comparison of methods: the comparison), orders and expectations. Fails with
  * STATUS_FILE (a file belongs to another study, or study.nc cannot be written), STATUS_SOLVER (some members are not
  * complete), STATUS_MISSED (another order or value than the case expects) or STATUS_MEMORY. */
 enum status study_report(const struct case_values *study, const char *folder, const char *path, const char *command,

@@ -1,12 +1,12 @@
-/* study_orders.c: a study of convergence: orders observed along the axis that is refined.
+/* study_orders.c: a study of convergence: observed orders, extrapolated values and the grid convergence index (GCI).
  *
  * P. J. Roache, Annual Review of Fluid Mechanics 29 (1997) 123-160: with h1 < h2 < h3, r21 = h2/h1, r32 = h3/h2 and
  * values f1, f2, f3 the order p solves
  *
  *     |f3 - f2| / |f2 - f1| = r21^p (r32^p - 1) / (r21^p - 1),
  *
- * the limit is f1 + (f1 - f2) / (r21^p - 1), and the index 1.25 |f1 - f2| / (r21^p - 1). Where the exact value f is
- * given, p is log(|f2 - f| / |f1 - f|) / log r21 instead. */
+ * the extrapolated value is f1 + (f1 - f2) / (r21^p - 1), and the GCI 1.25 |f1 - f2| / (r21^p - 1). Where the exact
+ * value f is given, p is log(|f2 - f| / |f1 - f|) / log r21 instead. */
 #include "study/study_orders.h"
 
 #include <math.h>
@@ -22,10 +22,10 @@
 static const double safety_factor = 1.25;
 
 /* Values that differ by less than this part of their size are equal: rounding hides the order. */
-static const double least_difference = 1e-12;
+static const double min_difference = 1e-12;
 
 /* Orders outside of these, or that change by more than that from three levels to the next, are not asymptotic. */
-static const double least_order = 0.5, most_order = 6, most_change = 0.5;
+static const double min_order = 0.5, max_order = 6, max_change = 0.5;
 
 // ---- two or three levels
 
@@ -53,9 +53,9 @@ static double order_of_ratio(double ratio, double r21, double r32) {
 static double three_levels(const double *h, const double (*f)[2], int *is_oscillating) {
     const double fine[2] = {f[2][0] - f[1][0], f[2][1] - f[1][1]}, coarse[2] = {f[1][0] - f[0][0], f[1][1] - f[0][1]};
     const double d21 = hypot(fine[0], fine[1]), d32 = hypot(coarse[0], coarse[1]);
-    const double floor = least_difference * fmax(1, hypot(f[2][0], f[2][1]));
+    const double lower_bound = min_difference * fmax(1, hypot(f[2][0], f[2][1]));
     *is_oscillating = fine[0] * coarse[0] + fine[1] * coarse[1] < 0;
-    if (!(d21 > floor) || !(d32 > floor)) return NAN;
+    if (!(d21 > lower_bound) || !(d32 > lower_bound)) return NAN;
     return order_of_ratio(d32 / d21, h[1] / h[2], h[0] / h[1]);
 }
 
@@ -64,9 +64,9 @@ static double two_levels(const double *h, const double (*f)[2], const double *ex
     const double fine[2] = {f[1][0] - exact[0], f[1][1] - exact[1]},
                  coarse[2] = {f[0][0] - exact[0], f[0][1] - exact[1]};
     const double e1 = hypot(fine[0], fine[1]), e2 = hypot(coarse[0], coarse[1]);
-    const double floor = least_difference * fmax(1, hypot(exact[0], exact[1]));
+    const double lower_bound = min_difference * fmax(1, hypot(exact[0], exact[1]));
     *is_oscillating = fine[0] * coarse[0] + fine[1] * coarse[1] < 0;
-    if (!(e1 > floor) || !(e2 > floor)) return NAN;
+    if (!(e1 > lower_bound) || !(e2 > lower_bound)) return NAN;
     return log(e2 / e1) / log(h[0] / h[1]);
 }
 
@@ -92,9 +92,9 @@ struct study_file_order study_order(int n, const double *sizes, const double (*v
         result.flag = "levels are equal to rounding";
     } else if (is_oscillating) {
         result.flag = "oscillates: not in the asymptotic range";
-    } else if (result.order < least_order || result.order > most_order) {
+    } else if (result.order < min_order || result.order > max_order) {
         result.flag = "order out of range: not in the asymptotic range";
-    } else if (fabs(result.order - result.coarse_order) > most_change) {
+    } else if (fabs(result.order - result.coarse_order) > max_change) {
         result.flag = "order still changes: not in the asymptotic range";
     }
     return result;
@@ -110,7 +110,7 @@ struct refinement {
     double (*value)[2]; /* one quantity at each level                                   (n_levels) */
 };
 
-/* The size that belongs to a value: points become distances. */
+/* The grid spacing of a value: 1/(n - 1) of n points, else the value itself. */
 static double size_of(const struct sweep_axis *axis, int value) {
     double number = NAN;
     text_number(axis->value[value * axis->n_keys], &number);
@@ -201,7 +201,7 @@ enum status study_orders_create(struct study_file_orders *orders, const struct c
 /* Head: the values of the axis over the columns of errors. */
 static void fill_head(const struct study_table *table, const struct case_values *study,
                       const struct study_file_orders *orders) {
-    static const char *const heads[] = {"order before", "order", "limit", "", "index"};
+    static const char *const heads[] = {"coarse order", "order", "extrapolated", "", "GCI"};
     const struct sweep_axis *const axis = &study->sweep[orders->axis];
     study_table_set(table, 0, 0, "error of");
     study_table_set(table, 0, 1, "fish");
@@ -230,9 +230,9 @@ static void fill_row(const struct study_table *table, int row, const struct case
     study_table_number(table, row, n + 7, "%.1e", order->gci);
 }
 
-/* Say what is wrong with the order of a quantity of a fish; STATUS_MISSED if it is not what the case expects. */
-static enum status judge(const struct case_values *study, const struct study_file_orders *orders, int group, int q,
-                         int f, FILE *stream) {
+/* Print the flag of an order, and whether the order is as expected: STATUS_MISSED if it is not. */
+static enum status test_order(const struct case_values *study, const struct study_file_orders *orders, int group, int q,
+                              int f, FILE *stream) {
     const struct sweep_axis *const axis = &study->sweep[orders->axis];
     const struct study_file_order *const order = &orders->order[study_file_orders_place(orders, group, q, f)];
     const char *const fish = study->school.fish[f].name, *const quantity = sweep_quantities[q].name;
@@ -258,8 +258,8 @@ static enum status print_group(const struct case_values *study, const struct stu
     study_table_free(&table);
     enum status status = STATUS_OK;
     for (int row = 0; row < n_rows; row++) {
-        const enum status judged = judge(study, orders, group, row / n_fish, row % n_fish, stream);
-        if (status == STATUS_OK) status = judged;
+        const enum status tested = test_order(study, orders, group, row / n_fish, row % n_fish, stream);
+        if (status == STATUS_OK) status = tested;
     }
     return status;
 }
@@ -273,8 +273,8 @@ enum status study_orders_print(const struct case_values *study, const struct stu
         fprintf(stream, "\nRefinement of %s", axis->key[0].path);
         if (study->n_axes > 1) fprintf(stream, ", from member %d (%s) on", orders->first[g], text);
         fprintf(stream,
-                ": errors against the finest%s, the order of the last levels and of those before,\n"
-                "Richardson's limit, and the grid convergence index (safety factor %g)\n",
+                ": errors against the finest level%s; observed order of the next coarser and of the finest\n"
+                "levels, Richardson's extrapolation and the grid convergence index (GCI, safety factor %g)\n",
                 axis->reference ? " (*: against the reference of the case)" : "", safety_factor);
         free(text);
         const enum status printed = print_group(study, orders, g, stream);

@@ -1,4 +1,4 @@
-/* study_plan.c: looks at what the folder holds already. */
+/* study_plan.c: look at what the folder holds already. */
 #include "study/study_plan.h"
 
 #include <stdlib.h>
@@ -19,9 +19,9 @@ struct planning {
     int force;
 };
 
-/* Find out whether a member is finished, and refuse the result of another study. settings: the member's case. */
-static enum status look_at(const struct planning *planning, const struct case_values *values, const char *path,
-                           int *is_finished) {
+/* Find out whether a member is finished, and refuse the result of another study. values: the case of the member. */
+static enum status look_at_member(const struct planning *planning, const struct case_values *values, const char *path,
+                                  int *is_finished) {
     struct member_file member;
     *is_finished = 0;
     if (access(path, F_OK) != 0) return STATUS_OK;
@@ -45,7 +45,7 @@ static enum status look_at(const struct planning *planning, const struct case_va
     return status;
 }
 
-/* Check the case of a member and enter it in the list unless it is finished. */
+/* Check the case of a member and list it unless it is finished. */
 static enum status plan_member(const struct planning *planning, struct study_plan *plan, int number) {
     struct case_values values;
     TRY(case_member(&values, planning->study, number));
@@ -53,7 +53,7 @@ static enum status plan_member(const struct planning *planning, struct study_pla
     char *const path = study_folder_member(planning->folder, number, ".nc");
     int is_finished = 0;
     if (!path) status = STATUS_MEMORY;
-    if (status == STATUS_OK) status = look_at(planning, &values, path, &is_finished);
+    if (status == STATUS_OK) status = look_at_member(planning, &values, path, &is_finished);
     if (status == STATUS_OK && !is_finished) {
         plan->member[plan->n++] = number;
         if (values.school.threads > plan->max_threads) plan->max_threads = values.school.threads;
@@ -64,7 +64,7 @@ static enum status plan_member(const struct planning *planning, struct study_pla
     return status;
 }
 
-/* Remove what other studies have left behind the last member of this one. */
+/* Remove results of other studies beyond the last member of this one. */
 static enum status clear_rest(const struct planning *planning) {
     for (int number = sweep_n_members(planning->study);; number++) {
         char *const path = study_folder_member(planning->folder, number, ".nc");

@@ -6,7 +6,7 @@
 #include "case/sweep_members.h"
 #include "study/study_table.h"
 
-enum { MOST_FISH_SHOWN = 4 };
+enum { MAX_FISH_SHOWN = 4 };
 
 /* The quantities that are shown; all others are in study.nc. */
 static const struct shown {
@@ -71,11 +71,11 @@ static void fill_row(const struct study_table *table, int row, const struct case
         const double value = member_file_value(member, quantity, member_file_quantity(quantity)->of_fish ? f : 0, 0);
         study_table_number(table, row, c++, shown[s].format, value);
     }
-    // "failed: why": the reasons stand below the table
+    // "failed: why": the reasons follow the table
     study_table_set(table, row, c, "%.*s", (int)strcspn(member->status, ":"), member->status);
 }
 
-/* What else there is to say about the members that are not complete. */
+/* Why members are not complete. */
 static void print_reasons(const struct member_file *members, int n, FILE *stream) {
     for (int m = 0; m < n; m++) {
         if (strchr(members[m].status, ':')) fprintf(stream, "member %d %s\n", m, members[m].status);
@@ -84,7 +84,7 @@ static void print_reasons(const struct member_file *members, int n, FILE *stream
 
 enum status study_print(const struct case_values *study, const struct member_file *members, FILE *stream) {
     const int n = sweep_n_members(study),
-              n_fish = study->school.n_fish < MOST_FISH_SHOWN ? study->school.n_fish : MOST_FISH_SHOWN;
+              n_fish = study->school.n_fish < MAX_FISH_SHOWN ? study->school.n_fish : MAX_FISH_SHOWN;
     int n_columns = 2 + (n_fish > 1) + N_SHOWN;
     for (int a = 0; a < study->n_axes; a++) n_columns += study->sweep[a].n_keys;
     struct study_table table;

@@ -13,7 +13,7 @@
 #include "case/sweep_members.h"
 #include "study/study_folder.h"
 
-enum { MOST_TASKS = 1000 /* Slurm's own default is 1001 */ };
+enum { MAX_TASKS = 1000 /* Slurm's own default is 1001 */ };
 
 /* Open a file of the folder for writing. */
 static enum status open_file(FILE **file, const char *folder, const char *name, int is_script) {
@@ -46,7 +46,7 @@ static enum status write_array(const struct case_values *study, const char *fold
             "#SBATCH --requeue\n"
             "#SBATCH --open-mode=append\n"
             "#SBATCH --output='%s/task-%%a.log'\n"
-            "# Each task runs %d of the %d members; one that is requeued goes on where it was.\n"
+            "# Each task runs %d of the %d members; one that is requeued continues where it was.\n"
             "first=$((SLURM_ARRAY_TASK_ID * %d))\n"
             "last=$((first + %d))\n"
             "[ $last -lt %d ] || last=%d\n"
@@ -89,7 +89,7 @@ static enum status write_case(const struct case_values *study, const char *folde
 
 enum status study_slurm(const struct case_values *study, const char *folder, int bundle, FILE *stream) {
     const int n = sweep_n_members(study);
-    if (bundle < 1) bundle = (n + MOST_TASKS - 1) / MOST_TASKS;
+    if (bundle < 1) bundle = (n + MAX_TASKS - 1) / MAX_TASKS;
     const int n_tasks = (n + bundle - 1) / bundle;
     for (int m = 0; m < n; m++) {
         struct case_values member;
@@ -102,10 +102,11 @@ enum status study_slurm(const struct case_values *study, const char *folder, int
         return status_fail(STATUS_FILE, "%s: its full path cannot be found: %s", folder, strerror(errno));
     }
     if (strpbrk(place, "'\n\"") || strpbrk(program, "'\n\"") || strpbrk(study->name, "'\n\"")) {
-        return status_fail(STATUS_CASE,
-                           "%s: quotes in the folder, the program's path or the name of the case cannot "
-                           "stand in a script",
-                           place);
+        return status_fail(
+            STATUS_CASE,
+            "%s: the scripts cannot have quotes or line breaks in the path of the folder or of the program, or in "
+            "the name of the case",
+            place);
     }
     TRY(write_case(study, place));
     TRY(write_array(study, place, program, n_tasks, bundle));

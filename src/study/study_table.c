@@ -1,4 +1,4 @@
-/* study_table.c: tables of texts. */
+/* study_table.c: tables of strings. */
 #include "study/study_table.h"
 
 #include <math.h>
@@ -30,12 +30,12 @@ void study_table_number(const struct study_table *table, int row, int column, co
 }
 
 static int width(const struct study_table *table, int column) {
-    int most = 0;
+    int max = 0;
     for (int row = 0; row < table->n_rows; row++) {
         const int length = (int)strlen(table->cell[row * table->n_columns + column]);
-        if (length > most) most = length;
+        if (length > max) max = length;
     }
-    return most;
+    return max;
 }
 
 static void print_row(const struct study_table *table, int row, FILE *stream) {

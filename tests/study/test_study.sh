@@ -59,7 +59,7 @@ finished=$(changed small-study/member-0001.nc)
 
 cp out table
 run info small-study/study.nc
-check info_tells_the_axes has out '  axis 1      3 values of solver.method, solver.max_steps'
+check info_lists_the_axes has out '  axis 1      3 values of solver.method, solver.max_steps'
 check info_counts_members has out '  members     6, 4 of them complete'
 check info_prints_the_table_of_the_study cmp <(sed 1,9d out) table
 run info --case small-study/study.nc
@@ -72,8 +72,8 @@ check gather_writes_study_nc test -s alone/study.nc
 rm alone/member-0003.nc
 echo 'not a result' >alone/member-0000.nc
 run gather alone
-check a_missing_member_is_told grep -qE '^ +3 .* missing$' out
-check an_unreadable_member_is_told has out 'member 0 failed: ./alone/member-0000.nc: cannot be read'
+check a_missing_member_is_reported grep -qE '^ +3 .* missing$' out
+check an_unreadable_member_is_reported has out 'member 0 failed: ./alone/member-0000.nc: cannot be read'
 
 mkdir parts
 run study small.yaml -o parts --members 0-1 -q
@@ -93,10 +93,11 @@ check slurm_scripts_are_written "$program" study small.yaml --slurm --bundle 4 -
 check a_task_has_a_bundle has cluster/array.sbatch '#SBATCH --array=0-1'
 # what a task does, without Slurm
 for task in 0 1; do SLURM_ARRAY_TASK_ID=$task sh cluster/array.sbatch >/dev/null 2>&1; done
-check the_tasks_run_all_members test -e cluster/member-0003.nc -a -e cluster/member-0005.nc -a ! -e cluster/member-0006.nc
+check the_tasks_run_all_members test -e cluster/member-0003.nc \
+    -a -e cluster/member-0005.nc -a ! -e cluster/member-0006.nc
 run gather cluster
 check their_results_are_those_of_the_study has err '2 of 6 members in cluster'
-refused no_quotes_in_scripts 2 'cannot stand in a script' study small.yaml --slurm -o "it's"
+refused no_quotes_in_scripts 2 'the scripts cannot have quotes' study small.yaml --slurm -o "it's"
 refused bundles_of_words 2 '--bundle few: expects an integer' study small.yaml --slurm --bundle few -o cluster
 
 # ---- folders with something else
@@ -166,21 +167,24 @@ check orders_are_printed grep -qE '^ +nose +fish1 +m +[0-9.e-]+ +[0-9.e-]+ +- +-
 check levels_are_sorted_from_coarse_to_fine grep -qE 'unit +0\.04 +0\.02 +0\.01 ' out
 refused another_order_gives_exit_code_3 3 \
     'in time.shedding_interval, expected 3 +- 0.1' study refined.yaml -o third -q \
-    --set 'sweep=[{key: time.shedding_interval, values: [0.04, 0.02, 0.01], refine: true, expect: {order: 3, within: 0.1}}]'
+    --set 'sweep=[{key: time.shedding_interval, values: [0.04, 0.02, 0.01], refine: true,
+                   expect: {order: 3, within: 0.1}}]'
 check then_everything_is_written_all_the_same test -s third/study.nc
 # a speed that no level comes near: all errors are its own, and the order is none
 run study refined.yaml -o given -q \
     --set 'sweep=[{key: time.shedding_interval, values: [0.04, 0.02, 0.01], refine: true, reference: {speed: 100}}]'
-check errors_are_against_the_reference grep -qE '^ +speed\* +fish1 +m s-1 +9\.9.e\+01 +9\.9.e\+01 +9\.9.e\+01 +-?0\.00 ' out
+check errors_are_against_the_reference grep -qE \
+    '^ +speed\* +fish1 +m s-1 +9\.9.e\+01 +9\.9.e\+01 +9\.9.e\+01 +-?0\.00 ' out
 check other_errors_are_against_the_finest grep -qE '^ +nose +fish1 +m +[0-9.e-]+ +[0-9.e-]+ +- ' out
-check the_head_says_so has out "against the finest (*: against the reference of the case)"
+check the_head_says_so has out "against the finest level (*: against the reference of the case)"
 run info given/study.nc
 check info_prints_orders_too grep -qE '^ +speed\* +fish1 ' out
-refused the_order_of_any_quantity_can_be_expected 3 'speed of fish1: observed order' study refined.yaml -o given -q --force \
+refused the_order_of_any_quantity_can_be_expected 3 'speed of fish1: observed order' \
+    study refined.yaml -o given -q --force \
     --set 'sweep=[{key: time.shedding_interval, values: [0.04, 0.02, 0.01], refine: true, reference: {speed: 100},
                    expect: {order: 2, within: 0.6, of: speed}}]'
 run info given/study.nc
-check info_tells_what_was_missed eval 'test "$code" = 0 && has out "missed: speed of fish1: observed order"'
+check info_prints_what_was_missed eval 'test "$code" = 0 && has out "missed: speed of fish1: observed order"'
 run study refined.yaml -o groups -q --set time.end=0.08 \
     --set 'sweep=[{key: solver.rtol, values: [1e-4, 1e-5, 1e-6], refine: true}, {key: solver.order, values: [1, 2]}]'
 check other_axes_make_groups has out 'Refinement of solver.rtol, from member 1 (solver.rtol=1e-4, solver.order=2) on'
@@ -209,11 +213,12 @@ check the_same_number_is_the_same_value grep -qx 'tail of two, 2 values' out
 refused a_statement_that_does_not_hold_gives_exit_code_3 3 'expect[0]: speed: not what the case expects' \
     study stated.yaml -q -o unstated --set 'expect=[{of: speed, most: 0.5}, {of: nose, fish: one, spread: 0}]'
 check what_is_missed_is_printed grep -qE '^  MISSED   the largest is [01]\.[0-9]*, expected at most 0\.5$' out
-check all_statements_are_judged grep -qE '^  MISSED   they differ by [0-9.e-]+, expected at most 0$' out
+check all_expectations_are_tested grep -qE '^  MISSED   they differ by [0-9.e-]+, expected at most 0$' out
 run info unstated/study.nc
-check info_tells_it_too eval 'test "$code" = 0 && has out "missed: expect[0]"'
-refused a_member_that_is_not_complete_misses 3 'expect[0]: speed: not what the case expects; ' \
-    study small.yaml -q -o failing --set 'sweep=[{key: solver.max_steps, values: [1000, 2]}]' --set solver.method=euler \
+check info_reports_it_too eval 'test "$code" = 0 && has out "missed: expect[0]"'
+refused a_member_that_is_not_complete_misses 3 'expect[0]: speed: not what the case expects: see the output' \
+    study small.yaml -q -o failing --set 'sweep=[{key: solver.max_steps, values: [1000, 2]}]' \
+    --set solver.method=euler \
     --set 'expect=[{of: speed, least: 0}]'
 check which_member_it_is_is_printed has out '  MISSED   member 1 is not complete'
 run study small.yaml -q -o doomed --set 'expect=[{fails: unstable at, where: [solver.method=euler]},
@@ -258,7 +263,8 @@ if /usr/bin/python3 -c 'import netCDF4, matplotlib' 2>err; then
     check a_method_without_an_accurate_member_is_named has drawn '| 100000 | euler | none within 0.0001 m |'
     run compare refined.yaml --set 'sweep=[]' --set time.end=0.08 --repeats 1 -q -o compare.nc
     check a_picture_of_a_comparison draws compare.nc
-    check no_picture_of_one_run eval '! draws single/member-0000.nc && has check.out "not the file of a study or of a comparison"'
+    check no_picture_of_one_run eval \
+        '! draws single/member-0000.nc && has check.out "not the file of a study or of a comparison"'
 else
     skip pictures 'python3-netcdf4 or python3-matplotlib is missing'
 fi
@@ -306,7 +312,7 @@ check it_says_what_is_finished has err 'stopped by a signal: 1 of 4 members are 
 run info stopped/member-0001.nc
 check its_members_stop_cleanly has out 'stopped'
 
-# whoever stops a whole group tells each member twice: the study passes the signal on
+# a signal to the process group reaches each member twice: the study passes it on
 set -m
 "$program" study long.yaml -j 2 -o grouped -q --set "fish[*].nodes=101" --set "fish[*].sheet_points=201" \
     >out 2>err </dev/null &
@@ -324,7 +330,7 @@ run info grouped/member-0001.nc
 check its_members_end_at_an_event has out '  status      stopped'
 check no_member_has_failed_by_it test ! -e grouped/member-0000.failed -a ! -e grouped/member-0001.failed
 
-# what started the program may ignore the ends of its own children
+# the parent of the program may ignore SIGCHLD
 code=0
 timeout -k 1 20 env --ignore-signal=CHLD "$program" study small.yaml -o ignored -q >out 2>err </dev/null || code=$?
 check a_study_sees_its_members_end_all_the_same eval 'test "$code" = 1 && has err "2 of 6 members in ignored"'
@@ -362,10 +368,10 @@ kill -KILL "${members[0]}"
 sleep 0.5
 kill -INT "$study"
 wait "$study" 2>/dev/null
-check a_killed_member_is_told grep -q 'killed by signal 9 (Killed)' shot/member-000[123].failed
+check a_killed_member_is_reported grep -q 'killed by signal 9 (Killed)' shot/member-000[123].failed
 check the_others_carry_on test -e shot/member-0003.nc
 run gather shot
-check gather_tells_it_too has out 'failed: killed by signal 9 (Killed)'
+check gather_reports_it_too has out 'failed: killed by signal 9 (Killed)'
 
 # a limit of the size of files is a full disk for the largest member only
 cat >disk.yaml <<'end'
