@@ -72,14 +72,14 @@ static const struct butcher_tableau dormand_prince = {
 };
 
 const struct method_properties methods_table[] = {
-    // word          order implicit fixed adaptive  tableaux                          help
-    {"ida",              5, true,  false, true,  NULL,            NULL,            "variable-order BDF, at most solver.order"},
-    {"euler",            1, false, true,  true,  &euler,          &euler_heun,     "Euler's explicit method"},
-    {"heun",             2, false, true,  true,  &heun_euler,     &heun_euler,     "Heun's method"},
-    {"rk4",              4, false, true,  true,  &classical,      &zonneveld,      "the classical Runge-Kutta method"},
-    {"dormand_prince",   5, false, true,  true,  &dormand_prince, &dormand_prince, "Dormand and Prince's Runge-Kutta method"},
-    {"implicit_euler",   1, true,  true,  false, NULL,            NULL,            "Euler's implicit method"},
-    {"trapezoid",        2, true,  true,  false, NULL,            NULL,            "the trapezoidal rule"},
+    // word           order implicit fixed adaptive tableaux                        help
+    {"ida",            5,    true,    false, true, NULL,            NULL,            "BDF of variable order"},
+    {"euler",          1,    false,   true,  true, &euler,          &euler_heun,     "Euler's explicit method"},
+    {"heun",           2,    false,   true,  true, &heun_euler,     &heun_euler,     "Heun's method"},
+    {"rk4",            4,    false,   true,  true, &classical,      &zonneveld,      "classical Runge-Kutta method"},
+    {"dormand_prince", 5,    false,   true,  true, &dormand_prince, &dormand_prince, "method of Dormand and Prince"},
+    {"implicit_euler", 1,    true,    true,  false, NULL,           NULL,            "Euler's implicit method"},
+    {"trapezoid",      2,    true,    true,  false, NULL,           NULL,            "trapezoidal rule"},
 };
 
 // clang-format on

@@ -1,4 +1,5 @@
-/* sparse.h: a square sparse matrix that is filled by adding values in a fixed order. Tested by tests/base/test_sparse.c.
+/* sparse.h: a square sparse matrix that is filled by adding values in a fixed order. Tested by
+ * tests/base/test_sparse.c.
  *
  * The first pass after sparse_forget records the row and column of every addition; sparse_end builds the compressed
  * columns from the record. Later passes replay it: the i-th addition goes straight to its slot. So the order of the

@@ -1,4 +1,4 @@
-/* version.h: the version of the program and of the libraries it runs with. Tested by tests/output/test_result_file.c. */
+/* version.h: the version of the program and of its libraries. Tested by tests/output/test_result_file.c. */
 #ifndef VERSION_H
 #define VERSION_H
 

@@ -27,8 +27,8 @@ static enum status out_of_memory(void) {
 
 // ---- unknown keys
 
-/* Complain about the unknown keys of a map, and of the maps below it. section: its place in the table ("" is the top);
- * path: how messages call it; owner: the fish it belongs to, or NULL. */
+/* Complain about the unknown keys of a map, and of the maps below it. section: its path in the table ("" is the top);
+ * path: its path in messages; owner: the fish that it belongs to, or NULL. */
 static void check_keys(const struct yaml_node *map, const char *section, const char *path, const char *owner,
                        struct yaml_errors *errors);
 
@@ -118,12 +118,13 @@ static bool is_under_value(const struct case_tree *tree, const struct key *key) 
     return node && node->kind != YAML_MAP;
 }
 
-/* Read the value of one key of the case or of one fish; leave the field cleared if nothing gives it one. */
+/* Read the value of one key of the case or of one fish; the field stays cleared if neither the case nor the table has
+ * one. */
 static enum status read_key(struct reading *reading, const struct key *key, int fish, enum preset preset, void *field) {
     bool is_default;
     const struct yaml_node *const node = case_merge_value(&reading->tree, key->path, fish, &is_default);
     if (node) {
-        // a wrong default has been reported in its own place
+        // errors in defaults.fish have been reported already
         struct yaml_errors silent = {0};
         char path[128];
         if (case_table_is_of_fish(key)) {
@@ -193,9 +194,9 @@ static enum status read_keys(struct reading *reading, struct case_values *values
     return STATUS_OK;
 }
 
-// ---- defaults that depend on other values; the table has them in words
+// ---- defaults that are computed from other values; the table describes them
 
-/* A value that was not read gets its default. */
+/* Give a value that was not read its default. */
 static void derive(double *value, double standard) {
     if (isnan(*value)) *value = standard;
 }
@@ -244,9 +245,9 @@ static enum status derive_all(struct case_values *values, const char *origin) {
     return STATUS_OK;
 }
 
-// ---- the case as a whole
+// ---- the complete case
 
-/* Turn the tree into values. Fails with STATUS_MEMORY only; what is wrong is added to the errors. */
+/* Read the values from the tree. Errors of the case are added to the list; fails with STATUS_MEMORY only. */
 static enum status fill(struct reading *reading, struct case_values *values) {
     const struct case_tree *const tree = &reading->tree;
     const int n_before = reading->errors.n;
@@ -284,7 +285,7 @@ static enum status keep_text(struct case_values *values, const struct yaml_sourc
     return STATUS_OK;
 }
 
-/* Keep all that the case says, a top key a line. Its name is kept with it: it may be that of the file. */
+/* Keep the merged case, one line for each key at the top, with the name, which may come from the file. */
 static enum status keep_merged(struct case_values *values, const struct yaml_node *root) {
     struct text text = {0};
     if (!yaml_tree_find(root, "name")) {

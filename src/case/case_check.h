@@ -5,7 +5,7 @@
 #include "case/case_merge.h"
 #include "case/case_values.h"
 
-/* Add what is inconsistent to errors. Values that could not be read (see case_value.h) are passed over. */
+/* Add an error for every inconsistency. Values that could not be read (see case_value.h) are skipped. */
 void case_check(const struct case_values *values, const struct case_tree *tree, struct yaml_errors *errors);
 
 #endif

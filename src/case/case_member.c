@@ -7,7 +7,8 @@
 #include "case/case.h"
 #include "case/sweep_members.h"
 
-/* Fill the assignments of a member, and one more that removes the sweep; returns their number, or -1 when out of memory. */
+/* Fill the assignments of a member, and one more that removes the sweep; returns their number, or -1 when out of
+ * memory. */
 static int fill_assignments(const struct case_values *study, int member, char **assignments) {
     int n = 0;
     for (int a = 0; a < study->n_axes; a++) {

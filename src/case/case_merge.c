@@ -278,7 +278,7 @@ static enum status put(struct case_tree *tree, const struct case_path *path, str
     return status;
 }
 
-/* Apply an assignment: name is what stands before the equals sign, text what follows it. */
+/* Apply the assignment name=text. */
 static enum status assign(struct case_tree *tree, char *name, const char *text, struct yaml_source *source,
                           struct yaml_errors *errors) {
     const struct yaml_mark mark = {source, 1, 1};

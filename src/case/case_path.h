@@ -18,8 +18,8 @@ struct case_path {
 bool case_path_parse(struct case_path *path, const char *text, int n_fish, struct yaml_mark mark,
                      struct yaml_errors *errors);
 
-/* Add the error "path: unknown key; did you mean ...?" for a word under a section of the table. section and owner: as in
- * case_suggest.h. */
+/* Add the error "path: unknown key; did you mean ...?" for a word under a section of the table. section and owner: as
+ * in case_suggest.h. */
 void case_path_unknown(struct yaml_errors *errors, struct yaml_mark mark, const char *path, const char *section,
                        const char *word, const char *owner);
 

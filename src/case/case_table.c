@@ -185,8 +185,9 @@ const struct key case_table[] = {
      .derived = "one period, 1/frequency (0 when the frequency is 0)", .published = "0"},
 
     {"fish.force", CHOICE, IN_FISH(force), "reactive", ANY, "",
-     .meaning = "reactive force of the fluid; reactive: from its kinetic energy, with what is left behind at the tail; "
-                "published: added mass across each edge",
+     .meaning =
+         "reactive force of the fluid; reactive: from its kinetic energy, with what is left in the fluid at the tail; "
+         "published: added mass across each edge",
      .words = WORDS("reactive", "published"), .published = "published"},
 
     {"fish.drag.tangential", REAL, IN_FISH(drag.tangential), "4e-3", FROM(0), "",
@@ -215,7 +216,7 @@ const struct key case_table[] = {
      .synonyms = "force"},
 
     {"fish.motion.driven", CHOICE, IN_FISH(motion.prescribed), "none", ANY, "",
-     .meaning = "prescribed motion: of no node; of the nose and the direction of the first edge; or of the whole "
+     .meaning = "prescribed motion: of no node; of the nose and the direction of the first edge; or of the entire "
                 "straight body",
      .words = WORDS("none", "head", "all"), .synonyms = "drive prescribed"},
     {"fish.motion.speed", REAL, IN_FISH(motion.speed), NULL, ANY, "m s-1",

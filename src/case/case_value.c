@@ -60,7 +60,7 @@ static bool is_in(const struct bounds *bounds, double value) {
     return bounds->is_max_open ? value < bounds->max : value <= bounds->max;
 }
 
-/* Read one number in the range of the key. what: "a number", "two numbers [x, y]": the form that messages ask for. */
+/* Read one number in the range of the key. what: "a number", "two numbers [x, y]": the form that messages name. */
 static bool read_number(const struct context *context, const struct yaml_node *node, const char *what, double *value) {
     char shown[64];
     const char *const unit = context->unit;

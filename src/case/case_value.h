@@ -1,4 +1,5 @@
-/* case_value.h: one value of a case: how each type of key is read, written and released. Tested by tests/case/test_case.c.
+/* case_value.h: one value of a case: how each type of key is read, written and released. Tested by
+ * tests/case/test_case.c.
  *
  * A field that has not been read is NaN, -1 (word), 0, NULL or an empty list: comparisons with it are false, so that a
  * check of several keys does not complain of a value that has been reported already. */

@@ -1,6 +1,6 @@
 /* case_values.h: a case as plain values, in the units of the case file: angles in degrees, lengths in metres or in
  * fractions of the body length, as the meaning of the key says. Those that the model needs are in model/parameters.h,
- * the axes of a study in sweep_members.h, what is expected of its members in sweep_expect.h. */
+ * the axes of a study in sweep_members.h, the expectations of its members in sweep_expect.h. */
 #ifndef CASE_VALUES_H
 #define CASE_VALUES_H
 

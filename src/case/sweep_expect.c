@@ -17,7 +17,7 @@
 #include "case/sweep_quantity.h"
 
 static enum status out_of_memory(void) {
-    return status_fail(STATUS_MEMORY, "out of memory: what is expected");
+    return status_fail(STATUS_MEMORY, "out of memory: the expectations");
 }
 
 /* An expectation being read. */
@@ -171,9 +171,9 @@ static void read_bounds(const struct reading *reading, const struct yaml_node *o
     into->max = read_number(reading, "most", -INFINITY);
     into->spread = read_number(reading, "spread", 0);
     into->ratio = read_number(reading, "ratio", 1);
-    const bool says_something = yaml_tree_find(reading->node, "least") || yaml_tree_find(reading->node, "most") ||
-                                yaml_tree_find(reading->node, "spread") || yaml_tree_find(reading->node, "ratio");
-    if (!of || !says_something) {
+    const bool has_bound = yaml_tree_find(reading->node, "least") || yaml_tree_find(reading->node, "most") ||
+                           yaml_tree_find(reading->node, "spread") || yaml_tree_find(reading->node, "ratio");
+    if (!of || !has_bound) {
         yaml_errors_add(reading->errors, reading->node->mark,
                         "%s: expects of, and at least one of least, most, spread, ratio", reading->name);
     }

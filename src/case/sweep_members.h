@@ -21,7 +21,7 @@ struct sweep_axis {
     int n_values;
     char **value;         /* value i of key k is value[i * n_keys + k], as --set takes it     (n_values * n_keys) */
     int refine;           /* the values are resolutions of the first key: a study of convergence */
-    double order, within; /* what is expected of the observed order: order +- within; NaN: nothing */
+    double order, within; /* the expected order of convergence: order +- within; NaN: none */
     unsigned order_of;    /* bit q: of quantity q */
     double *reference;    /* see sweep_reference; NULL: none */
 };

@@ -1,5 +1,5 @@
-/* sweep_quantity.h: the quantities that a case can expect something of, or give a reference of: the values at the ends of
- * the members of a study. Tested by tests/case/test_sweep.c and tests/study/test_study_file.c. */
+/* sweep_quantity.h: the quantities of studies: what a case can expect of the ends of its members, or give as a
+ * reference. Tested by tests/case/test_sweep.c and tests/study/test_study_file.c. */
 #ifndef SWEEP_QUANTITY_H
 #define SWEEP_QUANTITY_H
 

@@ -18,14 +18,14 @@
 enum { MIN_LEVELS = 3 };
 
 /* An axis being read. */
-struct refining {
+struct reading {
     const struct case_values *values;
     struct sweep_axis *into;
     const char *name; /* "sweep[1]" */
     struct yaml_errors *errors;
 };
 
-/* True if the values of a key are resolutions: their error goes to zero with them, or with their inverse. */
+/* True if the values of a key are resolutions: errors vanish with them, or with their inverse. */
 static bool is_resolution(const struct key *key) {
     static const char *const paths[] = {"time.shedding_interval", "solver.rtol", "solver.step", "fish.nodes",
                                         "fish.sheet_points"};
@@ -35,8 +35,8 @@ static bool is_resolution(const struct key *key) {
     return false;
 }
 
-/* Complain about what cannot be refined. */
-static void check_refine(const struct refining *axis, const struct key *key, const struct yaml_node *node) {
+/* Complain unless the values of an axis are different resolutions. */
+static void check_refine(const struct reading *axis, const struct key *key, const struct yaml_node *node) {
     const struct sweep_axis *const into = axis->into;
     if (!key) return;
     if (!is_resolution(key)) {
@@ -63,7 +63,7 @@ static void check_refine(const struct refining *axis, const struct key *key, con
 }
 
 /* Read a positive number of a map. */
-static double read_positive(const struct refining *axis, const struct yaml_node *map, const char *name) {
+static double read_positive(const struct reading *axis, const struct yaml_node *map, const char *name) {
     const struct yaml_node *const node = yaml_tree_find(map, name);
     double number;
     if (node && node->kind == YAML_SCALAR && text_number(node->text, &number) && number > 0) return number;
@@ -73,7 +73,7 @@ static double read_positive(const struct refining *axis, const struct yaml_node 
 }
 
 /* Read "refine". */
-static void read_refine(const struct refining *axis, const struct key *key, const struct yaml_node *refine) {
+static void read_refine(const struct reading *axis, const struct key *key, const struct yaml_node *refine) {
     const bool is_true = refine->kind == YAML_SCALAR && strcmp(refine->text, "true") == 0;
     const bool is_false = refine->kind == YAML_SCALAR && strcmp(refine->text, "false") == 0;
     if (!is_true && !is_false) {
@@ -90,7 +90,7 @@ static void read_refine(const struct refining *axis, const struct key *key, cons
 }
 
 /* Read "expect". */
-static void read_expect(const struct refining *axis, const struct yaml_node *expect) {
+static void read_expect(const struct reading *axis, const struct yaml_node *expect) {
     if (expect->kind != YAML_MAP) {
         yaml_errors_add(axis->errors, expect->mark, "%s.expect: expects {order: 2, within: 0.2}", axis->name);
         return;
@@ -118,7 +118,7 @@ static bool read_value(const struct yaml_node *node, int of_xy, double value[2])
 }
 
 /* Read the value of a quantity for all fish, or a list of one for each. */
-static bool read_values(const struct refining *axis, const struct yaml_node *node, int q) {
+static bool read_values(const struct reading *axis, const struct yaml_node *node, int q) {
     const int n_fish = axis->values->school.n_fish, of_xy = sweep_quantities[q].of_xy;
     double *const to = axis->into->reference + (long)q * n_fish * 2, one[2];
     const bool is_one = read_value(node, of_xy, one);
@@ -130,7 +130,7 @@ static bool read_values(const struct refining *axis, const struct yaml_node *nod
 }
 
 /* Read "reference". */
-static enum status read_reference(const struct refining *axis, const struct yaml_node *node) {
+static enum status read_reference(const struct reading *axis, const struct yaml_node *node) {
     char path[64];
     snprintf(path, sizeof path, "%s.reference", axis->name);
     if (node->kind != YAML_MAP || node->n == 0) {
@@ -161,16 +161,16 @@ double sweep_reference(const struct case_values *study, int axis, int quantity, 
 
 enum status sweep_refine_read(const struct case_values *values, struct sweep_axis *into, const struct key *key,
                               const char *name, const struct yaml_node *node, struct yaml_errors *errors) {
-    const struct refining axis = {values, into, name, errors};
+    const struct reading axis = {values, into, name, errors};
     const struct yaml_node *const refine = yaml_tree_find(node, "refine"),
                                   *const expect = yaml_tree_find(node, "expect"),
                                   *const reference = yaml_tree_find(node, "reference");
     into->order = into->within = NAN;
     if (refine) read_refine(&axis, key, refine);
-    const struct yaml_node *const futile[] = {expect, reference};
+    const struct yaml_node *const ignored[] = {expect, reference};
     for (int i = 0; i < 2; i++) {
-        if (!futile[i] || into->refine) continue;
-        yaml_errors_add(errors, futile[i]->mark, "%s.%s: has no effect without refine: true", name,
+        if (!ignored[i] || into->refine) continue;
+        yaml_errors_add(errors, ignored[i]->mark, "%s.%s: has no effect without refine: true", name,
                         i == 0 ? "expect" : "reference");
     }
     if (expect) read_expect(&axis, expect);

@@ -40,7 +40,8 @@ struct yaml_errors {
     bool out_of_memory; /* an error could not be kept */
 };
 
-/* Add an error (printf format, one line without "error:"). A failed allocation is recorded and reported by yaml_errors_status. */
+/* Add an error (printf format, one line without "error:"). A failed allocation is recorded and reported by
+ * yaml_errors_status. */
 void yaml_errors_add(struct yaml_errors *errors, struct yaml_mark mark, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 

@@ -41,7 +41,7 @@ void yaml_tree_free(struct yaml_node *node) {
     free(node);
 }
 
-/* Append an entry with a copy of the key (NULL in a list). Takes the value, also when it fails. */
+/* Append an entry with a copy of the key (NULL in a list). Takes ownership of the value, also when it fails. */
 static enum status append(struct yaml_node *node, const char *key, struct yaml_mark mark, struct yaml_node *value) {
     char *const own_key = key ? strdup(key) : NULL;
     if (key && !own_key) goto failed;
@@ -129,13 +129,13 @@ const char *yaml_tree_describe(const struct yaml_node *node, char *buffer, size_
     return buffer;
 }
 
-// ---- what libyaml reports
+// ---- errors of libyaml
 
 static struct yaml_mark mark_at(const struct reader *reader, yaml_mark_t mark) {
     return (struct yaml_mark){reader->source, (int)mark.line + 1, (int)mark.column + 1};
 }
 
-/* What a user can do about the commonest reports of libyaml. */
+/* Remedies for the most frequent errors of libyaml. */
 static const char *remedy(const char *problem) {
     static const char *const remedies[][2] = {
         {"did not find expected key",
@@ -166,7 +166,7 @@ static bool is_tab_indented(struct yaml_mark mark) {
     return place < end && *place == '\t';
 }
 
-/* Turn an error of libyaml into one of ours. */
+/* Add the error of libyaml to the list. */
 static enum status report_parser(struct reader *reader) {
     const yaml_parser_t *const parser = &reader->parser;
     if (parser->error == YAML_MEMORY_ERROR) return out_of_memory();
@@ -181,7 +181,7 @@ static enum status report_parser(struct reader *reader) {
         yaml_errors_add(reader->errors, mark, "%s (%s)", remedy(problem), problem);
         return STATUS_CASE;
     }
-    // what is never closed ends with the file: its beginning says more
+    // a bracket or quote that is never closed: its beginning is more useful than the end of the file
     const struct yaml_mark begin = mark_at(reader, parser->context_mark);
     if (strcmp(problem, "found unexpected end of stream") == 0) mark = begin;
     yaml_errors_add(reader->errors, mark, "%s (%s, line %d: %s)", remedy(problem), parser->context, begin.line,
@@ -197,12 +197,12 @@ static enum status next_event(struct reader *reader, yaml_event_t *event) {
 
 static enum status read_node(struct reader *reader, const yaml_event_t *event, int depth, struct yaml_node **node);
 
-/* Refuse the anchor and the tag of a node; what follows is still read. */
+/* Refuse the anchor and the tag of a node; reading continues. */
 static void refuse_extras(struct reader *reader, struct yaml_mark mark, const unsigned char *anchor,
                           const unsigned char *tag) {
     if (anchor) {
         yaml_errors_add(reader->errors, mark,
-                        "anchors ('&') are not used in case files; put what is shared under defaults");
+                        "anchors ('&') are not used in case files; put shared values under defaults");
     }
     if (tag) yaml_errors_add(reader->errors, mark, "tags ('!') are not used in case files; the key decides the type");
 }
@@ -243,7 +243,7 @@ static enum status read_list(struct reader *reader, int depth, struct yaml_node 
 static bool accept_key(struct reader *reader, const struct yaml_node *map, const struct yaml_node *key) {
     if (strcmp(key->text, "<<") == 0) {
         yaml_errors_add(reader->errors, key->mark,
-                        "merge keys ('<<') are not used in case files; put what is shared under defaults");
+                        "merge keys ('<<') are not used in case files; put shared values under defaults");
         return false;
     }
     const struct yaml_entry *const twin = yaml_tree_entry(map, key->text, strlen(key->text));
@@ -340,7 +340,7 @@ static enum status read_document(struct reader *reader, struct yaml_node **root)
     }
 }
 
-// ---- the text before libyaml sees it
+// ---- checks before parsing
 
 /* The code point of the character at text and its size in bytes; -1 if it is not UTF-8. */
 static long code_point(const unsigned char *text, size_t left, size_t *size) {
@@ -357,12 +357,12 @@ static long code_point(const unsigned char *text, size_t left, size_t *size) {
     return overlong || (code >= 0xD800 && code <= 0xDFFF) || code > 0x10FFFF ? -1 : code;
 }
 
-/* The number of bytes of the mark that some editors put before UTF-8; libyaml does not skip it. */
+/* The size of the byte order mark that some editors write; libyaml does not skip it. */
 static size_t mark_size(const struct yaml_source *source) {
     return source->length >= 3 && memcmp(source->text, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0;
 }
 
-/* Refuse what is no text: not UTF-8, or control characters. One error at the first place. */
+/* Refuse what is not UTF-8, and control characters: one error at the first place. */
 static enum status check_characters(const struct yaml_source *source, struct yaml_errors *errors) {
     const unsigned char *const text = (const unsigned char *)source->text;
     struct yaml_mark mark = {source, 1, 1};

@@ -1,4 +1,5 @@
-/* yaml_tree.h: a subset of YAML, read into a tree in which every node has its place in the source. Tested by tests/case/test_yaml.c.
+/* yaml_tree.h: a subset of YAML, read into a tree in which every node has its place in the source. Tested by
+ * tests/case/test_yaml.c.
  *
  *     time: {end: 3}          map -- "time" -- map -- "end" -- scalar "3"
  *     fish:                    |
@@ -31,14 +32,14 @@ struct yaml_entry {
     struct yaml_node *value;
 };
 
-/* Parse a source. Fails with STATUS_CASE after adding what is wrong to errors, or with STATUS_MEMORY; *root is then NULL.
- * The nodes point at the source. Free with yaml_tree_free. */
+/* Parse a source. Fails with STATUS_CASE after adding what is wrong to errors, or with STATUS_MEMORY; *root is then
+ * NULL. The nodes point at the source. Free with yaml_tree_free. */
 enum status yaml_tree_read(struct yaml_node **root, const struct yaml_source *source, struct yaml_errors *errors);
 
 /* Release a node and all below it. Accepts NULL. */
 void yaml_tree_free(struct yaml_node *node);
 
-/* A new empty map, or a copy of a whole tree; NULL when out of memory. */
+/* A new empty map, or a copy of a tree; NULL when out of memory. */
 struct yaml_node *yaml_tree_map(struct yaml_mark mark);
 struct yaml_node *yaml_tree_copy(const struct yaml_node *node);
 

@@ -10,7 +10,7 @@ static void chunks_cover_every_element_once(void **state) {
             const struct range chunk = parallel_chunk(i, n);
             assert_int_equal(chunk.first, next);
             assert_in_range(chunk.n, 1, 16);
-            // whole vectors but for the last chunk
+            // full vectors, except in the last chunk
             assert_true(chunk.n == 16 || i == parallel_n_chunks(n) - 1);
             next += chunk.n;
         }

@@ -1,5 +1,5 @@
-/* test_case.c: defaults, presets, includes, assignments; and that a case shown reads back the same. Sweeps are tested by
- * test_sweep.c, wrong cases by test_bad.sh. */
+/* test_case.c: defaults, presets, includes, assignments; and that a case shown reads back the same. Sweeps are tested
+ * by test_sweep.c, wrong cases by test_bad.sh. */
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>

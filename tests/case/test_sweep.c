@@ -31,7 +31,7 @@ static void members_are_numbered_with_the_last_axis_fastest(void **state) {
         struct case_values s;
         assert_int_equal(case_member(&s, &study, m), STATUS_OK);
         NEAR(s.school.shedding_interval, 0.1 / (1 << m / 2), 0, 1e-15);
-        // what is derived follows what is swept
+        // derived values follow swept ones
         NEAR(s.time.output_interval, 1.0 / (1 << m / 2), 0, 1e-15);
         assert_int_equal(s.school.fish[0].nodes, m % 2 ? 9 : 7);
         assert_string_equal(s.school.fish[1].name, m % 2 ? "a: b" : "thin");
