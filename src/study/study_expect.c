@@ -60,7 +60,9 @@ static int test_quantity(const struct case_values *study, const struct member_fi
     fprintf(stream, "%s%s%s, %d value%s\n", name, one->fish >= 0 ? " of " : "",
             one->fish >= 0 ? study->school.fish[one->fish].name : "", extrema.n, extrema.n == 1 ? "" : "s");
     if (extrema.missing >= 0) {
-        fprintf(stream, "  MISSED   member %d is not complete\n", extrema.missing);
+        const int is_complete = strcmp(members[extrema.missing].status, "complete") == 0;
+        fprintf(stream, "  MISSED   member %d %s\n", extrema.missing,
+                is_complete ? "has no such value" : "is not complete");
         return 0;
     }
     // a number has no second direction

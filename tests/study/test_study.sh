@@ -214,6 +214,9 @@ refused a_statement_that_does_not_hold_gives_exit_code_3 3 'expect[0]: speed: no
     study stated.yaml -q -o unstated --set 'expect=[{of: speed, most: 0.5}, {of: nose, fish: one, spread: 0}]'
 check what_is_missed_is_printed grep -qE '^  MISSED   the largest is [01]\.[0-9]*, expected at most 0\.5$' out
 check all_expectations_are_tested grep -qE '^  MISSED   they differ by [0-9.e-]+, expected at most 0$' out
+refused a_quantity_that_is_missing_misses 3 'expect[0]: tail_error: not what the case expects' \
+    study stated.yaml -q -o unstated --force --set 'expect=[{of: tail_error, most: 1}]'
+check that_it_is_missing_is_printed has out '  MISSED   member 3 has no such value'
 run info unstated/study.nc
 check info_reports_it_too eval 'test "$code" = 0 && has out "missed: expect[0]"'
 refused a_member_that_is_not_complete_misses 3 'expect[0]: speed: not what the case expects: see the output' \
