@@ -11,6 +11,7 @@ enum { N_RIGID = 3 };
 struct body {
     const struct fish *fish;
     int has_moved;         /* since corotation_set_reference */
+    int n_rigid;           /* motions that are mapped: none where nodes are prescribed */
     double *reference;     /* positions of the nodes in the reference configuration, m      (2 n_nodes) */
     double *rotation;      /* cosine and sine of the rotation of each node since then       (2 n_nodes) */
     double *from[N_RIGID]; /* the rigid motions of the reference body, with nodes rotated   (2 n_nodes each) */
@@ -40,6 +41,7 @@ enum status corotation_create(struct corotation **corotation, const struct schoo
     for (int f = 0; f < school->n_fish; f++) {
         struct body *body = &new->body[f];
         body->fish = &school->fish[f];
+        body->n_rigid = fish_n_prescribed(body->fish) > 0 ? 0 : N_RIGID;
         double **const arrays[N_ARRAYS] = {&body->reference, &body->rotation, &body->from[0], &body->from[1],
                                            &body->from[2],   &body->to[0],    &body->to[1],   &body->to[2]};
         for (int i = 0; i < N_ARRAYS; i++, next += 2 * body->fish->n_nodes) *arrays[i] = next;
@@ -143,10 +145,10 @@ void corotation_set_current(struct corotation *corotation, const double *y) {
     for (int f = 0; f < corotation->n_fish; f++) {
         struct body *body = &corotation->body[f];
         const struct fish *fish = body->fish;
-        if (fish_n_prescribed(fish) > 0) continue;
         const double *const position = y + fish->at.x;
         body->has_moved = 1;
         find_rotations(body, position);
+        if (body->n_rigid == 0) continue;
         rigid_motions(fish, body->reference, body->from);
         rigid_motions(fish, position, body->to);
         for (int i = 0; i < N_RIGID; i++) {
@@ -158,11 +160,11 @@ void corotation_set_current(struct corotation *corotation, const double *y) {
 
 static void body_to_current(const struct body *body, double *a) {
     rotate_nodes(body, 1, a);
-    for (int i = 0; i < N_RIGID; i++) rotate(body->fish, body->from[i], body->to[i], a);
+    for (int i = 0; i < body->n_rigid; i++) rotate(body->fish, body->from[i], body->to[i], a);
 }
 
 static void body_to_reference(const struct body *body, double *a) {
-    for (int i = N_RIGID - 1; i >= 0; i--) rotate(body->fish, body->to[i], body->from[i], a);
+    for (int i = body->n_rigid - 1; i >= 0; i--) rotate(body->fish, body->to[i], body->from[i], a);
     rotate_nodes(body, -1, a);
 }
 

@@ -12,7 +12,7 @@
  *
  * is orthogonal in the inner product weighted with the masses of the nodes. The same T therefore maps velocities and
  * forces per mass, and it preserves net force and moment: an elastic force of the old matrix has neither, nor has
- * its image. A fish with prescribed nodes is not mapped: its rigid motion is given. */
+ * its image. For a fish with prescribed nodes T is P alone: its rigid motion is given. */
 #ifndef COROTATION_H
 #define COROTATION_H
 

@@ -136,6 +136,7 @@ static enum status fill(struct ida *solver) {
     const struct ida_newton_rules rules = {
         .max_iterations = max_iterations,
         .jacobian_cost = jacobian_cost,
+        .kinds = solver->kinds,
         .data = solver,
         .leading_coefficient = leading_coefficient,
         .update = solver->residual->school->shedding == SHEDDING_SHEET ? update_jacobian : NULL};

@@ -12,6 +12,7 @@
 struct ida_newton_rules {
     int max_iterations; /* per solution */
     int jacobian_cost;  /* of an evaluation with its factorisation, in iterations */
+    N_Vector kinds;     /* 1 where an unknown is differential, 0 where it is algebraic; outlives the solver */
     void *data;         /* of the functions below */
     /* d(dy/dt)/dy of IDA's present step, s-1: while it is constant, corrections hardly change */
     double (*leading_coefficient)(void *data);

@@ -11,8 +11,10 @@ struct problem {
     struct setup setup;
     SUNContext context;
     SUNNonlinearSolver solver;
-    N_Vector predicted, total, weights;
+    N_Vector predicted, total, weights, kinds;
     double root, bend, wrong;
+    /* of unknown 0, where it differs: the place of its root, and how wrong its Jacobian is */
+    double root_of_first, wrong_for_first;
     double slope;       /* 1 / the Jacobian */
     double growth;      /* added to wrong at each solution */
     double coefficient; /* of the step */
@@ -20,8 +22,14 @@ struct problem {
     double updated; /* how wrong the Jacobian is after an update; 0: there are none */
 };
 
+// of all unknowns but the first; the last one is predicted as 0
 static double error_of(const struct problem *problem, N_Vector total) {
-    return NV_Ith_S(problem->predicted, 0) + NV_Ith_S(total, 0) - problem->root;
+    const long last = NV_LENGTH_S(total) - 1;
+    return NV_Ith_S(problem->predicted, last) + NV_Ith_S(total, last) - problem->root;
+}
+
+static double error_of_first(const struct problem *problem, N_Vector total) {
+    return NV_Ith_S(problem->predicted, 0) + NV_Ith_S(total, 0) - problem->root_of_first;
 }
 
 static int residual(N_Vector total, N_Vector value, void *data) {
@@ -29,6 +37,7 @@ static int residual(N_Vector total, N_Vector value, void *data) {
     problem->n_residuals++;
     const double error = error_of(problem, total);
     N_VConst(problem->never_finite ? NAN : error + problem->bend * error * error, value);
+    if (problem->wrong_for_first > 0) NV_Ith_S(value, 0) = error_of_first(problem, total);
     return 0;
 }
 
@@ -44,7 +53,9 @@ static int set_up_matrix(booleantype bad, booleantype *current, void *data) {
 
 static int solve_matrix(N_Vector value, void *data) {
     const struct problem *const problem = data;
+    const double first = (1 - problem->wrong_for_first) * NV_Ith_S(value, 0);
     N_VScale((1 - problem->wrong) * problem->slope, value, value);
+    if (problem->wrong_for_first > 0) NV_Ith_S(value, 0) = first;
     return 0;
 }
 
@@ -69,6 +80,9 @@ static void set_up(struct problem *problem) {
     problem->predicted = N_VNew_Serial(n, problem->context);
     problem->total = N_VNew_Serial(n, problem->context);
     problem->weights = N_VNew_Serial(n, problem->context);
+    problem->kinds = N_VNew_Serial(n, problem->context);
+    N_VConst(0, problem->kinds);
+    NV_Ith_S(problem->kinds, 0) = 1;
     N_VConst(0, problem->predicted);
     N_VConst(1, problem->weights);
     // the positions of a straight body; the first unknown is 0
@@ -76,6 +90,7 @@ static void set_up(struct problem *problem) {
     for (int k = 0; k < fish->n_nodes; k++) NV_Ith_S(problem->predicted, fish->at.x + k) = k * fish->edge_length;
     const struct ida_newton_rules rules = {.max_iterations = 6,
                                            .jacobian_cost = 5,
+                                           .kinds = problem->kinds,
                                            .data = problem,
                                            .leading_coefficient = coefficient,
                                            .update = problem->updated > 0 ? update : NULL};
@@ -92,6 +107,7 @@ static void clear(struct problem *problem) {
     N_VDestroy(problem->predicted);
     N_VDestroy(problem->total);
     N_VDestroy(problem->weights);
+    N_VDestroy(problem->kinds);
     SUNContext_Free(&problem->context);
     school_clear(&problem->setup);
 }
@@ -170,6 +186,26 @@ static void an_old_jacobian_that_does_not_converge_is_replaced(void **state) {
         NEAR(error_of(&problem, problem.total), 0, 1e-12, 0);
         clear(&problem);
     }
+}
+
+static void slow_places_show_beside_fast_algebraic_unknowns(void **state) {
+    (void)state;
+    struct problem problem = {.updated = 0};
+    long iterations;
+    set_up(&problem);
+    assert_int_equal(solve(&problem, 1e-6, 1, &iterations), 0);
+    // the algebraic ones change by 1 and are right at once; the first unknown changes by 0.05, and slowly
+    problem.root = 2;
+    problem.coefficient *= 2;
+    problem.wrong = 1e-6;
+    problem.root_of_first = 0.05;
+    problem.wrong_for_first = 0.3;
+    assert_int_equal(solve(&problem, 1e-4, 0, &iterations), 0);
+    // in the root mean square over all unknowns
+    const double left = fabs(error_of_first(&problem, problem.total)) / sqrt((double)NV_LENGTH_S(problem.total));
+    assert_true(left <= 1e-4);
+    assert_true(iterations > 3);
+    clear(&problem);
 }
 
 static void an_old_jacobian_is_updated_once_in_a_solution(void **state) {
@@ -270,6 +306,7 @@ int main(void) {
         cmocka_unit_test(an_exact_jacobian_needs_two_iterations),
         cmocka_unit_test(the_error_left_is_below_the_tolerance),
         cmocka_unit_test(an_old_jacobian_that_does_not_converge_is_replaced),
+        cmocka_unit_test(slow_places_show_beside_fast_algebraic_unknowns),
         cmocka_unit_test(an_old_jacobian_is_updated_once_in_a_solution),
         cmocka_unit_test(small_corrections_that_do_not_shrink_are_noise),
         cmocka_unit_test(a_failure_with_a_new_jacobian_asks_for_a_smaller_step),
