@@ -6,6 +6,7 @@
 # - what src/*/x.c and src/*/x_more.c share begins with x_ (main.c shares main, too);
 # - libshoal.a has no global name without shoal_;
 # - tests do not use cmocka's assert_float_equal, which compares in single precision: NEAR of tests/near.h does not;
+# - lines of C have at most 120 characters, and no words that doc/style.md replaces;
 # - no tabs (but in the Makefile) and no blanks at the end of a line.
 set -euo pipefail
 
@@ -55,5 +56,18 @@ existing=()
 for file in "${text[@]}" Makefile; do [[ ! -e $file ]] || existing+=("$file"); done
 refuse '[ \t]+$' 'blank at the end of the line' "${existing[@]}"
 refuse '\t' 'tab: use spaces' "${existing[@]/#Makefile//dev/null}"
+
+# lines of at most 120 characters; a table in a program keeps its columns
+sources=(src/*/*.[ch] include/*.h tests/*.[ch] tests/*/*.[ch])
+while read -r place; do
+    complain "$place: error: longer than 120 characters"
+done < <(LC_ALL=C.UTF-8 grep -nE '^.{121,}$' "${sources[@]}" | grep -v '^src/base/methods.c:' | cut -d: -f1,2)
+
+# doc/style.md, section Words
+words='anew|foretell|foretold|forecast|no penetration|processor time|gave up|whole number|no room for|takes leave|stamp_'
+while read -r place; do
+    complain "$place: error: a word that doc/style.md replaces by another"
+done < <(grep -noiE "\\b($words)" "${sources[@]}" doc/{model,numerics,performance,cases,studies,output,architecture}.md \
+    README.md scripts/*.py | cut -d: -f1,2)
 
 ((n_errors == 0)) || { echo "names: $n_errors errors" >&2; exit 1; }

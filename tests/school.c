@@ -119,7 +119,7 @@ void school_flow(struct setup *setup, const double *y) {
     school_ok(flow_gradient(setup->residual->flow, setup->state, setup->t, y));
 }
 
-struct jacobian_scratch *school_stamping(struct setup *setup, int f, int g) {
+struct jacobian_scratch *school_influence(struct setup *setup, int f, int g) {
     struct jacobian_scratch *const jacobian_scratch = &setup->residual->jacobian_scratch[0];
     flow_derivative(setup->residual->flow, f, g, &jacobian_scratch->block);
     jacobian_scratch->rows.n_rows = flow_n_rows(&setup->school->fish[f]);
@@ -237,14 +237,14 @@ static void check_row(struct setup *setup, int row, const double *got, const dou
         const double allowed = 1e-6 * largest[of.kind] + 1e-14 * size / step_of(of.kind).step;
         if (fabs(got[j] - want[j]) <= allowed) continue;
         print_error(
-            "%s: derivative of row %s[%d] of fish %d by %s[%d] of fish %d: stamped %.10g, differences %.10g, "
+            "%s: derivative of row %s[%d] of fish %d by %s[%d] of fish %d: derivative %.10g, differences %.10g, "
             "allowed %.3g\n",
             name, in.name, in.index, in.fish, of.name, of.index, of.fish, got[j], want[j], allowed);
         fail();
     }
 }
 
-void school_compare(struct setup *setup, school_value *value, school_stamp *stamp, const char *name) {
+void school_compare(struct setup *setup, school_value *value, school_jacobian *jacobian, const char *name) {
     const double cj = 37;
     const size_t n = (size_t)setup->school->n_unknowns;
     // once while recording, once replayed
@@ -252,14 +252,14 @@ void school_compare(struct setup *setup, school_value *value, school_stamp *stam
     for (int f = 0; f < setup->school->n_fish; f++) sparse_forget(setup->jacobian->own[f]);
     for (int pass = 0; pass < 2; pass++) {
         school_flow(setup, setup->state->y);
-        if (stamp) {
+        if (jacobian) {
             sparse_begin(setup->term);
-            stamp(setup, cj, setup->state->y, setup->term);
+            jacobian(setup, cj, setup->state->y, setup->term);
             school_ok(sparse_end(setup->term));
         } else {
             school_ok(residual_jacobian(setup->residual, setup->t, cj, setup->state->y, setup->jacobian));
         }
-        double *const dense = stamp ? school_dense(setup->term) : school_dense_jacobian(setup->jacobian);
+        double *const dense = jacobian ? school_dense(setup->term) : school_dense_jacobian(setup->jacobian);
         double *const expected = calloc(n * n, sizeof *expected), *const column = calloc(n, sizeof *column);
         assert_non_null(expected);
         assert_non_null(column);

@@ -41,15 +41,15 @@ void school_stir(struct setup *setup);
 /* The fluid's velocity (and gradient) everywhere for the unknowns y at setup->t. */
 void school_flow(struct setup *setup, const double *y);
 
-/* Compare, entry by entry, the matrix that stamp adds up with the differences of what value computes. No stamp: with
- * residual_jacobian. */
+/* Compare, entry by entry, the matrix that jacobian adds up with the differences of what value computes. No jacobian:
+ * with residual_jacobian. */
 typedef void school_value(struct setup *setup, const double *y, const double *yp, double *value);
-typedef void school_stamp(struct setup *setup, double cj, const double *y, struct sparse *term);
-void school_compare(struct setup *setup, school_value *value, school_stamp *stamp, const char *name);
+typedef void school_jacobian(struct setup *setup, double cj, const double *y, struct sparse *term);
+void school_compare(struct setup *setup, school_value *value, school_jacobian *jacobian, const char *name);
 
-/* For a stamp of what comes through the flow: the derivative of the velocity at fish f by the unknowns of fish g, and
- * empty rows for it; adding those rows to the term. */
-struct jacobian_scratch *school_stamping(struct setup *setup, int f, int g);
+/* For derivatives of what comes through the flow: the derivative of the velocity at fish f by the unknowns of fish g,
+ * and empty rows for it; adding those rows to the term. */
+struct jacobian_scratch *school_influence(struct setup *setup, int f, int g);
 void school_add_rows(struct setup *setup, int f, int g, struct sparse *term);
 
 /* The matrix as a dense one, row after row; the caller frees it. */

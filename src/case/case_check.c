@@ -189,8 +189,8 @@ static void check_motion(const struct check *check) {
     }
 }
 
-/* True if a number of the fish is neither the default of its key nor that of the preset: a case that `shoal show` printed
- * has every key, and no preset. False for what could not be read. */
+/* True if a number of the fish is neither the default of its key nor that of the preset: a case that `shoal show`
+ * printed has every key, and no preset. False for what could not be read. */
 static bool is_given(const struct check *check, const char *path) {
     const struct key *const key = case_table_row(path);
     const char *const fish = (const char *)&check->values->school.fish[check->fish];

@@ -4,8 +4,8 @@
 #include <math.h>
 
 // add the derivative of a row by a vector along the body, through the nodes that the vector depends on
-static void stamp_tangent(const struct fish *fish, const struct tangent *tangent, int row, const double by_vector[2],
-                          struct sparse *jacobian) {
+static void tangent_jacobian(const struct fish *fish, const struct tangent *tangent, int row, const double by_vector[2],
+                             struct sparse *jacobian) {
     const struct stencil *const parts[2] = {&tangent->from, &tangent->to};
     for (int part = 0; part < 2; part++) {
         const struct stencil *const end = parts[part];
@@ -75,7 +75,7 @@ void bound_sheet_jacobian(const struct fish *fish, const double *u, const double
         // the normal turns with the tangent e: dn = -t (n.de)/|e|
         const double turn = -(slip[0] * body.t[0] + slip[1] * body.t[1]) / body.length;
         const double by_vector[2] = {turn * body.n[0], turn * body.n[1]};
-        stamp_tangent(fish, &fish->control_tangent[c], row, by_vector, jacobian);
+        tangent_jacobian(fish, &fish->control_tangent[c], row, by_vector, jacobian);
     }
     const int kelvin = fish->at.gamma + fish->n_control;
     for (int j = 0; j < fish->n_sheet; j++) sparse_add(jacobian, kelvin, fish->at.gamma + j, fish->sheet_weight[j]);
@@ -149,7 +149,7 @@ void bound_sheet_kutta_jacobian(const struct fish *fish, enum bound_sheet_law la
     // the tangent turns with the vector e along it: dt = n (n.de)/|e|
     const double turn = -strength * (slip[0] * body.n[0] + slip[1] * body.n[1]) / body.length;
     const double by_vector[2] = {turn * body.n[0], turn * body.n[1]};
-    stamp_tangent(fish, &fish->tail_tangent, row, by_vector, jacobian);
+    tangent_jacobian(fish, &fish->tail_tangent, row, by_vector, jacobian);
 }
 
 void bound_sheet_kutta_flow_jacobian(const struct fish *fish, double chi, const struct influence_block *block,

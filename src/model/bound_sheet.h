@@ -1,5 +1,5 @@
-/* bound_sheet.h: the equations of the bound sheet: impermeability, Kelvin, Kutta. doc/model.md, sections 6 and 7. Tested by
- * tests/model/test_bound_sheet.c. */
+/* bound_sheet.h: the equations of the bound sheet: impermeability, Kelvin, Kutta. doc/model.md, sections 6 and 7.
+ * Tested by tests/model/test_bound_sheet.c. */
 #ifndef BOUND_SHEET_H
 #define BOUND_SHEET_H
 

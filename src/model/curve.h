@@ -8,7 +8,8 @@
 
 #include "base/status.h"
 
-/* A weighted sum over nodes. A point that moves with the body: the weights add to 1. A vector along it: they add to 0. */
+/* A weighted sum over nodes. A point that moves with the body: the weights add to 1. A vector along it: they add to
+ * 0. */
 struct stencil {
     int n;
     const int *node;      /* (n) */

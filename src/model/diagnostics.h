@@ -1,5 +1,5 @@
-/* diagnostics.h: what is derived from a state for the user: energies, powers, headings, means. doc/model.md, section 13. Tested by
- * tests/model/test_diagnostics.c. */
+/* diagnostics.h: what is derived from a state for the user: energies, powers, headings, means. doc/model.md, section
+ * 13. Tested by tests/model/test_diagnostics.c. */
 #ifndef DIAGNOSTICS_H
 #define DIAGNOSTICS_H
 

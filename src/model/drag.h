@@ -1,4 +1,5 @@
-/* drag.h: the drag on the edges of a body, and the moment of the drag that the flow causes. doc/model.md, sections 9 and
+/* drag.h: the drag on the edges of a body, and the moment of the drag that the flow causes. doc/model.md, sections 9
+ * and
  * 11. Tested by tests/model/test_drag.c. */
 #ifndef DRAG_H
 #define DRAG_H

@@ -487,7 +487,7 @@ void fish_prescribe(const struct fish *fish, int n, double t, double *y) {
 void fish_start(const struct fish *fish, double *y) {
     double *const x = y + fish->at.x, *const z = y + fish->at.y;
     if (fish->motion.prescribed != PRESCRIBED_NONE) {
-        // the free nodes behind a driven head start with its rigid motion
+        // the free nodes downstream of a prescribed head start with its rigid motion
         fish_prescribe(fish, fish->n_nodes, 0, y);
         return;
     }

@@ -146,7 +146,8 @@ void fish_school_free(struct school *school);
 /* sum of weight * value over the nodes of the point. */
 double fish_mean(const struct stencil *point, const double *value);
 
-/* A vector along the body where its nodes are as in y: its length, its unit vector t, and the unit normal n = E3 x t. */
+/* A vector along the body where its nodes are as in y: its length, its unit vector t, and the unit normal n = E3 x
+ * t. */
 struct direction {
     double length, t[2], n[2];
 };
@@ -166,14 +167,15 @@ void fish_prescribed_direction(const struct fish *fish, double t, double directi
 void fish_prescribed_node(const struct fish *fish, int k, double t, double position[2], double velocity[2],
                           double acceleration[2]);
 
-/* Write position and velocity that the first n nodes of a driven fish have at time t into the vector of all unknowns. */
+/* Write position and velocity that the first n nodes of a driven fish have at time t into the vector of all
+ * unknowns. */
 void fish_prescribe(const struct fish *fish, int n, double t, double *y);
 
 /* Write nose to tail positions and velocities of the start into the vector of all unknowns: doc/model.md, 4 and 5. */
 void fish_start(const struct fish *fish, double *y);
 
-/* Distance between the outlines of two bodies at the nodes given in y, 0 where they touch, m. A distance above the limit
- * may be returned as INFINITY: bodies whose boxes are further apart than that are not compared edge by edge. */
+/* Distance between the outlines of two bodies at the nodes given in y, 0 where they touch, m. A distance above the
+ * limit may be returned as INFINITY: bodies whose boxes are further apart than that are not compared edge by edge. */
 double fish_distance(const struct fish *a, const struct fish *b, const double *y, double limit);
 
 #endif

@@ -235,8 +235,8 @@ static enum status build_free_sheets(struct flow *flow, const struct state *stat
     return STATUS_OK;
 }
 
-// drop what was made for other wakes or another time: the released vortices move on known paths, so that at one time they
-// are the same for every y
+// drop what was made for other wakes or another time: the released vortices move on known paths, so that at one time
+// they are the same for every y
 static enum status go_to(struct flow *flow, const struct state *state, double t) {
     const struct school *school = flow->school;
     const unsigned long version = state_wake_version(state, school);
@@ -443,8 +443,8 @@ struct target {
     const struct influence_block *block;
 };
 
-// one source of the nascent vortex, or stretch, of a fish: what part of its circulation it has, and of the motion of the
-// tail
+// one source of the nascent vortex, or stretch, of a fish: what part of its circulation it has, and of the motion of
+// the tail
 struct nascent_source {
     double x, y, smoothing, part, follows;
 };

@@ -6,8 +6,9 @@
  *     | control points (M-1)          | edge midpoints (N-1)  | tail (1)                         |
  *     | all; own with no smoothing    | those of other fish   | all, with sheet_smoothing        |
  *
- * The sources: per fish its free vortices, released ones and the nascent one, and its bound vortices. With shedding: sheet the
- * free vortices are the middles of the stretches of a sheet, and the control points of the own fish see more (free_sheet.h). */
+ * The sources: per fish its free vortices, released ones and the nascent one, and its bound vortices. With shedding:
+ * sheet the free vortices are the middles of the stretches of a sheet, and the control points of the own fish see more
+ * (free_sheet.h). */
 #ifndef FLOW_H
 #define FLOW_H
 
@@ -138,8 +139,8 @@ void flow_influence(const struct flow *flow, int f, int g, struct influence_bloc
  * circulation causes. With the places of the last velocity. */
 void flow_nascent_influence(const struct flow *flow, int f, struct influence_block *block);
 
-/* The velocity of the fluid at the released vortices, or markers, of all fish at the event of the state: wake_u, wake_v, of
- * fish f from wake_range[f].first on. Fails with STATUS_MEMORY. */
+/* The velocity of the fluid at the released vortices, or markers, of all fish at the event of the state: wake_u,
+ * wake_v, of fish f from wake_range[f].first on. Fails with STATUS_MEMORY. */
 enum status flow_at_wake(struct flow *flow, const struct state *state);
 
 /* The fluid's velocity past the tail of fish f, u - v_tail. After flow_velocity. */

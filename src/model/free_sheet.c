@@ -6,7 +6,8 @@
 
 #include "base/ramp.h"
 
-/* Gauss-Legendre on [0, 1]: eta = 0.0694318, 0.3300095, 0.6699905, 0.9305682 with weights w; xi = eta^2, part = 2 eta w. */
+/* Gauss-Legendre on [0, 1]: eta = 0.0694318, 0.3300095, 0.6699905, 0.9305682 with weights w; xi = eta^2, part = 2 eta
+ * w. */
 const double free_sheet_xi[FREE_SHEET_PANEL] = {0.004820780989426014, 0.10890625570683385, 0.44888729929169013,
                                                 0.8659570925834785};
 const double free_sheet_part[FREE_SHEET_PANEL] = {0.024152203412833233, 0.215214082271785, 0.4369310725907612,

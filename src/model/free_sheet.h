@@ -1,16 +1,16 @@
-/* free_sheet.h: the wake of `shedding: sheet`: a vortex sheet between markers, as others see it and as the own body does.
- * doc/model.md, section 8. Tested by tests/model/test_free_sheet.c.
+/* free_sheet.h: the wake of `shedding: sheet`: a vortex sheet between markers, as others see it and as the own body
+ * does. doc/model.md, section 8. Tested by tests/model/test_free_sheet.c.
  *
- * The queue of a wake then holds markers: points of the sheet, each with the label Gamma_i, the circulation that the fish
- * had shed when it was born at the tail. Stretch i lies between the markers i and i + 1 and has the circulation
+ * The queue of a wake then holds markers: points of the sheet, each with the label Gamma_i, the circulation that the
+ * fish had shed when it was born at the tail. Stretch i lies between the markers i and i + 1 and has the circulation
  * Gamma_i+1 - Gamma_i; the nascent one lies between the newest marker n and the tail, with Gamma(t) - Gamma_n.
  *
  *     marker 0 ---- 1 ---- ... ---- n-1 ---- n - - - - tail )=== body
  *      oldest                          stretch 1  nascent
  *
- * Markers see markers: each with half of both stretches that meet there. Other bodies, and the edge midpoints of the own
- * one, see the middle of every stretch with the smoothing of the wake. The control points of the own body see the newest
- * stretches as points graded towards the tail, and all of its wake with a smoothing that tapers to 0 there. */
+ * Markers see markers: each with half of both stretches that meet there. Other bodies, and the edge midpoints of the
+ * own one, see the middle of every stretch with the smoothing of the wake. The control points of the own body see the
+ * newest stretches as points graded towards the tail, and all of its wake with a smoothing that tapers to 0 there. */
 #ifndef FREE_SHEET_H
 #define FREE_SHEET_H
 
@@ -23,8 +23,8 @@
 enum { FREE_SHEET_PANEL = 4 };
 extern const double free_sheet_xi[FREE_SHEET_PANEL], free_sheet_part[FREE_SHEET_PANEL];
 
-/* What the own control points see in place of what everybody sees: sources to be added to the middles of all stretches. The
- * last FREE_SHEET_PANEL + 1 are the nascent stretch in place of its middle; the others are released. */
+/* What the own control points see in place of what everybody sees: sources to be added to the middles of all stretches.
+ * The last FREE_SHEET_PANEL + 1 are the nascent stretch in place of its middle; the others are released. */
 struct free_sheet {
     int n, capacity;
     /* fixed for an interval; source i lies at xi of the way from the newer to the older end of its stretch (n) */
@@ -43,12 +43,13 @@ void free_sheet_free(struct free_sheet *sheet);
  * with STATUS_MEMORY. */
 enum status free_sheet_middles(const struct wake *markers, struct wake *middles);
 
-/* What the markers count with among themselves at the time t of the event: half of both stretches, less what has decayed;
- * nascent: the circulation of the nascent stretch; strength (n_vortex of the markers). */
+/* What the markers count with among themselves at the time t of the event: half of both stretches, less what has
+ * decayed; nascent: the circulation of the nascent stretch; strength (n_vortex of the markers). */
 void free_sheet_strengths(const struct wake *markers, const struct school *school, double t, double nascent,
                           double *strength);
 
-/* Choose the sources for the interval that begins now. Without a marker there are the nascent ones only. Fails with STATUS_MEMORY. */
+/* Choose the sources for the interval that begins now. Without a marker there are the nascent ones only. Fails with
+ * STATUS_MEMORY. */
 enum status free_sheet_build(struct free_sheet *sheet, const struct fish *fish, const struct school *school,
                              const struct wake *markers);
 
@@ -56,7 +57,8 @@ enum status free_sheet_build(struct free_sheet *sheet, const struct fish *fish, 
 void free_sheet_place(struct free_sheet *sheet, const struct school *school, const struct wake *markers,
                       const struct wake *middles, double t, double tau);
 
-/* The point at xi of the way from the tail to the newest marker, tau after the event; the tail where there is no marker. */
+/* The point at xi of the way from the tail to the newest marker, tau after the event; the tail where there is no
+ * marker. */
 void free_sheet_nascent_point(const struct wake *markers, double interval, double tau, const double tail[2], double xi,
                               double point[2]);
 
@@ -64,7 +66,8 @@ void free_sheet_nascent_point(const struct wake *markers, double interval, doubl
 void free_sheet_place_nascent(struct free_sheet *sheet, const struct fish *fish, const struct wake *markers,
                               double interval, double tau, const double tail[2], double circulation);
 
-/* The smoothing with which markers see bound vortex j of a fish, m: it vanishes at the edges together with the spacing. */
+/* The smoothing with which markers see bound vortex j of a fish, m: it vanishes at the edges together with the
+ * spacing. */
 double free_sheet_bound_smoothing(const struct fish *fish, int j);
 
 #endif

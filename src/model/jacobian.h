@@ -35,8 +35,8 @@ struct jacobian {
 enum status jacobian_create(struct jacobian **jacobian, const struct school *school);
 void jacobian_free(struct jacobian *jacobian);
 
-/* Hold the blocks of the pairs (f, g), f != g, for which coupled[f n_fish + g] is not 0. Fails with STATUS_MEMORY; there
- * are no couplings then. */
+/* Hold the blocks of the pairs (f, g), f != g, for which coupled[f n_fish + g] is not 0. Fails with STATUS_MEMORY;
+ * there are no couplings then. */
 enum status jacobian_couple(struct jacobian *jacobian, const unsigned char *coupled, unsigned pattern);
 
 /* Set the rows of the couplings of fish f to zero that are masked in its own block. */

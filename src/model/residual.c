@@ -216,8 +216,8 @@ void residual_balance(const struct residual *residual, int f, const double *y, d
 }
 
 // the equations of fish f by what moves with fish g and comes through the velocity of the fluid
-static void stamp_flow(const struct residual *residual, int f, int g, double t, const double *y,
-                       struct influence_block *block, struct coupling_block *rows) {
+static void flow_jacobian(const struct residual *residual, int f, int g, double t, const double *y,
+                          struct influence_block *block, struct coupling_block *rows) {
     const struct fish *fish = &residual->school->fish[f];
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
     rows->n_rows = flow_n_rows(fish);
@@ -253,8 +253,8 @@ static void add_own(const struct residual *residual, const struct fish *fish, co
 }
 
 // the derivatives of one fish's equations, in the order of evaluate_fish
-static enum status stamp_fish(struct residual *residual, int f, double t, double cj, const double *y,
-                              struct jacobian_scratch *jacobian_scratch, struct jacobian *jacobian) {
+static enum status fish_jacobian(struct residual *residual, int f, double t, double cj, const double *y,
+                                 struct jacobian_scratch *jacobian_scratch, struct jacobian *jacobian) {
     const struct school *school = residual->school;
     const struct fish *fish = &school->fish[f];
     struct sparse *const own = jacobian->own[f];
@@ -280,11 +280,11 @@ static enum status stamp_fish(struct residual *residual, int f, double t, double
     control_jacobian(fish, &residual->state->control[f], t, t - residual->state->t, y, own);
 
     // what comes through the velocity of the fluid: by the fish's own unknowns, and by those of the fish it couples to
-    stamp_flow(residual, f, f, t, y, &jacobian_scratch->block, &jacobian_scratch->rows);
+    flow_jacobian(residual, f, f, t, y, &jacobian_scratch->block, &jacobian_scratch->rows);
     add_own(residual, fish, &jacobian_scratch->rows, own);
     for (int i = jacobian->first[f]; i < jacobian->first[f + 1]; i++) {
         struct jacobian_coupling *const coupling = &jacobian->coupling[i];
-        stamp_flow(residual, f, coupling->other, t, y, &jacobian_scratch->block, &coupling->rows);
+        flow_jacobian(residual, f, coupling->other, t, y, &jacobian_scratch->block, &coupling->rows);
     }
     jacobian_mask_couplings(jacobian, f);
     return sparse_end(own);
@@ -302,7 +302,7 @@ enum status residual_jacobian(struct residual *residual, double t, double cj, co
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
     for (int f = 0; f < school->n_fish; f++) {
         struct jacobian_scratch *const jacobian_scratch = &residual->jacobian_scratch[omp_get_thread_num()];
-        if (stamp_fish(residual, f, t, cj, y, jacobian_scratch, jacobian) != STATUS_OK) {
+        if (fish_jacobian(residual, f, t, cj, y, jacobian_scratch, jacobian) != STATUS_OK) {
 #pragma omp atomic
             n_failed++;
         }

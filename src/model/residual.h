@@ -8,8 +8,8 @@
 #include "model/jacobian.h"
 #include "model/state.h"
 
-/* What determines the circulation that has been shed: the law of the case; Kutta's condition, while an impulsive event is
- * solved; nothing, it is given: before the first marker of a free sheet is born. */
+/* What determines the circulation that has been shed: the law of the case; Kutta's condition, while an impulsive event
+ * is solved; nothing, it is given: before the first marker of a free sheet is born. */
 enum shed_now { SHED_BY_LAW, SHED_BY_IMPULSE, SHED_IS_GIVEN };
 
 /* What the equations need besides the unknowns; workspace that holds nothing a restart would miss. */
@@ -58,7 +58,7 @@ struct unknown_place {
 enum status residual_create(struct residual **residual, const struct school *school, const struct state *state);
 void residual_free(struct residual *residual);
 
-/* Decide anew which fish couple in the Jacobian, from the positions in y. Returns whether anything changed. */
+/* Decide which fish couple in the Jacobian, from the positions in y. Returns whether anything changed. */
 int residual_couple(struct residual *residual, const double *y);
 
 /* value = F(t, y, yp). Returns STATUS_RETRY where a value is not finite. */
@@ -81,7 +81,8 @@ void residual_muscle(struct residual *residual, int f, double t, const double *y
  * the natural curvature of the last evaluation. */
 void residual_balance(const struct residual *residual, int f, const double *y, double *value);
 
-/* What Kutta's condition in its rate form gives for fish f, m2 s-2. With the fluid's velocity of the last evaluation. */
+/* What Kutta's condition in its rate form gives for fish f, m2 s-2. With the fluid's velocity of the last
+ * evaluation. */
 double residual_kutta_rate(const struct residual *residual, int f, double t, const double *y);
 
 /* The rate of the circulation shed by fish f where that is a differential unknown: as above, or 0 between impulses. */
@@ -99,8 +100,9 @@ void residual_kinds(const struct residual *residual, double *kind);
 /* The scale of unknown i, in its unit: what the error tolerance is relative to. */
 double residual_scale(const struct residual *residual, int i);
 
-/* The factor on the scale of unknown i for methods that do not damp the vibrations of a stiff body: velocities then have
- * the scale 0.1 L f, about that of the positions times 2 pi f, instead of one that never binds; 1 for other unknowns. */
+/* The factor on the scale of unknown i for methods that do not damp the vibrations of a stiff body: velocities then
+ * have the scale 0.1 L f, about that of the positions times 2 pi f, instead of one that never binds; 1 for other
+ * unknowns. */
 double residual_undamped(const struct residual *residual, int i);
 
 /* Where unknown i belongs. */

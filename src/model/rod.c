@@ -77,8 +77,8 @@ void rod_residual(const struct fish *fish, const double *natural_curvature, cons
     }
 }
 
-static void stamp_joint(const struct fish *fish, int j, double natural_curvature, double by_phi0, const double *y,
-                        struct sparse *jacobian) {
+static void joint_jacobian(const struct fish *fish, int j, double natural_curvature, double by_phi0, const double *y,
+                           struct sparse *jacobian) {
     const struct joint joint = joint_at(fish, j, y);
     double hessian[N_LOCAL][N_LOCAL], turned[N_LOCAL];
     joint_hessian(&joint, hessian);
@@ -110,7 +110,7 @@ static void stamp_joint(const struct fish *fish, int j, double natural_curvature
     }
 }
 
-static void stamp_edge(const struct fish *fish, int k, const double *y, struct sparse *jacobian) {
+static void edge_jacobian(const struct fish *fish, int k, const double *y, struct sparse *jacobian) {
     const struct edge edge = edge_at(fish, k, y);
     const double stretch_rate = edge_dot(edge.t, edge.rate), turn_rate = edge_turn_rate(&edge);
     const double tension =
@@ -133,9 +133,9 @@ static void stamp_edge(const struct fish *fish, int k, const double *y, struct s
 void rod_jacobian(const struct fish *fish, const double *natural_curvature, const double *curvature_by_phi0,
                   const double *y, struct sparse *jacobian) {
     for (int j = 0; j < fish->n_joints; j++) {
-        stamp_joint(fish, j, natural_curvature[j], curvature_by_phi0[j], y, jacobian);
+        joint_jacobian(fish, j, natural_curvature[j], curvature_by_phi0[j], y, jacobian);
     }
-    for (int k = 0; k < fish->n_edges; k++) stamp_edge(fish, k, y, jacobian);
+    for (int k = 0; k < fish->n_edges; k++) edge_jacobian(fish, k, y, jacobian);
 }
 
 double rod_bending_energy(const struct fish *fish, const double *natural_curvature, const double *y) {

@@ -70,8 +70,8 @@ double wake_circulation(const struct wake *wake, int i);
 int wake_n_sources(const struct wake *wake);
 double wake_source(const struct wake *wake, int i);
 
-/* The number of vortices that were released a lifetime or more before t; of markers, those whose stretch towards the next
- * one was. Except with impulsive shedding they have no strength left. */
+/* The number of vortices that were released a lifetime or more before t; of markers, those whose stretch towards the
+ * next one was. Except with impulsive shedding they have no strength left. */
 int wake_n_old(const struct wake *wake, const struct school *school, double t);
 
 /* Remove the old vortices. */

@@ -139,8 +139,8 @@ static int steer(struct state *state, struct residual *residual) {
     return jumps;
 }
 
-// what follows once every free vortex has its velocity: jumps tells whether the unknowns have jumped, *jumped whether they
-// have, or a control law makes them
+// what follows once every free vortex has its velocity: jumps tells whether the unknowns have jumped, *jumped whether
+// they have, or a control law makes them
 static enum status finish_event(struct state *state, struct residual *residual, struct initial_conditions *initial,
                                 int jumps, int *jumped) {
     TRY(take_flow(state, residual));

@@ -4,9 +4,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* The norms of a correction: of all unknowns, and of the differential ones alone. Among all, the algebraic ones hide how
- * slowly the places converge: where a sheet is shed the first correction of its circulation is a hundred times larger,
- * and gone with the second. */
+/* The norms of a correction: of all unknowns, and of the differential ones alone. Among all, the algebraic ones hide
+ * how slowly the places converge: where a sheet is shed the first correction of its circulation is a hundred times
+ * larger, and gone with the second. */
 enum { ALL, DIFFERENTIAL, N_NORMS };
 
 struct ida_newton {

@@ -1,4 +1,5 @@
-/* test_bound_sheet.c: impermeability, Kelvin, Kutta; flat plate and circular arc in closed form: doc/model.md, sections 6,
+/* test_bound_sheet.c: impermeability, Kelvin, Kutta; flat plate and circular arc in closed form: doc/model.md, sections
+ * 6,
  * 7 and 12. */
 #include <stdio.h>
 
@@ -29,7 +30,7 @@ static void value_of_sheet(struct setup *setup, const double *y, const double *y
     }
 }
 
-static void stamp_of_sheet(struct setup *setup, double cj, const double *y, struct sparse *jacobian) {
+static void jacobian_of_sheet(struct setup *setup, double cj, const double *y, struct sparse *jacobian) {
     for (int f = 0; f < setup->school->n_fish; f++) {
         const struct fish *fish = &setup->school->fish[f];
         const double *u, *v;
@@ -37,7 +38,7 @@ static void stamp_of_sheet(struct setup *setup, double cj, const double *y, stru
         bound_sheet_jacobian(fish, u, v, y, jacobian);
         bound_sheet_kutta_jacobian(fish, law, chi, cj, u, v, y, jacobian);
         for (int g = 0; g < setup->school->n_fish; g++) {
-            struct jacobian_scratch *const through = school_stamping(setup, f, g);
+            struct jacobian_scratch *const through = school_influence(setup, f, g);
             bound_sheet_flow_jacobian(fish, &through->block, y, &through->rows);
             if (law == BOUND_SHEET_RATE) bound_sheet_kutta_flow_jacobian(fish, chi, &through->block, y, &through->rows);
             school_add_rows(setup, f, g, jacobian);
@@ -45,7 +46,7 @@ static void stamp_of_sheet(struct setup *setup, double cj, const double *y, stru
     }
 }
 
-static void stamps_agree_with_differences(void **state) {
+static void derivatives_agree_with_differences(void **state) {
     (void)state;
     const char *const texts[] = {
         TIME "fish: [{sheet_points: 9}]\n",
@@ -72,7 +73,7 @@ static void stamps_agree_with_differences(void **state) {
             school_build(&setup, texts[i]);
             school_stir(&setup);
             law = laws[l];
-            school_compare(&setup, value_of_sheet, stamp_of_sheet, texts[i]);
+            school_compare(&setup, value_of_sheet, jacobian_of_sheet, texts[i]);
             school_clear(&setup);
         }
     }
@@ -286,7 +287,8 @@ static void strength_is_circulation_per_length_of_the_body_as_it_is(void **state
 
 static void end_correction_makes_a_sheet_that_ends_with_a_step_exact(void **state) {
     (void)state;
-    // a plate along x at rest with the strength s/L, which is 0 at the tail itself: normal velocity by Cauchy's integral
+    // a plate along x at rest with the strength s/L, which is 0 at the tail itself: normal velocity by Cauchy's
+    // integral
     for (int m = 5; m <= 33; m += 14) {
         char text[200];
         snprintf(text, sizeof text,
@@ -353,7 +355,7 @@ static void shedding_rate_is_edge_strength_times_slip(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(stamps_agree_with_differences),
+        cmocka_unit_test(derivatives_agree_with_differences),
         cmocka_unit_test(plate_without_circulation_is_exact_with_chebyshev_points),
         cmocka_unit_test(plate_with_kutta_condition_is_exact_with_chebyshev_points),
         cmocka_unit_test(plate_with_midpoints_converges),

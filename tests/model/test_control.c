@@ -236,12 +236,12 @@ static void value_of_control(struct setup *setup, const double *y, const double 
     control_residual(setup->school->fish, &setup->state->control[0], setup->t, setup->t - setup->state->t, y, value);
 }
 
-static void stamp_of_control(struct setup *setup, double cj, const double *y, struct sparse *jacobian) {
+static void jacobian_of_control(struct setup *setup, double cj, const double *y, struct sparse *jacobian) {
     (void)cj;
     control_jacobian(setup->school->fish, &setup->state->control[0], setup->t, setup->t - setup->state->t, y, jacobian);
 }
 
-static void stamp_agrees_with_differences(void **state) {
+static void derivatives_agree_with_differences(void **state) {
     (void)state;
     const char *const texts[] = {TIME "fish: [{control: {bias: 0.2}}]\n",
                                  TIME "fish: [{nodes: 8, control: {law: heading, desired_heading: 150}}]\n",
@@ -252,10 +252,10 @@ static void stamp_agrees_with_differences(void **state) {
         struct setup setup;
         school_build(&setup, texts[i]);
         school_stir(&setup);
-        school_compare(&setup, value_of_control, stamp_of_control, texts[i]);
+        school_compare(&setup, value_of_control, jacobian_of_control, texts[i]);
         // and when the last waypoint has been passed
         setup.state->control[0].waypoint = setup.school->fish[0].control.n_waypoints;
-        school_compare(&setup, value_of_control, stamp_of_control, texts[i]);
+        school_compare(&setup, value_of_control, jacobian_of_control, texts[i]);
         school_clear(&setup);
     }
 }
@@ -273,7 +273,7 @@ int main(void) {
         cmocka_unit_test(averaged_heading_takes_the_newest_mean_of_the_moment),
         cmocka_unit_test(course_is_damped_and_waits_for_a_whole_period),
         cmocka_unit_test(rate_is_that_of_the_bias_of_a_moving_fish),
-        cmocka_unit_test(stamp_agrees_with_differences),
+        cmocka_unit_test(derivatives_agree_with_differences),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -34,7 +34,7 @@ static void jacobian_of_forces(struct setup *setup, double cj, const double *y, 
         const struct flow_at_body flow = flow_at_body(setup->residual->flow, f);
         fluid_force_jacobian(fish, &flow, y, jacobian);
         for (int g = 0; g < setup->school->n_fish; g++) {
-            struct jacobian_scratch *const through = school_stamping(setup, f, g);
+            struct jacobian_scratch *const through = school_influence(setup, f, g);
             fluid_force_flow_jacobian(fish, &flow, &through->block, y, &through->rows);
             school_add_rows(setup, f, g, jacobian);
         }

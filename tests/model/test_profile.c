@@ -13,8 +13,8 @@ static struct fish_parameters foil(int nodes, double thickness, enum section sec
 
 static void joukowski_heights_are_those_of_the_mapped_circle(void **state) {
     (void)state;
-    // the thickness of both ends of an edge; where theta gives s, z(theta) gives r: check by the inverse, theta of every
-    // node found from s by Newton's method here
+    // the thickness of both ends of an edge; where theta gives s, z(theta) gives r: check by the inverse, theta of
+    // every node found from s by Newton's method here
     const double d = 0.15, r0 = 1.3 * (1 - d) / 4, c = r0 * (1 + d), nose = 2 * r0 * (1 + d * d) / (d - 1);
     const struct fish_parameters fish = foil(9, d, SECTION_NODES);
     double before = 0;

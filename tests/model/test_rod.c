@@ -25,12 +25,12 @@ static void value_of_rod(struct setup *setup, const double *y, const double *yp,
     }
 }
 
-static void stamp_of_rod(struct setup *setup, double cj, const double *y, struct sparse *jacobian) {
+static void jacobian_of_rod(struct setup *setup, double cj, const double *y, struct sparse *jacobian) {
     (void)cj;
     rod_jacobian(setup->school->fish, natural, by_phi0, y, jacobian);
 }
 
-static void stamp_agrees_with_differences(void **state) {
+static void derivatives_agree_with_differences(void **state) {
     (void)state;
     const char *const texts[] = {TIME "fish: [{" BODY "}]\n", TIME "fish: [{body: {second_moment: published}}]\n",
                                  TIME "fish: [{body: {modulus: 1.0e+9}}]\n",
@@ -39,7 +39,7 @@ static void stamp_agrees_with_differences(void **state) {
         struct setup setup;
         school_build(&setup, texts[i]);
         school_stir(&setup);
-        school_compare(&setup, value_of_rod, stamp_of_rod, texts[i]);
+        school_compare(&setup, value_of_rod, jacobian_of_rod, texts[i]);
         school_clear(&setup);
     }
 }
@@ -243,7 +243,7 @@ static void muscle_power_is_the_change_of_energy_at_a_fixed_shape(void **state) 
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(stamp_agrees_with_differences),
+        cmocka_unit_test(derivatives_agree_with_differences),
         cmocka_unit_test(elastic_force_is_minus_the_gradient_of_the_energy),
         cmocka_unit_test(internal_forces_have_no_sum_and_no_moment),
         cmocka_unit_test(damping_power_is_that_of_the_damping_forces_and_never_positive),

@@ -1,4 +1,5 @@
-/* test_wake_interpolation.c: the interpolated velocity against the sum over every vortex: doc/numerics.md, section 12. */
+/* test_wake_interpolation.c: the interpolated velocity against the sum over every vortex: doc/numerics.md, section
+ * 12. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

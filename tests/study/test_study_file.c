@@ -1,5 +1,5 @@
-/* test_study_file.c: observed orders, extrapolated values and grid convergence indices; study.nc; tables. What processes
- * do: test_study.sh. */
+/* test_study_file.c: observed orders, extrapolated values and grid convergence indices; study.nc; tables. What
+ * processes do: test_study.sh. */
 #include <netcdf.h>
 #include <stdio.h>
 #include <stdlib.h>

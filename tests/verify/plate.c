@@ -4,8 +4,9 @@
  * Linear theory has a vortex sheet that begins at the edge itself. So has the program by default (shedding: sheet); the
  * checks at default settings hold for it. With shedding: continuous it has vortices of radius delta (smoothing), the
  * newest at half the distance w Dt that the fluid goes past the tail in one interval. Near the edge their effect on the
- * bound circulation is an integral with 1/sqrt(distance): smoothing takes a part of order sqrt(delta/L) off it, one vortex
- * at the centroid instead of a sheet a part of order sqrt(U Dt/L). That is what the studies of point vortices show. */
+ * bound circulation is an integral with 1/sqrt(distance): smoothing takes a part of order sqrt(delta/L) off it, one
+ * vortex at the centroid instead of a sheet a part of order sqrt(U Dt/L). That is what the studies of point vortices
+ * show. */
 #include <complex.h>
 #include <math.h>
 #include <stdio.h>
@@ -292,9 +293,9 @@ static double impulse(const struct simulation *simulation) {
     return sum;
 }
 
-/* Obtained over exact: the bound circulation and the lift of a heaving plate with n intervals a period, each fitted over
- * the second period with a sine and, for what is left of the start, a straight line. It starts at its lowest point with no
- * velocity. */
+/* Obtained over exact: the bound circulation and the lift of a heaving plate with n intervals a period, each fitted
+ * over the second period with a sine and, for what is left of the start, a straight line. It starts at its lowest point
+ * with no velocity. */
 struct heaving {
     double complex circulation, lift;
 };

@@ -185,8 +185,8 @@ static void check_interval(void) {
                    1.1);
 
     // vortices that fade out and are removed during the run: their ages count from their release, while each stands for
-    // what was shed half an interval before it; that makes it first order, doc/numerics.md, section 5. Counted from half
-    // an interval earlier, the orders are 2.04, 2.02, 2.04 and 2.05
+    // what was shed half an interval before it; that makes it first order, doc/numerics.md, section 5. Counted from
+    // half an interval earlier, the orders are 2.04, 2.02, 2.04 and 2.05
     static const char fades[] = "1: the age of a vortex counts from its release";
     struct variant fading = usual;
     fading.wake = "lifetime: 0.64, fade: 0.32";

@@ -1,5 +1,5 @@
-/* sheet.c: the section "sheet": the bound sheet alone against the closed forms of thin plates and circular arcs, and bent
- * fish against themselves with many nodes.
+/* sheet.c: the section "sheet": the bound sheet alone against the closed forms of thin plates and circular arcs, and
+ * bent fish against themselves with many nodes.
  *
  * The rows of impermeability and Kelvin of the residual are linear in the strengths: probing the residual with unit
  * strengths gives their matrix, and a dense solver of this file solves it. So what is measured is the discretisation
@@ -386,8 +386,8 @@ static void figure_of_the_arc(void) {
     }
 }
 
-/* Of the polygon. The body between its nodes is straight. With 1025 nodes its corners add a few per cent to the errors at M = 33
- * (figure sheet_arc: with 257 nodes 14 % of that of the circulation, with 65 more than half of it). */
+/* Of the polygon. The body between its nodes is straight. With 1025 nodes its corners add a few per cent to the errors
+ * at M = 33 (figure sheet_arc: with 257 nodes 14 % of that of the circulation, with 65 more than half of it). */
 static void circular_arc(void) {
     static const char source[] = "Joukowski's map of a circle, exact";
     const int n_nodes = 1025;

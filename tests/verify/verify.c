@@ -1,4 +1,5 @@
-/* verify.c: the program of one section: verify SECTION [--fast] [-o TABLE]. Exit code 0, or 3 where a bound is missed. */
+/* verify.c: the program of one section: verify SECTION [--fast] [-o TABLE]. Exit code 0, or 3 where a bound is
+ * missed. */
 #include "verify.h"
 
 #include <math.h>

@@ -23,8 +23,8 @@ void verify_energy(void);
 /* Only the checks that take seconds are wanted: `make test` runs those. */
 int verify_is_fast(void);
 
-/* A check: |obtained - reference| <= bound; or, relative, |obtained - reference| <= bound |reference|. source says where
- * the reference comes from. */
+/* A check: |obtained - reference| <= bound; or, relative, |obtained - reference| <= bound |reference|. source says
+ * where the reference comes from. */
 void verify_value(const char *quantity, const char *source, double reference, double obtained, double bound);
 void verify_relative(const char *quantity, const char *source, double reference, double obtained, double bound);
 
@@ -54,8 +54,8 @@ const char *verify_text(const char *format, ...) __attribute__((format(printf, 1
 /* A text with this line has the defaults of the second edition of the model. */
 #define VERIFY_SECOND "# second edition\n"
 
-/* Open a case given as text (printf format), with at most 16 kB, and without VERIFY_SECOND or a preset with the defaults of
- * the first edition (tests/data/first_edition.yaml); the section ends with the message where that fails. */
+/* Open a case given as text (printf format), with at most 16 kB, and without VERIFY_SECOND or a preset with the
+ * defaults of the first edition (tests/data/first_edition.yaml); the section ends with the message where that fails. */
 struct simulation *verify_open(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 /* Step until the time has come; the section ends with the message where that fails. */
