@@ -66,13 +66,13 @@ static int test_quantity(const struct case_values *study, const struct member_fi
         return 0;
     }
     // a number has no second direction
-    const double span_x = extrema.max[0] - extrema.min[0];
-    const double span_y = sweep_quantities[q].of_xy ? extrema.max[1] - extrema.min[1] : 0;
+    const double width = extrema.max[0] - extrema.min[0];
+    const double height = sweep_quantities[q].of_xy ? extrema.max[1] - extrema.min[1] : 0;
     // each is printed
     const int n_met =
         test_bound("the smallest is", extrema.min[0], "least", one->min, stream) +
         test_bound("the largest is", extrema.max[0], "most", one->max, stream) +
-        test_bound("they differ by", hypot(span_x, span_y), "most", one->spread, stream) +
+        test_bound("they differ by", hypot(width, height), "most", one->spread, stream) +
         test_bound("their ratio is", ratio_of(extrema.min[0], extrema.max[0]), "most", one->ratio, stream);
     return n_met == 4;
 }
