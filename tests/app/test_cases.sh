@@ -19,7 +19,7 @@ import numpy as np
 
 program, cases, table = sys.argv[1:]
 counts = {"ok": 0, "FAILED": 0, "skipped": 0}
-LONG = ["stiffness"]  # studies of minutes, to be run by hand
+LONG = ["start_speed", "stiffness"]  # studies of minutes, to be run by hand
 
 
 def check(name, good, words=""):
