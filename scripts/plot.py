@@ -4,7 +4,7 @@
     plot.py [swim] RUN.nc [PICTURE]    bodies, wakes and the paths of the fish, at the end or at --times 1 2 3
     plot.py gait   RUN.nc [PICTURE]    the shapes that the muscle asks for, over the last beat
     plot.py study  STUDY.nc [PICTURE]  what a study or a comparison of methods calls for: orders, costs, maps
-    plot.py time   RUN.nc [PICTURE]    speed, heading and power over time; with --audit the energy audit too
+    plot.py time   RUN.nc [PICTURE]    speed, heading, power and forces over time; with --audit the energy audit too
 """
 
 import argparse
@@ -229,17 +229,43 @@ def plot_gait(results, options):
     return figure
 
 
+# The forces on a body and their lines; what a prescribed motion takes is drawn where there is one.
+FORCES = {"resistive_force": ":", "reactive_force": "--", "constraint_force": "-."}
+
+
+def draw_forces(axes, results):
+    """The forces by name along the heading, their sum without the constraint (thrust) as full line."""
+    angle = np.radians(results["heading"])
+    styles = {"thrust": "-"}
+    along = {"thrust": results["thrust"]}
+    for name, style in FORCES.items():
+        force = results[name]
+        if name == "constraint_force" and not force.any():
+            continue
+        styles[name] = style
+        along[name] = np.cos(angle) * force[:, :, 0] + np.sin(angle) * force[:, :, 1]
+    for name, style in styles.items():
+        for f, values in enumerate(along[name].T):
+            axes.plot(results.time, values, color=LINES[f % len(LINES)], lw=1 if name == "thrust" else 0.7, ls=style)
+    handles = [Line2D([], [], color="black", lw=1, ls=s, label=n.replace("_force", "")) for n, s in styles.items()]
+    axes.legend(handles=handles, loc="upper right", ncol=len(handles), borderpad=0, columnspacing=1.5)
+
+
 def plot_time(results, options):
-    """Speed, heading and power over time in stacked panels, one line per fish."""
+    """Speed, heading, power and forces over time in stacked panels, one line per fish."""
     rows = [("speed", "speed [m/s]"), ("heading", "heading [degree]"), ("actuation_power", "muscle power [W]")]
     if options.audit:
         rows.append(("energy_audit", "energy audit [J]"))
+    rows.append((None, "force ahead [N]"))
     figure, stack = pyplot.subplots(
         len(rows), 1, sharex=True, layout="constrained", figsize=(WIDTH, 0.5 + 1.5 * len(rows))
     )
     for axes, (variable, label) in zip(stack, rows):
-        for f, values in enumerate(results[variable].T):
-            axes.plot(results.time, values, color=LINES[f % len(LINES)], lw=1, label=results.names[f])
+        if variable:
+            for f, values in enumerate(results[variable].T):
+                axes.plot(results.time, values, color=LINES[f % len(LINES)], lw=1, label=results.names[f])
+        else:
+            draw_forces(axes, results)
         axes.set_ylabel(label)
         axes.grid(lw=0.3, color="#cccccc")
         axes.margins(x=0)
@@ -265,7 +291,7 @@ def plot_study(path, options):
 PICTURES = {
     "swim": (plot_swim, "bodies, wakes and paths (the default)"),
     "gait": (plot_gait, "the shapes that the muscle asks for, over one beat"),
-    "time": (plot_time, "speed, heading and power over time"),
+    "time": (plot_time, "speed, heading, power and forces over time"),
     "study": (plot_study, "a study or a comparison of methods"),
 }
 

@@ -22,9 +22,12 @@ struct case_solver {
     int max_steps; /* per shedding interval */
 };
 
+enum output_forces { OUTPUT_FORCES_TOTALS, OUTPUT_FORCES_EDGES };
+
 struct case_output {
     char *file; /* NULL: the name of the case with .nc, in the working directory */
     enum precision precision;
+    enum output_forces forces;
     double wake_interval; /* s; default the output interval */
 };
 

@@ -70,6 +70,10 @@ double clamp_damping_power(const struct fish *fish, double t, const double *y) {
     return -clamp.by_rate * clamp.angle_rate * clamp.angle_rate;
 }
 
+double clamp_moment(const struct fish *fish, double t, const double *y) {
+    return fish->has_clamp ? -clamp_at(fish, t, y).moment : 0;
+}
+
 double clamp_driving_power(const struct fish *fish, double t, const double *y) {
     if (!fish->has_clamp) return 0;
     const struct clamp clamp = clamp_at(fish, t, y);

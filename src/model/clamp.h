@@ -25,4 +25,7 @@ double clamp_energy(const struct fish *fish, double t, const double *y);
 double clamp_damping_power(const struct fish *fish, double t, const double *y);
 double clamp_driving_power(const struct fish *fish, double t, const double *y);
 
+/* The moment of the clamp on the body, N m; 0 without one. */
+double clamp_moment(const struct fish *fish, double t, const double *y);
+
 #endif

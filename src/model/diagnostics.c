@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/angle.h"
 #include "model/actuation.h"
@@ -50,6 +51,53 @@ static double driving_power(struct residual *residual, int f, double t, const do
     return power;
 }
 
+// what a prescribed motion takes: the reactions of its nodes, and their moment with that of the clamp
+static void find_constraint(struct residual *residual, int f, double t, const double *y, struct diagnostics_fish *to) {
+    const struct fish *fish = &residual->school->fish[f];
+    double *const reaction = residual->scratch;
+    to->constraint_force[0] = to->constraint_force[1] = 0;
+    to->constraint_moment = clamp_moment(fish, t, y);
+    if (fish->motion.prescribed == PRESCRIBED_NONE) return;
+    residual_balance(residual, f, y, reaction);
+    for (int k = 0; k < fish_n_prescribed(fish); k++) {
+        const double force[2] = {reaction[fish->at.ax + k], reaction[fish->at.ay + k]};
+        const double arm[2] = {y[fish->at.x + k] - to->com[0], y[fish->at.y + k] - to->com[1]};
+        for (int i = 0; i < 2; i++) to->constraint_force[i] += force[i];
+        to->constraint_moment += arm[0] * force[1] - arm[1] * force[0];
+    }
+}
+
+// the forces on the body by name; thrust is what the fluid's forces are along the heading
+static void find_forces(struct residual *residual, int f, double t, const double *y, struct diagnostics_fish *to) {
+    const struct fish *fish = &residual->school->fish[f];
+    const struct flow_at_body flow = flow_at_body(residual->flow, f);
+    const struct fluid_forces forces = fluid_force_sum(fish, &flow, to->com, y);
+    const double heading = control_heading(fish, y), ahead[2] = {cos(heading), sin(heading)};
+    to->thrust = 0;
+    for (int i = 0; i < 2; i++) {
+        to->resistive_force[i] = forces.resistive[i];
+        to->reactive_force[i] = forces.reactive[i];
+        to->thrust += (forces.resistive[i] + forces.reactive[i]) * ahead[i];
+    }
+    to->resistive_moment = forces.resistive_moment;
+    to->reactive_moment = forces.reactive_moment;
+    find_constraint(residual, f, t, y, to);
+}
+
+// the power of the fluid's forces as seen by one who drifts with the external flow at the centre of mass
+static double power_on_water(struct residual *residual, int f, double t, const struct fluid_power *power,
+                             const double *y) {
+    const struct fish *fish = &residual->school->fish[f];
+    const struct flow_at_body flow = flow_at_body(residual->flow, f);
+    const double com[2] = {mass_mean(fish, y + fish->at.x), mass_mean(fish, y + fish->at.y)};
+    double stream[2], on_water = power->drag + power->added_mass + power->wake;
+    flow_external(residual->school, t, com[1], &stream[0], &stream[1]);
+    if (!(fabs(stream[0]) + fabs(stream[1]) > 0)) return on_water;
+    const struct fluid_forces forces = fluid_force_sum(fish, &flow, com, y);
+    for (int i = 0; i < 2; i++) on_water -= (forces.resistive[i] + forces.reactive[i]) * stream[i];
+    return on_water;
+}
+
 struct diagnostics_power diagnostics_power(struct residual *residual, int f, double t, const double *y) {
     const struct fish *fish = &residual->school->fish[f];
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
@@ -66,6 +114,7 @@ struct diagnostics_power diagnostics_power(struct residual *residual, int f, dou
                                       .drag = fluid.drag,
                                       .added_mass = fluid.added_mass,
                                       .wake = fluid.wake,
+                                      .on_water = power_on_water(residual, f, t, &fluid, y),
                                       .driving = driving_power(residual, f, t, y, residual->scratch)};
 }
 
@@ -90,8 +139,12 @@ double diagnostics_energy(struct residual *residual, int f, double t, const doub
     return kinetic_energy(fish, y) + bending_energy(residual, f, t, y) + rod_stretching_energy(fish, y);
 }
 
-static double total_power(const struct diagnostics_power *power) {
-    return power->actuation + power->damping + power->drag + power->added_mass + power->wake + power->driving;
+// the powers whose work is kept
+static void gather_powers(const struct diagnostics_power *power, double *of) {
+    of[WORK_ALL] = power->actuation + power->damping + power->drag + power->added_mass + power->wake + power->driving;
+    of[WORK_ACTUATION] = power->actuation;
+    of[WORK_FLUID] = power->on_water;
+    of[WORK_DAMPING] = power->damping;
 }
 
 // integral over the newest interval of the quadratic through three values, or the line through two
@@ -107,24 +160,22 @@ void diagnostics_step(struct residual *residual, struct state *state, double t, 
         struct energy_balance *balance = &state->balance[f];
         const struct diagnostics_power now = diagnostics_power(residual, f, t, y);
         const double times[3] = {t, balance->t[0], balance->t[1]};
-        const double power[3] = {total_power(&now), balance->power[0], balance->power[1]};
-        const double actuation[3] = {now.actuation, balance->actuation_power[0], balance->actuation_power[1]};
-        if (t > times[1]) {
-            balance->work += newest_area(balance->n + 1, times, power);
-            balance->actuation_work += newest_area(balance->n + 1, times, actuation);
+        double newest[N_WORKS];
+        gather_powers(&now, newest);
+        for (int i = 0; i < N_WORKS; i++) {
+            const double power[3] = {newest[i], balance->power[0][i], balance->power[1][i]};
+            if (t > times[1]) balance->work[i] += newest_area(balance->n + 1, times, power);
+            balance->power[1][i] = power[1];
+            balance->power[0][i] = power[0];
         }
-        for (int i = 0; i < 2; i++) {
-            balance->t[i] = times[i];
-            balance->power[i] = power[i];
-            balance->actuation_power[i] = actuation[i];
-        }
+        for (int i = 0; i < 2; i++) balance->t[i] = times[i];
         if (balance->n < 2) balance->n++;
     }
 }
 
 void diagnostics_before_jump(struct residual *residual, struct state *state) {
     for (int f = 0; f < residual->school->n_fish; f++) {
-        state->balance[f].work -= diagnostics_energy(residual, f, state->t, state->y);
+        state->balance[f].work[WORK_ALL] -= diagnostics_energy(residual, f, state->t, state->y);
     }
 }
 
@@ -133,13 +184,12 @@ void diagnostics_begin(struct residual *residual, struct state *state, int f) {
     const struct diagnostics_power now = diagnostics_power(residual, f, state->t, state->y);
     balance->n = 1;
     balance->t[0] = state->t;
-    balance->power[0] = total_power(&now);
-    balance->actuation_power[0] = now.actuation;
+    gather_powers(&now, balance->power[0]);
 }
 
 void diagnostics_after_jump(struct residual *residual, struct state *state) {
     for (int f = 0; f < residual->school->n_fish; f++) {
-        state->balance[f].work += diagnostics_energy(residual, f, state->t, state->y);
+        state->balance[f].work[WORK_ALL] += diagnostics_energy(residual, f, state->t, state->y);
         diagnostics_begin(residual, state, f);
     }
 }
@@ -148,27 +198,46 @@ void diagnostics_start(struct residual *residual, struct state *state) {
     diagnostics_after_jump(residual, state);
     for (int f = 0; f < residual->school->n_fish; f++) {
         state->balance[f].initial_energy = diagnostics_energy(residual, f, state->t, state->y);
-        state->balance[f].work = 0;
+        memset(state->balance[f].work, 0, sizeof state->balance[f].work);
+    }
+}
+
+// the way through the water between two samples, m
+static void way_through_water(const struct sample *new, const struct sample *old, double way[2]) {
+    for (int i = 0; i < 2; i++) way[i] = new->com[i] - old->com[i] - (new->drifted[i] - old->drifted[i]);
+}
+
+// what a sample has from those before it: the drift of the stream, by trapezoids, and the heading without jumps
+static void continue_sample(const struct history *history, double interval, struct sample *sample) {
+    if (history->n == 0) return;
+    const struct sample *before = state_recall(history, 0);
+    sample->heading = before->heading + angle_wrap(sample->heading - before->heading);
+    for (int i = 0; i < 2; i++) {
+        sample->drifted[i] = before->drifted[i] + interval * (before->stream[i] + sample->stream[i]) / 2;
     }
 }
 
 void diagnostics_remember(struct residual *residual, struct state *state) {
+    const double interval = residual->school->interval;
     for (int f = 0; f < residual->school->n_fish; f++) {
         const struct fish *fish = &residual->school->fish[f];
         const double *const y = state->y;
         struct history *history = &state->history[f];
-        double heading = control_heading(fish, y);
-        if (history->n > 0) {
-            const double before = state_recall(history, 0)->heading;
-            heading = before + angle_wrap(heading - before);
-        }
         const int tail = fish->n_nodes - 1;
         struct sample sample = {.com = {mass_mean(fish, y + fish->at.x), mass_mean(fish, y + fish->at.y)},
                                 .velocity = {mass_mean(fish, y + fish->at.vx), mass_mean(fish, y + fish->at.vy)},
                                 .tail = {y[fish->at.x + tail], y[fish->at.y + tail]},
-                                .heading = heading,
-                                .actuation_work = state->balance[f].actuation_work};
+                                .speed = NAN,
+                                .heading = control_heading(fish, y)};
         flow_external(residual->school, state->t, sample.com[1], &sample.stream[0], &sample.stream[1]);
+        memcpy(sample.work, state->balance[f].work, sizeof sample.work);
+        continue_sample(history, interval, &sample);
+        // the newest sample of a full history takes the place of the one of a period and an interval ago
+        if (history->capacity > 1 && history->n >= history->capacity - 1) {
+            double way[2];
+            way_through_water(&sample, state_recall(history, history->capacity - 2), way);
+            sample.speed = hypot(way[0], way[1]) / ((history->capacity - 1) * interval);
+        }
         state_remember(history, &sample);
     }
 }
@@ -194,32 +263,48 @@ double diagnostics_mean_heading(const struct history *history) {
     return sum / (history->n - 1);
 }
 
-// extent of the tail's path across the displacement of the fish
-static double peak_to_peak(const struct history *history, const double displacement[2], double distance) {
+// extent of the tail's path through the water, across the fish's way
+static double peak_to_peak(const struct history *history, const double way[2], double distance) {
     double min = INFINITY, max = -INFINITY;
     for (int age = 0; age < history->n; age++) {
-        const double *tail = state_recall(history, age)->tail;
-        const double across = (displacement[0] * tail[1] - displacement[1] * tail[0]) / distance;
+        const struct sample *sample = state_recall(history, age);
+        const double x = sample->tail[0] - sample->drifted[0], y = sample->tail[1] - sample->drifted[1];
+        const double across = (way[0] * y - way[1] * x) / distance;
         min = fmin(min, across);
         max = fmax(max, across);
     }
     return max - min;
 }
 
-// speed, cost of transport and Strouhal number over the last period, or since the start where that is less
+// the change of the mean speed from the period before the last one to the last, over the last
+static double drift_of(const struct history *history) {
+    const double now = state_recall(history, 0)->speed, before = state_recall(history, history->n - 1)->speed;
+    return (now - before) / now;
+}
+
+// what is stated over the last period, or since the start where that is less
 static void diagnostics_period(const struct fish *fish, const struct history *history, double interval,
                                struct diagnostics_fish *to) {
-    to->speed = hypot(to->com_velocity[0], to->com_velocity[1]);
-    to->cost_of_transport = to->strouhal = NAN;
-    if (history->n < 2) return;
     const struct sample *new = state_recall(history, 0), *old = state_recall(history, history->n - 1);
+    to->ground_speed = hypot(to->com_velocity[0], to->com_velocity[1]);
+    to->speed = hypot(to->com_velocity[0] - new->stream[0], to->com_velocity[1] - new->stream[1]);
+    to->drift = to->heading_error = to->strouhal = NAN;
+    to->cost_of_transport = to->cost_of_transport_fluid = to->cost_of_transport_body = NAN;
+    if (history->n < 2) return;
     const double duration = (history->n - 1) * interval;
-    const double displacement[2] = {new->com[0] - old->com[0], new->com[1] - old->com[1]};
-    const double distance = hypot(displacement[0], displacement[1]);
+    double way[2];
+    way_through_water(new, old, way);
+    const double distance = hypot(way[0], way[1]);
+    to->ground_speed = hypot(new->com[0] - old->com[0], new->com[1] - old->com[1]) / duration;
     to->speed = distance / duration;
+    to->drift = drift_of(history);
     if (distance <= 0) return;
-    to->cost_of_transport = (new->actuation_work - old->actuation_work) / duration / (fish->total_mass * to->speed);
-    to->strouhal = fish->frequency * peak_to_peak(history, displacement, distance) / to->speed;
+    to->heading_error = angle_degrees(angle_wrap(atan2(way[1], way[0]) - angle_radians(to->desired_heading)));
+    const double momentum = fish->total_mass * to->speed;
+    to->cost_of_transport = (new->work[WORK_ACTUATION] - old->work[WORK_ACTUATION]) / duration / momentum;
+    to->cost_of_transport_fluid = (old->work[WORK_FLUID] - new->work[WORK_FLUID]) / duration / momentum;
+    to->cost_of_transport_body = (old->work[WORK_DAMPING] - new->work[WORK_DAMPING]) / duration / momentum;
+    to->strouhal = fish->frequency * peak_to_peak(history, way, distance) / to->speed;
 }
 
 static double shedding_rate(const struct residual *residual, const struct state *state, int f) {
@@ -235,10 +320,11 @@ static void diagnostics_one(struct residual *residual, const struct state *state
     to->com[1] = mass_mean(fish, y + fish->at.y);
     to->com_velocity[0] = mass_mean(fish, y + fish->at.vx);
     to->com_velocity[1] = mass_mean(fish, y + fish->at.vy);
-    diagnostics_period(fish, history, residual->school->interval, to);
     to->heading = angle_degrees(state_recall(history, 0)->heading);
     const double desired = control_desired_heading(fish, &state->control[f], state->t, y);
     to->desired_heading = to->heading - angle_degrees(angle_wrap(angle_radians(to->heading) - desired));
+    diagnostics_period(fish, history, residual->school->interval, to);
+    find_forces(residual, f, state->t, y, to);
     to->phi0 = y[fish->at.phi0];
     to->shed_circulation = y[fish->at.circulation];
     to->shedding_rate = shedding_rate(residual, state, f);
@@ -255,9 +341,9 @@ static void diagnostics_one(struct residual *residual, const struct state *state
     to->wake_power = power.wake;
     to->driving_power = power.driving;
     const struct energy_balance *balance = &state->balance[f];
-    to->energy_audit =
-        to->kinetic_energy + to->bending_energy + to->stretching_energy - balance->initial_energy - balance->work;
-    to->actuation_work = balance->actuation_work;
+    to->energy_audit = to->kinetic_energy + to->bending_energy + to->stretching_energy - balance->initial_energy -
+                       balance->work[WORK_ALL];
+    to->actuation_work = balance->work[WORK_ACTUATION];
 }
 
 // every vortex counted one by one: bound, nascent, free, removed

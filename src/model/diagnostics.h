@@ -10,9 +10,12 @@
 /* One fish at one event. */
 struct diagnostics_fish {
     double com[2], com_velocity[2]; /* centre of mass, m, m s-1 */
-    double speed;                   /* of the centre of mass over the last period, m s-1 */
-    double heading;                 /* degree, unwrapped */
-    double desired_heading;         /* degree */
+    double speed,
+        ground_speed;       /* of the centre of mass over the last period, through the water and over ground, m s-1 */
+    double drift;           /* of the speed: change from one period to the next, over it; NaN before the second */
+    double heading;         /* degree, unwrapped */
+    double desired_heading; /* degree */
+    double heading_error;   /* of the way through the water over the last period, against it, degree */
     double phi0;
     double shed_circulation;                                  /* m2 s-1 */
     double shedding_rate;                                     /* m2 s-2 */
@@ -20,9 +23,14 @@ struct diagnostics_fish {
     double added_mass_energy;                                 /* of the fluid that the body accelerates, J */
     double actuation_power, damping_power, drag_power, added_mass_power, wake_power, driving_power; /* W */
     double energy_audit;                                                                            /* J */
-    double actuation_work;    /* put in by the muscle since the start, J */
-    double cost_of_transport; /* mean actuation power over mass and speed, m s-2 */
-    double strouhal;          /* frequency times peak-to-peak of the tail over speed */
+    double actuation_work;                                             /* put in by the muscle since the start, J */
+    double resistive_force[2], reactive_force[2], constraint_force[2]; /* on the body, N */
+    double resistive_moment, reactive_moment, constraint_moment;       /* about the centre of mass, N m */
+    double thrust;                                                     /* forces of the fluid along the heading, N */
+    double cost_of_transport;       /* mean actuation power over mass and speed, m s-2 */
+    double cost_of_transport_fluid; /* the part that goes into the fluid, */
+    double cost_of_transport_body;  /* and the part that damping takes */
+    double strouhal;                /* frequency times peak-to-peak of the tail over speed */
 };
 
 /* The school at one event. */
@@ -41,6 +49,7 @@ void diagnostics_free(struct diagnostics *diagnostics);
 /* Powers of one fish, W, from the unknowns and the fluid's velocity in the last residual evaluated. */
 struct diagnostics_power {
     double actuation, damping, drag, added_mass, wake, driving;
+    double on_water; /* of drag, added mass and wake together, seen from the external flow at the centre of mass */
 };
 struct diagnostics_power diagnostics_power(struct residual *residual, int f, double t, const double *y);
 

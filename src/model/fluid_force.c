@@ -5,24 +5,71 @@
 #include "model/edge.h"
 #include "model/reactive.h"
 
+// drag on an edge, the reactive force on its two nodes, and what leaves at the tail: on the tail node, of the last edge
+struct edge_forces {
+    struct edge edge;
+    double drag[2], reactive[2][2], tail[2];
+};
+
+static struct edge_forces forces_of_edge(const struct fish *fish, const struct flow_at_body *flow, int k,
+                                         const double *y) {
+    struct edge_forces on = {.edge = edge_at(fish, k, y)};
+    double w[2];
+    flow_relative_velocity(fish, k, on.edge.velocity, flow->u, flow->v, w);
+    drag_force(fish, k, &on.edge, w, on.drag);
+    reactive_force(fish, k, &on.edge, w, flow->acceleration, on.reactive);
+    if (k == fish->n_edges - 1) reactive_tail_force(fish, &on.edge, w, on.tail);
+    return on;
+}
+
 void fluid_force_residual(const struct fish *fish, const struct flow_at_body *flow, const double *y, double *residual) {
     const int last = fish->n_edges - 1;
     for (int k = 0; k <= last; k++) {
-        const struct edge edge = edge_at(fish, k, y);
-        double w[2], drag[2], reactive[2][2];
-        flow_relative_velocity(fish, k, edge.velocity, flow->u, flow->v, w);
-        drag_force(fish, k, &edge, w, drag);
-        reactive_force(fish, k, &edge, w, flow->acceleration, reactive);
+        const struct edge_forces on = forces_of_edge(fish, flow, k, y);
         for (int end = 0; end < 2; end++) {
-            residual[fish->at.ax + k + end] -= drag[0] / 2 + reactive[end][0];
-            residual[fish->at.ay + k + end] -= drag[1] / 2 + reactive[end][1];
+            residual[fish->at.ax + k + end] -= on.drag[0] / 2 + on.reactive[end][0];
+            residual[fish->at.ay + k + end] -= on.drag[1] / 2 + on.reactive[end][1];
         }
         if (k < last) continue;
-        double tail[2];
-        reactive_tail_force(fish, &edge, w, tail);
-        residual[fish->at.ax + k + 1] -= tail[0];
-        residual[fish->at.ay + k + 1] -= tail[1];
+        residual[fish->at.ax + k + 1] -= on.tail[0];
+        residual[fish->at.ay + k + 1] -= on.tail[1];
     }
+}
+
+static double moment_of(const double place[2], const double about[2], const double force[2]) {
+    return (place[0] - about[0]) * force[1] - (place[1] - about[1]) * force[0];
+}
+
+struct fluid_forces fluid_force_of_edge(const struct fish *fish, const struct flow_at_body *flow, int k,
+                                        const double about[2], const double *y) {
+    const struct edge_forces on = forces_of_edge(fish, flow, k, y);
+    struct fluid_forces forces = {.resistive = {on.drag[0], on.drag[1]},
+                                  .resistive_moment = moment_of(on.edge.middle, about, on.drag)};
+    for (int end = 0; end < 2; end++) {
+        const double node[2] = {y[edge_place(fish, 0, k + end)], y[edge_place(fish, 1, k + end)]};
+        double force[2];
+        for (int i = 0; i < 2; i++) {
+            force[i] = on.reactive[end][i] + (end == 1 ? on.tail[i] : 0);
+            forces.reactive[i] += force[i];
+        }
+        forces.reactive_moment += moment_of(node, about, force);
+    }
+    return forces;
+}
+
+struct fluid_forces fluid_force_sum(const struct fish *fish, const struct flow_at_body *flow, const double about[2],
+                                    const double *y) {
+    struct fluid_forces sum = {.resistive_moment = 0};
+    for (int k = 0; k < fish->n_edges; k++) {
+        const struct fluid_forces of_edge = fluid_force_of_edge(fish, flow, k, about, y);
+        for (int i = 0; i < 2; i++) {
+            sum.resistive[i] += of_edge.resistive[i];
+            sum.reactive[i] += of_edge.reactive[i];
+        }
+        sum.resistive_moment += of_edge.resistive_moment;
+        sum.reactive_moment += of_edge.reactive_moment;
+    }
+    return sum;
 }
 
 // the derivatives of all forces of edge k on its two nodes, half of the drag on each

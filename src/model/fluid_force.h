@@ -25,6 +25,17 @@ struct fluid_power {
 };
 struct fluid_power fluid_force_power(const struct fish *fish, const struct flow_at_body *flow, const double *y);
 
+/* The forces on a body or an edge of it, N, and their moments about a point, N m. Reactive: with what leaves at the
+ * tail, and the pressure gradient of the external flow. */
+struct fluid_forces {
+    double resistive[2], reactive[2];
+    double resistive_moment, reactive_moment;
+};
+struct fluid_forces fluid_force_of_edge(const struct fish *fish, const struct flow_at_body *flow, int k,
+                                        const double about[2], const double *y);
+struct fluid_forces fluid_force_sum(const struct fish *fish, const struct flow_at_body *flow, const double about[2],
+                                    const double *y);
+
 /* Kinetic energy of the fluid that the body accelerates: of all edges, J. */
 double fluid_force_added_mass_energy(const struct fish *fish, const struct flow_at_body *flow, const double *y);
 

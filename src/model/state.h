@@ -8,13 +8,19 @@
 #include "model/fish.h"
 #include "model/wake.h"
 
+/* The works that are kept: of all powers; of the muscle; of all forces of the fluid, seen from the
+ * water; of the internal damping. */
+enum work { WORK_ALL, WORK_ACTUATION, WORK_FLUID, WORK_DAMPING, N_WORKS };
+
 /* What one fish did at the events of the last period, for means over it: a ring of samples. */
 struct sample {
     double com[2], tail[2]; /* m */
     double velocity[2];     /* of the centre of mass, m s-1 */
-    double stream[2];       /* the external flow there, m s-1 */
+    double stream[2];       /* the external flow there, m s-1, */
+    double drifted[2];      /* and its integral since the start, m */
+    double speed;           /* through the water over the last period, m s-1; NaN before a whole one has passed */
     double heading;         /* rad, unwrapped */
-    double actuation_work;  /* since the start, J */
+    double work[N_WORKS];   /* since the start, J */
 };
 struct history {
     int capacity;          /* samples in one period and one more; 1 where there is no period */
@@ -24,12 +30,11 @@ struct history {
 
 /* The energy balance of one fish: the work done since the start, summed over the integrator's own steps. */
 struct energy_balance {
-    double initial_energy; /* J */
-    double work;           /* of all powers, J */
-    double actuation_work; /* J */
-    double t[2], power[2]; /* the last two steps: times, s, and total power, W; [0] is the newer */
-    double actuation_power[2];
-    int n; /* how many of those there are */
+    double initial_energy;    /* J */
+    double work[N_WORKS];     /* J */
+    double t[2];              /* the last two steps: times, s; [0] is the newer */
+    double power[2][N_WORKS]; /* and powers, W */
+    int n;                    /* how many of those there are */
 };
 
 struct state {

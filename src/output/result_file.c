@@ -15,6 +15,7 @@ struct result_file {
     struct netcdf_writer writer;
     size_t length[RESULT_N_DIMENSIONS]; /* of the dimensions; 1 for TIME, as one row is written at a time */
     int *number;                        /* of the variables in the file                (result_table_n) */
+    enum output_forces forces;          /* which of them it has */
     size_t n_rows;
     double *buffer; /* one row, or the whole, of the largest variable */
 };
@@ -36,6 +37,11 @@ static void set_lengths(struct result_file *result, const struct school *school,
         const size_t n_name = strlen(fish->name);
         if (n_name > result->length[NAME]) result->length[NAME] = n_name;
     }
+}
+
+/* True if a variable is in the file. */
+static bool is_written(const struct result_file *result, const struct result_variable *variable) {
+    return variable->forces <= result->forces;
 }
 
 /* The number of values of a variable, or of one row of it; of one fish where it has that dimension and per_fish. */
@@ -103,7 +109,10 @@ static void define_all(struct result_file *result, const struct case_values *val
     for (enum result_dimension d = TIME; d < RESULT_N_DIMENSIONS; d++)
         dimension_number[d] =
             netcdf_define_dimension(&result->writer, result_table_dimension(d), d == TIME ? 0 : result->length[d]);
-    for (int i = 0; i < result_table_n; i++) define_variable(result, i, dimension_number, values->output.precision);
+    for (int i = 0; i < result_table_n; i++) {
+        if (!is_written(result, &result_table[i])) continue;
+        define_variable(result, i, dimension_number, values->output.precision);
+    }
     write_attributes(result, values, effective);
     netcdf_end_definitions(&result->writer);
 }
@@ -164,8 +173,11 @@ static void write_variable(struct result_file *result, int i, const struct resul
 
 /* Write all constants, or all of a row. */
 static void write_variables(struct result_file *result, bool with_time, const struct result_row *row) {
-    for (int i = 0; i < result_table_n; i++)
-        if (result_table_has(&result_table[i], TIME) == with_time) write_variable(result, i, row);
+    for (int i = 0; i < result_table_n; i++) {
+        const struct result_variable *const variable = &result_table[i];
+        if (!is_written(result, variable) || result_table_has(variable, TIME) != with_time) continue;
+        write_variable(result, i, row);
+    }
 }
 
 // ---- the life of a result file
@@ -201,6 +213,7 @@ enum status result_file_create(struct result_file **result, const char *path, in
     TRY(netcdf_check_target(path, overwrite));
     struct result_file *const new = allocate(school, n_events);
     if (!new) return status_fail(STATUS_MEMORY, "%s: out of memory while writing", path);
+    new->forces = values->output.forces;
     enum status status = netcdf_create(&new->writer, path, values->name, command);
     if (status == STATUS_OK) {
         define_all(new, values, effective);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "model/bound_sheet.h"
+#include "model/fluid_force.h"
 #include "model/rod.h"
 
 // ---- values that have to be put together ----
@@ -76,7 +77,29 @@ static void gather_wake_birth(const struct result_row *row, int f, double *slots
     if (row->with_wake) copy(wake->n_vortex, wake->birth, slots);
 }
 
-// ---- the table ----
+// ---- forces on the edges
+
+enum named_force { RESISTIVE, REACTIVE };
+
+static void gather_edge_force(const struct result_row *row, int f, enum named_force name, double *slots) {
+    const struct fish *fish = &row->school->fish[f];
+    const struct flow_at_body flow = flow_at_body(row->residual->flow, f);
+    const double *const about = row->diagnostics->fish[f].com;
+    for (int k = 0; k < fish->n_edges; k++) {
+        const struct fluid_forces forces = fluid_force_of_edge(fish, &flow, k, about, row->state->y);
+        copy(2, name == RESISTIVE ? forces.resistive : forces.reactive, slots + 2 * k);
+    }
+}
+
+static void gather_edge_resistive_force(const struct result_row *row, int f, double *slots) {
+    gather_edge_force(row, f, RESISTIVE, slots);
+}
+
+static void gather_edge_reactive_force(const struct result_row *row, int f, double *slots) {
+    gather_edge_force(row, f, REACTIVE, slots);
+}
+
+// ---- the table
 
 #define IN_SCHOOL(field) .owner = OF_SCHOOL, .offset = offsetof(struct school, field)
 #define IN_FISH(field) .owner = OF_FISH, .offset = offsetof(struct fish, field)
@@ -169,11 +192,17 @@ const struct result_variable result_table[] = {
     {"com_velocity",          {TIME, FISH, XY},       RESULT_REAL,    "m s-1",  IN_FISH_DIAGNOSTICS(com_velocity),
      .long_name = "velocity of the centre of mass"},
     {"speed",                 {TIME, FISH},           RESULT_REAL,    "m s-1",  IN_FISH_DIAGNOSTICS(speed),
-     .long_name = "mean speed of the centre of mass over the last period"},
+     .long_name = "mean speed of the centre of mass through the water over the last period"},
+    {"ground_speed",          {TIME, FISH},           RESULT_REAL,    "m s-1",  IN_FISH_DIAGNOSTICS(ground_speed),
+     .long_name = "mean speed of the centre of mass over ground over the last period"},
+    {"drift",                 {TIME, FISH},           RESULT_REAL,    "1",      IN_FISH_DIAGNOSTICS(drift),
+     .long_name = "change of the speed from the period before the last one to the last, over the speed"},
     {"heading",               {TIME, FISH},           RESULT_REAL,    "degree", IN_FISH_DIAGNOSTICS(heading),
      .long_name = "heading, from the x axis towards the y axis, unwrapped"},
     {"desired_heading",       {TIME, FISH},           RESULT_REAL,    "degree", IN_FISH_DIAGNOSTICS(desired_heading),
      .long_name = "desired heading of the control law"},
+    {"heading_error",         {TIME, FISH},           RESULT_REAL,    "degree", IN_FISH_DIAGNOSTICS(heading_error),
+     .long_name = "direction of the way through the water over the last period, less the desired heading"},
     {"phi0",                  {TIME, FISH},           RESULT_REAL,    "1",      IN_FISH_DIAGNOSTICS(phi0),
      .long_name = "steering bias of the gait: positive turns right"},
     {"shed_circulation",      {TIME, FISH},           RESULT_REAL,    "m2 s-1", IN_FISH_DIAGNOSTICS(shed_circulation),
@@ -206,8 +235,36 @@ const struct result_variable result_table[] = {
      .long_name = "work of the muscle on the body since the start"},
     {"cost_of_transport",     {TIME, FISH},           RESULT_REAL,    "m s-2",  IN_FISH_DIAGNOSTICS(cost_of_transport),
      .long_name = "mean actuation power over mass and speed, over the last period"},
+    {"cost_of_transport_fluid",{TIME, FISH},           RESULT_REAL,    "m s-2",
+     IN_FISH_DIAGNOSTICS(cost_of_transport_fluid),
+     .long_name = "part of the cost of transport that goes into the fluid"},
+    {"cost_of_transport_body",{TIME, FISH},           RESULT_REAL,    "m s-2",
+     IN_FISH_DIAGNOSTICS(cost_of_transport_body),
+     .long_name = "part of the cost of transport that is lost inside the body, by damping"},
     {"strouhal",              {TIME, FISH},           RESULT_REAL,    "1",      IN_FISH_DIAGNOSTICS(strouhal),
      .long_name = "Strouhal number: frequency times peak-to-peak motion of the tail over speed"},
+
+    // forces on the body by name
+    {"resistive_force",       {TIME, FISH, XY},       RESULT_REAL,    "N",      IN_FISH_DIAGNOSTICS(resistive_force),
+     .long_name = "drag on the body"},
+    {"reactive_force",        {TIME, FISH, XY},       RESULT_REAL,    "N",      IN_FISH_DIAGNOSTICS(reactive_force),
+     .long_name = "force of the accelerated fluid, with tail flux and pressure gradient of the external flow"},
+    {"constraint_force",      {TIME, FISH, XY},       RESULT_REAL,    "N",      IN_FISH_DIAGNOSTICS(constraint_force),
+     .long_name = "force that holds prescribed nodes to their motion; 0 for a free fish"},
+    {"thrust",                {TIME, FISH},           RESULT_REAL,    "N",      IN_FISH_DIAGNOSTICS(thrust),
+     .long_name = "sum of the forces of the fluid along the heading"},
+    {"resistive_moment",      {TIME, FISH},           RESULT_REAL,    "N m",    IN_FISH_DIAGNOSTICS(resistive_moment),
+     .long_name = "moment of the drag about the centre of mass"},
+    {"reactive_moment",       {TIME, FISH},           RESULT_REAL,    "N m",    IN_FISH_DIAGNOSTICS(reactive_moment),
+     .long_name = "moment of the reactive force about the centre of mass"},
+    {"constraint_moment",     {TIME, FISH},           RESULT_REAL,    "N m",    IN_FISH_DIAGNOSTICS(constraint_moment),
+     .long_name = "moment about the centre of mass of what holds a prescribed motion"},
+    {"edge_resistive_force",  {TIME, FISH, EDGE, XY}, RESULT_BULK,    "N",
+     GATHERED(gather_edge_resistive_force), .forces = OUTPUT_FORCES_EDGES,
+     .long_name = "drag on every edge; with output.forces: edges only"},
+    {"edge_reactive_force",   {TIME, FISH, EDGE, XY}, RESULT_BULK,    "N",
+     GATHERED(gather_edge_reactive_force), .forces = OUTPUT_FORCES_EDGES,
+     .long_name = "reactive force on every edge, the last with the tail flux; with output.forces: edges only"},
 
     // the school and the solver
     {"total_circulation",     {TIME},                 RESULT_REAL,    "m2 s-1", IN_DIAGNOSTICS(total_circulation),

@@ -6,6 +6,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "case/case_values.h"
 #include "model/diagnostics.h"
 #include "model/residual.h"
 #include "output/result_kind.h"
@@ -55,6 +56,8 @@ struct result_variable {
     size_t offset;
     bool is_pointer;
     void (*gather)(const struct result_row *row, int f, double *slots);
+
+    enum output_forces forces; /* in the file where the case asks for these forces; 0: always */
 };
 
 /* In the order in which they are in the file; wall_time is the last, by which scripts see that a file is whole. */

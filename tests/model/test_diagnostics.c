@@ -123,8 +123,8 @@ static void after_a_jump_the_balance_goes_on_from_the_powers_of_then(void **stat
         // every impulse is a jump
         assert_int_equal(balance->n, 1);
         NEAR(balance->t[0], simulation->state->t, 0, 0);
-        NEAR(balance->power[0], total, 1e-9, 1e-9);
-        NEAR(balance->actuation_power[0], fish->actuation_power, 1e-9, 1e-9);
+        NEAR(balance->power[0][WORK_ALL], total, 1e-9, 1e-9);
+        NEAR(balance->power[0][WORK_ACTUATION], fish->actuation_power, 1e-9, 1e-9);
     }
     simulate_free(simulation);
 }
@@ -260,6 +260,134 @@ static void speed_and_strouhal_number_are_those_of_a_driven_plate(void **state) 
     simulate_free(simulation);
 }
 
+// the mean over the last period does not depend on the frame: the same swim in still water and in a stream
+static void means_are_those_of_the_way_through_the_water(void **state) {
+    (void)state;
+    struct diagnostics_fish of[2];
+    for (int i = 0; i < 2; i++) {
+        char text[256];
+        // seen from the ground the nodes start with the velocity of the stream besides
+        snprintf(text, sizeof text,
+                 TIME "fluid: {velocity: [%g, 0]}\nfish: [{body: {modulus: 1.0e+5}, start: {speed: %g}}]\n", 0.6 * i,
+                 1 - 0.6 * i);
+        struct simulation *const simulation = school_simulation(text);
+        school_run(simulation, 1.6);
+        simulate_measure(simulation);
+        of[i] = simulation->diagnostics->fish[0];
+        simulate_free(simulation);
+    }
+    NEAR(of[0].ground_speed, of[0].speed, 0, 1e-15);
+    // on its way to the left: the stream takes 0.6 off
+    assert_true(fabs(of[1].ground_speed - of[0].speed + 0.6) < 0.01);
+    const double still[] = {of[0].speed, of[0].strouhal, of[0].cost_of_transport, of[0].cost_of_transport_fluid,
+                            of[0].cost_of_transport_body};
+    const double moving[] = {of[1].speed, of[1].strouhal, of[1].cost_of_transport, of[1].cost_of_transport_fluid,
+                             of[1].cost_of_transport_body};
+    NEAR_ARRAY(5, moving, still, 0, 1e-4);
+    NEAR(of[1].heading_error, of[0].heading_error, 0.02, 0);
+}
+
+static void stream_at_the_fish_is_integrated_by_trapezoids(void **state) {
+    (void)state;
+    // a plate across a gust that grows from nothing: at rest in the ground's frame
+    struct simulation *const simulation = school_simulation(
+        TIME
+        "fluid: {velocity: [0.2, 0], shear: 0.5, gust: {amplitude: 0.3, frequency: 0.4}}\n"
+        "fish: [{start: {position: [0, 2], speed: 0}, motion: {driven: all, heave: 0, frequency: 2}}]\n");
+    school_run(simulation, 1);
+    simulate_measure(simulation);
+    const struct diagnostics_fish *fish = &simulation->diagnostics->fish[0];
+    const double omega = 0.8 * acos(-1);
+    // over the last period, 0.5 s, [1.2, 0.3 sin(omega t)]
+    const double across = 0.3 * (cos(omega * 0.5) - cos(omega)) / omega / 0.5;
+    NEAR(fish->ground_speed, 0, 1e-15, 0);
+    NEAR(fish->speed, hypot(1.2, across), 0, 1e-5);
+    // through the water it goes against the stream
+    NEAR(fish->heading_error, atan2(-across, -1.2) * 180 / acos(-1) + 180, 1e-3, 0);
+    simulate_free(simulation);
+}
+
+static void drift_is_the_change_of_the_speed_in_a_period(void **state) {
+    (void)state;
+    struct simulation *const simulation = school_simulation(TIME "fish: [{wave: {frequency: 2}}]\n");
+    double speed[2];
+    for (int i = 1; i <= 3; i++) {
+        school_run(simulation, 0.5 * i);
+        simulate_measure(simulation);
+        const struct diagnostics_fish *fish = &simulation->diagnostics->fish[0];
+        if (i == 1) assert_true(isnan(fish->drift));
+        if (i > 1) NEAR(fish->drift, (fish->speed - speed[0]) / fish->speed, 1e-13, 1e-12);
+        speed[0] = fish->speed;
+        // not before the period before the last one is whole
+        school_run(simulation, 0.5 * i + 0.49);
+        simulate_measure(simulation);
+        if (i == 1) assert_true(isnan(fish->drift));
+    }
+    simulate_free(simulation);
+}
+
+static void cost_of_transport_has_two_parts(void **state) {
+    (void)state;
+    struct simulation *const simulation = school_simulation(
+        TIME "solver: {rtol: 1.0e-6}\nfish: [{force: reactive, drag: {extent: width}, body: {modulus: 1.0e+5}}]\n");
+    double energy[2], audit[2];
+    for (int i = 0; i < 2; i++) {
+        school_run(simulation, 1 + i);
+        simulate_measure(simulation);
+        energy[i] = total_energy(&simulation->diagnostics->fish[0]);
+        audit[i] = simulation->diagnostics->fish[0].energy_audit;
+    }
+    const struct diagnostics_fish *fish = &simulation->diagnostics->fish[0];
+    const double scale = simulation->school->fish[0].total_mass * fish->speed;
+    // what the muscle put in and neither the fluid nor the body's damping took is in the body
+    const double kept = fish->cost_of_transport - fish->cost_of_transport_fluid - fish->cost_of_transport_body;
+    NEAR(kept * scale, energy[1] - energy[0] - (audit[1] - audit[0]), 1e-9, 1e-9);
+    assert_true(fish->cost_of_transport_fluid > 0 && fish->cost_of_transport_body > 0);
+    simulate_free(simulation);
+}
+
+static void forces_by_name_make_up_momentum_and_angular_momentum(void **state) {
+    (void)state;
+    const char *const texts[] = {
+        TIME
+        "fluid: {velocity: [0.3, 0.1], shear: 0.4, gust: {amplitude: 0.3, frequency: 1}}\n"
+        "fish: [{force: reactive, drag: {extent: width}}, {start: {position: [0.2, 0.6]}}]\n",
+        TIME
+        "fish: [{body: {section: mean, modulus: 1.0e+5}, wave: {amplitude: 0}, motion: {driven: head, heave: 0.1,\n"
+        "        pitch: 10, frequency: 1}}, {start: {position: [0, 1]}, motion: {driven: all, pitch: 20, frequency: "
+        "2}}]\n"};
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        struct simulation *const simulation = school_simulation(texts[i]);
+        school_run(simulation, 0.53);
+        simulate_measure(simulation);
+        for (int f = 0; f < 2; f++) {
+            const struct fish *fish = &simulation->school->fish[f];
+            const struct diagnostics_fish *of = &simulation->diagnostics->fish[f];
+            const double *const y = simulation->state->y;
+            double rate[3] = {0, 0, 0};
+            for (int k = 0; k < fish->n_nodes; k++) {
+                const double ax = fish->mass[k] * y[fish->at.ax + k], ay = fish->mass[k] * y[fish->at.ay + k];
+                rate[0] += ax;
+                rate[1] += ay;
+                rate[2] += (y[fish->at.x + k] - of->com[0]) * ay - (y[fish->at.y + k] - of->com[1]) * ax;
+            }
+            const double forces[] = {of->resistive_force[0] + of->reactive_force[0] + of->constraint_force[0],
+                                     of->resistive_force[1] + of->reactive_force[1] + of->constraint_force[1],
+                                     of->resistive_moment + of->reactive_moment + of->constraint_moment};
+            // as well as Newton's iteration solves the law of motion
+            NEAR_ARRAY(3, forces, rate, 2e-3, 1e-4);
+            assert_true(fabs(rate[2]) > 0.01);
+            const double heading = of->heading * acos(-1) / 180;
+            NEAR(of->thrust,
+                 cos(heading) * (of->resistive_force[0] + of->reactive_force[0]) +
+                     sin(heading) * (of->resistive_force[1] + of->reactive_force[1]),
+                 1e-12, 1e-12);
+            assert_int_equal(fabs(of->constraint_force[0]) > 0, i == 1);
+        }
+        simulate_free(simulation);
+    }
+}
+
 static void heading_is_unwrapped(void **state) {
     (void)state;
     struct setup setup;
@@ -309,6 +437,11 @@ int main(void) {
         cmocka_unit_test(mean_heading_is_the_trapezoidal_mean),
         cmocka_unit_test(course_is_the_direction_of_the_way_in_the_last_period),
         cmocka_unit_test(speed_and_strouhal_number_are_those_of_a_driven_plate),
+        cmocka_unit_test(means_are_those_of_the_way_through_the_water),
+        cmocka_unit_test(stream_at_the_fish_is_integrated_by_trapezoids),
+        cmocka_unit_test(drift_is_the_change_of_the_speed_in_a_period),
+        cmocka_unit_test(cost_of_transport_has_two_parts),
+        cmocka_unit_test(forces_by_name_make_up_momentum_and_angular_momentum),
         cmocka_unit_test(heading_is_unwrapped),
         cmocka_unit_test(polarisation_and_least_distance_are_those_of_the_school),
     };

@@ -29,7 +29,8 @@ static void format_is_cdf5(void **state) {
 
 static void every_variable_of_the_table_is_there_with_its_dimensions_unit_and_name(void **state) {
     struct fixture *f = *state;
-    write_file(f, 1);
+    f->values.output.forces = OUTPUT_FORCES_EDGES;
+    assert_int_equal(result_file_close(create(f), "complete"), STATUS_OK);
     const int file = open_to_read(f);
     for (int i = 0; i < result_table_n; i++) {
         const struct result_variable *variable = &result_table[i];
@@ -227,6 +228,17 @@ static void single_precision_keeps_time_and_scalars_double(void **state) {
     nc_close(file);
 }
 
+static void forces_of_edges_are_there_on_request_only(void **state) {
+    struct fixture *f = *state;
+    write_file(f, 1);
+    const int file = open_to_read(f);
+    int number;
+    assert_int_equal(nc_inq_varid(file, "edge_resistive_force", &number), NC_ENOTVAR);
+    assert_int_equal(nc_inq_varid(file, "edge_reactive_force", &number), NC_ENOTVAR);
+    assert_int_equal(nc_inq_varid(file, "resistive_force", &number), NC_NOERR);
+    nc_close(file);
+}
+
 static void long_status_is_cut(void **state) {
     struct fixture *f = *state;
     char reason[1000];
@@ -400,6 +412,7 @@ int main(void) {
         cmocka_unit_test(every_diagnostic_of_a_fish_has_a_variable),
         WITH_FILE(wake_is_oldest_first_and_can_be_left_out),
         WITH_FILE(single_precision_keeps_time_and_scalars_double),
+        WITH_FILE(forces_of_edges_are_there_on_request_only),
         WITH_FILE(long_status_is_cut),
         WITH_FILE(file_can_be_read_between_rows),
         cmocka_unit_test(closing_nothing_is_allowed),
