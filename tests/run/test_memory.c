@@ -11,7 +11,8 @@
 static const char *const text = TIME
     "fish:\n"
     "  - {nodes: 5, sheet_points: 7, control: {law: heading, waypoints: [[-3, 1]]}}\n"
-    "  - {nodes: 4, sheet_points: 5, start: {position: [0, 2]}, control: {desired_heading: [[0, 180], [1, 90]]}}\n";
+    "  - {nodes: 4, sheet_points: 5, start: {position: [0, 2]}, control: {law: heading, desired_heading: [[0, 180], "
+    "[1, 90]]}}\n";
 
 /* Something that is created from a setup, and released. */
 typedef enum status create(struct setup *setup, void **made);
