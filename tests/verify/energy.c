@@ -101,7 +101,68 @@ static void fifth_order(void) {
     }
 }
 
+// ---- a default fish
+
+// means over the last beat of a run, W, and what the body stored in it
+struct beat {
+    double actuation, damping, drag, added_mass, wake, stored; /* W */
+    double speed;                                              /* m/s */
+};
+
+static double body_energy(const struct diagnostics_fish *fish) {
+    return fish->kinetic_energy + fish->bending_energy + fish->stretching_energy;
+}
+
+// a default fish, but for fewer nodes, n_beats beats after a start with this speed
+static struct beat last_beat(double speed, int n_beats) {
+    enum { PER_BEAT = 50 };
+    struct simulation *const simulation =
+        verify_open(VERIFY_SECOND "format: 1\ntime: {end: %d, shedding_interval: 0.02, output_interval: 0.02}\n"
+                                  "fish: [{nodes: 7, sheet_points: 33, start: {speed: %g}}]\n",
+                    n_beats, speed);
+    const struct diagnostics_fish *const fish = &simulation->diagnostics->fish[0];
+    struct beat beat = {0};
+    for (int i = 0; i <= PER_BEAT; i++) {
+        verify_run(simulation, n_beats - 1 + (double)i / PER_BEAT);
+        simulate_measure(simulation);
+        const double part = (i == 0 || i == PER_BEAT ? 0.5 : 1.0) / PER_BEAT; // trapezoidal rule
+        beat.actuation += part * fish->actuation_power;
+        beat.damping += part * fish->damping_power;
+        beat.drag += part * fish->drag_power;
+        beat.added_mass += part * fish->added_mass_power;
+        beat.wake += part * fish->wake_power;
+        if (i == 0) beat.stored = -body_energy(fish);
+    }
+    beat.stored += body_energy(fish);
+    beat.speed = fish->speed;
+    simulate_free(simulation);
+    return beat;
+}
+
+static void default_fish(void) {
+    const int n_beats = verify_is_fast() ? 10 : 40;
+    const struct beat beat = last_beat(0, n_beats);
+    const double power[] = {beat.actuation, beat.damping, beat.drag, beat.added_mass, beat.wake};
+    static const char *const name[] = {"muscle", "damping", "drag", "added mass", "wake"};
+    double left = -beat.stored;
+    for (int i = 0; i < 5; i++) {
+        verify_show(verify_text("default fish from rest, beat %d: power of %s, W", n_beats, name[i]), "mean", power[i]);
+        left += power[i];
+    }
+    verify_show(verify_text("default fish from rest, beat %d: stored in the body, W", n_beats), "mean", beat.stored);
+    verify_zero(verify_text("default fish from rest, beat %d: sum of powers over the muscle's", n_beats),
+                "what comes in goes out or is stored", left / beat.actuation, 0.01);
+    if (verify_is_fast()) return;
+    verify_show(verify_text("default fish from rest, beat %d: speed, m/s", n_beats), "mean", beat.speed);
+    const double start[] = {0.5, 1, 2};
+    for (int i = 0; i < 3; i++) {
+        verify_relative(verify_text("default fish started at %g m/s, beat %d: speed, m/s", start[i], n_beats),
+                        "the same from rest", beat.speed, last_beat(start[i], n_beats).speed, 0.01);
+    }
+}
+
 void verify_energy(void) {
+    default_fish();
     second_order();
     static const char source[] = "work of the muscle is found again; the worst fish";
     if (verify_is_fast()) {

@@ -186,6 +186,19 @@ static const struct option {
 };
 enum { N_OPTIONS = sizeof options / sizeof *options };
 
+// what the second edition of the model adds
+static const struct option second[] = {
+    {2, {"shedding: sheet", "shedding: continuous"}},
+    {2, {"curve: smooth", "curve: polygon"}},
+    {2, {"collocation: chebyshev", "collocation: midpoint"}},
+    {2, {"section: mean", "section: nodes"}},
+    {2, {"force: reactive", "force: published"}},
+    {2, {"extent: thickness", "extent: width"}},
+    {3, {"law: none", "law: heading, desired_heading: 150", "law: course, desired_heading: 150"}},
+    {3, {"driven: none", "driven: head, heave: 0.1, frequency: 1", "driven: all, heave: 0.1, pitch: 10, frequency: 1"}},
+};
+enum { N_SECOND = sizeof second / sizeof *second };
+
 // what was found worst
 struct worst {
     int n;
@@ -205,6 +218,18 @@ static struct simulation *open_choice(const int *choice) {
         word[0], word[1], word[2], word[3], word[4], word[5], word[6], word[7], word[8]);
 }
 
+static struct simulation *open_second(const int *choice) {
+    const char *word[N_SECOND];
+    for (int i = 0; i < N_SECOND; i++) word[i] = second[i].words[choice[i]];
+    return verify_open(VERIFY_SECOND
+                       "format: 1\ntime: {end: 1, shedding_interval: 0.01}\n"
+                       "fluid: {velocity: [0.3, -0.2], shear: 0.2, gust: {amplitude: 0.1, frequency: 1}}\n"
+                       "wake: {%s, %s, %s}\nfish:\n  - nodes: 5\n    sheet_points: 9\n    wave: {ramp: 0}\n"
+                       "    body: {%s}\n    %s\n    drag: {%s}\n    control: {%s}\n    motion: {%s}\n"
+                       "    start: {speed: 1}\n",
+                       word[0], word[1], word[2], word[3], word[4], word[5], word[6], word[7]);
+}
+
 // the state after simulate_create; frees the simulation
 static void examine(struct simulation *simulation, struct worst *worst) {
     const struct school *const school = simulation->school;
@@ -221,24 +246,33 @@ static void examine(struct simulation *simulation, struct worst *worst) {
     simulate_free(simulation);
 }
 
-static void choose(int number, int n_options, int *choice) {
+static void choose(int number, int n_options, const struct option *from, int *choice) {
     for (int i = 0; i < n_options; i++) {
-        choice[i] = number % options[i].n;
-        number /= options[i].n;
+        choice[i] = number % from[i].n;
+        number /= from[i].n;
     }
+}
+
+static int number_of_choices(int n_options, const struct option *from) {
+    int n = 1;
+    for (int i = 0; i < n_options; i++) n *= from[i].n;
+    return n;
 }
 
 static void all_options(void) {
     struct worst worst = {.condition = 1, .impulse = 1};
-    int n_cases = 1, choice[N_OPTIONS];
-    for (int i = 0; i < N_OPTIONS; i++) n_cases *= options[i].n;
-    for (int number = 0; number < n_cases; number++) {
-        choose(number, N_OPTIONS, choice);
+    int choice[N_OPTIONS];
+    for (int number = 0; number < number_of_choices(N_OPTIONS, options); number++) {
+        choose(number, N_OPTIONS, options, choice);
         examine(open_choice(choice), &worst);
+    }
+    for (int number = 0; number < number_of_choices(N_SECOND, second); number++) {
+        choose(number, N_SECOND, second, choice);
+        examine(open_second(choice), &worst);
     }
     // and fish so near to each other that the Jacobian couples them
     for (int number = 0; number < 8; number++) {
-        choose(number, 3, choice);
+        choose(number, 3, options, choice);
         examine(verify_open("format: 1\ntime: {end: 1, shedding_interval: 0.01}\nwake: {%s, %s, %s}\n"
                             "defaults: {fish: {nodes: 5, sheet_points: 9, wave: {ramp: 0}, control: {law: heading}}}\n"
                             "fish:\n  - start: {position: [0, 0]}\n  - start: {position: [0.2, 0.3]}\n",
@@ -246,8 +280,8 @@ static void all_options(void) {
                 &worst);
     }
     static const char source[] =
-        "product of collocation, kutta, shedding, second_moment, profile, drag law, extent, control law, driven; two "
-        "fish";
+        "product of collocation, kutta, shedding, second_moment, profile, drag law, extent, control law, driven; of the "
+        "second edition shedding, curve, collocation, section, force, extent, control law, driven; two fish";
     verify_show("combinations of options", source, worst.n);
     // nonsingular, and so far from singular that the solution keeps twelve of sixteen digits
     verify_zero("largest condition number, rows and columns equilibrated", source, 1 / worst.condition, 1e4);
@@ -363,19 +397,21 @@ static double disagreement(struct simulation *simulation) {
 
 static void second_opinion(void) {
     static const struct {
-        const char *name, *wake, *fish;
+        const char *name, *wake, *fish, *edition;
     } cases[] = {
-        {"defaults", "", ""},
-        {"kutta: rate", "kutta: rate", ""},
-        {"impulsive, between events", "shedding: impulsive", ""},
-        {"driven head", "", "motion: {driven: head, heave: 0.1, frequency: 1}"},
-        {"law: heading", "", "control: {law: heading, desired_heading: 150}"},
-        {"law: averaged_heading", "", "control: {law: averaged_heading, desired_heading: 150}"},
+        {"defaults", "", "", VERIFY_SECOND},
+        {"first edition", "", "", ""},
+        {"kutta: rate", "kutta: rate", "", ""},
+        {"impulsive, between events", "shedding: impulsive", "", ""},
+        {"driven head", "", "motion: {driven: head, heave: 0.1, frequency: 1}", ""},
+        {"driven head, second edition", "", "motion: {driven: head, heave: 0.1, frequency: 1}", VERIFY_SECOND},
+        {"law: heading", "", "control: {law: heading, desired_heading: 150}", ""},
+        {"law: averaged_heading", "", "control: {law: averaged_heading, desired_heading: 150}", ""},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct simulation *const simulation = verify_open(
-            "format: 1\ntime: {end: 1, shedding_interval: 0.01}\nwake: {%s}\nfish:\n  - {%s%swave: {ramp: 0}}\n",
-            cases[i].wake, cases[i].fish, cases[i].fish[0] ? ", " : "");
+            "%sformat: 1\ntime: {end: 1, shedding_interval: 0.01}\nwake: {%s}\nfish:\n  - {%s%swave: {ramp: 0}}\n",
+            cases[i].edition, cases[i].wake, cases[i].fish, cases[i].fish[0] ? ", " : "");
         char name[80];
         snprintf(name, sizeof name, "IDACalcIC less KINSOL over scale, %s", cases[i].name);
         verify_zero(name, "SUNDIALS' own consistent start, from zero", disagreement(simulation), 1e-10);

@@ -16,6 +16,7 @@ void verify_sheet(void);
 void verify_wake(void);
 void verify_plate(void);
 void verify_school(void);
+void verify_interval(void);
 void verify_symmetry(void);
 void verify_start(void);
 void verify_energy(void);
