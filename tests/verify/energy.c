@@ -117,15 +117,16 @@ static double body_energy(const struct diagnostics_fish *fish) {
 static struct beat last_beat(double speed, int n_beats) {
     enum { PER_BEAT = 50 };
     struct simulation *const simulation =
-        verify_open(VERIFY_SECOND "format: 1\ntime: {end: %d, shedding_interval: 0.02, output_interval: 0.02}\n"
-                                  "fish: [{nodes: 7, sheet_points: 33, start: {speed: %g}}]\n",
+        verify_open(VERIFY_SECOND
+                    "format: 1\ntime: {end: %d, shedding_interval: 0.02, output_interval: 0.02}\n"
+                    "fish: [{nodes: 7, sheet_points: 33, start: {speed: %g}}]\n",
                     n_beats, speed);
     const struct diagnostics_fish *const fish = &simulation->diagnostics->fish[0];
     struct beat beat = {0};
     for (int i = 0; i <= PER_BEAT; i++) {
         verify_run(simulation, n_beats - 1 + (double)i / PER_BEAT);
         simulate_measure(simulation);
-        const double part = (i == 0 || i == PER_BEAT ? 0.5 : 1.0) / PER_BEAT; // trapezoidal rule
+        const double part = (i == 0 || i == PER_BEAT ? 0.5 : 1.0) / PER_BEAT;  // trapezoidal rule
         beat.actuation += part * fish->actuation_power;
         beat.damping += part * fish->damping_power;
         beat.drag += part * fish->drag_power;

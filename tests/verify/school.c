@@ -184,15 +184,13 @@ static void check_interval(void) {
     halve_interval("impulsive rate", "as for impulsive", "school_interval_impulsive_rate", &impulsive, 5, 0.0025, 0.9,
                    1.1);
 
-    // vortices that fade out and are removed during the run: their ages count from their release, while each stands for
-    // what was shed half an interval before it; that makes it first order, doc/numerics.md, section 5. Counted from
-    // half an interval earlier, the orders are 2.04, 2.02, 2.04 and 2.05
-    static const char fades[] = "1: the age of a vortex counts from its release";
+    // vortices that fade out and are removed during the run
+    static const char fades[] = "the strength of a vortex is that of what was shed half an interval before its release";
     struct variant fading = usual;
     fading.wake = "lifetime: 0.64, fade: 0.32";
     fading.end = 1.28;
     fading.shed_at = 1;
-    halve_interval("fading wake", fades, "school_interval_fading", &fading, 5, 0.0025, 0.9, 1.3);
+    halve_interval("fading wake", fades, "school_interval_fading", &fading, 5, 0.0025, 1.8, 2.2);
 }
 
 // ---- the body ----

@@ -188,9 +188,10 @@ enum { N_OPTIONS = sizeof options / sizeof *options };
 
 // what the second edition of the model adds
 static const struct option second[] = {
-    {2, {"shedding: sheet", "shedding: continuous"}},
+    {3,
+     {"shedding: sheet", "shedding: continuous, collocation: chebyshev",
+      "shedding: continuous, collocation: midpoint"}},
     {2, {"curve: smooth", "curve: polygon"}},
-    {2, {"collocation: chebyshev", "collocation: midpoint"}},
     {2, {"section: mean", "section: nodes"}},
     {2, {"force: reactive", "force: published"}},
     {2, {"extent: thickness", "extent: width"}},
@@ -224,10 +225,10 @@ static struct simulation *open_second(const int *choice) {
     return verify_open(VERIFY_SECOND
                        "format: 1\ntime: {end: 1, shedding_interval: 0.01}\n"
                        "fluid: {velocity: [0.3, -0.2], shear: 0.2, gust: {amplitude: 0.1, frequency: 1}}\n"
-                       "wake: {%s, %s, %s}\nfish:\n  - nodes: 5\n    sheet_points: 9\n    wave: {ramp: 0}\n"
+                       "wake: {%s, %s}\nfish:\n  - nodes: 5\n    sheet_points: 9\n    wave: {ramp: 0}\n"
                        "    body: {%s}\n    %s\n    drag: {%s}\n    control: {%s}\n    motion: {%s}\n"
                        "    start: {speed: 1}\n",
-                       word[0], word[1], word[2], word[3], word[4], word[5], word[6], word[7]);
+                       word[0], word[1], word[2], word[3], word[4], word[5], word[6]);
 }
 
 // the state after simulate_create; frees the simulation
@@ -280,7 +281,8 @@ static void all_options(void) {
                 &worst);
     }
     static const char source[] =
-        "product of collocation, kutta, shedding, second_moment, profile, drag law, extent, control law, driven; of the "
+        "product of collocation, kutta, shedding, second_moment, profile, drag law, extent, control law, driven; of "
+        "the "
         "second edition shedding, curve, collocation, section, force, extent, control law, driven; two fish";
     verify_show("combinations of options", source, worst.n);
     // nonsingular, and so far from singular that the solution keeps twelve of sixteen digits
