@@ -1,4 +1,4 @@
-/* study_plan.h: which members of a study are to be run. Tested by tests/study/test_study.sh.
+/* study_plan.h: which members of a study are to be run. Tested by tests/study/test_study_plan.c.
  *
  * A member is finished when its file is complete and was made by the same case. */
 #ifndef STUDY_PLAN_H

@@ -240,6 +240,22 @@ static void errors_of_all_stages_are_listed_together(void **state) {
     assert_non_null(strstr(status_message(), "fish[1].nodes: must be from 4"));
 }
 
+static void turns_of_a_fine_body_are_those_of_its_reference(void **state) {
+    (void)state;
+    const char *const format =
+        "format: 1\ntime: {end: 1}\nfish: [{nodes: 13, reference_nodes: 7, wave: {linear: 1, quadratic: 0, "
+        "amplitude: %g}}]\n";
+    char text[256];
+    // the last joint, at 11/12 of the length, has half of the turn that it would have on the reference body
+    const double folds = acos(-1) * 2 * 12 / 11;
+    snprintf(text, sizeof text, format, 1.01 * folds);
+    is_refused(text, "fish[0].wave.amplitude: the wave turns a joint by up to 3.17 rad");
+    snprintf(text, sizeof text, format, 0.99 * folds);
+    struct case_values values;
+    assert_int_equal(case_parse(&values, text, strlen(text), "x.yaml", NULL, 0, NULL), STATUS_OK);
+    case_free(&values);
+}
+
 static void a_misspelt_key_brings_no_second_error(void **state) {
     (void)state;
     is_refused("format: 1\ntime: {end: 1.005, shedding_intervall: 0.005}\nfish: [{}]\n",
@@ -486,6 +502,7 @@ int main(void) {
         cmocka_unit_test(every_type_of_value_is_read),
         cmocka_unit_test(multiples_are_recognised_despite_rounding),
         cmocka_unit_test(errors_of_all_stages_are_listed_together),
+        cmocka_unit_test(turns_of_a_fine_body_are_those_of_its_reference),
         cmocka_unit_test(a_misspelt_key_brings_no_second_error),
         cmocka_unit_test_setup_teardown(an_include_is_weaker_than_the_file_that_includes_it, make_folder,
                                         remove_folder),

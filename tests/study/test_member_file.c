@@ -7,7 +7,7 @@
  * the run. */
 enum { N_ROWS = 5 };
 static const double row_time[N_ROWS] = {0, 0.3, 0.4, 0.7, 0.8};
-static const double heading[N_ROWS] = {90, 10, 20, 50, 90};
+static const double heading[N_ROWS] = {150, 10, 20, 50, 90};
 
 static void read_member(struct fixture *f, struct member_file *member) {
     struct result_file *const file = create(f);
@@ -61,9 +61,9 @@ static void lateral_drift_is_to_the_left_of_the_first_heading(void **state) {
     struct fixture *const f = *state;
     struct member_file member;
     read_member(f, &member);
-    // the first heading is along y: left of it is -x
-    NEAR(value(&member, "lateral_drift", 0, 0), -3 * 0.8, 0, 1e-14);
-    NEAR(value(&member, "lateral_drift", 1, 0), -6 * 0.8, 0, 1e-14);
+    // left of 150 degrees is (-sin 150, cos 150); the fish go 3 and 6 m/s along x and 5 along y
+    NEAR(value(&member, "lateral_drift", 0, 0), (-0.5 * 3 - sqrt(0.75) * 5) * 0.8, 0, 1e-14);
+    NEAR(value(&member, "lateral_drift", 1, 0), (-0.5 * 6 - sqrt(0.75) * 5) * 0.8, 0, 1e-14);
     member_file_free(&member);
 }
 
@@ -74,7 +74,7 @@ static void mean_heading_is_that_of_trapezoids_over_the_last_period(void **state
     const double last_three = 0.1 * 15 + 0.3 * 35 + 0.1 * 70;
     NEAR(value(&member, "mean_heading", 0, 0), last_three / 0.5, 0, 1e-14);
     // the whole run
-    NEAR(value(&member, "mean_heading", 1, 0), (0.3 * 50 + last_three) / 0.8, 0, 1e-14);
+    NEAR(value(&member, "mean_heading", 1, 0), (0.3 * 80 + last_three) / 0.8, 0, 1e-14);
     member_file_free(&member);
 }
 

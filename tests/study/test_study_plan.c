@@ -1,0 +1,166 @@
+/* test_study_plan.c: what of a study is still to be run, after all that can have happened to its folder. */
+#include <stdlib.h>
+#include <sys/stat.h>
+
+#include "case/case.h"
+#include "crafted_file.h"
+#include "study/study.h"
+#include "study/study_plan.h"
+
+static const char case_text[] =
+    "format: 1\nname: small\ntime: {end: 0.02, shedding_interval: 0.02}\nfish: [{nodes: 5, sheet_points: 6}]\n"
+    "sweep: [{key: solver.rtol, values: [1e-3, 1e-4, 1e-5]}]\n";
+
+/* A folder in which all three members have run. */
+struct fixture {
+    struct case_values study;
+    char folder[64], member[3][96];
+};
+
+static int set_up(void **state) {
+    struct fixture *const f = calloc(1, sizeof *f);
+    strcpy(f->folder, "/tmp/shoal-plan-XXXXXX");
+    assert_non_null(mkdtemp(f->folder));
+    for (int m = 0; m < 3; m++) snprintf(f->member[m], sizeof f->member[m], "%s/member-%04d.nc", f->folder, m);
+    assert_int_equal(case_parse(&f->study, case_text, strlen(case_text), "small.yaml", NULL, 0, NULL), STATUS_OK);
+    const struct study_options options = {.folder = f->folder, .command = "test", .last = -1, .n_processes = 2};
+    int n_failed;
+    assert_int_equal(study_run(&f->study, &options, &n_failed), STATUS_OK);
+    assert_int_equal(n_failed, 0);
+    *state = f;
+    return 0;
+}
+
+static int tear_down(void **state) {
+    struct fixture *const f = *state;
+    char command[128];
+    snprintf(command, sizeof command, "rm -r %s", f->folder);
+    assert_int_equal(system(command), 0);
+    case_free(&f->study);
+    free(f);
+    return 0;
+}
+
+/* Replace a text attribute of the file of a member. */
+static void set_attribute(const char *path, const char *name, const char *text) {
+    int file;
+    assert_int_equal(nc_open(path, NC_WRITE, &file), NC_NOERR);
+    assert_int_equal(nc_redef(file), NC_NOERR);
+    assert_int_equal(nc_put_att_text(file, NC_GLOBAL, name, strlen(text), text), NC_NOERR);
+    assert_int_equal(nc_close(file), NC_NOERR);
+}
+
+/* Member 1 alone is to be run. */
+static void assert_one_to_run(const struct fixture *f) {
+    struct study_plan plan;
+    assert_int_equal(study_plan_create(&plan, &f->study, f->folder, 0, -1, 0), STATUS_OK);
+    assert_int_equal(plan.n_members, 3);
+    assert_int_equal(plan.n_done, 2);
+    assert_int_equal(plan.n, 1);
+    assert_int_equal(plan.member[0], 1);
+    study_plan_free(&plan);
+}
+
+static void assert_refused(const struct fixture *f, const struct case_values *study, const char *words) {
+    struct study_plan plan;
+    assert_int_equal(study_plan_create(&plan, study, f->folder, 0, -1, 0), STATUS_FILE);
+    study_plan_free(&plan);
+    if (!strstr(status_message(), words)) fail_msg("'%s' is not in '%s'", words, status_message());
+}
+
+static void finished_members_are_not_run_again(void **state) {
+    const struct fixture *const f = *state;
+    struct study_plan plan;
+    assert_int_equal(study_plan_create(&plan, &f->study, f->folder, 0, -1, 0), STATUS_OK);
+    assert_int_equal(plan.n, 0);
+    assert_int_equal(plan.n_done, 3);
+    study_plan_free(&plan);
+}
+
+static void missing_and_cut_members_run_again(void **state) {
+    const struct fixture *const f = *state;
+    assert_int_equal(truncate(f->member[1], 3000), 0);
+    assert_one_to_run(f);
+    assert_int_equal(unlink(f->member[1]), 0);
+    assert_one_to_run(f);
+}
+
+static void members_that_are_not_complete_run_again(void **state) {
+    const struct fixture *const f = *state;
+    set_attribute(f->member[1], "run_status", "stopped");
+    assert_one_to_run(f);
+}
+
+static void members_of_a_changed_case_run_again(void **state) {
+    const struct fixture *const f = *state;
+    // the same text of the study, but other defaults: those of another version of the program
+    set_attribute(f->member[1], "case_effective", "format: 1\n");
+    assert_one_to_run(f);
+}
+
+static void members_of_another_study_are_refused_unless_forced(void **state) {
+    const struct fixture *const f = *state;
+    set_attribute(f->member[1], "study_case", "format: 1\n");
+    assert_refused(f, &f->study, f->member[1]);
+    struct study_plan plan;
+    assert_int_equal(study_plan_create(&plan, &f->study, f->folder, 0, -1, 1), STATUS_OK);
+    assert_int_equal(plan.n, 1);
+    assert_int_equal(plan.member[0], 1);
+    study_plan_free(&plan);
+}
+
+static void a_member_in_the_place_of_another_is_refused(void **state) {
+    const struct fixture *const f = *state;
+    size_t n;
+    char *const bytes = read_bytes(f->member[0], &n);
+    write_bytes(f->member[1], n, bytes);
+    free(bytes);
+    assert_refused(f, &f->study, f->member[1]);
+}
+
+static void members_beyond_the_last_are_refused_or_removed(void **state) {
+    const struct fixture *const f = *state;
+    char path[96];
+    snprintf(path, sizeof path, "%s/member-0003.nc", f->folder);
+    write_bytes(path, 4, "else");
+    assert_refused(f, &f->study, path);
+    struct study_plan plan;
+    assert_int_equal(study_plan_create(&plan, &f->study, f->folder, 0, -1, 1), STATUS_OK);
+    study_plan_free(&plan);
+    assert_int_not_equal(access(path, F_OK), 0);
+    assert_int_equal(access(f->member[2], F_OK), 0);
+}
+
+static void a_part_is_about_its_members_only(void **state) {
+    const struct fixture *const f = *state;
+    assert_int_equal(unlink(f->member[0]), 0);
+    assert_int_equal(unlink(f->member[2]), 0);
+    struct study_plan plan;
+    assert_int_equal(study_plan_create(&plan, &f->study, f->folder, 1, 2, 0), STATUS_OK);
+    assert_int_equal(plan.n_members, 2);
+    assert_int_equal(plan.n, 1);
+    assert_int_equal(plan.member[0], 2);
+    study_plan_free(&plan);
+    const int wrong[][2] = {{-1, 1}, {2, 1}, {0, 3}};
+    for (int i = 0; i < 3; i++) {
+        assert_int_equal(study_plan_create(&plan, &f->study, f->folder, wrong[i][0], wrong[i][1], 0), STATUS_CASE);
+        study_plan_free(&plan);
+        assert_non_null(strstr(status_message(), "the study has members 0 to 2"));
+    }
+}
+
+#define WITH_STUDY(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        WITH_STUDY(finished_members_are_not_run_again),
+        WITH_STUDY(missing_and_cut_members_run_again),
+        WITH_STUDY(members_that_are_not_complete_run_again),
+        WITH_STUDY(members_of_a_changed_case_run_again),
+        WITH_STUDY(members_of_another_study_are_refused_unless_forced),
+        WITH_STUDY(a_member_in_the_place_of_another_is_refused),
+        WITH_STUDY(members_beyond_the_last_are_refused_or_removed),
+        WITH_STUDY(a_part_is_about_its_members_only),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
