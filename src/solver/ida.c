@@ -133,13 +133,13 @@ static enum status fill(struct ida *solver) {
     const struct linear_tolerance linear = {linear_relative, linear_absolute * newton_coefficient};
     TRY(sundials_adapter_linear_create(&solver->linear, solver->context, solver->jacobian, solver->tolerance, linear,
                                        &solver->failure));
-    const struct ida_newton_rules rules = {
-        .max_iterations = max_iterations,
-        .jacobian_cost = jacobian_cost,
-        .kinds = solver->kinds,
-        .data = solver,
-        .leading_coefficient = leading_coefficient,
-        .update = solver->residual->school->shedding == SHEDDING_SHEET ? update_jacobian : NULL};
+    const int is_sheet = solver->residual->school->shedding == SHEDDING_SHEET;
+    const struct ida_newton_rules rules = {.max_iterations = max_iterations,
+                                           .jacobian_cost = jacobian_cost,
+                                           .kinds = is_sheet ? solver->kinds : NULL,
+                                           .data = solver,
+                                           .leading_coefficient = leading_coefficient,
+                                           .update = is_sheet ? update_jacobian : NULL};
     TRY(ida_newton_create(&solver->newton, solver->context, solver->y, solver->residual->school, rules));
     solver->ida = IDACreate(solver->context);
     if (!solver->ida) return status_fail(STATUS_MEMORY, "out of memory: IDA");

@@ -12,8 +12,10 @@
 struct ida_newton_rules {
     int max_iterations; /* per solution */
     int jacobian_cost;  /* of an evaluation with its factorisation, in iterations */
-    N_Vector kinds;     /* 1 where an unknown is differential, 0 where it is algebraic; outlives the solver */
-    void *data;         /* of the functions below */
+    /* 1 where an unknown is differential, 0 where it is algebraic; outlives the solver. With it the iteration has
+     * converged where the differential unknowns by themselves have too; NULL: where all together have. */
+    N_Vector kinds;
+    void *data; /* of the functions below */
     /* d(dy/dt)/dy of IDA's present step, s-1: while it is constant, corrections hardly change */
     double (*leading_coefficient)(void *data);
     /* bring an old Jacobian up to date where that is cheap, after an evaluation of the residual; NULL: nothing is */
