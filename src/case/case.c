@@ -232,6 +232,16 @@ static char *stem(const char *path) {
     return length > 0 ? strndup(from, length) : strdup("case");
 }
 
+/* Whether the stiffness of every body is damped enough for the order 3: doc/numerics.md, section 3. */
+static bool are_damped(const struct school_parameters *school) {
+    for (int i = 0; i < school->n_fish; i++) {
+        const struct fish_parameters *const fish = &school->fish[i];
+        const double periods = fish->body.relaxation_time * fish->wave.frequency;
+        if (!(periods > 0.001 * (1 - 1e-9))) return false;
+    }
+    return true;
+}
+
 static enum status derive_all(struct case_values *values, const char *origin) {
     derive(&values->time.output_interval, 10 * values->school.shedding_interval);
     derive(&values->school.wake.decay, values->school.wake.lifetime / 10);
@@ -242,6 +252,7 @@ static enum status derive_all(struct case_values *values, const char *origin) {
     derive(&values->output.wake_interval, values->time.output_interval);
     if (!values->name && !(values->name = stem(origin))) return out_of_memory();
     for (int i = 0; i < values->school.n_fish; i++) TRY(derive_fish(&values->school.fish[i], i));
+    if (values->solver.order == 0) values->solver.order = are_damped(&values->school) ? 3 : 2;
     return STATUS_OK;
 }
 

@@ -42,6 +42,8 @@ def run(case, end):
         return None
     data = netCDF4.Dataset(path)
     check(f"{case} runs", data.run_status == "complete", data.run_status)
+    failures = int(data["convergence_failures"][-1])
+    check(f"{case} convergence failures", failures == 0, f"{failures}")
     circulation = np.abs(data["total_circulation"][:]).max()
     check(f"{case} total circulation", circulation < 1e-10, f"{circulation:.1e}")
     return data
