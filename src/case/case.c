@@ -206,6 +206,8 @@ static enum status derive_fish(struct fish_parameters *fish, int index) {
     if (fish->sheet_points == 0) fish->sheet_points = fish->nodes > 17 ? 2 * fish->nodes - 1 : 33;
     derive(&fish->body.relaxation_time, period / 1000);
     derive(&fish->wave.ramp, period);
+    if (!isnan(fish->wave.wavelength)) fish->wave.number = -2 * 3.14159265358979323846 / fish->wave.wavelength;
+    fish->wave.wavelength = NAN;
     derive(&fish->control.filter, period);
     derive(&fish->motion.speed, fish->start_speed);
     if ((int)fish->control.law < 0) fish->control.law = fish->control.waypoints.n > 0 ? CONTROL_COURSE : CONTROL_NONE;
@@ -218,7 +220,7 @@ static enum status derive_fish(struct fish_parameters *fish, int index) {
         double *const pair = calloc(2, sizeof *pair);
         if (!pair) return out_of_memory();
         pair[1] = fish->start_heading;
-        fish->control.desired_heading = (struct number_list){1, pair};
+        fish->control.desired_heading = (struct number_list){.n = 1, .value = pair};
     }
     return STATUS_OK;
 }

@@ -138,8 +138,7 @@ static void check_gust(const struct check *check) {
 static void check_edge_list(const struct check *check, const char *path, const struct number_list *list) {
     const struct fish_parameters *const fish = &check->values->school.fish[check->fish];
     bool is_default;
-    const bool is_written = case_merge_value(check->tree, path, check->fish, &is_default);
-    const bool is_read = list->n > 0 || !is_written;
+    const bool is_read = list->n > 0 || !case_merge_value(check->tree, path, check->fish, &is_default);
     if (fish->body.profile == PROFILE_TABLE && fish->nodes > 0 && is_read && list->n != fish->nodes - 1) {
         complain(check, path, "profile table needs one value per edge, %d for %d nodes; got %d", fish->nodes - 1,
                  fish->nodes, list->n);
@@ -148,14 +147,17 @@ static void check_edge_list(const struct check *check, const char *path, const s
     if (is_other && list->n > 0) complain(check, path, "is for 'profile: table' only: remove it");
 }
 
-/* The largest turning angle of a joint in the wave, without steering bias, in radians. */
-static double largest_turn(const struct fish_parameters *fish) {
-    double largest = 0;
+/* The largest turning angle that the muscle asks of a joint for a steering bias up to the given one, in radians. */
+static double largest_turn(const struct fish_parameters *fish, double bias) {
+    const struct wave_parameters *const wave = &fish->wave;
+    double envelope = 0, curvature = 0;
     for (int k = 1; k < fish->nodes - 1; k++) {
         const double q = (double)k / (fish->nodes - 1);
-        largest = fmax(largest, fabs(fish->wave.linear * q + fish->wave.quadratic * q * q));
+        envelope = fmax(envelope, fabs(wave->constant + wave->linear * q + wave->quadratic * q * q));
     }
-    return largest * fabs(fish->wave.amplitude) * (fish->reference_nodes - 1) / (fish->nodes - 1);
+    for (int i = 0; i < wave->table.n * wave->table.width; i++) curvature = fmax(curvature, fabs(wave->table.value[i]));
+    const double turn = envelope * fabs(wave->amplitude) * (fish->reference_nodes - 1) / (fish->nodes - 1);
+    return wave->table.n > 0 ? curvature / (fish->nodes - 1) + turn * bias : turn * (1 + bias);
 }
 
 /* The curvature of a joint is 2 tan(angle/2), which is singular at half a turn. */
@@ -163,10 +165,41 @@ static void check_turn(const struct check *check) {
     const struct fish_parameters *const fish = &check->values->school.fish[check->fish];
     if (fish->nodes == 0 || fish->reference_nodes == 0) return;
     const bool is_controlled = (int)fish->control.law > CONTROL_NONE;
-    const double turn = largest_turn(fish) * (1 + (is_controlled ? fish->control.limit : fabs(fish->control.bias)));
+    const double turn = largest_turn(fish, is_controlled ? fish->control.limit : fabs(fish->control.bias));
     if (turn >= 3.14159) {
-        complain(check, "fish.wave.amplitude", "the wave turns a joint by up to %.3g rad; it must stay below 3.14",
-                 turn);
+        complain(check, fish->wave.table.n > 0 ? "fish.wave.table" : "fish.wave.amplitude",
+                 "the wave turns a joint by up to %.3g rad; it must stay below 3.14", turn);
+    }
+}
+
+/* True if a number of the fish is neither the default of its key nor that of the preset: a case that `shoal show`
+ * printed has every key, and no preset. False for what could not be read. */
+static bool is_given(const struct check *check, const char *path) {
+    const struct key *const key = case_table_row(path);
+    const char *const fish = (const char *)&check->values->school.fish[check->fish];
+    const double value = *(const double *)(fish + key->offset);
+    const double initial = strtod(key->initial, NULL);
+    const double published = key->published ? strtod(key->published, NULL) : initial;
+    return fabs(value - initial) > 0 && fabs(value - published) > 0;
+}
+
+/* True if a key is written for the fish or among the defaults. */
+static bool is_written(const struct check *check, const char *path) {
+    bool is_default;
+    return case_merge_value(check->tree, path, check->fish, &is_default) != NULL;
+}
+
+/* Two ways to say one thing, and a table that replaces the wave. */
+static void check_wave_form(const struct check *check) {
+    const struct number_list *const table = &check->values->school.fish[check->fish].wave.table;
+    static const char number[] = "fish.wave.number", wavelength[] = "fish.wave.wavelength";
+    if (is_written(check, number) && is_written(check, wavelength)) {
+        complain(check, wavelength, "is another way to say wave.number: remove one of them");
+    }
+    if (table->n == 1) complain(check, "fish.wave.table", "needs two rows or more, from nose to tail");
+    if (table->n > 0 && is_given(check, number)) {
+        complain(check, is_written(check, wavelength) ? wavelength : number,
+                 "has no effect with wave.table: remove it");
     }
 }
 
@@ -189,24 +222,13 @@ static void check_motion(const struct check *check) {
     }
 }
 
-/* True if a number of the fish is neither the default of its key nor that of the preset: a case that `shoal show`
- * printed has every key, and no preset. False for what could not be read. */
-static bool is_given(const struct check *check, const char *path) {
-    const struct key *const key = case_table_row(path);
-    const char *const fish = (const char *)&check->values->school.fish[check->fish];
-    const double value = *(const double *)(fish + key->offset);
-    const double initial = strtod(key->initial, NULL);
-    const double published = key->published ? strtod(key->published, NULL) : initial;
-    return fabs(value - initial) > 0 && fabs(value - published) > 0;
-}
-
 static void check_drag(const struct check *check) {
     const struct fish_parameters *const fish = &check->values->school.fish[check->fish];
     const struct drag_parameters *const drag = &fish->drag;
     static const char path[] = "fish.drag.linear_speed";
     const bool has_speed = is_given(check, path);
     if (has_speed && drag->law != DRAG_LINEAR_QUADRATIC) {
-        complain(check, path, "is for 'law: linear_quadratic' only; remove it");
+        complain(check, path, "is for 'law: linear_quadratic' only: remove it");
     } else if (has_speed && fish->force == FORCE_PUBLISHED) {
         complain(check, path, "is for 'force: reactive' only; in the published law it is 1 m/s");
     } else if (drag->law == DRAG_LINEAR_QUADRATIC && fish->force == FORCE_REACTIVE && drag->linear_speed > 0 &&
@@ -253,22 +275,22 @@ static void check_law_keys(const struct check *check) {
     const char *const law = case_table_word(case_table_row("fish.control.law"), (int)control->law);
     for (size_t i = 0; i < sizeof law_keys / sizeof *law_keys; i++) {
         if (law_keys[i].laws >> control->law & 1U || !is_given(check, law_keys[i].path)) continue;
-        complain(check, law_keys[i].path, "has no effect with 'law: %s'; remove it", law);
+        complain(check, law_keys[i].path, "has no effect with 'law: %s': remove it", law);
     }
     const double period = fish->wave.frequency > 0 ? 1 / fish->wave.frequency : 0;
     if (!has_moment(control) && fabs(control->filter - period) > 0) {
-        complain(check, "fish.control.filter", "has no effect without feedforward; remove it");
+        complain(check, "fish.control.filter", "has no effect without feedforward: remove it");
     }
     if (control->waypoints.n == 0 && is_given(check, "fish.control.arrival")) {
-        complain(check, "fish.control.arrival", "has no effect without control.waypoints; remove it");
+        complain(check, "fish.control.arrival", "has no effect without control.waypoints: remove it");
     }
     const struct number_list *const heading = &control->desired_heading;
     if (heading->n == 0) return;
     const bool is_start = heading->n == 1 && !(fabs(heading->value[1] - fish->start_heading) > 0);
     if (control->law == CONTROL_NONE && !is_start) {
-        complain(check, "fish.control.desired_heading", "has no effect with 'law: none'; choose a law, or remove it");
+        complain(check, "fish.control.desired_heading", "has no effect with 'law: none': choose a law, or remove it");
     } else if (control->waypoints.n > 0 && !is_start) {
-        complain(check, "fish.control.desired_heading", "has no effect with control.waypoints; remove one of them");
+        complain(check, "fish.control.desired_heading", "has no effect with control.waypoints: remove one of them");
     }
 }
 
@@ -277,7 +299,7 @@ static void check_control(const struct check *check) {
     const struct control_parameters *const control = &fish->control;
     check_headings(check);
     if (control->law == CONTROL_NONE && control->waypoints.n > 0) {
-        complain(check, "fish.control.waypoints", "has no effect with 'law: none'; remove the law, or choose course");
+        complain(check, "fish.control.waypoints", "has no effect with 'law: none': remove the law, or choose course");
     }
     check_law_keys(check);
     if (control->law == CONTROL_NONE) return;
@@ -316,6 +338,7 @@ void case_check(const struct case_values *values, const struct case_tree *tree, 
         check_name(&check);
         check_edge_list(&check, "fish.body.h", &fish->body.h);
         check_edge_list(&check, "fish.body.w", &fish->body.w);
+        check_wave_form(&check);
         check_turn(&check);
         check_drag(&check);
         check_motion(&check);

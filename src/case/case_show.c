@@ -61,7 +61,8 @@ static bool is_hidden(const struct key *key, const void *field) {
     if (!case_table_is_value(key)) return true;
     if (strcmp(key->path, "preset") == 0) return true;
     if (key->type == STRING) return !*(char *const *)field;
-    return key->type == NUMBERS && ((const struct number_list *)field)->n == 0;
+    if (key->type == REAL) return isnan(*(const double *)field);
+    return (key->type == NUMBERS || key->type == ROWS) && ((const struct number_list *)field)->n == 0;
 }
 
 /* Add every row of the table that belongs to a fish, or with fish NULL every row that belongs to none. */

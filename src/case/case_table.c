@@ -173,8 +173,10 @@ const struct key case_table[] = {
      .derived = "a thousandth of a period (0 when the frequency is 0)"},
 
     {"fish.wave.amplitude", REAL, IN_FISH(wave.amplitude), "0.4", ANY, "rad",
-     .meaning =
-         "A of the turning angle A (linear q + quadratic q^2) sin(number q + 2 pi frequency t + phase), q = s/L"},
+     .meaning = "A of the turning angle A (constant + linear q + quadratic q^2) sin(number q + 2 pi frequency t + "
+                "phase), q = s/L"},
+    {"fish.wave.constant", REAL, IN_FISH(wave.constant), "0", ANY, "", .meaning = "envelope of the wave at the nose",
+     .synonyms = "c0"},
     {"fish.wave.linear", REAL, IN_FISH(wave.linear), "1", ANY, "",
      .meaning = "coefficient of q in the envelope of the wave", .synonyms = "c1"},
     {"fish.wave.quadratic", REAL, IN_FISH(wave.quadratic), "0.2", ANY, "",
@@ -182,6 +184,13 @@ const struct key case_table[] = {
     {"fish.wave.number", REAL, IN_FISH(wave.number), "-6", ANY, "rad",
      .meaning = "wavenumber: phase difference over one body length; negative: the wave travels from head to tail",
      .synonyms = "beta wavenumber wave_number k"},
+    {"fish.wave.wavelength", REAL, IN_FISH(wave.wavelength), NULL, ABOVE(0), "",
+     .meaning = "length of the wave in body lengths, from head to tail: another way to say number, -2 pi/wavelength",
+     .derived = "that of wave.number", .synonyms = "lambda"},
+    {"fish.wave.table", ROWS, IN_FISH(wave.table), "[]", ANY, "",
+     .meaning = "natural curvature times body length instead of the wave: rows at equal distances from nose to tail, "
+                "in each values at equal phases of one period",
+     .synonyms = "curvature profile"},
     {"fish.wave.frequency", REAL, IN_FISH(wave.frequency), "1", FROM(0), "Hz", .meaning = "beat frequency",
      .synonyms = "omega freq f beat period"},
     {"fish.wave.phase", REAL, IN_FISH(wave.phase), "0", ANY, "degree", .meaning = "phase at time 0"},
@@ -323,6 +332,7 @@ const char *case_table_type(const struct key *key) {
                                         [PAIR] = "[x, y]",
                                         [NUMBERS] = "list of numbers",
                                         [PAIRS] = "list of [x, y]",
+                                        [ROWS] = "list of rows of numbers",
                                         [HEADING] = "number or list of [time, angle]",
                                         [FILES] = "list of files",
                                         [DEFAULTS] = "map",

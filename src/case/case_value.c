@@ -28,6 +28,7 @@ void case_value_clear(const struct key *key, void *field) {
         case STRING: *(char **)field = NULL; break;
         case NUMBERS:
         case PAIRS:
+        case ROWS:
         case HEADING: *(struct number_list *)field = (struct number_list){0}; break;
         case FILES:
         case DEFAULTS:
@@ -38,7 +39,8 @@ void case_value_clear(const struct key *key, void *field) {
 
 void case_value_free(const struct key *key, void *field) {
     if (key->type == STRING) free(*(char **)field);
-    if (key->type == NUMBERS || key->type == PAIRS || key->type == HEADING) free(((struct number_list *)field)->value);
+    const bool is_list = key->type == NUMBERS || key->type == PAIRS || key->type == ROWS || key->type == HEADING;
+    if (is_list) free(((struct number_list *)field)->value);
     case_value_clear(key, field);
 }
 
@@ -195,7 +197,48 @@ static enum status read_list(const struct context *context, const struct yaml_no
     double *const value = calloc(2 * (size_t)node->n, sizeof *value);
     if (!value) return status_fail(STATUS_MEMORY, "out of memory: the %d values of %s", node->n, context->path);
     if (read_values(context, node, value)) {
-        *list = (struct number_list){node->n, value};
+        *list = (struct number_list){.n = node->n, .value = value};
+    } else {
+        free(value);
+    }
+    return STATUS_OK;
+}
+
+/* Read the numbers of one row, all rows being as long as the first. */
+static bool read_row(const struct context *context, const struct yaml_node *node, int width, double *value) {
+    bool is_good = node->kind == YAML_LIST && node->n == width;
+    if (!is_good) {
+        char shown[64];
+        yaml_errors_add(context->errors, node->mark, "%s: expects rows of %d numbers as the first, got %s",
+                        context->path, width, yaml_tree_describe(node, shown, sizeof shown));
+    }
+    for (int i = 0; i < width && is_good; i++) {
+        is_good = read_number(context, node->entry[i].value, "rows of numbers", &value[i]);
+    }
+    return is_good;
+}
+
+/* Read a list of rows of numbers. */
+static enum status read_rows(const struct context *context, const struct yaml_node *node, struct number_list *list) {
+    if (node->kind == YAML_LIST && node->n == 0) return STATUS_OK;
+    const struct yaml_node *const first = node->kind == YAML_LIST ? node->entry[0].value : node;
+    if (node->kind != YAML_LIST || first->kind != YAML_LIST || first->n == 0) {
+        char shown[64];
+        yaml_errors_add(context->errors, first->mark, "%s: expects a %s, got %s", context->path,
+                        case_table_type(context->key), yaml_tree_describe(first, shown, sizeof shown));
+        return STATUS_OK;
+    }
+    const int width = first->n;
+    if (node->n > MAX_VALUES / width) {
+        yaml_errors_add(context->errors, node->mark, "%s: more than %d values", context->path, MAX_VALUES);
+        return STATUS_OK;
+    }
+    double *const value = calloc((size_t)node->n * (size_t)width, sizeof *value);
+    if (!value) return status_fail(STATUS_MEMORY, "out of memory: the %d rows of %s", node->n, context->path);
+    bool is_good = true;
+    for (int i = 0; i < node->n; i++) is_good &= read_row(context, node->entry[i].value, width, &value[i * width]);
+    if (is_good) {
+        *list = (struct number_list){node->n, value, width};
     } else {
         free(value);
     }
@@ -217,7 +260,7 @@ static enum status read_heading(const struct context *context, const struct yaml
     double *const pair = calloc(2, sizeof *pair);
     if (!pair) return status_fail(STATUS_MEMORY, "out of memory: the value of %s", context->path);
     pair[1] = angle;
-    *list = (struct number_list){1, pair};
+    *list = (struct number_list){.n = 1, .value = pair};
     return STATUS_OK;
 }
 
@@ -234,6 +277,7 @@ enum status case_value_read(const struct key *key, void *field, const struct yam
         case PAIR: read_pair(&context, node, "two numbers [x, y]", field); break;
         case NUMBERS:
         case PAIRS: return read_list(&context, node, field);
+        case ROWS: return read_rows(&context, node, field);
         case HEADING: return read_heading(&context, node, field);
         case FILES:
         case DEFAULTS:
@@ -266,6 +310,14 @@ static void write_list(struct text *text, const struct number_list *list, bool i
     text_add(text, "]");
 }
 
+static void write_rows(struct text *text, const struct number_list *list) {
+    for (int i = 0; i < list->n; i++) {
+        text_add(text, i == 0 ? "[" : ", ");
+        write_list(text, &(struct number_list){.n = list->width, .value = &list->value[i * list->width]}, false);
+    }
+    text_add(text, list->n > 0 ? "]" : "[]");
+}
+
 void case_value_write(struct text *text, const struct key *key, const void *field) {
     switch (key->type) {
         case REAL: text_add_number(text, *(const double *)field); break;
@@ -275,6 +327,7 @@ void case_value_write(struct text *text, const struct key *key, const void *fiel
         case STRING: yaml_write_scalar(text, *(char *const *)field); break;
         case PAIR: write_pair(text, field); break;
         case NUMBERS: write_list(text, field, false); break;
+        case ROWS: write_rows(text, field); break;
         case PAIRS:
         case HEADING: write_list(text, field, true); break;
         case FILES:

@@ -1,4 +1,5 @@
-/* actuation.c: phibar = a(t) A (lbar/l_ref) (c1 sigma + c2 sigma^2) (sin(beta sigma + omega t + phase) + phi0). */
+/* actuation.c: phibar = a(t) A (lbar/l_ref) (c0 + c1 sigma + c2 sigma^2) (sin(beta sigma + omega t + phase) + phi0), or
+ * a table in the place of the sine. */
 #include "model/actuation.h"
 
 #include <math.h>
@@ -8,20 +9,20 @@
 void actuation_curvature(const struct fish *fish, double t, double phi0, double *curvature, double *by_phi0) {
     const double ramp = ramp_value(t, fish->ramp);
     for (int j = 0; j < fish->n_joints; j++) {
-        const double amplitude = ramp * fish->wave_amplitude[j];
-        const double half_tangent = tan(amplitude * (sin(fish->wave_phase[j] + fish->omega * t) + phi0) / 2);
+        const double half_tangent = tan(fish_natural_angle(fish, j, t, phi0) / 2);
         curvature[j] = 2 * half_tangent;
-        by_phi0[j] = amplitude * (1 + half_tangent * half_tangent);
+        by_phi0[j] = ramp * fish->wave_amplitude[j] * (1 + half_tangent * half_tangent);
     }
 }
 
 void actuation_rate(const struct fish *fish, double t, double phi0, double phi0_rate, double *rate) {
     const double ramp = ramp_value(t, fish->ramp), rate_of_ramp = ramp_rate(t, fish->ramp);
     for (int j = 0; j < fish->n_joints; j++) {
-        const double phase = fish->wave_phase[j] + fish->omega * t, wave = sin(phase) + phi0;
-        const double angle = ramp * fish->wave_amplitude[j] * wave, half_tangent = tan(angle / 2);
+        const struct fish_demand demand = fish_demand(fish, j, t);
+        const double wave = demand.sine + phi0, half_tangent = tan(fish_natural_angle(fish, j, t, phi0) / 2);
         const double angle_rate =
-            fish->wave_amplitude[j] * (rate_of_ramp * wave + ramp * (fish->omega * cos(phase) + phi0_rate));
+            fish->wave_amplitude[j] * (rate_of_ramp * wave + ramp * (demand.sine_rate + phi0_rate)) +
+            rate_of_ramp * demand.angle + ramp * demand.angle_rate;
         rate[j] = angle_rate * (1 + half_tangent * half_tangent);
     }
 }

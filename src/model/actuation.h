@@ -1,4 +1,4 @@
-/* actuation.h: the muscle: a travelling wave of natural curvature. doc/model.md, section 4. Tested by
+/* actuation.h: the muscle: a travelling wave of natural curvature, or a table of it. doc/model.md, section 4. Tested by
  * tests/model/test_actuation.c. */
 #ifndef ACTUATION_H
 #define ACTUATION_H

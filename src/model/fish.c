@@ -102,14 +102,40 @@ static void weigh_body(struct fish *fish, const struct fish_parameters *from) {
     }
 }
 
+// Fourier coefficients, over the phase, of the table's curvature at a joint, as a turning angle
+static void set_harmonics(const struct fish *fish, const struct number_list *table, int joint) {
+    const double place = (joint + 1.0) / fish->n_edges * (table->n - 1), unit = fish->edge_length / fish->length;
+    const int row = place < table->n - 2 ? (int)place : table->n - 2, n = table->width;
+    const double *const low = &table->value[row * n], *const high = low + n;
+    double *const to = &fish->harmonic[2 * joint * fish->n_harmonics];
+    for (int m = 0; m < fish->n_harmonics; m++) {
+        // the mean, and the highest harmonic of an even number of values, count once
+        const double weight = (m == 0 || 2 * m == n ? 1.0 : 2.0) / n * unit;
+        for (int j = 0; j < n; j++) {
+            const double value = low[j] + (place - row) * (high[j] - low[j]), angle = 2 * pi * m * j / n;
+            to[2 * m] += weight * value * cos(angle);
+            if (2 * m < n) to[2 * m + 1] += weight * value * sin(angle);
+        }
+    }
+}
+
+static enum status set_table(struct fish *fish, const struct number_list *table) {
+    if (table->n == 0) return STATUS_OK;
+    fish->n_harmonics = table->width / 2 + 1;
+    TRY(doubles(&fish->harmonic, 2 * fish->n_joints * fish->n_harmonics));
+    for (int joint = 0; joint < fish->n_joints; joint++) set_harmonics(fish, table, joint);
+    return STATUS_OK;
+}
+
 static void set_wave(struct fish *fish, const struct fish_parameters *from) {
     const struct wave_parameters *wave = &from->wave;
     const double reference = fish->length / (from->reference_nodes - 1);
     for (int joint = 0; joint < fish->n_joints; joint++) {
         const double sigma = (joint + 1.0) / fish->n_edges;
         fish->wave_amplitude[joint] = wave->amplitude * (fish->edge_length / reference) *
-                                      (wave->linear * sigma + wave->quadratic * sigma * sigma);
-        fish->wave_phase[joint] = wave->number * sigma + angle_radians(wave->phase);
+                                      (wave->constant + wave->linear * sigma + wave->quadratic * sigma * sigma);
+        // a table has its own phase along the body
+        fish->wave_phase[joint] = (wave->table.n > 0 ? 0 : wave->number * sigma) + angle_radians(wave->phase);
     }
     fish->omega = 2 * pi * wave->frequency;
     fish->ramp = wave->ramp;
@@ -287,6 +313,7 @@ static enum status fish_fill(struct fish *fish, const struct school_parameters *
     shape_edges(fish, from);
     weigh_body(fish, from);
     set_wave(fish, from);
+    TRY(set_table(fish, &from->wave.table));
     set_fluid_forces(fish, from, parameters->fluid.density);
     TRY(place_sheet(fish, &parameters->wake));
     set_motion(fish, from);
@@ -398,6 +425,7 @@ void fish_school_free(struct school *school) {
                                fish->bending_damping,
                                fish->wave_amplitude,
                                fish->wave_phase,
+                               fish->harmonic,
                                fish->drag_tangential,
                                fish->drag_normal,
                                fish->added_mass,
@@ -484,6 +512,26 @@ void fish_prescribe(const struct fish *fish, int n, double t, double *y) {
     }
 }
 
+struct fish_demand fish_demand(const struct fish *fish, int j, double t) {
+    const double phase = fish->wave_phase[j] + fish->omega * t;
+    if (fish->n_harmonics == 0) return (struct fish_demand){.sine = sin(phase), .sine_rate = fish->omega * cos(phase)};
+    const double *const harmonic = &fish->harmonic[2 * j * fish->n_harmonics];
+    struct fish_demand demand = {.sine = 0};
+    for (int m = 0; m < fish->n_harmonics; m++) {
+        const double c = cos(m * phase), s = sin(m * phase), a = harmonic[2 * m], b = harmonic[2 * m + 1];
+        demand.angle += a * c + b * s;
+        demand.angle_rate += m * fish->omega * (b * c - a * s);
+    }
+    return demand;
+}
+
+double fish_natural_angle(const struct fish *fish, int j, double t, double phi0) {
+    const double ramp = ramp_value(t, fish->ramp);
+    const struct fish_demand demand = fish_demand(fish, j, t);
+    const double angle = ramp * fish->wave_amplitude[j] * (demand.sine + phi0);
+    return fish->n_harmonics == 0 ? angle : angle + ramp * demand.angle;
+}
+
 void fish_start(const struct fish *fish, double *y) {
     double *const x = y + fish->at.x, *const z = y + fish->at.y;
     if (fish->motion.prescribed != PRESCRIBED_NONE) {
@@ -497,9 +545,7 @@ void fish_start(const struct fish *fish, double *y) {
     x[0] = fish->start_position[0];
     z[0] = fish->start_position[1];
     for (int k = 0; k < fish->n_edges; k++) {
-        if (k > 0) {
-            angle += ramp_value(0, fish->ramp) * fish->wave_amplitude[k - 1] * (sin(fish->wave_phase[k - 1]) + bias);
-        }
+        if (k > 0) angle += fish_natural_angle(fish, k - 1, 0, bias);
         x[k + 1] = x[k] + fish->edge_length * cos(angle);
         z[k + 1] = z[k] + fish->edge_length * sin(angle);
     }

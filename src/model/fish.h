@@ -78,10 +78,12 @@ struct fish {
     double clamp_stiffness;    /* 2 E I/lbar, N m */
     double clamp_damping;      /* N m s */
 
-    double *wave_amplitude; /* A (lbar/l_ref) (c1 sigma + c2 sigma^2)             (n_joints) */
+    double *wave_amplitude; /* A (lbar/l_ref) (c0 + c1 sigma + c2 sigma^2)        (n_joints) */
     double *wave_phase;     /* beta sigma + phase, rad                            (n_joints) */
-    double omega;           /* rad s-1 */
-    double ramp;            /* s */
+    int n_harmonics;  /* of a table that takes the place of the wave: natural turning angles over the phase, rad: */
+    double *harmonic; /* cosine and sine of each harmonic from 0 on         (n_joints, n_harmonics, 2) */
+    double omega;     /* rad s-1 */
+    double ramp;      /* s */
 
     enum force force;
     double *drag_tangential; /* c_t, kg m-1                                       (n_edges) */
@@ -170,6 +172,17 @@ void fish_prescribed_node(const struct fish *fish, int k, double t, double posit
 /* Write position and velocity that the first n nodes of a driven fish have at time t into the vector of all
  * unknowns. */
 void fish_prescribe(const struct fish *fish, int n, double t, double *y);
+
+/* What the muscle asks of joint j at time t, at full amplitude and without steering bias: the sine of the wave, or an
+ * angle of the table, rad; and their rates. */
+struct fish_demand {
+    double sine, sine_rate;
+    double angle, angle_rate;
+};
+struct fish_demand fish_demand(const struct fish *fish, int j, double t);
+
+/* The natural turning angle of joint j at time t for the bias phi0, rad. */
+double fish_natural_angle(const struct fish *fish, int j, double t, double phi0);
 
 /* Write nose to tail positions and velocities of the start into the vector of all unknowns: doc/model.md, 4 and 5. */
 void fish_start(const struct fish *fish, double *y);

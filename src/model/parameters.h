@@ -18,10 +18,12 @@ enum extent { EXTENT_THICKNESS, EXTENT_DEPTH };
 enum prescribed { PRESCRIBED_NONE, PRESCRIBED_HEAD, PRESCRIBED_ALL };
 enum control_law { CONTROL_NONE, CONTROL_HEADING, CONTROL_AVERAGED_HEADING, CONTROL_COURSE };
 
-/* A list of numbers, or of pairs (then 2 n numbers, pair after pair). Owned by the structure that it is in. */
+/* A list of numbers, of pairs (then 2 n numbers, pair after pair), or of rows (width n numbers, row after row). Owned
+ * by the structure that it is in. */
 struct number_list {
     int n;
     double *value;
+    int width; /* of a list of rows: numbers in each */
 };
 
 struct fluid_parameters {
@@ -59,7 +61,10 @@ struct body_parameters {
 };
 
 struct wave_parameters {
-    double amplitude, linear, quadratic, number;
+    double amplitude, constant, linear, quadratic;
+    double number, wavelength; /* rad; body lengths, NaN: number says it */
+    struct number_list
+        table;        /* rows from nose to tail of natural curvature times length, over the phase; none: empty */
     double frequency; /* Hz */
     double phase;     /* degree */
     double ramp;      /* s */

@@ -400,6 +400,8 @@ static void a_case_shown_reads_back_bit_for_bit(void **state) {
         "format: 1\ntime: {end: 1}\nfish: [{wave: {frequency: 0}, control: {bias: 0.1}},\n"
         "  {wave: {frequency: 3}, control: {law: heading, feedforward: 0.2}},\n"
         "  {start: {heading: 20}, control: {law: averaged_heading}}, {control: {law: course}}]\n",
+        "format: 1\ntime: {end: 1}\nfish: [{wave: {wavelength: 0.7, constant: 0.1}},\n"
+        "  {wave: {table: [[0, 1.5, 2], [3, 4, -0.1]]}}]\n",
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct case_values first = parse(cases[i]);

@@ -4,7 +4,9 @@
 #include "school.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
-#define WAVE "fish: [{wave: {frequency: 1.2, phase: 35, amplitude: 0.5, linear: 0.8, quadratic: 0.4, number: -5}}]\n"
+#define WAVE                                                                                                         \
+    "fish: [{wave: {frequency: 1.2, phase: 35, amplitude: 0.5, constant: 0.1, linear: 0.8, quadratic: 0.4, number: " \
+    "-5}}]\n"
 
 static void curvature_is_the_formula_of_the_model(void **state) {
     (void)state;
@@ -15,7 +17,7 @@ static void curvature_is_the_formula_of_the_model(void **state) {
         actuation_curvature(setup.school->fish, t, 0.2, curvature, by_phi0);
         for (int j = 0; j < 5; j++) {
             const double s = (j + 1) / 6.0, pi = acos(-1);
-            const double angle = ramp_value(t, 1 / 1.2) * 0.5 * (0.8 * s + 0.4 * s * s) *
+            const double angle = ramp_value(t, 1 / 1.2) * 0.5 * (0.1 + 0.8 * s + 0.4 * s * s) *
                                  (sin(-5 * s + 2 * pi * 1.2 * t + 35 * pi / 180) + 0.2);
             NEAR(curvature[j], 2 * tan(angle / 2), 1e-14, 0);
         }
@@ -23,10 +25,9 @@ static void curvature_is_the_formula_of_the_model(void **state) {
     school_clear(&setup);
 }
 
-static void derivatives_agree_with_differences(void **state) {
-    (void)state;
+static void derivatives_agree(const char *text) {
     struct setup setup;
-    school_build(&setup, TIME WAVE);
+    school_build(&setup, text);
     const struct fish *fish = setup.school->fish;
     const double h = 1e-4, rate = 0.7;
     for (double t = 0.1; t < 1.5; t += 0.3) {
@@ -43,6 +44,67 @@ static void derivatives_agree_with_differences(void **state) {
         for (int j = 0; j < 5; j++) NEAR(changes[j], (high[j] - low[j]) / (2 * h), 1e-6, 0);
     }
     school_clear(&setup);
+}
+
+static void derivatives_agree_with_differences(void **state) {
+    (void)state;
+    derivatives_agree(TIME WAVE);
+    derivatives_agree(TIME
+                      "fish: [{wave: {frequency: 1.2, phase: 35, constant: 0.3,\n"
+                      "  table: [[0, 1, -1, 0.4], [2, -3, 1, 1], [1, 0, -2, 5]]}}]\n");
+}
+
+static void a_wavelength_is_another_word_for_the_number(void **state) {
+    (void)state;
+    struct setup setup[2];
+    school_build(&setup[0], TIME "fish: [{wave: {wavelength: 0.8}}]\n");
+    school_build(&setup[1], TIME "fish: [{wave: {number: -7.853981633974483}}]\n");
+    NEAR_ARRAY(5, setup[0].school->fish[0].wave_phase, setup[1].school->fish[0].wave_phase, 0, 1e-15);
+    for (int i = 0; i < 2; i++) school_clear(&setup[i]);
+}
+
+static void a_table_of_a_wave_is_that_wave(void **state) {
+    (void)state;
+    struct setup setup[2];
+    // 0.5 (0.2 + 0.8 q) sin(2 pi t + phase), the same at all places: linear in q as the table is; six lengths of l_ref
+    school_build(&setup[0],
+                 TIME "fish: [{wave: {amplitude: 0.5, constant: 0.2, linear: 0.8, quadratic: 0, number: 0}}]\n");
+    school_build(&setup[1], TIME
+                 "fish: [{wave: {amplitude: 0.5, constant: 0.2, linear: 0.8, quadratic: 0,\n"
+                 "  table: [[0, 0.6, 0, -0.6], [0, 3, 0, -3]]}}]\n");
+    for (double t = 0.1; t < 2; t += 0.3) {
+        double curvature[2][5], by_phi0[2][5], rate[2][5];
+        for (int i = 0; i < 2; i++) {
+            actuation_curvature(setup[i].school->fish, t, 0.2, curvature[i], by_phi0[i]);
+            actuation_rate(setup[i].school->fish, t, 0.2, 0.3, rate[i]);
+        }
+        NEAR_ARRAY(5, curvature[1], curvature[0], 1e-14, 1e-13);
+        NEAR_ARRAY(5, by_phi0[1], by_phi0[0], 1e-14, 1e-13);
+        NEAR_ARRAY(5, rate[1], rate[0], 1e-13, 1e-13);
+    }
+    for (int i = 0; i < 2; i++) school_clear(&setup[i]);
+}
+
+static void a_table_is_met_at_its_places_and_phases(void **state) {
+    (void)state;
+    // odd and even numbers of phases; rows at quarters of the length, where the joints 1, 2, 3 of five nodes are
+    const char *const texts[] = {
+        TIME "fish: [{nodes: 5, wave: {ramp: 0, table: [[9, 9, 9], [1, 2, -3], [2, 0, 4], [0, 1, 0], [9, 9, 9]]}}]\n",
+        TIME
+        "fish: [{nodes: 5, wave: {ramp: 0, table: [[9, 9, 9, 9], [1, 2, -3, 0], [2, 0, 4, 1], [0, 1, 0, 2], [9, 9, 9, "
+        "9]]}}]\n"};
+    const double want[2][3][4] = {{{1, 2, -3}, {2, 0, 4}, {0, 1, 0}}, {{1, 2, -3, 0}, {2, 0, 4, 1}, {0, 1, 0, 2}}};
+    for (int i = 0; i < 2; i++) {
+        struct setup setup;
+        school_build(&setup, texts[i]);
+        for (int phase = 0; phase < 3 + i; phase++) {
+            for (int j = 0; j < 3; j++) {
+                // a quarter of the length turns by a quarter of curvature times length
+                NEAR(fish_natural_angle(setup.school->fish, j, phase / (3.0 + i), 0), want[i][j][phase] / 4, 1e-14, 0);
+            }
+        }
+        school_clear(&setup);
+    }
 }
 
 static void wave_travels_from_head_to_tail(void **state) {
@@ -100,6 +162,9 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(curvature_is_the_formula_of_the_model),
         cmocka_unit_test(derivatives_agree_with_differences),
+        cmocka_unit_test(a_wavelength_is_another_word_for_the_number),
+        cmocka_unit_test(a_table_of_a_wave_is_that_wave),
+        cmocka_unit_test(a_table_is_met_at_its_places_and_phases),
         cmocka_unit_test(wave_travels_from_head_to_tail),
         cmocka_unit_test(ramp_starts_from_a_straight_body_and_no_ramp_does_not),
         cmocka_unit_test(turn_of_the_whole_body_does_not_depend_on_the_number_of_nodes),
