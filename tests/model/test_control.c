@@ -83,6 +83,31 @@ static void waypoints_are_visited_in_order_and_the_last_course_is_held(void **st
     school_clear(&setup);
 }
 
+static void the_course_that_is_held_is_that_of_the_last_leg(void **state) {
+    (void)state;
+    // from one waypoint to the next, and from the start where there is one waypoint only
+    const struct {
+        const char *text;
+        int waypoint; /* the last */
+        double x, y, course;
+    } examples[] = {{TIME "fish: [{control: {law: heading, waypoints: [[-2, 1], [-3, 4]]}}]\n", 1, -3, 4, atan2(3, -1)},
+                    {TIME "fish: [{start: {position: [1, 2]}, control: {law: heading, waypoints: [[-1, 5]]}}]\n", 0, -1,
+                     5, atan2(3, -2)}};
+    for (int i = 0; i < 2; i++) {
+        struct setup setup;
+        school_build(&setup, examples[i].text);
+        const struct fish *fish = setup.school->fish;
+        struct control_memory *memory = &setup.state->control[0];
+        memory->waypoint = examples[i].waypoint;
+        setup.state->y[fish->at.x] = examples[i].x;
+        setup.state->y[fish->at.y] = examples[i].y;
+        control_event(fish, memory, &(struct control_view){.t = 0.1, .interval = 0.02}, setup.state->y);
+        assert_int_equal(memory->waypoint, examples[i].waypoint + 1);
+        NEAR(memory->held_heading, examples[i].course, 1e-14, 0);
+        school_clear(&setup);
+    }
+}
+
 static void waypoints_close_together_are_passed_at_one_event(void **state) {
     (void)state;
     struct setup setup;
@@ -267,6 +292,7 @@ int main(void) {
         cmocka_unit_test(law_turns_towards_the_desired_heading_the_short_way),
         cmocka_unit_test(without_a_law_the_bias_is_the_given_one),
         cmocka_unit_test(waypoints_are_visited_in_order_and_the_last_course_is_held),
+        cmocka_unit_test(the_course_that_is_held_is_that_of_the_last_leg),
         cmocka_unit_test(waypoints_close_together_are_passed_at_one_event),
         cmocka_unit_test(averaged_heading_moves_the_bias_with_bounded_rate),
         cmocka_unit_test(feedforward_acts_through_a_moving_mean),

@@ -225,6 +225,31 @@ static void a_value_that_is_not_finite_asks_for_a_retry_and_says_where(void **st
     school_clear(&setup);
 }
 
+static void rows_of_prescribed_nodes_vanish_on_their_motion_only(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(
+        &setup, TIME
+        "fish: [{start: {heading: 25}, motion: {driven: all, speed: 0.6, heave: 0.2, pitch: 20, pitch_phase: 70, "
+        "frequency: 1.3}}]\n");
+    school_stir(&setup);
+    const struct fish *const fish = setup.school->fish;
+    double *const y = setup.state->y;
+    fish_prescribe(fish, fish->n_nodes, setup.t, y);
+    for (int k = 0; k < fish->n_nodes; k++) {
+        double position[2], velocity[2], acceleration[2];
+        fish_prescribed_node(fish, k, setup.t, position, velocity, acceleration);
+        y[fish->at.ax + k] = acceleration[0];
+        y[fish->at.ay + k] = acceleration[1];
+    }
+    school_ok(residual_evaluate(setup.residual, setup.t, y, setup.state->yp, setup.value));
+    for (int i = fish->at.x; i < fish->at.gamma; i++) NEAR(setup.value[i], 0, 0, 0);
+    for (int i = fish->at.x; i < fish->at.gamma; i++) y[i] += 1e-3 * (i + 1);
+    school_ok(residual_evaluate(setup.residual, setup.t, y, setup.state->yp, setup.value));
+    for (int i = fish->at.x; i < fish->at.gamma; i++) NEAR(setup.value[i], 1e-3 * (i + 1), 1e-13, 0);
+    school_clear(&setup);
+}
+
 static void load_at_the_tip_accelerates_the_tail_only(void **state) {
     (void)state;
     struct setup with, without;
@@ -250,6 +275,7 @@ int main(void) {
         cmocka_unit_test(unknowns_have_names_kinds_and_scales),
         cmocka_unit_test(circulation_shed_is_differential_only_with_a_rate),
         cmocka_unit_test(a_value_that_is_not_finite_asks_for_a_retry_and_says_where),
+        cmocka_unit_test(rows_of_prescribed_nodes_vanish_on_their_motion_only),
         cmocka_unit_test(load_at_the_tip_accelerates_the_tail_only),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
