@@ -1,6 +1,9 @@
 #!/usr/bin/python3
 """Measure the tables of doc/numerics.md and print them as markdown.
 
+    scripts/numerics.py default      cost and error of a default fish against the stiffness of the body; minutes
+    scripts/numerics.py highest      the same against solver.order; minutes
+    scripts/numerics.py nascent      cost without what follows the nascent stretch: builds variants, takes minutes
     scripts/numerics.py counts       cost of an event against the stiffness of the body
     scripts/numerics.py stiffness    error against the stiffness of the body
     scripts/numerics.py tolerance    error and cost against solver.rtol
@@ -16,6 +19,7 @@
     scripts/numerics.py constants    error and cost with other constants in the source: builds variants, takes minutes
     scripts/numerics.py threads      the same bits for any number of threads
 
+The first three are of a default fish, the others of one with the values of the first edition of the model.
 Runs build/shoal (--program names another one) on small cases in a folder of its own, and removes it.
 --verbose shows the commands.
 """
@@ -34,21 +38,34 @@ from shoal_results import Results, np
 
 HERE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 
-# One fish: everything else has its default value, doc/cases.md.
-ONE = """\
+# A default fish: everything else has its default value, doc/cases.md.
+DEFAULT = """\
 format: 1
-time: {end: 2, shedding_interval: 0.01, output_interval: 2}
+time: {end: 4, output_interval: 0.1}
 fish:
   - {name: fish}
 """
 
-# Two fish side by side.
-PAIR = """\
+# The values of the first edition of the model.
+FIRST = f"include: [{HERE}/tests/data/first_edition.yaml]"
+
+# One fish of the first edition.
+ONE = f"""\
 format: 1
-time: {end: 4, shedding_interval: 0.01, output_interval: 4}
+{FIRST}
+time: {{end: 2, shedding_interval: 0.01, output_interval: 2}}
 fish:
-  - {name: right}
-  - {name: left, start: {position: [0, 0.5]}}
+  - {{name: fish}}
+"""
+
+# Two fish side by side.
+PAIR = f"""\
+format: 1
+{FIRST}
+time: {{end: 4, shedding_interval: 0.01, output_interval: 4}}
+fish:
+  - {{name: right}}
+  - {{name: left, start: {{position: [0, 0.5]}}}}
 """
 
 PUBLISHED_MOMENT = "fish[*].body.second_moment=published"
@@ -144,6 +161,73 @@ def ends(results):
 def distance(a, b):
     """How far two points are apart."""
     return float(np.linalg.norm(np.subtract(a, b)))
+
+
+def ends_at(results, t):
+    """Position of nose and tail of the first fish at a time."""
+    x = results["x"][int(np.argmin(np.abs(results.time - t))), 0]
+    return x[0], x[results.n_nodes[0] - 1]
+
+
+def failures(results):
+    """Convergence failures per event."""
+    n_events = round(float(results.time[-1]) / float(results["shedding_interval"]))
+    return f"{results['convergence_failures'][-1] / n_events:.3f}"
+
+
+class DefaultFish:
+    """Runs of the default fish at one shedding interval and modulus, and what is right."""
+
+    def __init__(self, bench, interval, modulus):
+        self.bench = bench
+        self.keys = [f"time.shedding_interval={interval:g}", f"fish[*].body.modulus={modulus:g}"]
+        # of another order than the runs
+        self.right = bench.run(DEFAULT, *self.keys, "time.end=3", "solver.rtol=1e-9", "solver.order=2",
+                               "solver.max_steps=100000", "wake.tolerance=1e-9")
+
+    def row(self, *more, program=None):
+        """Error after 3 s, then counts per event over 4 s, then work of the muscle and energy audit."""
+        run = self.bench.run(DEFAULT, *self.keys, *more, program=program)
+        if not run:
+            return ["failed", *[""] * 5]
+        error = "-"
+        if self.right:
+            error = short(max(distance(a, b) for a, b in zip(ends_at(run, 3), ends_at(self.right, 3))))
+        audit = abs(run["energy_audit"][-1, 0] / run["actuation_work"][-1, 0])
+        return [error, *per_event(run), failures(run), short(audit)]
+
+
+DEFAULT_ROW = ["nose or tail [L]", *COUNTS, "failures", "audit over work"]
+
+
+def default(bench):
+    rows = []
+    for interval in (0.01, 0.02):
+        for modulus in (1e4, 3e4, 1e5, 3e5, 1e6, 1e8, 1e10):
+            rows.append([f"{interval:g}", power(modulus), *DefaultFish(bench, interval, modulus).row()])
+    table(["interval [s]", "modulus [Pa]", *DEFAULT_ROW], rows)
+
+
+def highest(bench):
+    rows = []
+    for modulus in (1e5, 1e6, 1e8, 1e10):
+        fish = DefaultFish(bench, 0.01, modulus)
+        for limit in range(2, 6):
+            rows.append([power(modulus), limit, *fish.row(f"solver.order={limit}")])
+    table(["modulus [Pa]", "order", *DEFAULT_ROW], rows)
+
+
+def nascent(bench):
+    rows = []
+    update, kinds = r"is_sheet \? update_jacobian : NULL", r"is_sheet \? solver->kinds : NULL"
+    programs = [("as it is", bench.program),
+                ("one norm for all unknowns", bench.variant("solver/ida.c", kinds, "NULL")),
+                ("no update of the column", bench.variant("solver/ida.c", update, "0 ? update_jacobian : NULL"))]
+    for modulus in (1e5, 1e6, 1e8, 1e10):
+        fish = DefaultFish(bench, 0.01, modulus)
+        for name, program in programs:
+            rows.append([name, power(modulus), *fish.row(program=program)])
+    table(["Newton's iteration", "modulus [Pa]", *DEFAULT_ROW], rows)
 
 
 def counts(bench):
@@ -273,7 +357,7 @@ def lattice(n, spacing, end):
     side = math.ceil(math.sqrt(n))
     places = [f"  - {{start: {{position: [{spacing[0] * (i % side):g}, {spacing[1] * (i // side):g}]}}}}"
               for i in range(n)]
-    return "\n".join(["format: 1", f"time: {{end: {end}, shedding_interval: 0.01, output_interval: {end}}}",
+    return "\n".join(["format: 1", FIRST, f"time: {{end: {end}, shedding_interval: 0.01, output_interval: {end}}}",
                       "wake: {lifetime: 2}", "defaults: {fish: {control: {law: heading}}}", "fish:", *places, ""])
 
 
@@ -365,8 +449,8 @@ def threads(bench):
 
 
 TABLES = {function.__name__: function for function in
-          (counts, stiffness, tolerance, order, interval, events, start, explicit, coupling, school, energy,
-           constants, coupled, threads)}
+          (default, highest, nascent, counts, stiffness, tolerance, order, interval, events, start, explicit, coupling,
+           school, energy, constants, coupled, threads)}
 
 
 def main():
