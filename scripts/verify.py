@@ -101,6 +101,11 @@ all equations."""),
 The audit of model.md 13: energy of the body less its initial value less all the work done on it, over long runs. And a
 default fish (but for 7 nodes) over one beat: what its muscle puts in is found again in damping, drag and wake; and its
 speed in the long run does not depend on the speed at which it was started."""),
+    "control": ("Control", """\
+Heading control with feedforward, and course control, on bodies from soft to stiff: the same run with the implicit and
+with an explicit method. Where the feedforward acts through a moving mean there is no algebraic loop, and the bias of the
+stiffest body changes as smoothly as that of the softest. A default fish goes to waypoints, another holds its course in
+the wake of a leader."""),
 }
 
 # figure: title, x axis, y axis, further keys: scale (log, linear, semilog, semilogx), slopes of the triangles
