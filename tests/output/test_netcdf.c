@@ -319,7 +319,7 @@ static void write_rows(const char *path, int format, int n_growing) {
     assert_int_equal(nc_def_var(file, "constant", NC_SHORT, 1, &three, &variable), NC_NOERR);
     assert_int_equal(nc_put_att_text(file, variable, "an_attribute", 5, "value"), NC_NOERR);
     for (int i = 0; i < n_growing; i++) {
-        char name[8];
+        char name[16];
         snprintf(name, sizeof name, "v%d", i);
         assert_int_equal(nc_def_var(file, name, NC_BYTE, 2, (int[]){rows, three}, &variable), NC_NOERR);
     }
@@ -387,7 +387,8 @@ static void no_damage_of_a_header_does_harm(void **state) {
         static const unsigned char bytes[] = {0, 1, 2, 0x7f, 0x80, 0xff};
         for (size_t n = 1 + random_below(3); n > 0; n--) {
             unsigned char *const byte = &damaged[4 + random_below(header - 4)];
-            *byte = random_below(2) ? bytes[random_below(6)] : *byte ^ (unsigned char)(1 << random_below(8));
+            const unsigned flipped = *byte ^ 1u << random_below(8);
+            *byte = random_below(2) ? bytes[random_below(6)] : (unsigned char)flipped;
         }
         assert_int_equal(pwrite(descriptor, damaged, size, 0), size);
         struct netcdf_reader reader;
