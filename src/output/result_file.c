@@ -1,12 +1,12 @@
 /* result_file.c: writing the file of a run, variable by variable of the table. */
 #include "output/result_file.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "output/netcdf.h"
+#include "output/result_values.h"
 
 /* Bytes of the attribute run_status: it is rewritten in place and must never move what follows. */
 enum { STATUS_LENGTH = 256 };
@@ -22,34 +22,9 @@ struct result_file {
 
 // ---- the header
 
-/* The length of each dimension for this school. */
-static void set_lengths(struct result_file *result, const struct school *school, long n_events) {
-    for (int d = 0; d < RESULT_N_DIMENSIONS; d++) result->length[d] = 1;
-    result->length[FISH] = (size_t)school->n_fish;
-    result->length[VORTEX] = (size_t)wake_most(school, n_events);
-    result->length[XY] = 2;
-    for (int f = 0; f < school->n_fish; f++) {
-        const struct fish *fish = &school->fish[f];
-        for (enum result_dimension d = NODE; d <= SHEET; d++) {
-            const size_t length = (size_t)result_table_length(fish, d);
-            if (length > result->length[d]) result->length[d] = length;
-        }
-        const size_t n_name = strlen(fish->name);
-        if (n_name > result->length[NAME]) result->length[NAME] = n_name;
-    }
-}
-
 /* True if a variable is in the file. */
 static bool is_written(const struct result_file *result, const struct result_variable *variable) {
     return variable->forces <= result->forces;
-}
-
-/* The number of values of a variable, or of one row of it; of one fish where it has that dimension and per_fish. */
-static size_t n_values(const struct result_file *result, const struct result_variable *variable, bool per_fish) {
-    size_t n = 1;
-    for (const enum result_dimension *d = variable->dimension; *d != NONE; d++)
-        if (*d != FISH || !per_fish) n *= result->length[*d];
-    return n;
 }
 
 static enum netcdf_type type_in_file(enum result_type type, enum precision precision) {
@@ -119,44 +94,10 @@ static void define_all(struct result_file *result, const struct case_values *val
 
 // ---- values
 
-static size_t size_in_memory(enum result_type type) {
-    switch (type) {
-        case RESULT_INTEGER: return sizeof(int);
-        case RESULT_COUNT: return sizeof(long);
-        case RESULT_TEXT: return sizeof(char);
-        default: return sizeof(double);
-    }
-}
-
-/* Put the value of the school or of fish f at its place in the buffer. */
-static void fill_slots(const struct result_file *result, const struct result_variable *variable,
-                       const struct result_row *row, int f) {
-    const size_t n_slots = n_values(result, variable, true), size = size_in_memory(variable->type);
-    char *slots = (char *)result->buffer + (size_t)f * n_slots * size;
-    if (variable->gather) {
-        variable->gather(row, f, (double *)(void *)slots);
-        return;
-    }
-    const char *value = (const char *)result_table_owner(row, variable->owner, f) + variable->offset;
-    size_t n = n_slots;
-    if (variable->is_pointer) {
-        memcpy(&value, value, sizeof value);
-        const enum result_dimension last = variable->dimension[1];
-        n = last == NAME ? strlen(value) : (size_t)result_table_length(&row->school->fish[f], last);
-    }
-    memcpy(slots, value, n * size);
-}
-
 /* Write the whole of a constant, or the next row of a variable with time. */
 static void write_variable(struct result_file *result, int i, const struct result_row *row) {
     const struct result_variable *variable = &result_table[i];
-    if (variable->type == RESULT_TEXT)
-        memset(result->buffer, 0, n_values(result, variable, false));
-    else if (size_in_memory(variable->type) == sizeof(double))
-        for (size_t k = 0; k < n_values(result, variable, false); k++) result->buffer[k] = NAN;
-    const int n_owners = result_table_has(variable, FISH) ? row->school->n_fish : 1;
-    for (int f = 0; f < n_owners; f++) fill_slots(result, variable, row, f);
-
+    result_values_fill(variable, result->length, row, result->buffer);
     size_t start[RESULT_MAX_DIMENSIONS] = {0}, count[RESULT_MAX_DIMENSIONS];
     for (int d = 0; variable->dimension[d] != NONE; d++) count[d] = result->length[variable->dimension[d]];
     if (result_table_has(variable, TIME)) start[0] = result->n_rows;
@@ -193,10 +134,10 @@ static void release(struct result_file *result) {
 static struct result_file *allocate(const struct school *school, long n_events) {
     struct result_file *const result = calloc(1, sizeof *result);
     if (!result) return NULL;
-    set_lengths(result, school, n_events);
+    result_values_lengths(school, wake_most(school, n_events), result->length);
     size_t max = 1;
     for (int i = 0; i < result_table_n; i++) {
-        const size_t n = n_values(result, &result_table[i], false);
+        const size_t n = result_values_n(&result_table[i], result->length);
         if (n > max) max = n;
     }
     result->number = calloc((size_t)result_table_n, sizeof *result->number);

@@ -2,15 +2,13 @@
 #include "run/simulate.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <time.h>
 
-#include "case/case_show.h"
 #include "output/netcdf.h"
-#include "output/result_file.h"
+#include "output/result_table.h"
 #include "run/event.h"
+#include "run/record.h"
 #include "solver/integrator_table.h"
 
 static double wall_clock(void) {
@@ -77,31 +75,32 @@ double simulate_wall_time(const struct simulation *simulation) {
     return wall_clock() - simulation->started;
 }
 
+void simulate_row(struct simulation *simulation, struct integrator_counts *counts, struct result_row *row) {
+    simulation->integrator->count(simulation->solver, counts);
+    simulate_measure(simulation);
+    *row = (struct result_row){.school = simulation->school,
+                               .state = simulation->state,
+                               .residual = simulation->residual,
+                               .diagnostics = simulation->diagnostics,
+                               .counts = counts,
+                               .wall_time = simulate_wall_time(simulation),
+                               .with_wake = true};
+}
+
 // a run and its result file
 struct run {
     const struct case_values *values;
     const struct simulate_options *options;
     struct simulation *simulation;
-    struct result_file *result;
-    long events_per_row, events_per_wake;
+    struct record record;
 };
 
 static enum status write_if_due(struct run *run) {
-    struct simulation *const simulation = run->simulation;
-    const long event = simulation->state->event;
-    // the end is a row of its own where it is no multiple of the output interval
-    const int last = event == simulation->n_events;
-    if (event % run->events_per_row != 0 && !last) return STATUS_OK;
+    if (!record_is_due(&run->record, run->simulation->state->event)) return STATUS_OK;
     struct integrator_counts counts;
-    simulation->integrator->count(simulation->solver, &counts);
-    simulate_measure(simulation);
-    return result_file_row(run->result, &(struct result_row){.school = simulation->school,
-                                                             .state = simulation->state,
-                                                             .residual = simulation->residual,
-                                                             .diagnostics = simulation->diagnostics,
-                                                             .counts = &counts,
-                                                             .wall_time = simulate_wall_time(simulation),
-                                                             .with_wake = event % run->events_per_wake == 0 || last});
+    struct result_row row;
+    simulate_row(run->simulation, &counts, &row);
+    return record_row(&run->record, &row);
 }
 
 static void tell(const struct run *run) {
@@ -132,41 +131,17 @@ static enum status loop(struct run *run) {
     return STATUS_OK;
 }
 
-static enum status open_result(struct run *run) {
-    char *effective = NULL;
-    TRY(case_show(run->values, &effective));
-    const enum status status =
-        result_file_create(&run->result, run->options->path, run->options->overwrite, run->values, effective,
-                           run->options->command, run->simulation->school, run->simulation->n_events);
-    free(effective);
-    return status;
-}
-
 static enum status run_to_end(struct run *run) {
-    TRY(netcdf_check_target(run->options->path, run->options->overwrite));
+    const struct simulate_options *const options = run->options;
+    TRY(netcdf_check_target(options->path, options->overwrite));
     TRY(simulate_create(&run->simulation, run->values));
-    TRY(open_result(run));
-    const enum status status = loop(run);
-    // the reason of a failure is the message; closing must not lose it
-    char reason[4096];
-    snprintf(reason, sizeof reason, "%s", status_message());
-    char run_status[4096 + 16];
-    if (status == STATUS_OK) {
-        snprintf(run_status, sizeof run_status, "complete");
-    } else if (status == STATUS_STOPPED) {
-        snprintf(run_status, sizeof run_status, "stopped");
-    } else {
-        snprintf(run_status, sizeof run_status, "failed: %s", reason);
-    }
-    const enum status closed = result_file_close(run->result, run_status);
-    if (status == STATUS_OK) return closed;
-    return status_fail(status, "%s", reason);
+    TRY(record_create(&run->record, run->values, run->simulation->school, run->simulation->n_events, options->path,
+                      options->overwrite, options->command));
+    return record_close(&run->record, loop(run));
 }
 
 enum status simulate_run(const struct case_values *values, const struct simulate_options *options) {
     struct run run = {.values = values, .options = options};
-    run.events_per_row = lround(values->time.output_interval / values->school.shedding_interval);
-    run.events_per_wake = lround(values->output.wake_interval / values->school.shedding_interval);
     const enum status status = run_to_end(&run);
     simulate_free(run.simulation);
     return status;

@@ -10,6 +10,8 @@
 #include "model/diagnostics.h"
 #include "solver/integrator.h"
 
+struct result_row; /* output/result_table.h */
+
 /* A run in memory. Read its parts; only the functions below change them. */
 struct simulation {
     struct school *school;
@@ -32,8 +34,12 @@ void simulate_free(struct simulation *simulation);
 /* Go on to the next event and do it. */
 enum status simulate_step(struct simulation *simulation);
 
-/* Bring simulation->measure up to date. */
+/* Bring simulation->diagnostics up to date. */
 void simulate_measure(struct simulation *simulation);
+
+/* The same, and all that a row of the present event is made of: *row refers to the simulation and to *counts, which are
+ * filled. Its wake is in it. */
+void simulate_row(struct simulation *simulation, struct integrator_counts *counts, struct result_row *row);
 
 /* Seconds of wall clock since the simulation was created. */
 double simulate_wall_time(const struct simulation *simulation);

@@ -1,0 +1,54 @@
+/* record.c: rows that are due, and the last words of a result file. */
+#include "run/record.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "case/case_show.h"
+
+enum status record_create(struct record *record, const struct case_values *values, const struct school *school,
+                          long n_events, const char *path, int overwrite, const char *command) {
+    *record = (struct record){.path = path, .n_events = n_events};
+    record->events_per_row = lround(values->time.output_interval / values->school.shedding_interval);
+    record->events_per_wake = lround(values->output.wake_interval / values->school.shedding_interval);
+    char *effective = NULL;
+    TRY(case_show(values, &effective));
+    const enum status status =
+        result_file_create(&record->file, path, overwrite, values, effective, command, school, n_events);
+    free(effective);
+    return status;
+}
+
+// the end is a row of its own where it is no multiple of an interval
+static int is_last(const struct record *record, long event) {
+    return event == record->n_events;
+}
+
+int record_is_due(const struct record *record, long event) {
+    return record->file && (event % record->events_per_row == 0 || is_last(record, event));
+}
+
+enum status record_row(const struct record *record, struct result_row *row) {
+    const long event = row->state->event;
+    row->with_wake = event % record->events_per_wake == 0 || is_last(record, event);
+    return result_file_row(record->file, row);
+}
+
+enum status record_close(struct record *record, enum status status) {
+    // the reason of a failure is the message; closing must not lose it
+    char reason[4096];
+    snprintf(reason, sizeof reason, "%s", status_message());
+    char run_status[4096 + 16];
+    if (status == STATUS_OK) {
+        snprintf(run_status, sizeof run_status, "complete");
+    } else if (status == STATUS_STOPPED) {
+        snprintf(run_status, sizeof run_status, "stopped");
+    } else {
+        snprintf(run_status, sizeof run_status, "failed: %s", reason);
+    }
+    const enum status closed = result_file_close(record->file, run_status);
+    *record = (struct record){0};
+    if (status == STATUS_OK) return closed;
+    return status_fail(status, "%s", reason);
+}

@@ -1,0 +1,32 @@
+/* record.h: the result file of a run while the run goes on: which events are rows of it, and how it ends. Tested by
+ * tests/run/test_simulate.c and tests/run/test_shoal.c. */
+#ifndef RECORD_H
+#define RECORD_H
+
+#include "base/status.h"
+#include "case/case.h"
+#include "output/result_file.h"
+
+/* Zero it to begin; there is then no file. */
+struct record {
+    struct result_file *file;
+    const char *path;
+    long events_per_row, events_per_wake, n_events;
+};
+
+/* Create the file at path (kept until record_close), without a row. overwrite, command: as in result_file_create.
+ * n_events: of the whole run. Fails with STATUS_FILE or STATUS_MEMORY; there is no file then. */
+enum status record_create(struct record *record, const struct case_values *values, const struct school *school,
+                          long n_events, const char *path, int overwrite, const char *command);
+
+/* Whether an event is a row: every output interval, and the end. Not without a file. */
+int record_is_due(const struct record *record, long event);
+
+/* Append a row; the wake is in those that are due for it. Fails with STATUS_FILE. */
+enum status record_row(const struct record *record, struct result_row *row);
+
+/* Close the file and say how the run ended: STATUS_OK "complete", STATUS_STOPPED "stopped", else "failed: " and the
+ * message. Returns that status with its message; where it is STATUS_OK, whether closing failed, with STATUS_FILE. */
+enum status record_close(struct record *record, enum status status);
+
+#endif
