@@ -1,0 +1,151 @@
+/* state_table.c: the table, and what loops over it. */
+#include "model/state_table.h"
+
+#include <string.h>
+
+// ---- lengths of arrays
+
+static size_t of_unknowns(const struct state *state, const struct school *school, int f) {
+    (void)state, (void)f;
+    return (size_t)school->n_unknowns;
+}
+
+static size_t of_wake(const struct state *state, const struct school *school, int f) {
+    (void)school;
+    return (size_t)state->wake[f].n_vortex;
+}
+
+// a sample is nothing but doubles
+static size_t of_history(const struct state *state, const struct school *school, int f) {
+    (void)school;
+    return (size_t)state->history[f].capacity * (sizeof(struct sample) / sizeof(double));
+}
+
+// ---- the table
+
+#define PLACE(type, field) offsetof(type, field), sizeof(((type *)0)->field)
+#define OF_STATE(type, field) STATE_ITSELF, type, PLACE(struct state, field)
+#define OF_WAKE(type, field) STATE_WAKE, type, PLACE(struct wake, field)
+#define OF_CONTROL(type, field) STATE_CONTROL, type, PLACE(struct control_memory, field)
+#define OF_HISTORY(type, field) STATE_HISTORY, type, PLACE(struct history, field)
+#define OF_BALANCE(type, field) STATE_BALANCE, type, PLACE(struct energy_balance, field)
+
+const struct state_row state_table[] = {
+    {"t", OF_STATE(STATE_REAL, t), NULL},
+    {"event", OF_STATE(STATE_COUNT, event), NULL},
+    {"y", OF_STATE(STATE_REAL, y), of_unknowns},
+    {"yp", OF_STATE(STATE_REAL, yp), of_unknowns},
+
+    {"wake.version", OF_WAKE(STATE_UNKEPT, version), NULL},
+    {"wake.n_vortex", OF_WAKE(STATE_INTEGER, n_vortex), NULL},
+    {"wake.capacity", OF_WAKE(STATE_UNKEPT, capacity), NULL},
+    {"wake.x", OF_WAKE(STATE_REAL, x), of_wake},
+    {"wake.y", OF_WAKE(STATE_REAL, y), of_wake},
+    {"wake.u", OF_WAKE(STATE_REAL, u), of_wake},
+    {"wake.v", OF_WAKE(STATE_REAL, v), of_wake},
+    {"wake.u_before", OF_WAKE(STATE_REAL, u_before), of_wake},
+    {"wake.v_before", OF_WAKE(STATE_REAL, v_before), of_wake},
+    {"wake.circulation", OF_WAKE(STATE_REAL, circulation), of_wake},
+    {"wake.birth", OF_WAKE(STATE_REAL, birth), of_wake},
+    {"wake.has_markers", OF_WAKE(STATE_INTEGER, has_markers), NULL},
+    {"wake.tail_velocity", OF_WAKE(STATE_REAL, tail_velocity), NULL},
+    {"wake.tail_tangent", OF_WAKE(STATE_REAL, tail_tangent), NULL},
+    {"wake.removed", OF_WAKE(STATE_REAL, removed), NULL},
+    {"wake.shed_before", OF_WAKE(STATE_REAL, shed_before), NULL},
+    {"wake.slip", OF_WAKE(STATE_REAL, slip), NULL},
+
+    {"control.waypoint", OF_CONTROL(STATE_INTEGER, waypoint), NULL},
+    {"control.held_heading", OF_CONTROL(STATE_REAL, held_heading), NULL},
+    {"control.phi0", OF_CONTROL(STATE_REAL, phi0), NULL},
+    {"control.phi0_rate", OF_CONTROL(STATE_REAL, phi0_rate), NULL},
+    {"control.moment", OF_CONTROL(STATE_REAL, moment), NULL},
+    {"control.moment_rate", OF_CONTROL(STATE_REAL, moment_rate), NULL},
+
+    {"history.capacity", OF_HISTORY(STATE_UNKEPT, capacity), NULL},
+    {"history.n", OF_HISTORY(STATE_INTEGER, n), NULL},
+    {"history.last", OF_HISTORY(STATE_INTEGER, last), NULL},
+    {"history.sample", OF_HISTORY(STATE_REAL, sample), of_history},
+
+    {"balance.initial_energy", OF_BALANCE(STATE_REAL, initial_energy), NULL},
+    {"balance.work", OF_BALANCE(STATE_REAL, work), NULL},
+    {"balance.t", OF_BALANCE(STATE_REAL, t), NULL},
+    {"balance.power", OF_BALANCE(STATE_REAL, power), NULL},
+    {"balance.n", OF_BALANCE(STATE_INTEGER, n), NULL},
+};
+const int state_table_n = sizeof state_table / sizeof *state_table;
+
+// ---- the places of values
+
+int state_table_n_owners(const struct state_row *row, const struct school *school) {
+    return row->owner == STATE_ITSELF ? 1 : school->n_fish;
+}
+
+size_t state_table_size(const struct state_row *row) {
+    switch (row->type) {
+        case STATE_REAL: return sizeof(double);
+        case STATE_INTEGER: return sizeof(int);
+        case STATE_COUNT: return sizeof(long);
+        case STATE_UNKEPT: break;
+    }
+    return 1;
+}
+
+size_t state_table_length(const struct state_row *row, const struct state *state, const struct school *school, int f) {
+    return row->length ? row->length(state, school, f) : row->bytes / state_table_size(row);
+}
+
+static const void *owner_of(const struct state_row *row, const struct state *state, int f) {
+    switch (row->owner) {
+        case STATE_WAKE: return &state->wake[f];
+        case STATE_CONTROL: return &state->control[f];
+        case STATE_HISTORY: return &state->history[f];
+        case STATE_BALANCE: return &state->balance[f];
+        case STATE_ITSELF: break;
+    }
+    return state;
+}
+
+void *state_table_values(const struct state_row *row, const struct state *state, int f) {
+    char *const field = (char *)owner_of(row, state, f) + row->offset;
+    if (!row->length) return field;
+    void *array;
+    memcpy(&array, field, sizeof array);
+    return array;
+}
+
+enum status state_table_make_room(struct state *state, const struct school *school) {
+    for (int f = 0; f < school->n_fish; f++) TRY(wake_resize(&state->wake[f], state->wake[f].n_vortex));
+    return STATUS_OK;
+}
+
+// ---- loops over the table
+
+enum status state_table_copy(struct state *to, const struct state *from, const struct school *school) {
+    for (int f = 0; f < school->n_fish; f++) {
+        TRY(wake_resize(&to->wake[f], from->wake[f].n_vortex));
+        to->wake[f].version++;
+    }
+    for (int i = 0; i < state_table_n; i++) {
+        const struct state_row *const row = &state_table[i];
+        for (int f = 0; f < state_table_n_owners(row, school) && row->type != STATE_UNKEPT; f++) {
+            const size_t bytes = state_table_length(row, from, school, f) * state_table_size(row);
+            memcpy(state_table_values(row, to, f), state_table_values(row, from, f), bytes);
+        }
+    }
+    return STATUS_OK;
+}
+
+enum status state_table_check(const struct state *state, const struct school *school) {
+    int is_good = state->event >= 0;
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct history *const history = &state->history[f];
+        const struct energy_balance *const balance = &state->balance[f];
+        const int waypoint = state->control[f].waypoint;
+        is_good &= history->n >= 1 && history->n <= history->capacity;
+        is_good &= history->last >= 0 && history->last < history->capacity;
+        is_good &= balance->n >= 0 && balance->n <= 2;
+        is_good &= waypoint >= 0 && waypoint <= school->fish[f].control.n_waypoints;
+        is_good &= state->wake[f].has_markers == (school->shedding == SHEDDING_SHEET);
+    }
+    return is_good ? STATUS_OK : status_fail(STATUS_FILE, "its state is none of this case");
+}
