@@ -40,6 +40,12 @@ shows a number and checks nothing. A bound that is not the obvious one has its r
 
 # per section: its heading and what stands above its table
 SECTIONS = {
+    "theory": ("Linear theory", """\
+Where other sections compare with the linear theory of thin foils, the numbers come from small solvers of our own
+(tests/verify/linear_theory.c): Theodorsen's lift and moment, Garrick's thrust, Wagner's start, Wu's series for plates of
+any shape, and Galerkin's method for elastic plates clamped at the nose. They use nothing of the program. Here they are
+compared with published values, with limits in closed form, with each other, and with numbers that were computed before
+by another program."""),
     "rod": ("Rod alone", """\
 The elastic body of model.md 1 to 3 without fluid: large deflections, vibrations, and what a body that nothing touches
 must conserve."""),

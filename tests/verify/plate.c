@@ -10,8 +10,8 @@
 #include <complex.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
+#include "linear_theory.h"
 #include "model/bound_sheet.h"
 #include "verify.h"
 
@@ -58,45 +58,11 @@ static double bound_circulation(const struct simulation *simulation) {
     return bound_sheet_circulation(&simulation->school->fish[0], simulation->state->y);
 }
 
-// ---- Wagner's problem: int_0^s G'(q) sqrt((2 + s - q)/(s - q)) dq = 1
+// ---- Wagner's problem
 
-/* G'(q) = f(q)/sqrt(q) with a smooth f: linear between n + 1 points of [0, last], found one after another. With
- * q = s (1 - cos phi)/2 the integral becomes that of f sqrt(2 + s - q) over phi, where equal steps are most exact. */
-static double growth_linear(double last, int n) {
-    enum { ANGLES = 2000 };
-    double *const f = calloc((size_t)n + 1, sizeof *f);
-    if (!f) abort();
-    const double h = last / n;
-    f[0] = 1 / (pi * sqrt(2));
-    for (int i = 1; i <= n; i++) {
-        double known = 0, weight = 0;
-        for (int a = 0; a < ANGLES; a++) {
-            const double q = i * h * (1 - cos(pi * (a + 0.5) / ANGLES)) / 2, kernel = sqrt(2 + i * h - q) * pi / ANGLES;
-            const int cell = (int)(q / h) < i - 1 ? (int)(q / h) : i - 1;
-            const double part = q / h - cell;
-            known += kernel * (1 - part) * f[cell];
-            if (cell == i - 1) {
-                weight += kernel * part;
-            } else {
-                known += kernel * part * f[cell + 1];
-            }
-        }
-        f[i] = (1 - known) / weight;
-    }
-    // int f/sqrt(q) dq = int 2 f dz, z = sqrt(q): exact for f linear in q
-    double sum = 0;
-    for (int i = 0; i < n; i++) {
-        const double a = i * h, slope = (f[i + 1] - f[i]) / h, root = sqrt(a), next = sqrt(a + h);
-        sum += 2 * (f[i] - slope * a) * (next - root) + slope * 2 / 3 * (next * next * next - root * root * root);
-    }
-    free(f);
-    return sum;
-}
-
-/* The error falls with the square of the step: two steps give the limit, to about 1e-7. */
+/* Shed circulation over its final value. */
 static double exact_growth(double s) {
-    const int n = 60 + 10 * (int)s;
-    return (4 * growth_linear(s, 2 * n) - growth_linear(s, n)) / 3;
+    return linear_theory_growth(s).circulation;
 }
 
 static const double incidence = 0.5 * 3.14159265358979323846 / 180; /* small: 2 degrees change 0.0004 of G(2) */
@@ -118,16 +84,6 @@ static double start_error(struct resolution with, double s) {
     const double error = grown(simulation, s) / exact_growth(s) - 1;
     simulate_free(simulation);
     return error;
-}
-
-/* An independent solution of the same equation. */
-static void exact_values(void) {
-    const double s[] = {1, 2, 5, 10}, known[] = {0.41669496, 0.55081397, 0.73882952, 0.85613719};
-    for (int i = 0; i < 4; i++) {
-        verify_value(verify_text("Wagner's equation solved by steps: G(%g)", s[i]),
-                     "f as 16 Chebyshev polynomials (12 agree to 1e-9), not by this program", known[i],
-                     exact_growth(s[i]), 1e-6);
-    }
 }
 
 /* The finest runs: within 1 % from s = 2 on. */
@@ -271,11 +227,10 @@ static void solve_normal(double sums[4][5]) {
     }
 }
 
-/* Lift over the velocity of heave: added mass, and 2 pi U b C(k). */
+/* Lift, against the motion, over the velocity of heave and the density. */
 static double complex exact_lift(double k) {
-    const double complex h0 = j0(k) - I * y0(k), h1 = j1(k) - I * y1(k), theodorsen = h1 / (h1 + I * h0);
-    const double half = 0.5, omega = k / half;
-    return pi * half * half * I * omega + 2 * pi * half * theodorsen;
+    const struct linear_theory_plate plate = {1, 1, 1, 2 * k};
+    return linear_theory_rigid(&plate, I / plate.omega, 0, 0).lift;
 }
 
 /* sum of circulation times x over everything that has circulation: its rate is the lift over the density. */
@@ -379,7 +334,6 @@ static void heave_by_default(void) {
 }
 
 void verify_plate(void) {
-    exact_values();
     start_by_default();
     heave_by_default();
     start_values();

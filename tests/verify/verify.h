@@ -10,6 +10,7 @@
 #include "run/simulate.h"
 
 /* The sections, in the order of doc/verification.md; each is in a file of its own. */
+void verify_theory(void);
 void verify_rod(void);
 void verify_force(void);
 void verify_sheet(void);

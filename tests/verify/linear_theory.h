@@ -1,0 +1,91 @@
+/* linear_theory.h: solvers of our own for the linear theory of thin foils, from which `make verify` takes references.
+ * Nothing of src/model is used.
+ *
+ * A plate of length L and span 1 along the x axis in a stream U towards +x, its nose at x = 0; small displacements
+ * y(x, t) = Re(y(x) exp(i omega t)) to the left (+y); b = L/2, k = omega b/U, x = b (1 + cos theta), so that theta = 0
+ * is the tail. [p] is the pressure on the right side less that on the left: the force per area to the left.
+ *
+ * Sources: T. Theodorsen (1935), NACA report 496; I. E. Garrick (1936), NACA report 567; T. Y. Wu (1961), J. Fluid
+ * Mech. 10. Tested by the section "theory" of `make verify`. */
+#ifndef LINEAR_THEORY_H
+#define LINEAR_THEORY_H
+
+#include <complex.h>
+
+/* Theodorsen's function C(k) of the reduced frequency k > 0, and Wagner's lift over its final value after s > 0 half
+ * lengths: 1/2 + (2/pi) int (Re C - 1/2) sin(k s)/k dk. */
+double complex linear_theory_theodorsen(double k);
+double linear_theory_wagner(double s);
+
+/* A plate that starts suddenly, after s half lengths, over the final values: shed circulation, and lift once more, from
+ * Wagner's integral equation of the wake. */
+struct linear_theory_growth {
+    double circulation, lift;
+};
+struct linear_theory_growth linear_theory_growth(double s);
+
+/* What holds for every plate: L [m], U [m s-1], density of the fluid [kg m-3], omega > 0 [rad s-1]. */
+struct linear_theory_plate {
+    double length, speed, density, omega;
+};
+
+/* What the fluid does to a plate of span 1 m: the force to the left [N] and its moment about the nose, positive
+ * counter-clockwise [N m], as amplitudes; and means over a period: thrust [N] and the power that the motion takes
+ * [W]. */
+struct linear_theory_load {
+    double complex lift, moment;
+    double thrust, power;
+};
+
+/* A rigid plate: y = heave + pitch (x - axis), heave and axis in m, pitch in rad: Theodorsen and Garrick in closed
+ * form. */
+struct linear_theory_load linear_theory_rigid(const struct linear_theory_plate *plate, double complex heave,
+                                              double complex pitch, double axis);
+
+/* A motion of any shape: coefficients c_n of y = c_0/2 + sum c_n cos(n theta) [m], and of its slope dy/dx [1]. */
+enum { LINEAR_THEORY_TERMS = 64 };
+struct linear_theory_shape {
+    double complex place[LINEAR_THEORY_TERMS], slope[LINEAR_THEORY_TERMS];
+};
+
+/* Fill a shape with a function of x/L that gives place [m] and slope [1]. */
+struct linear_theory_function {
+    void (*at)(double x, const void *data, double complex *place, double complex *slope);
+    const void *data;
+};
+void linear_theory_sample(const struct linear_theory_function *function, struct linear_theory_shape *shape);
+
+/* What the fluid does to a plate that moves with this shape: Wu's series. */
+struct linear_theory_load linear_theory_flexible(const struct linear_theory_plate *plate,
+                                                 const struct linear_theory_shape *shape);
+
+/* The speed [m s-1] at which the mean thrust of a heaving plate, amplitude in m, equals a drag friction U^(3/2) of the
+ * plate of span 1 m. */
+double linear_theory_heaving_speed(const struct linear_theory_plate *plate, double amplitude, double friction);
+
+/* ---- elastic plates, clamped at the nose: Galerkin's method with modes of a clamped beam in vacuum */
+
+enum { LINEAR_THEORY_MODES = 8 };
+
+/* beta L of mode j, from 0, of a beam clamped at x = 0 and free at x = L; and the mode, of mean square 1, at x/L:
+ * place, and slope over L. */
+double linear_theory_mode_number(int j);
+void linear_theory_mode(int j, double x, double *place, double *slope);
+
+/* Mass [kg m-1] and bending stiffness [N m2] of a plate of span 1 m. */
+struct linear_theory_body {
+    double mass, stiffness;
+};
+
+/* The shape of a plate whose clamped nose heaves with amplitude 1 m; tip: its displacement at the tail [m]. */
+void linear_theory_driven(const struct linear_theory_plate *plate, const struct linear_theory_body *body,
+                          struct linear_theory_shape *shape, double complex *tip);
+
+/* Where a clamped plate in a stream begins to flutter: the least U* = U L sqrt(mass/stiffness) with a neutral motion,
+ * and f L/U of it. mass_ratio: M* = density L/mass. */
+struct linear_theory_threshold {
+    double speed, frequency;
+};
+struct linear_theory_threshold linear_theory_flutter(double mass_ratio, int n_modes);
+
+#endif
