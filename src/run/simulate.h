@@ -28,6 +28,11 @@ struct simulation {
 /* Build everything and do the event at t = 0. Fails with STATUS_CASE, STATUS_MEMORY or STATUS_SOLVER. */
 enum status simulate_create(struct simulation **simulation, const struct case_values *values);
 
+/* All that a run does before it opens its result file at path: refuses a place where none can be written, or one that
+ * exists and must not be overwritten, with STATUS_FILE; then the same as simulate_create. */
+enum status simulate_prepare(struct simulation **simulation, const struct case_values *values, const char *path,
+                             int overwrite);
+
 /* Release all of it. Accepts NULL. */
 void simulate_free(struct simulation *simulation);
 
