@@ -17,34 +17,85 @@ static double wall_clock(void) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-static enum status fill(struct simulation *simulation, const struct case_values *values) {
-    simulation->started = wall_clock();
-    simulation->n_events = lround(values->time.end / values->school.shedding_interval);
-    simulation->integrator = integrator_of(values->solver.method);
-    TRY(fish_school_create(&simulation->school, &values->school));
-    TRY(state_create(&simulation->state, simulation->school));
-    TRY(residual_create(&simulation->residual, simulation->school, simulation->state));
-    TRY(initial_conditions_create(&simulation->consistent, simulation->residual));
-    TRY(diagnostics_create(&simulation->diagnostics, simulation->school));
-    TRY(event_start(simulation->state, simulation->residual, simulation->consistent));
-    const struct integrator_options options = {.method = values->solver.method,
+// an empty simulation of a case
+static enum status begin(struct simulation **simulation, const struct case_values *values) {
+    struct simulation *const new = calloc(1, sizeof *new);
+    *simulation = new;
+    if (!new) return status_fail(STATUS_MEMORY, "out of memory: a simulation");
+    new->started = wall_clock();
+    new->n_events = lround(values->time.end / values->school.shedding_interval);
+    new->integrator = integrator_of(values->solver.method);
+    new->options = (struct integrator_options){.method = values->solver.method,
                                                .order = values->solver.order,
                                                .step = values->solver.step,
                                                .max_steps = values->solver.max_steps};
-    return simulation->integrator->create(&simulation->solver, simulation->residual, simulation->state, &options);
+    return STATUS_OK;
+}
+
+// discard a simulation that could not be built
+static enum status give_up(struct simulation **simulation, enum status status) {
+    if (status == STATUS_OK) return STATUS_OK;
+    simulate_free(*simulation);
+    *simulation = NULL;
+    return status;
+}
+
+static enum status create_equations(struct simulation *simulation) {
+    TRY(residual_create(&simulation->residual, simulation->school, simulation->state));
+    return initial_conditions_create(&simulation->consistent, simulation->residual);
+}
+
+static enum status create_integrator(struct simulation *simulation) {
+    return simulation->integrator->create(&simulation->solver, simulation->residual, simulation->state,
+                                          &simulation->options);
+}
+
+static void free_solvers(struct simulation *simulation) {
+    if (simulation->integrator) simulation->integrator->free(simulation->solver);
+    initial_conditions_free(simulation->consistent);
+    residual_free(simulation->residual);
+    simulation->solver = NULL;
+    simulation->consistent = NULL;
+    simulation->residual = NULL;
+}
+
+static enum status start(struct simulation *simulation, const struct case_values *values) {
+    TRY(fish_school_create(&simulation->school, &values->school));
+    TRY(state_create(&simulation->state, simulation->school));
+    TRY(create_equations(simulation));
+    TRY(diagnostics_create(&simulation->diagnostics, simulation->school));
+    TRY(event_start(simulation->state, simulation->residual, simulation->consistent));
+    return create_integrator(simulation);
 }
 
 enum status simulate_create(struct simulation **simulation, const struct case_values *values) {
-    *simulation = NULL;
-    struct simulation *const new = calloc(1, sizeof *new);
-    if (!new) return status_fail(STATUS_MEMORY, "out of memory: a simulation");
-    const enum status status = fill(new, values);
-    if (status != STATUS_OK) {
-        simulate_free(new);
-        return status;
+    TRY(begin(simulation, values));
+    return give_up(simulation, start(*simulation, values));
+}
+
+enum status simulate_renew(struct simulation *simulation) {
+    free_solvers(simulation);
+    simulation->options.before = simulation->totals;
+    TRY(create_equations(simulation));
+    TRY(flow_interpolate(simulation->residual->flow, simulation->state));
+    return create_integrator(simulation);
+}
+
+enum status simulate_take_up(struct simulation **simulation, const struct case_values *values, struct school *school,
+                             struct state *state, const struct integrator_counts *totals) {
+    const enum status begun = begin(simulation, values);
+    if (begun != STATUS_OK) {
+        state_free(state, school);
+        fish_school_free(school);
+        return begun;
     }
-    *simulation = new;
-    return STATUS_OK;
+    struct simulation *const new = *simulation;
+    new->school = school;
+    new->state = state;
+    new->totals = *totals;
+    enum status status = diagnostics_create(&new->diagnostics, school);
+    if (status == STATUS_OK) status = simulate_renew(new);
+    return give_up(simulation, status);
 }
 
 enum status simulate_prepare(struct simulation **simulation, const struct case_values *values, const char *path,
@@ -56,10 +107,8 @@ enum status simulate_prepare(struct simulation **simulation, const struct case_v
 
 void simulate_free(struct simulation *simulation) {
     if (!simulation) return;
-    if (simulation->integrator) simulation->integrator->free(simulation->solver);
+    free_solvers(simulation);
     diagnostics_free(simulation->diagnostics);
-    initial_conditions_free(simulation->consistent);
-    residual_free(simulation->residual);
     state_free(simulation->state, simulation->school);
     fish_school_free(simulation->school);
     free(simulation);
@@ -68,7 +117,9 @@ void simulate_free(struct simulation *simulation) {
 enum status simulate_step(struct simulation *simulation) {
     struct state *const state = simulation->state;
     const double next = (double)(state->event + 1) * simulation->school->interval;
-    TRY(simulation->integrator->advance(simulation->solver, next));
+    TRY(simulation->integrator->advance(simulation->solver, next, simulation->stop));
+    // a restart has no last step
+    simulation->integrator->count(simulation->solver, &simulation->totals);
     int jumped = 0;
     TRY(event_next(state, simulation->residual, simulation->consistent, &jumped));
     return jumped ? simulation->integrator->restart(simulation->solver) : STATUS_OK;

@@ -21,8 +21,11 @@ struct simulation {
     struct diagnostics *diagnostics;
     const struct integrator *integrator;
     void *solver;
-    long n_events;  /* of the whole run, without the one at the start */
-    double started; /* wall clock, s */
+    struct integrator_options options;
+    struct integrator_counts totals;   /* up to the last event, with the size of the step that ended there */
+    const volatile sig_atomic_t *stop; /* simulate_step stops once this is not 0; NULL at first */
+    long n_events;                     /* of the whole run, without the one at the start */
+    double started;                    /* wall clock, s; of a run that was taken up again: less what it had taken */
 };
 
 /* Build everything and do the event at t = 0. Fails with STATUS_CASE, STATUS_MEMORY or STATUS_SOLVER. */
@@ -33,10 +36,21 @@ enum status simulate_create(struct simulation **simulation, const struct case_va
 enum status simulate_prepare(struct simulation **simulation, const struct case_values *values, const char *path,
                              int overwrite);
 
+/* Build everything around a state at one of its events: a run goes on as after simulate_renew, with these totals. The
+ * simulation owns school and state from now on, also where this fails, which it does as simulate_create. */
+enum status simulate_take_up(struct simulation **simulation, const struct case_values *values, struct school *school,
+                             struct state *state, const struct integrator_counts *totals);
+
+/* At an event: discard all that is not state and totals (the integrator and its history, Jacobians and their factors,
+ * the interpolation of wakes), and make it again from these. Nothing is then left that simulate_take_up would not have.
+ * Fails with STATUS_MEMORY or STATUS_SOLVER; the simulation can then only be freed. */
+enum status simulate_renew(struct simulation *simulation);
+
 /* Release all of it. Accepts NULL. */
 void simulate_free(struct simulation *simulation);
 
-/* Go on to the next event and do it. */
+/* Go on to the next event and do it. Fails with STATUS_SOLVER, STATUS_MEMORY or STATUS_STOPPED; the state is then
+ * somewhere between two events. */
 enum status simulate_step(struct simulation *simulation);
 
 /* Bring simulation->diagnostics up to date. */

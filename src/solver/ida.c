@@ -32,8 +32,9 @@ struct ida {
     struct state *state;
     struct integrator_options options;
     struct jacobian *jacobian;
-    enum status failure;      /* of the last callback */
-    double *tolerance, *kind; /* absolute tolerance and kind of each unknown             (n_unknowns) */
+    const volatile sig_atomic_t *stop; /* see integrator.h */
+    enum status failure;               /* of the last callback */
+    double *tolerance, *kind;          /* absolute tolerance and kind of each unknown             (n_unknowns) */
 
     SUNContext context;
     N_Vector y, yp, tolerances, kinds, scratch[2];
@@ -46,8 +47,11 @@ struct ida {
 
 static int residual_callback(realtype t, N_Vector y, N_Vector yp, N_Vector value, void *data) {
     struct ida *const solver = data;
-    solver->failure = residual_evaluate(solver->residual, t, N_VGetArrayPointer(y), N_VGetArrayPointer(yp),
-                                        N_VGetArrayPointer(value));
+    solver->failure = integrator_ask(solver->stop);
+    if (solver->failure == STATUS_OK) {
+        solver->failure = residual_evaluate(solver->residual, t, N_VGetArrayPointer(y), N_VGetArrayPointer(yp),
+                                            N_VGetArrayPointer(value));
+    }
     return solver->failure;
 }
 
@@ -95,6 +99,15 @@ static void ida_free(void *data) {
     free(solver);
 }
 
+// IDA's own guess of the first step ignores how stiff the body is; the last step does not
+static enum status choose_first_step(struct ida *solver) {
+    const double step = first_step * solver->before.step_size;
+    if (step > 0 && IDASetInitStep(solver->ida, step)) {
+        return status_fail(STATUS_SOLVER, "IDA cannot start: %s", status_message());
+    }
+    return STATUS_OK;
+}
+
 static enum status set_up_ida(struct ida *solver) {
     const struct school *school = solver->residual->school;
     void *const ida = solver->ida;
@@ -107,7 +120,7 @@ static enum status set_up_ida(struct ida *solver) {
         IDASetMaxErrTestFails(ida, 20) || IDASetMaxConvFails(ida, 20) || IDASetMinStep(ida, 1e-10 * school->interval)) {
         return status_fail(STATUS_SOLVER, "IDA cannot be set up: %s", status_message());
     }
-    return STATUS_OK;
+    return choose_first_step(solver);
 }
 
 static enum status fill(struct ida *solver) {
@@ -154,6 +167,8 @@ static enum status ida_create(void **solver, struct residual *residual, struct s
     new->residual = residual;
     new->state = state;
     new->options = *options;
+    new->before = options->before;
+    new->jacobians = options->before.jacobian_evaluations;
     const enum status status = fill(new);
     if (status != STATUS_OK) {
         ida_free(new);
@@ -188,10 +203,7 @@ static enum status ida_restart(void *data) {
     if (IDAReInit(solver->ida, solver->state->t, solver->y, solver->yp)) {
         return status_fail(STATUS_SOLVER, "IDA cannot start again: %s", status_message());
     }
-    // IDA's own guess of the first step ignores how stiff the body is; the last step does not
-    const double step = first_step * solver->before.step_size;
-    if (step > 0 && IDASetInitStep(solver->ida, step)) return STATUS_SOLVER;
-    return STATUS_OK;
+    return choose_first_step(solver);
 }
 
 // the unknown with the largest estimated error, in units of its tolerance
@@ -254,19 +266,20 @@ static double next_stop(const struct ida *solver, double now, double end) {
     return n_steps > 1 ? now + (end - now) / n_steps : end;
 }
 
-static enum status ida_advance(void *data, double t) {
+static enum status ida_advance(void *data, double t, const volatile sig_atomic_t *stop) {
     struct ida *const solver = data;
     struct state *const state = solver->state;
     double reached = state->t;
+    solver->stop = stop;
     for (long steps = 0; reached < t; steps++) {
         if (steps == solver->options.max_steps) return failed(solver, IDA_TOO_MUCH_WORK, steps);
-        const double stop = next_stop(solver, reached, t);
-        if (IDASetStopTime(solver->ida, stop)) return failed(solver, IDA_ILL_INPUT, steps);
+        const double end = next_stop(solver, reached, t);
+        if (IDASetStopTime(solver->ida, end)) return failed(solver, IDA_ILL_INPUT, steps);
         solver->failure = STATUS_OK;
         const int code = IDASolve(solver->ida, t, &reached, solver->y, solver->yp, IDA_ONE_STEP);
-        if (solver->failure == STATUS_MEMORY) return STATUS_MEMORY;
+        if (solver->failure == STATUS_MEMORY || solver->failure == STATUS_STOPPED) return solver->failure;
         if (code < 0) return failed(solver, code, steps);
-        if (code == IDA_TSTOP_RETURN) reached = stop;
+        if (code == IDA_TSTOP_RETURN) reached = end;
         diagnostics_step(solver->residual, state, reached, state->y);
     }
     return STATUS_OK;

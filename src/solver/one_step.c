@@ -26,11 +26,12 @@ struct one_step {
     struct integrator_options options;
     struct jacobian *jacobian;
     struct linear *linear;
-    unsigned pattern;                /* of the residual, when the Jacobian was evaluated */
-    double cj;                       /* of the factorised Jacobian; 0: there is none */
-    double *kind, *tolerance;        /* kind and absolute tolerance of each unknown     (n_unknowns) */
-    double *before, *rates;          /* unknowns and rates at the start of the step     (n_unknowns) */
-    double *correction, *right_hand; /* Newton's                                        (n_unknowns) */
+    const volatile sig_atomic_t *stop; /* see integrator.h */
+    unsigned pattern;                  /* of the residual, when the Jacobian was evaluated */
+    double cj;                         /* of the factorised Jacobian; 0: there is none */
+    double *kind, *tolerance;          /* kind and absolute tolerance of each unknown     (n_unknowns) */
+    double *before, *rates;            /* unknowns and rates at the start of the step     (n_unknowns) */
+    double *correction, *right_hand;   /* Newton's                                        (n_unknowns) */
     struct integrator_counts counts;
 };
 
@@ -74,6 +75,7 @@ static enum status one_step_create(void **solver, struct residual *residual, str
     new->state = state;
     new->options = *options;
     new->pattern = residual->pattern;
+    new->counts = options->before;
     new->counts.step_size = options->step;
     new->counts.order = methods_table[options->method].order;
     const enum status status = fill(new);
@@ -147,6 +149,7 @@ static enum status iterate(struct one_step *solver, double t, double h, int *con
     *converged = 0;
     const double cj = solver->options.method == METHOD_TRAPEZOID ? 2 / h : 1 / h;
     for (int i = 0; i < MAX_ITERATIONS; i++) {
+        TRY(integrator_ask(solver->stop));
         if (solver->cj != cj || solver->pattern != solver->residual->pattern) TRY(set_up(solver, t, cj));
         double size = 0;
         TRY(correct(solver, t, h, &size));
@@ -191,8 +194,9 @@ static enum status step(struct one_step *solver, double t, double h) {
     return STATUS_OK;
 }
 
-static enum status one_step_advance(void *data, double t) {
+static enum status one_step_advance(void *data, double t, const volatile sig_atomic_t *stop) {
     struct one_step *const solver = data;
+    solver->stop = stop;
     const double start = solver->state->t, interval = t - start;
     const long n = lround(interval / solver->options.step);
     if (n > solver->options.max_steps) {

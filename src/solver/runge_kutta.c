@@ -16,8 +16,9 @@ struct runge_kutta {
     struct state *state;
     struct integrator_options options;
     struct ode_rhs *rhs;
-    enum status failure; /* of the last right-hand side */
-    double *tolerance;   /* absolute tolerance of each unknown                        (n_unknowns) */
+    const volatile sig_atomic_t *stop; /* see integrator.h */
+    enum status failure;               /* of the last right-hand side */
+    double *tolerance;                 /* absolute tolerance of each unknown                        (n_unknowns) */
 
     /* the last evaluation: unknowns, algebraic ones included, and rates */
     double *work, *rates; /*                                                           (n_unknowns) */
@@ -62,7 +63,8 @@ static enum status evaluate(struct runge_kutta *solver, double t, const double *
 
 static int rates_callback(realtype t, N_Vector y, N_Vector rates, void *data) {
     struct runge_kutta *const solver = data;
-    solver->failure = evaluate(solver, t, N_VGetArrayPointer(y));
+    solver->failure = integrator_ask(solver->stop);
+    if (solver->failure == STATUS_OK) solver->failure = evaluate(solver, t, N_VGetArrayPointer(y));
     if (solver->failure == STATUS_OK) {
         memcpy(N_VGetArrayPointer(rates), solver->rates,
                (size_t)solver->residual->school->n_unknowns * sizeof *solver->rates);
@@ -147,6 +149,8 @@ static enum status runge_kutta_create(void **solver, struct residual *residual, 
     new->residual = residual;
     new->state = state;
     new->options = *options;
+    new->before = options->before;
+    new->evaluations = options->before.residual_evaluations;
     const enum status status = fill(new);
     if (status != STATUS_OK) {
         runge_kutta_free(new);
@@ -211,10 +215,11 @@ static enum status close_step(struct runge_kutta *solver, double before, double 
     return STATUS_OK;
 }
 
-static enum status runge_kutta_advance(void *data, double t) {
+static enum status runge_kutta_advance(void *data, double t, const volatile sig_atomic_t *stop) {
     struct runge_kutta *const solver = data;
     struct state *const state = solver->state;
     double reached = state->t;
+    solver->stop = stop;
     for (long steps = 0; reached < t; steps++) {
         if (steps == solver->options.max_steps) {
             return unstable(solver, reached, "more steps between two events than solver.max_steps");
@@ -223,7 +228,7 @@ static enum status runge_kutta_advance(void *data, double t) {
         solver->failure = STATUS_OK;
         const double before = reached;
         const int code = ARKStepEvolve(solver->arkode, t, solver->y, &reached, ARK_ONE_STEP);
-        if (solver->failure == STATUS_MEMORY) return STATUS_MEMORY;
+        if (solver->failure == STATUS_MEMORY || solver->failure == STATUS_STOPPED) return solver->failure;
         if (code < 0) return unstable(solver, reached, status_message());
         if (code == ARK_TSTOP_RETURN) reached = t;
         TRY(close_step(solver, before, reached));

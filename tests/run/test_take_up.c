@@ -1,0 +1,123 @@
+/* test_take_up.c: a run that is taken up from its state and totals alone goes on with the bits of the run that renewed
+ * itself there, for every method and every kind of memory that a run has. */
+#include <string.h>
+
+#include "model/state_table.h"
+#include "school.h"
+
+/* A short lifetime, so that vortices fade and are removed too. */
+#define TIME "time: {end: 1, shedding_interval: 0.02}\n"
+#define BOTH "fish: [{name: a}, {name: b, nodes: 6, sheet_points: 15, length: 0.8, start: {position: [0.2, 0.5]}}]\n"
+#define STEERED(law)                                                             \
+    "fish: [{control: {law: " law                                                \
+    ", desired_heading: 160}, wave: {frequency: 20}}, {start: {position: [0.3, " \
+    "0.6]}}]\n"
+
+static const char *const cases[] = {
+    // methods
+    TIME "wake: {lifetime: 0.1}\n" BOTH,
+    TIME "solver: {order: 5, rtol: 1e-6}\n" BOTH,
+    TIME "solver: {method: euler, step: 0.001}\n" BOTH,
+    TIME "solver: {method: euler}\n" BOTH,
+    TIME "solver: {method: heun}\n" BOTH,
+    TIME "solver: {method: rk4, step: 0.002}\n" BOTH,
+    TIME "solver: {method: rk4}\n" BOTH,
+    TIME "solver: {method: dormand_prince}\nwake: {lifetime: 0.1}\n" BOTH,
+    TIME "solver: {method: implicit_euler, step: 0.001}\n" BOTH,
+    TIME "solver: {method: trapezoid, step: 0.001}\nwake: {lifetime: 0.1}\n" BOTH,
+    // shedding
+    TIME "wake: {shedding: impulsive, lifetime: 0.1}\n" BOTH,
+    TIME "wake: {shedding: impulsive, kutta: rate}\n" BOTH,
+    TIME "wake: {shedding: sheet, lifetime: 0.1}\n" BOTH,
+    TIME "wake: {shedding: sheet}\nsolver: {method: dormand_prince}\n" BOTH,
+    TIME "wake: {kutta: rate, fade: 0.05, lifetime: 0.1, dissipated_circulation: dropped}\n" BOTH,
+    TIME "preset: published\n" BOTH,
+    // sums of the wake, coupling that changes, threads
+    TIME "wake: {tolerance: 0}\n" BOTH,
+    TIME "wake: {tolerance: 1e-3}\nsolver: {threads: 2}\n" BOTH,
+    TIME
+    "solver: {coupling_distance: 0.2}\nfish: [{start: {speed: 2}}, {start: {position: [-0.6, 0.2], heading: 0}}]\n",
+    // control, given motions, other forces and fluids
+    TIME STEERED("heading, feedforward: 1"),
+    TIME STEERED("averaged_heading"),
+    TIME STEERED("course"),
+    TIME "fish: [{control: {law: heading, waypoints: [[-0.1, 0], [-3, 1]]}, wave: {frequency: 20}}]\n",
+    TIME
+    "fluid: {velocity: [0.1, 0], shear: 0.3, gust: {amplitude: 0.2, frequency: 3}}\n"
+    "fish: [{motion: {driven: head, heave: 0.1, frequency: 2}, force: reactive, load: {tip: [0.1, 0]}}]\n",
+};
+enum { N_CASES = sizeof cases / sizeof *cases, N_BEFORE = 8, N_AFTER = 6 };
+
+static void steps(struct simulation *simulation, int n) {
+    for (int i = 0; i < n; i++) school_ok(simulate_step(simulation));
+}
+
+// another simulation of the case, made from what a checkpoint holds
+static struct simulation *taken_up(const struct simulation *from, const char *text) {
+    struct case_values values;
+    struct school *school;
+    struct state *state;
+    struct simulation *simulation;
+    school_settings(&values, text);
+    school_ok(fish_school_create(&school, &values.school));
+    school_ok(state_create(&state, school));
+    school_ok(state_table_copy(state, from->state, school));
+    school_ok(simulate_take_up(&simulation, &values, school, state, &from->totals));
+    case_free(&values);
+    return simulation;
+}
+
+static void compare(const struct simulation *got, const struct simulation *want, const char *text) {
+    for (int i = 0; i < state_table_n; i++) {
+        const struct state_row *const row = &state_table[i];
+        for (int f = 0; f < state_table_n_owners(row, want->school) && row->type != STATE_UNKEPT; f++) {
+            const size_t n = state_table_length(row, want->state, want->school, f);
+            const void *const one = state_table_values(row, got->state, f);
+            const void *const other = state_table_values(row, want->state, f);
+            if (state_table_length(row, got->state, got->school, f) != n ||
+                memcmp(one, other, n * state_table_size(row)) != 0) {
+                fail_msg("%s of fish %d differs, case:\n%s", row->name, f, text);
+            }
+        }
+    }
+    struct integrator_counts counts[2];
+    got->integrator->count(got->solver, &counts[0]);
+    want->integrator->count(want->solver, &counts[1]);
+    if (memcmp(&counts[0], &counts[1], sizeof *counts) != 0) fail_msg("the totals differ, case:\n%s", text);
+    assert_true(counts[0].steps > want->options.before.steps);
+}
+
+static void a_run_goes_on_from_its_state_alone_with_the_same_bits(void **state) {
+    (void)state;
+    for (int i = 0; i < N_CASES; i++) {
+        struct simulation *const one = school_simulation(cases[i]);
+        steps(one, N_BEFORE);
+        school_ok(simulate_renew(one));
+        struct simulation *const other = taken_up(one, cases[i]);
+        steps(one, N_AFTER);
+        steps(other, N_AFTER);
+        compare(other, one, cases[i]);
+        simulate_free(one);
+        simulate_free(other);
+    }
+}
+
+static void a_run_may_be_taken_up_at_its_first_event(void **state) {
+    (void)state;
+    struct simulation *const one = school_simulation(cases[0]);
+    school_ok(simulate_renew(one));
+    struct simulation *const other = taken_up(one, cases[0]);
+    steps(one, N_AFTER);
+    steps(other, N_AFTER);
+    compare(other, one, cases[0]);
+    simulate_free(one);
+    simulate_free(other);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_run_goes_on_from_its_state_alone_with_the_same_bits),
+        cmocka_unit_test(a_run_may_be_taken_up_at_its_first_event),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
