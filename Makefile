@@ -4,7 +4,8 @@
 #   SANITIZE=1    build and test in build-sanitize with the address and undefined behaviour sanitizers
 #   TEST="rod x"  let `make test` run tests/*/test_rod.c and tests/*/test_x.sh only
 
-VERSION = 0.1.0
+VERSION   = 0.1.0
+SOVERSION = 0
 
 prefix = /usr/local
 CC     = gcc
@@ -28,6 +29,8 @@ sanitize = -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-fram
 else
 B = build
 sanitize =
+# every name that the shared library needs is there; that of a sanitizer is found in the program
+complete = -Wl,-z,defs
 endif
 
 ifdef V
@@ -41,15 +44,18 @@ endif
 # -iquote, not -I: <netcdf.h> is the library's header and "output/netcdf.h" is ours. _XOPEN_SOURCE=700 is POSIX 2008 with M_PI.
 # The results must not depend on the machine: nothing that reorders sums or fuses operations belongs here.
 shoal_cppflags = -D_XOPEN_SOURCE=700 -iquote src -iquote include -isystem /usr/include/suitesparse $(CPPFLAGS)
-shoal_cflags   = -std=c11 -ffp-contract=off -fno-math-errno -fopenmp -Wall -Wextra -Wconversion -Wshadow -Werror \
-                 $(sanitize) $(CFLAGS)
+# One set of objects serves the program and the shared library, which shares what include/shoal.h makes visible.
+shoal_cflags   = -std=c11 -ffp-contract=off -fno-math-errno -fopenmp -fPIC -fvisibility=hidden \
+                 -Wall -Wextra -Wconversion -Wshadow -Werror $(sanitize) $(CFLAGS)
 libraries      = -lsundials_ida -lsundials_kinsol -lsundials_arkode -lsundials_sunlinsolklu \
                  -lsundials_sunmatrixsparse -lsundials_nvecserial -lklu -lamd -lcolamd -lbtf -lsuitesparseconfig \
                  -llapacke -llapack -lblas -lnetcdf -lyaml -lz -lm
 
-# objects.a holds every function for the program and the tests; libshoal.a, which is installed, shares shoal_* only
+# objects.a holds every function for the program and the tests; libshoal, which is installed, shares shoal_* only
 objects = $(B)/objects.a
 library = $(B)/libshoal.a
+soname  = libshoal.so.$(SOVERSION)
+shared  = $(B)/$(soname)
 program = $(B)/shoal
 
 # the rooms of src/, lowest first: scripts/check-layers.sh
@@ -80,7 +86,7 @@ parallel = $(MAKE) --no-print-directory $(if $(filter -j%,$(MAKEFLAGS)),,-j$(she
 
 ## Everyday
 
-all: $(program) $(library)  ## build build/shoal and build/libshoal.a
+all: $(program) $(library) $(shared)  ## build build/shoal, build/libshoal.a and build/libshoal.so.0
 
 demo: deps  ## install what is missing, build, swim: demo.nc and demo.png
 	@$(parallel) all
@@ -135,23 +141,27 @@ deps:  ## install the packages that are missing (nothing to do: no output)
 
 ## Installation: prefix=/usr/local DESTDIR=
 
-install: $(program) $(library)  ## install program, library, header, cases, scripts and documents
+install: $(program) $(library) $(shared)  ## install program, library, header, cases, scripts and documents
 	$(say) INST '$(DESTDIR)$(prefix)'
 	$(quiet)install -d $(addprefix '$(DESTDIR)$(prefix)'/,bin include lib/pkgconfig $(addprefix share/shoal/,cases/include cases/studies scripts doc))
 	$(quiet)install -m 755 $(program) '$(DESTDIR)$(prefix)/bin'
 	$(quiet)install -m 644 include/shoal.h '$(DESTDIR)$(prefix)/include'
 	$(quiet)install -m 644 $(library) '$(DESTDIR)$(prefix)/lib'
+	$(quiet)install -m 755 $(shared) '$(DESTDIR)$(prefix)/lib/libshoal.so.$(VERSION)'
+	$(quiet)ln -sf libshoal.so.$(VERSION) '$(DESTDIR)$(prefix)/lib/$(soname)'
+	$(quiet)ln -sf $(soname) '$(DESTDIR)$(prefix)/lib/libshoal.so'
 	$(quiet)install -m 644 cases/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases'
 	$(quiet)install -m 644 cases/include/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases/include'
 	$(quiet)install -m 644 cases/studies/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases/studies'
 	$(quiet)install -m 755 $(filter-out scripts/make-% scripts/verify.py scripts/numerics.py scripts/mutants.py,$(wildcard scripts/*.py)) '$(DESTDIR)$(prefix)/share/shoal/scripts'
 	$(quiet)install -m 644 LICENSE doc/*.md '$(DESTDIR)$(prefix)/share/shoal/doc'
 	$(quiet)printf '%s\n' 'prefix=$(prefix)' 'Name: shoal' 'Description: Swimming of fish and schools with their wakes' \
-	    'Version: $(VERSION)' 'Cflags: -I$${prefix}/include' 'Libs: -L$${prefix}/lib -lshoal $(libraries) -fopenmp' \
+	    'Version: $(VERSION)' 'Cflags: -I$${prefix}/include' 'Libs: -L$${prefix}/lib -lshoal' \
+	    'Libs.private: $(libraries) -fopenmp' \
 	    >'$(DESTDIR)$(prefix)/lib/pkgconfig/shoal.pc'
 
 uninstall:  ## remove what `make install` installed
-	$(quiet)rm -f $(addprefix '$(DESTDIR)$(prefix)'/,bin/shoal include/shoal.h lib/libshoal.a lib/pkgconfig/shoal.pc)
+	$(quiet)rm -f $(addprefix '$(DESTDIR)$(prefix)'/,bin/shoal include/shoal.h lib/libshoal.a lib/libshoal.so lib/$(soname) lib/libshoal.so.$(VERSION) lib/pkgconfig/shoal.pc)
 	$(quiet)rm -rf '$(DESTDIR)$(prefix)/share/shoal'
 
 # ---- rules ----
@@ -176,6 +186,11 @@ $(library): $(B)/libshoal.o
 	$(quiet)rm -f $@
 	$(quiet)$(AR) rcs $@ $^
 
+$(shared): $(library_objects) src/run/shoal.map
+	$(say) LD $@
+	$(quiet)$(CC) $(shoal_cflags) $(LDFLAGS) -shared -Wl,-soname,$(soname) -Wl,--version-script=src/run/shoal.map \
+	    $(complete) -o $@ $(library_objects) $(libraries)
+
 $(B)/%.o: src/%.c Makefile | $(B)/tests
 	$(say) CC $<
 	$(quiet)$(CC) $(shoal_cppflags) $(shoal_cflags) -MMD -MP -c -o $@ $<
@@ -187,7 +202,7 @@ $(B)/base/version.o: $(B)/commit
 $(B)/commit: FORCE | $(B)/tests
 	@echo '$(commit)' | cmp -s - $@ || echo '$(commit)' >$@
 
-tests: $(program) $(c_tests) $(verify_program) $(bench_programs)
+tests: all $(c_tests) $(verify_program) $(bench_programs)
 
 $(B)/verify/%.o: tests/verify/%.c Makefile | $(B)/tests
 	$(say) CC $<

@@ -1,34 +1,93 @@
-/* shoal.h: run cases from another program. Link with `pkg-config --libs shoal`.
+/* shoal.h: run cases from another program. Compile and link with `pkg-config --cflags --libs shoal`.
  *
  *     struct shoal *run;
- *     if (shoal_open(&run, "case.yaml", 0, NULL) != 0) puts(shoal_message());
- *     while (shoal_time(run) < shoal_end(run) && shoal_step(run) == 0) ...
+ *     if (shoal_open(&run, "case.yaml", 0, NULL) != SHOAL_OK) puts(shoal_message());
+ *     while (shoal_time(run) < shoal_end(run) && shoal_step(run) == SHOAL_OK) {
+ *         struct shoal_array com;
+ *         if (shoal_read(run, "com", &com) == SHOAL_OK) printf("%g\n", ((const double *)com.values)[0]);
+ *     }
  *     shoal_close(run);
  *
- * Functions that can fail return 0 on success and a negative number on failure; shoal_message then says why, in the
- * words that the program would print. A run belongs to one thread at a time. */
+ * A function that returns int returns a negative number when it fails, one that returns double then returns NaN;
+ * shoal_message says why, in the words that the program would print. Arguments are checked: a NULL, a fish that is not
+ * there, or a number that is not finite is SHOAL_USAGE, and nothing has changed.
+ *
+ * A program may have many runs, in several threads; each run belongs to one thread at a time. A run gives the same bits
+ * whatever the other ones do. Nothing prints, ends the program, or changes its locale, its signals, or its
+ * environment. */
 #ifndef SHOAL_H
 #define SHOAL_H
+
+#include <stddef.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
+#ifdef __GNUC__
+#pragma GCC visibility push(default)
+#endif
 
 struct shoal; /* a run in memory */
 
+enum shoal_status {
+    SHOAL_OK = 0,
+    SHOAL_USAGE = -1,  /* a wrong argument, a wrong case, a step past the end */
+    SHOAL_FILE = -2,   /* a file cannot be read or written */
+    SHOAL_MEMORY = -3, /* out of memory */
+    SHOAL_SOLVER = -4  /* the integration failed */
+};
+
+/* ---- the life of a run ---- */
+
 /* Read a case, apply assignments such as "fish[0].wave.frequency=1.2", and make the state at t = 0 consistent.
- * On failure *run is NULL. */
+ * assignments may be NULL where there are none. On failure *run is NULL. */
 int shoal_open(struct shoal **run, const char *case_path, int n_assignments, const char *const *assignments);
 
-/* Release a run. Accepts NULL. */
+/* The same from the text of a case. folder: where its includes are looked up; NULL: the working directory. */
+int shoal_open_text(struct shoal **run, const char *text, const char *folder, int n_assignments,
+                    const char *const *assignments);
+
+/* Release a run; a result file that is still written is closed. Accepts NULL. */
 void shoal_close(struct shoal *run);
 
-/* Go on to the next event, one shedding interval later. After a failure the run can only be read and closed. */
+/* Go on to the next event, one shedding interval later. Not past the end of the case. When the integration has failed,
+ * the run can only be read and closed. */
 int shoal_step(struct shoal *run);
 
-/* Time of the last event and of the end of the case, s. */
+/* Go on to the first event at or after time t, s; to none where that is now. */
+int shoal_advance(struct shoal *run, double t);
+
+/* Time of the last event, time at the end of the case, and time between two events, s. */
 double shoal_time(const struct shoal *run);
 double shoal_end(const struct shoal *run);
+double shoal_interval(const struct shoal *run);
+
+/* ---- what a run is at its last event ---- */
+
+enum shoal_type { SHOAL_DOUBLE, SHOAL_INT, SHOAL_LONG, SHOAL_CHAR };
+
+/* The values of a variable, in C order: an array of double, int, long or char with these dimensions. Slots beyond what
+ * a fish has hold NaN; a name that is shorter than the longest ends with zeros. */
+struct shoal_array {
+    const void *values;
+    enum shoal_type type;
+    int n_dimensions;
+    size_t shape[4];
+    const char *dimension[4]; /* "fish", "node", "edge", "joint", "sheet", "vortex", "xy", "name" */
+    const char *unit, *long_name;
+};
+
+/* Read a variable of result files by its name: all of doc/output.md, without the dimension time; the dimension vortex
+ * is as long as the longest wake. The array belongs to the run and holds until the next step. On failure *array is all
+ * zeros. */
+int shoal_read(struct shoal *run, const char *name, struct shoal_array *array);
+
+/* The name of variable i, from 0; NULL beyond the last. */
+const char *shoal_variable(int i);
+
+/* Velocity (n, 2), m s-1, and vorticity (n), s-1, of the fluid at the n points (n, 2), m: the external flow, all wakes
+ * and all bodies, as a small body there would feel them. vorticity may be NULL. */
+int shoal_flow(struct shoal *run, int n, const double *points, double *velocity, double *vorticity);
 
 /* Number of fish; of nodes, and of free vortices, of one fish (numbered from 0). */
 int shoal_n_fish(const struct shoal *run);
@@ -37,8 +96,20 @@ int shoal_n_vortices(const struct shoal *run, int fish);
 
 /* Copy positions of the nodes, nose to tail, or of the free vortices, oldest first, into arrays of those lengths, m;
  * circulation in m2 s-1. */
-void shoal_nodes(const struct shoal *run, int fish, double *x, double *y);
-void shoal_vortices(const struct shoal *run, int fish, double *x, double *y, double *circulation);
+int shoal_nodes(const struct shoal *run, int fish, double *x, double *y);
+int shoal_vortices(const struct shoal *run, int fish, double *x, double *y, double *circulation);
+
+/* ---- files ---- */
+
+/* Write a result file from now on: each event from this one that is a multiple of time.output_interval, and the end.
+ * overwrite: replace a file that exists, else that is an error. When a row cannot be written, shoal_step returns
+ * SHOAL_FILE; the step is made, and the run goes on without the file. */
+int shoal_write(struct shoal *run, const char *path, int overwrite);
+
+/* Close the result file; where the run is not at its end, the file says "stopped". Nothing to do without a file. */
+int shoal_write_end(struct shoal *run);
+
+/* ---- the library ---- */
 
 /* The message of the last failure in this thread. */
 const char *shoal_message(void);
@@ -46,6 +117,9 @@ const char *shoal_message(void);
 /* "shoal 0.1.0 (commit ...)" */
 const char *shoal_version(void);
 
+#ifdef __GNUC__
+#pragma GCC visibility pop
+#endif
 #ifdef __cplusplus
 }
 #endif

@@ -207,8 +207,9 @@ static bool is_given(const struct check *check, const char *path) {
     const struct key *const key = case_table_row(path);
     const char *const fish = (const char *)&check->values->school.fish[check->fish];
     const double value = *(const double *)(fish + key->offset);
-    const double initial = strtod(key->initial, NULL);
-    const double published = key->published ? strtod(key->published, NULL) : initial;
+    double initial = NAN, published;
+    text_number(key->initial, &initial);
+    if (!key->published || !text_number(key->published, &published)) published = initial;
     return fabs(value - initial) > 0 && fabs(value - published) > 0;
 }
 

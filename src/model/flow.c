@@ -648,6 +648,33 @@ enum status flow_at_wake(struct flow *flow, const struct state *state) {
     return pairwise_add_velocity(moving, threads, flow->wake_u, flow->wake_v);
 }
 
+// the external flow and all sources, as another body would see them, at some points
+static void induce_field(const struct flow *flow, const struct induced *at) {
+    for (int i = 0; i < at->n; i++) {
+        flow_external(flow->school, flow->t, at->y[i], &at->u[i], &at->v[i]);
+        at->u_y[i] = flow->school->shear;
+    }
+    vortices_induce(&flow->released, (struct range){0, flow->released.n}, at);
+    vortices_induce(&flow->nascent, (struct range){0, flow->nascent.n}, at);
+    vortices_induce(&flow->sheet, (struct range){0, flow->sheet.n}, at);
+}
+
+enum status flow_field(struct flow *flow, const struct state *state, const struct induced *all) {
+    TRY(update_sources(flow, state, state->t, state->y));
+    TRY(place_released(flow, state));
+    vortices_zero(all);
+    const int n_chunks = parallel_n_chunks(all->n);
+    const int n_sources = flow->released.n + flow->nascent.n + flow->sheet.n;
+    const int threads =
+        parallel_threads(flow->school->threads, n_chunks, (double)all->n * n_sources, PARALLEL_INTERACTIONS);
+#pragma omp parallel for num_threads(threads) schedule(static)
+    for (int chunk = 0; chunk < n_chunks; chunk++) {
+        const struct induced at = vortices_targets(all, parallel_chunk(chunk, all->n));
+        induce_field(flow, &at);
+    }
+    return STATUS_OK;
+}
+
 void flow_slip(const struct flow *flow, int f, const double *y, double slip[2]) {
     const struct fish *fish = &flow->school->fish[f];
     const int tail = flow->points[f].first + flow_tail(fish);

@@ -1,4 +1,5 @@
 /* test_shoal.c: the public interface: every function of shoal.h, and that it is the simulation underneath. */
+#include <limits.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,6 +8,8 @@
 
 #include "base/version.h"
 #include "failing_malloc.h"
+#include "output/netcdf.h"
+#include "output/result_table.h"
 #include "school.h"
 #include "shoal.h"
 
@@ -200,6 +203,355 @@ static void opening_without_memory_fails_and_leaves_nothing(void **state) {
     assert_true(n_failed > 100);
 }
 
+// ---- checked arguments
+
+static void refuses(int code, const char *words) {
+    assert_int_equal(code, SHOAL_USAGE);
+    if (!strstr(shoal_message(), words)) fail_msg("'%s' is not in: %s", words, shoal_message());
+}
+
+static void a_run_that_is_not_there_is_refused_by_every_function(void **state) {
+    (void)state;
+    double two[2] = {0, 0};
+    struct shoal_array array;
+    refuses(shoal_open(NULL, "x.yaml", 0, NULL), "run is NULL");
+    refuses(shoal_open_text(NULL, "", NULL, 0, NULL), "run is NULL");
+    refuses(shoal_step(NULL), "run is NULL");
+    refuses(shoal_advance(NULL, 0), "run is NULL");
+    refuses(shoal_read(NULL, "x", &array), "run is NULL");
+    refuses(shoal_flow(NULL, 1, two, two, NULL), "run is NULL");
+    refuses(shoal_n_fish(NULL), "run is NULL");
+    refuses(shoal_n_nodes(NULL, 0), "run is NULL");
+    refuses(shoal_n_vortices(NULL, 0), "run is NULL");
+    refuses(shoal_nodes(NULL, 0, two, two), "run is NULL");
+    refuses(shoal_vortices(NULL, 0, two, two, two), "run is NULL");
+    refuses(shoal_write(NULL, "x.nc", 0), "run is NULL");
+    refuses(shoal_write_end(NULL), "run is NULL");
+    assert_true(isnan(shoal_time(NULL)) && isnan(shoal_end(NULL)) && isnan(shoal_interval(NULL)));
+    assert_non_null(strstr(shoal_message(), "shoal_interval: run is NULL"));
+}
+
+static void a_fish_that_is_not_there_is_refused(void **state) {
+    struct shoal *const run = opened(*state, 0, NULL);
+    double x[7], y[7];
+    const int wrong[] = {-1, 2, 99, INT_MAX, INT_MIN};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        refuses(shoal_n_nodes(run, wrong[i]), "this run has 2, numbered from 0");
+        refuses(shoal_n_vortices(run, wrong[i]), "shoal_n_vortices: there is no fish");
+        refuses(shoal_nodes(run, wrong[i], x, y), "there is no fish");
+        refuses(shoal_vortices(run, wrong[i], x, y, x), "there is no fish");
+    }
+    shoal_close(run);
+}
+
+static void arrays_that_are_not_there_are_refused(void **state) {
+    struct shoal *const run = opened(*state, 0, NULL);
+    assert_int_equal(shoal_step(run), SHOAL_OK);
+    double x[7];
+    struct shoal_array array;
+    refuses(shoal_nodes(run, 0, NULL, x), "x is NULL");
+    refuses(shoal_nodes(run, 0, x, NULL), "y is NULL");
+    refuses(shoal_vortices(run, 0, x, x, NULL), "circulation is NULL");
+    refuses(shoal_read(run, "x", NULL), "array is NULL");
+    refuses(shoal_read(run, NULL, &array), "name is NULL");
+    refuses(shoal_flow(run, 1, NULL, x, x), "points is NULL");
+    refuses(shoal_flow(run, 1, x, NULL, x), "velocity is NULL");
+    refuses(shoal_flow(run, -1, x, x, x), "-1 points");
+    refuses(shoal_flow(run, 1, (double[]){0, NAN}, x, x), "not finite");
+    refuses(shoal_write(run, NULL, 0), "path is NULL");
+    shoal_close(run);
+}
+
+static void assignments_are_checked(void **state) {
+    struct shoal *run;
+    const char *const none = NULL;
+    refuses(shoal_open(&run, *state, -1, NULL), "-1 assignments");
+    refuses(shoal_open(&run, *state, 1, NULL), "assignments is NULL");
+    refuses(shoal_open(&run, *state, 1, &none), "assignment 0 is NULL");
+    refuses(shoal_open(&run, NULL, 0, NULL), "case_path is NULL");
+    refuses(shoal_open_text(&run, NULL, NULL, 0, NULL), "text is NULL");
+    assert_null(run);
+}
+
+static void a_step_past_the_end_is_refused(void **state) {
+    struct shoal *const run = opened(*state, 0, NULL);
+    assert_int_equal(shoal_advance(run, shoal_end(run)), SHOAL_OK);
+    NEAR(shoal_time(run), 0.1, 1e-15, 0);
+    refuses(shoal_step(run), "the run is at its end, t = 0.1 s");
+    NEAR(shoal_time(run), 0.1, 1e-15, 0);
+    shoal_close(run);
+}
+
+static void a_run_advances_to_the_event_at_or_after_a_time(void **state) {
+    struct shoal *const run = opened(*state, 0, NULL);
+    NEAR(shoal_interval(run), 0.02, 0, 0);
+    assert_int_equal(shoal_advance(run, 0.03), SHOAL_OK);
+    NEAR(shoal_time(run), 0.04, 0, 0);
+    assert_int_equal(shoal_advance(run, 3 * 0.02), SHOAL_OK);  // a rounding error above 0.06
+    NEAR(shoal_time(run), 0.06, 0, 0);
+    assert_int_equal(shoal_advance(run, 0.01), SHOAL_OK);
+    NEAR(shoal_time(run), 0.06, 0, 0);
+    refuses(shoal_advance(run, 0.11), "after the end of the case");
+    refuses(shoal_advance(run, NAN), "not finite");
+    NEAR(shoal_time(run), 0.06, 0, 0);
+    shoal_close(run);
+}
+
+static void a_failed_run_makes_no_step_and_says_why(void **state) {
+    const char *const assignments[] = {"solver.max_steps=1"};
+    struct shoal *const run = opened(*state, 1, assignments);
+    assert_int_equal(shoal_step(run), SHOAL_SOLVER);
+    double two[2] = {0, 0};
+    assert_int_equal(shoal_step(run), SHOAL_SOLVER);
+    assert_non_null(strstr(shoal_message(), "the run has failed before: integration failed at t = "));
+    assert_int_equal(shoal_advance(run, 0.1), SHOAL_SOLVER);
+    assert_int_equal(shoal_flow(run, 1, two, two, two), SHOAL_SOLVER);
+    assert_int_equal(shoal_write(run, "/tmp/never.nc", 0), SHOAL_SOLVER);
+    shoal_close(run);
+}
+
+// ---- a case from text
+
+static void the_text_of_a_case_is_a_case(void **state) {
+    struct shoal *const by_path = opened(*state, 0, NULL), *by_text;
+    assert_int_equal(shoal_open_text(&by_text, case_text, NULL, 0, NULL), SHOAL_OK);
+    double x[2][7], y[2][7];
+    assert_int_equal(shoal_advance(by_path, 0.04), SHOAL_OK);
+    assert_int_equal(shoal_advance(by_text, 0.04), SHOAL_OK);
+    assert_int_equal(shoal_nodes(by_path, 1, x[0], y[0]), SHOAL_OK);
+    assert_int_equal(shoal_nodes(by_text, 1, x[1], y[1]), SHOAL_OK);
+    NEAR_ARRAY(7, x[0], x[1], 0, 0);
+    NEAR_ARRAY(7, y[0], y[1], 0, 0);
+    shoal_close(by_path);
+    shoal_close(by_text);
+}
+
+static void an_error_in_a_text_has_its_line(void **state) {
+    (void)state;
+    struct shoal *run;
+    assert_int_equal(shoal_open_text(&run, "format: 1\nname: x\nfihs: []\n", NULL, 0, NULL), SHOAL_USAGE);
+    assert_null(run);
+    assert_non_null(strstr(shoal_message(), "case:3:"));
+}
+
+// ---- variables by name
+
+static const double *read_doubles(struct shoal *run, const char *name, struct shoal_array *array) {
+    if (shoal_read(run, name, array) != SHOAL_OK) fail_msg("%s", shoal_message());
+    assert_int_equal(array->type, SHOAL_DOUBLE);
+    return array->values;
+}
+
+static void a_variable_is_read_with_its_shape(void **state) {
+    struct shoal *const run = opened(*state, 0, NULL);
+    assert_int_equal(shoal_advance(run, 0.04), SHOAL_OK);
+    struct shoal_array array;
+    const double *const x = read_doubles(run, "x", &array);
+    assert_int_equal(array.n_dimensions, 3);
+    assert_int_equal(array.shape[0], 2);
+    assert_int_equal(array.shape[1], 7);
+    assert_int_equal(array.shape[2], 2);
+    assert_string_equal(array.dimension[0], "fish");
+    assert_string_equal(array.dimension[1], "node");
+    assert_string_equal(array.dimension[2], "xy");
+    assert_string_equal(array.unit, "m");
+    double node_x[7], node_y[7];
+    for (int f = 0; f < 2; f++) {
+        const int n = shoal_n_nodes(run, f);
+        assert_int_equal(shoal_nodes(run, f, node_x, node_y), SHOAL_OK);
+        for (int k = 0; k < 7; k++) {
+            const double *const node = x + (f * 7 + k) * 2;
+            if (k >= n) {
+                assert_true(isnan(node[0]) && isnan(node[1]));
+                continue;
+            }
+            NEAR(node[0], node_x[k], 0, 0);
+            NEAR(node[1], node_y[k], 0, 0);
+        }
+    }
+    NEAR(*read_doubles(run, "time", &array), 0.04, 0, 0);
+    assert_int_equal(array.n_dimensions, 0);
+    shoal_close(run);
+}
+
+static void a_wake_is_read_without_empty_slots(void **state) {
+    struct shoal *const run = opened(*state, 0, NULL);
+    struct shoal_array array;
+    read_doubles(run, "wake_x", &array);
+    assert_int_equal(array.shape[1], 0);
+    for (int n = 1; n <= 3; n++) {
+        assert_int_equal(shoal_step(run), SHOAL_OK);
+        const double *const wake = read_doubles(run, "wake_x", &array);
+        assert_int_equal(array.shape[1], n);
+        double x[3], y[3], circulation[3];
+        for (int f = 0; f < 2; f++) {
+            assert_int_equal(shoal_vortices(run, f, x, y, circulation), SHOAL_OK);
+            for (int i = 0; i < n; i++) NEAR(wake[2 * (f * n + i)], x[i], 0, 0);
+        }
+    }
+    shoal_close(run);
+}
+
+static void names_and_counts_are_read_too(void **state) {
+    struct shoal *const run = opened(*state, 0, NULL);
+    struct shoal_array array;
+    assert_int_equal(shoal_read(run, "fish_name", &array), SHOAL_OK);
+    assert_int_equal(array.type, SHOAL_CHAR);
+    assert_memory_equal(array.values, "ab", 2);
+    assert_int_equal(shoal_read(run, "n_nodes", &array), SHOAL_OK);
+    assert_int_equal(array.type, SHOAL_INT);
+    assert_int_equal(((const int *)array.values)[1], 7);
+    assert_int_equal(shoal_step(run), SHOAL_OK);
+    assert_int_equal(shoal_read(run, "steps", &array), SHOAL_OK);
+    assert_int_equal(array.type, SHOAL_LONG);
+    assert_true(*(const long *)array.values > 0);
+    shoal_close(run);
+}
+
+static void every_variable_of_the_table_can_be_read(void **state) {
+    struct shoal *const run = opened(*state, 0, NULL);
+    assert_int_equal(shoal_step(run), SHOAL_OK);
+    int n = 0;
+    for (; shoal_variable(n); n++) {
+        struct shoal_array array;
+        assert_int_equal(shoal_read(run, shoal_variable(n), &array), SHOAL_OK);
+        assert_non_null(array.values);
+    }
+    assert_int_equal(n, result_table_n);
+    assert_null(shoal_variable(-1));
+    struct shoal_array array;
+    refuses(shoal_read(run, "spede", &array), "there is no variable 'spede'");
+    assert_null(array.values);
+    shoal_close(run);
+}
+
+static void what_has_been_read_holds_until_the_next_step(void **state) {
+    struct shoal *const run = opened(*state, 0, NULL);
+    struct shoal_array array;
+    const double *const x = read_doubles(run, "x", &array), *const v = read_doubles(run, "v", &array);
+    const double before = x[0];
+    assert_ptr_equal(read_doubles(run, "x", &array), x);
+    assert_int_equal(shoal_step(run), SHOAL_OK);
+    assert_ptr_equal(read_doubles(run, "x", &array), x);
+    assert_ptr_equal(read_doubles(run, "v", &array), v);
+    assert_true(fabs(x[0] - before) > 0);
+    shoal_close(run);
+}
+
+// ---- the flow
+
+// both fish after a part of a beat that has begun at once
+static struct shoal *swum(const char *path) {
+    const char *const assignments[] = {"time.end=0.4", "fish[*].wave.ramp=0.1"};
+    struct shoal *const run = opened(path, 2, assignments);
+    assert_int_equal(shoal_advance(run, 0.4), SHOAL_OK);
+    return run;
+}
+
+static void far_from_everything_the_flow_is_the_external_one(void **state) {
+    const char *const assignments[] = {"fluid.velocity=[0.3, -0.1]", "fluid.shear=0.5"};
+    struct shoal *const run = opened(*state, 2, assignments);
+    assert_int_equal(shoal_advance(run, 0.1), SHOAL_OK);
+    const double points[] = {1e6, 2, -1e6, -4};
+    double velocity[4], vorticity[2];
+    assert_int_equal(shoal_flow(run, 2, points, velocity, vorticity), SHOAL_OK);
+    const double want[] = {0.3 + 0.5 * 2, -0.1, 0.3 - 0.5 * 4, -0.1};
+    NEAR_ARRAY(4, velocity, want, 1e-6, 0);
+    NEAR(vorticity[0], -0.5, 1e-9, 0);
+    shoal_close(run);
+}
+
+static void the_circulation_around_all_of_it_is_zero_and_around_a_wake_its_own(void **state) {
+    struct shoal *const run = swum(*state);
+    enum { N = 4000 };
+    static double points[2 * N], velocity[2 * N];
+    const double pi = acos(-1), radius = 6;
+    for (int i = 0; i < N; i++) {
+        points[2 * i] = 0.7 + radius * cos(2 * pi * i / N);
+        points[2 * i + 1] = 0.3 + radius * sin(2 * pi * i / N);
+    }
+    assert_int_equal(shoal_flow(run, N, points, velocity, NULL), SHOAL_OK);
+    double circulation = 0, size = 0;
+    for (int i = 0; i < N; i++) {
+        const double along = -velocity[2 * i] * sin(2 * pi * i / N) + velocity[2 * i + 1] * cos(2 * pi * i / N);
+        circulation += along * radius * 2 * pi / N;
+        size += fabs(along) * radius * 2 * pi / N;
+    }
+    // all circulation is bound, free or nascent: together none; the smoothing leaves (delta/radius)^2 of each
+    assert_true(size > 1e-4);
+    NEAR(circulation, 0, 2e-3 * size, 0);
+    shoal_close(run);
+}
+
+static void vorticity_is_the_curl_of_the_velocity(void **state) {
+    struct shoal *const run = swum(*state);
+    const double h = 1e-4, x = 1.1, y = 0.02;
+    const double points[] = {x, y, x + h, y, x - h, y, x, y + h, x, y - h};
+    double velocity[10], vorticity[5];
+    assert_int_equal(shoal_flow(run, 5, points, velocity, vorticity), SHOAL_OK);
+    const double curl = (velocity[3] - velocity[5]) / (2 * h) - (velocity[6] - velocity[8]) / (2 * h);
+    assert_true(fabs(vorticity[0]) > 1e-3);
+    NEAR(vorticity[0], curl, 0, 1e-4);
+    shoal_close(run);
+}
+
+static void looking_does_not_change_a_run(void **state) {
+    // the interpolated wake is what looking at the flow could disturb
+    const char *const assignments[] = {"time.end=0.4", "wake.tolerance=1e-4"};
+    struct shoal *const seen = opened(*state, 2, assignments), *const alone = opened(*state, 2, assignments);
+    double point[2] = {1.1, 0.1}, velocity[2], vorticity;
+    struct shoal_array array[2];
+    for (int step = 0; step < 20; step++) {
+        assert_int_equal(shoal_flow(seen, 1, point, velocity, &vorticity), SHOAL_OK);
+        for (int i = 0; shoal_variable(i); i++) assert_int_equal(shoal_read(seen, shoal_variable(i), array), SHOAL_OK);
+        assert_int_equal(shoal_step(seen), SHOAL_OK);
+        assert_int_equal(shoal_step(alone), SHOAL_OK);
+    }
+    const char *const names[] = {"x", "v", "a", "sheet_strength", "wake_x", "speed", "energy_audit"};
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
+        size_t n = 1;
+        const double *const one = read_doubles(seen, names[k], &array[0]);
+        const double *const other = read_doubles(alone, names[k], &array[1]);
+        for (int d = 0; d < array[0].n_dimensions; d++) n *= array[0].shape[d];
+        assert_memory_equal(one, other, n * sizeof *one);
+    }
+    shoal_close(seen);
+    shoal_close(alone);
+}
+
+// ---- result files
+
+static void a_result_file_has_the_rows_that_are_due(void **state) {
+    const char *const assignments[] = {"time.output_interval=0.04"};
+    struct shoal *const run = opened(*state, 1, assignments);
+    char path[] = "/tmp/test_shoal_result_XXXXXX";
+    const int descriptor = mkstemp(path);
+    assert_true(descriptor >= 0);
+    assert_int_equal(close(descriptor), 0);
+    assert_int_equal(shoal_write_end(run), SHOAL_OK);
+    assert_int_equal(shoal_write(run, path, 0), SHOAL_FILE);  // it exists
+    assert_int_equal(shoal_write(run, path, 1), SHOAL_OK);
+    refuses(shoal_write(run, "/tmp/other.nc", 1), "end that with shoal_write_end");
+    assert_int_equal(shoal_advance(run, 0.1), SHOAL_OK);
+    assert_int_equal(shoal_write_end(run), SHOAL_OK);
+    shoal_close(run);
+    struct netcdf_reader reader;
+    school_ok(netcdf_open(&reader, path));
+    size_t n_rows;
+    school_ok(netcdf_read_length(&reader, "time", 1, 100, &n_rows));
+    assert_int_equal(n_rows, 4);  // 0, 0.04, 0.08 and the end
+    netcdf_close(&reader);
+    assert_int_equal(unlink(path), 0);
+}
+
+static void a_result_file_that_cannot_be_written_is_said_so(void **state) {
+    struct shoal *const run = opened(*state, 0, NULL);
+    assert_int_equal(shoal_write(run, "/no/such/folder/x.nc", 0), SHOAL_FILE);
+    assert_non_null(strstr(shoal_message(), "/no/such/folder"));
+    assert_int_equal(shoal_step(run), SHOAL_OK);
+    shoal_close(run);
+}
+
 static void the_version_is_that_of_the_program(void **state) {
     (void)state;
     assert_string_equal(shoal_version(), version_short());
@@ -218,6 +570,26 @@ int main(void) {
         cmocka_unit_test(each_thread_has_its_own_message),
         cmocka_unit_test(closing_nothing_is_allowed),
         cmocka_unit_test(opening_without_memory_fails_and_leaves_nothing),
+        cmocka_unit_test(a_run_that_is_not_there_is_refused_by_every_function),
+        cmocka_unit_test(a_fish_that_is_not_there_is_refused),
+        cmocka_unit_test(arrays_that_are_not_there_are_refused),
+        cmocka_unit_test(assignments_are_checked),
+        cmocka_unit_test(a_step_past_the_end_is_refused),
+        cmocka_unit_test(a_run_advances_to_the_event_at_or_after_a_time),
+        cmocka_unit_test(a_failed_run_makes_no_step_and_says_why),
+        cmocka_unit_test(the_text_of_a_case_is_a_case),
+        cmocka_unit_test(an_error_in_a_text_has_its_line),
+        cmocka_unit_test(a_variable_is_read_with_its_shape),
+        cmocka_unit_test(a_wake_is_read_without_empty_slots),
+        cmocka_unit_test(names_and_counts_are_read_too),
+        cmocka_unit_test(every_variable_of_the_table_can_be_read),
+        cmocka_unit_test(what_has_been_read_holds_until_the_next_step),
+        cmocka_unit_test(far_from_everything_the_flow_is_the_external_one),
+        cmocka_unit_test(the_circulation_around_all_of_it_is_zero_and_around_a_wake_its_own),
+        cmocka_unit_test(vorticity_is_the_curl_of_the_velocity),
+        cmocka_unit_test(looking_does_not_change_a_run),
+        cmocka_unit_test(a_result_file_has_the_rows_that_are_due),
+        cmocka_unit_test(a_result_file_that_cannot_be_written_is_said_so),
         cmocka_unit_test(the_version_is_that_of_the_program),
     };
     return cmocka_run_group_tests(tests, write_case, remove_case);
