@@ -9,6 +9,7 @@
 #include "model/actuation.h"
 #include "model/bound_sheet.h"
 #include "model/clamp.h"
+#include "model/clearance.h"
 #include "model/fluid_force.h"
 #include "model/rod.h"
 
@@ -171,6 +172,7 @@ void diagnostics_step(struct residual *residual, struct state *state, double t, 
         for (int i = 0; i < 2; i++) balance->t[i] = times[i];
         if (balance->n < 2) balance->n++;
     }
+    clearance_step(residual->school, state, t, y, residual->scratch);
 }
 
 void diagnostics_before_jump(struct residual *residual, struct state *state) {
@@ -200,6 +202,7 @@ void diagnostics_start(struct residual *residual, struct state *state) {
         state->balance[f].initial_energy = diagnostics_energy(residual, f, state->t, state->y);
         memset(state->balance[f].work, 0, sizeof state->balance[f].work);
     }
+    clearance_start(residual->school, state, residual->scratch);
 }
 
 // the way through the water between two samples, m

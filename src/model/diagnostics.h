@@ -56,10 +56,12 @@ struct diagnostics_power diagnostics_power(struct residual *residual, int f, dou
 /* Kinetic plus bending plus stretching energy of one fish, J. */
 double diagnostics_energy(struct residual *residual, int f, double t, const double *y);
 
-/* Add the powers of the step that ended at t to the energy balances, by the quadratic through the last three steps. */
+/* Add the powers of the step that ended at t to the energy balances, by the quadratic through the last three steps, and
+ * bring the closest approach of two bodies up to date. */
 void diagnostics_step(struct residual *residual, struct state *state, double t, const double *y);
 
-/* Start the energy balances: at the first event, when the state is consistent. */
+/* Start the energy balances and the record of the closest approach: at the first event, when the state is
+ * consistent. */
 void diagnostics_start(struct residual *residual, struct state *state);
 
 /* At an event at which powers of fish f jump and its state does not, say because its bias takes another rate: the next

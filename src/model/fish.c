@@ -604,9 +604,15 @@ double fish_distance(const struct fish *a, const struct fish *b, const double *y
     double min = INFINITY;
     for (int i = 0; i < a->n_edges; i++) {
         const double p[2] = {y[a->at.x + i], y[a->at.y + i]}, q[2] = {y[a->at.x + i + 1], y[a->at.y + i + 1]};
+        const double length = fabs(q[0] - p[0]) + fabs(q[1] - p[1]);
         for (int j = 0; j < b->n_edges; j++) {
             const double r[2] = {y[b->at.x + j], y[b->at.y + j]}, s[2] = {y[b->at.x + j + 1], y[b->at.y + j + 1]};
-            min = fmin(min, segment_to_segment(p, q, r, s) - (a->thickness[i] + b->thickness[j]) / 2);
+            const double thickness = (a->thickness[i] + b->thickness[j]) / 2;
+            // no point of an edge is further from its first node than it is long
+            const double reach = min + thickness + length + fabs(s[0] - r[0]) + fabs(s[1] - r[1]);
+            const double dx = r[0] - p[0], dy = r[1] - p[1];
+            if (dx * dx + dy * dy > reach * reach) continue;
+            min = fmin(min, segment_to_segment(p, q, r, s) - thickness);
         }
     }
     return fmax(0, min);

@@ -22,9 +22,13 @@ static enum status fill(struct state *state, const struct school *school) {
     state->control = calloc(n_fish, sizeof *state->control);
     state->history = calloc(n_fish, sizeof *state->history);
     state->balance = calloc(n_fish, sizeof *state->balance);
-    if (!state->y || !state->yp || !state->wake || !state->control || !state->history || !state->balance) {
+    state->closest = calloc(1, sizeof *state->closest);
+    if (state->closest) state->closest->before = calloc(n_unknowns, sizeof *state->closest->before);
+    if (!state->y || !state->yp || !state->wake || !state->control || !state->history || !state->balance ||
+        !state->closest || !state->closest->before) {
         return status_fail(STATUS_MEMORY, "out of memory: the state of %d fish", school->n_fish);
     }
+    state->closest->distance = INFINITY;
     for (int f = 0; f < school->n_fish; f++) {
         TRY(wake_create(&state->wake[f], 16));
         state->wake[f].has_markers = school->shedding == SHEDDING_SHEET;
@@ -60,6 +64,8 @@ void state_free(struct state *state, const struct school *school) {
     free(state->control);
     free(state->history);
     free(state->balance);
+    if (state->closest) free(state->closest->before);
+    free(state->closest);
     free(state);
 }
 

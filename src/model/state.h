@@ -37,6 +37,15 @@ struct energy_balance {
     int n;                    /* how many of those there are */
 };
 
+/* The closest that two bodies have come to each other, at any step of the integrator or between two of them. */
+struct closest {
+    double distance; /* m; 0: they have touched; INFINITY: there is one fish only */
+    double t;        /* when, s */
+    int fish[2];     /* their numbers */
+    double before_t; /* the last step: its time, s, */
+    double *before;  /* and the unknowns, of which positions are used       (n_unknowns) */
+};
+
 struct state {
     double t;                       /* time of the last event, s */
     long event;                     /* its number, 0 at the start */
@@ -45,6 +54,7 @@ struct state {
     struct control_memory *control; /* (n_fish) */
     struct history *history;        /* (n_fish) */
     struct energy_balance *balance; /* (n_fish) */
+    struct closest *closest;        /* (1) */
 };
 
 /* The state before the start: bodies placed, everything else zero. Fails with STATUS_MEMORY. */

@@ -29,6 +29,7 @@ static size_t of_history(const struct state *state, const struct school *school,
 #define OF_CONTROL(type, field) STATE_CONTROL, type, PLACE(struct control_memory, field)
 #define OF_HISTORY(type, field) STATE_HISTORY, type, PLACE(struct history, field)
 #define OF_BALANCE(type, field) STATE_BALANCE, type, PLACE(struct energy_balance, field)
+#define OF_CLOSEST(type, field) STATE_CLOSEST, type, PLACE(struct closest, field)
 
 const struct state_row state_table[] = {
     {"t", OF_STATE(STATE_REAL, t), NULL},
@@ -71,13 +72,19 @@ const struct state_row state_table[] = {
     {"balance.t", OF_BALANCE(STATE_REAL, t), NULL},
     {"balance.power", OF_BALANCE(STATE_REAL, power), NULL},
     {"balance.n", OF_BALANCE(STATE_INTEGER, n), NULL},
+
+    {"closest.distance", OF_CLOSEST(STATE_REAL, distance), NULL},
+    {"closest.t", OF_CLOSEST(STATE_REAL, t), NULL},
+    {"closest.fish", OF_CLOSEST(STATE_INTEGER, fish), NULL},
+    {"closest.before_t", OF_CLOSEST(STATE_REAL, before_t), NULL},
+    {"closest.before", OF_CLOSEST(STATE_REAL, before), of_unknowns},
 };
 const int state_table_n = sizeof state_table / sizeof *state_table;
 
 // ---- the places of values
 
 int state_table_n_owners(const struct state_row *row, const struct school *school) {
-    return row->owner == STATE_ITSELF ? 1 : school->n_fish;
+    return row->owner == STATE_ITSELF || row->owner == STATE_CLOSEST ? 1 : school->n_fish;
 }
 
 size_t state_table_size(const struct state_row *row) {
@@ -100,6 +107,7 @@ static const void *owner_of(const struct state_row *row, const struct state *sta
         case STATE_CONTROL: return &state->control[f];
         case STATE_HISTORY: return &state->history[f];
         case STATE_BALANCE: return &state->balance[f];
+        case STATE_CLOSEST: return state->closest;
         case STATE_ITSELF: break;
     }
     return state;
@@ -137,6 +145,7 @@ enum status state_table_copy(struct state *to, const struct state *from, const s
 
 enum status state_table_check(const struct state *state, const struct school *school) {
     int is_good = state->event >= 0;
+    for (int i = 0; i < 2; i++) is_good &= state->closest->fish[i] >= 0 && state->closest->fish[i] < school->n_fish;
     for (int f = 0; f < school->n_fish; f++) {
         const struct history *const history = &state->history[f];
         const struct energy_balance *const balance = &state->balance[f];

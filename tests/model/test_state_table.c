@@ -69,6 +69,7 @@ static const struct {
     {"src/model/control.h", "control_memory", "control.", STATE_CONTROL, sizeof(struct control_memory)},
     {"src/model/state.h", "history", "history.", STATE_HISTORY, sizeof(struct history)},
     {"src/model/state.h", "energy_balance", "balance.", STATE_BALANCE, sizeof(struct energy_balance)},
+    {"src/model/state.h", "closest", "closest.", STATE_CLOSEST, sizeof(struct closest)},
 };
 enum { N_OWNERS = sizeof owners / sizeof *owners };
 
@@ -185,9 +186,10 @@ static void indices_that_no_run_has_are_refused(void **state) {
     school_ok(state_table_check(s, setup.school));
     int *const fields[] = {&s->history[1].n,        &s->history[1].n,        &s->history[0].last,
                            &s->history[0].last,     &s->balance[1].n,        &s->balance[1].n,
-                           &s->control[1].waypoint, &s->control[0].waypoint, &s->wake[1].has_markers};
-    const int wrong[] = {0, s->history[1].capacity + 1, -1, s->history[0].capacity, -1, 3, -1, 1, 1};
-    for (int i = 0; i < 9; i++) {
+                           &s->control[1].waypoint, &s->control[0].waypoint, &s->wake[1].has_markers,
+                           &s->closest->fish[0],    &s->closest->fish[1]};
+    const int wrong[] = {0, s->history[1].capacity + 1, -1, s->history[0].capacity, -1, 3, -1, 1, 1, -1, 2};
+    for (int i = 0; i < 11; i++) {
         const int right = *fields[i];
         *fields[i] = wrong[i];
         assert_int_equal(state_table_check(s, setup.school), STATUS_FILE);

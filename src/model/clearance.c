@@ -1,0 +1,100 @@
+/* clearance.c: the distance of each pair at the end of a step, and in between where they may have met. */
+#include "model/clearance.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { MAX_ADVANCES = 200 };
+
+// the displacement of a body during a step: of its nose, and the farthest that another node goes beyond that, m
+struct shift {
+    double nose[2], beyond;
+};
+
+static struct shift shift_of(const struct fish *fish, const double *before, const double *y) {
+    const double *const x[2] = {y + fish->at.x, y + fish->at.y};
+    const double *const old[2] = {before + fish->at.x, before + fish->at.y};
+    struct shift shift = {{x[0][0] - old[0][0], x[1][0] - old[1][0]}, 0};
+    double square = 0;
+    for (int k = 1; k < fish->n_nodes; k++) {
+        const double dx = x[0][k] - old[0][k] - shift.nose[0], dy = x[1][k] - old[1][k] - shift.nose[1];
+        square = fmax(square, dx * dx + dy * dy);
+    }
+    shift.beyond = sqrt(square);
+    return shift;
+}
+
+// no two points of two bodies come closer to each other by more than this, m
+static double approach(const struct shift *a, const struct shift *b) {
+    return hypot(a->nose[0] - b->nose[0], a->nose[1] - b->nose[1]) + a->beyond + b->beyond;
+}
+
+// the nodes of a fish at the part s of a step
+static void place(const struct fish *fish, const double *before, const double *y, double s, double *between) {
+    for (int k = 0; k < fish->n_nodes; k++) {
+        const int at[2] = {fish->at.x + k, fish->at.y + k};
+        for (int i = 0; i < 2; i++) between[at[i]] = before[at[i]] + s * (y[at[i]] - before[at[i]]);
+    }
+}
+
+// Conservative advancement (Mirtich 1996): from each place go on by as much as cannot bring the bodies together. Returns
+// the part of the step after which they touch, or 2 where they do not; *least is the smallest distance seen.
+static double meeting(const struct fish *a, const struct fish *b, const double *before, const double *y, double travel,
+                      double *between, double *least) {
+    const double near = 1e-3 * fmin(a->thickness[0], b->thickness[0]);
+    double s = 0;
+    for (int i = 0; i < MAX_ADVANCES && s < 1; i++) {
+        place(a, before, y, s, between);
+        place(b, before, y, s, between);
+        const double distance = fish_distance(a, b, between, INFINITY);
+        *least = fmin(*least, distance);
+        if (distance <= near) {
+            *least = 0;
+            return s;
+        }
+        s += distance / travel;
+    }
+    return 2;
+}
+
+static void remember(struct closest *closest, double distance, double t, int f, int g) {
+    if (distance >= closest->distance) return;
+    closest->distance = distance;
+    closest->t = t;
+    closest->fish[0] = g;
+    closest->fish[1] = f;
+}
+
+static void compare(const struct school *school, struct state *state, double t, const double *y, double *between, int f,
+                    int g) {
+    const struct fish *const a = &school->fish[f], *const b = &school->fish[g];
+    struct closest *const closest = state->closest;
+    const struct shift shift = shift_of(a, closest->before, y), other = shift_of(b, closest->before, y);
+    const double travel = approach(&shift, &other);
+    // what is farther apart now cannot have been closer than the closest ones during the step
+    double distance = fish_distance(a, b, y, closest->distance + travel);
+    double when = t;
+    if (distance > 0 && distance < travel) {
+        const double s = meeting(a, b, closest->before, y, travel, between, &distance);
+        if (s <= 1) when = closest->before_t + s * (t - closest->before_t);
+    }
+    remember(closest, distance, when, f, g);
+}
+
+void clearance_step(const struct school *school, struct state *state, double t, const double *y, double *between) {
+    struct closest *const closest = state->closest;
+    // bodies that have touched cannot come closer
+    for (int f = 0; f < school->n_fish; f++) {
+        for (int g = 0; g < f && closest->distance > 0; g++) compare(school, state, t, y, between, f, g);
+    }
+    memcpy(closest->before, y, (size_t)school->n_unknowns * sizeof *y);
+    closest->before_t = t;
+}
+
+void clearance_start(const struct school *school, struct state *state, double *between) {
+    struct closest *const closest = state->closest;
+    memcpy(closest->before, state->y, (size_t)school->n_unknowns * sizeof *state->y);
+    closest->distance = INFINITY;
+    closest->before_t = state->t;
+    clearance_step(school, state, state->t, state->y, between);
+}
