@@ -74,6 +74,19 @@ it open sees new rows when it opens it again. The attribute `run_status` says ho
 | `stopped` | a signal stopped it; the rows are good |
 | `failed: ...` | the integration or the writing failed, for this reason; the rows are good |
 
+The attribute `warnings` is written at the end: one line for each thing that is wrong with the result although the
+integration succeeded, about the fish for which it is worst. They are printed at the end of a run, by `shoal info` and by
+`shoal gather`; with `--strict` they end with exit code 3.
+
+| warning | when |
+|---|---|
+| bodies touch or cross | at any step of the integrator, or between two; `closest_approach` says who came closest, and when |
+| the energy balance is open | `energy_audit` is more than 1 % of the largest of the works of muscle, fluid, damping, and all forces |
+| the speed changes | `drift` is more than 1 %: means over the last beat are not those of steady swimming (`run -q` is silent about it) |
+| few events | fewer than 20 in a beat |
+| few sheet points | `shedding: sheet` where n_sheet - 1 < 0.9 x 3.2/sqrt(U Dt/L), once the speed changes by less than 10 % a beat |
+| slow modes | the slowest bending mode of a body in its fluid is slower than its beat |
+
 A file whose end is missing, for instance because it was cut while it was copied, is refused by every command and script;
 a study runs such a member again.
 
@@ -96,7 +109,7 @@ gives the same numbers, bit for bit with the same program (only `wall_time` and 
 | `history` | when the file was made, by which command |
 | `source` | program, commit, versions of the libraries |
 | `shoal_schema` | 1; a program that expects another number cannot read the file |
-| `run_status`, `case_text`, `case_effective` | see above |
+| `run_status`, `warnings`, `closest_approach`, `case_text`, `case_effective` | see above |
 
 Every variable has `long_name` and, unless it is a string, `units`. `fish_name`, `node_arc` and `sheet_arc` are coordinates.
 """

@@ -30,6 +30,7 @@ static const struct option_help all_options[] = {
      "longest wall time of a run; one that takes longer is stopped and has failed (default: none; compare: 60)"},
     {OPTION_MEMBERS, "members", "A-B", "run only member A, or members A to B, and do not gather"},
     {OPTION_FORCE, "force", NULL, "overwrite existing results"},
+    {OPTION_STRICT, "strict", NULL, "warnings about a result end with exit code 3"},
     {OPTION_SET, "set", "KEY=VALUE", "set a key of the case: fish[0].wave.frequency=1.2, fish[*].nodes=13"},
     {OPTION_THREADS, "threads", "N", "threads of a run: the same as --set solver.threads=N"},
     {'q', "quiet", NULL, "print no progress and no summary"},
@@ -114,6 +115,7 @@ static void take_option(struct request *request, int code, char *argument) {
         case 'q': request->quiet = 1; break;
         case 'v': request->verbose = 1; break;
         case OPTION_FORCE: request->force = 1; break;
+        case OPTION_STRICT: request->strict = 1; break;
         case OPTION_JSON: request->json = 1; break;
         case OPTION_OUTPUT: request->of_output = 1; break;
         case OPTION_CASE: request->case_only = 1; break;

@@ -21,7 +21,8 @@ enum option_code {
     OPTION_REFERENCE,
     OPTION_LIMIT,
     OPTION_SLURM,
-    OPTION_BUNDLE
+    OPTION_BUNDLE,
+    OPTION_STRICT
 };
 
 /* What the command line says. A string is NULL where its option is not given. */
@@ -34,7 +35,7 @@ struct request {
     char threads[64];         /* --threads as an assignment */
     const char *processes, *members;
     const char *methods, *rtols, *steps, *repeats, *reference_rtol, *limit, *bundle;
-    int slurm;
+    int slurm, strict;
     const char *positional;
 };
 
@@ -42,7 +43,7 @@ struct request {
  * function that does it. */
 struct command {
     const char *name, *positional, *summary;
-    int options[16]; /* 0 at the end */
+    int options[20]; /* 0 at the end */
     const char *output;
     enum status (*run)(const struct request *request);
 };

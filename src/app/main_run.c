@@ -16,32 +16,62 @@
 
 // ---- run
 
-static enum status run_case(const struct case_values *values, const struct request *request, const char *path) {
+static char *default_path(const struct case_values *values) {
+    const char *const name = values->output.file ? values->output.file : values->name;
+    const char *const ending = values->output.file ? "" : ".nc";
+    char *const path = malloc(strlen(name) + strlen(ending) + 1);
+    if (path) sprintf(path, "%s%s", name, ending);
+    return path;
+}
+
+/* What a run tells while it goes on. */
+struct teller {
     struct progress progress;
-    progress_start(&progress);
+    int quiet, n_warnings;
+};
+
+static void tell_progress(const struct simulate_progress *now, void *data) {
+    struct teller *const teller = data;
+    progress_show(now, &teller->progress);
+}
+
+/* Quiet is a run that prints no means over the last beat, and so none that might not be steady. */
+static void tell_warning(enum warning warning, const char *line, void *data) {
+    struct teller *const teller = data;
+    teller->n_warnings++;
+    if (teller->quiet && warning == WARNING_DRIFT) return;
+    progress_end(&teller->progress);
+    fprintf(stderr, "shoal: warning: %s\n", line);
+}
+
+static enum status run_case(const struct case_values *values, const struct request *request, const char *path) {
+    struct teller teller = {.quiet = request->quiet};
+    progress_start(&teller.progress);
     const struct simulate_options options = {.path = path,
                                              .overwrite = request->force,
                                              .command = request->command_line,
-                                             .progress = request->quiet ? NULL : progress_show,
-                                             .data = &progress,
+                                             .progress = request->quiet ? NULL : tell_progress,
+                                             .warn = tell_warning,
+                                             .data = &teller,
                                              .stop = main_stop_signal()};
     main_catch_signals();
     main_spread_threads(values->school.threads);
     const enum status status = simulate_run(values, &options);
-    progress_end(&progress);
+    progress_end(&teller.progress);
     TRY(status);
     if (request->verbose) TRY(main_print_info(path, 0));
     if (!request->quiet && !request->verbose) printf("%s\n", path);
-    return STATUS_OK;
+    if (!request->strict || teller.n_warnings == 0) return STATUS_OK;
+    return status_fail(STATUS_MISSED, "%s: with --strict its %d warning%s", path, teller.n_warnings,
+                       teller.n_warnings > 1 ? "s are errors" : " is an error");
 }
 
 enum status main_run(const struct request *request) {
     struct case_values values;
     TRY(case_read(&values, request->positional, request->n_assignments, request->assignments));
     enum status status = sweep_refuse(&values);
-    main_print_notes(request, &values);
     if (status == STATUS_OK) {
-        char *const path = request->output ? strdup(request->output) : main_result_path(&values);
+        char *const path = request->output ? strdup(request->output) : default_path(&values);
         status = path ? run_case(&values, request, path) : status_fail(STATUS_MEMORY, "out of memory: a file name");
         free(path);
     }

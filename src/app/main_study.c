@@ -59,7 +59,7 @@ static enum status run_study(const struct case_values *values, const struct requ
     const enum status status = study_run(values, &options, &n_failed);
     progress_end(&progress);
     TRY(status);
-    if (options.last < 0) return study_report(values, folder, NULL, request->command_line, stdout);
+    if (options.last < 0) return study_report(values, folder, NULL, request->command_line, request->strict, stdout);
     if (n_failed == 0) return STATUS_OK;
     return status_fail(STATUS_SOLVER, "%d of %d members failed; %s/member-*.failed say why", n_failed,
                        options.last - options.first + 1, folder);
@@ -71,7 +71,6 @@ enum status main_study(const struct request *request) {
     char folder[512];
     snprintf(folder, sizeof folder, "%s-study", values.name);
     const char *const place = request->output ? request->output : folder;
-    main_print_notes(request, &values);
     int bundle = 0;
     enum status status = request->bundle ? read_count("--bundle", request->bundle, &bundle) : STATUS_OK;
     if (status == STATUS_OK) {
@@ -82,7 +81,7 @@ enum status main_study(const struct request *request) {
 }
 
 enum status main_gather(const struct request *request) {
-    return study_gather(request->positional, request->command_line, stdout);
+    return study_gather(request->positional, request->command_line, request->strict, stdout);
 }
 
 // ---- compare

@@ -37,8 +37,8 @@ static void place(const struct fish *fish, const double *before, const double *y
     }
 }
 
-// Conservative advancement (Mirtich 1996): from each place go on by as much as cannot bring the bodies together. Returns
-// the part of the step after which they touch, or 2 where they do not; *least is the smallest distance seen.
+// Conservative advancement (Mirtich 1996): from each place go on by as much as cannot bring the bodies together.
+// Returns the part of the step after which they touch, or 2 where they do not; *least is the smallest distance seen.
 static double meeting(const struct fish *a, const struct fish *b, const double *before, const double *y, double travel,
                       double *between, double *least) {
     const double near = 1e-3 * fmin(a->thickness[0], b->thickness[0]);

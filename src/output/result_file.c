@@ -8,8 +8,16 @@
 #include "output/netcdf.h"
 #include "output/result_values.h"
 
-/* Bytes of the attribute run_status: it is rewritten in place and must never move what follows. */
-enum { STATUS_LENGTH = 256 };
+/* Bytes of attributes that are rewritten in place and must never move what follows. */
+enum { STATUS_LENGTH = 256, MAX_NOTE_LENGTH = 2560 };
+
+static const struct note {
+    const char *name;
+    size_t length;
+} notes[] = {
+    [RESULT_WARNINGS] = {"warnings", MAX_NOTE_LENGTH},
+    [RESULT_CLOSEST_APPROACH] = {"closest_approach", 256},
+};
 
 struct result_file {
     struct netcdf_writer writer;
@@ -37,11 +45,19 @@ static enum netcdf_type type_in_file(enum result_type type, enum precision preci
     }
 }
 
-/* The attribute run_status, in the space that is kept for it; a longer string is cut. */
+/* An attribute in the space that is kept for it; a longer string is cut. */
+static void write_fixed(struct result_file *result, const char *name, size_t length, const char *text) {
+    char bytes[MAX_NOTE_LENGTH] = {0};
+    snprintf(bytes, length, "%s", text);
+    netcdf_write_bytes(&result->writer, NETCDF_GLOBAL, name, length, bytes);
+}
+
 static void write_run_status(struct result_file *result, const char *run_status) {
-    char bytes[STATUS_LENGTH] = {0};
-    snprintf(bytes, sizeof bytes, "%s", run_status);
-    netcdf_write_bytes(&result->writer, NETCDF_GLOBAL, "run_status", sizeof bytes, bytes);
+    write_fixed(result, "run_status", STATUS_LENGTH, run_status);
+}
+
+void result_file_note(struct result_file *result, enum result_note note, const char *text) {
+    write_fixed(result, notes[note].name, notes[note].length, text);
 }
 
 /* The variables that name the slots of another one. */
@@ -71,6 +87,8 @@ static void write_attributes(struct result_file *result, const struct case_value
     struct netcdf_writer *const writer = &result->writer;
     netcdf_write_integer(writer, NETCDF_GLOBAL, "shoal_schema", RESULT_SCHEMA);
     write_run_status(result, "running");
+    result_file_note(result, RESULT_WARNINGS, "");
+    result_file_note(result, RESULT_CLOSEST_APPROACH, "");
     netcdf_write_string(writer, NETCDF_GLOBAL, "case_text", values->text);
     if (values->study) {
         netcdf_write_string(writer, NETCDF_GLOBAL, "study_case", values->study);

@@ -21,6 +21,11 @@ enum status result_file_create(struct result_file **result, const char *path, in
 /* Append one row. Readers see it at once; a power cut costs the rows of the last second. Fails with STATUS_FILE. */
 enum status result_file_row(struct result_file *result, const struct result_row *row);
 
+/* Set an attribute for which the file keeps room, before it is closed: warnings (a line each) or closest_approach
+ * ("1.2 m between a and b at t = 3 s"); both are empty before. A longer string is cut. */
+enum result_note { RESULT_WARNINGS, RESULT_CLOSEST_APPROACH };
+void result_file_note(struct result_file *result, enum result_note note, const char *text);
+
 /* Set the attribute run_status ("complete", "failed: why", "stopped") and close. Accepts NULL. Fails with
  * STATUS_FILE. */
 enum status result_file_close(struct result_file *result, const char *run_status);

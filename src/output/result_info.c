@@ -124,6 +124,17 @@ static enum status print_rows(const struct info *info) {
     return STATUS_OK;
 }
 
+/* An attribute of several lines, each after a word; nothing where it is empty or missing. */
+static enum status print_lines(const struct info *info, const char *name, const char *word) {
+    char *text;
+    TRY(netcdf_read_string(&info->reader, name, &text));
+    if (*text) fprintf(info->stream, "\n");
+    for (char *line = strtok(text, "\n"); line; line = strtok(NULL, "\n"))
+        fprintf(info->stream, "  %-20s  %s\n", word, line);
+    free(text);
+    return STATUS_OK;
+}
+
 static enum status print_school(const struct info *info) {
     const size_t last = info->n_rows - 1;
     double circulation, distance, polarisation;
@@ -171,7 +182,9 @@ static enum status print_all(struct info *info) {
     TRY(print_table(info));
     if (info->n_rows == 0) return STATUS_OK;
     TRY(print_school(info));
-    return print_solver(info);
+    TRY(print_solver(info));
+    TRY(print_lines(info, "closest_approach", "closest approach"));
+    return print_lines(info, "warnings", "warning");
 }
 
 enum status result_info(const char *path, FILE *stream) {

@@ -98,13 +98,6 @@ enum status simulate_take_up(struct simulation **simulation, const struct case_v
     return give_up(simulation, status);
 }
 
-enum status simulate_prepare(struct simulation **simulation, const struct case_values *values, const char *path,
-                             int overwrite) {
-    *simulation = NULL;
-    TRY(netcdf_check_target(path, overwrite));
-    return simulate_create(simulation, values);
-}
-
 void simulate_free(struct simulation *simulation) {
     if (!simulation) return;
     free_solvers(simulation);
@@ -189,12 +182,42 @@ static enum status loop(struct run *run) {
     return STATUS_OK;
 }
 
+/* Where two bodies have been closest. */
+static void note_closest(const struct run *run) {
+    const struct school *const school = run->simulation->school;
+    const struct closest *const closest = run->simulation->state->closest;
+    if (isinf(closest->distance)) return;
+    char text[256];
+    snprintf(text, sizeof text, "%.4f m between %.60s and %.60s at t = %.4g s", closest->distance,
+             school->fish[closest->fish[0]].name, school->fish[closest->fish[1]].name, closest->t);
+    result_file_note(run->record.file, RESULT_CLOSEST_APPROACH, text);
+}
+
+/* Tell all warnings about what the last row holds, and put them into the file. */
+static void warn(const struct run *run) {
+    const struct simulation *const simulation = run->simulation;
+    char line[WARNING_BYTES], lines[N_WARNINGS * (WARNING_BYTES + 1)];
+    size_t length = 0;
+    for (enum warning w = 0; w < N_WARNINGS; w++) {
+        if (!warnings_line(w, simulation->school, simulation->state, simulation->diagnostics,
+                           simulation->residual->scratch, line))
+            continue;
+        length += (size_t)snprintf(lines + length, sizeof lines - length, "%s%s", length > 0 ? "\n" : "", line);
+        if (run->options->warn) run->options->warn(w, line, run->options->data);
+    }
+    if (length > 0) result_file_note(run->record.file, RESULT_WARNINGS, lines);
+    note_closest(run);
+}
+
 static enum status run_to_end(struct run *run) {
     const struct simulate_options *const options = run->options;
-    TRY(simulate_prepare(&run->simulation, run->values, options->path, options->overwrite));
+    TRY(netcdf_check_target(options->path, options->overwrite));
+    TRY(simulate_create(&run->simulation, run->values));
     TRY(record_create(&run->record, run->values, run->simulation->school, run->simulation->n_events, options->path,
                       options->overwrite, options->command));
-    return record_close(&run->record, loop(run));
+    const enum status status = loop(run);
+    warn(run);
+    return record_close(&run->record, status);
 }
 
 enum status simulate_run(const struct case_values *values, const struct simulate_options *options) {

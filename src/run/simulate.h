@@ -8,6 +8,7 @@
 #include "base/status.h"
 #include "case/case.h"
 #include "model/diagnostics.h"
+#include "model/warnings.h"
 #include "solver/integrator.h"
 
 struct result_row; /* output/result_table.h */
@@ -77,6 +78,8 @@ struct simulate_options {
     int overwrite;                                                          /* replace one that exists */
     const char *command;                                                    /* command line, for the file's history */
     void (*progress)(const struct simulate_progress *progress, void *data); /* may be NULL */
+    /* told each warning about the result, before the run returns; may be NULL */
+    void (*warn)(enum warning warning, const char *line, void *data);
     void *data;
     const volatile sig_atomic_t *stop; /* the run stops at the next event once this is not 0; may be NULL */
 };

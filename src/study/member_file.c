@@ -196,6 +196,7 @@ static enum status read_attributes(struct reading *reading) {
     }
     TRY(netcdf_read_integer(reader, "study_member", -1, &member->number));
     TRY(netcdf_read_string(reader, "run_status", &member->status));
+    TRY(netcdf_read_string(reader, "warnings", &member->warnings));
     TRY(netcdf_read_string(reader, "study_case", &member->study));
     return netcdf_read_string(reader, "case_effective", &member->effective);
 }
@@ -236,6 +237,7 @@ enum status member_file_read(struct member_file *member, const char *path) {
 
 void member_file_free(struct member_file *member) {
     free(member->status);
+    free(member->warnings);
     free(member->study);
     free(member->effective);
     free(member->value);

@@ -24,6 +24,7 @@ int member_file_n_quantities(void);
 struct member_file {
     int number;      /* of the member; -1: the file belongs to no study */
     char *status;    /* "complete", "failed: why", "stopped", "running", "missing"; never NULL */
+    char *warnings;  /* about its result, a line each, "" where there is none; NULL only where there is no result */
     char *study;     /* merged text of the study, "" where there is none */
     char *effective; /* its complete case */
     int n_fish;

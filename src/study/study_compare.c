@@ -178,7 +178,7 @@ static enum status run_in(const char *folder, const struct case_values *study,
     }
     if (status == STATUS_STOPPED) return status_fail(STATUS_STOPPED, "stopped by a signal");
     TRY(status);
-    const enum status reported = study_report(study, folder, options->path, run->command, stream);
+    const enum status reported = study_report(study, folder, options->path, run->command, 0, stream);
     // that a method fails on a case is a result
     return reported == STATUS_SOLVER ? STATUS_OK : reported;
 }

@@ -14,12 +14,13 @@
 enum { MIN_TEXT = 64 /* bytes of the flag of an order */, NAME_BYTES = 256 };
 
 /* The variables of its own; those of the swept keys and the quantities follow. */
-enum { MEMBER, STATUS, FISH_NAME, N_OWN };
+enum { MEMBER, STATUS, WARNINGS, FISH_NAME, N_OWN };
 static const struct own {
     const char *name, *dimension, *meaning;
 } own[N_OWN] = {
     {"member", "member", "number of the member"},
     {"status", "member", "how the member ended"},
+    {"warnings", "member", "what is wrong with its result: a line each"},
     {"fish_name", "fish", "name of the fish"},
 };
 
@@ -53,12 +54,17 @@ static const char *set_text(const struct writing *writing, int m, int axis, int 
     return swept->value[sweep_member_value(writing->study, m, axis) * swept->n_keys + key];
 }
 
+static const char *warnings_of(const struct writing *writing, int m) {
+    return writing->member[m].warnings ? writing->member[m].warnings : "";
+}
+
 /* The length of the longest string that the file has to hold. */
 static size_t longest_text(const struct writing *writing) {
     size_t max = MIN_TEXT;
     const struct case_values *const study = writing->study;
     for (int m = 0; m < writing->n_members; m++) {
         if (strlen(writing->member[m].status) > max) max = strlen(writing->member[m].status);
+        if (strlen(warnings_of(writing, m)) > max) max = strlen(warnings_of(writing, m));
     }
     for (int a = 0; a < study->n_axes; a++) {
         for (int i = 0; i < study->sweep[a].n_values * study->sweep[a].n_keys; i++) {
@@ -179,6 +185,7 @@ static void write_all(struct writing *writing) {
         netcdf_write_ints(&writing->writer, netcdf_number(&writing->writer, own[MEMBER].name), (size_t[]){(size_t)m},
                           (size_t[]){1}, &m);
         write_text(writing, own[STATUS].name, m, writing->member[m].status);
+        write_text(writing, own[WARNINGS].name, m, warnings_of(writing, m));
     }
     for (int f = 0; f < writing->n_fish; f++) write_text(writing, own[FISH_NAME].name, f, study->school.fish[f].name);
     for (int a = 0; a < study->n_axes; a++) {

@@ -50,15 +50,22 @@ static enum status read_quantity(const struct reading *reading, int q) {
     return STATUS_OK;
 }
 
-/* Make room for a member, and read how it ended. */
+/* A string of a member; the caller frees it. */
+static enum status read_string(const struct reading *reading, const char *name, size_t m, char **string) {
+    *string = calloc(reading->n_text + 1, 1);
+    if (!*string) return out_of_memory(reading->reader.path);
+    const struct netcdf_slice slice[] = {{"member", m, 1}, {"text", 0, reading->n_text}, {NULL}};
+    return netcdf_read_text(&reading->reader, name, slice, *string);
+}
+
+/* Make room for a member, and read how it ended; a file of an earlier version has no warnings. */
 static enum status read_member(const struct reading *reading, size_t m) {
     struct member_file *const member = &reading->member[m];
     member->number = (int)m;
-    member->status = calloc(reading->n_text + 1, 1);
-    if (!member->status) return out_of_memory(reading->reader.path);
     TRY(member_file_create_values(member, reading->study->school.n_fish));
-    const struct netcdf_slice slice[] = {{"member", m, 1}, {"text", 0, reading->n_text}, {NULL}};
-    return netcdf_read_text(&reading->reader, "status", slice, member->status);
+    TRY(read_string(reading, "status", m, &member->status));
+    if (!netcdf_has(&reading->reader, "warnings")) return STATUS_OK;
+    return read_string(reading, "warnings", m, &member->warnings);
 }
 
 static enum status read_members(struct reading *reading) {

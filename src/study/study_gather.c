@@ -40,27 +40,40 @@ static enum status print_expected(const struct case_values *study, const struct 
     return of_orders == STATUS_OK ? of_members : of_orders;
 }
 
+/* Print the warnings; methods are compared on short runs, whose warnings would be those of the case. */
+static enum status print_warnings(const struct case_values *study, const struct member_file *members, int strict,
+                                  FILE *stream) {
+    if (study_comparison_is(study)) return STATUS_OK;
+    const int n = study_print_warnings(members, sweep_n_members(study), stream);
+    if (!strict || n == 0) return STATUS_OK;
+    return status_fail(STATUS_MISSED, "%d warning%s about the members, with --strict", n, n > 1 ? "s" : "");
+}
+
 /* Print all and write the file, before anything that is missed ends the report. */
 static enum status report(const struct case_values *study, const struct member_file *members, const char *path,
-                          const char *command, FILE *stream) {
+                          const char *command, int strict, FILE *stream) {
     struct study_file_orders orders;
     enum status status = study_orders_create(&orders, study, members);
     if (status == STATUS_OK) status = print_members(study, members, stream);
     if (status == STATUS_OK) status = study_file_write(path, study, members, &orders, command);
-    if (status == STATUS_OK) status = print_expected(study, members, &orders, stream);
+    if (status == STATUS_OK) {
+        status = print_expected(study, members, &orders, stream);
+        const enum status warned = print_warnings(study, members, strict && status == STATUS_OK, stream);
+        if (status == STATUS_OK) status = warned;
+    }
     study_file_orders_free(&orders);
     return status;
 }
 
 enum status study_report(const struct case_values *study, const char *folder, const char *path, const char *command,
-                         FILE *stream) {
+                         int strict, FILE *stream) {
     struct member_file *members;
     char *const standard = study_folder_path(folder, "study.nc");
     if (!standard) return STATUS_MEMORY;
     enum status status = study_folder_read_members(&members, study, folder);
     if (status == STATUS_OK) {
         study_comparison_fill_errors(study, members);
-        status = report(study, members, path ? path : standard, command, stream);
+        status = report(study, members, path ? path : standard, command, strict, stream);
         if (status == STATUS_OK) status = test_completeness(study, members, folder);
         study_folder_free_members(members, sweep_n_members(study));
     }
@@ -68,14 +81,14 @@ enum status study_report(const struct case_values *study, const char *folder, co
     return status;
 }
 
-enum status study_gather(const char *folder, const char *command, FILE *stream) {
+enum status study_gather(const char *folder, const char *command, int strict, FILE *stream) {
     char *text;
     TRY(study_folder_find_study(folder, &text));
     struct case_values study;
     enum status status = case_parse(&study, text, strlen(text), folder, NULL, 0, NULL);
     free(text);
     TRY(status);
-    status = study_report(&study, folder, NULL, command, stream);
+    status = study_report(&study, folder, NULL, command, strict, stream);
     case_free(&study);
     return status;
 }
@@ -109,6 +122,7 @@ enum status study_info(const char *path, FILE *stream) {
     }
     // that an expectation is missed is a part of what the file holds
     if (status == STATUS_MISSED) fprintf(stream, "missed: %s\n", status_message());
+    print_warnings(&study, members, 0, stream);
     study_folder_free_members(members, sweep_n_members(&study));
     case_free(&study);
     return status == STATUS_MISSED ? STATUS_OK : status;

@@ -10,12 +10,13 @@
 /* Make the file of a study, FOLDER/study.nc unless path is another one, from the files of the members in a folder, and
  * print the members (of a comparison of methods: the comparison), orders and expectations. Fails with
  * STATUS_FILE (a file belongs to another study, or study.nc cannot be written), STATUS_SOLVER (some members are not
- * complete), STATUS_MISSED (another order or value than the case expects) or STATUS_MEMORY. */
+ * complete), STATUS_MISSED (another order or value than the case expects; where strict, a warning about a result) or
+ * STATUS_MEMORY. */
 enum status study_report(const struct case_values *study, const char *folder, const char *path, const char *command,
-                         FILE *stream);
+                         int strict, FILE *stream);
 
 /* The same for the study that the members in the folder belong to. */
-enum status study_gather(const char *folder, const char *command, FILE *stream);
+enum status study_gather(const char *folder, const char *command, int strict, FILE *stream);
 
 /* Print what a study.nc holds: axes, members and orders. Fails with STATUS_FILE or STATUS_MEMORY. */
 enum status study_info(const char *path, FILE *stream);

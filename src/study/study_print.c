@@ -6,7 +6,7 @@
 #include "case/sweep_members.h"
 #include "study/study_table.h"
 
-enum { MAX_FISH_SHOWN = 4 };
+enum { MAX_FISH_SHOWN = 4, MAX_WARNINGS_SHOWN = 20 };
 
 /* The quantities that are shown; all others are in study.nc. */
 static const struct shown {
@@ -101,4 +101,18 @@ enum status study_print(const struct case_values *study, const struct member_fil
         fprintf(stream, "The first %d of %d fish; study.nc has all.\n", n_fish, study->school.n_fish);
     print_reasons(members, n, stream);
     return STATUS_OK;
+}
+
+int study_print_warnings(const struct member_file *members, int n, FILE *stream) {
+    int n_warnings = 0;
+    for (int m = 0; m < n; m++) {
+        for (const char *line = members[m].warnings; line && *line; line += *line == '\n') {
+            const int length = (int)strcspn(line, "\n");
+            if (n_warnings++ < MAX_WARNINGS_SHOWN) fprintf(stream, "member %d: warning: %.*s\n", m, length, line);
+            line += length;
+        }
+    }
+    if (n_warnings > MAX_WARNINGS_SHOWN)
+        fprintf(stream, "The first %d of %d warnings; study.nc has all.\n", MAX_WARNINGS_SHOWN, n_warnings);
+    return n_warnings;
 }

@@ -11,4 +11,7 @@
 /* Print the members with what they set and how they ended, in columns. Fails with STATUS_MEMORY. */
 enum status study_print(const struct case_values *study, const struct member_file *members, FILE *stream);
 
+/* Print the first warnings about the results of n members, at the end; the number of all. */
+int study_print_warnings(const struct member_file *members, int n, FILE *stream);
+
 #endif

@@ -37,7 +37,9 @@ def run(case, end):
         [program, "run", f"{cases}/{case}.yaml", "-q", "-o", path, *shorter],
         stdin=subprocess.DEVNULL, capture_output=True, text=True,
     )
-    if done.returncode or done.stdout or done.stderr:
+    announced = "warning" in open(f"{cases}/{case}.yaml").read()  # a case that makes one says so
+    others = [line for line in done.stderr.splitlines() if not (announced and line.startswith("shoal: warning: "))]
+    if done.returncode or done.stdout or others:
         check(f"{case} runs", False, f"exit code {done.returncode}: {done.stderr[:500]}")
         return None
     data = netCDF4.Dataset(path)

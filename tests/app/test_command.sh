@@ -115,14 +115,6 @@ output_paths() {
     run run "$demo" -q --set "$short" -o no/such/folder.nc
     check "missing folder: exit 4" ended 4
     check "missing folder is named" says no/such
-    run check "$demo" --set output.file=no/such/folder.nc
-    check "check refuses the place that run refuses" says "there is no folder no/such"
-    if ((EUID == 0)); then
-        run run "$demo" -q --set "$short" -o /proc/x.nc
-        check "a folder that takes no files" says "/proc/x.nc: the folder /proc takes no new files"
-    else
-        skip "a folder that takes no files" "only root may try to write to /proc"
-    fi
     mkdir a_folder
     run run "$demo" -q --set "$short" -o a_folder
     check "output is a folder: exit 4" ended 4
@@ -163,6 +155,34 @@ failures() {
     check "overlapping fish: exit 2" ended 2
     check "overlapping fish: which" grep -qE "a.*b|overlap" err
     check "overlapping fish: no file" test ! -e overlap.nc
+}
+
+# ---- results that are nonsense
+
+warnings() {
+    printf '%s\n' 'format: 1' 'name: crossing' 'time: {end: 1, shedding_interval: 0.05}' 'fluid: {density: 0}' \
+        'defaults: {fish: {wave: {amplitude: 0}, motion: {driven: all, speed: 15}}}' \
+        'fish:' '  - {name: a}' '  - {name: b, start: {position: [-6, 0], heading: 0}}' >crossing.yaml
+    run run crossing.yaml
+    check "bodies that cross: exit 0" ended 0
+    check "bodies that cross: a warning names them" grep -q '^shoal: warning: .*a and b touch or cross at t = 0.2' err
+    run info crossing.nc
+    check "info: the warning" grep -q 'warning .*a and b touch or cross' out
+    check "info: the closest approach" grep -q 'closest approach .*0.0000 m between a and b' out
+    run run crossing.yaml -q --force --strict
+    check "--strict: exit 3" ended 3
+    check "--strict: the warning and what made it an error" grep -q 'with --strict' err
+    check "--strict: the result is complete" status_is crossing.nc complete
+    run run "$demo" -q --strict --set "$short" -o strict.nc
+    check "--strict without a warning: exit 0" ended 0
+    check "--strict without a warning: silent" silent
+    run study crossing.yaml -q --strict --set 'sweep=[{key: "fish[0].motion.speed", values: [15, 16]}]'
+    check "study --strict: exit 3" ended 3
+    check "study: the warning of each member" grep -q '^member 1: warning: .*touch or cross' out
+    run gather crossing-study
+    check "gather: the warnings" grep -q '^member 0: warning: .*touch or cross' out
+    run info crossing-study/study.nc
+    check "info of a study: the warnings" grep -q '^member 1: warning: .*touch or cross' out
 }
 
 # Two results hold the same bits in all variables but the wall clock.
@@ -255,18 +275,6 @@ signals() {
     check "SIGKILL: info ends with 0" ended 0
 }
 
-# ---- notes ----
-
-notes() {
-    run check "$demo" --set "fish[0].length=50"
-    check "a note does not make check fail" ended 0
-    check "check prints notes" says "note: fish[0].length: 50 m is longer than any swimmer"
-    run run "$demo" --set time.end=0.01 --set "fish[0].start.heading=3.14159" -o noted.nc
-    check "run prints notes" says "note: fish[0].start.heading: 3.14159 is taken in degrees"
-    run run "$demo" -q --set time.end=0.01 --set "fish[0].start.heading=3.14159" -o quiet.nc
-    check "-q prints none" silent
-}
-
 # ---- full disk, closed output, out of memory ----
 
 limited() {  # ulimit option, its value, arguments
@@ -305,9 +313,9 @@ help_and_versions
 wrong_words
 output_paths
 failures
+warnings
 repeats
 spread
 signals
 limits
-notes
 finish

@@ -1,0 +1,223 @@
+/* warnings.c: how bad a result is, each kind measured so that 1 is the limit, and what to do about it. */
+#include "model/warnings.h"
+
+#include <math.h>
+#include <stdio.h>
+
+/* What a warning of a fish is made of. */
+struct subject {
+    const struct school *school;
+    const struct state *state;
+    const struct diagnostics *diagnostics;
+    double *scratch;
+    const struct fish *fish;
+    int f;
+    double size; /* see kind */
+};
+
+/* A kind of warning that each fish has by itself: its size, at which more than 1 warns, and its sentence. */
+struct kind {
+    double (*size)(const struct subject *subject);
+    void (*say)(const struct subject *subject, const char *who, char line[WARNING_BYTES]);
+};
+
+// ---- energy
+
+// the largest of the works that go in or out, J
+static double work_of(const struct subject *subject) {
+    const double *const work = subject->state->balance[subject->f].work;
+    double max = 0;
+    for (int i = 0; i < N_WORKS; i++) max = fmax(max, fabs(work[i]));
+    return max;
+}
+
+// a whole beat has to pass before there is work to speak of
+static double energy_size(const struct subject *subject) {
+    if (subject->state->t < subject->fish->period) return 0;
+    const struct diagnostics_fish *const now = &subject->diagnostics->fish[subject->f];
+    const double audit = fabs(now->energy_audit);
+    const double rounding = 1e-12 * (now->kinetic_energy + now->bending_energy + now->stretching_energy);
+    return audit > rounding ? audit / (0.01 * work_of(subject)) : 0;
+}
+
+static void energy_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
+    snprintf(
+        line, WARNING_BYTES,
+        "the energy balance of %s is open by %.2g J, of %.2g J of work: a smaller solver.rtol or solver.step has to "
+        "close it, else the case asks for more than the model can give",
+        who, subject->diagnostics->fish[subject->f].energy_audit, work_of(subject));
+}
+
+// ---- drift of the speed
+
+static double drift_size(const struct subject *subject) {
+    if (!(subject->school->density > 0)) return 0;
+    return fabs(subject->diagnostics->fish[subject->f].drift) / 0.01;
+}
+
+static void drift_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
+    snprintf(line, WARNING_BYTES,
+             "the speed of %s changes by %.1f %% from one beat to the next: means over the last beat are not those of "
+             "steady swimming, for which time.end has to be later",
+             who, 100 * subject->diagnostics->fish[subject->f].drift);
+}
+
+// ---- resolution
+
+enum { MIN_EVENTS = 20 /* in a beat */ };
+
+static double events_size(const struct subject *subject) {
+    const double period = subject->fish->period;
+    // a little more, for a quotient that is exact but for rounding
+    return period > 0 ? (1 - 1e-9) * MIN_EVENTS * subject->school->interval / period : 0;
+}
+
+static void events_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
+    snprintf(line, WARNING_BYTES,
+             "a beat of %s has only %.3g events: a time.shedding_interval of at most %.3g s gives it %d", who,
+             subject->fish->period / subject->school->interval, subject->fish->period / MIN_EVENTS, MIN_EVENTS);
+}
+
+// What the sheet needs is M - 1 >= 3.2/sqrt(U Dt/L); 0.9 of that warns, as the errors grow slowly (0.25 % of the
+// circulation at 0.63 of it), and only a speed that is nearly steady counts: every fish that starts from rest is slow.
+static double sheet_needs(const struct subject *subject) {
+    const struct diagnostics_fish *const now = &subject->diagnostics->fish[subject->f];
+    return 3.2 / sqrt(now->speed * subject->school->interval / subject->fish->length);
+}
+
+static double sheet_size(const struct subject *subject) {
+    const struct diagnostics_fish *const now = &subject->diagnostics->fish[subject->f];
+    if (subject->school->shedding != SHEDDING_SHEET || !(now->speed > 0)) return 0;
+    const double nearly = 0.1;
+    if (subject->fish->period > 0 && !(fabs(now->drift) < nearly)) return 0;
+    return 0.9 * sheet_needs(subject) / (subject->fish->n_sheet - 1);
+}
+
+static void sheet_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
+    snprintf(
+        line, WARNING_BYTES,
+        "%s swims %.2g lengths in a shedding_interval, which is too little for %d sheet_points: take %.0f of them, "
+        "or a longer interval",
+        who, subject->diagnostics->fish[subject->f].speed * subject->school->interval / subject->fish->length,
+        subject->fish->n_sheet, ceil(sheet_needs(subject)) + 1);
+}
+
+// ---- the slowest bending mode
+
+// mass of a node with that of the fluid that it accelerates sideways, kg
+static double moving_mass(const struct fish *fish, int k) {
+    const double before = k > 0 ? fish->added_mass[k - 1] : 0, after = k < fish->n_edges ? fish->added_mass[k] : 0;
+    return fish->mass[k] + (before + after) / 2;
+}
+
+static double weighted(const struct fish *fish, const double *w, int power) {
+    double sum = 0;
+    for (int k = 0; k < fish->n_nodes; k++) sum += moving_mass(fish, k) * pow(k, power) * w[k];
+    return sum;
+}
+
+// take away what moves a free body without bending it: its translation and its rotation
+static void remove_rigid(const struct fish *fish, double *w) {
+    double m[3] = {0, 0, 0};
+    for (int k = 0; k < fish->n_nodes; k++) {
+        for (int i = 0; i < 3; i++) m[i] += moving_mass(fish, k) * pow(k, i);
+    }
+    const double by[2] = {weighted(fish, w, 0), weighted(fish, w, 1)}, det = m[0] * m[2] - m[1] * m[1];
+    const double a = (by[0] * m[2] - by[1] * m[1]) / det, b = (by[1] * m[0] - by[0] * m[1]) / det;
+    for (int k = 0; k < fish->n_nodes; k++) w[k] -= a + b * k;
+}
+
+static double norm(const struct fish *fish, const double *w) {
+    double sum = 0;
+    for (int k = 0; k < fish->n_nodes; k++) sum += moving_mass(fish, k) * w[k] * w[k];
+    return sqrt(sum);
+}
+
+// the displacements w under the loads mass times mode: bending moments from the loads, joint angles from the moments;
+// those of a held body come from its tail, those of a free one from either end
+static void deflect(const struct fish *fish, int is_held, const double *mode, double *w) {
+    const double l = fish->edge_length;
+    double *const angle = w + 2;  // of joint j at the node behind it, where its displacement will be
+    double shear = 0, moment = 0;
+    for (int i = 0; i < fish->n_joints; i++) {
+        const int node = is_held ? fish->n_nodes - 1 - i : i, joint = is_held ? fish->n_joints - 1 - i : i;
+        shear += moving_mass(fish, node) * mode[node];
+        moment += shear * l;
+        angle[joint] = moment * l / fish->bending_stiffness[joint];
+    }
+    w[0] = w[1] = 0;
+    for (int k = 2; k < fish->n_nodes; k++) w[k] = 2 * w[k - 1] - w[k - 2] + l * w[k];
+}
+
+double warnings_slowest_mode(const struct fish *fish, double *scratch) {
+    enum { ITERATIONS = 60 };  // each takes away 0.13 of the next mode of a uniform body
+    const int is_held = fish->motion.prescribed == PRESCRIBED_HEAD;
+    double *const mode = scratch, *const next = scratch + fish->n_nodes;
+    double square = 0;  // of the angular frequency
+    for (int k = 0; k < fish->n_nodes; k++) mode[k] = (double)k * k;
+    for (int i = 0; i < ITERATIONS; i++) {
+        if (!is_held) remove_rigid(fish, mode);
+        const double size = norm(fish, mode);
+        for (int k = 0; k < fish->n_nodes; k++) mode[k] /= size;
+        deflect(fish, is_held, mode, next);
+        if (!is_held) remove_rigid(fish, next);
+        square = 1 / norm(fish, next);
+        for (int k = 0; k < fish->n_nodes; k++) mode[k] = next[k];
+    }
+    return sqrt(square) / (2 * M_PI);
+}
+
+static int has_muscle(const struct fish *fish) {
+    int has = fish->n_harmonics > 0;
+    for (int j = 0; j < fish->n_joints; j++) has |= fabs(fish->wave_amplitude[j]) > 0;
+    return has && fish->frequency > 0 && fish->motion.prescribed != PRESCRIBED_ALL;
+}
+
+static double modes_size(const struct subject *subject) {
+    const struct fish *const fish = subject->fish;
+    return has_muscle(fish) ? fish->frequency / warnings_slowest_mode(fish, subject->scratch) : 0;
+}
+
+static void modes_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
+    snprintf(line, WARNING_BYTES,
+             "the slowest bending mode of %s has %.2g Hz, less than its beat of %.3g Hz: its shape is not that of the "
+             "muscle, and all of its modes count: compare with twice the nodes",
+             who, warnings_slowest_mode(subject->fish, subject->scratch), subject->fish->frequency);
+}
+
+// ---- all of them
+
+static const struct kind kinds[N_WARNINGS] = {
+    [WARNING_ENERGY] = {energy_size, energy_say}, [WARNING_DRIFT] = {drift_size, drift_say},
+    [WARNING_EVENTS] = {events_size, events_say}, [WARNING_SHEET] = {sheet_size, sheet_say},
+    [WARNING_MODES] = {modes_size, modes_say},
+};
+
+static int contact_line(const struct school *school, const struct closest *closest, char line[WARNING_BYTES]) {
+    if (closest->distance > 0) return 0;
+    snprintf(
+        line, WARNING_BYTES,
+        "the bodies of %.40s and %.40s touch or cross at t = %.4g s: the model knows no contact, and what follows is "
+        "no solution",
+        school->fish[closest->fish[0]].name, school->fish[closest->fish[1]].name, closest->t);
+    return 1;
+}
+
+int warnings_line(enum warning warning, const struct school *school, const struct state *state,
+                  const struct diagnostics *diagnostics, double *scratch, char line[WARNING_BYTES]) {
+    if (warning == WARNING_CONTACT) return contact_line(school, state->closest, line);
+    struct subject worst = {.size = 1};
+    int n = 0;
+    for (int f = 0; f < school->n_fish; f++) {
+        struct subject subject = {school, state, diagnostics, scratch, &school->fish[f], f, 0};
+        subject.size = kinds[warning].size(&subject);
+        if (!(subject.size > 1) || isinf(subject.size)) continue;
+        n++;
+        if (subject.size > worst.size) worst = subject;
+    }
+    if (n == 0) return 0;
+    char who[96];
+    snprintf(who, sizeof who, n > 1 ? "%.40s (the worst of %d fish)" : "%.40s", worst.fish->name, n);
+    kinds[warning].say(&worst, who, line);
+    return 1;
+}

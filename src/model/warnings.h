@@ -1,0 +1,36 @@
+/* warnings.h: what is wrong with a result although the integration succeeded. A warning is one line, about the fish for
+ * which it is worst. Tested by tests/model/test_warnings.c.
+ *
+ *     contact   two bodies touch or cross: the model knows no contact
+ *     energy    the energy balance is open by more than 1 % of the work
+ *     drift     the speed changes by more than 1 % from beat to beat: means over a beat are not steady
+ *     events    fewer than 20 events in a beat
+ *     sheet     shedding: sheet with a stretch U Dt too short for the bound vortices at the tail (doc/model.md, 8)
+ *     modes     the slowest bending mode is slower than the beat */
+#ifndef WARNINGS_H
+#define WARNINGS_H
+
+#include "model/diagnostics.h"
+
+enum warning {
+    WARNING_CONTACT,
+    WARNING_ENERGY,
+    WARNING_DRIFT,
+    WARNING_EVENTS,
+    WARNING_SHEET,
+    WARNING_MODES,
+    N_WARNINGS
+};
+enum { WARNING_BYTES = 384 /* of a line */ };
+
+/* Write the line of a warning, without a line break, and return 1; or return 0 where there is no cause for it. The
+ * diagnostics are those of the state. scratch: (n_unknowns). */
+int warnings_line(enum warning warning, const struct school *school, const struct state *state,
+                  const struct diagnostics *diagnostics, double *scratch, char line[WARNING_BYTES]);
+
+/* Frequency of the slowest bending mode of a body in the fluid, straight and small, Hz: free at both ends, or held at
+ * the head where its motion is prescribed. By power iteration on the flexibility (Stodola's method). scratch:
+ * (2 n_nodes). */
+double warnings_slowest_mode(const struct fish *fish, double *scratch);
+
+#endif
