@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/ramp.h"
 
@@ -84,18 +85,34 @@ static double tapered(const struct fish *fish, const double from_tail[2], const 
     return length > 0 ? fish->smoothing * -expm1(-square / (length * length)) : fish->smoothing;
 }
 
-// the point at xi of the way from the newer to the older end of a stretch, tau after the event
-static void point_of(const struct wake *markers, int stretch, double xi, double interval, double tau, double point[2]) {
+// Both ends of a stretch at one time.
+struct ends {
+    int stretch;  // -2 before the first
     double newer[2], older[2];
-    wake_marker(markers, stretch + 1, interval, tau, newer);
-    wake_marker(markers, stretch, interval, tau, older);
-    for (int i = 0; i < 2; i++) point[i] = (1 - xi) * newer[i] + xi * older[i];
+};
+
+// the ends of a stretch, tau after the event: the newer one is known when the stretch before was the next newer one
+static void find_ends(struct ends *ends, const struct wake *markers, int stretch, double interval, double tau) {
+    if (ends->stretch == stretch) return;
+    if (ends->stretch == stretch + 1) {
+        memcpy(ends->newer, ends->older, sizeof ends->newer);
+    } else {
+        wake_marker(markers, stretch + 1, interval, tau, ends->newer);
+    }
+    wake_marker(markers, stretch, interval, tau, ends->older);
+    ends->stretch = stretch;
 }
 
+// the point at xi of the way from the newer to the older end
+static void point_of(const struct ends *ends, double xi, double point[2]) {
+    for (int i = 0; i < 2; i++) point[i] = (1 - xi) * ends->newer[i] + xi * ends->older[i];
+}
+
+// at[0], at[1]: the ends of the stretch at the beginning and the end of the interval
 static void add(struct free_sheet *sheet, const struct fish *fish, const struct wake *markers, double interval,
-                int stretch, double xi, double part) {
+                const struct ends at[2], double xi, double part) {
     const int i = sheet->n++;
-    sheet->stretch[i] = stretch;
+    sheet->stretch[i] = at[0].stretch;
     sheet->xi[i] = xi;
     sheet->part[i] = part;
     if (part < 0) {
@@ -109,7 +126,7 @@ static void add(struct free_sheet *sheet, const struct fish *fish, const struct 
         const double tail[2] = {markers->x[newest] + tau * markers->tail_velocity[0],
                                 markers->y[newest] + tau * markers->tail_velocity[1]};
         double point[2];
-        point_of(markers, stretch, xi, interval, tau, point);
+        point_of(&at[end], xi, point);
         const double from_tail[2] = {point[0] - tail[0], point[1] - tail[1]};
         sheet->smoothing[end][i] = tapered(fish, from_tail, markers->tail_tangent);
     }
@@ -128,22 +145,24 @@ enum status free_sheet_build(struct free_sheet *sheet, const struct fish *fish, 
     TRY(reserve(sheet, 2 * (n_stretches > 0 ? n_stretches : 0) + 4 * FREE_SHEET_PANEL + 1));
     sheet->n = 0;
     const double interval = school->interval;
+    struct ends at[2] = {{.stretch = -2}, {.stretch = -2}};
     for (int i = n_stretches - 1; i >= 0; i--) {
         const int age = n_stretches - i;  // 1: the newest one
+        for (int end = 0; end < 2; end++) find_ends(&at[end], markers, i, interval, end * interval);
         if (age <= GRADED) {
             for (int k = 0; k < FREE_SHEET_PANEL; k++) {
-                add(sheet, fish, markers, interval, i, free_sheet_xi[k], free_sheet_part[k]);
+                add(sheet, fish, markers, interval, at, free_sheet_xi[k], free_sheet_part[k]);
             }
         } else if (age <= PAIRED) {
-            for (int k = 0; k < 2; k++) add(sheet, fish, markers, interval, i, pair_xi[k], 0.5);
+            for (int k = 0; k < 2; k++) add(sheet, fish, markers, interval, at, pair_xi[k], 0.5);
         } else {
-            add(sheet, fish, markers, interval, i, 0.5, 1);
+            add(sheet, fish, markers, interval, at, 0.5, 1);
             if (is_untapered(sheet, fish, sheet->n - 1)) {
                 sheet->n--;
                 continue;
             }
         }
-        add(sheet, fish, markers, interval, i, 0.5, -1);
+        add(sheet, fish, markers, interval, at, 0.5, -1);
     }
     sheet->n += FREE_SHEET_PANEL + 1;
     return STATUS_OK;
@@ -152,11 +171,16 @@ enum status free_sheet_build(struct free_sheet *sheet, const struct fish *fish, 
 void free_sheet_place(struct free_sheet *sheet, const struct school *school, const struct wake *markers,
                       const struct wake *middles, double t, double tau) {
     const double q = tau / school->interval;
+    struct ends ends = {.stretch = -2};
+    double strength = 1;
     for (int i = 0; i < sheet->n - (FREE_SHEET_PANEL + 1); i++) {
         const int stretch = sheet->stretch[i];
+        if (stretch != ends.stretch) {
+            find_ends(&ends, markers, stretch, school->interval, tau);
+            strength = wake_strength_within(school, t - middles->birth[stretch], q);
+        }
         double point[2];
-        point_of(markers, stretch, sheet->xi[i], school->interval, tau, point);
-        const double strength = wake_strength_within(school, t - middles->birth[stretch], q);
+        point_of(&ends, sheet->xi[i], point);
         const double smoothing = (1 - q) * sheet->smoothing[0][i] + q * sheet->smoothing[1][i];
         sheet->x[i] = point[0];
         sheet->y[i] = point[1];

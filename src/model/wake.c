@@ -114,6 +114,7 @@ double wake_source(const struct wake *wake, int i) {
 }
 
 double wake_strength_within(const struct school *school, double age, double q) {
+    if (age + school->interval <= age_of_decay(school)) return 1;
     const double now = wake_strength(school, age), next = wake_strength(school, age + school->interval);
     return now + q * (next - now);
 }
