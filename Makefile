@@ -122,6 +122,7 @@ style: all $(generated_docs)  ## check format, layers, names and the generated d
 	@clang-format --dry-run -Werror $(c_files)
 	@scripts/check-layers.sh $(B)
 	@scripts/check-names.sh $(B)
+	@scripts/mutants.py --check
 	@for document in $(generated_docs:$(B)/%=%); do \
 	    diff -u "$$document" "$(B)/$$document" || { echo "$$document is out of date: run 'make docs'" >&2; exit 1; }; \
 	done

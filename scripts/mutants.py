@@ -2,9 +2,10 @@
 """Change the program in one place at a time and see whether the tests notice.
 
     scripts/mutants.py [-j N] [ID...]
+    scripts/mutants.py --check
 
 Each mutant of tests/mutants/mutants.txt is built in a copy of this tree, where the tests named with it run. It is killed
-when one of them fails. Without an ID all mutants run.
+when one of them fails. Without an ID all mutants run. --check only looks whether the table fits the sources.
 
 Exit codes: 0 at least 9 in 10 are killed, 1 fewer are, 2 the table does not fit the sources, or the tests fail on the
 program as it is.
@@ -189,6 +190,7 @@ def prepare(folder, n, tests):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("-j", type=int, default=2, metavar="N", help="mutants at a time (2)")
+    parser.add_argument("--check", action="store_true", help="only see that the table fits the sources")
     parser.add_argument("ID", nargs="*", help="mutants to run (all)")
     arguments = parser.parse_args()
     table = read_table()
@@ -196,6 +198,8 @@ def main():
     wrong = list(faults(table)) + [f"{ID}: no such mutant" for ID in arguments.ID if ID not in [m.name for m in table]]
     if wrong:
         give_up(wrong)
+    if arguments.check:
+        return
 
     outcomes = {}
     with tempfile.TemporaryDirectory(prefix="shoal-mutants-") as folder:
