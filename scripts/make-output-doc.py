@@ -17,6 +17,7 @@ that a picture needs and the case itself.
 
     shoal info demo.nc                 # a summary: status, fish, last values, work of the solver
     shoal info demo-study/study.nc     # of a study: axes, members, orders of convergence; of a comparison: its table
+    shoal info demo-field.nc           # of a field: time, grid
     ncdump -h demo.nc                  # everything that is in the file
     ncdump -v speed,heading demo.nc
 
@@ -141,6 +142,23 @@ With a refined axis, each of the last six kinds has one variable for each of the
 `shoal compare -o FILE` writes the same file: its one axis sets `solver.method`, `solver.order`, `solver.rtol` and
 `solver.step`. Member 0 is the reference, member 1 shows how good that is, and of the others those with equal values are
 repeats. Only such a study has `nose_error` and `tail_error`.
+""",
+    "field": """
+## The file of a field
+
+    shoal field demo.nc                                      # the last row, around bodies and wakes: demo-field.nc
+    shoal field demo.nc --at 2.5 --grid 600,400 --box -2,-1,2,1 -o field.nc
+
+`shoal field` writes the velocity and the vorticity of the fluid on a grid, at the time of one row. It sums what is in
+the row, by the tree where there is much of it (then to 1e-7 of the sum of absolute values): the external flow, every
+bound sheet and every wake with the smoothing with which another body sees them. It is
+what a body at that place would feel, to rounding, or to seven digits with `output.precision: single`.
+
+It leaves out: the flow around the thickness of bodies, which the model has as lines; and that a body sees its own
+newest wake more sharply (doc/model.md, section 8). The vorticity is that of the smoothed sheets and wakes, and minus
+the shear of the stream. A row without its wake (`output.wake_interval`) has no field.
+
+Attribute `run` names the file of the run, `case_effective` is its case, `shoal_field` is 1.
 """,
 }
 

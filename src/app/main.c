@@ -51,7 +51,13 @@ static const struct command commands[] = {
      {OPTION_JSON, OPTION_OUTPUT, 'h'},
      NULL,
      main_keys},
-    {"info", "FILE.nc", "summarise the file of a run or a study", {OPTION_CASE, 'h'}, NULL, main_info},
+    {"field",
+     "RUN.nc",
+     "write velocity and vorticity of the fluid on a grid, at the time of one row of a result",
+     {'o', OPTION_AT, OPTION_GRID, OPTION_BOX, OPTION_FORCE, OPTION_THREADS, 'q', 'h'},
+     "file of the field (default: the name of the result with -field.nc)",
+     main_field},
+    {"info", "FILE.nc", "summarise the file of a run, a study or a field", {OPTION_CASE, 'h'}, NULL, main_info},
     {"demo", NULL, "let a fish swim: write demo.nc and demo.png in this folder", {'q', 'h'}, NULL, main_demo},
 };
 enum { N_COMMANDS = sizeof commands / sizeof *commands };

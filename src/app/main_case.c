@@ -8,6 +8,7 @@
 #include "case/case_show.h"
 #include "case/sweep_members.h"
 #include "model/fish.h"
+#include "output/field_file.h"
 #include "output/result_info.h"
 #include "output/result_kind.h"
 #include "output/result_table.h"
@@ -18,6 +19,7 @@
 static const struct result_kind kinds[] = {
     {"run", "shoal_schema", RESULT_SCHEMA, "case_effective", result_info, result_table_listed},
     {"study", "shoal_study", STUDY_FILE_SCHEMA, "study_case", study_info, study_file_listed},
+    {"field", "shoal_field", FIELD_FILE_SCHEMA, "case_effective", field_file_info, field_file_listed},
 };
 enum { N_KINDS = sizeof kinds / sizeof *kinds };
 

@@ -3,6 +3,7 @@
  *
  *     main_run.c      run, demo
  *     main_study.c    study, gather, compare
+ *     main_field.c    field
  *     main_case.c     check, show, keys, info */
 #ifndef MAIN_COMMANDS_H
 #define MAIN_COMMANDS_H
@@ -15,6 +16,7 @@ enum status main_demo(const struct request *request);
 enum status main_study(const struct request *request);
 enum status main_gather(const struct request *request);
 enum status main_compare(const struct request *request);
+enum status main_field(const struct request *request);
 enum status main_check(const struct request *request);
 enum status main_show(const struct request *request);
 enum status main_keys(const struct request *request);

@@ -31,6 +31,10 @@ static const struct option_help all_options[] = {
     {OPTION_MEMBERS, "members", "A-B", "run only member A, or members A to B, and do not gather"},
     {OPTION_FORCE, "force", NULL, "overwrite existing results"},
     {OPTION_STRICT, "strict", NULL, "warnings about a result end with exit code 3"},
+    {OPTION_AT, "at", "T", "time of a row of the result, s (default: the last one with its wake)"},
+    {OPTION_GRID, "grid", "NX,NY", "points in x and y (default: 400 along the longer side, at equal distances)"},
+    {OPTION_BOX, "box", "X0,Y0,X1,Y1",
+     "corners of the grid, m (default: around all bodies and wakes, and half a body length more)"},
     {OPTION_SET, "set", "KEY=VALUE", "set a key of the case: fish[0].wave.frequency=1.2, fish[*].nodes=13"},
     {OPTION_THREADS, "threads", "N", "threads of a run: the same as --set solver.threads=N"},
     {'q', "quiet", NULL, "print no progress and no summary"},
@@ -106,6 +110,9 @@ static void take_option(struct request *request, int code, char *argument) {
         case OPTION_MEMBERS: request->members = argument; break;
         case OPTION_SLURM: request->slurm = 1; break;
         case OPTION_BUNDLE: request->bundle = argument; break;
+        case OPTION_AT: request->at = argument; break;
+        case OPTION_GRID: request->grid = argument; break;
+        case OPTION_BOX: request->box = argument; break;
         case OPTION_METHODS: request->methods = argument; break;
         case OPTION_RTOL: request->rtols = argument; break;
         case OPTION_STEPS: request->steps = argument; break;

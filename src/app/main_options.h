@@ -22,7 +22,10 @@ enum option_code {
     OPTION_LIMIT,
     OPTION_SLURM,
     OPTION_BUNDLE,
-    OPTION_STRICT
+    OPTION_STRICT,
+    OPTION_AT,
+    OPTION_GRID,
+    OPTION_BOX
 };
 
 /* What the command line says. A string is NULL where its option is not given. */
@@ -36,6 +39,7 @@ struct request {
     const char *processes, *members;
     const char *methods, *rtols, *steps, *repeats, *reference_rtol, *limit, *bundle;
     int slurm, strict;
+    const char *at, *grid, *box;
     const char *positional;
 };
 

@@ -648,29 +648,36 @@ enum status flow_at_wake(struct flow *flow, const struct state *state) {
     return pairwise_add_velocity(moving, threads, flow->wake_u, flow->wake_v);
 }
 
-// the external flow and all sources, as another body would see them, at some points
-static void induce_field(const struct flow *flow, const struct induced *at) {
+// the external flow, the nascent vortices and what is not summed by the tree, as another body would see them, at some
+// points
+static void induce_field(const struct flow *flow, const int *by_tree, const struct induced *at) {
     for (int i = 0; i < at->n; i++) {
         flow_external(flow->school, flow->t, at->y[i], &at->u[i], &at->v[i]);
         at->u_y[i] = flow->school->shear;
     }
-    vortices_induce(&flow->released, (struct range){0, flow->released.n}, at);
     vortices_induce(&flow->nascent, (struct range){0, flow->nascent.n}, at);
-    vortices_induce(&flow->sheet, (struct range){0, flow->sheet.n}, at);
+    if (!by_tree[0]) vortices_induce(&flow->released, (struct range){0, flow->released.n}, at);
+    if (!by_tree[1]) vortices_induce(&flow->sheet, (struct range){0, flow->sheet.n}, at);
 }
 
 enum status flow_field(struct flow *flow, const struct state *state, const struct induced *all) {
+    static const double tolerance = 1e-6;
     TRY(update_sources(flow, state, state->t, state->y));
     TRY(place_released(flow, state));
     vortices_zero(all);
+    const struct vortices *const many[2] = {&flow->released, &flow->sheet};
     const int n_chunks = parallel_n_chunks(all->n);
-    const int n_sources = flow->released.n + flow->nascent.n + flow->sheet.n;
-    const int threads =
-        parallel_threads(flow->school->threads, n_chunks, (double)all->n * n_sources, PARALLEL_INTERACTIONS);
+    const int threads = parallel_threads(flow->school->threads, n_chunks, (double)all->n * (many[0]->n + many[1]->n),
+                                         PARALLEL_INTERACTIONS);
+    int by_tree[2];
+    for (int i = 0; i < 2; i++) by_tree[i] = velocity_sum_by_tree(many[i], all->n, tolerance);
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int chunk = 0; chunk < n_chunks; chunk++) {
         const struct induced at = vortices_targets(all, parallel_chunk(chunk, all->n));
-        induce_field(flow, &at);
+        induce_field(flow, by_tree, &at);
+    }
+    for (int i = 0; i < 2; i++) {
+        if (by_tree[i]) TRY(velocity_sum_induce(flow->velocity_sum, many[i], tolerance, threads, all));
     }
     return STATUS_OK;
 }

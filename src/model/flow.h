@@ -144,8 +144,8 @@ void flow_nascent_influence(const struct flow *flow, int f, struct influence_blo
 enum status flow_at_wake(struct flow *flow, const struct state *state);
 
 /* The velocity of the fluid and its gradient at any points, at the event of the state, as another body would see them:
- * every wake and every bound sheet with its full smoothing. Changes nothing that a run depends on. Fails with
- * STATUS_MEMORY. */
+ * every wake and every bound sheet with its full smoothing. Where there are many it sums by the tree, to 1e-7
+ * (velocity_sum.h). Changes nothing that a run depends on. Fails with STATUS_MEMORY. */
 enum status flow_field(struct flow *flow, const struct state *state, const struct induced *at);
 
 /* The fluid's velocity past the tail of fish f, u - v_tail. After flow_velocity. */

@@ -49,7 +49,7 @@ help_and_versions() {
     check "--help ends with 0" ended 0
     check "--help lists the commands on standard output" grep -q '^  run  ' out
     check "--help says nothing on standard error" test ! -s err
-    for command in run check show keys info demo; do
+    for command in run check show keys field info demo; do
         run "$command" --help
         check "$command --help ends with 0" ended 0
         check "$command --help shows its usage" grep -q "^Usage: shoal $command" out
