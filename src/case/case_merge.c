@@ -72,12 +72,14 @@ static enum status read_bytes(int file, struct yaml_source *source) {
 /* Read the file at path into a source. Fails with STATUS_FILE and the reason as message, or with STATUS_MEMORY. */
 static enum status read_file(const char *path, struct yaml_source *source, struct open_file *self) {
     struct stat facts;
-    const int file = open(path, O_RDONLY | O_NOCTTY | O_CLOEXEC);
+    // a FIFO that nobody writes to is empty, and not waited for
+    const int file = open(path, O_RDONLY | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
     if (file < 0 || fstat(file, &facts) != 0) {
         const enum status status = status_fail(STATUS_FILE, "cannot be read: %s", strerror(errno));
         if (file >= 0) close(file);
         return status;
     }
+    fcntl(file, F_SETFL, 0);
     self->device = facts.st_dev;
     self->inode = facts.st_ino;
     const enum status status =

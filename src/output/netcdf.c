@@ -82,13 +82,15 @@ static enum status refuse_existing(const char *path) {
 enum status netcdf_check_target(const char *path, bool overwrite) {
     struct stat target;
     if (path[0] == '\0') return status_fail(STATUS_FILE, "the name of the result file is empty: choose one with -o");
-    if (stat(path, &target) != 0) {
+    if (lstat(path, &target) != 0) {
         char folder[PATH_MAX];
         folder_of(path, folder);
         return access(folder, W_OK | X_OK) == 0 ? STATUS_OK : creation_failed(path, errno);
     }
     if (S_ISDIR(target.st_mode))
         return status_fail(STATUS_FILE, "%s is a folder: name a file with -o, as in -o %s/run.nc", path, path);
+    if (S_ISLNK(target.st_mode))
+        return status_fail(STATUS_FILE, "%s is a link: name the file that it points to, or another one, with -o", path);
     if (!S_ISREG(target.st_mode))
         return status_fail(STATUS_FILE, "%s is not an ordinary file: choose another name with -o", path);
     return overwrite ? STATUS_OK : refuse_existing(path);
@@ -119,8 +121,10 @@ enum status netcdf_create(struct netcdf_writer *writer, const char *path, const 
     if (writer->target && writer->temporary) {
         writer->path = writer->target + (path[0] == '/' ? 0 : strlen("./"));
         snprintf(writer->temporary + strlen(writer->temporary), ENDING, ".%ld.part", (long)getpid());
+        // what is there was left by a run that was killed, or is a link; a new file is never written through one
+        unlink(writer->temporary);
         size_t buffer_bytes = BUFFER_BYTES;
-        CALL(writer, nc__create(writer->temporary, NC_CLOBBER | NC_64BIT_DATA, 0, &buffer_bytes, &writer->file));
+        CALL(writer, nc__create(writer->temporary, NC_NOCLOBBER | NC_64BIT_DATA, 0, &buffer_bytes, &writer->file));
         if (writer->code == NC_NOERR) writer->descriptor = open(writer->temporary, O_RDONLY | O_CLOEXEC);
         if (writer->code == NC_NOERR && writer->descriptor < 0) writer->code = errno;
         write_origin(writer, title, command);

@@ -37,8 +37,8 @@ struct netcdf_variable {
     bool has_gaps;                                      /* NaN marks where there is no value */
 };
 
-/* Fail with STATUS_FILE if no file can be made at path: its folder is missing, it is a folder or device, or it exists
- * and must not be overwritten. */
+/* Fail with STATUS_FILE if no file can be made at path: its folder is missing, it is a folder, a device or a link
+ * (which would be replaced, not what it points to), or it exists and must not be overwritten. */
 enum status netcdf_check_target(const char *path, bool overwrite);
 
 /* Create a file in the classic format with 64-bit sizes (CDF-5), with the attributes Conventions, title, history (now,

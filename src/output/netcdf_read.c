@@ -31,6 +31,9 @@ enum status netcdf_open(struct netcdf_reader *reader, const char *path) {
     if (!local) return out_of_memory(path);
     const int code = nc_open(local, NC_NOWRITE, &reader->file);
     free(local);
+    // NetCDF says that it lacks memory where a header asks for too much
+    if (code == NC_ENOMEM)
+        return status_fail(STATUS_FILE, "%s: cannot be read: its header is damaged, or out of memory", path);
     return code == NC_NOERR ? STATUS_OK : cannot_read(path, code);
 }
 

@@ -199,6 +199,7 @@ static void write_all(struct writing *writing) {
 
 /* Write under a temporary name, and give it its own. */
 static enum status write_file(struct writing *writing, const char *path, const char *command) {
+    TRY(netcdf_check_target(path, true));
     TRY(netcdf_create(&writing->writer, path, writing->study->name, command));
     define_all(writing);
     write_all(writing);

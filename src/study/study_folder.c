@@ -3,6 +3,7 @@
 
 #include <dirent.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -52,6 +53,28 @@ void study_folder_free_members(struct member_file *members, int n) {
     free(members);
 }
 
+FILE *study_folder_open(const char *path, int is_script) {
+    unlink(path);
+    const int file = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, is_script ? 0777 : 0666);
+    return file < 0 ? NULL : fdopen(file, "w");
+}
+
+int study_folder_is_result(const char *path) {
+    enum { HEAD = 32768 };
+    static const char *const marks[] = {"shoal_schema", "run_status", "study_case", "study_member"};
+    char *const head = calloc(HEAD + 1, 1);
+    const int file = head ? open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC) : -1;
+    const ssize_t length = file >= 0 ? read(file, head, HEAD) : 0;
+    int is_result = 0;
+    // the attributes follow each other in the header, with zeros in between
+    for (ssize_t i = 0; i < length && !is_result && memcmp(head, "CDF", 3) == 0; i++) {
+        for (int m = 0; m < 4; m++) is_result |= strncmp(head + i, marks[m], strlen(marks[m])) == 0;
+    }
+    if (file >= 0) close(file);
+    free(head);
+    return is_result;
+}
+
 /* Replace the status of a member. */
 static enum status replace_status(struct member_file *member, const char *format, const char *text) {
     char line[REASON_BYTES + 16];
@@ -65,7 +88,7 @@ enum status study_folder_set_reason(const char *folder, int member, const char *
     char *const path = study_folder_member(folder, member, ".failed");
     if (!path) return STATUS_MEMORY;
     // nothing can be done about a full disk here: the result file says "running" or "failed" itself
-    FILE *const file = reason ? fopen(path, "w") : NULL;
+    FILE *const file = reason ? study_folder_open(path, 0) : NULL;
     if (file) {
         fprintf(file, "%s\n", reason);
         fclose(file);
@@ -79,11 +102,12 @@ enum status study_folder_set_reason(const char *folder, int member, const char *
 /* Read why a member failed; 0 if there is no reason. */
 static int read_reason(const char *folder, int number, char reason[REASON_BYTES]) {
     char *const path = study_folder_member(folder, number, ".failed");
-    FILE *const file = path ? fopen(path, "r") : NULL;
+    const int file = path ? open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC) : -1;
     free(path);
-    if (!file) return 0;
-    const size_t length = fread(reason, 1, REASON_BYTES - 1, file);
-    fclose(file);
+    if (file < 0) return 0;
+    const ssize_t length = read(file, reason, REASON_BYTES - 1);
+    close(file);
+    if (length < 0) return 0;
     reason[length] = '\0';
     reason[strcspn(reason, "\n")] = '\0';
     return 1;

@@ -6,6 +6,8 @@
 #ifndef STUDY_FOLDER_H
 #define STUDY_FOLDER_H
 
+#include <stdio.h>
+
 #include "base/status.h"
 #include "case/case_values.h"
 #include "study/member_file.h"
@@ -20,6 +22,13 @@ void study_folder_remove(const char *folder);
  * frees it. */
 char *study_folder_path(const char *folder, const char *name);
 char *study_folder_member(const char *folder, int member, const char *ending);
+
+/* Open a new text file for writing in the place of one of ours, which is removed first: never through a link. NULL, and
+ * errno: it cannot be made. */
+FILE *study_folder_open(const char *path, int is_script);
+
+/* Whether a file that cannot be read is nevertheless the result of a run, cut or damaged. */
+int study_folder_is_result(const char *path);
 
 /* Keep the reason of a failure next to the result of a member; NULL: remove that of an earlier run. Fails with
  * STATUS_MEMORY. */

@@ -26,7 +26,15 @@ static enum status look_at_member(const struct planning *planning, const struct 
     *is_finished = 0;
     if (access(path, F_OK) != 0) return STATUS_OK;
     const enum status read = member_file_read(&member, path);
-    if (read == STATUS_FILE) return STATUS_OK;  // cut off by a crash: it runs again
+    if (read == STATUS_FILE && (planning->force || study_folder_is_result(path))) {
+        return STATUS_OK;  // cut off by a crash: it runs again
+    }
+    if (read == STATUS_FILE) {
+        return status_fail(STATUS_FILE,
+                           "%s is no result of shoal: choose another folder with -o, or replace what is there with "
+                           "--force",
+                           path);
+    }
     TRY(read);
     enum status status = STATUS_OK;
     char *effective = NULL;

@@ -15,15 +15,37 @@
 
 enum { MAX_TASKS = 1000 /* Slurm's own default is 1001 */ };
 
+/* Every file begins with this line, after that of the shell. */
+#define MARK "# Written by shoal study --slurm.\n"
+
+/* Whether there is no file, or one of ours. */
+static int is_ours(const char *path) {
+    char head[128] = "";
+    struct stat facts;
+    if (lstat(path, &facts) != 0) return 1;
+    FILE *const file = S_ISREG(facts.st_mode) ? fopen(path, "r") : NULL;
+    if (!file) return 0;
+    const size_t length = fread(head, 1, sizeof head - 1, file);
+    fclose(file);
+    head[length] = '\0';
+    return strstr(head, MARK) != NULL;
+}
+
 /* Open a file of the folder for writing. */
 static enum status open_file(FILE **file, const char *folder, const char *name, int is_script) {
     char path[PATH_MAX];
     if (snprintf(path, sizeof path, "%s/%s", folder, name) >= (int)sizeof path) {
         return status_fail(STATUS_FILE, "%s: too long a name", folder);
     }
-    *file = fopen(path, "w");
+    if (!is_ours(path)) {
+        return status_fail(STATUS_FILE,
+                           "%s exists and was not written by shoal study --slurm: remove it, or choose another folder "
+                           "with -o",
+                           path);
+    }
+    *file = study_folder_open(path, is_script);
     if (!*file) return status_fail(STATUS_FILE, "%s: cannot be written: %s", path, strerror(errno));
-    if (is_script) chmod(path, 0755);
+    fputs(is_script ? "#!/bin/sh\n" MARK : MARK, *file);
     return STATUS_OK;
 }
 
@@ -38,7 +60,6 @@ static enum status write_array(const struct case_values *study, const char *fold
     FILE *file;
     TRY(open_file(&file, folder, "array.sbatch", 1));
     fprintf(file,
-            "#!/bin/sh\n"
             "#SBATCH --job-name='%s'\n"
             "#SBATCH --array=0-%d\n"
             "#SBATCH --ntasks=1\n"
@@ -60,7 +81,6 @@ static enum status write_gather(const struct case_values *study, const char *fol
     FILE *file;
     TRY(open_file(&file, folder, "gather.sbatch", 1));
     fprintf(file,
-            "#!/bin/sh\n"
             "#SBATCH --job-name='%s-gather'\n"
             "#SBATCH --ntasks=1\n"
             "#SBATCH --output='%s/study.txt'\n"
@@ -70,13 +90,13 @@ static enum status write_gather(const struct case_values *study, const char *fol
     TRY(open_file(&file, folder, "submit.sh", 1));
     fprintf(
         file,
-        "#!/bin/sh\n"
         "# Submit the members as an array job, and after the last of them the job that gathers what they end with.\n"
         "set -eu\n"
-        "array=$(sbatch --parsable \"$@\" '%s/array.sbatch')\n"
-        "gather=$(sbatch --parsable --dependency=\"afterany:$array\" '%s/gather.sbatch')\n"
-        "echo \"members: job $array; results: job $gather, %s/study.txt and study.nc\"\n",
-        folder, folder, folder);
+        "folder='%s'\n"
+        "array=$(sbatch --parsable \"$@\" \"$folder/array.sbatch\")\n"
+        "gather=$(sbatch --parsable --dependency=\"afterany:$array\" \"$folder/gather.sbatch\")\n"
+        "printf '%%s\\n' \"members: job $array; results: job $gather, $folder/study.txt and study.nc\"\n",
+        folder);
     return close_file(file, folder);
 }
 

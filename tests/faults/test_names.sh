@@ -1,0 +1,117 @@
+#!/usr/bin/env bash
+# Names and links: what is written is a regular file of ours, and nothing else is touched; no name is taken for a command.
+#
+#   tests/faults/test_names.sh PROGRAM
+set -uo pipefail
+export LC_ALL=C
+
+program=$(realpath "${1:?usage: tests/faults/test_names.sh PROGRAM}")
+tests=$(realpath "$(dirname "$0")/..")
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder" || exit 2
+
+# shellcheck source=tests/checks.sh
+. "$tests/checks.sh"
+
+cat >small.yaml <<'end'
+format: 1
+name: small
+time: {end: 0.04, shedding_interval: 0.02, output_interval: 0.02}
+fish: [{}]
+end
+{ cat small.yaml && echo 'sweep: [{key: "fish[*].wave.amplitude", values: [0.2, 0.3]}]'; } >study.yaml
+mkdir study && mv study.yaml study/case.yaml
+precious() { [[ $(<precious) == precious ]]; }
+echo precious >precious
+
+# ---- run -o
+
+ln -s precious link.nc
+ln -s nowhere dangling.nc
+mkfifo fifo.nc
+for name in link dangling; do
+    for force in '' --force; do
+        # shellcheck disable=SC2086 # no option where it is empty
+        refused "run $force does not replace a link ($name)" 4 'is a link' run small.yaml -q $force -o $name.nc
+    done
+    check "the link stays ($name)" test -L $name.nc
+done
+check what_a_link_points_to_is_untouched precious
+refused run_refuses_a_fifo 4 'is not an ordinary file' run small.yaml -q --force -o fifo.nc
+refused info_refuses_a_fifo 4 'not an ordinary file' info fifo.nc
+refused run_does_not_wait_for_a_case_from_a_fifo 2 'fifo.nc' run fifo.nc
+run run <(cat small.yaml) -q -o pipe.nc
+check a_case_comes_from_a_pipe test "$code" = 0 -a -s pipe.nc
+if ((EUID == 0)) && mknod device c 1 3 2>/dev/null; then
+    refused run_refuses_a_device 4 'is not an ordinary file' run small.yaml -q --force -o device
+    refused compare_refuses_a_device 4 'is not an ordinary file' compare small.yaml -q --force -o device
+    check the_device_stays test -c device
+else
+    skip a_device 'only root makes one'
+fi
+refused compare_finds_a_missing_folder_first 4 'there is no folder no/such' compare small.yaml -o no/such/x.nc
+check and_has_not_begun test ! -s out
+
+# the name under which a result is made has the number of the process: a link for each that may be next
+bash -c 'for i in $(seq 0 40); do ln -s precious "part.nc.$(($$ + i)).part"; done
+    exec "$0" run small.yaml -q -o part.nc' "$program" >out 2>err
+check nothing_is_written_through_a_part precious
+check the_result_is_there test -s part.nc -a ! -L part.nc
+
+# ---- studies
+
+mkdir linked
+ln -s ../precious linked/member-0000.failed
+ln -s ../precious linked/member-0001.failed
+run study study/case.yaml -q -o linked --set solver.max_steps=1
+check reasons_are_not_written_through_links precious
+check reasons_are_written grep -q 'integration failed' linked/member-0001.failed
+rm linked/member-0000.failed && mkfifo linked/member-0000.failed
+run gather linked
+check gather_does_not_wait_for_a_fifo test "$code" = 1
+
+for foreign in text netcdf; do
+    rm -rf foreign && mkdir foreign
+    case $foreign in
+        text) cp precious foreign/member-0000.nc ;;
+        netcdf) ncgen -o foreign/member-0000.nc - <<<'netcdf x { dimensions: a = 3 ; }' ;;
+    esac
+    cp foreign/member-0000.nc before
+    refused "a foreign member stays ($foreign)" 4 'is no result of shoal' study study/case.yaml -q -o foreign
+    check "it is untouched ($foreign)" cmp before foreign/member-0000.nc
+    run study study/case.yaml -q -o foreign --force
+    check "--force replaces it ($foreign)" test "$code" = 0
+done
+truncate -s -100 foreign/member-0000.nc
+run study study/case.yaml -q -o foreign
+check a_cut_member_runs_again test "$code" = 0
+mkdir gathers && ln -s ../precious gathers/study.nc
+refused study_nc_that_is_a_link 4 'is a link' study study/case.yaml -q -o gathers
+check and_its_target_stays precious
+
+# ---- scripts of Slurm
+
+mkdir -p own && cp study/case.yaml own/study.yaml
+refused a_study_yaml_of_the_user 4 'was not written by shoal' study own/study.yaml --slurm -o own
+check it_is_untouched cmp study/case.yaml own/study.yaml
+mkdir scripts
+ln -s ../precious scripts/submit.sh
+refused slurm_follows_no_link 4 'was not written by shoal' study study/case.yaml --slurm -o scripts
+check and_writes_through_none precious
+run study study/case.yaml --slurm -o again
+run study study/case.yaml --slurm -o again
+check its_own_scripts_are_replaced test "$code" = 0
+# shellcheck disable=SC2016 # this is the name
+odd='x$(touch PWNED)`touch PWNED`;touch PWNED'
+run study study/case.yaml --slurm -o "$odd"
+mkdir bin && printf '#!/bin/sh\necho 1\n' >bin/sbatch && chmod +x bin/sbatch
+PATH=$PWD/bin:$PATH "$odd/submit.sh" >out 2>err
+check submit_sh_works has out "$odd/study.txt"
+SLURM_ARRAY_TASK_ID=0 sh "$odd/array.sbatch" >out 2>err
+check the_task_works test -s "$odd/member-0000.nc"
+sh "$odd/gather.sbatch" >out 2>err
+check a_name_is_no_command test ! -e PWNED -a ! -e "$odd/PWNED"
+
+echo "$n_passed passed, $n_failed failed, $n_skipped skipped"
+((n_failed == 0))
