@@ -76,6 +76,9 @@ bench_programs = $(patsubst tests/bench/%.c,$(B)/bench/%,$(wildcard tests/bench/
 generated_docs = $(B)/doc/cases.md $(B)/doc/output.md
 c_files        = $(wildcard src/*/*.[ch] include/*.h tests/*.[ch] tests/*/*.[ch])
 
+# what tests need beyond scripts/install-deps.sh: a browser
+test_packages = chromium
+
 # "commit" or "commit-dirty"; of this folder's own repository, not of one that happens to lie around it
 commit := $(shell test -e .git && git describe --always --dirty --abbrev=12 --exclude='*' 2>/dev/null || echo unknown)
 
@@ -88,11 +91,12 @@ parallel = $(MAKE) --no-print-directory $(if $(filter -j%,$(MAKEFLAGS)),,-j$(she
 
 all: $(program) $(library) $(shared)  ## build build/shoal, build/libshoal.a and build/libshoal.so.0
 
-demo: deps  ## install what is missing, build, swim: demo.nc and demo.png
+demo: deps  ## install what is missing, build, swim: demo.nc, demo.png and demo.html
 	@$(parallel) all
 	@$(program) demo
 
-test: deps  ## install what is missing, build, run every test
+test:  ## install what is missing, build, run every test
+	@scripts/install-deps.sh $(test_packages)
 	@$(parallel) tests
 	@scripts/run-tests.sh $(program) $(c_tests) $(shell_tests)
 
@@ -198,6 +202,8 @@ $(B)/%.o: src/%.c Makefile | $(B)/tests
 
 $(B)/base/version.o: shoal_cppflags += -DSHOAL_VERSION='"$(VERSION)"' -DSHOAL_COMMIT='"$(commit)"'
 $(B)/base/version.o: $(B)/commit
+
+$(B)/output/page.o: src/output/page.html
 
 # rewritten only when the commit changes
 $(B)/commit: FORCE | $(B)/tests

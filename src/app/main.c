@@ -58,7 +58,18 @@ static const struct command commands[] = {
      "file of the field (default: the name of the result with -field.nc)",
      main_field},
     {"info", "FILE.nc", "summarise the file of a run, a study or a field", {OPTION_CASE, 'h'}, NULL, main_info},
-    {"demo", NULL, "let a fish swim: write demo.nc and demo.png in this folder", {'q', 'h'}, NULL, main_demo},
+    {"view",
+     "RUN.nc",
+     "write a run as one html page to look at in a browser",
+     {'o', OPTION_FORCE, 'q', 'h'},
+     "file of the page (default: the name of the run with .html, in this folder)",
+     main_view},
+    {"demo",
+     NULL,
+     "let a fish swim: write demo.nc, demo.png and demo.html in this folder",
+     {'q', 'h'},
+     NULL,
+     main_demo},
 };
 enum { N_COMMANDS = sizeof commands / sizeof *commands };
 

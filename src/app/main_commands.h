@@ -4,7 +4,8 @@
  *     main_run.c      run, demo
  *     main_study.c    study, gather, compare
  *     main_field.c    field
- *     main_case.c     check, show, keys, info */
+ *     main_case.c     check, show, keys, info
+ *     main_view.c     view */
 #ifndef MAIN_COMMANDS_H
 #define MAIN_COMMANDS_H
 
@@ -21,6 +22,7 @@ enum status main_check(const struct request *request);
 enum status main_show(const struct request *request);
 enum status main_keys(const struct request *request);
 enum status main_info(const struct request *request);
+enum status main_view(const struct request *request);
 
 /* Print what a file of shoal holds, or the case in it alone. Fails with STATUS_FILE or STATUS_MEMORY. */
 enum status main_print_info(const char *path, int case_only);

@@ -12,6 +12,7 @@
 #include "app/progress.h"
 #include "case/case.h"
 #include "case/sweep_members.h"
+#include "output/page.h"
 #include "run/simulate.h"
 
 // ---- run
@@ -127,10 +128,12 @@ enum status main_demo(const struct request *request) {
     struct request demo = *request;
     demo.positional = path;
     demo.output = "demo.nc";
-    demo.force = 1; /* the demonstration owns its two files */
+    demo.force = 1; /* the demonstration owns its files */
     demo.verbose = !request->quiet;
     TRY(main_run(&demo));
     TRY(draw(share, "demo.nc", "demo.png"));
-    if (!request->quiet) printf("\nThe picture is demo.png; the case is %s.\n", path);
+    TRY(page_write("demo.nc", "demo.html", true));
+    if (!request->quiet)
+        printf("\nThe picture is demo.png, the movie demo.html (open it in a browser); the case is %s.\n", path);
     return STATUS_OK;
 }

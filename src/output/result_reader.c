@@ -1,0 +1,170 @@
+/* result_reader.c: reading the file of a run by the table of its variables. */
+#include "output/result_reader.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MAX_LENGTH = 100000000 /* of a dimension */ };
+
+static enum status out_of_memory(const struct result_reader *reader) {
+    return status_fail(STATUS_MEMORY, "%s: out of memory while reading", reader->file.path);
+}
+
+static const struct result_variable *find(const char *name) {
+    const struct result_variable *variable = result_table;
+    while (strcmp(variable->name, name) != 0) variable++;
+    return variable;
+}
+
+// ---- the file
+
+/* Refuse what is not the file of a run. */
+static enum status check_kind(const struct result_reader *reader) {
+    const struct netcdf_reader *const file = &reader->file;
+    int schema, study;
+    TRY(netcdf_read_integer(file, "shoal_schema", 0, &schema));
+    TRY(netcdf_read_integer(file, "shoal_study", 0, &study));
+    if (schema == RESULT_SCHEMA) return STATUS_OK;
+    if (schema != 0)
+        return status_fail(STATUS_FILE,
+                           "%s: written in schema %d, but this program reads %d: use the one that wrote it", file->path,
+                           schema, RESULT_SCHEMA);
+    if (study != 0)
+        return status_fail(STATUS_FILE, "%s: the file of a study: name that of one of its runs, as in member-0000.nc",
+                           file->path);
+    return status_fail(STATUS_FILE, "%s: a NetCDF file, but not one of shoal", file->path);
+}
+
+static enum status read_lengths(struct result_reader *reader) {
+    for (enum result_dimension d = TIME; d < RESULT_N_DIMENSIONS; d++) {
+        TRY(netcdf_read_length(&reader->file, result_table_dimension(d), d == XY ? 2 : 0, d == XY ? 2 : MAX_LENGTH,
+                               &reader->length[d]));
+    }
+    if (reader->length[TIME] > 0 && reader->length[FISH] > 0) return STATUS_OK;
+    return status_fail(STATUS_FILE, "%s: the run has not written a row yet", reader->file.path);
+}
+
+static enum status read_names(struct result_reader *reader) {
+    reader->name = calloc(reader->length[FISH], sizeof *reader->name);
+    if (!reader->name) return out_of_memory(reader);
+    for (size_t f = 0; f < reader->length[FISH]; f++) {
+        reader->name[f] = calloc(reader->length[NAME] + 1, 1);
+        if (!reader->name[f]) return out_of_memory(reader);
+        const struct netcdf_slice slice[] = {{"fish", f, 1}, {"name", 0, reader->length[NAME]}, {NULL}};
+        TRY(netcdf_read_text(&reader->file, "fish_name", slice, reader->name[f]));
+    }
+    return STATUS_OK;
+}
+
+/* The counts of a variable over the fish, each from min to max. */
+static enum status read_counts(const struct result_reader *reader, const char *name, size_t min, size_t max,
+                               int **counts) {
+    double *values;
+    TRY(result_reader_new(reader, name, 0, &values));
+    *counts = calloc(reader->length[FISH], sizeof **counts);
+    enum status status = *counts ? STATUS_OK : out_of_memory(reader);
+    for (size_t f = 0; status == STATUS_OK && f < reader->length[FISH]; f++) {
+        if (values[f] >= (double)min && values[f] <= (double)max) {
+            (*counts)[f] = (int)values[f];
+        } else {
+            status = status_fail(STATUS_FILE, "%s: its variable %s is %g for a fish, which cannot be",
+                                 reader->file.path, name, values[f]);
+        }
+    }
+    free(values);
+    return status;
+}
+
+/* What fish.body.section says of each fish, in the case that the file holds. */
+static enum status read_sections(struct result_reader *reader) {
+    static const char key[] = "section: ";
+    char *text;
+    reader->has_mean_section = calloc(reader->length[FISH], sizeof *reader->has_mean_section);
+    if (!reader->has_mean_section) return out_of_memory(reader);
+    TRY(netcdf_read_string(&reader->file, "case_effective", &text));
+    const char *place = text;
+    for (size_t f = 0; f < reader->length[FISH] && (place = strstr(place, key)); f++) {
+        place += strlen(key);
+        reader->has_mean_section[f] = strncmp(place, "mean", 4) == 0;
+    }
+    free(text);
+    return STATUS_OK;
+}
+
+static enum status fill(struct result_reader *reader) {
+    TRY(check_kind(reader));
+    TRY(read_lengths(reader));
+    TRY(netcdf_read_string(&reader->file, "title", &reader->title));
+    TRY(netcdf_read_string(&reader->file, "run_status", &reader->run_status));
+    TRY(read_names(reader));
+    TRY(read_sections(reader));
+    TRY(read_counts(reader, "n_nodes", 4, reader->length[NODE], &reader->n_nodes));
+    return read_counts(reader, "n_sheet", 1, reader->length[SHEET], &reader->n_sheet);
+}
+
+enum status result_reader_open(struct result_reader *reader, const char *path) {
+    *reader = (struct result_reader){.file.file = -1};
+    TRY(netcdf_open(&reader->file, path));
+    const enum status status = fill(reader);
+    if (status != STATUS_OK) result_reader_close(reader);
+    return status;
+}
+
+void result_reader_close(struct result_reader *reader) {
+    netcdf_close(&reader->file);
+    for (size_t f = 0; reader->name && f < reader->length[FISH]; f++) free(reader->name[f]);
+    free(reader->name);
+    free(reader->title);
+    free(reader->run_status);
+    free(reader->n_nodes);
+    free(reader->n_sheet);
+    free(reader->has_mean_section);
+    *reader = (struct result_reader){.file.file = -1};
+}
+
+// ---- values
+
+size_t result_reader_n(const struct result_reader *reader, const char *name) {
+    size_t n = 1;
+    for (const enum result_dimension *d = find(name)->dimension; *d != NONE; d++)
+        if (*d != TIME) n *= reader->length[*d];
+    return n;
+}
+
+enum status result_reader_row(const struct result_reader *reader, const char *name, size_t row, double *values) {
+    struct netcdf_slice slice[RESULT_MAX_DIMENSIONS + 1] = {0};
+    const enum result_dimension *const dimension = find(name)->dimension;
+    for (int d = 0; dimension[d] != NONE; d++) {
+        slice[d] = (struct netcdf_slice){result_table_dimension(dimension[d]), 0, reader->length[dimension[d]]};
+        if (dimension[d] != TIME) continue;
+        slice[d].first = row;
+        slice[d].n = 1;
+    }
+    return netcdf_read_doubles(&reader->file, name, slice, values);
+}
+
+enum status result_reader_new(const struct result_reader *reader, const char *name, size_t row, double **values) {
+    *values = calloc(result_reader_n(reader, name) + 1, sizeof **values);
+    if (!*values) return out_of_memory(reader);
+    const enum status status = result_reader_row(reader, name, row, *values);
+    if (status == STATUS_OK) return STATUS_OK;
+    free(*values);
+    *values = NULL;
+    return status;
+}
+
+enum status result_reader_has_wake(const struct result_reader *reader, size_t row, bool *has_wake) {
+    const size_t n_fish = reader->length[FISH];
+    double *count;
+    TRY(result_reader_new(reader, "wake_count", row, &count));
+    const struct netcdf_slice slice[] = {{"time", row, 1}, {"fish", 0, n_fish}, {"vortex", 0, 1}, {NULL}};
+    double *const first = calloc(n_fish, sizeof *first);
+    const enum status status =
+        first ? netcdf_read_doubles(&reader->file, "wake_circulation", slice, first) : out_of_memory(reader);
+    *has_wake = status == STATUS_OK;
+    for (size_t f = 0; *has_wake && f < n_fish; f++) *has_wake = count[f] == 0 || isfinite(first[f]);
+    free(count);
+    free(first);
+    return status;
+}

@@ -1,0 +1,163 @@
+#!/usr/bin/env bash
+# The page of a run: its numbers are those of the result, and a browser draws them without an error.
+#
+#   tests/app/test_view.sh PROGRAM
+set -uo pipefail
+export LC_ALL=C.UTF-8
+
+program=$(realpath "${1:?usage: tests/app/test_view.sh PROGRAM}")
+root=$(realpath "$(dirname "$0")/../..")
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder" || exit 2
+export MPLCONFIGDIR=$folder/matplotlib
+
+# shellcheck source=tests/checks.sh
+. "$root/tests/checks.sh"
+
+# ---- the page
+
+cat >pair.yaml <<'end'
+format: 1
+name: two <fish> & "one" page
+time: {end: 1.5, shedding_interval: 0.02, output_interval: 0.1}
+wake: {lifetime: 0.8}
+output: {wake_interval: 0.2}
+defaults: {fish: {nodes: 9, wave: {ramp: 0.5}}}
+fish:
+  - {name: leader}
+  - {name: </script>, length: 0.7, nodes: 7, start: {position: [1.4, 0.4]}}
+end
+run run pair.yaml -q -o pair.nc
+check a_short_run test "$code" = 0
+run view pair.nc
+check a_page_is_written test "$code" = 0 -a -s pair.html
+check its_name_is_printed grep -qx pair.html out
+check nothing_is_loaded test -z "$(grep -oE '(src|href|url|import|fetch)[ =(]*["'\''(]?(https?:)?//' pair.html)"
+refused an_existing_page_is_kept 4 'exists' view pair.nc
+run view pair.nc --force -q -o other.html
+check force_replaces_it test "$code" = 0 -a ! -s out -a -s other.html
+refused no_result 4 'nothing.nc' view nothing.nc
+refused no_file 2 'RUN.nc is missing' view
+
+# ---- its numbers
+
+cat >compare.py <<'end'
+"""Compare the numbers in a page with those of the result that it is made of."""
+import base64, json, re, sys
+import netCDF4, numpy as np
+
+text = open(sys.argv[1], encoding="utf-8").read()
+run = json.loads(re.search(r'<script type="application/json" id="run">(.*?)</script>', text, re.S).group(1))
+file = netCDF4.Dataset(sys.argv[2])
+file.set_auto_mask(False)
+
+def array(part, kind):
+    return np.frombuffer(base64.b64decode(part), kind)
+
+def near(name, got, want, atol):
+    if got.shape != want.shape or not np.allclose(got, want, rtol=0, atol=atol, equal_nan=True):
+        sys.exit(f"{name}: {got} is not {want}")
+
+def places(rows, n):
+    box = array(rows["box"], "f8").reshape(-1, 3)
+    return box, array(rows["place"], "u2").reshape(n, 2)
+
+names = ["leader", "</script>"]
+assert run["title"] == 'two <fish> & "one" page' and [fish["name"] for fish in run["fish"]] == names, run["title"]
+assert run["thinned"] == "" and run["rows"] == file["time"].size and len(run["shapes"]) == 2
+
+rows = file["time"].size
+box, place = places(run["bodies"], rows * 16)
+got = box[:, None, :2] + place.reshape(rows, 16, 2) * box[:, None, 2:]
+want = np.concatenate([file["x"][:, 0], file["x"][:, 1, :7]], axis=1)
+near("bodies", got, want, box[:, 2].max())
+near("time", array(run["bodies"]["time"], "f8"), file["time"][:], 0)
+
+wakes = run["wakes"]
+with_wake = np.flatnonzero((file["wake_count"][:].sum(axis=1) == 0) | np.isfinite(file["wake_circulation"][:, 0, 0]))
+assert wakes["n"] == with_wake.size < rows, (wakes["n"], with_wake)
+first, count = (array(wakes[key], "i4").reshape(-1, 2) for key in ("first", "count"))
+box, place = places(wakes, count.sum())
+strength, at = array(wakes["strength"], "i2") * wakes["unit"], 0
+for i, row in enumerate(with_wake):
+    for f in range(2):
+        n = file["wake_count"][row, f]
+        assert count[i, f] == n, (count[i, f], n)
+        near("wake", box[i, :2] + place[at : at + n] * box[i, 2], file["wake_x"][row, f, :n], box[i, 2] or 1e-12)
+        birth = file["wake_birth"][row, f, :n]
+        near("births", (first[i, f] + np.arange(n)) * wakes["interval"], birth, 1e-9)
+        young = file["time"][row] - birth < 0.6  # older ones decay
+        near("strength", strength[at : at + n][young], file["wake_circulation"][row, f, :n][young], wakes["unit"])
+        assert np.all(np.abs(strength[at : at + n]) <= np.abs(file["wake_circulation"][row, f, :n]) + wakes["unit"])
+        at += n
+for name in ("speed", "heading", "actuation_power"):
+    near(name, array(run["series"][name], "f4").reshape(2, -1).T, file[name][:].astype("f4"), 0)
+end
+numbers_are() { /usr/bin/python3 compare.py "$@"; }
+check numbers_are_those_of_the_result numbers_are pair.html pair.nc
+
+# a long run is thinned, and says so
+cat >long.yaml <<'end'
+format: 1
+time: {end: 60, shedding_interval: 0.1, output_interval: 0.1}
+wake: {lifetime: 60, tolerance: 1e-3}
+fluid: {density: 0}
+defaults: {fish: {nodes: 5, sheet_points: 5, wave: {amplitude: 0.001}}}
+fish: [{}, {start: {position: [0, 5]}}, {start: {position: [0, 10]}}, {start: {position: [0, 15]}}, {start: {position: [0, 20]}}]
+end
+run run long.yaml -q -o long.nc
+run view long.nc -q
+check a_long_run_is_below_8_MB test "$(stat -c %s long.html)" -lt 8000000
+check what_is_left_out_is_said grep -q '"thinned":"[^"]*wakes: one of ' long.html
+
+# ---- in a browser
+
+# Look at a page for some seconds of its own time; leaves the console in browser.err.
+browse() {  # page#options, options of the browser...
+    local page=$1
+    shift
+    timeout 60 chromium --headless=new --no-sandbox --disable-gpu --hide-scrollbars --enable-logging=stderr \
+        --user-data-dir="$folder/browser" "$@" "file://$folder/$page" >browser.out 2>browser.err </dev/null
+}
+console() { grep -a ':CONSOLE' browser.err; }
+
+# Count the pixels of a picture that are clearly red, blue, grey like a body, and all but the most frequent.
+cat >pixels.py <<'end'
+import sys
+import numpy as np
+from matplotlib import image
+
+picture = image.imread(sys.argv[1])[:, :, :3]
+height = int(float(sys.argv[2]) * picture.shape[0])
+r, g, b = np.moveaxis(picture[:height], 2, 0)
+print((r - b > 0.25).sum(), (b - r > 0.25).sum(), picture.shape[1], picture.mean() > 0.5)
+end
+# A screenshot has at least so many red and blue pixels of wakes, is so wide, and light or dark.
+shows() {  # picture, red, blue, width, light
+    local red blue width light
+    read -r red blue width light < <(/usr/bin/python3 pixels.py "$1" 0.6)
+    echo "$1: $red red, $blue blue, $width wide, light $light"
+    ((red >= $2 && blue >= $3 && width == $4)) && [[ $light == "$5" ]]
+}
+
+if ! command -v chromium >/dev/null; then
+    fail a_browser "there is no chromium: scripts/install-deps.sh chromium"
+else
+    browse 'pair.html#t=1.2&theme=light' --window-size=1280,1000 --virtual-time-budget=500 --screenshot=light.png
+    check no_error_in_the_console test -z "$(console)"
+    check fish_and_wakes_are_drawn shows light.png 150 150 1280 True
+    browse 'pair.html#t=1.2&theme=dark&follow=1' --window-size=390,844 --virtual-time-budget=500 --screenshot=dark.png
+    check on_a_phone_in_the_dark shows dark.png 60 60 390 False
+    check no_error_on_a_phone test -z "$(console)"
+    browse 'pair.html#t=0.5&play=1' --virtual-time-budget=1500 --dump-dom
+    check frames_are_drawn test "$(grep -oE 'data-frames="[0-9]+"' browser.out | grep -oE "[0-9]+")" -gt 3
+    check and_time_goes_on test "$(grep -oE 'data-time="[0-9.]+"' browser.out | tr -dc 0-9)" -gt 05000
+    # the console is heard
+    sed 's/^const run = .*/const run = nothing_of_this_name;/' pair.html >broken.html
+    browse broken.html --virtual-time-budget=100 --dump-dom
+    check a_broken_page_is_noticed grep -q nothing_of_this_name <(console)
+fi
+
+echo "$n_passed passed, $n_failed failed, $n_skipped skipped"
+((n_failed == 0))
