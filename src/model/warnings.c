@@ -90,7 +90,9 @@ static double sheet_size(const struct subject *subject) {
     if (subject->school->shedding != SHEDDING_SHEET || !(now->speed > 0)) return 0;
     const double nearly = 0.1;
     if (subject->fish->period > 0 && !(fabs(now->drift) < nearly)) return 0;
-    return 0.9 * sheet_needs(subject) / (subject->fish->n_sheet - 1);
+    // what needs more does not swim
+    const double most = 1000;
+    return sheet_needs(subject) < most ? 0.9 * sheet_needs(subject) / (subject->fish->n_sheet - 1) : 0;
 }
 
 static void sheet_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {

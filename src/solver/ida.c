@@ -227,10 +227,15 @@ static const char *reason(int code) {
     switch (code) {
         case IDA_TOO_MUCH_WORK: return "more steps between two events than solver.max_steps: raise it, or solver.rtol";
         case IDA_TOO_MUCH_ACC: return "the tolerance is below rounding errors: raise solver.rtol";
-        case IDA_ERR_FAIL: return "the error test failed too often, or with the minimum step";
-        case IDA_CONV_FAIL: return "Newton's iteration did not converge, down to the minimum step";
-        case IDA_LSETUP_FAIL: return "the Jacobian is singular";
-        case IDA_REP_RES_ERR: return "the equations had no finite value, down to the minimum step";
+        case IDA_ERR_FAIL: return "the error test failed too often, or with the minimum step: lower solver.rtol";
+        case IDA_CONV_FAIL:
+            return "Newton's iteration did not converge, down to the minimum step: lower solver.rtol or "
+                   "time.shedding_interval, and see whether the fish does there what a fish can do";
+        case IDA_LSETUP_FAIL: return "the Jacobian is singular: see whether the body has the units that the keys say";
+        case IDA_REP_RES_ERR:
+            return "the equations had no finite value, down to the minimum step: see whether the fish does there what "
+                   "a "
+                   "fish can do";
         default: return "see the message of IDA";
     }
 }
@@ -241,15 +246,20 @@ static enum status failed(const struct ida *solver, int code, long steps) {
     IDAGetCurrentTime(solver->ida, &now);
     IDAGetCurrentStep(solver->ida, &step);
     // the limit of steps is ours: there is no message of IDA
-    char message[512] = "";
+    char message[512] = "", error[256] = "", last[64] = "";
     if (code != IDA_TOO_MUCH_WORK) snprintf(message, sizeof message, "; %s", status_message());
     const struct unknown_place place = worst_unknown(solver, &size);
+    // an error that has not been estimated, or a step that has not been made, is not told
+    if (size > 0) {
+        const int length = snprintf(error, sizeof error, "; the largest error is that of %s[%d] of fish %.80s",
+                                    place.name, place.index, school->fish[place.fish].name);
+        if (size > 0.01) snprintf(error + length, sizeof error - (size_t)length, ", %.3g tolerances", size);
+    }
+    if (steps > 0) snprintf(last, sizeof last, ", the last of %.3g s", step);
     return status_fail(STATUS_SOLVER,
-                       "integration failed at t = %.10g s: %s; the largest error is that of %s[%d] of fish %s, %.3g "
-                       "tolerances; tried: "
-                       "orders up to %d, %ld steps since the last event, the last of %.3g s%s",
-                       now, reason(code), place.name, place.index, school->fish[place.fish].name, size,
-                       solver->options.order, steps, step, message);
+                       "integration failed at t = %.10g s: %s%s; tried: orders up to %d, %ld steps since the last "
+                       "event%s%s",
+                       now, reason(code), error, solver->options.order, steps, last, message);
 }
 
 // The latest end of the next step. Steps that divide the rest of the interval into equal parts keep their size from

@@ -152,6 +152,16 @@ static void update_kinds(struct initial_conditions *c) {
     }
 }
 
+static const char *reason(int code) {
+    switch (code) {
+        case KIN_MAXITER_REACHED: return "Newton's method did not converge";
+        case KIN_FIRST_SYSFUNC_ERR:
+        case KIN_REPTD_SYSFUNC_ERR: return "the equations have no finite value";
+        case KIN_LSETUP_FAIL: return "the Jacobian is singular";
+        default: return "KINSOL failed";
+    }
+}
+
 // a message that names the equation with the largest residual
 static enum status failed(struct initial_conditions *c, int code) {
     int worst = 0;
@@ -166,11 +176,17 @@ static enum status failed(struct initial_conditions *c, int code) {
     const struct unknown_place place = residual_place(c->residual->school, worst);
     char cause[512];
     snprintf(cause, sizeof cause, "%s", status_message());
+    const char *const name = c->residual->school->fish[place.fish].name;
+    char largest[256] = "";
+    // a residual that has not been computed is not told
+    if (isfinite(max) && max > 0)
+        snprintf(largest, sizeof largest, "; the largest residual is that of %s[%d] of fish %.60s, %.3g of its scale",
+                 place.name, place.index, name, max);
     return status_fail(
         STATUS_SOLVER,
-        "no consistent initial conditions at t = %.10g s: KINSOL failed with code %d; the largest residual is that of "
-        "%s[%d] of fish %s, %.3g of its scale (%s)",
-        c->t, code, place.name, place.index, c->residual->school->fish[place.fish].name, max, cause);
+        "no consistent initial conditions at t = %.10g s: %s: see whether sizes, speeds and positions have "
+        "the units that the keys say%s (%s)",
+        c->t, reason(code), largest, cause);
 }
 
 // rates of the differential unknowns; those of the algebraic ones keep their values

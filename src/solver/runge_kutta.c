@@ -186,13 +186,32 @@ static enum status runge_kutta_restart(void *data) {
     return STATUS_OK;
 }
 
+// the velocity that is largest on its scale, or is no number
+static struct unknown_place worst_velocity(const struct runge_kutta *solver) {
+    const struct school *const school = solver->residual->school;
+    int worst = school->fish[0].at.vx;
+    double max = -1;
+    for (int f = 0; f < school->n_fish; f++) {
+        for (int i = school->fish[f].at.vx; i < school->fish[f].at.ax; i++) {
+            const double size = fabs(solver->state->y[i]) / residual_scale(solver->residual, i);
+            if (size <= max) continue;
+            worst = i;
+            max = isnan(size) ? INFINITY : size;
+        }
+    }
+    return residual_place(school, worst);
+}
+
 static enum status unstable(const struct runge_kutta *solver, double t, const char *why) {
     double step = 0;
     ARKStepGetLastStep(solver->arkode, &step);
-    return status_fail(STATUS_SOLVER,
-                       "unstable at t = %.10g s: %s; the last step was %.3g s, with which the body is too stiff for an "
-                       "explicit method: choose solver.method: ida, or a smaller solver.step",
-                       t, why, step);
+    const struct unknown_place place = worst_velocity(solver);
+    return status_fail(
+        STATUS_SOLVER,
+        "unstable at t = %.10g s: %s; the largest velocity is %s[%d] of fish %s; the last step was %.3g s, "
+        "with which the body is too stiff for an explicit method: choose solver.method: ida, or a smaller "
+        "solver.step",
+        t, why, place.name, place.index, solver->residual->school->fish[place.fish].name, step);
 }
 
 // the algebraic unknowns and all rates at the end of a step, for the energy balance and the event

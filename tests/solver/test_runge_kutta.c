@@ -61,6 +61,9 @@ static void an_unstable_step_ends_with_a_message_that_tells_the_time(void **stat
     assert_int_equal(status, STATUS_SOLVER);
     assert_non_null(strstr(status_message(), "unstable at t = "));
     assert_non_null(strstr(status_message(), "solver.method: ida"));
+    // which one, and where
+    assert_non_null(strstr(status_message(), "the largest velocity is v"));
+    assert_non_null(strstr(status_message(), "] of fish fish1;"));
     simulate_free(simulation);
 }
 
