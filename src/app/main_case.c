@@ -1,5 +1,7 @@
 /* main_case.c: inspect cases and results. */
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "app/main_commands.h"
 #include "case/case.h"
@@ -7,11 +9,11 @@
 #include "case/case_member.h"
 #include "case/case_show.h"
 #include "case/sweep_members.h"
-#include "model/fish.h"
 #include "output/field_file.h"
 #include "output/result_info.h"
 #include "output/result_kind.h"
 #include "output/result_table.h"
+#include "run/simulate.h"
 #include "study/study_file.h"
 #include "study/study_gather.h"
 
@@ -23,12 +25,37 @@ static const struct result_kind kinds[] = {
 };
 enum { N_KINDS = sizeof kinds / sizeof *kinds };
 
-/* Check the case of each member of a study, as `shoal study` will. */
+char *main_result_path(const struct case_values *values) {
+    const char *const name = values->output.file ? values->output.file : values->name;
+    const char *const ending = values->output.file ? "" : ".nc";
+    char *const path = malloc(strlen(name) + strlen(ending) + 1);
+    if (path) sprintf(path, "%s%s", name, ending);
+    return path;
+}
+
+void main_print_notes(const struct request *request, const struct case_values *values) {
+    if (!request->quiet && *values->notes) fprintf(stderr, "%s\n", values->notes);
+}
+
+/* Prepare one case as `shoal run` does, which replaces no file here; its simulation is not run. */
+static enum status prepare(const struct case_values *values, struct simulation **simulation) {
+    char *const path = main_result_path(values);
+    if (!path) return status_fail(STATUS_MEMORY, "out of memory: a file name");
+    const enum status status = simulate_prepare(simulation, values, path, 1);
+    free(path);
+    return status;
+}
+
+/* Prepare each member of a study, as `shoal study` will. */
 static enum status check_members(const struct case_values *study) {
     for (int m = 0; study->n_axes > 0 && m < sweep_n_members(study); m++) {
         struct case_values member;
+        struct simulation *simulation = NULL;
         TRY(case_member(&member, study, m));
+        const enum status status = simulate_create(&simulation, &member);
+        simulate_free(simulation);
         case_free(&member);
+        TRY(status);
     }
     return STATUS_OK;
 }
@@ -36,16 +63,17 @@ static enum status check_members(const struct case_values *study) {
 enum status main_check(const struct request *request) {
     struct case_values values;
     TRY(case_read(&values, request->positional, request->n_assignments, request->assignments));
-    struct school *school = NULL;
-    enum status status = fish_school_create(&school, &values.school);
+    struct simulation *simulation = NULL;
+    enum status status = prepare(&values, &simulation);
     if (status == STATUS_OK) status = check_members(&values);
+    if (status == STATUS_OK) main_print_notes(request, &values);
     if (status == STATUS_OK && !request->quiet) {
-        printf("%s: ok: %d fish, %d unknowns, %.6g s in %.0f events", request->positional, school->n_fish,
-               school->n_unknowns, values.time.end, values.time.end / values.school.shedding_interval);
+        printf("%s: ok: %d fish, %d unknowns, %.6g s in %ld events", request->positional, simulation->school->n_fish,
+               simulation->school->n_unknowns, values.time.end, simulation->n_events);
         if (values.n_axes > 0) printf("; %d members", sweep_n_members(&values));
         printf("\n");
     }
-    fish_school_free(school);
+    simulate_free(simulation);
     case_free(&values);
     return status;
 }

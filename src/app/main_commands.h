@@ -11,6 +11,7 @@
 
 #include "app/main_options.h"
 #include "base/status.h"
+#include "case/case_values.h"
 
 enum status main_run(const struct request *request);
 enum status main_demo(const struct request *request);
@@ -23,6 +24,12 @@ enum status main_show(const struct request *request);
 enum status main_keys(const struct request *request);
 enum status main_info(const struct request *request);
 enum status main_view(const struct request *request);
+
+/* The result file of a case where no option names one; the caller frees it. NULL when out of memory. */
+char *main_result_path(const struct case_values *values);
+
+/* Print the notes on a case to stderr, unless told to be quiet. */
+void main_print_notes(const struct request *request, const struct case_values *values);
 
 /* Print what a file of shoal holds, or the case in it alone. Fails with STATUS_FILE or STATUS_MEMORY. */
 enum status main_print_info(const char *path, int case_only);

@@ -17,14 +17,6 @@
 
 // ---- run
 
-static char *default_path(const struct case_values *values) {
-    const char *const name = values->output.file ? values->output.file : values->name;
-    const char *const ending = values->output.file ? "" : ".nc";
-    char *const path = malloc(strlen(name) + strlen(ending) + 1);
-    if (path) sprintf(path, "%s%s", name, ending);
-    return path;
-}
-
 /* What a run tells while it goes on. */
 struct teller {
     struct progress progress;
@@ -71,8 +63,9 @@ enum status main_run(const struct request *request) {
     struct case_values values;
     TRY(case_read(&values, request->positional, request->n_assignments, request->assignments));
     enum status status = sweep_refuse(&values);
+    main_print_notes(request, &values);
     if (status == STATUS_OK) {
-        char *const path = request->output ? strdup(request->output) : default_path(&values);
+        char *const path = request->output ? strdup(request->output) : main_result_path(&values);
         status = path ? run_case(&values, request, path) : status_fail(STATUS_MEMORY, "out of memory: a file name");
         free(path);
     }

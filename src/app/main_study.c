@@ -71,6 +71,7 @@ enum status main_study(const struct request *request) {
     char folder[512];
     snprintf(folder, sizeof folder, "%s-study", values.name);
     const char *const place = request->output ? request->output : folder;
+    main_print_notes(request, &values);
     int bundle = 0;
     enum status status = request->bundle ? read_count("--bundle", request->bundle, &bundle) : STATUS_OK;
     if (status == STATUS_OK) {

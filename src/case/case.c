@@ -8,6 +8,7 @@
 
 #include "case/case_check.h"
 #include "case/case_merge.h"
+#include "case/case_notes.h"
 #include "case/case_path.h"
 #include "case/case_table.h"
 #include "case/case_value.h"
@@ -318,6 +319,15 @@ static enum status keep_merged(struct case_values *values, const struct yaml_nod
     return out_of_memory();
 }
 
+/* Keep the notes on the values of a case without errors. */
+static enum status keep_notes(struct case_values *values, const struct case_tree *tree) {
+    struct yaml_errors notes = {0};
+    case_notes(values, tree, &notes);
+    values->notes = yaml_errors_list(&notes, "note");
+    yaml_errors_free(&notes);
+    return values->notes ? STATUS_OK : out_of_memory();
+}
+
 /* Apply the assignments to a tree that has been read, and fill the values from it. status: of reading the tree. */
 static enum status finish(struct reading *reading, enum status status, struct case_values *values, int n_assignments,
                           const char *const *assignments) {
@@ -328,6 +338,7 @@ static enum status finish(struct reading *reading, enum status status, struct ca
         if (status == STATUS_OK) status = fill(reading, values);
         if (status == STATUS_OK) status = keep_text(values, reading->tree.source[0]);
         if (status == STATUS_OK && reading->errors.n == 0) status = keep_merged(values, reading->tree.root);
+        if (status == STATUS_OK && reading->errors.n == 0) status = keep_notes(values, &reading->tree);
     }
     if (status == STATUS_OK) status = yaml_errors_status(&reading->errors);
     if (status != STATUS_OK) case_free(values);
@@ -365,6 +376,7 @@ void case_free(struct case_values *values) {
     free(values->school.fish);
     free(values->text);
     free(values->merged);
+    free(values->notes);
     free(values->study);
     *values = (struct case_values){0};
 }

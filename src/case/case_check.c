@@ -7,7 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/text.h"
 #include "case/case_table.h"
+#include "case/sweep_members.h"
 
 static const double max_events = 1e9, max_vortices = 1e7 /* of one fish */;
 
@@ -27,12 +29,7 @@ __attribute__((format(printf, 3, 4))) static void complain(const struct check *c
     va_start(arguments, format);
     vsnprintf(reason, sizeof reason, format, arguments);
     va_end(arguments);
-    const struct yaml_mark mark = case_merge_mark(check->tree, path, check->fish);
-    if (strncmp(path, "fish.", 5) == 0) {
-        yaml_errors_add(check->errors, mark, "fish[%d].%s: %s", check->fish, path + 5, reason);
-    } else {
-        yaml_errors_add(check->errors, mark, "%s: %s", path, reason);
-    }
+    case_merge_complain(check->tree, path, check->fish, reason, check->errors);
 }
 
 // ---- time and wake
@@ -63,6 +60,38 @@ static void check_time(const struct check *check) {
     check_multiple(check, "time.output_interval", time->output_interval, interval, shedding);
     check_multiple(check, "output.wake_interval", check->values->output.wake_interval, "time.output_interval",
                    time->output_interval);
+}
+
+/* True if an axis of the sweep changes the key at a path. */
+static bool is_swept(const struct case_values *values, const char *path) {
+    for (int a = 0; a < values->n_axes; a++) {
+        for (int k = 0; k < values->sweep[a].n_keys; k++) {
+            if (strcmp(values->sweep[a].key[k].path, path) == 0) return true;
+        }
+    }
+    return false;
+}
+
+/* Complain if a swept shedding interval does not divide a time that is written and not swept. */
+static void check_swept_interval(const struct check *check, const char *path, double time) {
+    const struct case_values *const values = check->values;
+    static const char interval[] = "time.shedding_interval";
+    bool is_default;
+    if (is_swept(values, path) || !case_merge_value(check->tree, path, 0, &is_default)) return;
+    for (int a = 0; a < values->n_axes; a++) {
+        const struct sweep_axis *const axis = &values->sweep[a];
+        for (int i = 0; i < axis->n_values * axis->n_keys; i++) {
+            double value = 0;
+            const bool is_interval = strcmp(axis->key[i % axis->n_keys].path, interval) == 0;
+            if (!is_interval || !text_number(axis->value[i], &value) || !(value > 0)) continue;
+            if (!(fabs(time - round(time / value) * value) > 1e-9 * time)) continue;
+            complain(check, "sweep",
+                     "the value %s of %s does not divide %s, %g s: choose values that do, or sweep both in one axis, "
+                     "as in {keys: [%s, %s], values: [[%s, %g], ...]}",
+                     axis->value[i], interval, path, time, interval, path, axis->value[i],
+                     fmax(1, round(time / value)) * value);
+        }
+    }
 }
 
 static void check_solver(const struct check *check) {
@@ -329,6 +358,8 @@ static void check_name(const struct check *check) {
 void case_check(const struct case_values *values, const struct case_tree *tree, struct yaml_errors *errors) {
     struct check check = {values, tree, errors, 0};
     check_time(&check);
+    check_swept_interval(&check, "time.end", values->time.end);
+    check_swept_interval(&check, "time.output_interval", values->time.output_interval);
     check_solver(&check);
     check_wake(&check);
     check_shedding(&check);

@@ -358,3 +358,13 @@ struct yaml_mark case_merge_mark(const struct case_tree *tree, const char *path,
         if (strcmp(around, "fish") == 0) return yaml_tree_find(tree->root, "fish")->entry[fish].value->mark;
     }
 }
+
+void case_merge_complain(const struct case_tree *tree, const char *path, int fish, const char *reason,
+                         struct yaml_errors *errors) {
+    const struct yaml_mark mark = case_merge_mark(tree, path, fish);
+    if (strncmp(path, "fish.", 5) == 0) {
+        yaml_errors_add(errors, mark, "fish[%d].%s: %s", fish, path + 5, reason);
+    } else {
+        yaml_errors_add(errors, mark, "%s: %s", path, reason);
+    }
+}

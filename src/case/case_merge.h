@@ -37,4 +37,8 @@ const struct yaml_node *case_merge_value(const struct case_tree *tree, const cha
 /* The place that a message about a path points at: its value, or the innermost section around it that is written. */
 struct yaml_mark case_merge_mark(const struct case_tree *tree, const char *path, int fish);
 
+/* Add "fish[2].nodes: REASON" at that place to a list of errors. */
+void case_merge_complain(const struct case_tree *tree, const char *path, int fish, const char *reason,
+                         struct yaml_errors *errors);
+
 #endif

@@ -65,12 +65,23 @@ static bool check_words(struct case_path *path, const char *words, const char *t
     }
 }
 
+/* Complain about the words after "fish." of a path: they need the number of a fish, in brackets. */
+static void complain_of_fish(const char *words, const char *text, struct yaml_mark mark, struct yaml_errors *errors) {
+    const size_t digits = strspn(words, "0123456789*");
+    if (digits > 0 && (words[digits] == '.' || words[digits] == '\0')) {
+        yaml_errors_add(errors, mark, "%.150s: write fish[%.*s]%.80s", text, (int)(digits < 20 ? digits : 20), words,
+                        words + digits);
+    } else {
+        yaml_errors_add(errors, mark, "%.150s: write fish[0].%.80s for one fish, or fish[*].%.80s for every fish", text,
+                        words, words);
+    }
+}
+
 bool case_path_parse(struct case_path *path, const char *text, int n_fish, struct yaml_mark mark,
                      struct yaml_errors *errors) {
     *path = (struct case_path){{0}, CASE_NO_FISH, text};
     if (strncmp(text, "fish.", 5) == 0) {
-        yaml_errors_add(errors, mark, "%.150s: write fish[0].%.80s for one fish, or fish[*].%.80s for every fish", text,
-                        text + 5, text + 5);
+        complain_of_fish(text + 5, text, mark, errors);
         return false;
     }
     if (strncmp(text, "defaults.fish.", 14) == 0) {

@@ -2,6 +2,7 @@
 #include "case/case_suggest.h"
 
 #include <limits.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "case/case_table.h"
@@ -13,7 +14,16 @@ struct candidate {
     char word[WORD + 1];
     char section[80]; /* "fish.body"; "" at the top */
     int distance;     /* edits from the word of the user */
-    int remoteness;   /* 0: a sibling, 1: below, 2: elsewhere */
+    int remoteness;   /* 0: a sibling, 1: below, 2: elsewhere in a fish, for a word in a fish, 3: elsewhere */
+};
+
+/* What users look for and the model does not have: words, and what to do instead. */
+static const struct {
+    const char *words, *instead;
+} missing[] = {
+    {"viscosity kinematic_viscosity dynamic_viscosity nu mu reynolds reynolds_number",
+     "; the fluid of the model has no viscosity: friction is drag.tangential of a fish, and a vortex is removed at the "
+     "age wake.lifetime"},
 };
 
 static char lower(char c) {
@@ -53,11 +63,24 @@ static int distance_to_any(const char *word, const char *words) {
     return distance;
 }
 
+/* True if a section is that of the fish, or one in it. */
+static bool is_in_fish(const char *section) {
+    return strncmp(section, "fish", 4) == 0 && (section[4] == '\0' || section[4] == '.');
+}
+
+/* How far one section is from another, as struct candidate says. */
+static int remoteness_of(const char *section, const char *from) {
+    const size_t here = strlen(from);
+    if (strcmp(section, from) == 0) return 0;
+    if (strncmp(section, from, here) == 0 && (here == 0 || section[here] == '.')) return 1;
+    return is_in_fish(section) && is_in_fish(from) ? 2 : 3;
+}
+
 /* Consider the word of a path that ends at end: it becomes the best if it is nearer than the best so far. */
 static void consider(struct candidate *best, const struct key *key, size_t end, const char *section, const char *word) {
     size_t begin = end;
     while (begin > 0 && key->path[begin - 1] != '.') begin--;
-    struct candidate one = {{0}, {0}, INT_MAX, 2};
+    struct candidate one = {{0}, {0}, INT_MAX, 0};
     if (end - begin > WORD || begin > sizeof one.section) return;
     memcpy(one.word, key->path + begin, end - begin);
     if (begin > 0) memcpy(one.section, key->path, begin - 1);
@@ -65,23 +88,16 @@ static void consider(struct candidate *best, const struct key *key, size_t end, 
     one.distance = edit_distance(word, strlen(word), one.word, strlen(one.word));
     const bool is_leaf = key->path[end] == '\0';
     if (is_leaf) one.distance = smaller(one.distance, distance_to_any(word, key->synonyms));
-    const size_t here = strlen(section);
-    if (strcmp(one.section, section) == 0) {
-        one.remoteness = 0;
-    } else if (strncmp(one.section, section, here) == 0 && (here == 0 || one.section[here] == '.')) {
-        one.remoteness = 1;
-    }
+    one.remoteness = remoteness_of(one.section, section);
     const bool is_nearer = one.distance < best->distance;
     if (is_nearer || (one.distance == best->distance && one.remoteness < best->remoteness)) *best = one;
 }
 
-/* Add the section of the candidate: "fish[2].body" or "time". */
-static void add_section(struct text *hint, const struct candidate *candidate, const char *owner) {
-    const char *const section = candidate->section;
-    const bool is_of_fish = strncmp(section, "fish", 4) == 0 && (section[4] == '\0' || section[4] == '.');
+/* Add a section as users write it: "fish[2].body" or "time". */
+static void add_section(struct text *hint, const char *section, const char *owner) {
     if (section[0] == '\0') {
         text_add(hint, "the top of the file");
-    } else if (is_of_fish) {
+    } else if (is_in_fish(section)) {
         const char *const rest = section + strlen("fish");
         if (owner) {
             text_add(hint, "%s%s", owner, rest);
@@ -110,7 +126,44 @@ static void add_words(struct text *hint, const char *section) {
     }
 }
 
+/* The section of row i of the table if it has the word and is that near to another section; the length, 0 if not. */
+static size_t section_with(char *section, size_t size, int i, const char *word, const char *from, int remoteness) {
+    const char *const dot = strrchr(case_table[i].path, '.');
+    if (!dot || strcmp(dot + 1, word) != 0) return 0;
+    snprintf(section, size, "%.*s", (int)(dot - case_table[i].path), case_table[i].path);
+    return remoteness_of(section, from) == remoteness ? strlen(section) : 0;
+}
+
+/* Add all sections that have the word of the best candidate and are as near: "fish[0].wave or fish[0].motion". */
+static void add_sections(struct text *hint, const struct candidate *best, const char *from, const char *owner) {
+    char section[sizeof best->section];
+    int n = 0;
+    for (int i = 0; i < case_table_n; i++) {
+        n += section_with(section, sizeof section, i, best->word, from, best->remoteness) > 0;
+    }
+    if (n < 2) {
+        add_section(hint, best->section, owner);
+        return;
+    }
+    for (int i = 0, k = 0; i < case_table_n; i++) {
+        if (section_with(section, sizeof section, i, best->word, from, best->remoteness) == 0) continue;
+        if (k++ > 0) text_add(hint, " or ");
+        add_section(hint, section, owner ? owner : "fish[0]");
+    }
+}
+
+/* Add what stands for a word that the model does not have; false if it is not one of those. */
+static bool add_missing(struct text *hint, const char *word) {
+    for (size_t i = 0; i < sizeof missing / sizeof *missing; i++) {
+        if (distance_to_any(word, missing[i].words) > 0) continue;
+        text_add(hint, "%s", missing[i].instead);
+        return true;
+    }
+    return false;
+}
+
 void case_suggest(struct text *hint, const char *section, const char *word, const char *owner) {
+    if (add_missing(hint, word)) return;
     struct candidate best = {{0}, {0}, INT_MAX, INT_MAX};
     for (int i = 0; i < case_table_n; i++) {
         const char *const path = case_table[i].path;
@@ -130,5 +183,5 @@ void case_suggest(struct text *hint, const char *section, const char *word, cons
     } else {
         text_add(hint, "; did you mean '%s'?%s", best.word, is_elsewhere ? " It belongs to " : "");
     }
-    if (is_elsewhere) add_section(hint, &best, owner);
+    if (is_elsewhere) add_sections(hint, &best, section, owner);
 }

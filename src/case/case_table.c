@@ -169,7 +169,7 @@ const struct key case_table[] = {
      .meaning = "internal damping of stretching, of each edge of a body of reference_nodes nodes", .synonyms = "d_s",
      .published = "1"},
     {"fish.body.relaxation_time", REAL, IN_FISH(body.relaxation_time), NULL, FROM(0), "s",
-     .meaning = "Kelvin-Voigt damping: ratio of damping to stiffness", .synonyms = "viscosity", .published = "0",
+     .meaning = "Kelvin-Voigt damping: ratio of damping to stiffness", .published = "0",
      .derived = "a thousandth of a period (0 when the frequency is 0)"},
 
     {"fish.wave.amplitude", REAL, IN_FISH(wave.amplitude), "0.4", ANY, "rad",

@@ -48,6 +48,7 @@ struct case_values {
     struct sweep_expectation *expect; /* (n_expectations) */
     char *text;                       /* the text of the case file as read (without its includes) */
     char *merged; /* what the case file, its includes and the assignments say, as one text: defaults are not in it */
+    char *notes;  /* on values that are hardly ever meant, one after the other as errors are written; "": none */
     char *study;  /* of a member of a study: the merged text of the study; else NULL */
     int member;   /* its number, from 0 */
 };

@@ -87,30 +87,34 @@ static void add_excerpt(struct text *list, struct yaml_mark mark) {
 }
 
 /* Add one error with its place. */
-static void add_error(struct text *list, struct yaml_mark mark, const char *text) {
+static void add_error(struct text *list, struct yaml_mark mark, const char *word, const char *text) {
     if (list->length > 0) text_add(list, "\n");
     if (mark.source->one_line) {
-        text_add(list, "%s: error: %s", mark.source->name, text);
+        text_add(list, "%s: %s: %s", mark.source->name, word, text);
     } else {
-        text_add(list, "%s:%d:%d: error: %s", mark.source->name, mark.line, mark.column, text);
+        text_add(list, "%s:%d:%d: %s: %s", mark.source->name, mark.line, mark.column, word, text);
         add_excerpt(list, mark);
     }
 }
 
-enum status yaml_errors_status(const struct yaml_errors *errors) {
-    if (errors->n == 0) return STATUS_OK;
+char *yaml_errors_list(const struct yaml_errors *errors, const char *word) {
     int order[YAML_ERRORS_KEPT];
     const int n = errors->out_of_memory ? 0 : sort(errors, order);
     struct text list = {0};
+    text_add(&list, "%s", "");
     for (int i = 0; i < n && i < YAML_ERRORS_SHOWN; i++) {
-        add_error(&list, errors->kept[order[i]].mark, errors->kept[order[i]].text);
+        add_error(&list, errors->kept[order[i]].mark, word, errors->kept[order[i]].text);
     }
     if (errors->n > YAML_ERRORS_SHOWN) text_add(&list, "\n... and %d more", errors->n - YAML_ERRORS_SHOWN);
-    if (errors->out_of_memory || list.failed) {
-        text_free(&list);
-        return status_fail(STATUS_MEMORY, "out of memory: the list of errors of the case");
-    }
-    const enum status status = status_fail(STATUS_CASE, "%s", list.text);
-    text_free(&list);
+    if (errors->out_of_memory || list.failed) text_free(&list);
+    return list.text;
+}
+
+enum status yaml_errors_status(const struct yaml_errors *errors) {
+    if (errors->n == 0) return STATUS_OK;
+    char *const list = yaml_errors_list(errors, "error");
+    if (!list) return status_fail(STATUS_MEMORY, "out of memory: the list of errors of the case");
+    const enum status status = status_fail(STATUS_CASE, "%s", list);
+    free(list);
     return status;
 }

@@ -48,6 +48,10 @@ void yaml_errors_add(struct yaml_errors *errors, struct yaml_mark mark, const ch
 /* STATUS_OK if nothing was added; else STATUS_CASE with the list as message, or STATUS_MEMORY. */
 enum status yaml_errors_status(const struct yaml_errors *errors);
 
+/* The list with another word than "error", such as "note", for the caller to free; "" where nothing was added, NULL
+ * when out of memory. */
+char *yaml_errors_list(const struct yaml_errors *errors, const char *word);
+
 /* Release the errors and zero the list. */
 void yaml_errors_free(struct yaml_errors *errors);
 

@@ -60,6 +60,10 @@ static enum status creation_failed(const char *path, int code) {
     switch (code) {
         case ENOENT:
         case ENOTDIR:
+            if (access(folder, F_OK) == 0) {
+                return status_fail(STATUS_FILE, "%s: the folder %s takes no new files: choose another place with -o",
+                                   path, folder);
+            }
             return status_fail(STATUS_FILE, "%s: there is no folder %s: make it, or choose another name with -o", path,
                                folder);
         case EACCES:

@@ -98,6 +98,13 @@ enum status simulate_take_up(struct simulation **simulation, const struct case_v
     return give_up(simulation, status);
 }
 
+enum status simulate_prepare(struct simulation **simulation, const struct case_values *values, const char *path,
+                             int overwrite) {
+    *simulation = NULL;
+    TRY(netcdf_check_target(path, overwrite));
+    return simulate_create(simulation, values);
+}
+
 void simulate_free(struct simulation *simulation) {
     if (!simulation) return;
     free_solvers(simulation);
@@ -211,8 +218,7 @@ static void warn(const struct run *run) {
 
 static enum status run_to_end(struct run *run) {
     const struct simulate_options *const options = run->options;
-    TRY(netcdf_check_target(options->path, options->overwrite));
-    TRY(simulate_create(&run->simulation, run->values));
+    TRY(simulate_prepare(&run->simulation, run->values, options->path, options->overwrite));
     TRY(record_create(&run->record, run->values, run->simulation->school, run->simulation->n_events, options->path,
                       options->overwrite, options->command));
     const enum status status = loop(run);

@@ -115,6 +115,14 @@ output_paths() {
     run run "$demo" -q --set "$short" -o no/such/folder.nc
     check "missing folder: exit 4" ended 4
     check "missing folder is named" says no/such
+    run check "$demo" --set output.file=no/such/folder.nc
+    check "check refuses the place that run refuses" says "there is no folder no/such"
+    if ((EUID == 0)); then
+        run run "$demo" -q --set "$short" -o /proc/x.nc
+        check "a folder that takes no files" says "/proc/x.nc: the folder /proc takes no new files"
+    else
+        skip "a folder that takes no files" "only root may try to write to /proc"
+    fi
     mkdir a_folder
     run run "$demo" -q --set "$short" -o a_folder
     check "output is a folder: exit 4" ended 4
@@ -284,6 +292,18 @@ signals() {
     check "SIGKILL: info ends with 0" ended 0
 }
 
+# ---- notes ----
+
+notes() {
+    run check "$demo" --set "fish[0].length=50"
+    check "a note does not make check fail" ended 0
+    check "check prints notes" says "note: fish[0].length: 50 m is longer than any swimmer"
+    run run "$demo" --set time.end=0.01 --set "fish[0].start.heading=3.14159" -o noted.nc
+    check "run prints notes" says "note: fish[0].start.heading: 3.14159 is taken in degrees"
+    run run "$demo" -q --set time.end=0.01 --set "fish[0].start.heading=3.14159" -o quiet.nc
+    check "-q prints none" silent
+}
+
 # ---- full disk, closed output, out of memory ----
 
 limited() {  # ulimit option, its value, arguments
@@ -327,4 +347,5 @@ repeats
 spread
 signals
 limits
+notes
 finish

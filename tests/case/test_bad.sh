@@ -165,6 +165,11 @@ set_fails set_index_out_of_range 'fish[2]: there is no such fish; the case has 2
 set_fails set_index_huge 'fish[99999999999999999999]: there is no such fish' 'fish[99999999999999999999].nodes=7'
 set_fails set_index_negative 'fish[-1].nodes: expects the number of a fish' 'fish[-1].nodes=7'
 set_fails set_index_missing 'fish.nodes: write fish[0].nodes for one fish, or fish[*].nodes for every fish' fish.nodes=7
+set_fails set_index_after_a_dot '--set fish.0.length=2: error: fish.0.length: write fish[0].length' fish.0.length=2
+set_fails set_star_after_a_dot 'fish.*.wave.phase: write fish[*].wave.phase' 'fish.*.wave.phase=2'
+set_fails set_in_another_section 'unknown key here; it belongs to fish[0].wave or fish[0].motion' 'fish[0].body.frequency=2'
+set_fails set_in_one_other_section 'unknown key here; it belongs to fish[0].body' 'fish[0].wave.modulus=2'
+set_fails set_viscosity 'the fluid of the model has no viscosity: friction is drag.tangential of a fish' fluid.viscosity=1e-6
 set_fails set_index_open 'expects the number of a fish, as in fish[0]' 'fish[0=7'
 set_fails set_no_dot_after_index "fish[0]nodes: expects a '.' after the ']'" 'fish[0]nodes=7'
 set_fails set_below_a_value 'time.end.x: time.end is a value and has no keys of its own' time.end.x=3

@@ -107,14 +107,13 @@ static void an_expectation_is_about_the_members_with_its_values(void **state) {
 static void a_wrong_member_is_named(void **state) {
     (void)state;
     struct case_values study =
-        parse("format: 1\ntime: {end: 1}\nfish: [{}]\nsweep: [{key: time.shedding_interval, values: [0.1, 0.3]}]\n");
+        parse("format: 1\ntime: {end: 1}\nfish: [{}]\nsweep: [{key: wake.lifetime, values: [1, 0.003]}]\n");
     struct case_values s;
     assert_int_equal(case_member(&s, &study, 0), STATUS_OK);
     case_free(&s);
     assert_int_equal(case_member(&s, &study, 1), STATUS_CASE);
-    assert_non_null(strstr(status_message(), "member 1 (time.shedding_interval=0.3):\n"));
-    assert_non_null(
-        strstr(status_message(), "time.end: 1 s is not an integer multiple of time.shedding_interval, 0.3 s"));
+    assert_non_null(strstr(status_message(), "member 1 (wake.lifetime=0.003):\n"));
+    assert_non_null(strstr(status_message(), "wake.lifetime: 0.003 s is less than time.shedding_interval, 0.01 s"));
     case_free(&study);
 }
 

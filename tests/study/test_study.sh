@@ -125,11 +125,11 @@ refused folder_in_no_folder 4 'no/where: cannot make this folder' study small.ya
 
 # ---- wrong input
 
-refused a_wrong_member_is_named 2 'member 1 (time.shedding_interval=0.03):' study small.yaml -o wrong \
-    --set 'sweep=[{key: time.shedding_interval, values: [0.02, 0.03]}]'
+refused a_wrong_member_is_named 2 'member 1 (wake.lifetime=0.003):' study small.yaml -o wrong \
+    --set 'sweep=[{key: wake.lifetime, values: [0.02, 0.003]}]'
 check before_anything_ran test ! -e wrong
-refused check_names_it_too 2 'member 1 (time.shedding_interval=0.03):' check small.yaml \
-    --set 'sweep=[{key: time.shedding_interval, values: [0.02, 0.03]}]'
+refused check_names_it_too 2 'member 1 (wake.lifetime=0.003):' check small.yaml \
+    --set 'sweep=[{key: wake.lifetime, values: [0.02, 0.003]}]'
 run check small.yaml
 check check_counts_members has out '; 6 members'
 # forty values, of which number 37 is wrong: by itself, or with the rest of the case
