@@ -35,7 +35,7 @@ Octave (`pkg load netcdf`) and MATLAB; both list the dimensions in the opposite 
     x = ncread("demo.nc", "x");                         % (xy, node, fish, time)
     plot(squeeze(x(1, 1, 1, :)), squeeze(x(2, 1, 1, :)))  % path of the first fish's nose
 
-Pictures: `scripts/plot.py demo.nc`, `scripts/plot.py time demo.nc`, `scripts/animate.py demo.nc demo.mp4`.
+Pictures: `scripts/plot.py demo.nc`, `scripts/plot.py time demo.nc`, `scripts/plot.py forces demo.nc`, `scripts/animate.py demo.nc demo.mp4`.
 
 ## Shapes
 
@@ -148,11 +148,12 @@ repeats. Only such a study has `nose_error` and `tail_error`.
 
     shoal field demo.nc                                      # the last row, around bodies and wakes: demo-field.nc
     shoal field demo.nc --at 2.5 --grid 600,400 --box -2,-1,2,1 -o field.nc
+    scripts/plot.py field field.nc                           # vorticity (--speed: speed), streamlines, bodies: field.png
 
 `shoal field` writes the velocity and the vorticity of the fluid on a grid, at the time of one row. It sums what is in
 the row, by the tree where there is much of it (then to 1e-7 of the sum of absolute values): the external flow, every
-bound sheet and every wake with the smoothing with which another body sees them. It is
-what a body at that place would feel, to rounding, or to seven digits with `output.precision: single`.
+bound sheet and every wake with the smoothing with which another body sees them. It is what a body at that place would
+feel, to rounding, or to seven digits with `output.precision: single`.
 
 It leaves out: the flow around the thickness of bodies, which the model has as lines; and that a body sees its own
 newest wake more sharply (doc/model.md, section 8). The vorticity is that of the smoothed sheets and wakes, and minus

@@ -5,6 +5,8 @@
     plot.py gait   RUN.nc [PICTURE]    the shapes that the muscle asks for, over the last beat
     plot.py study  STUDY.nc [PICTURE]  what a study or a comparison of methods calls for: orders, costs, maps
     plot.py time   RUN.nc [PICTURE]    speed, heading, power and forces over time; with --audit the energy audit too
+    plot.py forces RUN.nc [PICTURE]    forces and powers by name over time, one column per fish
+    plot.py field  FIELD.nc [PICTURE]  vorticity (--speed: speed) and streamlines, from a file of `shoal field`
 """
 
 import argparse
@@ -12,6 +14,7 @@ import math
 import os
 import sys
 
+import plot_field as plot_field_module
 import plot_study as plot_study_module
 from shoal_results import EXIT_FILE, EXIT_USAGE, FileError, Results, np, stop
 
@@ -280,6 +283,76 @@ def plot_time(results, options):
     return figure
 
 
+# The powers on a body and their lines.
+POWERS = {
+    "actuation_power": "-",
+    "drag_power": ":",
+    "added_mass_power": "--",
+    "wake_power": (0, (5, 1, 1, 1, 1, 1)),
+    "damping_power": (0, (1, 2)),
+    "driving_power": "-.",
+}
+
+
+def last_beats(results, n):
+    """The rows of the last n beats of the slowest fish; all where n is 0, or where nothing beats."""
+    frequency = results["frequency"]
+    beating = frequency[frequency > 0]
+    if n == 0 or beating.size == 0:
+        return np.arange(results.time.size)
+    return np.flatnonzero(results.time >= results.time[-1] - (n + 1e-6) / beating.min())
+
+
+def present(results, names, rows, fish):
+    """Those of the named variables that are in the file and not zero all the time, for some rows of one fish."""
+    values = {name: results[name][rows, fish] for name in names if name in results.data.variables}
+    return {name: value for name, value in values.items() if np.any(np.nan_to_num(value))}
+
+
+def plot_forces(results, options):
+    """Forces ahead and to the left, and powers, by name over the last beats, one column per fish."""
+    rows = last_beats(results, options.beats)
+    time = results.time[rows]
+    labels = ["force ahead [N]", "force to the left [N]", "power [W]"]
+    figure, grid = pyplot.subplots(
+        3, results.n_fish, squeeze=False, sharex=True, sharey="row", layout="constrained", figsize=(WIDTH, 6)
+    )
+    figure.get_layout_engine().set(h_pad=0.13)  # room for a legend above a panel
+    lines = {}  # the same line for the same name in all columns
+    colour = {name: LINES[i % len(LINES)] for table in (FORCES, POWERS) for i, name in enumerate(table)}
+    for fish, column in enumerate(grid.T):
+        angle = np.radians(results["heading"][rows, fish])
+        axis = [(np.cos(angle), np.sin(angle)), (-np.sin(angle), np.cos(angle))]
+        for axes, (x, y) in zip(column, axis):
+            for name, force in present(results, FORCES, rows, fish).items():
+                along = x * force[:, 0] + y * force[:, 1]
+                lines[name] = axes.plot(time, along, color=colour[name], lw=0.9, ls=FORCES[name])[0]
+        for name, power in present(results, POWERS, rows, fish).items():
+            lines[name] = column[2].plot(time, power, color=colour[name], lw=0.9, ls=POWERS[name])[0]
+        column[0].set_title(names(results)[fish], size=9, loc="right")
+        column[2].set_xlabel("time [s]")
+    for axes, label in zip(grid[:, 0], labels):
+        axes.set_ylabel(label)
+    for axes in grid.flat:
+        axes.grid(lw=0.3, color="#cccccc")
+        axes.margins(x=0)
+    figure.align_ylabels(grid[:, 0])
+    for row, table in ((0, FORCES), (2, POWERS)):
+        handles = [lines[name] for name in table if name in lines]
+        for handle, name in zip(handles, (name for name in table if name in lines)):
+            handle.set_label(name.removesuffix("_force").removesuffix("_power").replace("_", " "))
+        if handles:
+            add_legend(grid[row, 0], handles)
+    return figure
+
+
+def plot_field(path, options):
+    """Vorticity or speed on the grid of a field, streamlines and bodies."""
+    figure = pyplot.figure(figsize=(WIDTH, 4.2), layout="constrained")
+    plot_field_module.draw(path, figure, options.speed, not options.no_streamlines)
+    return figure
+
+
 def plot_study(path, options):
     """Errors, costs or maps of a study.nc, or of a comparison of methods."""
     figure = pyplot.figure(figsize=(WIDTH, 3.4), layout="constrained")
@@ -292,8 +365,11 @@ PICTURES = {
     "swim": (plot_swim, "bodies, wakes and paths (the default)"),
     "gait": (plot_gait, "the shapes that the muscle asks for, over one beat"),
     "time": (plot_time, "speed, heading, power and forces over time"),
+    "forces": (plot_forces, "forces and powers by name over time"),
+    "field": (plot_field, "the flow on a grid, from a file of shoal field"),
     "study": (plot_study, "a study or a comparison of methods"),
 }
+OWN_FILES = ("field", "study")  # kinds of pictures that are not of the result of a run
 
 
 def parse(arguments):
@@ -310,6 +386,9 @@ def parse(arguments):
         "--limits", type=float, nargs=4, metavar=("X0", "X1", "Y0", "Y1"), help="the window shown [m]"
     )
     options["gait"].add_argument("--shapes", type=int, default=12, help="how many shapes to draw (12)")
+    options["forces"].add_argument("--beats", type=int, default=4, help="how many beats to draw, 0: the whole run (4)")
+    options["field"].add_argument("--speed", action="store_true", help="draw the speed, not the vorticity")
+    options["field"].add_argument("--no-streamlines", action="store_true", help="draw no streamlines")
     options["time"].add_argument("--audit", action="store_true", help="add the energy audit")
     if arguments and arguments[0] not in (*PICTURES, "-h", "--help"):
         arguments = ["swim", *arguments]
@@ -343,7 +422,7 @@ def main(arguments):
     check_folder(picture)
     with matplotlib.rc_context(STYLE):
         try:
-            source = options.results if options.kind == "study" else Results(options.results)
+            source = options.results if options.kind in OWN_FILES else Results(options.results)
             figure = PICTURES[options.kind][0](source, options)
         except FileError as error:
             stop(error, EXIT_FILE)

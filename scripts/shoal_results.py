@@ -90,8 +90,8 @@ class Results:
         return np.flatnonzero(((self["wake_count"] == 0) | np.isfinite(first)).all(axis=1))
 
 
-def open_dataset(path):
-    """The open NetCDF file, checked to be one of shoal."""
+def open_dataset(path, kind="shoal_schema"):
+    """The open NetCDF file, checked to be one of shoal; kind: the attribute that says of what."""
     if not os.path.exists(path):
         raise FileError(f"{path}: no such file")
     if os.path.isdir(path):
@@ -100,8 +100,9 @@ def open_dataset(path):
         data = netCDF4.Dataset(path)
     except OSError as error:
         raise FileError(f"{path}: not a result file of shoal ({error.strerror or error})") from error
-    if not hasattr(data, "shoal_schema"):
-        raise FileError(f"{path}: a NetCDF file, but not one of shoal")
+    if not hasattr(data, kind):
+        wanted = {"shoal_schema": "run", "shoal_field": "field"}[kind]
+        raise FileError(f"{path}: a NetCDF file, but not one of shoal {wanted}")
     return data
 
 

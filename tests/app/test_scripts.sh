@@ -51,6 +51,12 @@ draws plot.py swim run.nc --limits -1 2 -3 3 --times 1 2 -- swim.png
 draws plot.py gait run.nc gait.svg
 draws plot.py time run.nc --audit time.pdf
 draws plot.py run.nc default.png
+draws plot.py forces run.nc --beats 1 forces.png
+"$program" field run.nc --grid 60,40 -q
+draws plot.py field run-field.nc field.png
+draws plot.py field run-field.nc --speed --no-streamlines speed.png
+refuses 4 "not one of shoal field" plot.py field run.nc no.png
+refuses 4 "not one of shoal run" plot.py swim run-field.nc no.png
 if command -v ffmpeg >/dev/null; then
     draws animate.py run.nc --fps 10 --dpi 60 movie.mp4
 else

@@ -1,0 +1,54 @@
+#!/usr/bin/python3
+"""Draw the file of `shoal field` on a figure: vorticity or speed, streamlines, bodies. Used by plot.py."""
+
+import matplotlib
+from shoal_results import FileError, np, open_dataset, outline
+
+BODY, BODY_EDGE = "#d9d9d9", "#222222"
+SPECIAL = 0.995  # share of the points below the end of the scale: bound sheets are much stronger than wakes
+
+
+class Field:
+    """Velocity and vorticity on a grid, and the bodies in it."""
+
+    def __init__(self, path):
+        data = open_dataset(path, "shoal_field")
+        for name in ("time", "x", "y", "u", "v", "vorticity", "body_x", "edge_height", "n_nodes"):
+            if name not in data.variables:
+                raise FileError(f"{path}: there is no variable {name} in it")
+        self.x, self.y = (np.ma.filled(data[name][:], np.nan) for name in ("x", "y"))
+        self.u, self.v, self.vorticity = (np.ma.filled(data[name][0], np.nan) for name in ("u", "v", "vorticity"))
+        self.time = float(data["time"][0])
+        nodes, thickness = (np.ma.filled(data[name][:], np.nan) for name in ("body_x", "edge_height"))
+        counts = np.asarray(data["n_nodes"][:], dtype=int)
+        self.outlines = [outline(nodes[0, f, :n], thickness[f, : n - 1]) for f, n in enumerate(counts)]
+
+
+def end_of_scale(values):
+    """The value that all but a few points stay below; never 0."""
+    return max(float(np.quantile(np.abs(values), SPECIAL)), 1e-300)
+
+
+def draw(path, figure, with_speed=False, with_streamlines=True):
+    """Fill an empty figure."""
+    field = Field(path)
+    axes = figure.add_subplot()
+    if with_speed:
+        values, label = np.hypot(field.u, field.v), "speed of the fluid [m/s]"
+        scale = {"cmap": "cividis", "vmin": 0, "vmax": end_of_scale(values)}
+    else:
+        values, label = field.vorticity, "vorticity [1/s], red counter-clockwise"
+        end = end_of_scale(values)
+        scale = {"cmap": "RdBu_r", "vmin": -end, "vmax": end}
+    mesh = axes.pcolormesh(field.x, field.y, values, shading="gouraud", rasterized=True, **scale)
+    if with_streamlines:
+        colour = "white" if with_speed else "#444444"
+        axes.streamplot(field.x, field.y, field.u, field.v, color=colour, linewidth=0.5, arrowsize=0.6, density=1.4)
+    bodies = matplotlib.collections.PolyCollection(
+        field.outlines, facecolors=BODY, edgecolors=BODY_EDGE, linewidths=0.7, zorder=3
+    )
+    axes.add_collection(bodies)
+    axes.set_aspect("equal")
+    axes.set(xlim=field.x[[0, -1]], ylim=field.y[[0, -1]], xlabel="x [m]", ylabel="y [m]")
+    axes.set_title(f"$t$ = {field.time:.4g} s", size=9, loc="right")
+    figure.colorbar(mesh, ax=axes, label=label, pad=0.02, extend="max" if with_speed else "both", aspect=25, shrink=0.9)
