@@ -164,6 +164,7 @@ SECTIONS = {
     "fish": "One fish; the value of `fish` is a list of these",
     "fish.body": "Shape and material",
     "fish.wave": "The wave of natural curvature of the muscle",
+    "fish.pressure": "The pressure of the bound sheet",
     "fish.drag": "Resistive forces and added mass",
     "fish.start": "Initial position and velocity",
     "fish.load": "External load",

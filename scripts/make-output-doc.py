@@ -45,6 +45,7 @@ Pictures: `scripts/plot.py demo.nc`, `scripts/plot.py time demo.nc`, `scripts/pl
 | `fish` | fish, in the order of the case |
 | `node`, `edge`, `joint` | N, N - 1, N - 2, for the N nodes of the fish that has most; node 0 is the nose |
 | `sheet` | bound vortices of the fish that has most |
+| `control` | control points of the sheet of the fish that has most |
 | `vortex` | slots for free vortices: the largest number that one fish can have |
 | `xy` | 2: x, then y |
 | `name` | bytes of the longest fish name |
@@ -112,13 +113,13 @@ gives the same numbers, bit for bit with the same program (only `wall_time` and 
 | `shoal_schema` | 1; a program that expects another number cannot read the file |
 | `run_status`, `warnings`, `closest_approach`, `case_text`, `case_effective` | see above |
 
-Every variable has `long_name` and, unless it is a string, `units`. `fish_name`, `node_arc` and `sheet_arc` are coordinates.
+Every variable has `long_name` and, unless it is a string, `units`. `fish_name`, `node_arc`, `sheet_arc` and `control_arc` are coordinates.
 """
 
 # Title of a section, and which variables belong to it, by their dimensions.
 SECTIONS = [
     ("Constants", lambda dimensions: "time" not in dimensions),
-    ("Bodies, sheets and wakes", lambda dimensions: {"node", "joint", "sheet", "vortex"} & set(dimensions)),
+    ("Bodies, sheets and wakes", lambda dimensions: {"node", "joint", "sheet", "control", "vortex"} & set(dimensions)),
     ("Each fish", lambda dimensions: "fish" in dimensions),
     ("The school and the solver", lambda dimensions: True),
 ]

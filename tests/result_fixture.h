@@ -30,6 +30,7 @@ struct fixture {
     struct state *state;
     struct residual residual;
     struct range joints[N_FISH];
+    struct pressure *pressure[N_FISH]; /* none */
     double natural_curvature[8];
     struct diagnostics diagnostics;
     struct diagnostics_fish of_fish[N_FISH];
@@ -52,8 +53,11 @@ static inline int set_up(void **state) {
         number_consecutively((double *)&f->of_fish[i], N_OF_FISH, 100.0 * (i + 1));
     }
     number_consecutively(f->natural_curvature, 8, 1);
-    f->residual = (struct residual){
-        .school = f->school, .state = f->state, .joints = f->joints, .natural_curvature = f->natural_curvature};
+    f->residual = (struct residual){.school = f->school,
+                                    .state = f->state,
+                                    .pressure = f->pressure,
+                                    .joints = f->joints,
+                                    .natural_curvature = f->natural_curvature};
     f->diagnostics =
         (struct diagnostics){.fish = f->of_fish, .total_circulation = 11, .least_distance = 12, .polarisation = 13};
     f->counts = (struct integrator_counts){.steps = 21,

@@ -65,6 +65,7 @@ static void stir_fish(struct setup *setup, const struct fish *fish, double *y, d
         y[fish->at.ax + k] = 2 * school_random(setup);
         y[fish->at.ay + k] = 2 * school_random(setup);
     }
+    for (int i = fish->at.px; i < fish->at.ax; i++) y[i] = school_random(setup);
     for (int j = 0; j < fish->n_sheet; j++) y[fish->at.gamma + j] = school_random(setup);
     y[fish->at.circulation] = 0.4 * school_random(setup);
     y[fish->at.phi0] = 0.3 * school_random(setup);
@@ -189,7 +190,9 @@ static struct step step_of(enum unknown kind) {
         case UNKNOWN_X:
         case UNKNOWN_Y: return (struct step){1e-5, 1};
         case UNKNOWN_VX:
-        case UNKNOWN_VY: return (struct step){1e-3, 1};
+        case UNKNOWN_VY:
+        case UNKNOWN_PX:
+        case UNKNOWN_PY: return (struct step){1e-3, 1};
         case UNKNOWN_AX:
         case UNKNOWN_AY: return (struct step){1, 1};
         case UNKNOWN_GAMMA:

@@ -207,6 +207,9 @@ static enum status derive_fish(struct fish_parameters *fish, int index) {
     if (fish->sheet_points == 0) fish->sheet_points = fish->nodes > 17 ? 2 * fish->nodes - 1 : 33;
     derive(&fish->body.relaxation_time, period / 1000);
     derive(&fish->wave.ramp, period);
+    const bool has_pressure = fish->force == FORCE_PRESSURE;
+    if ((int)fish->drag.skin < 0) fish->drag.skin = has_pressure ? SKIN_LAMINAR : SKIN_QUADRATIC;
+    derive(&fish->drag.normal, has_pressure ? 0 : 1);
     if (!isnan(fish->wave.wavelength)) fish->wave.number = -2 * 3.14159265358979323846 / fish->wave.wavelength;
     fish->wave.wavelength = NAN;
     derive(&fish->control.filter, period);

@@ -252,6 +252,12 @@ static void check_motion(const struct check *check) {
     }
 }
 
+/* True if the law takes the moment of the flow. */
+static bool has_moment(const struct control_parameters *control) {
+    const bool is_of_heading = control->law == CONTROL_HEADING || control->law == CONTROL_AVERAGED_HEADING;
+    return is_of_heading && fabs(control->feedforward) > 0;
+}
+
 static void check_drag(const struct check *check) {
     const struct fish_parameters *const fish = &check->values->school.fish[check->fish];
     const struct drag_parameters *const drag = &fish->drag;
@@ -260,11 +266,42 @@ static void check_drag(const struct check *check) {
     if (has_speed && drag->law != DRAG_LINEAR_QUADRATIC) {
         complain(check, path, "is for 'law: linear_quadratic' only: remove it");
     } else if (has_speed && fish->force == FORCE_PUBLISHED) {
-        complain(check, path, "is for 'force: reactive' only; in the published law it is 1 m/s");
-    } else if (drag->law == DRAG_LINEAR_QUADRATIC && fish->force == FORCE_REACTIVE && drag->linear_speed > 0 &&
+        complain(check, path, "is for 'force: reactive' or 'pressure'; in the published law it is 1 m/s");
+    } else if (drag->law == DRAG_LINEAR_QUADRATIC && fish->force != FORCE_PUBLISHED && drag->linear_speed > 0 &&
                fish->wave.frequency == 0) {
         complain(check, "fish.drag.law",
                  "needs wave.frequency above 0, for its linear_speed is in lengths per beat; choose quadratic");
+    }
+    if (drag->skin == SKIN_LAMINAR && is_given(check, "fish.drag.tangential")) {
+        complain(check, "fish.drag.tangential",
+                 "has no effect with 'skin: laminar', which has fluid.viscosity: remove it");
+    }
+}
+
+/* What the pressure of the bound sheet needs, and what it takes the place of. */
+static void check_pressure(const struct check *check) {
+    const struct fish_parameters *const fish = &check->values->school.fish[check->fish];
+    const struct wake_parameters *const wake = &check->values->school.wake;
+    static const char force[] = "fish.force";
+    if (fish->force != FORCE_PRESSURE) {
+        if (is_given(check, "fish.pressure.suction")) {
+            complain(check, "fish.pressure.suction", "is for 'force: pressure' only: remove it");
+        }
+        return;
+    }
+    if (wake->shedding != SHEDDING_SHEET) complain(check, force, "pressure needs 'wake.shedding: sheet'");
+    if (wake->curve != BODY_LINE_SMOOTH) complain(check, force, "pressure needs 'wake.curve: smooth'");
+    if (fish->nodes > 0 && fish->sheet_points < 2 * fish->nodes - 1) {
+        complain(check, "fish.sheet_points",
+                 "with 'force: pressure' the added mass of %d nodes needs at least %d points, not %d", fish->nodes,
+                 2 * fish->nodes - 1, fish->sheet_points);
+    }
+    if (is_given(check, "fish.drag.added_mass")) {
+        complain(check, "fish.drag.added_mass", "has no effect with 'force: pressure': remove it");
+    }
+    if (has_moment(&fish->control)) {
+        complain(check, "fish.control.feedforward",
+                 "is the moment of the drag, which is not that of the pressure: use 0");
     }
 }
 
@@ -291,12 +328,6 @@ static const struct {
                 {"fish.control.feedforward", 1U << CONTROL_HEADING | 1U << CONTROL_AVERAGED_HEADING},
                 {"fish.control.damping", 1U << CONTROL_COURSE},
                 {"fish.control.rate", 1U << CONTROL_AVERAGED_HEADING | 1U << CONTROL_COURSE}};
-
-/* True if the law takes the moment of the flow. */
-static bool has_moment(const struct control_parameters *control) {
-    const bool is_of_heading = control->law == CONTROL_HEADING || control->law == CONTROL_AVERAGED_HEADING;
-    return is_of_heading && fabs(control->feedforward) > 0;
-}
 
 /* Complain about values that the chosen law does not use. */
 static void check_law_keys(const struct check *check) {
@@ -373,6 +404,7 @@ void case_check(const struct case_values *values, const struct case_tree *tree, 
         check_wave_form(&check);
         check_turn(&check);
         check_drag(&check);
+        check_pressure(&check);
         check_motion(&check);
         check_control(&check);
     }

@@ -45,6 +45,8 @@ const struct key case_table[] = {
 
     {"fluid.density", REAL, AT(school.fluid.density), "1000", FROM(0), "kg m-3",
      .meaning = "density of the fluid; 0: no fluid forces", .synonyms = "rho rho_f"},
+    {"fluid.viscosity", REAL, AT(school.fluid.viscosity), "1e-6", FROM(0), "m2 s-1",
+     .meaning = "kinematic viscosity of the fluid: 'drag.skin: laminar' uses it", .synonyms = "nu"},
     {"fluid.velocity", PAIR, AT(school.fluid.velocity), "[0, 0]", ANY, "m s-1", .meaning = "uniform background flow",
      .synonyms = "current stream flow wind u_inf"},
     {"fluid.shear", REAL, AT(school.fluid.shear), "0", ANY, "s-1",
@@ -200,14 +202,21 @@ const struct key case_table[] = {
 
     {"fish.force", CHOICE, IN_FISH(force), "reactive", ANY, "",
      .meaning =
-         "reactive force of the fluid; reactive: from its kinetic energy, with what is left in the fluid at the tail; "
-         "published: added mass across each edge",
-     .words = WORDS("reactive", "published"), .published = "published"},
+         "force of the fluid besides drag; reactive: from its kinetic energy, with what is left in the fluid at the "
+         "tail; published: added mass across each edge; pressure: the pressure jump across the bound sheet",
+     .words = WORDS("reactive", "published", "pressure"), .published = "published"},
+    {"fish.pressure.suction", REAL, IN_FISH(suction), "1", FROM_TO(0, 1), "",
+     .meaning = "force pressure: the part of the suction at the leading edge that acts on the body"},
 
     {"fish.drag.tangential", REAL, IN_FISH(drag.tangential), "4e-3", FROM(0), "",
      .meaning = "tangential drag coefficient (friction)", .synonyms = "friction c_f cf", .published = "1e-3"},
-    {"fish.drag.normal", REAL, IN_FISH(drag.normal), "1", FROM(0), "", .meaning = "normal drag coefficient",
-     .synonyms = "c_d cd lateral", .published = "0.5"},
+    {"fish.drag.skin", CHOICE, IN_FISH(drag.skin), NULL, ANY, "",
+     .meaning =
+         "law of the tangential drag; quadratic: the one of drag.law, with drag.tangential; laminar: the friction of "
+         "a boundary layer on a plate, with fluid.viscosity",
+     .words = WORDS("quadratic", "laminar"), .derived = "laminar with force pressure, else quadratic"},
+    {"fish.drag.normal", REAL, IN_FISH(drag.normal), NULL, FROM(0), "", .meaning = "normal drag coefficient",
+     .synonyms = "c_d cd lateral", .published = "0.5", .derived = "1, or 0 with force pressure"},
     {"fish.drag.added_mass", REAL, IN_FISH(drag.added_mass), "1", FROM(0), "", .meaning = "added-mass coefficient",
      .synonyms = "c_a ca", .published = "1.5"},
     {"fish.drag.law", CHOICE, IN_FISH(drag.law), "quadratic", ANY, "",

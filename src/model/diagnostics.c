@@ -45,7 +45,7 @@ static double driving_power(struct residual *residual, int f, double t, const do
     double power = fish->load_tip[0] * y[fish->at.vx + tail] + fish->load_tip[1] * y[fish->at.vy + tail];
     if (fish->motion.prescribed == PRESCRIBED_NONE) return power;
     power += clamp_driving_power(fish, t, y);
-    residual_balance(residual, f, y, scratch);
+    residual_reaction(residual, f, y, residual->state->yp, scratch);
     for (int k = 0; k < fish_n_prescribed(fish); k++) {
         power += scratch[fish->at.ax + k] * y[fish->at.vx + k] + scratch[fish->at.ay + k] * y[fish->at.vy + k];
     }
@@ -59,7 +59,7 @@ static void find_constraint(struct residual *residual, int f, double t, const do
     to->constraint_force[0] = to->constraint_force[1] = 0;
     to->constraint_moment = clamp_moment(fish, t, y);
     if (fish->motion.prescribed == PRESCRIBED_NONE) return;
-    residual_balance(residual, f, y, reaction);
+    residual_reaction(residual, f, y, residual->state->yp, reaction);
     for (int k = 0; k < fish_n_prescribed(fish); k++) {
         const double force[2] = {reaction[fish->at.ax + k], reaction[fish->at.ay + k]};
         const double arm[2] = {y[fish->at.x + k] - to->com[0], y[fish->at.y + k] - to->com[1]};
@@ -68,34 +68,53 @@ static void find_constraint(struct residual *residual, int f, double t, const do
     }
 }
 
+// the forces that come from the pressure; all 0 with other forces
+static struct pressure_forces pressure_forces(struct residual *residual, int f, const double about[2],
+                                              const double *y) {
+    struct pressure *const pressure = residual->pressure[f];
+    if (!pressure) return (struct pressure_forces){.pressure_moment = 0};
+    const struct flow_at_body flow = flow_at_body(residual->flow, f);
+    pressure_update(pressure, &flow, y);
+    pressure_update_rate(pressure, y, residual->state->yp);
+    return pressure_sum(pressure, about, y);
+}
+
 // the forces on the body by name; thrust is what the fluid's forces are along the heading
 static void find_forces(struct residual *residual, int f, double t, const double *y, struct diagnostics_fish *to) {
     const struct fish *fish = &residual->school->fish[f];
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
     const struct fluid_forces forces = fluid_force_sum(fish, &flow, to->com, y);
     const double heading = control_heading(fish, y), ahead[2] = {cos(heading), sin(heading)};
+    to->pressure = pressure_forces(residual, f, to->com, y);
     to->thrust = 0;
     for (int i = 0; i < 2; i++) {
         to->resistive_force[i] = forces.resistive[i];
+        to->friction_force[i] = forces.friction[i];
         to->reactive_force[i] = forces.reactive[i];
-        to->thrust += (forces.resistive[i] + forces.reactive[i]) * ahead[i];
+        to->thrust +=
+            (forces.resistive[i] + forces.reactive[i] + to->pressure.pressure[i] + to->pressure.suction[i]) * ahead[i];
     }
     to->resistive_moment = forces.resistive_moment;
+    to->friction_moment = forces.friction_moment;
     to->reactive_moment = forces.reactive_moment;
     find_constraint(residual, f, t, y, to);
 }
 
 // the power of the fluid's forces as seen by one who drifts with the external flow at the centre of mass
 static double power_on_water(struct residual *residual, int f, double t, const struct fluid_power *power,
-                             const double *y) {
+                             const struct pressure_forces *pressure, const double *y) {
     const struct fish *fish = &residual->school->fish[f];
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
     const double com[2] = {mass_mean(fish, y + fish->at.x), mass_mean(fish, y + fish->at.y)};
     double stream[2], on_water = power->drag + power->added_mass + power->wake;
+    on_water += pressure->pressure_power + pressure->suction_power;
     flow_external(residual->school, t, com[1], &stream[0], &stream[1]);
     if (!(fabs(stream[0]) + fabs(stream[1]) > 0)) return on_water;
     const struct fluid_forces forces = fluid_force_sum(fish, &flow, com, y);
-    for (int i = 0; i < 2; i++) on_water -= (forces.resistive[i] + forces.reactive[i]) * stream[i];
+    for (int i = 0; i < 2; i++) {
+        on_water -=
+            (forces.resistive[i] + forces.reactive[i] + pressure->pressure[i] + pressure->suction[i]) * stream[i];
+    }
     return on_water;
 }
 
@@ -103,6 +122,7 @@ struct diagnostics_power diagnostics_power(struct residual *residual, int f, dou
     const struct fish *fish = &residual->school->fish[f];
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
     const struct fluid_power fluid = fluid_force_power(fish, &flow, y);
+    const struct pressure_forces pressure = pressure_forces(residual, f, (const double[2]){0, 0}, y);
     // natural curvature, its derivative and its rate at this very state
     double *const curvature = residual->scratch, *const by_phi0 = curvature + fish->n_joints;
     actuation_curvature(fish, t, y[fish->at.phi0], curvature, by_phi0);
@@ -113,9 +133,12 @@ struct diagnostics_power diagnostics_power(struct residual *residual, int f, dou
     return (struct diagnostics_power){.actuation = rod_actuation_power(fish, curvature, rate, y),
                                       .damping = rod_damping_power(fish, y) + clamp_damping_power(fish, t, y),
                                       .drag = fluid.drag,
+                                      .friction = fluid.friction,
                                       .added_mass = fluid.added_mass,
                                       .wake = fluid.wake,
-                                      .on_water = power_on_water(residual, f, t, &fluid, y),
+                                      .pressure = pressure.pressure_power,
+                                      .suction = pressure.suction_power,
+                                      .on_water = power_on_water(residual, f, t, &fluid, &pressure, y),
                                       .driving = driving_power(residual, f, t, y, residual->scratch)};
 }
 
@@ -143,6 +166,7 @@ double diagnostics_energy(struct residual *residual, int f, double t, const doub
 // the powers whose work is kept
 static void gather_powers(const struct diagnostics_power *power, double *of) {
     of[WORK_ALL] = power->actuation + power->damping + power->drag + power->added_mass + power->wake + power->driving;
+    of[WORK_ALL] += power->pressure + power->suction;
     of[WORK_ACTUATION] = power->actuation;
     of[WORK_FLUID] = power->on_water;
     of[WORK_DAMPING] = power->damping;
@@ -233,6 +257,9 @@ void diagnostics_remember(struct residual *residual, struct state *state) {
                                 .speed = NAN,
                                 .heading = control_heading(fish, y)};
         flow_external(residual->school, state->t, sample.com[1], &sample.stream[0], &sample.stream[1]);
+        const struct flow_at_body flow = flow_at_body(residual->flow, f);
+        const struct fluid_forces forces = fluid_force_sum(fish, &flow, sample.com, y);
+        memcpy(sample.friction, forces.friction, sizeof sample.friction);
         memcpy(sample.work, state->balance[f].work, sizeof sample.work);
         continue_sample(history, interval, &sample);
         // the newest sample of a full history takes the place of the one of a period and an interval ago
@@ -285,6 +312,17 @@ static double drift_of(const struct history *history) {
     return (now - before) / now;
 }
 
+// the mean friction against the way, by trapezoids over the samples
+static double mean_friction(const struct history *history, const double way[2], double distance) {
+    double sum = 0;
+    for (int age = 0; age < history->n; age++) {
+        const double *const friction = state_recall(history, age)->friction;
+        const double weight = age == 0 || age == history->n - 1 ? 0.5 : 1;
+        sum -= weight * (friction[0] * way[0] + friction[1] * way[1]) / distance;
+    }
+    return sum / (history->n - 1);
+}
+
 // what is stated over the last period, or since the start where that is less
 static void diagnostics_period(const struct fish *fish, const struct history *history, double interval,
                                struct diagnostics_fish *to) {
@@ -292,7 +330,7 @@ static void diagnostics_period(const struct fish *fish, const struct history *hi
     to->ground_speed = hypot(to->com_velocity[0], to->com_velocity[1]);
     to->speed = hypot(to->com_velocity[0] - new->stream[0], to->com_velocity[1] - new->stream[1]);
     to->drift = to->heading_error = to->strouhal = NAN;
-    to->cost_of_transport = to->cost_of_transport_fluid = to->cost_of_transport_body = NAN;
+    to->cost_of_transport = to->cost_of_transport_fluid = to->cost_of_transport_body = to->efficiency = NAN;
     if (history->n < 2) return;
     const double duration = (history->n - 1) * interval;
     double way[2];
@@ -307,6 +345,7 @@ static void diagnostics_period(const struct fish *fish, const struct history *hi
     to->cost_of_transport = (new->work[WORK_ACTUATION] - old->work[WORK_ACTUATION]) / duration / momentum;
     to->cost_of_transport_fluid = (old->work[WORK_FLUID] - new->work[WORK_FLUID]) / duration / momentum;
     to->cost_of_transport_body = (old->work[WORK_DAMPING] - new->work[WORK_DAMPING]) / duration / momentum;
+    to->efficiency = mean_friction(history, way, distance) * distance / (old->work[WORK_FLUID] - new->work[WORK_FLUID]);
     to->strouhal = fish->frequency * peak_to_peak(history, way, distance) / to->speed;
 }
 
@@ -328,6 +367,7 @@ static void diagnostics_one(struct residual *residual, const struct state *state
     to->desired_heading = to->heading - angle_degrees(angle_wrap(angle_radians(to->heading) - desired));
     diagnostics_period(fish, history, residual->school->interval, to);
     find_forces(residual, f, state->t, y, to);
+    to->leading_edge_a0 = fish_has_momentum(fish) && to->speed > 0 ? pressure_leading_edge(fish, to->speed, y) : NAN;
     to->phi0 = y[fish->at.phi0];
     to->shed_circulation = y[fish->at.circulation];
     to->shedding_rate = shedding_rate(residual, state, f);
@@ -340,6 +380,7 @@ static void diagnostics_one(struct residual *residual, const struct state *state
     to->actuation_power = power.actuation;
     to->damping_power = power.damping;
     to->drag_power = power.drag;
+    to->friction_power = power.friction;
     to->added_mass_power = power.added_mass;
     to->wake_power = power.wake;
     to->driving_power = power.driving;

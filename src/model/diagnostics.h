@@ -22,15 +22,20 @@ struct diagnostics_fish {
     double kinetic_energy, bending_energy, stretching_energy; /* J */
     double added_mass_energy;                                 /* of the fluid that the body accelerates, J */
     double actuation_power, damping_power, drag_power, added_mass_power, wake_power, driving_power; /* W */
-    double energy_audit;                                                                            /* J */
-    double actuation_work;                                             /* put in by the muscle since the start, J */
-    double resistive_force[2], reactive_force[2], constraint_force[2]; /* on the body, N */
-    double resistive_moment, reactive_moment, constraint_moment;       /* about the centre of mass, N m */
-    double thrust;                                                     /* forces of the fluid along the heading, N */
-    double cost_of_transport;       /* mean actuation power over mass and speed, m s-2 */
-    double cost_of_transport_fluid; /* the part that goes into the fluid, */
-    double cost_of_transport_body;  /* and the part that damping takes */
-    double strouhal;                /* frequency times peak-to-peak of the tail over speed */
+    double friction_power; /* of the part of the drag along the body, W */
+    double energy_audit;   /* J */
+    double actuation_work; /* put in by the muscle since the start, J */
+    /* on the body, N, and about the centre of mass, N m; friction: the part of the resistive force along the body */
+    double resistive_force[2], friction_force[2], reactive_force[2], constraint_force[2];
+    double resistive_moment, friction_moment, reactive_moment, constraint_moment;
+    struct pressure_forces pressure; /* force: pressure, else 0 */
+    double leading_edge_a0;          /* A_0 at the mean speed; NaN without it, and with other forces */
+    double thrust;                   /* forces of the fluid along the heading, N */
+    double cost_of_transport;        /* mean actuation power over mass and speed, m s-2 */
+    double cost_of_transport_fluid;  /* the part that goes into the fluid, */
+    double cost_of_transport_body;   /* and the part that damping takes */
+    double efficiency;               /* friction times speed over the power that goes into the fluid, over a period */
+    double strouhal;                 /* frequency times peak-to-peak of the tail over speed */
 };
 
 /* The school at one event. */
@@ -46,10 +51,11 @@ struct diagnostics {
 enum status diagnostics_create(struct diagnostics **diagnostics, const struct school *school);
 void diagnostics_free(struct diagnostics *diagnostics);
 
-/* Powers of one fish, W, from the unknowns and the fluid's velocity in the last residual evaluated. */
+/* Powers of one fish, W, from the unknowns, the rates of the state, and the fluid's velocity in the last residual
+ * evaluated. */
 struct diagnostics_power {
-    double actuation, damping, drag, added_mass, wake, driving;
-    double on_water; /* of drag, added mass and wake together, seen from the external flow at the centre of mass */
+    double actuation, damping, drag, friction, added_mass, wake, pressure, suction, driving; /* friction: of drag */
+    double on_water; /* of all forces of the fluid together, seen from the external flow at the centre of mass */
 };
 struct diagnostics_power diagnostics_power(struct residual *residual, int f, double t, const double *y);
 

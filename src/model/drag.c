@@ -13,18 +13,35 @@ static double speed_law_slope(const struct fish *fish, double speed) {
     return 2 * fabs(speed) + fish->linear_speed;
 }
 
+// the law of the tangential drag; laminar: (u^2 + u0^2)^(1/4) u
+static double skin_law(const struct fish *fish, double speed) {
+    if (fish->skin == SKIN_QUADRATIC) return speed_law(fish, speed);
+    return sqrt(hypot(speed, fish->friction_speed)) * speed;
+}
+
+static double skin_law_slope(const struct fish *fish, double speed) {
+    if (fish->skin == SKIN_QUADRATIC) return speed_law_slope(fish, speed);
+    const double size = hypot(speed, fish->friction_speed);
+    return sqrt(size) * (1 + speed / size * (speed / size) / 2);
+}
+
 void drag_force(const struct fish *fish, int k, const struct edge *s, const double w[2], double force[2]) {
-    const double along = fish->drag_tangential[k] * speed_law(fish, edge_dot(w, s->t));
+    const double along = fish->drag_tangential[k] * skin_law(fish, edge_dot(w, s->t));
     const double across = fish->drag_normal[k] * speed_law(fish, edge_dot(w, s->n));
     for (int i = 0; i < 2; i++) force[i] = -along * s->t[i] - across * s->n[i];
+}
+
+void drag_friction(const struct fish *fish, int k, const struct edge *s, const double w[2], double force[2]) {
+    const double along = fish->drag_tangential[k] * skin_law(fish, edge_dot(w, s->t));
+    for (int i = 0; i < 2; i++) force[i] = -along * s->t[i];
 }
 
 void drag_slope(const struct fish *fish, int k, const struct edge *s, const double w[2], double by_velocity[2][2],
                 double by_turn[2]) {
     const double wt = edge_dot(w, s->t), wn = edge_dot(w, s->n);
-    const double along = fish->drag_tangential[k] * speed_law(fish, wt);
+    const double along = fish->drag_tangential[k] * skin_law(fish, wt);
     const double across = fish->drag_normal[k] * speed_law(fish, wn);
-    const double along_slope = fish->drag_tangential[k] * speed_law_slope(fish, wt);
+    const double along_slope = fish->drag_tangential[k] * skin_law_slope(fish, wt);
     const double across_slope = fish->drag_normal[k] * speed_law_slope(fish, wn);
     for (int i = 0; i < 2; i++) {
         for (int j = 0; j < 2; j++) {

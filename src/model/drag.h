@@ -12,6 +12,9 @@
  * its nodes. */
 void drag_force(const struct fish *fish, int k, const struct edge *s, const double w[2], double force[2]);
 
+/* Its part along the edge: the friction. */
+void drag_friction(const struct fish *fish, int k, const struct edge *s, const double w[2], double force[2]);
+
 /* Its derivatives by w, [component][component of w], and by a turn of the edge (dt = n, dn = -t). */
 void drag_slope(const struct fish *fish, int k, const struct edge *s, const double w[2], double by_velocity[2][2],
                 double by_turn[2]);

@@ -46,6 +46,8 @@ static enum status fish_allocate(struct fish *fish) {
     for (size_t i = 0; i < sizeof per_joint / sizeof *per_joint; i++) TRY(doubles(per_joint[i], fish->n_joints));
     TRY(doubles(&fish->sheet_weight, fish->n_sheet));
     TRY(doubles(&fish->end_correction, fish->n_control));
+    TRY(doubles(&fish->control_density, fish->n_control));
+    TRY(doubles(&fish->control_interval, fish->n_control));
     fish->sheet_point = calloc((size_t)fish->n_sheet, sizeof *fish->sheet_point);
     fish->sheet_slope = calloc((size_t)fish->n_sheet, sizeof *fish->sheet_slope);
     fish->control_point = calloc((size_t)fish->n_control, sizeof *fish->control_point);
@@ -141,21 +143,32 @@ static void set_wave(struct fish *fish, const struct fish_parameters *from) {
     fish->ramp = wave->ramp;
 }
 
+// Blasius' friction of both sides of an edge, over u^(3/2)
+static double laminar_friction(const struct fish *fish, int k, const struct fluid_parameters *fluid) {
+    const double share = sqrt((k + 1.0) / fish->n_edges) - sqrt((double)k / fish->n_edges);
+    return 1.328 * fluid->density * fish->depth[k] * sqrt(fluid->viscosity * fish->length) * share;
+}
+
 // drag, added mass and what leaves at the tail: doc/model.md, section 9
-static void set_fluid_forces(struct fish *fish, const struct fish_parameters *from, double density) {
+static void set_fluid_forces(struct fish *fish, const struct fish_parameters *from,
+                             const struct fluid_parameters *fluid) {
     const struct drag_parameters *drag = &from->drag;
     const int wide = drag->extent == EXTENT_DEPTH, published = from->force == FORCE_PUBLISHED;
+    const double density = fluid->density, reactive = from->force == FORCE_PRESSURE ? 0 : 1;
     for (int k = 0; k < fish->n_edges; k++) {
         const double h = fish->thickness[k], w = fish->depth[k], l = fish->edge_length;
         const double across = wide ? w : h, square = wide ? 1 : fish->square[k];
-        fish->drag_tangential[k] = density * pi * drag->tangential * l * (h + w) / (published ? 8 : 4);
+        fish->drag_tangential[k] = drag->skin == SKIN_LAMINAR
+                                       ? laminar_friction(fish, k, fluid)
+                                       : density * pi * drag->tangential * l * (h + w) / (published ? 8 : 4);
         fish->drag_normal[k] = density * drag->normal * l * across / 2;
-        fish->added_mass[k] = pi * density * drag->added_mass * across * across * l / 4 * square;
-        fish->displaced_mass[k] = density * pi * h * w / 4 * l;
+        fish->added_mass[k] = reactive * pi * density * drag->added_mass * across * across * l / 4 * square;
+        fish->displaced_mass[k] = reactive * density * pi * h * w / 4 * l;
     }
     fish->force = from->force;
+    fish->skin = drag->skin;
     const double at_tail = wide ? fish->depth[fish->n_edges - 1] : profile_tail_thickness(from);
-    fish->tail_added_mass = published ? 0 : pi * density * drag->added_mass * at_tail * at_tail / 4;
+    fish->tail_added_mass = published ? 0 : reactive * pi * density * drag->added_mass * at_tail * at_tail / 4;
     // the published law has 1 m s-1
     const double linear_speed = published ? 1 : drag->linear_speed * fish->length * from->wave.frequency;
     fish->linear_speed = drag->law == DRAG_LINEAR_QUADRATIC ? linear_speed : 0;
@@ -202,6 +215,7 @@ static void place_sheet_on_smooth_curve(struct fish *fish, enum collocation coll
         fish->control_tangent[c].to = curve_smooth_slope(fish->curve, u);
     }
     fish->tail_tangent.to = curve_smooth_slope(fish->curve, fish->n_edges);
+    fish->nose_tangent.to = curve_smooth_slope(fish->curve, 0);
 }
 
 // E_c, for a sheet whose strength at the tail is that of the wake
@@ -229,7 +243,7 @@ static enum status place_sheet(struct fish *fish, const struct wake_parameters *
     }
     const int is_smooth = wake->curve == BODY_LINE_SMOOTH;
     TRY(curve_create(&fish->curve, fish->n_nodes, is_smooth ? 1 : 2 * fish->n_sheet,
-                     is_smooth ? 4 * fish->n_sheet : 0));
+                     is_smooth ? 4 * fish->n_sheet + 1 : 0));
     if (is_smooth) {
         place_sheet_on_smooth_curve(fish, wake->collocation);
     } else {
@@ -238,6 +252,25 @@ static enum status place_sheet(struct fish *fish, const struct wake_parameters *
     if (wake->shedding == SHEDDING_SHEET) correct_end(fish);
     fish->heading_point = curve_polygon_point(fish->curve, 1.0 / 3.0 * fish->n_edges);
     return STATUS_OK;
+}
+
+// the pressure of the bound sheet: doc/model.md, section 15
+static enum status set_pressure(struct fish *fish, const struct fish_parameters *from, double density) {
+    if (fish->force != FORCE_PRESSURE) return STATUS_OK;
+    const double h = pi / fish->n_control;
+    double *per_edge;
+    TRY(doubles(&per_edge, fish->n_edges));
+    for (int k = 0; k < fish->n_edges; k++) per_edge[k] = density * fish->depth[k];
+    for (int c = 0; c < fish->n_control; c++) {
+        fish->control_density[c] = per_edge[(int)(cosine_place(fish, c + 0.5) * fish->n_edges)];
+        fish->control_interval[c] = fish->n_edges / 2.0 * sin((c + 0.5) * h) * h;
+    }
+    fish->fluid_density = density;
+    const double first = fish->sheet_weight[0] * fish->n_control;
+    fish->suction = from->suction * per_edge[0] * first * first / (pi * fish->length);
+    const enum status status = sheet_integrals_create(&fish->integrals, fish->n_nodes, fish->n_sheet, per_edge);
+    free(per_edge);
+    return status;
 }
 
 static void set_motion(struct fish *fish, const struct fish_parameters *from) {
@@ -314,18 +347,21 @@ static enum status fish_fill(struct fish *fish, const struct school_parameters *
     weigh_body(fish, from);
     set_wave(fish, from);
     TRY(set_table(fish, &from->wave.table));
-    set_fluid_forces(fish, from, parameters->fluid.density);
+    set_fluid_forces(fish, from, &parameters->fluid);
     TRY(place_sheet(fish, &parameters->wake));
+    TRY(set_pressure(fish, from, parameters->fluid.density));
     set_motion(fish, from);
     return set_control(fish, from, parameters);
 }
 
-static struct layout layout_after(int first, int n_nodes, int n_sheet) {
+static struct layout layout_after(int first, int n_nodes, int n_momenta, int n_sheet) {
     struct layout at = {.x = first};
     at.y = at.x + n_nodes;
     at.vx = at.y + n_nodes;
     at.vy = at.vx + n_nodes;
-    at.ax = at.vy + n_nodes;
+    at.px = at.vy + n_nodes;
+    at.py = at.px + n_momenta;
+    at.ax = at.py + n_momenta;
     at.ay = at.ax + n_nodes;
     at.gamma = at.ay + n_nodes;
     at.circulation = at.gamma + n_sheet;
@@ -390,8 +426,11 @@ enum status fish_school_create(struct school **school, const struct school_param
     set_fluid(new, parameters);
     for (int f = 0; f < new->n_fish; f++) {
         if (fish_fill(&new->fish[f], parameters, &parameters->fish[f]) != STATUS_OK) goto failed;
-        new->fish[f].at = layout_after(new->n_unknowns, new->fish[f].n_nodes, new->fish[f].n_sheet);
-        new->n_unknowns = new->fish[f].at.end;
+        struct fish *const fish = &new->fish[f];
+        const int n_momenta = fish->force == FORCE_PRESSURE ? fish->n_nodes : 0;
+        fish->at = layout_after(new->n_unknowns, fish->n_nodes, n_momenta, fish->n_sheet);
+        fish->friction_speed = 1e-4 * fish->length * fish_rate(new, fish);
+        new->n_unknowns = fish->at.end;
     }
     const enum status overlap = refuse_overlap(new);
     if (overlap != STATUS_OK) {
@@ -436,15 +475,22 @@ void fish_school_free(struct school *school) {
                                fish->control_point,
                                fish->control_tangent,
                                fish->end_correction,
+                               fish->control_density,
+                               fish->control_interval,
                                fish->control.heading_time,
                                fish->control.heading,
                                fish->control.waypoint_x,
                                fish->control.waypoint_y};
         for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
         curve_free(fish->curve);
+        sheet_integrals_free(fish->integrals);
     }
     free(school->fish);
     free(school);
+}
+
+int fish_has_momentum(const struct fish *fish) {
+    return fish->at.px < fish->at.ax;
 }
 
 double fish_rate(const struct school *school, const struct fish *fish) {

@@ -13,7 +13,9 @@
  *
  * Unknowns: fish after fish, per fish in this order (struct layout gives the first index of each):
  *
- *     | x (N) y (N) | vx (N) vy (N) | ax (N) ay (N) | gamma (M) | circulation (1) | phi0 (1) |
+ *     | x (N) y (N) | vx (N) vy (N) | px (N) py (N) | ax (N) ay (N) | gamma (M) | circulation (1) | phi0 (1) |
+ *
+ * The slices px, py exist with force: pressure only (model/pressure.h); elsewhere they are empty.
  */
 #ifndef FISH_H
 #define FISH_H
@@ -21,12 +23,13 @@
 #include "base/status.h"
 #include "model/curve.h"
 #include "model/parameters.h"
+#include "model/sheet_integrals.h"
 
 /* First index of each slice in the vector of all unknowns, and one past the last. The equations have the same layout:
  * rows x, y: dx/dt - v; vx, vy: dv/dt - a; ax, ay: law of motion; sheet: M - 1 times impermeability, then Kelvin;
- * shed: Kutta; phi0: control law. */
+ * shed: Kutta; phi0: control law. With force: pressure vx, vy: velocity by momentum; px, py: dp/dt - a. */
 struct layout {
-    int x, y, vx, vy, ax, ay, gamma, circulation, phi0, end;
+    int x, y, vx, vy, px, py, ax, ay, gamma, circulation, phi0, end;
 };
 
 /* A straight rigid motion given in time: doc/model.md, section 5. Angles in rad. */
@@ -92,6 +95,16 @@ struct fish {
     double *displaced_mass;  /* rho_f A lbar, kg                                  (n_edges) */
     double tail_added_mass;  /* m_L, kg m-1; 0: nothing leaves at the tail */
     double linear_speed;     /* V1 of the drag law v (V1 + |v|), m s-1; 0: v |v| */
+    enum skin skin;
+    double friction_speed; /* u0 of laminar friction, m s-1 */
+
+    /* force: pressure */
+    double fluid_density;              /* kg m-3 */
+    double suction;                    /* of the nose, over the square of the unknown there, kg m-1 */
+    double *control_density;           /* density of the fluid times depth, kg m-2         (n_control) */
+    double *control_interval;          /* u of the interval around a control point, 1      (n_control) */
+    struct tangent nose_tangent;       /* the direction of the body at the nose */
+    struct sheet_integrals *integrals; /* NULL with other forces */
 
     double *sheet_weight;            /* ds_j: circulation over unknown, m           (n_sheet) */
     struct curve *curve;             /* the line of the body; owns the stencils below */
@@ -154,6 +167,9 @@ struct direction {
     double length, t[2], n[2];
 };
 struct direction fish_direction(const struct fish *fish, const struct tangent *tangent, const double *y);
+
+/* Whether the fish has the slices px, py: force: pressure. */
+int fish_has_momentum(const struct fish *fish);
 
 /* The number of nodes of the fish, from the nose on, whose motion is given: 0, 1, 2 or all. */
 int fish_n_prescribed(const struct fish *fish);

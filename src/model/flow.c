@@ -282,9 +282,13 @@ enum status flow_interpolate(struct flow *flow, const struct state *state) {
     if (!flow->interpolation) return STATUS_OK;
     TRY(update_sources(flow, state, state->t, state->y));
     for (int f = 0; f < flow->school->n_fish; f++) {
-        const struct layout *at = &flow->school->fish[f].at;
-        const int from[4] = {at->vx, at->vy, at->ax, at->ay};
-        for (int i = 0; i < 4; i++) at_points(flow, f, state->y + from[i], flow->motion[i]);
+        const struct fish *const fish = &flow->school->fish[f];
+        // where there are momenta, a is their rate
+        const double *const acceleration = fish_has_momentum(fish) ? state->yp + fish->at.vx : state->y + fish->at.ax;
+        for (int i = 0; i < 2; i++) {
+            at_points(flow, f, state->y + fish->at.vx + i * fish->n_nodes, flow->motion[i]);
+            at_points(flow, f, acceleration + i * fish->n_nodes, flow->motion[2 + i]);
+        }
     }
     const struct wake_interpolation_points points = {flow->x,         flow->y,         flow->motion[0],
                                                      flow->motion[1], flow->motion[2], flow->motion[3]};

@@ -8,7 +8,7 @@
 // drag on an edge, the reactive force on its two nodes, and what leaves at the tail: on the tail node, of the last edge
 struct edge_forces {
     struct edge edge;
-    double drag[2], reactive[2][2], tail[2];
+    double drag[2], friction[2], reactive[2][2], tail[2];
 };
 
 static struct edge_forces forces_of_edge(const struct fish *fish, const struct flow_at_body *flow, int k,
@@ -17,6 +17,7 @@ static struct edge_forces forces_of_edge(const struct fish *fish, const struct f
     double w[2];
     flow_relative_velocity(fish, k, on.edge.velocity, flow->u, flow->v, w);
     drag_force(fish, k, &on.edge, w, on.drag);
+    drag_friction(fish, k, &on.edge, w, on.friction);
     reactive_force(fish, k, &on.edge, w, flow->acceleration, on.reactive);
     if (k == fish->n_edges - 1) reactive_tail_force(fish, &on.edge, w, on.tail);
     return on;
@@ -44,7 +45,9 @@ struct fluid_forces fluid_force_of_edge(const struct fish *fish, const struct fl
                                         const double about[2], const double *y) {
     const struct edge_forces on = forces_of_edge(fish, flow, k, y);
     struct fluid_forces forces = {.resistive = {on.drag[0], on.drag[1]},
-                                  .resistive_moment = moment_of(on.edge.middle, about, on.drag)};
+                                  .friction = {on.friction[0], on.friction[1]},
+                                  .resistive_moment = moment_of(on.edge.middle, about, on.drag),
+                                  .friction_moment = moment_of(on.edge.middle, about, on.friction)};
     for (int end = 0; end < 2; end++) {
         const double node[2] = {y[edge_place(fish, 0, k + end)], y[edge_place(fish, 1, k + end)]};
         double force[2];
@@ -64,9 +67,11 @@ struct fluid_forces fluid_force_sum(const struct fish *fish, const struct flow_a
         const struct fluid_forces of_edge = fluid_force_of_edge(fish, flow, k, about, y);
         for (int i = 0; i < 2; i++) {
             sum.resistive[i] += of_edge.resistive[i];
+            sum.friction[i] += of_edge.friction[i];
             sum.reactive[i] += of_edge.reactive[i];
         }
         sum.resistive_moment += of_edge.resistive_moment;
+        sum.friction_moment += of_edge.friction_moment;
         sum.reactive_moment += of_edge.reactive_moment;
     }
     return sum;
@@ -132,13 +137,15 @@ void fluid_force_flow_jacobian(const struct fish *fish, const struct flow_at_bod
 }
 
 struct fluid_power fluid_force_power(const struct fish *fish, const struct flow_at_body *flow, const double *y) {
-    struct fluid_power power = {0, 0, 0};
+    struct fluid_power power = {.drag = 0};
     for (int k = 0; k < fish->n_edges; k++) {
         const struct edge edge = edge_at(fish, k, y);
-        double w[2], drag[2];
+        double w[2], drag[2], friction[2];
         flow_relative_velocity(fish, k, edge.velocity, flow->u, flow->v, w);
         drag_force(fish, k, &edge, w, drag);
+        drag_friction(fish, k, &edge, w, friction);
         power.drag += edge_dot(drag, edge.velocity);
+        power.friction += edge_dot(friction, edge.velocity);
         power.added_mass += reactive_power(fish, k, &edge, w, flow->acceleration);
         if (k == fish->n_edges - 1) power.wake = reactive_wake_power(fish, &edge, w);
     }

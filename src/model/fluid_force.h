@@ -18,18 +18,18 @@ void fluid_force_jacobian(const struct fish *fish, const struct flow_at_body *fl
 void fluid_force_flow_jacobian(const struct fish *fish, const struct flow_at_body *flow,
                                const struct influence_block *block, const double *y, struct coupling_block *rows);
 
-/* Powers of the forces on the body, W: of drag, of the reactive forces of the edges, of the flux at the tail. Negative
- * where they take energy from it. */
+/* Powers of the forces on the body, W: of drag, of its part along the edges, of the reactive forces of the edges, of
+ * the flux at the tail. Negative where they take energy from it. */
 struct fluid_power {
-    double drag, added_mass, wake;
+    double drag, friction, added_mass, wake;
 };
 struct fluid_power fluid_force_power(const struct fish *fish, const struct flow_at_body *flow, const double *y);
 
-/* The forces on a body or an edge of it, N, and their moments about a point, N m. Reactive: with what leaves at the
- * tail, and the pressure gradient of the external flow. */
+/* The forces on a body or an edge of it, N, and their moments about a point, N m. Friction: the part of the resistive
+ * one along the edges. Reactive: with what leaves at the tail, and the pressure gradient of the external flow. */
 struct fluid_forces {
-    double resistive[2], reactive[2];
-    double resistive_moment, reactive_moment;
+    double resistive[2], friction[2], reactive[2];
+    double resistive_moment, friction_moment, reactive_moment;
 };
 struct fluid_forces fluid_force_of_edge(const struct fish *fish, const struct flow_at_body *flow, int k,
                                         const double about[2], const double *y);

@@ -12,8 +12,9 @@ enum removed_circulation { REMOVED_RETAINED, REMOVED_DROPPED };
 enum profile { PROFILE_JOUKOWSKI, PROFILE_UNIFORM, PROFILE_TABLE };
 enum section { SECTION_MEAN, SECTION_NODES };
 enum second_moment { SECOND_MOMENT_ELLIPSE, SECOND_MOMENT_PUBLISHED };
-enum force { FORCE_REACTIVE, FORCE_PUBLISHED };
+enum force { FORCE_REACTIVE, FORCE_PUBLISHED, FORCE_PRESSURE };
 enum drag_law { DRAG_QUADRATIC, DRAG_LINEAR_QUADRATIC };
+enum skin { SKIN_QUADRATIC, SKIN_LAMINAR };
 enum extent { EXTENT_THICKNESS, EXTENT_DEPTH };
 enum prescribed { PRESCRIBED_NONE, PRESCRIBED_HEAD, PRESCRIBED_ALL };
 enum control_law { CONTROL_NONE, CONTROL_HEADING, CONTROL_AVERAGED_HEADING, CONTROL_COURSE };
@@ -28,6 +29,7 @@ struct number_list {
 
 struct fluid_parameters {
     double density;        /* kg m-3 */
+    double viscosity;      /* kinematic, m2 s-1 */
     double velocity[2];    /* m s-1 */
     double shear;          /* s-1 */
     double gust_amplitude; /* m s-1 */
@@ -72,6 +74,7 @@ struct wave_parameters {
 
 struct drag_parameters {
     double tangential, normal, added_mass;
+    enum skin skin; /* law of the tangential drag */
     enum drag_law law;
     double linear_speed; /* lengths per beat: force reactive, law linear_quadratic */
     enum extent extent;
@@ -105,6 +108,7 @@ struct fish_parameters {
     struct body_parameters body;
     struct wave_parameters wave;
     enum force force; /* of the fluid on the body */
+    double suction;   /* force: pressure: the part of the leading-edge suction that acts */
     struct drag_parameters drag;
     double start_position[2]; /* m */
     double start_heading;     /* degree */

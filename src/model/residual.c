@@ -20,9 +20,11 @@ static enum status allocate(struct residual *residual) {
     int n_joints = 0, most_points = 0, most_columns = 0, most_rows = 0;
     residual->joints = calloc(n_fish, sizeof *residual->joints);
     residual->coupled = calloc(n_fish * n_fish, sizeof *residual->coupled);
-    if (!residual->joints || !residual->coupled) goto no_memory;
+    residual->pressure = calloc(n_fish, sizeof *residual->pressure);
+    if (!residual->joints || !residual->coupled || !residual->pressure) goto no_memory;
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *fish = &school->fish[f];
+        if (fish_has_momentum(fish)) TRY(pressure_create(&residual->pressure[f], fish));
         const int points = flow_n_points(fish), columns = flow_n_columns(fish);
         residual->joints[f] = (struct range){n_joints, fish->n_joints};
         n_joints += fish->n_joints;
@@ -71,6 +73,8 @@ enum status residual_create(struct residual **residual, const struct school *sch
 void residual_free(struct residual *residual) {
     if (!residual) return;
     flow_free(residual->flow);
+    for (int f = 0; residual->pressure && f < residual->school->n_fish; f++) pressure_free(residual->pressure[f]);
+    free(residual->pressure);
     free(residual->joints);
     free(residual->coupled);
     free(residual->natural_curvature);
@@ -163,8 +167,23 @@ static void balance(const struct residual *residual, int f, const double *y, dou
     rod_residual(fish, residual->natural_curvature + residual->joints[f].first, y, value);
     clamp_residual(fish, residual->flow->t, y, value);
     fluid_force_residual(fish, &flow, y, value);
+    if (residual->pressure[f]) {
+        pressure_update(residual->pressure[f], &flow, y);
+        pressure_residual(residual->pressure[f], value);
+    }
     value[fish->at.ax + fish->n_nodes - 1] -= fish->load_tip[0];
     value[fish->at.ay + fish->n_nodes - 1] -= fish->load_tip[1];
+}
+
+// dx/dt = v and dv/dt = a; with momenta dp/dt = a
+static void kinematics(const struct fish *fish, const double *y, const double *yp, double *value) {
+    const int second = fish_has_momentum(fish) ? fish->at.px : fish->at.vx;
+    for (int i = 0; i < 2 * fish->n_nodes; i++) {
+        value[fish->at.x + i] = yp[fish->at.x + i] - y[fish->at.vx + i];
+        // nothing is asked of velocities that are given
+        value[fish->at.vx + i] = 0;
+        value[second + i] = yp[second + i] - y[fish->at.ax + i];
+    }
 }
 
 static void evaluate_fish(struct residual *residual, int f, double t, const double *y, const double *yp,
@@ -175,11 +194,7 @@ static void evaluate_fish(struct residual *residual, int f, double t, const doub
     const double *const u = residual->flow->u + residual->flow->points[f].first;
     const double *const v = residual->flow->v + residual->flow->points[f].first;
 
-    // dx/dt = v and dv/dt = a
-    for (int i = 0; i < 2 * fish->n_nodes; i++) {
-        value[fish->at.x + i] = yp[fish->at.x + i] - y[fish->at.vx + i];
-        value[fish->at.vx + i] = yp[fish->at.vx + i] - y[fish->at.ax + i];
-    }
+    kinematics(fish, y, yp, value);
     // the law of motion, per mass
     residual_muscle(residual, f, t, y);
     balance(residual, f, y, value);
@@ -187,6 +202,7 @@ static void evaluate_fish(struct residual *residual, int f, double t, const doub
         value[fish->at.ax + k] /= fish->mass[k];
         value[fish->at.ay + k] /= fish->mass[k];
     }
+    if (residual->pressure[f]) pressure_momentum_residual(residual->pressure[f], residual->at_start, y, value);
     drive(fish, t, y, value);
     // impermeability, Kelvin, Kutta
     bound_sheet_residual(fish, residual_lost(residual, f, t), u, v, y, value);
@@ -215,6 +231,15 @@ void residual_balance(const struct residual *residual, int f, const double *y, d
     balance(residual, f, y, value);
 }
 
+void residual_reaction(const struct residual *residual, int f, const double *y, const double *yp, double *value) {
+    const struct fish *fish = &residual->school->fish[f];
+    struct pressure *const pressure = residual->pressure[f];
+    balance(residual, f, y, value);
+    if (!pressure) return;
+    pressure_update_rate(pressure, y, yp);
+    for (int i = 0; i < 2 * fish->n_nodes; i++) value[fish->at.ax + i] += pressure->momentum_rate[i];
+}
+
 // the equations of fish f by what moves with fish g and comes through the velocity of the fluid
 static void flow_jacobian(const struct residual *residual, int f, int g, double t, const double *y,
                           struct influence_block *block, struct coupling_block *rows) {
@@ -225,6 +250,8 @@ static void flow_jacobian(const struct residual *residual, int f, int g, double 
     memset(rows->value, 0, (size_t)rows->n_rows * (size_t)rows->n_columns * sizeof *rows->value);
     flow_derivative(residual->flow, f, g, block);
     fluid_force_flow_jacobian(fish, &flow, block, y, rows);
+    if (residual->pressure[f]) pressure_flow_jacobian(residual->pressure[f], block, rows);
+    if (residual->pressure[f] && f == g) pressure_own_jacobian(residual->pressure[f], y, rows);
     bound_sheet_flow_jacobian(fish, block, y, rows);
     if (law_of(residual) == BOUND_SHEET_RATE) {
         bound_sheet_kutta_flow_jacobian(fish, ramp_value(t, residual->school->kutta_ramp), block, y, rows);
@@ -232,7 +259,8 @@ static void flow_jacobian(const struct residual *residual, int f, int g, double 
 }
 
 // add the rows of a fish by its own unknowns to its block: those entries that may differ from zero. The midpoint of an
-// edge feels the nodes of that edge and, through the nascent vortex, the tail and the circulation shed.
+// edge feels the nodes of that edge and, through the nascent vortex, the tail and the circulation shed; the pressure
+// everything.
 static void add_own(const struct residual *residual, const struct fish *fish, const struct coupling_block *rows,
                     struct sparse *own) {
     const int n_nodes = fish->n_nodes, n_places = 2 * n_nodes;
@@ -240,8 +268,9 @@ static void add_own(const struct residual *residual, const struct fish *fish, co
     for (int c = 0; c < rows->n_columns; c++) {
         const double *const value = rows->value + (long)c * rows->n_rows;
         const int column = flow_column(fish, c), node = c % n_nodes;
-        const int is_shed = c == rows->n_columns - 1, is_sheet = c >= n_places && !is_shed;
-        const int all = is_shed || node == n_nodes - 1;
+        const int has_pressure = fish_has_momentum(fish);
+        const int is_shed = c == rows->n_columns - 1, is_sheet = c >= n_places && !is_shed && !has_pressure;
+        const int all = is_shed || node == n_nodes - 1 || has_pressure;
         const int first = all || node == 0 ? 0 : node - 1, last = all || node == n_nodes - 2 ? n_nodes - 1 : node + 1;
         for (int k = first; !is_sheet && k <= last; k++) {
             sparse_add(own, fish->at.ax + k, column, value[k]);
@@ -249,6 +278,22 @@ static void add_own(const struct residual *residual, const struct fish *fish, co
         }
         for (int k = 0; k < fish->n_control; k++) sparse_add(own, fish->at.gamma + k, column, value[n_places + k]);
         if (rate) sparse_add(own, fish->at.circulation, column, value[fish->at.circulation - fish->at.ax]);
+    }
+}
+
+// with momenta the rows of given ones are those of pressure_momentum_row
+static void kinematics_jacobian(const struct residual *residual, const struct fish *fish, double cj,
+                                struct sparse *own) {
+    const int has_momentum = fish_has_momentum(fish), n = fish->n_nodes;
+    const int second = has_momentum ? fish->at.px : fish->at.vx;
+    for (int i = 0; i < 2 * n; i++) {
+        sparse_add(own, fish->at.x + i, fish->at.x + i, cj);
+        sparse_add(own, fish->at.x + i, fish->at.vx + i, -1);
+        if (!has_momentum || pressure_momentum_row(fish, residual->at_start, i / n, i % n) != second + i) {
+            sparse_add(own, second + i, second + i, cj);
+            sparse_add(own, second + i, fish->at.ax + i, -1);
+        }
+        sparse_add(own, fish->at.ax + i, fish->at.ax + i, 1);
     }
 }
 
@@ -263,18 +308,17 @@ static enum status fish_jacobian(struct residual *residual, int f, double t, dou
     const int joints = residual->joints[f].first;
 
     sparse_begin(own);
-    for (int i = 0; i < 2 * fish->n_nodes; i++) {
-        sparse_add(own, fish->at.x + i, fish->at.x + i, cj);
-        sparse_add(own, fish->at.x + i, fish->at.vx + i, -1);
-        sparse_add(own, fish->at.vx + i, fish->at.vx + i, cj);
-        sparse_add(own, fish->at.vx + i, fish->at.ax + i, -1);
-        sparse_add(own, fish->at.ax + i, fish->at.ax + i, 1);
-    }
+    kinematics_jacobian(residual, fish, cj, own);
     residual_muscle(residual, f, t, y);
     rod_jacobian(fish, residual->natural_curvature + joints, residual->curvature_by_phi0 + joints, y, own);
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
     clamp_jacobian(fish, t, y, own);
     fluid_force_jacobian(fish, &flow, y, own);
+    if (residual->pressure[f]) {
+        pressure_update(residual->pressure[f], &flow, y);
+        pressure_momentum_jacobian(residual->pressure[f], residual->at_start, y, own);
+        pressure_jacobian(residual->pressure[f], own);
+    }
     bound_sheet_jacobian(fish, u, v, y, own);
     bound_sheet_kutta_jacobian(fish, law_of(residual), ramp_value(t, school->kutta_ramp), cj, u, v, y, own);
     control_jacobian(fish, &residual->state->control[f], t, t - residual->state->t, y, own);
@@ -323,8 +367,14 @@ void residual_by_shed(struct residual *residual, const double *y, double *value)
         scratch->rows.n_columns = 1;
         memset(scratch->rows.value, 0, (size_t)scratch->rows.n_rows * sizeof *scratch->rows.value);
         bound_sheet_flow_jacobian(fish, &scratch->block, y, &scratch->rows);
-        memcpy(value + fish->at.gamma, scratch->rows.value + (fish->at.gamma - fish->at.ax),
-               (size_t)fish->n_control * sizeof *value);
+        const int first = fish_has_momentum(fish) ? fish->at.ax : fish->at.gamma;
+        if (residual->pressure[f]) {
+            const struct flow_at_body flow = flow_at_body(residual->flow, f);
+            fluid_force_flow_jacobian(fish, &flow, &scratch->block, y, &scratch->rows);
+            pressure_flow_jacobian(residual->pressure[f], &scratch->block, &scratch->rows);
+        }
+        memcpy(value + first, scratch->rows.value + (first - fish->at.ax),
+               (size_t)(fish->at.gamma + fish->n_control - first) * sizeof *value);
     }
 }
 
@@ -333,7 +383,8 @@ void residual_mask(const struct residual *residual, struct jacobian *jacobian) {
         const struct fish *fish = &residual->school->fish[f];
         for (int row = fish->at.x; row < fish->at.end; row++) {
             const struct unknown_place place = residual_place(residual->school, row);
-            const int driven = place.kind <= UNKNOWN_AY && place.index < fish_n_prescribed(fish);
+            const int moves = place.kind <= UNKNOWN_AY && place.kind != UNKNOWN_PX && place.kind != UNKNOWN_PY;
+            const int driven = moves && place.index < fish_n_prescribed(fish);
             sparse_mask(jacobian->own[f], row, driven);
         }
     }
@@ -352,6 +403,8 @@ struct unknown_place residual_place(const struct school *school, int i) {
                   {at->gamma, UNKNOWN_GAMMA, "gamma"},
                   {at->ay, UNKNOWN_AY, "ay"},
                   {at->ax, UNKNOWN_AX, "ax"},
+                  {at->py, UNKNOWN_PY, "py"},
+                  {at->px, UNKNOWN_PX, "px"},
                   {at->vy, UNKNOWN_VY, "vy"},
                   {at->vx, UNKNOWN_VX, "vx"},
                   {at->y, UNKNOWN_Y, "y"},
@@ -362,12 +415,26 @@ struct unknown_place residual_place(const struct school *school, int i) {
         .fish = f, .index = i - slices[s].first, .kind = slices[s].kind, .name = slices[s].name};
 }
 
+// of a node that moves by its forces: places and velocities, or momenta in their place
+static int is_differential(const struct residual *residual, const struct unknown_place *place) {
+    const int has_momentum = fish_has_momentum(&residual->school->fish[place->fish]);
+    switch (place->kind) {
+        case UNKNOWN_X:
+        case UNKNOWN_Y: return 1;
+        case UNKNOWN_VX:
+        case UNKNOWN_VY: return !has_momentum || residual->at_start;
+        case UNKNOWN_PX:
+        case UNKNOWN_PY: return !residual->at_start;
+        default: return 0;
+    }
+}
+
 void residual_kinds(const struct residual *residual, double *kind) {
     for (int i = 0; i < residual->school->n_unknowns; i++) {
         const struct unknown_place place = residual_place(residual->school, i);
         const int driven = place.index < fish_n_prescribed(&residual->school->fish[place.fish]);
         kind[i] = 0;
-        if (place.kind <= UNKNOWN_VY && !driven) kind[i] = 1;
+        if (!driven && is_differential(residual, &place)) kind[i] = 1;
         if (place.kind == UNKNOWN_CIRCULATION && !residual_shed_is_algebraic(residual)) kind[i] = 1;
     }
 }
@@ -381,7 +448,9 @@ double residual_scale(const struct residual *residual, int i) {
         case UNKNOWN_X:
         case UNKNOWN_Y: return 0.01 * length;
         case UNKNOWN_VX:
-        case UNKNOWN_VY: return 300 * length * f;
+        case UNKNOWN_VY:
+        case UNKNOWN_PX:
+        case UNKNOWN_PY: return 300 * length * f;
         case UNKNOWN_AX:
         case UNKNOWN_AY: return 1e5 * length * f * f;
         case UNKNOWN_GAMMA: return 3 * length * f;
@@ -393,5 +462,5 @@ double residual_scale(const struct residual *residual, int i) {
 
 double residual_undamped(const struct residual *residual, int i) {
     const enum unknown kind = residual_place(residual->school, i).kind;
-    return kind == UNKNOWN_VX || kind == UNKNOWN_VY ? 1.0 / 3000 : 1;
+    return kind >= UNKNOWN_VX && kind <= UNKNOWN_PY ? 1.0 / 3000 : 1;
 }

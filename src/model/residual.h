@@ -6,6 +6,7 @@
 #include "base/status.h"
 #include "model/flow.h"
 #include "model/jacobian.h"
+#include "model/pressure.h"
 #include "model/state.h"
 
 /* What determines the circulation that has been shed: the law of the case; Kutta's condition, while an impulsive event
@@ -17,8 +18,10 @@ struct residual {
     const struct school *school;
     const struct state *state; /* wakes, control memory, time of the last event */
     struct flow *flow;
-    enum shed_now shed_now; /* what determines the circulation shed */
-    unsigned pattern;       /* changes whenever coupled does */
+    enum shed_now shed_now;     /* what determines the circulation shed */
+    int at_start;               /* whether the velocities are given, and momenta follow from them */
+    struct pressure **pressure; /* of each fish; NULL where its force is another one   (n_fish) */
+    unsigned pattern;           /* changes whenever coupled does */
     unsigned char *coupled; /* whether the Jacobian holds the block of fish g in the rows of fish f (n_fish, n_fish) */
 
     /* natural curvature of the joints of all fish and its derivative with respect to phi0, as last evaluated */
@@ -41,6 +44,8 @@ enum unknown {
     UNKNOWN_Y,
     UNKNOWN_VX,
     UNKNOWN_VY,
+    UNKNOWN_PX,
+    UNKNOWN_PY,
     UNKNOWN_AX,
     UNKNOWN_AY,
     UNKNOWN_GAMMA,
@@ -69,8 +74,9 @@ enum status residual_jacobian(struct residual *residual, double t, double cj, co
                               struct jacobian *jacobian);
 
 /* The derivatives of impermeability at the control points of every fish by the circulation that it has shed itself, in
- * the rows of those equations of value (n_unknowns); the others stay as they are. With the flow of the last evaluation,
- * at the unknowns y. They are what changes most from step to step where the nascent stretch of a free sheet grows. */
+ * the rows of those equations of value (n_unknowns), and with force: pressure those of the law of motion; the others
+ * stay as they are. With the flow of the last evaluation, at the unknowns y. They are what changes most from step to
+ * step where the nascent stretch of a free sheet grows. */
 void residual_by_shed(struct residual *residual, const double *y, double *value);
 
 /* Part of an evaluation, for who solves the equations one after another: the natural curvature of fish f for the phi0
@@ -80,6 +86,10 @@ void residual_muscle(struct residual *residual, int f, double t, const double *y
 /* The rows ax, ay of fish f in N, before given motions replace them: m a less all forces. With the fluid's velocity and
  * the natural curvature of the last evaluation. */
 void residual_balance(const struct residual *residual, int f, const double *y, double *value);
+
+/* The same rows with the whole force of the fluid: what else acts on the nodes, the reactions of prescribed ones. For
+ * the rates yp. */
+void residual_reaction(const struct residual *residual, int f, const double *y, const double *yp, double *value);
 
 /* What Kutta's condition in its rate form gives for fish f, m2 s-2. With the fluid's velocity of the last
  * evaluation. */

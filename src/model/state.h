@@ -16,6 +16,7 @@ enum work { WORK_ALL, WORK_ACTUATION, WORK_FLUID, WORK_DAMPING, N_WORKS };
 struct sample {
     double com[2], tail[2]; /* m */
     double velocity[2];     /* of the centre of mass, m s-1 */
+    double friction[2];     /* on the body, N */
     double stream[2];       /* the external flow there, m s-1, */
     double drifted[2];      /* and its integral since the start, m */
     double speed;           /* through the water over the last period, m s-1; NaN before a whole one has passed */

@@ -64,6 +64,9 @@ void result_file_note(struct result_file *result, enum result_note note, const c
 static const char *coordinates_of(const struct result_variable *variable) {
     if (result_table_has(variable, NODE) && strcmp(variable->name, "node_arc") != 0) return "fish_name node_arc";
     if (result_table_has(variable, SHEET) && strcmp(variable->name, "sheet_arc") != 0) return "fish_name sheet_arc";
+    if (result_table_has(variable, CONTROL) && strcmp(variable->name, "control_arc") != 0) {
+        return "fish_name control_arc";
+    }
     return "fish_name";
 }
 

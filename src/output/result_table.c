@@ -32,7 +32,9 @@ static void gather_velocity(const struct result_row *row, int f, double *slots) 
 
 static void gather_acceleration(const struct result_row *row, int f, double *slots) {
     const struct fish *fish = &row->school->fish[f];
-    interleave(fish->n_nodes, row->state->y + fish->at.ax, row->state->y + fish->at.ay, slots);
+    // where there are momenta, the unknowns a are their rates
+    const double *const a = fish_has_momentum(fish) ? row->state->yp + fish->at.vx : row->state->y + fish->at.ax;
+    interleave(fish->n_nodes, a, a + fish->n_nodes, slots);
 }
 
 static void gather_curvature(const struct result_row *row, int f, double *slots) {
@@ -75,6 +77,19 @@ static void gather_wake_circulation(const struct result_row *row, int f, double 
 static void gather_wake_birth(const struct result_row *row, int f, double *slots) {
     const struct wake *wake = &row->state->wake[f];
     if (row->with_wake) copy(wake->n_vortex, wake->birth, slots);
+}
+
+// ---- pressure
+
+static void gather_control_arc(const struct result_row *row, int f, double *slots) {
+    const struct fish *fish = &row->school->fish[f];
+    for (int c = 0; c < fish->n_control; c++) slots[c] = fish_mean(&fish->control_point[c], fish->arc);
+}
+
+static void gather_pressure(const struct result_row *row, int f, double *slots) {
+    struct pressure *const pressure = row->residual->pressure[f];
+    const int n = row->school->fish[f].n_control;
+    for (int c = 0; pressure && c < n; c++) slots[c] = pressure_jump(pressure, c, row->state->yp);
 }
 
 // ---- forces on the edges
@@ -149,6 +164,8 @@ const struct result_variable result_table[] = {
      .long_name = "depth (span) of the body, out of the plane of motion"},
     {"sheet_arc",             {FISH, SHEET},          RESULT_REAL,    "m",      GATHERED(gather_sheet_arc),
      .long_name = "arc coordinate of the bound vortices, from the nose"},
+    {"control_arc",           {FISH, CONTROL},        RESULT_REAL,    "m",      GATHERED(gather_control_arc),
+     .long_name = "arc coordinate of the control points, from the nose"},
     {"sheet_weight",          {FISH, SHEET},          RESULT_REAL,    "m",      ARRAY_IN_FISH(sheet_weight),
      .long_name = "natural length of body of a bound vortex: circulation over strength where nothing is stretched"},
     {"fluid_density",         {NONE},                 RESULT_REAL,    "kg m-3", IN_SCHOOL(density),
@@ -223,6 +240,14 @@ const struct result_variable result_table[] = {
      .long_name = "power of the internal damping"},
     {"drag_power",            {TIME, FISH},           RESULT_REAL,    "W",      IN_FISH_DIAGNOSTICS(drag_power),
      .long_name = "power of the drag on the body"},
+    {"friction_power",        {TIME, FISH},           RESULT_REAL,    "W",      IN_FISH_DIAGNOSTICS(friction_power),
+     .long_name = "part of drag_power: of the drag along the body"},
+    {"pressure_power",        {TIME, FISH},           RESULT_REAL,    "W",
+     IN_FISH_DIAGNOSTICS(pressure.pressure_power),
+     .long_name = "power on the body of the pressure; 0 unless force: pressure"},
+    {"suction_power",         {TIME, FISH},           RESULT_REAL,    "W",
+     IN_FISH_DIAGNOSTICS(pressure.suction_power),
+     .long_name = "power on the body of the suction at the leading edge; 0 unless force: pressure"},
     {"added_mass_power",      {TIME, FISH},           RESULT_REAL,    "W",      IN_FISH_DIAGNOSTICS(added_mass_power),
      .long_name = "power on the body of the fluid that it accelerates, without what leaves at the tail"},
     {"wake_power",            {TIME, FISH},           RESULT_REAL,    "W",      IN_FISH_DIAGNOSTICS(wake_power),
@@ -241,6 +266,8 @@ const struct result_variable result_table[] = {
     {"cost_of_transport_body",{TIME, FISH},           RESULT_REAL,    "m s-2",
      IN_FISH_DIAGNOSTICS(cost_of_transport_body),
      .long_name = "part of the cost of transport that is lost inside the body, by damping"},
+    {"efficiency",            {TIME, FISH},           RESULT_REAL,    "1",      IN_FISH_DIAGNOSTICS(efficiency),
+     .long_name = "friction times speed over the power that goes into the fluid, over the last period"},
     {"strouhal",              {TIME, FISH},           RESULT_REAL,    "1",      IN_FISH_DIAGNOSTICS(strouhal),
      .long_name = "Strouhal number: frequency times peak-to-peak motion of the tail over speed"},
 
@@ -249,6 +276,14 @@ const struct result_variable result_table[] = {
      .long_name = "drag on the body"},
     {"reactive_force",        {TIME, FISH, XY},       RESULT_REAL,    "N",      IN_FISH_DIAGNOSTICS(reactive_force),
      .long_name = "force of the accelerated fluid, with tail flux and pressure gradient of the external flow"},
+    {"friction_force",        {TIME, FISH, XY},       RESULT_REAL,    "N",      IN_FISH_DIAGNOSTICS(friction_force),
+     .long_name = "part of resistive_force: the drag along the body"},
+    {"pressure_force",        {TIME, FISH, XY},       RESULT_REAL,    "N",      IN_FISH_DIAGNOSTICS(pressure.pressure),
+     .long_name = "force of the pressure jump across the bound sheet; 0 unless force: pressure"},
+    {"suction_force",         {TIME, FISH, XY},       RESULT_REAL,    "N",      IN_FISH_DIAGNOSTICS(pressure.suction),
+     .long_name = "suction at the leading edge; 0 unless force: pressure"},
+    {"added_momentum",        {TIME, FISH, XY},       RESULT_REAL,    "N s",    IN_FISH_DIAGNOSTICS(pressure.momentum),
+     .long_name = "momentum of the fluid that moves with the body; 0 unless force: pressure"},
     {"constraint_force",      {TIME, FISH, XY},       RESULT_REAL,    "N",      IN_FISH_DIAGNOSTICS(constraint_force),
      .long_name = "force that holds prescribed nodes to their motion; 0 for a free fish"},
     {"thrust",                {TIME, FISH},           RESULT_REAL,    "N",      IN_FISH_DIAGNOSTICS(thrust),
@@ -257,6 +292,17 @@ const struct result_variable result_table[] = {
      .long_name = "moment of the drag about the centre of mass"},
     {"reactive_moment",       {TIME, FISH},           RESULT_REAL,    "N m",    IN_FISH_DIAGNOSTICS(reactive_moment),
      .long_name = "moment of the reactive force about the centre of mass"},
+    {"friction_moment",       {TIME, FISH},           RESULT_REAL,    "N m",    IN_FISH_DIAGNOSTICS(friction_moment),
+     .long_name = "part of resistive_moment: of the drag along the body"},
+    {"pressure_moment",       {TIME, FISH},           RESULT_REAL,    "N m",
+     IN_FISH_DIAGNOSTICS(pressure.pressure_moment),
+     .long_name = "moment of the pressure about the centre of mass"},
+    {"suction_moment",        {TIME, FISH},           RESULT_REAL,    "N m",
+     IN_FISH_DIAGNOSTICS(pressure.suction_moment),
+     .long_name = "moment of the suction about the centre of mass"},
+    {"added_momentum_moment", {TIME, FISH},           RESULT_REAL,    "N m s",
+     IN_FISH_DIAGNOSTICS(pressure.momentum_moment),
+     .long_name = "moment of the added momentum about the centre of mass"},
     {"constraint_moment",     {TIME, FISH},           RESULT_REAL,    "N m",    IN_FISH_DIAGNOSTICS(constraint_moment),
      .long_name = "moment about the centre of mass of what holds a prescribed motion"},
     {"edge_resistive_force",  {TIME, FISH, EDGE, XY}, RESULT_BULK,    "N",
@@ -265,6 +311,11 @@ const struct result_variable result_table[] = {
     {"edge_reactive_force",   {TIME, FISH, EDGE, XY}, RESULT_BULK,    "N",
      GATHERED(gather_edge_reactive_force), .forces = OUTPUT_FORCES_EDGES,
      .long_name = "reactive force on every edge, the last with the tail flux; with output.forces: edges only"},
+
+    {"pressure",              {TIME, FISH, CONTROL},  RESULT_BULK,    "Pa",     GATHERED(gather_pressure),
+     .long_name = "pressure jump across the body at the control points, left less right; NaN unless force: pressure"},
+    {"leading_edge_a0",       {TIME, FISH},           RESULT_REAL,    "1",      IN_FISH_DIAGNOSTICS(leading_edge_a0),
+     .long_name = "leading-edge suction parameter A_0; where it is above 0.2 a real flow may separate at the nose"},
 
     // the school and the solver
     {"total_circulation",     {TIME},                 RESULT_REAL,    "m2 s-1", IN_DIAGNOSTICS(total_circulation),
@@ -299,7 +350,8 @@ _Static_assert(sizeof result_table / sizeof *result_table <= RESULT_TABLE_MAX, "
 // ---- look-ups ----
 
 const char *result_table_dimension(enum result_dimension dimension) {
-    static const char *const name[] = {"", "time", "fish", "node", "edge", "joint", "sheet", "vortex", "xy", "name"};
+    static const char *const name[] = {"",      "time",    "fish",   "node", "edge", "joint",
+                                       "sheet", "control", "vortex", "xy",   "name"};
     return name[dimension];
 }
 
@@ -315,6 +367,7 @@ int result_table_length(const struct fish *fish, enum result_dimension dimension
         case EDGE: return fish->n_edges;
         case JOINT: return fish->n_joints;
         case SHEET: return fish->n_sheet;
+        case CONTROL: return fish->n_control;
         default: return 1;
     }
 }

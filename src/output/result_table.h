@@ -18,7 +18,7 @@ enum {
 };
 
 /* Dimensions; NONE ends a list of them. Slots beyond what a fish has hold NaN. */
-enum result_dimension { NONE, TIME, FISH, NODE, EDGE, JOINT, SHEET, VORTEX, XY, NAME, RESULT_N_DIMENSIONS };
+enum result_dimension { NONE, TIME, FISH, NODE, EDGE, JOINT, SHEET, CONTROL, VORTEX, XY, NAME, RESULT_N_DIMENSIONS };
 enum { RESULT_MAX_DIMENSIONS = 4 };
 
 enum result_type {

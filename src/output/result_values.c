@@ -11,7 +11,7 @@ void result_values_lengths(const struct school *school, int n_vortices, size_t l
     length[XY] = 2;
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *fish = &school->fish[f];
-        for (enum result_dimension d = NODE; d <= SHEET; d++) {
+        for (enum result_dimension d = NODE; d <= CONTROL; d++) {
             const size_t of_fish = (size_t)result_table_length(fish, d);
             if (of_fish > length[d]) length[d] = of_fish;
         }

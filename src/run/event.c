@@ -169,8 +169,10 @@ static enum status start_sheets(struct state *state, struct residual *residual, 
 
 enum status event_start(struct state *state, struct residual *residual, struct initial_conditions *initial) {
     int jumped;
+    residual->at_start = 1;
     if (residual->school->shedding == SHEDDING_SHEET) TRY(start_sheets(state, residual, initial));
     TRY(initial_conditions_solve(initial, state->t, state->y, state->yp));
+    residual->at_start = 0;
     if (residual->school->shedding == SHEDDING_IMPULSIVE) {
         TRY(release_impulse(state, residual, initial));
         TRY(initial_conditions_solve(initial, state->t, state->y, state->yp));

@@ -174,6 +174,7 @@ static void map_all(const struct corotation *corotation, void (*map)(const struc
         if (!body->has_moved) continue;
         map(body, vector + body->fish->at.x);
         map(body, vector + body->fish->at.vx);
+        if (fish_has_momentum(body->fish)) map(body, vector + body->fish->at.px);
         map(body, vector + body->fish->at.ax);
     }
 }

@@ -30,8 +30,8 @@ void corotation_free(struct corotation *corotation);
 void corotation_set_reference(struct corotation *corotation, const double *y);
 void corotation_set_current(struct corotation *corotation, const double *y);
 
-/* Map the slices x y, vx vy and ax ay of all fish, in a vector of unknowns or of residuals (n_unknowns), from the
- * reference to the current configuration, and back. Each is the inverse of the other. */
+/* Map the slices x y, vx vy, px py and ax ay of all fish, in a vector of unknowns or of residuals (n_unknowns), from
+ * the reference to the current configuration, and back. Each is the inverse of the other. */
 void corotation_to_current(const struct corotation *corotation, double *vector);
 void corotation_to_reference(const struct corotation *corotation, double *vector);
 

@@ -166,12 +166,15 @@ static void solve_block(const struct linear *linear, int f, double *x) {
 
 // the change of the column of the circulation shed, in rows of the block
 static void find_change(const struct fish *fish, const struct sparse *own, const double *value, double *change) {
-    const int column = fish->at.circulation - fish->at.x, first = fish->at.gamma - fish->at.x;
+    const int column = fish->at.circulation - fish->at.x, end = fish->at.gamma + fish->n_control - fish->at.x;
+    const int first = (fish_has_momentum(fish) ? fish->at.ax : fish->at.gamma) - fish->at.x;
     memset(change, 0, (size_t)own->n * sizeof *change);
-    for (int c = 0; c < fish->n_control; c++) change[first + c] = value[fish->at.gamma + c];
+    for (int i = first; i < end; i++) {
+        if (!sparse_is_masked(own, fish->at.x + i)) change[i] = value[fish->at.x + i];
+    }
     for (int64_t i = own->column_start[column]; i < own->column_start[column + 1]; i++) {
         const int64_t row = own->row_index[i];
-        if (row >= first && row < first + fish->n_control) change[row] -= own->value[i];
+        if (row >= first && row < end) change[row] -= own->value[i];
     }
 }
 

@@ -36,8 +36,9 @@ void linear_free(struct linear *linear);
  * STATUS_SOLVER if it has never been factorised, else with STATUS_RETRY. */
 enum status linear_setup(struct linear *linear);
 
-/* From now on, until the next linear_setup, solve with other derivatives of impermeability by the circulation that the
- * same fish has shed: those in the rows of these equations of value (n_unknowns). The factors stay: the solutions are
+/* From now on, until the next linear_setup, solve with other derivatives of impermeability, and with force: pressure of
+ * the law of motion, by the circulation that the same fish has shed: those in the rows of these equations of value
+ * (n_unknowns). The factors stay: the solutions are
  * corrected by a matrix of rank one for each fish (Sherman and Morrison). Where that matrix is singular, they are not
  * finite. After linear_setup. */
 void linear_update_shed(struct linear *linear, const double *value);

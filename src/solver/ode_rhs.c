@@ -13,7 +13,8 @@ struct ode_rhs {
     double *no_sheets; /* the unknowns with sheets and nascent vortices of no strength    (n_unknowns) */
     struct influence_block *influence; /* of the vortices of fish g on the points of fish f     (n_fish, n_fish) */
 
-    /* the system of all sheets, dense, column after column */
+    /* the system of all sheets, dense, column after column: of each fish its strengths, then, where there are
+     * momenta, its velocities */
     int n;
     int *first;                /* row and column of the first unknown of each fish                      (n_fish) */
     double *matrix, *solution; /* the solution enters as the right-hand side                       (n, n), (n) */
@@ -31,6 +32,17 @@ static int n_strengths(const struct residual *residual, const struct fish *fish)
     return fish->n_sheet + (residual_shed_is_algebraic(residual) ? 1 : 0);
 }
 
+// with momenta the velocities follow together with the strengths
+static int n_velocities(const struct fish *fish) {
+    return fish_has_momentum(fish) ? 2 * fish->n_nodes : 0;
+}
+
+// row and column of component i of the velocity of node k
+static int velocity_at(const struct ode_rhs *d, int f, int i, int k) {
+    const struct fish *fish = &d->residual->school->fish[f];
+    return d->first[f] + n_strengths(d->residual, fish) + i * fish->n_nodes + k;
+}
+
 static enum status allocate(struct ode_rhs *d) {
     const struct school *school = d->residual->school;
     const size_t n_fish = (size_t)school->n_fish;
@@ -42,7 +54,7 @@ static enum status allocate(struct ode_rhs *d) {
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *fish = &school->fish[f];
         d->first[f] = d->n;
-        d->n += n_strengths(d->residual, fish);
+        d->n += n_strengths(d->residual, fish) + n_velocities(fish);
         if (fish->n_nodes > max_nodes) max_nodes = fish->n_nodes;
         for (int g = 0; g < school->n_fish; g++) {
             struct influence_block *const block = &d->influence[f * school->n_fish + g];
@@ -106,6 +118,7 @@ static enum status update_flow(struct ode_rhs *d, double t, const double *y) {
         const struct fish *fish = &school->fish[f];
         memset(d->no_sheets + fish->at.gamma, 0, (size_t)fish->n_sheet * sizeof *y);
         d->no_sheets[fish->at.circulation] = state->wake[f].shed_before;
+        memset(d->no_sheets + fish->at.vx, 0, (size_t)n_velocities(fish) * sizeof *y);
     }
     TRY(flow_velocity(d->residual->flow, state, t, d->no_sheets));
     for (int f = 0; f < school->n_fish; f++) {
@@ -151,6 +164,31 @@ static void assemble_own(struct ode_rhs *d, int f, double t, const double *y, do
     }
 }
 
+// impermeability of the fish's own velocities, and what they follow from: m v + I = m p, or the given motion
+static void assemble_velocities(struct ode_rhs *d, int f, const double *y, double *rhs) {
+    const struct fish *fish = &d->residual->school->fish[f];
+    for (int c = 0; c < fish->n_control; c++) {
+        double normal[2];
+        bound_sheet_normal(fish, c, y, normal);
+        const struct stencil *const point = &fish->control_point[c];
+        for (int m = 0; m < 2 * point->n; m++) {
+            const int i = m / point->n, at = m % point->n;
+            *entry(d, d->first[f] + c, velocity_at(d, f, i, point->node[at])) -= point->weight[at] * normal[i];
+        }
+    }
+    for (int m = 0; m < 2 * fish->n_nodes; m++) {
+        const int i = m / fish->n_nodes, k = m % fish->n_nodes, row = velocity_at(d, f, i, k);
+        const int is_given = k < fish_n_prescribed(fish);
+        *entry(d, row, row) = 1;
+        rhs[row] = y[(is_given ? fish->at.vx : fish->at.px) + m];
+        for (int j = 0; j < fish->n_sheet && !is_given; j++) {
+            double momentum[2];
+            pressure_momentum_by_strength(fish, k, j, y + fish->at.x, momentum);
+            *entry(d, row, d->first[f] + j) = momentum[i] / fish->mass[k];
+        }
+    }
+}
+
 // the vortices of fish g in the equations for the control points of fish f
 static void assemble_influence(struct ode_rhs *d, int f, int g, const double *y, double *rhs) {
     const struct residual *residual = d->residual;
@@ -176,6 +214,7 @@ static enum status solve_sheets(struct ode_rhs *d, double t, double *y) {
     memset(d->matrix, 0, (size_t)d->n * (size_t)d->n * sizeof *d->matrix);
     for (int f = 0; f < school->n_fish; f++) {
         assemble_own(d, f, t, y, d->solution);
+        if (fish_has_momentum(&school->fish[f])) assemble_velocities(d, f, y, d->solution);
         for (int g = 0; g < school->n_fish; g++) assemble_influence(d, f, g, y, d->solution);
     }
     d->solves++;
@@ -188,6 +227,7 @@ static enum status solve_sheets(struct ode_rhs *d, double t, double *y) {
         if (residual_shed_is_algebraic(residual)) {
             y[fish->at.circulation] = residual->state->wake[f].shed_before + d->solution[d->first[f] + fish->n_sheet];
         }
+        memcpy(y + fish->at.vx, d->solution + velocity_at(d, f, 0, 0), (size_t)n_velocities(fish) * sizeof *y);
     }
     return STATUS_OK;
 }
@@ -277,6 +317,21 @@ static enum status find_accelerations(struct ode_rhs *d, int f, double t, double
     return STATUS_OK;
 }
 
+// the momenta of nodes whose velocity is given
+static void find_given_momenta(const struct ode_rhs *d, int f, double *y) {
+    const struct fish *fish = &d->residual->school->fish[f];
+    const struct flow_at_body flow = flow_at_body(d->residual->flow, f);
+    struct pressure *const pressure = d->residual->pressure[f];
+    if (!pressure || fish_n_prescribed(fish) == 0) return;
+    pressure_update(pressure, &flow, y);
+    for (int m = 0; m < 2 * fish->n_nodes; m++) {
+        const int k = m % fish->n_nodes;
+        if (k < fish_n_prescribed(fish)) {
+            y[fish->at.px + m] = y[fish->at.vx + m] + pressure->momentum[m] / fish->mass[k];
+        }
+    }
+}
+
 static void find_phi0(struct ode_rhs *d, int f, double t, double *y) {
     const struct state *state = d->residual->state;
     const struct fish *fish = &d->residual->school->fish[f];
@@ -304,8 +359,9 @@ enum status ode_rhs_rates(struct ode_rhs *d, double t, double *y, double *yp) {
         find_phi0(d, f, t, y);
         residual_muscle(d->residual, f, t, y);
         TRY(find_accelerations(d, f, t, y));
+        find_given_momenta(d, f, y);
         memcpy(yp + at->x, y + at->vx, size);
-        memcpy(yp + at->vx, y + at->ax, size);
+        memcpy(yp + (fish_has_momentum(&school->fish[f]) ? at->px : at->vx), y + at->ax, size);
         yp[at->circulation] = residual_shed_is_algebraic(d->residual) ? 0 : residual_shed_rate(d->residual, f, t, y);
         if (!isfinite(y[at->ax]) || !isfinite(y[at->ay])) {
             return status_fail(STATUS_RETRY, "the nose of fish %s has no finite acceleration at t = %g s",

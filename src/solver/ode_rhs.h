@@ -6,6 +6,8 @@
  *
  *     bound sheets (and, with kutta: edge, the circulation shed) -> velocity of the fluid -> phi0 -> accelerations
  *     dense in the school                                                                     banded, fish by fish
+ *
+ * With force: pressure momenta are given instead of velocities, which follow together with the sheets.
  */
 #ifndef ODE_RHS_H
 #define ODE_RHS_H

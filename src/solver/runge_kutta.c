@@ -25,8 +25,8 @@ struct runge_kutta {
     int known;            /* whether they are valid */
     double known_t;
     long known_event;
-    long evaluations;    /* so far */
-    double *circulation; /* of each fish at the end of the last step                     (n_fish) */
+    long evaluations; /* so far */
+    double *last;     /* unknowns at the end of the last step                     (n_unknowns) */
 
     SUNContext context;
     N_Vector y, tolerances;
@@ -39,8 +39,11 @@ static int is_known(const struct runge_kutta *solver, double t, const double *y)
     if (!solver->known || t != solver->known_t || solver->state->event != solver->known_event) return 0;
     for (int f = 0; f < solver->residual->school->n_fish; f++) {
         const struct layout *at = &solver->residual->school->fish[f].at;
-        const size_t size = (size_t)(at->ax - at->x) * sizeof *y;
-        if (memcmp(y + at->x, solver->work + at->x, size) != 0) return 0;
+        // with momenta the velocities are algebraic
+        const int second = fish_has_momentum(&solver->residual->school->fish[f]) ? at->px : at->vx;
+        const size_t places = (size_t)(at->vx - at->x) * sizeof *y, rest = (size_t)(at->ax - second) * sizeof *y;
+        if (memcmp(y + at->x, solver->work + at->x, places) != 0) return 0;
+        if (memcmp(y + second, solver->work + second, rest) != 0) return 0;
         const int differential = !residual_shed_is_algebraic(solver->residual);
         if (differential && memcmp(y + at->circulation, solver->work + at->circulation, sizeof *y) != 0) return 0;
     }
@@ -89,7 +92,7 @@ static void runge_kutta_free(void *data) {
     ode_rhs_free(solver->rhs);
     free(solver->work);
     free(solver->rates);
-    free(solver->circulation);
+    free(solver->last);
     free(solver->tolerance);
     if (solver->context) SUNContext_Free(&solver->context);
     free(solver);
@@ -110,11 +113,8 @@ static enum status set_up_arkode(struct runge_kutta *solver) {
     return failed ? status_fail(STATUS_SOLVER, "ARKODE cannot be set up: %s", status_message()) : STATUS_OK;
 }
 
-static void keep_circulation(struct runge_kutta *solver) {
-    const struct school *school = solver->residual->school;
-    for (int f = 0; f < school->n_fish; f++) {
-        solver->circulation[f] = solver->state->y[school->fish[f].at.circulation];
-    }
+static void keep_unknowns(struct runge_kutta *solver) {
+    memcpy(solver->last, solver->state->y, (size_t)solver->residual->school->n_unknowns * sizeof *solver->last);
 }
 
 static enum status fill(struct runge_kutta *solver) {
@@ -122,8 +122,8 @@ static enum status fill(struct runge_kutta *solver) {
     solver->work = calloc((size_t)n, sizeof *solver->work);
     solver->tolerance = calloc((size_t)n, sizeof *solver->tolerance);
     solver->rates = calloc((size_t)n, sizeof *solver->rates);
-    solver->circulation = calloc((size_t)solver->residual->school->n_fish, sizeof *solver->circulation);
-    if (!solver->work || !solver->rates || !solver->circulation || !solver->tolerance)
+    solver->last = calloc((size_t)n, sizeof *solver->last);
+    if (!solver->work || !solver->rates || !solver->last || !solver->tolerance)
         return status_fail(STATUS_MEMORY, "out of memory: %d unknowns", n);
     // algebraic unknowns have neither rate nor error here; without a tolerance for velocities an explicit method can go
     // wrong unnoticed
@@ -131,7 +131,7 @@ static enum status fill(struct runge_kutta *solver) {
         solver->tolerance[i] = solver->residual->school->rtol * residual_scale(solver->residual, i) *
                                residual_undamped(solver->residual, i);
     }
-    keep_circulation(solver);
+    keep_unknowns(solver);
     TRY(ode_rhs_create(&solver->rhs, solver->residual));
     TRY(sundials_adapter_context(&solver->context));
     TRY(sundials_adapter_vector(&solver->y, solver->context, n, solver->state->y));
@@ -178,7 +178,7 @@ static void runge_kutta_count(const void *data, struct integrator_counts *counts
 static enum status runge_kutta_restart(void *data) {
     struct runge_kutta *const solver = data;
     runge_kutta_count(solver, &solver->before);
-    keep_circulation(solver);
+    keep_unknowns(solver);
     if (ARKStepReInit(solver->arkode, rates_callback, NULL, solver->state->t, solver->y)) {
         return status_fail(STATUS_SOLVER, "ARKODE cannot start again: %s", status_message());
     }
@@ -214,6 +214,11 @@ static enum status unstable(const struct runge_kutta *solver, double t, const ch
         t, why, place.name, place.index, solver->residual->school->fish[place.fish].name, step);
 }
 
+// rates of n unknowns from a first one on: differences over the last step
+static void set_difference(struct runge_kutta *solver, int first, int n, double step) {
+    for (int i = first; i < first + n; i++) solver->state->yp[i] = (solver->work[i] - solver->last[i]) / step;
+}
+
 // the algebraic unknowns and all rates at the end of a step, for the energy balance and the event
 static enum status close_step(struct runge_kutta *solver, double before, double reached) {
     struct state *const state = solver->state;
@@ -222,15 +227,17 @@ static enum status close_step(struct runge_kutta *solver, double before, double 
     if (status > 0) return unstable(solver, reached, status_message());
     TRY(status);
     memcpy(state->yp, solver->rates, (size_t)school->n_unknowns * sizeof *state->yp);
-    // that of an algebraic circulation is a difference over the step
+    // that of an algebraic circulation is a difference over the step; where there are momenta, of velocities and sheets
+    // too
     for (int f = 0; f < school->n_fish; f++) {
         const struct layout *at = &school->fish[f].at;
-        if (residual_shed_is_algebraic(solver->residual)) {
-            state->yp[at->circulation] = (solver->work[at->circulation] - solver->circulation[f]) / (reached - before);
-        }
+        if (residual_shed_is_algebraic(solver->residual)) set_difference(solver, at->circulation, 1, reached - before);
+        if (!fish_has_momentum(&school->fish[f])) continue;
+        set_difference(solver, at->vx, at->px - at->vx, reached - before);
+        set_difference(solver, at->gamma, at->circulation - at->gamma, reached - before);
     }
     memcpy(state->y, solver->work, (size_t)school->n_unknowns * sizeof *state->y);
-    keep_circulation(solver);
+    keep_unknowns(solver);
     return STATUS_OK;
 }
 

@@ -14,8 +14,9 @@ static const double *flow_v(const struct setup *setup, int f) {
 static void slope_of_the_force_agrees_with_differences(void **state) {
     (void)state;
     const char *const texts[] = {TIME "fish: [{drag: {tangential: 0.3}}]\n",
-                                 TIME "fish: [{drag: {tangential: 0.3, law: linear_quadratic}}]\n"};
-    for (int i = 0; i < 2; i++) {
+                                 TIME "fish: [{drag: {tangential: 0.3, law: linear_quadratic}}]\n",
+                                 TIME "fluid: {viscosity: 0.1}\nfish: [{drag: {skin: laminar}}]\n"};
+    for (int i = 0; i < 3; i++) {
         struct setup setup;
         school_build(&setup, texts[i]);
         const struct fish *fish = setup.school->fish;
@@ -37,6 +38,34 @@ static void slope_of_the_force_agrees_with_differences(void **state) {
         }
         school_clear(&setup);
     }
+}
+
+// Blasius: 1.328 rho w sqrt(nu L) U^(3/2) for both sides
+static void laminar_friction_of_a_plate_is_that_of_its_boundary_layer(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME
+                 "fluid: {viscosity: 0.002, density: 3}\n"
+                 "fish: [{length: 2, body: {width: 0.4}, wave: {frequency: 0}, start: {speed: 0.5},\n"
+                 "        drag: {skin: laminar, normal: 0}}]\n");
+    const struct fish *fish = setup.school->fish;
+    const struct edge edge = {.t = {1, 0}, .n = {0, 1}};
+    const double w[2] = {-0.7, 0.3}, slow[2] = {1e-9, 0};
+    double total[2] = {0, 0}, across = 0, force[2], friction[2];
+    for (int k = 0; k < fish->n_edges; k++) {
+        drag_force(fish, k, &edge, w, force);
+        drag_friction(fish, k, &edge, w, friction);
+        total[0] += force[0];
+        total[1] += friction[0];
+        across += fabs(force[1]) + fabs(friction[1]);
+    }
+    const double blasius = 1.328 * 3 * 0.8 * sqrt(0.002 * 2) * pow(0.7, 1.5);
+    for (int i = 0; i < 2; i++) NEAR(total[i], blasius, 0, 1e-8);  // u0 = 1e-4 * 0.5 m/s
+    NEAR(across, 0, 0, 0);
+    // near rest it is linear: (u0)^(1/2) u
+    drag_force(fish, 0, &edge, slow, force);
+    NEAR(force[0], -blasius / pow(0.7, 1.5) * sqrt(1.0 / 6) * sqrt(0.5e-4) * 1e-9, 0, 1e-8);
+    school_clear(&setup);
 }
 
 static double moment_about(const struct fish *fish, const double *u, const double *v, const double *y,
@@ -80,6 +109,7 @@ static void moment_is_that_of_the_forces_that_the_flow_adds(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(slope_of_the_force_agrees_with_differences),
+        cmocka_unit_test(laminar_friction_of_a_plate_is_that_of_its_boundary_layer),
         cmocka_unit_test(moment_is_that_of_the_forces_that_the_flow_adds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -6,6 +6,9 @@
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 #define FAR "solver: {coupling_distance: 100}\n"
+#define PRESSURE                                                                                   \
+    TIME "wake: {shedding: sheet, curve: smooth, smoothing: 0.1, taper: 0.4, taper_beside: 0.1}\n" \
+         "defaults: {fish: {drag: {skin: laminar}}}\n"
 #define FISH "fish: [{sheet_points: 9, body: {modulus: 1.0e+5}}]\n"
 
 /* Every option of doc/model.md at least once, alone or with those that it meets. */
@@ -96,6 +99,29 @@ static const struct variant {
               "  - {sheet_points: 9, control: {law: heading, desired_heading: 150}}\n"
               "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"
               "  - {nodes: 9, sheet_points: 11, length: 1.2, start: {position: [0.1, -0.6], heading: 200}}\n"},
+    {"pressure", PRESSURE "fish: [{nodes: 5, sheet_points: 9, force: pressure}]\n"},
+    {"pressure, less suction, quadratic skin and cross-flow drag, stream, shear, gust, bias",
+     PRESSURE "fluid: {velocity: [0.3, -0.2], shear: 0.7, gust: {amplitude: 0.4, frequency: 1.3}}\n"
+              "fish: [{nodes: 5, sheet_points: 9, force: pressure, pressure: {suction: 0.4},\n"
+              "        drag: {skin: quadratic, tangential: 0.1, normal: 0.7}, control: {bias: 0.2}}]\n"},
+    {"pressure, a depth for every edge, heading",
+     PRESSURE "fish: [{nodes: 5, sheet_points: 9, force: pressure, drag: {skin: laminar, normal: 0.5},\n"
+              "        body: {profile: table, h: [0.1, 0.2, 0.15, 0.05], w: [0.2, 0.3, 0.25, 0.1]},\n"
+              "        control: {law: heading, feedforward: 0, desired_heading: 150}}]\n"},
+    {"pressure, clamped head",
+     PRESSURE "fish: [{nodes: 5, sheet_points: 9, force: pressure, body: {section: mean, relaxation_time: 0.05},\n"
+              "        load: {tip: [3, -2]},\n"
+              "        motion: {driven: head, heave: 0.1, pitch: 10, pitch_phase: 70, frequency: 1, pivot: 0.2}}]\n"},
+    {"pressure, driven body", PRESSURE "fish: [{nodes: 5, sheet_points: 9, force: pressure,\n"
+                                       "        motion: {driven: all, heave: 0.1, pitch: 10, frequency: 1}}]\n"},
+    {"four fish, one force each and a driven head", PRESSURE FAR
+     "fluid: {velocity: [0.1, 0.05], shear: 0.2}\n"
+     "fish:\n"
+     "  - {nodes: 5, sheet_points: 9, force: pressure}\n"
+     "  - {nodes: 5, sheet_points: 7, force: reactive, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"
+     "  - {nodes: 4, sheet_points: 7, force: published, start: {position: [0.1, -0.6], heading: 200}}\n"
+     "  - {nodes: 4, sheet_points: 7, force: pressure, start: {position: [0, 1.2]},\n"
+     "     motion: {driven: head, heave: 0.1, frequency: 1}}\n"},
     {"two fish, impulsive", TIME FAR "preset: published\n"
                                      "fish:\n"
                                      "  - {sheet_points: 9}\n"

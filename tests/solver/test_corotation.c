@@ -8,10 +8,11 @@
 
 static const char *const text =
     "time: {end: 1}\n"
+    "wake: {shedding: sheet, curve: smooth}\n"
     "fish:\n"
     "  - {nodes: 6, sheet_points: 7}\n"
     "  - {nodes: 4, sheet_points: 5, start: {position: [0, 2]}, motion: {driven: head, heave: 0.1, frequency: 1}}\n"
-    "  - {nodes: 9, sheet_points: 5, length: 0.6, start: {position: [2, 1], heading: 30}}\n";
+    "  - {nodes: 9, sheet_points: 18, length: 0.6, force: pressure, start: {position: [2, 1], heading: 30}}\n";
 
 enum { MAX_NODES = 9 };
 
@@ -112,8 +113,8 @@ static void the_inner_product_weighted_with_masses_is_preserved(void **state) {
     corotation_to_current(both.corotation, both.image);
     for (int f = 0; f < 3; f++) {
         const struct fish *fish = &both.setup.school->fish[f];
-        const int slices[] = {fish->at.x, fish->at.vx, fish->at.ax};
-        for (int i = 0; i < 3; i++) {
+        const int slices[] = {fish->at.x, fish->at.vx, fish->at.ax, fish->at.px};
+        for (int i = 0; i < (fish_has_momentum(fish) ? 4 : 3); i++) {
             const double *const a = both.field + slices[i], *const b = both.image + slices[i];
             NEAR(product(fish, b, b), product(fish, a, a), 0, 1e-14);
         }

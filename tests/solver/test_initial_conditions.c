@@ -25,6 +25,13 @@ static const char *const texts[] = {
     TIME "fluid: {density: 0}\n" FISH,
     TIME "fish: [{body: {modulus: 1.0e+10}}]\n",
     TIME
+    "wake: {curve: smooth, shedding: sheet}\n"
+    "fish:\n"
+    "  - {nodes: 7, sheet_points: 13, force: pressure}\n"
+    "  - {nodes: 6, sheet_points: 13, force: reactive, start: {position: [0, 0.7]}}\n"
+    "  - {nodes: 5, sheet_points: 9, force: pressure, start: {position: [0, -0.7]},\n"
+    "     motion: {driven: head, heave: 0.1, pitch: 10, frequency: 1}}\n",
+    TIME
     "fish: [{}, {nodes: 5, length: 0.7, start: {position: [0.2, 0.5]}}, {nodes: 9, start: {position: [0, -0.6]}}]\n"};
 
 /* Newton's iteration with a Jacobian without the blocks that couple these fish. */
@@ -124,6 +131,38 @@ static void differential_unknowns_stay_as_they_are(void **state) {
     free(before);
 }
 
+// places and velocities at the start, later places and momenta; the driven node has its motion at all times
+static void momenta_follow_at_the_start_and_velocities_later(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(
+        &setup, TIME
+        "wake: {curve: smooth, shedding: sheet}\n"
+        "fish: [{nodes: 7, sheet_points: 13, force: pressure, motion: {driven: head, heave: 0.1, frequency: 1}}]\n");
+    school_stir(&setup);
+    const struct layout *at = &setup.school->fish[0].at;
+    double *const y = setup.state->y, before[128];
+    struct initial_conditions *solver;
+    school_ok(initial_conditions_create(&solver, setup.residual));
+    for (int start = 1; start >= 0; start--) {
+        setup.residual->at_start = start;
+        setup.residual->shed_now = start ? SHED_IS_GIVEN : SHED_BY_LAW;
+        for (int i = at->x; i < at->end; i++) before[i] = y[i];
+        school_ok(initial_conditions_solve(solver, setup.t, y, setup.state->yp));
+        for (int k = fish_n_prescribed(setup.school->fish); k < 7; k++) {
+            NEAR(y[at->y + k], before[at->y + k], 0, 0);
+            NEAR(y[(start ? at->vy : at->py) + k], before[(start ? at->vy : at->py) + k], 0, 0);
+            assert_true(fabs(y[(start ? at->py : at->vy) + k] - before[(start ? at->py : at->vy) + k]) > 1e-6);
+        }
+        const double *const added = setup.residual->pressure[0]->momentum;
+        for (int i = 0; i < 14; i++) {
+            NEAR(y[at->px + i], y[at->vx + i] + added[i] / setup.school->fish[0].mass[i % 7], 1e-10, 1e-10);
+        }
+    }
+    initial_conditions_free(solver);
+    school_clear(&setup);
+}
+
 static void a_second_solution_changes_nothing(void **state) {
     (void)state;
     struct setup setup;
@@ -201,6 +240,7 @@ int main(void) {
         cmocka_unit_test(blocks_left_out_of_the_jacobian_change_no_solution),
         cmocka_unit_test(all_equations_hold_again_from_any_state),
         cmocka_unit_test(differential_unknowns_stay_as_they_are),
+        cmocka_unit_test(momenta_follow_at_the_start_and_velocities_later),
         cmocka_unit_test(a_second_solution_changes_nothing),
         cmocka_unit_test(a_state_that_is_not_a_number_is_refused_and_kept),
         cmocka_unit_test(a_singular_jacobian_is_named),

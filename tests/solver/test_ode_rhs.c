@@ -26,6 +26,16 @@ static const char *const cases[] = {
     "time: {end: 1, shedding_interval: 0.02}\n"
     "wake: {curve: smooth, shedding: sheet}\n"
     "fish: [{nodes: 7, sheet_points: 13}, {nodes: 9, sheet_points: 17, start: {position: [0, 0.7]}}]\n",
+    "time: {end: 1, shedding_interval: 0.02}\n"
+    "fluid: {velocity: [0.1, -0.05], shear: 0.2, gust: {amplitude: 0.1, frequency: 0.7}}\n"
+    "wake: {curve: smooth, shedding: sheet}\n"
+    "fish:\n"
+    "  - {nodes: 7, sheet_points: 13, force: pressure}\n"
+    "  - {nodes: 6, sheet_points: 13, force: reactive, start: {position: [0, 0.7]}}\n"
+    "  - {nodes: 5, sheet_points: 9, force: pressure, start: {position: [0, -0.7]},\n"
+    "     motion: {driven: head, heave: 0.1, pitch: 10, frequency: 1}}\n"
+    "  - {nodes: 5, sheet_points: 9, force: pressure, start: {position: [0, -1.4]},\n"
+    "     motion: {driven: all, heave: 0.1, pitch: 10, frequency: 1}}\n",
 };
 
 static void all_equations_hold_for_the_computed_unknowns(void **state) {

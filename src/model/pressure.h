@@ -1,0 +1,87 @@
+/* pressure.h: the force of the fluid on a body from the pressure jump across its bound sheet, with the suction at the
+ * leading edge. doc/model.md, section 15. Tested by tests/model/test_pressure.c.
+ *
+ * The jump has the rate at which the circulation between the nose and a point changes. Instead of that rate the
+ * unknowns have p, velocity plus the momentum of the fluid per mass of a node:
+ *
+ *     rows v (p where v is given)   p - v - I/m = 0       I: added momentum, linear in places and strengths
+ *     rows p                        dp/dt - a = 0
+ *     rows a                        (m a - F)/m = 0       F: with turning, convection and suction of this file */
+#ifndef PRESSURE_H
+#define PRESSURE_H
+
+#include "base/sparse.h"
+#include "model/fish.h"
+#include "model/flow.h"
+
+/* A control point: the circulation of the interval around it, m2 s-1; that times density and depth, kg s-1; the
+ * velocity of the fluid relative to the body, m s-1; the line of the body. */
+struct pressure_point {
+    double circulation, strength, slip[2];
+    struct direction body;
+};
+
+/* Of one fish, as last updated. All pairs: x of all nodes, then y. */
+struct pressure {
+    const struct fish *fish;
+    double *circulation;   /* of the bound vortices, m2 s-1                                     (n_sheet) */
+    double *matrix;        /* R: I = E3 R x, kg s-1                                      (n_nodes, n_nodes) */
+    double *momentum;      /* I, the added momentum of the nodes, N s                         (2 n_nodes) */
+    double *momentum_rate; /* dI/dt, N: of pressure_update_rate                               (2 n_nodes) */
+    double *force;         /* turning and convection: the force of the pressure and dI/dt, N  (2 n_nodes) */
+    double suction[2];     /* on the nose, N */
+    double *share;         /* of a force at a control point in the row of a node, kg-1           (n_control, n_nodes) */
+    struct pressure_point *point; /* (n_control) */
+};
+
+/* For a fish with force: pressure. Fails with STATUS_MEMORY; pressure_free accepts NULL. */
+enum status pressure_create(struct pressure **pressure, const struct fish *fish);
+void pressure_free(struct pressure *pressure);
+
+/* Take matrix, momentum, force, suction and points from the unknowns y and the velocity of the fluid. All functions
+ * below read them, with the same y. */
+void pressure_update(struct pressure *pressure, const struct flow_at_body *flow, const double *y);
+
+/* The added momentum of node k, kg m s-1, by the unknown of vortex j; x: the places of all nodes, then their y. */
+void pressure_momentum_by_strength(const struct fish *fish, int k, int j, const double *x, double momentum[2]);
+
+/* The row in which the relation of p, v and I stands for component i of node k: that of v, or that of p where v is
+ * given (at the start, of all nodes). */
+int pressure_momentum_row(const struct fish *fish, int at_start, int i, int k);
+
+/* Set those rows, m s-1; take the forces off the rows ax, ay, N. */
+void pressure_momentum_residual(const struct pressure *pressure, int at_start, const double *y, double *residual);
+void pressure_residual(const struct pressure *pressure, double *residual);
+
+/* Add the derivatives of the rows of the momentum, and those of the rows ax, ay, divided by the mass of the node, by
+ * the velocities of the nodes. */
+void pressure_momentum_jacobian(const struct pressure *pressure, int at_start, const double *y,
+                                struct sparse *jacobian);
+void pressure_jacobian(const struct pressure *pressure, struct sparse *jacobian);
+
+/* Add the derivatives of the rows ax, ay, divided by the mass of the node: by the own places and strengths where the
+ * velocity of the fluid stays as it is, and those that come through it. */
+void pressure_own_jacobian(const struct pressure *pressure, const double *y, struct coupling_block *rows);
+void pressure_flow_jacobian(const struct pressure *pressure, const struct influence_block *block,
+                            struct coupling_block *rows);
+
+/* Find momentum_rate for the rates yp of the places and strengths. */
+void pressure_update_rate(struct pressure *pressure, const double *y, const double *yp);
+
+/* After pressure_update_rate: the jump of the pressure at control point c, left less right, Pa. */
+double pressure_jump(const struct pressure *pressure, int c, const double *yp);
+
+/* After pressure_update_rate: the force of the pressure and the suction on the body, N, their moments about a point, N
+ * m, and their powers, W; the sum of the added momentum, N s, and its moment, N m s. */
+struct pressure_forces {
+    double pressure[2], suction[2], momentum[2];
+    double pressure_moment, suction_moment, momentum_moment;
+    double pressure_power, suction_power;
+};
+struct pressure_forces pressure_sum(const struct pressure *pressure, const double about[2], const double *y);
+
+/* The leading-edge suction parameter A_0 of a body that goes at this speed, m s-1: that of a flat plate at the
+ * incidence whose sine is A_0. */
+double pressure_leading_edge(const struct fish *fish, double speed, const double *y);
+
+#endif

@@ -1,0 +1,222 @@
+/* test_pressure.c: the added mass, impulses, and the force of the pressure: doc/model.md, section 15. The Jacobian is
+ * compared with differences in test_residual.c. */
+#include <lapacke.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "failing_malloc.h"
+#include "model/pressure.h"
+#include "school.h"
+#include "solver/initial_conditions.h"
+
+static const double pi = 3.14159265358979323846;
+
+enum { MAX_NODES = 33 };
+
+// a straight plate of span 1 and length 1 along x, in a fluid of density 1
+static void build_plate(struct setup *setup, int nodes, int points, const char *more) {
+    char text[1024];
+    snprintf(text, sizeof text,
+             SCHOOL_SECOND
+             "time: {end: 1, shedding_interval: 0.002}\n"
+             "fluid: {density: 1, viscosity: 0}\n"
+             "fish: [{nodes: %d, sheet_points: %d, force: pressure, wave: {amplitude: 0, frequency: 0},\n"
+             "        body: {profile: uniform, thickness: 0.1, width: 1, %s}}]\n",
+             nodes, 2 * nodes - 1, more);
+    school_settings(&setup->values, text);
+    // as the keys refuse it
+    setup->values.school.fish[0].sheet_points = points;
+    school_ok(fish_school_create(&setup->school, &setup->values.school));
+    school_ok(state_create(&setup->state, setup->school));
+    school_ok(residual_create(&setup->residual, setup->school, setup->state));
+    setup->value = NULL;
+    setup->jacobian = NULL;
+    setup->term = NULL;
+}
+
+// the added momentum across the plate of its nodes where they have these velocities across it and nothing is shed
+static void added_momentum(struct setup *setup, const double *velocity, double *momentum) {
+    const struct fish *fish = setup->school->fish;
+    for (int k = 0; k < fish->n_nodes; k++) setup->state->y[fish->at.vy + k] = velocity[k];
+    struct initial_conditions *solver;
+    setup->residual->at_start = 1;
+    setup->residual->shed_now = SHED_IS_GIVEN;
+    school_ok(initial_conditions_create(&solver, setup->residual));
+    school_ok(initial_conditions_solve(solver, 0, setup->state->y, setup->state->yp));
+    initial_conditions_free(solver);
+    for (int k = 0; k < fish->n_nodes; k++) momentum[k] = setup->residual->pressure[0]->momentum[fish->n_nodes + k];
+}
+
+// pi/4 rho L^2 of heave, pi/128 rho L^4 of a rotation about the middle. What is left is the end correction's, of order
+// M^-4: it is meant for a sheet that sheds
+static void added_mass_of_a_plate_is_that_of_potential_flow(void **state) {
+    (void)state;
+    const struct {
+        int points;
+        double heave, rotation;  // tolerances
+    } cases[] = {{33, 3e-5, 1.2e-4}, {65, 4e-6, 1.5e-5}};
+    for (int i = 0; i < 2; i++) {
+        struct setup setup;
+        build_plate(&setup, 17, cases[i].points, "density: 1");
+        double velocity[2][MAX_NODES], momentum[MAX_NODES];
+        const double want[2] = {pi / 4, pi / 128}, tolerance[2] = {cases[i].heave, cases[i].rotation};
+        for (int k = 0; k < 17; k++) {
+            velocity[0][k] = 1;
+            velocity[1][k] = k / 16.0 - 0.5;
+        }
+        for (int motion = 0; motion < 2; motion++) {
+            double mass = 0;
+            added_momentum(&setup, velocity[motion], momentum);
+            for (int k = 0; k < 17; k++) mass += momentum[k] * velocity[motion][k];
+            NEAR(mass, want[motion], 0, tolerance[motion]);
+        }
+        school_clear(&setup);
+    }
+}
+
+// the smallest eigenvalue of the symmetric part of the matrix from velocities across the plate to momenta
+static double smallest_eigenvalue(int nodes, int points) {
+    struct setup setup;
+    build_plate(&setup, nodes, points, "density: 1");
+    double matrix[MAX_NODES * MAX_NODES], symmetric[MAX_NODES * MAX_NODES], value[MAX_NODES];
+    for (int i = 0; i < nodes; i++) {
+        double velocity[MAX_NODES] = {0};
+        velocity[i] = 1;
+        added_momentum(&setup, velocity, matrix + i * nodes);
+    }
+    for (int i = 0; i < nodes; i++) {
+        for (int k = 0; k < nodes; k++) symmetric[i * nodes + k] = (matrix[i * nodes + k] + matrix[k * nodes + i]) / 2;
+    }
+    assert_int_equal(LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'N', 'U', nodes, symmetric, nodes, value), 0);
+    school_clear(&setup);
+    return value[0];
+}
+
+static void added_mass_is_positive_with_twice_as_many_vortices_as_nodes_only(void **state) {
+    (void)state;
+    NEAR(smallest_eigenvalue(17, 33), 1.6e-4, 0.1e-4, 0);
+    NEAR(smallest_eigenvalue(7, 33), 1.1e-3, 0.1e-3, 0);
+    assert_true(smallest_eigenvalue(17, 17) < -1e-4);
+}
+
+// a stream of 0.1 across a stiff free plate starts at once: with p kept it takes up 0.1 mu/(m + mu), mu = pi/4
+static void a_stream_that_starts_at_once_pushes_by_the_added_mass(void **state) {
+    (void)state;
+    char body[128];
+    const double mass = 0.1;
+    snprintf(body, sizeof body, "density: %.17g, modulus: 1.0e+9, relaxation_time: 0.01", mass / (pi / 4 * 0.1));
+    char text[1024];
+    snprintf(text, sizeof text,
+             SCHOOL_SECOND
+             "time: {end: 1, shedding_interval: 0.002}\n"
+             "fluid: {density: 1, viscosity: 0, velocity: [0, 0.1]}\n"
+             "fish: [{nodes: 17, force: pressure, wave: {amplitude: 0, frequency: 0},\n"
+             "        body: {profile: uniform, thickness: 0.1, width: 1, %s}}]\n",
+             body);
+    struct simulation *const simulation = school_simulation(text);
+    const struct fish *fish = simulation->school->fish;
+    double *const y = simulation->state->y;
+    // as in still fluid
+    for (int i = fish->at.px; i < fish->at.ax; i++) y[i] = 0;
+    school_ok(initial_conditions_solve(simulation->consistent, 0, y, simulation->state->yp));
+    school_ok(simulation->integrator->restart(simulation->solver));
+    school_run(simulation, 0.002);
+    double velocity = 0;
+    for (int k = 0; k < 17; k++) velocity += fish->mass[k] / fish->total_mass * y[fish->at.vy + k];
+    // the difference is the lift of what has been shed within 0.002 s
+    NEAR(velocity, 0.1 * (pi / 4) / (mass + pi / 4), 0, 1.5e-3);
+    simulate_free(simulation);
+}
+
+// the force on the nodes is that of the jump along the line, and what the reactions of a driven body have to balance
+static void force_and_reaction_are_those_of_the_jump(void **state) {
+    (void)state;
+    struct simulation *const simulation =
+        school_simulation(SCHOOL_SECOND
+                          "time: {end: 1, shedding_interval: 0.01}\n"
+                          "fluid: {density: 2, viscosity: 0}\n"
+                          "fish: [{force: pressure, wave: {amplitude: 0, frequency: 0}, start: {speed: 1}, body: "
+                          "{profile: uniform, thickness: 0.1, "
+                          "width: 0.5},\n"
+                          "        motion: {driven: all, heave: 0.05, pitch: 5, frequency: 1}}]\n");
+    school_run(simulation, 0.3);
+    simulate_measure(simulation);
+    const struct fish *fish = simulation->school->fish;
+    const struct diagnostics_fish *of = simulation->diagnostics->fish;
+    const struct pressure *pressure = simulation->residual->pressure[0];
+    double sum[2] = {0, 0}, inertia[2] = {0, 0};
+    for (int c = 0; c < fish->n_control; c++) {
+        const struct direction *body = &pressure->point[c].body;
+        const double jump = pressure_jump(pressure, c, simulation->state->yp);
+        for (int i = 0; i < 2; i++) sum[i] -= 0.5 * jump * body->length * fish->control_interval[c] * body->n[i];
+    }
+    for (int k = 0; k < fish->n_nodes; k++) {
+        for (int i = 0; i < 2; i++) {
+            inertia[i] += fish->mass[k] * simulation->state->y[fish->at.ax + i * fish->n_nodes + k];
+        }
+    }
+    for (int i = 0; i < 2; i++) {
+        // the midpoint rule in theta, of a jump that has a kink at the tail
+        NEAR(sum[i], of->pressure.pressure[i], 1e-3 * fabs(of->pressure.pressure[1]), 0);
+        NEAR(of->constraint_force[i], inertia[i] - of->pressure.pressure[i] - of->pressure.suction[i], 1e-9, 1e-9);
+    }
+    // A_0: suction = pi rho w U^2 L A_0^2, with the speed through the water since the start
+    NEAR(hypot(of->pressure.suction[0], of->pressure.suction[1]),
+         pi * 2 * 0.5 * pow(of->speed * of->leading_edge_a0, 2), 0, 1e-12);
+    simulate_free(simulation);
+}
+
+// a soft free fish that begins to beat: the audit, and momentum against forces by name
+static void energy_and_momentum_of_a_free_fish_are_accounted_for(void **state) {
+    (void)state;
+    struct simulation *const simulation =
+        school_simulation(SCHOOL_SECOND
+                          "time: {end: 1, shedding_interval: 0.02}\n"
+                          "fish: [{nodes: 9, sheet_points: 17, force: pressure, body: {modulus: 3.0e+4}, wave: {ramp: "
+                          "0.3}, start: {speed: 0.5}}]\n");
+    school_run(simulation, 0.5);
+    simulate_measure(simulation);
+    const struct fish *fish = simulation->school->fish;
+    const struct diagnostics_fish *of = simulation->diagnostics->fish;
+    double rate[2] = {0, 0};
+    for (int i = 0; i < 2; i++) {
+        for (int k = 0; k < fish->n_nodes; k++) {
+            rate[i] += fish->mass[k] * simulation->state->yp[fish->at.vx + i * fish->n_nodes + k];
+        }
+        // rates are the integrator's, which are of the order of its tolerance over a step
+        NEAR(rate[i], of->resistive_force[i] + of->pressure.pressure[i] + of->pressure.suction[i],
+             0.02 * fabs(of->pressure.pressure[1]), 0);
+    }
+    assert_true(fabs(of->energy_audit) < 1e-3 * of->actuation_work);
+    assert_true(of->actuation_work > 0.1);
+
+    simulate_free(simulation);
+}
+
+static void no_memory_leaves_nothing(void **state) {
+    (void)state;
+    struct setup setup;
+    build_plate(&setup, 5, 9, "density: 1");
+    const int before = n_live;
+    for (int n = 0; n < 8; n++) {
+        struct pressure *pressure;
+        n_until_failure = n;
+        assert_int_equal(pressure_create(&pressure, setup.school->fish), STATUS_MEMORY);
+        n_until_failure = -1;
+        assert_null(pressure);
+        assert_int_equal(n_live, before);
+    }
+    school_clear(&setup);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(added_mass_of_a_plate_is_that_of_potential_flow),
+        cmocka_unit_test(added_mass_is_positive_with_twice_as_many_vortices_as_nodes_only),
+        cmocka_unit_test(a_stream_that_starts_at_once_pushes_by_the_added_mass),
+        cmocka_unit_test(force_and_reaction_are_those_of_the_jump),
+        cmocka_unit_test(energy_and_momentum_of_a_free_fish_are_accounted_for),
+        cmocka_unit_test(no_memory_leaves_nothing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
