@@ -62,6 +62,12 @@ double shoal_time(const struct shoal *run);
 double shoal_end(const struct shoal *run);
 double shoal_interval(const struct shoal *run);
 
+/* Set, at the last event, what a key of the case has given so far to a fish: "wave.amplitude", "wave.frequency" (Hz;
+ * the phase of the beat is continuous), "control.bias", "control.desired_heading" (degree), each one number, or
+ * "control.waypoints", pairs in m. The change is made within control.ramp, and smoothly: the integrator does not start
+ * again. Means over a period stay those of the period of the case. */
+int shoal_set(struct shoal *run, int fish, const char *key, int n, const double *values);
+
 /* ---- what a run is at its last event ---- */
 
 enum shoal_type { SHOAL_DOUBLE, SHOAL_INT, SHOAL_LONG, SHOAL_CHAR };
@@ -100,6 +106,9 @@ int shoal_nodes(const struct shoal *run, int fish, double *x, double *y);
 int shoal_vortices(const struct shoal *run, int fish, double *x, double *y, double *circulation);
 
 /* ---- files ---- */
+
+/* The path that the case names for its result: output.file, or the name of the case with .nc. NULL on failure. */
+const char *shoal_result_path(const struct shoal *run);
 
 /* Write a result file from now on: each event from this one that is a multiple of time.output_interval, and the end.
  * overwrite: replace a file that exists, else that is an error. When a row cannot be written, shoal_step returns

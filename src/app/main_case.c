@@ -13,6 +13,7 @@
 #include "output/result_info.h"
 #include "output/result_kind.h"
 #include "output/result_table.h"
+#include "run/record.h"
 #include "run/simulate.h"
 #include "study/study_file.h"
 #include "study/study_gather.h"
@@ -25,21 +26,13 @@ static const struct result_kind kinds[] = {
 };
 enum { N_KINDS = sizeof kinds / sizeof *kinds };
 
-char *main_result_path(const struct case_values *values) {
-    const char *const name = values->output.file ? values->output.file : values->name;
-    const char *const ending = values->output.file ? "" : ".nc";
-    char *const path = malloc(strlen(name) + strlen(ending) + 1);
-    if (path) sprintf(path, "%s%s", name, ending);
-    return path;
-}
-
 void main_print_notes(const struct request *request, const struct case_values *values) {
     if (!request->quiet && *values->notes) fprintf(stderr, "%s\n", values->notes);
 }
 
 /* Prepare one case as `shoal run` does, which replaces no file here; its simulation is not run. */
 static enum status prepare(const struct case_values *values, struct simulation **simulation) {
-    char *const path = main_result_path(values);
+    char *const path = record_path(values);
     if (!path) return status_fail(STATUS_MEMORY, "out of memory: a file name");
     const enum status status = simulate_prepare(simulation, values, path, 1);
     free(path);

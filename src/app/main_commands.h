@@ -25,9 +25,6 @@ enum status main_keys(const struct request *request);
 enum status main_info(const struct request *request);
 enum status main_view(const struct request *request);
 
-/* The result file of a case where no option names one; the caller frees it. NULL when out of memory. */
-char *main_result_path(const struct case_values *values);
-
 /* Print the notes on a case to stderr, unless told to be quiet. */
 void main_print_notes(const struct request *request, const struct case_values *values);
 

@@ -13,6 +13,7 @@
 #include "case/case.h"
 #include "case/sweep_members.h"
 #include "output/page.h"
+#include "run/record.h"
 #include "run/simulate.h"
 
 // ---- run
@@ -65,7 +66,7 @@ enum status main_run(const struct request *request) {
     enum status status = sweep_refuse(&values);
     main_print_notes(request, &values);
     if (status == STATUS_OK) {
-        char *const path = request->output ? strdup(request->output) : main_result_path(&values);
+        char *const path = request->output ? strdup(request->output) : record_path(&values);
         status = path ? run_case(&values, request, path) : status_fail(STATUS_MEMORY, "out of memory: a file name");
         free(path);
     }

@@ -213,6 +213,7 @@ static enum status derive_fish(struct fish_parameters *fish, int index) {
     if (!isnan(fish->wave.wavelength)) fish->wave.number = -2 * 3.14159265358979323846 / fish->wave.wavelength;
     fish->wave.wavelength = NAN;
     derive(&fish->control.filter, period);
+    derive(&fish->control.ramp, period > 0 ? period / 2 : 1);
     derive(&fish->motion.speed, fish->start_speed);
     if ((int)fish->control.law < 0) fish->control.law = fish->control.waypoints.n > 0 ? CONTROL_COURSE : CONTROL_NONE;
     if (!fish->name) {

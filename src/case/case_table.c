@@ -286,6 +286,10 @@ const struct key case_table[] = {
      .derived = "one period, 1/wave.frequency (0 when the frequency is 0)"},
     {"fish.control.rate", REAL, IN_FISH(control.rate), "2", ABOVE(0), "s-1",
      .meaning = "averaged_heading, course: maximum rate of change of the steering bias"},
+    {"fish.control.ramp", REAL, IN_FISH(control.ramp), NULL, ABOVE(0), "s",
+     .meaning =
+         "time in which a change of amplitude, frequency, bias or desired heading from outside (doc/python.md) is made",
+     .derived = "half a period, 0.5/wave.frequency (1 s when the frequency is 0)"},
 
     {"sweep", AXES, 0, "[]", ANY, "",
      .meaning =

@@ -4,22 +4,20 @@
 
 #include <math.h>
 
-#include "base/ramp.h"
-
-void actuation_curvature(const struct fish *fish, double t, double phi0, double *curvature, double *by_phi0) {
-    const double ramp = ramp_value(t, fish->ramp);
+void actuation_curvature(const struct fish *fish, struct fish_gait gait, double phi0, double *curvature,
+                         double *by_phi0) {
     for (int j = 0; j < fish->n_joints; j++) {
-        const double half_tangent = tan(fish_natural_angle(fish, j, t, phi0) / 2);
+        const double half_tangent = tan(fish_natural_angle(fish, j, &gait, phi0) / 2);
         curvature[j] = 2 * half_tangent;
-        by_phi0[j] = ramp * fish->wave_amplitude[j] * (1 + half_tangent * half_tangent);
+        by_phi0[j] = gait.amplitude * fish->wave_amplitude[j] * (1 + half_tangent * half_tangent);
     }
 }
 
-void actuation_rate(const struct fish *fish, double t, double phi0, double phi0_rate, double *rate) {
-    const double ramp = ramp_value(t, fish->ramp), rate_of_ramp = ramp_rate(t, fish->ramp);
+void actuation_rate(const struct fish *fish, struct fish_gait gait, double phi0, double phi0_rate, double *rate) {
+    const double ramp = gait.amplitude, rate_of_ramp = gait.amplitude_rate;
     for (int j = 0; j < fish->n_joints; j++) {
-        const struct fish_demand demand = fish_demand(fish, j, t);
-        const double wave = demand.sine + phi0, half_tangent = tan(fish_natural_angle(fish, j, t, phi0) / 2);
+        const struct fish_demand demand = fish_demand(fish, j, &gait);
+        const double wave = demand.sine + phi0, half_tangent = tan(fish_natural_angle(fish, j, &gait, phi0) / 2);
         const double angle_rate =
             fish->wave_amplitude[j] * (rate_of_ramp * wave + ramp * (demand.sine_rate + phi0_rate)) +
             rate_of_ramp * demand.angle + ramp * demand.angle_rate;

@@ -5,6 +5,8 @@
 
 #include "base/angle.h"
 
+static const double pi = 3.14159265358979323846;
+
 int control_feels_moment(const struct fish *fish) {
     return fish->control.law != CONTROL_NONE && fabs(fish->control.feedforward) > 0;
 }
@@ -22,14 +24,31 @@ double control_heading(const struct fish *fish, const double *y) {
     return atan2(head[1], head[0]);
 }
 
+int control_n_waypoints(const struct fish *fish, const struct control_memory *memory) {
+    return memory->has_waypoints ? memory->n_waypoints : fish->control.n_waypoints;
+}
+
 static int steers_to_waypoint(const struct fish *fish, const struct control_memory *memory) {
-    return memory->waypoint < fish->control.n_waypoints;
+    return memory->waypoint < control_n_waypoints(fish, memory);
+}
+
+// where waypoint i is; before the first one, where the fish has set out for it
+static void place_waypoint(const struct fish *fish, const struct control_memory *memory, int i, double place[2]) {
+    for (int d = 0; d < 2; d++) {
+        if (memory->has_waypoints) {
+            place[d] = i < 0 ? memory->set_out[d] : memory->waypoints[2 * i + d];
+        } else {
+            const double *const along = d == 0 ? fish->control.waypoint_x : fish->control.waypoint_y;
+            place[d] = i < 0 ? fish->start_position[d] : along[i];
+        }
+    }
 }
 
 // from the nose to the waypoint that is steered to
 static void to_waypoint(const struct fish *fish, const struct control_memory *memory, const double *y, double away[2]) {
-    away[0] = fish->control.waypoint_x[memory->waypoint] - y[fish->at.x];
-    away[1] = fish->control.waypoint_y[memory->waypoint] - y[fish->at.y];
+    place_waypoint(fish, memory, memory->waypoint, away);
+    away[0] -= y[fish->at.x];
+    away[1] -= y[fish->at.y];
 }
 
 static double heading_in_table(const struct control_law_data *control, double t) {
@@ -46,8 +65,9 @@ static double heading_in_table(const struct control_law_data *control, double t)
 
 double control_desired_heading(const struct fish *fish, const struct control_memory *memory, double t,
                                const double *y) {
-    const struct control_law_data *control = &fish->control;
-    if (control->n_waypoints == 0) return heading_in_table(control, t);
+    if (control_n_waypoints(fish, memory) == 0) {
+        return memory->has_heading ? lead_value(&memory->heading, t) : heading_in_table(&fish->control, t);
+    }
     if (!steers_to_waypoint(fish, memory)) return memory->held_heading;
     double away[2];
     to_waypoint(fish, memory, y, away);
@@ -79,9 +99,9 @@ static double heading_argument(const struct fish *fish, const struct control_mem
 
 void control_residual(const struct fish *fish, const struct control_memory *memory, double t, double since,
                       const double *y, double *residual) {
-    double value = fish->control.bias;
+    double value = 0;
     switch (fish->control.law) {
-        case CONTROL_NONE: break;
+        case CONTROL_NONE: value = fish->control.bias + lead_value(&memory->bias, t); break;
         case CONTROL_HEADING: value = fish->control.limit * tanh(heading_argument(fish, memory, t, since, y)); break;
         case CONTROL_AVERAGED_HEADING:
         case CONTROL_COURSE: value = memory->phi0 + since * memory->phi0_rate; break;
@@ -105,7 +125,9 @@ static double turn_rate(const double vector[2], const double rate[2]) {
 
 static double desired_heading_rate(const struct fish *fish, const struct control_memory *memory, double t,
                                    const double *y) {
-    if (fish->control.n_waypoints == 0) return table_rate(&fish->control, t);
+    if (control_n_waypoints(fish, memory) == 0) {
+        return memory->has_heading ? lead_rate(&memory->heading, t) : table_rate(&fish->control, t);
+    }
     if (!steers_to_waypoint(fish, memory)) return 0;
     double away[2];
     to_waypoint(fish, memory, y, away);
@@ -115,7 +137,7 @@ static double desired_heading_rate(const struct fish *fish, const struct control
 
 double control_rate(const struct fish *fish, const struct control_memory *memory, double t, double since,
                     const double *y) {
-    if (fish->control.law == CONTROL_NONE) return 0;
+    if (fish->control.law == CONTROL_NONE) return lead_rate(&memory->bias, t);
     if (fish->control.law != CONTROL_HEADING) return memory->phi0_rate;
     double head[2], rate[2];
     head_vector(fish, y, head);
@@ -149,7 +171,7 @@ void control_jacobian(const struct fish *fish, const struct control_memory *memo
     }
     // so does the direction to the waypoint with the nose; without one the entries are there and zero
     double by_nose[2] = {0, 0};
-    if (fish->control.n_waypoints > 0 && steers_to_waypoint(fish, memory)) {
+    if (steers_to_waypoint(fish, memory)) {
         double away[2];
         to_waypoint(fish, memory, y, away);
         const double distance = away[0] * away[0] + away[1] * away[1];
@@ -174,11 +196,10 @@ static int pass_waypoints(const struct fish *fish, struct control_memory *memory
         to_waypoint(fish, memory, y, away);
         if (hypot(away[0], away[1]) > control->acceptance_radius) break;
         // after the last waypoint the course of the last leg is held
-        const int before = memory->waypoint - 1;
-        const double from[2] = {before >= 0 ? control->waypoint_x[before] : fish->start_position[0],
-                                before >= 0 ? control->waypoint_y[before] : fish->start_position[1]};
-        memory->held_heading =
-            atan2(control->waypoint_y[memory->waypoint] - from[1], control->waypoint_x[memory->waypoint] - from[0]);
+        double from[2], to[2];
+        place_waypoint(fish, memory, memory->waypoint - 1, from);
+        place_waypoint(fish, memory, memory->waypoint, to);
+        memory->held_heading = atan2(to[1] - from[1], to[0] - from[0]);
     }
     return passed;
 }
@@ -206,4 +227,55 @@ int control_event(const struct fish *fish, struct control_memory *memory, const 
     const double most = fish->control.rate, target = target_of(fish, memory, view, y);
     memory->phi0_rate = fmax(-most, fmin(most, (target - memory->phi0) / view->interval));
     return 0;
+}
+
+// ---- set from outside
+
+struct fish_gait control_gait(const struct fish *fish, const struct control_memory *memory, double t) {
+    struct fish_gait gait = fish_own_gait(fish, t);
+    const double scale = 1 + lead_value(&memory->amplitude, t);
+    gait.amplitude_rate = gait.amplitude_rate * scale + gait.amplitude * lead_rate(&memory->amplitude, t);
+    gait.amplitude *= scale;
+    gait.angle += 2 * pi * lead_integral(&memory->frequency, t);
+    gait.omega += 2 * pi * lead_value(&memory->frequency, t);
+    return gait;
+}
+
+void control_set_amplitude(const struct fish *fish, struct control_memory *memory, double t, double amplitude) {
+    lead_change(&memory->amplitude, t, fish->control.ramp, amplitude / fish->amplitude - 1);
+}
+
+void control_set_frequency(const struct fish *fish, struct control_memory *memory, double t, double frequency) {
+    lead_change(&memory->frequency, t, fish->control.ramp, frequency - fish->omega / (2 * pi));
+}
+
+void control_set_bias(const struct fish *fish, struct control_memory *memory, double t, double bias) {
+    lead_change(&memory->bias, t, fish->control.ramp, bias - fish->control.bias);
+}
+
+void control_set_heading(const struct fish *fish, struct control_memory *memory, double t, double heading) {
+    const double ramp = fish->control.ramp;
+    if (memory->has_heading) {
+        const double now = memory->heading.target;
+        lead_change(&memory->heading, t, ramp, now + angle_wrap(heading - now));
+        return;
+    }
+    const double now = heading_in_table(&fish->control, t);
+    lead_begin(&memory->heading, t, ramp, now, table_rate(&fish->control, t), now + angle_wrap(heading - now));
+    memory->has_heading = 1;
+}
+
+void control_set_waypoints(const struct fish *fish, struct control_memory *memory, int n, const double *waypoints,
+                           const double *y) {
+    memory->has_waypoints = 1;
+    memory->n_waypoints = n;
+    memory->waypoint = 0;
+    for (int i = 0; i < 2 * n; i++) memory->waypoints[i] = waypoints[i];
+    memory->set_out[0] = y[fish->at.x];
+    memory->set_out[1] = y[fish->at.y];
+}
+
+double control_largest_bias(const struct fish *fish, const struct control_memory *memory) {
+    if (fish->control.law != CONTROL_NONE) return fish->control.limit;
+    return fabs(fish->control.bias + memory->bias.target);
 }

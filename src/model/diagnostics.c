@@ -125,11 +125,12 @@ struct diagnostics_power diagnostics_power(struct residual *residual, int f, dou
     const struct pressure_forces pressure = pressure_forces(residual, f, (const double[2]){0, 0}, y);
     // natural curvature, its derivative and its rate at this very state
     double *const curvature = residual->scratch, *const by_phi0 = curvature + fish->n_joints;
-    actuation_curvature(fish, t, y[fish->at.phi0], curvature, by_phi0);
-    double *const rate = by_phi0;
     const struct state *const state = residual->state;
+    const struct fish_gait gait = control_gait(fish, &state->control[f], t);
+    actuation_curvature(fish, gait, y[fish->at.phi0], curvature, by_phi0);
+    double *const rate = by_phi0;
     const double phi0_rate = control_rate(fish, &state->control[f], t, t - state->t, y);
-    actuation_rate(fish, t, y[fish->at.phi0], phi0_rate, rate);
+    actuation_rate(fish, gait, y[fish->at.phi0], phi0_rate, rate);
     return (struct diagnostics_power){.actuation = rod_actuation_power(fish, curvature, rate, y),
                                       .damping = rod_damping_power(fish, y) + clamp_damping_power(fish, t, y),
                                       .drag = fluid.drag,
@@ -154,7 +155,8 @@ static double kinetic_energy(const struct fish *fish, const double *y) {
 static double bending_energy(struct residual *residual, int f, double t, const double *y) {
     const struct fish *fish = &residual->school->fish[f];
     double *const curvature = residual->scratch;
-    actuation_curvature(fish, t, y[fish->at.phi0], curvature, curvature + fish->n_joints);
+    const struct fish_gait gait = control_gait(fish, &residual->state->control[f], t);
+    actuation_curvature(fish, gait, y[fish->at.phi0], curvature, curvature + fish->n_joints);
     return rod_bending_energy(fish, curvature, y) + clamp_energy(fish, t, y);
 }
 

@@ -141,6 +141,7 @@ static void set_wave(struct fish *fish, const struct fish_parameters *from) {
     }
     fish->omega = 2 * pi * wave->frequency;
     fish->ramp = wave->ramp;
+    fish->amplitude = wave->amplitude;
 }
 
 // Blasius' friction of both sides of an edge, over u^(3/2)
@@ -305,6 +306,7 @@ static enum status set_control(struct fish *fish, const struct fish_parameters *
     to->feedforward = control->feedforward;
     to->filter_share = -expm1(-parameters->shedding_interval / control->filter);
     to->rate = control->rate;
+    to->ramp = control->ramp;
     to->acceptance_radius = control->acceptance_radius * fish->length;
     to->n_headings = control->desired_heading.n;
     TRY(doubles(&to->heading_time, to->n_headings));
@@ -558,24 +560,41 @@ void fish_prescribe(const struct fish *fish, int n, double t, double *y) {
     }
 }
 
-struct fish_demand fish_demand(const struct fish *fish, int j, double t) {
-    const double phase = fish->wave_phase[j] + fish->omega * t;
-    if (fish->n_harmonics == 0) return (struct fish_demand){.sine = sin(phase), .sine_rate = fish->omega * cos(phase)};
+struct fish_gait fish_own_gait(const struct fish *fish, double t) {
+    return (struct fish_gait){.amplitude = ramp_value(t, fish->ramp),
+                              .amplitude_rate = ramp_rate(t, fish->ramp),
+                              .angle = fish->omega * t,
+                              .omega = fish->omega};
+}
+
+struct fish_demand fish_demand(const struct fish *fish, int j, const struct fish_gait *gait) {
+    const double phase = fish->wave_phase[j] + gait->angle;
+    if (fish->n_harmonics == 0) return (struct fish_demand){.sine = sin(phase), .sine_rate = gait->omega * cos(phase)};
     const double *const harmonic = &fish->harmonic[2 * j * fish->n_harmonics];
     struct fish_demand demand = {.sine = 0};
     for (int m = 0; m < fish->n_harmonics; m++) {
         const double c = cos(m * phase), s = sin(m * phase), a = harmonic[2 * m], b = harmonic[2 * m + 1];
         demand.angle += a * c + b * s;
-        demand.angle_rate += m * fish->omega * (b * c - a * s);
+        demand.angle_rate += m * gait->omega * (b * c - a * s);
     }
     return demand;
 }
 
-double fish_natural_angle(const struct fish *fish, int j, double t, double phi0) {
-    const double ramp = ramp_value(t, fish->ramp);
-    const struct fish_demand demand = fish_demand(fish, j, t);
-    const double angle = ramp * fish->wave_amplitude[j] * (demand.sine + phi0);
-    return fish->n_harmonics == 0 ? angle : angle + ramp * demand.angle;
+double fish_natural_angle(const struct fish *fish, int j, const struct fish_gait *gait, double phi0) {
+    const struct fish_demand demand = fish_demand(fish, j, gait);
+    const double angle = gait->amplitude * fish->wave_amplitude[j] * (demand.sine + phi0);
+    return fish->n_harmonics == 0 ? angle : angle + gait->amplitude * demand.angle;
+}
+
+double fish_largest_turn(const struct fish *fish, double amplitude, double bias) {
+    double largest = 0;
+    for (int j = 0; j < fish->n_joints; j++) {
+        double beat = fish->n_harmonics == 0 ? fabs(fish->wave_amplitude[j]) : 0;
+        const double *const harmonic = &fish->harmonic[2 * j * fish->n_harmonics];
+        for (int m = 0; m < fish->n_harmonics; m++) beat += hypot(harmonic[2 * m], harmonic[2 * m + 1]);
+        largest = fmax(largest, fabs(amplitude) * (beat + fabs(fish->wave_amplitude[j] * bias)));
+    }
+    return largest;
 }
 
 void fish_start(const struct fish *fish, double *y) {
@@ -587,11 +606,12 @@ void fish_start(const struct fish *fish, double *y) {
     }
     // the bias of a controlled fish is not known yet: its pose is that of zero bias
     const double bias = fish->control.law == CONTROL_NONE ? fish->control.bias : 0;
+    const struct fish_gait gait = fish_own_gait(fish, 0);
     double angle = fish->start_heading - pi;
     x[0] = fish->start_position[0];
     z[0] = fish->start_position[1];
     for (int k = 0; k < fish->n_edges; k++) {
-        if (k > 0) angle += fish_natural_angle(fish, k - 1, 0, bias);
+        if (k > 0) angle += fish_natural_angle(fish, k - 1, &gait, bias);
         x[k + 1] = x[k] + fish->edge_length * cos(angle);
         z[k + 1] = z[k] + fish->edge_length * sin(angle);
     }

@@ -47,6 +47,7 @@ struct control_law_data {
     enum control_law law;
     double bias, gain, damping, limit, feedforward;
     double rate;                     /* s-1 */
+    double ramp;                     /* of a change from outside, s */
     int n_headings;                  /* a table of desired headings, linear between its times */
     double *heading_time;            /* s                                           (n_headings) */
     double *heading;                 /* rad                                         (n_headings) */
@@ -81,6 +82,7 @@ struct fish {
     double clamp_stiffness;    /* 2 E I/lbar, N m */
     double clamp_damping;      /* N m s */
 
+    double amplitude;       /* A; 0: it cannot be changed from outside */
     double *wave_amplitude; /* A (lbar/l_ref) (c0 + c1 sigma + c2 sigma^2)        (n_joints) */
     double *wave_phase;     /* beta sigma + phase, rad                            (n_joints) */
     int n_harmonics;  /* of a table that takes the place of the wave: natural turning angles over the phase, rad: */
@@ -189,16 +191,30 @@ void fish_prescribed_node(const struct fish *fish, int k, double t, double posit
  * unknowns. */
 void fish_prescribe(const struct fish *fish, int n, double t, double *y);
 
-/* What the muscle asks of joint j at time t, at full amplitude and without steering bias: the sine of the wave, or an
- * angle of the table, rad; and their rates. */
+/* Where in its gait a fish is: its amplitude over that of the case, which begins with a ramp, and the rate of that,
+ * s-1; the angle of its beat, rad, and the rate of that, rad s-1. */
+struct fish_gait {
+    double amplitude, amplitude_rate;
+    double angle, omega;
+};
+
+/* The gait of the case at time t; control_gait (model/control.h) has what has been set since. */
+struct fish_gait fish_own_gait(const struct fish *fish, double t);
+
+/* What the muscle asks of joint j at full amplitude and without steering bias: the sine of the wave, or an angle of the
+ * table, rad; and their rates. */
 struct fish_demand {
     double sine, sine_rate;
     double angle, angle_rate;
 };
-struct fish_demand fish_demand(const struct fish *fish, int j, double t);
+struct fish_demand fish_demand(const struct fish *fish, int j, const struct fish_gait *gait);
 
-/* The natural turning angle of joint j at time t for the bias phi0, rad. */
-double fish_natural_angle(const struct fish *fish, int j, double t, double phi0);
+/* The natural turning angle of joint j for the bias phi0, rad. */
+double fish_natural_angle(const struct fish *fish, int j, const struct fish_gait *gait, double phi0);
+
+/* The largest natural turning angle, in absolute value, of any joint at this amplitude over that of the case and a bias
+ * up to this one, rad. */
+double fish_largest_turn(const struct fish *fish, double amplitude, double bias);
 
 /* Write nose to tail positions and velocities of the start into the vector of all unknowns: doc/model.md, 4 and 5. */
 void fish_start(const struct fish *fish, double *y);

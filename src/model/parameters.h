@@ -99,6 +99,7 @@ struct control_parameters {
     double gain, damping, limit, feedforward;
     double filter; /* s */
     double rate;   /* s-1 */
+    double ramp;   /* s */
 };
 
 struct fish_parameters {

@@ -138,7 +138,8 @@ double residual_lost(const struct residual *residual, int f, double t) {
 void residual_muscle(struct residual *residual, int f, double t, const double *y) {
     const struct fish *fish = &residual->school->fish[f];
     const int first = residual->joints[f].first;
-    actuation_curvature(fish, t, y[fish->at.phi0], residual->natural_curvature + first,
+    const struct fish_gait gait = control_gait(fish, &residual->state->control[f], t);
+    actuation_curvature(fish, gait, y[fish->at.phi0], residual->natural_curvature + first,
                         residual->curvature_by_phi0 + first);
 }
 

@@ -61,6 +61,15 @@ const struct state_row state_table[] = {
     {"control.phi0_rate", OF_CONTROL(STATE_REAL, phi0_rate), NULL},
     {"control.moment", OF_CONTROL(STATE_REAL, moment), NULL},
     {"control.moment_rate", OF_CONTROL(STATE_REAL, moment_rate), NULL},
+    {"control.amplitude", OF_CONTROL(STATE_REAL, amplitude), NULL},
+    {"control.frequency", OF_CONTROL(STATE_REAL, frequency), NULL},
+    {"control.bias", OF_CONTROL(STATE_REAL, bias), NULL},
+    {"control.has_heading", OF_CONTROL(STATE_INTEGER, has_heading), NULL},
+    {"control.heading", OF_CONTROL(STATE_REAL, heading), NULL},
+    {"control.has_waypoints", OF_CONTROL(STATE_INTEGER, has_waypoints), NULL},
+    {"control.n_waypoints", OF_CONTROL(STATE_INTEGER, n_waypoints), NULL},
+    {"control.waypoints", OF_CONTROL(STATE_REAL, waypoints), NULL},
+    {"control.set_out", OF_CONTROL(STATE_REAL, set_out), NULL},
 
     {"history.capacity", OF_HISTORY(STATE_UNKEPT, capacity), NULL},
     {"history.n", OF_HISTORY(STATE_INTEGER, n), NULL},
@@ -149,11 +158,13 @@ enum status state_table_check(const struct state *state, const struct school *sc
     for (int f = 0; f < school->n_fish; f++) {
         const struct history *const history = &state->history[f];
         const struct energy_balance *const balance = &state->balance[f];
-        const int waypoint = state->control[f].waypoint;
+        const struct control_memory *const control = &state->control[f];
+        const int n_waypoints = control_n_waypoints(&school->fish[f], control);
         is_good &= history->n >= 1 && history->n <= history->capacity;
         is_good &= history->last >= 0 && history->last < history->capacity;
         is_good &= balance->n >= 0 && balance->n <= 2;
-        is_good &= waypoint >= 0 && waypoint <= school->fish[f].control.n_waypoints;
+        is_good &= control->waypoint >= 0 && control->waypoint <= n_waypoints;
+        is_good &= control->n_waypoints >= 0 && control->n_waypoints <= CONTROL_MAX_WAYPOINTS;
         is_good &= state->wake[f].has_markers == (school->shedding == SHEDDING_SHEET);
     }
     return is_good ? STATUS_OK : status_fail(STATUS_FILE, "its state is none of this case");

@@ -4,8 +4,17 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "case/case_show.h"
+
+char *record_path(const struct case_values *values) {
+    const char *const name = values->output.file ? values->output.file : values->name;
+    const char *const ending = values->output.file ? "" : ".nc";
+    char *const path = malloc(strlen(name) + strlen(ending) + 1);
+    if (path) sprintf(path, "%s%s", name, ending);
+    return path;
+}
 
 enum status record_create(struct record *record, const struct case_values *values, const struct school *school,
                           long n_events, const char *path, int overwrite, const char *command) {

@@ -14,6 +14,10 @@ struct record {
     long events_per_row, events_per_wake, n_events;
 };
 
+/* The path that a case names for its result: output.file, or the name of the case with .nc. The caller frees it; NULL:
+ * out of memory. */
+char *record_path(const struct case_values *values);
+
 /* Create the file at path (kept until record_close), without a row. overwrite, command: as in result_file_create.
  * n_events: of the whole run. Fails with STATUS_FILE or STATUS_MEMORY; there is no file then. */
 enum status record_create(struct record *record, const struct case_values *values, const struct school *school,

@@ -12,6 +12,7 @@
 #include "case/case.h"
 #include "case/sweep_members.h"
 #include "output/result_values.h"
+#include "run/led.h"
 #include "run/record.h"
 #include "run/simulate.h"
 
@@ -25,7 +26,8 @@ struct shoal {
     int has_failed;
     char failure[1024]; /* message of the step that failed */
     struct record record;
-    char *record_path;
+    char *record_path; /* where it is written */
+    char *result_path; /* where the case wants it */
 
     /* what has been read since the last step */
     int has_row;
@@ -74,6 +76,8 @@ static enum status check_can_step(const struct shoal *run, const char *function)
 
 static enum status start(struct shoal *run) {
     TRY(sweep_refuse(&run->values));
+    run->result_path = record_path(&run->values);
+    if (!run->result_path) return status_fail(STATUS_MEMORY, "out of memory: a path");
     return simulate_create(&run->simulation, &run->values);
 }
 
@@ -137,6 +141,7 @@ void shoal_close(struct shoal *run) {
     simulate_free(run->simulation);
     case_free(&run->values);
     free(run->record_path);
+    free(run->result_path);
     free(run);
 }
 
@@ -192,6 +197,13 @@ double shoal_end(const struct shoal *run) {
 
 double shoal_interval(const struct shoal *run) {
     return need(run, __func__, "run") == STATUS_OK ? run->simulation->school->interval : NAN;
+}
+
+int shoal_set(struct shoal *run, int fish, const char *key, int n, const double *values) {
+    TRY(check_fish(run, fish, __func__));
+    TRY(need(key, __func__, "key"));
+    TRY(need(values, __func__, "values"));
+    return led_set(run->simulation, fish, key, n, values);
 }
 
 // ---- what a run is at its last event
@@ -340,6 +352,10 @@ int shoal_vortices(const struct shoal *run, int fish, double *x, double *y, doub
 }
 
 // ---- files
+
+const char *shoal_result_path(const struct shoal *run) {
+    return need(run, __func__, "run") == STATUS_OK ? run->result_path : NULL;
+}
 
 int shoal_write(struct shoal *run, const char *path, int overwrite) {
     TRY(need(run, __func__, "run"));

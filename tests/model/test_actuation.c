@@ -14,7 +14,7 @@ static void curvature_is_the_formula_of_the_model(void **state) {
     school_build(&setup, TIME WAVE);
     double curvature[5], by_phi0[5];
     for (double t = 0; t < 1.5; t += 0.3) {
-        actuation_curvature(setup.school->fish, t, 0.2, curvature, by_phi0);
+        actuation_curvature(setup.school->fish, fish_own_gait(setup.school->fish, t), 0.2, curvature, by_phi0);
         for (int j = 0; j < 5; j++) {
             const double s = (j + 1) / 6.0, pi = acos(-1);
             const double angle = ramp_value(t, 1 / 1.2) * 0.5 * (0.1 + 0.8 * s + 0.4 * s * s) *
@@ -32,14 +32,14 @@ static void derivatives_agree(const char *text) {
     const double h = 1e-4, rate = 0.7;
     for (double t = 0.1; t < 1.5; t += 0.3) {
         double low[5], high[5], scratch[5], at[5], by_phi0[5], changes[5];
-        actuation_curvature(fish, t, 0.2, at, by_phi0);
-        actuation_rate(fish, t, 0.2, rate, changes);
-        actuation_curvature(fish, t, 0.2 - h, low, scratch);
-        actuation_curvature(fish, t, 0.2 + h, high, scratch);
+        actuation_curvature(fish, fish_own_gait(fish, t), 0.2, at, by_phi0);
+        actuation_rate(fish, fish_own_gait(fish, t), 0.2, rate, changes);
+        actuation_curvature(fish, fish_own_gait(fish, t), 0.2 - h, low, scratch);
+        actuation_curvature(fish, fish_own_gait(fish, t), 0.2 + h, high, scratch);
         // truncation h^2/6 times third derivatives of at most 0.1
         for (int j = 0; j < 5; j++) NEAR(by_phi0[j], (high[j] - low[j]) / (2 * h), 1e-9, 0);
-        actuation_curvature(fish, t - h, 0.2 - rate * h, low, scratch);
-        actuation_curvature(fish, t + h, 0.2 + rate * h, high, scratch);
+        actuation_curvature(fish, fish_own_gait(fish, t - h), 0.2 - rate * h, low, scratch);
+        actuation_curvature(fish, fish_own_gait(fish, t + h), 0.2 + rate * h, high, scratch);
         // the same with omega^3 = 430 and the ramp's 53/0.8^3
         for (int j = 0; j < 5; j++) NEAR(changes[j], (high[j] - low[j]) / (2 * h), 1e-6, 0);
     }
@@ -75,8 +75,9 @@ static void a_table_of_a_wave_is_that_wave(void **state) {
     for (double t = 0.1; t < 2; t += 0.3) {
         double curvature[2][5], by_phi0[2][5], rate[2][5];
         for (int i = 0; i < 2; i++) {
-            actuation_curvature(setup[i].school->fish, t, 0.2, curvature[i], by_phi0[i]);
-            actuation_rate(setup[i].school->fish, t, 0.2, 0.3, rate[i]);
+            actuation_curvature(setup[i].school->fish, fish_own_gait(setup[i].school->fish, t), 0.2, curvature[i],
+                                by_phi0[i]);
+            actuation_rate(setup[i].school->fish, fish_own_gait(setup[i].school->fish, t), 0.2, 0.3, rate[i]);
         }
         NEAR_ARRAY(5, curvature[1], curvature[0], 1e-14, 1e-13);
         NEAR_ARRAY(5, by_phi0[1], by_phi0[0], 1e-14, 1e-13);
@@ -100,7 +101,8 @@ static void a_table_is_met_at_its_places_and_phases(void **state) {
         for (int phase = 0; phase < 3 + i; phase++) {
             for (int j = 0; j < 3; j++) {
                 // a quarter of the length turns by a quarter of curvature times length
-                NEAR(fish_natural_angle(setup.school->fish, j, phase / (3.0 + i), 0), want[i][j][phase] / 4, 1e-14, 0);
+                const struct fish_gait gait = fish_own_gait(setup.school->fish, phase / (3.0 + i));
+                NEAR(fish_natural_angle(setup.school->fish, j, &gait, 0), want[i][j][phase] / 4, 1e-14, 0);
             }
         }
         school_clear(&setup);
@@ -114,8 +116,8 @@ static void wave_travels_from_head_to_tail(void **state) {
     // a crest stands where number s + omega t is constant: after 0.1 s it is 0.1 omega/6 lengths further back
     double now[29], later[29], scratch[29];
     const double delay = 6.0 * 3 / 30 / (2 * acos(-1));
-    actuation_curvature(setup.school->fish, 0.5, 0, now, scratch);
-    actuation_curvature(setup.school->fish, 0.5 + delay, 0, later, scratch);
+    actuation_curvature(setup.school->fish, fish_own_gait(setup.school->fish, 0.5), 0, now, scratch);
+    actuation_curvature(setup.school->fish, fish_own_gait(setup.school->fish, 0.5 + delay), 0, later, scratch);
     for (int j = 0; j + 3 < 29; j++) {
         const double a = setup.school->fish[0].wave_amplitude[j], b = setup.school->fish[0].wave_amplitude[j + 3];
         NEAR(2 * atan(later[j + 3] / 2) / b, 2 * atan(now[j] / 2) / a, 1e-12, 0);
@@ -130,8 +132,8 @@ static void ramp_starts_from_a_straight_body_and_no_ramp_does_not(void **state) 
         struct setup setup;
         school_build(&setup, texts[i]);
         double curvature[5], by_phi0[5], rate[5];
-        actuation_curvature(setup.school->fish, 0, 0.3, curvature, by_phi0);
-        actuation_rate(setup.school->fish, 0, 0.3, 0, rate);
+        actuation_curvature(setup.school->fish, fish_own_gait(setup.school->fish, 0), 0.3, curvature, by_phi0);
+        actuation_rate(setup.school->fish, fish_own_gait(setup.school->fish, 0), 0.3, 0, rate);
         for (int j = 0; j < 5; j++) {
             assert_true((curvature[j] == 0) == (i == 0));
             assert_true((rate[j] == 0) == (i == 0));
@@ -148,7 +150,7 @@ static void turn_of_the_whole_body_does_not_depend_on_the_number_of_nodes(void *
         struct setup setup;
         school_build(&setup, texts[i]);
         static double curvature[300], scratch[300];
-        actuation_curvature(setup.school->fish, 1.3, 1, curvature, scratch);
+        actuation_curvature(setup.school->fish, fish_own_gait(setup.school->fish, 1.3), 1, curvature, scratch);
         total[i] = 0;
         for (int j = 0; j < setup.school->fish[0].n_joints; j++) total[i] += 2 * atan(curvature[j] / 2);
         school_clear(&setup);

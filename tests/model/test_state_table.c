@@ -101,7 +101,7 @@ static void every_field_has_a_row(void **state) {
 static void the_rows_cover_every_byte(void **state) {
     (void)state;
     for (int i = 0; i < N_OWNERS; i++) {
-        unsigned char is_covered[sizeof(struct state) + sizeof(struct wake) + sizeof(struct energy_balance)] = {0};
+        unsigned char is_covered[sizeof(struct state) + sizeof(struct wake) + sizeof(struct control_memory)] = {0};
         assert_true(owners[i].bytes <= sizeof is_covered);
         for (int k = 0; k < state_table_n; k++) {
             const struct state_row *const row = &state_table[k];

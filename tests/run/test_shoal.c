@@ -262,6 +262,19 @@ static void arrays_that_are_not_there_are_refused(void **state) {
     shoal_close(run);
 }
 
+static void what_a_fish_is_set_to_is_checked(void **state) {
+    struct shoal *const run = opened(*state, 0, NULL);
+    const double value = 0.2;
+    refuses(shoal_set(NULL, 0, "wave.amplitude", 1, &value), "run is NULL");
+    refuses(shoal_set(run, 2, "wave.amplitude", 1, &value), "there is no fish 2");
+    refuses(shoal_set(run, 0, NULL, 1, &value), "key is NULL");
+    refuses(shoal_set(run, 0, "wave.amplitude", 1, NULL), "values is NULL");
+    refuses(shoal_set(run, 0, "wave.amplitud", 1, &value), "'wave.amplitud' cannot be set");
+    assert_int_equal(shoal_set(run, 1, "wave.amplitude", 1, &value), SHOAL_OK);
+    assert_int_equal(shoal_advance(run, 0.1), SHOAL_OK);
+    shoal_close(run);
+}
+
 static void assignments_are_checked(void **state) {
     struct shoal *run;
     const char *const none = NULL;
@@ -573,6 +586,7 @@ int main(void) {
         cmocka_unit_test(a_run_that_is_not_there_is_refused_by_every_function),
         cmocka_unit_test(a_fish_that_is_not_there_is_refused),
         cmocka_unit_test(arrays_that_are_not_there_are_refused),
+        cmocka_unit_test(what_a_fish_is_set_to_is_checked),
         cmocka_unit_test(assignments_are_checked),
         cmocka_unit_test(a_step_past_the_end_is_refused),
         cmocka_unit_test(a_run_advances_to_the_event_at_or_after_a_time),
