@@ -348,12 +348,18 @@ static void induce_free_sheet(const struct flow *flow, const struct chunk *chunk
     const struct range which = overlap(chunk, control);
     if (which.n <= 0) return;
     const struct induced at = vortices_targets(all, which);
+    const double smoothing = flow->school->fish[chunk->fish].smoothing;
+    const struct kernel_changes tapered = {sheet->n_tapered,      sheet->x,     sheet->y, sheet->circulation,
+                                           smoothing * smoothing, sheet->square};
+    const int first = sheet->n_tapered, n = sheet->n - first;
+    const double *const x = sheet->x + first, *const y = sheet->y + first,
+                        *const circulation = sheet->circulation + first, *const square = sheet->square + first;
     if (at.u_x) {
-        kernel_add_gradient_each(at.n, at.x, at.y, sheet->n, sheet->x, sheet->y, sheet->circulation, sheet->square,
-                                 at.u, at.v, at.u_x, at.u_y, at.v_x);
+        kernel_add_gradient_change(at.n, at.x, at.y, &tapered, at.u, at.v, at.u_x, at.u_y, at.v_x);
+        kernel_add_gradient_each(at.n, at.x, at.y, n, x, y, circulation, square, at.u, at.v, at.u_x, at.u_y, at.v_x);
     } else {
-        kernel_add_velocity_each(at.n, at.x, at.y, sheet->n, sheet->x, sheet->y, sheet->circulation, sheet->square,
-                                 at.u, at.v);
+        kernel_add_velocity_change(at.n, at.x, at.y, &tapered, at.u, at.v);
+        kernel_add_velocity_each(at.n, at.x, at.y, n, x, y, circulation, square, at.u, at.v);
     }
 }
 

@@ -79,10 +79,13 @@ static double tapered(const struct fish *fish, const double from_tail[2], const 
     if (fish->taper <= 0) return fish->smoothing;
     const double square = from_tail[0] * from_tail[0] + from_tail[1] * from_tail[1];
     if (square <= 0) return 0;
-    const double cosine = (from_tail[0] * tangent[0] + from_tail[1] * tangent[1]) / sqrt(square);
-    const double behind = ramp_step(1 + 2 * cosine);
+    const double along = from_tail[0] * tangent[0] + from_tail[1] * tangent[1];
+    const double behind = along >= 0 ? 1 : ramp_step(1 + 2 * along / sqrt(square));
     const double length = fish->taper * behind + fish->taper_beside * (1 - behind);
-    return length > 0 ? fish->smoothing * -expm1(-square / (length * length)) : fish->smoothing;
+    if (length <= 0) return fish->smoothing;
+    const double ratio = square / (length * length);
+    // exp is faster, and as good where its digits do not cancel
+    return fish->smoothing * (ratio > 1 ? 1 - exp(-ratio) : -expm1(-ratio));
 }
 
 // Both ends of a stretch at one time.
@@ -146,22 +149,18 @@ enum status free_sheet_build(struct free_sheet *sheet, const struct fish *fish, 
     sheet->n = 0;
     const double interval = school->interval;
     struct ends at[2] = {{.stretch = -2}, {.stretch = -2}};
-    for (int i = n_stretches - 1; i >= 0; i--) {
-        const int age = n_stretches - i;  // 1: the newest one
+    for (int i = n_stretches - PAIRED - 1; i >= 0; i--) {
         for (int end = 0; end < 2; end++) find_ends(&at[end], markers, i, interval, end * interval);
-        if (age <= GRADED) {
-            for (int k = 0; k < FREE_SHEET_PANEL; k++) {
-                add(sheet, fish, markers, interval, at, free_sheet_xi[k], free_sheet_part[k]);
-            }
-        } else if (age <= PAIRED) {
-            for (int k = 0; k < 2; k++) add(sheet, fish, markers, interval, at, pair_xi[k], 0.5);
-        } else {
-            add(sheet, fish, markers, interval, at, 0.5, 1);
-            if (is_untapered(sheet, fish, sheet->n - 1)) {
-                sheet->n--;
-                continue;
-            }
+        add(sheet, fish, markers, interval, at, 0.5, 1);
+        if (is_untapered(sheet, fish, sheet->n - 1)) sheet->n--;
+    }
+    sheet->n_tapered = sheet->n;
+    for (int age = 1; age <= PAIRED && age <= n_stretches; age++) {
+        for (int end = 0; end < 2; end++) find_ends(&at[end], markers, n_stretches - age, interval, end * interval);
+        for (int k = 0; age <= GRADED && k < FREE_SHEET_PANEL; k++) {
+            add(sheet, fish, markers, interval, at, free_sheet_xi[k], free_sheet_part[k]);
         }
+        for (int k = 0; age > GRADED && k < 2; k++) add(sheet, fish, markers, interval, at, pair_xi[k], 0.5);
         add(sheet, fish, markers, interval, at, 0.5, -1);
     }
     sheet->n += FREE_SHEET_PANEL + 1;

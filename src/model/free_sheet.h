@@ -23,10 +23,13 @@
 enum { FREE_SHEET_PANEL = 4 };
 extern const double free_sheet_xi[FREE_SHEET_PANEL], free_sheet_part[FREE_SHEET_PANEL];
 
-/* What the own control points see in place of what everybody sees: sources to be added to the middles of all stretches.
- * The last FREE_SHEET_PANEL + 1 are the nascent stretch in place of its middle; the others are released. */
+/* What the own control points see in place of what everybody sees: to be added to the middles of all stretches. First
+ * the middles of old stretches, with their tapered smoothing in place of that of the wake; then points in place of the
+ * middles of the newest stretches. The last FREE_SHEET_PANEL + 1 are the nascent stretch in place of its middle; the
+ * others are released. */
 struct free_sheet {
     int n, capacity;
+    int n_tapered; /* the middles of old stretches */
     /* fixed for an interval; source i lies at xi of the way from the newer to the older end of its stretch (n) */
     int *stretch;
     double *xi, *part;    /* part of the circulation of the stretch; negative for its middle, which is taken away */

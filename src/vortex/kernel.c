@@ -12,6 +12,10 @@ enum { BLOCK = 8 }; /* targets that are treated alike; a multiple of the width o
 
 static const double inverse_two_pi = 0.159154943091895335769;
 
+/* A source induces no velocity at its own place: a small number, whose square is not zero, avoids 0/0. At distances
+ * that matter it changes no bit. */
+static const double no_square = 1e-150;
+
 static inline double sum_of_block(const double *value) {
     return ((value[0] + value[4]) + (value[2] + value[6])) + ((value[1] + value[5]) + (value[3] + value[7]));
 }
@@ -97,10 +101,8 @@ const struct kernel_variant *kernel_variant(int i) {
     return i < n ? found[i] : NULL;
 }
 
-// A source induces no velocity at its own place: a small number, whose square is not zero, avoids 0/0. At distances
-// that matter it changes no bit.
 static double square_of(double smoothing) {
-    return smoothing * smoothing + 1e-150;
+    return smoothing * smoothing + no_square;
 }
 
 // The targets after the last whole 16 are copied into 8 or 16, which the last of them fills up.
@@ -155,6 +157,33 @@ void kernel_add_gradient(int n_targets, const double *x, const double *y, int n_
     for (int k = 0; k < 5; k++) remainder_add(&rest, k, to[k]);
 }
 
+void kernel_add_velocity_change(int n_targets, const double *x, const double *y, const struct kernel_changes *changes,
+                                double *u, double *v) {
+    const struct kernel_variant *const variant = kernel_variant(0);
+    const int whole = n_targets - n_targets % (2 * BLOCK);
+    struct remainder rest;
+    variant->velocity_change(whole, x, y, changes, u, v);
+    if (whole == n_targets) return;
+    remainder_load(&rest, n_targets, x, y);
+    variant->velocity_change(rest.n_filled, rest.x, rest.y, changes, rest.sum[0], rest.sum[1]);
+    remainder_add(&rest, 0, u);
+    remainder_add(&rest, 1, v);
+}
+
+void kernel_add_gradient_change(int n_targets, const double *x, const double *y, const struct kernel_changes *changes,
+                                double *u, double *v, double *u_x, double *u_y, double *v_x) {
+    const struct kernel_variant *const variant = kernel_variant(0);
+    const int whole = n_targets - n_targets % (2 * BLOCK);
+    double *const to[5] = {u, v, u_x, u_y, v_x};
+    struct remainder rest;
+    variant->gradient_change(whole, x, y, changes, u, v, u_x, u_y, v_x);
+    if (whole == n_targets) return;
+    remainder_load(&rest, n_targets, x, y);
+    variant->gradient_change(rest.n_filled, rest.x, rest.y, changes, rest.sum[0], rest.sum[1], rest.sum[2], rest.sum[3],
+                             rest.sum[4]);
+    for (int k = 0; k < 5; k++) remainder_add(&rest, k, to[k]);
+}
+
 void kernel_add_pairwise(const struct kernel_tile *a, const struct kernel_tile *b, double smoothing) {
     kernel_variant(0)->pairwise(a, b, square_of(smoothing));
 }
@@ -164,7 +193,7 @@ KERNEL_WIDE void kernel_add_velocity_each(int n_targets, const double *restrict 
                                           const double *restrict source_y, const double *restrict circulation,
                                           const double *restrict square, double *restrict u, double *restrict v) {
     for (int j = 0; j < n_sources; j++) {
-        const double g = inverse_two_pi * circulation[j], e = square[j] + 1e-150;
+        const double g = inverse_two_pi * circulation[j], e = square[j] + no_square;
         for (int i = 0; i < n_targets; i++) {
             const double rx = x[i] - source_x[j], ry = y[i] - source_y[j];
             const double h = g / (rx * rx + ry * ry + e);
@@ -180,7 +209,7 @@ KERNEL_WIDE void kernel_add_gradient_each(int n_targets, const double *restrict 
                                           const double *restrict square, double *restrict u, double *restrict v,
                                           double *restrict u_x, double *restrict u_y, double *restrict v_x) {
     for (int j = 0; j < n_sources; j++) {
-        const double g = inverse_two_pi * circulation[j], e = square[j] + 1e-150;
+        const double g = inverse_two_pi * circulation[j], e = square[j] + no_square;
         for (int i = 0; i < n_targets; i++) {
             const double rx = x[i] - source_x[j], ry = y[i] - source_y[j];
             const double inverse = 1 / (rx * rx + ry * ry + e), h = g * inverse, twice = 2 * h * inverse;

@@ -40,6 +40,20 @@ void kernel_add_gradient_each(int n_targets, const double *x, const double *y, i
                               const double *source_y, const double *circulation, const double *square, double *u,
                               double *v, double *u_x, double *u_y, double *v_x);
 
+/* Sources that have one smoothing, whose square is from [m2], and are to have others: what that changes. */
+struct kernel_changes {
+    int n;
+    const double *x, *y, *circulation; /* (n) */
+    double from;
+    const double *to; /* the squares that take its place, m2 (n) */
+};
+
+/* Add to (u, v) at each target what the changes add to the velocity there, and to its gradient. */
+void kernel_add_velocity_change(int n_targets, const double *x, const double *y, const struct kernel_changes *changes,
+                                double *u, double *v);
+void kernel_add_gradient_change(int n_targets, const double *x, const double *y, const struct kernel_changes *changes,
+                                double *u, double *v, double *u_x, double *u_y, double *v_x);
+
 /* Vortices of a pairwise sum. */
 struct kernel_tile {
     int n;                             /* a multiple of 16, at most KERNEL_TILE; vortices of strength 0 fill it up */
@@ -86,6 +100,10 @@ struct kernel_variant {
                      double *v);
     void (*gradient)(int n, const double *x, const double *y, const struct kernel_sources *sources, double *u,
                      double *v, double *u_x, double *u_y, double *v_x);
+    void (*velocity_change)(int n, const double *x, const double *y, const struct kernel_changes *changes, double *u,
+                            double *v);
+    void (*gradient_change)(int n, const double *x, const double *y, const struct kernel_changes *changes, double *u,
+                            double *v, double *u_x, double *u_y, double *v_x);
     void (*pairwise)(const struct kernel_tile *a, const struct kernel_tile *b, double square);
 };
 

@@ -108,6 +108,53 @@ static TARGET void VARIANT(gradient)(int n, const double *x, const double *y, co
     }
 }
 
+// 1/d_to - 1/d_from = (from - to)/(d_to d_from): no digits are lost where both are nearly the same.
+static TARGET void VARIANT(velocity_change)(int n, const double *x, const double *y,
+                                            const struct kernel_changes *changes, double *u, double *v) {
+    const double from = changes->from;
+    for (int i = 0; i < n; i += VARIANT(width)) {
+        const lanes xs = VARIANT(get)(x + i), ys = VARIANT(get)(y + i);
+        lanes us = {0}, vs = {0};
+        for (int j = 0; j < changes->n; j++) {
+            const double to = changes->to[j] + no_square;
+            const lanes rx = xs - changes->x[j], ry = ys - changes->y[j], square = FUSED(rx, rx, ry * ry);
+            const lanes g = changes->circulation[j] * (from - to) / ((square + to) * (square + from));
+            us = FUSED(g, ry, us);
+            vs = FUSED(g, rx, vs);
+        }
+        VARIANT(add)(u + i, -inverse_two_pi, us);
+        VARIANT(add)(v + i, inverse_two_pi, vs);
+    }
+}
+
+// With g as above, dg/d(r^2) = -g (1/d_to + 1/d_from) = -h: u_x = 2 h r_x r_y, u_y = 2 h r_y^2 - g and
+// v_x = g - 2 h r_x^2.
+static TARGET void VARIANT(gradient_change)(int n, const double *x, const double *y,
+                                            const struct kernel_changes *changes, double *u, double *v, double *u_x,
+                                            double *u_y, double *v_x) {
+    const double from = changes->from;
+    for (int i = 0; i < n; i += VARIANT(width)) {
+        const lanes xs = VARIANT(get)(x + i), ys = VARIANT(get)(y + i);
+        lanes us = {0}, vs = {0}, products = {0}, along = {0}, across = {0};
+        for (int j = 0; j < changes->n; j++) {
+            const double to = changes->to[j] + no_square;
+            const lanes rx = xs - changes->x[j], ry = ys - changes->y[j], square = FUSED(rx, rx, ry * ry);
+            const lanes d0 = square + to, d1 = square + from, inverse = 1 / (d0 * d1);
+            const lanes g = changes->circulation[j] * (from - to) * inverse, h = 2 * g * (d0 + d1) * inverse;
+            us = FUSED(g, ry, us);
+            vs = FUSED(g, rx, vs);
+            products = FUSED(h, rx * ry, products);
+            along += FUSED(h, ry * ry, -g);
+            across += g - h * (rx * rx);
+        }
+        VARIANT(add)(u + i, -inverse_two_pi, us);
+        VARIANT(add)(v + i, inverse_two_pi, vs);
+        VARIANT(add)(u_x + i, inverse_two_pi, products);
+        VARIANT(add)(u_y + i, inverse_two_pi, along);
+        VARIANT(add)(v_x + i, inverse_two_pi, across);
+    }
+}
+
 // Vortices i and i + BLOCK of a are kept in vectors while those of b are taken one at a time. The velocities at the
 // latter are summed over all blocks of a in BLOCK lanes each, and over the lanes at the end.
 static TARGET void VARIANT(pairwise)(const struct kernel_tile *a, const struct kernel_tile *b, double square_value) {
@@ -150,8 +197,12 @@ static TARGET void VARIANT(pairwise)(const struct kernel_tile *a, const struct k
     }
 }
 
-static const struct kernel_variant VARIANT(loops) = {
-    .name = VARIANT_NAME, .velocity = VARIANT(velocity), .gradient = VARIANT(gradient), .pairwise = VARIANT(pairwise)};
+static const struct kernel_variant VARIANT(loops) = {.name = VARIANT_NAME,
+                                                     .velocity = VARIANT(velocity),
+                                                     .gradient = VARIANT(gradient),
+                                                     .velocity_change = VARIANT(velocity_change),
+                                                     .gradient_change = VARIANT(gradient_change),
+                                                     .pairwise = VARIANT(pairwise)};
 
 #undef VARIANT
 #undef VARIANT_NAME

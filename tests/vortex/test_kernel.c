@@ -122,7 +122,7 @@ static void all_variants_give_the_same_bits(void **state) {
     (void)state;
     enum { N = 48 };
     struct setup random = {.seed = 11};
-    static double x[N], y[N], source_x[N], source_y[N], circulation[N];
+    static double x[N], y[N], source_x[N], source_y[N], circulation[N], square[N];
     for (int trial = 0; trial < 240; trial++) {
         // from all near each other to sizes so different that most sums keep one of the two numbers
         const int largest = 1 + trial % 60;
@@ -132,6 +132,7 @@ static void all_variants_give_the_same_bits(void **state) {
             source_x[i] = any_size(&random, largest);
             source_y[i] = any_size(&random, largest);
             circulation[i] = any_size(&random, 20);
+            square[i] = i % 5 ? fabs(any_size(&random, 3)) : 0;
         }
         // some sources lie on targets
         for (int i = 0; i < N; i += 7) {
@@ -140,16 +141,19 @@ static void all_variants_give_the_same_bits(void **state) {
         }
         const struct kernel_sources sources = {N, source_x, source_y, circulation, trial % 3 ? 0.01 : 1e-150};
         const struct kernel_variant *variant;
-        double want[9][N];
+        const struct kernel_changes changes = {N, source_x, source_y, circulation, trial % 2 ? 0.04 : 1e-8, square};
+        double want[16][N];
         int n_variants = 0;
         for (int k = 0; (variant = kernel_variant(k)); k++) {
-            double got[9][N] = {{0}};
+            double got[16][N] = {{0}};
             variant->velocity(40, x, y, &sources, got[0], got[1]);
             variant->gradient(40, x, y, &sources, got[2], got[3], got[4], got[5], got[6]);
             // the upper halves of 7 and 8 are those of the second tile
             const struct kernel_tile a = {32, x, y, circulation, got[7], got[8]};
             const struct kernel_tile b = {16, source_x, source_y, circulation + 32, got[7] + 32, got[8] + 32};
             variant->pairwise(&a, &b, sources.square);
+            variant->velocity_change(40, x, y, &changes, got[9], got[10]);
+            variant->gradient_change(40, x, y, &changes, got[11], got[12], got[13], got[14], got[15]);
             if (k == 0) memcpy(want, got, sizeof want);
             assert_memory_equal(got, want, sizeof want);
             n_variants++;
@@ -164,6 +168,46 @@ static void every_processor_has_a_variant(void **state) {
     while (kernel_variant(n)) n++;
     assert_string_equal(kernel_variant(n - 1)->name, "baseline");
     assert_null(kernel_variant(n + 1));
+}
+
+// with the smoothing to each in place of from, less with from: the sums of a change, for any number of targets
+static void a_change_of_smoothing_is_the_difference_of_two_sums(void **state) {
+    (void)state;
+    const double from = 0.01;
+    double to[N_SOURCES], all_from[N_SOURCES], minus[N_SOURCES];
+    for (int j = 0; j < N_SOURCES; j++) {
+        to[j] = j % 4 ? from * j / N_SOURCES : 0;
+        all_from[j] = from;
+        minus[j] = -cloud.circulation[j];
+    }
+    const struct kernel_changes changes = {N_SOURCES, cloud.source_x, cloud.source_y, cloud.circulation, from, to};
+    for (int n = 0; n <= N_TARGETS; n++) {
+        double got[7][N_TARGETS] = {{0}}, want[5][N_TARGETS] = {{0}};
+        kernel_add_velocity_change(n, cloud.x, cloud.y, &changes, got[0], got[1]);
+        kernel_add_gradient_change(n, cloud.x, cloud.y, &changes, got[2], got[3], got[4], got[5], got[6]);
+        kernel_add_gradient_each(n, cloud.x, cloud.y, N_SOURCES, cloud.source_x, cloud.source_y, cloud.circulation, to,
+                                 want[0], want[1], want[2], want[3], want[4]);
+        kernel_add_gradient_each(n, cloud.x, cloud.y, N_SOURCES, cloud.source_x, cloud.source_y, minus, all_from,
+                                 want[0], want[1], want[2], want[3], want[4]);
+        for (int k = 0; k < 2; k++) {
+            NEAR_ARRAY(N_TARGETS, got[k], want[k], 1e-13, 1e-12);
+            NEAR_ARRAY(N_TARGETS, got[2 + k], want[k], 1e-13, 1e-12);
+        }
+        for (int k = 2; k < 5; k++) NEAR_ARRAY(N_TARGETS, got[2 + k], want[k], 1e-10, 1e-11);
+    }
+}
+
+// where both smoothings are nearly the same, the change keeps the digits that the difference of two sums loses
+static void a_small_change_keeps_its_digits(void **state) {
+    (void)state;
+    const double from = 0.01, to = 0.01 * (1 - 0x1p-40), place = 0, circulation = 1;
+    const double x = 0.3, y = 0.4, square = x * x + y * y;
+    const struct kernel_changes changes = {1, &place, &place, &circulation, from, &to};
+    double u = 0, v = 0;
+    kernel_add_velocity_change(1, &x, &y, &changes, &u, &v);
+    const double strength = (from - to) / ((square + from) * (square + to)) / (2 * 3.14159265358979323846);
+    NEAR(u, -strength * y, 0, 1e-14);
+    NEAR(v, strength * x, 0, 1e-14);
 }
 
 static void two_tiles_induce_velocities_at_each_other(void **state) {
@@ -321,6 +365,8 @@ int main(void) {
         cmocka_unit_test(whole_blocks_do_not_depend_on_other_targets),
         cmocka_unit_test(all_variants_give_the_same_bits),
         cmocka_unit_test(every_processor_has_a_variant),
+        cmocka_unit_test(a_change_of_smoothing_is_the_difference_of_two_sums),
+        cmocka_unit_test(a_small_change_keeps_its_digits),
         cmocka_unit_test(two_tiles_induce_velocities_at_each_other),
         cmocka_unit_test(a_tile_may_be_as_large_as_promised),
         cmocka_unit_test(velocity_is_added_to_what_is_there_and_writes_nothing_else),
