@@ -76,8 +76,8 @@ bench_programs = $(patsubst tests/bench/%.c,$(B)/bench/%,$(wildcard tests/bench/
 generated_docs = $(B)/doc/cases.md $(B)/doc/output.md
 c_files        = $(wildcard src/*/*.[ch] include/*.h tests/*.[ch] tests/*/*.[ch])
 
-# what tests need beyond scripts/install-deps.sh: a browser
-test_packages = chromium
+# what tests need beyond scripts/install-deps.sh: a browser, a reader of VTK's files
+test_packages = chromium python3-vtk9
 
 # "commit" or "commit-dirty"; of this folder's own repository, not of one that happens to lie around it
 commit := $(shell test -e .git && git describe --always --dirty --abbrev=12 --exclude='*' 2>/dev/null || echo unknown)

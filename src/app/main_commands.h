@@ -5,7 +5,7 @@
  *     main_study.c    study, gather, compare
  *     main_field.c    field
  *     main_case.c     check, show, keys, info
- *     main_view.c     view */
+ *     main_view.c     view, export */
 #ifndef MAIN_COMMANDS_H
 #define MAIN_COMMANDS_H
 
@@ -24,6 +24,7 @@ enum status main_show(const struct request *request);
 enum status main_keys(const struct request *request);
 enum status main_info(const struct request *request);
 enum status main_view(const struct request *request);
+enum status main_export(const struct request *request);
 
 /* Print the notes on a case to stderr, unless told to be quiet. */
 void main_print_notes(const struct request *request, const struct case_values *values);

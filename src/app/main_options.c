@@ -29,6 +29,7 @@ static const struct option_help all_options[] = {
     {OPTION_LIMIT, "limit", "SECONDS",
      "longest wall time of a run; one that takes longer is stopped and has failed (default: none; compare: 60)"},
     {OPTION_MEMBERS, "members", "A-B", "run only member A, or members A to B, and do not gather"},
+    {OPTION_VTK, "vtk", "FOLDER", "write files of VTK, for ParaView, into this folder"},
     {OPTION_FORCE, "force", NULL, "overwrite existing results"},
     {OPTION_STRICT, "strict", NULL, "warnings about a result end with exit code 3"},
     {OPTION_AT, "at", "T", "time of a row of the result, s (default: the last one with its wake)"},
@@ -126,6 +127,7 @@ static void take_option(struct request *request, int code, char *argument) {
         case OPTION_JSON: request->json = 1; break;
         case OPTION_OUTPUT: request->of_output = 1; break;
         case OPTION_CASE: request->case_only = 1; break;
+        case OPTION_VTK: request->vtk = argument; break;
         case OPTION_SET: request->assignments[request->n_assignments++] = argument; break;
         case OPTION_THREADS:
             snprintf(request->threads, sizeof request->threads, "solver.threads=%.40s", argument);

@@ -25,7 +25,8 @@ enum option_code {
     OPTION_STRICT,
     OPTION_AT,
     OPTION_GRID,
-    OPTION_BOX
+    OPTION_BOX,
+    OPTION_VTK
 };
 
 /* What the command line says. A string is NULL where its option is not given. */
@@ -40,6 +41,7 @@ struct request {
     const char *methods, *rtols, *steps, *repeats, *reference_rtol, *limit, *bundle;
     int slurm, strict;
     const char *at, *grid, *box;
+    const char *vtk;
     const char *positional;
 };
 

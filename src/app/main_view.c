@@ -6,6 +6,7 @@
 #include "app/main_commands.h"
 #include "base/text.h"
 #include "output/page.h"
+#include "output/vtk.h"
 
 /* Add the name of a file without its folders and its ending. */
 static void add_stem(struct text *text, const char *path) {
@@ -27,4 +28,13 @@ enum status main_view(const struct request *request) {
     if (status == STATUS_OK && !request->quiet) printf("%s\n", path.text);
     text_free(&path);
     return status;
+}
+
+enum status main_export(const struct request *request) {
+    char *list = NULL;
+    if (!request->vtk) return status_fail(STATUS_CASE, "export: to what? give --vtk FOLDER; see shoal export --help");
+    TRY(vtk_export(request->positional, request->vtk, request->force, &list));
+    if (!request->quiet) printf("%s\n", list);
+    free(list);
+    return STATUS_OK;
 }

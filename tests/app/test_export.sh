@@ -1,0 +1,109 @@
+#!/usr/bin/env bash
+# Files for other programs: VTK itself reads what is written, and finds the numbers of the result.
+#
+#   tests/app/test_export.sh PROGRAM
+set -uo pipefail
+export LC_ALL=C.UTF-8
+
+program=$(realpath "${1:?usage: tests/app/test_export.sh PROGRAM}")
+root=$(realpath "$(dirname "$0")/../..")
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder" || exit 2
+
+# shellcheck source=tests/checks.sh
+. "$root/tests/checks.sh"
+
+cat >pair.yaml <<'end'
+format: 1
+time: {end: 0.6, shedding_interval: 0.02, output_interval: 0.1}
+wake: {lifetime: 0.4}
+output: {wake_interval: 0.2}
+defaults: {fish: {wave: {ramp: 0.2}}}
+fish: [{nodes: 9}, {length: 0.7, nodes: 7, sheet_points: 21, start: {position: [1.4, 0.4]}}]
+end
+run run pair.yaml -q -o 'a <pair>.nc'
+run export 'a <pair>.nc' --vtk out_of_it
+check files_are_written test "$code" = 0
+check the_list_is_named grep -qxF 'out_of_it/a _pair_.pvd' out
+check there_is_a_file_of_bodies_for_each_row test "$(ls out_of_it | grep -c bodies)" = 7
+check and_one_of_wakes_where_there_is_one test "$(ls out_of_it | grep -c wakes)" = 4
+refused existing_files_are_kept 4 'exists' export 'a <pair>.nc' --vtk out_of_it
+run export 'a <pair>.nc' --vtk out_of_it --force -q
+check force_replaces_them test "$code" = 0 -a ! -s out
+refused no_result 4 'nothing.nc' export nothing.nc --vtk out_of_it
+refused no_format 2 'to what? give --vtk FOLDER' export 'a <pair>.nc'
+refused no_folder 4 'cannot make this folder' export 'a <pair>.nc' --vtk no/such
+
+cat >compare.py <<'end'
+"""Compare what VTK reads with the result."""
+import sys, xml.etree.ElementTree as tree
+import netCDF4, numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+
+file = netCDF4.Dataset(sys.argv[1])
+file.set_auto_mask(False)
+listed = [one.attrib for one in tree.parse("out_of_it/a _pair_.pvd").iter("DataSet")]
+
+def read(name):
+    reader = vtkXMLPolyDataReader()
+    reader.SetFileName("out_of_it/" + name)
+    reader.Update()
+    return reader.GetOutput()
+
+def array(data, name):
+    return vtk_to_numpy(data.GetArray(name))
+
+def same(name, got, want, atol=0):
+    if got.shape != want.shape or not np.allclose(got, want, rtol=0, atol=atol):
+        sys.exit(f"{name}: {got} is not {want}")
+
+times = file["time"][:]
+bodies = [one for one in listed if one["name"] == "bodies"]
+wakes = [one for one in listed if one["name"] == "wakes"]
+same("times", np.array([float(one["timestep"]) for one in bodies]), times, 1e-9)
+for row, one in enumerate(bodies):
+    data = read(one["file"])
+    points = vtk_to_numpy(data.GetPoints().GetData())
+    assert (data.GetNumberOfLines(), data.GetNumberOfPolys(), data.GetNumberOfPoints()) == (2, 2, 33 + 21 + 2 * 94)
+    sheet = np.concatenate([file["sheet_x"][row, 0, :33], file["sheet_x"][row, 1, :21]])
+    same("sheets", points[:54, :2], sheet)
+    strength = np.concatenate([file["sheet_strength"][row, 0, :33], file["sheet_strength"][row, 1, :21]])
+    same("strengths", array(data.GetPointData(), "sheet_strength")[:54], strength)
+    # outlines begin in the nose, and have the tail half way
+    for f, n in enumerate((9, 7)):
+        outline = points[54 + 94 * f : 54 + 94 * (f + 1), :2]
+        same("nose", outline[0], file["x"][row, f, 0], 1e-12)
+        same("tail", outline[47], file["x"][row, f, n - 1], 1e-12)
+        on_outline = array(data.GetPointData(), "sheet_strength")[54 + 94 * f : 54 + 94 * (f + 1)]
+        inside = strength[:33] if f == 0 else strength[33:]
+        assert on_outline.min() >= inside.min() and on_outline.max() <= inside.max()
+    same("fish", array(data.GetCellData(), "fish"), np.array([0, 1, 0, 1]))
+    same("kind", array(data.GetCellData(), "outline"), np.array([0, 0, 1, 1]))
+    same("heading", array(data.GetCellData(), "heading"), np.tile(file["heading"][row], 2))
+    # the cells are closed over their own points
+    cell = data.GetCell(3)
+    assert [cell.GetPointId(i) for i in (0, 93)] == [54 + 94, 54 + 187], "cells"
+for one in wakes:
+    data, row = read(one["file"]), int(np.argmin(abs(times - float(one["timestep"]))))
+    count = file["wake_count"][row]
+    points = vtk_to_numpy(data.GetPoints().GetData()) if data.GetNumberOfPoints() else np.zeros((0, 3))
+    want = np.concatenate([file["wake_x"][row, f, : count[f]] for f in range(2)])
+    same("wake", points[:, :2], want)
+    assert data.GetNumberOfVerts() == count.sum()
+    if count.sum() == 0:
+        continue
+    age = times[row] - np.concatenate([file["wake_birth"][row, f, : count[f]] for f in range(2)])
+    same("age", array(data.GetPointData(), "age"), age, 1e-12)
+    circulation = np.concatenate([file["wake_circulation"][row, f, : count[f]] for f in range(2)])
+    got = array(data.GetPointData(), "circulation")
+    same("circulation", got[age < 0.3], circulation[age < 0.3])  # older ones decay
+    assert np.all(abs(got) <= abs(circulation)) and (row < 5 or np.any(abs(got) < 0.9 * abs(circulation)))
+    same("owner", array(data.GetPointData(), "fish"), np.repeat([0, 1], count))
+assert len(wakes) == 4
+end
+check vtk_reads_the_numbers_of_the_result timeout 60 /usr/bin/python3 compare.py 'a <pair>.nc'
+
+echo "$n_passed passed, $n_failed failed, $n_skipped skipped"
+((n_failed == 0))
