@@ -159,6 +159,7 @@ install: $(program) $(library) $(shared)  ## install program, library, header, c
 	$(quiet)install -m 644 cases/include/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases/include'
 	$(quiet)install -m 644 cases/studies/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases/studies'
 	$(quiet)install -m 755 $(filter-out scripts/make-% scripts/verify.py scripts/numerics.py scripts/mutants.py,$(wildcard scripts/*.py)) '$(DESTDIR)$(prefix)/share/shoal/scripts'
+	$(quiet)install -m 644 scripts/shoal.mplstyle '$(DESTDIR)$(prefix)/share/shoal/scripts'
 	$(quiet)install -m 644 LICENSE doc/*.md '$(DESTDIR)$(prefix)/share/shoal/doc'
 	$(quiet)printf '%s\n' 'prefix=$(prefix)' 'Name: shoal' 'Description: Swimming of fish and schools with their wakes' \
 	    'Version: $(VERSION)' 'Cflags: -I$${prefix}/include' 'Libs: -L$${prefix}/lib -lshoal' \

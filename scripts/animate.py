@@ -11,8 +11,9 @@ import os
 import shutil
 import sys
 
-from plot import STYLE, Snapshot, add_legend, check_folder, limits, matplotlib, pyplot, swim_handles
-from shoal_results import EXIT_FILE, EXIT_USAGE, FileError, Results, np, stop
+from plot import Snapshot, add_legend, check_folder, limits, pyplot, swim_handles
+from plot_style import STYLE, matplotlib
+from shoal_results import DAMAGE, EXIT_FILE, EXIT_USAGE, FileError, Results, np, stop
 
 from matplotlib import animation
 
@@ -102,6 +103,8 @@ def main(arguments):
             stop(error, EXIT_FILE)
         except OSError as error:
             stop(f"{movie}: cannot be written: {error.strerror or error}", EXIT_FILE)
+        except DAMAGE as error:
+            stop(f"{options.results}: cannot be drawn, it may be damaged ({type(error).__name__}: {error})", EXIT_FILE)
     print(movie)
 
 

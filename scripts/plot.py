@@ -16,48 +16,28 @@ import sys
 
 import plot_field as plot_field_module
 import plot_study as plot_study_module
-from shoal_results import EXIT_FILE, EXIT_USAGE, FileError, Results, np, stop
+from plot_style import BLUE, BODY, BODY_EDGE, DASHES, GRID, LINES, PATH, PHASES, RED, STYLE, WIDTH, matplotlib
+from shoal_results import DAMAGE, EXIT_FILE, EXIT_USAGE, FileError, Results, kind_of, np, stop
 
-try:
-    import matplotlib
-except ImportError as missing:
-    stop(f"{missing}: apt install python3-matplotlib, and run this with /usr/bin/python3", EXIT_FILE)
+from matplotlib import pyplot
+from matplotlib.collections import PolyCollection
+from matplotlib.lines import Line2D
 
-matplotlib.use("Agg")
-from matplotlib import pyplot  # noqa: E402
-from matplotlib.collections import PolyCollection  # noqa: E402
-from matplotlib.lines import Line2D  # noqa: E402
+MANY = 6  # more fish than these are drawn in grey, with their mean
 
-# The ends of the red-blue scale of ColorBrewer: told apart by colour-blind eyes, and dark and light in grey.
-RED, BLUE = "#b2182b", "#4393c3"
-BODY, BODY_EDGE, PATH = "#d9d9d9", "#222222", "#555555"
-# Okabe and Ito's colours, in an order that falls from dark to light in grey.
-LINES = ["#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"]
 
-STYLE = {
-    "font.size": 9,
-    "axes.linewidth": 0.6,
-    "axes.labelsize": 9,
-    "xtick.direction": "in",
-    "ytick.direction": "in",
-    "xtick.major.width": 0.6,
-    "ytick.major.width": 0.6,
-    "legend.frameon": False,
-    "legend.fontsize": 8,
-    "svg.fonttype": "none",
-    "pdf.fonttype": 42,
-    "savefig.dpi": 200,
-    "savefig.bbox": "tight",
-    "savefig.pad_inches": 0.05,
-}
-WIDTH = 7.0  # of a picture, inches: two columns of a journal
+class UsageError(Exception):
+    """An option does not fit the file; the text says why."""
 
 
 class Snapshot:
-    """Bodies, wakes and paths of one row, drawn on axes; show() moves everything to another row."""
+    """Bodies, wakes and paths of one row, drawn on axes; show() moves everything to another row.
 
-    def __init__(self, axes, results, dot=9.0):
-        self.results, self.dot = results, dot
+    With a unit [m] lengths are drawn relative to it, from the middle of the school.
+    """
+
+    def __init__(self, axes, results, dot=9.0, unit=None):
+        self.results, self.dot, self.unit = results, dot, unit
         self.strongest = strongest_vortex(results)
         self.com = results["com"]
         self.wake = axes.scatter([], [], linewidths=0, zorder=2)
@@ -67,18 +47,23 @@ class Snapshot:
         self.clock = axes.annotate("", (1, 1), (-5, -5), "axes fraction", "offset points", ha="right", va="top")
         self.labels = [axes.text(0, 0, name, size=7, ha="center", va="bottom", zorder=4) for name in names(results)]
         axes.set_aspect("equal")
-        axes.set_xlabel("x [m]")
-        axes.set_ylabel("y [m]")
+        axes.set_xlabel("x [m]" if unit is None else "x from the middle [lengths]")
+        axes.set_ylabel("y [m]" if unit is None else "y [lengths]")
+
+    def place(self, points, row):
+        """Positions as they are drawn in a row."""
+        return points if self.unit is None else (points - self.com[row].mean(axis=0)) / self.unit
 
     def show(self, row):
         """Draw the state of a row."""
-        outlines = [self.results.outline(row, f) for f in range(self.results.n_fish)]
+        outlines = [self.place(self.results.outline(row, f), row) for f in range(self.results.n_fish)]
         self.bodies.set_verts(outlines)
         for label, outline in zip(self.labels, outlines):
             label.set_position((outline[:, 0].mean(), outline[:, 1].max() + 0.03 * np.ptp(outline, axis=0).max()))
         for f, path in enumerate(self.paths):
-            path.set_data(*self.com[: row + 1, f].T)
+            path.set_data(*self.place(self.com[: row + 1, f], row).T)
         position, circulation = self.results.wake(row)
+        position = self.place(position, row)
         share = np.minimum(np.abs(circulation) / self.strongest, 1)
         self.wake.set_offsets(position)
         self.wake.set_sizes(self.dot * (0.15 + 0.85 * share))
@@ -165,6 +150,7 @@ def place_clock(snapshot, row, window):
     """Move the time to the corner of the window that is furthest from bodies and wake."""
     results = snapshot.results
     drawn = np.concatenate([results.wake(row)[0], *(results.outline(row, f) for f in range(results.n_fish))])
+    drawn = snapshot.place(drawn, row)
     x0, x1, y0, y1 = window
     corners = {("right", "top"): (x1, y1), ("left", "top"): (x0, y1), ("right", "bottom"): (x1, y0)}
     corners["left", "bottom"] = x0, y0
@@ -176,14 +162,42 @@ def place_clock(snapshot, row, window):
     snapshot.clock.set_position((-5 if horizontal == "right" else 5, -5 if vertical == "top" else 5))
 
 
+def following_limits(results, rows):
+    """The window around the middle of the school that holds all bodies and the wakes near them, in metres from there."""
+    half = np.zeros(2)
+    for row in rows:
+        bodies = np.concatenate([results.outline(row, f) for f in range(results.n_fish)])
+        half = np.maximum(half, np.abs(bodies - results["com"][row].mean(axis=0)).max(axis=0))
+    half += 1.5 * float(np.nanmax(results["body_length"])) * np.array([1, 0.5])
+    return -half[0], half[0], -half[1], half[1]
+
+
+def wants_following(results, rows, window):
+    """True if the fish would be tiny in the window: it is far wider or higher than the school."""
+    close = following_limits(results, rows)
+    return window[1] - window[0] > 2.5 * (close[1] - close[0]) or window[3] - window[2] > 2.5 * (close[3] - close[2])
+
+
+def rows_at(results, times):
+    """The rows with a wake nearest to some times, which must be within the run; the last one without times."""
+    first, last = results.time[0], results.time[-1]
+    outside = [t for t in times or [] if not first - 1e-9 <= t <= last + 1e-9]
+    if outside:
+        raise UsageError(f"--times {outside[0]:g}: the run covers {first:g} to {last:g} s")
+    with_wake = results.rows_with_wake()
+    return [results.nearest(t, with_wake) for t in times or [last]]
+
+
 def plot_swim(results, options):
     """Bodies, wakes and paths: one panel per time."""
-    with_wake = results.rows_with_wake()
-    rows = [results.nearest(t, with_wake) for t in options.times or [results.time[-1]]]
-    window = options.limits or limits(results, rows)
+    rows = rows_at(results, options.times)
+    window, unit = options.limits or limits(results, rows), None
+    if options.follow or (options.follow is None and not options.limits and wants_following(results, rows, window)):
+        unit = float(np.nanmax(results["body_length"]))
+        window = np.array(following_limits(results, rows)) / unit
     figure, all_axes = panels(len(rows), *panel_grid(len(rows), window))
     for axes, row in zip(all_axes, rows):
-        snapshot = Snapshot(axes, results)
+        snapshot = Snapshot(axes, results, unit=unit)
         snapshot.show(row)
         place_clock(snapshot, row, window)
         axes.axis(window)
@@ -215,19 +229,18 @@ def plot_gait(results, options):
     """The reference shapes of each fish over its last beat, one panel per fish."""
     n_columns = min(results.n_fish, 3)
     figure, all_axes = panels(results.n_fish, math.ceil(results.n_fish / n_columns), n_columns, 4.5 / n_columns)
-    colours = matplotlib.colors.ListedColormap(matplotlib.colormaps["viridis"](np.linspace(0, 0.9, 256)))
     for fish, axes in enumerate(all_axes):
         rows = beat_rows(results, fish, options.shapes)
         for row in rows:
             curvature = results.read("natural_curvature", row)[fish, : results.n_nodes[fish] - 2]
             phase = (results.time[row] - results.time[rows[0]]) * results["frequency"][fish]
-            axes.plot(*reference_shape(curvature).T, color=colours(phase), lw=1, marker="o", ms=1.8)
+            axes.plot(*reference_shape(curvature).T, color=PHASES(phase), lw=1, marker="o", ms=1.8)
         axes.set_title(results.names[fish], size=9)
         axes.set_aspect("equal")
         axes.set_xlabel("x / body length")
         axes.set_ylabel("y / body length")
         axes.label_outer()
-    scale = matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(0, 1), colours)
+    scale = matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(0, 1), PHASES)
     figure.colorbar(scale, ax=all_axes, label="time / period", aspect=15, pad=0.02)
     return figure
 
@@ -250,8 +263,21 @@ def draw_forces(axes, results):
     for name, style in styles.items():
         for f, values in enumerate(along[name].T):
             axes.plot(results.time, values, color=LINES[f % len(LINES)], lw=1 if name == "thrust" else 0.7, ls=style)
-    handles = [Line2D([], [], color="black", lw=1, ls=s, label=n.replace("_force", "")) for n, s in styles.items()]
-    axes.legend(handles=handles, loc="upper right", ncol=len(handles), borderpad=0, columnspacing=1.5)
+    return [Line2D([], [], color="black", lw=1, ls=s, label=n.replace("_force", "")) for n, s in styles.items()]
+
+
+def draw_lines(axes, time, values, labels):
+    """A line per fish: of its own colour and dashes; of many fish all in grey, and their mean."""
+    if len(labels) > MANY:
+        axes.plot(time, values, color="#aaaaaa", lw=0.5)
+        axes.plot(time, np.nanmean(values, axis=1), color="black", lw=1.4)
+        return [
+            Line2D([], [], color="#aaaaaa", lw=0.5, label=f"each of {len(labels)} fish"),
+            Line2D([], [], color="black", lw=1.4, label="their mean"),
+        ]
+    return [
+        axes.plot(time, one, color=LINES[f], ls=DASHES[f], lw=1, label=labels[f])[0] for f, one in enumerate(values.T)
+    ]
 
 
 def plot_time(results, options):
@@ -263,23 +289,29 @@ def plot_time(results, options):
     figure, stack = pyplot.subplots(
         len(rows), 1, sharex=True, layout="constrained", figsize=(WIDTH, 0.5 + 1.5 * len(rows))
     )
+    figure.get_layout_engine().set(h_pad=0.1)  # room for a legend above a panel
+    forces = []
     for axes, (variable, label) in zip(stack, rows):
         if variable:
-            for f, values in enumerate(results[variable].T):
-                axes.plot(results.time, values, color=LINES[f % len(LINES)], lw=1, label=results.names[f])
+            fish = draw_lines(axes, results.time, results[variable], results.names)
+        elif results.n_fish == 1:
+            forces = draw_forces(axes, results)
         else:
-            draw_forces(axes, results)
+            draw_lines(axes, results.time, results["thrust"], results.names)
+            label = "thrust [N]"
         axes.set_ylabel(label)
-        axes.grid(lw=0.3, color="#cccccc")
+        axes.grid(lw=0.3, color=GRID)
         axes.margins(x=0)
     desired = results["desired_heading"]
     one = np.allclose(desired, desired[:, :1], atol=1e-6, equal_nan=True)  # for all: drawn once
-    for f, values in enumerate(desired[:, :1].T if one else desired.T):
-        stack[1].plot(results.time, values, color=LINES[f % len(LINES)], lw=1, ls="--", zorder=3)
+    for values in desired[:, :1].T if one else desired.T:
+        stack[1].plot(results.time, values, color="#888888", lw=0.8, zorder=1)
     stack[-1].set_xlabel("time [s]")
     figure.align_ylabels(stack)
-    handles = stack[0].get_legend_handles_labels()[0] if results.n_fish > 1 else []
-    add_legend(stack[0], [*handles, Line2D([], [], color="black", lw=1, ls="--", label="desired heading")])
+    asked = Line2D([], [], color="#888888", lw=0.8, label="desired heading")
+    add_legend(stack[0], [*(fish if results.n_fish > 1 else []), asked])
+    if forces:
+        add_legend(stack[-1], forces)
     return figure
 
 
@@ -334,7 +366,7 @@ def plot_forces(results, options):
     for axes, label in zip(grid[:, 0], labels):
         axes.set_ylabel(label)
     for axes in grid.flat:
-        axes.grid(lw=0.3, color="#cccccc")
+        axes.grid(lw=0.3, color=GRID)
         axes.margins(x=0)
     figure.align_ylabels(grid[:, 0])
     for row, table in ((0, FORCES), (2, POWERS)):
@@ -372,8 +404,26 @@ PICTURES = {
 OWN_FILES = ("field", "study")  # kinds of pictures that are not of the result of a run
 
 
+KIND_OF_FILE = {"run": "swim", "study": "study", "field": "field"}  # what is drawn where nothing is said
+
+
+def implied_kind(arguments):
+    """The kind of picture that the file among the arguments calls for."""
+    files = [word for word in arguments if os.path.isfile(word)]
+    return KIND_OF_FILE.get(kind_of(files[0]) if files else None, "swim")
+
+
+def check_kind(options):
+    """Raise FileError where the file is of another kind than the picture, and say which picture there is of it."""
+    kind = kind_of(options.results)
+    wanted = options.kind if options.kind in OWN_FILES else "run"
+    if kind and kind != wanted:
+        hint = f"plot.py {KIND_OF_FILE[kind]} {options.results}"
+        raise FileError(f"{options.results}: the file of a {kind}, not of a {wanted}: use {hint}")
+
+
 def parse(arguments):
-    """The options of the command line; without a kind of picture the kind is swim."""
+    """The options of the command line; without a kind of picture the file decides."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     kinds = parser.add_subparsers(dest="kind", metavar="KIND", required=True)
     options = {}
@@ -385,13 +435,18 @@ def parse(arguments):
     options["swim"].add_argument(
         "--limits", type=float, nargs=4, metavar=("X0", "X1", "Y0", "Y1"), help="the window shown [m]"
     )
+    options["swim"].add_argument(
+        "--follow",
+        action=argparse.BooleanOptionalAction,
+        help="windows that move with the school, in body lengths (default: where the fish would be tiny otherwise)",
+    )
     options["gait"].add_argument("--shapes", type=int, default=12, help="how many shapes to draw (12)")
     options["forces"].add_argument("--beats", type=int, default=4, help="how many beats to draw, 0: the whole run (4)")
     options["field"].add_argument("--speed", action="store_true", help="draw the speed, not the vorticity")
     options["field"].add_argument("--no-streamlines", action="store_true", help="draw no streamlines")
     options["time"].add_argument("--audit", action="store_true", help="add the energy audit")
     if arguments and arguments[0] not in (*PICTURES, "-h", "--help"):
-        arguments = ["swim", *arguments]
+        arguments = [implied_kind(arguments), *arguments]
     if not arguments or arguments[0] not in PICTURES:
         parser.parse_args(arguments)  # prints help or what is missing, and ends
     chosen = options[arguments[0]].parse_intermixed_args(arguments[1:])  # options and names in any order
@@ -422,10 +477,15 @@ def main(arguments):
     check_folder(picture)
     with matplotlib.rc_context(STYLE):
         try:
+            check_kind(options)
             source = options.results if options.kind in OWN_FILES else Results(options.results)
             figure = PICTURES[options.kind][0](source, options)
         except FileError as error:
             stop(error, EXIT_FILE)
+        except UsageError as error:
+            stop(error, EXIT_USAGE)
+        except DAMAGE as error:
+            stop(f"{options.results}: cannot be drawn, it may be damaged ({type(error).__name__}: {error})", EXIT_FILE)
         save(figure, picture)
     print(picture)
 

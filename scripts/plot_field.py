@@ -1,10 +1,9 @@
 #!/usr/bin/python3
 """Draw the file of `shoal field` on a figure: vorticity or speed, streamlines, bodies. Used by plot.py."""
 
-import matplotlib
-from shoal_results import FileError, np, open_dataset, outline
+from plot_style import BODY, BODY_EDGE, matplotlib
+from shoal_results import FileError, np, open_dataset, outline, sections
 
-BODY, BODY_EDGE = "#d9d9d9", "#222222"
 SPECIAL = 0.995  # share of the points below the end of the scale: bound sheets are much stronger than wakes
 
 
@@ -21,7 +20,8 @@ class Field:
         self.time = float(data["time"][0])
         nodes, thickness = (np.ma.filled(data[name][:], np.nan) for name in ("body_x", "edge_height"))
         counts = np.asarray(data["n_nodes"][:], dtype=int)
-        self.outlines = [outline(nodes[0, f, :n], thickness[f, : n - 1]) for f, n in enumerate(counts)]
+        means = sections(data, counts.size)
+        self.outlines = [outline(nodes[0, f, :n], thickness[f, : n - 1], means[f]) for f, n in enumerate(counts)]
 
 
 def end_of_scale(values):

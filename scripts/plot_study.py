@@ -12,11 +12,9 @@
 
 import ast
 
+from plot_style import DASHES, GRID, MARKS, scale_of
 from shoal_results import FileError, netCDF4, np
 
-# In black and white every line has its own mark and its own dashes.
-MARKS = ["o", "s", "^", "D", "v", "P", "X", "*"]
-DASHES = ["-", "--", "-.", ":", (0, (5, 1)), (0, (3, 1, 1, 1)), (0, (1, 1)), (0, (8, 2))]
 COLOURS = ["#000000", "#0072b2", "#d55e00", "#009e73", "#aa4499", "#b06000", "#3366aa", "#666666"]  # all dark
 NAMES = {
     "modulus": "Young's modulus",
@@ -139,7 +137,7 @@ def plot_convergence(study, refined, figure):
         axes.minorticks_off()
         if len(names) > 1:
             axes.set_title(names[f], size=9)
-        axes.grid(lw=0.3, color="#cccccc")
+        axes.grid(lw=0.3, color=GRID)
     all_axes[0].set_ylabel("error" if is_known.all() else "difference from the finest level")
     legend_above(all_axes[0], figure, 4 if first.size == 1 else 2)
 
@@ -206,7 +204,7 @@ def plot_methods(study, over, figure):
             axes.annotate("slope 1/2", (right, low / 2 * 30**0.5), (2, -4), textcoords="offset points", va="top", size=8)
         axes.set_xlabel(study.label(over))
         axes.set_ylabel(label)
-        axes.grid(which="major", lw=0.3, color="#cccccc")
+        axes.grid(which="major", lw=0.3, color=GRID)
     legend_above(panels[0], figure, 5)
 
 
@@ -214,11 +212,6 @@ def digits_for(values):
     """How many digits after the point distinguish the values."""
     spread = np.ptp(values)
     return int(np.clip(2 - np.floor(np.log10(spread)), 0, 12)) if spread > 0 else 4
-
-
-def scale_of(x):
-    """Logarithmic for positive values that span more than a decade."""
-    return "log" if x.min() > 0 and x.max() > 10.01 * x.min() else "linear"
 
 
 def plot_map(study, x, y, labels, quantity, figure):
@@ -259,8 +252,12 @@ def plot_lines(study, figure):
                 label = ", ".join([*words, *([name] if len(names) > 1 else [])])
                 axes.plot(x[rows], study[quantity][rows, f], label=label or None, **style(i))
                 i += 1
+        axes.set_yscale(scale_of(study[quantity][study.complete]))
         axes.set_ylabel(study.label(quantity).replace(" [", "\n["))
-        axes.grid(lw=0.3, color="#cccccc")
+        axes.grid(lw=0.3, color=GRID)
+    stack[-1].set_xscale(scale_of(x) if study.is_number(first.name) else "linear")
+    if not study.is_number(first.name):
+        stack[-1].set_xticks(x, study[first.name])
     stack[-1].set_xlabel(study.label(first.name))
     if i > 1:
         legend_above(stack[0], figure, 2)
@@ -285,10 +282,23 @@ def plot_comparison(study, figure):
                 cost = [np.median(study[name][members]) for members in points]
                 axes.loglog(cost, [error[members[0]] for members in points], label=label, **style(i))
                 label = None
+        # what is below the error of the reference itself says nothing
+        axes.axhspan(0, error[N_REFERENCES - 1], color="#eeeeee", zorder=0)
+        axes.axhline(error[N_REFERENCES - 1], color="#888888", lw=0.8, zorder=1)
         axes.set_xlabel({"wall_time": "wall time [s]"}.get(name, "evaluations of the equations"))
-        axes.grid(which="major", lw=0.3, color="#cccccc")
+        axes.grid(which="major", lw=0.3, color=GRID)
         if name == "wall_time":
             axes.set_ylabel("error of the tail [body lengths]")
+            axes.annotate(
+                "error of the reference",
+                (0.98, error[N_REFERENCES - 1]),
+                (0, 2),
+                xycoords=("axes fraction", "data"),
+                textcoords="offset points",
+                ha="right",
+                size=7,
+                color="#666666",
+            )
     legend_above(panels[0], figure, 6)
 
 

@@ -7,6 +7,7 @@
 """
 
 import os
+import re
 import sys
 
 EXIT_USAGE, EXIT_FILE = 2, 4  # as the program itself: doc/cases.md
@@ -29,6 +30,10 @@ class FileError(Exception):
     """A file cannot be read or is not a result of shoal; the text says which and why."""
 
 
+# What reading a damaged file ends in.
+DAMAGE = (OSError, RuntimeError, ValueError, IndexError, KeyError, AttributeError, UnicodeError, MemoryError)
+
+
 class Results:
     """A result file. Indexing with the name of a variable reads all of it, NaN where a slot is unused."""
 
@@ -45,6 +50,7 @@ class Results:
         self.names = list(self["fish_name"])
         self.n_nodes = self["n_nodes"].astype(int)
         self.thickness = self["edge_height"]
+        self.mean_section = sections(self.data, self.n_fish)
         self.title = getattr(self.data, "title", "")
 
     def __getitem__(self, name):
@@ -67,7 +73,8 @@ class Results:
 
     def outline(self, row, fish):
         """The outline of one fish as a closed polygon (n, 2)."""
-        return outline(self.nodes(row, fish), self.thickness[fish, : self.n_nodes[fish] - 1])
+        thickness = self.thickness[fish, : self.n_nodes[fish] - 1]
+        return outline(self.nodes(row, fish), thickness, self.mean_section[fish])
 
     def wake(self, row):
         """All free vortices of a row: positions (n, 2) and circulations (n), decayed as they act on the flow."""
@@ -90,6 +97,24 @@ class Results:
         return np.flatnonzero(((self["wake_count"] == 0) | np.isfinite(first)).all(axis=1))
 
 
+KINDS = {"shoal_schema": "run", "shoal_study": "study", "shoal_field": "field"}
+
+
+def kind_of(path):
+    """What a file of shoal is of: run, study or field; None where it is no file of shoal."""
+    try:
+        with netCDF4.Dataset(path) as data:
+            return next((kind for name, kind in KINDS.items() if hasattr(data, name)), None)
+    except (OSError, RuntimeError, UnicodeError):
+        return None
+
+
+def sections(data, n_fish):
+    """Whether the thickness of the edges is a mean over them: what fish.body.section says of each fish."""
+    words = re.findall(r"\bsection: (\w+)", getattr(data, "case_effective", ""))
+    return [word == "mean" for word in (words + ["nodes"] * n_fish)[:n_fish]]
+
+
 def open_dataset(path, kind="shoal_schema"):
     """The open NetCDF file, checked to be one of shoal; kind: the attribute that says of what."""
     if not os.path.exists(path):
@@ -101,8 +126,7 @@ def open_dataset(path, kind="shoal_schema"):
     except OSError as error:
         raise FileError(f"{path}: not a result file of shoal ({error.strerror or error})") from error
     if not hasattr(data, kind):
-        wanted = {"shoal_schema": "run", "shoal_field": "field"}[kind]
-        raise FileError(f"{path}: a NetCDF file, but not one of shoal {wanted}")
+        raise FileError(f"{path}: a NetCDF file, but not one of a {KINDS[kind]} of shoal")
     return data
 
 
@@ -127,25 +151,44 @@ def hermite(knots, values, slopes, at):
     )
 
 
+def smooth_weights(n, at):
+    """Weights of n nodes at points u from 0 to n - 1 of the curve that carries the bound sheet: doc/model.md, section 6."""
+    binomial = np.array([1, 3, 3, 1])
+    sums = [sum(binomial[k - j] for j in range(max(0, k - 3), min(k, n - 4) + 1)) for k in range(n)]
+    signed = np.array(sums) * (-1.0) ** np.arange(n)
+    apart = at[:, None] - np.arange(n)
+    on_node = np.abs(apart) < 1e-12
+    weights = signed / np.where(on_node, 1, apart)
+    weights /= weights.sum(axis=1, keepdims=True)
+    weights[on_node.any(axis=1)] = on_node[on_node.any(axis=1)]
+    return weights
+
+
 def centreline(nodes, at):
-    """Points and unit normals of a smooth curve through the nodes, at arc coordinates from 0 to 1."""
-    knots = np.linspace(0, 1, len(nodes))
-    slopes = np.gradient(nodes, knots, axis=0, edge_order=2)
-    points = hermite(knots, nodes, slopes, at)
-    tangent = np.gradient(points, at, axis=0, edge_order=2)
-    tangent /= np.hypot(*tangent.T)[:, None]
+    """Points and unit normals of that curve, at arc coordinates from 0 to 1."""
+    u = at * (len(nodes) - 1)
+    points = smooth_weights(len(nodes), u) @ nodes
+    step = 1e-5 * (len(nodes) - 1)
+    ahead, behind = np.minimum(u + step, len(nodes) - 1), np.maximum(u - step, 0)
+    tangent = (smooth_weights(len(nodes), ahead) - smooth_weights(len(nodes), behind)) @ nodes
+    tangent /= np.maximum(np.hypot(*tangent.T), 1e-300)[:, None]
     return points, np.column_stack([-tangent[:, 1], tangent[:, 0]])
 
 
-def half_thickness(thickness, at):
+def half_thickness(thickness, at, is_mean):
     """Half the thickness at arc coordinates from 0 to 1, from that of the edges; zero at nose and tail.
 
     Over the angle whose cosine runs along the body, a blunt nose is as smooth as a sine: what is interpolated is the
-    ratio to the sine, mirrored at both ends. The thickness of an edge is the sum of the half thicknesses at its nodes.
+    ratio to the sine, mirrored at both ends. The thickness of an edge is its mean, or the sum of the half thicknesses
+    at its nodes.
     """
     at_nodes = np.arccos(np.linspace(1, -1, thickness.size + 1))
-    angle = np.arccos((np.cos(at_nodes[1:]) + np.cos(at_nodes[:-1])) / 2)
-    ratio = thickness / (np.sin(at_nodes[1:]) + np.sin(at_nodes[:-1]))
+    start, end = at_nodes[:-1], at_nodes[1:]
+    angle = np.arccos((np.cos(start) + np.cos(end)) / 2)
+    of_sine = np.sin(start) + np.sin(end)
+    if is_mean:
+        of_sine = (end - np.sin(2 * end) / 2 - start + np.sin(2 * start) / 2) / (np.cos(start) - np.cos(end))
+    ratio = thickness / of_sine
     knots = np.concatenate([[-angle[0]], angle, [2 * np.pi - angle[-1]]])
     values = np.concatenate([[ratio[0]], ratio, [ratio[-1]]])
     slopes = np.gradient(values, knots)
@@ -153,9 +196,9 @@ def half_thickness(thickness, at):
     return np.sin(where) * np.maximum(hermite(knots, values, slopes, where), 0)
 
 
-def outline(nodes, thickness, n=80):
+def outline(nodes, thickness, is_mean, n=80):
     """The outline of a body as a closed polygon: a smooth curve through the nodes, as thick as the edges are."""
     at = (1 - np.cos(np.linspace(0, np.pi, n))) / 2  # dense at nose and tail
     points, normals = centreline(nodes, at)
-    half = half_thickness(thickness, at)[:, None]
+    half = half_thickness(thickness, at, is_mean)[:, None]
     return np.concatenate([points + half * normals, (points - half * normals)[-2:0:-1]])

@@ -18,11 +18,10 @@ import os
 import re
 import sys
 
-import matplotlib
+from plot_style import LINES, STYLE
 
-matplotlib.use("Agg")
-from matplotlib import pyplot  # noqa: E402
-from PIL import Image  # noqa: E402
+from matplotlib import pyplot
+from PIL import Image
 
 INTRODUCTION = """\
 # Verification
@@ -177,21 +176,11 @@ FIGURE = {
     "symmetry_far": ("A fish and its far companion", "distance [lengths]", "change of position [m]", {"slopes": [-2]}),
 }
 
-# dark enough on paper, told apart by marker and dash as well as by colour (Okabe and Ito)
-COLOURS = ["#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"]
+# told apart by marker and dash as well as by colour
 MARKERS = ["o", "s", "^", "D", "v", "x", "+", "P", "*"]
 DASHES = ["-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 1))]
 
-STYLE = {
-    "font.size": 9,
-    "axes.linewidth": 0.6,
-    "xtick.direction": "in",
-    "ytick.direction": "in",
-    "legend.frameon": False,
-    "legend.fontsize": 7.5,
-    "savefig.dpi": 110,
-    "savefig.bbox": "tight",
-}
+PICTURE = {**STYLE, "legend.fontsize": 7.5, "savefig.dpi": 110}
 
 
 def read_table(path):
@@ -245,7 +234,7 @@ def draw_figure(name, figure, path):
     """One figure as a PNG."""
     title, x_axis, y_axis, keys = FIGURE.get(name, (name.replace("_", " "), "", "", {}))
     scale = keys.get("scale", "log" if is_logarithmic(figure) else "linear")
-    pyplot.rcParams.update(STYLE)
+    pyplot.rcParams.update(PICTURE)
     window, axes = pyplot.subplots(figsize=(4.8, 3.4))
     markers = 0
     for number, (series, points) in enumerate(figure.items()):
@@ -257,7 +246,7 @@ def draw_figure(name, figure, path):
             continue
         filled = MARKERS[number % len(MARKERS)] in "x+"
         dots = len(points) <= 25
-        axes.plot(x, y, color=COLOURS[markers % len(COLOURS)], ls=DASHES[markers % len(DASHES)], lw=0.9, ms=4,
+        axes.plot(x, y, color=LINES[markers % len(LINES)], ls=DASHES[markers % len(DASHES)], lw=0.9, ms=4,
                   marker=MARKERS[number % len(MARKERS)], mfc=None if filled else "white", mew=0.9,
                   markevery=1 if dots else max(1, len(points) // 15), label=series)
         markers += 1

@@ -55,8 +55,9 @@ draws plot.py forces run.nc --beats 1 forces.png
 "$program" field run.nc --grid 60,40 -q
 draws plot.py field run-field.nc field.png
 draws plot.py field run-field.nc --speed --no-streamlines speed.png
-refuses 4 "not one of shoal field" plot.py field run.nc no.png
-refuses 4 "not one of shoal run" plot.py swim run-field.nc no.png
+draws plot.py run-field.nc of_its_own_kind.png
+refuses 4 "the file of a run, not of a field: use plot.py swim run.nc" plot.py field run.nc no.png
+refuses 4 "the file of a field, not of a run: use plot.py field run-field.nc" plot.py swim run-field.nc no.png
 if command -v ffmpeg >/dev/null; then
     draws animate.py run.nc --fps 10 --dpi 60 movie.mp4
 else
@@ -64,11 +65,74 @@ else
 fi
 draws animate.py run.nc --fps 10 --dpi 40 --follow movie.gif
 
+# ---- several fish, far from their start, of 7 nodes
+
+{ printf 'format: 1\ntime: {end: 1, shedding_interval: 0.05, output_interval: 0.1}\nfluid: {density: 0}\n'
+  printf 'defaults: {fish: {nodes: 7, motion: {driven: all, speed: 30}}}\nfish:\n'
+  for i in 0 1 2 3 4 5 6; do echo "  - {name: number $i, start: {position: [0, $i]}}"; done; } >seven.yaml
+"$program" run seven.yaml -q -o seven.nc
+draws plot.py time seven.nc many.png
+draws plot.py seven.nc --times 0.5 1 -- follow.png
+draws plot.py seven.nc --no-follow far.png
+refuses 2 "--times 100: the run covers 0 to 1 s" plot.py seven.nc --times 0.5 100 -- no.png
+"$program" run "$root/cases/demo.yaml" -q -o swim.nc --set time.end=0.2 --set "fish[0].nodes=7"
+cat >look.py <<'end'
+"""Facts on what is drawn, where a picture does not tell."""
+import argparse, sys
+import numpy as np
+sys.path.insert(0, sys.argv[1])
+import plot, plot_style, shoal_results
+
+results = shoal_results.Results("seven.nc")
+options = argparse.Namespace(times=None, limits=None, follow=None)
+assert plot.plot_swim(results, options).axes[0].get_xlabel().endswith("[lengths]"), "a long way is followed"
+options.follow = False
+assert plot.plot_swim(results, options).axes[0].get_xlabel() == "x [m]", "unless told otherwise"
+assert plot.plot_time(results, argparse.Namespace(audit=False)).axes[0].lines[7].get_color() == "black", "a mean of many"
+
+# bodies are drawn along the curve of their bound sheet
+for name in ("seven.nc", "swim.nc"):
+    results = shoal_results.Results(name)
+    n, sheet = results.n_nodes[0], results["sheet_arc"][0]
+    weights = shoal_results.smooth_weights(n, sheet / results["body_length"][0] * (n - 1))
+    off = np.abs(weights @ results.nodes(-1, 0) - results["sheet_x"][-1, 0]).max()
+    assert off < 1e-9, (name, off)
+# and are as thick as an ellipse where that is their shape, whatever the thickness of an edge means
+at = (1 - np.cos(np.linspace(0, np.pi, 9))) / 2
+k = np.arccos(np.linspace(1, -1, 7))
+ends = 0.1 * (np.sin(k[:-1]) + np.sin(k[1:]))
+means = 0.1 * (np.diff(k) - np.diff(np.sin(2 * k)) / 2) / -np.diff(np.cos(k))
+for thickness, is_mean in ((ends, False), (means, True)):
+    off = np.abs(shoal_results.half_thickness(thickness, at, is_mean) - 0.1 * np.sqrt(at * (1 - at)) * 2).max()
+    assert off < 1e-12, (is_mean, off)
+
+assert plot_style.scale_of([1e4, 1e10]) == "log" and plot_style.scale_of([1, 30]) == "linear"
+assert plot_style.scale_of([-1, 1e3]) == "linear"
+first, last = plot_style.PHASES(0.0), plot_style.PHASES(1.0)
+assert first == last, "a phase comes round"
+end
+code=0
+timeout 60 /usr/bin/python3 look.py "$root/scripts" >out 2>err || code=$?
+check "facts on pictures" test "$code" = 0
+
+# ---- what cannot be drawn
+
+# a copy of a file with some bytes replaced
+damaged() {  # from, place
+    cp "$1" damaged.nc
+    printf '\377\177\377\377' | dd of=damaged.nc bs=1 seek="$2" conv=notrunc 2>dd.err
+}
+for place in 8 40 200 1300; do
+    damaged run.nc $place
+    script plot.py time damaged.nc damaged.png
+    check "bytes $place damaged: a picture or a message" test -z "$(grep Traceback err)" -a "$code" != 1
+done
+
 echo text >text.nc
 ncgen -o other.nc <<<'netcdf other { dimensions: x = 1; }'
 refuses 4 "no such file" plot.py nothing.nc
 refuses 4 "not a result file" plot.py text.nc
-refuses 4 "not one of shoal" plot.py other.nc
+refuses 4 "not one of a run of shoal" plot.py other.nc
 head -c -100 run.nc >cut.nc
 refuses 4 "the end of the file is missing" plot.py cut.nc
 refuses 4 "no folder" plot.py run.nc no/such.png

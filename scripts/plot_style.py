@@ -1,0 +1,41 @@
+#!/usr/bin/python3
+"""The look of all pictures: shoal.mplstyle, and the colours and lines that tell things apart. Used by the scripts that draw.
+
+Colours can be told apart by the colour-blind and, with marks and dashes, in grey.
+"""
+
+import os
+
+from shoal_results import EXIT_FILE, np, stop
+
+try:
+    import matplotlib
+except ImportError as missing:
+    stop(f"{missing}: apt install python3-matplotlib, and run this with /usr/bin/python3", EXIT_FILE)
+
+matplotlib.use("Agg")
+
+STYLE = matplotlib.rc_params_from_file(
+    os.path.join(os.path.dirname(os.path.abspath(__file__)), "shoal.mplstyle"), use_default_template=False
+)
+WIDTH = 7.0  # of a picture, inches: two columns of a journal
+
+# The ends of the red-blue scale of ColorBrewer: dark and light in grey.
+RED, BLUE = "#b2182b", "#4393c3"
+BODY, BODY_EDGE, PATH, GRID = "#d9d9d9", "#222222", "#555555", "#cccccc"
+# Okabe and Ito's colours, in an order that falls from dark to light in grey.
+LINES = ["#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"]
+MARKS = ["o", "s", "^", "D", "v", "P", "X", "*"]
+DASHES = ["-", "--", "-.", ":", (0, (5, 1)), (0, (3, 1, 1, 1)), (0, (1, 1)), (0, (8, 2))]
+# A phase comes round: black, blue, light blue, orange, and black again.
+PHASES = matplotlib.colors.LinearSegmentedColormap.from_list(
+    "phases", ["#000000", "#0072b2", "#56b4e9", "#d55e00", "#000000"]
+)
+SPAN = 30  # positive values that span more than this are drawn on a logarithmic axis
+
+
+def scale_of(values):
+    """The scale of an axis for some values: "log" or "linear"."""
+    values = np.asarray(values, float)
+    values = values[np.isfinite(values)]
+    return "log" if values.size and values.min() > 0 and values.max() > SPAN * values.min() else "linear"
