@@ -111,6 +111,12 @@ Heading control with feedforward, and course control, on bodies from soft to sti
 with an explicit method. Where the feedforward acts through a moving mean there is no algebraic loop, and the bias of the
 stiffest body changes as smoothly as that of the softest. A default fish goes to waypoints, another holds its course in
 the wake of a leader."""),
+    "elastic": ("Elastic plates", """\
+`force: pressure` on plates with a clamped nose in a stream, rtol 1e-5, U Dt = 0.01 L, the whole wake kept. *Flutter*: the
+plate starts at one degree to the stream; growth and frequency of the mode are fitted to the tail by Prony's method
+(units of time 3 to 8) at the theory's threshold and 2 % above it, which gives the U* at which the growth vanishes. The
+error falls with the square of the edge length, so that N and (N + 1)/2 nodes give the limit of many.
+*Heaving nose*: amplitude 0.002 L, the last of 6 or 10 periods."""),
 }
 
 # figure: title, x axis, y axis, further keys: scale (log, linear, semilog, semilogx), slopes of the triangles

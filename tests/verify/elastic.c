@@ -1,0 +1,198 @@
+/* elastic.c: the section "elastic": plates that the pressure of their sheet bends and pushes, against linear theory:
+ * the threshold of flutter, and plates whose clamped nose heaves.
+ *
+ * Lengths in L, speeds in U, density of the fluid and span 1; the plate is at rest in a stream. Its mass and bending
+ * stiffness are those of elliptic sections of a thickness that linear theory does not know. */
+#include <complex.h>
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "linear_theory.h"
+#include "verify.h"
+
+static const double pi = 3.14159265358979323846;
+
+enum { N_FRACTION = 100 /* events per unit of time: U Dt = 0.01 L */ };
+
+// ---- plates
+
+/* A plate with its nose in a stream of speed 1: body as in linear theory, motion: further keys of it. */
+static struct simulation *open_plate(int n_nodes, double end, const struct linear_theory_body *body, double heading,
+                                     const char *motion) {
+    const double thickness = 0.1;
+    return verify_open(VERIFY_SECOND
+                       "format: 1\n"
+                       "time: {end: %.17g, shedding_interval: %.17g}\n"
+                       "fluid: {density: 1, viscosity: 0, velocity: [1, 0]}\n"
+                       "wake: {lifetime: 1000}\n"
+                       "fish:\n"
+                       "  - {nodes: %d, sheet_points: %d, force: pressure, wave: {amplitude: 0},\n"
+                       "     body: {profile: uniform, thickness: %g, width: 1, density: %.17g, modulus: %.17g,\n"
+                       "            relaxation_time: 0},\n"
+                       "     start: {heading: %.17g, speed: 0}, motion: {driven: head, speed: 0%s}}\n",
+                       end, 1.0 / N_FRACTION, n_nodes, 2 * n_nodes - 1, thickness, body->mass / (pi / 4 * thickness),
+                       body->stiffness / (pi / 64 * pow(thickness, 3)), heading, motion);
+}
+
+static double height(const struct simulation *simulation, int node) {
+    return simulation->state->y[simulation->school->fish[0].at.y + node];
+}
+
+// the tail above the nose, from the event after the start on; frees the simulation
+static void follow_tail(struct simulation *simulation, int n, double *tail) {
+    for (int i = 0; i < n; i++) {
+        verify_run(simulation, (i + 1.0) / N_FRACTION);
+        tail[i] = height(simulation, simulation->school->fish[0].n_nodes - 1) - height(simulation, 0);
+    }
+    simulate_free(simulation);
+}
+
+// ---- flutter
+
+/* Growth and frequency of one mode among others. */
+struct growing {
+    double rate, frequency; /* per unit of time */
+};
+
+enum { N_MODES = 6, N_DRIFT = 2, N_TERMS = N_MODES + N_DRIFT, MOST_SAMPLES = 1000 };
+
+/* Prony's method: what is a sum of N_MODES exponentials, with a drift, satisfies a recurrence
+ * y_i+6 = c_5 y_i+5 + ... + c_0 y_i + d + e i, whose coefficients are fitted; the roots of its polynomial are the
+ * exponentials. The samples are a sixth of a period apart. The mode whose frequency is nearest to the given one. */
+static struct growing prony(int n, const double *sample, double interval, double frequency) {
+    const int lag = (int)lround(1 / (6 * frequency) / interval), n_rows = n - N_MODES * lag;
+    static double matrix[MOST_SAMPLES * N_TERMS], right[MOST_SAMPLES];
+    for (int i = 0; i < n_rows; i++) {
+        for (int k = 0; k < N_MODES; k++) matrix[i * N_TERMS + k] = sample[i + k * lag];
+        matrix[i * N_TERMS + N_MODES] = sample[0];
+        matrix[i * N_TERMS + N_MODES + 1] = sample[0] * i / n_rows;
+        right[i] = sample[i + N_MODES * lag];
+    }
+    if (LAPACKE_dgels(LAPACK_ROW_MAJOR, 'N', n_rows, N_TERMS, 1, matrix, N_TERMS, right, 1) != 0) abort();
+    double companion[N_MODES * N_MODES] = {0}, real[N_MODES], imaginary[N_MODES];
+    for (int k = 0; k < N_MODES; k++) {
+        companion[k] = right[N_MODES - 1 - k];
+        if (k + 1 < N_MODES) companion[(k + 1) * N_MODES + k] = 1;
+    }
+    if (LAPACKE_dgeev(LAPACK_ROW_MAJOR, 'N', 'N', N_MODES, companion, N_MODES, real, imaginary, NULL, 1, NULL, 1) !=
+        0) {
+        abort();
+    }
+    struct growing best = {0, INFINITY};
+    for (int k = 0; k < N_MODES; k++) {
+        const double complex exponent = clog(real[k] + I * imaginary[k]) / (lag * interval);
+        const struct growing mode = {creal(exponent), cimag(exponent) / (2 * pi)};
+        if (fabs(mode.frequency - frequency) < fabs(best.frequency - frequency)) best = mode;
+    }
+    return best;
+}
+
+/* A plate at 1 degree to the stream starts to swing about its small deflection; the first 3 units of time are left to
+ * the start. */
+static struct growing swing(int n_nodes, double mass_ratio, const struct linear_theory_threshold *at) {
+    enum { END = 8, FROM = 3, N = (END - FROM) * N_FRACTION };
+    const struct linear_theory_body body = {1 / mass_ratio, 1 / mass_ratio / (at->speed * at->speed)};
+    static double tail[END * N_FRACTION];
+    follow_tail(open_plate(n_nodes, END, &body, 181, ""), END * N_FRACTION, tail);
+    return prony(N, tail + FROM * N_FRACTION, 1.0 / N_FRACTION, at->frequency);
+}
+
+/* Where the growth of a plate of so many nodes vanishes, by its growth at the theory's threshold and 2 % above it. */
+static struct linear_theory_threshold measure(int n_nodes, double mass_ratio,
+                                              const struct linear_theory_threshold *theory) {
+    struct linear_theory_threshold above = *theory;
+    above.speed *= 1.02;
+    const struct growing at = swing(n_nodes, mass_ratio, theory), beyond = swing(n_nodes, mass_ratio, &above);
+    const double part = -at.rate / (beyond.rate - at.rate);
+    return (struct linear_theory_threshold){theory->speed * (1 + 0.02 * part),
+                                            at.frequency + part * (beyond.frequency - at.frequency)};
+}
+
+// the limit of many nodes from two numbers of them, n and 2 n - 1: errors of second order
+static double limit_of(double coarse, double fine) {
+    return (4 * fine - coarse) / 3;
+}
+
+static void flutter_of(double mass_ratio, int n_nodes) {
+    const struct linear_theory_threshold theory = linear_theory_flutter(mass_ratio, LINEAR_THEORY_MODES);
+    const struct linear_theory_threshold coarse = measure((n_nodes + 1) / 2, mass_ratio, &theory);
+    const struct linear_theory_threshold fine = measure(n_nodes, mass_ratio, &theory);
+    const char *const source = "8 modes of a beam, Theodorsen's function";
+    verify_show(verify_text("flutter, M* = %g: relative error of U*, N = %d", mass_ratio, (n_nodes + 1) / 2), source,
+                coarse.speed / theory.speed - 1);
+    verify_relative(verify_text("flutter, M* = %g: U*, N = %d", mass_ratio, n_nodes), source, theory.speed, fine.speed,
+                    0.008);
+    verify_relative(verify_text("flutter, M* = %g: U*, limit of many nodes", mass_ratio), source, theory.speed,
+                    limit_of(coarse.speed, fine.speed), 0.005);
+    verify_relative(verify_text("flutter, M* = %g: f L/U, limit of many nodes", mass_ratio), source, theory.frequency,
+                    limit_of(coarse.frequency, fine.frequency), 0.005);
+}
+
+// ---- the heaving nose
+
+/* What one period shows: the first harmonic of nose and tail, and the means of thrust and power. */
+struct driven {
+    double complex nose, tail;
+    double thrust, power;
+};
+
+// add an event to the means over a period that begins and ends at events
+static void add_event(struct simulation *simulation, double part, struct driven *driven) {
+    simulate_measure(simulation);
+    const struct pressure_forces *const fluid = &simulation->diagnostics->fish[0].pressure;
+    const double complex turn = 2 * part * cexp(-2 * pi * I * simulation->state->t);
+    driven->nose += turn * height(simulation, 0);
+    driven->tail += turn * height(simulation, simulation->school->fish[0].n_nodes - 1);
+    driven->thrust -= part * (fluid->pressure[0] + fluid->suction[0]);
+    driven->power -= part * (fluid->pressure_power + fluid->suction_power);
+}
+
+static struct driven drive(int n_nodes, double amplitude, int n_periods, const struct linear_theory_body *body) {
+    const char *const motion = verify_text(", heave: %.17g, frequency: 1, phase: -90", amplitude);
+    struct simulation *const simulation = open_plate(n_nodes, n_periods, body, 180, motion);
+    struct driven driven = {0};
+    for (int i = 1; i <= N_FRACTION; i++) {
+        verify_run(simulation, n_periods - 1 + (double)i / N_FRACTION);
+        add_event(simulation, 1.0 / N_FRACTION, &driven);
+    }
+    simulate_free(simulation);
+    driven.thrust /= amplitude * amplitude;
+    driven.power /= amplitude * amplitude;
+    return driven;
+}
+
+static void driven_plate(double mass, double stiffness, int n_nodes, int n_periods) {
+    const struct linear_theory_plate plate = {1, 1, 1, 2 * pi};
+    const struct linear_theory_body body = {mass, stiffness};
+    struct linear_theory_shape shape;
+    double complex tip;
+    linear_theory_driven(&plate, &body, &shape, &tip);
+    const struct linear_theory_load load = linear_theory_flexible(&plate, &shape);
+    const struct driven driven = drive(n_nodes, 0.002, n_periods, &body);
+    const double complex ratio = driven.tail / driven.nose;
+    static const char source[] = "8 modes of a beam, Theodorsen's function";
+    verify_relative(verify_text("heaving nose, k = pi, m = %g, E I = %g: tail over nose", mass, stiffness), source,
+                    cabs(tip), cabs(ratio), 0.01);
+    verify_value("its phase, degrees", source, carg(tip) * 180 / pi, carg(ratio) * 180 / pi, 1);
+    verify_relative("its mean thrust over the square of the amplitude", "Wu's series for that shape", load.thrust,
+                    driven.thrust, 0.02);
+    verify_relative("its mean power over the square of the amplitude", "Wu's series for that shape", load.power,
+                    driven.power, 0.02);
+}
+
+void verify_elastic(void) {
+    if (verify_is_fast()) {
+        driven_plate(0.1, 1, 33, 3);
+        return;
+    }
+    driven_plate(0.1, 0.1, 33, 6);
+    driven_plate(0.1, 1, 33, 6);
+    driven_plate(0.1, 2, 33, 6);
+    driven_plate(0.1, 10, 33, 6);
+    driven_plate(1, 5, 33, 10);
+    flutter_of(0.5, 33);
+    flutter_of(1, 33);
+    flutter_of(3, 33);
+    flutter_of(10, 65);
+}
