@@ -73,11 +73,13 @@ verify_objects = $(patsubst tests/verify/%.c,$(B)/verify/%.o,$(wildcard tests/ve
 
 bench_programs = $(patsubst tests/bench/%.c,$(B)/bench/%,$(wildcard tests/bench/*.c))
 
-generated_docs = $(B)/doc/cases.md $(B)/doc/output.md
+generated_docs = $(B)/doc/cases.md $(B)/doc/output.md $(B)/doc/case.schema.json
+manual         = $(B)/doc/shoal.1 $(B)/doc/shoal-case.5 $(B)/doc/shoal-output.5
+completion     = $(B)/doc/completion
 c_files        = $(wildcard src/*/*.[ch] include/*.h tests/*.[ch] tests/*/*.[ch])
 
-# what tests need beyond scripts/install-deps.sh: a browser, a reader of VTK's files
-test_packages = chromium python3-vtk9
+# what tests need beyond scripts/install-deps.sh: a browser, readers of VTK's files, of schemas, and of manual pages
+test_packages = chromium python3-vtk9 python3-jsonschema python3-yaml groff mandoc man-db bsdextrautils
 
 # "commit" or "commit-dirty"; of this folder's own repository, not of one that happens to lie around it
 commit := $(shell test -e .git && git describe --always --dirty --abbrev=12 --exclude='*' 2>/dev/null || echo unknown)
@@ -138,7 +140,7 @@ mutants: deps  ## see that the tests notice errors: 50 small ones are built in, 
 format:  ## lay out all C files as `make style` wants them
 	$(quiet)clang-format -i $(c_files)
 
-docs: $(generated_docs)  ## write doc/cases.md and doc/output.md from the tables of the program
+docs: $(generated_docs)  ## write cases.md, output.md and case.schema.json in doc from the tables of the program
 	$(quiet)cp $^ doc/
 
 deps:  ## install the packages that are missing (nothing to do: no output)
@@ -146,9 +148,9 @@ deps:  ## install the packages that are missing (nothing to do: no output)
 
 ## Installation: prefix=/usr/local DESTDIR=
 
-install: $(program) $(library) $(shared)  ## install program, library, header, cases, scripts and documents
+install: $(program) $(library) $(shared) $(manual) $(completion)  ## install program, library, header, cases, scripts and documents
 	$(say) INST '$(DESTDIR)$(prefix)'
-	$(quiet)install -d $(addprefix '$(DESTDIR)$(prefix)'/,bin include lib/pkgconfig $(addprefix share/shoal/,cases/include cases/studies scripts doc))
+	$(quiet)install -d $(addprefix '$(DESTDIR)$(prefix)'/,bin include lib/pkgconfig share/man/man1 share/man/man5 share/bash-completion/completions $(addprefix share/shoal/,cases/include cases/studies scripts doc))
 	$(quiet)install -m 755 $(program) '$(DESTDIR)$(prefix)/bin'
 	$(quiet)install -m 644 include/shoal.h '$(DESTDIR)$(prefix)/include'
 	$(quiet)install -m 644 $(library) '$(DESTDIR)$(prefix)/lib'
@@ -160,7 +162,10 @@ install: $(program) $(library) $(shared)  ## install program, library, header, c
 	$(quiet)install -m 644 cases/studies/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases/studies'
 	$(quiet)install -m 755 $(filter-out scripts/make-% scripts/verify.py scripts/numerics.py scripts/mutants.py,$(wildcard scripts/*.py)) '$(DESTDIR)$(prefix)/share/shoal/scripts'
 	$(quiet)install -m 644 scripts/shoal.mplstyle '$(DESTDIR)$(prefix)/share/shoal/scripts'
-	$(quiet)install -m 644 LICENSE doc/*.md '$(DESTDIR)$(prefix)/share/shoal/doc'
+	$(quiet)install -m 644 $(filter %.1,$(manual)) '$(DESTDIR)$(prefix)/share/man/man1'
+	$(quiet)install -m 644 $(filter %.5,$(manual)) '$(DESTDIR)$(prefix)/share/man/man5'
+	$(quiet)install -m 644 $(completion) '$(DESTDIR)$(prefix)/share/bash-completion/completions/shoal'
+	$(quiet)install -m 644 LICENSE CITATION.cff CHANGES.md doc/*.md doc/case.schema.json '$(DESTDIR)$(prefix)/share/shoal/doc'
 	$(quiet)printf '%s\n' 'prefix=$(prefix)' 'Name: shoal' 'Description: Swimming of fish and schools with their wakes' \
 	    'Version: $(VERSION)' 'Cflags: -I$${prefix}/include' 'Libs: -L$${prefix}/lib -lshoal' \
 	    'Libs.private: $(libraries) -fopenmp' \
@@ -168,6 +173,7 @@ install: $(program) $(library) $(shared)  ## install program, library, header, c
 
 uninstall:  ## remove what `make install` installed
 	$(quiet)rm -f $(addprefix '$(DESTDIR)$(prefix)'/,bin/shoal include/shoal.h lib/libshoal.a lib/libshoal.so lib/$(soname) lib/libshoal.so.$(VERSION) lib/pkgconfig/shoal.pc)
+	$(quiet)rm -f $(addprefix '$(DESTDIR)$(prefix)'/share/,man/man1/shoal.1 man/man5/shoal-case.5 man/man5/shoal-output.5 bash-completion/completions/shoal)
 	$(quiet)rm -rf '$(DESTDIR)$(prefix)/share/shoal'
 
 # ---- rules ----
@@ -241,6 +247,21 @@ $(c_tests): %: %.o $(test_helpers) $(objects)
 
 $(B)/doc/cases.md: $(program) scripts/make-cases-doc.py | $(B)/tests
 	$(quiet)$(program) keys --json | $(PYTHON) scripts/make-cases-doc.py >$@
+
+$(B)/doc/case.schema.json: $(program) | $(B)/tests
+	$(quiet)$(program) keys --schema >$@
+
+$(B)/doc/shoal.1: $(program) scripts/make-man.py | $(B)/tests
+	$(quiet)$(program) --describe | $(PYTHON) scripts/make-man.py shoal.1 >$@
+
+$(B)/doc/shoal-case.5: $(program) scripts/make-man.py | $(B)/tests
+	$(quiet)$(program) keys --json | $(PYTHON) scripts/make-man.py shoal-case.5 >$@
+
+$(B)/doc/shoal-output.5: $(program) scripts/make-man.py | $(B)/tests
+	$(quiet)$(program) keys --output --json | $(PYTHON) scripts/make-man.py shoal-output.5 >$@
+
+$(completion): $(program) scripts/make-completion.py | $(B)/tests
+	$(quiet)$(PYTHON) scripts/make-completion.py <($(program) --describe) <($(program) keys --json) >$@
 
 $(B)/doc/output.md: $(program) scripts/make-output-doc.py | $(B)/tests
 	$(quiet)$(program) keys --output --json | $(PYTHON) scripts/make-output-doc.py >$@

@@ -388,7 +388,7 @@ def plot_field(path, options):
 def plot_study(path, options):
     """Errors, costs or maps of a study.nc, or of a comparison of methods."""
     figure = pyplot.figure(figsize=(WIDTH, 3.4), layout="constrained")
-    plot_study_module.draw(path, figure)
+    plot_study_module.draw(path, figure, options.of)
     return figure
 
 
@@ -444,6 +444,7 @@ def parse(arguments):
     options["forces"].add_argument("--beats", type=int, default=4, help="how many beats to draw, 0: the whole run (4)")
     options["field"].add_argument("--speed", action="store_true", help="draw the speed, not the vorticity")
     options["field"].add_argument("--no-streamlines", action="store_true", help="draw no streamlines")
+    options["study"].add_argument("--of", default="speed", metavar="QUANTITY", help="what a map is of (speed)")
     options["time"].add_argument("--audit", action="store_true", help="add the energy audit")
     if arguments and arguments[0] not in (*PICTURES, "-h", "--help"):
         arguments = [implied_kind(arguments), *arguments]

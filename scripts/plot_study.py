@@ -219,21 +219,26 @@ def plot_map(study, x, y, labels, quantity, figure):
     names = list(study["fish_name"])
     x, y = x[study.complete], y[study.complete]
     all_axes = figure.subplots(1, len(names), squeeze=False, sharey=True)[0]
+    known = study[quantity][study.complete]
+    known = known[np.isfinite(known)]
+    if known.size == 0:
+        raise FileError(f"{study.path}: {quantity} has no value in any member: are the runs shorter than a beat?")
+    digits, ends = digits_for(known), {"vmin": known.min(), "vmax": known.max()}  # the same for all fish
     for f, axes in enumerate(all_axes):
         values = study[quantity][study.complete, f]
         axes.set_xscale(scale_of(x))
         axes.set_yscale(scale_of(y))
-        marks = axes.scatter(x, y, c=values, cmap="Greys", edgecolors="black", s=110, lw=0.7)
+        marks = axes.scatter(x, y, c=values, cmap="Greys", edgecolors="black", s=110, lw=0.7, **ends)
         for at_x, at_y, value in zip(x, y, values):
-            text = f"{value:.{digits_for(values)}f}"
+            text = f"{value:.{digits}f}"
             axes.annotate(text, (at_x, at_y), (0, 8), textcoords="offset points", ha="center", size=7)
         axes.margins(0.2)
         axes.set_xlabel(labels[0])
         if len(names) > 1:
             axes.set_title(names[f], size=9)
-        bar = figure.colorbar(marks, ax=axes, label=study.label(quantity))
-        bar.formatter.set_useOffset(False)
     all_axes[0].set_ylabel(labels[1])
+    bar = figure.colorbar(marks, ax=all_axes, label=study.label(quantity))
+    bar.formatter.set_useOffset(False)
 
 
 def plot_lines(study, figure):
@@ -302,9 +307,11 @@ def plot_comparison(study, figure):
     legend_above(panels[0], figure, 6)
 
 
-def draw(path, figure):
-    """Draw what a file calls for on an empty figure."""
+def draw(path, figure, quantity="speed"):
+    """Draw what a file calls for on an empty figure; quantity: what a map is of."""
     study = Study(path)
+    if quantity not in study.data.variables or study.data.variables[quantity].dimensions[1:] != ("fish",):
+        raise FileError(f"{path}: {quantity} is not a quantity of the fish in it, such as speed or cost_of_transport")
     if study.is_comparison:
         return plot_comparison(study, figure)
     if not study.axes:
@@ -320,8 +327,8 @@ def draw(path, figure):
         return plot_methods(study, keys[0].name, figure)
     if len(study.axes) == 1 and keys[0].name.endswith("position"):
         x, y = np.array([ast.literal_eval(text) for text in study[keys[0].name]]).T
-        return plot_map(study, x, y, ["x of the nose at the start [m]", "y of the nose [m]"], "speed", figure)
+        return plot_map(study, x, y, ["x of the nose at the start [m]", "y of the nose [m]"], quantity, figure)
     if len(study.axes) == 2 and len(numbers) == len(keys) == 2:
         labels = [study.label(name) for name in numbers]
-        return plot_map(study, study[numbers[0]], study[numbers[1]], labels, "speed", figure)
+        return plot_map(study, study[numbers[0]], study[numbers[1]], labels, quantity, figure)
     return plot_lines(study, figure)

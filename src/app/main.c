@@ -48,7 +48,7 @@ static const struct command commands[] = {
     {"keys",
      NULL,
      "list all keys of cases, or all variables of result files",
-     {OPTION_JSON, OPTION_OUTPUT, 'h'},
+     {OPTION_JSON, OPTION_SCHEMA, OPTION_OUTPUT, 'h'},
      NULL,
      main_keys},
     {"field",
@@ -79,18 +79,36 @@ static const struct command commands[] = {
 };
 enum { N_COMMANDS = sizeof commands / sizeof *commands };
 
+static const char summary[] = "schools of flexible swimmers";
+static const char exit_codes[] =
+    "0 success, 1 integration failed, 2 wrong usage or wrong case, 3 an expectation is not met,\n"
+    "4 file or memory error, 75 stopped by a signal.";
+
 static void print_help(FILE *stream) {
-    fputs("shoal: schools of flexible swimmers\n\nUsage: shoal COMMAND [OPTIONS] [FILE]\n\n", stream);
+    fprintf(stream, "shoal: %s\n\nUsage: shoal COMMAND [OPTIONS] [FILE]\n\n", summary);
     for (int i = 0; i < N_COMMANDS; i++) {
         fprintf(stream, "  %-8s%-8s%s\n", commands[i].name, commands[i].positional ? commands[i].positional : "",
                 commands[i].summary);
     }
     fputs(
         "\n  shoal COMMAND --help    the options of a command\n"
-        "  shoal --version         versions of the program and its libraries\n\n"
-        "Exit codes: 0 success, 1 integration failed, 2 wrong usage or wrong case, 3 an expectation is not met,\n"
-        "4 file or memory error, 75 stopped by a signal.\n",
+        "  shoal --version         versions of the program and its libraries\n"
+        "  shoal --describe        the same as JSON, from which manual and completion are made\n\n",
         stream);
+    fprintf(stream, "Exit codes: %s\n", exit_codes);
+}
+
+/* Print all commands with their options as JSON. */
+static enum status describe(void) {
+    printf("{\"summary\": \"%s\",\n\"exit_codes\": \"", summary);
+    for (const char *c = exit_codes; *c; c++) putchar(*c == '\n' ? ' ' : *c);
+    printf("\",\n\"commands\": [");
+    for (int i = 0; i < N_COMMANDS; i++) {
+        if (i > 0) printf(",\n ");
+        main_describe(&commands[i], stdout);
+    }
+    printf("]}\n");
+    return STATUS_OK;
 }
 
 static char *join(int argc, char **argv) {
@@ -135,6 +153,7 @@ static enum status choose(int argc, char **argv) {
         return status_fail(STATUS_CASE, "no command");
     }
     if (strcmp(argv[1], "--version") == 0) return print_version();
+    if (strcmp(argv[1], "--describe") == 0) return describe();
     if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0) {
         print_help(stdout);
         return STATUS_OK;

@@ -7,6 +7,7 @@
 #include "case/case.h"
 #include "case/case_keys.h"
 #include "case/case_member.h"
+#include "case/case_schema.h"
 #include "case/case_show.h"
 #include "case/sweep_members.h"
 #include "output/field_file.h"
@@ -85,6 +86,8 @@ enum status main_show(const struct request *request) {
 enum status main_keys(const struct request *request) {
     if (request->of_output) {
         result_kind_variables(N_KINDS, kinds, request->json, stdout);
+    } else if (request->schema) {
+        case_schema(stdout);
     } else {
         case_keys(stdout, request->json);
     }

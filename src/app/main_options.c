@@ -41,6 +41,7 @@ static const struct option_help all_options[] = {
     {'q', "quiet", NULL, "print no progress and no summary"},
     {'v', "verbose", NULL, "print a summary of the result at the end"},
     {OPTION_JSON, "json", NULL, "print JSON"},
+    {OPTION_SCHEMA, "schema", NULL, "print the keys as a JSON schema, by which editors check and complete cases"},
     {OPTION_OUTPUT, "output", NULL, "list the variables of result files instead of the keys of cases"},
     {OPTION_CASE, "case", NULL, "print only the complete case that made the file"},
     {'h', "help", NULL, "print this help"},
@@ -97,6 +98,45 @@ static void print_command_help(const struct command *command, FILE *stream) {
     }
 }
 
+/* A member of an object of JSON: a string, or null. */
+static void print_string(FILE *stream, const char *before, const char *name, const char *string) {
+    fprintf(stream, "%s\"%s\": ", before, name);
+    if (!string) {
+        fputs("null", stream);
+        return;
+    }
+    fputc('"', stream);
+    for (; *string; string++) {
+        if (*string == '"' || *string == '\\') fputc('\\', stream);
+        fputc(*string, stream);
+    }
+    fputc('"', stream);
+}
+
+static void describe_option(const struct command *command, const struct option_help *option, FILE *stream) {
+    const char letter[2] = {option->code < OPTION_SET ? (char)option->code : '\0', '\0'};
+    struct text meaning = {0};
+    write_meaning(command, option, &meaning);
+    print_string(stream, "{", "letter", *letter ? letter : NULL);
+    print_string(stream, ", ", "name", option->name);
+    print_string(stream, ", ", "argument", option->argument);
+    print_string(stream, ", ", "meaning", meaning.text ? meaning.text : "");
+    fputs("}", stream);
+    text_free(&meaning);
+}
+
+void main_describe(const struct command *command, FILE *stream) {
+    print_string(stream, "{", "name", command->name);
+    print_string(stream, ", ", "positional", command->positional);
+    print_string(stream, ", ", "summary", command->summary);
+    fputs(", \"options\": [", stream);
+    for (int i = 0; command->options[i]; i++) {
+        if (i > 0) fputs(",\n  ", stream);
+        describe_option(command, option_of(command->options[i]), stream);
+    }
+    fputs("]}", stream);
+}
+
 enum status main_usage(const struct command *command, const char *format, const char *word) {
     char problem[512];
     snprintf(problem, sizeof problem, format, word);
@@ -125,6 +165,7 @@ static void take_option(struct request *request, int code, char *argument) {
         case OPTION_FORCE: request->force = 1; break;
         case OPTION_STRICT: request->strict = 1; break;
         case OPTION_JSON: request->json = 1; break;
+        case OPTION_SCHEMA: request->schema = 1; break;
         case OPTION_OUTPUT: request->of_output = 1; break;
         case OPTION_CASE: request->case_only = 1; break;
         case OPTION_VTK: request->vtk = argument; break;

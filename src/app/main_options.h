@@ -3,6 +3,8 @@
 #ifndef MAIN_OPTIONS_H
 #define MAIN_OPTIONS_H
 
+#include <stdio.h>
+
 #include "base/status.h"
 
 /* Options without a letter of their own. */
@@ -11,6 +13,7 @@ enum option_code {
     OPTION_THREADS,
     OPTION_FORCE,
     OPTION_JSON,
+    OPTION_SCHEMA,
     OPTION_OUTPUT,
     OPTION_CASE,
     OPTION_MEMBERS,
@@ -33,7 +36,7 @@ enum option_code {
 struct request {
     const char *command_line;
     const char *output;
-    int quiet, verbose, force, json, of_output, case_only;
+    int quiet, verbose, force, json, schema, of_output, case_only;
     int n_assignments;
     const char **assignments; /* of --set, "KEY=VALUE" */
     char threads[64];         /* --threads as an assignment */
@@ -57,6 +60,10 @@ struct command {
 /* Read the options of a command, argv[0] being its name, into *request, whose assignments have room for argc strings.
  * Returns -1 once the help of the command has been printed; else 0, and *status is STATUS_CASE where they are wrong. */
 int main_parse(const struct command *command, int argc, char **argv, struct request *request, enum status *status);
+
+/* Print a command as an object of JSON: name, positional, summary, and its options with letter, name, argument and
+ * meaning. */
+void main_describe(const struct command *command, FILE *stream);
 
 /* Fail with STATUS_CASE: the problem (a printf format with one %s for the word) and where the help is; command may be
  * NULL. */

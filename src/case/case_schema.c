@@ -1,0 +1,161 @@
+/* case_schema.c: sections become objects, keys their properties. */
+#include "case/case_schema.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/text.h"
+#include "case/case_table.h"
+
+/* A string of JSON. */
+static void print_string(FILE *stream, const char *text) {
+    fputc('"', stream);
+    for (; *text; text++) {
+        if (*text == '"' || *text == '\\') fputc('\\', stream);
+        fputc(*text, stream);
+    }
+    fputc('"', stream);
+}
+
+// ---- values
+
+static void print_bound(FILE *stream, const char *name, double value) {
+    if (isinf(value)) return;
+    struct text number = {0};
+    text_add_number(&number, value);
+    fprintf(stream, ", \"%s\": %s", name, number.text ? number.text : "0");
+    text_free(&number);
+}
+
+/* A number within the bounds of a key; an array of such numbers, n of them (0: any number). */
+static void print_number(FILE *stream, const struct key *key, const char *type) {
+    const struct bounds *const bounds = &key->bounds;
+    fprintf(stream, "\"type\": \"%s\"", type);
+    print_bound(stream, bounds->is_min_open ? "exclusiveMinimum" : "minimum", bounds->min);
+    print_bound(stream, bounds->is_max_open ? "exclusiveMaximum" : "maximum", bounds->max);
+}
+
+static void print_list(FILE *stream, const struct key *key, int n) {
+    fprintf(stream, "\"type\": \"array\", ");
+    if (n > 0) fprintf(stream, "\"minItems\": %d, \"maxItems\": %d, ", n, n);
+    fprintf(stream, "\"items\": {");
+    print_number(stream, key, "number");
+    fprintf(stream, "}");
+}
+
+static void print_words(FILE *stream, const struct key *key) {
+    fprintf(stream, "\"enum\": [");
+    for (int i = 0; case_table_word(key, i); i++) {
+        if (i > 0) fputs(", ", stream);
+        print_string(stream, case_table_word(key, i));
+    }
+    fputc(']', stream);
+}
+
+/* What the axes of a sweep and the expectations of a study may be; their values are those of other keys. */
+static const char files[] = "\"type\": [\"string\", \"array\"], \"items\": {\"type\": \"string\"}";
+static const char defaults[] =
+    "\"type\": \"object\", \"additionalProperties\": false, \"properties\": {\"fish\": {\"$ref\": "
+    "\"#/definitions/fish\"}}";
+static const char axes[] =
+    "\"type\": \"array\", \"items\": {\"type\": \"object\", \"additionalProperties\": false, \"required\": "
+    "[\"values\"], \"properties\": {\"key\": {\"type\": \"string\"}, \"keys\": {\"type\": \"array\", \"items\": "
+    "{\"type\": \"string\"}}, \"values\": {\"type\": \"array\", \"minItems\": 1}, \"refine\": {\"type\": \"boolean\"}, "
+    "\"expect\": {\"type\": \"object\"}, \"reference\": {\"type\": \"object\"}}}";
+static const char expectations[] = "\"type\": \"array\", \"items\": {\"type\": \"object\"}";
+
+static void print_type(FILE *stream, const struct key *key) {
+    switch (key->type) {
+        case REAL: print_number(stream, key, "number"); break;
+        case INTEGER: print_number(stream, key, "integer"); break;
+        case CHOICE:
+        case METHOD: print_words(stream, key); break;
+        case STRING: fputs("\"type\": [\"string\", \"number\"]", stream); break;
+        case PAIR: print_list(stream, key, 2); break;
+        case NUMBERS: print_list(stream, key, 0); break;
+        case PAIRS:
+        case ROWS:
+            fputs("\"type\": \"array\", \"items\": {", stream);
+            print_list(stream, key, key->type == PAIRS ? 2 : 0);
+            fputs("}", stream);
+            break;
+        case HEADING:
+            fputs("\"anyOf\": [{", stream);
+            print_number(stream, key, "number");
+            fputs("}, {\"type\": \"array\", \"items\": {", stream);
+            print_list(stream, key, 2);
+            fputs("}}]", stream);
+            break;
+        case FILES: fputs(files, stream); break;
+        case DEFAULTS: fputs(defaults, stream); break;
+        case AXES: fputs(axes, stream); break;
+        case EXPECTATIONS: fputs(expectations, stream); break;
+    }
+}
+
+static void print_key(FILE *stream, const struct key *key) {
+    struct text meaning = {0};
+    const char *const standard = key->derived ? key->derived : key->initial ? key->initial : "none: it is required";
+    text_add(&meaning, "%s%s%s%s; default: %s", key->meaning, *key->unit ? " [" : "", key->unit, *key->unit ? "]" : "",
+             standard);
+    fputs("{\"description\": ", stream);
+    print_string(stream, meaning.text ? meaning.text : "");
+    fputs(", ", stream);
+    print_type(stream, key);
+    fputs("}", stream);
+    text_free(&meaning);
+}
+
+// ---- sections
+
+/* The word after a section ("" holds all but the fish's) in the path of a key; NULL if it is not in there. */
+static const char *word_in(const struct key *key, const char *section, size_t length) {
+    if (length == 0) return case_table_is_of_fish(key) ? NULL : key->path;
+    return strncmp(key->path, section, length) == 0 && key->path[length] == '.' ? key->path + length + 1 : NULL;
+}
+
+/* True if no key before this one has its word in the section. */
+static bool is_first(const struct key *key, const char *section, size_t length) {
+    const char *const word = word_in(key, section, length);
+    const size_t n = strcspn(word, ".");
+    for (const struct key *before = case_table; before < key; before++) {
+        const char *const other = word_in(before, section, length);
+        if (other && strcspn(other, ".") == n && strncmp(other, word, n) == 0) return false;
+    }
+    return true;
+}
+
+/* The object of a section: its keys, and its own sections where the first key of each stands. */
+static void print_section(FILE *stream, const char *section, size_t length, int depth) {
+    fputs("{\"type\": \"object\", \"additionalProperties\": false, \"properties\": {", stream);
+    const char *comma = "";
+    for (int k = 0; k < case_table_n; k++) {
+        const struct key *const key = &case_table[k];
+        const char *const word = word_in(key, section, length);
+        if (!word || !is_first(key, section, length)) continue;
+        const size_t n = strcspn(word, ".");
+        fprintf(stream, "%s\n%*s\"%.*s\": ", comma, 2 * depth, "", (int)n, word);
+        comma = ",";
+        if (word[n] == '.') {
+            print_section(stream, key->path, (size_t)(word - key->path) + n, depth + 1);
+        } else {
+            print_key(stream, key);
+        }
+    }
+    if (length == 0) {
+        fputs(",\n  \"fish\": {\"description\": \"the fish of the school\", \"type\": \"array\", ", stream);
+        fputs("\"items\": {\"$ref\": \"#/definitions/fish\"}}", stream);
+    }
+    fputs("}}", stream);
+}
+
+void case_schema(FILE *stream) {
+    fputs(
+        "{\"$schema\": \"http://json-schema.org/draft-07/schema#\", \"title\": \"a case of shoal\",\n"
+        "\"definitions\": {\"fish\": ",
+        stream);
+    print_section(stream, "fish", strlen("fish"), 1);
+    fputs("},\n\"allOf\": [", stream);
+    print_section(stream, "", 0, 1);
+    fputs("]}\n", stream);
+}

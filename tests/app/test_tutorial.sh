@@ -1,0 +1,64 @@
+#!/usr/bin/env bash
+# Every case, command and script of doc/tutorial.md works, in its order, in an empty folder. Runs are shortened.
+#
+#   tests/app/test_tutorial.sh PROGRAM
+set -uo pipefail
+export LC_ALL=C.UTF-8
+
+program=$(realpath "${1:?usage: tests/app/test_tutorial.sh PROGRAM}")
+root=$(realpath "$(dirname "$0")/../..")
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder" || exit 2
+export MPLCONFIGDIR=$folder/matplotlib
+
+# shellcheck source=tests/checks.sh
+. "$root/tests/checks.sh"
+
+# the blocks of the tutorial as files: 01-sh, 02-python, ..., and the cases by the names that the text gives them
+/usr/bin/python3 - "$root/doc/tutorial.md" <<'end'
+import re, sys
+
+text, number = open(sys.argv[1], encoding="utf-8").read(), 0
+for block in re.finditer(r"```(\w+)\n(.*?)```", text, re.S):
+    kind, inside = block.groups()
+    number += 1
+    name = f"{number:02}-{kind}"
+    if kind == "yaml":
+        name = re.findall(r"Write `([^`]+)`", text[: block.start()])[-1]
+    open(name, "w", encoding="utf-8").write(inside)
+end
+
+shoal() {
+    local short=()
+    case $1 in
+        run | study) short=(-q --set time.end=1.2 --set 'fish[*].nodes=7' --set 'fish[*].sheet_points=11') ;;
+    esac
+    timeout 100 "$program" "$@" "${short[@]}"
+}
+plot.py() { timeout 100 /usr/bin/python3 "$root/scripts/plot.py" "${@//[246]/1}"; }
+
+# a command as the tutorial writes it; times of pictures are within the shorter run
+command_works() { eval "$1"; }
+
+n_blocks=0
+for block in [0-9][0-9]-sh [0-9][0-9]-python; do [[ ! -e $block ]] || n_blocks=$((n_blocks + 1)); done
+check the_tutorial_has_commands test "$n_blocks" -ge 1
+for block in [0-9][0-9]-*; do
+    if [[ $block == *-python ]]; then
+        prints() { timeout 60 /usr/bin/python3 "$block" >printed && [[ -s printed ]]; }
+        check "$block" prints
+        continue
+    fi
+    while IFS= read -r line; do
+        check "$line" command_works "$line"
+    done <"$block"
+done
+for made in alone.html pair.html pair-time.png pair.png map.png fine.nc follower-study/study.nc; do
+    check "$made is there" test -s "$made"
+done
+members() { [[ $(find follower-study -name 'member-*.nc' | wc -l) == 12 ]]; }
+check the_study_has_twelve_members members
+
+echo "$n_passed passed, $n_failed failed, $n_skipped skipped"
+((n_failed == 0))
