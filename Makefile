@@ -51,6 +51,9 @@ libraries      = -lsundials_ida -lsundials_kinsol -lsundials_arkode -lsundials_s
                  -lsundials_sunmatrixsparse -lsundials_nvecserial -lklu -lamd -lcolamd -lbtf -lsuitesparseconfig \
                  -llapacke -llapack -lblas -lnetcdf -lyaml -lz -lm
 
+# OpenMP as a part of the program, where the compiler has it so: src/app/main_threads.h
+static_gomp = $(wildcard $(shell $(CC) -print-file-name=libgomp.a))
+
 # objects.a holds every function for the program and the tests; libshoal, which is installed, shares shoal_* only
 objects = $(B)/objects.a
 library = $(B)/libshoal.a
@@ -87,7 +90,7 @@ commit := $(shell test -e .git && git describe --always --dirty --abbrev=12 --ex
 # make again, on all cores unless told otherwise
 parallel = $(MAKE) --no-print-directory $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
-.PHONY: all demo test test-slurm tests verify mutants bench style format docs install uninstall clean deps help FORCE
+.PHONY: all demo test test-slurm tests verify soak mutants bench style format docs install uninstall clean deps help FORCE
 
 ## Everyday
 
@@ -110,6 +113,10 @@ test-slurm: deps  ## install Slurm where it is missing, start it, run a study on
 verify: deps  ## check the program against classical results (minutes) and write doc/verification.md
 	@$(parallel) $(verify_program)
 	@scripts/verify.sh $(verify_program) $(B)/verify
+
+soak: deps  ## let everything fail that can: all of tests/soak (an hour)
+	@$(parallel) all $(B)/faults.so
+	@scripts/run-tests.sh $(program) $(wildcard tests/soak/*.sh)
 
 bench: $(program) $(bench_programs)  ## measure: inner loops, phases, schools, whole runs (doc/performance.md)
 	@scripts/bench.sh $(B)
@@ -180,7 +187,7 @@ uninstall:  ## remove what `make install` installed
 
 $(program): $(app_objects) $(objects)
 	$(say) LD $@
-	$(quiet)$(CC) $(shoal_cflags) $(LDFLAGS) -o $@ $^ $(libraries)
+	$(quiet)$(CC) $(shoal_cflags) $(LDFLAGS) -o $@ $^ $(static_gomp) $(libraries)
 
 $(objects): $(library_objects)
 	$(say) AR $@
@@ -215,6 +222,11 @@ $(B)/output/page.o: src/output/page.html
 # rewritten only when the commit changes
 $(B)/commit: FORCE | $(B)/tests
 	@echo '$(commit)' | cmp -s - $@ || echo '$(commit)' >$@
+
+# to be preloaded: tests/faults/faults.py
+$(B)/faults.so: tests/faults/shim.c Makefile | $(B)/tests
+	$(say) LD $@
+	$(quiet)$(CC) -std=c11 -Wall -Wextra -Wconversion -Wshadow -Werror -O2 -shared -fPIC -o $@ $<
 
 tests: all $(c_tests) $(verify_program) $(bench_programs)
 

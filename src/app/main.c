@@ -6,7 +6,6 @@
 #include "app/main_commands.h"
 #include "app/main_options.h"
 #include "app/main_signals.h"
-#include "app/main_threads.h"
 #include "base/version.h"
 
 // ---- the commands
@@ -172,7 +171,7 @@ static void print_message(const char *message) {
 }
 
 int main(int argc, char **argv) {
-    main_wait_briefly(argv);
+    main_open_standard();
     main_reset_signals();
     enum status status = choose(argc, argv);
     if (status == STATUS_OK && (fflush(stdout) != 0 || ferror(stdout))) {

@@ -10,6 +10,7 @@
 #include "app/main_signals.h"
 #include "app/main_threads.h"
 #include "app/progress.h"
+#include "base/parallel.h"
 #include "case/case.h"
 #include "case/sweep_members.h"
 #include "output/page.h"
@@ -49,6 +50,7 @@ static enum status run_case(const struct case_values *values, const struct reque
                                              .data = &teller,
                                              .stop = main_stop_signal()};
     main_catch_signals();
+    TRY(parallel_try_threads(values->school.threads));
     main_spread_threads(values->school.threads);
     const enum status status = simulate_run(values, &options);
     progress_end(&teller.progress);

@@ -4,6 +4,10 @@
 
 #include <signal.h>
 
+/* Open /dev/null in the place of standard input, output and error where the program was started without them: the next
+ * file would take their number, and what is printed would go into it. */
+void main_open_standard(void);
+
 /* Wait for our own processes even where the program that started us ignores the ends of its own. */
 void main_reset_signals(void);
 

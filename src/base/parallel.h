@@ -4,6 +4,8 @@
 #ifndef PARALLEL_H
 #define PARALLEL_H
 
+#include "base/status.h"
+
 /* The elements first .. first + n - 1 of an array. */
 struct range {
     int first, n;
@@ -21,6 +23,9 @@ enum {
     PARALLEL_UNKNOWNS = 4000,      /* unknowns in a loop over fish that multiplies or solves */
     PARALLEL_MATRICES = 200        /* unknowns in a loop over fish that fills or factorises their matrices */
 };
+
+/* See that so many threads can be started: OpenMP ends the program where they cannot. Fails with STATUS_MEMORY. */
+enum status parallel_try_threads(int threads);
 
 /* The number of threads to use for a loop of n iterations with this much work in total: one or all. */
 int parallel_threads(int threads, int n, double work, double min_work);

@@ -53,6 +53,13 @@ static void folder_of(const char *path, char folder[PATH_MAX]) {
     snprintf(folder, PATH_MAX, "%.*s", length > 0 ? length : 1, length > 0 ? path : ".");
 }
 
+bool netcdf_has_memory(void) {
+    // its first call takes 2.2 MB
+    void *volatile const needed = malloc((size_t)4 << 20);
+    free(needed);
+    return needed != NULL;
+}
+
 /* What can be wrong with the place of a file, and what to do about it. */
 static enum status creation_failed(const char *path, int code) {
     char folder[PATH_MAX];
@@ -122,7 +129,7 @@ enum status netcdf_create(struct netcdf_writer *writer, const char *path, const 
     *writer = (struct netcdf_writer){.file = -1, .descriptor = -1, .last_fsync = -INFINITY};
     writer->target = netcdf_local_path(path, 0);
     writer->temporary = netcdf_local_path(path, ENDING);
-    if (writer->target && writer->temporary) {
+    if (writer->target && writer->temporary && netcdf_has_memory()) {
         writer->path = writer->target + (path[0] == '/' ? 0 : strlen("./"));
         snprintf(writer->temporary + strlen(writer->temporary), ENDING, ".%ld.part", (long)getpid());
         // what is there was left by a run that was killed, or is a link; a new file is never written through one
@@ -263,7 +270,7 @@ enum status netcdf_publish(struct netcdf_writer *writer, bool overwrite) {
 }
 
 void netcdf_reopen(struct netcdf_writer *writer) {
-    if (writer->file >= 0) nc_close(writer->file);
+    // nc_close and nc_abort write: the old number stays open until the program ends
     writer->file = -1;
     writer->code = NC_NOERR;
     CALL(writer, nc_open(writer->target, NC_WRITE, &writer->file));

@@ -81,8 +81,9 @@ void netcdf_sync(struct netcdf_writer *writer, bool now);
  * call before has failed, or where the file exists and must not be overwritten. */
 enum status netcdf_publish(struct netcdf_writer *writer, bool overwrite);
 
-/* Close a published file and open it again after a failure: a header on a full disk has its place already, and counts
- * whole rows only. */
+/* Open a published file again after a failure: a header on a full disk has its place already, and counts whole rows
+ * only. What NetCDF still holds of the rows that could not be written is given up with it: it would write a part of
+ * them, and count it. */
 void netcdf_reopen(struct netcdf_writer *writer);
 
 /* Close the file and release the writer. Removes a file that has not been published; fails with STATUS_FILE where a
@@ -135,6 +136,9 @@ enum status netcdf_read_text(const struct netcdf_reader *reader, const char *nam
 /* The path as NetCDF needs it: "./" keeps it from taking a name for an address or dropping blanks that it begins with.
  * more: room for a longer ending, bytes. NULL: out of memory. The caller frees it. */
 char *netcdf_local_path(const char *path, size_t more);
+
+/* Whether there is memory for what NetCDF may need to create or open a file: it crashes where there is none. */
+bool netcdf_has_memory(void);
 
 /* Check the header of a file and that the file is as long as it says. Fails with STATUS_FILE. */
 enum status netcdf_check_header(const char *path);

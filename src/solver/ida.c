@@ -134,7 +134,7 @@ static enum status fill(struct ida *solver) {
     }
     TRY(jacobian_create(&solver->jacobian, solver->residual->school));
     residual_mask(solver->residual, solver->jacobian);
-    TRY(sundials_adapter_context(&solver->context));
+    TRY(sundials_adapter_context(&solver->context, solver->residual->school->n_unknowns));
     TRY(sundials_adapter_vector(&solver->y, solver->context, n, solver->state->y));
     TRY(sundials_adapter_vector(&solver->yp, solver->context, n, solver->state->yp));
     TRY(sundials_adapter_vector(&solver->tolerances, solver->context, n, solver->tolerance));

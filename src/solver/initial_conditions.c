@@ -127,7 +127,7 @@ static enum status fill(struct initial_conditions *c) {
         c->kind[i] = -1;  // unknown
     }
     TRY(jacobian_create(&c->jacobian, c->residual->school));
-    TRY(sundials_adapter_context(&c->context));
+    TRY(sundials_adapter_context(&c->context, c->n));
     TRY(sundials_adapter_vector(&c->solution, c->context, n, c->start));
     TRY(sundials_adapter_vector(&c->solution_scales, c->context, n, c->solution_scale));
     TRY(sundials_adapter_vector(&c->value_scales, c->context, n, c->value_scale));

@@ -133,7 +133,7 @@ static enum status fill(struct runge_kutta *solver) {
     }
     keep_unknowns(solver);
     TRY(ode_rhs_create(&solver->rhs, solver->residual));
-    TRY(sundials_adapter_context(&solver->context));
+    TRY(sundials_adapter_context(&solver->context, solver->residual->school->n_unknowns));
     TRY(sundials_adapter_vector(&solver->y, solver->context, n, solver->state->y));
     TRY(sundials_adapter_vector(&solver->tolerances, solver->context, n, solver->tolerance));
     solver->arkode = ARKStepCreate(rates_callback, NULL, solver->state->t, solver->y, solver->context);

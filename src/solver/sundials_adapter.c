@@ -2,9 +2,19 @@
 #include "solver/sundials_adapter.h"
 
 #include <nvector/nvector_serial.h>
+#include <stdlib.h>
 #include <sundials/sundials_context.h>
 
-enum status sundials_adapter_context(SUNContext *context) {
+static enum status find_memory(long n) {
+    // vectors of doubles, of which IDA makes about 25, and what is small
+    enum { VECTORS = 40, SMALL = 1 << 20 };
+    void *volatile const needed = malloc((size_t)n * VECTORS * sizeof(double) + SMALL);
+    free(needed);
+    return needed ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: the solver of %ld unknowns", n);
+}
+
+enum status sundials_adapter_context(SUNContext *context, long n) {
+    TRY(find_memory(n));
     if (SUNContext_Create(NULL, context) != 0)
         return status_fail(STATUS_MEMORY, "out of memory: a context of SUNDIALS");
     return STATUS_OK;

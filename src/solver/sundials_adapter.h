@@ -20,8 +20,9 @@ struct sundials_adapter_linear {
     SUNLinearSolver solver;
 };
 
-/* Create a context. Fails with STATUS_MEMORY. */
-enum status sundials_adapter_context(SUNContext *context);
+/* Create a context. Fails with STATUS_MEMORY, also where there is none for what IDA, KINSOL or ARKODE allocate for n
+ * unknowns: they crash where they find none. */
+enum status sundials_adapter_context(SUNContext *context, long n);
 
 /* Create a vector of n values that are not copied; it does not own them. Fails with STATUS_MEMORY. */
 enum status sundials_adapter_vector(N_Vector *vector, SUNContext context, long n, double *values);

@@ -13,6 +13,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "base/parallel.h"
 #include "case/case.h"
 #include "case/case_member.h"
 #include "run/simulate.h"
@@ -72,6 +73,7 @@ static void report_progress(const struct simulate_progress *now, void *data) {
 static enum status run_member(const struct study *study, const struct job *job) {
     struct case_values values;
     TRY(case_member(&values, study->values, job->member));
+    enum status status = parallel_try_threads(values.school.threads);
     char *const path = study_folder_member(study->options->folder, job->member, ".nc");
     const struct simulate_options options = {.path = path,
                                              .overwrite = 1,
@@ -79,7 +81,8 @@ static enum status run_member(const struct study *study, const struct job *job) 
                                              .progress = report_progress,
                                              .data = job->report,
                                              .stop = study->options->stop};
-    const enum status status = path ? simulate_run(&values, &options) : STATUS_MEMORY;
+    if (!path) status = STATUS_MEMORY;
+    if (status == STATUS_OK) status = simulate_run(&values, &options);
     free(path);
     case_free(&values);
     return status;

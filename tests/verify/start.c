@@ -343,7 +343,7 @@ static int calculate(struct simulation *simulation, double *y, double *yp, doubl
     double *const values[4] = {y, yp, kind, tolerance};
     SUNContext context;
     N_Vector vector[4];
-    if (sundials_adapter_context(&context) != STATUS_OK) abort();
+    if (sundials_adapter_context(&context, n) != STATUS_OK) abort();
     for (int i = 0; i < 4; i++) {
         if (sundials_adapter_vector(&vector[i], context, n, values[i]) != STATUS_OK) abort();
     }

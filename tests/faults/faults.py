@@ -1,0 +1,123 @@
+#!/usr/bin/python3
+"""Let every call of the system fail that a run makes about its files, one at a time, and look at what is left.
+
+    faults.py PROGRAM SHIM EVERY      EVERY: 1 tries all of them, n every n-th
+
+After each fault the exit code is 0 or 4 (killed: -9); on standard error is one message, with the path and the reason;
+the result, where there is one, has rows that are to the bit those of an undisturbed run, and `shoal info` reads it.
+Prints a line for what is wrong, and as the last one how many passed and failed.
+"""
+import os, resource, subprocess, sys, tempfile
+import netCDF4
+import numpy as np
+
+program, shim, every = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2]), int(sys.argv[3])
+CASE = """format: 1
+name: victim
+time: {end: 0.1, shedding_interval: 0.01, output_interval: 0.01}
+fish: [{nodes: 9, sheet_points: 17}]
+"""
+CALLS = ["open", "read", "write", "pwrite", "lseek", "fsync", "ftruncate", "rename", "link", "close"]
+REASONS = {
+    "ENOSPC": "No space left", "EIO": "Input/output error", "EDQUOT": "quota", "EINTR": "Interrupted", "limit": "too large"
+}
+counts = {"passed": 0, "failed": 0}
+
+
+def run(extra=(), limit=None, **settings):
+    """One run with a fault; exit code and what it printed."""
+    def lower():
+        if limit is not None:
+            resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+    environment = dict(os.environ, LD_PRELOAD=shim, FAULT_PATH="victim.nc", **{f"FAULT_{k}": v for k, v in settings.items()})
+    environment["ASAN_OPTIONS"] = "verify_asan_link_order=0:detect_leaks=0"
+    done = subprocess.run(
+        [program, "run", "case.yaml", "-q", *extra, "-o", "victim.nc"], env=environment, timeout=5,
+        stdin=subprocess.DEVNULL, capture_output=True, text=True, preexec_fn=lower,
+    )
+    return done.returncode, done.stderr
+
+
+def rows(path):
+    """All variables with time, and the status."""
+    with netCDF4.Dataset(path) as data:
+        data.set_auto_mask(False)
+        names = [name for name in data.variables if "time" in data[name].dimensions and name != "wall_time"]
+        return data.run_status, {name: data[name][...] for name in names}
+
+
+def wrong_with_file(code):
+    """What is wrong with the result, or None."""
+    status, found = rows("victim.nc")
+    n = len(found["time"])
+    if code == 0 and (status != "complete" or n != len(whole["time"])):
+        return f"exit code 0, but {status} with {n} rows"
+    if code != 0 and status == "complete" and n != len(whole["time"]):
+        return f"complete with {n} rows"
+    for name, values in whole.items():
+        if found[name].shape[1:] != values.shape[1:] or found[name].tobytes() != values[:n].tobytes():
+            return f"{name} is not that of an undisturbed run in {n} rows"
+    read = subprocess.run([program, "info", "victim.nc"], stdin=subprocess.DEVNULL, capture_output=True, text=True)
+    return None if read.returncode == 0 else f"info: {read.stderr}"
+
+
+def check(name, reason, killed=False, **settings):
+    """A run with a fault, and all that must hold after it."""
+    for left in [name for name in os.listdir(".") if name.startswith("victim.nc")]:
+        os.remove(left)
+    try:
+        code, message = run(["--force"] if settings.get("CALL") == "rename" else [], **settings)
+    except subprocess.TimeoutExpired:
+        code, message = "none within 5 s", ""
+    wrong = None
+    if killed and code not in (-9, 0):
+        wrong = f"exit code {code}"
+    elif not killed and code not in (0, 4):
+        wrong = f"exit code {code}: {message}"
+    elif code == 4 and (message.count("\n") != 1 or "victim.nc" not in message or reason not in message):
+        wrong = f"message: {message!r}"
+    elif code == 0 and message:
+        wrong = f"exit code 0 with a message: {message!r}"
+    elif os.path.exists("victim.nc"):
+        wrong = wrong_with_file(code)
+    counts["failed" if wrong else "passed"] += 1
+    if wrong:
+        print(f"FAILED  {name}: {wrong}", flush=True)
+    # a run that has not been killed leaves no half of a file
+    if not killed and any(part.endswith(".part") for part in os.listdir(".")):
+        counts["failed"] += 1
+        print(f"FAILED  {name}: it leaves a file .part", flush=True)
+
+
+with tempfile.TemporaryDirectory() as folder:
+    os.chdir(folder)
+    open("case.yaml", "w").write(CASE)
+    # a result gets its name by a link, with --force by renaming it
+    for extra in ([], ["--force"]):
+        code, message = run(extra, AT="0", COUNT="counted")
+        assert code == 0, message
+        os.rename("victim.nc", "whole.nc")
+    whole = rows("whole.nc")[1]
+    size = os.path.getsize("whole.nc")
+    numbers = {}
+    for call, number in (line.split() for line in open("counted")):
+        numbers[call] = max(int(number), numbers.get(call, 0))
+    n = 0
+    for call in CALLS:
+        ways = ["before", "after", *(w for w in REASONS if w != "limit"), *(["short"] if call in ("write", "pwrite") else [])]
+        for at in range(1, numbers[call] + 1):
+            for how in ways:
+                # what is interrupted for ever is tried again for ever
+                for ever in ("0",) if how in ("before", "after", "EINTR") else ("0", "1"):
+                    n += 1
+                    if n % every == 0:
+                        check(f"{call} {at} {how} ever={ever}", REASONS.get(how, ""), how in ("before", "after"),
+                              CALL=call, AT=str(at), HOW=how, EVER=ever)
+    for limit in range(0, size, 257):
+        n += 1
+        if n % every == 0:
+            check(f"files of at most {limit} bytes", REASONS["limit"], limit=limit)
+    print("calls of a run:", ", ".join(f"{numbers[call]} {call}" for call in CALLS))
+    os.chdir("/")
+print(f"{counts['passed']} passed, {counts['failed']} failed, 0 skipped")
+sys.exit(counts["failed"] > 0)

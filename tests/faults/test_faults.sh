@@ -1,0 +1,87 @@
+#!/usr/bin/env bash
+# Faults of the system and of the surroundings: a sample of failing calls (all of them: make soak), closed standard
+# files, closed pipes, signals that are ignored, threads and memory that are not there.
+#
+#   tests/faults/test_faults.sh PROGRAM
+set -uo pipefail
+export LC_ALL=C
+
+program=$(realpath "${1:?usage: tests/faults/test_faults.sh PROGRAM}")
+shim=$(dirname "$program")/faults.so
+tests=$(realpath "$(dirname "$0")/..")
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder" || exit 2
+
+# shellcheck source=tests/checks.sh
+. "$tests/checks.sh"
+
+cat >small.yaml <<'end'
+format: 1
+name: small
+time: {end: 0.2, shedding_interval: 0.01, output_interval: 0.02}
+fish: [{nodes: 9, sheet_points: 17}]
+end
+ended() { ((code == $1)); }
+# the attribute of a file that holds whole rows
+complete() { [[ $(ncdump -h "$1" | sed -n 's/.*:run_status = "\(.*\)" ;/\1/p') == complete ]]; }
+
+# ---- failing calls
+
+sample=$(/usr/bin/python3 "$tests/faults/faults.py" "$program" "$shim" 37)
+check "a sample of failing calls: whole rows, one message, exit code 0 or 4" \
+    grep -q '^[1-9][0-9]* passed, 0 failed, 0 skipped$' <(echo "$sample" | tee sample.out | tail -n 1)
+((n_failed == 0)) || cat sample.out
+
+# ---- standard files
+
+for closed in '<&-' '>&-' '2>&-' '<&- >&- 2>&-'; do
+    code=0
+    eval "\"\$program\" run small.yaml --force -o closed.nc $closed" || code=$?
+    # what cannot be printed is an error, after the result is complete
+    if [[ $closed == *' >&-'* || $closed == '>&-' ]]; then want=4; else want=0; fi
+    check "closed $closed: exit code $want" ended $want
+    check "closed $closed: the result is complete and nothing else is in it" complete closed.nc
+    check "closed $closed: it can be read" "$program" info closed.nc
+done 2>/dev/null
+code=0
+{ "$program" run small.yaml --force -o pipe.nc 2> >(exec true) >out; } || code=$?
+check "a closed pipe for progress: exit 0" ended 0
+check "a closed pipe for progress: complete" complete pipe.nc
+
+# ---- threads and memory
+
+if grep -q __asan_init "$program"; then
+    skip "little memory" "the address sanitizer needs all of it"
+else
+    limited() {  # kilobytes, arguments
+        code=0
+        (ulimit -v "$1" && exec timeout "$time_limit" "$program" "${@:2}") >out 2>err </dev/null || code=$?
+    }
+    limited 300000 run small.yaml -q --force -o threads.nc --threads 64
+    check "threads that cannot be started: exit 4" ended 4
+    check "threads that cannot be started: says so" grep -q 'of 64 threads can be started' err
+    # a school; from what the program itself needs to what is enough: each step ends well or with a message about memory
+    sed 's/^fish.*/fish:/' small.yaml >many.yaml
+    for i in $(seq 25); do
+        echo "  - {name: f$i, nodes: 40, sheet_points: 41, start: {position: [0, $i]}}"
+    done >>many.yaml
+    n_out=0 n_good=0
+    least=60000
+    # the libraries have to fit
+    until (ulimit -v $least && "$program" --version) >out 2>&1; do least=$((least + 2000)); done 2>/dev/null
+    for kilobytes in $(seq $least 3100 $((least + 60000))) 400000; do
+        limited $kilobytes run many.yaml -q --force -o memory.nc --set time.end=0.01 --set time.output_interval=0.01
+        if ((code == 4)) && grep -qi memory err && (($(wc -l <err) == 1)); then
+            n_out=$((n_out + 1))
+        elif ((code == 0)); then
+            n_good=$((n_good + 1))
+        else
+            fail "$kilobytes kB of memory" "exit code $code: $(head -c 400 err)"
+        fi
+    done
+    check "some of these were too little, and some enough" test $n_out -gt 0 -a $n_good -gt 0
+fi
+
+echo "$n_passed passed, $n_failed failed, $n_skipped skipped"
+((n_failed == 0))
