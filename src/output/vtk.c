@@ -23,6 +23,7 @@ struct export {
     struct school school;    /* what the strength of a vortex needs */
     struct outline *outline; /* of each fish                                   (n_fish) */
     double *sheet_arc;       /* as in the file */
+    double *control_arc;     /* as in the file; NULL: no fish has force: pressure */
     size_t n_points;         /* of all bodies */
 };
 
@@ -107,15 +108,16 @@ static enum status write_cells(const struct export *export, FILE *stream, const 
 struct bodies {
     double *nodes, *sheet, *strength, *speed, *heading; /* as in the file */
     double *xy, *value;                                 /* points, and strengths there   (n_points, 2), (n_points) */
+    double *pressure, *pressure_at;                     /* as in the file; at the points (n_points) */
     size_t *size;                                       /* of the cells                  (2 n_fish) */
     int64_t *fish, *is_outline;                         /* of the cells                  (2 n_fish) */
     double *cell;                                       /* a value of each cell          (2 n_fish) */
 };
 
 static void bodies_free(struct bodies *bodies) {
-    void *const arrays[] = {bodies->nodes,   bodies->sheet,      bodies->strength, bodies->speed,
-                            bodies->heading, bodies->xy,         bodies->value,    bodies->size,
-                            bodies->fish,    bodies->is_outline, bodies->cell};
+    void *const arrays[] = {bodies->nodes, bodies->sheet,    bodies->strength,   bodies->speed, bodies->heading,
+                            bodies->xy,    bodies->value,    bodies->size,       bodies->fish,  bodies->is_outline,
+                            bodies->cell,  bodies->pressure, bodies->pressure_at};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) free(arrays[i]);
 }
 
@@ -126,9 +128,12 @@ static enum status bodies_read(const struct export *export, size_t row, struct b
                               .size = calloc(n_cells, sizeof *bodies->size),
                               .fish = calloc(n_cells, sizeof *bodies->fish),
                               .is_outline = calloc(n_cells, sizeof *bodies->is_outline),
-                              .cell = calloc(n_cells, sizeof *bodies->cell)};
-    if (!bodies->xy || !bodies->value || !bodies->size || !bodies->fish || !bodies->is_outline || !bodies->cell)
+                              .cell = calloc(n_cells, sizeof *bodies->cell),
+                              .pressure_at = calloc(export->n_points, sizeof *bodies->pressure_at)};
+    if (!bodies->xy || !bodies->value || !bodies->size || !bodies->fish || !bodies->is_outline || !bodies->cell ||
+        !bodies->pressure_at)
         return out_of_memory(export);
+    if (export->control_arc) TRY(result_reader_new(&export->reader, "pressure", row, &bodies->pressure));
     TRY(result_reader_new(&export->reader, "x", row, &bodies->nodes));
     TRY(result_reader_new(&export->reader, "sheet_x", row, &bodies->sheet));
     TRY(result_reader_new(&export->reader, "sheet_strength", row, &bodies->strength));
@@ -136,13 +141,36 @@ static enum status bodies_read(const struct export *export, size_t row, struct b
     return result_reader_new(&export->reader, "heading", row, &bodies->heading);
 }
 
-/* The strength at a point of the outline: between the bound vortices on both sides of it. */
-static double strength_at(const double *arc, const double *strength, int n, double part) {
-    const double s = part * arc[n - 1];
-    int k = 0;
-    while (k < n - 2 && s > arc[k + 1]) k++;
+/* A value at an arc coordinate between those of n points. */
+static double value_at(const double *arc, const double *value, size_t n, double s) {
+    size_t k = 0;
+    while (k + 2 < n && s > arc[k + 1]) k++;
     const double q = fmin(1, fmax(0, (s - arc[k]) / (arc[k + 1] - arc[k])));
-    return (1 - q) * strength[k] + q * strength[k + 1];
+    return (1 - q) * value[k] + q * value[k + 1];
+}
+
+/* The arc coordinate of point i of the outline of a fish. */
+static double outline_arc(const struct export *export, size_t f, int i) {
+    const size_t last = f * export->reader.length[SHEET] + (size_t) export->reader.n_sheet[f] - 1;
+    return (1 - cos(M_PI * outline_point(i) / (OUTLINE_POINTS - 1))) / 2 * export->sheet_arc[last];
+}
+
+/* The pressure jump at all points, from that at the control points; NaN for fish that have none. */
+static void bodies_press(const struct export *export, struct bodies *bodies) {
+    const struct result_reader *const reader = &export->reader;
+    const size_t slots = reader->length[CONTROL], n_fish = reader->length[FISH];
+    size_t line = 0, side = export->n_points - n_fish * OUTLINE_SIDES;
+    for (size_t f = 0; f < n_fish; f++) {
+        const double *const arc = export->control_arc + f * slots, *const jump = bodies->pressure + f * slots;
+        size_t n = 0;
+        while (n < slots && isfinite(arc[n]) && isfinite(jump[n])) n++;
+        for (int j = 0; j < reader->n_sheet[f]; j++) {
+            const double s = export->sheet_arc[f * reader->length[SHEET] + (size_t)j];
+            bodies->pressure_at[line++] = n > 1 ? value_at(arc, jump, n, s) : NAN;
+        }
+        for (int i = 0; i < OUTLINE_SIDES; i++)
+            bodies->pressure_at[side++] = n > 1 ? value_at(arc, jump, n, outline_arc(export, f, i)) : NAN;
+    }
 }
 
 /* Put the points of all lines and outlines together. */
@@ -160,9 +188,8 @@ static void bodies_place(const struct export *export, struct bodies *bodies) {
         bodies->size[n_fish + f] = OUTLINE_SIDES;
         outline_polygon(&export->outline[f], bodies->nodes + 2 * f * reader->length[NODE], bodies->xy + 2 * n);
         for (int i = 0; i < OUTLINE_SIDES; i++) {
-            const double part = (1 - cos(M_PI * outline_point(i) / (OUTLINE_POINTS - 1))) / 2;
-            bodies->value[n++] =
-                strength_at(export->sheet_arc + f * n_slots, bodies->strength + f * n_slots, reader->n_sheet[f], part);
+            bodies->value[n++] = value_at(export->sheet_arc + f * n_slots, bodies->strength + f * n_slots,
+                                          (size_t)reader->n_sheet[f], outline_arc(export, f, i));
         }
     }
     for (size_t i = 0; i < 2 * n_fish; i++) {
@@ -184,9 +211,11 @@ static enum status write_bodies(const struct export *export, size_t row, FILE *s
     enum status status = bodies_read(export, row, &bodies);
     if (status == STATUS_OK) {
         bodies_place(export, &bodies);
+        if (export->control_arc) bodies_press(export, &bodies);
         begin_piece(stream, export->n_points, 0, n_fish, n_fish);
         fputs("<PointData Scalars=\"sheet_strength\">\n", stream);
         write_doubles(stream, "sheet_strength", export->n_points, bodies.value);
+        if (export->control_arc) write_doubles(stream, "pressure", export->n_points, bodies.pressure_at);
         fputs("</PointData>\n<CellData>\n", stream);
         write_integers(stream, "fish", 2 * n_fish, bodies.fish);
         write_integers(stream, "outline", 2 * n_fish, bodies.is_outline);
@@ -317,8 +346,18 @@ static void find_stem(struct export *export) {
         if (strchr("<>&\"'", *c)) *c = '_';
 }
 
+/* Read where the pressure jump is known, if a fish has one: force: pressure. */
+static enum status read_control_arc(struct export *export) {
+    char *text;
+    TRY(netcdf_read_string(&export->reader.file, "case_effective", &text));
+    const bool has_pressure = strstr(text, "force: pressure") != NULL;
+    free(text);
+    return has_pressure ? result_reader_new(&export->reader, "control_arc", 0, &export->control_arc) : STATUS_OK;
+}
+
 static enum status fill(struct export *export) {
     const struct result_reader *const reader = &export->reader;
+    TRY(read_control_arc(export));
     find_stem(export);
     TRY(result_reader_row(reader, "shedding_interval", 0, &export->school.interval));
     TRY(result_reader_row(reader, "wake_lifetime", 0, &export->school.lifetime));
@@ -363,6 +402,7 @@ enum status vtk_export(const char *from, const char *folder, bool overwrite, cha
     for (size_t f = 0; export.outline && f < export.reader.length[FISH]; f++) outline_free(&export.outline[f]);
     free(export.outline);
     free(export.sheet_arc);
+    free(export.control_arc);
     result_reader_close(&export.reader);
     return status;
 }

@@ -5,7 +5,8 @@
  *     FOLDER/NAME-bodies-0000.vtp  each fish as a line of its bound vortices and as an outline
  *     FOLDER/NAME-wakes-0000.vtp   the free vortices, in rows that hold them
  *
- * Point data of bodies: sheet_strength [m s-1], on the outline as on the line beside it. Cell data: fish (its number,
+ * Point data of bodies: sheet_strength [m s-1] and, with force: pressure, the pressure jump [Pa], left less right, on
+ * the outline as on the line beside it. Cell data: fish (its number,
  * from 0), outline (1, or 0 for a line), speed [m s-1], heading [degree]. Point data of wakes: circulation [m2 s-1]
  * with its decay, age [s], fish. */
 #ifndef VTK_H

@@ -206,12 +206,17 @@ static enum status unstable(const struct runge_kutta *solver, double t, const ch
     double step = 0;
     ARKStepGetLastStep(solver->arkode, &step);
     const struct unknown_place place = worst_velocity(solver);
-    return status_fail(
-        STATUS_SOLVER,
-        "unstable at t = %.10g s: %s; the largest velocity is %s[%d] of fish %s; the last step was %.3g s, "
-        "with which the body is too stiff for an explicit method: choose solver.method: ida, or a smaller "
-        "solver.step",
-        t, why, place.name, place.index, solver->residual->school->fish[place.fish].name, step);
+    const struct fish *const fish = &solver->residual->school->fish[place.fish];
+    // a body that is too stiff and a control that goes wrong look alike from here
+    const char *const control = fish->control.law == CONTROL_NONE
+                                    ? ""
+                                    : "; or its control drives it there: lower control.gain, and see whether the "
+                                      "desired heading can be reached";
+    return status_fail(STATUS_SOLVER,
+                       "unstable at t = %.10g s: %s; the largest velocity is %s[%d] of fish %s; the last step was "
+                       "%.3g s, with which the body is too stiff for an explicit method: choose solver.method: ida, or "
+                       "a smaller solver.step%s",
+                       t, why, place.name, place.index, fish->name, step, control);
 }
 
 // rates of n unknowns from a first one on: differences over the last step

@@ -292,6 +292,18 @@ signals() {
     check "SIGKILL: info ends with 0" ended 0
 }
 
+# ---- an explicit method that fails ----
+
+explicit() {
+    run run "$demo" -q --set "$short" -o explicit.nc --set solver.method=heun --set solver.step=0.005
+    check "unstable: exit 1" ended 1
+    check "unstable: a stiff body is named" says "too stiff for an explicit method"
+    check "unstable: no control, none named" test -z "$(grep control.gain err)"
+    run run "$demo" -q --set "$short" -o steered.nc --set solver.method=heun --set solver.step=0.005 \
+        --set "fish[0].control={law: course}"
+    check "unstable and steered: the control is named too" says "lower control.gain"
+}
+
 # ---- notes ----
 
 notes() {
@@ -347,5 +359,6 @@ repeats
 spread
 signals
 limits
+explicit
 notes
 finish

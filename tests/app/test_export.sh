@@ -20,7 +20,7 @@ time: {end: 0.6, shedding_interval: 0.02, output_interval: 0.1}
 wake: {lifetime: 0.4}
 output: {wake_interval: 0.2}
 defaults: {fish: {wave: {ramp: 0.2}}}
-fish: [{nodes: 9}, {length: 0.7, nodes: 7, sheet_points: 21, start: {position: [1.4, 0.4]}}]
+fish: [{nodes: 9}, {force: pressure, length: 0.7, nodes: 7, sheet_points: 21, start: {position: [1.4, 0.4]}}]
 end
 run run pair.yaml -q -o 'a <pair>.nc'
 run export 'a <pair>.nc' --vtk out_of_it
@@ -79,6 +79,13 @@ for row, one in enumerate(bodies):
         on_outline = array(data.GetPointData(), "sheet_strength")[54 + 94 * f : 54 + 94 * (f + 1)]
         inside = strength[:33] if f == 0 else strength[33:]
         assert on_outline.min() >= inside.min() and on_outline.max() <= inside.max()
+    pressure, jump = array(data.GetPointData(), "pressure"), file["pressure"][row, 1]
+    jump = jump[np.isfinite(jump)]
+    assert np.isnan(pressure[:33]).all() and np.isnan(pressure[54:148]).all(), "a fish without pressure"
+    on_body = np.concatenate([pressure[33:54], pressure[148:]])
+    assert jump.min() <= on_body.min() and on_body.max() <= jump.max() and (row == 0 or np.ptp(on_body) > 0)
+    arc = file["control_arc"][1][: jump.size]
+    same("pressure", pressure[33:54], np.interp(file["sheet_arc"][1, :21], arc, jump), 1e-9)
     same("fish", array(data.GetCellData(), "fish"), np.array([0, 1, 0, 1]))
     same("kind", array(data.GetCellData(), "outline"), np.array([0, 0, 1, 1]))
     same("heading", array(data.GetCellData(), "heading"), np.tile(file["heading"][row], 2))
