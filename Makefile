@@ -87,6 +87,10 @@ test_packages = chromium python3-vtk9 python3-jsonschema python3-yaml groff mand
 # "commit" or "commit-dirty"; of this folder's own repository, not of one that happens to lie around it
 commit := $(shell test -e .git && git describe --always --dirty --abbrev=12 --exclude='*' 2>/dev/null || echo unknown)
 
+# where Debian's python3 finds modules: /usr/local/lib/python3.11/dist-packages, /usr/lib/python3/dist-packages
+python_version = $(shell $(PYTHON) -c 'import sys; print("%d.%d" % sys.version_info[:2])')
+python_modules = $(prefix)/lib/python$(if $(filter /usr,$(prefix)),3,$(python_version))/dist-packages
+
 # make again, on all cores unless told otherwise
 parallel = $(MAKE) --no-print-directory $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
@@ -155,7 +159,7 @@ deps:  ## install the packages that are missing (nothing to do: no output)
 
 ## Installation: prefix=/usr/local DESTDIR=
 
-install: $(program) $(library) $(shared) $(manual) $(completion)  ## install program, library, header, cases, scripts and documents
+install: $(program) $(library) $(shared) $(manual) $(completion)  ## install program, library, header, module, cases, scripts, documents
 	$(say) INST '$(DESTDIR)$(prefix)'
 	$(quiet)install -d $(addprefix '$(DESTDIR)$(prefix)'/,bin include lib/pkgconfig share/man/man1 share/man/man5 share/bash-completion/completions $(addprefix share/shoal/,cases/include cases/studies scripts doc))
 	$(quiet)install -m 755 $(program) '$(DESTDIR)$(prefix)/bin'
@@ -167,7 +171,9 @@ install: $(program) $(library) $(shared) $(manual) $(completion)  ## install pro
 	$(quiet)install -m 644 cases/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases'
 	$(quiet)install -m 644 cases/include/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases/include'
 	$(quiet)install -m 644 cases/studies/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases/studies'
-	$(quiet)install -m 755 $(filter-out scripts/make-% scripts/verify.py scripts/numerics.py scripts/mutants.py,$(wildcard scripts/*.py)) '$(DESTDIR)$(prefix)/share/shoal/scripts'
+	$(quiet)install -m 755 $(filter-out scripts/make-% scripts/verify.py scripts/numerics.py scripts/mutants.py scripts/shoal.py,$(wildcard scripts/*.py)) '$(DESTDIR)$(prefix)/share/shoal/scripts'
+	$(quiet)install -d '$(DESTDIR)$(python_modules)' '$(DESTDIR)$(prefix)/share/shoal/doc/examples'
+	$(quiet)install -m 644 scripts/shoal.py '$(DESTDIR)$(python_modules)'
 	$(quiet)install -m 644 scripts/shoal.mplstyle '$(DESTDIR)$(prefix)/share/shoal/scripts'
 	$(quiet)install -m 644 $(filter %.1,$(manual)) '$(DESTDIR)$(prefix)/share/man/man1'
 	$(quiet)install -m 644 $(filter %.5,$(manual)) '$(DESTDIR)$(prefix)/share/man/man5'
@@ -181,6 +187,7 @@ install: $(program) $(library) $(shared) $(manual) $(completion)  ## install pro
 uninstall:  ## remove what `make install` installed
 	$(quiet)rm -f $(addprefix '$(DESTDIR)$(prefix)'/,bin/shoal include/shoal.h lib/libshoal.a lib/libshoal.so lib/$(soname) lib/libshoal.so.$(VERSION) lib/pkgconfig/shoal.pc)
 	$(quiet)rm -f $(addprefix '$(DESTDIR)$(prefix)'/share/,man/man1/shoal.1 man/man5/shoal-case.5 man/man5/shoal-output.5 bash-completion/completions/shoal)
+	$(quiet)rm -f '$(DESTDIR)$(python_modules)/shoal.py'
 	$(quiet)rm -rf '$(DESTDIR)$(prefix)/share/shoal'
 
 # ---- rules ----

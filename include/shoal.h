@@ -57,7 +57,16 @@ int shoal_step(struct shoal *run);
 /* Go on to the first event at or after time t, s; to none where that is now. */
 int shoal_advance(struct shoal *run, double t);
 
-/* Time of the last event, time at the end of the case, and time between two events, s. */
+/* A copy of a run at its last event, without its result file; run and copy go on with the same bits, each by itself.
+ * Both begin their integration again there, so that nothing but the state counts: a run goes on a little differently,
+ * within the tolerance, after it has been copied. On failure *copy is NULL. */
+int shoal_clone(struct shoal **copy, struct shoal *run);
+
+/* Put a run back, or forward, to where from is: one must be a copy of the other, or of a copy. A run that has failed is
+ * whole again. It must not write a result file. */
+int shoal_restore(struct shoal *run, struct shoal *from);
+
+/* Time of the last event, time of the last event of the case, and time between two events, s. */
 double shoal_time(const struct shoal *run);
 double shoal_end(const struct shoal *run);
 double shoal_interval(const struct shoal *run);

@@ -67,6 +67,9 @@ _SIGNATURES = {  # name: result, arguments
     "shoal_close": (None, _run),
     "shoal_step": (_int, _run),
     "shoal_advance": (_int, _run, _double),
+    "shoal_set": (_int, _run, _int, _text, _int, ctypes.POINTER(_double)),
+    "shoal_clone": (_int, ctypes.POINTER(_run), _run),
+    "shoal_restore": (_int, _run, _run),
     "shoal_time": (_double, _run),
     "shoal_end": (_double, _run),
     "shoal_interval": (_double, _run),
@@ -220,6 +223,33 @@ class Run:
         """Go on to the first event at or after a time, s."""
         _check(_library.shoal_advance(self._pointer, time))
 
+    @property
+    def at_end(self):
+        """Whether there is no further event."""
+        return self.time >= self.end
+
+    # -- from outside
+
+    def set(self, fish, key, value):
+        """Set wave.amplitude, wave.frequency, control.bias, control.desired_heading (degree) or control.waypoints (a
+        list of pairs) of a fish, by number or name. The change is made within control.ramp."""
+        fish = self.names.index(fish) if isinstance(fish, str) else fish
+        values = np.ascontiguousarray(value, dtype=float)
+        pointer = values.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
+        _check(_library.shoal_set(self._pointer, fish, key.encode(), values.size, pointer))
+
+    def clone(self):
+        """A copy at the last event. Run and copy go on with the same bits, each by itself."""
+        pointer = ctypes.c_void_p()
+        _check(_library.shoal_clone(pointer, self._pointer))
+        copy = object.__new__(type(self))
+        copy._take(pointer.value)
+        return copy
+
+    def restore(self, other):
+        """Go back, or forward, to where a copy is, or the run that this is a copy of."""
+        _check(_library.shoal_restore(self._pointer, other._pointer))
+
     # -- what is there at the last event
 
     @property
@@ -341,7 +371,373 @@ def periods(data, fish=0):
     if abs(rows - n_rows) > 1e-6 * rows:
         raise CaseError(f"periods: a period has {rows:g} rows: choose time.output_interval so that they are an integer")
     n_periods = (time.size - 1) // n_rows
-    cut = data.drop_dims("wake", errors="ignore").isel(time=slice(0, n_periods * n_rows))
-    index = [np.repeat(np.arange(n_periods), n_rows), np.tile(np.arange(n_rows) / n_rows, n_periods)]
-    cut = cut.assign_coords(start=("time", cut["time"].values), period=("time", index[0]), phase=("time", index[1]))
-    return cut.drop_vars("time").set_index(time=["period", "phase"]).unstack("time").rename(start="time")
+    cut = {}
+    for name, variable in data.drop_dims("wake", errors="ignore").variables.items():
+        if "time" not in variable.dims:
+            cut[name] = variable
+            continue
+        first = variable.transpose("time", ...)
+        values = first.values[: n_periods * n_rows].reshape(n_periods, n_rows, *first.shape[1:])
+        cut[name] = (("period", "phase", *first.dims[1:]), values, variable.attrs)
+    coordinates = {**{name: cut.pop(name) for name in data.coords if name in cut},
+                   "period": np.arange(n_periods), "phase": np.arange(n_rows) / n_rows}
+    return type(data)(cut, coordinates, data.attrs)
+
+
+# ---- learning: the protocols of Gymnasium and PettingZoo
+
+
+def _from(module, name, otherwise):
+    """A name of a module where that is installed."""
+    if importlib.util.find_spec(module.split(".")[0]) is None:
+        return otherwise
+    return getattr(importlib.import_module(module), name)
+
+
+class _Box:
+    """gymnasium.spaces.Box, as far as it is needed here, where Gymnasium is not installed."""
+
+    def __init__(self, low, high, dtype=np.float32):
+        self.low, self.high = np.asarray(low, dtype), np.asarray(high, dtype)
+        self.shape, self.dtype = self.low.shape, np.dtype(dtype)
+        self._random = np.random.default_rng()
+
+    def seed(self, seed=None):
+        self._random = np.random.default_rng(seed)
+        return [seed]
+
+    def sample(self):
+        return self._random.uniform(self.low, self.high).astype(self.dtype)
+
+    def contains(self, x):
+        x = np.asarray(x)
+        return x.shape == self.shape and bool(np.all(x >= self.low) and np.all(x <= self.high))
+
+    __contains__ = contains
+
+    def __repr__(self):
+        return f"Box({self.low.min(initial=0):g}, {self.high.max(initial=0):g}, {self.shape}, {self.dtype})"
+
+
+_make_box = _from("gymnasium.spaces", "Box", _Box)
+
+_KEYS = {"bias": "control.bias", "amplitude": "wave.amplitude", "frequency": "wave.frequency"}
+
+
+class _Swimmer:
+    """One fish of a run that is led: what it does, sees and earns. Vectors that it sees are in its own frame, forwards
+    and to the left, in body lengths."""
+
+    def __init__(self, run, fish, actions, observations, reward, goal, course, sensors):
+        self.run, self.fish = run, fish
+        self.length, self.mass = float(run["body_length"][fish]), float(run["body_mass"][fish])
+        self.n_joints, self.n_fish = int(run["n_joints"][fish]), len(run["n_joints"])
+        frequency = float(run["frequency"][fish])
+        usual = {"bias": (-0.5, 0.5), "amplitude": (0.2, 0.6), "frequency": (0.5 * frequency, 1.5 * frequency)}
+        self.actions = actions if isinstance(actions, dict) else {name: usual.get(name) for name in actions}
+        self.observations, self.reward_of = list(observations), reward
+        self.goal, self.course, self.sensors = goal, course, np.asarray(sensors, float).reshape(-1, 2)
+        for names, known in ((self.actions, _KEYS), (self.observations, self._SEEN)):
+            unknown = [name for name in names if name not in known]
+            if unknown:
+                raise CaseError(f"{unknown[0]!r} is none of {', '.join(known)}")
+        if not callable(reward):
+            unknown = [name for name in reward if name not in self._EARNED]
+            if unknown:
+                raise CaseError(f"{unknown[0]!r} is none of {', '.join(self._EARNED)}")
+        if goal is None and "goal" in [*self.observations, *(() if callable(reward) else reward)]:
+            raise CaseError("'goal' needs a goal: (x, y), or (fish, (x, y)) for a place beside a fish")
+
+    # -- spaces
+
+    def action_space(self):
+        low, high = np.array(list(self.actions.values()), float).reshape(-1, 2).T
+        return _make_box(low.astype(np.float32), high.astype(np.float32), dtype=np.float32)
+
+    def observation_space(self):
+        bounds = np.concatenate([np.full(self._size(name), self._SEEN[name][1]) for name in self.observations])
+        return _make_box(-bounds.astype(np.float32), bounds.astype(np.float32), dtype=np.float32)
+
+    def _size(self, name):
+        sizes = {"curvature": self.n_joints, "muscle": self.n_joints, "flow": self.sensors.size, "goal": 3,
+                 "neighbours": 4 * (self.n_fish - 1), "action": len(self.actions)}
+        return sizes.get(name, 2)
+
+    # -- what it does
+
+    def begin(self, run):
+        self.run, self.action = run, np.zeros(len(self.actions))
+        self._mark()
+
+    def act(self, action):
+        self.action = np.asarray(action, float).reshape(-1)
+        if self.action.size != len(self.actions) or not np.all(np.isfinite(self.action)):
+            raise CaseError(f"an action is {len(self.actions)} numbers: {', '.join(self.actions)}; got {action!r}")
+        for (name, (low, high)), value in zip(self.actions.items(), self.action):
+            self.run.set(self.fish, _KEYS[name], min(max(float(value), low), high))
+        self._mark()
+
+    def _mark(self):
+        self._before = self.run.time, np.array(self.com), float(self.run["actuation_work"][self.fish])
+
+    # -- what it sees
+
+    com = property(lambda self: self.run["com"][self.fish], doc="the centre of mass, m")
+
+    def _own(self, vectors):
+        angle = np.radians(float(self.run["heading"][self.fish]))
+        c, s = np.cos(angle), np.sin(angle)
+        return np.asarray(vectors) @ np.array([[c, -s], [s, c]]) / self.length
+
+    def place(self):
+        """Where the goal is now, m."""
+        if np.ndim(self.goal[0]) == 0 and not isinstance(self.goal[0], str) and np.ndim(self.goal[1]) == 0:
+            return np.asarray(self.goal, float)
+        other, offset = self.goal
+        other = self.run.names.index(other) if isinstance(other, str) else other
+        return np.asarray(self.run["com"][other]) + np.asarray(offset, float)
+
+    def to_goal(self):
+        """From the centre of mass to the goal, m."""
+        return self.place() - self.com
+
+    def _see_goal(self):
+        own = self._own(self.to_goal())
+        return [*own, np.hypot(*own)]
+
+    def _see_heading(self):
+        angle = np.radians(float(self.run["heading"][self.fish]))
+        return np.cos(angle), np.sin(angle)
+
+    def _see_flow(self):
+        nose = self.run["x"][self.fish, 0]
+        angle = np.radians(float(self.run["heading"][self.fish]))
+        c, s = np.cos(angle), np.sin(angle)
+        places = nose + self.length * self.sensors @ np.array([[c, s], [-s, c]])
+        return self._own(self.run.flow(places)[0]).ravel()
+
+    def _see_neighbours(self):
+        others = [f for f in range(self.n_fish) if f != self.fish]
+        com, velocity = self.run["com"], self.run["com_velocity"]
+        return np.hstack([self._own(com[others] - com[self.fish]),
+                          self._own(velocity[others] - velocity[self.fish])]).ravel()
+
+    _SEEN = {  # name: (what it is, bound)
+        "velocity": (lambda self: self._own(self.run["com_velocity"][self.fish]), 20),
+        "heading": (_see_heading, 1),
+        "curvature": (lambda self: self.run["curvature"][self.fish, : self.n_joints], 20),
+        "muscle": (lambda self: self.run["natural_curvature"][self.fish, : self.n_joints], 20),
+        "flow": (_see_flow, 20),
+        "goal": (_see_goal, 1000),
+        "neighbours": (_see_neighbours, 1000),
+        "action": (lambda self: self.action, 20),
+    }
+
+    def see(self):
+        seen = [np.clip(np.asarray(self._SEEN[name][0](self), float), -self._SEEN[name][1], self._SEEN[name][1])
+                for name in self.observations]
+        return np.concatenate(seen).astype(np.float32)
+
+    # -- what it earns
+
+    def _moved(self):
+        time, com, work = self._before
+        return self.run.time - time, self.com - com, float(self.run["actuation_work"][self.fish]) - work
+
+    def _earn_speed(self):
+        time, way, _ = self._moved()
+        return np.hypot(*way) / (time * self.length) if time > 0 else 0.0
+
+    def _earn_cost(self):
+        _, way, work = self._moved()
+        return -work / (self.mass * max(np.hypot(*way), 0.01 * self.length))
+
+    def _earn_course(self):
+        _, way, _ = self._moved()
+        aim = self.to_goal() if self.goal is not None else [np.cos(np.radians(self.course)), np.sin(np.radians(self.course))]
+        angle = np.arctan2(way[1], way[0]) - np.arctan2(aim[1], aim[0])
+        return -abs((angle + np.pi) % (2 * np.pi) - np.pi) / np.pi
+
+    _EARNED = {
+        "speed": _earn_speed,
+        "cost_of_transport": _earn_cost,
+        "course": _earn_course,
+        "goal": lambda self: -float(np.hypot(*self.to_goal())) / self.length,
+    }
+
+    def earn(self):
+        if callable(self.reward_of):
+            return float(self.reward_of(self))
+        return float(sum(weight * self._EARNED[name](self) for name, weight in self.reward_of.items()))
+
+
+class _Swim:
+    """What both environments share: a run that is begun again and again, and its swimmers."""
+
+    def __init__(self, case, assignments, act_every, vary, far):
+        self._case, self._assignments = case, dict(assignments or {})
+        self._vary, self._far, self._kept = dict(vary or {}), far, None
+        self.run = Run(case, self._assignments)
+        self._n_steps = 1 if act_every is None else max(1, round(act_every / self.run.interval))
+        self._random = np.random.default_rng()
+
+    def _begin(self, seed, options):
+        if seed is not None:
+            self._random = np.random.default_rng(seed)
+        changes = dict((options or {}).get("assignments", {}))
+        for key, (low, high) in self._vary.items():
+            changes[key] = self._random.uniform(low, high)
+        if changes:
+            self.run = Run(self._case, {**self._assignments, **changes})
+            return
+        if self._kept is None:
+            self._kept = Run(self._case, self._assignments)
+            self.run = self._kept.clone()
+        else:
+            self.run.restore(self._kept)
+
+    def _advance(self):
+        """One action long, or to the end; returns whether the solver has failed."""
+        try:
+            for _ in range(self._n_steps):
+                if self.run.at_end:
+                    break
+                self.run.step()
+        except SolverError:
+            return True
+        return False
+
+    def _is_lost(self, swimmer):
+        if self._far is None or swimmer.goal is None:
+            return False
+        return bool(np.hypot(*swimmer.to_goal()) > self._far * swimmer.length)
+
+
+_SENSORS = ((0.5, 0.0), (0.0, 0.3), (0.0, -0.3))
+
+
+class SwimEnv(_Swim, _from("gymnasium", "Env", object)):
+    """One fish that learns, by the protocol of Gymnasium.
+
+    case, assignments: as for Run; the episode ends (is truncated) with time.end. fish: the one that learns, by number
+    or name. actions: names of bias, amplitude, frequency, or a dict with bounds {"bias": (-0.3, 0.3)}. observations:
+    names of velocity, heading, curvature, muscle, flow, goal, neighbours, action. reward: weights of speed,
+    cost_of_transport, course, goal, or a function of the swimmer. goal: a point (x, y), m, or ("leader", (1.2, 0)), a
+    place beside a fish. course: desired course, degree. act_every: time between actions, s. vary: bounds of
+    assignments that are drawn at each reset, {"fish[1].start.heading": (170, 190)}. far: distance from the goal, in
+    lengths, at which an episode is over (terminated); it is too when the integration fails.
+    """
+
+    metadata = {"render_modes": []}
+    render_mode = None
+    spec = None
+
+    def __init__(self, case, assignments=None, fish=0, actions=("bias",), observations=("velocity", "heading"),
+                 reward=None, goal=None, course=180.0, sensors=_SENSORS, act_every=None, vary=None, far=None):
+        _Swim.__init__(self, case, assignments, act_every, vary, far)
+        fish = self.run.names.index(fish) if isinstance(fish, str) else fish
+        self.swimmer = _Swimmer(self.run, fish, actions, observations, reward or {"speed": 1.0}, goal, course, sensors)
+        self.action_space, self.observation_space = self.swimmer.action_space(), self.swimmer.observation_space()
+
+    @property
+    def unwrapped(self):
+        return self
+
+    def reset(self, *, seed=None, options=None):
+        """Begin an episode; returns observation and info."""
+        self._begin(seed, options)
+        self.swimmer.begin(self.run)
+        self._last = self.swimmer.see()
+        return self._last, {"time": self.run.time}
+
+    def step(self, action):
+        """Act, and go on to the next action; returns observation, reward, terminated, truncated, info."""
+        self.swimmer.act(action)
+        info, failed = {}, self._advance()
+        if failed:
+            info["failure"] = _library.shoal_message().decode()
+        else:
+            self._last = self.swimmer.see()
+        info["time"] = self.run.time
+        reward = 0.0 if failed else self.swimmer.earn()
+        return self._last, reward, failed or self._is_lost(self.swimmer), self.run.at_end, info
+
+    def render(self):
+        """There is nothing to see here: run.write() makes a file for plot.py and `shoal view`."""
+
+    def close(self):
+        self.run = self._kept = None
+
+
+class SchoolEnv(_Swim, _from("pettingzoo", "ParallelEnv", object)):
+    """A school of fish that learn together, by the protocol of PettingZoo's parallel environments.
+
+    Arguments as for SwimEnv; fish: the names of those that learn, None: all. goal: one for all, or a dict by name.
+    """
+
+    metadata = {"render_modes": [], "name": "shoal_v0"}
+    render_mode = None
+
+    def __init__(self, case, assignments=None, fish=None, actions=("bias",),
+                 observations=("velocity", "heading", "neighbours"), reward=None, goal=None, course=180.0,
+                 sensors=_SENSORS, act_every=None, vary=None, far=None):
+        _Swim.__init__(self, case, assignments, act_every, vary, far)
+        names = self.run.names
+        self.possible_agents = list(fish or names)
+        self.agents = []
+        self.swimmers = {}
+        for name in self.possible_agents:
+            own_goal = goal.get(name) if isinstance(goal, dict) else goal
+            self.swimmers[name] = _Swimmer(self.run, names.index(name), actions, observations, reward or {"speed": 1.0},
+                                           own_goal, course, sensors)
+        self.action_spaces = {name: swimmer.action_space() for name, swimmer in self.swimmers.items()}
+        self.observation_spaces = {name: swimmer.observation_space() for name, swimmer in self.swimmers.items()}
+
+    num_agents = property(lambda self: len(self.agents))
+    max_num_agents = property(lambda self: len(self.possible_agents))
+
+    @property
+    def unwrapped(self):
+        return self
+
+    def action_space(self, agent):
+        return self.action_spaces[agent]
+
+    def observation_space(self, agent):
+        return self.observation_spaces[agent]
+
+    def reset(self, seed=None, options=None):
+        """Begin an episode; returns observations and infos by name."""
+        self._begin(seed, options)
+        self.agents = list(self.possible_agents)
+        for swimmer in self.swimmers.values():
+            swimmer.begin(self.run)
+        self._last = {name: self.swimmers[name].see() for name in self.agents}
+        return dict(self._last), {name: {} for name in self.agents}
+
+    def step(self, actions):
+        """All act at once; returns observations, rewards, terminations, truncations, infos by name. The school stays
+        together: when the episode is over for one, it is for all."""
+        agents = self.agents
+        for name in agents:
+            self.swimmers[name].act(actions[name])
+        failed = self._advance()
+        if not failed:
+            self._last = {name: self.swimmers[name].see() for name in agents}
+        rewards = {name: 0.0 if failed else self.swimmers[name].earn() for name in agents}
+        over = failed or any(self._is_lost(self.swimmers[name]) for name in agents)
+        ended = self.run.at_end
+        infos = {name: {"failure": _library.shoal_message().decode()} if failed else {} for name in agents}
+        if over or ended:
+            self.agents = []
+        return (dict(self._last), rewards, dict.fromkeys(agents, over), dict.fromkeys(agents, ended), infos)
+
+    def state(self):
+        """What all together see."""
+        return np.concatenate([self._last[name] for name in self.possible_agents])
+
+    def render(self):
+        """There is nothing to see here: run.write() makes a file for plot.py and `shoal view`."""
+
+    def close(self):
+        self.run = self._kept = None

@@ -4,6 +4,7 @@
 #include <limits.h>
 #include <math.h>
 #include <pthread.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,6 +12,7 @@
 #include "base/version.h"
 #include "case/case.h"
 #include "case/sweep_members.h"
+#include "model/state_table.h"
 #include "output/result_values.h"
 #include "run/led.h"
 #include "run/record.h"
@@ -20,9 +22,17 @@ _Static_assert((int)SHOAL_USAGE == STATUS_CASE && (int)SHOAL_FILE == STATUS_FILE
                    (int)SHOAL_MEMORY == STATUS_MEMORY && (int)SHOAL_SOLVER == STATUS_SOLVER,
                "a status goes to the caller as it is");
 
-struct shoal {
+// a case, which all copies of a run share
+struct shared {
+    atomic_int n_users;
     struct case_values values;
+};
+
+struct shoal {
+    struct shared *shared;
     struct simulation *simulation;
+    int is_renewed;                        /* the integration has begun again at this event */
+    struct integrator_counts when_reached; /* if so: the counts with which the event was reached */
     int has_failed;
     char failure[1024]; /* message of the step that failed */
     struct record record;
@@ -63,10 +73,15 @@ static enum status check_assignments(int n, const char *const *assignments, cons
     return STATUS_OK;
 }
 
+static int has_failed(const struct shoal *run, const char *function) {
+    if (run->has_failed) status_fail(STATUS_SOLVER, "%s: the run has failed before: %s", function, run->failure);
+    return run->has_failed;
+}
+
 // fails where a run cannot make a step
 static enum status check_can_step(const struct shoal *run, const char *function) {
     TRY(need(run, function, "run"));
-    if (run->has_failed) return status_fail(STATUS_SOLVER, "%s: the run has failed before: %s", function, run->failure);
+    if (has_failed(run, function)) return STATUS_SOLVER;
     if (run->simulation->state->event < run->simulation->n_events) return STATUS_OK;
     return status_fail(STATUS_CASE, "%s: the run is at its end, t = %g s: a longer one needs a larger time.end",
                        function, run->simulation->state->t);
@@ -74,11 +89,25 @@ static enum status check_can_step(const struct shoal *run, const char *function)
 
 // ---- the life of a run
 
+// a run without a simulation
+static enum status create(struct shoal **run) {
+    *run = calloc(1, sizeof **run);
+    if (*run) (*run)->shared = calloc(1, sizeof *(*run)->shared);
+    if (*run && (*run)->shared) {
+        atomic_init(&(*run)->shared->n_users, 1);
+        return STATUS_OK;
+    }
+    free(*run);
+    *run = NULL;
+    return status_fail(STATUS_MEMORY, "out of memory: a run");
+}
+
 static enum status start(struct shoal *run) {
-    TRY(sweep_refuse(&run->values));
-    run->result_path = record_path(&run->values);
+    const struct case_values *const values = &run->shared->values;
+    TRY(sweep_refuse(values));
+    run->result_path = record_path(values);
     if (!run->result_path) return status_fail(STATUS_MEMORY, "out of memory: a path");
-    return simulate_create(&run->simulation, &run->values);
+    return simulate_create(&run->simulation, values);
 }
 
 // hand out a run that has read its case with this status
@@ -97,9 +126,9 @@ int shoal_open(struct shoal **run, const char *case_path, int n_assignments, con
     *run = NULL;
     TRY(need(case_path, __func__, "case_path"));
     TRY(check_assignments(n_assignments, assignments, __func__));
-    struct shoal *const new = calloc(1, sizeof *new);
-    if (!new) return status_fail(STATUS_MEMORY, "out of memory: a run");
-    return finish_opening(run, new, case_read(&new->values, case_path, n_assignments, assignments));
+    struct shoal *new;
+    TRY(create(&new));
+    return finish_opening(run, new, case_read(&new->shared->values, case_path, n_assignments, assignments));
 }
 
 int shoal_open_text(struct shoal **run, const char *text, const char *folder, int n_assignments,
@@ -108,10 +137,10 @@ int shoal_open_text(struct shoal **run, const char *text, const char *folder, in
     *run = NULL;
     TRY(need(text, __func__, "text"));
     TRY(check_assignments(n_assignments, assignments, __func__));
-    struct shoal *const new = calloc(1, sizeof *new);
-    if (!new) return status_fail(STATUS_MEMORY, "out of memory: a run");
-    return finish_opening(run, new,
-                          case_parse(&new->values, text, strlen(text), "case", folder, n_assignments, assignments));
+    struct shoal *new;
+    TRY(create(&new));
+    return finish_opening(
+        run, new, case_parse(&new->shared->values, text, strlen(text), "case", folder, n_assignments, assignments));
 }
 
 static int has_ended(const struct shoal *run) {
@@ -139,7 +168,10 @@ void shoal_close(struct shoal *run) {
     if (run->record.file) end_record(run);
     for (int i = 0; i < RESULT_TABLE_MAX; i++) free(run->buffer[i]);
     simulate_free(run->simulation);
-    case_free(&run->values);
+    if (atomic_fetch_sub(&run->shared->n_users, 1) == 1) {
+        case_free(&run->shared->values);
+        free(run->shared);
+    }
     free(run->record_path);
     free(run->result_path);
     free(run);
@@ -148,6 +180,7 @@ void shoal_close(struct shoal *run) {
 // the row of the present event
 static const struct result_row *row_of(struct shoal *run) {
     if (!run->has_row) simulate_row(run->simulation, &run->counts, &run->row);
+    if (run->is_renewed) run->counts = run->when_reached;
     run->has_row = 1;
     return &run->row;
 }
@@ -162,10 +195,16 @@ static enum status write_if_due(struct shoal *run) {
     return status;
 }
 
+// what has been read is that of another event
+static void forget_row(struct shoal *run) {
+    run->has_row = 0;
+    run->is_renewed = 0;
+    memset(run->is_filled, 0, sizeof run->is_filled);
+}
+
 int shoal_step(struct shoal *run) {
     TRY(check_can_step(run, __func__));
-    run->has_row = 0;
-    memset(run->is_filled, 0, sizeof run->is_filled);
+    forget_row(run);
     const enum status status = simulate_step(run->simulation);
     if (status == STATUS_OK) return write_if_due(run);
     run->has_failed = 1;
@@ -180,19 +219,108 @@ int shoal_advance(struct shoal *run, double t) {
     // a time that an event has but for rounding is that event's
     const double events = ceil(t / simulation->school->interval * (1 - 1e-12));
     if (events > (double)simulation->n_events) {
-        return status_fail(STATUS_CASE, "%s: t = %g s is after the end of the case, %g s", __func__, t,
-                           run->values.time.end);
+        return status_fail(STATUS_CASE, "%s: t = %g s is after the end of the case, %g s", __func__, t, shoal_end(run));
     }
     while ((double)simulation->state->event < events) TRY(shoal_step(run));
     return STATUS_OK;
 }
+
+// ---- copies
+
+// the velocity of the fluid and the muscle at the event, which a row is made of
+static enum status evaluate(const struct simulation *simulation) {
+    const struct state *const state = simulation->state;
+    return residual_evaluate(simulation->residual, state->t, state->y, state->yp, simulation->residual->scratch);
+}
+
+// begin the integration again; a run for which that fails can only be closed
+static enum status renew(struct shoal *run) {
+    if (run->is_renewed) return STATUS_OK;
+    run->has_row = 0;
+    run->simulation->integrator->count(run->simulation->solver, &run->when_reached);
+    enum status status = simulate_renew(run->simulation);
+    if (status == STATUS_OK) status = evaluate(run->simulation);
+    if (status == STATUS_OK) {
+        run->is_renewed = 1;
+        return STATUS_OK;
+    }
+    run->has_failed = 1;
+    snprintf(run->failure, sizeof run->failure, "%s", status_message());
+    return status;
+}
+
+static enum status copy_simulation(struct shoal *copy, const struct shoal *run) {
+    const struct simulation *const from = run->simulation;
+    const struct case_values *const values = &copy->shared->values;
+    struct school *school;
+    struct state *state;
+    TRY(fish_school_create(&school, &values->school));
+    enum status status = state_create(&state, school);
+    if (status == STATUS_OK) status = state_table_copy(state, from->state, school);
+    if (status != STATUS_OK) {
+        state_free(state, school);
+        fish_school_free(school);
+        return status;
+    }
+    TRY(simulate_take_up(&copy->simulation, values, school, state, &from->totals));
+    return evaluate(copy->simulation);
+}
+
+int shoal_clone(struct shoal **copy, struct shoal *run) {
+    TRY(need(copy, __func__, "copy"));
+    *copy = NULL;
+    TRY(need(run, __func__, "run"));
+    if (has_failed(run, __func__)) return STATUS_SOLVER;
+    TRY(renew(run));
+    struct shoal *const new = calloc(1, sizeof *new);
+    if (!new) return status_fail(STATUS_MEMORY, "out of memory: a run");
+    new->shared = run->shared;
+    atomic_fetch_add(&new->shared->n_users, 1);
+    new->is_renewed = 1;
+    new->when_reached = run->when_reached;
+    new->result_path = strdup(run->result_path);
+    const enum status status =
+        new->result_path ? copy_simulation(new, run) : status_fail(STATUS_MEMORY, "out of memory: a path");
+    if (status == STATUS_OK) {
+        *copy = new;
+    } else {
+        shoal_close(new);
+    }
+    return status;
+}
+
+int shoal_restore(struct shoal *run, struct shoal *from) {
+    TRY(need(run, __func__, "run"));
+    TRY(need(from, __func__, "from"));
+    if (run == from) return STATUS_OK;
+    if (run->shared != from->shared) {
+        return status_fail(STATUS_CASE, "%s: the two runs are not copies of one another", __func__);
+    }
+    if (run->record.file) {
+        return status_fail(STATUS_CASE, "%s: the run writes %s: end that with shoal_write_end", __func__,
+                           run->record_path);
+    }
+    if (has_failed(from, __func__)) return STATUS_SOLVER;
+    TRY(renew(from));
+    forget_row(run);
+    run->simulation->totals = from->simulation->totals;
+    enum status status = state_table_copy(run->simulation->state, from->simulation->state, run->simulation->school);
+    if (status == STATUS_OK) status = renew(run);
+    run->when_reached = from->when_reached;
+    run->has_failed = status != STATUS_OK;
+    if (run->has_failed) snprintf(run->failure, sizeof run->failure, "%s", status_message());
+    return status;
+}
+
+// ---- time
 
 double shoal_time(const struct shoal *run) {
     return need(run, __func__, "run") == STATUS_OK ? run->simulation->state->t : NAN;
 }
 
 double shoal_end(const struct shoal *run) {
-    return need(run, __func__, "run") == STATUS_OK ? run->values.time.end : NAN;
+    if (need(run, __func__, "run") != STATUS_OK) return NAN;
+    return (double)run->simulation->n_events * run->simulation->school->interval;
 }
 
 double shoal_interval(const struct shoal *run) {
@@ -304,7 +432,7 @@ int shoal_flow(struct shoal *run, int n, const double *points, double *velocity,
     if (n == 0) return STATUS_OK;
     TRY(need(points, __func__, "points"));
     TRY(need(velocity, __func__, "velocity"));
-    if (run->has_failed) return status_fail(STATUS_SOLVER, "%s: the run has failed before: %s", __func__, run->failure);
+    if (has_failed(run, __func__)) return STATUS_SOLVER;
     double *const work = calloc((size_t)n, 7 * sizeof *work);
     if (!work) return status_fail(STATUS_MEMORY, "out of memory: %d points", n);
     const enum status status = field(run, n, points, work, velocity, vorticity);
@@ -360,7 +488,7 @@ const char *shoal_result_path(const struct shoal *run) {
 int shoal_write(struct shoal *run, const char *path, int overwrite) {
     TRY(need(run, __func__, "run"));
     TRY(need(path, __func__, "path"));
-    if (run->has_failed) return status_fail(STATUS_SOLVER, "%s: the run has failed before: %s", __func__, run->failure);
+    if (has_failed(run, __func__)) return STATUS_SOLVER;
     if (run->record.file) {
         return status_fail(STATUS_CASE, "%s: the run writes %s: end that with shoal_write_end", __func__,
                            run->record_path);
@@ -369,7 +497,7 @@ int shoal_write(struct shoal *run, const char *path, int overwrite) {
     run->record_path = strdup(path);
     if (!run->record_path) return status_fail(STATUS_MEMORY, "out of memory: a path");
     pthread_mutex_lock(&netcdf_lock);
-    const enum status status = record_create(&run->record, &run->values, run->simulation->school,
+    const enum status status = record_create(&run->record, &run->shared->values, run->simulation->school,
                                              run->simulation->n_events, run->record_path, overwrite, "libshoal");
     pthread_mutex_unlock(&netcdf_lock);
     return status == STATUS_OK ? write_if_due(run) : status;

@@ -12,9 +12,10 @@ cd "$folder"
 # shellcheck source=../checks.sh
 source "$root/tests/checks.sh"
 
-sanitize=()
+sanitize=() preload=''
 if nm -D --undefined-only "$build/libshoal.so.0" | grep -q __asan; then
     sanitize=(-fsanitize=address,undefined -fno-sanitize-recover=all)
+    preload="$(gcc -print-file-name=libasan.so) $(gcc -print-file-name=libubsan.so)"  # Python is built without
 fi
 
 cat >case.yaml <<'CASE'
@@ -60,6 +61,11 @@ static_library() {
         -o client_static && ./client_static case.yaml >said_static && cmp said said_static
 }
 
+module() {
+    LD_PRELOAD=$preload ASAN_OPTIONS=detect_leaks=0 PYTHONPATH=$(echo usr/lib/python3*/dist-packages) /usr/bin/python3 -c \
+        'import shoal; run = shoal.Run("case.yaml"); run.step(); assert run["x"].shape == (2, 9, 2)'
+}
+
 check 'installs into a prefix' install_it
 check 'shares shoal_* only, under a soname' one_name
 check 'header and library have the same functions' every_function_is_declared
@@ -67,6 +73,7 @@ check 'a C program compiles' compile client gcc -std=c11 -D_XOPEN_SOURCE=700 "$r
 check 'and runs, and the library is silent' silent ./client case.yaml
 check 'it has done its work' has said '9 node, nose at '
 check 'the static library gives the same' static_library
+check 'the installed module finds the installed library' module
 check 'a C++ program compiles' compile client++ g++ -std=c++17 -pthread "$root/tests/run/client.cpp"
 check 'two threads with two runs give the bits of single runs' silent ./client++ case.yaml
 for i in 0 1; do

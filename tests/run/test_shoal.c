@@ -565,6 +565,141 @@ static void a_result_file_that_cannot_be_written_is_said_so(void **state) {
     shoal_close(run);
 }
 
+// ---- copies
+
+// one variable of two runs, bit for bit
+static void same(struct shoal *one, struct shoal *other, const char *name) {
+    struct shoal_array a, b;
+    assert_int_equal(shoal_read(one, name, &a), SHOAL_OK);
+    assert_int_equal(shoal_read(other, name, &b), SHOAL_OK);
+    size_t n = a.type == SHOAL_CHAR ? 1 : a.type == SHOAL_INT ? sizeof(int) : sizeof(double);
+    for (int d = 0; d < a.n_dimensions; d++) {
+        assert_int_equal(a.shape[d], b.shape[d]);
+        n *= a.shape[d];
+    }
+    if (memcmp(a.values, b.values, n) != 0) fail_msg("%s differs", name);
+}
+
+static void same_in_all(struct shoal *one, struct shoal *other) {
+    for (int i = 0; shoal_variable(i); i++) {
+        if (strcmp(shoal_variable(i), "wall_time") != 0) same(one, other, shoal_variable(i));
+    }
+}
+
+static const char *const led[] = {"time.end=0.6", "fish[*].wave.ramp=0.1", "fish[1].control.law=course",
+                                  "fish[1].control.waypoints=[[-3, 1], [-6, 0]]"};
+
+static void a_copy_goes_on_with_the_bits_of_the_run(void **state) {
+    struct shoal *const run = opened(*state, 4, led), *copy;
+    assert_int_equal(shoal_advance(run, 0.2), SHOAL_OK);
+    const double amplitude = 0.3;
+    assert_int_equal(shoal_set(run, 0, "wave.amplitude", 1, &amplitude), SHOAL_OK);
+    assert_int_equal(shoal_advance(run, 0.3), SHOAL_OK);
+    assert_int_equal(shoal_clone(&copy, run), SHOAL_OK);
+    same_in_all(run, copy);
+    assert_int_equal(shoal_advance(run, 0.6), SHOAL_OK);
+    NEAR(shoal_time(copy), 0.3, 1e-15, 0);
+    assert_int_equal(shoal_advance(copy, 0.6), SHOAL_OK);
+    same_in_all(run, copy);
+    // a copy outlives the run
+    struct shoal *second;
+    shoal_close(run);
+    assert_int_equal(shoal_clone(&second, copy), SHOAL_OK);
+    same_in_all(copy, second);
+    shoal_close(copy);
+    shoal_close(second);
+}
+
+static void a_copy_shows_what_the_run_shows(void **state) {
+    struct shoal *const run = opened(*state, 4, led), *const alone = opened(*state, 4, led), *copy;
+    assert_int_equal(shoal_advance(run, 0.4), SHOAL_OK);
+    assert_int_equal(shoal_advance(alone, 0.4), SHOAL_OK);
+    assert_int_equal(shoal_clone(&copy, run), SHOAL_OK);
+    same_in_all(alone, copy);
+    same_in_all(alone, run);
+    shoal_close(run);
+    shoal_close(copy);
+    shoal_close(alone);
+}
+
+static void a_run_is_put_back_to_a_copy(void **state) {
+    struct shoal *const run = opened(*state, 4, led), *kept, *first;
+    assert_int_equal(shoal_clone(&kept, run), SHOAL_OK);
+    assert_int_equal(shoal_advance(run, 0.4), SHOAL_OK);
+    assert_int_equal(shoal_clone(&first, run), SHOAL_OK);
+    const double bias = 0.2;
+    assert_int_equal(shoal_set(run, 0, "control.bias", 1, &bias), SHOAL_OK);
+    assert_int_equal(shoal_advance(run, 0.6), SHOAL_OK);
+    assert_int_equal(shoal_restore(run, kept), SHOAL_OK);
+    NEAR(shoal_time(run), 0, 0, 0);
+    assert_int_equal(shoal_advance(run, 0.4), SHOAL_OK);
+    same_in_all(run, first);
+    shoal_close(kept);
+    shoal_close(first);
+    shoal_close(run);
+}
+
+static void a_run_that_has_failed_is_whole_when_it_is_put_back(void **state) {
+    const char *const assignments[] = {"solver.max_steps=9", "time.end=2", "fish[*].wave.ramp=0.01"};
+    struct shoal *const run = opened(*state, 3, assignments), *kept;
+    assert_int_equal(shoal_clone(&kept, run), SHOAL_OK);
+    assert_int_equal(shoal_advance(run, 2), SHOAL_SOLVER);
+    const double reached = shoal_time(run);
+    struct shoal *copy;
+    assert_int_equal(shoal_clone(&copy, run), SHOAL_SOLVER);
+    assert_null(copy);
+    assert_int_equal(shoal_restore(kept, run), SHOAL_SOLVER);
+    assert_int_equal(shoal_restore(run, kept), SHOAL_OK);
+    assert_int_equal(shoal_advance(run, 2), SHOAL_SOLVER);
+    NEAR(shoal_time(run), reached, 0, 0);
+    shoal_close(run);
+    shoal_close(kept);
+}
+
+static void only_copies_can_be_put_in_the_place_of_one_another(void **state) {
+    struct shoal *const run = opened(*state, 0, NULL), *const other = opened(*state, 0, NULL), *copy;
+    refuses(shoal_clone(NULL, run), "copy is NULL");
+    refuses(shoal_clone(&copy, NULL), "run is NULL");
+    refuses(shoal_restore(NULL, run), "run is NULL");
+    refuses(shoal_restore(run, NULL), "from is NULL");
+    refuses(shoal_restore(run, other), "not copies of one another");
+    assert_int_equal(shoal_restore(run, run), SHOAL_OK);
+    shoal_close(run);
+    shoal_close(other);
+}
+
+static void copying_without_memory_fails_and_leaves_the_run(void **state) {
+    struct shoal *const run = opened(*state, 0, NULL), *copy;
+    assert_int_equal(shoal_step(run), SHOAL_OK);
+    assert_int_equal(shoal_clone(&copy, run), SHOAL_OK);
+    shoal_close(copy);
+    int n_failed = 0, is_reached = 1;
+    for (int n = 0; is_reached; n++) {
+        const int n_before = n_live;
+        n_until_failure = n;
+        const int code = shoal_clone(&copy, run);
+        is_reached = n_until_failure == -1;
+        n_until_failure = -1;
+        n_failed += code != 0;
+        assert_true(code == 0 ? copy != NULL : code < 0 && !copy);
+        shoal_close(copy);
+        assert_int_equal(n_live, n_before);
+        n += n / 4;
+    }
+    assert_true(n_failed > 10);
+    assert_int_equal(shoal_step(run), SHOAL_OK);
+    shoal_close(run);
+}
+
+static void the_end_is_the_time_of_an_event(void **state) {
+    // 100 * 0.29 is less than 29 by a rounding error
+    const char *const assignments[] = {"time.end=29", "time.shedding_interval=0.29", "fish[*].wave.amplitude=0"};
+    struct shoal *const run = opened(*state, 3, assignments);
+    assert_int_equal(shoal_advance(run, 29), SHOAL_OK);
+    NEAR(shoal_time(run), shoal_end(run), 0, 0);
+    shoal_close(run);
+}
+
 static void the_version_is_that_of_the_program(void **state) {
     (void)state;
     assert_string_equal(shoal_version(), version_short());
@@ -604,6 +739,13 @@ int main(void) {
         cmocka_unit_test(looking_does_not_change_a_run),
         cmocka_unit_test(a_result_file_has_the_rows_that_are_due),
         cmocka_unit_test(a_result_file_that_cannot_be_written_is_said_so),
+        cmocka_unit_test(a_copy_goes_on_with_the_bits_of_the_run),
+        cmocka_unit_test(a_copy_shows_what_the_run_shows),
+        cmocka_unit_test(a_run_is_put_back_to_a_copy),
+        cmocka_unit_test(a_run_that_has_failed_is_whole_when_it_is_put_back),
+        cmocka_unit_test(only_copies_can_be_put_in_the_place_of_one_another),
+        cmocka_unit_test(copying_without_memory_fails_and_leaves_the_run),
+        cmocka_unit_test(the_end_is_the_time_of_an_event),
         cmocka_unit_test(the_version_is_that_of_the_program),
     };
     return cmocka_run_group_tests(tests, write_case, remove_case);

@@ -1,0 +1,354 @@
+#!/usr/bin/python3
+"""test_python.py: the module shoal. Run by test_python.sh in a folder of its own; ends with the line of a shell test."""
+
+import ctypes
+import gc
+import importlib.util
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import threading
+import time
+import unittest
+from unittest import mock
+
+import numpy as np
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, os.environ.get("SHOAL_MODULE", str(ROOT / "scripts")))
+import shoal  # noqa: E402
+
+SMALL = {"nodes": 7, "sheet_points": 21}
+PAIR = {
+    "time": {"end": 0.2, "shedding_interval": 0.02, "output_interval": 0.02},
+    "fish": [{"name": "a", **SMALL, "wave": {"ramp": 0.1}},
+             {"name": "b", **SMALL, "nodes": 9, "start": {"position": [0.2, 0.7]}}],
+}
+
+
+class Runs(unittest.TestCase):
+    def test_a_case_is_a_dict_or_a_path_with_assignments(self):
+        pathlib.Path("pair.yaml").write_text(json.dumps({"format": 1, "name": "pair", **PAIR}))  # JSON is YAML
+        by_path, by_dict = shoal.Run("pair.yaml", {"fish[0].nodes": 11}), shoal.Run(PAIR, {"fish[0].nodes": 11})
+        for run in by_path, by_dict:
+            run.advance(run.end)
+            self.assertEqual(list(run["n_nodes"]), [11, 9])
+        self.assertEqual(by_path["x"].tobytes(), by_dict["x"].tobytes())
+
+    def test_a_view_has_shape_names_and_unit_and_is_no_copy(self):
+        run = shoal.Run(PAIR)
+        run.step()
+        x = run["x"]
+        self.assertEqual((x.shape, x.dims, x.unit), ((2, 9, 2), ("fish", "node", "xy"), "m"))
+        self.assertTrue(np.isnan(x[0, 7:]).all() and np.isfinite(x[0, :7]).all())
+        self.assertFalse(x.flags.writeable or x.flags.owndata)
+        self.assertEqual(run["x"].ctypes.data, x.ctypes.data)
+        self.assertEqual(run["wake_x"].shape, (2, 2, 2))
+        self.assertEqual(run["total_circulation"].shape, ())
+        self.assertIsNone(x[0].dims)
+
+    def test_a_view_keeps_its_run(self):
+        run = shoal.Run(PAIR)
+        x = run["x"]
+        before = x.copy()
+        run.close()
+        del run
+        gc.collect()
+        np.testing.assert_array_equal(x, before)
+
+    def test_every_variable_can_be_read(self):
+        run = shoal.Run(PAIR)
+        run.step()
+        self.assertGreater(len(run.keys()), 60)
+        for name in run.keys():
+            self.assertIsInstance(run[name], np.ndarray)
+            self.assertIn(name, run)
+        self.assertEqual(run.names, ["a", "b"])
+
+    def test_the_flow_has_the_shape_of_the_points(self):
+        run = shoal.Run(PAIR, {"fluid.velocity": [0.1, 0.2]})
+        run.advance(0.2)
+        velocity, vorticity = run.flow(np.full((3, 4, 2), 1e6))
+        self.assertEqual((velocity.shape, vorticity.shape), ((3, 4, 2), (3, 4)))
+        np.testing.assert_allclose(velocity, np.broadcast_to([0.1, 0.2], (3, 4, 2)), atol=1e-6)
+        with self.assertRaisesRegex(shoal.CaseError, "shape"):
+            run.flow([1, 2, 3])
+
+    def test_errors_are_exceptions_with_the_words_of_the_program(self):
+        with self.assertRaisesRegex(shoal.CaseError, "did you mean 'amplitude'"):
+            shoal.Run(PAIR, {"fish[0].wave.amplitud": 1})
+        with self.assertRaisesRegex(shoal.FileError, "/no/such.yaml"):
+            shoal.Run("/no/such.yaml")
+        with self.assertRaisesRegex(shoal.SolverError, "max_steps"):
+            shoal.Run(PAIR, {"solver.max_steps": 1}).step()
+        run = shoal.Run(PAIR)
+        with self.assertRaisesRegex(shoal.CaseError, "there is no variable 'speeed'"):
+            run["speeed"]
+        run.advance(run.end)
+        self.assertTrue(run.at_end)
+        with self.assertRaisesRegex(shoal.CaseError, "at its end"):
+            run.step()
+        with self.assertRaises(TypeError):
+            shoal.Run({**PAIR, "name": object()})
+        run.close()
+        with self.assertRaisesRegex(shoal.CaseError, "run is NULL"):
+            run.step()
+
+    def test_a_fish_is_led(self):
+        run, alone = shoal.Run(PAIR), shoal.Run(PAIR)
+        run.set("a", "wave.amplitude", 0.1)
+        run.set(1, "control.bias", 0.3)
+        for one in run, alone:
+            one.advance(0.2)
+        self.assertGreater(np.abs(run["x"][0, :7] - alone["x"][0, :7]).max(), 1e-5)
+        self.assertGreater(float(run["phi0"][1]), 0.01)
+        with self.assertRaisesRegex(shoal.CaseError, "cannot be set"):
+            run.set(0, "wave.phase", 1)
+
+    def test_a_copy_has_the_bits_of_the_run(self):
+        run = shoal.Run(PAIR)
+        run.advance(0.1)
+        copy = run.clone()
+        kept = run.clone()
+        for one in run, copy:
+            one.advance(0.2)
+        self.assertEqual(run["x"].tobytes(), copy["x"].tobytes())
+        end = run["x"].tobytes()
+        run.restore(kept)
+        self.assertAlmostEqual(run.time, 0.1)
+        run.advance(0.2)
+        self.assertEqual(run["x"].tobytes(), end)
+
+    def test_runs_in_threads_are_those_alone(self):
+        def swim(frequency, into):
+            run = shoal.Run(PAIR, {"fish[*].wave.frequency": frequency})
+            run.advance(run.end)
+            into[frequency] = run["x"].tobytes()
+
+        alone, together = {}, {}
+        for frequency in 1.0, 1.2, 1.4:
+            swim(frequency, alone)
+        threads = [threading.Thread(target=swim, args=(frequency, together)) for frequency in alone]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(alone, together)
+
+    def test_a_step_costs_less_than_30_microseconds_more_than_that_of_the_library(self):
+        run = shoal.Run(PAIR)
+        nothing = ctypes.PyDLL(None).Py_IsInitialized  # returns at once
+        nothing.argtypes, nothing.restype = (ctypes.c_void_p,), ctypes.c_int
+        idle = mock.Mock(shoal_step=lambda pointer: nothing(pointer) - 1, shoal_read=shoal._library.shoal_read)
+        times = []
+        with mock.patch.object(shoal, "_library", idle):
+            for _ in range(20):
+                start = time.perf_counter()
+                for _ in range(100):
+                    run.step()
+                    run["x"]
+                times.append((time.perf_counter() - start) / 100)
+        print(f"overhead of a step with a view: {1e6 * min(times):.1f} us")
+        self.assertLess(min(times), 30e-6)
+
+
+class Results(unittest.TestCase):
+    def test_a_result_is_that_of_the_program(self):
+        path = shoal.simulate(PAIR, path="by_python.nc")
+        self.assertEqual(path, "by_python.nc")
+        pathlib.Path("by_program.yaml").write_text(json.dumps({"format": 1, "name": "run", **PAIR}))
+        subprocess.run([os.environ["SHOAL"], "run", "-q", "by_program.yaml", "-o", "by_program.nc"], check=True)
+        subprocess.run([ROOT / "tests/run/same_result.py", "by_python.nc", "by_program.nc"], check=True)
+
+    def test_the_path_is_that_of_the_case(self):
+        self.assertEqual(shoal.simulate({**PAIR, "name": "named"}), "named.nc")
+        self.assertEqual(shoal.simulate(PAIR, {"output.file": "filed.nc"}), "filed.nc")
+        with self.assertRaisesRegex(shoal.FileError, "filed.nc"):
+            shoal.simulate(PAIR, {"output.file": "filed.nc"}, overwrite=False)
+
+    def test_a_result_opens_with_names(self):
+        data = shoal.open(shoal.simulate(PAIR, path="names.nc"))
+        self.assertEqual(list(data["fish"].values), ["a", "b"])
+        np.testing.assert_allclose(data["com"].sel(fish="b", xy="y")[0], 0.7)
+        self.assertEqual(data["wake_x"].dims, ("wake", "xy"))
+        self.assertEqual(data.sizes["wake"], int(data["wake_count"].sum()))
+        self.assertTrue(np.isfinite(data["wake_x"]).all() and (data["wake_age"] >= 0).all())
+        last = data.isel(wake=data["wake_time"].values == data["time"].values[-1])
+        self.assertEqual(int((last["wake_fish"] == "a").sum()), int(data["wake_count"].sel(fish="a")[-1]))
+        with self.assertRaisesRegex(shoal.FileError, "no such file"):
+            shoal.open("none.nc")
+        pathlib.Path("text.nc").write_text("no netcdf")
+        with self.assertRaisesRegex(shoal.FileError, "text.nc"):
+            shoal.open("text.nc")
+
+    def test_periods_are_cut(self):
+        data = shoal.open(shoal.simulate(PAIR, {"fish[*].wave.frequency": 12.5}, path="beats.nc"))
+        beats = shoal.periods(data, "a")
+        self.assertEqual((beats.sizes["period"], beats.sizes["phase"]), (2, 4))
+        np.testing.assert_array_equal(beats["com"].values.reshape(8, 2, 2), data["com"].values[:8])
+        np.testing.assert_allclose(beats["time"][1], [0.08, 0.1, 0.12, 0.14])
+        with self.assertRaisesRegex(shoal.CaseError, "rows"):
+            shoal.periods(data.isel(time=slice(0, None, 3)), "a")
+
+
+def follower(**arguments):
+    return shoal.SwimEnv(PAIR, fish="b", actions=("bias", "amplitude", "frequency"), act_every=0.04,
+                         observations=("velocity", "heading", "curvature", "muscle", "flow", "goal", "neighbours", "action"),
+                         goal=("a", (0.2, 0.7)), **arguments)
+
+
+class Environments(unittest.TestCase):
+    def rules_of_gymnasium(self, env):
+        """What gymnasium.utils.env_checker asks of an environment."""
+        observation, info = env.reset(seed=3)
+        self.assertIsInstance(info, dict)
+        over = False
+        while not over:
+            space = env.observation_space
+            self.assertTrue(space.contains(observation), observation)
+            self.assertEqual(observation.dtype, space.dtype)
+            action = env.action_space.sample()
+            self.assertTrue(env.action_space.contains(action))
+            observation, reward, terminated, truncated, info = env.step(action)
+            self.assertIsInstance(reward, float)
+            self.assertIs(type(terminated), bool)
+            self.assertIs(type(truncated), bool)
+            self.assertTrue(np.isfinite(reward))
+            over = terminated or truncated
+        return observation
+
+    def test_the_spaces_have_bounds(self):
+        env = follower()
+        for space in env.action_space, env.observation_space:
+            self.assertTrue(np.all(np.isfinite(space.low)) and np.all(space.low < space.high))
+        self.assertEqual(env.observation_space.shape, (2 + 2 + 7 + 7 + 6 + 3 + 4 + 3,))
+        self.assertEqual(env.action_space.shape, (3,))
+
+    def test_a_hundred_episodes_keep_the_rules_of_gymnasium(self):
+        env = follower(reward={"speed": 1, "cost_of_transport": 0.1, "course": 0.1, "goal": 1})
+        for episode in range(100):
+            self.rules_of_gymnasium(env)
+            self.assertTrue(env.run.at_end)
+
+    def test_seed_and_actions_say_everything(self):
+        env = follower(vary={"fish[1].start.heading": (170, 190)})
+        ends = []
+        for seed in 1, 1, 2:
+            env.reset(seed=seed)
+            for action in ([0.2, 0.4, 1.0], [-0.2, 0.5, 1.2]):
+                ends.append(env.step(action)[0].tobytes())
+        self.assertEqual(ends[0:2], ends[2:4])
+        self.assertNotEqual(ends[2:4], ends[4:6])
+        env.reset(seed=1, options={"assignments": {"time.end": 0.1}})
+        self.assertAlmostEqual(env.run.end, 0.1)
+
+    def test_a_reset_is_the_beginning_again(self):
+        env = follower()
+        first, _ = env.reset()
+        seen = [env.step([0.1, 0.4, 1.1])[0] for _ in range(3)]
+        again, _ = env.reset()
+        np.testing.assert_array_equal(first, again)
+        for want in seen:
+            np.testing.assert_array_equal(env.step([0.1, 0.4, 1.1])[0], want)
+
+    def test_what_is_seen_is_in_the_frame_of_the_fish(self):
+        env = shoal.SwimEnv(PAIR, fish=1, observations=("goal", "neighbours"), goal=(0.2, 1.7))
+        seen, _ = env.reset()
+        com = env.run["com"]
+        # the heading is 180 degrees: forwards is -x, left is -y
+        away = [-(0.2 - com[1, 0]), -(1.7 - com[1, 1])]
+        np.testing.assert_allclose(seen[:3], [*away, np.hypot(*away)], rtol=1e-6)
+        np.testing.assert_allclose(seen[3:5], -(com[0] - com[1]), rtol=1e-6)
+
+    def test_rewards_are_what_they_say(self):
+        env = shoal.SwimEnv(PAIR, {"defaults.fish.start.speed": 0.5}, act_every=0.2, goal=(-5, 0.7), fish=1,
+                            reward=lambda swimmer: 7)
+        env.reset()
+        before, swimmer = np.array(env.swimmer.com), env.swimmer
+        self.assertEqual(env.step([0.0])[1], 7)
+        way = swimmer.com - before
+        self.assertAlmostEqual(swimmer._earn_speed(), np.hypot(*way) / 0.2, 12)
+        self.assertAlmostEqual(swimmer._EARNED["goal"](swimmer), -np.hypot(*([-5, 0.7] - swimmer.com)), 12)
+        self.assertLess(abs(swimmer._earn_course()), 0.05)
+        work = float(env.run["actuation_work"][1])
+        self.assertAlmostEqual(swimmer._earn_cost(), -work / (swimmer.mass * np.hypot(*way)), 12)
+
+    def test_an_episode_ends_when_the_fish_is_lost_or_the_solver_fails(self):
+        env = shoal.SwimEnv(PAIR, goal=(9, 9), far=3)
+        env.reset()
+        self.assertEqual(env.step([0.0])[2:4], (True, False))
+        env = shoal.SwimEnv(PAIR, {"solver.max_steps": 1})
+        env.reset()
+        _, reward, terminated, truncated, info = env.step([0.0])
+        self.assertEqual((reward, terminated, truncated), (0.0, True, False))
+        self.assertIn("max_steps", info["failure"])
+        env.reset()
+
+    def test_what_is_not_known_is_refused(self):
+        for wrong in {"actions": ("tail",)}, {"observations": ("smell",)}, {"reward": {"joy": 1}}, {"reward": {"goal": 1}}:
+            with self.assertRaisesRegex(shoal.CaseError, "is none of|needs a goal"):
+                shoal.SwimEnv(PAIR, **wrong)
+        env = shoal.SwimEnv(PAIR)
+        env.reset()
+        with self.assertRaisesRegex(shoal.CaseError, "an action is 1 numbers"):
+            env.step([0.1, 0.2])
+        with self.assertRaisesRegex(shoal.CaseError, "an action is 1 numbers"):
+            env.step([np.nan])
+
+    def test_a_school_keeps_the_rules_of_parallel_environments(self):
+        env = shoal.SchoolEnv(PAIR, actions=("bias", "frequency"), act_every=0.04)
+        self.assertEqual(env.possible_agents, ["a", "b"])
+        for seed in range(5):
+            observations, infos = env.reset(seed=seed)
+            self.assertEqual(env.agents, env.possible_agents)
+            self.assertEqual(set(infos), set(env.agents))
+            while env.agents:
+                agents = list(env.agents)
+                self.assertEqual((env.num_agents, env.max_num_agents), (2, 2))
+                for name in agents:
+                    self.assertIs(env.action_space(name), env.action_space(name))
+                    self.assertTrue(env.observation_space(name).contains(observations[name]))
+                actions = {name: env.action_space(name).sample() for name in agents}
+                observations, *rest = env.step(actions)
+                for part in observations, *rest:
+                    self.assertEqual(set(part), set(agents))
+                self.assertEqual(env.state().size, sum(env.observation_space(name).shape[0] for name in agents))
+            self.assertTrue(all(rest[2].values()) and not any(rest[1].values()))
+
+    @unittest.skipIf(importlib.util.find_spec("gymnasium"), "Gymnasium is installed")
+    def test_gymnasium_and_pettingzoo_are_used_where_they_are(self):
+        for package, text in (("gymnasium", "class Env: pass"), ("pettingzoo", "class ParallelEnv: pass")):
+            os.makedirs(f"installed/{package}", exist_ok=True)
+            pathlib.Path(f"installed/{package}/__init__.py").write_text(text)
+        pathlib.Path("installed/gymnasium/spaces.py").write_text(
+            "class Box:\n    def __init__(self, low, high, dtype): self.shape = low.shape\n")
+        code = (f"import sys; sys.path.insert(0, {os.path.dirname(shoal.__file__)!r})\n"
+                "if len(sys.argv) > 1: sys.path.insert(0, sys.argv[1])\n"
+                f"import shoal; env = shoal.SwimEnv({PAIR!r}); school = shoal.SchoolEnv({PAIR!r})\n"
+                "print(env.action_space.__class__.__module__, 'gymnasium' in sys.modules, 'pettingzoo' in sys.modules)\n"
+                "if len(sys.argv) > 1:\n"
+                "    import gymnasium, pettingzoo\n"
+                "    print(isinstance(env, gymnasium.Env), isinstance(school, pettingzoo.ParallelEnv))\n")
+        said = [subprocess.run([sys.executable, "-c", code, *more], check=True, capture_output=True, text=True).stdout
+                for more in ([], ["installed"])]
+        self.assertEqual(said, ["shoal False False\n", "gymnasium.spaces True True\nTrue True\n"])
+
+
+class Document(unittest.TestCase):
+    def test_every_snippet_runs(self):
+        text = (ROOT / "doc/python.md").read_text()
+        snippets = re.findall(r"^```python\n(.*?)^```", text, re.M | re.S)
+        self.assertGreater(len(snippets), 10)
+        names = {}
+        for number, snippet in enumerate(snippets, 1):
+            exec(compile(snippet, f"doc/python.md, snippet {number}", "exec"), names)
+
+
+if __name__ == "__main__":
+    result = unittest.main(verbosity=2, exit=False).result
+    n_bad = len(result.failures) + len(result.errors)
+    print(f"{result.testsRun - n_bad - len(result.skipped)} passed, {n_bad} failed, {len(result.skipped)} skipped")
+    sys.exit(n_bad > 0)
