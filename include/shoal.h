@@ -34,7 +34,7 @@ enum shoal_status {
     SHOAL_USAGE = -1,  /* a wrong argument, a wrong case, a step past the end */
     SHOAL_FILE = -2,   /* a file cannot be read or written */
     SHOAL_MEMORY = -3, /* out of memory */
-    SHOAL_SOLVER = -4  /* the integration failed */
+    SHOAL_SOLVER = -4  /* the integration failed, or bodies met and the case asks to stop then */
 };
 
 /* ---- the life of a run ---- */

@@ -159,6 +159,7 @@ SECTIONS = {
     "time": "Simulated time and its intervals",
     "fluid": "The fluid and its background flow",
     "wake": "The vortex sheets, bound and free",
+    "contact": "Bodies that come near each other",
     "solver": "The integrator",
     "output": "The result file",
     "fish": "One fish; the value of `fish` is a list of these",

@@ -74,7 +74,7 @@ it open sees new rows when it opens it again. The attribute `run_status` says ho
 | `running` | the run goes on, or was killed |
 | `complete` | the run reached `time.end` |
 | `stopped` | a signal stopped it; the rows are good |
-| `failed: ...` | the integration or the writing failed, for this reason; the rows are good |
+| `failed: ...` | the integration or the writing failed, or bodies met with `contact.action: stop`; the rows are good |
 
 The attribute `warnings` is written at the end: one line for each thing that is wrong with the result although the
 integration succeeded, about the fish for which it is worst. They are printed at the end of a run, by `shoal info` and by
@@ -83,6 +83,7 @@ integration succeeded, about the fish for which it is worst. They are printed at
 | warning | when |
 |---|---|
 | bodies touch or cross | at any step of the integrator, or between two; `closest_approach` says who came closest, and when |
+| bodies come near | nearer than `contact.range`, without `contact.action: repel` |
 | the energy balance is open | `energy_audit` is more than 1 % of the largest of the works of muscle, fluid, damping, and all forces |
 | the speed changes | `drift` is more than 1 %: means over the last beat are not those of steady swimming (`run -q` is silent about it) |
 | few events | fewer than 20 in a beat |

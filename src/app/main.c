@@ -80,8 +80,8 @@ enum { N_COMMANDS = sizeof commands / sizeof *commands };
 
 static const char summary[] = "schools of flexible swimmers";
 static const char exit_codes[] =
-    "0 success, 1 integration failed, 2 wrong usage or wrong case, 3 an expectation is not met,\n"
-    "4 file or memory error, 75 stopped by a signal.";
+    "0 success, 1 integration failed, 2 wrong usage or wrong case, 3 an expectation is not met\n"
+    "or bodies met with contact.action: stop, 4 file or memory error, 75 stopped by a signal.";
 
 static void print_help(FILE *stream) {
     fprintf(stream, "shoal: %s\n\nUsage: shoal COMMAND [OPTIONS] [FILE]\n\n", summary);

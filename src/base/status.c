@@ -27,7 +27,8 @@ int status_exit_code(enum status status) {
         case STATUS_RETRY:
         case STATUS_SOLVER: return 1;
         case STATUS_CASE: return 2;
-        case STATUS_MISSED: return 3;
+        case STATUS_MISSED:
+        case STATUS_CONTACT: return 3;
         case STATUS_FILE:
         case STATUS_MEMORY: return 4;
         case STATUS_STOPPED: return 75;

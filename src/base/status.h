@@ -14,7 +14,8 @@ enum status {
     STATUS_MEMORY = -3,  /* out of memory */
     STATUS_SOLVER = -4,  /* the integration failed */
     STATUS_STOPPED = -5, /* a signal asked the run to stop */
-    STATUS_MISSED = -6   /* an expectation of the case is not met */
+    STATUS_MISSED = -6,  /* an expectation of the case is not met */
+    STATUS_CONTACT = -7  /* two bodies came together, and the case asks to stop then */
 };
 
 /* Keep the message (printf format; long ones are cut) for this thread and return the status. */
@@ -23,7 +24,7 @@ enum status status_fail(enum status status, const char *format, ...) __attribute
 /* The message of the last status_fail of this thread, or "". Valid until the next status_fail of this thread. */
 const char *status_message(void);
 
-/* The exit code of the program for a status: 0, 1 (solver), 2 (case, usage), 3 (missed), 4 (file, memory),
+/* The exit code of the program for a status: 0, 1 (solver), 2 (case, usage), 3 (missed, contact), 4 (file, memory),
  * 75 (stopped by a signal). */
 int status_exit_code(enum status status);
 

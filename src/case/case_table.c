@@ -100,6 +100,14 @@ const struct key case_table[] = {
                 "beat; 0: direct summation",
      .derived = "a hundredth of solver.rtol", .synonyms = "accuracy theta"},
 
+    {"contact.action", CHOICE, AT(school.contact.action), "repel", ANY, "",
+     .meaning = "what happens where the outlines of two bodies are nearer than contact.range; repel: they repel each "
+                "other; warn: nothing, and the result says so; stop: the run ends with exit code 3",
+     .words = WORDS("repel", "warn", "stop"), .synonyms = "law mode collision"},
+    {"contact.range", REAL, AT(school.contact.range), "0.02", ABOVE(0), "",
+     .meaning = "distance below which two bodies are in contact; in lengths of the longest fish",
+     .synonyms = "distance gap"},
+
     {"solver.method", METHOD, AT(solver.method), "ida", ANY, "", .meaning = "integration method: see below",
      .synonyms = "integrator scheme"},
     {"solver.rtol", REAL, AT(school.rtol), "1e-5", FROM_TO(1e-14, 0.1), "",

@@ -38,10 +38,11 @@ static void place(const struct fish *fish, const double *before, const double *y
 }
 
 // Conservative advancement (Mirtich 1996): from each place go on by as much as cannot bring the bodies together.
-// Returns the part of the step after which they touch, or 2 where they do not; *least is the smallest distance seen.
+// Returns the part of the step after which they touch, or 1 where they do not; *least is the smallest distance seen.
 static double meeting(const struct fish *a, const struct fish *b, const double *before, const double *y, double travel,
                       double *between, double *least) {
-    const double near = 1e-3 * fmin(a->thickness[0], b->thickness[0]);
+    // far below the distance at which bodies in contact rest
+    const double near = 1e-8 * fmin(a->length, b->length);
     double s = 0;
     for (int i = 0; i < MAX_ADVANCES && s < 1; i++) {
         place(a, before, y, s, between);
@@ -54,7 +55,7 @@ static double meeting(const struct fish *a, const struct fish *b, const double *
         }
         s += distance / travel;
     }
-    return 2;
+    return 1;
 }
 
 static void remember(struct closest *closest, double distance, double t, int f, int g) {
@@ -65,20 +66,24 @@ static void remember(struct closest *closest, double distance, double t, int f, 
     closest->fish[1] = f;
 }
 
+struct passage clearance_passage(const struct fish *a, const struct fish *b, const double *before, const double *y,
+                                 double limit, double *between) {
+    const struct shift shift = shift_of(a, before, y), other = shift_of(b, before, y);
+    const double travel = approach(&shift, &other);
+    // what is farther apart now cannot have been closer than the limit on the way
+    const double now = fish_distance(a, b, y, limit + travel);
+    struct passage passage = {.now = now, .least = now, .part = 1};
+    if (now > 0 && now < travel) passage.part = meeting(a, b, before, y, travel, between, &passage.least);
+    return passage;
+}
+
 static void compare(const struct school *school, struct state *state, double t, const double *y, double *between, int f,
                     int g) {
-    const struct fish *const a = &school->fish[f], *const b = &school->fish[g];
     struct closest *const closest = state->closest;
-    const struct shift shift = shift_of(a, closest->before, y), other = shift_of(b, closest->before, y);
-    const double travel = approach(&shift, &other);
-    // what is farther apart now cannot have been closer than the closest ones during the step
-    double distance = fish_distance(a, b, y, closest->distance + travel);
-    double when = t;
-    if (distance > 0 && distance < travel) {
-        const double s = meeting(a, b, closest->before, y, travel, between, &distance);
-        if (s <= 1) when = closest->before_t + s * (t - closest->before_t);
-    }
-    remember(closest, distance, when, f, g);
+    const struct passage passage =
+        clearance_passage(&school->fish[f], &school->fish[g], closest->before, y, closest->distance, between);
+    const double when = passage.part < 1 ? closest->before_t + passage.part * (t - closest->before_t) : t;
+    remember(closest, passage.least, when, f, g);
 }
 
 void clearance_step(const struct school *school, struct state *state, double t, const double *y, double *between) {

@@ -1,6 +1,5 @@
-/* clearance.h: how close two bodies of a school have come, at the steps of the integrator and between them: the model
- * knows no contact, so bodies that touch or pass through each other are no solution. Tested by
- * tests/model/test_clearance.c. */
+/* clearance.h: how close two bodies of a school have come, at the steps of the integrator and between them: bodies that
+ * touch or pass through each other are no solution. Tested by tests/model/test_clearance.c. */
 #ifndef CLEARANCE_H
 #define CLEARANCE_H
 
@@ -9,6 +8,18 @@
 
 /* The record begins with the bodies as they are. between: scratch (n_unknowns). */
 void clearance_start(const struct school *school, struct state *state, double *between);
+
+/* How two bodies pass each other while their nodes go straight. */
+struct passage {
+    double now;   /* distance at the end, m; INFINITY: above the limit */
+    double least; /* smallest distance seen on the way, m; 0: they touch */
+    double part;  /* of the way after which they touch; 1: they do not */
+};
+
+/* From the places in before to those in y. Distances above the limit, m, may be INFINITY; whether bodies touch is found
+ * for any limit. between: scratch (n_unknowns). */
+struct passage clearance_passage(const struct fish *a, const struct fish *b, const double *before, const double *y,
+                                 double limit, double *between);
 
 /* A step of the integrator has ended at time t, s, with the unknowns y: bring state->closest up to date. Between two
  * steps nodes go straight: bodies that meet there are found too, however far apart they are at both ends. between:

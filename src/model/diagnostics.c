@@ -97,6 +97,7 @@ static void find_forces(struct residual *residual, int f, double t, const double
     to->resistive_moment = forces.resistive_moment;
     to->friction_moment = forces.friction_moment;
     to->reactive_moment = forces.reactive_moment;
+    contact_force(residual->contact, f, y, to->contact_force);
     find_constraint(residual, f, t, y, to);
 }
 
@@ -139,6 +140,7 @@ struct diagnostics_power diagnostics_power(struct residual *residual, int f, dou
                                       .wake = fluid.wake,
                                       .pressure = pressure.pressure_power,
                                       .suction = pressure.suction_power,
+                                      .contact = contact_power(residual->contact, f, y),
                                       .on_water = power_on_water(residual, f, t, &fluid, &pressure, y),
                                       .driving = driving_power(residual, f, t, y, residual->scratch)};
 }
@@ -162,13 +164,14 @@ static double bending_energy(struct residual *residual, int f, double t, const d
 
 double diagnostics_energy(struct residual *residual, int f, double t, const double *y) {
     const struct fish *fish = &residual->school->fish[f];
-    return kinetic_energy(fish, y) + bending_energy(residual, f, t, y) + rod_stretching_energy(fish, y);
+    return kinetic_energy(fish, y) + bending_energy(residual, f, t, y) + rod_stretching_energy(fish, y) +
+           contact_energy(residual->contact, f, y);
 }
 
 // the powers whose work is kept
 static void gather_powers(const struct diagnostics_power *power, double *of) {
     of[WORK_ALL] = power->actuation + power->damping + power->drag + power->added_mass + power->wake + power->driving;
-    of[WORK_ALL] += power->pressure + power->suction;
+    of[WORK_ALL] += power->pressure + power->suction + power->contact;
     of[WORK_ACTUATION] = power->actuation;
     of[WORK_FLUID] = power->on_water;
     of[WORK_DAMPING] = power->damping;
@@ -386,9 +389,11 @@ static void diagnostics_one(struct residual *residual, const struct state *state
     to->added_mass_power = power.added_mass;
     to->wake_power = power.wake;
     to->driving_power = power.driving;
+    to->contact_energy = contact_energy(residual->contact, f, y);
+    to->contact_power = power.contact;
     const struct energy_balance *balance = &state->balance[f];
-    to->energy_audit = to->kinetic_energy + to->bending_energy + to->stretching_energy - balance->initial_energy -
-                       balance->work[WORK_ALL];
+    to->energy_audit = to->kinetic_energy + to->bending_energy + to->stretching_energy + to->contact_energy -
+                       balance->initial_energy - balance->work[WORK_ALL];
     to->actuation_work = balance->work[WORK_ACTUATION];
 }
 

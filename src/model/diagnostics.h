@@ -20,13 +20,16 @@ struct diagnostics_fish {
     double shed_circulation;                                  /* m2 s-1 */
     double shedding_rate;                                     /* m2 s-2 */
     double kinetic_energy, bending_energy, stretching_energy; /* J */
+    double contact_energy;                                    /* half of what its contacts store, J */
     double added_mass_energy;                                 /* of the fluid that the body accelerates, J */
     double actuation_power, damping_power, drag_power, added_mass_power, wake_power, driving_power; /* W */
     double friction_power; /* of the part of the drag along the body, W */
+    double contact_power;  /* what it is given for its half of the contacts, W */
     double energy_audit;   /* J */
     double actuation_work; /* put in by the muscle since the start, J */
     /* on the body, N, and about the centre of mass, N m; friction: the part of the resistive force along the body */
     double resistive_force[2], friction_force[2], reactive_force[2], constraint_force[2];
+    double contact_force[2]; /* of all bodies that it touches, N */
     double resistive_moment, friction_moment, reactive_moment, constraint_moment;
     struct pressure_forces pressure; /* force: pressure, else 0 */
     double leading_edge_a0;          /* A_0 at the mean speed; NaN without it, and with other forces */
@@ -54,12 +57,13 @@ void diagnostics_free(struct diagnostics *diagnostics);
 /* Powers of one fish, W, from the unknowns, the rates of the state, and the fluid's velocity in the last residual
  * evaluated. */
 struct diagnostics_power {
-    double actuation, damping, drag, friction, added_mass, wake, pressure, suction, driving; /* friction: of drag */
+    double actuation, damping, drag, friction, added_mass, wake, pressure, suction, driving,
+        contact;     /* friction: of drag */
     double on_water; /* of all forces of the fluid together, seen from the external flow at the centre of mass */
 };
 struct diagnostics_power diagnostics_power(struct residual *residual, int f, double t, const double *y);
 
-/* Kinetic plus bending plus stretching energy of one fish, J. */
+/* Kinetic plus bending plus stretching energy of one fish, and its half of the contacts', J. */
 double diagnostics_energy(struct residual *residual, int f, double t, const double *y);
 
 /* Add the powers of the step that ended at t to the energy balances, by the quadratic through the last three steps, and

@@ -392,11 +392,13 @@ static void set_fluid(struct school *school, const struct school_parameters *par
     school->kutta_ramp = parameters->wake.kutta_ramp;
     school->removed = parameters->wake.dissipated_circulation;
     school->wake_tolerance = parameters->wake.tolerance;
+    school->contact = parameters->contact.action;
     school->rtol = parameters->rtol;
     school->threads = parameters->threads;
     double longest = 0;
     for (int f = 0; f < parameters->n_fish; f++) longest = fmax(longest, parameters->fish[f].length);
     school->coupling_distance = parameters->coupling_distance * longest;
+    school->contact_range = parameters->contact.range * longest;
 }
 
 static enum status refuse_overlap(const struct school *school) {
@@ -418,6 +420,11 @@ static enum status refuse_overlap(const struct school *school) {
     return status;
 }
 
+static void set_contact(const struct school *school, struct fish *fish) {
+    const double rate = fish_rate(school, fish);
+    fish->contact_strength = fish->total_mass * fish->length * rate * rate;
+}
+
 enum status fish_school_create(struct school **school, const struct school_parameters *parameters) {
     struct school *new = calloc(1, sizeof *new);
     *school = NULL;
@@ -433,6 +440,7 @@ enum status fish_school_create(struct school **school, const struct school_param
         fish->at = layout_after(new->n_unknowns, fish->n_nodes, n_momenta, fish->n_sheet);
         fish->friction_speed = 1e-4 * fish->length * fish_rate(new, fish);
         new->n_unknowns = fish->at.end;
+        set_contact(new, fish);
     }
     const enum status overlap = refuse_overlap(new);
     if (overlap != STATUS_OK) {

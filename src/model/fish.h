@@ -123,6 +123,8 @@ struct fish {
     double taper_beside;    /* the same for vortices beside the body, m */
     double sheet_smoothing; /* of its bound sheet seen from elsewhere, m */
 
+    double contact_strength; /* scale of the force in contact: gives its mass one length per beat in a beat, N */
+
     double start_position[2]; /* of the nose, m */
     double start_heading;     /* rad */
     double start_speed;       /* m s-1 */
@@ -149,6 +151,8 @@ struct school {
     enum removed_circulation removed;
     double wake_tolerance; /* estimated error of the velocity of the wakes at the bodies, lengths per beat; 0: none */
 
+    enum contact_action contact; /* of bodies whose outlines are nearer than: */
+    double contact_range;        /* m */
     double rtol;
     double coupling_distance; /* m */
     int threads;

@@ -27,6 +27,7 @@ struct jacobian {
     unsigned pattern; /* of the residual that they were made for */
     int *first;       /* (n_fish + 1) */
     int n_couplings;
+    int has_contacts;                   /* whether forces between fish that touch are in it */
     struct jacobian_coupling *coupling; /* (n_couplings) */
     double *values;
 };

@@ -17,6 +17,7 @@ enum drag_law { DRAG_QUADRATIC, DRAG_LINEAR_QUADRATIC };
 enum skin { SKIN_QUADRATIC, SKIN_LAMINAR };
 enum extent { EXTENT_THICKNESS, EXTENT_DEPTH };
 enum prescribed { PRESCRIBED_NONE, PRESCRIBED_HEAD, PRESCRIBED_ALL };
+enum contact_action { CONTACT_REPEL, CONTACT_WARN, CONTACT_STOP };
 enum control_law { CONTROL_NONE, CONTROL_HEADING, CONTROL_AVERAGED_HEADING, CONTROL_COURSE };
 
 /* A list of numbers, of pairs (then 2 n numbers, pair after pair), or of rows (width n numbers, row after row). Owned
@@ -119,9 +120,15 @@ struct fish_parameters {
     struct control_parameters control;
 };
 
+struct contact_parameters {
+    enum contact_action action;
+    double range; /* body lengths of the longest fish */
+};
+
 struct school_parameters {
     struct fluid_parameters fluid;
     struct wake_parameters wake;
+    struct contact_parameters contact;
     double shedding_interval; /* s */
     double rtol;              /* of the integrator: doc/numerics.md */
     double coupling_distance; /* body lengths of the longest fish */

@@ -48,6 +48,7 @@ static enum status allocate(struct residual *residual) {
         !residual->jacobian_scratch) {
         goto no_memory;
     }
+    TRY(contact_create(&residual->contact, school));
     return flow_create(&residual->flow, school);
 
 no_memory:
@@ -75,6 +76,7 @@ void residual_free(struct residual *residual) {
     flow_free(residual->flow);
     for (int f = 0; residual->pressure && f < residual->school->n_fish; f++) pressure_free(residual->pressure[f]);
     free(residual->pressure);
+    contact_free(residual->contact);
     free(residual->joints);
     free(residual->coupled);
     free(residual->natural_curvature);
@@ -135,6 +137,10 @@ double residual_lost(const struct residual *residual, int f, double t) {
     return school->removed == REMOVED_DROPPED ? wake_lost(&state->wake[f], school, state->t, t - state->t) : 0;
 }
 
+enum status residual_contact(struct residual *residual, double t, const double *y) {
+    return contact_find(residual->contact, residual->state, t, y);
+}
+
 void residual_muscle(struct residual *residual, int f, double t, const double *y) {
     const struct fish *fish = &residual->school->fish[f];
     const int first = residual->joints[f].first;
@@ -167,6 +173,7 @@ static void balance(const struct residual *residual, int f, const double *y, dou
     }
     rod_residual(fish, residual->natural_curvature + residual->joints[f].first, y, value);
     clamp_residual(fish, residual->flow->t, y, value);
+    contact_residual(residual->contact, f, y, value);
     fluid_force_residual(fish, &flow, y, value);
     if (residual->pressure[f]) {
         pressure_update(residual->pressure[f], &flow, y);
@@ -213,6 +220,7 @@ static void evaluate_fish(struct residual *residual, int f, double t, const doub
 }
 
 enum status residual_evaluate(struct residual *residual, double t, const double *y, const double *yp, double *value) {
+    TRY(residual_contact(residual, t, y));
     TRY(flow_velocity(residual->flow, residual->state, t, y));
     const struct school *school = residual->school;
     const int threads = parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_UNKNOWNS);
@@ -326,19 +334,40 @@ static enum status fish_jacobian(struct residual *residual, int f, double t, dou
 
     // what comes through the velocity of the fluid: by the fish's own unknowns, and by those of the fish it couples to
     flow_jacobian(residual, f, f, t, y, &jacobian_scratch->block, &jacobian_scratch->rows);
+    contact_jacobian(residual->contact, f, f, y, &jacobian_scratch->rows);
     add_own(residual, fish, &jacobian_scratch->rows, own);
     for (int i = jacobian->first[f]; i < jacobian->first[f + 1]; i++) {
         struct jacobian_coupling *const coupling = &jacobian->coupling[i];
         flow_jacobian(residual, f, coupling->other, t, y, &jacobian_scratch->block, &coupling->rows);
+        contact_jacobian(residual->contact, f, coupling->other, y, &coupling->rows);
     }
     jacobian_mask_couplings(jacobian, f);
     return sparse_end(own);
+}
+
+// fish in contact couple, however far the coupling reaches; returns whether there are any
+static int couple_contacts(struct residual *residual) {
+    const int n_fish = residual->school->n_fish;
+    int n_contacts = 0;
+    for (int f = 0; f < n_fish; f++) {
+        const int *other;
+        const int n = contact_partners(residual->contact, f, &other);
+        for (int i = 0; i < n; i++) {
+            unsigned char *const coupled = &residual->coupled[f * n_fish + other[i]];
+            if (!*coupled) residual->pattern++;
+            *coupled = 1;
+        }
+        n_contacts += n;
+    }
+    return n_contacts > 0;
 }
 
 enum status residual_jacobian(struct residual *residual, double t, double cj, const double *y,
                               struct jacobian *jacobian) {
     const struct school *school = residual->school;
     const int threads = parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_MATRICES);
+    TRY(residual_contact(residual, t, y));
+    jacobian->has_contacts = couple_contacts(residual);
     TRY(flow_gradient(residual->flow, residual->state, t, y));
     if (jacobian->pattern != residual->pattern) {
         TRY(jacobian_couple(jacobian, residual->coupled, residual->pattern));

@@ -4,6 +4,7 @@
 #define RESIDUAL_H
 
 #include "base/status.h"
+#include "model/contact.h"
 #include "model/flow.h"
 #include "model/jacobian.h"
 #include "model/pressure.h"
@@ -18,6 +19,7 @@ struct residual {
     const struct school *school;
     const struct state *state; /* wakes, control memory, time of the last event */
     struct flow *flow;
+    struct contact *contact;
     enum shed_now shed_now;     /* what determines the circulation shed */
     int at_start;               /* whether the velocities are given, and momenta follow from them */
     struct pressure **pressure; /* of each fish; NULL where its force is another one   (n_fish) */
@@ -66,10 +68,11 @@ void residual_free(struct residual *residual);
 /* Decide which fish couple in the Jacobian, from the positions in y. Returns whether anything changed. */
 int residual_couple(struct residual *residual, const double *y);
 
-/* value = F(t, y, yp). Returns STATUS_RETRY where a value is not finite. */
+/* value = F(t, y, yp). Returns STATUS_RETRY where a value is not finite, or bodies touch that repel each other. */
 enum status residual_evaluate(struct residual *residual, double t, const double *y, const double *yp, double *value);
 
-/* jacobian = dF/dy + cj dF/dyp, with the blocks of the coupled fish. Fails with STATUS_MEMORY. */
+/* jacobian = dF/dy + cj dF/dyp, with the blocks of the coupled fish; fish in contact couple from now on. Fails with
+ * STATUS_MEMORY, and as residual_evaluate where bodies touch. */
 enum status residual_jacobian(struct residual *residual, double t, double cj, const double *y,
                               struct jacobian *jacobian);
 
@@ -79,12 +82,14 @@ enum status residual_jacobian(struct residual *residual, double t, double cj, co
  * step where the nascent stretch of a free sheet grows. */
 void residual_by_shed(struct residual *residual, const double *y, double *value);
 
-/* Part of an evaluation, for who solves the equations one after another: the natural curvature of fish f for the phi0
+/* Parts of an evaluation, for who solves the equations one after another: the contacts, which can fail as
+ * residual_evaluate does; and the natural curvature of fish f for the phi0
  * in y. */
+enum status residual_contact(struct residual *residual, double t, const double *y);
 void residual_muscle(struct residual *residual, int f, double t, const double *y);
 
 /* The rows ax, ay of fish f in N, before given motions replace them: m a less all forces. With the fluid's velocity and
- * the natural curvature of the last evaluation. */
+ * the natural curvature and the contacts of the last evaluation. */
 void residual_balance(const struct residual *residual, int f, const double *y, double *value);
 
 /* The same rows with the whole force of the fluid: what else acts on the nodes, the reactions of prescribed ones. For

@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static enum status history_create(struct history *history, const struct fish *fish, double interval) {
     const double in_a_period = fish->period / interval;
@@ -36,6 +37,7 @@ static enum status fill(struct state *state, const struct school *school) {
         state->control[f].held_heading = school->fish[f].start_heading;
         fish_start(&school->fish[f], state->y);
     }
+    memcpy(state->closest->before, state->y, n_unknowns * sizeof *state->y);
     return STATUS_OK;
 }
 

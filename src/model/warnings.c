@@ -196,12 +196,18 @@ static const struct kind kinds[N_WARNINGS] = {
 };
 
 static int contact_line(const struct school *school, const struct closest *closest, char line[WARNING_BYTES]) {
-    if (closest->distance > 0) return 0;
-    snprintf(
-        line, WARNING_BYTES,
-        "the bodies of %.40s and %.40s touch or cross at t = %.4g s: the model knows no contact, and what follows is "
-        "no solution",
-        school->fish[closest->fish[0]].name, school->fish[closest->fish[1]].name, closest->t);
+    const int repel = school->contact == CONTACT_REPEL;
+    const char *const a = school->fish[closest->fish[0]].name, *const b = school->fish[closest->fish[1]].name;
+    if (closest->distance <= 0) {
+        snprintf(line, WARNING_BYTES,
+                 "the bodies of %.40s and %.40s touch or cross at t = %.4g s: what follows is no solution%s", a, b,
+                 closest->t, repel ? "" : "; contact.action: repel keeps them apart");
+        return 1;
+    }
+    if (repel || closest->distance >= school->contact_range) return 0;
+    snprintf(line, WARNING_BYTES,
+             "%.40s and %.40s come within %.3g m of each other at t = %.4g s, less than contact.range", a, b,
+             closest->distance, closest->t);
     return 1;
 }
 

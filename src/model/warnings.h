@@ -1,7 +1,7 @@
 /* warnings.h: what is wrong with a result although the integration succeeded. A warning is one line, about the fish for
  * which it is worst. Tested by tests/model/test_warnings.c.
  *
- *     contact   two bodies touch or cross: the model knows no contact
+ *     contact   two bodies touch or cross, or are nearer than contact.range and do not repel each other
  *     energy    the energy balance is open by more than 1 % of the work
  *     drift     the speed changes by more than 1 % from beat to beat: means over a beat are not steady
  *     events    fewer than 20 events in a beat

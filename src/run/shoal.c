@@ -209,7 +209,7 @@ int shoal_step(struct shoal *run) {
     if (status == STATUS_OK) return write_if_due(run);
     run->has_failed = 1;
     snprintf(run->failure, sizeof run->failure, "%s", status_message());
-    return status;
+    return status == STATUS_CONTACT ? STATUS_SOLVER : status;
 }
 
 int shoal_advance(struct shoal *run, double t) {

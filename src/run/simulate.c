@@ -114,10 +114,24 @@ void simulate_free(struct simulation *simulation) {
     free(simulation);
 }
 
+// bodies that are in contact where the case asks to stop then: what the integrator made of it is of no interest
+static enum status refuse_contact(const struct simulation *simulation) {
+    const struct school *const school = simulation->school;
+    const struct closest *const closest = simulation->state->closest;
+    if (school->contact != CONTACT_STOP || closest->distance >= school->contact_range) return STATUS_OK;
+    return status_fail(STATUS_CONTACT,
+                       "contact of %s and %s at t = %.10g s: %.4g m between their outlines, less than contact.range, "
+                       "%.4g m; the case says contact.action: stop",
+                       school->fish[closest->fish[0]].name, school->fish[closest->fish[1]].name, closest->t,
+                       closest->distance, school->contact_range);
+}
+
 enum status simulate_step(struct simulation *simulation) {
     struct state *const state = simulation->state;
     const double next = (double)(state->event + 1) * simulation->school->interval;
-    TRY(simulation->integrator->advance(simulation->solver, next, simulation->stop));
+    const enum status advanced = simulation->integrator->advance(simulation->solver, next, simulation->stop);
+    TRY(refuse_contact(simulation));
+    TRY(advanced);
     // a restart has no last step
     simulation->integrator->count(simulation->solver, &simulation->totals);
     int jumped = 0;

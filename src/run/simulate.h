@@ -50,7 +50,8 @@ enum status simulate_renew(struct simulation *simulation);
 /* Release all of it. Accepts NULL. */
 void simulate_free(struct simulation *simulation);
 
-/* Go on to the next event and do it. Fails with STATUS_SOLVER, STATUS_MEMORY or STATUS_STOPPED; the state is then
+/* Go on to the next event and do it. Fails with STATUS_SOLVER, STATUS_MEMORY, STATUS_STOPPED, or with STATUS_CONTACT
+ * where two bodies are in contact and the case asks to stop then; the state is then
  * somewhere between two events. */
 enum status simulate_step(struct simulation *simulation);
 
@@ -84,7 +85,8 @@ struct simulate_options {
     const volatile sig_atomic_t *stop; /* the run stops at the next event once this is not 0; may be NULL */
 };
 
-/* Run a case into a result file. On STATUS_SOLVER and STATUS_STOPPED the file is closed with all rows up to there. */
+/* Run a case into a result file. On STATUS_SOLVER, STATUS_CONTACT and STATUS_STOPPED the file is closed with all rows
+ * up to there. */
 enum status simulate_run(const struct case_values *values, const struct simulate_options *options);
 
 #endif

@@ -17,6 +17,10 @@ static const double diagonal_tolerance = 1e-3, min_growth = 1e-6;
  * at least this fraction of what they were when the pivots were chosen. */
 static const double min_quality = 1e-3;
 
+/* The relative tolerance of GMRES where bodies touch: the forces between two bodies cancel only as far as the system is
+ * solved, and what is left changes the momentum of both together. */
+static const double contact_relative = 1e-9;
+
 /* GMRES takes at most this many iterations; Newton's iteration judges what it returns then. */
 enum { MAX_ITERATIONS = 40 };
 
@@ -280,7 +284,9 @@ static enum status solve_coupled(struct linear *linear, double *x) {
     const int n = n_unknowns(linear);
     struct least_squares ls;
     const double start = sqrt(dot(linear, x, x));
-    const double limit = fmax(linear->tolerance.relative * start, linear->tolerance.absolute);
+    const double limit = linear->jacobian->has_contacts
+                             ? contact_relative * start
+                             : fmax(linear->tolerance.relative * start, linear->tolerance.absolute);
     if (!(start > limit) || !isfinite(start)) return STATUS_OK;
     TRY(reserve(linear, 1));
     for (int i = 0; i < n; i++) linear->direction[i] = x[i] / start;

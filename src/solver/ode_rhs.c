@@ -349,6 +349,7 @@ enum status ode_rhs_rates(struct ode_rhs *d, double t, double *y, double *yp) {
     for (int i = 0; i < school->n_unknowns; i++) {
         if (!isfinite(y[i])) return status_fail(STATUS_RETRY, "unknown %d is not finite at t = %g s", i, t);
     }
+    TRY(residual_contact(d->residual, t, y));
     TRY(update_flow(d, t, y));
     TRY(solve_sheets(d, t, y));
     add_sheets(d, y);

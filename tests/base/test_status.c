@@ -81,7 +81,8 @@ static void signs_are_those_of_solver_callbacks(void **state) {
     (void)state;
     assert_int_equal(STATUS_OK, 0);
     assert_true(STATUS_RETRY > 0);
-    const enum status final[] = {STATUS_CASE, STATUS_FILE, STATUS_MEMORY, STATUS_SOLVER, STATUS_STOPPED, STATUS_MISSED};
+    const enum status final[] = {STATUS_CASE,    STATUS_FILE,   STATUS_MEMORY, STATUS_SOLVER,
+                                 STATUS_STOPPED, STATUS_MISSED, STATUS_CONTACT};
     for (size_t i = 0; i < sizeof final / sizeof *final; i++) assert_true(final[i] < 0);
 }
 
@@ -92,6 +93,7 @@ static void exit_codes_are_the_documented_ones(void **state) {
     assert_int_equal(status_exit_code(STATUS_SOLVER), 1);
     assert_int_equal(status_exit_code(STATUS_CASE), 2);
     assert_int_equal(status_exit_code(STATUS_MISSED), 3);
+    assert_int_equal(status_exit_code(STATUS_CONTACT), 3);
     assert_int_equal(status_exit_code(STATUS_FILE), 4);
     assert_int_equal(status_exit_code(STATUS_MEMORY), 4);
     assert_int_equal(status_exit_code(STATUS_STOPPED), 75);

@@ -119,7 +119,7 @@ static void after_a_jump_the_balance_goes_on_from_the_powers_of_then(void **stat
         const struct diagnostics_fish *const fish = &simulation->diagnostics->fish[0];
         const struct energy_balance *const balance = &simulation->state->balance[0];
         const double total = fish->actuation_power + fish->damping_power + fish->drag_power + fish->added_mass_power +
-                             fish->wake_power + fish->driving_power;
+                             fish->wake_power + fish->driving_power + fish->contact_power;
         // every impulse is a jump
         assert_int_equal(balance->n, 1);
         NEAR(balance->t[0], simulation->state->t, 0, 0);

@@ -5,7 +5,8 @@
 #include "school.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
-#define FAR "solver: {coupling_distance: 100}\n"
+// stirred bodies may cross
+#define FAR "solver: {coupling_distance: 100}\ncontact: {action: warn}\n"
 #define PRESSURE                                                                                   \
     TIME "wake: {shedding: sheet, curve: smooth, smoothing: 0.1, taper: 0.4, taper_beside: 0.1}\n" \
          "defaults: {fish: {drag: {skin: laminar}}}\n"
@@ -122,6 +123,18 @@ static const struct variant {
      "  - {nodes: 4, sheet_points: 7, force: published, start: {position: [0.1, -0.6], heading: 200}}\n"
      "  - {nodes: 4, sheet_points: 7, force: pressure, start: {position: [0, 1.2]},\n"
      "     motion: {driven: head, heave: 0.1, frequency: 1}}\n"},
+    {"fish in contact that are not coupled otherwise",
+     TIME "solver: {coupling_distance: 0}\ncontact: {range: 0.9}\n"
+          "fish:\n"
+          "  - {sheet_points: 9, control: {law: heading, desired_heading: 150}}\n"
+          "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.6], heading: 190}}\n"},
+    {"three fish in contact, one of them driven",
+     TIME "solver: {coupling_distance: 100}\nfluid: {density: 0}\ncontact: {range: 0.9}\n"
+          "fish:\n"
+          "  - {sheet_points: 9}\n"
+          "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.6], heading: 190}}\n"
+          "  - {nodes: 9, sheet_points: 11, start: {position: [0.1, -0.6], heading: 170},\n"
+          "     motion: {driven: head, heave: 0.1, frequency: 1}}\n"},
     {"two fish, impulsive", TIME FAR "preset: published\n"
                                      "fish:\n"
                                      "  - {sheet_points: 9}\n"

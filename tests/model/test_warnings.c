@@ -130,6 +130,15 @@ static void bodies_that_pass_through_each_other_are_told(void **state) {
         "{driven: all, "
         "speed: 15}}}\nfish: [{name: a}, {name: b, start: {position: [-6, 1], heading: 0}}]\n",
         1, "");
+    // bodies that could yield, and that the case lets pass: near each other, and through each other
+    expect_warnings(TIME
+                    "fluid: {density: 0}\ncontact: {action: warn}\ndefaults: {fish: {wave: {amplitude: 0}, body: "
+                    "{profile: uniform, thickness: 0.1}}}\nfish: [{}, {start: {position: [0, 0.119]}}]\n",
+                    0.05, "c");
+    expect_warnings(TIME
+                    "fluid: {density: 0}\ncontact: {action: warn}\ndefaults: {fish: {wave: {amplitude: 0}}}\nfish: "
+                    "[{start: {speed: 10}}, {start: {position: [-0.5, 0.5], heading: 90, speed: -10}}]\n",
+                    0.2, "c");
 }
 
 int main(void) {

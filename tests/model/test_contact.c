@@ -1,0 +1,261 @@
+/* test_contact.c: forces in contact follow from an energy, and bodies that meet do not cross. Their derivatives:
+ * test_residual.c. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "model/contact.h"
+#include "school.h"
+
+#define TIME "time: {end: 1, shedding_interval: 0.01, output_interval: 0.01}\n"
+
+// bodies at rest, of one thickness: two of them with the given gap
+#define STRAIGHT "defaults: {fish: {sheet_points: 9, wave: {amplitude: 0}, body: {profile: uniform, thickness: 0.1}}}\n"
+#define BESIDE(y) STRAIGHT "fish: [{}, {start: {position: [0, " y "]}}]\n"
+
+static void nobody_repels_what_is_farther_than_the_range(void **state) {
+    (void)state;
+    const struct {
+        const char *text;
+        int n;
+    } cases[] = {{TIME BESIDE("0.119"), 1},
+                 {TIME BESIDE("0.121"), 0},
+                 {TIME "contact: {range: 0.03}\n" BESIDE("0.121"), 1},
+                 {TIME "contact: {action: warn}\n" BESIDE("0.119"), 0},
+                 {TIME "contact: {action: stop}\n" BESIDE("0.119"), 0}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct setup setup;
+        school_build(&setup, cases[i].text);
+        struct contact *const contact = setup.residual->contact;
+        school_ok(contact_find(contact, setup.state, 0, setup.state->y));
+        const int *other;
+        for (int f = 0; f < 2; f++) {
+            assert_int_equal(contact_partners(contact, f, &other), cases[i].n);
+            for (int k = 0; k < cases[i].n; k++) assert_int_equal(other[k], 1 - f);
+            assert_int_equal(contact_energy(contact, f, setup.state->y) > 0, cases[i].n);
+        }
+        school_clear(&setup);
+    }
+}
+
+static double energy_of_school(struct setup *setup, const double *y) {
+    double energy = 0;
+    for (int f = 0; f < setup->school->n_fish; f++) energy += contact_energy(setup->residual->contact, f, y);
+    return energy;
+}
+
+#define NEAR_ANOTHER                                                                                                   \
+    TIME "contact: {range: 0.5}\n"                                                                                     \
+         "fish: [{sheet_points: 9}, {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.35], heading: " \
+         "190}}, {nodes: 9, sheet_points: 11, start: {position: [0.1, -0.35], heading: 170}}]\n"
+
+static void forces_are_the_gradient_of_the_energy(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, NEAR_ANOTHER);
+    school_stir(&setup);
+    double *const y = setup.state->y, h = 1e-5;
+    school_ok(contact_find(setup.residual->contact, setup.state, 0, y));
+    for (int f = 0; f < 3; f++) contact_residual(setup.residual->contact, f, y, setup.value);
+    int n = 0;
+    for (int f = 0; f < 3; f++) {
+        const struct fish *const fish = &setup.school->fish[f];
+        for (int i = 0; i < 2 * fish->n_nodes; i++) {
+            double *const place = &y[fish->at.x + i], here = *place;
+            *place = here + h;
+            const double after = energy_of_school(&setup, y);
+            *place = here - h;
+            const double gradient = (after - energy_of_school(&setup, y)) / (2 * h);
+            *place = here;
+            NEAR(setup.value[fish->at.ax + i], gradient, 1e-5, 1e-6);
+            n += fabs(gradient) > 0.1;
+        }
+    }
+    assert_true(n > 10);
+    school_clear(&setup);
+}
+
+static void forces_and_powers_of_all_add_up_to_nothing(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, NEAR_ANOTHER);
+    school_stir(&setup);
+    const double *const y = setup.state->y;
+    const struct contact *const contact = setup.residual->contact;
+    school_ok(contact_find(setup.residual->contact, setup.state, 0, y));
+    double sum[2] = {0, 0}, size = 0, power = 0, largest = 0, moment = 0;
+    for (int f = 0; f < 3; f++) {
+        const struct fish *const fish = &setup.school->fish[f];
+        double force[2];
+        contact_force(contact, f, y, force);
+        for (int i = 0; i < 2; i++) sum[i] += force[i];
+        size = fmax(size, hypot(force[0], force[1]));
+        power += contact_power(contact, f, y);
+        largest = fmax(largest, fabs(contact_power(contact, f, y)));
+        memset(setup.value, 0, (size_t)setup.school->n_unknowns * sizeof *setup.value);
+        contact_residual(contact, f, y, setup.value);
+        for (int k = 0; k < fish->n_nodes; k++) {
+            moment +=
+                y[fish->at.x + k] * setup.value[fish->at.ay + k] - y[fish->at.y + k] * setup.value[fish->at.ax + k];
+        }
+    }
+    assert_true(size > 1 && largest > 0.1);
+    NEAR_ARRAY(2, sum, ((double[]){0, 0}), 1e-14 * size, 0);
+    NEAR(moment, 0, 1e-13 * size, 0);
+    NEAR(power, 0, 1e-13 * largest, 0);
+    school_clear(&setup);
+}
+
+static void what_crosses_on_its_way_asks_for_a_smaller_step(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME BESIDE("0.2"));
+    struct contact *const contact = setup.residual->contact;
+    const struct fish *const fish = &setup.school->fish[1];
+    double *const y = setup.state->y;
+    const struct {
+        double shift;
+        int status;
+    } steps[] = {{-0.09, STATUS_OK}, {-0.11, STATUS_RETRY}, {-0.2, STATUS_RETRY}, {-5, STATUS_RETRY}, {5, STATUS_OK}};
+    for (size_t i = 0; i < sizeof steps / sizeof *steps; i++) {
+        for (int k = 0; k < fish->n_nodes; k++) y[fish->at.y + k] = 0.2 + steps[i].shift;
+        assert_int_equal(contact_find(contact, setup.state, 0.1, y), steps[i].status);
+        assert_int_equal(residual_evaluate(setup.residual, 0, y, setup.state->yp, setup.value), steps[i].status);
+    }
+    school_clear(&setup);
+}
+
+// ---- runs
+
+// momentum of all fish, kg m s-1, and its scale
+static double momentum(const struct simulation *simulation, double sum[2]) {
+    double scale = 0;
+    sum[0] = sum[1] = 0;
+    for (int f = 0; f < simulation->school->n_fish; f++) {
+        const struct fish *const fish = &simulation->school->fish[f];
+        const double *const y = simulation->state->y;
+        for (int k = 0; k < fish->n_nodes; k++) {
+            const double v[2] = {y[fish->at.vx + k], y[fish->at.vy + k]};
+            for (int i = 0; i < 2; i++) sum[i] += fish->mass[k] * v[i];
+            scale += fish->mass[k] * hypot(v[0], v[1]);
+        }
+    }
+    return scale;
+}
+
+#define VACUUM TIME "fluid: {density: 0}\nwake: {shedding: continuous, taper: 0, taper_beside: 0}\n"
+#define PASSIVE "nodes: 5, sheet_points: 5, wave: {amplitude: 0}"
+#define HEAD_ON(speed)                                                                                             \
+    VACUUM "defaults: {fish: {" PASSIVE ", start: {speed: " speed                                                  \
+           "}}}\nfish: [{start: {position: [-0.2, 0.01], heading: 0}}, {length: 0.8, start: {position: [0.2, 0], " \
+           "heading: 175}}]\n"
+
+// bodies meet, come apart, have kept momentum and energy; steps per event are those of a collision
+static void meet(const char *name, const char *text, double end, double audit_limit) {
+    struct simulation *const simulation = school_simulation(text);
+    double before[2], after[2], energy = 0, audit = 0, stored = 0;
+    const double scale = momentum(simulation, before);
+    long most = 0, steps = 0;
+    for (int f = 0; f < simulation->school->n_fish; f++) {
+        energy += diagnostics_energy(simulation->residual, f, 0, simulation->state->y);
+    }
+    while (simulation->state->t < end) {
+        double sum = 0;
+        simulate_measure(simulation);
+        for (int f = 0; f < simulation->school->n_fish; f++) {
+            audit = fmax(audit, fabs(simulation->diagnostics->fish[f].energy_audit));
+            sum += simulation->diagnostics->fish[f].contact_energy;
+        }
+        stored = fmax(stored, sum);
+        school_ok(simulate_step(simulation));
+        most = simulation->totals.steps - steps > most ? simulation->totals.steps - steps : most;
+        steps = simulation->totals.steps;
+        momentum(simulation, after);
+        NEAR_ARRAY(2, after, before, 1e-10 * scale, 0);
+    }
+    print_message("%s: least %.2e m, audit %.1e of %.0f J, at most %ld steps per event\n", name,
+                  simulation->state->closest->distance, audit, energy, most);
+    assert_true(stored > 0);
+    assert_true(simulation->state->closest->distance > 0);
+    assert_true(audit < audit_limit * energy);
+    simulate_free(simulation);
+}
+
+static void bodies_that_meet_do_not_cross(void **state) {
+    (void)state;
+    meet("head on, 1 m/s", "solver: {rtol: 1.0e-6}\n" HEAD_ON("1"), 0.3, 5e-3);
+    meet("head on, 5 m/s", "solver: {rtol: 1.0e-6}\n" HEAD_ON("5"), 0.1, 5e-3);
+    meet("head on, 15 m/s", "solver: {rtol: 1.0e-6}\n" HEAD_ON("15"), 0.03, 5e-3);
+    meet("side by side",
+         VACUUM "defaults: {fish: {" PASSIVE
+                ", start: {speed: 3}}}\nfish: [{start: {heading: 170}}, {start: "
+                "{position: [0, 0.35], heading: 190}}]\n",
+         0.4, 5e-3);
+    meet("three at once",
+         "solver: {rtol: 1.0e-6}\n" VACUUM "defaults: {fish: {" PASSIVE
+         ", start: {speed: 3}}}\n"
+         "fish: [{start: {position: [0.2, 0], heading: 180}}, {start: {position: [-0.1, 0.18], heading: 300}}, "
+         "{start: {position: [-0.1, -0.2], heading: 60}}]\n",
+         0.15, 5e-3);
+    meet("nearly touching",
+         "solver: {rtol: 1.0e-6}\n" VACUUM "defaults: {fish: {" PASSIVE
+         ", body: {profile: uniform, thickness: 0.1}, start: {speed: 0.01}}}\n"
+         "fish: [{}, {start: {position: [0.3, 0.1001]}}]\n",
+         0.1, 5e-3);
+}
+
+static void every_integrator_keeps_bodies_apart(void **state) {
+    (void)state;
+    static const char *const methods[] = {"method: implicit_euler, step: 1.0e-3", "method: trapezoid, step: 1.0e-3",
+                                          "method: rk4, step: 2.0e-4", "method: dormand_prince"};
+    for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
+        char text[1024];
+        snprintf(
+            text, sizeof text,
+            "solver: {%s}\n" VACUUM "defaults: {fish: {" PASSIVE
+            ", start: {speed: 0.5}}}\n"
+            "fish: [{start: {position: [-0.15, 0], heading: 0}}, {start: {position: [0.15, 0.02], heading: 180}}]\n",
+            methods[i]);
+        meet(methods[i], text, 0.3, 0.2);
+    }
+}
+
+static void a_fixed_step_that_is_too_long_fails_and_says_so(void **state) {
+    (void)state;
+    struct simulation *const simulation =
+        school_simulation("solver: {method: implicit_euler, step: 0.01}\n" HEAD_ON("15"));
+    enum status status = STATUS_OK;
+    for (int i = 0; i < 5 && status == STATUS_OK; i++) status = simulate_step(simulation);
+    assert_int_equal(status, STATUS_SOLVER);
+    assert_non_null(strstr(status_message(), "choose a smaller solver.step"));
+    assert_true(simulation->state->closest->distance > 0);
+    simulate_free(simulation);
+}
+
+static void stop_ends_the_run_at_the_time_and_with_the_names(void **state) {
+    (void)state;
+    struct simulation *const simulation = school_simulation(
+        "contact: {action: stop}\n" TIME STRAIGHT
+        "fish: [{name: quick, start: {position: [0, 0.16], speed: 1, heading: 190}}, {name: lazy}]\n");
+    enum status status = STATUS_OK;
+    for (int i = 0; i < 50 && status == STATUS_OK; i++) status = simulate_step(simulation);
+    assert_int_equal(status, STATUS_CONTACT);
+    assert_int_equal(status_exit_code(status), 3);
+    assert_non_null(strstr(status_message(), "contact of quick and lazy at t = "));
+    assert_true(simulation->state->closest->distance < 0.02);
+    simulate_free(simulation);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(nobody_repels_what_is_farther_than_the_range),
+        cmocka_unit_test(forces_are_the_gradient_of_the_energy),
+        cmocka_unit_test(forces_and_powers_of_all_add_up_to_nothing),
+        cmocka_unit_test(what_crosses_on_its_way_asks_for_a_smaller_step),
+        cmocka_unit_test(bodies_that_meet_do_not_cross),
+        cmocka_unit_test(every_integrator_keeps_bodies_apart),
+        cmocka_unit_test(a_fixed_step_that_is_too_long_fails_and_says_so),
+        cmocka_unit_test(stop_ends_the_run_at_the_time_and_with_the_names),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
