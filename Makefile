@@ -2,6 +2,7 @@
 #
 #   V=1           print the commands
 #   SANITIZE=1    build and test in build-sanitize with the address and undefined behaviour sanitizers
+#   TIME=600      seconds of `make fuzz`
 #   TEST="rod x"  let `make test` run tests/*/test_rod.c and tests/*/test_x.sh only
 
 VERSION   = 0.1.0
@@ -10,6 +11,7 @@ SOVERSION = 0
 prefix = /usr/local
 CC     = gcc
 PYTHON = /usr/bin/python3
+TIME   = 600
 
 CPPFLAGS =
 CFLAGS   = -O3 -g
@@ -31,6 +33,13 @@ B = build
 sanitize =
 # every name that the shared library needs is there; that of a sanitizer is found in the program
 complete = -Wl,-z,defs
+endif
+
+# set by `make fuzz`: all for libFuzzer, whose own main takes the place of the driver's
+clang = $(shell command -v clang)
+ifdef FUZZER
+B = build-fuzzer
+sanitize = -fsanitize=address,undefined,fuzzer-no-link -fno-sanitize-recover=all -fno-omit-frame-pointer
 endif
 
 ifdef V
@@ -76,6 +85,8 @@ verify_objects = $(patsubst tests/verify/%.c,$(B)/verify/%.o,$(wildcard tests/ve
 
 bench_programs = $(patsubst tests/bench/%.c,$(B)/bench/%,$(wildcard tests/bench/*.c))
 
+fuzz_programs  = $(B)/fuzz/fuzz_case $(B)/fuzz/fuzz_result
+
 generated_docs = $(B)/doc/cases.md $(B)/doc/output.md $(B)/doc/case.schema.json
 manual         = $(B)/doc/shoal.1 $(B)/doc/shoal-case.5 $(B)/doc/shoal-output.5
 completion     = $(B)/doc/completion
@@ -94,7 +105,7 @@ python_modules = $(prefix)/lib/python$(if $(filter /usr,$(prefix)),3,$(python_ve
 # make again, on all cores unless told otherwise
 parallel = $(MAKE) --no-print-directory $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
-.PHONY: all demo test test-slurm tests verify soak mutants bench style format docs install uninstall clean deps help FORCE
+.PHONY: all demo test test-slurm tests verify soak fuzz fuzz-programs mutants bench style format docs install uninstall clean deps help FORCE
 
 ## Everyday
 
@@ -122,11 +133,17 @@ soak: deps  ## let everything fail that can: all of tests/soak (an hour)
 	@$(parallel) all $(B)/faults.so
 	@scripts/run-tests.sh $(program) $(wildcard tests/soak/*.sh)
 
+fuzz: deps  ## mutate cases and results for TIME seconds, on two cores, with the sanitizers
+	@$(parallel) SANITIZE=1 $(if $(clang),FUZZER=1 CC=clang) fuzz-programs
+	@scripts/fuzz.sh $(if $(clang),build-fuzzer,build-sanitize) $(TIME)
+
+fuzz-programs: $(program) $(fuzz_programs)
+
 bench: $(program) $(bench_programs)  ## measure: inner loops, phases, schools, whole runs (doc/performance.md)
 	@scripts/bench.sh $(B)
 
 clean:  ## remove everything that was built
-	$(quiet)rm -rf build build-sanitize
+	$(quiet)rm -rf build build-sanitize build-fuzzer
 
 help:  ## this list
 	@awk -F '  +## ' '/^## / { print "\n" substr($$0, 4) } \
@@ -230,12 +247,20 @@ $(B)/output/page.o: src/output/page.html
 $(B)/commit: FORCE | $(B)/tests
 	@echo '$(commit)' | cmp -s - $@ || echo '$(commit)' >$@
 
+$(B)/fuzz/%.o: tests/fuzz/%.c Makefile | $(B)/tests
+	$(say) CC $<
+	$(quiet)$(CC) $(shoal_cppflags) $(shoal_cflags) -MMD -MP -c -o $@ $<
+
+$(B)/fuzz/%: $(B)/fuzz/%.o $(if $(FUZZER),,$(B)/fuzz/driver.o) $(objects)
+	$(say) LD $@
+	$(quiet)$(CC) $(shoal_cflags) $(if $(FUZZER),-fsanitize=fuzzer) $(LDFLAGS) -o $@ $^ $(libraries)
+
 # to be preloaded: tests/faults/faults.py
 $(B)/faults.so: tests/faults/shim.c Makefile | $(B)/tests
 	$(say) LD $@
 	$(quiet)$(CC) -std=c11 -Wall -Wextra -Wconversion -Wshadow -Werror -O2 -shared -fPIC -o $@ $<
 
-tests: all $(c_tests) $(verify_program) $(bench_programs)
+tests: all $(B)/faults.so $(fuzz_programs) $(c_tests) $(verify_program) $(bench_programs)
 
 $(B)/verify/%.o: tests/verify/%.c Makefile | $(B)/tests
 	$(say) CC $<
@@ -286,7 +311,7 @@ $(B)/doc/output.md: $(program) scripts/make-output-doc.py | $(B)/tests
 	$(quiet)$(program) keys --output --json | $(PYTHON) scripts/make-output-doc.py >$@
 
 $(B)/tests:
-	@mkdir -p $@ $(addprefix $(B)/,doc verify bench $(rooms) $(rooms:%=tests/%))
+	@mkdir -p $@ $(addprefix $(B)/,doc verify bench fuzz $(rooms) $(rooms:%=tests/%))
 
 .PRECIOUS: $(B)/tests/%.o $(B)/bench/%.o
 -include $(wildcard $(B)/*/*.d $(B)/tests/*/*.d)

@@ -1,0 +1,39 @@
+#!/usr/bin/env bash
+# Fuzz for a time, on two cores: one target each, with the sanitizers; libFuzzer where clang is there, else the driver of
+# tests/fuzz with one seed after the other. Stops at the first input that is bad, which it keeps.
+#
+#   scripts/fuzz.sh BUILD SECONDS
+set -euo pipefail
+build=$(realpath "$1") seconds=$2
+folder=$build/fuzz/run
+mkdir -p "$folder"
+"$(dirname "$0")/../tests/fuzz/seeds.sh" "$build/shoal" "$folder/seeds"
+
+# One target until the time is over; prints how many inputs it took.
+fuzz() {  # target, seeds
+    mkdir -p "$folder/$1" && cd "$folder/$1"
+    local end=$((SECONDS + seconds)) seed n=0 each=2000
+    if "$build/fuzz/$1" -help=1 2>&1 | grep -q libFuzzer; then
+        mkdir -p corpus
+        "$build/fuzz/$1" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=4096 -max_len=65536 -print_final_stats=1 \
+            corpus "$2" >log 2>&1 || { tail -n 40 log; return 1; }
+        n=$(sed -n 's/stat::number_of_executed_units: *//p' log)
+    else
+        for ((seed = $(date +%s); SECONDS < end; seed++)); do
+            "$build/fuzz/$1" $each $seed "$2"/* >log 2>&1 || {
+                tail -n 40 log
+                echo "$1: seed $seed; the input is $PWD/fuzz-input"
+                return 1
+            }
+            n=$((n + each))
+        done
+    fi
+    echo "$1: $n inputs in $seconds s"
+}
+
+fuzz fuzz_case "$folder/seeds/cases" & one=$!
+fuzz fuzz_result "$folder/seeds/results" & other=$!
+code=0
+wait $one || code=1
+wait $other || code=1
+exit $code

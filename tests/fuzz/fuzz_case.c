@@ -1,0 +1,59 @@
+/* fuzz_case.c: any text as a case file: it is refused with a place, or shown, and what is shown shows itself. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "case/case.h"
+#include "case/case_member.h"
+#include "case/case_show.h"
+#include "case/sweep_members.h"
+#include "fuzz.h"
+
+enum { MAX_MEMBERS = 8 };
+
+static void demand(int holds, const char *what) {
+    if (holds) return;
+    fprintf(stderr, "%s; the last message: %s\n", what, status_message());
+    abort();
+}
+
+// the text that a case shows; the caller frees it
+static char *shown(const struct case_values *values) {
+    char *text = NULL;
+    demand(case_show(values, &text) == STATUS_OK, "a good case cannot be shown");
+    return text;
+}
+
+// show(show(x)) = show(x)
+static void compare(const struct case_values *values) {
+    char *const text = shown(values);
+    struct case_values again;
+    demand(case_parse(&again, text, strlen(text), "shown", NULL, 0, NULL) == STATUS_OK, "what is shown is refused");
+    char *const repeated = shown(&again);
+    demand(strcmp(text, repeated) == 0, "what is shown shows something else");
+    free(text);
+    free(repeated);
+    case_free(&again);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n) {
+    struct case_values values;
+    const enum status status = case_parse(&values, (const char *)bytes, n, "fuzz", NULL, 0, NULL);
+    if (status == STATUS_OK) {
+        compare(&values);
+        const int n_members = values.n_axes > 0 ? sweep_n_members(&values) : 0;
+        for (int m = 0; m < n_members && m < MAX_MEMBERS; m++) {
+            struct case_values member;
+            if (case_member(&member, &values, m) != STATUS_OK) continue;
+            compare(&member);
+            case_free(&member);
+        }
+        case_free(&values);
+    } else {
+        // an include may be missing; all else has a line and a column
+        demand(status == STATUS_CASE || status == STATUS_FILE, "a case is refused with another status");
+        demand(strstr(status_message(), "fuzz:") != NULL, "a case is refused without its place");
+        demand(strstr(status_message(), "error: ") != NULL, "a case is refused without a reason");
+    }
+    return 0;
+}

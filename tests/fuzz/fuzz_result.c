@@ -1,0 +1,66 @@
+/* fuzz_result.c: any bytes as the file of a run, a study or a field: all that reads such files reads this one. */
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "fuzz.h"
+#include "output/field_file.h"
+#include "output/result_info.h"
+#include "output/result_kind.h"
+#include "output/result_reader.h"
+#include "study/member_file.h"
+#include "study/study_gather.h"
+
+static char path[64];
+
+static void remove_file(void) {
+    unlink(path);
+}
+
+// a file of this process in memory
+static void write_file(const uint8_t *bytes, size_t n) {
+    if (!*path) {
+        snprintf(path, sizeof path, "/dev/shm/shoal-fuzz-%ld.nc", (long)getpid());
+        atexit(remove_file);
+    }
+    const int file = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    if (file < 0 || write(file, bytes, n) != (ssize_t)n || close(file) != 0) abort();
+}
+
+// refused, if at all, as a file
+static void demand_file(enum status status) {
+    if (status == STATUS_OK || status == STATUS_FILE || status == STATUS_CASE) return;
+    fprintf(stderr, "refused with status %d: %s\n", status, status_message());
+    abort();
+}
+
+static void read_rows(void) {
+    struct result_reader reader;
+    const enum status status = result_reader_open(&reader, path);
+    demand_file(status);
+    if (status != STATUS_OK) return;
+    for (int i = 0; i < result_table_n; i++) {
+        double *values = NULL;
+        if (result_table[i].type == RESULT_TEXT) continue;
+        if (result_reader_new(&reader, result_table[i].name, 0, &values) == STATUS_OK) free(values);
+    }
+    result_reader_close(&reader);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n) {
+    static FILE *nowhere;
+    if (!nowhere) nowhere = fopen("/dev/null", "w");
+    if (!nowhere) abort();
+    write_file(bytes, n);
+    demand_file(result_info(path, nowhere));
+    demand_file(study_info(path, nowhere));
+    demand_file(field_file_info(path, nowhere));
+    struct member_file member;
+    const enum status status = member_file_read(&member, path);
+    demand_file(status);
+    if (status == STATUS_OK) member_file_free(&member);
+    read_rows();
+    return 0;
+}

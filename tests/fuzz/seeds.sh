@@ -1,0 +1,22 @@
+#!/usr/bin/env bash
+# Make a folder with what fuzz targets begin with: cases/ and results/ (a run, a study, its member, a field; all small).
+#
+#   tests/fuzz/seeds.sh PROGRAM FOLDER
+set -euo pipefail
+program=$(realpath "$1")
+tests=$(realpath "$(dirname "$0")/..")
+mkdir -p "$2/cases" "$2/results"
+cd "$2"
+for file in "$tests"/../cases/*.yaml "$tests"/../cases/studies/*.yaml "$tests"/bad/*.yaml; do
+    cp "$file" "cases/$(basename "$(dirname "$file")")-$(basename "$file")"
+done
+cat >small.yaml <<'end'
+format: 1
+name: small
+time: {end: 0.04, shedding_interval: 0.02, output_interval: 0.02}
+fish: [{nodes: 4, sheet_points: 5}]
+end
+"$program" run small.yaml -q --force -o results/run.nc
+"$program" field results/run.nc -q --force --at 0.04 --grid 4,4 -o results/field.nc
+"$program" study small.yaml -q -o study --set 'sweep=[{key: "fish[*].wave.amplitude", values: [0.2, 0.3]}]' >table
+cp study/study.nc study/member-0000.nc results
