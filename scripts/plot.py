@@ -6,6 +6,7 @@
     plot.py study  STUDY.nc [PICTURE]  what a study or a comparison of methods calls for: orders, costs, maps
     plot.py time   RUN.nc [PICTURE]    speed, heading, power and forces over time; with --audit the energy audit too
     plot.py forces RUN.nc [PICTURE]    forces and powers by name over time, one column per fish
+    plot.py pressure RUN.nc [PICTURE]  the jump of the pressure along the bodies over the last beat (force: pressure)
     plot.py field  FIELD.nc [PICTURE]  vorticity (--speed: speed) and streamlines, from a file of `shoal field`
 """
 
@@ -246,7 +247,13 @@ def plot_gait(results, options):
 
 
 # The forces on a body and their lines; what a prescribed motion takes is drawn where there is one.
-FORCES = {"resistive_force": ":", "reactive_force": "--", "constraint_force": "-."}
+FORCES = {
+    "resistive_force": ":",
+    "reactive_force": "--",
+    "pressure_force": (0, (5, 1)),
+    "suction_force": (0, (3, 1, 1, 1)),
+    "constraint_force": "-.",
+}
 
 
 def draw_forces(axes, results):
@@ -255,9 +262,8 @@ def draw_forces(axes, results):
     styles = {"thrust": "-"}
     along = {"thrust": results["thrust"]}
     for name, style in FORCES.items():
-        force = results[name]
-        if name == "constraint_force" and not force.any():
-            continue
+        if name not in results.data.variables or not (force := results[name]).any():
+            continue  # an old file, or a force that this fish does not have
         styles[name] = style
         along[name] = np.cos(angle) * force[:, :, 0] + np.sin(angle) * force[:, :, 1]
     for name, style in styles.items():
@@ -315,11 +321,16 @@ def plot_time(results, options):
     return figure
 
 
+# The axis of the pressure leaves out what is nearer to the nose, in body lengths: there the jump has no bound.
+NEAR_NOSE = 0.03
+
 # The powers on a body and their lines.
 POWERS = {
     "actuation_power": "-",
     "drag_power": ":",
     "added_mass_power": "--",
+    "pressure_power": (0, (5, 1)),
+    "suction_power": (0, (3, 1, 1, 1)),
     "wake_power": (0, (5, 1, 1, 1, 1, 1)),
     "damping_power": (0, (1, 2)),
     "driving_power": "-.",
@@ -378,6 +389,32 @@ def plot_forces(results, options):
     return figure
 
 
+def plot_pressure(results, options):
+    """The jump of the pressure along each body at some times of its last beat, one panel per fish."""
+    n_columns = min(results.n_fish, 2)
+    figure, all_axes = panels(results.n_fish, math.ceil(results.n_fish / n_columns), n_columns, 6 / (n_columns + 1))
+    jump, arc = results["pressure"], results["control_arc"]
+    if not np.isfinite(jump).any():
+        raise FileError(f"{results.path}: no fish has force: pressure")
+    drawn = []
+    for fish, axes in enumerate(all_axes):
+        rows = beat_rows(results, fish, options.shapes)
+        along = arc[fish] / results["body_length"][fish]
+        for row in rows:
+            phase = (results.time[row] - results.time[rows[0]]) * results["frequency"][fish]
+            axes.plot(along, jump[row, fish], color=PHASES(phase), lw=0.9)
+        drawn.append(np.abs(jump[rows, fish][:, along > NEAR_NOSE]))
+        axes.set_title(names(results)[fish], size=9)
+        axes.set(xlim=(0, 1), xlabel="distance from the nose / body length", ylabel="pressure, left less right [Pa]")
+        axes.grid(lw=0.3, color=GRID)
+        axes.label_outer()
+    most = 1.1 * max(np.nanmax(values) for values in drawn)
+    all_axes[0].set_ylim(-most, most)
+    scale = matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(0, 1), PHASES)
+    figure.colorbar(scale, ax=all_axes, label="time / period", aspect=20, pad=0.02)
+    return figure
+
+
 def plot_field(path, options):
     """Vorticity or speed on the grid of a field, streamlines and bodies."""
     figure = pyplot.figure(figsize=(WIDTH, 4.2), layout="constrained")
@@ -398,6 +435,7 @@ PICTURES = {
     "gait": (plot_gait, "the shapes that the muscle asks for, over one beat"),
     "time": (plot_time, "speed, heading, power and forces over time"),
     "forces": (plot_forces, "forces and powers by name over time"),
+    "pressure": (plot_pressure, "the jump of the pressure along the bodies over one beat"),
     "field": (plot_field, "the flow on a grid, from a file of shoal field"),
     "study": (plot_study, "a study or a comparison of methods"),
 }
@@ -440,7 +478,8 @@ def parse(arguments):
         action=argparse.BooleanOptionalAction,
         help="windows that move with the school, in body lengths (default: where the fish would be tiny otherwise)",
     )
-    options["gait"].add_argument("--shapes", type=int, default=12, help="how many shapes to draw (12)")
+    for kind, what in (("gait", "shapes"), ("pressure", "times")):
+        options[kind].add_argument("--shapes", type=int, default=12, help=f"how many {what} to draw (12)")
     options["forces"].add_argument("--beats", type=int, default=4, help="how many beats to draw, 0: the whole run (4)")
     options["field"].add_argument("--speed", action="store_true", help="draw the speed, not the vorticity")
     options["field"].add_argument("--no-streamlines", action="store_true", help="draw no streamlines")

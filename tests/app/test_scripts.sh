@@ -53,6 +53,9 @@ draws plot.py time run.nc --audit time.pdf
 draws plot.py run.nc default.png
 draws plot.py forces run.nc --beats 1 forces.png
 "$program" field run.nc --grid 60,40 -q
+"$program" run "$root/cases/demo.yaml" -q -o pressure.nc --set time.end=1 --set "fish[0].force=pressure"
+draws plot.py pressure pressure.nc along.png
+refuses 4 "no fish has force: pressure" plot.py pressure run.nc no.png
 draws plot.py field run-field.nc field.png
 draws plot.py field run-field.nc --speed --no-streamlines speed.png
 draws plot.py run-field.nc of_its_own_kind.png
