@@ -245,7 +245,13 @@ static void check_motion(const struct check *check) {
     if (motion->prescribed == PRESCRIBED_NONE) {
         if (fabs(motion->heave) > 0) complain(check, "fish.motion.heave", not_prescribed);
         if (fabs(motion->pitch) > 0) complain(check, "fish.motion.pitch", not_prescribed);
+        if (motion->surge == SURGE_FREE) complain(check, "fish.motion.surge", not_prescribed);
     } else {
+        const double heading = check->values->school.fish[check->fish].start_heading;
+        if (motion->surge == SURGE_FREE && fabs(remainder(heading, 180)) > 0) {
+            complain(check, "fish.motion.surge", "free needs a start.heading along x, 0 or 180 degrees, not %g",
+                     heading);
+        }
         const double phase = motion->phase + motion->pitch_phase;
         if (is_idle(motion->heave, motion->frequency, motion->phase)) complain(check, "fish.motion.heave", constant);
         if (is_idle(motion->pitch, motion->frequency, phase)) complain(check, "fish.motion.pitch", constant);

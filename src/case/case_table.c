@@ -250,8 +250,13 @@ const struct key case_table[] = {
      .meaning = "prescribed motion: of no node; of the nose and the direction of the first edge; or of the entire "
                 "straight body",
      .words = WORDS("none", "head", "all"), .synonyms = "drive prescribed"},
+    {"fish.motion.surge", CHOICE, IN_FISH(motion.surge), "given", ANY, "",
+     .meaning =
+         "motion along start.heading; given: with motion.speed; free: prescribed nodes have a given motion across "
+         "the heading only, and go along it by the forces on them",
+     .words = WORDS("given", "free")},
     {"fish.motion.speed", REAL, IN_FISH(motion.speed), NULL, ANY, "m s-1",
-     .meaning = "prescribed speed along start.heading", .derived = "start.speed"},
+     .meaning = "prescribed speed along start.heading; surge free: at the start", .derived = "start.speed"},
     {"fish.motion.heave", REAL, IN_FISH(motion.heave), "0", ANY, "m",
      .meaning = "amplitude of heave, the displacement to the left heave sin(2 pi frequency t + phase)",
      .synonyms = "plunge"},

@@ -47,7 +47,9 @@ static double driving_power(struct residual *residual, int f, double t, const do
     power += clamp_driving_power(fish, t, y);
     residual_reaction(residual, f, y, residual->state->yp, scratch);
     for (int k = 0; k < fish_n_prescribed(fish); k++) {
-        power += scratch[fish->at.ax + k] * y[fish->at.vx + k] + scratch[fish->at.ay + k] * y[fish->at.vy + k];
+        const int has_surge = fish_is_prescribed(fish, k, 0);
+        power += (has_surge ? scratch[fish->at.ax + k] * y[fish->at.vx + k] : 0) +
+                 scratch[fish->at.ay + k] * y[fish->at.vy + k];
     }
     return power;
 }
@@ -61,7 +63,8 @@ static void find_constraint(struct residual *residual, int f, double t, const do
     if (fish->motion.prescribed == PRESCRIBED_NONE) return;
     residual_reaction(residual, f, y, residual->state->yp, reaction);
     for (int k = 0; k < fish_n_prescribed(fish); k++) {
-        const double force[2] = {reaction[fish->at.ax + k], reaction[fish->at.ay + k]};
+        const double along_x = fish_is_prescribed(fish, k, 0) ? reaction[fish->at.ax + k] : 0;
+        const double force[2] = {along_x, reaction[fish->at.ay + k]};
         const double arm[2] = {y[fish->at.x + k] - to->com[0], y[fish->at.y + k] - to->com[1]};
         for (int i = 0; i < 2; i++) to->constraint_force[i] += force[i];
         to->constraint_moment += arm[0] * force[1] - arm[1] * force[0];

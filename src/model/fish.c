@@ -282,6 +282,7 @@ static void set_motion(struct fish *fish, const struct fish_parameters *from) {
     fish->load_tip[0] = from->load_tip[0];
     fish->load_tip[1] = from->load_tip[1];
     fish->motion = (struct motion){.prescribed = from->motion.prescribed,
+                                   .surge = from->motion.surge,
                                    .speed = from->motion.speed,
                                    .heave = from->motion.heave,
                                    .pitch = angle_radians(from->motion.pitch),
@@ -517,6 +518,10 @@ int fish_n_prescribed(const struct fish *fish) {
         case PRESCRIBED_ALL: return fish->n_nodes;
     }
     return 0;
+}
+
+int fish_is_prescribed(const struct fish *fish, int k, int i) {
+    return k < fish_n_prescribed(fish) && (i == 1 || fish->motion.surge == SURGE_GIVEN);
 }
 
 // angle of the heading of the prescribed motion, its rate and the rate of that

@@ -35,6 +35,7 @@ struct layout {
 /* A straight rigid motion given in time: doc/model.md, section 5. Angles in rad. */
 struct motion {
     enum prescribed prescribed;
+    enum surge surge;          /* free: the heading is along x, in which prescribed nodes move by their forces */
     double speed;              /* m s-1 */
     double heave;              /* m */
     double pitch, pitch_phase; /* rad */
@@ -177,8 +178,12 @@ struct direction fish_direction(const struct fish *fish, const struct tangent *t
 /* Whether the fish has the slices px, py: force: pressure. */
 int fish_has_momentum(const struct fish *fish);
 
-/* The number of nodes of the fish, from the nose on, whose motion is given: 0, 1, 2 or all. */
+/* The number of nodes of the fish, from the nose on, whose motion is given, or that across the heading: 0, 1, 2 or
+ * all. */
 int fish_n_prescribed(const struct fish *fish);
+
+/* Whether component i (0: x, 1: y) of the motion of node k is given. */
+int fish_is_prescribed(const struct fish *fish, int k, int i);
 
 /* Its beats per second, or those of its driven motion; where it has none, the lengths per second at which it, or the
  * stream, goes; 1 where nothing moves. With the length it gives the scale of velocities. */

@@ -18,6 +18,7 @@ enum skin { SKIN_QUADRATIC, SKIN_LAMINAR };
 enum extent { EXTENT_THICKNESS, EXTENT_DEPTH };
 enum prescribed { PRESCRIBED_NONE, PRESCRIBED_HEAD, PRESCRIBED_ALL };
 enum contact_action { CONTACT_REPEL, CONTACT_WARN, CONTACT_STOP };
+enum surge { SURGE_GIVEN, SURGE_FREE };
 enum control_law { CONTROL_NONE, CONTROL_HEADING, CONTROL_AVERAGED_HEADING, CONTROL_COURSE };
 
 /* A list of numbers, of pairs (then 2 n numbers, pair after pair), or of rows (width n numbers, row after row). Owned
@@ -83,7 +84,8 @@ struct drag_parameters {
 
 struct motion_parameters {
     enum prescribed prescribed;
-    double speed;              /* m s-1 */
+    enum surge surge;          /* motion along the heading */
+    double speed;              /* m s-1; of a free one at the start */
     double heave;              /* m */
     double pitch, pitch_phase; /* degree */
     double frequency;          /* Hz */

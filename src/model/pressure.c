@@ -1,11 +1,14 @@
 /* pressure.c: the added momentum and its turning, convection along the sheet, suction, and their derivatives. */
 #include "model/pressure.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "model/edge.h"
 #include "vortex/kernel.h"
+
+static const double pi = 3.14159265358979323846;
 
 enum status pressure_create(struct pressure **pressure, const struct fish *fish) {
     *pressure = NULL;
@@ -117,8 +120,14 @@ void pressure_update(struct pressure *p, const struct flow_at_body *flow, const 
     for (int i = 0; i < 2; i++) p->suction[i] = -fish->suction * strength * strength * nose.t[i];
 }
 
+double pressure_momentum_ratio(const struct fish *fish, int k) {
+    const double at_nose = fish->control_density[0], at_tail = fish->control_density[fish->n_control - 1];
+    const double per_area = pi / 4 * fmax(at_nose, at_tail);
+    return 1 + per_area * fish->length * fish->edge_length / fish->mass[k];
+}
+
 int pressure_momentum_row(const struct fish *fish, int at_start, int i, int k) {
-    const int is_given = at_start || k < fish_n_prescribed(fish);
+    const int is_given = at_start || fish_is_prescribed(fish, k, i);
     return (is_given ? fish->at.px : fish->at.vx) + i * fish->n_nodes + k;
 }
 
@@ -323,6 +332,5 @@ struct pressure_forces pressure_sum(const struct pressure *p, const double about
 }
 
 double pressure_leading_edge(const struct fish *fish, double speed, const double *y) {
-    const double pi = 3.14159265358979323846;
     return fish->n_control * fish->sheet_weight[0] * y[fish->at.gamma] / (pi * speed * fish->length);
 }

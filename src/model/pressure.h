@@ -45,6 +45,9 @@ void pressure_update(struct pressure *pressure, const struct flow_at_body *flow,
 /* The added momentum of node k, kg m s-1, by the unknown of vortex j; x: the places of all nodes, then their y. */
 void pressure_momentum_by_strength(const struct fish *fish, int k, int j, const double *x, double momentum[2]);
 
+/* About how much larger p of node k is than v: 1 and the added mass of its part of a plate over its mass. */
+double pressure_momentum_ratio(const struct fish *fish, int k);
+
 /* The row in which the relation of p, v and I stands for component i of node k: that of v, or that of p where v is
  * given (at the start, of all nodes). */
 int pressure_momentum_row(const struct fish *fish, int at_start, int i, int k);

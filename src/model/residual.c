@@ -154,12 +154,13 @@ static void drive(const struct fish *fish, double t, const double *y, double *va
     for (int k = 0; k < fish_n_prescribed(fish); k++) {
         double position[2], velocity[2], acceleration[2];
         fish_prescribed_node(fish, k, t, position, velocity, acceleration);
-        value[fish->at.x + k] = y[fish->at.x + k] - position[0];
-        value[fish->at.y + k] = y[fish->at.y + k] - position[1];
-        value[fish->at.vx + k] = y[fish->at.vx + k] - velocity[0];
-        value[fish->at.vy + k] = y[fish->at.vy + k] - velocity[1];
-        value[fish->at.ax + k] = y[fish->at.ax + k] - acceleration[0];
-        value[fish->at.ay + k] = y[fish->at.ay + k] - acceleration[1];
+        for (int i = 0; i < 2; i++) {
+            if (!fish_is_prescribed(fish, k, i)) continue;
+            const int node = i * fish->n_nodes + k;
+            value[fish->at.x + node] = y[fish->at.x + node] - position[i];
+            value[fish->at.vx + node] = y[fish->at.vx + node] - velocity[i];
+            value[fish->at.ax + node] = y[fish->at.ax + node] - acceleration[i];
+        }
     }
 }
 
@@ -408,14 +409,19 @@ void residual_by_shed(struct residual *residual, const double *y, double *value)
     }
 }
 
+// of the unknowns of a node, which alternate
+static int component_of(enum unknown kind) {
+    return kind == UNKNOWN_Y || kind == UNKNOWN_VY || kind == UNKNOWN_PY || kind == UNKNOWN_AY;
+}
+
 void residual_mask(const struct residual *residual, struct jacobian *jacobian) {
     for (int f = 0; f < residual->school->n_fish; f++) {
         const struct fish *fish = &residual->school->fish[f];
         for (int row = fish->at.x; row < fish->at.end; row++) {
             const struct unknown_place place = residual_place(residual->school, row);
             const int moves = place.kind <= UNKNOWN_AY && place.kind != UNKNOWN_PX && place.kind != UNKNOWN_PY;
-            const int driven = moves && place.index < fish_n_prescribed(fish);
-            sparse_mask(jacobian->own[f], row, driven);
+            sparse_mask(jacobian->own[f], row,
+                        moves && fish_is_prescribed(fish, place.index, component_of(place.kind)));
         }
     }
 }
@@ -462,7 +468,8 @@ static int is_differential(const struct residual *residual, const struct unknown
 void residual_kinds(const struct residual *residual, double *kind) {
     for (int i = 0; i < residual->school->n_unknowns; i++) {
         const struct unknown_place place = residual_place(residual->school, i);
-        const int driven = place.index < fish_n_prescribed(&residual->school->fish[place.fish]);
+        const struct fish *fish = &residual->school->fish[place.fish];
+        const int driven = fish_is_prescribed(fish, place.index, component_of(place.kind));
         kind[i] = 0;
         if (!driven && is_differential(residual, &place)) kind[i] = 1;
         if (place.kind == UNKNOWN_CIRCULATION && !residual_shed_is_algebraic(residual)) kind[i] = 1;
@@ -478,9 +485,9 @@ double residual_scale(const struct residual *residual, int i) {
         case UNKNOWN_X:
         case UNKNOWN_Y: return 0.01 * length;
         case UNKNOWN_VX:
-        case UNKNOWN_VY:
+        case UNKNOWN_VY: return 300 * length * f;
         case UNKNOWN_PX:
-        case UNKNOWN_PY: return 300 * length * f;
+        case UNKNOWN_PY: return 300 * length * f * pressure_momentum_ratio(fish, place.index);
         case UNKNOWN_AX:
         case UNKNOWN_AY: return 1e5 * length * f * f;
         case UNKNOWN_GAMMA: return 3 * length * f;

@@ -93,7 +93,10 @@ static double row_scale(const struct residual *residual, int i) {
     const struct unknown_place place = residual_place(residual->school, i);
     const struct layout *at = &residual->school->fish[place.fish].at;
     const double speed = residual_scale(residual, at->gamma);
-    return place.kind == UNKNOWN_GAMMA ? speed : residual_scale(residual, i);
+    if (place.kind == UNKNOWN_GAMMA) return speed;
+    // the relation of p and v has the size of p, in whichever row it stands
+    const int is_velocity = place.kind == UNKNOWN_VX || place.kind == UNKNOWN_VY;
+    return residual_scale(residual, is_velocity && at->px < at->ax ? i + (at->px - at->vx) : i);
 }
 
 static enum status set_up_kinsol(struct initial_conditions *c) {

@@ -178,7 +178,7 @@ static void assemble_velocities(struct ode_rhs *d, int f, const double *y, doubl
     }
     for (int m = 0; m < 2 * fish->n_nodes; m++) {
         const int i = m / fish->n_nodes, k = m % fish->n_nodes, row = velocity_at(d, f, i, k);
-        const int is_given = k < fish_n_prescribed(fish);
+        const int is_given = fish_is_prescribed(fish, k, i);
         *entry(d, row, row) = 1;
         rhs[row] = y[(is_given ? fish->at.vx : fish->at.px) + m];
         for (int j = 0; j < fish->n_sheet && !is_given; j++) {
@@ -277,15 +277,17 @@ static void assemble_mass(const struct fish *fish, const double *y, double *band
     }
 }
 
-// rows and columns of prescribed accelerations, which come first, become those of the identity
+// rows and columns of prescribed accelerations become those of the identity
 static void fix_given(const struct fish *fish, double t, double *band, double *force) {
-    const int n = 2 * fish->n_nodes, n_given = 2 * fish_n_prescribed(fish);
-    for (int given = 0; given < n_given; given++) {
+    const int n = 2 * fish->n_nodes;
+    for (int given = 0; given < 2 * fish_n_prescribed(fish); given++) {
+        if (!fish_is_prescribed(fish, given / 2, given % 2)) continue;
         double position[2], velocity[2], acceleration[2];
         fish_prescribed_node(fish, given / 2, t, position, velocity, acceleration);
-        for (int row = given + 1; row < n && row < given + BANDWIDTH; row++) {
-            double *const entry = mass_entry(band, row, given);
-            if (row >= n_given) force[row] -= *entry * acceleration[given % 2];
+        for (int other = given - BANDWIDTH + 1; other < given + BANDWIDTH; other++) {
+            if (other < 0 || other == given || other >= n) continue;
+            double *const entry = other > given ? mass_entry(band, other, given) : mass_entry(band, given, other);
+            if (!fish_is_prescribed(fish, other / 2, other % 2)) force[other] -= *entry * acceleration[given % 2];
             *entry = 0;
         }
         *mass_entry(band, given, given) = 1;
@@ -326,7 +328,7 @@ static void find_given_momenta(const struct ode_rhs *d, int f, double *y) {
     pressure_update(pressure, &flow, y);
     for (int m = 0; m < 2 * fish->n_nodes; m++) {
         const int k = m % fish->n_nodes;
-        if (k < fish_n_prescribed(fish)) {
+        if (fish_is_prescribed(fish, k, m / fish->n_nodes)) {
             y[fish->at.px + m] = y[fish->at.vx + m] + pressure->momentum[m] / fish->mass[k];
         }
     }
@@ -342,10 +344,22 @@ static void find_phi0(struct ode_rhs *d, int f, double t, double *y) {
     y[fish->at.phi0] = -value[fish->at.phi0];
 }
 
+// the given motion of prescribed nodes
+static void move_given(const struct fish *fish, double t, double *y) {
+    for (int k = 0; k < fish_n_prescribed(fish); k++) {
+        double position[2], velocity[2], acceleration[2];
+        fish_prescribed_node(fish, k, t, position, velocity, acceleration);
+        for (int i = 0; i < 2; i++) {
+            if (!fish_is_prescribed(fish, k, i)) continue;
+            y[fish->at.x + i * fish->n_nodes + k] = position[i];
+            y[fish->at.vx + i * fish->n_nodes + k] = velocity[i];
+        }
+    }
+}
+
 enum status ode_rhs_rates(struct ode_rhs *d, double t, double *y, double *yp) {
     const struct school *school = d->residual->school;
-    for (int f = 0; f < school->n_fish; f++)
-        fish_prescribe(&school->fish[f], fish_n_prescribed(&school->fish[f]), t, y);
+    for (int f = 0; f < school->n_fish; f++) move_given(&school->fish[f], t, y);
     for (int i = 0; i < school->n_unknowns; i++) {
         if (!isfinite(y[i])) return status_fail(STATUS_RETRY, "unknown %d is not finite at t = %g s", i, t);
     }

@@ -115,6 +115,9 @@ static const struct variant {
               "        motion: {driven: head, heave: 0.1, pitch: 10, pitch_phase: 70, frequency: 1, pivot: 0.2}}]\n"},
     {"pressure, driven body", PRESSURE "fish: [{nodes: 5, sheet_points: 9, force: pressure,\n"
                                        "        motion: {driven: all, heave: 0.1, pitch: 10, frequency: 1}}]\n"},
+    {"pressure, driven body that goes by its forces",
+     PRESSURE "fish: [{nodes: 5, sheet_points: 9, force: pressure,\n"
+              "        motion: {driven: all, surge: free, heave: 0.1, pitch: 10, frequency: 1}}]\n"},
     {"four fish, one force each and a driven head", PRESSURE FAR
      "fluid: {velocity: [0.1, 0.05], shear: 0.2}\n"
      "fish:\n"
@@ -122,7 +125,7 @@ static const struct variant {
      "  - {nodes: 5, sheet_points: 7, force: reactive, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"
      "  - {nodes: 4, sheet_points: 7, force: published, start: {position: [0.1, -0.6], heading: 200}}\n"
      "  - {nodes: 4, sheet_points: 7, force: pressure, start: {position: [0, 1.2]},\n"
-     "     motion: {driven: head, heave: 0.1, frequency: 1}}\n"},
+     "     motion: {driven: head, surge: free, heave: 0.1, frequency: 1}}\n"},
     {"fish in contact that are not coupled otherwise",
      TIME "solver: {coupling_distance: 0}\ncontact: {range: 0.9}\n"
           "fish:\n"

@@ -35,7 +35,9 @@ static const char *const cases[] = {
     "  - {nodes: 5, sheet_points: 9, force: pressure, start: {position: [0, -0.7]},\n"
     "     motion: {driven: head, heave: 0.1, pitch: 10, frequency: 1}}\n"
     "  - {nodes: 5, sheet_points: 9, force: pressure, start: {position: [0, -1.4]},\n"
-    "     motion: {driven: all, heave: 0.1, pitch: 10, frequency: 1}}\n",
+    "     motion: {driven: all, surge: free, heave: 0.1, pitch: 10, frequency: 1}}\n"
+    "  - {nodes: 5, sheet_points: 9, force: published, start: {position: [0, -2.1]},\n"
+    "     motion: {driven: head, surge: free, heave: 0.1, pitch: 10, frequency: 1}}\n",
 };
 
 static void all_equations_hold_for_the_computed_unknowns(void **state) {
