@@ -111,6 +111,10 @@ Heading control with feedforward, and course control, on bodies from soft to sti
 with an explicit method. Where the feedforward acts through a moving mean there is no algebraic loop, and the bias of the
 stiffest body changes as smoothly as that of the softest. A default fish goes to waypoints, another holds its course in
 the wake of a leader."""),
+    "pressure": ("Pressure", """\
+Forces of `force: pressure`, model.md 15, against the linear theory of thin foils: rigid plates that heave and pitch,
+sudden starts, and a plate that swims by its heave. The settings are those of a case that says nothing but for 65 sheet
+points and 300 events a period."""),
     "elastic": ("Elastic plates", """\
 `force: pressure` on plates with a clamped nose in a stream, rtol 1e-5, U Dt = 0.01 L, the whole wake kept. *Flutter*: the
 plate starts at one degree to the stream; growth and frequency of the mode are fitted to the tail by Prony's method
@@ -148,6 +152,10 @@ FIGURE = {
     "heave_amplitude": ("Heaving plate: bound circulation", "k = omega L/(2U)", "amplitude over quasi-steady",
                         {"scale": "linear"}),
     "heave_phase": ("Heaving plate: bound circulation", "k = omega L/(2U)", "phase [degree]", {"scale": "linear"}),
+    "pressure_interval": ("Lift of a heaving plate, k = 1", "U Dt/L", "relative difference from Theodorsen",
+                          {"scale": "log", "slopes": [1]}),
+    "pressure_sheet": ("Lift of a heaving plate, k = 1, 400 events a period", "sheet points M - 1",
+                       "relative difference from Theodorsen", {"scale": "log", "slopes": [-1]}),
     "heave_interval": ("Heaving plate: order in Dt", "shedding interval Dt [s]", "error",
                        {"scale": "log", "slopes": [1]}),
     "energy audit": ("Energy audit over the work done", "t [s]", "audit over work", {"scale": "linear"}),

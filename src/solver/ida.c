@@ -7,6 +7,7 @@
 #include <stdlib.h>
 
 #include "model/diagnostics.h"
+#include "solver/algebraic_rates.h"
 #include "solver/ida_newton.h"
 #include "solver/sundials_adapter.h"
 
@@ -41,6 +42,7 @@ struct ida {
     struct sundials_adapter_linear linear;
     SUNNonlinearSolver newton;
     void *ida;
+    struct algebraic_rates *algebraic_rates;
     struct integrator_counts before; /* totals up to the last restart: that sets IDA's own to zero */
     long jacobians; /* evaluations so far: IDA sets its own total to zero only some time after a restart */
 };
@@ -93,6 +95,7 @@ static void ida_free(void *data) {
         if (vectors[i]) N_VDestroy(vectors[i]);
     }
     jacobian_free(solver->jacobian);
+    algebraic_rates_free(solver->algebraic_rates);
     free(solver->tolerance);
     free(solver->kind);
     if (solver->context) SUNContext_Free(&solver->context);
@@ -133,6 +136,8 @@ static enum status fill(struct ida *solver) {
         solver->tolerance[i] = solver->residual->school->rtol * residual_scale(solver->residual, i);
     }
     TRY(jacobian_create(&solver->jacobian, solver->residual->school));
+    TRY(algebraic_rates_create(&solver->algebraic_rates, solver->residual->school));
+    algebraic_rates_begin(solver->algebraic_rates, solver->state);
     residual_mask(solver->residual, solver->jacobian);
     TRY(sundials_adapter_context(&solver->context, solver->residual->school->n_unknowns));
     TRY(sundials_adapter_vector(&solver->y, solver->context, n, solver->state->y));
@@ -200,6 +205,7 @@ static void ida_count(const void *data, struct integrator_counts *counts) {
 static enum status ida_restart(void *data) {
     struct ida *const solver = data;
     ida_count(solver, &solver->before);
+    algebraic_rates_begin(solver->algebraic_rates, solver->state);
     if (IDAReInit(solver->ida, solver->state->t, solver->y, solver->yp)) {
         return status_fail(STATUS_SOLVER, "IDA cannot start again: %s", status_message());
     }
@@ -290,6 +296,7 @@ static enum status ida_advance(void *data, double t, const volatile sig_atomic_t
         if (solver->failure == STATUS_MEMORY || solver->failure == STATUS_STOPPED) return solver->failure;
         if (code < 0) return failed(solver, code, steps);
         if (code == IDA_TSTOP_RETURN) reached = end;
+        algebraic_rates_step(solver->algebraic_rates, reached, state);
         diagnostics_step(solver->residual, state, reached, state->y);
     }
     return STATUS_OK;

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "model/diagnostics.h"
+#include "solver/algebraic_rates.h"
 #include "solver/linear.h"
 
 /* Newton's iteration has converged when its error is this fraction of the tolerance. */
@@ -32,6 +33,7 @@ struct one_step {
     double *kind, *tolerance;          /* kind and absolute tolerance of each unknown     (n_unknowns) */
     double *before, *rates;            /* unknowns and rates at the start of the step     (n_unknowns) */
     double *correction, *right_hand;   /* Newton's                                        (n_unknowns) */
+    struct algebraic_rates *algebraic_rates;
     struct integrator_counts counts;
 };
 
@@ -40,6 +42,7 @@ static void one_step_free(void *data) {
     if (!solver) return;
     linear_free(solver->linear);
     jacobian_free(solver->jacobian);
+    algebraic_rates_free(solver->algebraic_rates);
     double *const arrays[] = {solver->kind,  solver->tolerance,  solver->before,
                               solver->rates, solver->correction, solver->right_hand};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) free(arrays[i]);
@@ -61,6 +64,8 @@ static enum status fill(struct one_step *solver) {
                                residual_undamped(solver->residual, i);
     }
     TRY(jacobian_create(&solver->jacobian, solver->residual->school));
+    TRY(algebraic_rates_create(&solver->algebraic_rates, solver->residual->school));
+    algebraic_rates_begin(solver->algebraic_rates, solver->state);
     residual_mask(solver->residual, solver->jacobian);
     return linear_create(&solver->linear, solver->jacobian, solver->tolerance,
                          (struct linear_tolerance){linear_relative, 0});
@@ -95,6 +100,7 @@ static void one_step_count(const void *data, struct integrator_counts *counts) {
 static enum status one_step_restart(void *data) {
     struct one_step *const solver = data;
     solver->cj = 0;
+    algebraic_rates_begin(solver->algebraic_rates, solver->state);
     return STATUS_OK;
 }
 
@@ -190,6 +196,7 @@ static enum status step(struct one_step *solver, double t, double h) {
     if (!converged) return failed(solver, t - h);
     set_rates(solver, h);
     solver->counts.steps++;
+    algebraic_rates_step(solver->algebraic_rates, t, state);
     diagnostics_step(solver->residual, state, t, state->y);
     return STATUS_OK;
 }

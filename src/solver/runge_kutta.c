@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "model/diagnostics.h"
+#include "solver/algebraic_rates.h"
 #include "solver/ode_rhs.h"
 #include "solver/sundials_adapter.h"
 
@@ -25,8 +26,9 @@ struct runge_kutta {
     int known;            /* whether they are valid */
     double known_t;
     long known_event;
-    long evaluations; /* so far */
-    double *last;     /* unknowns at the end of the last step                     (n_unknowns) */
+    long evaluations;    /* so far */
+    double *circulation; /* of each fish at the end of the last step                     (n_fish) */
+    struct algebraic_rates *algebraic_rates;
 
     SUNContext context;
     N_Vector y, tolerances;
@@ -92,7 +94,8 @@ static void runge_kutta_free(void *data) {
     ode_rhs_free(solver->rhs);
     free(solver->work);
     free(solver->rates);
-    free(solver->last);
+    free(solver->circulation);
+    algebraic_rates_free(solver->algebraic_rates);
     free(solver->tolerance);
     if (solver->context) SUNContext_Free(&solver->context);
     free(solver);
@@ -113,8 +116,11 @@ static enum status set_up_arkode(struct runge_kutta *solver) {
     return failed ? status_fail(STATUS_SOLVER, "ARKODE cannot be set up: %s", status_message()) : STATUS_OK;
 }
 
-static void keep_unknowns(struct runge_kutta *solver) {
-    memcpy(solver->last, solver->state->y, (size_t)solver->residual->school->n_unknowns * sizeof *solver->last);
+static void keep_circulation(struct runge_kutta *solver) {
+    const struct school *school = solver->residual->school;
+    for (int f = 0; f < school->n_fish; f++) {
+        solver->circulation[f] = solver->state->y[school->fish[f].at.circulation];
+    }
 }
 
 static enum status fill(struct runge_kutta *solver) {
@@ -122,8 +128,8 @@ static enum status fill(struct runge_kutta *solver) {
     solver->work = calloc((size_t)n, sizeof *solver->work);
     solver->tolerance = calloc((size_t)n, sizeof *solver->tolerance);
     solver->rates = calloc((size_t)n, sizeof *solver->rates);
-    solver->last = calloc((size_t)n, sizeof *solver->last);
-    if (!solver->work || !solver->rates || !solver->last || !solver->tolerance)
+    solver->circulation = calloc((size_t)solver->residual->school->n_fish, sizeof *solver->circulation);
+    if (!solver->work || !solver->rates || !solver->circulation || !solver->tolerance)
         return status_fail(STATUS_MEMORY, "out of memory: %d unknowns", n);
     // algebraic unknowns have neither rate nor error here; without a tolerance for velocities an explicit method can go
     // wrong unnoticed
@@ -131,8 +137,10 @@ static enum status fill(struct runge_kutta *solver) {
         solver->tolerance[i] = solver->residual->school->rtol * residual_scale(solver->residual, i) *
                                residual_undamped(solver->residual, i);
     }
-    keep_unknowns(solver);
+    keep_circulation(solver);
     TRY(ode_rhs_create(&solver->rhs, solver->residual));
+    TRY(algebraic_rates_create(&solver->algebraic_rates, solver->residual->school));
+    algebraic_rates_begin(solver->algebraic_rates, solver->state);
     TRY(sundials_adapter_context(&solver->context, solver->residual->school->n_unknowns));
     TRY(sundials_adapter_vector(&solver->y, solver->context, n, solver->state->y));
     TRY(sundials_adapter_vector(&solver->tolerances, solver->context, n, solver->tolerance));
@@ -178,7 +186,8 @@ static void runge_kutta_count(const void *data, struct integrator_counts *counts
 static enum status runge_kutta_restart(void *data) {
     struct runge_kutta *const solver = data;
     runge_kutta_count(solver, &solver->before);
-    keep_unknowns(solver);
+    keep_circulation(solver);
+    algebraic_rates_begin(solver->algebraic_rates, solver->state);
     if (ARKStepReInit(solver->arkode, rates_callback, NULL, solver->state->t, solver->y)) {
         return status_fail(STATUS_SOLVER, "ARKODE cannot start again: %s", status_message());
     }
@@ -219,11 +228,6 @@ static enum status unstable(const struct runge_kutta *solver, double t, const ch
                        t, why, place.name, place.index, fish->name, step, control);
 }
 
-// rates of n unknowns from a first one on: differences over the last step
-static void set_difference(struct runge_kutta *solver, int first, int n, double step) {
-    for (int i = first; i < first + n; i++) solver->state->yp[i] = (solver->work[i] - solver->last[i]) / step;
-}
-
 // the algebraic unknowns and all rates at the end of a step, for the energy balance and the event
 static enum status close_step(struct runge_kutta *solver, double before, double reached) {
     struct state *const state = solver->state;
@@ -232,17 +236,16 @@ static enum status close_step(struct runge_kutta *solver, double before, double 
     if (status > 0) return unstable(solver, reached, status_message());
     TRY(status);
     memcpy(state->yp, solver->rates, (size_t)school->n_unknowns * sizeof *state->yp);
-    // that of an algebraic circulation is a difference over the step; where there are momenta, of velocities and sheets
-    // too
+    // that of an algebraic circulation is a difference over the step
     for (int f = 0; f < school->n_fish; f++) {
         const struct layout *at = &school->fish[f].at;
-        if (residual_shed_is_algebraic(solver->residual)) set_difference(solver, at->circulation, 1, reached - before);
-        if (!fish_has_momentum(&school->fish[f])) continue;
-        set_difference(solver, at->vx, at->px - at->vx, reached - before);
-        set_difference(solver, at->gamma, at->circulation - at->gamma, reached - before);
+        if (residual_shed_is_algebraic(solver->residual)) {
+            state->yp[at->circulation] = (solver->work[at->circulation] - solver->circulation[f]) / (reached - before);
+        }
     }
     memcpy(state->y, solver->work, (size_t)school->n_unknowns * sizeof *state->y);
-    keep_unknowns(solver);
+    keep_circulation(solver);
+    algebraic_rates_step(solver->algebraic_rates, reached, state);
     return STATUS_OK;
 }
 

@@ -22,6 +22,7 @@ void verify_symmetry(void);
 void verify_start(void);
 void verify_energy(void);
 void verify_control(void);
+void verify_pressure(void);
 void verify_elastic(void);
 
 /* Only the checks that take seconds are wanted: `make test` runs those. */

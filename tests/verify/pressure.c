@@ -1,0 +1,232 @@
+/* pressure.c: the section "pressure": forces from the bound sheet (force: pressure) against the linear theory of thin
+ * foils. Length L, speed and density of the fluid 1 and span 1 m where nothing else is said. */
+#include <complex.h>
+#include <math.h>
+#include <stdio.h>
+
+#include "linear_theory.h"
+#include "verify.h"
+
+static const double pi = 3.14159265358979323846;
+
+// ---- rigid plates
+
+struct plate {
+    int nodes, n_sheet;
+    double interval, end; /* s */
+    double smoothing;     /* of the wake, L */
+    const char *motion;   /* further keys of the prescribed motion */
+};
+
+static struct simulation *open_plate(const struct plate *plate) {
+    return verify_open(VERIFY_SECOND
+                       "format: 1\n"
+                       "time: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
+                       "fluid: {density: 1, viscosity: 0}\n"
+                       "wake: {lifetime: 1000, smoothing: %.17g}\n"
+                       "fish:\n"
+                       "  - {nodes: %d, sheet_points: %d, force: pressure, wave: {amplitude: 0, frequency: 0},\n"
+                       "     start: {speed: 1},\n"
+                       "     body: {profile: uniform, thickness: 0.02, width: 1, density: 1},\n"
+                       "     motion: {driven: all, %s}}\n",
+                       plate->end, plate->interval, plate->interval, plate->smoothing, plate->nodes, plate->n_sheet,
+                       plate->motion);
+}
+
+/* The force of the fluid at an event, N, and its moment about the nose, N m. */
+struct load {
+    double force[2], moment;
+};
+static struct load load_of(struct simulation *simulation) {
+    simulate_measure(simulation);
+    const struct fish *fish = simulation->school->fish;
+    const struct diagnostics_fish *of = simulation->diagnostics->fish;
+    const double *const y = simulation->state->y;
+    struct load load = {.moment = of->pressure.pressure_moment + of->pressure.suction_moment};
+    const double arm[2] = {of->com[0] - y[fish->at.x], of->com[1] - y[fish->at.y]};
+    for (int i = 0; i < 2; i++) load.force[i] = of->pressure.pressure[i] + of->pressure.suction[i];
+    load.moment += arm[0] * load.force[1] - arm[1] * load.force[0];
+    return load;
+}
+
+/* What the fluid does over the last of some periods: amplitudes across the stream and about the nose, mean thrust. */
+static struct linear_theory_load oscillate(struct simulation *simulation, double omega, int n_periods, int per_period) {
+    struct linear_theory_load load = {.thrust = 0};
+    const double interval = simulation->school->interval;
+    verify_run(simulation, (n_periods - 1) * per_period * interval);
+    for (int n = 0; n < per_period; n++) {
+        verify_run(simulation, ((n_periods - 1) * per_period + n + 1) * interval);
+        const struct load now = load_of(simulation);
+        const double complex wave = 2.0 / per_period * cexp(-I * omega * simulation->state->t);
+        load.lift += now.force[1] * wave;
+        load.moment += now.moment * wave;
+        load.thrust -= now.force[0] / per_period;
+    }
+    return load;
+}
+
+static double relative(double complex a, double complex b) {
+    return cabs(a - b) / cabs(b);
+}
+
+// heave and pitch of a small amplitude at a reduced frequency; the program has heave to the left of the heading, -y
+static struct linear_theory_load run_oscillation(double k, int n_sheet, int per_period, int n_periods, int is_pitch) {
+    const double omega = 2 * k, period = 2 * pi / omega;
+    char motion[160];
+    snprintf(motion, sizeof motion, "%s: %.17g, frequency: %.17g", is_pitch ? "pitch" : "heave",
+             is_pitch ? 0.5 : 0.005 / k, omega / (2 * pi));
+    const struct plate plate = {17, n_sheet, period / per_period, n_periods * period, 0.1, motion};
+    struct simulation *const simulation = open_plate(&plate);
+    const struct linear_theory_load load = oscillate(simulation, omega, n_periods, per_period);
+    simulate_free(simulation);
+    return load;
+}
+
+static void heave(void) {
+    const struct {
+        double k, lift, thrust, moment; /* bounds */
+    } cases[] = {{1, 0.005, 0.003, 0.004},
+                 {0.1, 0.001, 0.001, 0.002},
+                 {0.25, 0.001, 0.001, 0.002},
+                 {0.5, 0.004, 0.003, 0.002},
+                 {2, 0.002, 0.001, 0.006}};
+    for (int i = 0; i < (verify_is_fast() ? 1 : 5); i++) {
+        const double k = cases[i].k, amplitude = 0.005 / k;
+        const int per_period = verify_is_fast() ? 100 : 300;
+        const struct linear_theory_load load = run_oscillation(k, 65, per_period, k < 0.3 ? 2 : 4, 0);
+        const struct linear_theory_plate plate = {1, 1, 1, 2 * k};
+        const struct linear_theory_load theory = linear_theory_rigid(&plate, I * amplitude, 0, 0);
+        if (verify_is_fast()) {
+            verify_zero("heave, k = 1, 100 events a period: relative difference of lift", "Theodorsen",
+                        relative(load.lift, theory.lift), 0.03);
+            return;
+        }
+        verify_relative(verify_text("heave, k = %g: amplitude of lift", k), "Theodorsen (1935)", cabs(theory.lift),
+                        cabs(load.lift), cases[i].lift);
+        verify_value(verify_text("heave, k = %g: phase of lift, degree", k), "Theodorsen (1935)", 0,
+                     carg(load.lift / theory.lift) * 180 / pi, 0.2);
+        verify_zero(verify_text("heave, k = %g: relative difference of moment about the middle", k),
+                    "Theodorsen (1935)", relative(load.moment - load.lift / 2, theory.moment - theory.lift / 2),
+                    cases[i].moment);
+        verify_relative(verify_text("heave, k = %g: mean thrust", k), "Garrick (1936)", theory.thrust, load.thrust,
+                        cases[i].thrust);
+    }
+}
+
+static void pitch(void) {
+    const struct { double k, lift; } cases[] = {{0.1, 0.001}, {0.5, 0.004}, {1, 0.006}};
+    for (int i = 0; i < 3; i++) {
+        const double k = cases[i].k;
+        const struct linear_theory_load load = run_oscillation(k, 65, 300, k < 0.3 ? 2 : 4, 1);
+        const struct linear_theory_plate plate = {1, 1, 1, 2 * k};
+        const struct linear_theory_load theory = linear_theory_rigid(&plate, 0, -I * 0.5 * pi / 180, 0);
+        verify_zero(verify_text("pitch about the nose, k = %g: relative difference of lift", k), "Theodorsen (1935)",
+                    relative(load.lift, theory.lift), cases[i].lift);
+    }
+}
+
+// orders of the lift at k = 1 in the interval and in vortices
+static void orders(void) {
+    const struct linear_theory_plate plate = {1, 1, 1, 2};
+    const struct linear_theory_load theory = linear_theory_rigid(&plate, I * 0.005, 0, 0);
+    double error[4];
+    for (int i = 0; i < 4; i++) {
+        error[i] = relative(run_oscillation(1, 129, 50 << i, 3, 0).lift, theory.lift);
+        verify_point("pressure_interval", "heave, k = 1", pi / (50 << i), error[i]);
+    }
+    verify_order("lift of a heaving plate in the interval, k = 1", "events 50 to 200 a period",
+                 verify_order_of_errors(error[0], error[2]) / 2, 0.7, 2);
+    for (int i = 0; i < 4; i++) {
+        error[i] = relative(run_oscillation(1, (32 << i) + 1, 400, 3, 0).lift, theory.lift);
+        verify_point("pressure_sheet", "heave, k = 1", 32 << i, error[i]);
+    }
+    verify_show("lift of a heaving plate, M = 33, U Dt = 0.008 L: relative difference", "Theodorsen (1935)", error[0]);
+    verify_show("lift of a heaving plate, M = 257, U Dt = 0.008 L: relative difference", "Theodorsen (1935)", error[3]);
+}
+
+// ---- sudden starts, and long after
+
+// a plate at an incidence that starts at once; its nose points down where the angle is positive
+static struct simulation *start_plate(double alpha, double interval, double end, int n_sheet) {
+    char motion[160];
+    snprintf(motion, sizeof motion, "pitch: %.17g, pitch_phase: 90", alpha * 180 / pi);
+    const struct plate plate = {17, n_sheet, interval, end, 0.1, motion};
+    return open_plate(&plate);
+}
+
+static void wagner(void) {
+    const double alpha = 0.02;
+    const struct {
+        double s, lift, circulation; /* bounds */
+    } cases[] = {{0.1, 0.001, 0},   {0.2, 0.002, 0}, {0.5, 0.005, 0},   {1, 0.006, 0.003},
+                 {2, 0.004, 0.004}, {4, 0.003, 0},   {10, 0.001, 0.001}};
+    struct simulation *const simulation = start_plate(alpha, 0.005, 5, 65);
+    for (int i = 0; i < 7; i++) {
+        verify_run(simulation, cases[i].s / 2);
+        const struct linear_theory_growth growth = linear_theory_growth(cases[i].s);
+        verify_relative(verify_text("sudden start: lift over its final value, s = %g", cases[i].s), "Wagner (1925)",
+                        growth.lift, -load_of(simulation).force[1] / (pi * sin(alpha)), cases[i].lift);
+        if (cases[i].circulation <= 0) continue;
+        verify_relative(verify_text("sudden start: shed circulation over its final value, s = %g", cases[i].s),
+                        "Wagner (1925)", growth.circulation,
+                        -simulation->diagnostics->fish[0].shed_circulation / (pi * sin(alpha)), cases[i].circulation);
+    }
+    simulate_free(simulation);
+}
+
+static void steady(void) {
+    const double angles[] = {0.02, 0.1};
+    for (int i = 0; i < 2; i++) {
+        struct simulation *const simulation = start_plate(angles[i], 0.05, 60, 33);
+        verify_run(simulation, 60);
+        const struct load load = load_of(simulation);
+        const struct diagnostics_fish *of = simulation->diagnostics->fish;
+        const struct linear_theory_growth growth = linear_theory_growth(120);
+        verify_relative(verify_text("plate at %g rad after 60 lengths: shed circulation", angles[i]), "Wagner (1925)",
+                        growth.circulation, -of->shed_circulation / (pi * sin(angles[i])), 0.001);
+        verify_value(verify_text("plate at %g rad: A_0", angles[i]), "sin(alpha), less what the wake takes away",
+                     sin(angles[i]), fabs(of->leading_edge_a0), 0.012 * sin(angles[i]));
+        verify_zero(verify_text("plate at %g rad: drag over suction", angles[i]), "d'Alembert",
+                    load.force[0] / hypot(of->pressure.suction[0], of->pressure.suction[1]), 0.011);
+        simulate_free(simulation);
+    }
+}
+
+// ---- bodies that go by their thrust
+
+// A heaving plate of length 2, amplitude 0.1, with friction 0.04 U^(3/2). Its mass is 1.5: theory has a uniform speed,
+// and that of a lighter body oscillates with its thrust (mass 0.5: -0.18 %). The wake decays over several periods, for
+// the end of a short one moves with the phase of the heave (fade of one period: 0.4 % of the thrust, none: 1.9 %).
+static void self_propelled(void) {
+    const struct linear_theory_plate plate = {2, 1, 1, 2 * pi};
+    const double speed = linear_theory_heaving_speed(&plate, 0.1, 0.04), k = 2 * pi / speed;
+    const double complex c = linear_theory_theodorsen(k);
+    struct simulation *const simulation =
+        verify_open(VERIFY_SECOND
+                    "format: 1\n"
+                    "time: {end: 24, shedding_interval: 0.01, output_interval: 0.01}\n"
+                    "fluid: {density: 1, viscosity: %.17g}\n"
+                    "wake: {lifetime: 8, fade: 6, smoothing: 0.05}\n"
+                    "fish:\n"
+                    "  - {length: 2, force: pressure, wave: {amplitude: 0, frequency: 0}, start: {speed: 4.19},\n"
+                    "     body: {profile: uniform, thickness: 0.1, width: 0.5, density: 4.8, modulus: 1.0e+5},\n"
+                    "     motion: {driven: all, surge: free, heave: 0.1, frequency: 1}}\n",
+                    pow(0.04 / 1.328, 2) / 2);
+    verify_run(simulation, 24);
+    simulate_measure(simulation);
+    verify_relative("heaving plate that swims: speed", "Garrick (1936)", speed, simulation->diagnostics->fish[0].speed,
+                    0.0011);
+    verify_relative("heaving plate that swims: efficiency", "Garrick (1936), |C|^2/Re C", cabs(c) * cabs(c) / creal(c),
+                    simulation->diagnostics->fish[0].efficiency, 0.018);
+    simulate_free(simulation);
+}
+
+void verify_pressure(void) {
+    heave();
+    if (verify_is_fast()) return;
+    pitch();
+    wagner();
+    steady();
+    self_propelled();
+    orders();
+}
