@@ -31,12 +31,12 @@ static const char *const cases[] = {
     "wake: {curve: smooth, shedding: sheet}\n"
     "fish:\n"
     "  - {nodes: 7, sheet_points: 13, force: pressure}\n"
-    "  - {nodes: 6, sheet_points: 13, force: reactive, start: {position: [0, 1.2]}}\n"
-    "  - {nodes: 5, sheet_points: 9, force: pressure, start: {position: [0, -1.2]},\n"
+    "  - {nodes: 6, sheet_points: 13, force: reactive, start: {position: [0, 2]}}\n"
+    "  - {nodes: 5, sheet_points: 9, force: pressure, start: {position: [0, -2]},\n"
     "     motion: {driven: head, heave: 0.1, pitch: 10, frequency: 1}}\n"
-    "  - {nodes: 5, sheet_points: 9, force: pressure, start: {position: [0, -2.4]},\n"
+    "  - {nodes: 5, sheet_points: 9, force: pressure, start: {position: [0, -4]},\n"
     "     motion: {driven: all, surge: free, heave: 0.1, pitch: 10, frequency: 1}}\n"
-    "  - {nodes: 5, sheet_points: 9, force: published, start: {position: [0, -3.6]},\n"
+    "  - {nodes: 5, sheet_points: 9, force: published, start: {position: [0, -6]},\n"
     "     motion: {driven: head, surge: free, heave: 0.1, pitch: 10, frequency: 1}}\n",
 };
 
