@@ -58,8 +58,9 @@ cases/x.yaml:23:5: error: fish[2].stifness: unknown key; did you mean 'modulus'?
 - The key decides how a value is read: `name: no` is a string, `end: 1e1` is the number 10. Numbers are decimal, with a
   point; `nan` and `inf` are refused.
 - "required" in the tables means that there is no default. A default in *italics* is computed from other values.
-- `end` and `output_interval` are integer multiples of `shedding_interval`, `wake_interval` is one of
-  `output_interval`. Every row of output is then the state at an event.
+- `end`, `output_interval` and `checkpoint_interval` are integer multiples of `shedding_interval`, `wake_interval` is one
+  of `output_interval`. Every row of output and every checkpoint ([reliability.md](reliability.md)) is then the state at
+  an event.
 
 ## Precedence
 

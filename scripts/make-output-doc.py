@@ -71,9 +71,9 @@ it open sees new rows when it opens it again. The attribute `run_status` says ho
 
 | `run_status` | meaning |
 |---|---|
-| `running` | the run goes on, or was killed |
+| `running` | the run goes on, or was killed: `shoal resume` goes on where there is a checkpoint |
 | `complete` | the run reached `time.end` |
-| `stopped` | a signal stopped it; the rows are good |
+| `stopped` | a signal or `--max-wall` stopped it; the rows are good, and `shoal resume` goes on ([reliability.md](reliability.md)) |
 | `failed: ...` | the integration or the writing failed, or bodies met with `contact.action: stop`; the rows are good |
 
 The attribute `warnings` is written at the end: one line for each thing that is wrong with the result although the
@@ -101,7 +101,8 @@ the case file as it was written. `source` names the program, its commit and its 
     shoal info --case demo.nc > again.yaml
     shoal run again.yaml
 
-gives the same numbers, bit for bit with the same program (only `wall_time` and `history` differ).
+gives the same numbers, bit for bit with the same program (only `wall_time` and `history` differ). A run that was stopped and
+resumed needs its places, too: `--checkpoint-at` with the attribute `checkpoint_at`.
 
 ## Attributes
 
@@ -113,6 +114,7 @@ gives the same numbers, bit for bit with the same program (only `wall_time` and 
 | `source` | program, commit, versions of the libraries |
 | `shoal_schema` | 1; a program that expects another number cannot read the file |
 | `run_status`, `warnings`, `closest_approach`, `case_text`, `case_effective` | see above |
+| `checkpoint_at` | times of checkpoints besides those of `time.checkpoint_interval`, as `--checkpoint-at` takes them: `0.3,1.25` |
 
 Every variable has `long_name` and, unless it is a string, `units`. `fish_name`, `node_arc`, `sheet_arc` and `control_arc` are coordinates.
 """

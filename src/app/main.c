@@ -14,14 +14,21 @@ static const struct command commands[] = {
     {"run",
      "CASE",
      "run a case and write its result",
-     {'o', OPTION_FORCE, OPTION_STRICT, OPTION_SET, OPTION_THREADS, 'q', 'v', 'h'},
+     {'o', OPTION_FORCE, OPTION_STRICT, OPTION_SET, OPTION_THREADS, OPTION_MAX_WALL, OPTION_CHECKPOINT_AT, 'q', 'v',
+      'h'},
      "file of the result (default: output.file of the case, or its name with .nc)",
      main_run},
+    {"resume",
+     "CHECKPOINT",
+     "go on with a run that was stopped, or extend one that is complete",
+     {OPTION_END, OPTION_STRICT, OPTION_THREADS, OPTION_MAX_WALL, OPTION_CHECKPOINT_AT, 'q', 'v', 'h'},
+     NULL,
+     main_resume},
     {"study",
      "CASE",
      "run all members of a sweep and gather their results",
      {'o', 'j', OPTION_LIMIT, OPTION_MEMBERS, OPTION_SLURM, OPTION_BUNDLE, OPTION_FORCE, OPTION_STRICT, OPTION_SET,
-      OPTION_THREADS, 'q', 'h'},
+      OPTION_THREADS, OPTION_MAX_WALL, 'q', 'h'},
      "folder of the study (default: the name of the case with -study)",
      main_study},
     {"gather",
@@ -56,7 +63,12 @@ static const struct command commands[] = {
      {'o', OPTION_AT, OPTION_GRID, OPTION_BOX, OPTION_FORCE, OPTION_THREADS, 'q', 'h'},
      "file of the field (default: the name of the result with -field.nc)",
      main_field},
-    {"info", "FILE.nc", "summarise the file of a run, a study or a field", {OPTION_CASE, 'h'}, NULL, main_info},
+    {"info",
+     "FILE",
+     "summarise the file of a run, a study or a field, or a checkpoint",
+     {OPTION_CASE, 'h'},
+     NULL,
+     main_info},
     {"view",
      "RUN.nc",
      "write a run as one html page to look at in a browser",
@@ -81,12 +93,13 @@ enum { N_COMMANDS = sizeof commands / sizeof *commands };
 static const char summary[] = "schools of flexible swimmers";
 static const char exit_codes[] =
     "0 success, 1 integration failed, 2 wrong usage or wrong case, 3 an expectation is not met\n"
-    "or bodies met with contact.action: stop, 4 file or memory error, 75 stopped by a signal.";
+    "or bodies met with contact.action: stop, 4 file or memory error, 75 stopped by a signal or --max-wall:\n"
+    "shoal resume goes on.";
 
 static void print_help(FILE *stream) {
     fprintf(stream, "shoal: %s\n\nUsage: shoal COMMAND [OPTIONS] [FILE]\n\n", summary);
     for (int i = 0; i < N_COMMANDS; i++) {
-        fprintf(stream, "  %-8s%-8s%s\n", commands[i].name, commands[i].positional ? commands[i].positional : "",
+        fprintf(stream, "  %-8s%-11s%s\n", commands[i].name, commands[i].positional ? commands[i].positional : "",
                 commands[i].summary);
     }
     fputs(

@@ -10,6 +10,7 @@
 #include "case/case_schema.h"
 #include "case/case_show.h"
 #include "case/sweep_members.h"
+#include "output/checkpoint.h"
 #include "output/field_file.h"
 #include "output/result_info.h"
 #include "output/result_kind.h"
@@ -99,5 +100,6 @@ enum status main_info(const struct request *request) {
 }
 
 enum status main_print_info(const char *path, int case_only) {
+    if (checkpoint_is(path)) return checkpoint_info(path, case_only, stdout);
     return result_kind_info(N_KINDS, kinds, path, case_only, stdout);
 }

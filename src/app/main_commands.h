@@ -1,7 +1,7 @@
 /* main_commands.h: the commands of the program. Each takes what the command line says, prints results to stdout and
  * progress to stderr, and fails with any status. Tested by tests/app/test_command.sh and tests/study.
  *
- *     main_run.c      run, demo
+ *     main_run.c      run, resume, demo
  *     main_study.c    study, gather, compare
  *     main_field.c    field
  *     main_case.c     check, show, keys, info
@@ -14,6 +14,7 @@
 #include "case/case_values.h"
 
 enum status main_run(const struct request *request);
+enum status main_resume(const struct request *request);
 enum status main_demo(const struct request *request);
 enum status main_study(const struct request *request);
 enum status main_gather(const struct request *request);

@@ -31,6 +31,11 @@ static const struct option_help all_options[] = {
     {OPTION_MEMBERS, "members", "A-B", "run only member A, or members A to B, and do not gather"},
     {OPTION_VTK, "vtk", "FOLDER", "write files of VTK, for ParaView, into this folder"},
     {OPTION_FORCE, "force", NULL, "overwrite existing results"},
+    {OPTION_END, "end", "SECONDS", "another end of the run, also of one that is complete"},
+    {OPTION_CHECKPOINT_AT, "checkpoint-at", "LIST",
+     "further times of checkpoints in s, separated by commas (see time.checkpoint_interval)"},
+    {OPTION_MAX_WALL, "max-wall", "HH:MM:SS",
+     "stop after this time, as by a signal: with a checkpoint and exit code 75"},
     {OPTION_STRICT, "strict", NULL, "warnings about a result end with exit code 3"},
     {OPTION_AT, "at", "T", "time of a row of the result, s (default: the last one with its wake)"},
     {OPTION_GRID, "grid", "NX,NY", "points in x and y (default: 400 along the longer side, at equal distances)"},
@@ -163,6 +168,12 @@ static void take_option(struct request *request, int code, char *argument) {
         case 'q': request->quiet = 1; break;
         case 'v': request->verbose = 1; break;
         case OPTION_FORCE: request->force = 1; break;
+        case OPTION_END:
+            snprintf(request->end, sizeof request->end, "time.end=%s", argument);
+            request->assignments[request->n_assignments++] = request->end;
+            break;
+        case OPTION_CHECKPOINT_AT: request->checkpoint_at = argument; break;
+        case OPTION_MAX_WALL: request->max_wall = argument; break;
         case OPTION_STRICT: request->strict = 1; break;
         case OPTION_JSON: request->json = 1; break;
         case OPTION_SCHEMA: request->schema = 1; break;

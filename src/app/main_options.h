@@ -29,7 +29,10 @@ enum option_code {
     OPTION_AT,
     OPTION_GRID,
     OPTION_BOX,
-    OPTION_VTK
+    OPTION_VTK,
+    OPTION_END,
+    OPTION_CHECKPOINT_AT,
+    OPTION_MAX_WALL
 };
 
 /* What the command line says. A string is NULL where its option is not given. */
@@ -40,6 +43,8 @@ struct request {
     int n_assignments;
     const char **assignments; /* of --set, "KEY=VALUE" */
     char threads[64];         /* --threads as an assignment */
+    char end[64];             /* --end as one */
+    const char *checkpoint_at, *max_wall;
     const char *processes, *members;
     const char *methods, *rtols, *steps, *repeats, *reference_rtol, *limit, *bundle;
     int slurm, strict;

@@ -1,4 +1,4 @@
-/* main_run.c: run a case; the demonstration. */
+/* main_run.c: run a case, go on with a run that was stopped; the demonstration. */
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,7 +15,7 @@
 #include "case/sweep_members.h"
 #include "output/page.h"
 #include "run/record.h"
-#include "run/simulate.h"
+#include "run/simulate_run.h"
 
 // ---- run
 
@@ -23,7 +23,21 @@
 struct teller {
     struct progress progress;
     int quiet, n_warnings;
+    char *path; /* of the result; owned */
 };
+
+static enum status tell_begin(const struct case_values *values, const char *path, void *data) {
+    struct teller *const teller = data;
+    TRY(parallel_try_threads(values->school.threads));
+    main_spread_threads(values->school.threads);
+    teller->path = strdup(path);
+    return teller->path ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: a file name");
+}
+
+static void tell_note(const char *line, void *data) {
+    (void)data;
+    fprintf(stderr, "shoal: note: %s\n", line);
+}
 
 static void tell_progress(const struct simulate_progress *now, void *data) {
     struct teller *const teller = data;
@@ -39,27 +53,41 @@ static void tell_warning(enum warning warning, const char *line, void *data) {
     fprintf(stderr, "shoal: warning: %s\n", line);
 }
 
-static enum status run_case(const struct case_values *values, const struct request *request, const char *path) {
-    struct teller teller = {.quiet = request->quiet};
-    progress_start(&teller.progress);
+/* Run, or resume where values is NULL, and tell about it. */
+static enum status run_and_tell(const struct case_values *values, const struct request *request, const char *path,
+                                struct teller *teller) {
     const struct simulate_options options = {.path = path,
                                              .overwrite = request->force,
                                              .command = request->command_line,
+                                             .checkpoint_at = request->checkpoint_at,
+                                             .begin = tell_begin,
                                              .progress = request->quiet ? NULL : tell_progress,
                                              .warn = tell_warning,
-                                             .data = &teller,
+                                             .note = tell_note,
+                                             .data = teller,
                                              .stop = main_stop_signal()};
+    const struct simulate_changes changes = {request->n_assignments, request->assignments, *request->end != '\0'};
+    if (request->max_wall) TRY(main_limit_wall_time(request->max_wall));
     main_catch_signals();
-    TRY(parallel_try_threads(values->school.threads));
-    main_spread_threads(values->school.threads);
-    const enum status status = simulate_run(values, &options);
-    progress_end(&teller.progress);
-    TRY(status);
-    if (request->verbose) TRY(main_print_info(path, 0));
-    if (!request->quiet && !request->verbose) printf("%s\n", path);
-    if (!request->strict || teller.n_warnings == 0) return STATUS_OK;
-    return status_fail(STATUS_MISSED, "%s: with --strict its %d warning%s", path, teller.n_warnings,
-                       teller.n_warnings > 1 ? "s are errors" : " is an error");
+    progress_start(&teller->progress);
+    const enum status status =
+        values ? simulate_run(values, &options) : simulate_resume(request->positional, &changes, &options);
+    progress_end(&teller->progress);
+    return status;
+}
+
+static enum status run_case(const struct case_values *values, const struct request *request, const char *path) {
+    struct teller teller = {.quiet = request->quiet};
+    enum status status = run_and_tell(values, request, path, &teller);
+    const char *const result = teller.path ? teller.path : "";
+    if (status == STATUS_OK && request->verbose) status = main_print_info(result, 0);
+    if (status == STATUS_OK && !request->quiet && !request->verbose) printf("%s\n", result);
+    if (status == STATUS_OK && request->strict && teller.n_warnings > 0) {
+        status = status_fail(STATUS_MISSED, "%s: with --strict its %d warning%s", result, teller.n_warnings,
+                             teller.n_warnings > 1 ? "s are errors" : " is an error");
+    }
+    free(teller.path);
+    return status;
 }
 
 enum status main_run(const struct request *request) {
@@ -74,6 +102,10 @@ enum status main_run(const struct request *request) {
     }
     case_free(&values);
     return status;
+}
+
+enum status main_resume(const struct request *request) {
+    return run_case(NULL, request, NULL);
 }
 
 // ---- demo

@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <stddef.h>
+#include <stdio.h>
 #include <unistd.h>
 
 static volatile sig_atomic_t stop_signal;
@@ -22,16 +23,37 @@ void main_reset_signals(void) {
     signal(SIGCHLD, SIG_DFL);
 }
 
-void main_catch_signals(void) {
-    struct sigaction action = {.sa_handler = on_signal};
+// ask to stop at a signal, unless the program that started us has it ignored
+static void catch_one(int number, int flags) {
+    struct sigaction action = {.sa_handler = on_signal, .sa_flags = flags}, before;
     sigemptyset(&action.sa_mask);
-    action.sa_flags = (int)SA_RESETHAND;
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
+    if (sigaction(number, NULL, &before) == 0 && before.sa_handler != SIG_IGN) sigaction(number, &action, NULL);
+}
+
+void main_catch_signals(void) {
+    catch_one(SIGINT, (int)SA_RESETHAND);
+    // a queue may send these more than once while the checkpoint is written
+    catch_one(SIGTERM, 0);
+    catch_one(SIGHUP, 0);
+    catch_one(SIGUSR1, 0);
     // a full disk or a file limit is an error to report, not a death
     signal(SIGXFSZ, SIG_IGN);
     // so is a closed pipe; of progress, it is not even that
     signal(SIGPIPE, SIG_IGN);
+}
+
+enum status main_limit_wall_time(const char *text) {
+    int hours, minutes, seconds, length = 0;
+    const int n = sscanf(text, "%5d:%2d:%2d%n", &hours, &minutes, &seconds, &length);
+    const int is_time =
+        n == 3 && text[length] == '\0' && hours >= 0 && minutes >= 0 && seconds >= 0 && minutes < 60 && seconds < 60;
+    const int total = is_time ? (hours * 60 + minutes) * 60 + seconds : 0;
+    if (total == 0) return status_fail(STATUS_CASE, "--max-wall %s: expects HH:MM:SS, such as 23:50:00", text);
+    struct sigaction action = {.sa_handler = on_signal};
+    sigemptyset(&action.sa_mask);
+    sigaction(SIGALRM, &action, NULL);
+    alarm((unsigned)total);
+    return STATUS_OK;
 }
 
 const volatile sig_atomic_t *main_stop_signal(void) {

@@ -4,6 +4,8 @@
 
 #include <signal.h>
 
+#include "base/status.h"
+
 /* Open /dev/null in the place of standard input, output and error where the program was started without them: the next
  * file would take their number, and what is printed would go into it. */
 void main_open_standard(void);
@@ -11,10 +13,14 @@ void main_open_standard(void);
 /* Wait for our own processes even where the program that started us ignores the ends of its own. */
 void main_reset_signals(void);
 
-/* From here on a first SIGINT or SIGTERM asks the work to stop; a second one ends the program at once. */
+/* From here on SIGINT, SIGTERM, SIGHUP and SIGUSR1 ask the work to stop; a second SIGINT ends the program at once. What
+ * the program that started us has ignored stays ignored. */
 void main_catch_signals(void);
 
-/* The number of that signal; 0 before. */
+/* Ask the work to stop after this time, "HH:MM:SS" (--max-wall). Fails with STATUS_CASE where it is none. */
+enum status main_limit_wall_time(const char *text);
+
+/* The number of the last of these signals, SIGALRM where the time is over; 0 before. */
 const volatile sig_atomic_t *main_stop_signal(void);
 
 #endif

@@ -54,6 +54,7 @@ static enum status run_study(const struct case_values *values, const struct requ
     if (request->processes) TRY(read_count("-j", request->processes, &options.n_processes));
     if (request->limit) TRY(read_number("--limit", request->limit, 0, &options.limit));
     if (request->members) TRY(read_range(request->members, &options.first, &options.last));
+    if (request->max_wall) TRY(main_limit_wall_time(request->max_wall));
     main_catch_signals();
     int n_failed;
     const enum status status = study_run(values, &options, &n_failed);

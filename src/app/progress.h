@@ -2,7 +2,7 @@
 #ifndef PROGRESS_H
 #define PROGRESS_H
 
-#include "run/simulate.h"
+#include "run/simulate_run.h"
 #include "study/study.h"
 
 struct progress {

@@ -12,6 +12,16 @@ const char *version_short(void) {
     return "shoal " SHOAL_VERSION " (commit " SHOAL_COMMIT ")";
 }
 
+void version_processor(char text[VERSION_LENGTH]) {
+#ifdef __x86_64__
+    snprintf(text, VERSION_LENGTH, "x86-64 with%s%s%s%s", __builtin_cpu_supports("sse4.1") ? " sse4.1" : "",
+             __builtin_cpu_supports("fma") ? " fma" : "", __builtin_cpu_supports("avx2") ? " avx2" : "",
+             __builtin_cpu_supports("avx512f") ? " avx512f" : "");
+#else
+    snprintf(text, VERSION_LENGTH, "no x86-64");
+#endif
+}
+
 void version_libraries(char text[VERSION_LENGTH]) {
     char sundials[32] = "unknown";
     SUNDIALSGetVersion(sundials, sizeof sundials);

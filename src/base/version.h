@@ -13,4 +13,8 @@ const char *version_short(void);
  * that KLU knows its version at compile time only. */
 void version_libraries(char text[VERSION_LENGTH]);
 
+/* Write "x86-64 with fma avx2": what a processor has that libraries choose their code by. On another one the last bits
+ * of a sine may differ. */
+void version_processor(char text[VERSION_LENGTH]);
+
 #endif

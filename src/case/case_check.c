@@ -58,6 +58,7 @@ static void check_time(const struct check *check) {
     }
     check_multiple(check, "time.end", time->end, interval, shedding);
     check_multiple(check, "time.output_interval", time->output_interval, interval, shedding);
+    check_multiple(check, "time.checkpoint_interval", time->checkpoint_interval, interval, shedding);
     check_multiple(check, "output.wake_interval", check->values->output.wake_interval, "time.output_interval",
                    time->output_interval);
 }

@@ -42,6 +42,10 @@ const struct key case_table[] = {
     {"time.output_interval", REAL, AT(time.output_interval), NULL, ABOVE(0), "s",
      .meaning = "time between two rows of output; an integer multiple of shedding_interval",
      .derived = "ten shedding intervals", .synonyms = "output_every save_interval dt_out"},
+    {"time.checkpoint_interval", REAL, AT(time.checkpoint_interval), "0", FROM(0), "s",
+     .meaning = "time between two checkpoints, from which `shoal resume` goes on; an integer multiple of "
+                "shedding_interval; 0: only when the run is stopped",
+     .synonyms = "checkpoint restart_interval checkpoint_every save_every"},
 
     {"fluid.density", REAL, AT(school.fluid.density), "1000", FROM(0), "kg m-3",
      .meaning = "density of the fluid; 0: no fluid forces", .synonyms = "rho rho_f"},

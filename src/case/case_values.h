@@ -11,8 +11,9 @@ enum precision { PRECISION_DOUBLE, PRECISION_SINGLE };
 enum preset { PRESET_NONE, PRESET_PUBLISHED };
 
 struct case_time {
-    double end;             /* s */
-    double output_interval; /* s; default ten shedding intervals */
+    double end;                 /* s */
+    double output_interval;     /* s; default ten shedding intervals */
+    double checkpoint_interval; /* s; 0: only when the run is stopped */
 };
 
 struct case_solver {

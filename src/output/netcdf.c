@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "base/version.h"
+#include "output/durable.h"
 
 enum {
     SPARE_BYTES = 4096,     /* kept at the end of the header for attributes that other programs add later */
@@ -46,13 +47,6 @@ char *netcdf_local_path(const char *path, size_t more) {
     return local;
 }
 
-/* The folder that a file is in. */
-static void folder_of(const char *path, char folder[PATH_MAX]) {
-    const char *const slash = strrchr(path, '/');
-    const int length = slash == path ? 1 : slash ? (int)(slash - path) : 0;
-    snprintf(folder, PATH_MAX, "%.*s", length > 0 ? length : 1, length > 0 ? path : ".");
-}
-
 bool netcdf_has_memory(void) {
     // its first call takes 2.2 MB
     void *volatile const needed = malloc((size_t)4 << 20);
@@ -63,7 +57,7 @@ bool netcdf_has_memory(void) {
 /* What can be wrong with the place of a file, and what to do about it. */
 static enum status creation_failed(const char *path, int code) {
     char folder[PATH_MAX];
-    folder_of(path, folder);
+    durable_folder_of(path, folder);
     switch (code) {
         case ENOENT:
         case ENOTDIR:
@@ -95,7 +89,7 @@ enum status netcdf_check_target(const char *path, bool overwrite) {
     if (path[0] == '\0') return status_fail(STATUS_FILE, "the name of the result file is empty: choose one with -o");
     if (lstat(path, &target) != 0) {
         char folder[PATH_MAX];
-        folder_of(path, folder);
+        durable_folder_of(path, folder);
         return access(folder, W_OK | X_OK) == 0 ? STATUS_OK : creation_failed(path, errno);
     }
     if (S_ISDIR(target.st_mode))
@@ -139,6 +133,25 @@ enum status netcdf_create(struct netcdf_writer *writer, const char *path, const 
         if (writer->code == NC_NOERR) writer->descriptor = open(writer->temporary, O_RDONLY | O_CLOEXEC);
         if (writer->code == NC_NOERR && writer->descriptor < 0) writer->code = errno;
         write_origin(writer, title, command);
+    } else {
+        writer->code = ENOMEM;
+    }
+    if (writer->code == NC_NOERR) return STATUS_OK;
+    const enum status status = creation_failed(path, writer->code);
+    netcdf_finish(writer);
+    return status;
+}
+
+enum status netcdf_continue(struct netcdf_writer *writer, const char *path) {
+    *writer = (struct netcdf_writer){.file = -1, .descriptor = -1, .last_fsync = -INFINITY};
+    writer->target = netcdf_local_path(path, 0);
+    if (writer->target) {
+        writer->path = writer->target + (path[0] == '/' ? 0 : strlen("./"));
+        size_t buffer_bytes = BUFFER_BYTES;
+        CALL(writer, nc__open(writer->target, NC_WRITE, &buffer_bytes, &writer->file));
+        CALL(writer, nc_set_fill(writer->file, NC_NOFILL, NULL));
+        if (writer->code == NC_NOERR) writer->descriptor = open(writer->target, O_RDONLY | O_CLOEXEC);
+        if (writer->code == NC_NOERR && writer->descriptor < 0) writer->code = errno;
     } else {
         writer->code = ENOMEM;
     }
@@ -226,26 +239,11 @@ void netcdf_write_text(struct netcdf_writer *writer, int variable, const size_t 
 
 // ---- on disk
 
-static int fsync_code(int descriptor) {
-    return fsync(descriptor) == 0 ? NC_NOERR : errno;
-}
-
 void netcdf_sync(struct netcdf_writer *writer, bool now) {
     CALL(writer, nc_sync(writer->file));
     if (!now && seconds_now() - writer->last_fsync < 1) return;
-    CALL(writer, fsync_code(writer->descriptor));
+    CALL(writer, durable_sync(writer->descriptor));
     writer->last_fsync = seconds_now();
-}
-
-/* Make the name of a file survive a power cut. Some file systems cannot, and a folder may be closed to readers. */
-static int fsync_folder(const char *path) {
-    char folder[PATH_MAX];
-    folder_of(path, folder);
-    const int descriptor = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (descriptor < 0) return NC_NOERR;
-    const int code = fsync_code(descriptor);
-    close(descriptor);
-    return code == EINVAL || code == ENOTSUP ? NC_NOERR : code;
 }
 
 /* Give the file its name; errno or 0. A link, unlike a renaming, refuses to replace what another run has made in the
@@ -265,7 +263,7 @@ enum status netcdf_publish(struct netcdf_writer *writer, bool overwrite) {
     if (writer->code != NC_NOERR) return creation_failed(writer->path, writer->code);
     free(writer->temporary);
     writer->temporary = NULL;
-    CALL(writer, fsync_folder(writer->path));
+    CALL(writer, durable_sync_folder(writer->path));
     return writer->code == NC_NOERR ? STATUS_OK : creation_failed(writer->path, writer->code);
 }
 

@@ -6,6 +6,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #include "base/status.h"
 
@@ -45,6 +46,10 @@ enum status netcdf_check_target(const char *path, bool overwrite);
  * and the command line) and source (this version and its libraries). Fails with STATUS_FILE or STATUS_MEMORY; nothing
  * is then left, and netcdf_finish does nothing. */
 enum status netcdf_create(struct netcdf_writer *writer, const char *path, const char *title, const char *command);
+
+/* Go on writing a file of ours that is there, where the last one ended: its definitions stay as they are. Fails with
+ * STATUS_FILE or STATUS_MEMORY; netcdf_finish then does nothing. */
+enum status netcdf_continue(struct netcdf_writer *writer, const char *path);
 
 /* Define a dimension, which grows where the length is 0, or a variable; the number it gets. */
 int netcdf_define_dimension(struct netcdf_writer *writer, const char *name, size_t length);
@@ -130,6 +135,22 @@ enum status netcdf_read_doubles(const struct netcdf_reader *reader, const char *
                                 double *values);
 enum status netcdf_read_text(const struct netcdf_reader *reader, const char *name, const struct netcdf_slice *slice,
                              char *values);
+
+/* ---- rows of a CDF-5 file, as bytes */
+
+struct netcdf_rows {
+    uint64_t begin;         /* of all values */
+    uint64_t begin_of_rows; /* of the first row */
+    uint64_t bytes;         /* of each row */
+    uint64_t n;
+};
+
+/* Where the rows of a file are. Refused is what netcdf_open refuses. */
+enum status netcdf_read_rows(const char *path, struct netcdf_rows *rows);
+
+/* Remove the rows behind the first n of a file that nobody has open. The file is whole at every time in between. Fails
+ * with STATUS_FILE. */
+enum status netcdf_cut_rows(const char *path, const struct netcdf_rows *rows, uint64_t n);
 
 /* ---- shared by the files of netcdf only */
 

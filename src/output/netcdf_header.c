@@ -1,4 +1,5 @@
-/* netcdf_header.c: is a file whole? NetCDF reads what is missing at its end as zeros, and trusts its sizes.
+/* netcdf_header.c: is a file whole, and where are its rows? NetCDF reads what is missing at its end as zeros, and
+ * trusts its sizes.
  *
  *     header    = "CDF" version  n_rows  dimensions  attributes  variables
  *     list      = tag  n  n entries; both 0: none          tag: DIMENSION, ATTRIBUTE, VARIABLE
@@ -11,11 +12,14 @@
  * and values are filled up to 4 bytes. A row holds one entry of each variable that grows, one after the other.
  * https://docs.unidata.ucar.edu/netcdf-c/current/file_format_specifications.html */
 #include <errno.h>
+#include <fcntl.h>
 #include <netcdf.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
+#include "output/durable.h"
 #include "output/netcdf.h"
 
 enum tag { DIMENSION = 10, VARIABLE = 11, ATTRIBUTE = 12 };
@@ -28,6 +32,7 @@ struct header {
     int version, n_bytes;
     uint64_t n_rows, n_dimensions;
     uint64_t length[NC_MAX_DIMS];              /* of the dimensions */
+    uint64_t begin, begin_of_rows;             /* of the first value, of the first row */
     uint64_t end;                              /* of the variables that do not grow */
     uint64_t end_of_row;                       /* of the first */
     uint64_t row_bytes, n_growing, last_bytes; /* size of a row; variables in it; of the last, not filled up */
@@ -138,7 +143,9 @@ static void read_variable(struct header *header) {
     if (header->is_damaged) return;
     uint64_t *const end = grows ? &header->end_of_row : &header->end;
     if (begin + bytes > *end) *end = begin + bytes;
+    if (begin < header->begin) header->begin = begin;
     if (!grows) return;
+    if (begin < header->begin_of_rows) header->begin_of_rows = begin;
     header->n_growing++;
     header->last_bytes = bytes;
     header->row_bytes += fill_up(bytes);
@@ -147,6 +154,7 @@ static void read_variable(struct header *header) {
 
 static void read_header(struct header *header) {
     char magic[4] = "";
+    header->begin = header->begin_of_rows = max_size;
     if (fread(magic, 1, sizeof magic, header->file) != sizeof magic) header->is_damaged = true;
     header->version = magic[3];
     header->n_bytes = header->version == 5 ? 8 : 4;
@@ -181,19 +189,19 @@ static uint64_t size_of(FILE *file) {
     return (uint64_t)ftello(file);
 }
 
-enum status netcdf_check_header(const char *path) {
-    struct header header = {.file = fopen(path, "rb")};
-    if (!header.file) return status_fail(STATUS_FILE, "%s: cannot be read: %s", path, strerror(errno));
+static enum status examine(struct header *header, const char *path) {
+    header->file = fopen(path, "rb");
+    if (!header->file) return status_fail(STATUS_FILE, "%s: cannot be read: %s", path, strerror(errno));
     enum status status = STATUS_OK;
-    if (is_netcdf(header.file)) {
-        header.size = size_of(header.file);
-        rewind(header.file);
-        read_header(&header);
+    if (is_netcdf(header->file)) {
+        header->size = size_of(header->file);
+        rewind(header->file);
+        read_header(header);
         // a row that was added meanwhile counts in the header, which was read after the size
-        header.size = size_of(header.file);
-        if (header.is_damaged) {
+        header->size = size_of(header->file);
+        if (header->is_damaged) {
             status = status_fail(STATUS_FILE, "%s: cannot be read: its header is damaged", path);
-        } else if (!has_all_values(&header)) {
+        } else if (!has_all_values(header)) {
             status = status_fail(STATUS_FILE, "%s: the end of the file is missing: was it copied completely?", path);
         }
     } else {
@@ -201,6 +209,39 @@ enum status netcdf_check_header(const char *path) {
                              "%s: cannot be read: not a NetCDF file of a classic format: name a file that shoal wrote",
                              path);
     }
-    fclose(header.file);
+    fclose(header->file);
     return status;
+}
+
+enum status netcdf_check_header(const char *path) {
+    struct header header = {0};
+    return examine(&header, path);
+}
+
+enum status netcdf_read_rows(const char *path, struct netcdf_rows *rows) {
+    struct header header = {0};
+    TRY(examine(&header, path));
+    *rows = (struct netcdf_rows){header.begin, header.begin_of_rows, header.row_bytes, header.n_rows};
+    return header.n_growing > 0 ? STATUS_OK : status_fail(STATUS_FILE, "%s: has no rows", path);
+}
+
+// write another number of rows and drop what follows the last one; errno or 0
+static int cut(int descriptor, const struct netcdf_rows *rows, uint64_t n) {
+    unsigned char number[8];
+    for (int i = 0; i < 8; i++) number[i] = (unsigned char)(n >> (8 * (7 - i)) & 0xff);
+    // first the number: a longer file is whole too
+    if (pwrite(descriptor, number, sizeof number, 4) != sizeof number) return errno;
+    const int code = durable_sync(descriptor);
+    if (code != 0) return code;
+    if (ftruncate(descriptor, (off_t)(rows->begin_of_rows + n * rows->bytes)) != 0) return errno;
+    return durable_sync(descriptor);
+}
+
+enum status netcdf_cut_rows(const char *path, const struct netcdf_rows *rows, uint64_t n) {
+    if (rows->n == n) return STATUS_OK;
+    const int descriptor = open(path, O_WRONLY | O_CLOEXEC);
+    int code = descriptor < 0 ? errno : cut(descriptor, rows, n);
+    if (descriptor >= 0 && close(descriptor) != 0 && code == 0) code = errno;
+    if (code == 0) return STATUS_OK;
+    return status_fail(STATUS_FILE, "%s: its last rows cannot be removed: %s", path, strerror(code));
 }

@@ -17,7 +17,9 @@ static const struct note {
 } notes[] = {
     [RESULT_WARNINGS] = {"warnings", MAX_NOTE_LENGTH},
     [RESULT_CLOSEST_APPROACH] = {"closest_approach", 256},
+    [RESULT_CHECKPOINT_AT] = {"checkpoint_at", 1024},
 };
+enum { N_NOTES = sizeof notes / sizeof *notes };
 
 struct result_file {
     struct netcdf_writer writer;
@@ -25,7 +27,8 @@ struct result_file {
     int *number;                        /* of the variables in the file                (result_table_n) */
     enum output_forces forces;          /* which of them it has */
     size_t n_rows;
-    double *buffer; /* one row, or the whole, of the largest variable */
+    struct result_checksum checksum; /* of the rows that were marked last */
+    double *buffer;                  /* one row, or the whole, of the largest variable */
 };
 
 // ---- the header
@@ -90,8 +93,7 @@ static void write_attributes(struct result_file *result, const struct case_value
     struct netcdf_writer *const writer = &result->writer;
     netcdf_write_integer(writer, NETCDF_GLOBAL, "shoal_schema", RESULT_SCHEMA);
     write_run_status(result, "running");
-    result_file_note(result, RESULT_WARNINGS, "");
-    result_file_note(result, RESULT_CLOSEST_APPROACH, "");
+    for (int i = 0; i < N_NOTES; i++) result_file_note(result, (enum result_note)i, "");
     netcdf_write_string(writer, NETCDF_GLOBAL, "case_text", values->text);
     if (values->study) {
         netcdf_write_string(writer, NETCDF_GLOBAL, "study_case", values->study);
@@ -168,24 +170,98 @@ static struct result_file *allocate(const struct school *school, long n_events) 
     return NULL;
 }
 
-enum status result_file_create(struct result_file **result, const char *path, int overwrite,
-                               const struct case_values *values, const char *effective, const char *command,
-                               const struct school *school, long n_events) {
+/* What a new file is made of. */
+struct origin {
+    const char *path;
+    int overwrite;
+    const struct case_values *values;
+    const char *effective, *command;
+    const struct school *school;
+    const struct result_source *source; /* rows that it begins with; NULL: none */
+};
+
+static enum status copy_rows(struct result_file *result, const struct result_source *source) {
+    const struct result_target target = {&result->writer, result->number, result->forces, result->length,
+                                         result->buffer};
+    TRY(result_copy_rows(source, &target));
+    result->n_rows = (size_t)source->n_rows;
+    return STATUS_OK;
+}
+
+static enum status write_new(struct result_file *result, const struct origin *origin) {
+    TRY(netcdf_create(&result->writer, origin->path, origin->values->name, origin->command));
+    define_all(result, origin->values, origin->effective);
+    write_variables(result, false, &(struct result_row){.school = origin->school});
+    const enum status status =
+        origin->source ? copy_rows(result, origin->source) : netcdf_publish(&result->writer, origin->overwrite);
+    if (status != STATUS_OK) netcdf_finish(&result->writer);
+    return status;
+}
+
+static enum status create(struct result_file **result, const struct origin *origin, long n_events) {
     *result = NULL;
-    TRY(netcdf_check_target(path, overwrite));
-    struct result_file *const new = allocate(school, n_events);
-    if (!new) return status_fail(STATUS_MEMORY, "%s: out of memory while writing", path);
-    new->forces = values->output.forces;
-    enum status status = netcdf_create(&new->writer, path, values->name, command);
-    if (status == STATUS_OK) {
-        define_all(new, values, effective);
-        write_variables(new, false, &(struct result_row){.school = school});
-        status = netcdf_publish(&new->writer, overwrite);
-    }
+    TRY(netcdf_check_target(origin->path, origin->overwrite));
+    struct result_file *const new = allocate(origin->school, n_events);
+    if (!new) return status_fail(STATUS_MEMORY, "%s: out of memory while writing", origin->path);
+    new->forces = origin->values->output.forces;
+    const enum status status = write_new(new, origin);
     if (status == STATUS_OK) {
         *result = new;
     } else {
-        netcdf_finish(&new->writer);
+        release(new);
+    }
+    return status;
+}
+
+enum status result_file_create(struct result_file **result, const char *path, int overwrite,
+                               const struct case_values *values, const char *effective, const char *command,
+                               const struct school *school, long n_events) {
+    const struct origin origin = {path, overwrite, values, effective, command, school, NULL};
+    return create(result, &origin, n_events);
+}
+
+enum status result_file_extend(struct result_file **result, const struct result_source *source,
+                               const struct case_values *values, const char *effective, const char *command,
+                               const struct school *school, long n_events) {
+    const struct origin origin = {source->path, 1, values, effective, command, school, source};
+    return create(result, &origin, n_events);
+}
+
+enum status result_file_publish(struct result_file *result) {
+    return netcdf_publish(&result->writer, true);
+}
+
+/* Find all variables of a file that is there, and mark it as running. */
+static enum status find_all(struct result_file *result, const char *path) {
+    TRY(netcdf_continue(&result->writer, path));
+    for (int i = 0; i < result_table_n; i++) {
+        if (is_written(result, &result_table[i]))
+            result->number[i] = netcdf_number(&result->writer, result_table[i].name);
+    }
+    write_run_status(result, "running");
+    netcdf_sync(&result->writer, true);
+    const int code = result->writer.code;
+    if (code == 0) return STATUS_OK;
+    netcdf_finish(&result->writer);
+    return status_fail(STATUS_FILE, "%s: cannot be continued: %s", path, netcdf_reason(code));
+}
+
+enum status result_file_continue(struct result_file **result, const char *path, const struct result_mark *mark,
+                                 const struct result_checksum *checksum, const struct case_values *values,
+                                 const struct school *school, long n_events) {
+    struct netcdf_rows rows;
+    *result = NULL;
+    TRY(netcdf_read_rows(path, &rows));
+    TRY(netcdf_cut_rows(path, &rows, (uint64_t)mark->n_rows));
+    struct result_file *const new = allocate(school, n_events);
+    if (!new) return status_fail(STATUS_MEMORY, "%s: out of memory while writing", path);
+    new->forces = values->output.forces;
+    new->n_rows = (size_t)mark->n_rows;
+    new->checksum = *checksum;
+    const enum status status = find_all(new, path);
+    if (status == STATUS_OK) {
+        *result = new;
+    } else {
         release(new);
     }
     return status;
@@ -208,15 +284,26 @@ enum status result_file_row(struct result_file *result, const struct result_row 
                        path, t, netcdf_reason(result->writer.code));
 }
 
+enum status result_file_mark(struct result_file *result, struct result_mark *mark) {
+    netcdf_sync(&result->writer, true);
+    if (result->writer.code != 0) {
+        return status_fail(STATUS_FILE, "%s: cannot be written (%s): make room or choose another place with -o",
+                           result->writer.path, netcdf_reason(result->writer.code));
+    }
+    const char *const path = result->writer.temporary ? result->writer.temporary : result->writer.path;
+    return result_mark_take(path, (long)result->n_rows, &result->checksum, mark);
+}
+
 enum status result_file_close(struct result_file *result, const char *run_status) {
     if (!result) return STATUS_OK;
     struct netcdf_writer *const writer = &result->writer;
+    const bool is_published = !writer->temporary;
     // what NetCDF holds after a failed write cannot be written
-    if (writer->code != 0) netcdf_reopen(writer);
+    if (is_published && writer->code != 0) netcdf_reopen(writer);
     write_run_status(result, run_status);
     netcdf_sync(writer, true);
     enum status status = STATUS_OK;
-    if (writer->code != 0) {
+    if (is_published && writer->code != 0) {
         status = status_fail(STATUS_FILE, "%s: cannot be closed (%s): its last rows may be missing", writer->path,
                              netcdf_reason(writer->code));
         netcdf_reopen(writer);

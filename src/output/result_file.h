@@ -6,6 +6,8 @@
 #include "base/status.h"
 #include "case/case.h"
 #include "model/fish.h"
+#include "output/result_copy.h"
+#include "output/result_mark.h"
 #include "output/result_table.h"
 
 struct result_file; /* an open result file */
@@ -18,12 +20,31 @@ enum status result_file_create(struct result_file **result, const char *path, in
                                const struct case_values *values, const char *effective, const char *command,
                                const struct school *school, long n_events);
 
+/* Make such a file from one that a shorter or longer run of the same case left at the same path: it begins with rows of
+ * that one, which it replaces with result_file_publish; result_file_close before that removes it. */
+enum status result_file_extend(struct result_file **result, const struct result_source *source,
+                               const struct case_values *values, const char *effective, const char *command,
+                               const struct school *school, long n_events);
+
+enum status result_file_publish(struct result_file *result);
+
+/* Go on writing a file that result_file_create made for this case, behind the rows of a mark with this checksum; what
+ * follows them is removed. run_status is "running" again. Fails with STATUS_FILE or STATUS_MEMORY; *result is then
+ * NULL. */
+enum status result_file_continue(struct result_file **result, const char *path, const struct result_mark *mark,
+                                 const struct result_checksum *checksum, const struct case_values *values,
+                                 const struct school *school, long n_events);
+
+/* Make all rows survive a power cut, and mark them. Fails with STATUS_FILE. */
+enum status result_file_mark(struct result_file *result, struct result_mark *mark);
+
 /* Append one row. Readers see it at once; a power cut costs the rows of the last second. Fails with STATUS_FILE. */
 enum status result_file_row(struct result_file *result, const struct result_row *row);
 
-/* Set an attribute for which the file keeps room, before it is closed: warnings (a line each) or closest_approach
- * ("1.2 m between a and b at t = 3 s"); both are empty before. A longer string is cut. */
-enum result_note { RESULT_WARNINGS, RESULT_CLOSEST_APPROACH };
+/* Set an attribute for which the file keeps room, before it is closed: warnings (a line each), closest_approach ("1.2 m
+ * between a and b at t = 3 s") or checkpoint_at ("0.3,1.25": when there were checkpoints besides those of
+ * time.checkpoint_interval, s); all are empty before. A longer string is cut. */
+enum result_note { RESULT_WARNINGS, RESULT_CLOSEST_APPROACH, RESULT_CHECKPOINT_AT };
 void result_file_note(struct result_file *result, enum result_note note, const char *text);
 
 /* Set the attribute run_status ("complete", "failed: why", "stopped") and close. Accepts NULL. Fails with

@@ -16,15 +16,36 @@ char *record_path(const struct case_values *values) {
     return path;
 }
 
-enum status record_create(struct record *record, const struct case_values *values, const struct school *school,
-                          long n_events, const char *path, int overwrite, const char *command) {
+static void begin(struct record *record, const struct case_values *values, long n_events, const char *path) {
     *record = (struct record){.path = path, .n_events = n_events};
     record->events_per_row = lround(values->time.output_interval / values->school.shedding_interval);
     record->events_per_wake = lround(values->output.wake_interval / values->school.shedding_interval);
+}
+
+enum status record_create(struct record *record, const struct case_values *values, const struct school *school,
+                          long n_events, const char *path, int overwrite, const char *command) {
+    begin(record, values, n_events, path);
     char *effective = NULL;
     TRY(case_show(values, &effective));
     const enum status status =
         result_file_create(&record->file, path, overwrite, values, effective, command, school, n_events);
+    free(effective);
+    return status;
+}
+
+enum status record_continue(struct record *record, const struct case_values *values, const struct school *school,
+                            long n_events, const char *path, const struct result_mark *mark,
+                            const struct result_checksum *checksum) {
+    begin(record, values, n_events, path);
+    return result_file_continue(&record->file, path, mark, checksum, values, school, n_events);
+}
+
+enum status record_extend(struct record *record, const struct case_values *values, const struct school *school,
+                          long n_events, const struct result_source *source, const char *command) {
+    begin(record, values, n_events, source->path);
+    char *effective = NULL;
+    TRY(case_show(values, &effective));
+    const enum status status = result_file_extend(&record->file, source, values, effective, command, school, n_events);
     free(effective);
     return status;
 }

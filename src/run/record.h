@@ -23,6 +23,14 @@ char *record_path(const struct case_values *values);
 enum status record_create(struct record *record, const struct case_values *values, const struct school *school,
                           long n_events, const char *path, int overwrite, const char *command);
 
+/* The same for a file that is there: go on behind the rows of a mark, or make it again for another end with the rows
+ * of a source, to be published (result_file_continue, result_file_extend). */
+enum status record_continue(struct record *record, const struct case_values *values, const struct school *school,
+                            long n_events, const char *path, const struct result_mark *mark,
+                            const struct result_checksum *checksum);
+enum status record_extend(struct record *record, const struct case_values *values, const struct school *school,
+                          long n_events, const struct result_source *source, const char *command);
+
 /* Whether an event is a row: every output interval, and the end. Not without a file. */
 int record_is_due(const struct record *record, long event);
 

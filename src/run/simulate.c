@@ -1,4 +1,4 @@
-/* simulate.c: the loop of events, and the output that is due at some of them. */
+/* simulate.c: all that a run has in memory, made from a case or from a state. */
 #include "run/simulate.h"
 
 #include <math.h>
@@ -8,7 +8,6 @@
 #include "output/netcdf.h"
 #include "output/result_table.h"
 #include "run/event.h"
-#include "run/record.h"
 #include "solver/integrator_table.h"
 
 static double wall_clock(void) {
@@ -157,92 +156,4 @@ void simulate_row(struct simulation *simulation, struct integrator_counts *count
                                .counts = counts,
                                .wall_time = simulate_wall_time(simulation),
                                .with_wake = true};
-}
-
-// a run and its result file
-struct run {
-    const struct case_values *values;
-    const struct simulate_options *options;
-    struct simulation *simulation;
-    struct record record;
-};
-
-static enum status write_if_due(struct run *run) {
-    if (!record_is_due(&run->record, run->simulation->state->event)) return STATUS_OK;
-    struct integrator_counts counts;
-    struct result_row row;
-    simulate_row(run->simulation, &counts, &row);
-    return record_row(&run->record, &row);
-}
-
-static void tell(const struct run *run) {
-    if (!run->options->progress) return;
-    const struct simulation *const simulation = run->simulation;
-    struct integrator_counts counts;
-    simulation->integrator->count(simulation->solver, &counts);
-    struct simulate_progress progress = {.t = simulation->state->t,
-                                         .end = run->values->time.end,
-                                         .event = simulation->state->event,
-                                         .steps = counts.steps,
-                                         .wall_time = simulate_wall_time(simulation)};
-    for (int f = 0; f < simulation->school->n_fish; f++) progress.n_vortices += simulation->state->wake[f].n_vortex;
-    run->options->progress(&progress, run->options->data);
-}
-
-static enum status loop(struct run *run) {
-    TRY(write_if_due(run));
-    while (run->simulation->state->event < run->simulation->n_events) {
-        if (run->options->stop && *run->options->stop) {
-            return status_fail(STATUS_STOPPED, "stopped by a signal at t = %.10g s; %s holds all rows up to there",
-                               run->simulation->state->t, run->options->path);
-        }
-        TRY(simulate_step(run->simulation));
-        TRY(write_if_due(run));
-        tell(run);
-    }
-    return STATUS_OK;
-}
-
-/* Where two bodies have been closest. */
-static void note_closest(const struct run *run) {
-    const struct school *const school = run->simulation->school;
-    const struct closest *const closest = run->simulation->state->closest;
-    if (isinf(closest->distance)) return;
-    char text[256];
-    snprintf(text, sizeof text, "%.4f m between %.60s and %.60s at t = %.4g s", closest->distance,
-             school->fish[closest->fish[0]].name, school->fish[closest->fish[1]].name, closest->t);
-    result_file_note(run->record.file, RESULT_CLOSEST_APPROACH, text);
-}
-
-/* Tell all warnings about what the last row holds, and put them into the file. */
-static void warn(const struct run *run) {
-    const struct simulation *const simulation = run->simulation;
-    char line[WARNING_BYTES], lines[N_WARNINGS * (WARNING_BYTES + 1)];
-    size_t length = 0;
-    for (enum warning w = 0; w < N_WARNINGS; w++) {
-        if (!warnings_line(w, simulation->school, simulation->state, simulation->diagnostics,
-                           simulation->residual->scratch, line))
-            continue;
-        length += (size_t)snprintf(lines + length, sizeof lines - length, "%s%s", length > 0 ? "\n" : "", line);
-        if (run->options->warn) run->options->warn(w, line, run->options->data);
-    }
-    if (length > 0) result_file_note(run->record.file, RESULT_WARNINGS, lines);
-    note_closest(run);
-}
-
-static enum status run_to_end(struct run *run) {
-    const struct simulate_options *const options = run->options;
-    TRY(simulate_prepare(&run->simulation, run->values, options->path, options->overwrite));
-    TRY(record_create(&run->record, run->values, run->simulation->school, run->simulation->n_events, options->path,
-                      options->overwrite, options->command));
-    const enum status status = loop(run);
-    warn(run);
-    return record_close(&run->record, status);
-}
-
-enum status simulate_run(const struct case_values *values, const struct simulate_options *options) {
-    struct run run = {.values = values, .options = options};
-    const enum status status = run_to_end(&run);
-    simulate_free(run.simulation);
-    return status;
 }

@@ -1,5 +1,5 @@
-/* simulate.h: a case from its start to its end: integrate to the next event, do the event, write what is due. Tested by
- * tests/run/test_simulate.c. */
+/* simulate.h: a run in memory, from event to event. Tested by tests/run/test_simulate.c and
+ * tests/run/test_take_up.c. */
 #ifndef SIMULATE_H
 #define SIMULATE_H
 
@@ -8,7 +8,6 @@
 #include "base/status.h"
 #include "case/case.h"
 #include "model/diagnostics.h"
-#include "model/warnings.h"
 #include "solver/integrator.h"
 
 struct result_row; /* output/result_table.h */
@@ -32,8 +31,8 @@ struct simulation {
 /* Build everything and do the event at t = 0. Fails with STATUS_CASE, STATUS_MEMORY or STATUS_SOLVER. */
 enum status simulate_create(struct simulation **simulation, const struct case_values *values);
 
-/* All that a run does before it opens its result file at path: refuses a place where none can be written, or one that
- * exists and must not be overwritten, with STATUS_FILE; then the same as simulate_create. */
+/* What can keep a run from its start: refuses a place where no result can be written, or one that exists and must not
+ * be overwritten, with STATUS_FILE; then the same as simulate_create. */
 enum status simulate_prepare(struct simulation **simulation, const struct case_values *values, const char *path,
                              int overwrite);
 
@@ -64,29 +63,5 @@ void simulate_row(struct simulation *simulation, struct integrator_counts *count
 
 /* Seconds of wall clock since the simulation was created. */
 double simulate_wall_time(const struct simulation *simulation);
-
-/* What a run tells while it goes on, after every event. */
-struct simulate_progress {
-    double t, end;
-    long event;
-    long steps;     /* of the integrator, in all */
-    int n_vortices; /* of all fish */
-    double wall_time;
-};
-
-struct simulate_options {
-    const char *path;                                                       /* of the result file */
-    int overwrite;                                                          /* replace one that exists */
-    const char *command;                                                    /* command line, for the file's history */
-    void (*progress)(const struct simulate_progress *progress, void *data); /* may be NULL */
-    /* told each warning about the result, before the run returns; may be NULL */
-    void (*warn)(enum warning warning, const char *line, void *data);
-    void *data;
-    const volatile sig_atomic_t *stop; /* the run stops at the next event once this is not 0; may be NULL */
-};
-
-/* Run a case into a result file. On STATUS_SOLVER, STATUS_CONTACT and STATUS_STOPPED the file is closed with all rows
- * up to there. */
-enum status simulate_run(const struct case_values *values, const struct simulate_options *options);
 
 #endif

@@ -16,7 +16,10 @@
 #include "base/parallel.h"
 #include "case/case.h"
 #include "case/case_member.h"
-#include "run/simulate.h"
+#include "case/case_show.h"
+#include "run/checkpoints.h"
+#include "run/resume.h"
+#include "run/simulate_run.h"
 #include "study/study_folder.h"
 #include "study/study_plan.h"
 
@@ -70,6 +73,25 @@ static void report_progress(const struct simulate_progress *now, void *data) {
     report->t = now->t;
 }
 
+/* Run a member, or go on with it where it was stopped. */
+static enum status run_or_resume(const struct case_values *values, const struct simulate_options *options) {
+    char *effective;
+    TRY(case_show(values, &effective));
+    char *const checkpoint = checkpoints_path(options->path);
+    double t;
+    enum status status;
+    if (!checkpoint) {
+        status = status_fail(STATUS_MEMORY, "out of memory: a file name");
+    } else if (resume_is_possible(options->path, checkpoint, effective, &t)) {
+        status = simulate_resume(checkpoint, &(struct simulate_changes){0}, options);
+    } else {
+        status = simulate_run(values, options);
+    }
+    free(checkpoint);
+    free(effective);
+    return status;
+}
+
 static enum status run_member(const struct study *study, const struct job *job) {
     struct case_values values;
     TRY(case_member(&values, study->values, job->member));
@@ -82,22 +104,18 @@ static enum status run_member(const struct study *study, const struct job *job) 
                                              .data = job->report,
                                              .stop = study->options->stop};
     if (!path) status = STATUS_MEMORY;
-    if (status == STATUS_OK) status = simulate_run(&values, &options);
+    if (status == STATUS_OK) status = run_or_resume(&values, &options);
     free(path);
     case_free(&values);
     return status;
 }
 
-/* Let every signal that asks the study to stop do the same here, not only the first: a signal to the whole process
- * group comes once from outside and once more from the study. */
-static void keep_handlers(void) {
-    const int numbers[] = {SIGINT, SIGTERM};
-    for (int i = 0; i < 2; i++) {
-        struct sigaction action;
-        sigaction(numbers[i], NULL, &action);
-        action.sa_flags &= ~(int)SA_RESETHAND;
-        sigaction(numbers[i], &action, NULL);
-    }
+/* Let every SIGINT ask to stop here, not only the first: a second one to the whole process group is for the study. */
+static void keep_handler(void) {
+    struct sigaction action;
+    sigaction(SIGINT, NULL, &action);
+    action.sa_flags &= ~(int)SA_RESETHAND;
+    sigaction(SIGINT, &action, NULL);
 }
 
 /* Never returns. mask: the signals that a member blocks. */
@@ -106,7 +124,7 @@ static void be_member(const struct study *study, const struct job *job, pid_t pa
     prctl(PR_SET_PDEATHSIG, SIGTERM);
     // once the study has been asked to stop its handlers are gone
     if (is_stopped(study) || getppid() != parent) _exit(status_exit_code(STATUS_STOPPED));
-    keep_handlers();
+    keep_handler();
     sigprocmask(SIG_SETMASK, mask, NULL);
     const enum status status = run_member(study, job);
     if (status != STATUS_OK) snprintf(job->report->reason, REASON_BYTES, "%s", status_message());

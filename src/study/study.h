@@ -1,6 +1,7 @@
 /* study.h: runs the members of a study, each in a process of its own. Tested by tests/study/test_study.sh.
  *
- * The next call on the same folder goes on: finished members are passed over, all others run again. */
+ * The next call on the same folder goes on: finished members are passed over, those with a checkpoint are resumed, and
+ * all others run again. */
 #ifndef STUDY_H
 #define STUDY_H
 

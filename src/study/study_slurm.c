@@ -64,14 +64,25 @@ static enum status write_array(const struct case_values *study, const char *fold
             "#SBATCH --array=0-%d\n"
             "#SBATCH --ntasks=1\n"
             "#SBATCH --cpus-per-task=%d\n"
+            "#SBATCH --signal=B:TERM@60\n"
             "#SBATCH --requeue\n"
             "#SBATCH --open-mode=append\n"
             "#SBATCH --output='%s/task-%%a.log'\n"
-            "# Each task runs %d of the %d members; one that is requeued continues where it was.\n"
+            "# Each task runs %d of the %d members. A minute before the time limit its members stop with checkpoints, "
+            "and it\n"
+            "# goes back into the queue, from which it goes on.\n"
             "first=$((SLURM_ARRAY_TASK_ID * %d))\n"
             "last=$((first + %d))\n"
             "[ $last -lt %d ] || last=%d\n"
-            "exec '%s' study '%s/study.yaml' -o '%s' --members $first-$last -j 1\n",
+            "'%s' study '%s/study.yaml' -o '%s' --members $first-$last -j 1 &\n"
+            "process=$!\n"
+            "trap 'kill -TERM $process' TERM\n"
+            "code=0\n"
+            "wait $process || code=$?\n"
+            "# a signal ends the wait, not yet the process\n"
+            "while kill -0 $process 2>/dev/null; do code=0; wait $process || code=$?; done\n"
+            "[ $code -ne 75 ] || scontrol requeue $SLURM_JOB_ID\n"
+            "exit $code\n",
             study->name, n_tasks - 1, study->school.threads, folder, bundle, sweep_n_members(study), bundle, bundle - 1,
             sweep_n_members(study), sweep_n_members(study) - 1, program, folder, folder);
     return close_file(file, folder);

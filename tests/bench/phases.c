@@ -22,6 +22,7 @@
 
 #include "output/result_file.h"
 #include "run/simulate.h"
+#include "run/simulate_run.h"
 #include "solver/linear.h"
 #include "vortex/kernel.h"
 #include "vortex/pairwise.h"

@@ -7,6 +7,7 @@
 #include "failing_malloc.h"
 #include "model/flow.h"
 #include "output/field_file.h"
+#include "run/simulate_run.h"
 #include "school.h"
 
 enum { N_POINTS = 60 };

@@ -5,6 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "run/simulate_run.h"
 #include "school.h"
 
 #define TIME "time: {end: 0.5, shedding_interval: 0.02}\n"

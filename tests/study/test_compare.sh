@@ -84,7 +84,7 @@ refused no_repeats 2 '--repeats: expects 1 to 99' compare case.yaml --repeats 0
 refused limit_of_nothing 2 '--limit 0: expects a number above 0' compare case.yaml --limit 0
 refused a_sweep 2 'this case has a sweep of 1 axis' compare case.yaml --set 'sweep=[{key: solver.rtol, values: [1e-3]}]'
 
-"$program" compare case.yaml --set time.end=40 --repeats 9 >out 2>err </dev/null &
+env --default-signal=INT "$program" compare case.yaml --set time.end=40 --repeats 9 >out 2>err </dev/null &
 comparison=$!
 sleep 0.3
 kill -INT "$comparison"

@@ -285,7 +285,7 @@ end
 
 # Start the study in the background and wait for member 0 to be finished and two others to run.
 start_long() {  # folder
-    "$program" study long.yaml -j 2 -o "$1" >out 2>err </dev/null &
+    env --default-signal=INT "$program" study long.yaml -j 2 -o "$1" >out 2>err </dev/null &
     study=$!
     for ((i = 0; i < 200; i++)); do
         [[ ! -e $1/member-0002.nc ]] || return 0

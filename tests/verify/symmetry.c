@@ -7,6 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "run/simulate_run.h"
 #include "verify.h"
 
 enum { N_FISH = 3, MOST_TEXT = 8192 };

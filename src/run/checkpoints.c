@@ -1,0 +1,145 @@
+/* checkpoints.c: the plan of checkpoints, and their files. */
+#include "run/checkpoints.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "case/case_show.h"
+
+// ---- names
+
+static char *with_ending(const char *path, size_t length, const char *ending) {
+    const size_t size = length + strlen(ending) + 1;
+    char *const name = malloc(size);
+    if (name) snprintf(name, size, "%.*s%s", (int)length, path, ending);
+    return name;
+}
+
+char *checkpoints_path(const char *result) {
+    const size_t length = strlen(result), n = strlen(".nc");
+    const int has_ending = length > n && strcmp(result + length - n, ".nc") == 0 && result[length - n - 1] != '/';
+    return with_ending(result, has_ending ? length - n : length, ".ckpt");
+}
+
+char *checkpoints_previous(const char *path) {
+    return with_ending(path, strlen(path), ".previous");
+}
+
+// ---- the plan
+
+static enum status refuse_time(const char *word, const struct case_values *values) {
+    return status_fail(STATUS_CASE,
+                       "--checkpoint-at: '%s' is not the time of an event: an integer multiple of "
+                       "time.shedding_interval, %.9g s, up to time.end, %.9g s",
+                       word, values->school.shedding_interval, values->time.end);
+}
+
+// read "0.3,1.25"
+static enum status read_places(struct checkpoints *checkpoints, const struct case_values *values, const char *at) {
+    const double interval = values->school.shedding_interval;
+    checkpoints->at = calloc(strlen(at) / 2 + 1, sizeof *checkpoints->at);
+    if (!checkpoints->at) return status_fail(STATUS_MEMORY, "out of memory: the times of checkpoints");
+    while (*at) {
+        char word[64];
+        const size_t length = strcspn(at, ",");
+        double time;
+        snprintf(word, sizeof word, "%.*s", (int)(length < sizeof word ? length : sizeof word - 1), at);
+        if (!text_number(word, &time)) return refuse_time(word, values);
+        const double event = round(time / interval);
+        const int is_event = fabs(time - event * interval) <= 1e-9 * time;
+        if (!is_event || time < 0 || time > values->time.end + interval / 2) return refuse_time(word, values);
+        checkpoints->at[checkpoints->n_at++] = (long)event;
+        at += length + (at[length] == ',');
+    }
+    return STATUS_OK;
+}
+
+enum status checkpoints_create(struct checkpoints *checkpoints, const struct case_values *values, const char *result,
+                               const char *at) {
+    *checkpoints = (struct checkpoints){.last = -1, .last_place = -1};
+    checkpoints->interval = lround(values->time.checkpoint_interval / values->school.shedding_interval);
+    checkpoints->path = checkpoints_path(result);
+    checkpoints->previous = checkpoints->path ? checkpoints_previous(checkpoints->path) : NULL;
+    if (!checkpoints->previous) return status_fail(STATUS_MEMORY, "out of memory: a file name");
+    if (at) TRY(read_places(checkpoints, values, at));
+    TRY(checkpoint_check_target(checkpoints->path));
+    TRY(checkpoint_check_target(checkpoints->previous));
+    return case_show(values, &checkpoints->effective);
+}
+
+void checkpoints_free(struct checkpoints *checkpoints) {
+    free(checkpoints->path);
+    free(checkpoints->previous);
+    free(checkpoints->effective);
+    free(checkpoints->at);
+    text_free(&checkpoints->places);
+    *checkpoints = (struct checkpoints){0};
+}
+
+enum status checkpoints_resume(struct checkpoints *checkpoints, const struct checkpoint *from, long event,
+                               int with_other_end) {
+    checkpoints->last_place = event;
+    if (*from->places) text_add(&checkpoints->places, "%s", from->places);
+    if (!with_other_end) {
+        checkpoints->last = event;
+        free(checkpoints->effective);
+        checkpoints->effective = strdup(from->effective);
+    }
+    return checkpoints->effective && !checkpoints->places.failed
+               ? STATUS_OK
+               : status_fail(STATUS_MEMORY, "out of memory: the checkpoints of a run");
+}
+
+void checkpoints_fall_back(const struct checkpoints *checkpoints) {
+    // where this fails the newest one is refused once more
+    rename(checkpoints->previous, checkpoints->path);
+}
+
+void checkpoints_remove(const struct checkpoints *checkpoints) {
+    unlink(checkpoints->path);
+    unlink(checkpoints->previous);
+}
+
+static int is_regular(const struct checkpoints *checkpoints, long event) {
+    return event > 0 && checkpoints->interval > 0 && event % checkpoints->interval == 0;
+}
+
+int checkpoints_are_due(const struct checkpoints *checkpoints, long event) {
+    int is_due = is_regular(checkpoints, event);
+    for (int i = 0; i < checkpoints->n_at; i++) is_due |= checkpoints->at[i] == event;
+    return is_due;
+}
+
+// ---- writing
+
+static enum status write_one(struct checkpoints *checkpoints, const struct simulation *simulation,
+                             const struct record *record) {
+    const char *const slash = strrchr(record->path, '/');
+    const struct checkpoint all = {.effective = checkpoints->effective,
+                                   .result = (char *)(slash ? slash + 1 : record->path),
+                                   .places = checkpoints->places.text ? checkpoints->places.text : "",
+                                   .totals = simulation->totals,
+                                   .wall_time = simulate_wall_time(simulation)};
+    struct checkpoint marked = all;
+    TRY(result_file_mark(record->file, &marked.rows));
+    return checkpoint_write(checkpoints->path, checkpoints->previous, &marked, simulation->state, simulation->school);
+}
+
+enum status checkpoints_write(struct checkpoints *checkpoints, const struct simulation *simulation,
+                              const struct record *record) {
+    const long event = simulation->state->event;
+    if (event == checkpoints->last) return STATUS_OK;
+    if (!is_regular(checkpoints, event) && event != checkpoints->last_place) {
+        checkpoints->last_place = event;
+        const char *const before = checkpoints->places.length > 0 ? "," : "";
+        text_add(&checkpoints->places, "%s%.10g", before, simulation->state->t);
+        if (checkpoints->places.failed) return status_fail(STATUS_MEMORY, "out of memory: the times of checkpoints");
+        result_file_note(record->file, RESULT_CHECKPOINT_AT, checkpoints->places.text);
+    }
+    TRY(write_one(checkpoints, simulation, record));
+    checkpoints->last = event;
+    return STATUS_OK;
+}

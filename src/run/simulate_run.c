@@ -1,0 +1,249 @@
+/* simulate_run.c: the loop of events, and what is written at some of them. */
+#include "run/simulate_run.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "model/state_table.h"
+#include "output/netcdf.h"
+#include "run/checkpoints.h"
+#include "run/record.h"
+#include "run/resume.h"
+#include "run/simulate.h"
+
+// a run and its files
+struct run {
+    const struct case_values *values;
+    const struct simulate_options *options;
+    struct simulation *simulation;
+    struct record record;
+    struct checkpoints checkpoints;
+    struct state *before; /* the state at the last event, where the run may be stopped behind it */
+};
+
+// ---- from event to event
+
+static enum status write_if_due(struct run *run) {
+    if (!record_is_due(&run->record, run->simulation->state->event)) return STATUS_OK;
+    struct integrator_counts counts;
+    struct result_row row;
+    simulate_row(run->simulation, &counts, &row);
+    return record_row(&run->record, &row);
+}
+
+static void tell(const struct run *run) {
+    if (!run->options->progress) return;
+    const struct simulation *const simulation = run->simulation;
+    struct integrator_counts counts;
+    simulation->integrator->count(simulation->solver, &counts);
+    struct simulate_progress progress = {.t = simulation->state->t,
+                                         .end = run->values->time.end,
+                                         .event = simulation->state->event,
+                                         .steps = counts.steps,
+                                         .wall_time = simulate_wall_time(simulation)};
+    for (int f = 0; f < simulation->school->n_fish; f++) progress.n_vortices += simulation->state->wake[f].n_vortex;
+    run->options->progress(&progress, run->options->data);
+}
+
+static enum status checkpoint_if_due(struct run *run) {
+    struct simulation *const simulation = run->simulation;
+    if (!checkpoints_are_due(&run->checkpoints, simulation->state->event)) return STATUS_OK;
+    TRY(checkpoints_write(&run->checkpoints, simulation, &run->record));
+    return simulation->state->event < simulation->n_events ? simulate_renew(simulation) : STATUS_OK;
+}
+
+// at an event
+static enum status stop(struct run *run) {
+    const double t = run->simulation->state->t;
+    TRY(checkpoints_write(&run->checkpoints, run->simulation, &run->record));
+    return status_fail(STATUS_STOPPED, "stopped %s at t = %.10g s: go on with 'shoal resume %s'",
+                       *run->options->stop == SIGALRM ? "after --max-wall" : "by a signal", t, run->checkpoints.path);
+}
+
+// go on to the next event, or stay at this one and stop
+static enum status step(struct run *run) {
+    struct simulation *const simulation = run->simulation;
+    if (run->options->stop && *run->options->stop) return stop(run);
+    if (run->before) TRY(state_table_copy(run->before, simulation->state, simulation->school));
+    const enum status status = simulate_step(simulation);
+    if (status != STATUS_STOPPED) return status;
+    TRY(state_table_copy(simulation->state, run->before, simulation->school));
+    return stop(run);
+}
+
+static enum status loop(struct run *run) {
+    struct simulation *const simulation = run->simulation;
+    simulation->stop = run->options->stop;
+    if (simulation->stop) TRY(state_create(&run->before, simulation->school));
+    while (simulation->state->event < simulation->n_events) {
+        TRY(step(run));
+        TRY(write_if_due(run));
+        TRY(checkpoint_if_due(run));
+        tell(run);
+    }
+    return STATUS_OK;
+}
+
+/* Where two bodies have been closest. */
+static void note_closest(const struct run *run) {
+    const struct school *const school = run->simulation->school;
+    const struct closest *const closest = run->simulation->state->closest;
+    if (isinf(closest->distance)) return;
+    char text[256];
+    snprintf(text, sizeof text, "%.4f m between %.60s and %.60s at t = %.4g s", closest->distance,
+             school->fish[closest->fish[0]].name, school->fish[closest->fish[1]].name, closest->t);
+    result_file_note(run->record.file, RESULT_CLOSEST_APPROACH, text);
+}
+
+/* Tell all warnings about what the last row holds, and put them into the file. */
+static void warn(const struct run *run) {
+    const struct simulation *const simulation = run->simulation;
+    char line[WARNING_BYTES], lines[N_WARNINGS * (WARNING_BYTES + 1)];
+    size_t length = 0;
+    for (enum warning w = 0; w < N_WARNINGS; w++) {
+        if (!warnings_line(w, simulation->school, simulation->state, simulation->diagnostics,
+                           simulation->residual->scratch, line))
+            continue;
+        length += (size_t)snprintf(lines + length, sizeof lines - length, "%s%s", length > 0 ? "\n" : "", line);
+        if (run->options->warn) run->options->warn(w, line, run->options->data);
+    }
+    if (length > 0) result_file_note(run->record.file, RESULT_WARNINGS, lines);
+    note_closest(run);
+}
+
+/* Run to the end and close the record. */
+static enum status finish(struct run *run, enum status status) {
+    if (status == STATUS_OK) status = loop(run);
+    // what stops or cannot be renewed is not the end
+    if (status != STATUS_STOPPED && run->simulation->residual) warn(run);
+    return record_close(&run->record, status);
+}
+
+static void release(struct run *run) {
+    if (run->simulation) state_free(run->before, run->simulation->school);
+    simulate_free(run->simulation);
+    checkpoints_free(&run->checkpoints);
+}
+
+// ---- a new run
+
+static enum status refuse_unfinished(const char *path, const struct checkpoints *checkpoints) {
+    double t;
+    if (!resume_is_possible(path, checkpoints->path, checkpoints->effective, &t)) return STATUS_OK;
+    return status_fail(STATUS_FILE,
+                       "%s is an unfinished result of this case: go on from t = %.6g s with 'shoal resume %s', or "
+                       "begin again with --force",
+                       path, t, checkpoints->path);
+}
+
+static enum status start(struct run *run) {
+    const struct simulate_options *const options = run->options;
+    struct checkpoints *const checkpoints = &run->checkpoints;
+    TRY(checkpoints_create(checkpoints, run->values, options->path, options->checkpoint_at));
+    if (!options->overwrite) {
+        TRY(refuse_unfinished(options->path, checkpoints));
+        TRY(netcdf_check_target(options->path, 0));
+    }
+    if (options->begin) TRY(options->begin(run->values, options->path, options->data));
+    TRY(simulate_create(&run->simulation, run->values));
+    TRY(record_create(&run->record, run->values, run->simulation->school, run->simulation->n_events, options->path,
+                      options->overwrite, options->command));
+    checkpoints_remove(checkpoints);
+    enum status status = write_if_due(run);
+    if (status == STATUS_OK) status = checkpoint_if_due(run);
+    return finish(run, status);
+}
+
+enum status simulate_run(const struct case_values *values, const struct simulate_options *options) {
+    struct run run = {.values = values, .options = options};
+    struct result_lock lock;
+    TRY(netcdf_check_target(options->path, 1));
+    TRY(result_lock_take(&lock, options->path));
+    const enum status status = start(&run);
+    release(&run);
+    result_lock_release(&lock);
+    return status;
+}
+
+// ---- a run that is resumed
+
+static enum status take_up(struct run *run, const struct resume *resume) {
+    struct school *school = NULL;
+    struct state *state = NULL;
+    TRY(fish_school_create(&school, &run->values->school));
+    enum status status = state_create(&state, school);
+    if (status == STATUS_OK) status = checkpoint_set_state(&resume->checkpoint, state, school);
+    if (status != STATUS_OK) {
+        state_free(state, school);
+        fish_school_free(school);
+        return status;
+    }
+    TRY(simulate_take_up(&run->simulation, run->values, school, state, &resume->checkpoint.totals));
+    run->simulation->started -= resume->checkpoint.wall_time;
+    return STATUS_OK;
+}
+
+// the result with another end: its last row, where that was due only as the last one, is none any more
+static enum status extend(struct run *run, const struct resume *resume) {
+    const struct simulation *const simulation = run->simulation;
+    const struct case_time *const time = &run->values->time;
+    const double interval = simulation->school->interval;
+    const long event = simulation->state->event, per_row = lround(time->output_interval / interval),
+               per_wake = lround(run->values->output.wake_interval / interval);
+    const struct result_source source = {resume->result, event / per_row + 1,
+                                         event % per_row == 0 && event % per_wake != 0};
+    TRY(record_extend(&run->record, run->values, simulation->school, simulation->n_events, &source,
+                      run->options->command));
+    result_file_note(run->record.file, RESULT_CHECKPOINT_AT, resume->checkpoint.places);
+    // in this order one of the two last checkpoints always has its result
+    TRY(checkpoints_write(&run->checkpoints, simulation, &run->record));
+    return result_file_publish(run->record.file);
+}
+
+// the file as it is, without the rows that the checkpoint does not count
+static enum status take_record(struct run *run, const struct resume *resume) {
+    const struct simulation *const simulation = run->simulation;
+    return record_continue(&run->record, run->values, simulation->school, simulation->n_events, resume->result,
+                           &resume->checkpoint.rows, &resume->checksum);
+}
+
+static enum status go_on(struct run *run, const struct resume *resume, int with_other_end) {
+    const struct simulate_options *const options = run->options;
+    TRY(checkpoints_create(&run->checkpoints, run->values, resume->result, options->checkpoint_at));
+    if (options->begin) TRY(options->begin(run->values, resume->result, options->data));
+    TRY(take_up(run, resume));
+    const struct simulation *const simulation = run->simulation;
+    TRY(checkpoints_resume(&run->checkpoints, &resume->checkpoint, simulation->state->event, with_other_end));
+    if (with_other_end && simulation->state->event >= simulation->n_events) {
+        return status_fail(STATUS_CASE, "--end %.10g: the checkpoint is at t = %.10g s already", run->values->time.end,
+                           simulation->state->t);
+    }
+    if (resume->note) checkpoints_fall_back(&run->checkpoints);
+    const enum status status = with_other_end ? extend(run, resume) : take_record(run, resume);
+    return run->record.file ? finish(run, status) : status;
+}
+
+static enum status resume_run(const struct resume *resume, const struct simulate_changes *changes,
+                              const struct simulate_options *options) {
+    if (resume->note && options->note) options->note(resume->note, options->data);
+    if (resume->is_complete && !changes->has_other_end) {
+        return status_fail(STATUS_CASE, "%s is complete: give a later --end to extend it", resume->result);
+    }
+    struct case_values values;
+    TRY(resume_case(resume, changes->n_assignments, changes->assignments, &values));
+    struct run run = {.values = &values, .options = options};
+    const enum status status = go_on(&run, resume, changes->has_other_end);
+    release(&run);
+    case_free(&values);
+    return status;
+}
+
+enum status simulate_resume(const char *checkpoint, const struct simulate_changes *changes,
+                            const struct simulate_options *options) {
+    struct resume resume;
+    enum status status = resume_open(&resume, checkpoint);
+    if (status == STATUS_OK) status = resume_run(&resume, changes, options);
+    resume_close(&resume);
+    return status;
+}

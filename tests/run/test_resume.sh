@@ -1,0 +1,215 @@
+#!/usr/bin/env bash
+# test_resume.sh PROGRAM: runs that are stopped or killed, and go on: to the bits of the run that was not.
+set -uo pipefail
+
+program=$(realpath "$1")
+root=$(realpath "$(dirname "$0")/../..")
+folder=$(mktemp -d)
+pid=
+stop() {
+    [[ -z $pid ]] || kill -KILL "$pid" 2>/dev/null
+    rm -rf "$folder"
+}
+trap stop EXIT
+cd "$folder" || exit 2
+# shellcheck source=../checks.sh
+source "$root/tests/checks.sh"
+same() { /usr/bin/python3 "$root/tests/run/same_result.py" "$@"; }
+places() { /usr/bin/python3 -c 'import sys, netCDF4; print(netCDF4.Dataset(sys.argv[1]).checkpoint_at.strip("\0"))' "$1"; }
+
+cat >small.yaml <<'CASE'
+format: 1
+time: {end: 1, shedding_interval: 0.01, output_interval: 0.02}
+output: {wake_interval: 0.1}
+fish:
+  - {name: a, nodes: 7, sheet_points: 21}
+  - {name: b, nodes: 9, sheet_points: 21, start: {position: [0.2, 1.5]}, control: {law: heading, desired_heading: 170}}
+CASE
+
+# Start a run in the background, and wait until it has written some rows.
+start() {  # arguments of the program
+    env --default-signal=INT,TERM,HUP,USR1 "$program" "$@" -q >out 2>err </dev/null &
+    pid=$!
+    local before try
+    for ((try = 0; try < 1000; try++)); do
+        [[ -s run.nc ]] && break
+        sleep 0.01
+    done
+    before=$(stat -c %s run.nc)
+    for ((try = 0; try < 1000; try++)); do
+        (($(stat -c %s run.nc) > before + 6000)) && break
+        kill -0 "$pid" 2>/dev/null || break
+        sleep 0.01
+    done
+}
+
+# Send a signal to it, wait for its end and set $code.
+end() {  # signal
+    kill "-$1" "$pid"
+    code=0
+    wait "$pid" || code=$?
+    pid=
+}
+
+# ---- stopped, and stopped again; the reference renews itself at the same places
+
+stopped() {  # name, signals, arguments of run...
+    local name=$1 signals=$2 signal command
+    shift 2
+    rm -f ./*.nc ./*.ckpt*
+    command=(run "$@" -o run.nc)
+    for signal in $signals; do
+        start "${command[@]}"
+        end "$signal"
+        check "$name: SIG$signal: exit code 75" test "$code" = 75
+        command=(resume run.ckpt)
+    done
+    check "$name: it says what to do" has err "go on with 'shoal resume run.ckpt'"
+    run resume run.ckpt -q
+    check "$name: resumed to the end" test "$code" = 0
+    run run "$@" -q -o reference.nc --checkpoint-at "$(places run.nc)"
+    check "$name: the bits of the run that renewed itself there" same run.nc reference.nc
+}
+stopped sheet 'TERM HUP' small.yaml
+stopped two_threads USR1 small.yaml --threads 2 --set output.precision=single
+stopped impulsive INT small.yaml --set wake.shedding=impulsive --set time.shedding_interval=0.02
+stopped explicit TERM small.yaml --set solver.method=dormand_prince --set time.checkpoint_interval=0.25
+
+# ---- what is complete, and what is not
+
+refused complete 2 'run.nc is complete: give a later --end to extend it' resume run.ckpt
+refused end_before_the_checkpoint 2 '--end 0.5: the checkpoint is at t = 1 s already' resume run.ckpt --end 0.5
+refused no_end 2 'time.end: 2.003 s is not an integer multiple' resume run.ckpt --end 2.003
+run resume run.ckpt -q --end 1.2
+check extended test "$code" = 0
+run run small.yaml --set solver.method=dormand_prince --set time.checkpoint_interval=0.25 --set time.end=1.2 -q \
+    -o reference.nc --checkpoint-at "$(places run.nc)" --force
+check an_extended_run_is_the_longer_run same run.nc reference.nc
+refused no_checkpoint 4 'nothing.ckpt: cannot be read' resume nothing.ckpt
+refused a_result 4 'run.nc: cannot be used: it is no checkpoint of shoal' resume run.nc
+refused no_event 2 "--checkpoint-at: '0.333' is not the time of an event" run small.yaml --checkpoint-at 0.3,0.333
+refused no_time 2 '--max-wall 5: expects HH:MM:SS' run small.yaml --max-wall 5
+refused no_multiple 2 'time.checkpoint_interval: 0.015 s is not an integer multiple' check small.yaml \
+    --set time.checkpoint_interval=0.015
+run info run.ckpt
+check info_tells_of_a_checkpoint eval 'has out "a run at t = 1 s; its result is run.nc" && has out balance.power'
+run info --case run.ckpt
+cp out case.yaml
+check the_case_of_a_checkpoint_is_a_case "$program" check case.yaml -q
+
+# ---- killed: the last checkpoint and the one before it
+
+rm -f ./*.nc ./*.ckpt*
+regular=(small.yaml --set time.checkpoint_interval=0.1)
+run run "${regular[@]}" -q -o reference.nc
+start run "${regular[@]}" -o run.nc
+for ((i = 0; i < 1000; i++)); do
+    [[ -e run.ckpt.previous ]] && break
+    sleep 0.01
+done
+end KILL
+check killed test "$code" = 137
+mkdir kept
+cp run.nc run.ckpt run.ckpt.previous kept
+refused unfinished 4 "run.nc is an unfinished result of this case: go on from t = " run "${regular[@]}" -o run.nc
+check unfinished_says_the_command has err "'shoal resume run.ckpt', or begin again with --force"
+refused of_another_case 4 'run.nc exists: choose another name' run "${regular[@]}" -o run.nc --set fish[0].wave.frequency=2
+run resume run.ckpt -q --threads 2
+check a_killed_run_goes_on same run.nc reference.nc
+
+restore() { cp kept/* .; }
+restore
+printf 'x' | dd of=run.ckpt bs=1 seek=3000 conv=notrunc status=none
+run resume run.ckpt -q
+check a_damaged_checkpoint_falls_back eval 'has err "run.ckpt: cannot be used: it is damaged behind byte" &&
+    has err "; going on from run.ckpt.previous" && same run.nc reference.nc'
+restore
+rm run.ckpt
+run resume run.ckpt -q
+check a_missing_checkpoint_falls_back same run.nc reference.nc
+restore
+truncate -s 3000 run.ckpt run.ckpt.previous
+refused two_damaged_checkpoints 4 'it has 3000 bytes instead of' resume run.ckpt
+restore
+printf 'x' | dd of=run.nc bs=1 seek=$(($(stat -c %s run.nc) * 2 / 3)) conv=notrunc status=none
+rm run.ckpt.previous
+refused changed_rows 4 'its rows are not those of the checkpoint' resume run.ckpt
+restore
+cp reference.nc run.nc
+refused rows_of_another_run 4 'its rows are not those of the checkpoint' resume run.ckpt
+rm run.nc
+refused a_missing_result 4 'run.nc: cannot be read' resume run.ckpt
+restore
+run run "${regular[@]}" -q -o run.nc --set time.checkpoint_interval=0 --force
+check a_new_run_removes_old_checkpoints test "$code" = 0 -a ! -e run.ckpt -a ! -e run.ckpt.previous
+echo mine >run.ckpt
+refused a_file_of_another_program 4 'run.ckpt is no checkpoint of shoal' run "${regular[@]}" -q -o run.nc --force
+
+# ---- one run at a time, signals that are ignored, and a signal within a long event
+
+rm -f ./*.nc ./*.ckpt*
+start run small.yaml --set time.end=100 -o run.nc
+refused locked 4 "run.nc: another run writes it (process $pid on $(hostname))" run small.yaml -o run.nc --force
+end TERM
+check the_lock_is_removed test ! -e run.nc.lock
+rm -f ./*.nc ./*.ckpt*
+(trap '' HUP && exec "$program" run small.yaml -q --set time.end=100 -o run.nc >out 2>err </dev/null) &
+pid=$!
+for ((i = 0; i < 1000; i++)); do
+    [[ -s run.nc ]] && break
+    sleep 0.01
+done
+kill -HUP "$pid"
+sleep 0.3
+check an_ignored_signal_stays_ignored kill -0 "$pid"
+end TERM
+check the_others_do_not test "$code" = 75
+rm -f ./*.nc ./*.ckpt*
+run run small.yaml -q --max-wall 0:00:01 --set time.end=1000 -o run.nc
+check max_wall eval 'test "$code" = 75 && has err "stopped after --max-wall at t = "'
+
+for method in "ida --set solver.rtol=1e-12 --set solver.max_steps=1000000000" "rk4 --set solver.step=1e-8"; do
+    rm -f ./*.nc ./*.ckpt*
+    # shellcheck disable=SC2086  # the method has options
+    env --default-signal=TERM "$program" run small.yaml -q --set time.shedding_interval=10 --set time.end=20 \
+        --set time.output_interval=10 --set output.wake_interval=10 --set wake.lifetime=20 --set solver.max_steps=1000000000 \
+        --set solver.method=$method -o run.nc >out 2>err </dev/null &
+    pid=$!
+    for ((i = 0; i < 1000; i++)); do
+        [[ -s run.nc ]] && break
+        sleep 0.01
+    done
+    started=$SECONDS
+    end TERM
+    check "a_long_event_is_left_at_once: ${method%% *}" eval '((code == 75 && SECONDS - started < 10)) &&
+        has err "stopped by a signal at t = 0 s"'
+done
+
+# ---- members of a study
+
+cat >study.yaml <<'CASE'
+format: 1
+time: {end: 1, shedding_interval: 0.01, output_interval: 0.02}
+fish: [{}]
+sweep: [{key: "fish[0].wave.amplitude", values: [0.2, 0.3]}]
+CASE
+run study study.yaml -q -j 1 -o whole
+env --default-signal=TERM "$program" study study.yaml -q -j 1 -o parts >out 2>err </dev/null &
+pid=$!
+for ((i = 0; i < 1000; i++)); do
+    [[ -s parts/member-0000.nc ]] && break
+    sleep 0.01
+done
+end TERM
+check a_study_is_stopped test "$code" = 75 -a -e parts/member-0000.ckpt
+run study study.yaml -q -j 1 -o parts
+check the_study_goes_on test "$code" = 0
+place=$(places parts/member-0000.nc)
+check a_stopped_member_is_resumed test -n "$place"
+"$program" show study.yaml | sed '/^sweep:/,$d' >member.yaml
+run run member.yaml -q --set "fish[0].wave.amplitude=0.2" --checkpoint-at "$place" -o member.nc
+check its_bits_are_those_of_the_run_that_renewed_itself_there same parts/member-0000.nc member.nc
+check the_other_member_has_the_same_bits same parts/member-0001.nc whole/member-0001.nc
+
+echo "$n_passed passed, $n_failed failed, $n_skipped skipped"
+((n_failed == 0))
