@@ -14,18 +14,18 @@ static const char *const cases[] = {
     "wake: {kutta: rate, collocation: midpoint}\n"
     "fish:\n"
     "  - {nodes: 7, sheet_points: 13, control: {law: heading, desired_heading: 150}}\n"
-    "  - {nodes: 9, length: 0.8, sheet_points: 11, start: {position: [0.2, 0.5]}, drag: {law: linear_quadratic}}\n"
-    "  - {nodes: 6, length: 1.2, sheet_points: 9, start: {position: [0.1, -0.6]}, control: {law: averaged_heading}}\n",
+    "  - {nodes: 9, length: 0.8, sheet_points: 11, start: {position: [0.2, 1.6]}, drag: {law: linear_quadratic}}\n"
+    "  - {nodes: 6, length: 1.2, sheet_points: 9, start: {position: [0.1, -1.7]}, control: {law: averaged_heading}}\n",
     "time: {end: 1, shedding_interval: 0.02}\n"
     "fluid: {velocity: [-1, 0]}\n"
     "fish: [{nodes: 8, sheet_points: 15, wave: {amplitude: 0}, load: {tip: [1, 2]},\n"
     "        motion: {driven: head, heave: 0.1, pitch: 10, frequency: 1, speed: 0}}]\n",
     "time: {end: 1, shedding_interval: 0.02}\n"
     "wake: {shedding: impulsive, dissipated_circulation: dropped}\n"
-    "fish: [{nodes: 7, sheet_points: 13}, {nodes: 7, sheet_points: 13, start: {position: [0, 0.7]}}]\n",
+    "fish: [{nodes: 7, sheet_points: 13}, {nodes: 7, sheet_points: 13, start: {position: [0, 1.6]}}]\n",
     "time: {end: 1, shedding_interval: 0.02}\n"
     "wake: {curve: smooth, shedding: sheet}\n"
-    "fish: [{nodes: 7, sheet_points: 13}, {nodes: 9, sheet_points: 17, start: {position: [0, 0.7]}}]\n",
+    "fish: [{nodes: 7, sheet_points: 13}, {nodes: 9, sheet_points: 17, start: {position: [0, 1.6]}}]\n",
     "time: {end: 1, shedding_interval: 0.02}\n"
     "fluid: {velocity: [0.1, -0.05], shear: 0.2, gust: {amplitude: 0.1, frequency: 0.7}}\n"
     "wake: {curve: smooth, shedding: sheet}\n"
