@@ -13,7 +13,7 @@ cd "$folder"
 source "$root/tests/checks.sh"
 
 sanitize=() preload=''
-if nm -D --undefined-only "$build/libshoal.so.0" | grep -q __asan; then
+if nm -D --undefined-only "$build/libshoal.so.0" | grep __asan >/dev/null; then
     sanitize=(-fsanitize=address,undefined -fno-sanitize-recover=all)
     preload="$(gcc -print-file-name=libasan.so) $(gcc -print-file-name=libubsan.so)"  # Python is built without
 fi
@@ -45,7 +45,7 @@ silent() {  # command...: nothing on standard error, standard output kept in sai
 
 one_name() {
     [[ -z $(nm -D --defined-only usr/lib/libshoal.so | awk '$3 !~ /^shoal_/') ]] &&
-        objdump -p usr/lib/libshoal.so | grep -q 'SONAME *libshoal.so.0$'
+        objdump -p usr/lib/libshoal.so | grep 'SONAME *libshoal.so.0$'
 }
 
 every_function_is_declared() {

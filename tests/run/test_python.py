@@ -337,6 +337,34 @@ class Environments(unittest.TestCase):
         self.assertEqual(said, ["shoal False False\n", "gymnasium.spaces True True\nTrue True\n"])
 
 
+def example(name):
+    """A script of doc/examples as a module."""
+    spec = importlib.util.spec_from_file_location(name, ROOT / f"doc/examples/{name}.py")
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module  # processes that learn look for it by its name
+    spec.loader.exec_module(module)
+    return module
+
+
+class Examples(unittest.TestCase):
+    def test_a_fish_begins_to_learn(self):
+        hold_place = example("hold_place")
+        hold_place.CASE["time"]["end"] = 1.92
+        policy, history = hold_place.learn(2, 8, 2)
+        self.assertEqual((policy.size, len(history), history[0].size), (30, 2, 8))
+        self.assertTrue(all(np.isfinite(rewards).all() and rewards.max() > rewards.min() for rewards in history))
+        again, _ = hold_place.learn(2, 8, 1)
+        np.testing.assert_array_equal(policy, again)
+        hold_place.draw("hold_place.png", history, *([hold_place.episode(policy, 1)[1]] for _ in range(2)))
+
+    def test_differences_of_the_cost_of_a_gait_are_smooth(self):
+        best_gait = example("best_gait")
+        best_gait.BEATS = 3
+        wide, narrow = best_gait.slopes(1e-5, [1e-3, 1e-6])
+        self.assertGreater(abs(wide), 0.01)
+        self.assertLess(abs(narrow - wide), 1e-3 * abs(wide))
+
+
 class Document(unittest.TestCase):
     def test_every_snippet_runs(self):
         text = (ROOT / "doc/python.md").read_text()

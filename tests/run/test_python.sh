@@ -11,7 +11,7 @@ trap 'rm -rf "$folder"' EXIT
 cd "$folder"
 
 preload=''
-if nm -D --undefined-only "$library" | grep -q __asan; then
+if nm -D --undefined-only "$library" | grep __asan >/dev/null; then
     # Python itself is built without sanitizers, and frees nothing at its end
     preload="$(gcc -print-file-name=libasan.so) $(gcc -print-file-name=libubsan.so)"
     export ASAN_OPTIONS=${ASAN_OPTIONS:-}:detect_leaks=0
