@@ -124,6 +124,11 @@ const char *shoal_result_path(const struct shoal *run);
  * SHOAL_FILE; the step is made, and the run goes on without the file. */
 int shoal_write(struct shoal *run, const char *path, int overwrite);
 
+/* Write a checkpoint beside the result file, RESULT.ckpt for RESULT.nc, from which `shoal resume` goes on with the bits
+ * of this run as long as nothing more is set. The run begins its integration again there, as a copied one does.
+ * Checkpoints of time.checkpoint_interval are written by shoal_step. */
+int shoal_checkpoint(struct shoal *run);
+
 /* Close the result file; where the run is not at its end, the file says "stopped". Nothing to do without a file. */
 int shoal_write_end(struct shoal *run);
 

@@ -79,6 +79,7 @@ _SIGNATURES = {  # name: result, arguments
     "shoal_n_fish": (_int, _run),
     "shoal_write": (_int, _run, _text, _int),
     "shoal_write_end": (_int, _run),
+    "shoal_checkpoint": (_int, _run),
     "shoal_result_path": (_text, _run),
     "shoal_message": (_text,),
     "shoal_version": (_text,),
@@ -301,6 +302,10 @@ class Run:
         path = _library.shoal_result_path(self._pointer) if path is None else os.fsencode(path)
         _check(_library.shoal_write(self._pointer, path, overwrite))
         return os.fsdecode(path)
+
+    def checkpoint(self):
+        """Write a checkpoint beside the result file, RESULT.ckpt, from which `shoal resume` goes on."""
+        _check(_library.shoal_checkpoint(self._pointer))
 
     def write_end(self):
         """Close the result file."""

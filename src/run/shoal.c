@@ -13,9 +13,13 @@
 #include "case/case.h"
 #include "case/sweep_members.h"
 #include "model/state_table.h"
+#include "output/netcdf.h"
+#include "output/result_lock.h"
 #include "output/result_values.h"
+#include "run/checkpoints.h"
 #include "run/led.h"
 #include "run/record.h"
+#include "run/record_notes.h"
 #include "run/simulate.h"
 
 _Static_assert((int)SHOAL_USAGE == STATUS_CASE && (int)SHOAL_FILE == STATUS_FILE &&
@@ -36,7 +40,9 @@ struct shoal {
     int has_failed;
     char failure[1024]; /* message of the step that failed */
     struct record record;
-    char *record_path; /* where it is written */
+    char *record_path;              /* where it is written */
+    struct checkpoints checkpoints; /* beside it */
+    struct result_lock lock;
     char *result_path; /* where the case wants it */
 
     /* what has been read since the last step */
@@ -95,6 +101,7 @@ static enum status create(struct shoal **run) {
     if (*run) (*run)->shared = calloc(1, sizeof *(*run)->shared);
     if (*run && (*run)->shared) {
         atomic_init(&(*run)->shared->n_users, 1);
+        (*run)->lock.descriptor = -1;
         return STATUS_OK;
     }
     free(*run);
@@ -147,6 +154,15 @@ static int has_ended(const struct shoal *run) {
     return run->simulation->state->event >= run->simulation->n_events;
 }
 
+// what belongs to a result file that is closed
+static void forget_record(struct shoal *run) {
+    free(run->record_path);
+    run->record_path = NULL;
+    checkpoints_free(&run->checkpoints);
+    result_lock_release(&run->lock);
+    run->lock = (struct result_lock){.descriptor = -1};
+}
+
 static enum status end_record(struct shoal *run) {
     enum status status = STATUS_OK;
     if (run->has_failed) {
@@ -155,10 +171,10 @@ static enum status end_record(struct shoal *run) {
         status = STATUS_STOPPED;
     }
     pthread_mutex_lock(&netcdf_lock);
+    if (run->simulation->residual) record_notes_write(run->record.file, run->simulation, NULL, NULL);
     const enum status closed = record_close(&run->record, status);
     pthread_mutex_unlock(&netcdf_lock);
-    free(run->record_path);
-    run->record_path = NULL;
+    forget_record(run);
     // how the run ended is no failure of closing its file
     return closed == status ? STATUS_OK : closed;
 }
@@ -172,7 +188,6 @@ void shoal_close(struct shoal *run) {
         case_free(&run->shared->values);
         free(run->shared);
     }
-    free(run->record_path);
     free(run->result_path);
     free(run);
 }
@@ -192,6 +207,7 @@ static enum status write_if_due(struct shoal *run) {
     enum status status = record_row(&run->record, &row);
     if (status != STATUS_OK) status = record_close(&run->record, status);
     pthread_mutex_unlock(&netcdf_lock);
+    if (status != STATUS_OK) forget_record(run);
     return status;
 }
 
@@ -201,31 +217,6 @@ static void forget_row(struct shoal *run) {
     run->is_renewed = 0;
     memset(run->is_filled, 0, sizeof run->is_filled);
 }
-
-int shoal_step(struct shoal *run) {
-    TRY(check_can_step(run, __func__));
-    forget_row(run);
-    const enum status status = simulate_step(run->simulation);
-    if (status == STATUS_OK) return write_if_due(run);
-    run->has_failed = 1;
-    snprintf(run->failure, sizeof run->failure, "%s", status_message());
-    return status == STATUS_CONTACT ? STATUS_SOLVER : status;
-}
-
-int shoal_advance(struct shoal *run, double t) {
-    TRY(need(run, __func__, "run"));
-    if (!isfinite(t)) return status_fail(STATUS_CASE, "%s: the time %g is not finite", __func__, t);
-    const struct simulation *const simulation = run->simulation;
-    // a time that an event has but for rounding is that event's
-    const double events = ceil(t / simulation->school->interval * (1 - 1e-12));
-    if (events > (double)simulation->n_events) {
-        return status_fail(STATUS_CASE, "%s: t = %g s is after the end of the case, %g s", __func__, t, shoal_end(run));
-    }
-    while ((double)simulation->state->event < events) TRY(shoal_step(run));
-    return STATUS_OK;
-}
-
-// ---- copies
 
 // the velocity of the fluid and the muscle at the event, which a row is made of
 static enum status evaluate(const struct simulation *simulation) {
@@ -248,6 +239,51 @@ static enum status renew(struct shoal *run) {
     snprintf(run->failure, sizeof run->failure, "%s", status_message());
     return status;
 }
+
+// every run, with a file or without, begins its integration again where the case has a checkpoint
+static int is_checkpoint(const struct shoal *run) {
+    const struct case_values *const values = &run->shared->values;
+    const long interval = lround(values->time.checkpoint_interval / values->school.shedding_interval);
+    return interval > 0 && run->simulation->state->event % interval == 0;
+}
+
+static enum status checkpoint(struct shoal *run) {
+    if (run->record.file) {
+        pthread_mutex_lock(&netcdf_lock);
+        const enum status status = checkpoints_write(&run->checkpoints, run->simulation, &run->record);
+        pthread_mutex_unlock(&netcdf_lock);
+        TRY(status);
+    }
+    return has_ended(run) ? STATUS_OK : renew(run);
+}
+
+int shoal_step(struct shoal *run) {
+    TRY(check_can_step(run, __func__));
+    forget_row(run);
+    const enum status status = simulate_step(run->simulation);
+    if (status == STATUS_OK) {
+        TRY(write_if_due(run));
+        return is_checkpoint(run) ? checkpoint(run) : STATUS_OK;
+    }
+    run->has_failed = 1;
+    snprintf(run->failure, sizeof run->failure, "%s", status_message());
+    return status == STATUS_CONTACT ? STATUS_SOLVER : status;
+}
+
+int shoal_advance(struct shoal *run, double t) {
+    TRY(need(run, __func__, "run"));
+    if (!isfinite(t)) return status_fail(STATUS_CASE, "%s: the time %g is not finite", __func__, t);
+    const struct simulation *const simulation = run->simulation;
+    // a time that an event has but for rounding is that event's
+    const double events = ceil(t / simulation->school->interval * (1 - 1e-12));
+    if (events > (double)simulation->n_events) {
+        return status_fail(STATUS_CASE, "%s: t = %g s is after the end of the case, %g s", __func__, t, shoal_end(run));
+    }
+    while ((double)simulation->state->event < events) TRY(shoal_step(run));
+    return STATUS_OK;
+}
+
+// ---- copies
 
 static enum status copy_simulation(struct shoal *copy, const struct shoal *run) {
     const struct simulation *const from = run->simulation;
@@ -277,6 +313,7 @@ int shoal_clone(struct shoal **copy, struct shoal *run) {
     new->shared = run->shared;
     atomic_fetch_add(&new->shared->n_users, 1);
     new->is_renewed = 1;
+    new->lock.descriptor = -1;
     new->when_reached = run->when_reached;
     new->result_path = strdup(run->result_path);
     const enum status status =
@@ -485,6 +522,22 @@ const char *shoal_result_path(const struct shoal *run) {
     return need(run, __func__, "run") == STATUS_OK ? run->result_path : NULL;
 }
 
+// the file, its lock, and the plan of its checkpoints
+static enum status start_record(struct shoal *run, const char *path, int overwrite) {
+    const struct case_values *const values = &run->shared->values;
+    run->record_path = strdup(path);
+    if (!run->record_path) return status_fail(STATUS_MEMORY, "out of memory: a path");
+    TRY(netcdf_check_target(path, overwrite));
+    TRY(result_lock_take(&run->lock, path));
+    TRY(checkpoints_create(&run->checkpoints, values, path, NULL));
+    pthread_mutex_lock(&netcdf_lock);
+    const enum status status = record_create(&run->record, values, run->simulation->school, run->simulation->n_events,
+                                             run->record_path, overwrite, "libshoal");
+    pthread_mutex_unlock(&netcdf_lock);
+    if (status == STATUS_OK) checkpoints_remove(&run->checkpoints);
+    return status;
+}
+
 int shoal_write(struct shoal *run, const char *path, int overwrite) {
     TRY(need(run, __func__, "run"));
     TRY(need(path, __func__, "path"));
@@ -493,14 +546,22 @@ int shoal_write(struct shoal *run, const char *path, int overwrite) {
         return status_fail(STATUS_CASE, "%s: the run writes %s: end that with shoal_write_end", __func__,
                            run->record_path);
     }
-    free(run->record_path);
-    run->record_path = strdup(path);
-    if (!run->record_path) return status_fail(STATUS_MEMORY, "out of memory: a path");
-    pthread_mutex_lock(&netcdf_lock);
-    const enum status status = record_create(&run->record, &run->shared->values, run->simulation->school,
-                                             run->simulation->n_events, run->record_path, overwrite, "libshoal");
-    pthread_mutex_unlock(&netcdf_lock);
-    return status == STATUS_OK ? write_if_due(run) : status;
+    const enum status status = start_record(run, path, overwrite);
+    if (status != STATUS_OK) {
+        forget_record(run);
+        return status;
+    }
+    return write_if_due(run);
+}
+
+int shoal_checkpoint(struct shoal *run) {
+    TRY(need(run, __func__, "run"));
+    if (has_failed(run, __func__)) return STATUS_SOLVER;
+    if (!run->record.file) {
+        return status_fail(STATUS_CASE, "%s: a checkpoint belongs to a result file: begin one with shoal_write",
+                           __func__);
+    }
+    return checkpoint(run);
 }
 
 int shoal_write_end(struct shoal *run) {

@@ -9,6 +9,7 @@
 #include "output/netcdf.h"
 #include "run/checkpoints.h"
 #include "run/record.h"
+#include "run/record_notes.h"
 #include "run/resume.h"
 #include "run/simulate.h"
 
@@ -85,38 +86,13 @@ static enum status loop(struct run *run) {
     return STATUS_OK;
 }
 
-/* Where two bodies have been closest. */
-static void note_closest(const struct run *run) {
-    const struct school *const school = run->simulation->school;
-    const struct closest *const closest = run->simulation->state->closest;
-    if (isinf(closest->distance)) return;
-    char text[256];
-    snprintf(text, sizeof text, "%.4f m between %.60s and %.60s at t = %.4g s", closest->distance,
-             school->fish[closest->fish[0]].name, school->fish[closest->fish[1]].name, closest->t);
-    result_file_note(run->record.file, RESULT_CLOSEST_APPROACH, text);
-}
-
-/* Tell all warnings about what the last row holds, and put them into the file. */
-static void warn(const struct run *run) {
-    const struct simulation *const simulation = run->simulation;
-    char line[WARNING_BYTES], lines[N_WARNINGS * (WARNING_BYTES + 1)];
-    size_t length = 0;
-    for (enum warning w = 0; w < N_WARNINGS; w++) {
-        if (!warnings_line(w, simulation->school, simulation->state, simulation->diagnostics,
-                           simulation->residual->scratch, line))
-            continue;
-        length += (size_t)snprintf(lines + length, sizeof lines - length, "%s%s", length > 0 ? "\n" : "", line);
-        if (run->options->warn) run->options->warn(w, line, run->options->data);
-    }
-    if (length > 0) result_file_note(run->record.file, RESULT_WARNINGS, lines);
-    note_closest(run);
-}
-
 /* Run to the end and close the record. */
 static enum status finish(struct run *run, enum status status) {
     if (status == STATUS_OK) status = loop(run);
     // what stops or cannot be renewed is not the end
-    if (status != STATUS_STOPPED && run->simulation->residual) warn(run);
+    if (status != STATUS_STOPPED && run->simulation->residual) {
+        record_notes_write(run->record.file, run->simulation, run->options->warn, run->options->data);
+    }
     return record_close(&run->record, status);
 }
 

@@ -162,6 +162,36 @@ class Results(unittest.TestCase):
         pathlib.Path("by_program.yaml").write_text(json.dumps({"format": 1, "name": "run", **PAIR}))
         subprocess.run([os.environ["SHOAL"], "run", "-q", "by_program.yaml", "-o", "by_program.nc"], check=True)
         subprocess.run([ROOT / "tests/run/same_result.py", "by_python.nc", "by_program.nc"], check=True)
+        notes = []
+        for path in "by_python.nc", "by_program.nc":
+            with shoal.open(path) as data:
+                notes.append([data.attrs.get("warnings"), data.attrs["closest_approach"]])
+        self.assertEqual(*notes)
+
+    def test_checkpoints_of_a_case_are_those_of_the_program(self):
+        case = {"format": 1, "name": "kept", **PAIR, "time": {**PAIR["time"], "checkpoint_interval": 0.06}}
+        pathlib.Path("kept.yaml").write_text(json.dumps(case))
+        shoal.simulate(case, path="kept_python.nc")
+        subprocess.run([os.environ["SHOAL"], "run", "-q", "kept.yaml", "-o", "kept_program.nc"], check=True)
+        subprocess.run([ROOT / "tests/run/same_result.py", "kept_python.nc", "kept_program.nc"], check=True)
+        alone = shoal.Run(case)
+        alone.advance(alone.end)
+        with shoal.open("kept_program.nc") as data:
+            self.assertEqual(data["x"].values[-1].tobytes(), alone["x"].tobytes())
+
+    def test_the_program_goes_on_from_a_checkpoint(self):
+        run, whole = shoal.Run(PAIR), shoal.Run(PAIR)
+        with self.assertRaisesRegex(shoal.CaseError, "belongs to a result file"):
+            run.checkpoint()
+        for one, path in (run, "stopped.nc"), (whole, "whole.nc"):
+            one.write(path, overwrite=True)
+            one.advance(0.1)
+            one.checkpoint()
+        run.write_end()
+        whole.advance(whole.end)
+        whole.write_end()
+        subprocess.run([os.environ["SHOAL"], "resume", "-q", "stopped.ckpt"], check=True)
+        subprocess.run([ROOT / "tests/run/same_result.py", "stopped.nc", "whole.nc"], check=True)
 
     def test_the_path_is_that_of_the_case(self):
         self.assertEqual(shoal.simulate({**PAIR, "name": "named"}), "named.nc")

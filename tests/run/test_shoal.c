@@ -8,6 +8,7 @@
 
 #include "base/version.h"
 #include "failing_malloc.h"
+#include "output/checkpoint.h"
 #include "output/netcdf.h"
 #include "output/result_table.h"
 #include "school.h"
@@ -227,6 +228,7 @@ static void a_run_that_is_not_there_is_refused_by_every_function(void **state) {
     refuses(shoal_vortices(NULL, 0, two, two, two), "run is NULL");
     refuses(shoal_write(NULL, "x.nc", 0), "run is NULL");
     refuses(shoal_write_end(NULL), "run is NULL");
+    refuses(shoal_checkpoint(NULL), "run is NULL");
     assert_true(isnan(shoal_time(NULL)) && isnan(shoal_end(NULL)) && isnan(shoal_interval(NULL)));
     assert_non_null(strstr(shoal_message(), "shoal_interval: run is NULL"));
 }
@@ -557,6 +559,30 @@ static void a_result_file_has_the_rows_that_are_due(void **state) {
     assert_int_equal(unlink(path), 0);
 }
 
+static void a_checkpoint_stands_beside_the_result(void **state) {
+    struct shoal *const run = opened(*state, 0, NULL);
+    char folder[] = "/tmp/test_shoal_folder_XXXXXX", path[64];
+    assert_non_null(mkdtemp(folder));
+    snprintf(path, sizeof path, "%s/run.nc", folder);
+    refuses(shoal_checkpoint(run), "begin one with shoal_write");
+    assert_int_equal(shoal_write(run, path, 0), SHOAL_OK);
+    assert_int_equal(shoal_advance(run, 0.06), SHOAL_OK);
+    assert_int_equal(shoal_checkpoint(run), SHOAL_OK);
+    assert_int_equal(shoal_step(run), SHOAL_OK);
+    shoal_close(run);
+    snprintf(path, sizeof path, "%s/run.ckpt", folder);
+    struct checkpoint checkpoint;
+    school_ok(checkpoint_read(&checkpoint, path));
+    NEAR(checkpoint.t, 0.06, 1e-15, 0);
+    assert_string_equal(checkpoint.result, "run.nc");
+    checkpoint_free(&checkpoint);
+    assert_int_equal(unlink(path), 0);
+    snprintf(path, sizeof path, "%s/run.nc", folder);
+    assert_int_equal(unlink(path), 0);
+    // the lock is gone too
+    assert_int_equal(rmdir(folder), 0);
+}
+
 static void a_result_file_that_cannot_be_written_is_said_so(void **state) {
     struct shoal *const run = opened(*state, 0, NULL);
     assert_int_equal(shoal_write(run, "/no/such/folder/x.nc", 0), SHOAL_FILE);
@@ -738,6 +764,7 @@ int main(void) {
         cmocka_unit_test(vorticity_is_the_curl_of_the_velocity),
         cmocka_unit_test(looking_does_not_change_a_run),
         cmocka_unit_test(a_result_file_has_the_rows_that_are_due),
+        cmocka_unit_test(a_checkpoint_stands_beside_the_result),
         cmocka_unit_test(a_result_file_that_cannot_be_written_is_said_so),
         cmocka_unit_test(a_copy_goes_on_with_the_bits_of_the_run),
         cmocka_unit_test(a_copy_shows_what_the_run_shows),
