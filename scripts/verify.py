@@ -120,7 +120,7 @@ points and 300 events a period."""),
 plate starts at one degree to the stream; growth and frequency of the mode are fitted to the tail by Prony's method
 (units of time 3 to 8) at the theory's threshold and 2 % above it, which gives the U* at which the growth vanishes. The
 error falls with the square of the edge length, so that N and (N + 1)/2 nodes give the limit of many.
-*Heaving nose*: amplitude 0.002 L, the last of 6 or 10 periods."""),
+*Heaving nose*: amplitude 0.002 L, the last of 6 or 10 periods (5 in the figures)."""),
 }
 
 # figure: title, x axis, y axis, further keys: scale (log, linear, semilog, semilogx), slopes of the triangles
@@ -187,6 +187,11 @@ FIGURE = {
                                        "change when halved [m, m2/s]", {"slopes": [2]}),
     "interval, continuous, dropped": ("One fish, continuous, dropped", "shedding interval Dt [s]",
                                       "change when halved [m, m2/s]", {"slopes": [2]}),
+    "flutter": ("Flutter of a plate with a clamped nose", "mass ratio M*", "threshold U*", {"scale": "semilogx"}),
+    "stiffness, tail": ("Plate with a heaving nose, k = pi, m = 0.1", "bending stiffness E I", "tail over nose",
+                        {"scale": "semilogx"}),
+    "stiffness, efficiency": ("Plate with a heaving nose, k = pi, m = 0.1", "bending stiffness E I",
+                              "efficiency, thrust times U over power", {"scale": "semilogx"}),
     "symmetry_far": ("A fish and its far companion", "distance [lengths]", "change of position [m]", {"slopes": [-2]}),
 }
 

@@ -17,6 +17,7 @@ const struct sweep_quantity sweep_quantities[SWEEP_N_QUANTITIES] = {
     {"mean_actuation_power", 1, 0, "W", "mean power of the muscle over the last period"},
     {"lateral_drift", 1, 0, "m", "displacement of the centre of mass across the first heading, to the left"},
     {"strouhal", 1, 0, NULL, NULL},
+    {"efficiency", 1, 0, NULL, NULL},
     {"energy_audit", 1, 0, NULL, NULL},
     {"steps", 0, 0, NULL, NULL},
     {"residual_evaluations", 0, 0, NULL, NULL},

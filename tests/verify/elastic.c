@@ -114,11 +114,22 @@ static double limit_of(double coarse, double fine) {
     return (4 * fine - coarse) / 3;
 }
 
+// the threshold over the mass ratio, for a figure
+static void draw_theory_of_flutter(void) {
+    for (int i = 0; i <= 40; i++) {
+        const double mass_ratio = 0.2 * pow(75, i / 40.0);
+        verify_point("flutter", "exact (linear theory)", mass_ratio,
+                     linear_theory_flutter(mass_ratio, LINEAR_THEORY_MODES).speed);
+    }
+}
+
 static void flutter_of(double mass_ratio, int n_nodes) {
     const struct linear_theory_threshold theory = linear_theory_flutter(mass_ratio, LINEAR_THEORY_MODES);
     const struct linear_theory_threshold coarse = measure((n_nodes + 1) / 2, mass_ratio, &theory);
     const struct linear_theory_threshold fine = measure(n_nodes, mass_ratio, &theory);
     const char *const source = "8 modes of a beam, Theodorsen's function";
+    verify_point("flutter", "N = 33", mass_ratio, n_nodes == 33 ? fine.speed : coarse.speed);
+    verify_point("flutter", "limit of many nodes", mass_ratio, limit_of(coarse.speed, fine.speed));
     verify_show(verify_text("flutter, M* = %g: relative error of U*, N = %d", mass_ratio, (n_nodes + 1) / 2), source,
                 coarse.speed / theory.speed - 1);
     verify_relative(verify_text("flutter, M* = %g: U*, N = %d", mass_ratio, n_nodes), source, theory.speed, fine.speed,
@@ -162,13 +173,18 @@ static struct driven drive(int n_nodes, double amplitude, int n_periods, const s
     return driven;
 }
 
-static void driven_plate(double mass, double stiffness, int n_nodes, int n_periods) {
+// what linear theory says of such a plate
+static struct linear_theory_load theory_of(const struct linear_theory_body *body, double complex *tip) {
     const struct linear_theory_plate plate = {1, 1, 1, 2 * pi};
-    const struct linear_theory_body body = {mass, stiffness};
     struct linear_theory_shape shape;
+    linear_theory_driven(&plate, body, &shape, tip);
+    return linear_theory_flexible(&plate, &shape);
+}
+
+static void driven_plate(double mass, double stiffness, int n_nodes, int n_periods) {
+    const struct linear_theory_body body = {mass, stiffness};
     double complex tip;
-    linear_theory_driven(&plate, &body, &shape, &tip);
-    const struct linear_theory_load load = linear_theory_flexible(&plate, &shape);
+    const struct linear_theory_load load = theory_of(&body, &tip);
     const struct driven driven = drive(n_nodes, 0.002, n_periods, &body);
     const double complex ratio = driven.tail / driven.nose;
     static const char source[] = "8 modes of a beam, Theodorsen's function";
@@ -181,6 +197,23 @@ static void driven_plate(double mass, double stiffness, int n_nodes, int n_perio
                     driven.power, 0.02);
 }
 
+// tail over nose, and efficiency, over the stiffness of a plate of mass 0.1, for figures
+static void draw_stiffness(void) {
+    double complex tip;
+    for (int i = 0; i <= 120; i++) {
+        const struct linear_theory_body body = {0.1, 0.05 * pow(400, i / 120.0)};
+        const struct linear_theory_load load = theory_of(&body, &tip);
+        verify_point("stiffness, tail", "exact (linear theory)", body.stiffness, cabs(tip));
+        verify_point("stiffness, efficiency", "exact (linear theory)", body.stiffness, load.thrust / load.power);
+    }
+    for (int i = 0; i <= 12; i++) {
+        const struct linear_theory_body body = {0.1, 0.05 * pow(400, i / 12.0)};
+        const struct driven driven = drive(33, 0.002, 5, &body);
+        verify_point("stiffness, tail", "N = 33", body.stiffness, cabs(driven.tail / driven.nose));
+        verify_point("stiffness, efficiency", "N = 33", body.stiffness, driven.thrust / driven.power);
+    }
+}
+
 void verify_elastic(void) {
     if (verify_is_fast()) {
         driven_plate(0.1, 1, 33, 3);
@@ -191,6 +224,8 @@ void verify_elastic(void) {
     driven_plate(0.1, 2, 33, 6);
     driven_plate(0.1, 10, 33, 6);
     driven_plate(1, 5, 33, 10);
+    draw_stiffness();
+    draw_theory_of_flutter();
     flutter_of(0.5, 33);
     flutter_of(1, 33);
     flutter_of(3, 33);
