@@ -267,7 +267,7 @@ if /usr/bin/python3 -c 'import netCDF4, matplotlib' 2>err; then
     run compare refined.yaml --set 'sweep=[]' --set time.end=0.08 --repeats 1 -q -o compare.nc
     check a_picture_of_a_comparison draws compare.nc
     check no_picture_of_one_run eval \
-        '! draws single/member-0000.nc && has check.out "not the file of a study or of a comparison"'
+        '! draws single/member-0000.nc && has check.out "the file of a run, not of a study"'
 else
     skip pictures 'python3-netcdf4 or python3-matplotlib is missing'
 fi
