@@ -27,7 +27,8 @@ Python (`apt install python3-xarray python3-netcdf4`):
     run = xarray.open_dataset("demo.nc")
     run.speed.plot.line(x="time")                       # one line per fish
     nose = run.x.isel(fish=0, node=0)                   # (time, xy)
-    run.swap_dims(fish="fish_name").speed.sel(fish_name="leader")
+    run.speed.sel(fish="leader")                        # by the name of the fish
+    run.com.sel(fish="leader", xy="x")
 
 Octave (`pkg load netcdf`) and MATLAB; both list the dimensions in the opposite order:
 
@@ -116,7 +117,7 @@ resumed needs its places, too: `--checkpoint-at` with the attribute `checkpoint_
 | `run_status`, `warnings`, `closest_approach`, `case_text`, `case_effective` | see above |
 | `checkpoint_at` | times of checkpoints besides those of `time.checkpoint_interval`, as `--checkpoint-at` takes them: `0.3,1.25` |
 
-Every variable has `long_name` and, unless it is a string, `units`. `fish_name`, `node_arc`, `sheet_arc` and `control_arc` are coordinates.
+Every variable has `long_name` and, unless it is a string, `units`. `fish`, `xy`, `fish_name`, `node_arc`, `sheet_arc` and `control_arc` are coordinates.
 """
 
 # Title of a section, and which variables belong to it, by their dimensions.

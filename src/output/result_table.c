@@ -132,6 +132,10 @@ const struct result_variable result_table[] = {
     // what does not change
     {"fish_name",             {FISH, NAME},           RESULT_TEXT,    "",       ARRAY_IN_FISH(name),
      .long_name = "name of the fish"},
+    {"fish",                  {FISH, NAME},           RESULT_TEXT,    "",       ARRAY_IN_FISH(name),
+     .long_name = "name of the fish: the coordinate of the dimension fish"},
+    {"xy",                    {XY, NAME},             RESULT_TEXT,    "",       .owner = OF_AXIS, .is_pointer = true,
+     .long_name = "x or y: the coordinate of the dimension xy"},
     {"n_nodes",               {FISH},                 RESULT_INTEGER, "1",      IN_FISH(n_nodes),
      .long_name = "number of nodes"},
     {"n_edges",               {FISH},                 RESULT_INTEGER, "1",      IN_FISH(n_edges),
@@ -379,6 +383,7 @@ int result_table_length(const struct fish *fish, enum result_dimension dimension
 }
 
 const void *result_table_owner(const struct result_row *row, enum result_owner owner, int f) {
+    static const char *const axis_name[] = {"x", "y"};
     switch (owner) {
         case OF_SCHOOL: return row->school;
         case OF_FISH: return &row->school->fish[f];
@@ -387,6 +392,7 @@ const void *result_table_owner(const struct result_row *row, enum result_owner o
         case OF_DIAGNOSTICS: return row->diagnostics;
         case OF_DIAGNOSTICS_FISH: return &row->diagnostics->fish[f];
         case OF_COUNTS: return row->counts;
+        case OF_AXIS: return &axis_name[f];
         default: return row;
     }
 }

@@ -30,7 +30,17 @@ enum result_type {
 };
 
 /* What a value is a part of. */
-enum result_owner { OF_SCHOOL, OF_FISH, OF_STATE, OF_WAKE, OF_DIAGNOSTICS, OF_DIAGNOSTICS_FISH, OF_COUNTS, OF_ROW };
+enum result_owner {
+    OF_SCHOOL,
+    OF_FISH,
+    OF_STATE,
+    OF_WAKE,
+    OF_DIAGNOSTICS,
+    OF_DIAGNOSTICS_FISH,
+    OF_COUNTS,
+    OF_AXIS,
+    OF_ROW
+};
 
 /* All that a row is made of; for the constants school is enough. */
 struct result_row {
@@ -73,7 +83,7 @@ bool result_table_has(const struct result_variable *variable, enum result_dimens
 /* The length of a dimension for one fish; 1 where it does not depend on the fish. */
 int result_table_length(const struct fish *fish, enum result_dimension dimension);
 
-/* The address of what a value is a part of. */
+/* The address of what a value is a part of; of an axis, which is x or y, f counts the axes. */
 const void *result_table_owner(const struct result_row *row, enum result_owner owner, int f);
 
 /* Row i, from 0, of the list of variables; 0 beyond the last. */

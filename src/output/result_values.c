@@ -60,7 +60,8 @@ void result_values_fill(const struct result_variable *variable, const size_t *le
     } else if (size == sizeof(double)) {
         for (size_t k = 0; k < n; k++) ((double *)buffer)[k] = NAN;
     }
-    const size_t n_owners = result_table_has(variable, FISH) ? length[FISH] : 1, n_slots = n / n_owners;
+    const size_t n_fish = result_table_has(variable, FISH) ? length[FISH] : 1;
+    const size_t n_owners = variable->owner == OF_AXIS ? length[XY] : n_fish, n_slots = n / n_owners;
     for (size_t f = 0; f < n_owners; f++) {
         fill_slots(variable, row, (int)f, n_slots, (char *)buffer + f * n_slots * size);
     }
