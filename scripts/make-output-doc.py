@@ -36,7 +36,8 @@ Octave (`pkg load netcdf`) and MATLAB; both list the dimensions in the opposite 
     x = ncread("demo.nc", "x");                         % (xy, node, fish, time)
     plot(squeeze(x(1, 1, 1, :)), squeeze(x(2, 1, 1, :)))  % path of the first fish's nose
 
-Pictures: `scripts/plot.py demo.nc`, `scripts/plot.py time demo.nc`, `scripts/plot.py forces demo.nc`, `scripts/animate.py demo.nc demo.mp4`.
+To look at a run: `shoal view demo.nc` writes demo.html, one page with bodies, wakes and traces that plays in any
+browser and needs no network; `shoal export demo.nc --vtk demo` writes files for ParaView. Pictures: `scripts/plot.py demo.nc`, `scripts/plot.py time demo.nc`, `scripts/plot.py forces demo.nc`, `scripts/animate.py demo.nc demo.mp4`.
 
 ## Shapes
 
