@@ -1,5 +1,5 @@
 /* result_copy.h: rows of one result file into another that has room for more vortices. Tested by
- * tests/output/test_result_file.c. */
+ * tests/output/test_result_mark.c. */
 #ifndef RESULT_COPY_H
 #define RESULT_COPY_H
 

@@ -4,7 +4,9 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
+#include "base/version.h"
 #include "model/state_table.h"
 #include "output/netcdf.h"
 #include "run/checkpoints.h"
@@ -200,9 +202,21 @@ static enum status go_on(struct run *run, const struct resume *resume, int with_
     return run->record.file ? finish(run, status) : status;
 }
 
+// what a user should know before a run goes on
+static void tell_notes(const struct resume *resume, const struct simulate_options *options) {
+    char here[VERSION_LENGTH], line[4 * VERSION_LENGTH];
+    version_processor(here);
+    if (!options->note) return;
+    if (resume->note) options->note(resume->note, options->data);
+    if (strcmp(here, resume->checkpoint.processor) == 0) return;
+    snprintf(line, sizeof line, "this processor, %s, is another one than before, %s: last bits may differ", here,
+             resume->checkpoint.processor);
+    options->note(line, options->data);
+}
+
 static enum status resume_run(const struct resume *resume, const struct simulate_changes *changes,
                               const struct simulate_options *options) {
-    if (resume->note && options->note) options->note(resume->note, options->data);
+    tell_notes(resume, options);
     if (resume->is_complete && !changes->has_other_end) {
         return status_fail(STATUS_CASE, "%s is complete: give a later --end to extend it", resume->result);
     }

@@ -62,7 +62,8 @@ static void all_that_is_written_is_read(void **state) {
     assert_string_equal(read.effective, written.effective);
     assert_string_equal(read.result, written.result);
     assert_string_equal(read.places, written.places);
-    assert_memory_equal(&read.rows, &written.rows, sizeof read.rows);
+    assert_int_equal(read.rows.n_rows, written.rows.n_rows);
+    assert_int_equal(read.rows.check, written.rows.check);
     assert_memory_equal(&read.totals, &written.totals, sizeof read.totals);
     NEAR(read.wall_time, 1e5, 0, 0);
     NEAR(read.t, 0.6, 0, 0);

@@ -119,5 +119,26 @@ check study_nc_is_there test -s array/study.nc
 "$program" study array/study.yaml -o array -q >again 2>&1
 check the_same_study_goes_on_by_hand cmp <(grep ' complete$' again) <(grep ' complete$' array/study.txt)
 
+# ---- a task that is stopped, as before its time limit, goes back into the queue and goes on
+
+cat >long.yaml <<'end'
+format: 1
+time: {end: 8, shedding_interval: 0.005, output_interval: 0.05}
+fish: [{}]
+sweep: [{key: "fish[*].wave.amplitude", values: [0.2]}]
+end
+"$program" study long.yaml --slurm -o long >long.out
+long/submit.sh >>long.out
+check a_long_task_runs wait_for 60 test -s long/member-0000.nc
+sleep 1
+job=$(squeue -h -t running -o %A | head -1)
+scancel --signal=TERM --batch "$job"
+check a_stopped_task_is_requeued wait_for 30 sh -c "scontrol show job $job | grep -q Restarts=1"
+check its_member_has_a_checkpoint test -s long/member-0000.ckpt
+# Slurm lets a requeued task wait for two minutes
+wait_for 30 scontrol update jobid="$job" starttime=now
+check it_goes_on wait_for 180 sh -c 'ncdump -h long/member-0000.nc | grep -q "run_status = .complete"'
+check from_its_checkpoint sh -c 'ncdump -h long/member-0000.nc | grep -q "checkpoint_at = .[0-9]"'
+
 echo "$n_passed passed, $n_failed failed, 0 skipped"
 ((n_failed == 0))

@@ -1,0 +1,105 @@
+/* test_checkpoints.c: the names of checkpoints, and the events that have one. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "run/checkpoints.h"
+#include "school.h"
+
+#define SCHOOL "time: {end: 1, shedding_interval: 0.02, checkpoint_interval: 0.2}\nfish: [{}]\n"
+
+static void a_checkpoint_is_named_after_its_result(void **state) {
+    (void)state;
+    const char *const names[][2] = {{"run.nc", "run.ckpt"}, {"a/b.nc", "a/b.ckpt"},
+                                    {"run", "run.ckpt"},    {"run.nc.old", "run.nc.old.ckpt"},
+                                    {".nc", ".nc.ckpt"},    {"a/.nc", "a/.nc.ckpt"}};
+    for (int i = 0; i < 6; i++) {
+        char *const path = checkpoints_path(names[i][0]), *const previous = checkpoints_previous(path);
+        assert_string_equal(path, names[i][1]);
+        assert_int_equal(strncmp(previous, path, strlen(path)), 0);
+        assert_string_equal(previous + strlen(path), ".previous");
+        free(path);
+        free(previous);
+    }
+}
+
+static void checkpoints_are_due_at_the_interval_and_where_they_are_asked_for(void **state) {
+    (void)state;
+    struct case_values values;
+    struct checkpoints checkpoints;
+    school_settings(&values, SCHOOL);
+    school_ok(checkpoints_create(&checkpoints, &values, "/tmp/no-such-result.nc", "0,0.06,0.2,1"));
+    for (long event = 0; event <= 50; event++) {
+        const int want = (event > 0 && event % 10 == 0) || event == 0 || event == 3;
+        assert_int_equal(checkpoints_are_due(&checkpoints, event), want);
+    }
+    checkpoints_free(&checkpoints);
+    values.time.checkpoint_interval = 0;
+    school_ok(checkpoints_create(&checkpoints, &values, "/tmp/no-such-result.nc", NULL));
+    for (long event = 0; event <= 50; event++) assert_int_equal(checkpoints_are_due(&checkpoints, event), 0);
+    checkpoints_free(&checkpoints);
+    case_free(&values);
+}
+
+static void times_that_no_event_has_are_refused(void **state) {
+    (void)state;
+    const char *const wrong[] = {"0.03", "0.02,x", "1.02", "-0.02", "0.02,,0.04", "nan", "0.02 0.04"};
+    struct case_values values;
+    struct checkpoints checkpoints;
+    school_settings(&values, SCHOOL);
+    for (int i = 0; i < 7; i++) {
+        assert_int_equal(checkpoints_create(&checkpoints, &values, "/tmp/no-such-result.nc", wrong[i]), STATUS_CASE);
+        if (!strstr(status_message(), "is not the time of an event")) fail_msg("%s", status_message());
+        checkpoints_free(&checkpoints);
+    }
+    case_free(&values);
+}
+
+static void a_run_that_is_resumed_keeps_its_places_and_writes_none_twice(void **state) {
+    (void)state;
+    struct case_values values;
+    struct checkpoints checkpoints;
+    struct checkpoint from = {.places = "0.06,0.1", .effective = "the case"};
+    school_settings(&values, SCHOOL);
+    for (int with_other_end = 0; with_other_end < 2; with_other_end++) {
+        school_ok(checkpoints_create(&checkpoints, &values, "/tmp/no-such-result.nc", NULL));
+        school_ok(checkpoints_resume(&checkpoints, &from, 5, with_other_end));
+        assert_string_equal(checkpoints.places.text, "0.06,0.1");
+        assert_int_equal(checkpoints.last_place, 5);
+        assert_int_equal(checkpoints.last, with_other_end ? -1 : 5);
+        assert_int_equal(strcmp(checkpoints.effective, "the case") == 0, !with_other_end);
+        checkpoints_free(&checkpoints);
+    }
+    case_free(&values);
+}
+
+static void the_one_before_the_newest_takes_its_name(void **state) {
+    (void)state;
+    struct case_values values;
+    struct checkpoints checkpoints;
+    char folder[] = "/tmp/test_checkpoints_XXXXXX", result[64];
+    assert_non_null(mkdtemp(folder));
+    snprintf(result, sizeof result, "%s/run.nc", folder);
+    school_settings(&values, SCHOOL);
+    school_ok(checkpoints_create(&checkpoints, &values, result, NULL));
+    fclose(fopen(checkpoints.previous, "w"));
+    checkpoints_fall_back(&checkpoints);
+    assert_int_equal(access(checkpoints.path, F_OK), 0);
+    assert_int_not_equal(access(checkpoints.previous, F_OK), 0);
+    checkpoints_remove(&checkpoints);
+    checkpoints_free(&checkpoints);
+    case_free(&values);
+    assert_int_equal(rmdir(folder), 0);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_checkpoint_is_named_after_its_result),
+        cmocka_unit_test(checkpoints_are_due_at_the_interval_and_where_they_are_asked_for),
+        cmocka_unit_test(times_that_no_event_has_are_refused),
+        cmocka_unit_test(a_run_that_is_resumed_keeps_its_places_and_writes_none_twice),
+        cmocka_unit_test(the_one_before_the_newest_takes_its_name),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
