@@ -362,6 +362,28 @@ static double shedding_rate(const struct residual *residual, const struct state 
     return residual_kutta_rate(residual, f, state->t, state->y);
 }
 
+// whether a place can lie inside a body, none of whose points is farther from the middle than half its length
+static int is_close(const struct fish *fish, const double *y, const double p[2]) {
+    const int middle = fish->n_nodes / 2;
+    const double dx = p[0] - y[fish->at.x + middle], dy = p[1] - y[fish->at.y + middle];
+    return dx * dx + dy * dy < fish->length * fish->length;
+}
+
+// the free vortices, or markers, inside the outline of a body; its own newest marker is on its tail
+static double swept_vortices(const struct school *school, const struct state *state, int f) {
+    const struct fish *const fish = &school->fish[f];
+    int n = 0;
+    for (int g = 0; g < school->n_fish; g++) {
+        const struct wake *const wake = &state->wake[g];
+        const int end = wake->n_vortex - (g == f && wake->n_vortex > 0);
+        for (int i = 0; i < end; i++) {
+            const double p[2] = {wake->x[i], wake->y[i]};
+            n += is_close(fish, state->y, p) && fish_point_distance(fish, state->y, p) < 0;
+        }
+    }
+    return n;
+}
+
 static void diagnostics_one(struct residual *residual, const struct state *state, int f, struct diagnostics_fish *to) {
     const struct fish *fish = &residual->school->fish[f];
     const struct history *history = &state->history[f];
@@ -376,6 +398,7 @@ static void diagnostics_one(struct residual *residual, const struct state *state
     diagnostics_period(fish, history, residual->school->interval, to);
     find_forces(residual, f, state->t, y, to);
     to->leading_edge_a0 = fish_has_momentum(fish) && to->speed > 0 ? pressure_leading_edge(fish, to->speed, y) : NAN;
+    to->swept_vortices = swept_vortices(residual->school, state, f);
     to->phi0 = y[fish->at.phi0];
     to->shed_circulation = y[fish->at.circulation];
     to->shedding_rate = shedding_rate(residual, state, f);

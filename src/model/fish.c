@@ -643,6 +643,16 @@ static double point_to_segment(const double p[2], const double a[2], const doubl
     return hypot(r[0] - q * e[0], r[1] - q * e[1]);
 }
 
+double fish_point_distance(const struct fish *fish, const double *y, const double p[2]) {
+    double min = INFINITY;
+    for (int k = 0; k < fish->n_edges; k++) {
+        const double a[2] = {y[fish->at.x + k], y[fish->at.y + k]};
+        const double b[2] = {y[fish->at.x + k + 1], y[fish->at.y + k + 1]};
+        min = fmin(min, point_to_segment(p, a, b) - fish->thickness[k] / 2);
+    }
+    return min;
+}
+
 static double cross(const double a[2], const double b[2], const double c[2]) {
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }

@@ -228,6 +228,9 @@ double fish_largest_turn(const struct fish *fish, double amplitude, double bias)
 /* Write nose to tail positions and velocities of the start into the vector of all unknowns: doc/model.md, 4 and 5. */
 void fish_start(const struct fish *fish, double *y);
 
+/* Distance of the point p from the outline of a body at the nodes given in y, negative inside of it, m. */
+double fish_point_distance(const struct fish *fish, const double *y, const double p[2]);
+
 /* Distance between the outlines of two bodies at the nodes given in y, 0 where they touch, m. A distance above the
  * limit may be returned as INFINITY: bodies whose boxes are further apart than that are not compared edge by edge. */
 double fish_distance(const struct fish *a, const struct fish *b, const double *y, double limit);

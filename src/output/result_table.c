@@ -226,6 +226,8 @@ const struct result_variable result_table[] = {
      .long_name = "direction of the way through the water over the last period, less the desired heading"},
     {"phi0",                  {TIME, FISH},           RESULT_REAL,    "1",      IN_FISH_DIAGNOSTICS(phi0),
      .long_name = "steering bias of the gait: positive turns right"},
+    {"swept_vortices",        {TIME, FISH},           RESULT_REAL,    "1",      IN_FISH_DIAGNOSTICS(swept_vortices),
+     .long_name = "number of free vortices, of any fish, inside the outline of the body"},
     {"shed_circulation",      {TIME, FISH},           RESULT_REAL,    "m2 s-1", IN_FISH_DIAGNOSTICS(shed_circulation),
      .long_name = "total circulation shed since the start"},
     {"shedding_rate",         {TIME, FISH},           RESULT_REAL,    "m2 s-2", IN_FISH_DIAGNOSTICS(shedding_rate),

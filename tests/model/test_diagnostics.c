@@ -388,6 +388,51 @@ static void forces_by_name_make_up_momentum_and_angular_momentum(void **state) {
     }
 }
 
+static void vortices_inside_an_outline_are_counted(void **state) {
+    (void)state;
+    struct setup setup;
+    // two straight bodies of 0.1 m thickness from x = 0 to 1
+    school_build(
+        &setup, TIME
+        "wake: {shedding: continuous, taper: 0, taper_beside: 0}\ndefaults: {fish: {wave: {amplitude: 0}, body: "
+        "{profile: uniform, thickness: 0.1}}}\nfish: [{}, {start: {position: [0, 1]}}]\n");
+    const double place[][2] = {{0.5, 0.049}, {0.5, 0.051}, {0.9, -0.049}, {-0.049, 0}, {-0.051, 0}, {0.2, 1}};
+    struct wake *const wake = &setup.state->wake[1];
+    for (size_t i = 0; i < sizeof place / sizeof *place; i++) {
+        school_ok(wake_release(wake, place[i][0], place[i][1], 0.1, 0));
+    }
+    diagnostics_start(setup.residual, setup.state);
+    diagnostics_remember(setup.residual, setup.state);
+    struct diagnostics *diagnostics;
+    school_ok(diagnostics_create(&diagnostics, setup.school));
+    school_ok(residual_evaluate(setup.residual, 0, setup.state->y, setup.state->yp, setup.value));
+    diagnostics_event(setup.residual, setup.state, diagnostics);
+    NEAR(diagnostics->fish[0].swept_vortices, 3, 0, 0);
+    // the newest one of its own is on its tail
+    NEAR(diagnostics->fish[1].swept_vortices, 0, 0, 0);
+    diagnostics_free(diagnostics);
+    school_clear(&setup);
+}
+
+static void a_body_that_sweeps_over_a_wake_loses_no_circulation(void **state) {
+    (void)state;
+    // a driven plate goes right through the wake of another one
+    struct simulation *const simulation = school_simulation(
+        "time: {end: 1, shedding_interval: 0.02}\nwake: {shedding: sheet}\n"
+        "defaults: {fish: {wave: {amplitude: 0}, body: {profile: uniform, thickness: 0.1}}}\n"
+        "fish: [{motion: {driven: all, speed: 2, heave: 0.1, frequency: 2}}, {start: {position: [0.5, -1.2], heading: "
+        "90}, motion: {driven: all, speed: 3}}]\n");
+    double most = 0;
+    while (simulation->state->t < 0.6) {
+        school_ok(simulate_step(simulation));
+        simulate_measure(simulation);
+        most = fmax(most, simulation->diagnostics->fish[1].swept_vortices);
+        NEAR(simulation->diagnostics->total_circulation, 0, 1e-11, 0);
+    }
+    assert_true(most >= 1);
+    simulate_free(simulation);
+}
+
 static void heading_is_unwrapped(void **state) {
     (void)state;
     struct setup setup;
@@ -442,6 +487,8 @@ int main(void) {
         cmocka_unit_test(drift_is_the_change_of_the_speed_in_a_period),
         cmocka_unit_test(cost_of_transport_has_two_parts),
         cmocka_unit_test(forces_by_name_make_up_momentum_and_angular_momentum),
+        cmocka_unit_test(vortices_inside_an_outline_are_counted),
+        cmocka_unit_test(a_body_that_sweeps_over_a_wake_loses_no_circulation),
         cmocka_unit_test(heading_is_unwrapped),
         cmocka_unit_test(polarisation_and_least_distance_are_those_of_the_school),
     };
