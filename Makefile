@@ -131,7 +131,7 @@ verify: deps  ## check the program against classical results (minutes) and write
 
 soak: deps  ## let everything fail that can: all of tests/soak (an hour)
 	@$(parallel) all $(B)/faults.so
-	@scripts/run-tests.sh $(program) $(wildcard tests/soak/*.sh)
+	@TIME_LIMIT=14400 scripts/run-tests.sh $(program) $(wildcard tests/soak/*.sh)
 
 fuzz: deps  ## mutate cases and results for TIME seconds, on two cores, with the sanitizers
 	@$(parallel) SANITIZE=1 $(if $(clang),FUZZER=1 CC=clang) fuzz-programs

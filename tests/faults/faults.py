@@ -4,7 +4,8 @@
     faults.py PROGRAM SHIM EVERY      EVERY: 1 tries all of them, n every n-th
 
 After each fault the exit code is 0 or 4 (killed: -9); on standard error is one message, with the path and the reason;
-the result, where there is one, has rows that are to the bit those of an undisturbed run, and `shoal info` reads it.
+the result, where there is one, has rows that are to the bit those of an undisturbed run, and `shoal info` reads it. Where there is a checkpoint, `shoal resume` ends in the
+bits of the undisturbed run.
 Prints a line for what is wrong, and as the last one how many passed and failed.
 """
 import os, resource, subprocess, sys, tempfile
@@ -14,14 +15,14 @@ import numpy as np
 program, shim, every = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2]), int(sys.argv[3])
 CASE = """format: 1
 name: victim
-time: {end: 0.1, shedding_interval: 0.01, output_interval: 0.01}
+time: {end: 0.1, shedding_interval: 0.01, output_interval: 0.01, checkpoint_interval: 0.03}
 fish: [{nodes: 9, sheet_points: 17}]
 """
 CALLS = ["open", "read", "write", "pwrite", "lseek", "fsync", "ftruncate", "rename", "link", "close"]
 REASONS = {
     "ENOSPC": "No space left", "EIO": "Input/output error", "EDQUOT": "quota", "EINTR": "Interrupted", "limit": "too large"
 }
-counts = {"passed": 0, "failed": 0}
+counts = {"passed": 0, "failed": 0, "resumed": 0}
 
 
 def run(extra=(), limit=None, **settings):
@@ -29,7 +30,7 @@ def run(extra=(), limit=None, **settings):
     def lower():
         if limit is not None:
             resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
-    environment = dict(os.environ, LD_PRELOAD=shim, FAULT_PATH="victim.nc", **{f"FAULT_{k}": v for k, v in settings.items()})
+    environment = dict(os.environ, LD_PRELOAD=shim, FAULT_PATH="victim.", **{f"FAULT_{k}": v for k, v in settings.items()})
     environment["ASAN_OPTIONS"] = "verify_asan_link_order=0:detect_leaks=0"
     done = subprocess.run(
         [program, "run", "case.yaml", "-q", *extra, "-o", "victim.nc"], env=environment, timeout=5,
@@ -61,9 +62,22 @@ def wrong_with_file(code):
     return None if read.returncode == 0 else f"info: {read.stderr}"
 
 
+def wrong_with_resumption():
+    """What is wrong after going on from the checkpoint, or None: there may be none yet, or nothing left to do."""
+    if not any(os.path.exists(name) for name in ("victim.ckpt", "victim.ckpt.previous")):
+        return None
+    if os.path.exists("victim.nc") and rows("victim.nc")[0] == "complete":
+        return None
+    done = subprocess.run(
+        [program, "resume", "victim.ckpt", "-q"], stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60
+    )
+    counts["resumed"] += 1
+    return wrong_with_file(0) if done.returncode == 0 else f"resume: exit code {done.returncode}: {done.stderr}"
+
+
 def check(name, reason, killed=False, **settings):
     """A run with a fault, and all that must hold after it."""
-    for left in [name for name in os.listdir(".") if name.startswith("victim.nc")]:
+    for left in [name for name in os.listdir(".") if name.startswith("victim.")]:
         os.remove(left)
     try:
         code, message = run(["--force"] if settings.get("CALL") == "rename" else [], **settings)
@@ -74,17 +88,19 @@ def check(name, reason, killed=False, **settings):
         wrong = f"exit code {code}"
     elif not killed and code not in (0, 4):
         wrong = f"exit code {code}: {message}"
-    elif code == 4 and (message.count("\n") != 1 or "victim.nc" not in message or reason not in message):
+    elif code == 4 and (message.count("\n") != 1 or "victim." not in message or reason not in message):
         wrong = f"message: {message!r}"
     elif code == 0 and message:
         wrong = f"exit code 0 with a message: {message!r}"
     elif os.path.exists("victim.nc"):
         wrong = wrong_with_file(code)
+    if not wrong and code != 0:
+        wrong = wrong_with_resumption()
     counts["failed" if wrong else "passed"] += 1
     if wrong:
-        print(f"FAILED  {name}: {wrong}", flush=True)
+        print(f"FAILED  {name}: {wrong.strip()}", flush=True)
     # a run that has not been killed leaves no half of a file
-    if not killed and any(part.endswith(".part") for part in os.listdir(".")):
+    if not killed and any(".part" in part for part in os.listdir(".")):
         counts["failed"] += 1
         print(f"FAILED  {name}: it leaves a file .part", flush=True)
 
@@ -97,6 +113,8 @@ with tempfile.TemporaryDirectory() as folder:
         code, message = run(extra, AT="0", COUNT="counted")
         assert code == 0, message
         os.rename("victim.nc", "whole.nc")
+        for left in [name for name in os.listdir(".") if name.startswith("victim.")]:
+            os.remove(left)
     whole = rows("whole.nc")[1]
     size = os.path.getsize("whole.nc")
     numbers = {}
@@ -118,6 +136,7 @@ with tempfile.TemporaryDirectory() as folder:
         if n % every == 0:
             check(f"files of at most {limit} bytes", REASONS["limit"], limit=limit)
     print("calls of a run:", ", ".join(f"{numbers[call]} {call}" for call in CALLS))
+    print(f"{counts['resumed']} runs went on from a checkpoint")
     os.chdir("/")
 print(f"{counts['passed']} passed, {counts['failed']} failed, 0 skipped")
 sys.exit(counts["failed"] > 0)

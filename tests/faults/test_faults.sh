@@ -28,7 +28,7 @@ complete() { [[ $(ncdump -h "$1" | sed -n 's/.*:run_status = "\(.*\)" ;/\1/p') =
 
 # ---- failing calls
 
-sample=$(/usr/bin/python3 "$tests/faults/faults.py" "$program" "$shim" 37)
+sample=$(/usr/bin/python3 "$tests/faults/faults.py" "$program" "$shim" 61)
 check "a sample of failing calls: whole rows, one message, exit code 0 or 4" \
     grep -q '^[1-9][0-9]* passed, 0 failed, 0 skipped$' <(echo "$sample" | tee sample.out | tail -n 1)
 ((n_failed == 0)) || cat sample.out
@@ -48,6 +48,19 @@ code=0
 { "$program" run small.yaml --force -o pipe.nc 2> >(exec true) >out; } || code=$?
 check "a closed pipe for progress: exit 0" ended 0
 check "a closed pipe for progress: complete" complete pipe.nc
+
+# ---- signals
+
+code=0
+(trap '' INT HUP && exec "$program" run small.yaml -q --force -o ignored.nc --set time.end=1) >out 2>err &
+pid=$!
+for signal in INT HUP INT; do
+    sleep 0.1
+    kill -$signal $pid 2>/dev/null
+done
+wait $pid || code=$?
+check "signals that are ignored: exit 0" ended 0
+check "signals that are ignored stay so" complete ignored.nc
 
 # ---- threads and memory
 
