@@ -40,6 +40,8 @@ static enum status try_lock(struct result_lock *lock, const char *result, int *i
     struct stat facts;
     *is_gone = 0;
     lock->descriptor = open(lock->path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
+    if (lock->descriptor < 0 && errno == ENOENT)  // the folder is there: that has been checked
+        return status_fail(STATUS_FILE, "%s: the folder takes no new files: choose another place with -o", result);
     if (lock->descriptor < 0 || fstat(lock->descriptor, &facts) != 0 || !S_ISREG(facts.st_mode)) {
         return status_fail(STATUS_FILE, "%s: cannot be made (%s): choose another name with -o", lock->path,
                            lock->descriptor < 0 ? strerror(errno) : "it is not an ordinary file");
