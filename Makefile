@@ -72,6 +72,7 @@ program = $(B)/shoal
 
 # the rooms of src/, lowest first: scripts/check-layers.sh
 rooms           = base vortex model case solver output run study app
+folders         = $(addprefix $(B)/,doc verify bench fuzz $(rooms) $(rooms:%=tests/%))
 app_objects     = $(patsubst src/%.c,$(B)/%.o,$(wildcard src/app/*.c))
 library_objects = $(patsubst src/%.c,$(B)/%.o,$(wildcard $(patsubst %,src/%/*.c,$(filter-out app,$(rooms)))))
 
@@ -235,7 +236,7 @@ $(shared): $(library_objects) src/run/shoal.map
 	$(quiet)$(CC) $(shoal_cflags) $(LDFLAGS) -shared -Wl,-soname,$(soname) -Wl,--version-script=src/run/shoal.map \
 	    $(complete) -o $@ $(library_objects) $(libraries)
 
-$(B)/%.o: src/%.c Makefile | $(B)/tests
+$(B)/%.o: src/%.c Makefile | $(folders)
 	$(say) CC $<
 	$(quiet)$(CC) $(shoal_cppflags) $(shoal_cflags) -MMD -MP -c -o $@ $<
 
@@ -245,10 +246,10 @@ $(B)/base/version.o: $(B)/commit
 $(B)/output/page.o: src/output/page.html
 
 # rewritten only when the commit changes
-$(B)/commit: FORCE | $(B)/tests
+$(B)/commit: FORCE | $(folders)
 	@echo '$(commit)' | cmp -s - $@ || echo '$(commit)' >$@
 
-$(B)/fuzz/%.o: tests/fuzz/%.c Makefile | $(B)/tests
+$(B)/fuzz/%.o: tests/fuzz/%.c Makefile | $(folders)
 	$(say) CC $<
 	$(quiet)$(CC) $(shoal_cppflags) $(shoal_cflags) -MMD -MP -c -o $@ $<
 
@@ -257,13 +258,13 @@ $(B)/fuzz/%: $(B)/fuzz/%.o $(if $(FUZZER),,$(B)/fuzz/driver.o) $(objects)
 	$(quiet)$(CC) $(shoal_cflags) $(if $(FUZZER),-fsanitize=fuzzer) $(LDFLAGS) -o $@ $^ $(libraries)
 
 # to be preloaded: tests/faults/faults.py
-$(B)/faults.so: tests/faults/shim.c Makefile | $(B)/tests
+$(B)/faults.so: tests/faults/shim.c Makefile | $(folders)
 	$(say) LD $@
 	$(quiet)$(CC) -std=c11 -Wall -Wextra -Wconversion -Wshadow -Werror -O2 -shared -fPIC -o $@ $<
 
 tests: all $(B)/faults.so $(fuzz_programs) $(c_tests) $(verify_program) $(bench_programs)
 
-$(B)/verify/%.o: tests/verify/%.c Makefile | $(B)/tests
+$(B)/verify/%.o: tests/verify/%.c Makefile | $(folders)
 	$(say) CC $<
 	$(quiet)$(CC) $(shoal_cppflags) $(shoal_cflags) -MMD -MP -c -o $@ $<
 
@@ -271,11 +272,11 @@ $(verify_program): $(verify_objects) $(objects)
 	$(say) LD $@
 	$(quiet)$(CC) $(shoal_cflags) $(LDFLAGS) -o $@ $^ $(libraries)
 
-$(B)/bench/%.o: tests/bench/%.c Makefile | $(B)/tests
+$(B)/bench/%.o: tests/bench/%.c Makefile | $(folders)
 	$(say) CC $<
 	$(quiet)$(CC) $(shoal_cppflags) $(shoal_cflags) -MMD -MP -c -o $@ $<
 
-$(B)/tests/%.o: tests/%.c Makefile | $(B)/tests
+$(B)/tests/%.o: tests/%.c Makefile | $(folders)
 	$(say) CC $<
 	$(quiet)$(CC) $(shoal_cppflags) -iquote tests $(shoal_cflags) -MMD -MP -c -o $@ $<
 
@@ -290,29 +291,29 @@ $(c_tests): %: %.o $(test_helpers) $(objects)
 	$(say) LD $@
 	$(quiet)$(CC) $(shoal_cflags) $(LDFLAGS) $(wrapped) -o $@ $^ -lcmocka $(libraries)
 
-$(B)/doc/cases.md: $(program) scripts/make-cases-doc.py | $(B)/tests
+$(B)/doc/cases.md: $(program) scripts/make-cases-doc.py | $(folders)
 	$(quiet)$(program) keys --json | $(PYTHON) scripts/make-cases-doc.py >$@
 
-$(B)/doc/case.schema.json: $(program) | $(B)/tests
+$(B)/doc/case.schema.json: $(program) | $(folders)
 	$(quiet)$(program) keys --schema >$@
 
-$(B)/doc/shoal.1: $(program) scripts/make-man.py | $(B)/tests
+$(B)/doc/shoal.1: $(program) scripts/make-man.py | $(folders)
 	$(quiet)$(program) --describe | $(PYTHON) scripts/make-man.py shoal.1 >$@
 
-$(B)/doc/shoal-case.5: $(program) scripts/make-man.py | $(B)/tests
+$(B)/doc/shoal-case.5: $(program) scripts/make-man.py | $(folders)
 	$(quiet)$(program) keys --json | $(PYTHON) scripts/make-man.py shoal-case.5 >$@
 
-$(B)/doc/shoal-output.5: $(program) scripts/make-man.py | $(B)/tests
+$(B)/doc/shoal-output.5: $(program) scripts/make-man.py | $(folders)
 	$(quiet)$(program) keys --output --json | $(PYTHON) scripts/make-man.py shoal-output.5 >$@
 
-$(completion): $(program) scripts/make-completion.py | $(B)/tests
+$(completion): $(program) scripts/make-completion.py | $(folders)
 	$(quiet)$(PYTHON) scripts/make-completion.py <($(program) --describe) <($(program) keys --json) >$@
 
-$(B)/doc/output.md: $(program) scripts/make-output-doc.py | $(B)/tests
+$(B)/doc/output.md: $(program) scripts/make-output-doc.py | $(folders)
 	$(quiet)$(program) keys --output --json | $(PYTHON) scripts/make-output-doc.py >$@
 
-$(B)/tests:
-	@mkdir -p $@ $(addprefix $(B)/,doc verify bench fuzz $(rooms) $(rooms:%=tests/%))
+$(folders):
+	@mkdir -p $@
 
-.PRECIOUS: $(B)/tests/%.o $(B)/bench/%.o
+.PRECIOUS: $(B)/tests/%.o $(B)/bench/%.o $(B)/fuzz/%.o
 -include $(wildcard $(B)/*/*.d $(B)/tests/*/*.d)
