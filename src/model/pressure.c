@@ -303,6 +303,19 @@ double pressure_jump(const struct pressure *p, int c, const double *yp) {
     return fish->fluid_density * (rate + point->circulation / length * along(point));
 }
 
+void pressure_of_edge(const struct pressure *p, int k, const double *yp, double force[2]) {
+    const struct fish *fish = p->fish;
+    force[0] = force[1] = 0;
+    for (int c = 0; c < fish->n_control; c++) {
+        const double u = fish->n_edges * (1 - cos(pi * (c + 0.5) / fish->n_control)) / 2;
+        if ((int)u != k) continue;
+        const struct direction *const body = &p->point[c].body;
+        const double length = body->length * fish->control_interval[c];
+        const double size = -fish->depth[k] * pressure_jump(p, c, yp) * length;
+        for (int i = 0; i < 2; i++) force[i] += size * body->n[i];
+    }
+}
+
 static double moment_of(const double arm[2], const double vector[2]) {
     return arm[0] * vector[1] - arm[1] * vector[0];
 }

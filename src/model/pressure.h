@@ -74,6 +74,10 @@ void pressure_update_rate(struct pressure *pressure, const double *y, const doub
 /* After pressure_update_rate: the jump of the pressure at control point c, left less right, Pa. */
 double pressure_jump(const struct pressure *pressure, int c, const double *yp);
 
+/* After pressure_update_rate: the force of the pressure on an edge, N: of the control points there, each with its
+ * interval of the line. */
+void pressure_of_edge(const struct pressure *pressure, int k, const double *yp, double force[2]);
+
 /* After pressure_update_rate: the force of the pressure and the suction on the body, N, their moments about a point, N
  * m, and their powers, W; the sum of the added momentum, N s, and its moment, N m s. */
 struct pressure_forces {

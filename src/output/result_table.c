@@ -114,6 +114,14 @@ static void gather_edge_reactive_force(const struct result_row *row, int f, doub
     gather_edge_force(row, f, REACTIVE, slots);
 }
 
+static void gather_edge_pressure_force(const struct result_row *row, int f, double *slots) {
+    const struct pressure *const pressure = row->residual->pressure[f];
+    for (int k = 0; k < row->school->fish[f].n_edges; k++) {
+        slots[2 * k] = slots[2 * k + 1] = 0;
+        if (pressure) pressure_of_edge(pressure, k, row->state->yp, slots + 2 * k);
+    }
+}
+
 // ---- the table
 
 #define IN_SCHOOL(field) .owner = OF_SCHOOL, .offset = offsetof(struct school, field)
@@ -324,6 +332,9 @@ const struct result_variable result_table[] = {
      GATHERED(gather_edge_reactive_force), .forces = OUTPUT_FORCES_EDGES,
      .long_name = "reactive force on every edge, the last with the tail flux; with output.forces: edges only"},
 
+    {"edge_pressure_force",   {TIME, FISH, EDGE, XY}, RESULT_BULK,    "N",
+     GATHERED(gather_edge_pressure_force), .forces = OUTPUT_FORCES_EDGES,
+     .long_name = "force of the pressure on every edge; with output.forces: edges only"},
     {"pressure",              {TIME, FISH, CONTROL},  RESULT_BULK,    "Pa",     GATHERED(gather_pressure),
      .long_name = "pressure jump across the body at the control points, left less right; NaN unless force: pressure"},
     {"leading_edge_a0",       {TIME, FISH},           RESULT_REAL,    "1",      IN_FISH_DIAGNOSTICS(leading_edge_a0),

@@ -155,7 +155,14 @@ static void force_and_reaction_are_those_of_the_jump(void **state) {
             inertia[i] += fish->mass[k] * simulation->state->y[fish->at.ax + i * fish->n_nodes + k];
         }
     }
+    double of_edges[2] = {0, 0};
+    for (int k = 0; k < fish->n_edges; k++) {
+        double force[2];
+        pressure_of_edge(pressure, k, simulation->state->yp, force);
+        for (int i = 0; i < 2; i++) of_edges[i] += force[i];
+    }
     for (int i = 0; i < 2; i++) {
+        NEAR(of_edges[i], sum[i], 0, 1e-12);
         // the midpoint rule in theta, of a jump that has a kink at the tail
         NEAR(sum[i], of->pressure.pressure[i], 1e-3 * fabs(of->pressure.pressure[1]), 0);
         NEAR(of->constraint_force[i], inertia[i] - of->pressure.pressure[i] - of->pressure.suction[i], 1e-9, 1e-9);
