@@ -2,6 +2,7 @@
 #include "base/version.h"
 
 #include <klu.h>
+#include <lapacke.h>
 #include <netcdf.h>
 #include <stdio.h>
 #include <string.h>
@@ -27,12 +28,15 @@ void version_libraries(char text[VERSION_LENGTH]) {
     SUNDIALSGetVersion(sundials, sizeof sundials);
     int suitesparse[3];
     SuiteSparse_version(suitesparse);
+    lapack_int lapack[3];
+    LAPACKE_ilaver(&lapack[0], &lapack[1], &lapack[2]);
 
     // "4.9.0 of Aug  7 2022 23:41:41 $": the number is enough
     const char *netcdf = nc_inq_libvers();
     const int netcdf_length = (int)strcspn(netcdf, " ");
 
-    snprintf(text, VERSION_LENGTH, "SUNDIALS %s, KLU %d.%d.%d (SuiteSparse %d.%d.%d), NetCDF %.*s, libyaml %s",
-             sundials, KLU_MAIN_VERSION, KLU_SUB_VERSION, KLU_SUBSUB_VERSION, suitesparse[0], suitesparse[1],
-             suitesparse[2], netcdf_length, netcdf, yaml_get_version_string());
+    snprintf(text, VERSION_LENGTH,
+             "SUNDIALS %s, KLU %d.%d.%d (SuiteSparse %d.%d.%d), LAPACK %d.%d.%d, NetCDF %.*s, libyaml %s", sundials,
+             KLU_MAIN_VERSION, KLU_SUB_VERSION, KLU_SUBSUB_VERSION, suitesparse[0], suitesparse[1], suitesparse[2],
+             (int)lapack[0], (int)lapack[1], (int)lapack[2], netcdf_length, netcdf, yaml_get_version_string());
 }

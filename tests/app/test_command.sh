@@ -55,7 +55,7 @@ help_and_versions() {
         check "$command --help shows its usage" grep -q "^Usage: shoal $command" out
     done
     run --version
-    check "--version names the libraries" grep -qE 'SUNDIALS.*KLU.*NetCDF' out
+    check "--version names the libraries" grep -qE 'SUNDIALS.*KLU.*LAPACK [0-9.]+, NetCDF' out
     check "--version ends with 0" ended 0
 }
 
