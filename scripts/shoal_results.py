@@ -87,9 +87,9 @@ class Results:
     def remaining(self, age):
         """The part of its circulation that a vortex of some age still has: doc/model.md, section 8."""
         lifetime, decay = float(self["wake_lifetime"]), float(self["wake_fade"])
-        if decay == 0:
+        if decay == 0:  # it keeps all of it up to its last interval
             return np.ones_like(age)
-        return ramp_step((lifetime - age) / decay)
+        return 1 - ramp_step((age + float(self["shedding_interval"]) / 2 - (lifetime - decay)) / decay)
 
     def rows_with_wake(self):
         """The rows in which the wake was written, or has nothing to write."""

@@ -47,6 +47,17 @@ code=0
 "$program" run "$root/cases/gait.yaml" -q -o run.nc 2>err || code=$?
 check "a short run" test "$code" = 0
 
+# what a vortex still acts with, by its age, as the program has it (tests/model/test_wake.c): all, half, nothing
+code=0
+PYTHONPATH=$root/scripts /usr/bin/python3 - >out 2>err <<'END' || code=$?
+from shoal_results import Results, np
+run = Results("run.nc")
+lifetime, fade, interval = (float(run[name]) for name in ("wake_lifetime", "wake_fade", "shedding_interval"))
+ages = lifetime - interval / 2 - fade * np.array([1.1, 1, 0.5, 0])
+assert np.allclose(run.remaining(ages), [1, 1, 0.5, 0], atol=1e-12), run.remaining(ages)
+END
+check "a vortex decays as in the program" test "$code" = 0
+
 draws plot.py swim run.nc --limits -1 2 -3 3 --times 1 2 -- swim.png
 draws plot.py gait run.nc gait.svg
 draws plot.py time run.nc --audit time.pdf
