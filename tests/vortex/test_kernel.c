@@ -345,6 +345,27 @@ static void product_with_a_matrix_adds_column_after_column(void **state) {
     }
 }
 
+static void sources_with_a_smoothing_each_add_up_one_by_one(void **state) {
+    (void)state;
+    double square[N_SOURCES], got[7][N_TARGETS] = {{0}}, want[5][N_TARGETS] = {{0}};
+    for (int j = 0; j < N_SOURCES; j++) {
+        // one of them has none, the one on a target among others some
+        const double smoothing = 0.01 * (j % 9);
+        square[j] = smoothing * smoothing;
+        kernel_add_gradient(N_TARGETS, cloud.x, cloud.y, 1, &cloud.source_x[j], &cloud.source_y[j],
+                            &cloud.circulation[j], smoothing, want[0], want[1], want[2], want[3], want[4]);
+    }
+    kernel_add_gradient_each(N_TARGETS, cloud.x, cloud.y, N_SOURCES, cloud.source_x, cloud.source_y, cloud.circulation,
+                             square, got[0], got[1], got[2], got[3], got[4]);
+    kernel_add_velocity_each(N_TARGETS, cloud.x, cloud.y, N_SOURCES, cloud.source_x, cloud.source_y, cloud.circulation,
+                             square, got[5], got[6]);
+    for (int i = 0; i < N_TARGETS; i++) {
+        // rounding of sums of 53 terms, of at most 20 in the velocity and 2000 in the gradient
+        for (int k = 0; k < 5; k++) NEAR(got[k][i], want[k][i], k < 2 ? 2e-14 : 5e-12, 1e-13);
+        for (int k = 0; k < 2; k++) NEAR(got[5 + k][i], want[k][i], 2e-14, 1e-13);
+    }
+}
+
 static void a_vortex_pair_translates_at_the_known_speed(void **state) {
     (void)state;
     // doc/model.md, section 12: G d/(2 pi (d^2 + delta^2))
@@ -374,6 +395,7 @@ int main(void) {
         cmocka_unit_test(one_unit_source_is_what_the_loops_add),
         cmocka_unit_test(product_with_a_matrix_adds_column_after_column),
         cmocka_unit_test(unit_sources_at_many_targets_have_the_bits_of_one_by_one),
+        cmocka_unit_test(sources_with_a_smoothing_each_add_up_one_by_one),
         cmocka_unit_test(a_vortex_pair_translates_at_the_known_speed),
     };
     return cmocka_run_group_tests(tests, scatter, NULL);
