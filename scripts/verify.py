@@ -108,7 +108,8 @@ default fish (but for 7 nodes) over one beat: what its muscle puts in is found a
 speed in the long run does not depend on the speed at which it was started."""),
     "control": ("Control", """\
 Heading control with feedforward, and course control, on bodies from soft to stiff: the same run with the implicit and
-with an explicit method. Where the feedforward acts through a moving mean there is no algebraic loop, and the bias of the
+with an explicit method. The bound is a little more than twice what the tolerance leaves where nothing steers (law none).
+Where the feedforward acts through a moving mean there is no algebraic loop, and the bias of the
 stiffest body changes as smoothly as that of the softest. A default fish goes to waypoints, another holds its course in
 the wake of a leader."""),
     "pressure": ("Pressure", """\
