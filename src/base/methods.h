@@ -14,7 +14,8 @@ enum method {
     METHOD_RK4,
     METHOD_DORMAND_PRINCE,
     METHOD_IMPLICIT_EULER,
-    METHOD_TRAPEZOID
+    METHOD_TRAPEZOID,
+    METHOD_VERLET
 };
 
 /* The Butcher tableau of an explicit Runge-Kutta method. The embedded method, of another order, gives the error of a
@@ -33,7 +34,7 @@ struct butcher_tableau {
     const double *embedded; /* (n_stages) */
 };
 
-/* One method. An explicit one has a tableau for each kind of steps that it takes. */
+/* One method. A Runge-Kutta method has a tableau for each kind of steps that it takes. */
 struct method_properties {
     const char *word; /* of solver.method */
     int order;        /* of ida the highest: solver.order lowers it */

@@ -116,6 +116,32 @@ static void check_solver(const struct check *check) {
              interval, interval / (n < 1 ? 1 : n));
 }
 
+/* Complain about what verlet cannot integrate: forces that depend on velocities, and unknowns that are no places. */
+static void check_verlet(const struct check *check) {
+    const struct school_parameters *const school = &check->values->school;
+    const struct body_parameters *const body = &school->fish[check->fish].body;
+    static const char damps[] =
+        "solver.method verlet is for rods without damping: set it to 0, or choose another method";
+    if (check->values->solver.method != METHOD_VERLET) return;
+    if (check->fish == 0 && school->fluid.density > 0) {
+        complain(check, "solver.method",
+                 "verlet is for rods without fluid: set fluid.density to 0, or choose another method");
+    }
+    if (check->fish == 0 && school->wake.kutta == KUTTA_RATE) {
+        complain(check, "solver.method", "verlet integrates no circulation: set wake.kutta to edge");
+    }
+    if (body->bending_damping > 0) complain(check, "fish.body.bending_damping", damps);
+    if (body->stretching_damping > 0) complain(check, "fish.body.stretching_damping", damps);
+    if (body->relaxation_time > 0) complain(check, "fish.body.relaxation_time", damps);
+    if (school->fish[check->fish].motion.prescribed != PRESCRIBED_NONE) {
+        complain(check, "fish.motion.driven", "solver.method verlet is for free rods: choose another method");
+    }
+    if (school->fish[check->fish].control.law != CONTROL_NONE) {
+        complain(check, "fish.control.law",
+                 "solver.method verlet is for rods that nothing steers: choose another method");
+    }
+}
+
 static void check_wake(const struct check *check) {
     const struct wake_parameters *const wake = &check->values->school.wake;
     const double interval = check->values->school.shedding_interval;
@@ -406,6 +432,7 @@ void case_check(const struct case_values *values, const struct case_tree *tree, 
     for (check.fish = 0; check.fish < values->school.n_fish; check.fish++) {
         const struct fish_parameters *const fish = &values->school.fish[check.fish];
         check_name(&check);
+        check_verlet(&check);
         check_edge_list(&check, "fish.body.h", &fish->body.h);
         check_edge_list(&check, "fish.body.w", &fish->body.w);
         check_wave_form(&check);

@@ -156,6 +156,14 @@ double rod_stretching_energy(const struct fish *fish, const double *y) {
     return energy;
 }
 
+int rod_is_torn(const struct fish *fish, const double *y) {
+    const double most = 10 * fish->edge_length;
+    for (int k = 0; k < fish->n_edges; k++) {
+        if (edge_at(fish, k, y).length > most) return 1;
+    }
+    return 0;
+}
+
 double rod_actuation_power(const struct fish *fish, const double *natural_curvature, const double *curvature_rate,
                            const double *y) {
     double power = 0;

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "model/bound_sheet.h"
+#include "model/rod.h"
 
 struct ode_rhs {
     struct residual *residual;
@@ -19,7 +20,6 @@ struct ode_rhs {
     int *first;                /* row and column of the first unknown of each fish                      (n_fish) */
     double *matrix, *solution; /* the solution enters as the right-hand side                       (n, n), (n) */
     lapack_int *pivot;         /*                                                                           (n) */
-    long solves;
 
     /* the mass matrix of one fish, with added mass: its lower band, column after column; and its right-hand side */
     double *band, *force;
@@ -217,7 +217,6 @@ static enum status solve_sheets(struct ode_rhs *d, double t, double *y) {
         if (fish_has_momentum(&school->fish[f])) assemble_velocities(d, f, y, d->solution);
         for (int g = 0; g < school->n_fish; g++) assemble_influence(d, f, g, y, d->solution);
     }
-    d->solves++;
     if (LAPACKE_dgesv(LAPACK_COL_MAJOR, d->n, 1, d->matrix, d->n, d->pivot, d->solution, d->n) != 0) {
         return status_fail(STATUS_RETRY, "the system of the bound sheets has no finite solution at t = %g s", t);
     }
@@ -363,6 +362,10 @@ enum status ode_rhs_rates(struct ode_rhs *d, double t, double *y, double *yp) {
     for (int i = 0; i < school->n_unknowns; i++) {
         if (!isfinite(y[i])) return status_fail(STATUS_RETRY, "unknown %d is not finite at t = %g s", i, t);
     }
+    for (int f = 0; f < school->n_fish; f++) {
+        if (!rod_is_torn(&school->fish[f], y)) continue;
+        return status_fail(STATUS_RETRY, "fish %s is torn at t = %g s", school->fish[f].name, t);
+    }
     TRY(residual_contact(d->residual, t, y));
     TRY(update_flow(d, t, y));
     TRY(solve_sheets(d, t, y));
@@ -384,8 +387,4 @@ enum status ode_rhs_rates(struct ode_rhs *d, double t, double *y, double *yp) {
         }
     }
     return STATUS_OK;
-}
-
-long ode_rhs_solves(const struct ode_rhs *rhs) {
-    return rhs->solves;
 }

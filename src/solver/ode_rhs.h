@@ -24,10 +24,7 @@ void ode_rhs_free(struct ode_rhs *rhs);
 
 /* Compute the algebraic unknowns of y at time t [s], move prescribed nodes to their given path, and set the rates yp of
  * the differential unknowns (those of the algebraic ones are 0); both arrays are (n_unknowns). Fails with STATUS_RETRY
- * if a value is not finite or a system has no solution, or with STATUS_MEMORY. */
+ * if a value is not finite, a body is torn or a system has no solution, or with STATUS_MEMORY. */
 enum status ode_rhs_rates(struct ode_rhs *rhs, double t, double *y, double *yp);
-
-/* How many systems of the sheets it has solved so far. */
-long ode_rhs_solves(const struct ode_rhs *rhs);
 
 #endif

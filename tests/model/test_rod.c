@@ -241,6 +241,20 @@ static void muscle_power_is_the_change_of_energy_at_a_fixed_shape(void **state) 
     school_clear(&setup);
 }
 
+static void a_body_is_torn_at_ten_times_the_length_of_an_edge(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, "time: {end: 1}\nfish: [{nodes: 7}]\n");
+    const struct fish *const fish = setup.school->fish;
+    double *const tail = &setup.state->y[fish->at.x + 6];
+    const double before = tail[-1], sign = *tail > before ? 1 : -1;
+    *tail = before + 9.9 * sign * fish->edge_length;
+    assert_false(rod_is_torn(fish, setup.state->y));
+    *tail = before + 10.1 * sign * fish->edge_length;
+    assert_true(rod_is_torn(fish, setup.state->y));
+    school_clear(&setup);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(derivatives_agree_with_differences),
@@ -252,6 +266,7 @@ int main(void) {
         cmocka_unit_test(energy_of_a_circular_arc_converges_to_that_of_the_continuum),
         cmocka_unit_test(polygon_of_the_natural_curvature_is_at_rest),
         cmocka_unit_test(turning_angles_keep_their_sign_in_every_direction),
+        cmocka_unit_test(a_body_is_torn_at_ten_times_the_length_of_an_edge),
         cmocka_unit_test(muscle_power_is_the_change_of_energy_at_a_fixed_shape),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -48,14 +48,10 @@ static void all_equations_hold_for_the_computed_unknowns(void **state) {
         school_stir(&setup);
         struct ode_rhs *rhs;
         school_ok(ode_rhs_create(&rhs, setup.residual));
-        // twice: the second solution reuses the factors of the first
-        for (int pass = 0; pass < 2; pass++) {
-            school_ok(ode_rhs_rates(rhs, setup.t, setup.state->y, setup.state->yp));
-            school_ok(residual_evaluate(setup.residual, setup.t, setup.state->y, setup.state->yp, setup.value));
-            // rounding of forces per mass of the order of 1e5 m s-2
-            for (int k = 0; k < setup.school->n_unknowns; k++) NEAR(setup.value[k], 0, 1e-9, 0);
-        }
-        assert_int_equal(ode_rhs_solves(rhs), 2);
+        school_ok(ode_rhs_rates(rhs, setup.t, setup.state->y, setup.state->yp));
+        school_ok(residual_evaluate(setup.residual, setup.t, setup.state->y, setup.state->yp, setup.value));
+        // rounding of forces per mass of the order of 1e5 m s-2
+        for (int k = 0; k < setup.school->n_unknowns; k++) NEAR(setup.value[k], 0, 1e-9, 0);
         ode_rhs_free(rhs);
         school_clear(&setup);
     }

@@ -67,6 +67,21 @@ static void an_unstable_step_ends_with_a_message_that_tells_the_time(void **stat
     simulate_free(simulation);
 }
 
+static void a_torn_body_is_no_result(void **state) {
+    (void)state;
+    // in no fluid too long a step tears the body apart, and every number stays finite
+    struct simulation *const simulation = school_simulation(
+        "time: {end: 1, shedding_interval: 0.02}\nfluid: {density: 0}\n"
+        "solver: {method: rk4, step: 0.01}\n"
+        "fish: [{nodes: 7, sheet_points: 5, body: {modulus: 1.0e+7, bending_damping: 0,\n"
+        "        stretching_damping: 0}}]\n");
+    enum status status = STATUS_OK;
+    for (int event = 0; event < 50 && status == STATUS_OK; event++) status = simulate_step(simulation);
+    assert_int_equal(status, STATUS_SOLVER);
+    assert_non_null(strstr(status_message(), "unstable at t = "));
+    simulate_free(simulation);
+}
+
 static void impulses_restart_the_explicit_method_too(void **state) {
     (void)state;
     double tail[2];
@@ -109,6 +124,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(fixed_steps_converge_with_the_order_of_the_method),
         cmocka_unit_test(explicit_and_implicit_solutions_agree),
+        cmocka_unit_test(a_torn_body_is_no_result),
         cmocka_unit_test(an_unstable_step_ends_with_a_message_that_tells_the_time),
         cmocka_unit_test(rate_of_an_algebraic_circulation_is_a_difference_over_the_step),
         cmocka_unit_test(impulses_restart_the_explicit_method_too),
