@@ -9,9 +9,13 @@
     scripts/numerics.py tolerance    error and cost against solver.rtol
     scripts/numerics.py order        error and cost against solver.order, for a soft and a stiff body
     scripts/numerics.py interval     error against time.shedding_interval, and its observed order
+    scripts/numerics.py nodes        speed against the nodes of a body, with and without a cusp for a tail; minutes
+    scripts/numerics.py edge         error of the free sheet next to the tail: builds variants, takes minutes
     scripts/numerics.py events       cost of restarting the integrator at every event
     scripts/numerics.py start        cost of a muscle that starts at once
     scripts/numerics.py explicit     cost of the explicit methods against the stiffness of the body
+    scripts/numerics.py rod          cost of all kinds of methods, verlet too, on a rod without fluid and damping
+    scripts/numerics.py evidence     what the second edition of the model mends; a minute
     scripts/numerics.py coupling     cost of two fish near each other, coupled in the Jacobian and not
     scripts/numerics.py school       cost of an event against the number of fish
     scripts/numerics.py coupled      cost against the tolerances of the linear solver: builds variants, takes minutes
@@ -104,20 +108,21 @@ class Bench:
             times.append(resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before)
         return min(times)
 
-    def variant(self, file, old, new):
-        """The program with what the pattern old finds in one source file replaced."""
+    def variant(self, *changes):
+        """The program with changes of the source: a file, what a pattern finds in it, and what takes its place."""
         tree = tempfile.mkdtemp(dir=self.folder)
         for part in ("src", "include"):
             shutil.copytree(os.path.join(HERE, part), os.path.join(tree, part))
         shutil.copy(os.path.join(HERE, "Makefile"), tree)
-        path = os.path.join(tree, "src", file)
-        with open(path, encoding="utf-8") as source:
-            text, n_places = re.subn(old, new, source.read())
-        if n_places == 0:
-            sys.exit(f"numerics.py: nothing in src/{file} matches '{old}'")
-        with open(path, "w", encoding="utf-8") as source:
-            source.write(text)
-        subprocess.run(["make", "-j", str(os.cpu_count())], cwd=tree, check=True, stdout=subprocess.DEVNULL)
+        for file, old, new in changes:
+            path = os.path.join(tree, "src", file)
+            with open(path, encoding="utf-8") as source:
+                text, n_places = re.subn(old, new, source.read())
+            if n_places == 0:
+                sys.exit(f"numerics.py: nothing in src/{file} matches '{old}'")
+            with open(path, "w", encoding="utf-8") as source:
+                source.write(text)
+        subprocess.run(["make", "-j", str(os.cpu_count()), "build/shoal"], cwd=tree, check=True, stdout=subprocess.DEVNULL)
         return os.path.join(tree, "build", "shoal")
 
 
@@ -221,8 +226,8 @@ def nascent(bench):
     rows = []
     update, kinds = r"is_sheet \? update_jacobian : NULL", r"is_sheet \? solver->kinds : NULL"
     programs = [("as it is", bench.program),
-                ("one norm for all unknowns", bench.variant("solver/ida.c", kinds, "NULL")),
-                ("no update of the column", bench.variant("solver/ida.c", update, "0 ? update_jacobian : NULL"))]
+                ("one norm for all unknowns", bench.variant(("solver/ida.c", kinds, "NULL"))),
+                ("no update of the column", bench.variant(("solver/ida.c", update, "0 ? update_jacobian : NULL")))]
     for modulus in (1e5, 1e6, 1e8, 1e10):
         fish = DefaultFish(bench, 0.01, modulus)
         for name, program in programs:
@@ -300,6 +305,99 @@ def interval(bench):
           rows)
 
 
+# A soft fish that feels its wake: that of the section interval of tests/verify.
+SHEDDING = """\
+format: 1
+time: {end: 1.5, output_interval: 1.5}
+wake: {lifetime: 1, fade: 0.2}
+solver: {rtol: 1e-8, order: 5}
+fish: [{name: fish, nodes: 7, sheet_points: 65, body: {modulus: 1e5}}]
+"""
+
+# The first step of a marker corrected at its end, by the trapezoidal rule.
+CORRECTED = [("run/event.c", r"(        if \(state->wake\[f\]\.n_vortex > 0\) \{\n)", r"""\1
+            struct wake *const wake = &state->wake[f];
+            const int i = wake->n_vortex - 2;
+            if (i >= 0) {
+                wake->x[i] += school->interval / 2 * (flow->wake_u[first + i] - wake->u[i]);
+                wake->y[i] += school->interval / 2 * (flow->wake_v[first + i] - wake->v[i]);
+            }
+""")]
+# The strength linear along the stretches that have more than one point, by the parabola through three labels. How much
+# of the nascent one is proportional to its own circulation is for the Jacobian.
+LINEAR = [
+    ("model/free_sheet.c", r"(void free_sheet_place_nascent\()", r"""double free_sheet_share;
+\1"""),
+    ("model/free_sheet.c", r"( = \(is_middle \? -1 : free_sheet_part\[i\]\) \* circulation;)", r"""\1
+        if (markers->n_vortex > 1 && !is_middle) {
+            const double *const label = &markers->circulation[markers->n_vortex - 1];
+            free_sheet_share = tau / (interval + tau);
+            sheet->circulation[first + i] += free_sheet_part[i] * (1 - 2 * free_sheet_xi[i]) * free_sheet_share *
+                                             (circulation - tau * (label[0] - label[-1]) / interval);
+        }"""),
+    ("model/free_sheet.c", r"(part\[i\] \* middles->circulation\[stretch\] \* strength;)", r"""\1
+        if (sheet->part[i] > 0 && sheet->part[i] < 1 && stretch > 0) {
+            sheet->circulation[i] += sheet->part[i] * (1 - 2 * sheet->xi[i]) / 2 * strength *
+                                     (middles->circulation[stretch] - middles->circulation[stretch - 1]);
+        }"""),
+    ("model/flow.c", r"0, free_sheet_part\[i\],", r"0,"
+     " free_sheet_part[i] * (1 + free_sheet_share * (1 - 2 * free_sheet_xi[i])),"),
+    ("model/free_sheet.h", r"(#endif\n)$", r"extern double free_sheet_share;\n\1"),
+]
+SHEETS = [("as it is", []), ("first step of a marker corrected", CORRECTED),
+          ("strength linear along a stretch", LINEAR), ("both", CORRECTED + LINEAR),
+          ("more points", [("model/free_sheet.c", "GRADED = 1", "GRADED = 3"),
+                           ("model/free_sheet.c", "PAIRED = 4", "PAIRED = 20"),
+                           ("model/free_sheet.c", r"4 \* FREE_SHEET_PANEL", "32 * FREE_SHEET_PANEL")])]
+
+
+def edge(bench):
+    rows = []
+    programs = [(name, bench.variant(*changes) if changes else bench.program) for name, changes in SHEETS]
+    sizes = (0.02, 0.01, 0.005, 0.0025)
+    for start, speed in (("from rest", 0), ("moving", 1)):
+        for name, program in programs:
+            runs = [ends(bench.run(SHEDDING, f"fish[0].start.speed={speed}", f"time.shedding_interval={size:g}",
+                                   program=program)) for size in sizes]
+            row = [start, name]
+            for quantity in (0, 1, 3):
+                changes = [distance(a[quantity], b[quantity]) for a, b in zip(runs, runs[1:])]
+                row += [short(changes[1]), f"{math.log2(changes[0] / changes[2]) / 2:.2f}"]
+            rows.append(row)
+    table(["start", "free sheet", "nose [m]", "order", "tail [m]", "order", "shed [m2/s]", "order"], rows)
+
+
+# A default fish, from rest.
+FROM_REST = """\
+format: 1
+time: {end: 12, shedding_interval: 0.02, output_interval: 12}
+fish: [{name: fish}]
+"""
+
+# Bodies whose resolution is tested: the profile, what is the same for any number of nodes, and the least thickness.
+BODIES = [("joukowski", "", 0), ("at least 2 % thick", "", 0.02), ("uniform, 10 %", "profile: uniform, thickness: 0.1, ", 0)]
+
+
+def nodes(bench):
+    rows = []
+    sizes = (9, 17, 33, 65)
+    for modulus in ("1e6", "1e8"):
+        for name, keys, least in BODIES:
+            speeds = []
+            for n in sizes:
+                more = [f"fish[0].nodes={n}", f"fish[0].sheet_points={max(33, 2 * n - 1)}"]
+                body = f"{keys}modulus: {modulus}"
+                if least > 0:
+                    h = np.maximum(bench.run(FROM_REST, "time.end=0.02", "time.output_interval=0.02", *more)["edge_height"],
+                                   least).ravel()[:n - 1]
+                    body = f"profile: table, h: {h.tolist()}, w: {[0.25] * (n - 1)}, modulus: {modulus}"
+                run = bench.run(FROM_REST, *more, f"fish[0].body={{{body}}}")
+                speeds += [f"{run['speed'][-1, 0]:.4f}" if run else "failed"]
+                tail = f"{run['strouhal'][-1, 0]:.2f}" if run else ""
+            rows.append([name, modulus, *speeds, tail])
+    table(["profile", "modulus [Pa]", *(f"{n} nodes" for n in sizes), "Strouhal number, 65"], rows)
+
+
 def events(bench):
     rows = []
     for keys in (["wake.shedding=continuous", "wake.kutta=edge"], ["wake.shedding=continuous", "wake.kutta=rate"],
@@ -328,6 +426,146 @@ def explicit(bench):
             cost = [f"{run[name][-1] / 200:.2f}" for name in ("steps", "residual_evaluations", "jacobian_evaluations")]
             rows.append([power(modulus), method, short(distance(ends(run)[1], tail)), *cost])
     table(["modulus [Pa]", "method", "tail [m]", "steps", "evaluations", "Jacobians"], rows)
+
+
+# The article's fish as a rod alone, without damping: nobody feels the fluid.
+ROD = f"""\
+format: 1
+include: [{HERE}/cases/include/article.yaml]
+time: {{end: 3, shedding_interval: 0.02, output_interval: 3}}
+fluid: {{density: 0}}
+wake: {{lifetime: 0.2}}
+solver: {{max_steps: 100000}}
+fish:
+  - name: rod
+    sheet_points: 5
+    start: {{speed: 0}}
+    body: {{second_moment: published, bending_damping: 0, stretching_damping: 0}}
+"""
+
+
+def rod_settings(modulus):
+    """What is tried on the rod: implicit methods, and explicit ones with their longest stable step."""
+    stable = math.sqrt(modulus / 1e4)
+    for rtol in ("1e-4", "3e-5", "1e-5"):
+        yield "ida", f"rtol {rtol}", [f"solver.rtol={rtol}"]
+    for method, counts in (("trapezoid", (1, 2, 4)), ("verlet", (round(5 * stable),)), ("rk4", (round(3 * stable),))):
+        for n in counts:
+            yield method, f"{0.02 / n:.2g} s", [f"solver.method={method}", f"solver.step={0.02 / n:.12g}"]
+
+
+def rod(bench):
+    rows = []
+    for modulus in (1e4, 1e6, 1e8, 1e9, 1e10):
+        body = f"fish[*].body.modulus={modulus:g}"
+        exact = ends(bench.run(ROD, body, "solver.method=verlet",
+                               f"solver.step={0.02 / round(15 * math.sqrt(modulus / 1e4)):.12g}"))[:2]
+        done = set()
+        for method, setting, assignments in rod_settings(modulus):
+            run = bench.run(ROD, body, *assignments) if method not in done else None
+            error = max(distance(a, b) for a, b in zip(ends(run), exact)) if run else math.inf
+            if error > 1e-4:
+                continue
+            done.add(method)
+            rows.append([power(modulus), method, setting, short(error), int(run["residual_evaluations"][-1]),
+                         f"{bench.seconds(ROD, body, *assignments):.2g}"])
+    table(["modulus [Pa]", "method", "setting", "nose or tail [L]", "evaluations", "CPU time [s]"], rows)
+
+
+# A fish of the second edition, from rest, with a row at every event.
+EVERY_EVENT = """\
+format: 1
+time: {end: 20, shedding_interval: 0.02, output_interval: 0.02}
+fish: [{name: fish}]
+"""
+# Wakes so smooth that nobody feels them.
+NO_WAKE = "wake={shedding: continuous, smoothing: 1e6, lifetime: 0.1, fade: 0}"
+# A plate that a stream meets at once, at an incidence whose sine is 0.01.
+PLATE = """\
+format: 1
+time: {end: 1, shedding_interval: 0.01, output_interval: 0.01}
+fluid: {velocity: [0.99995, 0.01]}
+fish: [{name: plate, start: {speed: 0}, wave: {amplitude: 0}, motion: {driven: all, speed: 0}}]
+"""
+WAGNER = (0, 0.4167, 0.5508)
+POWERS = ("actuation_power", "damping_power", "drag_power", "added_mass_power", "wake_power")
+
+
+def last_beat(run, *names):
+    """Means over the last second of a run of 1 Hz."""
+    n = int(round(1 / (run.time[-1] - run.time[-2])))
+    return [f"{float(np.mean(run[name][-n:, 0])):.3f}" for name in names]
+
+
+def powers(run):
+    return ", ".join(last_beat(run, *POWERS))
+
+
+def evidence_of_energy(bench):
+    free = ("time.end=60", NO_WAKE, "fish[0].nodes=7", "fish[0].wave.number=6",
+            "fish[0].drag={normal: 0, tangential: 0}")
+    what = "neither drag nor wake, wave number +6, after 60 s: powers [W]"
+    for name in ("published", "reactive"):
+        yield what, f"force: {name}", powers(bench.run(EVERY_EVENT, *free, f"fish[0].force={name}"))
+    with open(os.path.join(HERE, "cases", "single_free.yaml"), encoding="utf-8") as file:
+        text = file.read().replace("[include/", f"[{HERE}/cases/include/")
+    yield "the article's fish, last beat: powers [W]", "single_free", powers(bench.run(text))
+    fish = bench.run(EVERY_EVENT)
+    what = "a default fish from rest"
+    speeds = [fish["speed"][int(np.argmin(np.abs(fish.time - t))), 0] for t in (4, 8, 20)]
+    yield what + ": speed after 4, 8, 20 s [m/s]", "", ", ".join(f"{speed:.3f}" for speed in speeds)
+    yield what + ", last beat: powers [W]", "", powers(fish)
+    fish = bench.run(EVERY_EVENT, NO_WAKE)
+    yield what + ", no wake, last beat: powers [W]", "", powers(fish)
+    yield what + ", no wake: speed after 20 s [m/s]", "", f"{fish['speed'][-1, 0]:.3f}"
+    for n in (7, 13):
+        fish = bench.run(EVERY_EVENT, NO_WAKE, "time.end=4", "fish[0].body.modulus=1e5", f"fish[0].nodes={n}")
+        yield "1e5 Pa, no wake: speed after 4 s [m/s]", f"{n} nodes", f"{fish['speed'][-1, 0]:.3f}"
+
+
+def evidence_of_damping(bench):
+    for relaxation in (0.001, 0.01):
+        fish = bench.run(EVERY_EVENT, f"fish[0].body.relaxation_time={relaxation}")
+        muscle, damping = (float(power) for power in last_beat(fish, "actuation_power", "damping_power"))
+        yield "part of the muscle's power that is damped", f"{relaxation} s", f"{-100 * damping / muscle:.0f} %"
+
+
+def evidence_of_wagner(bench):
+    settings = [("smoothing 0.2, continuous", ["wake={shedding: continuous, smoothing: 0.2}"]), ("default", []),
+                ("21 points", ["fish[0].sheet_points=21"])]
+    for name, assignments in settings:
+        shed = bench.run(PLATE, *assignments)["shed_circulation"][[0, 50, 100], 0] / (math.pi * 0.01)
+        yield "started plate: circulation shed at s = 0, 1, 2", name, ", ".join(f"{part:.4f}" for part in shed)
+    yield "", "exact", ", ".join(f"{part:.4f}" for part in WAGNER)
+
+
+def evidence_of_streams(bench):
+    for stream in (0, 0.5, 0.99):
+        run = bench.run(f"format: 1\ninclude: [{HERE}/cases/include/article.yaml]\ntime: {{end: 4}}\n"
+                        f"fluid: {{velocity: [{stream}, 0]}}\nfish: [{{start: {{speed: {1 - stream:g}}}}}]\n")
+        yield "the same swim in a stream: Strouhal number", f"{stream} m/s", f"{run['strouhal'][-1, 0]:.4f}"
+
+
+def evidence_of_sections(bench):
+    h = {}
+    for n, section in ((321, "mean"), (7, "nodes"), (7, "mean")):
+        run = bench.run(EVERY_EVENT, "time.end=0.02", "fluid.density=0", "fish[0].sheet_points=5",
+                        f"fish[0].nodes={n}", f"fish[0].body.section={section}")
+        h[n, section] = run["edge_height"].ravel()
+    exact = [np.mean(h[321, "mean"] ** power) for power in (1, 3)]
+    for section in ("nodes", "mean"):
+        mass = np.mean(h[7, section]) / exact[0] - 1
+        yield "7 nodes: error of the mass", f"section: {section}", f"{100 * mass:.1f} %"
+    cube = np.mean(h[7, "nodes"] ** 3) / exact[1] - 1
+    yield "7 nodes: error of the integral of h^3", "section: nodes", f"{100 * cube:.1f} %"
+
+
+def evidence(bench):
+    rows = []
+    for part in (evidence_of_energy, evidence_of_damping, evidence_of_wagner, evidence_of_streams,
+                 evidence_of_sections):
+        rows += [list(row) for row in part(bench)]
+    table(["what", "setting", "measured"], rows)
 
 
 def coupling(bench):
@@ -407,7 +645,7 @@ VARIANTS = [
 
 def constants(bench):
     programs = [("as it is", bench.program)]
-    programs += [(name, bench.variant(*change)) for name, *change in VARIANTS]
+    programs += [(name, bench.variant(change)) for name, *change in VARIANTS]
     rows = []
     for modulus in (1e6, 1e10):
         stiff = [PUBLISHED_MOMENT, f"fish[*].body.modulus={modulus:g}"]
@@ -427,8 +665,8 @@ def coupled(bench):
     rows = []
     place = "fish[1].start.position=[0, 0.3]"
     for relative, absolute in TOLERANCES:
-        program = bench.variant("solver/ida.c", r"linear_relative = [^,]+, linear_absolute = [^;]+;",
-                                f"linear_relative = {relative}, linear_absolute = {absolute};")
+        program = bench.variant(("solver/ida.c", r"linear_relative = [^,]+, linear_absolute = [^;]+;",
+                                 f"linear_relative = {relative}, linear_absolute = {absolute};"))
         runs = [bench.run(PAIR, place, f"fish[*].body.modulus={modulus}", program=program)
                 for modulus in ("1e6", "1e9")]
         rows.append([relative, absolute, *(cell for run in runs for cell in per_event(run)[1:])])
@@ -449,7 +687,7 @@ def threads(bench):
 
 
 TABLES = {function.__name__: function for function in
-          (default, highest, nascent, counts, stiffness, tolerance, order, interval, events, start, explicit, coupling,
+          (default, highest, nascent, counts, stiffness, tolerance, order, interval, nodes, edge, events, start, explicit, rod, evidence, coupling,
            school, energy, constants, coupled, threads)}
 
 
