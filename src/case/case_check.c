@@ -188,6 +188,19 @@ static void check_gust(const struct check *check) {
     }
 }
 
+/* A viscosity that is not the default one and that no fish feels. */
+static void check_viscosity(const struct check *check) {
+    const struct school_parameters *const school = &check->values->school;
+    static const char path[] = "fluid.viscosity";
+    double initial;
+    for (int f = 0; f < school->n_fish; f++) {
+        if (school->fish[f].drag.skin == SKIN_LAMINAR) return;
+    }
+    if (text_number(case_table_row(path)->initial, &initial) && fabs(school->fluid.viscosity - initial) > 0) {
+        complain(check, path, "has no effect: no fish has 'drag.skin: laminar'; friction is then drag.tangential");
+    }
+}
+
 // ---- fish
 
 /* Complain about a list of a table profile that is missing, out of place, or not of one value per edge. */
@@ -428,6 +441,7 @@ void case_check(const struct case_values *values, const struct case_tree *tree, 
     check_wake(&check);
     check_shedding(&check);
     check_gust(&check);
+    check_viscosity(&check);
     if (values->name && strchr(values->name, '/')) complain(&check, "name", "cannot contain a '/'");
     for (check.fish = 0; check.fish < values->school.n_fish; check.fish++) {
         const struct fish_parameters *const fish = &values->school.fish[check.fish];

@@ -17,13 +17,12 @@ struct candidate {
     int remoteness;   /* 0: a sibling, 1: below, 2: elsewhere in a fish, for a word in a fish, 3: elsewhere */
 };
 
-/* What users look for and the model does not have: words, and what to do instead. */
+/* What users look for and the model calls otherwise: words, and what to do. */
 static const struct {
     const char *words, *instead;
 } missing[] = {
-    {"viscosity kinematic_viscosity dynamic_viscosity nu mu reynolds reynolds_number",
-     "; the fluid of the model has no viscosity: friction is drag.tangential of a fish, and a vortex is removed at the "
-     "age wake.lifetime"},
+    {"kinematic_viscosity dynamic_viscosity mu reynolds reynolds_number",
+     "; friction is drag.tangential of a fish, or fluid.viscosity with 'drag.skin: laminar'"},
 };
 
 static char lower(char c) {
