@@ -39,7 +39,9 @@ endif
 clang = $(shell command -v clang)
 ifdef FUZZER
 B = build-fuzzer
-sanitize = -fsanitize=address,undefined,fuzzer-no-link -fno-sanitize-recover=all -fno-omit-frame-pointer
+# clang warns of fields left out of an initialiser with a name too, gcc does not
+sanitize = -fsanitize=address,undefined,fuzzer-no-link -fno-sanitize-recover=all -fno-omit-frame-pointer \
+           -Wno-missing-field-initializers
 endif
 
 ifdef V

@@ -45,7 +45,7 @@ static void fill_slots(const struct result_variable *variable, const struct resu
     const char *value = (const char *)result_table_owner(row, variable->owner, f) + variable->offset;
     size_t n = n_slots;
     if (variable->is_pointer) {
-        memcpy(&value, value, sizeof value);
+        memcpy(&value, value, sizeof(const char *));
         const enum result_dimension last = variable->dimension[1];
         n = last == NAME ? strlen(value) : (size_t)result_table_length(&row->school->fish[f], last);
     }

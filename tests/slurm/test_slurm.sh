@@ -123,7 +123,7 @@ check the_same_study_goes_on_by_hand cmp <(grep ' complete$' again) <(grep ' com
 
 cat >long.yaml <<'end'
 format: 1
-time: {end: 8, shedding_interval: 0.005, output_interval: 0.05}
+time: {end: 100, shedding_interval: 0.005, output_interval: 0.5}
 fish: [{}]
 sweep: [{key: "fish[*].wave.amplitude", values: [0.2]}]
 end
@@ -137,7 +137,7 @@ check a_stopped_task_is_requeued wait_for 30 sh -c "scontrol show job $job | gre
 check its_member_has_a_checkpoint test -s long/member-0000.ckpt
 # Slurm lets a requeued task wait for two minutes
 wait_for 30 scontrol update jobid="$job" starttime=now
-check it_goes_on wait_for 180 sh -c 'ncdump -h long/member-0000.nc | grep -q "run_status = .complete"'
+check it_goes_on wait_for 400 sh -c 'ncdump -h long/member-0000.nc | grep -q "run_status = .complete"'
 check from_its_checkpoint sh -c 'ncdump -h long/member-0000.nc | grep -q "checkpoint_at = .[0-9]"'
 
 echo "$n_passed passed, $n_failed failed, 0 skipped"
