@@ -23,8 +23,8 @@ enum status contact_create(struct contact **contact, const struct school *school
 void contact_free(struct contact *contact);
 
 /* Find the bodies in contact at the places in y; none where contact.action is not repel. Fails with STATUS_RETRY where
- * two bodies (except driven ones) touch or cross there, or on the straight way there from where the last step of the
- * integrator ended, and with STATUS_MEMORY. */
+ * two bodies (except prescribed ones) touch or cross there, or on the straight way there from where the last step of
+ * the integrator ended, and with STATUS_MEMORY. */
 enum status contact_find(struct contact *contact, const struct state *state, double t, const double *y);
 
 /* The fish in contact with fish f when last found: their number, and *other, in ascending order. */

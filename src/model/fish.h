@@ -185,18 +185,18 @@ int fish_n_prescribed(const struct fish *fish);
 /* Whether component i (0: x, 1: y) of the motion of node k is given. */
 int fish_is_prescribed(const struct fish *fish, int k, int i);
 
-/* Its beats per second, or those of its driven motion; where it has none, the lengths per second at which it, or the
- * stream, goes; 1 where nothing moves. With the length it gives the scale of velocities. */
+/* Its beats per second, or those of its prescribed motion; where it has none, the lengths per second at which it, or
+ * the stream, goes; 1 where nothing moves. With the length it gives the scale of velocities. */
 double fish_rate(const struct school *school, const struct fish *fish);
 
 /* The direction from nose to tail of the prescribed motion at time t, and the rate at which it turns, rad s-1. */
 void fish_prescribed_direction(const struct fish *fish, double t, double direction[2], double *rate);
 
-/* Position, velocity, acceleration of node k of a driven fish at time t; each an array of x and y. */
+/* Position, velocity, acceleration of prescribed node k at time t; each an array of x and y. */
 void fish_prescribed_node(const struct fish *fish, int k, double t, double position[2], double velocity[2],
                           double acceleration[2]);
 
-/* Write position and velocity that the first n nodes of a driven fish have at time t into the vector of all
+/* Write position and velocity that the first n nodes, of prescribed motion, have at time t into the vector of all
  * unknowns. */
 void fish_prescribe(const struct fish *fish, int n, double t, double *y);
 

@@ -469,9 +469,9 @@ void residual_kinds(const struct residual *residual, double *kind) {
     for (int i = 0; i < residual->school->n_unknowns; i++) {
         const struct unknown_place place = residual_place(residual->school, i);
         const struct fish *fish = &residual->school->fish[place.fish];
-        const int driven = fish_is_prescribed(fish, place.index, component_of(place.kind));
+        const int is_given = fish_is_prescribed(fish, place.index, component_of(place.kind));
         kind[i] = 0;
-        if (!driven && is_differential(residual, &place)) kind[i] = 1;
+        if (!is_given && is_differential(residual, &place)) kind[i] = 1;
         if (place.kind == UNKNOWN_CIRCULATION && !residual_shed_is_algebraic(residual)) kind[i] = 1;
     }
 }
