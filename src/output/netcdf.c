@@ -118,6 +118,21 @@ static void write_origin(struct netcdf_writer *writer, const char *title, const 
     netcdf_write_string(writer, NETCDF_GLOBAL, "source", source);
 }
 
+// the file under this name, which has just been opened, also as what can be synchronised
+static void take_descriptor(struct netcdf_writer *writer, const char *name) {
+    if (writer->code != NC_NOERR) return;
+    writer->descriptor = open(name, O_RDONLY | O_CLOEXEC);
+    if (writer->descriptor < 0) writer->code = errno;
+}
+
+// whether all went well; a writer that is not open is closed
+static enum status opened(struct netcdf_writer *writer, const char *path) {
+    if (writer->code == NC_NOERR) return STATUS_OK;
+    const enum status status = creation_failed(path, writer->code);
+    netcdf_finish(writer);
+    return status;
+}
+
 enum status netcdf_create(struct netcdf_writer *writer, const char *path, const char *title, const char *command) {
     enum { ENDING = 32 };
     *writer = (struct netcdf_writer){.file = -1, .descriptor = -1, .last_fsync = -INFINITY};
@@ -130,16 +145,12 @@ enum status netcdf_create(struct netcdf_writer *writer, const char *path, const 
         unlink(writer->temporary);
         size_t buffer_bytes = BUFFER_BYTES;
         CALL(writer, nc__create(writer->temporary, NC_NOCLOBBER | NC_64BIT_DATA, 0, &buffer_bytes, &writer->file));
-        if (writer->code == NC_NOERR) writer->descriptor = open(writer->temporary, O_RDONLY | O_CLOEXEC);
-        if (writer->code == NC_NOERR && writer->descriptor < 0) writer->code = errno;
+        take_descriptor(writer, writer->temporary);
         write_origin(writer, title, command);
     } else {
         writer->code = ENOMEM;
     }
-    if (writer->code == NC_NOERR) return STATUS_OK;
-    const enum status status = creation_failed(path, writer->code);
-    netcdf_finish(writer);
-    return status;
+    return opened(writer, path);
 }
 
 enum status netcdf_continue(struct netcdf_writer *writer, const char *path) {
@@ -150,15 +161,11 @@ enum status netcdf_continue(struct netcdf_writer *writer, const char *path) {
         size_t buffer_bytes = BUFFER_BYTES;
         CALL(writer, nc__open(writer->target, NC_WRITE, &buffer_bytes, &writer->file));
         CALL(writer, nc_set_fill(writer->file, NC_NOFILL, NULL));
-        if (writer->code == NC_NOERR) writer->descriptor = open(writer->target, O_RDONLY | O_CLOEXEC);
-        if (writer->code == NC_NOERR && writer->descriptor < 0) writer->code = errno;
+        take_descriptor(writer, writer->target);
     } else {
         writer->code = ENOMEM;
     }
-    if (writer->code == NC_NOERR) return STATUS_OK;
-    const enum status status = creation_failed(path, writer->code);
-    netcdf_finish(writer);
-    return status;
+    return opened(writer, path);
 }
 
 int netcdf_define_dimension(struct netcdf_writer *writer, const char *name, size_t length) {
