@@ -562,14 +562,16 @@ void fish_prescribed_node(const struct fish *fish, int k, double t, double posit
     }
 }
 
-void fish_prescribe(const struct fish *fish, int n, double t, double *y) {
+void fish_prescribe(const struct fish *fish, int at_start, double t, double *y) {
+    const int n = at_start ? fish->n_nodes : fish_n_prescribed(fish);
     for (int k = 0; k < n; k++) {
         double position[2], velocity[2], acceleration[2];
         fish_prescribed_node(fish, k, t, position, velocity, acceleration);
-        y[fish->at.x + k] = position[0];
-        y[fish->at.y + k] = position[1];
-        y[fish->at.vx + k] = velocity[0];
-        y[fish->at.vy + k] = velocity[1];
+        for (int i = 0; i < 2; i++) {
+            if (!at_start && !fish_is_prescribed(fish, k, i)) continue;
+            y[fish->at.x + i * fish->n_nodes + k] = position[i];
+            y[fish->at.vx + i * fish->n_nodes + k] = velocity[i];
+        }
     }
 }
 
@@ -614,7 +616,7 @@ void fish_start(const struct fish *fish, double *y) {
     double *const x = y + fish->at.x, *const z = y + fish->at.y;
     if (fish->motion.prescribed != PRESCRIBED_NONE) {
         // the free nodes downstream of a prescribed head start with its rigid motion
-        fish_prescribe(fish, fish->n_nodes, 0, y);
+        fish_prescribe(fish, 1, 0, y);
         return;
     }
     // the bias of a controlled fish is not known yet: its pose is that of zero bias

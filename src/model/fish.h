@@ -196,9 +196,9 @@ void fish_prescribed_direction(const struct fish *fish, double t, double directi
 void fish_prescribed_node(const struct fish *fish, int k, double t, double position[2], double velocity[2],
                           double acceleration[2]);
 
-/* Write position and velocity that the first n nodes, of prescribed motion, have at time t into the vector of all
- * unknowns. */
-void fish_prescribe(const struct fish *fish, int n, double t, double *y);
+/* Write the positions and velocities of the prescribed motion at time t into the vector of all unknowns: those that are
+ * prescribed, or at the start those of all nodes. */
+void fish_prescribe(const struct fish *fish, int at_start, double t, double *y);
 
 /* Where in its gait a fish is: its amplitude over that of the case, which begins with a ramp, and the rate of that,
  * s-1; the angle of its beat, rad, and the rate of that, rad s-1. */

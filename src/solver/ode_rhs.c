@@ -343,22 +343,9 @@ static void find_phi0(struct ode_rhs *d, int f, double t, double *y) {
     y[fish->at.phi0] = -value[fish->at.phi0];
 }
 
-// the given motion of prescribed nodes
-static void move_given(const struct fish *fish, double t, double *y) {
-    for (int k = 0; k < fish_n_prescribed(fish); k++) {
-        double position[2], velocity[2], acceleration[2];
-        fish_prescribed_node(fish, k, t, position, velocity, acceleration);
-        for (int i = 0; i < 2; i++) {
-            if (!fish_is_prescribed(fish, k, i)) continue;
-            y[fish->at.x + i * fish->n_nodes + k] = position[i];
-            y[fish->at.vx + i * fish->n_nodes + k] = velocity[i];
-        }
-    }
-}
-
 enum status ode_rhs_rates(struct ode_rhs *d, double t, double *y, double *yp) {
     const struct school *school = d->residual->school;
-    for (int f = 0; f < school->n_fish; f++) move_given(&school->fish[f], t, y);
+    for (int f = 0; f < school->n_fish; f++) fish_prescribe(&school->fish[f], 0, t, y);
     for (int i = 0; i < school->n_unknowns; i++) {
         if (!isfinite(y[i])) return status_fail(STATUS_RETRY, "unknown %d is not finite at t = %g s", i, t);
     }

@@ -277,7 +277,7 @@ static void rows_of_prescribed_nodes_vanish_on_their_motion_only(void **state) {
     school_stir(&setup);
     const struct fish *const fish = setup.school->fish;
     double *const y = setup.state->y;
-    fish_prescribe(fish, fish->n_nodes, setup.t, y);
+    fish_prescribe(fish, 1, setup.t, y);
     for (int k = 0; k < fish->n_nodes; k++) {
         double position[2], velocity[2], acceleration[2];
         fish_prescribed_node(fish, k, setup.t, position, velocity, acceleration);
