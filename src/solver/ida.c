@@ -19,7 +19,7 @@ static const double newton_coefficient = 0.003;
 /* A Jacobian is kept while its leading coefficient is within this fraction of the step's (IDA's default is 0.25), and
  * while it saves more iterations than its evaluation costs. Measured: doc/numerics.md. */
 static const double cj_change = 0.1;
-static const int jacobian_cost = 5, max_iterations = 6;
+static const int jacobian_cost = 5, max_iterations = 6, max_with_new = 20;
 
 /* Tolerances of the linear solver, as fractions of the right-hand side and of the error at which Newton's iteration has
  * converged: tighter ones save no iteration. Measured: doc/numerics.md. */
@@ -153,6 +153,7 @@ static enum status fill(struct ida *solver) {
                                        &solver->failure));
     const int is_sheet = solver->residual->school->shedding == SHEDDING_SHEET;
     const struct ida_newton_rules rules = {.max_iterations = max_iterations,
+                                           .max_with_new = max_with_new,
                                            .jacobian_cost = jacobian_cost,
                                            .kinds = is_sheet ? solver->kinds : NULL,
                                            .data = solver,

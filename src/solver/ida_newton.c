@@ -23,7 +23,7 @@ struct ida_newton {
 
     /* of this solution: total iterations and failures, iterations with the present Jacobian */
     long iterations, failures;
-    int done;
+    int done, most;        /* and how many there may be */
     double first[N_NORMS]; /* size of the first correction */
 
     /* since the Jacobian was evaluated: solutions, their iterations, iterations of the last solution */
@@ -48,7 +48,7 @@ static int test_norm(struct ida_newton *newton, int norm, double size, double to
     if (size * remaining <= tolerance) return SUN_NLS_SUCCESS;
     // with an old Jacobian the first two corrections may grow
     if (newton->done > 2 && rate >= 0.9) return SUN_NLS_CONV_RECVR;
-    return newton->done < newton->rules.max_iterations ? SUN_NLS_CONTINUE : SUN_NLS_CONV_RECVR;
+    return newton->done < newton->most ? SUN_NLS_CONTINUE : SUN_NLS_CONV_RECVR;
 }
 
 static int test_convergence(struct ida_newton *newton, N_Vector weights, double tolerance) {
@@ -57,7 +57,7 @@ static int test_convergence(struct ida_newton *newton, N_Vector weights, double 
     const double size = N_VWrmsNormMask(newton->correction, weights, newton->rules.kinds);
     if (test_norm(newton, DIFFERENTIAL, size, tolerance) == SUN_NLS_SUCCESS) return all;
     // the places may begin to converge later than the rest
-    return newton->done < newton->rules.max_iterations ? SUN_NLS_CONTINUE : SUN_NLS_CONV_RECVR;
+    return newton->done < newton->most ? SUN_NLS_CONTINUE : SUN_NLS_CONV_RECVR;
 }
 
 // iterate with the present Jacobian; newton->correction holds the residual
@@ -112,6 +112,7 @@ static int newton_solve(SUNNonlinearSolver solver, N_Vector predicted, N_Vector 
         } else if (newton->rules.update) {
             newton->rules.update(newton->rules.data);
         }
+        newton->most = evaluate ? newton->rules.max_with_new : newton->rules.max_iterations;
         code = iterate(newton, total, weights, tolerance, ida);
         if (code == 0) {
             N_VScale(1, total, newton->last);

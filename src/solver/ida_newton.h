@@ -10,8 +10,10 @@
 
 /* When an iteration ends, and when the Jacobian is re-evaluated. */
 struct ida_newton_rules {
-    int max_iterations; /* per solution */
-    int jacobian_cost;  /* of an evaluation with its factorisation, in iterations */
+    int max_iterations; /* per solution, with an old Jacobian */
+    /* with one of this very solution: what it leaves out, far fish, a smaller step does not bring back */
+    int max_with_new;
+    int jacobian_cost; /* of an evaluation with its factorisation, in iterations */
     /* 1 where an unknown is differential, 0 where it is algebraic; outlives the solver. With it the iteration has
      * converged where the differential unknowns by themselves have too; NULL: where all together have. */
     N_Vector kinds;

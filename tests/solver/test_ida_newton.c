@@ -89,6 +89,7 @@ static void set_up(struct problem *problem) {
     const struct fish *fish = problem->setup.school->fish;
     for (int k = 0; k < fish->n_nodes; k++) NV_Ith_S(problem->predicted, fish->at.x + k) = k * fish->edge_length;
     const struct ida_newton_rules rules = {.max_iterations = 6,
+                                           .max_with_new = 20,
                                            .jacobian_cost = 5,
                                            .kinds = problem->kinds,
                                            .data = problem,
@@ -244,6 +245,25 @@ static void small_corrections_that_do_not_shrink_are_noise(void **state) {
     clear(&problem);
 }
 
+static void a_new_jacobian_that_leaves_something_out_may_take_longer(void **state) {
+    (void)state;
+    struct problem problem = {.updated = 0};
+    long iterations;
+    set_up(&problem);
+    problem.root_of_first = 1;
+    problem.wrong_for_first = 0.3;
+    assert_int_equal(solve(&problem, 1e-6, 1, &iterations), 0);
+    assert_in_range(iterations, 8, 14);
+    const double left = fabs(error_of_first(&problem, problem.total)) / sqrt((double)NV_LENGTH_S(problem.total));
+    assert_true(left <= 1e-6);
+    // but not for ever
+    problem.wrong_for_first = 0.8;
+    problem.coefficient *= 2;
+    assert_int_equal(solve(&problem, 1e-6, 1, &iterations), SUN_NLS_CONV_RECVR);
+    assert_int_equal(iterations, 20);
+    clear(&problem);
+}
+
 static void a_failure_with_a_new_jacobian_asks_for_a_smaller_step(void **state) {
     (void)state;
     struct problem problem = {.updated = 0};
@@ -309,6 +329,7 @@ int main(void) {
         cmocka_unit_test(slow_places_show_beside_fast_algebraic_unknowns),
         cmocka_unit_test(an_old_jacobian_is_updated_once_in_a_solution),
         cmocka_unit_test(small_corrections_that_do_not_shrink_are_noise),
+        cmocka_unit_test(a_new_jacobian_that_leaves_something_out_may_take_longer),
         cmocka_unit_test(a_failure_with_a_new_jacobian_asks_for_a_smaller_step),
         cmocka_unit_test(the_last_correction_is_the_guess_while_the_step_stays),
         cmocka_unit_test(a_jacobian_that_has_become_expensive_is_evaluated_again),

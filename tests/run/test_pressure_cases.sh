@@ -1,0 +1,7 @@
+#!/usr/bin/env bash
+# 36 random schools with the force of the pressure, each for a fifth of a beat; 500 are in `make soak`.
+#
+#   tests/run/test_pressure_cases.sh PROGRAM
+set -euo pipefail
+program=${1:?usage: tests/run/test_pressure_cases.sh PROGRAM}
+exec /usr/bin/python3 "$(dirname "$0")/../soak/pressure_cases.py" "$program" 36 1000 0.2

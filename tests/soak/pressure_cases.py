@@ -1,0 +1,113 @@
+#!/usr/bin/python3
+"""pressure_cases.py PROGRAM [CASES [FIRST [BEATS]]]: run random legal schools with the force of the pressure (CASES of
+them, numbers FIRST on, for BEATS beats): plates that are driven and fish that swim, 1 to 4 of them in a school, side by
+side, some with the reactive force; from soft to stiff (EI/(rho U^2 L^3) of 0.05 to 1e6) and from light to heavy (mass
+over rho L w of 0.01 to 10). Each run must end well, with finite numbers and no circulation in total. 500 cases of 1.5
+beats: a quarter of an hour."""
+
+import math
+import os
+import random
+import subprocess
+import sys
+import tempfile
+
+import netCDF4
+import numpy as np
+
+program = os.path.abspath(sys.argv[1])
+n_cases = int(sys.argv[2]) if len(sys.argv) > 2 else 500
+first = int(sys.argv[3]) if len(sys.argv) > 3 else 1000
+beats = float(sys.argv[4]) if len(sys.argv) > 4 else 1.5
+
+MAX_CIRCULATION = 1e-10  # of all sheets and wakes, over length^2 times frequency
+
+
+def bending_modulus(over_fluid, density, speed, length, thickness):
+    """Young's modulus of an ellipse with EI/(rho U^2 L^3) per metre of depth."""
+    return over_fluid * density * speed**2 * length**3 / (math.pi * (thickness * length) ** 3 / 64)
+
+
+def draw_fish(draw, number, length, rate, density):
+    """One fish as keys of a case file."""
+    nodes = draw.choice([5, 9, 13, 17])
+    points = draw.choice([2 * nodes - 1, 2 * nodes + 3, max(33, 2 * nodes - 1)])
+    speed = length * rate
+    thickness, mass = draw.uniform(0.02, 0.2), 10 ** draw.uniform(-2, 1)
+    stiffness = 10 ** draw.uniform(math.log10(0.05), 6)
+    force = draw.choice(["pressure", "pressure", "pressure", "reactive"])
+    driven = draw.choice(["none", "none", "head", "all"])
+    start = [draw.uniform(-0.2, 0.2) * length, number * 0.5 * length]
+    heading, start_speed = draw.uniform(170, 190), draw.choice([0, 0.5, 1]) * speed
+    profile, width = draw.choice(["joukowski", "uniform"]), draw.choice([0.2, 1])
+    relaxation = draw.choice([0.001, 0.002, 0.01]) / rate
+    if force == "reactive" and driven == "none":
+        # its slowest mode, 3.6 sqrt(EI/(m L^4)), not below its beat: else nothing keeps it from folding
+        stiffness = max(stiffness, 0.15 * mass)
+    modulus = bending_modulus(stiffness, density, speed, length, thickness)
+    keys = [f"name: f{number}", f"length: {length}", f"nodes: {nodes}", f"sheet_points: {points}", f"force: {force}",
+            f"start: {{position: [{start[0]:.4f}, {start[1]:.4f}], heading: {heading:.3f}, speed: {start_speed}}}",
+            f"body: {{profile: {profile}, thickness: {thickness:.4f}, width: {width}, density: "
+            f"{mass * density / (math.pi / 4 * thickness):.6g}, modulus: {modulus:.6g}, relaxation_time: {relaxation}}}"]
+    if driven == "none":
+        keys.append(f"wave: {{frequency: {rate}, amplitude: {draw.uniform(0.1, 0.6):.3f}, "
+                    f"number: {draw.uniform(-8, -4):.3f}, ramp: {draw.choice([0.3, 1]) / rate}}}")
+    else:
+        keys += ["wave: {amplitude: 0, frequency: 0}",
+                 f"motion: {{driven: {driven}, heave: {draw.uniform(0, 0.2) * length:.4f}, "
+                 f"pitch: {draw.uniform(0, 20):.3f}, frequency: {rate}, speed: {draw.choice([0.3, 1]) * speed}}}"]
+    if force == "pressure" and draw.random() < 0.3:
+        keys.append("drag: {normal: 1}")
+    return "  - " + "\n    ".join(keys) + "\n", force
+
+
+def draw_case(number):
+    """The text of a case, its length and its rate."""
+    draw = random.Random(number)
+    n_fish = draw.choice([1, 1, 1, 2, 3, 4])
+    length, rate, density = draw.choice([0.3, 1, 1, 2]), draw.choice([0.5, 1, 1, 2]), draw.choice([1, 1000])
+    fish = [draw_fish(draw, k, length, rate, density) for k in range(n_fish)]
+    has_skin = any(force == "pressure" for _, force in fish)
+    viscosity = f", viscosity: {1e-4 * length**2 * rate:.6g}" if has_skin else ""
+    interval = draw.choice([0.01, 0.02]) / rate
+    text = (f"format: 1\ntime: {{end: {beats / rate}, shedding_interval: {interval}, "
+            f"output_interval: {0.1 / rate}}}\nfluid: {{density: {density}{viscosity}}}\n"
+            + ("" if has_skin else "wake: {shedding: sheet}\n") + "fish:\n" + "".join(text for text, _ in fish))
+    return text, length, rate
+
+
+def fault_of(path, length, rate):
+    """What is wrong with a result, or nothing; and its steps, iterations and Jacobians per event."""
+    with netCDF4.Dataset(path) as data:
+        data.set_auto_mask(False)
+        events = round(beats / rate / float(data["shedding_interval"][...]))
+        counts = [data[name][-1] / events for name in ("steps", "newton_iterations", "jacobian_evaluations")]
+        for name in ("com", "kinetic_energy", "shed_circulation", "energy_audit"):
+            if not np.isfinite(data[name][...]).all():
+                return f"{name} is not finite", counts
+        circulation = np.abs(data["total_circulation"][...]).max() / (length**2 * rate)
+    return f"a total circulation of {circulation:.1e}" if circulation > MAX_CIRCULATION else None, counts
+
+
+def main():
+    n_failed, most = 0, np.zeros(3)
+    with tempfile.TemporaryDirectory() as folder:
+        for number in range(first, first + n_cases):
+            text, length, rate = draw_case(number)
+            case, result = os.path.join(folder, "case.yaml"), os.path.join(folder, "case.nc")
+            with open(case, "w") as file:
+                file.write(text)
+            done = subprocess.run([program, "run", case, "-q", "--force", "-o", result], stdin=subprocess.DEVNULL,
+                                  capture_output=True, text=True)
+            errors = [line for line in done.stderr.splitlines() if "warning" not in line]
+            fault, counts = ("\n".join(errors), [0, 0, 0]) if done.returncode else fault_of(result, length, rate)
+            most = np.maximum(most, counts)
+            if fault:
+                n_failed += 1
+                print(f"case {number}: {fault}\n{text}", flush=True)
+    print("most of one case: %.1f steps, %.1f Newton iterations, %.2f Jacobians an event" % tuple(most))
+    print(f"{n_cases - n_failed} passed, {n_failed} failed, 0 skipped")
+    return n_failed > 0
+
+
+sys.exit(main())
