@@ -188,6 +188,25 @@ static void check_gust(const struct check *check) {
     }
 }
 
+/* Walls that are no channel, and a flow through them. */
+static void check_walls(const struct check *check) {
+    const struct fluid_parameters *const fluid = &check->values->school.fluid;
+    const struct number_list *const walls = &fluid->walls;
+    if (walls->n == 0) return;
+    if (walls->n > 2) {
+        complain(check, "fluid.walls", "expects the y of one wall, or of two; got %d numbers", walls->n);
+    } else if (walls->n == 2 && walls->value[0] >= walls->value[1]) {
+        complain(check, "fluid.walls", "the second wall must be above the first, but %g is not above %g",
+                 walls->value[1], walls->value[0]);
+    }
+    if (fabs(fluid->velocity[1]) > 0) {
+        complain(check, "fluid.velocity", "blows through fluid.walls, which are along x: its y component must be 0");
+    }
+    if (fabs(fluid->gust_amplitude) > 0) {
+        complain(check, "fluid.gust.amplitude", "a gust blows through fluid.walls: remove one of them");
+    }
+}
+
 /* A viscosity that is not the default one and that no fish feels. */
 static void check_viscosity(const struct check *check) {
     const struct school_parameters *const school = &check->values->school;
@@ -441,6 +460,7 @@ void case_check(const struct case_values *values, const struct case_tree *tree, 
     check_wake(&check);
     check_shedding(&check);
     check_gust(&check);
+    check_walls(&check);
     check_viscosity(&check);
     if (values->name && strchr(values->name, '/')) complain(&check, "name", "cannot contain a '/'");
     for (check.fish = 0; check.fish < values->school.n_fish; check.fish++) {

@@ -59,6 +59,10 @@ const struct key case_table[] = {
      .meaning = "amplitude of a uniform flow across the stream that oscillates in time"},
     {"fluid.gust.frequency", REAL, AT(school.fluid.gust_frequency), "0", FROM(0), "Hz",
      .meaning = "frequency of the gust"},
+    {"fluid.walls", NUMBERS, AT(school.fluid.walls), "[]", ANY, "m",
+     .meaning = "straight walls along x: the y of one, or those of both sides of a channel; the bodies begin on one "
+                "side of it, or between them",
+     .synonyms = "wall channel boundary tank ground bottom"},
 
     {"wake.smoothing", REAL, AT(school.wake.smoothing), "0.1", ABOVE(0), "",
      .meaning = "smoothing radius of a free vortex for the velocity that it induces at the wake, in body lengths",

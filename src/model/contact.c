@@ -103,8 +103,19 @@ static enum status reserve(struct contact *contact, int capacity) {
     return STATUS_OK;
 }
 
+// nodes go straight, so a body that is between the walls at both ends of a step has been there all the way
+static enum status compare_with_walls(const struct contact *contact, double t, const double *y) {
+    const struct school *const school = contact->school;
+    for (int f = 0; school->walls.n > 0 && f < school->n_fish; f++) {
+        if (fish_wall_distance(school, &school->fish[f], y) > 0) continue;
+        return status_fail(STATUS_RETRY, "the body of %s touches a wall before t = %.10g s", school->fish[f].name, t);
+    }
+    return STATUS_OK;
+}
+
 enum status contact_find(struct contact *contact, const struct state *state, double t, const double *y) {
     struct neighbours *const neighbours = contact->neighbours;
+    TRY(compare_with_walls(contact, t, y));
     if (!neighbours) return STATUS_OK;
     const int n_fish = contact->school->n_fish;
     for (int f = 0; f < n_fish; f++) {
@@ -231,6 +242,29 @@ static void each_touch(const struct contact *contact, int f, int g, const double
     }
 }
 
+/* A node of a body, as an end of one of its edges, above a wall: as in struct touch. */
+struct wall_touch {
+    int node;
+    double energy, slope, curvature;
+    double inward; /* the gradient of the gap by the y of the node: 1 or -1 */
+};
+
+typedef void visit_wall(void *data, const struct wall_touch *touch);
+
+static void each_wall_touch(const struct contact *contact, int f, const double *y, visit_wall *visitor, void *data) {
+    const struct school *const school = contact->school;
+    const struct fish *const fish = &school->fish[f];
+    for (int i = 0; i < 2 * school->walls.n * fish->n_edges; i++) {
+        const int edge = i / 2 % fish->n_edges, node = edge + i % 2, wall = i / (2 * fish->n_edges);
+        const double inward = school->walls.inward[wall];
+        const double gap = inward * (y[fish->at.y + node] - school->walls.y[wall]) - fish->thickness[edge] / 2;
+        if (gap >= school->contact_range) continue;
+        struct touch touch;
+        potential(gap, school->contact_range, fish->contact_strength / 2, &touch);
+        visitor(data, &(struct wall_touch){node, touch.energy, touch.slope, touch.curvature, inward});
+    }
+}
+
 // ---- the terms
 
 // of one fish
@@ -253,8 +287,15 @@ static void add_force(void *data, const struct touch *touch) {
     }
 }
 
+static void add_wall_force(void *data, const struct wall_touch *touch) {
+    struct sums *const sums = data;
+    const struct layout *const at = &sums->contact->school->fish[sums->f].at;
+    sums->value[at->ay + touch->node] += touch->slope * touch->inward;
+}
+
 void contact_residual(const struct contact *contact, int f, const double *y, double *value) {
     struct sums sums = {.contact = contact, .f = f, .value = value};
+    each_wall_touch(contact, f, y, add_wall_force, &sums);
     for (int i = contact->first[f]; i < contact->first[f + 1]; i++) {
         each_touch(contact, f, contact->other[i], y, add_force, &sums);
     }
@@ -283,8 +324,16 @@ static void add_derivative(void *data, const struct touch *touch) {
     }
 }
 
+static void add_wall_derivative(void *data, const struct wall_touch *touch) {
+    const struct block *const block = data;
+    const struct fish *const fish = &block->contact->school->fish[block->f];
+    const int place = fish->n_nodes + touch->node;
+    block->rows->value[(long)place * block->rows->n_rows + place] += touch->curvature / fish->mass[touch->node];
+}
+
 void contact_jacobian(const struct contact *contact, int f, int g, const double *y, struct coupling_block *rows) {
     struct block block = {contact, f, g, rows};
+    if (f == g) each_wall_touch(contact, f, y, add_wall_derivative, &block);
     for (int i = contact->first[f]; i < contact->first[f + 1]; i++) {
         const int other = contact->other[i];
         if (f == g || other == g) each_touch(contact, f, other, y, add_derivative, &block);
@@ -304,8 +353,16 @@ static void add_sums(void *data, const struct touch *touch) {
     }
 }
 
+// a wall does not move: what it takes from the body is its energy, all of which counts as the body's
+static void add_wall_sums(void *data, const struct wall_touch *touch) {
+    struct sums *const sums = data;
+    sums->energy += touch->energy;
+    sums->force[1] -= touch->slope * touch->inward;
+}
+
 static struct sums sums_of(const struct contact *contact, int f, const double *y) {
     struct sums sums = {.contact = contact, .f = f, .y = y};
+    each_wall_touch(contact, f, y, add_wall_sums, &sums);
     for (int i = contact->first[f]; i < contact->first[f + 1]; i++) {
         each_touch(contact, f, contact->other[i], y, add_sums, &sums);
     }

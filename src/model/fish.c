@@ -373,6 +373,17 @@ static struct layout layout_after(int first, int n_nodes, int n_momenta, int n_s
     return at;
 }
 
+// of one wall the fluid is where the first nose begins
+static void set_walls(struct school *school, const struct school_parameters *parameters) {
+    const struct number_list *const walls = &parameters->fluid.walls;
+    school->walls.n = walls->n;
+    for (int i = 0; i < walls->n; i++) {
+        school->walls.y[i] = walls->value[i];
+        school->walls.inward[i] = i == 0 ? 1 : -1;
+    }
+    if (walls->n == 1 && parameters->fish[0].start_position[1] < walls->value[0]) school->walls.inward[0] = -1;
+}
+
 static void set_fluid(struct school *school, const struct school_parameters *parameters) {
     school->density = parameters->fluid.density;
     school->velocity[0] = parameters->fluid.velocity[0];
@@ -385,6 +396,7 @@ static void set_fluid(struct school *school, const struct school_parameters *par
     school->gust[0] = -parameters->fluid.gust_amplitude * along[1];
     school->gust[1] = parameters->fluid.gust_amplitude * along[0];
     school->gust_omega = 2 * pi * parameters->fluid.gust_frequency;
+    set_walls(school, parameters);
     school->interval = parameters->shedding_interval;
     school->lifetime = parameters->wake.lifetime;
     school->decay = parameters->wake.decay;
@@ -408,6 +420,12 @@ static enum status refuse_overlap(const struct school *school) {
     enum status status = STATUS_OK;
     for (int f = 0; f < school->n_fish && status == STATUS_OK; f++) {
         fish_start(&school->fish[f], y);
+        if (fish_wall_distance(school, &school->fish[f], y) <= 0) {
+            status = status_fail(STATUS_CASE,
+                                 "error: fish[%d] (%s) touches a wall or is beyond it at the start: change "
+                                 "start.position or fluid.walls",
+                                 f, school->fish[f].name);
+        }
         for (int g = 0; g < f && status == STATUS_OK; g++) {
             if (fish_distance(&school->fish[f], &school->fish[g], y, 0) <= 0) {
                 status = status_fail(STATUS_CASE,
@@ -651,6 +669,16 @@ double fish_point_distance(const struct fish *fish, const double *y, const doubl
         const double a[2] = {y[fish->at.x + k], y[fish->at.y + k]};
         const double b[2] = {y[fish->at.x + k + 1], y[fish->at.y + k + 1]};
         min = fmin(min, point_to_segment(p, a, b) - fish->thickness[k] / 2);
+    }
+    return min;
+}
+
+double fish_wall_distance(const struct school *school, const struct fish *fish, const double *y) {
+    double min = INFINITY;
+    for (int k = 0; k < fish->n_nodes; k++) {
+        // the thicker one of the edges that meet at the node
+        const double before = k > 0 ? fish->thickness[k - 1] : 0, after = k < fish->n_edges ? fish->thickness[k] : 0;
+        min = fmin(min, images_distance(&school->walls, y[fish->at.y + k]) - fmax(before, after) / 2);
     }
     return min;
 }

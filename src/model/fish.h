@@ -24,6 +24,7 @@
 #include "model/curve.h"
 #include "model/parameters.h"
 #include "model/sheet_integrals.h"
+#include "vortex/images.h"
 
 /* First index of each slice in the vector of all unknowns, and one past the last. The equations have the same layout:
  * rows x, y: dx/dt - v; vx, vy: dv/dt - a; ax, ay: law of motion; sheet: M - 1 times impermeability, then Kelvin;
@@ -143,6 +144,7 @@ struct school {
     double density;             /* of the fluid, kg m-3 */
     double velocity[2], shear;  /* m s-1, s-1 */
     double gust[2], gust_omega; /* m s-1 in x and y, rad s-1 */
+    struct walls walls;
 
     double interval;        /* between two events, s */
     double lifetime, decay; /* of a free vortex, s */
@@ -159,7 +161,8 @@ struct school {
     int threads;
 };
 
-/* Build the school of checked parameters. Fails with STATUS_MEMORY, or STATUS_CASE where fish overlap at the start. */
+/* Build the school of checked parameters. Fails with STATUS_MEMORY, or STATUS_CASE where fish overlap, or are not
+ * between the walls, at the start. */
 enum status fish_school_create(struct school **school, const struct school_parameters *parameters);
 
 /* Release the school and all that it owns. Accepts NULL. */
@@ -230,6 +233,10 @@ void fish_start(const struct fish *fish, double *y);
 
 /* Distance of the point p from the outline of a body at the nodes given in y, negative inside of it, m. */
 double fish_point_distance(const struct fish *fish, const double *y, const double p[2]);
+
+/* Distance of the outline of a body at the nodes given in y from the nearest wall, negative beyond it, m; INFINITY
+ * without walls. */
+double fish_wall_distance(const struct school *school, const struct fish *fish, const double *y);
 
 /* Distance between the outlines of two bodies at the nodes given in y, 0 where they touch, m. A distance above the
  * limit may be returned as INFINITY: bodies whose boxes are further apart than that are not compared edge by edge. */

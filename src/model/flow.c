@@ -363,6 +363,16 @@ static void induce_free_sheet(const struct flow *flow, const struct chunk *chunk
     }
 }
 
+// the images of all fish, with the smoothing that others see; those of the sheets unless the tree has summed them
+static void induce_images(const struct flow *flow, const struct chunk *chunk, int by_tree, const struct induced *at) {
+    const struct walls *const walls = &flow->school->walls;
+    if (!flow->by_interpolation[chunk->fish]) {
+        images_induce(walls, &flow->released, (struct range){0, flow->released.n}, at);
+    }
+    images_induce(walls, &flow->nascent, (struct range){0, flow->nascent.n}, at);
+    if (!by_tree) images_induce(walls, &flow->sheet, (struct range){0, flow->sheet.n}, at);
+}
+
 static void evaluate_chunk(const struct flow *flow, const struct chunk *chunk, int by_tree, const struct induced *all) {
     const struct school *school = flow->school;
     const struct induced at = vortices_targets(all, chunk->at);
@@ -381,6 +391,14 @@ static void evaluate_chunk(const struct flow *flow, const struct chunk *chunk, i
     vortices_induce(&flow->nascent, (struct range){0, flow->nascent.n}, &at);
     induce_sheets(flow, chunk, by_tree, all);
     if (has_free_sheets(flow)) induce_free_sheet(flow, chunk, all);
+    if (school->walls.n > 0) induce_images(flow, chunk, by_tree, &at);
+}
+
+// all bound sheets and their images at all points, by the tree
+static enum status sheets_by_tree(struct flow *flow, int threads, const struct induced *all) {
+    const double tolerance = flow->school->wake_tolerance;
+    TRY(velocity_sum_induce(flow->velocity_sum, &flow->sheet, tolerance, threads, all));
+    return images_induce_many(&flow->school->walls, flow->velocity_sum, &flow->sheet, tolerance, threads, all);
 }
 
 static void evaluate(struct flow *flow, int with_gradient) {
@@ -396,7 +414,7 @@ static void evaluate(struct flow *flow, int with_gradient) {
     const double tolerance = flow->school->wake_tolerance;
     int by_tree = velocity_sum_by_tree(&flow->sheet, flow->n_points, tolerance);
     vortices_zero(&all);
-    if (by_tree && velocity_sum_induce(flow->velocity_sum, &flow->sheet, tolerance, threads, &all) != STATUS_OK) {
+    if (by_tree && sheets_by_tree(flow, threads, &all) != STATUS_OK) {
         // without memory for a tree there is still the direct sum
         by_tree = 0;
         vortices_zero(&all);
@@ -426,13 +444,15 @@ static struct part part_of(const struct influence_block *block, int c, int first
     return (struct part){block->u + at, block->v + at};
 }
 
-// add factor times the derivative with respect to the place of a point that moves with the nodes of fish other
+// add factor times the derivative with respect to the place of a point that moves with the nodes of fish other; sign:
+// of its motion in y, -1 for one that is mirrored
 static void add_motion(const struct influence_block *block, const struct fish *other, const struct stencil *point,
-                       int first, int n, const struct kernel_values *slope, double factor) {
+                       int first, int n, const struct kernel_values *slope, double factor, double sign) {
     for (int i = 0; i < point->n; i++) {
         const struct part by_x = part_of(block, point->node[i], first);
         const struct part by_y = part_of(block, other->n_nodes + point->node[i], first);
-        kernel_add_motion(n, factor * point->weight[i], slope, by_x.u, by_x.v, by_y.u, by_y.v);
+        const double weight = factor * point->weight[i];
+        kernel_add_motion(n, (const double[]){weight, sign * weight}, slope, by_x.u, by_x.v, by_y.u, by_y.v);
     }
 }
 
@@ -472,7 +492,7 @@ static void derive_nascent_source(const struct target *at, struct range points, 
         add_strength(at->block, at->block->n_columns - 1, first, n, &unit, source->part);
         if (at->with_places) {
             add_motion(at->block, other, &tail, first, n, &unit,
-                       -source->part * source->follows * flow->nascent.circulation[at->g]);
+                       -source->part * source->follows * flow->nascent.circulation[at->g], 1);
         }
     }
 }
@@ -511,9 +531,71 @@ static void derive_sheet(const struct target *at, struct range points, double sm
             add_strength(at->block, strength + j, first, n, &unit, other->sheet_weight[j]);
             if (at->with_places) {
                 add_motion(at->block, other, &other->sheet_point[j], first, n, &unit,
-                           -flow->sheet.circulation[sheet + j]);
+                           -flow->sheet.circulation[sheet + j], 1);
             }
         }
+    }
+}
+
+// a source of fish g that everybody sees in the walls
+struct mirrored_source {
+    double x, y, smoothing;
+    int column;                  // of its strength
+    double weight, circulation;  // per unit of that unknown, and in all: m or 1, m2 s-1
+    const struct stencil *point;
+    double follows;  // the part of the motion of that point that it follows
+};
+
+// the images of a source at all points of fish f
+static void derive_images_of(const struct target *at, const struct mirrored_source *source) {
+    const struct flow *flow = at->flow;
+    const struct fish *other = &flow->school->fish[at->g];
+    const int here = flow->points[at->f].first, end = at->block->n_points;
+    for (int first = 0; first < end; first += KERNEL_CHUNK) {
+        const int n = end - first < KERNEL_CHUNK ? end - first : KERNEL_CHUNK;
+        struct images_values unit;
+        images_unit(&flow->school->walls, n, flow->x + here + first, flow->y + here + first, source->x, source->y,
+                    source->smoothing, &unit);
+        add_strength(at->block, source->column, first, n, &unit.shifted, source->weight);
+        add_strength(at->block, source->column, first, n, &unit.mirrored, source->weight);
+        if (!at->with_places) continue;
+        const double factor = -source->follows * source->circulation;
+        add_motion(at->block, other, source->point, first, n, &unit.shifted, factor, 1);
+        add_motion(at->block, other, source->point, first, n, &unit.mirrored, factor, -1);
+    }
+}
+
+static void derive_nascent_images(const struct target *at) {
+    const struct flow *flow = at->flow;
+    const struct fish *other = &flow->school->fish[at->g];
+    if (flow->school->walls.n == 0) return;
+    const struct stencil tail = {.n = 1, .node = (const int[]){other->n_nodes - 1}, .weight = (const double[]){1}};
+    const struct mirrored_source nascent = {.x = flow->nascent.x[at->g],
+                                            .y = flow->nascent.y[at->g],
+                                            .smoothing = other->smoothing,
+                                            .column = at->block->n_columns - 1,
+                                            .weight = 1,
+                                            .circulation = flow->nascent.circulation[at->g],
+                                            .point = &tail,
+                                            .follows = has_free_sheets(flow) ? 0.5 : 1};
+    derive_images_of(at, &nascent);
+}
+
+static void derive_sheet_images(const struct target *at) {
+    const struct flow *flow = at->flow;
+    const struct fish *other = &flow->school->fish[at->g];
+    const int strength = at->block->n_columns - 1 - other->n_sheet;
+    for (int j = 0; flow->school->walls.n > 0 && j < other->n_sheet; j++) {
+        const int bound = flow->sheet_range[at->g].first + j;
+        const struct mirrored_source source = {.x = flow->sheet.x[bound],
+                                               .y = flow->sheet.y[bound],
+                                               .smoothing = other->sheet_smoothing,
+                                               .column = strength + j,
+                                               .weight = other->sheet_weight[j],
+                                               .circulation = flow->sheet.circulation[bound],
+                                               .point = &other->sheet_point[j],
+                                               .follows = 1};
+        derive_images_of(at, &source);
     }
 }
 
@@ -525,6 +607,8 @@ static void derive_sources(const struct target *at) {
     memset(at->block->u, 0, size * sizeof *at->block->u);
     memset(at->block->v, 0, size * sizeof *at->block->v);
     derive_nascent(at);
+    derive_nascent_images(at);
+    derive_sheet_images(at);
     if (at->f == at->g) {
         derive_sheet(at, (struct range){0, fish->n_control}, 0);
         derive_sheet(at, (struct range){flow_tail(fish), 1}, fish->sheet_smoothing);
@@ -573,7 +657,9 @@ void flow_nascent_influence(const struct flow *flow, int f, struct influence_blo
     block->n_columns = 1;
     memset(block->u, 0, (size_t)block->n_points * sizeof *block->u);
     memset(block->v, 0, (size_t)block->n_points * sizeof *block->v);
-    derive_nascent(&(struct target){flow, f, f, 0, block});
+    const struct target at = {flow, f, f, 0, block};
+    derive_nascent(&at);
+    derive_nascent_images(&at);
 }
 
 // the bound sheets at free vortices; markers see them with a smoothing that vanishes at the edges
@@ -583,6 +669,18 @@ static void sheets_at_wake(const struct flow *flow, const struct induced *at) {
                                  flow->sheet.circulation, flow->sheet_square, at->u, at->v);
     } else {
         vortices_induce(&flow->sheet, (struct range){0, flow->sheet.n}, at);
+    }
+}
+
+// the images of the nascent vortices and of the sheets at free vortices
+static void images_at_wake(const struct flow *flow, const struct induced *at) {
+    const struct walls *const walls = &flow->school->walls;
+    if (has_free_sheets(flow)) {
+        images_induce_each(walls, flow->sheet.n, flow->sheet.x, flow->sheet.y, flow->sheet.circulation,
+                           flow->sheet_square, at);
+    } else {
+        images_induce(walls, &flow->nascent, (struct range){0, flow->nascent.n}, at);
+        images_induce(walls, &flow->sheet, (struct range){0, flow->sheet.n}, at);
     }
 }
 
@@ -598,6 +696,7 @@ static void others_at_wake(const struct flow *flow, int sheets_too, const struct
         // the newest markers have the nascent stretches
         if (!has_free_sheets(flow)) vortices_induce(&flow->nascent, (struct range){0, flow->nascent.n}, &at);
         if (sheets_too) sheets_at_wake(flow, &at);
+        if (flow->school->walls.n > 0) images_at_wake(flow, &at);
     }
 }
 
@@ -652,6 +751,7 @@ enum status flow_at_wake(struct flow *flow, const struct state *state) {
         parallel_threads(flow->school->threads, moving->n, (double)moving->n * moving->n, PARALLEL_INTERACTIONS);
     others_at_wake(flow, !by_tree, &at);
     if (by_tree) TRY(velocity_sum_induce(flow->velocity_sum, &flow->sheet, tolerance, threads, &at));
+    TRY(images_induce_many(&flow->school->walls, flow->velocity_sum, moving, tolerance, threads, &at));
     if (velocity_sum_by_tree(moving, moving->n, tolerance)) {
         return velocity_sum_induce(flow->velocity_sum, moving, tolerance, threads, &at);
     }
@@ -666,8 +766,18 @@ static void induce_field(const struct flow *flow, const int *by_tree, const stru
         at->u_y[i] = flow->school->shear;
     }
     vortices_induce(&flow->nascent, (struct range){0, flow->nascent.n}, at);
+    images_induce(&flow->school->walls, &flow->nascent, (struct range){0, flow->nascent.n}, at);
     if (!by_tree[0]) vortices_induce(&flow->released, (struct range){0, flow->released.n}, at);
     if (!by_tree[1]) vortices_induce(&flow->sheet, (struct range){0, flow->sheet.n}, at);
+}
+
+// beyond the walls there is no fluid
+static void leave_out_solid(const struct flow *flow, const struct induced *at) {
+    double *const values[] = {at->u, at->v, at->u_x, at->u_y, at->v_x};
+    for (int i = 0; flow->school->walls.n > 0 && i < at->n; i++) {
+        if (images_distance(&flow->school->walls, at->y[i]) >= 0) continue;
+        for (size_t k = 0; k < sizeof values / sizeof *values; k++) values[k][i] = NAN;
+    }
 }
 
 enum status flow_field(struct flow *flow, const struct state *state, const struct induced *all) {
@@ -688,7 +798,9 @@ enum status flow_field(struct flow *flow, const struct state *state, const struc
     }
     for (int i = 0; i < 2; i++) {
         if (by_tree[i]) TRY(velocity_sum_induce(flow->velocity_sum, many[i], tolerance, threads, all));
+        TRY(images_induce_many(&flow->school->walls, flow->velocity_sum, many[i], tolerance, threads, all));
     }
+    leave_out_solid(flow, all);
     return STATUS_OK;
 }
 

@@ -1,5 +1,6 @@
 /* flow.h: the velocity of the fluid at the points of every body and anywhere else: external flow, free sheets, nascent
- * vortices, bound sheets. doc/model.md, sections 6 to 9. Tested by tests/model/test_flow.c.
+ * vortices, bound sheets, and their images in walls. doc/model.md, sections 6 to 9, 17. Tested by
+ * tests/model/test_flow.c.
  *
  * The points of one fish, in this order; which sheets each of them feels:
  *
@@ -144,8 +145,8 @@ void flow_nascent_influence(const struct flow *flow, int f, struct influence_blo
 enum status flow_at_wake(struct flow *flow, const struct state *state);
 
 /* The velocity of the fluid and its gradient at any points, at the event of the state, as another body would see them:
- * every wake and every bound sheet with its full smoothing. Where there are many it sums by the tree, to 1e-7
- * (velocity_sum.h). Changes nothing that a run depends on. Fails with STATUS_MEMORY. */
+ * every wake and every bound sheet with its full smoothing; NaN beyond the walls. Where there are many it sums by the
+ * tree, to 1e-7 (velocity_sum.h). Changes nothing that a run depends on. Fails with STATUS_MEMORY. */
 enum status flow_field(struct flow *flow, const struct state *state, const struct induced *at);
 
 /* The fluid's velocity past the tail of fish f, u - v_tail. After flow_velocity. */

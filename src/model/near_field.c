@@ -132,9 +132,19 @@ static void add_to_far(struct near_field *near_field, const struct near_field_er
     near_field->far.by_drift += error->by_drift;
 }
 
-// the vortices of one wake: those with an error up to max_error go to the far field, the others may be near
-static enum status divide_wake(const struct near_field_input *input, int g, const struct body *body, double max_error,
-                               struct near_field *near_field) {
+// the bounds of a wake's image
+static struct near_field_bounds bounds_of_image(const struct near_field_bounds *bounds, const struct image *image) {
+    struct near_field_bounds mirrored = *bounds;
+    const double low = image->sign * bounds->low[1] + image->shift, high = image->sign * bounds->high[1] + image->shift;
+    mirrored.low[1] = fmin(low, high);
+    mirrored.high[1] = fmax(low, high);
+    return mirrored;
+}
+
+// the vortices of one wake, or of an image of it: those with an error up to max_error go to the far field, the others
+// may be near
+static enum status divide_wake(const struct near_field_input *input, int g, const struct image *image,
+                               const struct body *body, double max_error, struct near_field *near_field) {
     const struct wake *const wake = &input->wakes[g];
     const struct near_field_bounds *const bounds = &input->bounds[g];
     const double h = input->school->interval, smoothing = input->school->fish[g].smoothing;
@@ -142,9 +152,10 @@ static enum status divide_wake(const struct near_field_input *input, int g, cons
     const double *const start = input->strength_start + input->wake[g].first;
     const double *const end = input->strength_end + input->wake[g].first;
     for (int i = 0; i < wake->n_vortex; i++) {
-        const double du = body->mean[0] - wake->u[i], dv = body->mean[1] - wake->v[i];
+        const double y = image->sign * wake->y[i] + image->shift, v = image->sign * wake->v[i];
+        const double du = body->mean[0] - wake->u[i], dv = body->mean[1] - v;
         const double speed = sqrt(du * du + dv * dv) + body->deviation + h * acceleration;
-        const double distance = distance_to_line(body, wake->x[i], wake->y[i]) - body->width - h * speed;
+        const double distance = distance_to_line(body, wake->x[i], y) - body->width - h * speed;
         const struct near_field_error error =
             estimate(max_of(distance, 0), smoothing, speed, acceleration, h, fabs(start[i]), fabs(end[i] - start[i]));
         if (error.error <= max_error) {
@@ -153,11 +164,11 @@ static enum status divide_wake(const struct near_field_input *input, int g, cons
         }
         const struct near_field_vortex near = {
             .error = error,
-            .x = {wake->x[i], wake->y[i]},
-            .u = {wake->u[i], wake->v[i]},
-            .a = {(wake->u[i] - wake->u_before[i]) / h, (wake->v[i] - wake->v_before[i]) / h},
-            .strength = start[i],
-            .change = end[i] - start[i],
+            .x = {wake->x[i], y},
+            .u = {wake->u[i], v},
+            .a = {(wake->u[i] - wake->u_before[i]) / h, image->sign * (wake->v[i] - wake->v_before[i]) / h},
+            .strength = image->sign * start[i],
+            .change = image->sign * (end[i] - start[i]),
             .smoothing = smoothing,
         };
         TRY(add_to_near(near_field, &near));
@@ -196,6 +207,24 @@ static void move_to_far(struct near_field *near_field, double max_error) {
     near_field->n_near = n_near;
 }
 
+// a wake or an image of it: as a whole to the far field, or vortex by vortex; n_images: of every wake
+static enum status divide_image(struct near_field *near_field, const struct near_field_input *input, int g,
+                                const struct image *image, int n_images, const struct body *body) {
+    const struct school *const school = input->school;
+    const struct near_field_bounds bounds = bounds_of_image(&input->bounds[g], image);
+    const double acceleration = body->acceleration + bounds.acceleration;
+    const double speed = sqrt(body->mean[0] * body->mean[0] + body->mean[1] * body->mean[1]) + body->deviation +
+                         bounds.speed + school->interval * acceleration;
+    const double distance = box_distance(&bounds, body) - school->interval * speed;
+    const struct near_field_error error = estimate(max_of(distance, 0), school->fish[g].smoothing, speed, acceleration,
+                                                   school->interval, bounds.strength, bounds.decay);
+    if (error.error <= near_field->tolerance / 8 / (school->n_fish * n_images)) {
+        add_to_far(near_field, &error);
+        return STATUS_OK;
+    }
+    return divide_wake(input, g, image, body, near_field->tolerance / 8 / (input->n_released * n_images), near_field);
+}
+
 /* Half of the tolerance is for the far field on the predicted path (an eighth of it all for whole wakes, one for single
  * vortices of little effect, a quarter for those that move_to_far finds), half for drift. */
 static enum status divide(struct near_field *near_field, const struct near_field_input *input, int f) {
@@ -206,19 +235,10 @@ static enum status divide(struct near_field *near_field, const struct near_field
     near_field->n_near = 0;
     near_field->far = (struct near_field_error){0};
     near_field->tolerance = school->wake_tolerance * fish->length * fish_rate(school, fish);
+    struct image image[1 + IMAGES_NEAREST] = {{1, 0}};
+    const int n_images = 1 + images_nearest(&school->walls, image + 1);
     for (int g = 0; g < school->n_fish; g++) {
-        const struct near_field_bounds *const bounds = &input->bounds[g];
-        const double acceleration = body.acceleration + bounds->acceleration;
-        const double speed = sqrt(body.mean[0] * body.mean[0] + body.mean[1] * body.mean[1]) + body.deviation +
-                             bounds->speed + school->interval * acceleration;
-        const double distance = box_distance(bounds, &body) - school->interval * speed;
-        const struct near_field_error error = estimate(max_of(distance, 0), school->fish[g].smoothing, speed,
-                                                       acceleration, school->interval, bounds->strength, bounds->decay);
-        if (error.error <= near_field->tolerance / 8 / school->n_fish) {
-            add_to_far(near_field, &error);
-        } else {
-            TRY(divide_wake(input, g, &body, near_field->tolerance / 8 / n_released, near_field));
-        }
+        for (int i = 0; i < n_images; i++) TRY(divide_image(near_field, input, g, &image[i], n_images, &body));
     }
     move_to_far(near_field, near_field->tolerance / 4);
     // a near vortex is evaluated about twice as often as a far one

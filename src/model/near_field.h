@@ -8,7 +8,10 @@
  * Each of the three is an ESTIMATE, a tenth of a bound. The bound takes every vortex at its closest and fastest, and
  * all of them with one sign; in wakes it is 50 to 1000 times the true error. The estimate is held below the tolerance.
  * So a cluster of vortices of one sign, all of them at their closest, can exceed the tolerance: 1.65 times in the
- * tests, and never ten times. */
+ * tests, and never ten times.
+ *
+ * The nearest images of the vortices in walls (images.h) count like vortices, and may be near ones. Those beyond are
+ * left out of the estimate: they are further than the channel is wide. */
 #ifndef NEAR_FIELD_H
 #define NEAR_FIELD_H
 

@@ -30,12 +30,13 @@ struct number_list {
 };
 
 struct fluid_parameters {
-    double density;        /* kg m-3 */
-    double viscosity;      /* kinematic, m2 s-1 */
-    double velocity[2];    /* m s-1 */
-    double shear;          /* s-1 */
-    double gust_amplitude; /* m s-1 */
-    double gust_frequency; /* Hz */
+    double density;           /* kg m-3 */
+    double viscosity;         /* kinematic, m2 s-1 */
+    double velocity[2];       /* m s-1 */
+    double shear;             /* s-1 */
+    double gust_amplitude;    /* m s-1 */
+    double gust_frequency;    /* Hz */
+    struct number_list walls; /* heights of walls along x: none, one, or two in ascending order, m */
 };
 
 struct wake_parameters {

@@ -270,7 +270,7 @@ static void flow_jacobian(const struct residual *residual, int f, int g, double 
 
 // add the rows of a fish by its own unknowns to its block: those entries that may differ from zero. The midpoint of an
 // edge feels the nodes of that edge and, through the nascent vortex, the tail and the circulation shed; the pressure
-// everything.
+// everything, and so does an edge that has walls beside it, through the images of the body.
 static void add_own(const struct residual *residual, const struct fish *fish, const struct coupling_block *rows,
                     struct sparse *own) {
     const int n_nodes = fish->n_nodes, n_places = 2 * n_nodes;
@@ -278,9 +278,9 @@ static void add_own(const struct residual *residual, const struct fish *fish, co
     for (int c = 0; c < rows->n_columns; c++) {
         const double *const value = rows->value + (long)c * rows->n_rows;
         const int column = flow_column(fish, c), node = c % n_nodes;
-        const int has_pressure = fish_has_momentum(fish);
-        const int is_shed = c == rows->n_columns - 1, is_sheet = c >= n_places && !is_shed && !has_pressure;
-        const int all = is_shed || node == n_nodes - 1 || has_pressure;
+        const int feels_all = fish_has_momentum(fish) || residual->school->walls.n > 0;
+        const int is_shed = c == rows->n_columns - 1, is_sheet = c >= n_places && !is_shed && !feels_all;
+        const int all = is_shed || node == n_nodes - 1 || feels_all;
         const int first = all || node == 0 ? 0 : node - 1, last = all || node == n_nodes - 2 ? n_nodes - 1 : node + 1;
         for (int k = first; !is_sheet && k <= last; k++) {
             sparse_add(own, fish->at.ax + k, column, value[k]);

@@ -149,13 +149,14 @@ static enum status sum(const struct wake_interpolation *interpolation, int threa
         const struct induced at = targets_at(interpolation, i);
         vortices_zero(&at);
     }
-    if (!velocity_sum_by_tree(&interpolation->released[0], interpolation->n_points, tolerance)) {
-        sum_directly(interpolation, threads);
-        return STATUS_OK;
-    }
+    const int by_tree = velocity_sum_by_tree(&interpolation->released[0], interpolation->n_points, tolerance);
+    if (!by_tree) sum_directly(interpolation, threads);
     for (int i = 0; i < N_TIMES; i++) {
         const struct induced at = targets_at(interpolation, i);
-        TRY(velocity_sum_induce(interpolation->velocity_sum, &interpolation->released[i], tolerance, threads, &at));
+        const struct vortices *const released = &interpolation->released[i];
+        if (by_tree) TRY(velocity_sum_induce(interpolation->velocity_sum, released, tolerance, threads, &at));
+        TRY(images_induce_many(&interpolation->school->walls, interpolation->velocity_sum, released, tolerance, threads,
+                               &at));
     }
     return STATUS_OK;
 }

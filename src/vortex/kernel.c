@@ -238,13 +238,15 @@ KERNEL_WIDE void kernel_unit(int n, const double *x, const double *y, double sou
     }
 }
 
-KERNEL_WIDE void kernel_add_motion(int n, double factor, const struct kernel_values *values, double *restrict u_by_x,
-                                   double *restrict v_by_x, double *restrict u_by_y, double *restrict v_by_y) {
+KERNEL_WIDE void kernel_add_motion(int n, const double factor[2], const struct kernel_values *values,
+                                   double *restrict u_by_x, double *restrict v_by_x, double *restrict u_by_y,
+                                   double *restrict v_by_y) {
+    const double in_x = factor[0], in_y = factor[1];
     for (int i = 0; i < n; i++) {
-        u_by_x[i] += factor * values->u_x[i];
-        v_by_x[i] += factor * values->v_x[i];
-        u_by_y[i] += factor * values->u_y[i];
-        v_by_y[i] -= factor * values->u_x[i];
+        u_by_x[i] += in_x * values->u_x[i];
+        v_by_x[i] += in_x * values->v_x[i];
+        u_by_y[i] += in_y * values->u_y[i];
+        v_by_y[i] -= in_y * values->u_x[i];
     }
 }
 

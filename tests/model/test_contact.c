@@ -106,6 +106,60 @@ static void forces_and_powers_of_all_add_up_to_nothing(void **state) {
     school_clear(&setup);
 }
 
+static void walls_push_with_the_gradient_of_the_energy(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME
+                 "fluid: {walls: [-0.5, 0.6]}\ncontact: {range: 0.5, action: warn}\n"
+                 "fish: [{sheet_points: 9}, {nodes: 5, sheet_points: 7, length: 0.7, start: {position: "
+                 "[0.2, 0.3], heading: 190}}]\n");
+    school_stir(&setup);
+    double *const y = setup.state->y, h = 1e-5;
+    const struct contact *const contact = setup.residual->contact;
+    school_ok(contact_find(setup.residual->contact, setup.state, 0, y));
+    for (int f = 0; f < 2; f++) contact_residual(contact, f, y, setup.value);
+    int n = 0;
+    for (int f = 0; f < 2; f++) {
+        const struct fish *const fish = &setup.school->fish[f];
+        double sum[2] = {0, 0}, force[2];
+        for (int i = 0; i < 2 * fish->n_nodes; i++) {
+            double *const place = &y[fish->at.x + i], here = *place;
+            *place = here + h;
+            const double after = energy_of_school(&setup, y);
+            *place = here - h;
+            const double gradient = (after - energy_of_school(&setup, y)) / (2 * h);
+            *place = here;
+            NEAR(setup.value[fish->at.ax + i], gradient, 1e-5, 1e-6);
+            sum[i / fish->n_nodes] -= setup.value[fish->at.ax + i];
+            n += fabs(gradient) > 0.1;
+        }
+        contact_force(contact, f, y, force);
+        NEAR_ARRAY(2, force, sum, 1e-13, 1e-13);
+        NEAR(force[0], 0, 0, 0);
+        // a wall is at rest: it gives no power
+        NEAR(contact_power(contact, f, y), 0, 0, 0);
+    }
+    assert_true(n > 5);
+    school_clear(&setup);
+}
+
+static void who_is_beyond_a_wall_asks_for_a_smaller_step(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME STRAIGHT "fluid: {walls: [-0.2]}\nfish: [{}]\n");
+    const struct fish *const fish = &setup.school->fish[0];
+    double *const y = setup.state->y;
+    // half of the body is 0.05 thick
+    const double places[] = {-0.149, -0.151, -5};
+    for (int i = 0; i < 3; i++) {
+        y[fish->at.y + 3] = places[i];
+        assert_int_equal(contact_find(setup.residual->contact, setup.state, 0.1, y), i == 0 ? STATUS_OK : STATUS_RETRY);
+        NEAR(fish_wall_distance(setup.school, fish, y), places[i] + 0.15, 1e-15, 0);
+    }
+    assert_non_null(strstr(status_message(), "touches a wall"));
+    school_clear(&setup);
+}
+
 static void what_crosses_on_its_way_asks_for_a_smaller_step(void **state) {
     (void)state;
     struct setup setup;
@@ -127,11 +181,11 @@ static void what_crosses_on_its_way_asks_for_a_smaller_step(void **state) {
 
 // ---- runs
 
-// momentum of all fish, kg m s-1, and its scale
-static double momentum(const struct simulation *simulation, double sum[2]) {
+// momentum of so many fish, kg m s-1, and its scale
+static double momentum(const struct simulation *simulation, int n_fish, double sum[2]) {
     double scale = 0;
     sum[0] = sum[1] = 0;
-    for (int f = 0; f < simulation->school->n_fish; f++) {
+    for (int f = 0; f < n_fish; f++) {
         const struct fish *const fish = &simulation->school->fish[f];
         const double *const y = simulation->state->y;
         for (int k = 0; k < fish->n_nodes; k++) {
@@ -153,29 +207,31 @@ static double momentum(const struct simulation *simulation, double sum[2]) {
 // bodies meet, come apart, have kept momentum and energy; steps per event are those of a collision
 static void meet(const char *name, const char *text, double end, double audit_limit) {
     struct simulation *const simulation = school_simulation(text);
-    double before[2], after[2], energy = 0, audit = 0, stored = 0;
-    const double scale = momentum(simulation, before);
+    const int n_fish = simulation->school->n_fish;
+    double before[2], after[2], first[2], energy = 0, audit = 0;
+    const double scale = momentum(simulation, n_fish, before);
+    momentum(simulation, 1, first);
     long most = 0, steps = 0;
-    for (int f = 0; f < simulation->school->n_fish; f++) {
+    for (int f = 0; f < n_fish; f++) {
         energy += diagnostics_energy(simulation->residual, f, 0, simulation->state->y);
     }
     while (simulation->state->t < end) {
-        double sum = 0;
         simulate_measure(simulation);
-        for (int f = 0; f < simulation->school->n_fish; f++) {
+        for (int f = 0; f < n_fish; f++) {
             audit = fmax(audit, fabs(simulation->diagnostics->fish[f].energy_audit));
-            sum += simulation->diagnostics->fish[f].contact_energy;
         }
-        stored = fmax(stored, sum);
         school_ok(simulate_step(simulation));
         most = simulation->totals.steps - steps > most ? simulation->totals.steps - steps : most;
         steps = simulation->totals.steps;
-        momentum(simulation, after);
-        NEAR_ARRAY(2, after, before, 1e-10 * scale, 0);
+        momentum(simulation, n_fish, after);
+        // walls along x take what is across them
+        NEAR_ARRAY(simulation->school->walls.n > 0 ? 1 : 2, after, before, 1e-10 * scale, 0);
     }
     print_message("%s: least %.2e m, audit %.1e of %.0f J, at most %ld steps per event\n", name,
                   simulation->state->closest->distance, audit, energy, most);
-    assert_true(stored > 0);
+    // without a contact the momentum of the first one would be what it was
+    momentum(simulation, 1, after);
+    assert_true(hypot(after[0] - first[0], after[1] - first[1]) > 1e-3 * scale);
     assert_true(simulation->state->closest->distance > 0);
     assert_true(audit < audit_limit * energy);
     simulate_free(simulation);
@@ -202,6 +258,25 @@ static void bodies_that_meet_do_not_cross(void **state) {
          ", body: {profile: uniform, thickness: 0.1}, start: {speed: 0.01}}}\n"
          "fish: [{}, {start: {position: [0.3, 0.1001]}}]\n",
          0.1, 5e-3);
+}
+
+#define AT_A_WALL(height, speed)                                                                                 \
+    TIME "solver: {rtol: 1.0e-6}\nfluid: {density: 0, walls: [0]}\nwake: {shedding: continuous, taper: 0, "      \
+         "taper_beside: 0}\nfish: [{" PASSIVE ", start: {position: [0, " height "], heading: 280, speed: " speed \
+         "}}]\n"
+
+static void walls_throw_bodies_back(void **state) {
+    (void)state;
+    meet("at a wall, 1 m/s", AT_A_WALL("0.15", "1"), 0.4, 5e-3);
+    meet("at a wall, 5 m/s", AT_A_WALL("0.15", "5"), 0.1, 5e-3);
+    meet("at a wall, 15 m/s", AT_A_WALL("0.25", "15"), 0.05, 5e-3);
+    meet("two between walls",
+         "solver: {rtol: 1.0e-6}\n" TIME
+         "fluid: {density: 0, walls: [-0.42, 0.62]}\nwake: {shedding: continuous, taper: 0, taper_beside: 0}\n"
+         "defaults: {fish: {" PASSIVE
+         ", start: {speed: 4}}}\n"
+         "fish: [{start: {heading: 160}}, {start: {position: [0.1, 0.2], heading: 200}}]\n",
+         0.3, 5e-3);
 }
 
 static void every_integrator_keeps_bodies_apart(void **state) {
@@ -251,6 +326,9 @@ int main(void) {
         cmocka_unit_test(nobody_repels_what_is_farther_than_the_range),
         cmocka_unit_test(forces_are_the_gradient_of_the_energy),
         cmocka_unit_test(forces_and_powers_of_all_add_up_to_nothing),
+        cmocka_unit_test(walls_push_with_the_gradient_of_the_energy),
+        cmocka_unit_test(who_is_beyond_a_wall_asks_for_a_smaller_step),
+        cmocka_unit_test(walls_throw_bodies_back),
         cmocka_unit_test(what_crosses_on_its_way_asks_for_a_smaller_step),
         cmocka_unit_test(bodies_that_meet_do_not_cross),
         cmocka_unit_test(every_integrator_keeps_bodies_apart),

@@ -395,6 +395,36 @@ static void overlapping_fish_are_refused(void **state) {
     case_free(&values);
 }
 
+static void fish_that_begin_beyond_a_wall_are_refused(void **state) {
+    (void)state;
+    // half of the body is 0.05 thick; of one wall the first fish says on which side the water is
+    static const struct {
+        const char *walls, *fish;
+        int status;
+    } cases[] = {{"[-0.06]", "[{}]", STATUS_OK},
+                 {"[0.06]", "[{}]", STATUS_OK},
+                 {"[0.04]", "[{}]", STATUS_CASE},
+                 {"[-0.5]", "[{}, {start: {position: [0, -1]}}]", STATUS_CASE},
+                 {"[-0.5, 0.5]", "[{}, {start: {position: [0, 0.4]}}]", STATUS_OK},
+                 {"[-0.5, 0.5]", "[{}, {start: {position: [0, 0.46]}}]", STATUS_CASE},
+                 {"[1, 2]", "[{}]", STATUS_CASE}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[512];
+        snprintf(text, sizeof text,
+                 TIME
+                 "fluid: {walls: %s}\ndefaults: {fish: {wave: {amplitude: 0}, body: {profile: uniform, thickness: "
+                 "0.1}}}\nfish: %s\n",
+                 cases[i].walls, cases[i].fish);
+        struct case_values values;
+        school_settings(&values, text);
+        struct school *school;
+        assert_int_equal(fish_school_create(&school, &values.school), cases[i].status);
+        if (cases[i].status != STATUS_OK) assert_non_null(strstr(status_message(), "wall"));
+        fish_school_free(school);
+        case_free(&values);
+    }
+}
+
 static void unknowns_stand_fish_after_fish_in_the_documented_order(void **state) {
     (void)state;
     struct setup setup;
@@ -441,6 +471,7 @@ int main(void) {
         cmocka_unit_test(distance_of_bent_bodies_is_the_least_of_their_points),
         cmocka_unit_test(bodies_in_boxes_apart_are_not_compared_edge_by_edge),
         cmocka_unit_test(overlapping_fish_are_refused),
+        cmocka_unit_test(fish_that_begin_beyond_a_wall_are_refused),
         cmocka_unit_test(unknowns_stand_fish_after_fish_in_the_documented_order),
         cmocka_unit_test(gust_blows_across_the_stream),
     };

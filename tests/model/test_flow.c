@@ -108,9 +108,10 @@ static void wake_vortices_feel_everything_with_smoothed_sheets(void **state) {
 enum { MANY_FISH = 30, MANY_SHEET = 100, MANY_VORTICES = 70 };
 
 // a school whose sheets and wakes are so large that they are summed by the tree where the tolerance is not 0
-static void build_many(struct setup *setup) {
+static void build_many(struct setup *setup, const char *fluid) {
     char text[4096];
-    size_t used = (size_t)snprintf(text, sizeof text, TIME "defaults: {fish: {sheet_points: %d}}\nfish:\n", MANY_SHEET);
+    size_t used =
+        (size_t)snprintf(text, sizeof text, TIME "%sdefaults: {fish: {sheet_points: %d}}\nfish:\n", fluid, MANY_SHEET);
     for (int f = 0; f < MANY_FISH; f++) {
         used += (size_t)snprintf(text + used, sizeof text - used, "  - {start: {position: [%g, %g]}}\n",
                                  1.4 * (f % 6) + 0.1 * (f / 6), 0.5 * (f / 6));
@@ -136,10 +137,9 @@ static double difference(int n, const double *u, const double *v, const double *
     return worst;
 }
 
-static void by_tree_every_point_feels_the_same_sources(void **state) {
-    (void)state;
+static void compare_every_point(const char *fluid) {
     struct setup setup;
-    build_many(&setup);
+    build_many(&setup, fluid);
     struct flow *const flow = setup.residual->flow;
     const size_t n = (size_t)flow->n_points;
     double *const u = malloc(2 * n * sizeof *u), *const v = u + n;
@@ -160,10 +160,15 @@ static void by_tree_every_point_feels_the_same_sources(void **state) {
     school_clear(&setup);
 }
 
-static void by_tree_wake_vortices_feel_every_sheet_once(void **state) {
+static void by_tree_every_point_feels_the_same_sources(void **state) {
     (void)state;
+    compare_every_point("");
+    compare_every_point("fluid: {walls: [-1.5]}\n");
+}
+
+static void compare_wake_vortices(const char *fluid) {
     struct setup setup;
-    build_many(&setup);
+    build_many(&setup, fluid);
     struct flow *const flow = setup.residual->flow;
     const size_t n = MANY_FISH * MANY_VORTICES;
     double *const u = malloc(2 * n * sizeof *u), *const v = u + n;
@@ -180,6 +185,12 @@ static void by_tree_wake_vortices_feel_every_sheet_once(void **state) {
     assert_true(error > 0 && error < 1e-6);
     free(u);
     school_clear(&setup);
+}
+
+static void by_tree_wake_vortices_feel_every_sheet_once(void **state) {
+    (void)state;
+    compare_wake_vortices("");
+    compare_wake_vortices("fluid: {walls: [-1.5]}\n");
 }
 
 static void external_flow_is_stream_plus_shear_plus_gust(void **state) {
@@ -257,6 +268,126 @@ static void derivative_by_every_unknown_agrees_with_differences(void **state) {
     school_clear(&setup);
 }
 
+// ---- walls
+
+#define BESIDE                                                       \
+    "fish:\n"                                                        \
+    "  - {nodes: 5, sheet_points: 7, start: {position: [0, 0.5]}}\n" \
+    "  - {nodes: 6, sheet_points: 9, length: 0.8, start: {position: [0.2, 1.1], heading: 165}}\n"
+#define MIRRORED                                                      \
+    "  - {nodes: 5, sheet_points: 7, start: {position: [0, -0.5]}}\n" \
+    "  - {nodes: 6, sheet_points: 9, length: 0.8, start: {position: [0.2, -1.1], heading: -165}}\n"
+
+// what causes velocities: fish and wake g are fish and wake f of another setup, seen in the mirror y = 0 or as they are
+static void copy_fish(const struct setup *from, int f, struct setup *to, int g, double sign) {
+    const struct fish *const a = &from->school->fish[f], *const b = &to->school->fish[g];
+    const double *const y = from->state->y;
+    double *const z = to->state->y;
+    for (int k = 0; k < a->n_nodes; k++) {
+        z[b->at.x + k] = y[a->at.x + k];
+        z[b->at.y + k] = sign * y[a->at.y + k];
+    }
+    for (int j = 0; j <= a->n_sheet; j++) z[b->at.gamma + j] = sign * y[a->at.gamma + j];
+    const struct wake *const wake = &from->state->wake[f];
+    struct wake *const copy = &to->state->wake[g];
+    school_ok(wake_resize(copy, wake->n_vortex));
+    copy->has_markers = wake->has_markers;
+    for (int i = 0; i < wake->n_vortex; i++) {
+        copy->x[i] = wake->x[i];
+        copy->y[i] = sign * wake->y[i];
+        copy->u[i] = wake->u[i];
+        copy->v[i] = sign * wake->v[i];
+        copy->u_before[i] = wake->u_before[i];
+        copy->v_before[i] = sign * wake->v_before[i];
+        copy->circulation[i] = sign * wake->circulation[i];
+        copy->birth[i] = wake->birth[i];
+    }
+    copy->shed_before = sign * wake->shed_before;
+    for (int i = 0; i < 2; i++) {
+        const double turn = i == 0 ? 1 : sign;
+        copy->slip[i] = turn * wake->slip[i];
+        copy->tail_velocity[i] = turn * wake->tail_velocity[i];
+        copy->tail_tangent[i] = turn * wake->tail_tangent[i];
+    }
+    copy->version++;
+}
+
+static void same_velocities(const struct flow *one, const struct flow *other, int n_fish) {
+    const int last = n_fish - 1, n = one->points[last].first + one->points[last].n;
+    // rounding of sums of a hundred terms, of at most 100 next to a bound vortex
+    NEAR_ARRAY(n, one->u, other->u, 1e-12, 1e-12);
+    NEAR_ARRAY(n, one->v, other->v, 1e-12, 1e-12);
+}
+
+static void beside_a_wall_everything_feels_mirrored_fish(void **state) {
+    (void)state;
+    static const char *const wakes[] = {"wake: {shedding: continuous}\n",
+                                        "wake: {shedding: sheet, taper: 0.4, taper_beside: 0.1}\n"};
+    for (int w = 0; w < 2; w++) {
+        struct setup wall, free;
+        char text[2048];
+        snprintf(text, sizeof text, TIME "%sfluid: {velocity: [0.3, 0], walls: [0]}\n" BESIDE, wakes[w]);
+        school_build(&wall, text);
+        snprintf(text, sizeof text, TIME "%sfluid: {velocity: [0.3, 0]}\n" BESIDE MIRRORED, wakes[w]);
+        school_build(&free, text);
+        school_stir(&wall);
+        free.state->t = wall.state->t;
+        for (int f = 0; f < 2; f++) {
+            copy_fish(&wall, f, &free, f, 1);
+            copy_fish(&wall, f, &free, f + 2, -1);
+        }
+        free.t = wall.t;
+        struct flow *const one = wall.residual->flow, *const other = free.residual->flow;
+        school_ok(flow_velocity(one, wall.state, wall.t, wall.state->y));
+        school_ok(flow_velocity(other, free.state, free.t, free.state->y));
+        same_velocities(one, other, 2);
+        school_flow(&wall, wall.state->y);
+        school_flow(&free, free.state->y);
+        same_velocities(one, other, 2);
+        const int n = one->points[1].first + one->points[1].n;
+        NEAR_ARRAY(n, one->u_x, other->u_x, 1e-10, 1e-11);
+        NEAR_ARRAY(n, one->u_y, other->u_y, 1e-10, 1e-11);
+        NEAR_ARRAY(n, one->v_x, other->v_x, 1e-10, 1e-11);
+        school_ok(flow_at_wake(one, wall.state));
+        school_ok(flow_at_wake(other, free.state));
+        const int n_vortices = one->wake_range[1].first + one->wake_range[1].n;
+        assert_true(n_vortices > 10);
+        NEAR_ARRAY(n_vortices, one->wake_u, other->wake_u, 1e-13, 1e-12);
+        NEAR_ARRAY(n_vortices, one->wake_v, other->wake_v, 1e-13, 1e-12);
+        school_clear(&wall);
+        school_clear(&free);
+    }
+}
+
+static void the_field_does_not_go_through_walls(void **state) {
+    (void)state;
+    enum { POINTS = 50 };
+    struct setup setup;
+    school_build(&setup, TIME "fluid: {velocity: [0.3, 0], shear: 0.2, walls: [-0.4, 1.9]}\n" BESIDE);
+    school_stir(&setup);
+    double x[POINTS], y[POINTS], u[POINTS], v[POINTS], u_x[POINTS], u_y[POINTS], v_x[POINTS];
+    const struct induced at = {POINTS, x, y, u, v, u_x, u_y, v_x};
+    for (int i = 0; i < POINTS; i++) {
+        x[i] = 0.05 * i - 1;
+        y[i] = i % 2 ? -0.4 : 1.9;
+    }
+    school_ok(flow_field(setup.residual->flow, setup.state, &at));
+    double largest = 0;
+    for (int i = 0; i < POINTS; i++) {
+        NEAR(v[i], 0, 1e-12, 0);
+        NEAR(v_x[i], 0, 1e-11, 0);
+        largest = fmax(largest, fabs(u[i] - u[(i + 2) % POINTS]));
+    }
+    assert_true(largest > 0.01);
+    // beyond them there is no fluid
+    for (int i = 0; i < POINTS; i++) y[i] = i % 3 == 0 ? -0.41 : i % 3 == 1 ? 1.91 : 0.2;
+    school_ok(flow_field(setup.residual->flow, setup.state, &at));
+    for (int i = 0; i < POINTS; i++) {
+        assert_int_equal(isnan(u[i]) && isnan(v[i]) && isnan(u_x[i]) && isnan(u_y[i]) && isnan(v_x[i]), i % 3 != 2);
+    }
+    school_clear(&setup);
+}
+
 static void changed_wakes_are_placed_again(void **state) {
     (void)state;
     struct setup setup;
@@ -316,6 +447,8 @@ int main(void) {
         cmocka_unit_test(external_flow_is_stream_plus_shear_plus_gust),
         cmocka_unit_test(external_acceleration_is_that_of_a_particle_of_the_fluid),
         cmocka_unit_test(derivative_by_every_unknown_agrees_with_differences),
+        cmocka_unit_test(beside_a_wall_everything_feels_mirrored_fish),
+        cmocka_unit_test(the_field_does_not_go_through_walls),
         cmocka_unit_test(changed_wakes_are_placed_again),
         cmocka_unit_test(gradient_pass_leaves_the_velocity_as_it_is),
         cmocka_unit_test(threads_change_no_bit),

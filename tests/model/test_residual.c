@@ -138,6 +138,24 @@ static const struct variant {
           "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.6], heading: 190}}\n"
           "  - {nodes: 9, sheet_points: 11, start: {position: [0.1, -0.6], heading: 170},\n"
           "     motion: {driven: head, heave: 0.1, frequency: 1}}\n"},
+    {"a wall", TIME "fluid: {velocity: [0.3, 0], shear: 0.2, walls: [-0.5]}\n" FISH},
+    {"a wall above, in contact, free sheet",
+     TIME "fluid: {walls: [0.9]}\ncontact: {range: 0.8}\n"
+          "wake: {shedding: sheet, smoothing: 0.1, taper: 0.4, taper_beside: 0.1}\n" FISH},
+    {"a wall, kutta rate, midpoint", TIME "fluid: {walls: [-0.5]}\nwake: {kutta: rate, collocation: midpoint}\n" FISH},
+    {"two fish in a channel, free sheets, one in contact",
+     TIME FAR "fluid: {velocity: [0.3, 0], shear: 0.2, walls: [-0.6, 1.1]}\n"
+              "wake: {shedding: sheet, curve: smooth, taper: 0.4, taper_beside: 0.1}\n"
+              "fish:\n"
+              "  - {sheet_points: 9}\n"
+              "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"},
+    {"two fish in a channel, one held",
+     TIME FAR "fluid: {walls: [-0.7, 1.2]}\n"
+              "fish:\n"
+              "  - {sheet_points: 9, motion: {driven: head, heave: 0.1, frequency: 1}}\n"
+              "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"},
+    {"pressure in a channel", PRESSURE "fluid: {walls: [-0.5, 0.8]}\ncontact: {range: 0.6}\n"
+                                       "fish: [{nodes: 5, sheet_points: 9, force: pressure}]\n"},
     {"two fish, impulsive", TIME FAR "preset: published\n"
                                      "fish:\n"
                                      "  - {sheet_points: 9}\n"

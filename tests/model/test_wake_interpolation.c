@@ -7,16 +7,20 @@
 #include "school.h"
 
 // one fish in the wake of another, while the oldest vortices decay
-static struct simulation *two_fish(double tolerance, double interval, double smoothing) {
+static struct simulation *two_fish_in(const char *fluid, double tolerance, double interval, double smoothing) {
     char text[512];
     snprintf(text, sizeof text,
-             "time: {end: 1, shedding_interval: %g, output_interval: %g}\n"
+             "%stime: {end: 1, shedding_interval: %g, output_interval: %g}\n"
              "wake: {tolerance: %g, smoothing: %g, lifetime: 0.5}\n"
              "fish: [{nodes: 5, sheet_points: 9}, {nodes: 6, sheet_points: 11, start: {position: [1.3, 0.2]}}]\n",
-             interval, interval, tolerance, smoothing);
+             fluid, interval, interval, tolerance, smoothing);
     struct simulation *const simulation = school_simulation(text);
     school_run(simulation, 0.8);
     return simulation;
+}
+
+static struct simulation *two_fish(double tolerance, double interval, double smoothing) {
+    return two_fish_in("", tolerance, interval, smoothing);
 }
 
 // the unknowns at a part q of the interval: positions on the predicted path, or off it by a drift in a fixed pattern
@@ -94,6 +98,19 @@ static void the_error_stays_below_the_tolerance(void **state) {
             simulate_free(simulation);
         }
         assert_true(last_near > 0);
+    }
+}
+
+static void images_in_walls_are_interpolated_as_exactly(void **state) {
+    (void)state;
+    static const char *const fluids[] = {"fluid: {walls: [-0.25]}\n", "fluid: {walls: [-0.25, 0.5]}\n"};
+    for (int w = 0; w < 2; w++) {
+        for (double tolerance = 1e-6; tolerance > 1e-8; tolerance /= 10) {
+            struct simulation *const simulation = two_fish_in(fluids[w], tolerance, 0.005, 0.05);
+            const double error = worst_error(simulation, 0);
+            assert_true(error > 0 && error < tolerance);
+            simulate_free(simulation);
+        }
     }
 }
 
@@ -228,6 +245,7 @@ static void a_run_is_as_exact_as_the_tolerance(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_error_stays_below_the_tolerance),
+        cmocka_unit_test(images_in_walls_are_interpolated_as_exactly),
         cmocka_unit_test(with_drift_the_error_is_below_the_tolerance_or_every_vortex_is_summed),
         cmocka_unit_test(the_equations_do_not_depend_on_what_was_evaluated_before),
         cmocka_unit_test(the_gradient_is_that_of_the_interpolated_velocity),

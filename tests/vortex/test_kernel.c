@@ -314,7 +314,7 @@ static void unit_sources_at_many_targets_have_the_bits_of_one_by_one(void **stat
     struct kernel_values all, one;
     kernel_unit(N_TARGETS, cloud.x, cloud.y, 0.1, 0.2, 0.05, &all);
     double sum[4][N_TARGETS] = {{0}};
-    kernel_add_motion(N_TARGETS, -3, &all, sum[0], sum[1], sum[2], sum[3]);
+    kernel_add_motion(N_TARGETS, (const double[]){-3, -3}, &all, sum[0], sum[1], sum[2], sum[3]);
     for (int i = 0; i < N_TARGETS; i++) {
         kernel_unit(1, cloud.x + i, cloud.y + i, 0.1, 0.2, 0.05, &one);
         const double got[] = {all.u[i], all.v[i], all.u_x[i], all.u_y[i], all.v_x[i]};

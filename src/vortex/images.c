@@ -1,0 +1,290 @@
+/* images.c: for one wall, the vortices at mirrored targets; for a channel, the closed sums over all images. */
+#include "vortex/images.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+
+double images_distance(const struct walls *walls, double y) {
+    double distance = INFINITY;
+    for (int i = 0; i < walls->n; i++) distance = fmin(distance, walls->inward[i] * (y - walls->y[i]));
+    return distance;
+}
+
+int images_nearest(const struct walls *walls, struct image image[IMAGES_NEAREST]) {
+    for (int i = 0; i < walls->n; i++) image[i] = (struct image){-1, 2 * walls->y[i]};
+    if (walls->n < 2) return walls->n;
+    const double twice = 2 * (walls->y[1] - walls->y[0]);
+    image[2] = (struct image){1, twice};
+    image[3] = (struct image){1, -twice};
+    return 4;
+}
+
+/* The sources of one sum; square: of the smoothing of each, NULL where all have the same. */
+struct sources {
+    int n;
+    const double *x, *y, *circulation, *square;
+    double smoothing;
+};
+
+// ---- one wall: the field of the vortices, mirrored
+
+// add what is induced at n mirrored targets to those from first on
+static void add_reflected(int n, const struct kernel_values *value, const struct induced *at, int first) {
+    for (int i = 0; i < n; i++) {
+        at->u[first + i] += value->u[i];
+        at->v[first + i] -= value->v[i];
+        if (!at->u_x) continue;
+        at->u_x[first + i] += value->u_x[i];
+        at->u_y[first + i] -= value->u_y[i];
+        at->v_x[first + i] -= value->v_x[i];
+    }
+}
+
+// what the sources induce at n targets, which is 0 before
+static void induce_directly(const struct sources *s, int n, const double *x, const double *y, int with_gradient,
+                            struct kernel_values *to) {
+    memset(to, 0, sizeof *to);
+    if (with_gradient && s->square) {
+        kernel_add_gradient_each(n, x, y, s->n, s->x, s->y, s->circulation, s->square, to->u, to->v, to->u_x, to->u_y,
+                                 to->v_x);
+    } else if (with_gradient) {
+        kernel_add_gradient(n, x, y, s->n, s->x, s->y, s->circulation, s->smoothing, to->u, to->v, to->u_x, to->u_y,
+                            to->v_x);
+    } else if (s->square) {
+        kernel_add_velocity_each(n, x, y, s->n, s->x, s->y, s->circulation, s->square, to->u, to->v);
+    } else {
+        kernel_add_velocity(n, x, y, s->n, s->x, s->y, s->circulation, s->smoothing, to->u, to->v);
+    }
+}
+
+static void induce_by_wall(double wall, const struct sources *sources, const struct induced *at) {
+    double y[KERNEL_CHUNK];
+    struct kernel_values there;
+    for (int first = 0; first < at->n; first += KERNEL_CHUNK) {
+        const int n = at->n - first < KERNEL_CHUNK ? at->n - first : KERNEL_CHUNK;
+        for (int i = 0; i < n; i++) y[i] = 2 * wall - at->y[first + i];
+        induce_directly(sources, n, at->x + first, y, at->u_x != NULL, &there);
+        add_reflected(n, &there, at, first);
+    }
+}
+
+// ---- a channel: the sum over all images in closed form
+
+/* Above the lower wall, in half angles: a = pi (y - h)/(2H). */
+struct height {
+    double sine, cosine;
+};
+
+static struct height height_of(const struct walls *walls, double y) {
+    const double a = pi * (y - walls->y[0]) / (2 * (walls->y[1] - walls->y[0]));
+    return (struct height){sin(a), cos(a)};
+}
+
+/* What two places have in common for both rows of images. */
+struct column {
+    double ratio, decay;   /* x/X, e^2/X^3: 1, m-1 */
+    double rate, strength; /* pi/H, m-1, and 1/(4H) */
+    double t, gap;         /* exp(-S), 1 - exp(-S) */
+};
+
+static inline struct column column_of(double rate, double x, double square) {
+    const double length = sqrt(x * x + square), s = rate * length;
+    return (struct column){.ratio = x / length,
+                           .decay = square / (length * length * length),
+                           .rate = rate,
+                           .strength = rate / (4 * pi),
+                           .t = exp(-s),
+                           .gap = -expm1(-s)};
+}
+
+struct velocity {
+    double u, v, u_x, u_y, v_x;
+};
+
+/* The velocity that a row of unit vortices causes, whose half angle to the target has this sine and cosine. With both
+ * parts of the fraction times 2t: 2t D = (1 - t)^2 + 4t sin^2(Y/2), 2t sinh S = 1 - t^2. */
+static inline struct velocity row_of(const struct column *c, double sine, double cosine, int with_gradient) {
+    const double t = c->t, gap = c->gap, square = sine * sine, both = sine * cosine;
+    const double inverse = 1 / (gap * gap + 4 * t * square), sinh = gap * (1 + t);
+    struct velocity row = {.u = -c->strength * 4 * t * both * inverse, .v = c->strength * c->ratio * sinh * inverse};
+    if (!with_gradient) return row;
+    const double bend = c->strength * c->rate * 2 * t * inverse * inverse, cos_y = 1 - 2 * square;
+    // cosh S cos Y - 1, without cancellation near the vortex
+    const double turn = gap * gap * cos_y - 4 * t * square;
+    row.u_x = bend * 2 * both * c->ratio * sinh;
+    row.u_y = -bend * turn;
+    row.v_x = c->strength * c->decay * sinh * inverse - bend * c->ratio * c->ratio * turn;
+    return row;
+}
+
+// what a source itself causes, which is among the row
+static inline struct velocity direct_of(double x, double y, double square, int with_gradient) {
+    const double inverse = 1 / (x * x + y * y + square), g = inverse / (2 * pi), twice = 2 * g * inverse;
+    struct velocity direct = {.u = -g * y, .v = g * x};
+    if (!with_gradient) return direct;
+    direct.u_x = twice * x * y;
+    direct.u_y = twice * y * y - g;
+    direct.v_x = g - twice * x * x;
+    return direct;
+}
+
+/* The row of a source less itself, and the row of its mirror image. */
+struct rows {
+    struct velocity shifted, mirrored;
+};
+
+static inline struct rows rows_of(double rate, const double r[2], const struct height *target,
+                                  const struct height *source, double square, int with_gradient) {
+    const struct column column = column_of(rate, r[0], square);
+    const double sc = target->sine * source->cosine, cs = target->cosine * source->sine;
+    const double ss = target->sine * source->sine, cc = target->cosine * source->cosine;
+    struct rows rows = {row_of(&column, sc - cs, cc + ss, with_gradient),
+                        row_of(&column, sc + cs, cc - ss, with_gradient)};
+    const struct velocity direct = direct_of(r[0], r[1], square, with_gradient);
+    rows.shifted.u -= direct.u;
+    rows.shifted.v -= direct.v;
+    rows.shifted.u_x -= direct.u_x;
+    rows.shifted.u_y -= direct.u_y;
+    rows.shifted.v_x -= direct.v_x;
+    return rows;
+}
+
+static inline void add_rows(const struct rows *rows, double circulation, const struct induced *at, int i) {
+    const struct velocity *const a = &rows->shifted, *const b = &rows->mirrored;
+    at->u[i] += circulation * (a->u - b->u);
+    at->v[i] += circulation * (a->v - b->v);
+    if (!at->u_x) return;
+    at->u_x[i] += circulation * (a->u_x - b->u_x);
+    at->u_y[i] += circulation * (a->u_y - b->u_y);
+    at->v_x[i] += circulation * (a->v_x - b->v_x);
+}
+
+static double rate_of(const struct walls *walls) {
+    return pi / (walls->y[1] - walls->y[0]);
+}
+
+static void induce_in_channel(const struct walls *walls, const struct sources *s, const struct induced *at) {
+    struct height target[KERNEL_CHUNK];
+    const double rate = rate_of(walls), same = s->smoothing * s->smoothing;
+    for (int first = 0; first < at->n; first += KERNEL_CHUNK) {
+        const int end = at->n - first < KERNEL_CHUNK ? at->n : first + KERNEL_CHUNK;
+        for (int i = first; i < end; i++) target[i - first] = height_of(walls, at->y[i]);
+        for (int j = 0; j < s->n; j++) {
+            const struct height source = height_of(walls, s->y[j]);
+            const double square = s->square ? s->square[j] : same;
+            for (int i = first; i < end; i++) {
+                const double r[2] = {at->x[i] - s->x[j], at->y[i] - s->y[j]};
+                const struct rows rows = rows_of(rate, r, &target[i - first], &source, square, at->u_x != NULL);
+                add_rows(&rows, s->circulation[j], at, i);
+            }
+        }
+    }
+}
+
+// ---- both
+
+static void induce(const struct walls *walls, const struct sources *sources, const struct induced *at) {
+    if (walls->n == 1) induce_by_wall(walls->y[0], sources, at);
+    if (walls->n == 2) induce_in_channel(walls, sources, at);
+}
+
+void images_induce(const struct walls *walls, const struct vortices *vortices, struct range which,
+                   const struct induced *at) {
+    const int end = which.first + which.n;
+    for (int g = 0; g < vortices->n_groups; g++) {
+        const struct vortex_group *const group = &vortices->group[g];
+        const int group_end = group->at.first + group->at.n;
+        const int i = group->at.first > which.first ? group->at.first : which.first;
+        const int n = (group_end < end ? group_end : end) - i;
+        if (n <= 0) continue;
+        const struct sources sources = {n,    vortices->x + i, vortices->y + i, vortices->circulation + i,
+                                        NULL, group->smoothing};
+        induce(walls, &sources, at);
+    }
+}
+
+void images_induce_each(const struct walls *walls, int n, const double *x, const double *y, const double *circulation,
+                        const double *square, const struct induced *at) {
+    const struct sources sources = {n, x, y, circulation, square, 0};
+    induce(walls, &sources, at);
+}
+
+// ---- many
+
+// what all vortices induce at the mirrored targets, by the tree; memory: (6 or 3 n, 0 but for places)
+static enum status induce_by_tree(double wall, struct velocity_sum *sum, const struct vortices *vortices,
+                                  double tolerance, int threads, const struct induced *at) {
+    const size_t n = (size_t)at->n;
+    double *const memory = calloc(6 * n, sizeof *memory);
+    if (!memory) return status_fail(STATUS_MEMORY, "out of memory: images at %d points", at->n);
+    const struct induced there = {.n = at->n,
+                                  .x = at->x,
+                                  .y = memory,
+                                  .u = memory + n,
+                                  .v = memory + 2 * n,
+                                  .u_x = at->u_x ? memory + 3 * n : NULL,
+                                  .u_y = memory + 4 * n,
+                                  .v_x = memory + 5 * n};
+    for (size_t i = 0; i < n; i++) memory[i] = 2 * wall - at->y[i];
+    const enum status status = velocity_sum_induce(sum, vortices, tolerance, threads, &there);
+    for (size_t i = 0; status == STATUS_OK && i < n; i++) {
+        at->u[i] += there.u[i];
+        at->v[i] -= there.v[i];
+        if (!at->u_x) continue;
+        at->u_x[i] += there.u_x[i];
+        at->u_y[i] -= there.u_y[i];
+        at->v_x[i] -= there.v_x[i];
+    }
+    free(memory);
+    return status;
+}
+
+enum status images_induce_many(const struct walls *walls, struct velocity_sum *sum, const struct vortices *vortices,
+                               double tolerance, int threads, const struct induced *at) {
+    if (walls->n == 0 || vortices->n == 0) return STATUS_OK;
+    if (walls->n == 1 && velocity_sum_by_tree(vortices, at->n, tolerance)) {
+        return induce_by_tree(walls->y[0], sum, vortices, tolerance, threads, at);
+    }
+    const int n_chunks = parallel_n_chunks(at->n);
+#pragma omp parallel for num_threads(threads) schedule(static)
+    for (int chunk = 0; chunk < n_chunks; chunk++) {
+        const struct induced part = vortices_targets(at, parallel_chunk(chunk, at->n));
+        images_induce(walls, vortices, (struct range){0, vortices->n}, &part);
+    }
+    return STATUS_OK;
+}
+
+// ---- one source
+
+static void put(const struct velocity *from, double sign, int i, struct kernel_values *to) {
+    to->u[i] = sign * from->u;
+    to->v[i] = sign * from->v;
+    to->u_x[i] = sign * from->u_x;
+    to->u_y[i] = sign * from->u_y;
+    to->v_x[i] = sign * from->v_x;
+}
+
+void images_unit(const struct walls *walls, int n, const double *x, const double *y, double source_x, double source_y,
+                 double smoothing, struct images_values *values) {
+    if (walls->n == 1) {
+        // the image itself is a source
+        memset(&values->shifted, 0, sizeof values->shifted);
+        struct kernel_values *const to = &values->mirrored;
+        kernel_unit(n, x, y, source_x, 2 * walls->y[0] - source_y, smoothing, to);
+        for (int i = 0; i < n; i++)
+            put(&(struct velocity){to->u[i], to->v[i], to->u_x[i], to->u_y[i], to->v_x[i]}, -1, i, to);
+        return;
+    }
+    const double rate = rate_of(walls);
+    const struct height source = height_of(walls, source_y);
+    for (int i = 0; i < n; i++) {
+        const struct height target = height_of(walls, y[i]);
+        const double r[2] = {x[i] - source_x, y[i] - source_y};
+        const struct rows rows = rows_of(rate, r, &target, &source, smoothing * smoothing, 1);
+        put(&rows.shifted, 1, i, &values->shifted);
+        put(&rows.mirrored, -1, i, &values->mirrored);
+    }
+}
