@@ -84,13 +84,15 @@ shed circulation is checked on the default fish: the changes of nose and wake ar
     "interval": ("Shedding interval of one fish", """\
 One soft fish (E = 1e5 Pa, N = 7, M = 65) with the defaults of the program otherwise, from rest and from 1 m/s. The run
 ends at 1.5 s; vortices decay from an age of 0.8 s to 1 s, so that part of the wake is lost in it, which Kelvin's
-theorem retains or drops (`dissipated_circulation`). The interval is halved from 0.02 s to 0.000625 s; the order is the
-slope of the changes over the interval, and the size of the error at the usual 0.01 s stands beside it.
+theorem retains or drops (`dissipated_circulation`). The interval is halved from 0.02 s to 0.000625 s. Changes and
+errors are root mean squares over the run: those of one instant change their sign now and then, so that the order
+observed at a single time is anything from 0.7 to 1.9. The order is the slope of the changes over the interval, and the
+size of the error at the usual 0.01 s stands beside it.
 
 *continuous* is of second order, towards a wake that is too weak at the edge (section Plate in a wake); *sheet*
 converges to the right one, with an order between 1 and 2 that is irregular from one halving to the next. In the places
-of a fish that starts with speed its errors at 0.01 s are about 1e-5 lengths, and ten times that from rest; those of
-the circulation are larger. With 65 points the finest intervals are finer than the sheet resolves (doc/model.md 8), so
+of a fish that starts with speed its errors at 0.01 s are 4e-6 lengths, and ten times that from rest; those of the
+circulation are larger. With 65 points intervals below 0.0025 s are finer than the sheet resolves (doc/model.md 7), so
 that the last orders are those of this discrete sheet."""),
     "symmetry": ("Symmetries", """\
 What must not change the motion: the same school shifted, turned, mirrored, seen from a moving frame, listed in another

@@ -347,20 +347,21 @@ static double arc_circulation(void) {
     return -4 * pi * a / cos(quarter) * sin(incidence + quarter);
 }
 
-/* A place on a body of length 1 at the fraction s of its length. */
-typedef double complex line(double s);
+/* A place on a body of length 1 at the fraction s of its length; phase: of its beat. */
+typedef double complex line(double s, double phase);
 
-static double complex arc_line(double s) {
+static double complex arc_line(double s, double phase) {
+    (void)phase;
     double complex tangent;
     return arc_place(s, &tangent);
 }
 
 /* A free body whose nodes lie on a line. */
-static struct probe probe_open_bent(const struct scheme *scheme, int n, int n_nodes, line *place) {
+static struct probe probe_open_bent(const struct scheme *scheme, int n, int n_nodes, line *place, double phase) {
     struct probe probe = probe_open(scheme, n, n_nodes, "none");
     double *const y = probe.simulation->state->y;
     for (int k = 0; k < n_nodes; k++) {
-        const double complex z = place((double)k / (n_nodes - 1));
+        const double complex z = place((double)k / (n_nodes - 1), phase);
         y[probe.fish->at.x + k] = creal(z);
         y[probe.fish->at.y + k] = cimag(z);
     }
@@ -368,7 +369,7 @@ static struct probe probe_open_bent(const struct scheme *scheme, int n, int n_no
 }
 
 static struct errors arc_errors(const struct scheme *scheme, enum closure closure, int n, int n_nodes) {
-    struct probe probe = probe_open_bent(scheme, n, n_nodes, arc_line);
+    struct probe probe = probe_open_bent(scheme, n, n_nodes, arc_line, 0);
     const struct errors errors = probe_errors(&probe, closure, arc_strength, arc_circulation());
     probe_close(&probe);
     return errors;
@@ -436,8 +437,10 @@ static void smooth_arc(void) {
 
 // ---- a bent fish
 
-/* A default fish in mid-beat: the curvature 6 A (s + 0.2 s^2) sin(1 - 6 s) of its wave, by Simpson's rule. */
-static double complex beat_line(double s) {
+static const double mid_beat = 1;
+
+/* A default fish in its beat: the curvature 6 A (s + 0.2 s^2) sin(phase - 6 s) of its wave, by Simpson's rule. */
+static double complex beat_line(double s, double phase) {
     enum { N_PIECES = 2000 };
     double angle = 0;
     double complex z = 0;
@@ -445,7 +448,7 @@ static double complex beat_line(double s) {
         double turn[5];
         for (int k = 0; k < 5; k++) {
             const double q = s * (i + k / 4.0) / N_PIECES;
-            turn[k] = s / N_PIECES * 6 * 0.4 * (q + 0.2 * q * q) * sin(1 - 6 * q);
+            turn[k] = s / N_PIECES * 6 * 0.4 * (q + 0.2 * q * q) * sin(phase - 6 * q);
         }
         const double middle = angle + (turn[0] + 4 * turn[1] + turn[2]) / 12;
         const double end = middle + (turn[2] + 4 * turn[3] + turn[4]) / 12;
@@ -456,8 +459,9 @@ static double complex beat_line(double s) {
 }
 
 /* Differences of the circulation of two bent fish, and of gamma where theta = pi/4, both relative. */
-static struct errors beat_errors(const struct scheme *scheme, int n, int n_nodes, const struct probe *reference) {
-    struct probe probe = probe_open_bent(scheme, n, n_nodes, beat_line);
+static struct errors beat_errors(const struct scheme *scheme, int n, int n_nodes, double phase,
+                                 const struct probe *reference) {
+    struct probe probe = probe_open_bent(scheme, n, n_nodes, beat_line, phase);
     probe_solve(&probe, STEADY_KUTTA);
     const double gamma = probe_strength(&probe, (n - 1) / 4), want = probe_strength(reference, (reference->n - 1) / 4);
     const struct errors errors = {.circulation = fabs(probe_circulation(&probe) / probe_circulation(reference) - 1),
@@ -470,12 +474,12 @@ static void bent_fish(void) {
     static const char source[] = "the same with N = 641, smooth";
     static const int n_nodes[] = {9, 17, 33, 65};
     static const double bounds[] = {1e-2, 1e-3, 1e-4, 1e-5};
-    struct probe reference = probe_open_bent(&schemes[SMOOTH], 65, 641, beat_line);
+    struct probe reference = probe_open_bent(&schemes[SMOOTH], 65, 641, beat_line, mid_beat);
     probe_solve(&reference, STEADY_KUTTA);
     double error[4], polygon[4];
     for (int i = 0; i < 4; i++) {
-        error[i] = beat_errors(&schemes[SMOOTH], 65, n_nodes[i], &reference).circulation;
-        polygon[i] = beat_errors(&schemes[CHEBYSHEV], 65, n_nodes[i], &reference).circulation;
+        error[i] = beat_errors(&schemes[SMOOTH], 65, n_nodes[i], mid_beat, &reference).circulation;
+        polygon[i] = beat_errors(&schemes[CHEBYSHEV], 65, n_nodes[i], mid_beat, &reference).circulation;
         verify_zero(verify_text("bent fish, smooth, N = %d, M = 65: circulation, relative", n_nodes[i]), source,
                     error[i], bounds[i]);
         verify_show(verify_text("bent fish, polygon, N = %d, M = 65: circulation, relative", n_nodes[i]), source,
@@ -493,10 +497,10 @@ static void points_of_a_bent_fish(void) {
     static const int lines[] = {SMOOTH, CHEBYSHEV};
     for (int i = 0; i < 2; i++) {
         const struct scheme *const scheme = &schemes[lines[i]];
-        struct probe reference = probe_open_bent(scheme, 129, 17, beat_line);
+        struct probe reference = probe_open_bent(scheme, 129, 17, beat_line, mid_beat);
         probe_solve(&reference, STEADY_KUTTA);
         for (int n = 17; n <= 33; n += 16) {
-            const struct errors errors = beat_errors(scheme, n, 17, &reference);
+            const struct errors errors = beat_errors(scheme, n, 17, mid_beat, &reference);
             const char *const source = "the same with M = 129";
             const double bound = n == 17 ? 1e-5 : 1e-9;
             if (lines[i] == SMOOTH) {
@@ -515,25 +519,70 @@ static void points_of_a_bent_fish(void) {
     }
 }
 
+/* The same over half a beat, whose other half is the mirror image: how many points a swimming fish needs. Of the
+ * circulation relative to the largest one of the beat. */
+static void points_of_a_beat(const struct scheme *scheme, int n_points, const int *points, int most,
+                             struct errors *largest) {
+    enum { N_PHASES = 8 };
+    struct errors sum[N_PHASES][2];
+    double scale = 0;
+    for (int i = 0; i < N_PHASES; i++) {
+        const double phase = pi * i / N_PHASES;
+        struct probe reference = probe_open_bent(scheme, most, 17, beat_line, phase);
+        probe_solve(&reference, STEADY_KUTTA);
+        const double circulation = fabs(probe_circulation(&reference));
+        scale = fmax(scale, circulation);
+        for (int m = 0; m < n_points; m++) {
+            sum[i][m] = beat_errors(scheme, points[m], 17, phase, &reference);
+            sum[i][m].circulation *= circulation;
+        }
+        probe_close(&reference);
+    }
+    for (int m = 0; m < n_points; m++) {
+        largest[m] = (struct errors){0};
+        for (int i = 0; i < N_PHASES; i++) {
+            largest[m].circulation = fmax(largest[m].circulation, sum[i][m].circulation / scale);
+            largest[m].gamma = fmax(largest[m].gamma, sum[i][m].gamma);
+        }
+    }
+}
+
+static void beat(void) {
+    static const int smooth[] = {17, 25}, polygon[] = {33, 161};
+    struct errors errors[2];
+    points_of_a_beat(&schemes[SMOOTH], 2, smooth, 129, errors);
+    verify_zero("bent fish over its beat, smooth, M = 17: circulation", "the same with M = 129, N = 17",
+                errors[0].circulation, 1e-5);
+    verify_zero("bent fish over its beat, smooth, M = 25: gamma_j", "the same with M = 129, N = 17", errors[1].gamma,
+                1e-6);
+    points_of_a_beat(&schemes[CHEBYSHEV], 2, polygon, 321, errors);
+    for (int i = 0; i < 2; i++) {
+        verify_show(verify_text("bent fish over its beat, polygon, M = %d: circulation", polygon[i]),
+                    "the same with M = 321, N = 17", errors[i].circulation);
+        verify_show(verify_text("bent fish over its beat, polygon, M = %d: gamma_j", polygon[i]),
+                    "the same with M = 321, N = 17", errors[i].gamma);
+    }
+}
+
 static void figures_of_the_curve(void) {
     static const int lines[] = {SMOOTH, CHEBYSHEV};
-    struct probe nodes = probe_open_bent(&schemes[SMOOTH], 65, 641, beat_line);
+    struct probe nodes = probe_open_bent(&schemes[SMOOTH], 65, 641, beat_line, mid_beat);
     probe_solve(&nodes, STEADY_KUTTA);
     for (int i = 0; i < 2; i++) {
         const struct scheme *const scheme = &schemes[lines[i]];
-        struct probe points = probe_open_bent(scheme, 129, 17, beat_line);
+        struct probe points = probe_open_bent(scheme, 129, 17, beat_line, mid_beat);
         probe_solve(&points, STEADY_KUTTA);
         for (int n = 6; n <= 96; n *= 2) {
             verify_point("sheet_nodes", verify_text("arc, %s", scheme->curve), n + 1,
                          arc_errors(scheme, STEADY_KUTTA, 65, n + 1).circulation);
             verify_point("sheet_nodes", verify_text("bent fish, %s", scheme->curve), n + 1,
-                         beat_errors(scheme, 65, n + 1, &nodes).circulation);
+                         beat_errors(scheme, 65, n + 1, mid_beat, &nodes).circulation);
         }
         for (int n = 9; n <= 65; n += 8) {
             verify_point("sheet_points", verify_text("%s, circulation", scheme->curve), n,
-                         beat_errors(scheme, n, 17, &points).circulation);
+                         beat_errors(scheme, n, 17, mid_beat, &points).circulation);
             verify_point("sheet_points", verify_text("%s, gamma_j", scheme->curve), n,
-                         beat_errors(scheme, n, 17, &points).gamma);
+                         beat_errors(scheme, n, 17, mid_beat, &points).gamma);
         }
         probe_close(&points);
     }
@@ -556,6 +605,7 @@ void verify_sheet(void) {
     bent_fish();
     points_of_a_bent_fish();
     if (verify_is_fast()) return;
+    beat();
     figure_of_the_plate();
     figure_of_the_arc();
     figures_of_the_curve();
