@@ -16,6 +16,7 @@
     scripts/numerics.py explicit     cost of the explicit methods against the stiffness of the body
     scripts/numerics.py rod          cost of all kinds of methods, verlet too, on a rod without fluid and damping
     scripts/numerics.py evidence     what the second edition of the model mends; a minute
+    scripts/numerics.py choices      speed where the model would choose otherwise: builds variants, takes minutes
     scripts/numerics.py coupling     cost of two fish near each other, coupled in the Jacobian and not
     scripts/numerics.py school       cost of an event against the number of fish
     scripts/numerics.py coupled      cost against the tolerances of the linear solver: builds variants, takes minutes
@@ -45,7 +46,7 @@ HERE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 # A default fish: everything else has its default value, doc/cases.md.
 DEFAULT = """\
 format: 1
-time: {end: 4, output_interval: 0.1}
+time: {end: 8, output_interval: 0.1}
 fish:
   - {name: fish}
 """
@@ -191,7 +192,7 @@ class DefaultFish:
                                "solver.max_steps=100000", "wake.tolerance=1e-9")
 
     def row(self, *more, program=None):
-        """Error after 3 s, then counts per event over 4 s, then work of the muscle and energy audit."""
+        """Error after 3 s, then counts per event over 8 s, then work of the muscle and energy audit."""
         run = self.bench.run(DEFAULT, *self.keys, *more, program=program)
         if not run:
             return ["failed", *[""] * 5]
@@ -215,7 +216,7 @@ def default(bench):
 
 def highest(bench):
     rows = []
-    for modulus in (1e5, 1e6, 1e8, 1e10):
+    for modulus in (3e4, 1e5, 3e5, 1e6, 1e8, 1e10):
         fish = DefaultFish(bench, 0.01, modulus)
         for limit in range(2, 6):
             rows.append([power(modulus), limit, *fish.row(f"solver.order={limit}")])
@@ -504,9 +505,15 @@ def powers(run):
 def evidence_of_energy(bench):
     free = ("time.end=60", NO_WAKE, "fish[0].nodes=7", "fish[0].wave.number=6",
             "fish[0].drag={normal: 0, tangential: 0}")
-    what = "neither drag nor wake, wave number +6, after 60 s: powers [W]"
-    for name in ("published", "reactive"):
-        yield what, f"force: {name}", powers(bench.run(EVERY_EVENT, *free, f"fish[0].force={name}"))
+    what = "neither drag nor wake, wave number +6, after 60 s: speed [m/s], powers [W]"
+    article = ("fish[0].body={section: nodes, density: 2000, relaxation_time: 0, bending_damping: 0.5, stretching_damping: 1}",
+               "fish[0].drag.added_mass=1.5")
+    pointed = "fish[0].drag.extent=thickness"
+    for name, keys in (("force: published", ["fish[0].force=published"]),
+                       ("the article's body and C_A", [*article, "fish[0].force=published"]),
+                       ("force: reactive", []), ("the same, pointed tail", [pointed])):
+        run = bench.run(EVERY_EVENT, *free, *keys)
+        yield what, name, f"{run['speed'][-1, 0]:.3f}; {powers(run)}"
     with open(os.path.join(HERE, "cases", "single_free.yaml"), encoding="utf-8") as file:
         text = file.read().replace("[include/", f"[{HERE}/cases/include/")
     yield "the article's fish, last beat: powers [W]", "single_free", powers(bench.run(text))
@@ -514,6 +521,8 @@ def evidence_of_energy(bench):
     what = "a default fish from rest"
     speeds = [fish["speed"][int(np.argmin(np.abs(fish.time - t))), 0] for t in (4, 8, 20)]
     yield what + ": speed after 4, 8, 20 s [m/s]", "", ", ".join(f"{speed:.3f}" for speed in speeds)
+    wave = 2 * math.pi / 6  # lengths per beat
+    yield what + ": slip, the last speed over that of the wave", "", f"{speeds[-1] / wave:.3f}"
     yield what + ", last beat: powers [W]", "", powers(fish)
     fish = bench.run(EVERY_EVENT, NO_WAKE)
     yield what + ", no wake, last beat: powers [W]", "", powers(fish)
@@ -568,6 +577,30 @@ def evidence(bench):
     table(["what", "setting", "measured"], rows)
 
 
+# Other choices than those of the model: what is changed in the source, and where the speed is taken.
+CHOICES = [
+    ("tail flux with the velocity of the last edge's midpoint",
+     [("model/reactive.c", r"w\[i\] \+ edge->rate\[i\] / 2", "w[i] + 0 * edge->rate[i]"),
+      ("model/reactive.c", r"(by_rate\[1\]\[i\]\[j\] \+=) by_tail / 2", r"\1 0 * by_tail")],
+     "1e5 Pa, no wake, after 4 s", (NO_WAKE, "fish[0].body.modulus=1e5", "time.end=4"), (7, 13)),
+    ("edge midpoints see the own wake as control points do",
+     [("model/flow.c", r"(const struct range control = \{flow->points\[chunk->fish\].first,) [^;]*;",
+       r"\1 flow_tail(&flow->school->fish[chunk->fish])};"),
+      ("model/flow.c", r"at->f == at->g \? other->n_control : 0;", "at->f == at->g ? flow_tail(other) : 0;")],
+     "after 8 s", ("time.end=8",), (17, 33)),
+]
+
+
+def choices(bench):
+    rows = []
+    for name, changes, setting, keys, sizes in CHOICES:
+        for which, program in (("as it is", bench.program), (name, bench.variant(*changes))):
+            for n in sizes:
+                run = bench.run(EVERY_EVENT, *keys, f"fish[0].nodes={n}", program=program)
+                rows.append([which, setting, n, f"{run['speed'][-1, 0]:.3f}" if run else "failed"])
+    table(["choice", "setting", "nodes", "speed [m/s]"], rows)
+
+
 def coupling(bench):
     rows = []
     for layout, gaps in (("side by side", (0.1, 0.2, 0.3, 0.5, 0.75, 1, 1.5, 2)),
@@ -600,15 +633,17 @@ def lattice(n, spacing, end):
 
 
 def school(bench):
-    rows = []
-    for n, spacing, reach in ((4, (1.5, 1.5), 0.5), (16, (1.5, 1.5), 0.5), (64, (1.5, 1.5), 0.5),
-                              (64, (1.5, 1.5), 0), (64, (1.5, 1.5), 1.5),
-                              (9, (1.3, 0.4), 0), (9, (1.3, 0.4), 0.5), (9, (1.3, 0.4), 100)):
+    rows, times = [], []
+    for n, spacing, reach in ((64, (1.5, 1.5), 0.5), (64, (1.5, 1.5), 0), (64, (1.5, 1.5), 1.5), (16, (1.5, 1.5), 0.5),
+                              (4, (1.5, 1.5), 0.5), (9, (1.3, 0.4), 0), (9, (1.3, 0.4), 0.5), (9, (1.3, 0.4), 100)):
         case, key = lattice(n, spacing, 0.5), f"solver.coupling_distance={reach}"
         run = bench.run(case, key)
-        cost = [*per_event(run), f"{1000 * bench.seconds(case, key) / 50:.1f}"] if run else ["failed", "", "", ""]
+        cost = ["failed", "", "", ""]
+        if run:
+            times.append(bench.seconds(case, key))
+            cost = [*per_event(run), f"{times[-1] / times[0]:.3f}"]
         rows.append([n, f"{spacing[0]:g} x {spacing[1]:g}", reach, *cost])
-    table(["fish", "spacing [L]", "coupling distance [L]", *COUNTS, "CPU time of an event [ms]"], rows)
+    table(["fish", "spacing [L]", "coupling distance [L]", *COUNTS, "CPU time over that of the first row"], rows)
 
 
 def energy(bench):
@@ -687,7 +722,8 @@ def threads(bench):
 
 
 TABLES = {function.__name__: function for function in
-          (default, highest, nascent, counts, stiffness, tolerance, order, interval, nodes, edge, events, start, explicit, rod, evidence, coupling,
+          (default, highest, nascent, counts, stiffness, tolerance, order, interval, nodes, edge, events, start, explicit, rod, evidence, choices,
+           coupling,
            school, energy, constants, coupled, threads)}
 
 

@@ -15,6 +15,7 @@
 #include "case/sweep.h"
 #include "case/sweep_expect.h"
 #include "case/yaml_write.h"
+#include "model/bending_mode.h"
 
 /* A case being read. */
 struct reading {
@@ -249,6 +250,33 @@ static bool are_damped(const struct school_parameters *school) {
     return true;
 }
 
+/* Whether the slowest bending mode of a fish has less than 0.6 of the frequency of its beat. */
+static enum status is_soft(const struct school_parameters *parameters, int index, bool *soft) {
+    struct school_parameters alone = *parameters;
+    alone.n_fish = 1;
+    alone.fish = &parameters->fish[index];
+    struct school *school;
+    TRY(fish_school_create(&school, &alone));
+    const struct fish *const fish = &school->fish[0];
+    double *const scratch = calloc(2 * (size_t)fish->n_nodes, sizeof *scratch);
+    if (scratch) *soft = bending_mode_frequency(fish, scratch) < 0.6 * fish->frequency;
+    free(scratch);
+    fish_school_free(school);
+    return scratch ? STATUS_OK : out_of_memory();
+}
+
+/* The highest order where the case does not say it: doc/numerics.md, section 3. Of checked values. */
+static enum status derive_order(struct case_values *values) {
+    const struct school_parameters *const school = &values->school;
+    if (values->solver.order > 0) return STATUS_OK;
+    values->solver.order = 2;
+    if (!are_damped(school)) return STATUS_OK;
+    bool soft = true;
+    for (int i = 0; i < school->n_fish && soft; i++) TRY(is_soft(school, i, &soft));
+    values->solver.order = soft ? 5 : 3;
+    return STATUS_OK;
+}
+
 static enum status derive_all(struct case_values *values, const char *origin) {
     derive(&values->time.output_interval, 10 * values->school.shedding_interval);
     derive(&values->school.wake.decay, values->school.wake.lifetime / 10);
@@ -259,7 +287,6 @@ static enum status derive_all(struct case_values *values, const char *origin) {
     derive(&values->output.wake_interval, values->time.output_interval);
     if (!values->name && !(values->name = stem(origin))) return out_of_memory();
     for (int i = 0; i < values->school.n_fish; i++) TRY(derive_fish(&values->school.fish[i], i));
-    if (values->solver.order == 0) values->solver.order = are_damped(&values->school) ? 3 : 2;
     return STATUS_OK;
 }
 
@@ -291,7 +318,7 @@ static enum status fill(struct reading *reading, struct case_values *values) {
     TRY(sweep_expect_read(values, tree->root, &reading->errors));
     // an unknown key may be a known one misspelt, whose value would be missing here
     if (are_keys_known) case_check(values, tree, &reading->errors);
-    return STATUS_OK;
+    return reading->errors.n > n_before ? STATUS_OK : derive_order(values);
 }
 
 /* Keep the text of the case file. */

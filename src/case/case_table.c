@@ -123,7 +123,8 @@ const struct key case_table[] = {
      .synonyms = "tolerance tol reltol relative_tolerance"},
     {"solver.order", INTEGER, AT(solver.order), NULL, FROM_TO(1, 5), "",
      .meaning = "highest order of ida (doc/numerics.md, section 3)",
-     .derived = "3, or 2 where a fish has a relaxation_time below a thousandth of its period"},
+     .derived = "3; 5 where the slowest bending mode of every fish has less than 0.6 of the frequency of its beat; 2 "
+                "where a fish has a relaxation_time below a thousandth of its period"},
     {"solver.coupling_distance", REAL, AT(school.coupling_distance), "0.5", FROM(0), "",
      .meaning = "fish farther apart than this are not coupled in the Jacobian; in lengths of the longest fish"},
     {"solver.threads", INTEGER, AT(school.threads), "1", FROM_TO(1, MAX_THREADS), "", .meaning = "number of threads",

@@ -28,9 +28,4 @@ enum { WARNING_BYTES = 384 /* of a line */ };
 int warnings_line(enum warning warning, const struct school *school, const struct state *state,
                   const struct diagnostics *diagnostics, double *scratch, char line[WARNING_BYTES]);
 
-/* Frequency of the slowest bending mode of a body in the fluid, straight and small, Hz: free at both ends, or held at
- * the head where its motion is prescribed. By power iteration on the flexibility (Stodola's method). scratch:
- * (2 n_nodes). */
-double warnings_slowest_mode(const struct fish *fish, double *scratch);
-
 #endif

@@ -68,6 +68,17 @@ static void order_3_needs_bodies_whose_stiffness_is_damped(void **state) {
     assert_int_equal(order_of("preset=published", NULL), 2);
 }
 
+static void order_5_is_for_bodies_slower_than_their_beat(void **state) {
+    (void)state;
+    // the slowest mode of a default fish has 0.57 Hz at 1e5 Pa, and grows with the root of the modulus
+    assert_int_equal(order_of("fish[0].body.modulus=1e5", NULL), 5);
+    assert_int_equal(order_of("fish[0].body.modulus=1.5e5", NULL), 3);
+    assert_int_equal(order_of("fish[0].body.modulus=1.5e5", "fish[0].wave.frequency=2"), 5);
+    assert_int_equal(order_of("fish=[{body: {modulus: 1e5}}, {name: b, start: {position: [2, 0]}}]", NULL), 3);
+    assert_int_equal(order_of("fish[0].body.modulus=1e5", "fish[0].body.relaxation_time=0"), 2);
+    assert_int_equal(order_of("fish[0].body.modulus=1e5", "solver.order=3"), 3);
+}
+
 static void the_defaults_are_those_of_the_reference(void **state) {
     (void)state;
     struct case_values s = parse(minimal);
@@ -516,6 +527,7 @@ static void freeing_twice_is_harmless(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(order_3_needs_bodies_whose_stiffness_is_damped),
+        cmocka_unit_test(order_5_is_for_bodies_slower_than_their_beat),
         cmocka_unit_test(the_defaults_are_those_of_the_reference),
         cmocka_unit_test(derived_defaults_follow_what_they_derive_from),
         cmocka_unit_test(every_default_of_the_table_is_a_value_of_its_key),
