@@ -47,10 +47,17 @@ static void the_accelerated_fluid_makes_modes_slower(void **state) {
     NEAR(dry / wet, sqrt(1 + 1000.0 / 800 * 2), 0, 0.02);
 }
 
+static void frequency_grows_with_the_root_of_the_modulus(void **state) {
+    (void)state;
+    const double soft = slowest_mode("body: {modulus: 1e5}"), stiff = slowest_mode("body: {modulus: 9e5}");
+    NEAR(stiff / soft, 3, 0, 1e-12);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(slowest_mode_of_a_uniform_body_is_that_of_the_beam),
         cmocka_unit_test(the_accelerated_fluid_makes_modes_slower),
+        cmocka_unit_test(frequency_grows_with_the_root_of_the_modulus),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
