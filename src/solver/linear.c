@@ -1,21 +1,12 @@
-/* linear.c: KLU for the diagonal blocks, GMRES for the couplings. */
+/* linear.c: factors for the diagonal blocks, GMRES for the couplings. */
 #include "solver/linear.h"
 
-#include <klu.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/parallel.h"
-
-/* A pivot is the diagonal entry, which keeps the factors sparse, if that is at least this fraction of the largest entry
- * of its column: KLU's default. Where the reciprocal pivot growth then is below the minimum, the digits that are left
- * may be too few for Newton's iteration, as in soft rods of many nodes, and pivots are the largest entries instead. */
-static const double diagonal_tolerance = 1e-3, min_growth = 1e-6;
-
-/* The pivots of an earlier matrix are kept while the reciprocal condition estimate and the reciprocal pivot growth are
- * at least this fraction of what they were when the pivots were chosen. */
-static const double min_quality = 1e-3;
+#include "solver/fish_factors.h"
 
 /* The relative tolerance of GMRES where bodies touch: the forces between two bodies cancel only as far as the system is
  * solved, and what is left changes the momentum of both together. */
@@ -26,16 +17,10 @@ enum { MAX_ITERATIONS = 40 };
 
 /* The diagonal block of one fish. */
 struct block {
-    unsigned version; /* of the pattern that is analysed; 0: none */
-    klu_l_common common;
-    klu_l_symbolic *symbolic;
-    klu_l_numeric *numeric;
-    double rcond, rgrowth; /* when the pivots were chosen */
-    int was_factorised;
+    struct fish_factors *factors;
     /* the change of one column since then: */
     int is_updated;
     double *update; /* D^-1 times the change over 1 plus its element of that column's unknown  (unknowns of the fish) */
-    struct linear_counts counts;
     enum status status; /* of the last set-up */
 };
 
@@ -65,7 +50,9 @@ enum status linear_create(struct linear **linear, const struct jacobian *jacobia
     if (!new->weight || !new->block) goto no_memory;
     for (int i = 0; i < n_unknowns(new); i++) new->weight[i] = 1 / (n_unknowns(new) * scale[i] * scale[i]);
     for (int f = 0; f < jacobian->school->n_fish; f++) {
-        klu_l_defaults(&new->block[f].common);
+        const enum status status =
+            fish_factors_create(&new->block[f].factors, &jacobian->school->fish[f], jacobian->own[f]);
+        if (status != STATUS_OK) goto no_memory;
         new->block[f].update = calloc((size_t)jacobian->own[f]->n, sizeof(double));
         if (!new->block[f].update) goto no_memory;
     }
@@ -81,8 +68,7 @@ void linear_free(struct linear *linear) {
     if (!linear) return;
     for (int f = 0; linear->block && f < linear->jacobian->school->n_fish; f++) {
         struct block *const block = &linear->block[f];
-        klu_l_free_numeric(&block->numeric, &block->common);
-        klu_l_free_symbolic(&block->symbolic, &block->common);
+        fish_factors_free(block->factors);
         free(block->update);
     }
     free(linear->block);
@@ -91,62 +77,14 @@ void linear_free(struct linear *linear) {
     free(linear);
 }
 
-// factorise with the pivots of the last factorisation; returns whether the factors are good
-static int refactor(struct block *block, struct sparse *own) {
-    if (!block->numeric) return 0;
-    klu_l_common *const common = &block->common;
-    block->counts.refactorisations++;
-    return klu_l_refactor(own->column_start, own->row_index, own->value, block->symbolic, block->numeric, common) &&
-           klu_l_rcond(block->symbolic, block->numeric, common) && common->rcond >= min_quality * block->rcond &&
-           klu_l_rgrowth(own->column_start, own->row_index, own->value, block->symbolic, block->numeric, common) &&
-           common->rgrowth >= min_quality * block->rgrowth;
-}
-
-// choose pivots: of at least this fraction of the largest entry
-static enum status factor(struct block *block, struct sparse *own, double tolerance) {
-    klu_l_common *const common = &block->common;
-    klu_l_free_numeric(&block->numeric, common);
-    common->tol = tolerance;
-    block->counts.factorisations++;
-    block->numeric = klu_l_factor(own->column_start, own->row_index, own->value, block->symbolic, common);
-    if (!block->numeric) {
-        if (common->status == KLU_OUT_OF_MEMORY) return STATUS_MEMORY;
-        return block->was_factorised ? STATUS_RETRY : STATUS_SOLVER;
-    }
-    block->was_factorised = 1;
-    klu_l_rcond(block->symbolic, block->numeric, common);
-    block->rcond = common->rcond;
-    klu_l_rgrowth(own->column_start, own->row_index, own->value, block->symbolic, block->numeric, common);
-    block->rgrowth = common->rgrowth;
-    return STATUS_OK;
-}
-
-static enum status set_up(struct block *block, struct sparse *own) {
-    block->is_updated = 0;
-    if (block->version != own->version) {
-        klu_l_free_numeric(&block->numeric, &block->common);
-        klu_l_free_symbolic(&block->symbolic, &block->common);
-        block->counts.analyses++;
-        block->symbolic = klu_l_analyze(own->n, own->column_start, own->row_index, &block->common);
-        block->version = own->version;
-    }
-    // a block that cannot be analysed is structurally singular, or there is no memory
-    if (!block->symbolic) {
-        block->version = 0;
-        return block->common.status == KLU_OUT_OF_MEMORY ? STATUS_MEMORY : STATUS_SOLVER;
-    }
-    if (refactor(block, own)) return STATUS_OK;
-    const enum status status = factor(block, own, diagonal_tolerance);
-    return status == STATUS_OK && block->rgrowth < min_growth ? factor(block, own, 1) : status;
-}
-
 enum status linear_setup(struct linear *linear) {
     const struct jacobian *jacobian = linear->jacobian;
     const struct school *school = jacobian->school;
     const int threads = parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_MATRICES);
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
     for (int f = 0; f < school->n_fish; f++) {
-        linear->block[f].status = set_up(&linear->block[f], jacobian->own[f]);
+        linear->block[f].is_updated = 0;
+        linear->block[f].status = fish_factors_set_up(linear->block[f].factors);
     }
     for (int f = 0; f < school->n_fish; f++) {
         const enum status status = linear->block[f].status;
@@ -162,7 +100,7 @@ static void solve_block(const struct linear *linear, int f, double *x) {
     const struct layout *at = &linear->jacobian->school->fish[f].at;
     struct block *const block = &linear->block[f];
     const int n = at->end - at->x;
-    klu_l_solve(block->symbolic, block->numeric, n, 1, x, &block->common);
+    fish_factors_solve(block->factors, x);
     if (!block->is_updated) return;
     const double shed = x[at->circulation - at->x];
     for (int i = 0; i < n; i++) x[i] -= shed * block->update[i];
@@ -324,10 +262,10 @@ enum status linear_solve(struct linear *linear, const double *b, double *x) {
 struct linear_counts linear_count(const struct linear *linear) {
     struct linear_counts counts = {.solves = linear->solves, .iterations = linear->iterations};
     for (int f = 0; f < linear->jacobian->school->n_fish; f++) {
-        const struct linear_counts *block = &linear->block[f].counts;
-        counts.analyses += block->analyses;
-        counts.factorisations += block->factorisations;
-        counts.refactorisations += block->refactorisations;
+        const struct sparse_factors_counts block = fish_factors_count(linear->block[f].factors);
+        counts.analyses += block.analyses;
+        counts.factorisations += block.factorisations;
+        counts.refactorisations += block.refactorisations;
     }
     return counts;
 }

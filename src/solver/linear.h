@@ -1,6 +1,6 @@
-/* linear.h: linear systems with the Jacobian of the school. KLU factorises the diagonal block of each fish; GMRES,
- * preconditioned with these factors, solves for fish that are coupled. doc/numerics.md, section 6. Tested by
- * tests/solver/test_linear.c.
+/* linear.h: linear systems with the Jacobian of the school. The diagonal block of each fish is factorised
+ * (fish_factors.h); GMRES, preconditioned with these factors, solves for fish that are coupled. doc/numerics.md,
+ * section 6. Tested by tests/solver/test_linear.c.
  *
  *     linear_setup after each new Jacobian -> linear_solve, linear_update_shed, linear_solve, ... */
 #ifndef LINEAR_H
