@@ -444,15 +444,20 @@ static struct part part_of(const struct influence_block *block, int c, int first
     return (struct part){block->u + at, block->v + at};
 }
 
-// add factor times the derivative with respect to the place of a point that moves with the nodes of fish other; sign:
-// of its motion in y, -1 for one that is mirrored
+/* As many sources that move with the same nodes are taken together. */
+enum { MOST_TOGETHER = 8 };
+
+// add factors times the derivatives with respect to the places of n_sources points that move with the same nodes of
+// fish other; sign: of their motion in y, -1 for those that are mirrored
 static void add_motion(const struct influence_block *block, const struct fish *other, const struct stencil *point,
-                       int first, int n, const struct kernel_values *slope, double factor, double sign) {
+                       int n_sources, int first, int n, const struct kernel_values *slope, const double *factor,
+                       double sign) {
     for (int i = 0; i < point->n; i++) {
         const struct part by_x = part_of(block, point->node[i], first);
         const struct part by_y = part_of(block, other->n_nodes + point->node[i], first);
-        const double weight = factor * point->weight[i];
-        kernel_add_motion(n, (const double[]){weight, sign * weight}, slope, by_x.u, by_x.v, by_y.u, by_y.v);
+        double weighted[MOST_TOGETHER];
+        for (int j = 0; j < n_sources; j++) weighted[j] = factor[j] * point[j].weight[i];
+        kernel_add_motion(n, n_sources, weighted, sign, slope, by_x.u, by_x.v, by_y.u, by_y.v);
     }
 }
 
@@ -491,8 +496,8 @@ static void derive_nascent_source(const struct target *at, struct range points, 
         kernel_unit(n, flow->x + here + first, flow->y + here + first, source->x, source->y, source->smoothing, &unit);
         add_strength(at->block, at->block->n_columns - 1, first, n, &unit, source->part);
         if (at->with_places) {
-            add_motion(at->block, other, &tail, first, n, &unit,
-                       -source->part * source->follows * flow->nascent.circulation[at->g], 1);
+            const double factor = -source->part * source->follows * flow->nascent.circulation[at->g];
+            add_motion(at->block, other, &tail, 1, first, n, &unit, &factor, 1);
         }
     }
 }
@@ -516,6 +521,14 @@ static void derive_nascent(const struct target *at) {
     }
 }
 
+// how many bound vortices from j on move with the same nodes
+static int together(const struct fish *fish, int j) {
+    const struct stencil *const point = &fish->sheet_point[j];
+    int n = 1;
+    while (n < MOST_TOGETHER && j + n < fish->n_sheet && point[n].node == point->node && point[n].n == point->n) n++;
+    return n;
+}
+
 // the bound vortices of fish g at a range of the points of fish f
 static void derive_sheet(const struct target *at, struct range points, double smoothing) {
     const struct flow *flow = at->flow;
@@ -524,15 +537,19 @@ static void derive_sheet(const struct target *at, struct range points, double sm
     const int strength = at->block->n_columns - 1 - other->n_sheet, end = points.first + points.n;
     for (int first = points.first; first < end; first += KERNEL_CHUNK) {
         const int n = end - first < KERNEL_CHUNK ? end - first : KERNEL_CHUNK;
-        for (int j = 0; j < other->n_sheet; j++) {
-            struct kernel_values unit;
-            kernel_unit(n, flow->x + here + first, flow->y + here + first, flow->sheet.x[sheet + j],
-                        flow->sheet.y[sheet + j], smoothing, &unit);
-            add_strength(at->block, strength + j, first, n, &unit, other->sheet_weight[j]);
-            if (at->with_places) {
-                add_motion(at->block, other, &other->sheet_point[j], first, n, &unit,
-                           -flow->sheet.circulation[sheet + j], 1);
+        for (int j = 0, n_together; j < other->n_sheet; j += n_together) {
+            struct kernel_values unit[MOST_TOGETHER];
+            double factor[MOST_TOGETHER];
+            n_together = together(other, j);
+            for (int i = 0; i < n_together; i++) {
+                const int source = sheet + j + i;
+                kernel_unit(n, flow->x + here + first, flow->y + here + first, flow->sheet.x[source],
+                            flow->sheet.y[source], smoothing, &unit[i]);
+                add_strength(at->block, strength + j + i, first, n, &unit[i], other->sheet_weight[j + i]);
+                factor[i] = -flow->sheet.circulation[source];
             }
+            if (at->with_places)
+                add_motion(at->block, other, &other->sheet_point[j], n_together, first, n, unit, factor, 1);
         }
     }
 }
@@ -560,8 +577,8 @@ static void derive_images_of(const struct target *at, const struct mirrored_sour
         add_strength(at->block, source->column, first, n, &unit.mirrored, source->weight);
         if (!at->with_places) continue;
         const double factor = -source->follows * source->circulation;
-        add_motion(at->block, other, source->point, first, n, &unit.shifted, factor, 1);
-        add_motion(at->block, other, source->point, first, n, &unit.mirrored, factor, -1);
+        add_motion(at->block, other, source->point, 1, first, n, &unit.shifted, &factor, 1);
+        add_motion(at->block, other, source->point, 1, first, n, &unit.mirrored, &factor, -1);
     }
 }
 

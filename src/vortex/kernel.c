@@ -238,15 +238,30 @@ KERNEL_WIDE void kernel_unit(int n, const double *x, const double *y, double sou
     }
 }
 
-KERNEL_WIDE void kernel_add_motion(int n, const double factor[2], const struct kernel_values *values,
-                                   double *restrict u_by_x, double *restrict v_by_x, double *restrict u_by_y,
-                                   double *restrict v_by_y) {
-    const double in_x = factor[0], in_y = factor[1];
-    for (int i = 0; i < n; i++) {
-        u_by_x[i] += in_x * values->u_x[i];
-        v_by_x[i] += in_x * values->v_x[i];
-        u_by_y[i] += in_y * values->u_y[i];
-        v_by_y[i] -= in_y * values->u_x[i];
+KERNEL_WIDE void kernel_add_motion(int n, int n_sources, const double *factor, double sign,
+                                   const struct kernel_values *values, double *restrict u_by_x, double *restrict v_by_x,
+                                   double *restrict u_by_y, double *restrict v_by_y) {
+    int j = 0;
+    // four sources at a time, so that a sum is read and written once for them
+    for (; j + 4 <= n_sources; j += 4) {
+        const struct kernel_values *const a = values + j, *const b = a + 1, *const c = a + 2, *const d = a + 3;
+        const double f[4] = {factor[j], factor[j + 1], factor[j + 2], factor[j + 3]};
+        const double g[4] = {sign * f[0], sign * f[1], sign * f[2], sign * f[3]};
+        for (int i = 0; i < n; i++) {
+            u_by_x[i] = u_by_x[i] + f[0] * a->u_x[i] + f[1] * b->u_x[i] + f[2] * c->u_x[i] + f[3] * d->u_x[i];
+            v_by_x[i] = v_by_x[i] + f[0] * a->v_x[i] + f[1] * b->v_x[i] + f[2] * c->v_x[i] + f[3] * d->v_x[i];
+            u_by_y[i] = u_by_y[i] + g[0] * a->u_y[i] + g[1] * b->u_y[i] + g[2] * c->u_y[i] + g[3] * d->u_y[i];
+            v_by_y[i] = v_by_y[i] - g[0] * a->u_x[i] - g[1] * b->u_x[i] - g[2] * c->u_x[i] - g[3] * d->u_x[i];
+        }
+    }
+    for (; j < n_sources; j++) {
+        const double f = factor[j], g = sign * factor[j];
+        for (int i = 0; i < n; i++) {
+            u_by_x[i] += f * values[j].u_x[i];
+            v_by_x[i] += f * values[j].v_x[i];
+            u_by_y[i] += g * values[j].u_y[i];
+            v_by_y[i] -= g * values[j].u_x[i];
+        }
     }
 }
 

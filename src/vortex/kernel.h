@@ -77,10 +77,11 @@ struct kernel_values {
 void kernel_unit(int n, const double *x, const double *y, double source_x, double source_y, double smoothing,
                  struct kernel_values *values);
 
-/* Add to n targets the change of the velocity with a displacement of unit length in x and in y, times a factor each:
- * u_x and v_x to the arrays of x, u_y and v_y = -u_x to those of y. */
-void kernel_add_motion(int n, const double factor[2], const struct kernel_values *values, double *u_by_x,
-                       double *v_by_x, double *u_by_y, double *v_by_y);
+/* Add to n targets the change of the velocity with a displacement of unit length in x and in y of one source after the
+ * other, times its factor (n_sources); sign: of the displacement in y. u_x and v_x go to the arrays of x, u_y and v_y =
+ * -u_x to those of y. */
+void kernel_add_motion(int n, int n_sources, const double *factor, double sign, const struct kernel_values *values,
+                       double *u_by_x, double *v_by_x, double *u_by_y, double *v_by_y);
 
 /* product += matrix * vector: a dense matrix (n_rows, n_columns), column after column; they are added in this order. */
 void kernel_multiply(int n_rows, int n_columns, const double *matrix, const double *vector, double *product);

@@ -254,13 +254,14 @@ static void images_of_one_source_follow_it(void **state) {
         // by the place of the source
         for (int c = 0; c < 2; c++) {
             double after[2] = {source[0], source[1]}, before[2] = {source[0], source[1]};
+            const double minus = -1;
             double u_after[SMALL], v_after[SMALL], by_x[2][SMALL] = {{0}}, by_y[2][SMALL] = {{0}};
             after[c] += h;
             before[c] -= h;
             images_of(walls[w], SMALL, x, y, after, u_after, v_after);
             images_of(walls[w], SMALL, x, y, before, u, v);
-            kernel_add_motion(SMALL, (const double[]){-1, -1}, &unit.shifted, by_x[0], by_x[1], by_y[0], by_y[1]);
-            kernel_add_motion(SMALL, (const double[]){-1, 1}, &unit.mirrored, by_x[0], by_x[1], by_y[0], by_y[1]);
+            kernel_add_motion(SMALL, 1, &minus, 1, &unit.shifted, by_x[0], by_x[1], by_y[0], by_y[1]);
+            kernel_add_motion(SMALL, 1, &minus, -1, &unit.mirrored, by_x[0], by_x[1], by_y[0], by_y[1]);
             for (int i = 0; i < SMALL; i++) {
                 NEAR((u_after[i] - u[i]) / (2 * h), c == 0 ? by_x[0][i] : by_y[0][i], 1e-7, 1e-7);
                 NEAR((v_after[i] - v[i]) / (2 * h), c == 0 ? by_x[1][i] : by_y[1][i], 1e-7, 1e-7);

@@ -314,7 +314,8 @@ static void unit_sources_at_many_targets_have_the_bits_of_one_by_one(void **stat
     struct kernel_values all, one;
     kernel_unit(N_TARGETS, cloud.x, cloud.y, 0.1, 0.2, 0.05, &all);
     double sum[4][N_TARGETS] = {{0}};
-    kernel_add_motion(N_TARGETS, (const double[]){-3, -3}, &all, sum[0], sum[1], sum[2], sum[3]);
+    const double factor = -3;
+    kernel_add_motion(N_TARGETS, 1, &factor, 1, &all, sum[0], sum[1], sum[2], sum[3]);
     for (int i = 0; i < N_TARGETS; i++) {
         kernel_unit(1, cloud.x + i, cloud.y + i, 0.1, 0.2, 0.05, &one);
         const double got[] = {all.u[i], all.v[i], all.u_x[i], all.u_y[i], all.v_x[i]};
@@ -324,6 +325,24 @@ static void unit_sources_at_many_targets_have_the_bits_of_one_by_one(void **stat
         const double moved[] = {sum[0][i], sum[1][i], sum[2][i], sum[3][i]};
         const double by[] = {-3 * *one.u_x, -3 * *one.v_x, -3 * *one.u_y, 3 * *one.u_x};
         NEAR_ARRAY(4, moved, by, 0, 0);
+    }
+}
+
+static void motion_with_several_sources_has_the_bits_of_one_after_the_other(void **state) {
+    (void)state;
+    enum { N_TOGETHER = 7 };
+    struct setup random = {.seed = 7};
+    static struct kernel_values values[N_TOGETHER];
+    for (int sign = -1; sign <= 1; sign += 2) {
+        double factor[N_TOGETHER], together[4][N_TARGETS] = {{0}}, alone[4][N_TARGETS] = {{0}};
+        for (int j = 0; j < N_TOGETHER; j++) {
+            factor[j] = school_random(&random);
+            kernel_unit(N_TARGETS, cloud.x, cloud.y, 0.1 * j, 0.2, 0.05, &values[j]);
+            kernel_add_motion(N_TARGETS, 1, &factor[j], sign, &values[j], alone[0], alone[1], alone[2], alone[3]);
+        }
+        kernel_add_motion(N_TARGETS, N_TOGETHER, factor, sign, values, together[0], together[1], together[2],
+                          together[3]);
+        for (int k = 0; k < 4; k++) NEAR_ARRAY(N_TARGETS, together[k], alone[k], 0, 0);
     }
 }
 
@@ -393,6 +412,7 @@ int main(void) {
         cmocka_unit_test(velocity_is_added_to_what_is_there_and_writes_nothing_else),
         cmocka_unit_test(gradient_is_that_of_the_velocity),
         cmocka_unit_test(one_unit_source_is_what_the_loops_add),
+        cmocka_unit_test(motion_with_several_sources_has_the_bits_of_one_after_the_other),
         cmocka_unit_test(product_with_a_matrix_adds_column_after_column),
         cmocka_unit_test(unit_sources_at_many_targets_have_the_bits_of_one_by_one),
         cmocka_unit_test(sources_with_a_smoothing_each_add_up_one_by_one),
