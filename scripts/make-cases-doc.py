@@ -163,6 +163,7 @@ SECTIONS = {
     "contact": "Bodies that come near each other",
     "solver": "The integrator",
     "output": "The result file",
+    "steady": "The search for a steady state, `shoal steady` ([steady.md](steady.md))",
     "fish": "One fish; the value of `fish` is a list of these",
     "fish.body": "Shape and material",
     "fish.wave": "The wave of natural curvature of the muscle",

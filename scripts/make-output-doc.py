@@ -51,6 +51,7 @@ browser and needs no network; `shoal export demo.nc --vtk demo` writes files for
 | `vortex` | slots for free vortices: the largest number that one fish can have |
 | `xy` | 2: x, then y |
 | `name` | bytes of the longest fish name |
+| `multiplier` | six for each fish; in the files of `shoal steady` only, as are the variables `steady_...` ([steady.md](steady.md)) |
 
 A shorter fish uses the first slots only, `n_nodes`, `n_edges`, `n_joints`, `n_sheet` of them. All other slots hold NaN,
 which is also the `_FillValue`; a derived quantity that is not defined yet (a mean over a beat in the first beat, the

@@ -2,6 +2,7 @@
  * progress to stderr, and fails with any status. Tested by tests/app/test_command.sh and tests/study.
  *
  *     main_run.c      run, resume, demo
+ *     main_steady.c   steady
  *     main_study.c    study, gather, compare
  *     main_field.c    field
  *     main_case.c     check, show, keys, info
@@ -16,6 +17,7 @@
 enum status main_run(const struct request *request);
 enum status main_resume(const struct request *request);
 enum status main_demo(const struct request *request);
+enum status main_steady(const struct request *request);
 enum status main_study(const struct request *request);
 enum status main_gather(const struct request *request);
 enum status main_compare(const struct request *request);

@@ -42,6 +42,14 @@ void progress_show(const struct simulate_progress *now, void *data) {
     end_line(progress);
 }
 
+void progress_steady(const struct steady_progress *now, void *data) {
+    struct progress *const progress = data;
+    if (!is_due(progress, (double)now->n_beats / now->max_beats, now->wall_time)) return;
+    fprintf(stderr, "beat %4d  speed %8.4f m/s  changes by %.1e, has to by less than %.0e  %.1f s", now->n_beats,
+            now->speed, now->residual, now->tolerance, now->wall_time);
+    end_line(progress);
+}
+
 void progress_study(const struct study_progress *now, void *data) {
     struct progress *const progress = data;
     if (!is_due(progress, now->part, now->wall_time)) return;

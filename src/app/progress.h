@@ -3,6 +3,7 @@
 #define PROGRESS_H
 
 #include "run/simulate_run.h"
+#include "run/steady.h"
 #include "study/study.h"
 
 struct progress {
@@ -17,6 +18,9 @@ void progress_start(struct progress *progress);
 
 /* Report how far it is; data is a struct progress. Fits simulate_options.progress. */
 void progress_show(const struct simulate_progress *now, void *data);
+
+/* How far a search for a steady state is. Fits steady_options.progress. */
+void progress_steady(const struct steady_progress *now, void *data);
 
 /* The same for the members of a study. Fits study_options.progress. */
 void progress_study(const struct study_progress *now, void *data);

@@ -145,6 +145,18 @@ const struct key case_table[] = {
      .meaning = "time between two records of the wake; an integer multiple of output_interval",
      .derived = "time.output_interval"},
 
+    {"steady.tolerance", REAL, AT(steady.tolerance), "1e-5", FROM_TO(1e-12, 0.1), "",
+     .meaning = "a state is steady where its speed, in body lengths per beat, and what else is compared "
+                "(doc/steady.md) change by no more than this from one beat to the next",
+     .synonyms = "residual accuracy"},
+    {"steady.beats", INTEGER, AT(steady.beats), "200", FROM_TO(3, MAX_STEPS), "",
+     .meaning = "the search fails after this many beats", .synonyms = "max_beats limit"},
+    {"steady.output_beats", INTEGER, AT(steady.output_beats), "2", FROM_TO(1, MAX_STEPS), "",
+     .meaning = "beats in the result, from the steady state on", .synonyms = "last_beats"},
+    {"steady.multipliers", CHOICE, AT(steady.multipliers), "true", ANY, "",
+     .meaning = "whether Floquet multipliers are computed", .words = WORDS("false", "true"),
+     .synonyms = "floquet stability"},
+
     {"defaults", DEFAULTS, 0, "{}", ANY, "",
      .meaning = "defaults: {fish: {...}}: values for every fish that does not set the key itself",
      .synonyms = "default common shared"},

@@ -32,6 +32,16 @@ struct case_output {
     double wake_interval; /* s; default the output interval */
 };
 
+enum yes { NO, YES };
+
+/* shoal steady */
+struct case_steady {
+    double tolerance; /* change from beat to beat, relative */
+    int beats;        /* of the search at most */
+    int output_beats;
+    enum yes multipliers;
+};
+
 struct sweep_axis;
 struct sweep_expectation;
 
@@ -43,6 +53,7 @@ struct case_values {
     struct school_parameters school;
     struct case_solver solver;
     struct case_output output;
+    struct case_steady steady;
     int n_axes;
     struct sweep_axis *sweep; /* (n_axes) */
     int n_expectations;

@@ -31,13 +31,6 @@ void diagnostics_free(struct diagnostics *diagnostics) {
     free(diagnostics);
 }
 
-// mean over the nodes, weighted with their masses
-static double mass_mean(const struct fish *fish, const double *value) {
-    double sum = 0;
-    for (int k = 0; k < fish->n_nodes; k++) sum += fish->mass[k] * value[k];
-    return sum / fish->total_mass;
-}
-
 // what holds the prescribed nodes on their path, turns a clamped head, and the load at the tip
 static double driving_power(struct residual *residual, int f, double t, const double *y, double *scratch) {
     const struct fish *fish = &residual->school->fish[f];
@@ -109,7 +102,7 @@ static double power_on_water(struct residual *residual, int f, double t, const s
                              const struct pressure_forces *pressure, const double *y) {
     const struct fish *fish = &residual->school->fish[f];
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
-    const double com[2] = {mass_mean(fish, y + fish->at.x), mass_mean(fish, y + fish->at.y)};
+    const double com[2] = {fish_mass_mean(fish, y + fish->at.x), fish_mass_mean(fish, y + fish->at.y)};
     double stream[2], on_water = power->drag + power->added_mass + power->wake;
     on_water += pressure->pressure_power + pressure->suction_power;
     flow_external(residual->school, t, com[1], &stream[0], &stream[1]);
@@ -237,6 +230,14 @@ void diagnostics_start(struct residual *residual, struct state *state) {
     clearance_start(residual->school, state, residual->scratch);
 }
 
+void diagnostics_restart(struct residual *residual, struct state *state) {
+    for (int f = 0; f < residual->school->n_fish; f++) {
+        struct energy_balance *const balance = &state->balance[f];
+        balance->initial_energy = diagnostics_energy(residual, f, state->t, state->y) - balance->work[WORK_ALL];
+    }
+    clearance_start(residual->school, state, residual->scratch);
+}
+
 // the way through the water between two samples, m
 static void way_through_water(const struct sample *new, const struct sample *old, double way[2]) {
     for (int i = 0; i < 2; i++) way[i] = new->com[i] - old->com[i] - (new->drifted[i] - old->drifted[i]);
@@ -259,11 +260,12 @@ void diagnostics_remember(struct residual *residual, struct state *state) {
         const double *const y = state->y;
         struct history *history = &state->history[f];
         const int tail = fish->n_nodes - 1;
-        struct sample sample = {.com = {mass_mean(fish, y + fish->at.x), mass_mean(fish, y + fish->at.y)},
-                                .velocity = {mass_mean(fish, y + fish->at.vx), mass_mean(fish, y + fish->at.vy)},
-                                .tail = {y[fish->at.x + tail], y[fish->at.y + tail]},
-                                .speed = NAN,
-                                .heading = control_heading(fish, y)};
+        struct sample sample = {
+            .com = {fish_mass_mean(fish, y + fish->at.x), fish_mass_mean(fish, y + fish->at.y)},
+            .velocity = {fish_mass_mean(fish, y + fish->at.vx), fish_mass_mean(fish, y + fish->at.vy)},
+            .tail = {y[fish->at.x + tail], y[fish->at.y + tail]},
+            .speed = NAN,
+            .heading = control_heading(fish, y)};
         flow_external(residual->school, state->t, sample.com[1], &sample.stream[0], &sample.stream[1]);
         const struct flow_at_body flow = flow_at_body(residual->flow, f);
         const struct fluid_forces forces = fluid_force_sum(fish, &flow, sample.com, y);
@@ -388,10 +390,10 @@ static void diagnostics_one(struct residual *residual, const struct state *state
     const struct fish *fish = &residual->school->fish[f];
     const struct history *history = &state->history[f];
     const double *const y = state->y;
-    to->com[0] = mass_mean(fish, y + fish->at.x);
-    to->com[1] = mass_mean(fish, y + fish->at.y);
-    to->com_velocity[0] = mass_mean(fish, y + fish->at.vx);
-    to->com_velocity[1] = mass_mean(fish, y + fish->at.vy);
+    to->com[0] = fish_mass_mean(fish, y + fish->at.x);
+    to->com[1] = fish_mass_mean(fish, y + fish->at.y);
+    to->com_velocity[0] = fish_mass_mean(fish, y + fish->at.vx);
+    to->com_velocity[1] = fish_mass_mean(fish, y + fish->at.vy);
     to->heading = angle_degrees(state_recall(history, 0)->heading);
     const double desired = control_desired_heading(fish, &state->control[f], state->t, y);
     to->desired_heading = to->heading - angle_degrees(angle_wrap(angle_radians(to->heading) - desired));

@@ -75,6 +75,9 @@ void diagnostics_step(struct residual *residual, struct state *state, double t, 
  * consistent. */
 void diagnostics_start(struct residual *residual, struct state *state);
 
+/* Start them again at a later event; the works go on, so that means over a period do not notice. */
+void diagnostics_restart(struct residual *residual, struct state *state);
+
 /* At an event at which powers of fish f jump and its state does not, say because its bias takes another rate: the next
  * step's integral begins with the powers as they are now. */
 void diagnostics_begin(struct residual *residual, struct state *state, int f);

@@ -17,6 +17,12 @@ double fish_mean(const struct stencil *point, const double *value) {
     return mean;
 }
 
+double fish_mass_mean(const struct fish *fish, const double *value) {
+    double sum = 0;
+    for (int k = 0; k < fish->n_nodes; k++) sum += fish->mass[k] * value[k];
+    return sum / fish->total_mass;
+}
+
 struct direction fish_direction(const struct fish *fish, const struct tangent *tangent, const double *y) {
     const double *const x = y + fish->at.x, *const z = y + fish->at.y;
     const double e[2] = {fish_mean(&tangent->to, x) - fish_mean(&tangent->from, x),

@@ -171,6 +171,9 @@ void fish_school_free(struct school *school);
 /* sum of weight * value over the nodes of the point. */
 double fish_mean(const struct stencil *point, const double *value);
 
+/* Mean of a value of the nodes (n_nodes), weighted with their masses. */
+double fish_mass_mean(const struct fish *fish, const double *value);
+
 /* A vector along the body where its nodes are as in y: its length, its unit vector t, and the unit normal n = E3 x
  * t. */
 struct direction {

@@ -26,6 +26,7 @@ struct result_file {
     size_t length[RESULT_N_DIMENSIONS]; /* of the dimensions; 1 for TIME, as one row is written at a time */
     int *number;                        /* of the variables in the file                (result_table_n) */
     enum output_forces forces;          /* which of them it has */
+    bool is_steady;                     /* whether it has those of a steady state */
     size_t n_rows;
     struct result_checksum checksum; /* of the rows that were marked last */
     double *buffer;                  /* one row, or the whole, of the largest variable */
@@ -35,7 +36,7 @@ struct result_file {
 
 /* True if a variable is in the file. */
 static bool is_written(const struct result_file *result, const struct result_variable *variable) {
-    return variable->forces <= result->forces;
+    return variable->forces <= result->forces && (result->is_steady || !variable->of_steady);
 }
 
 static enum netcdf_type type_in_file(enum result_type type, enum precision precision) {
@@ -104,9 +105,11 @@ static void write_attributes(struct result_file *result, const struct case_value
 
 static void define_all(struct result_file *result, const struct case_values *values, const char *effective) {
     int dimension_number[RESULT_N_DIMENSIONS] = {0};
-    for (enum result_dimension d = TIME; d < RESULT_N_DIMENSIONS; d++)
+    for (enum result_dimension d = TIME; d < RESULT_N_DIMENSIONS; d++) {
+        if (d == MULTIPLIER && !result->is_steady) continue;
         dimension_number[d] =
             netcdf_define_dimension(&result->writer, result_table_dimension(d), d == TIME ? 0 : result->length[d]);
+    }
     for (int i = 0; i < result_table_n; i++) {
         if (!is_written(result, &result_table[i])) continue;
         define_variable(result, i, dimension_number, values->output.precision);
@@ -178,6 +181,7 @@ struct origin {
     const char *effective, *command;
     const struct school *school;
     const struct result_source *source; /* rows that it begins with; NULL: none */
+    bool is_steady;
 };
 
 static enum status copy_rows(struct result_file *result, const struct result_source *source) {
@@ -204,6 +208,7 @@ static enum status create(struct result_file **result, const struct origin *orig
     struct result_file *const new = allocate(origin->school, n_events);
     if (!new) return status_fail(STATUS_MEMORY, "%s: out of memory while writing", origin->path);
     new->forces = origin->values->output.forces;
+    new->is_steady = origin->is_steady;
     const enum status status = write_new(new, origin);
     if (status == STATUS_OK) {
         *result = new;
@@ -216,14 +221,28 @@ static enum status create(struct result_file **result, const struct origin *orig
 enum status result_file_create(struct result_file **result, const char *path, int overwrite,
                                const struct case_values *values, const char *effective, const char *command,
                                const struct school *school, long n_events) {
-    const struct origin origin = {path, overwrite, values, effective, command, school, NULL};
+    const struct origin origin = {path, overwrite, values, effective, command, school, NULL, false};
     return create(result, &origin, n_events);
+}
+
+enum status result_file_create_steady(struct result_file **result, const char *path, int overwrite,
+                                      const struct case_values *values, const char *effective, const char *command,
+                                      const struct school *school, long n_events) {
+    const struct origin origin = {path, overwrite, values, effective, command, school, NULL, true};
+    return create(result, &origin, n_events);
+}
+
+void result_file_steady(struct result_file *result, const struct school *school, const struct steady_values *steady) {
+    const struct result_row row = {.school = school, .steady = steady};
+    for (int i = 0; i < result_table_n; i++) {
+        if (result_table[i].of_steady) write_variable(result, i, &row);
+    }
 }
 
 enum status result_file_extend(struct result_file **result, const struct result_source *source,
                                const struct case_values *values, const char *effective, const char *command,
                                const struct school *school, long n_events) {
-    const struct origin origin = {source->path, 1, values, effective, command, school, source};
+    const struct origin origin = {source->path, 1, values, effective, command, school, source, false};
     return create(result, &origin, n_events);
 }
 

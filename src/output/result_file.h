@@ -20,6 +20,12 @@ enum status result_file_create(struct result_file **result, const char *path, in
                                const struct case_values *values, const char *effective, const char *command,
                                const struct school *school, long n_events);
 
+/* The same for a file that is to hold a steady state, and write that state into it: NaN and 0 before. */
+enum status result_file_create_steady(struct result_file **result, const char *path, int overwrite,
+                                      const struct case_values *values, const char *effective, const char *command,
+                                      const struct school *school, long n_events);
+void result_file_steady(struct result_file *result, const struct school *school, const struct steady_values *steady);
+
 /* Make such a file from one that a shorter or longer run of the same case left at the same path: it begins with rows of
  * that one, which it replaces with result_file_publish; result_file_close before that removes it. */
 enum status result_file_extend(struct result_file **result, const struct result_source *source,

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "output/netcdf.h"
+#include "output/steady_info.h"
 
 struct info {
     struct netcdf_reader reader;
@@ -182,6 +183,7 @@ static enum status print_all(struct info *info) {
     TRY(print_table(info));
     if (info->n_rows == 0) return STATUS_OK;
     TRY(print_school(info));
+    TRY(steady_info(&info->reader, info->stream));
     TRY(print_solver(info));
     TRY(print_lines(info, "closest_approach", "closest approach"));
     return print_lines(info, "warnings", "warning");

@@ -37,7 +37,7 @@ static enum status check_kind(const struct result_reader *reader) {
 }
 
 static enum status read_lengths(struct result_reader *reader) {
-    for (enum result_dimension d = TIME; d < RESULT_N_DIMENSIONS; d++) {
+    for (enum result_dimension d = TIME; d < MULTIPLIER; d++) {
         TRY(netcdf_read_length(&reader->file, result_table_dimension(d), d == XY ? 2 : 0, d == XY ? 2 : MAX_LENGTH,
                                &reader->length[d]));
     }

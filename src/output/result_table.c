@@ -79,6 +79,13 @@ static void gather_wake_birth(const struct result_row *row, int f, double *slots
     if (row->with_wake) copy(wake->n_vortex, wake->birth, slots);
 }
 
+// ---- a steady state
+
+static void gather_multiplier(const struct result_row *row, int f, double *slots) {
+    (void)f;
+    if (row->steady) interleave(row->steady->n_multipliers, row->steady->real, row->steady->imaginary, slots);
+}
+
 // ---- pressure
 
 static void gather_control_arc(const struct result_row *row, int f, double *slots) {
@@ -133,6 +140,8 @@ static void gather_edge_pressure_force(const struct result_row *row, int f, doub
 #define IN_FISH_DIAGNOSTICS(field) .owner = OF_DIAGNOSTICS_FISH, .offset = offsetof(struct diagnostics_fish, field)
 #define IN_COUNTS(field) .owner = OF_COUNTS, .offset = offsetof(struct integrator_counts, field)
 #define IN_ROW(field) .owner = OF_ROW, .offset = offsetof(struct result_row, field)
+#define IN_STEADY(field) .of_steady = true, .owner = OF_STEADY, .offset = offsetof(struct steady_values, field)
+#define IN_STEADY_FISH(field) .of_steady = true, .owner = OF_STEADY_FISH, .offset = offsetof(struct steady_fish, field)
 #define GATHERED(function) .gather = function
 
 // clang-format off
@@ -188,6 +197,43 @@ const struct result_variable result_table[] = {
      .long_name = "age at which a free vortex is removed"},
     {"wake_fade",             {NONE},                 RESULT_REAL,    "s",      IN_SCHOOL(decay),
      .long_name = "time before its removal over which a free vortex decays"},
+
+    // a steady state: means over its last beat
+    {"steady_beats",          {NONE},                 RESULT_INTEGER, "1",      IN_STEADY(n_beats),
+     .long_name = "beats that the search for the steady state took"},
+    {"steady_multiplier_beats", {NONE},               RESULT_INTEGER, "1",      IN_STEADY(n_multiplier_beats),
+     .long_name = "beats that its multipliers took"},
+    {"steady_residual",       {NONE},                 RESULT_REAL,    "1",      IN_STEADY(residual),
+     .long_name = "change from beat to beat: of speed in lengths per beat, of turn in full circles, or relative"},
+    {"steady_error",          {NONE},                 RESULT_REAL,    "1",      IN_STEADY(error),
+     .long_name = "estimated distance from the steady state: the residual over 1 less the largest multiplier"},
+    {"steady_multiplier",     {MULTIPLIER, XY},       RESULT_REAL,    "1",
+     .of_steady = true, .owner = OF_STEADY, GATHERED(gather_multiplier),
+     .long_name = "Floquet multipliers of the slow quantities, real and imaginary parts; stable where all are below 1"},
+    {"steady_speed",          {FISH},                 RESULT_REAL,    "m s-1",  IN_STEADY_FISH(speed),
+     .long_name = "speed through the water"},
+    {"steady_turn",           {FISH},                 RESULT_REAL,    "degree", IN_STEADY_FISH(turn),
+     .long_name = "change of the heading in a beat"},
+    {"steady_place",          {FISH, XY},             RESULT_REAL,    "m",      IN_STEADY_FISH(place),
+     .long_name = "centre of mass ahead of that of the first fish, and to the left of it"},
+    {"steady_force",          {FISH, XY},             RESULT_REAL,    "N",      IN_STEADY_FISH(force),
+     .long_name = "force of the fluid on the body"},
+    {"steady_thrust",         {FISH},                 RESULT_REAL,    "N",      IN_STEADY_FISH(thrust),
+     .long_name = "force of the fluid along the heading"},
+    {"steady_actuation_power", {FISH},                RESULT_REAL,    "W",      IN_STEADY_FISH(actuation_power),
+     .long_name = "power of the muscle"},
+    {"steady_driving_power",  {FISH},                 RESULT_REAL,    "W",      IN_STEADY_FISH(driving_power),
+     .long_name = "power of what drives a prescribed motion"},
+    {"steady_damping_power",  {FISH},                 RESULT_REAL,    "W",      IN_STEADY_FISH(damping_power),
+     .long_name = "power of the damping inside the body: negative"},
+    {"steady_fluid_power",    {FISH},                 RESULT_REAL,    "W",      IN_STEADY_FISH(fluid_power),
+     .long_name = "power that goes into the fluid"},
+    {"steady_cost_of_transport", {FISH},              RESULT_REAL,    "m s-2",  IN_STEADY_FISH(cost_of_transport),
+     .long_name = "cost of transport"},
+    {"steady_efficiency",     {FISH},                 RESULT_REAL,    "1",      IN_STEADY_FISH(efficiency),
+     .long_name = "efficiency"},
+    {"steady_strouhal",       {FISH},                 RESULT_REAL,    "1",      IN_STEADY_FISH(strouhal),
+     .long_name = "Strouhal number"},
 
     // the bodies and the fluid
     {"time",                  {TIME},                 RESULT_REAL,    "s",      IN_STATE(t),
@@ -374,7 +420,7 @@ _Static_assert(sizeof result_table / sizeof *result_table <= RESULT_TABLE_MAX, "
 
 const char *result_table_dimension(enum result_dimension dimension) {
     static const char *const name[] = {"",      "time",    "fish",   "node", "edge", "joint",
-                                       "sheet", "control", "vortex", "xy",   "name"};
+                                       "sheet", "control", "vortex", "xy",   "name", "multiplier"};
     return name[dimension];
 }
 
@@ -406,6 +452,8 @@ const void *result_table_owner(const struct result_row *row, enum result_owner o
         case OF_DIAGNOSTICS_FISH: return &row->diagnostics->fish[f];
         case OF_COUNTS: return row->counts;
         case OF_AXIS: return &axis_name[f];
+        case OF_STEADY: return row->steady;
+        case OF_STEADY_FISH: return row->steady ? &row->steady->fish[f] : NULL;
         default: return row;
     }
 }

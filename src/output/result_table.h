@@ -10,6 +10,7 @@
 #include "model/diagnostics.h"
 #include "model/residual.h"
 #include "output/result_kind.h"
+#include "output/steady_values.h"
 #include "solver/integrator.h"
 
 enum {
@@ -18,7 +19,21 @@ enum {
 };
 
 /* Dimensions; NONE ends a list of them. Slots beyond what a fish has hold NaN. */
-enum result_dimension { NONE, TIME, FISH, NODE, EDGE, JOINT, SHEET, CONTROL, VORTEX, XY, NAME, RESULT_N_DIMENSIONS };
+enum result_dimension {
+    NONE,
+    TIME,
+    FISH,
+    NODE,
+    EDGE,
+    JOINT,
+    SHEET,
+    CONTROL,
+    VORTEX,
+    XY,
+    NAME,
+    MULTIPLIER,
+    RESULT_N_DIMENSIONS
+};
 enum { RESULT_MAX_DIMENSIONS = 4 };
 
 enum result_type {
@@ -39,6 +54,8 @@ enum result_owner {
     OF_DIAGNOSTICS_FISH,
     OF_COUNTS,
     OF_AXIS,
+    OF_STEADY,
+    OF_STEADY_FISH,
     OF_ROW
 };
 
@@ -49,8 +66,9 @@ struct result_row {
     const struct residual *residual;
     const struct diagnostics *diagnostics;
     const struct integrator_counts *counts;
-    double wall_time; /* since the start, s */
-    bool with_wake;   /* else the variables of the wake hold NaN */
+    const struct steady_values *steady; /* NULL: not of a steady state */
+    double wall_time;                   /* since the start, s */
+    bool with_wake;                     /* else the variables of the wake hold NaN */
 };
 
 struct result_variable {
@@ -68,6 +86,7 @@ struct result_variable {
     void (*gather)(const struct result_row *row, int f, double *slots);
 
     enum output_forces forces; /* in the file where the case asks for these forces; 0: always */
+    bool of_steady;            /* in the file of a steady state only */
 };
 
 /* In the order in which they are in the file; wall_time is the last, by which scripts see that a file is whole. */
@@ -83,7 +102,7 @@ bool result_table_has(const struct result_variable *variable, enum result_dimens
 /* The length of a dimension for one fish; 1 where it does not depend on the fish. */
 int result_table_length(const struct fish *fish, enum result_dimension dimension);
 
-/* The address of what a value is a part of; of an axis, which is x or y, f counts the axes. */
+/* The address of what a value is a part of; of an axis, which is x or y, f counts the axes. NULL: there is none. */
 const void *result_table_owner(const struct result_row *row, enum result_owner owner, int f);
 
 /* Row i, from 0, of the list of variables; 0 beyond the last. */

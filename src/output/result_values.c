@@ -9,6 +9,7 @@ void result_values_lengths(const struct school *school, int n_vortices, size_t l
     length[FISH] = (size_t)school->n_fish;
     length[VORTEX] = (size_t)n_vortices;
     length[XY] = 2;
+    length[MULTIPLIER] = STEADY_QUANTITIES * (size_t)school->n_fish;
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *fish = &school->fish[f];
         for (enum result_dimension d = NODE; d <= CONTROL; d++) {
@@ -42,7 +43,9 @@ static void fill_slots(const struct result_variable *variable, const struct resu
         variable->gather(row, f, slots);
         return;
     }
-    const char *value = (const char *)result_table_owner(row, variable->owner, f) + variable->offset;
+    const char *value = result_table_owner(row, variable->owner, f);
+    if (!value) return;
+    value += variable->offset;
     size_t n = n_slots;
     if (variable->is_pointer) {
         memcpy(&value, value, sizeof(const char *));
@@ -55,9 +58,8 @@ static void fill_slots(const struct result_variable *variable, const struct resu
 void result_values_fill(const struct result_variable *variable, const size_t *length, const struct result_row *row,
                         void *buffer) {
     const size_t n = result_values_n(variable, length), size = result_values_size(variable->type);
-    if (variable->type == RESULT_TEXT) {
-        memset(buffer, 0, n);
-    } else if (size == sizeof(double)) {
+    memset(buffer, 0, n * size);
+    if (variable->type == RESULT_REAL || variable->type == RESULT_BULK) {
         for (size_t k = 0; k < n; k++) ((double *)buffer)[k] = NAN;
     }
     const size_t n_fish = result_table_has(variable, FISH) ? length[FISH] : 1;

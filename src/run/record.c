@@ -33,6 +33,17 @@ enum status record_create(struct record *record, const struct case_values *value
     return status;
 }
 
+enum status record_create_steady(struct record *record, const struct case_values *values, const struct school *school,
+                                 long n_events, const char *path, int overwrite, const char *command) {
+    begin(record, values, n_events, path);
+    char *effective = NULL;
+    TRY(case_show(values, &effective));
+    const enum status status =
+        result_file_create_steady(&record->file, path, overwrite, values, effective, command, school, n_events);
+    free(effective);
+    return status;
+}
+
 enum status record_continue(struct record *record, const struct case_values *values, const struct school *school,
                             long n_events, const char *path, const struct result_mark *mark,
                             const struct result_checksum *checksum) {

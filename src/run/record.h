@@ -23,6 +23,10 @@ char *record_path(const struct case_values *values);
 enum status record_create(struct record *record, const struct case_values *values, const struct school *school,
                           long n_events, const char *path, int overwrite, const char *command);
 
+/* The same for the file of a steady state: result_file_create_steady. */
+enum status record_create_steady(struct record *record, const struct case_values *values, const struct school *school,
+                                 long n_events, const char *path, int overwrite, const char *command);
+
 /* The same for a file that is there: go on behind the rows of a mark, or make it again for another end with the rows
  * of a source, to be published (result_file_continue, result_file_extend). */
 enum status record_continue(struct record *record, const struct case_values *values, const struct school *school,

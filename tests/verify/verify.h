@@ -24,6 +24,7 @@ void verify_energy(void);
 void verify_control(void);
 void verify_pressure(void);
 void verify_elastic(void);
+void verify_steady(void);
 
 /* Only the checks that take seconds are wanted: `make test` runs those. */
 int verify_is_fast(void);

@@ -1,0 +1,121 @@
+/* steady_info.c: see steady_info.h. */
+#include "output/steady_info.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The rows of the table; those of each direction have two. */
+static const struct quantity {
+    const char *variable, *head, *unit, *format;
+    bool of_xy;
+} quantities[] = {
+    {"steady_speed", "speed", "m s-1", "%.5f", false},
+    {"steady_turn", "turn in a beat", "degree", "%.4f", false},
+    {"steady_place", "place", "m", "%.5f", true},
+    {"steady_force", "force of the fluid", "N", "%.5g", true},
+    {"steady_thrust", "thrust", "N", "%.5g", false},
+    {"steady_actuation_power", "power of the muscle", "W", "%.5g", false},
+    {"steady_driving_power", "driving power", "W", "%.5g", false},
+    {"steady_damping_power", "power of damping", "W", "%.5g", false},
+    {"steady_fluid_power", "power to the fluid", "W", "%.5g", false},
+    {"steady_cost_of_transport", "cost of transport", "m s-2", "%.5f", false},
+    {"steady_efficiency", "efficiency", "", "%.5f", false},
+    {"steady_strouhal", "Strouhal number", "", "%.5f", false},
+};
+
+static enum status print_effort(const struct netcdf_reader *reader, FILE *stream) {
+    const struct netcdf_slice all[] = {{NULL}};
+    double beats, multiplier_beats, residual, error;
+    TRY(netcdf_read_doubles(reader, "steady_beats", all, &beats));
+    TRY(netcdf_read_doubles(reader, "steady_multiplier_beats", all, &multiplier_beats));
+    TRY(netcdf_read_doubles(reader, "steady_residual", all, &residual));
+    TRY(netcdf_read_doubles(reader, "steady_error", all, &error));
+    fprintf(stream, "\n  steady state after %.0f beats: from beat to beat it changes by %.1e", beats, residual);
+    if (!isnan(error)) fprintf(stream, ", about %.1e from the fixed point", error);
+    fprintf(stream, "\n");
+    if (multiplier_beats > 0) fprintf(stream, "  multipliers in %.0f more beats:", multiplier_beats);
+    return STATUS_OK;
+}
+
+/* Of a pair only the first is printed. */
+static enum status print_multipliers(const struct netcdf_reader *reader, FILE *stream) {
+    size_t n;
+    TRY(netcdf_read_length(reader, "multiplier", 0, INT_MAX, &n));
+    double largest = NAN;
+    for (size_t i = 0; i < n; i++) {
+        double value[2];
+        TRY(netcdf_read_doubles(reader, "steady_multiplier",
+                                (struct netcdf_slice[]){{"multiplier", i, 1}, {"xy", 0, 2}, {NULL}}, value));
+        if (isnan(value[0])) break;
+        if (i == 0) largest = hypot(value[0], value[1]);
+        if (value[1] < 0) continue;
+        fprintf(stream, "%s %.4f", i > 0 ? "," : "", value[0]);
+        if (value[1] > 0) fprintf(stream, " +- %.4f i", value[1]);
+    }
+    if (!isnan(largest)) fprintf(stream, ": %s\n", largest < 1 ? "stable" : "unstable");
+    return STATUS_OK;
+}
+
+static enum status print_cells(const struct netcdf_reader *reader, const struct quantity *quantity, size_t n_fish,
+                               size_t xy, FILE *stream) {
+    for (size_t f = 0; f < n_fish; f++) {
+        double value;
+        struct netcdf_slice slice[] = {{"fish", f, 1}, {NULL}, {NULL}};
+        if (quantity->of_xy) slice[1] = (struct netcdf_slice){"xy", xy, 1};
+        TRY(netcdf_read_doubles(reader, quantity->variable, slice, &value));
+        char text[320];
+        snprintf(text, sizeof text, quantity->format, value);
+        fprintf(stream, "  %12s", isnan(value) ? "-" : text);
+    }
+    fprintf(stream, "  %s\n", quantity->unit);
+    return STATUS_OK;
+}
+
+static enum status print_head(const struct netcdf_reader *reader, size_t n_fish, FILE *stream) {
+    size_t n_name;
+    TRY(netcdf_read_length(reader, "name", 1, INT_MAX, &n_name));
+    char *const name = calloc(n_name + 1, 1);
+    if (!name) return status_fail(STATUS_MEMORY, "%s: out of memory while reading", reader->path);
+    fprintf(stream, "\n  %-22s", "");
+    enum status status = STATUS_OK;
+    for (size_t f = 0; f < n_fish && status == STATUS_OK; f++) {
+        const struct netcdf_slice slice[] = {{"fish", f, 1}, {"name", 0, n_name}, {NULL}};
+        status = netcdf_read_text(reader, "fish_name", slice, name);
+        fprintf(stream, "  %12s", name);
+    }
+    fprintf(stream, "\n");
+    free(name);
+    return status;
+}
+
+enum status steady_info(const struct netcdf_reader *reader, FILE *stream) {
+    if (!netcdf_has(reader, "steady_speed")) return STATUS_OK;
+    static const char *const along[] = {", ahead", ", aside"}, *const axis[] = {", x", ", y"};
+    size_t n_fish;
+    TRY(print_effort(reader, stream));
+    TRY(print_multipliers(reader, stream));
+    TRY(netcdf_read_length(reader, "fish", 1, INT_MAX, &n_fish));
+    TRY(print_head(reader, n_fish, stream));
+    for (size_t q = 0; q < sizeof quantities / sizeof *quantities; q++) {
+        const struct quantity *const quantity = &quantities[q];
+        const int is_place = strcmp(quantity->head, "place") == 0;
+        if (is_place && n_fish == 1) continue;
+        for (size_t xy = 0; xy < (quantity->of_xy ? 2 : 1); xy++) {
+            char head[64];
+            snprintf(head, sizeof head, "%s%s", quantity->head, quantity->of_xy ? (is_place ? along : axis)[xy] : "");
+            fprintf(stream, "  %-22s", head);
+            TRY(print_cells(reader, quantity, n_fish, xy, stream));
+        }
+    }
+    return STATUS_OK;
+}
+
+enum status steady_info_file(const char *path, FILE *stream) {
+    struct netcdf_reader reader;
+    TRY(netcdf_open(&reader, path));
+    const enum status status = steady_info(&reader, stream);
+    netcdf_close(&reader);
+    return status;
+}

@@ -1,0 +1,31 @@
+/* steady_values.h: what a search for a steady state (run/steady.h) found: the variables steady_... of its result. */
+#ifndef STEADY_VALUES_H
+#define STEADY_VALUES_H
+
+/* A fish has at most so many slow quantities, and multipliers. */
+enum { STEADY_QUANTITIES = 6 };
+
+/* One fish: means over the last beat, of a case without a beat values of its equilibrium. */
+struct steady_fish {
+    double speed;    /* of the centre of mass through the water, m s-1 */
+    double turn;     /* of the heading in a beat, degree */
+    double place[2]; /* of its centre of mass ahead of that of the first fish and to the left of that, m */
+    double force[2]; /* of the fluid on it, N */
+    double thrust;   /* of the fluid on it, along its heading, N */
+    double actuation_power, damping_power, driving_power; /* W */
+    double fluid_power;                                   /* that goes into the fluid, W */
+    double cost_of_transport;                             /* m s-2 */
+    double efficiency, strouhal;
+};
+
+struct steady_values {
+    int n_beats;              /* that the search took, those of the multipliers not counted */
+    int n_multiplier_beats;   /* and those */
+    double residual;          /* the largest change from one beat to the next, relative: doc/steady.md */
+    double error;             /* estimate of how far that is from the fixed point; NaN without multipliers */
+    int n_multipliers;        /* 0: none were asked for, or there is no slow quantity */
+    double *real, *imaginary; /* by falling absolute value                         (n_multipliers) */
+    struct steady_fish *fish; /* (n_fish) */
+};
+
+#endif

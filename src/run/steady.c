@@ -1,0 +1,170 @@
+/* steady.c: see steady.h. */
+#include "run/steady.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "output/netcdf.h"
+#include "output/result_lock.h"
+#include "run/record.h"
+#include "run/record_notes.h"
+#include "run/steady_search.h"
+
+struct run {
+    const struct case_values *values;
+    const struct steady_options *options;
+    struct simulation *simulation;
+    struct steady_search search;
+    struct steady_values found;
+    struct record record;
+    long first; /* event of the first row */
+};
+
+static void tell(const struct steady_search *search, void *data) {
+    const struct run *const run = data;
+    if (!run->options->progress) return;
+    const struct steady_progress progress = {.n_beats = search->map.n_beats,
+                                             .max_beats = run->values->steady.beats,
+                                             .residual = steady_map_residual(&search->map),
+                                             .tolerance = run->values->steady.tolerance,
+                                             .speed = search->map.last[0].speed,
+                                             .wall_time = simulate_wall_time(run->simulation)};
+    run->options->progress(&progress, run->options->data);
+}
+
+// ---- what is found
+
+static enum status allocate(struct run *run) {
+    const size_t n_fish = (size_t)run->simulation->school->n_fish, n = STEADY_QUANTITIES * n_fish;
+    run->found.fish = calloc(n_fish, sizeof *run->found.fish);
+    run->found.real = calloc(n, sizeof *run->found.real);
+    run->found.imaginary = calloc(n, sizeof *run->found.imaginary);
+    if (run->found.fish && run->found.real && run->found.imaginary) return STATUS_OK;
+    return status_fail(STATUS_MEMORY, "out of memory: the steady state of %zu fish", n_fish);
+}
+
+static enum status find_multipliers(struct run *run) {
+    struct steady_values *const found = &run->found;
+    found->error = NAN;
+    if (run->values->steady.multipliers == NO || run->search.n_unknowns == 0) return STATUS_OK;
+    found->n_multipliers = run->search.n_unknowns;
+    TRY(steady_search_multipliers(&run->search, found->real, found->imaginary, &found->n_multiplier_beats));
+    const double left = 1 - hypot(found->real[0], found->imaginary[0]);
+    if (left > 0) found->error = found->residual / left;
+    return STATUS_OK;
+}
+
+// the means over the last beat
+static void gather(struct run *run) {
+    const struct steady_map *const map = &run->search.map;
+    const struct school *const school = run->simulation->school;
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct steady_beat *const beat = &map->last[f];
+        const struct diagnostics_fish *const last = &run->simulation->diagnostics->fish[f];
+        const struct steady_unknown place[] = {{f, STEADY_AHEAD}, {f, STEADY_ASIDE}};
+        struct steady_fish *const found = &run->found.fish[f];
+        *found = (struct steady_fish){.speed = beat->speed,
+                                      .turn = beat->turn * 180 / M_PI,
+                                      .force = {beat->force[0], beat->force[1]},
+                                      .thrust = beat->thrust,
+                                      .actuation_power = beat->actuation,
+                                      .damping_power = beat->damping,
+                                      .driving_power = beat->driving,
+                                      .fluid_power = beat->fluid,
+                                      .cost_of_transport = last->cost_of_transport,
+                                      .efficiency = last->efficiency,
+                                      .strouhal = last->strouhal};
+        steady_map_read(map, 2, place, found->place);
+    }
+}
+
+// ---- the rows
+
+static enum status write_row(struct run *run, long event) {
+    struct integrator_counts counts;
+    struct result_row row;
+    simulate_row(run->simulation, &counts, &row);
+    row.with_wake = (event - run->first) % run->record.events_per_wake == 0 || event == run->record.n_events;
+    return result_file_row(run->record.file, &row);
+}
+
+static enum status write_if_due(void *data) {
+    struct run *const run = data;
+    const long event = run->simulation->state->event;
+    const int is_due = (event - run->first) % run->record.events_per_row == 0 || event == run->record.n_events;
+    return is_due ? write_row(run, event) : STATUS_OK;
+}
+
+// the last beats, from the steady state on; the energy balance and the closest approach are those of the rows
+static enum status write_beats(struct run *run) {
+    struct simulation *const simulation = run->simulation;
+    const int n_beats = run->search.map.n_beats;
+    diagnostics_restart(simulation->residual, simulation->state);
+    run->first = simulation->state->event;
+    run->record.n_events = run->first + run->values->steady.output_beats * run->search.map.events;
+    TRY(write_row(run, run->first));
+    for (int i = 0; i < run->values->steady.output_beats; i++) {
+        TRY(steady_map_beat(&run->search.map, write_if_due, run));
+    }
+    run->search.map.n_beats = n_beats;
+    run->found.residual = fmax(run->found.residual, steady_map_residual(&run->search.map));
+    gather(run);
+    return STATUS_OK;
+}
+
+// ---- a run
+
+static enum status search(struct run *run) {
+    const enum status status = steady_search_run(&run->search);
+    if (status == STATUS_STOPPED) {
+        return status_fail(status, "stopped %s in beat %d of the search, which cannot be resumed",
+                           *run->options->stop == SIGALRM ? "after --max-wall" : "by a signal",
+                           run->search.map.n_beats + 1);
+    }
+    TRY(status);
+    run->found.n_beats = run->search.map.n_beats;
+    run->found.residual = steady_map_residual(&run->search.map);
+    TRY(find_multipliers(run));
+    return write_beats(run);
+}
+
+static enum status start(struct run *run) {
+    const struct steady_options *const options = run->options;
+    TRY(netcdf_check_target(options->path, options->overwrite));
+    TRY(simulate_create(&run->simulation, run->values));
+    run->simulation->stop = options->stop;
+    TRY(steady_search_create(&run->search, run->values, run->simulation));
+    run->search.progress = tell;
+    run->search.data = run;
+    TRY(allocate(run));
+    // room for as many vortices as there can be
+    const long n_events = (run->values->steady.beats + run->values->steady.output_beats) * run->search.map.events;
+    TRY(record_create_steady(&run->record, run->values, run->simulation->school, n_events, options->path,
+                             options->overwrite, options->command));
+    const enum status status = search(run);
+    if (status == STATUS_OK) {
+        result_file_steady(run->record.file, run->simulation->school, &run->found);
+        record_notes_write(run->record.file, run->simulation, options->warn, options->data);
+    }
+    return record_close(&run->record, status);
+}
+
+static void release(struct run *run) {
+    steady_search_free(&run->search);
+    simulate_free(run->simulation);
+    free(run->found.fish);
+    free(run->found.real);
+    free(run->found.imaginary);
+}
+
+enum status steady_run(const struct case_values *values, const struct steady_options *options) {
+    struct run run = {.values = values, .options = options};
+    struct result_lock lock;
+    TRY(netcdf_check_target(options->path, 1));
+    TRY(result_lock_take(&lock, options->path));
+    const enum status status = start(&run);
+    release(&run);
+    result_lock_release(&lock);
+    return status;
+}

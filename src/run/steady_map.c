@@ -1,0 +1,253 @@
+/* steady_map.c: see steady_map.h. */
+#include "run/steady_map.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "model/state_table.h"
+
+enum steady_freedom steady_map_freedom(const struct fish *fish) {
+    if (fish->motion.prescribed == PRESCRIBED_NONE) return STEADY_SWIMS;
+    return fish->motion.surge == SURGE_FREE ? STEADY_SURGES : STEADY_HELD;
+}
+
+// ---- the beat
+
+// the beat that all fish have
+static enum status find_period(struct steady_map *map) {
+    const struct school *const school = map->simulation->school;
+    const struct fish *first = NULL;
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *const fish = &school->fish[f];
+        if (fish->period <= 0) continue;
+        if (!first) first = fish;
+        if (fabs(fish->period - first->period) <= 1e-9 * first->period) continue;
+        return status_fail(
+            STATUS_CASE, "%s beats %g times a second and %s %g times: a state that repeats itself needs one frequency",
+            first->name, 1 / first->period, fish->name, 1 / fish->period);
+    }
+    map->period = first ? first->period : 0;
+    return STATUS_OK;
+}
+
+static enum status check_events(struct steady_map *map) {
+    const struct school *const school = map->simulation->school;
+    const double events = map->period / school->interval;
+    map->events = lround(events);
+    if (map->events >= 1 && fabs(events - (double)map->events) <= 1e-6 * events) return STATUS_OK;
+    return status_fail(STATUS_CASE,
+                       "a beat of %.10g s has %.6g events, not an integer: set time.shedding_interval to %.10g, and "
+                       "time.end and time.output_interval to multiples of it",
+                       map->period, events, map->period / ceil(events));
+}
+
+static enum status check_gust(const struct steady_map *map) {
+    const struct school *const school = map->simulation->school;
+    const double gusts = school->gust_omega * map->period / (2 * M_PI);
+    if (!(fabs(school->gust[0]) + fabs(school->gust[1]) > 0)) return STATUS_OK;
+    if (fabs(gusts - nearbyint(gusts)) <= 1e-9 * gusts) return STATUS_OK;
+    return status_fail(STATUS_CASE,
+                       "a beat has %g gusts, not an integer: set fluid.gust.frequency to a multiple "
+                       "of the frequency of the beat",
+                       gusts);
+}
+
+enum status steady_map_create(struct steady_map *map, struct simulation *simulation) {
+    *map = (struct steady_map){.simulation = simulation};
+    TRY(find_period(map));
+    if (map->period <= 0) return status_fail(STATUS_CASE, "no fish beats: there is no beat to repeat");
+    TRY(check_events(map));
+    TRY(check_gust(map));
+    const size_t n_fish = (size_t)simulation->school->n_fish;
+    map->last = calloc(n_fish, sizeof *map->last);
+    map->before = calloc(n_fish, sizeof *map->before);
+    if (map->last && map->before) return STATUS_OK;
+    steady_map_free(map);
+    return status_fail(STATUS_MEMORY, "out of memory: the beats of %zu fish", n_fish);
+}
+
+void steady_map_free(struct steady_map *map) {
+    free(map->last);
+    free(map->before);
+    map->last = map->before = NULL;
+}
+
+// ---- one beat
+
+// trapezoids over the events of a beat, the ends of which count half
+static void add_event(struct steady_map *map, double share) {
+    for (int f = 0; f < map->simulation->school->n_fish; f++) {
+        const struct diagnostics_fish *const now = &map->simulation->diagnostics->fish[f];
+        struct steady_beat *const sum = &map->last[f];
+        for (int i = 0; i < 2; i++) {
+            sum->force[i] += share * (now->resistive_force[i] + now->reactive_force[i] + now->pressure.pressure[i] +
+                                      now->pressure.suction[i]);
+        }
+        const double power = now->actuation_power + now->driving_power;
+        sum->thrust += share * now->thrust;
+        sum->rms_thrust += share * now->thrust * now->thrust;
+        sum->actuation += share * now->actuation_power;
+        sum->damping += share * now->damping_power;
+        sum->driving += share * now->driving_power;
+        sum->rms_power += share * power * power;
+    }
+}
+
+// what the history of the beat has
+static void finish_beat(struct steady_map *map) {
+    for (int f = 0; f < map->simulation->school->n_fish; f++) {
+        const struct history *const history = &map->simulation->state->history[f];
+        const struct sample *const new = state_recall(history, 0), *const old = state_recall(history, history->n - 1);
+        struct steady_beat *const beat = &map->last[f];
+        beat->speed = map->simulation->diagnostics->fish[f].speed;
+        beat->turn = new->heading - old->heading;
+        beat->fluid = (old->work[WORK_FLUID] - new->work[WORK_FLUID]) / map->period;
+        beat->rms_thrust = sqrt(beat->rms_thrust);
+        beat->rms_power = sqrt(beat->rms_power);
+    }
+}
+
+enum status steady_map_beat(struct steady_map *map, enum status (*row)(void *data), void *data) {
+    struct steady_beat *const oldest = map->before;
+    map->before = map->last;
+    map->last = oldest;
+    memset(map->last, 0, (size_t)map->simulation->school->n_fish * sizeof *map->last);
+    const double share = 1 / (double)map->events;
+    simulate_measure(map->simulation);
+    add_event(map, share / 2);
+    for (long i = 1; i <= map->events; i++) {
+        TRY(simulate_step(map->simulation));
+        simulate_measure(map->simulation);
+        add_event(map, i < map->events ? share : share / 2);
+        if (row) TRY(row(data));
+    }
+    finish_beat(map);
+    map->n_beats++;
+    return STATUS_OK;
+}
+
+// a change over a scale; nothing changes where the scale is 0
+static double relative(double now, double before, double scale) {
+    return scale > 0 ? fabs(now - before) / scale : 0;
+}
+
+double steady_map_residual(const struct steady_map *map) {
+    const struct school *const school = map->simulation->school;
+    double residual = 0;
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct steady_beat *const now = &map->last[f], *const before = &map->before[f];
+        residual = fmax(residual, relative(now->speed, before->speed, school->fish[f].length / map->period));
+        residual = fmax(residual, relative(now->turn, before->turn, 2 * M_PI));
+        if (steady_map_freedom(&school->fish[f]) != STEADY_HELD) continue;
+        residual = fmax(residual, relative(now->thrust, before->thrust, now->rms_thrust));
+        residual = fmax(residual,
+                        relative(now->actuation + now->driving, before->actuation + before->driving, now->rms_power));
+    }
+    return residual;
+}
+
+// ---- the slow quantities
+
+double steady_map_scale(const struct steady_map *map, struct steady_unknown unknown) {
+    const double length = map->simulation->school->fish[unknown.fish].length;
+    switch (unknown.quantity) {
+        case STEADY_SPEED:
+        case STEADY_SLIP: return length / map->period;
+        case STEADY_TURN: return 1 / map->period;
+        case STEADY_HEADING: return 1;
+        default: return length;
+    }
+}
+
+// the stream at the centre of mass, along a heading and to its left
+static void stream_along(const struct steady_map *map, const struct rigid *rigid, double stream[2]) {
+    const struct simulation *const simulation = map->simulation;
+    double u, v;
+    flow_external(simulation->school, simulation->state->t, rigid->place[1], &u, &v);
+    const double c = cos(rigid->heading), s = sin(rigid->heading);
+    stream[0] = c * u + s * v;
+    stream[1] = c * v - s * u;
+}
+
+void steady_map_read(const struct steady_map *map, int n, const struct steady_unknown *unknown, double *value) {
+    const struct school *const school = map->simulation->school;
+    const double *const y = map->simulation->state->y;
+    const struct rigid first = rigid_of(&school->fish[0], y);
+    const double c = cos(first.heading), s = sin(first.heading);
+    for (int i = 0; i < n; i++) {
+        const struct rigid rigid = rigid_of(&school->fish[unknown[i].fish], y);
+        const double way[2] = {rigid.place[0] - first.place[0], rigid.place[1] - first.place[1]};
+        double stream[2];
+        stream_along(map, &rigid, stream);
+        switch (unknown[i].quantity) {
+            case STEADY_SPEED: value[i] = rigid.velocity[0] - stream[0]; break;
+            case STEADY_SLIP: value[i] = rigid.velocity[1] - stream[1]; break;
+            case STEADY_TURN: value[i] = rigid.turn; break;
+            case STEADY_HEADING: value[i] = remainder(rigid.heading - first.heading, 2 * M_PI); break;
+            case STEADY_AHEAD: value[i] = c * way[0] + s * way[1]; break;
+            case STEADY_ASIDE: value[i] = c * way[1] - s * way[0]; break;
+        }
+    }
+}
+
+static void add_one(struct rigid *change, const struct rigid *first, enum steady_quantity quantity, double add) {
+    const double c = cos(first->heading), s = sin(first->heading);
+    switch (quantity) {
+        case STEADY_SPEED: change->velocity[0] += add; break;
+        case STEADY_SLIP: change->velocity[1] += add; break;
+        case STEADY_TURN: change->turn += add; break;
+        case STEADY_HEADING: change->heading += add; break;
+        case STEADY_AHEAD:
+            change->place[0] += c * add;
+            change->place[1] += s * add;
+            break;
+        case STEADY_ASIDE:
+            change->place[0] -= s * add;
+            change->place[1] += c * add;
+            break;
+    }
+}
+
+// all but the state is made again, and the velocity of the fluid is that at the event
+static enum status renew(struct simulation *simulation) {
+    TRY(simulate_renew(simulation));
+    struct residual *const residual = simulation->residual;
+    const struct state *const state = simulation->state;
+    const enum status status = residual_evaluate(residual, state->t, state->y, state->yp, residual->scratch);
+    return status == STATUS_RETRY ? status_fail(STATUS_SOLVER, "%s", status_message()) : status;
+}
+
+enum status steady_map_add(struct steady_map *map, int n, const struct steady_unknown *unknown, const double *add) {
+    struct simulation *const simulation = map->simulation;
+    struct state *const state = simulation->state;
+    const struct school *const school = simulation->school;
+    const struct rigid first = rigid_of(&school->fish[0], state->y);
+    diagnostics_before_jump(simulation->residual, state);
+    for (int f = 0; f < school->n_fish; f++) {
+        struct rigid change = {.heading = 0};
+        for (int i = 0; i < n; i++) {
+            if (unknown[i].fish == f) add_one(&change, &first, unknown[i].quantity, add[i]);
+        }
+        rigid_change(school, state, f, &change);
+    }
+    memcpy(state->closest->before, state->y, (size_t)school->n_unknowns * sizeof *state->y);
+    // velocities are given, as at a start: momenta follow from them
+    simulation->residual->at_start = 1;
+    const enum status status = initial_conditions_solve(simulation->consistent, state->t, state->y, state->yp);
+    simulation->residual->at_start = 0;
+    TRY(status);
+    TRY(renew(simulation));
+    diagnostics_after_jump(simulation->residual, state);
+    return STATUS_OK;
+}
+
+enum status steady_map_save(struct steady_map *map, struct state **state) {
+    if (!*state) TRY(state_create(state, map->simulation->school));
+    return state_table_copy(*state, map->simulation->state, map->simulation->school);
+}
+
+enum status steady_map_return(struct steady_map *map, const struct state *state) {
+    TRY(state_table_copy(map->simulation->state, state, map->simulation->school));
+    return renew(map->simulation);
+}

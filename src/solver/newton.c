@@ -1,0 +1,96 @@
+/* newton.c: KINSOL with a dense matrix. */
+#include "solver/newton.h"
+
+#include <kinsol/kinsol.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sunlinsol/sunlinsol_dense.h>
+#include <sunmatrix/sunmatrix_dense.h>
+
+#include "solver/sundials_adapter.h"
+
+struct solver {
+    const struct newton *problem;
+    enum status failure; /* of the last callback */
+    SUNContext context;
+    N_Vector unknowns, scales;
+    SUNMatrix matrix;
+    SUNLinearSolver linear;
+    void *kinsol;
+};
+
+// a failure of a callback is final: a smaller step would cost as much as all that went before
+static int value_of(N_Vector u, N_Vector value, void *data) {
+    struct solver *const solver = data;
+    solver->failure = solver->problem->value(solver->problem->data, N_VGetArrayPointer(u), N_VGetArrayPointer(value));
+    return solver->failure == STATUS_OK ? 0 : -1;
+}
+
+static int jacobian_of(N_Vector u, N_Vector value, SUNMatrix matrix, void *data, N_Vector scratch1, N_Vector scratch2) {
+    (void)u, (void)value, (void)scratch1, (void)scratch2;
+    struct solver *const solver = data;
+    solver->failure = solver->problem->jacobian(solver->problem->data, SUNDenseMatrix_Data(matrix));
+    return solver->failure == STATUS_OK ? 0 : -1;
+}
+
+static void release(struct solver *solver) {
+    if (solver->kinsol) KINFree(&solver->kinsol);
+    if (solver->linear) SUNLinSolFree(solver->linear);
+    if (solver->matrix) SUNMatDestroy(solver->matrix);
+    if (solver->unknowns) N_VDestroy(solver->unknowns);
+    if (solver->scales) N_VDestroy(solver->scales);
+    if (solver->context) SUNContext_Free(&solver->context);
+}
+
+static enum status set_up(struct solver *solver, double *u, double *inverse) {
+    const struct newton *const problem = solver->problem;
+    for (int i = 0; i < problem->n; i++) inverse[i] = 1 / problem->scale[i];
+    TRY(sundials_adapter_context(&solver->context, problem->n));
+    TRY(sundials_adapter_vector(&solver->unknowns, solver->context, problem->n, u));
+    TRY(sundials_adapter_vector(&solver->scales, solver->context, problem->n, inverse));
+    solver->matrix = SUNDenseMatrix(problem->n, problem->n, solver->context);
+    solver->linear = solver->matrix ? SUNLinSol_Dense(solver->unknowns, solver->matrix, solver->context) : NULL;
+    solver->kinsol = KINCreate(solver->context);
+    if (!solver->linear || !solver->kinsol) return status_fail(STATUS_MEMORY, "out of memory: KINSOL");
+    // a Jacobian for every step; steps of rounding do not end the iteration
+    if (KINSetErrHandlerFn(solver->kinsol, sundials_adapter_message, &solver->failure) ||
+        KINSetUserData(solver->kinsol, solver) || KINInit(solver->kinsol, value_of, solver->unknowns) ||
+        KINSetLinearSolver(solver->kinsol, solver->linear, solver->matrix) ||
+        KINSetJacFn(solver->kinsol, jacobian_of) || KINSetMaxSetupCalls(solver->kinsol, 1) ||
+        KINSetFuncNormTol(solver->kinsol, problem->tolerance) || KINSetScaledStepTol(solver->kinsol, 1e-14) ||
+        KINSetNumMaxIters(solver->kinsol, problem->max_iterations) ||
+        KINSetMaxNewtonStep(solver->kinsol, problem->max_step)) {
+        return status_fail(STATUS_SOLVER, "KINSOL cannot be set up: %s", status_message());
+    }
+    return STATUS_OK;
+}
+
+static const char *reason(int code) {
+    switch (code) {
+        case KIN_MAXITER_REACHED: return "Newton's method did not converge";
+        case KIN_MXNEWT_5X_EXCEEDED: return "Newton's method takes one longest step after the other";
+        case KIN_LSETUP_FAIL:
+        case KIN_LSOLVE_FAIL: return "the Jacobian is singular";
+        default: return "KINSOL failed";
+    }
+}
+
+static enum status solve(struct solver *solver) {
+    const int code = KINSol(solver->kinsol, solver->unknowns, KIN_NONE, solver->scales, solver->scales);
+    if (solver->failure != STATUS_OK) return solver->failure;
+    if (code >= 0) return STATUS_OK;
+    char cause[512];
+    snprintf(cause, sizeof cause, "%s", status_message());
+    return status_fail(STATUS_SOLVER, "%s (%s)", reason(code), cause);
+}
+
+enum status newton_solve(const struct newton *problem, double *u) {
+    struct solver solver = {.problem = problem};
+    double *const inverse = calloc((size_t)problem->n, sizeof *inverse);
+    enum status status = inverse ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: Newton's method");
+    if (status == STATUS_OK) status = set_up(&solver, u, inverse);
+    if (status == STATUS_OK) status = solve(&solver);
+    release(&solver);
+    free(inverse);
+    return status;
+}

@@ -1,0 +1,84 @@
+#!/usr/bin/env bash
+# The steady state of a case: what is printed and what is in its file, and what is said where there is none.
+#
+#   tests/app/test_steady.sh PROGRAM
+set -uo pipefail
+export LC_ALL=C.UTF-8
+
+program=$(realpath "${1:?usage: tests/app/test_steady.sh PROGRAM}")
+root=$(realpath "$(dirname "$0")/../..")
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder" || exit 2
+
+# shellcheck source=tests/checks.sh
+. "$root/tests/checks.sh"
+
+cat >swim.yaml <<'end'
+format: 1
+time: {end: 3, shedding_interval: 0.05, output_interval: 0.1}
+fish: [{name: a fish, nodes: 9, sheet_points: 17}]
+end
+
+# ---- the file
+
+run steady swim.yaml -q
+check a_search_succeeds test "$code" = 0 -a ! -s out -a ! -s err -a -s swim.nc
+refused an_existing_file_is_kept 4 'exists' steady swim.yaml
+run info swim.nc
+check info_knows_it_is_steady has out 'steady state after'
+check and_whether_it_is_stable grep -qE 'multipliers in 24 more beats: .* stable$' out
+cat >look.py <<'end'
+"""What is in the file of a steady state: its rows are the last two beats, its values those of the last."""
+import sys
+import netCDF4, numpy as np
+
+data = netCDF4.Dataset("swim.nc")
+data.set_auto_mask(False)
+time, beats = data["time"][:], int(data["steady_beats"][...])
+problems = []
+def demand(name, good):
+    if not good:
+        problems.append(name)
+demand("complete", data.run_status == "complete")
+demand("a row every 0.1 s for two beats", len(time) == 21 and np.allclose(np.diff(time), 0.1))
+demand("from the end of the search on", np.isclose(time[0], beats))
+demand("speed of the last beat", data["steady_speed"][0] == data["speed"][-1, 0])
+demand("the speed stays", abs(data["speed"][-1, 0] / data["speed"][0, 0] - 1) < 1e-4)
+demand("no thrust on the whole", abs(data["steady_force"][0]).max() < 1e-2 * np.abs(data["reactive_force"][:]).max())
+powers = [data["steady_" + name][0] for name in ("actuation_power", "damping_power", "fluid_power")]
+demand("the muscle pays for damping and fluid", abs(powers[0] + powers[1] - powers[2]) < 1e-3 * powers[0])
+demand("cost of transport", np.isclose(data["steady_cost_of_transport"][0], powers[0] / data["body_mass"][0]
+                                       / data["steady_speed"][0], rtol=1e-3))
+demand("three multipliers of six slots", np.isfinite(data["steady_multiplier"][:, 0]).sum() == 3)
+demand("the energy balance is that of the rows", abs(data["energy_audit"][-1, 0]) < 1e-3 * powers[0])
+demand("an ordinary run has none of this", "steady_speed" not in netCDF4.Dataset("run.nc").variables)
+sys.exit("; ".join(problems) or 0)
+end
+run run swim.yaml -q -o run.nc --set time.end=0.1
+check the_file_says_what_is_printed /usr/bin/python3 look.py
+run steady swim.yaml -o other.nc --set steady.output_beats=1 --set steady.multipliers=false
+check a_search_prints_its_file_and_answer test "$code" = 0 -a "$(head -1 out)" = other.nc -a -n "$(grep 'Strouhal' out)"
+check without_multipliers_there_are_none test -z "$(grep multipliers out)"
+check progress_goes_to_stderr grep -q '^beat ' err
+check plot_draws_it /usr/bin/python3 "$root/scripts/plot.py" time swim.nc swim.png
+check xarray_opens_it /usr/bin/python3 -c \
+    'import xarray; xarray.open_dataset("swim.nc").steady_speed.sel(fish="a fish").item()'
+
+# ---- no steady state
+
+refused too_few_beats 1 'no steady state in 4 beats (steady.beats)' steady swim.yaml -q -o few.nc --set steady.beats=4
+run info few.nc
+check the_file_says_why has out 'failed: no steady state in 4 beats'
+refused a_beat_without_whole_events 2 'set time.shedding_interval to 0.0495' \
+    steady swim.yaml -o none.nc --set fish[0].wave.frequency=1.01
+check leaves_no_file test ! -e none.nc
+refused a_sweep_is_a_study 2 'shoal study' steady swim.yaml --set 'sweep=[{key: solver.rtol, values: [1e-4]}]'
+refused a_case_is_needed 2 'CASE is missing' steady
+timeout --signal=TERM 1 "$program" steady swim.yaml -q -o stopped.nc --set steady.tolerance=1e-12 \
+    --set steady.beats=100000 --set time.shedding_interval=0.01 2>err
+check a_signal_stops_it test "$?" = 75 -o "$?" = 124
+check and_it_says_so grep -q 'stopped by a signal in beat' err
+
+echo "$n_passed passed, $n_failed failed, $n_skipped skipped"
+((n_failed == 0))

@@ -1,0 +1,102 @@
+/* test_rigid.c: a fish as a whole: what is read is what has been added, and neither shape nor wake are harmed. */
+#include <string.h>
+
+#include "model/rigid.h"
+#include "school.h"
+
+static const char *const text =
+    "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+    "fish: [{}, {start: {position: [2, 1], heading: 70}}]\n";
+
+static void set_up(struct setup *setup) {
+    school_build(setup, text);
+    school_stir(setup);
+}
+
+// lengths of all edges
+static void lengths_of(const struct fish *fish, const double *y, double *length) {
+    for (int k = 0; k < fish->n_edges; k++) {
+        length[k] = hypot(y[fish->at.x + k + 1] - y[fish->at.x + k], y[fish->at.y + k + 1] - y[fish->at.y + k]);
+    }
+}
+
+static void a_rigid_motion_is_read_exactly(void **state) {
+    (void)state;
+    struct setup setup;
+    set_up(&setup);
+    const struct fish *const fish = &setup.school->fish[1];
+    double *const y = setup.state->y;
+    const struct rigid at = rigid_of(fish, y);
+    for (int k = 0; k < fish->n_nodes; k++) {
+        y[fish->at.vx + k] = 0.3 - 2 * (y[fish->at.y + k] - at.place[1]);
+        y[fish->at.vy + k] = 0.4 + 2 * (y[fish->at.x + k] - at.place[0]);
+    }
+    const struct rigid rigid = rigid_of(fish, y);
+    NEAR(rigid.turn, 2, 1e-13, 0);
+    NEAR(rigid.velocity[0], 0.3 * cos(at.heading) + 0.4 * sin(at.heading), 1e-14, 0);
+    NEAR(rigid.velocity[1], 0.4 * cos(at.heading) - 0.3 * sin(at.heading), 1e-14, 0);
+    school_clear(&setup);
+}
+
+static void what_is_added_is_read_and_other_fish_stay(void **state) {
+    (void)state;
+    struct setup setup;
+    set_up(&setup);
+    const struct fish *const other = &setup.school->fish[0], *const fish = &setup.school->fish[1];
+    double before[64], after[64], others[512];
+    memcpy(others, setup.state->y + other->at.x, (size_t)(other->at.end - other->at.x) * sizeof *others);
+    lengths_of(fish, setup.state->y, before);
+    const struct rigid old = rigid_of(fish, setup.state->y);
+    const struct rigid change = {{0.1, -0.2}, 0.3, {0.5, -0.4}, 0.7};
+    rigid_change(setup.school, setup.state, 1, &change);
+    const struct rigid new = rigid_of(fish, setup.state->y);
+    for (int i = 0; i < 2; i++) {
+        NEAR(new.place[i], old.place[i] + change.place[i], 1e-14, 0);
+        NEAR(new.velocity[i], old.velocity[i] + change.velocity[i], 1e-14, 0);
+    }
+    NEAR(remainder(new.heading - old.heading, 2 * M_PI), change.heading, 1e-14, 0);
+    NEAR(new.turn, old.turn + change.turn, 1e-13, 0);
+    lengths_of(fish, setup.state->y, after);
+    NEAR_ARRAY(fish->n_edges, after, before, 1e-14, 0);
+    assert_memory_equal(setup.state->y + other->at.x, others, (size_t)(other->at.end - other->at.x) * sizeof *others);
+    school_clear(&setup);
+}
+
+static void a_vortex_lies_where_the_faster_tail_would_have_left_it(void **state) {
+    (void)state;
+    struct setup setup;
+    set_up(&setup);
+    const struct wake *const wake = &setup.state->wake[1];
+    const struct rigid old = rigid_of(&setup.school->fish[1], setup.state->y);
+    const double x = wake->x[0], y = wake->y[0], age = setup.state->t - wake->birth[0];
+    const unsigned long version = wake->version;
+    assert_true(age > 0);
+    rigid_change(setup.school, setup.state, 1, &(struct rigid){.velocity = {0.5, 0}});
+    NEAR(wake->x[0], x - age * 0.5 * cos(old.heading), 1e-14, 0);
+    NEAR(wake->y[0], y - age * 0.5 * sin(old.heading), 1e-14, 0);
+    assert_true(wake->version != version);
+    school_clear(&setup);
+}
+
+static void means_over_the_last_period_do_not_notice_a_displacement(void **state) {
+    (void)state;
+    struct simulation *const simulation = school_simulation(text);
+    school_run(simulation, 0.5);
+    simulate_measure(simulation);
+    const double speed = simulation->diagnostics->fish[1].speed, heading = simulation->diagnostics->fish[1].heading;
+    rigid_change(simulation->school, simulation->state, 1, &(struct rigid){.place = {3, 1}, .heading = 0.2});
+    simulate_measure(simulation);
+    NEAR(simulation->diagnostics->fish[1].speed, speed, 1e-13, 0);
+    NEAR(simulation->diagnostics->fish[1].heading, heading + 0.2 * 180 / M_PI, 1e-11, 0);
+    simulate_free(simulation);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_rigid_motion_is_read_exactly),
+        cmocka_unit_test(what_is_added_is_read_and_other_fish_stay),
+        cmocka_unit_test(a_vortex_lies_where_the_faster_tail_would_have_left_it),
+        cmocka_unit_test(means_over_the_last_period_do_not_notice_a_displacement),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

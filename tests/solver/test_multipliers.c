@@ -1,0 +1,54 @@
+/* test_multipliers.c: eigenvalues of maps of which images are known. */
+#include <string.h>
+
+#include "near.h"
+#include "solver/multipliers.h"
+
+// 0.9 along the first axis, a rotation by 30 degrees that shrinks by 0.8 in the plane of the others
+static void image_of(const double *v, double *image) {
+    const double c = 0.8 * cos(M_PI / 6), s = 0.8 * sin(M_PI / 6);
+    image[0] = 0.9 * v[0];
+    image[1] = c * v[1] - s * v[2];
+    image[2] = s * v[1] + c * v[2];
+}
+
+enum { N = 3, COLUMNS = 5 };
+
+static void eigenvalues_come_by_size_and_a_pair_with_the_upper_one_first(void **state) {
+    (void)state;
+    // five vectors that span the space, mixed so that no column is an eigenvector
+    const double before[N * COLUMNS] = {1, 2, -1, 0, 1, 3, 2, -1, 1, -2, 0, 1, 1, 1, 1};
+    double after[N * COLUMNS], real[N], imaginary[N];
+    for (int k = 0; k < COLUMNS; k++) image_of(before + N * k, after + N * k);
+    assert_int_equal(multipliers_of(N, COLUMNS, before, after, real, imaginary), STATUS_OK);
+    const double want_real[N] = {0.9, 0.8 * cos(M_PI / 6), 0.8 * cos(M_PI / 6)}, want_imaginary[N] = {0, 0.4, -0.4};
+    NEAR_ARRAY(N, real, want_real, 1e-14, 0);
+    NEAR_ARRAY(N, imaginary, want_imaginary, 1e-14, 0);
+}
+
+static void errors_of_single_images_are_averaged(void **state) {
+    (void)state;
+    // one dimension: images of 1, 2, -2 under 0.5, of which the first is wrong by 0.09: least squares have 0.5 + 0.09/9
+    const double before[3] = {1, 2, -2}, after[3] = {0.59, 1, -1};
+    double real, imaginary;
+    assert_int_equal(multipliers_of(1, 3, before, after, &real, &imaginary), STATUS_OK);
+    NEAR(real, 0.51, 1e-14, 0);
+    NEAR(imaginary, 0, 0, 0);
+}
+
+static void columns_that_do_not_span_the_space_tell_nothing(void **state) {
+    (void)state;
+    const double before[4] = {0, 0, 0, 0}, after[4] = {1, 1, 2, 2};
+    double real[2], imaginary[2];
+    assert_int_equal(multipliers_of(2, 2, before, after, real, imaginary), STATUS_SOLVER);
+    assert_non_null(strstr(status_message(), "multipliers"));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(eigenvalues_come_by_size_and_a_pair_with_the_upper_one_first),
+        cmocka_unit_test(errors_of_single_images_are_averaged),
+        cmocka_unit_test(columns_that_do_not_span_the_space_tell_nothing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,130 @@
+/* steady.c: the section "steady" (doc/steady.md): what `shoal steady` finds in some twenty beats against runs of two
+ * hundred. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "run/steady_search.h"
+#include "verify.h"
+
+static _Noreturn void give_up(void) {
+    fprintf(stderr, "verify steady: %s\n", status_message());
+    exit(1);
+}
+
+static void ok(enum status status) {
+    if (status != STATUS_OK) give_up();
+}
+
+// ---- one fish, against a run of two hundred beats
+
+enum { BRUTE_BEATS = 200, MOST_BEATS = BRUTE_BEATS / 10 };
+
+struct swimmer {
+    const char *name, *text;
+    int decays_from, decays_to; /* beats of the run between which its error falls by the largest multiplier */
+};
+
+struct found {
+    double speed, cost, multiplier, to_bound[MOST_BEATS + 1];
+    int n_beats;
+};
+
+static void note_speed(const struct steady_search *search, void *data) {
+    struct found *const found = data;
+    if (search->map.n_beats <= MOST_BEATS) found->to_bound[search->map.n_beats] = search->map.last[0].speed;
+}
+
+static struct found search_for(const char *text) {
+    struct found found = {.n_beats = 0};
+    struct case_values values;
+    struct steady_search search;
+    double real[STEADY_QUANTITIES], imaginary[STEADY_QUANTITIES];
+    int n_beats;
+    struct simulation *const simulation = verify_open("%s", text);
+    ok(case_parse(&values, text, strlen(text), "verify", ".", 0, NULL));
+    ok(steady_search_create(&search, &values, simulation));
+    search.progress = note_speed;
+    search.data = &found;
+    ok(steady_search_run(&search));
+    found.n_beats = search.map.n_beats;
+    found.speed = search.map.last[0].speed;
+    found.cost = search.map.last[0].actuation + search.map.last[0].driving;
+    ok(steady_search_multipliers(&search, real, imaginary, &n_beats));
+    found.multiplier = hypot(real[0], imaginary[0]);
+    steady_search_free(&search);
+    simulate_free(simulation);
+    case_free(&values);
+    return found;
+}
+
+// the speed over each beat of a long run, and its mean power over the last
+static double run_long(const char *text, double speed[BRUTE_BEATS + 1]) {
+    struct simulation *const simulation = verify_open("%s", text);
+    struct steady_map map;
+    ok(steady_map_create(&map, simulation));
+    for (int i = 1; i <= BRUTE_BEATS; i++) {
+        ok(steady_map_beat(&map, NULL, NULL));
+        speed[i] = map.last[0].speed;
+    }
+    const double power = map.last[0].actuation + map.last[0].driving;
+    steady_map_free(&map);
+    simulate_free(simulation);
+    return power;
+}
+
+// the first beat from which on all speeds are right to 1e-4
+static int beats_to_bound(int n, const double *speed, double reference) {
+    int beat = n;
+    while (beat > 1 && fabs(speed[beat - 1] / reference - 1) <= 1e-4) beat--;
+    return beat;
+}
+
+static void compare(const struct swimmer *swimmer) {
+    const char *const name = swimmer->name;
+    double speed[BRUTE_BEATS + 1];
+    const double power = run_long(swimmer->text, speed), reference = speed[BRUTE_BEATS];
+    const struct found found = search_for(swimmer->text);
+    verify_relative(verify_text("%s: speed, m/s", name), "a run of 200 beats", reference, found.speed, 1e-4);
+    verify_relative(verify_text("%s: power, W", name), "a run of 200 beats", power, found.cost, 5e-4);
+    verify_zero(verify_text("%s: beats of the search", name), "at most a tenth of the run's", found.n_beats,
+                MOST_BEATS);
+    const int n = found.n_beats < MOST_BEATS ? found.n_beats : MOST_BEATS;
+    verify_show(verify_text("%s: beats to 1e-4, search", name), "all later ones are right, too",
+                beats_to_bound(n, found.to_bound, reference));
+    verify_show(verify_text("%s: beats to 1e-4, run", name), "all later ones are right, too",
+                beats_to_bound(BRUTE_BEATS, speed, reference));
+    const double before = speed[swimmer->decays_from] - reference, after = speed[swimmer->decays_to] - reference;
+    verify_value(verify_text("%s: largest multiplier", name), "by which the run's error falls in a beat",
+                 pow(after / before, 1.0 / (swimmer->decays_to - swimmer->decays_from)), found.multiplier, 0.01);
+    for (int i = 1; i <= 60; i++) {
+        verify_point(verify_text("steady_%s", name), "run", i, fmax(1e-7, fabs(speed[i] / reference - 1)));
+    }
+    for (int i = 1; i <= n; i++) {
+        verify_point(verify_text("steady_%s", name), "search", i, fmax(1e-7, fabs(found.to_bound[i] / reference - 1)));
+    }
+}
+
+#define TIME "format: 1\ntime: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+
+static const struct swimmer swimmers[] = {
+    {"default fish", VERIFY_SECOND TIME "fish: [{}]\n", 20, 30},
+    {"soft fish", VERIFY_SECOND TIME "fish: [{body: {modulus: 1e5}}]\n", 20, 30},
+    {"heavy fish", VERIFY_SECOND TIME "fish: [{body: {density: 4000}, drag: {tangential: 2e-3}}]\n", 40, 60},
+    {"fish with pressure",
+     VERIFY_SECOND TIME "wake: {lifetime: 8}\n"
+                        "fish: [{force: pressure, start: {speed: 0.5}, body: {width: 1}}]\n",
+     20, 30},
+    {"heaving plate",
+     VERIFY_SECOND TIME "fluid: {density: 1, viscosity: 4.536e-4}\nwake: {lifetime: 4, smoothing: 0.05}\n"
+                        "fish: [{length: 2, force: pressure, start: {speed: 4}, wave: {amplitude: 0, frequency: 0},\n"
+                        "  body: {profile: uniform, thickness: 0.1, width: 0.5, density: 1.5915, modulus: 1e5},\n"
+                        "  motion: {driven: all, surge: free, heave: 0.1, frequency: 1}}]\n",
+     4, 12},
+};
+
+void verify_steady(void) {
+    if (verify_is_fast()) return;
+    for (size_t i = 0; i < sizeof swimmers / sizeof *swimmers; i++) compare(&swimmers[i]);
+}
