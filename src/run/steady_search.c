@@ -66,6 +66,12 @@ static enum status refuse(const struct steady_search *search) {
                                "with motion.driven, or set fluid.shear to 0",
                                fish->name);
         }
+        if (steady_map_freedom(fish) == STEADY_SWIMS && school->walls.n > 0) {
+            return status_fail(STATUS_CASE,
+                               "%s swims freely beside a wall, and nothing holds its distance from it: hold it with "
+                               "motion.driven (surge: free leaves it its speed), or remove fluid.walls",
+                               fish->name);
+        }
         if (fish->control.n_waypoints > 0 || fish->control.n_headings > 1) {
             return status_fail(
                 STATUS_CASE, "%s is to change its heading: give it one desired_heading, and no waypoints", fish->name);

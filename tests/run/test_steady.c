@@ -116,6 +116,7 @@ static void what_can_have_no_steady_state_is_refused_with_the_reason(void **stat
     fails_with(SCHOOL_SECOND COARSE "fluid: {gust: {amplitude: 0.1, frequency: 1.5}}\nfish: [{" FISH "}]\n",
                STATUS_CASE, "1.5 gusts");
     fails_with(SCHOOL_SECOND COARSE "fluid: {shear: 0.1}\nfish: [{" FISH "}]\n", STATUS_CASE, "shear");
+    fails_with(SCHOOL_SECOND COARSE "fluid: {walls: [-1]}\nfish: [{" FISH "}]\n", STATUS_CASE, "beside a wall");
     fails_with(SCHOOL_SECOND COARSE "fish: [{" FISH ", control: {waypoints: [[9, 0]]}}]\n", STATUS_CASE, "waypoints");
     fails_with(SCHOOL_SECOND COARSE "defaults: {fish: {" FISH "}}\nfish: [{}, {start: {position: [3, 0]}}]\n",
                STATUS_CASE, "2 fish swim at speeds of their own");
