@@ -30,7 +30,10 @@ static void format_is_cdf5(void **state) {
 static void every_variable_of_the_table_is_there_with_its_dimensions_unit_and_name(void **state) {
     struct fixture *f = *state;
     f->values.output.forces = OUTPUT_FORCES_EDGES;
-    assert_int_equal(result_file_close(create(f), "complete"), STATUS_OK);
+    struct result_file *result;
+    assert_int_equal(result_file_create_steady(&result, f->path, 0, &f->values, EFFECTIVE, "", f->school, 10),
+                     STATUS_OK);
+    assert_int_equal(result_file_close(result, "complete"), STATUS_OK);
     const int file = open_to_read(f);
     for (int i = 0; i < result_table_n; i++) {
         const struct result_variable *variable = &result_table[i];
