@@ -17,7 +17,7 @@ cd "$folder"
 bench() {
     local name=$1
     shift
-    GOMP_SPINCOUNT=1000 OMP_PROC_BIND=true "$build/bench/$name" "$@"
+    GOMP_SPINCOUNT=4000 OMP_PROC_BIND=true "$build/bench/$name" "$@"
 }
 
 # Print the heading of a table.

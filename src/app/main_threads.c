@@ -10,7 +10,7 @@
 
 // of all functions that run before main, one of the first: OpenMP's has no priority
 __attribute__((constructor(101))) static void wait_briefly(void) {
-    if (!getenv("OMP_WAIT_POLICY")) setenv("GOMP_SPINCOUNT", "1000", 0);
+    if (!getenv("OMP_WAIT_POLICY")) setenv("GOMP_SPINCOUNT", "4000", 0);
 }
 
 // part k of n of the processors in a set: neighbours stay together

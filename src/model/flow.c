@@ -226,13 +226,31 @@ static enum status place_released(struct flow *flow, const struct state *state) 
     return STATUS_OK;
 }
 
-// what the free sheets are made of from now until the next event
-static enum status build_free_sheets(struct flow *flow, const struct state *state) {
-    for (int f = 0; f < flow->school->n_fish; f++) {
-        TRY(free_sheet_middles(&state->wake[f], &flow->middles[f]));
-        TRY(free_sheet_build(&flow->free_sheet[f], &flow->school->fish[f], flow->school, &state->wake[f]));
+// the free sheets at the flow's time, made again where the wakes have changed
+static enum status place_free_sheets(struct flow *flow, const struct state *state, int is_new) {
+    const struct school *const school = flow->school;
+    int n_placed = 0, n_failed = 0;
+    // a stretch is made from its ends, both at the beginning and at the end of the interval
+    for (int f = 0; f < school->n_fish; f++) n_placed += is_new ? 4 * state->wake[f].n_vortex : flow->free_sheet[f].n;
+    const int threads = parallel_threads(school->threads, school->n_fish, n_placed, PARALLEL_VORTICES);
+#pragma omp parallel for num_threads(threads) schedule(dynamic)
+    for (int f = 0; f < school->n_fish; f++) {
+        enum status status = STATUS_OK;
+        if (is_new) status = free_sheet_middles(&state->wake[f], &flow->middles[f]);
+        if (is_new && status == STATUS_OK) {
+            status = free_sheet_build(&flow->free_sheet[f], &school->fish[f], school, &state->wake[f]);
+        }
+        if (status == STATUS_OK) {
+            free_sheet_place(&flow->free_sheet[f], school, &state->wake[f], &flow->middles[f], state->t,
+                             flow->t - state->t);
+        } else {
+#pragma omp atomic
+            n_failed++;
+        }
     }
-    return STATUS_OK;
+    // a message stays with the thread that wrote it
+    return n_failed == 0 ? STATUS_OK
+                         : status_fail(STATUS_MEMORY, "out of memory: the free sheets of %d fish", n_failed);
 }
 
 // drop what was made for other wakes or another time: the released vortices move on known paths, so that at one time
@@ -244,12 +262,9 @@ static enum status go_to(struct flow *flow, const struct state *state, double t)
     if (!is_new && flow->t == t) return STATUS_OK;
     flow->has_sources = 0;
     flow->has_released = 0;
-    if (is_new && has_free_sheets(flow)) TRY(build_free_sheets(flow, state));
     flow->version = version;
     flow->t = t;
-    for (int f = 0; has_free_sheets(flow) && f < school->n_fish; f++) {
-        free_sheet_place(&flow->free_sheet[f], school, &state->wake[f], &flow->middles[f], state->t, t - state->t);
-    }
+    if (has_free_sheets(flow)) TRY(place_free_sheets(flow, state, is_new));
     if (flow->interpolated_version != version) flow->is_interpolated = 0;
     if (flow->is_interpolated) wake_interpolation_update(flow->interpolation, t);
     flow->has_sources = 1;
@@ -258,7 +273,7 @@ static enum status go_to(struct flow *flow, const struct state *state, double t)
 
 static enum status update_sources(struct flow *flow, const struct state *state, double t, const double *y) {
     TRY(go_to(flow, state, t));
-    int all_interpolated = 1;
+    flow->all_interpolated = 1;
     for (int f = 0; f < flow->school->n_fish; f++) {
         const struct fish *fish = &flow->school->fish[f];
         at_points(flow, f, y + fish->at.x, flow->x);
@@ -269,9 +284,9 @@ static enum status update_sources(struct flow *flow, const struct state *state, 
         flow->by_interpolation[f] =
             flow->is_interpolated &&
             wake_interpolation_is_valid(flow->interpolation, f, flow->x + first, flow->y + first);
-        all_interpolated &= flow->by_interpolation[f];
+        flow->all_interpolated &= flow->by_interpolation[f];
     }
-    return all_interpolated ? STATUS_OK : place_released(flow, state);
+    return STATUS_OK;
 }
 
 void flow_sum_exactly(struct flow *flow) {
@@ -401,6 +416,17 @@ static enum status sheets_by_tree(struct flow *flow, int threads, const struct i
     return images_induce_many(&flow->school->walls, flow->velocity_sum, &flow->sheet, tolerance, threads, all);
 }
 
+// interactions of an evaluation that depend on the unknowns
+static double work_of(const struct flow *flow) {
+    const int n_sources = flow->sheet.n + flow->nascent.n + (flow->has_released ? flow->released.n : 0);
+    double work = (double)flow->n_points * n_sources;
+    for (int f = 0; has_free_sheets(flow) && f < flow->school->n_fish; f++) {
+        // one with a smoothing of its own costs about two
+        work += 2.0 * flow->school->fish[f].n_control * flow->free_sheet[f].n;
+    }
+    return work;
+}
+
 static void evaluate(struct flow *flow, int with_gradient) {
     struct induced all = {flow->n_points, flow->x, flow->y, flow->u, flow->v, NULL, NULL, NULL};
     if (with_gradient) {
@@ -408,9 +434,7 @@ static void evaluate(struct flow *flow, int with_gradient) {
         all.u_y = flow->u_y;
         all.v_x = flow->v_x;
     }
-    const int n_sources = flow->sheet.n + flow->nascent.n + (flow->has_released ? flow->released.n : 0);
-    const int threads = parallel_threads(flow->school->threads, flow->n_chunks, (double)flow->n_points * n_sources,
-                                         PARALLEL_INTERACTIONS);
+    const int threads = parallel_threads(flow->school->threads, flow->n_chunks, work_of(flow), PARALLEL_INTERACTIONS);
     const double tolerance = flow->school->wake_tolerance;
     int by_tree = velocity_sum_by_tree(&flow->sheet, flow->n_points, tolerance);
     vortices_zero(&all);
@@ -419,20 +443,23 @@ static void evaluate(struct flow *flow, int with_gradient) {
         by_tree = 0;
         vortices_zero(&all);
     }
-#pragma omp parallel for num_threads(threads) schedule(static)
+#pragma omp parallel for num_threads(threads) schedule(dynamic)
     for (int c = 0; c < flow->n_chunks; c++) evaluate_chunk(flow, &flow->chunk[c], by_tree, &all);
 }
 
-enum status flow_velocity(struct flow *flow, const struct state *state, double t, const double *y) {
+static enum status sum(struct flow *flow, const struct state *state, double t, const double *y, int with_gradient) {
     TRY(update_sources(flow, state, t, y));
-    evaluate(flow, 0);
+    if (!flow->all_interpolated) TRY(place_released(flow, state));
+    evaluate(flow, with_gradient);
     return STATUS_OK;
 }
 
+enum status flow_velocity(struct flow *flow, const struct state *state, double t, const double *y) {
+    return sum(flow, state, t, y, 0);
+}
+
 enum status flow_gradient(struct flow *flow, const struct state *state, double t, const double *y) {
-    TRY(update_sources(flow, state, t, y));
-    evaluate(flow, 1);
-    return STATUS_OK;
+    return sum(flow, state, t, y, 1);
 }
 
 // the derivatives at n points from first on: column c of both components
@@ -706,7 +733,7 @@ static void others_at_wake(const struct flow *flow, int sheets_too, const struct
     const int n_chunks = parallel_n_chunks(all->n);
     const int threads =
         parallel_threads(flow->school->threads, n_chunks, (double)all->n * flow->sheet.n, PARALLEL_INTERACTIONS);
-#pragma omp parallel for num_threads(threads) schedule(static)
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 4)
     for (int chunk = 0; chunk < n_chunks; chunk++) {
         const struct induced at = vortices_targets(all, parallel_chunk(chunk, all->n));
         for (int i = 0; i < at.n; i++) flow_external(flow->school, flow->t, at.y[i], &at.u[i], &at.v[i]);
@@ -751,13 +778,13 @@ static enum status place_markers(struct flow *flow, const struct state *state) {
 // the free vortices that move: those of the queues, or markers
 static enum status place_moving(struct flow *flow, const struct state *state) {
     if (has_free_sheets(flow)) return place_markers(flow, state);
+    TRY(place_released(flow, state));
     memcpy(flow->wake_range, flow->released_range, (size_t)flow->school->n_fish * sizeof *flow->wake_range);
     return STATUS_OK;
 }
 
 enum status flow_at_wake(struct flow *flow, const struct state *state) {
     TRY(update_sources(flow, state, state->t, state->y));
-    TRY(place_released(flow, state));
     TRY(place_moving(flow, state));
     const struct vortices *const moving = has_free_sheets(flow) ? &flow->markers : &flow->released;
     TRY(reserve_at_wake(flow, moving->n));

@@ -63,6 +63,7 @@ struct flow {
     int is_interpolated;                      /* whether it was built, for the wakes of this version: */
     unsigned long interpolated_version;
     unsigned char *by_interpolation; /* whether it serves the fish where it is now        (n_fish) */
+    int all_interpolated;            /* whether it serves all of them */
     double *motion[4];               /* velocity and acceleration of the points           (n_points) */
 };
 

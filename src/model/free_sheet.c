@@ -142,6 +142,25 @@ static int is_untapered(const struct free_sheet *sheet, const struct fish *fish,
            fish->smoothing - sheet->smoothing[1][i] <= rounding * fish->smoothing;
 }
 
+/* Whether the middle of a stretch, whose ends are at[0] now and at[1] at the end of the interval, is so far from the
+ * tail that it is untapered whatever its direction: the taper is exp(-ratio) short of 1, and that of 31 is below the
+ * rounding above. */
+static int is_far_behind(const struct fish *fish, const struct wake *markers, double interval,
+                         const struct ends at[2]) {
+    const int newest = markers->n_vortex - 1;
+    const double length = fish->taper > fish->taper_beside ? fish->taper : fish->taper_beside;
+    double square = INFINITY;
+    for (int end = 0; end < 2; end++) {
+        const double tau = end * interval;
+        const double rx =
+            (at[end].newer[0] + at[end].older[0]) / 2 - markers->x[newest] - tau * markers->tail_velocity[0];
+        const double ry =
+            (at[end].newer[1] + at[end].older[1]) / 2 - markers->y[newest] - tau * markers->tail_velocity[1];
+        square = fmin(square, rx * rx + ry * ry);
+    }
+    return square > 31 * length * length;
+}
+
 enum status free_sheet_build(struct free_sheet *sheet, const struct fish *fish, const struct school *school,
                              const struct wake *markers) {
     const int n_stretches = markers->n_vortex - 1;
@@ -151,6 +170,7 @@ enum status free_sheet_build(struct free_sheet *sheet, const struct fish *fish, 
     struct ends at[2] = {{.stretch = -2}, {.stretch = -2}};
     for (int i = n_stretches - PAIRED - 1; i >= 0; i--) {
         for (int end = 0; end < 2; end++) find_ends(&at[end], markers, i, interval, end * interval);
+        if (is_far_behind(fish, markers, interval, at)) continue;
         add(sheet, fish, markers, interval, at, 0.5, 1);
         if (is_untapered(sheet, fish, sheet->n - 1)) sheet->n--;
     }

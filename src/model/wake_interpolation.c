@@ -112,15 +112,29 @@ static void predict(const struct wake_interpolation *interpolation, double tau, 
     }
 }
 
-enum status wake_interpolation_released(const struct school *school, const struct wake *wakes, double t, double tau,
-                                        struct vortices *released, struct range *wake) {
+// make room for the released vortices of all wakes
+static enum status reserve_released(const struct school *school, const struct wake *wakes, struct vortices *released,
+                                    struct range *wake) {
     vortices_clear(released);
     for (int g = 0; g < school->n_fish; g++) {
         wake[g] = (struct range){released->n, wakes[g].n_vortex};
         TRY(vortices_append(released, wake[g].n, school->fish[g].smoothing));
-        const int first = wake[g].first;
-        wake_at(&wakes[g], school, t, tau, released->x + first, released->y + first, released->circulation + first);
     }
+    return STATUS_OK;
+}
+
+// put those of one wake where they are tau after the event at time t
+static void place_released(const struct school *school, const struct wake *wake, double t, double tau, int first,
+                           const struct vortices *released) {
+    wake_at(wake, school, t, tau, released->x + first, released->y + first, released->circulation + first);
+}
+
+enum status wake_interpolation_released(const struct school *school, const struct wake *wakes, double t, double tau,
+                                        struct vortices *released, struct range *wake) {
+    TRY(reserve_released(school, wakes, released, wake));
+    const int threads = parallel_threads(school->threads, school->n_fish, released->n, PARALLEL_VORTICES);
+#pragma omp parallel for num_threads(threads) schedule(static)
+    for (int g = 0; g < school->n_fish; g++) place_released(school, &wakes[g], t, tau, wake[g].first, released);
     return STATUS_OK;
 }
 
@@ -130,10 +144,12 @@ static struct induced targets_at(const struct wake_interpolation *interpolation,
                             interpolation->u_y[i],        interpolation->v_x[i]};
 }
 
+// ---- the parts of a build; the loops are shared by the threads of the region that they are called in
+
 // every released vortex at every point at all times
-static void sum_directly(const struct wake_interpolation *interpolation, int threads) {
+static void sum_directly(const struct wake_interpolation *interpolation) {
     const int n_tasks = N_TIMES * parallel_n_chunks(interpolation->n_points);
-#pragma omp parallel for num_threads(threads) schedule(dynamic)
+#pragma omp for schedule(dynamic)
     for (int task = 0; task < n_tasks; task++) {
         const int i = task % N_TIMES;
         const struct induced all = targets_at(interpolation, i);
@@ -142,15 +158,9 @@ static void sum_directly(const struct wake_interpolation *interpolation, int thr
     }
 }
 
-// what the released vortices induce at all points at all times
-static enum status sum(const struct wake_interpolation *interpolation, int threads) {
+// the same by the tree, and the images of all in walls, one time after another
+static enum status sum_by_tree(const struct wake_interpolation *interpolation, int by_tree, int threads) {
     const double tolerance = interpolation->school->wake_tolerance;
-    for (int i = 0; i < N_TIMES; i++) {
-        const struct induced at = targets_at(interpolation, i);
-        vortices_zero(&at);
-    }
-    const int by_tree = velocity_sum_by_tree(&interpolation->released[0], interpolation->n_points, tolerance);
-    if (!by_tree) sum_directly(interpolation, threads);
     for (int i = 0; i < N_TIMES; i++) {
         const struct induced at = targets_at(interpolation, i);
         const struct vortices *const released = &interpolation->released[i];
@@ -172,26 +182,29 @@ static void subtract_near(struct wake_interpolation *interpolation, int f) {
     }
 }
 
+static void subtract_all_near(struct wake_interpolation *interpolation) {
+#pragma omp for schedule(dynamic)
+    for (int f = 0; f < interpolation->school->n_fish; f++) subtract_near(interpolation, f);
+}
+
 // the released vortices at the four times, and what holds for each wake
-static enum status place_wakes(struct wake_interpolation *interpolation, const struct wake *wakes, double t) {
+static void place_wakes(const struct wake_interpolation *interpolation, const struct wake *wakes) {
     const struct school *const school = interpolation->school;
     const struct vortices *const released = interpolation->released;
-    for (int i = 0; i < N_TIMES; i++) {
-        TRY(wake_interpolation_released(school, wakes, t, time_of[i] * school->interval, &interpolation->released[i],
-                                        interpolation->wake));
-    }
+#pragma omp for schedule(static)
     for (int g = 0; g < school->n_fish; g++) {
         const int first = interpolation->wake[g].first;
+        for (int i = 0; i < N_TIMES; i++) {
+            place_released(school, &wakes[g], interpolation->start, time_of[i] * school->interval, first, &released[i]);
+        }
         interpolation->bounds[g] = near_field_bound_wake(&wakes[g], school->interval, released[0].circulation + first,
                                                          released[END].circulation + first);
     }
-    return STATUS_OK;
 }
 
-// divide the wakes into the near and the far field of every fish
-static enum status find_near_fields(struct wake_interpolation *interpolation, const struct wake *wakes, int threads) {
-    const struct school *const school = interpolation->school;
-    const struct near_field_input input = {.school = school,
+// divide the wakes into the near and the far field of every fish; counts those for which there is no memory
+static void find_near_fields(const struct wake_interpolation *interpolation, const struct wake *wakes, int *n_failed) {
+    const struct near_field_input input = {.school = interpolation->school,
                                            .wakes = wakes,
                                            .points = interpolation->points,
                                            .motion = interpolation->motion,
@@ -200,35 +213,54 @@ static enum status find_near_fields(struct wake_interpolation *interpolation, co
                                            .strength_start = interpolation->released[0].circulation,
                                            .strength_end = interpolation->released[END].circulation,
                                            .n_released = interpolation->released[0].n};
-    enum status status = STATUS_OK;
-#pragma omp parallel for num_threads(threads) schedule(dynamic)
-    for (int f = 0; f < school->n_fish; f++) {
-        const enum status here = near_field_find(&interpolation->near_field[f], &input, f);
-        if (here != STATUS_OK) {
-#pragma omp atomic write
-            status = here;
-        }
+#pragma omp for schedule(dynamic)
+    for (int f = 0; f < interpolation->school->n_fish; f++) {
+        if (near_field_find(&interpolation->near_field[f], &input, f) == STATUS_OK) continue;
+#pragma omp atomic
+        (*n_failed)++;
     }
-    // a message stays with the thread that wrote it
-    if (status != STATUS_OK) return status_fail(status, "out of memory: the near vortices of %d fish", school->n_fish);
-    return STATUS_OK;
+}
+
+// the targets of the sums at the four times
+static void place_targets(const struct wake_interpolation *interpolation) {
+#pragma omp for schedule(static)
+    for (int i = 0; i < N_TIMES; i++) {
+        const struct induced at = targets_at(interpolation, i);
+        predict(interpolation, time_of[i] * interpolation->school->interval, interpolation->path[i]);
+        vortices_zero(&at);
+    }
 }
 
 static enum status build(struct wake_interpolation *interpolation, const struct wake *wakes, double t,
                          const struct wake_interpolation_points *points) {
     const struct school *const school = interpolation->school;
+    const struct vortices *const released = interpolation->released;
     const int n_points = interpolation->n_points;
     const double *const motion[6] = {points->x, points->y, points->u, points->v, points->a, points->b};
     for (int k = 0; k < 6; k++) memcpy(interpolation->motion[k], motion[k], (size_t)n_points * sizeof(double));
     interpolation->start = t;
-    TRY(place_wakes(interpolation, wakes, t));
-    const double work = (double)N_TIMES * n_points * interpolation->released[0].n;
+    for (int i = 0; i < N_TIMES; i++) {
+        TRY(reserve_released(school, wakes, &interpolation->released[i], interpolation->wake));
+    }
+    const double work = (double)N_TIMES * n_points * released[0].n;
     const int threads = parallel_threads(school->threads, n_points, work, PARALLEL_INTERACTIONS);
-    TRY(find_near_fields(interpolation, wakes, threads));
-    for (int i = 0; i < N_TIMES; i++) predict(interpolation, time_of[i] * school->interval, interpolation->path[i]);
-    TRY(sum(interpolation, threads));
-#pragma omp parallel for num_threads(threads) schedule(dynamic)
-    for (int f = 0; f < school->n_fish; f++) subtract_near(interpolation, f);
+    const int by_tree = velocity_sum_by_tree(&released[0], n_points, school->wake_tolerance);
+    const int is_whole = !by_tree && school->walls.n == 0;
+    int n_failed = 0;
+#pragma omp parallel num_threads(threads)
+    {
+        place_wakes(interpolation, wakes);
+        place_targets(interpolation);
+        find_near_fields(interpolation, wakes, &n_failed);
+        if (!by_tree) sum_directly(interpolation);
+        if (is_whole && n_failed == 0) subtract_all_near(interpolation);
+    }
+    // a message stays with the thread that wrote it
+    if (n_failed > 0) return status_fail(STATUS_MEMORY, "out of memory: the near vortices of %d fish", n_failed);
+    if (is_whole) return STATUS_OK;
+    TRY(sum_by_tree(interpolation, by_tree, threads));
+#pragma omp parallel num_threads(threads)
+    subtract_all_near(interpolation);
     return STATUS_OK;
 }
 

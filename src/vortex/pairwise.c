@@ -26,8 +26,9 @@ struct sorted {
     int *index;                  /* of each vortex among the sorted ones                (n_vortices) */
     struct tile *tile;           /*                                                     (n_tiles) */
     double *x, *y, *circulation; /*                                                     (n_sorted) */
-    double *u, *v;               /* the sum of each share                               (n_shares, n_sorted) */
-    void *memory;                /* holds the last five */
+    double *u, *v;               /* the sum of each share at the tiles that it has      (n_shares, n_sorted) */
+    unsigned char *has;          /* whether a share has a tile                          (n_shares, n_tiles) */
+    void *memory;                /* holds x to v */
 };
 
 static long n_pairs(int n_tiles) {
@@ -68,6 +69,7 @@ static void sort(struct sorted *sorted, int n_groups, const struct vortex_group 
 static void sorted_free(struct sorted *sorted) {
     free(sorted->index);
     free(sorted->tile);
+    free(sorted->has);
     free(sorted->memory);
 }
 
@@ -81,7 +83,8 @@ static enum status sorted_fill(struct sorted *sorted, const struct vortices *vor
     // the length is a multiple of BLOCK: after an aligned array the next is aligned
     const size_t n_sorted = (size_t)sorted->n_sorted, n_sums = n_sorted * (size_t)sorted->n_shares;
     sorted->memory = malloc((3 * n_sorted + 2 * n_sums) * sizeof(double) + ALIGNMENT);
-    if (!sorted->memory) goto no_memory;
+    sorted->has = calloc((size_t)sorted->n_shares * (size_t)sorted->n_tiles + 1, sizeof *sorted->has);
+    if (!sorted->memory || !sorted->has) goto no_memory;
     double *const aligned = (double *)(((uintptr_t)sorted->memory + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT);
     sorted->x = aligned;
     sorted->y = aligned + n_sorted;
@@ -115,30 +118,42 @@ static void add_pair(const struct sorted *sorted, const struct tile *a, const st
     kernel_add_velocity(b->n, x + j, y + j, a->n, x + i, y + i, g + i, a->smoothing, u + j, v + j);
 }
 
+// the sums of a share at a tile begin with 0
+static void begin_tile(const struct sorted *sorted, int share, int tile, double *u, double *v) {
+    unsigned char *const has = &sorted->has[(size_t)share * (size_t)sorted->n_tiles + (size_t)tile];
+    if (*has) return;
+    *has = 1;
+    memset(u + sorted->tile[tile].first, 0, (size_t)sorted->tile[tile].n * sizeof *u);
+    memset(v + sorted->tile[tile].first, 0, (size_t)sorted->tile[tile].n * sizeof *v);
+}
+
 static void sum_share(const struct sorted *sorted, int share) {
     const int n_tiles = sorted->n_tiles;
     const long begin = n_pairs(n_tiles) * share / sorted->n_shares;
     const long end = n_pairs(n_tiles) * (share + 1) / sorted->n_shares;
     double *const u = sorted->u + (size_t)share * (size_t)sorted->n_sorted;
     double *const v = sorted->v + (size_t)share * (size_t)sorted->n_sorted;
-    memset(u, 0, (size_t)sorted->n_sorted * sizeof *u);
-    memset(v, 0, (size_t)sorted->n_sorted * sizeof *v);
     long pair = 0;
     for (int a = 0; a < n_tiles; a++) {
         for (int b = a; b < n_tiles; b++, pair++) {
-            if (pair >= begin && pair < end) add_pair(sorted, &sorted->tile[a], &sorted->tile[b], u, v);
+            if (pair < begin || pair >= end) continue;
+            begin_tile(sorted, share, a, u, v);
+            begin_tile(sorted, share, b, u, v);
+            add_pair(sorted, &sorted->tile[a], &sorted->tile[b], u, v);
         }
     }
 }
 
-// add the sums of all shares at one tile into the first
-static void add_shares(const struct sorted *sorted, const struct tile *tile) {
-    double *const u = sorted->u + tile->first, *const v = sorted->v + tile->first;
-    for (int share = 1; share < sorted->n_shares; share++) {
-        const size_t offset = (size_t)share * (size_t)sorted->n_sorted;
-        for (int i = 0; i < tile->n; i++) {
-            u[i] += u[offset + (size_t)i];
-            v[i] += v[offset + (size_t)i];
+// add the sums of all shares at one tile, in their order, into the velocities of its vortices, in the first share
+static void add_shares(const struct sorted *sorted, int tile) {
+    const size_t n_sorted = (size_t)sorted->n_sorted, n_tiles = (size_t)sorted->n_tiles;
+    double *const u = sorted->u + sorted->tile[tile].first, *const v = sorted->v + sorted->tile[tile].first;
+    begin_tile(sorted, 0, tile, sorted->u, sorted->v);
+    for (size_t share = 1; share < (size_t)sorted->n_shares; share++) {
+        if (!sorted->has[share * n_tiles + (size_t)tile]) continue;
+        for (size_t i = 0; i < (size_t)sorted->tile[tile].n; i++) {
+            u[i] += u[share * n_sorted + i];
+            v[i] += v[share * n_sorted + i];
         }
     }
 }
@@ -152,7 +167,7 @@ enum status pairwise_add_velocity(const struct vortices *vortices, int threads, 
 #pragma omp for schedule(dynamic)
             for (int share = 0; share < sorted.n_shares; share++) sum_share(&sorted, share);
 #pragma omp for nowait
-            for (int tile = 0; tile < sorted.n_tiles; tile++) add_shares(&sorted, &sorted.tile[tile]);
+            for (int tile = 0; tile < sorted.n_tiles; tile++) add_shares(&sorted, tile);
         }
         for (int i = 0; i < sorted.n_vortices; i++) {
             u[i] += sorted.u[sorted.index[i]];

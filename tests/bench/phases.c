@@ -76,9 +76,11 @@ TIMED(LINEAR, linear_solve, (struct linear * linear, const double *b, double *x)
 enum status __real_flow_at_wake(struct flow *flow, const struct state *state);
 enum status __wrap_flow_at_wake(struct flow *flow, const struct state *state);
 enum status __wrap_flow_at_wake(struct flow *flow, const struct state *state) {
-    const double since = now(), n = flow->released.n;
+    const double since = now();
     const enum status status = __real_flow_at_wake(flow, state);
     add_time(WAKE, since);
+    double n = 0;
+    for (int f = 0; f < flow->school->n_fish; f++) n += state->wake[f].n_vortex;
     seen.interactions += n * (n + flow->sheet.n + flow->n_points);
     return status;
 }
@@ -236,8 +238,9 @@ static double school(int n_fish, int threads) {
     const double wall = now() - since, cpu = cpu_time() - cpu_since;
     char name[32];
     snprintf(name, sizeof name, "%d fish", n_fish);
-    print_row(name, threads, simulation->residual->flow->released.n, EVENTS, values.school.shedding_interval, wall,
-              cpu);
+    int n_vortices = 0;
+    for (int f = 0; f < n_fish; f++) n_vortices += simulation->state->wake[f].n_vortex;
+    print_row(name, threads, n_vortices, EVENTS, values.school.shedding_interval, wall, cpu);
     simulate_free(simulation);
     case_free(&values);
     return 1e3 * wall / EVENTS;
