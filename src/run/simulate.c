@@ -58,18 +58,26 @@ static void free_solvers(struct simulation *simulation) {
     simulation->residual = NULL;
 }
 
-static enum status start(struct simulation *simulation, const struct case_values *values) {
+static enum status start(struct simulation *simulation, const struct case_values *values,
+                         const volatile sig_atomic_t *stop) {
+    simulation->stop = stop;
     TRY(fish_school_create(&simulation->school, &values->school));
     TRY(state_create(&simulation->state, simulation->school));
     TRY(create_equations(simulation));
     TRY(diagnostics_create(&simulation->diagnostics, simulation->school));
+    initial_conditions_listen(simulation->consistent, stop);
     TRY(event_start(simulation->state, simulation->residual, simulation->consistent));
     return create_integrator(simulation);
 }
 
-enum status simulate_create(struct simulation **simulation, const struct case_values *values) {
+enum status simulate_start(struct simulation **simulation, const struct case_values *values,
+                           const volatile sig_atomic_t *stop) {
     TRY(begin(simulation, values));
-    return give_up(simulation, start(*simulation, values));
+    return give_up(simulation, start(*simulation, values, stop));
+}
+
+enum status simulate_create(struct simulation **simulation, const struct case_values *values) {
+    return simulate_start(simulation, values, NULL);
 }
 
 enum status simulate_renew(struct simulation *simulation) {
@@ -131,10 +139,11 @@ enum status simulate_step(struct simulation *simulation) {
     const enum status advanced = simulation->integrator->advance(simulation->solver, next, simulation->stop);
     TRY(refuse_contact(simulation));
     TRY(advanced);
+    int jumped = 0;
+    initial_conditions_listen(simulation->consistent, simulation->stop);
+    TRY(event_next(state, simulation->residual, simulation->consistent, &jumped));
     // a restart has no last step
     simulation->integrator->count(simulation->solver, &simulation->totals);
-    int jumped = 0;
-    TRY(event_next(state, simulation->residual, simulation->consistent, &jumped));
     return jumped ? simulation->integrator->restart(simulation->solver) : STATUS_OK;
 }
 

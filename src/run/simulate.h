@@ -8,6 +8,7 @@
 #include "base/status.h"
 #include "case/case.h"
 #include "model/diagnostics.h"
+#include "solver/initial_conditions.h"
 #include "solver/integrator.h"
 
 struct result_row; /* output/result_table.h */
@@ -23,12 +24,15 @@ struct simulation {
     void *solver;
     struct integrator_options options;
     struct integrator_counts totals;   /* up to the last event, with the size of the step that ended there */
-    const volatile sig_atomic_t *stop; /* simulate_step stops once this is not 0; NULL at first */
+    const volatile sig_atomic_t *stop; /* simulate_step stops once this is not 0; or NULL */
     long n_events;                     /* of the whole run, without the one at the start */
     double started;                    /* wall clock, s; of a run that was taken up again: less what it had taken */
 };
 
-/* Build everything and do the event at t = 0. Fails with STATUS_CASE, STATUS_MEMORY or STATUS_SOLVER. */
+/* Build everything and do the event at t = 0, and stop once *stop is not 0; stop may be NULL. Fails with STATUS_CASE,
+ * STATUS_MEMORY, STATUS_SOLVER or STATUS_STOPPED. simulate_create does not stop. */
+enum status simulate_start(struct simulation **simulation, const struct case_values *values,
+                           const volatile sig_atomic_t *stop);
 enum status simulate_create(struct simulation **simulation, const struct case_values *values);
 
 /* What can keep a run from its start: refuses a place where no result can be written, or one that exists and must not

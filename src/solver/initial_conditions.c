@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "solver/integrator.h"
 #include "solver/sundials_adapter.h"
 
 /* Rows are scaled to order one; Newton's method has converged at this norm, or when its steps no longer change the
@@ -32,6 +33,7 @@ struct initial_conditions {
     double *value;       /* residual of the last evaluation                                             (n) */
     double *start;       /* initial guess and solution of KINSOL                                        (n) */
     enum status failure; /* of the last callback */
+    const volatile sig_atomic_t *stop;
 
     SUNContext context;
     N_Vector solution, solution_scales, value_scales;
@@ -67,7 +69,8 @@ static int algebraic_value(N_Vector solution, N_Vector value, void *data) {
     struct initial_conditions *const c = data;
     double *const to = N_VGetArrayPointer(value);
     take_algebraic(c, N_VGetArrayPointer(solution), c->y);
-    c->failure = residual_evaluate(c->residual, c->t, c->y, c->zero, c->value);
+    c->failure = integrator_ask(c->stop);
+    if (c->failure == STATUS_OK) c->failure = residual_evaluate(c->residual, c->t, c->y, c->zero, c->value);
     for (int i = 0; i < c->n; i++) to[i] = c->kind[i] > 0 ? 0 : c->value[i];
     return c->failure;
 }
@@ -217,6 +220,10 @@ static void set_rates(const struct initial_conditions *c, double t, const double
     }
 }
 
+void initial_conditions_listen(struct initial_conditions *c, const volatile sig_atomic_t *stop) {
+    c->stop = stop;
+}
+
 enum status initial_conditions_solve(struct initial_conditions *c, double t, double *y, double *yp) {
     c->t = t;
     memcpy(c->y, y, (size_t)c->n * sizeof *y);
@@ -228,7 +235,7 @@ enum status initial_conditions_solve(struct initial_conditions *c, double t, dou
     long iterations = 0;
     KINGetNumNonlinSolvIters(c->kinsol, &iterations);
     c->iterations += iterations;
-    if (c->failure == STATUS_MEMORY) return STATUS_MEMORY;
+    if (c->failure == STATUS_MEMORY || c->failure == STATUS_STOPPED) return c->failure;
     if (code < 0) return failed(c, code);
     // the fluid's velocity at the solution is needed for the rates, and for the diagnostics
     take_algebraic(c, c->start, c->y);

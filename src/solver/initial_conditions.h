@@ -3,6 +3,8 @@
 #ifndef INITIAL_CONDITIONS_H
 #define INITIAL_CONDITIONS_H
 
+#include <signal.h>
+
 #include "base/status.h"
 #include "model/residual.h"
 
@@ -15,9 +17,12 @@ enum status initial_conditions_create(struct initial_conditions **solver, struct
 void initial_conditions_free(struct initial_conditions *solver);
 
 /* Solve for the algebraic unknowns of y at time t [s], and set the rates yp of the differential ones; both arrays are
- * (n_unknowns). Which unknowns are algebraic is looked up in the residual each time. Fails with STATUS_SOLVER or
- * STATUS_MEMORY; y and yp are then unchanged. */
+ * (n_unknowns). Which unknowns are algebraic is looked up in the residual each time. Fails with STATUS_SOLVER,
+ * STATUS_MEMORY or STATUS_STOPPED; y and yp are then unchanged. */
 enum status initial_conditions_solve(struct initial_conditions *solver, double t, double *y, double *yp);
+
+/* From now on each iteration looks at *stop and, once it is not 0, ends the solution; NULL: never. */
+void initial_conditions_listen(struct initial_conditions *solver, const volatile sig_atomic_t *stop);
 
 /* Newton iterations so far. */
 long initial_conditions_iterations(const struct initial_conditions *solver);

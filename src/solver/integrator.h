@@ -8,7 +8,6 @@
 #include "base/status.h"
 #include "model/residual.h"
 #include "model/state.h"
-#include "solver/initial_conditions.h"
 
 /* Totals since the start, and the last step. */
 struct integrator_counts {

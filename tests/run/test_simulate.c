@@ -1,10 +1,13 @@
 /* test_simulate.c: whole short runs: symmetries of the model, events, failures, result files. */
+#include <kinsol/kinsol.h>
 #include <netcdf.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
+#include "output/checkpoint.h"
+#include "run/checkpoints.h"
 #include "run/simulate_run.h"
 #include "school.h"
 
@@ -257,6 +260,54 @@ static void a_signal_stops_a_run_at_the_next_event(void **state) {
     assert_non_null(strstr(status_message(), "t = 0.1"));
 }
 
+// a signal comes as KINSOL begins for this time, from 0; -1: none comes
+static int n_until_signal = -1;
+
+int __real_KINSol(void *kinsol, N_Vector solution, int strategy, N_Vector solution_scale, N_Vector value_scale);
+int __wrap_KINSol(void *kinsol, N_Vector solution, int strategy, N_Vector solution_scale, N_Vector value_scale);
+int __wrap_KINSol(void *kinsol, N_Vector solution, int strategy, N_Vector solution_scale, N_Vector value_scale) {
+    if (n_until_signal >= 0 && n_until_signal-- == 0) stop = 1;
+    return __real_KINSol(kinsol, solution, strategy, solution_scale, value_scale);
+}
+
+static void a_signal_within_the_event_of_a_run_leads_back_to_the_last_one(void **state) {
+    static const char text[] = TIME "wake: {shedding: impulsive}\nfish: [{}]\n";
+    char *const path = checkpoints_path(*state);
+    assert_non_null(path);
+    struct simulation *const undisturbed = school_simulation(text);
+    // three solutions at the start, two at each event: in the first and in the second one of the third and fourth event
+    for (int event = 2; event <= 3; event++) {
+        school_run(undisturbed, 0.02 * event);
+        const struct simulate_options options = {.path = *state, .overwrite = 1, .command = "test", .stop = &stop};
+        stop = 0;
+        n_until_signal = 3 + 2 * event + event % 2;
+        run_into(text, &options, STATUS_STOPPED);
+        n_until_signal = -1;
+        struct checkpoint checkpoint;
+        school_ok(checkpoint_read(&checkpoint, path));
+        NEAR(checkpoint.t, undisturbed->state->t, 0, 0);
+        assert_memory_equal(&checkpoint.totals, &undisturbed->totals, sizeof checkpoint.totals);
+        checkpoint_free(&checkpoint);
+        assert_int_equal(unlink(path), 0);
+    }
+    simulate_free(undisturbed);
+    free(path);
+}
+
+static void a_signal_during_the_start_leaves_nothing(void **state) {
+    const struct simulate_options options = {.path = *state, .overwrite = 1, .command = "test", .stop = &stop};
+    char *const path = checkpoints_path(*state);
+    assert_non_null(path);
+    unlink(path);
+    stop = 0;
+    n_until_signal = 1;
+    run_into(TIME "wake: {shedding: sheet}\nfish: [{}]\n", &options, STATUS_STOPPED);
+    n_until_signal = -1;
+    assert_non_null(strstr(status_message(), "stopped by a signal before its start was done"));
+    assert_int_equal(access(path, F_OK), -1);
+    free(path);
+}
+
 static void a_failing_run_says_when_and_keeps_its_file(void **state) {
     const char *const path = *state;
     const struct simulate_options options = {.path = path, .overwrite = 1, .command = "test"};
@@ -276,6 +327,9 @@ static int make_path(void **state) {
 }
 
 static int remove_path(void **state) {
+    char *const checkpoint = checkpoints_path(*state);
+    if (checkpoint) unlink(checkpoint);
+    free(checkpoint);
     return unlink(*state);
 }
 
@@ -319,6 +373,8 @@ int main(void) {
         cmocka_unit_test(a_run_tells_its_progress_at_every_event),
         cmocka_unit_test(the_wake_is_written_at_its_own_interval_and_at_the_end),
         cmocka_unit_test(a_signal_stops_a_run_at_the_next_event),
+        cmocka_unit_test(a_signal_within_the_event_of_a_run_leads_back_to_the_last_one),
+        cmocka_unit_test(a_signal_during_the_start_leaves_nothing),
         cmocka_unit_test(a_failing_run_says_when_and_keeps_its_file),
         cmocka_unit_test(a_result_that_cannot_be_written_is_told_before_the_start),
     };
