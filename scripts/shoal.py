@@ -450,8 +450,9 @@ class _Swimmer:
             unknown = [name for name in reward if name not in self._EARNED]
             if unknown:
                 raise CaseError(f"{unknown[0]!r} is none of {', '.join(self._EARNED)}")
-        if goal is None and "goal" in [*self.observations, *(() if callable(reward) else reward)]:
-            raise CaseError("'goal' needs a goal: (x, y), or (fish, (x, y)) for a place beside a fish")
+        for name in [*self.observations, *(() if callable(reward) else reward)]:
+            if goal is None and name in ("goal", "closing"):
+                raise CaseError(f"{name!r} needs a goal: (x, y), or (fish, (x, y)) for a place beside a fish")
 
     # -- spaces
 
@@ -484,6 +485,7 @@ class _Swimmer:
 
     def _mark(self):
         self._before = self.run.time, np.array(self.com), float(self.run["actuation_work"][self.fish])
+        self._goal_before = None if self.goal is None else self.to_goal()
 
     # -- what it sees
 
@@ -510,6 +512,10 @@ class _Swimmer:
         own = self._own(self.to_goal())
         return [*own, np.hypot(*own)]
 
+    def _see_closing(self):
+        time = self.run.time - self._before[0]
+        return self._own((self._goal_before - self.to_goal()) / time) if time > 0 else (0.0, 0.0)
+
     def _see_heading(self):
         angle = np.radians(float(self.run["heading"][self.fish]))
         return np.cos(angle), np.sin(angle)
@@ -534,6 +540,7 @@ class _Swimmer:
         "muscle": (lambda self: self.run["natural_curvature"][self.fish, : self.n_joints], 20),
         "flow": (_see_flow, 20),
         "goal": (_see_goal, 1000),
+        "closing": (_see_closing, 20),
         "neighbours": (_see_neighbours, 1000),
         "action": (lambda self: self.action, 20),
     }
@@ -626,7 +633,7 @@ class SwimEnv(_Swim, _from("gymnasium", "Env", object)):
 
     case, assignments: as for Run; the episode ends (is truncated) with time.end. fish: the one that learns, by number
     or name. actions: names of bias, amplitude, frequency, or a dict with bounds {"bias": (-0.3, 0.3)}. observations:
-    names of velocity, heading, curvature, muscle, flow, goal, neighbours, action. reward: weights of speed,
+    names of velocity, heading, curvature, muscle, flow, goal, closing, neighbours, action. reward: weights of speed,
     cost_of_transport, course, goal, or a function of the swimmer. goal: a point (x, y), m, or ("leader", (1.2, 0)), a
     place beside a fish. course: desired course, degree. act_every: time between actions, s. vary: bounds of
     assignments that are drawn at each reset, {"fish[1].start.heading": (170, 190)}. far: distance from the goal, in
