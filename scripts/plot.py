@@ -4,7 +4,8 @@
     plot.py [swim] RUN.nc [PICTURE]    bodies, wakes and the paths of the fish, at the end or at --times 1 2 3
     plot.py gait   RUN.nc [PICTURE]    the shapes that the muscle asks for, over the last beat
     plot.py study  STUDY.nc [PICTURE]  what a study or a comparison of methods calls for: orders, costs, maps
-    plot.py time   RUN.nc [PICTURE]    speed, heading, power and forces over time; with --audit the energy audit too
+    plot.py time   RUN.nc [PICTURE]    speed, heading, power and forces over time; with --audit the energy audit too;
+                                       --each speed: a panel per fish
     plot.py forces RUN.nc [PICTURE]    forces and powers by name over time, one column per fish
     plot.py pressure RUN.nc [PICTURE]  the jump of the pressure along the bodies over the last beat (force: pressure)
     plot.py field  FIELD.nc [PICTURE]  vorticity (--speed: speed) and streamlines, from a file of `shoal field`
@@ -144,7 +145,17 @@ def panels(n, n_rows, n_columns, height):
     )
     for axes in grid.flat[n:]:
         axes.set_visible(False)
+    for axes in grid.flat[max(n - n_columns, 0) : n]:  # the lowest of their columns
+        axes.tick_params(labelbottom=True)
     return figure, list(grid.flat[:n])
+
+
+def label_panels(all_axes, n_columns, x, y):
+    """The labels of panels that share their axes: x below the lowest of each column, y left of the middle row."""
+    for axes in all_axes[-n_columns:]:
+        axes.set_xlabel(x)
+    n_rows = math.ceil(len(all_axes) / n_columns)
+    all_axes[(n_rows - 1) // 2 * n_columns].set_ylabel(y)
 
 
 def place_clock(snapshot, row, window):
@@ -226,11 +237,23 @@ def beat_rows(results, fish, n):
     return rows[:: max(1, round(rows.size / n))]
 
 
+def chosen(results, options, most=None):
+    """The fish that --fish names, all without it; most: more than these are too many for one picture."""
+    unknown = [name for name in options.fish or [] if name not in results.names]
+    if unknown:
+        raise UsageError(f"--fish {unknown[0]}: there is {', '.join(results.names)}")
+    fish = [results.names.index(name) for name in options.fish or results.names]
+    if most and len(fish) > most:
+        raise UsageError(f"{len(fish)} fish are too many for this picture: choose up to {most} with --fish")
+    return fish
+
+
 def plot_gait(results, options):
     """The reference shapes of each fish over its last beat, one panel per fish."""
-    n_columns = min(results.n_fish, 3)
-    figure, all_axes = panels(results.n_fish, math.ceil(results.n_fish / n_columns), n_columns, 4.5 / n_columns)
-    for fish, axes in enumerate(all_axes):
+    of = chosen(results, options)
+    n_columns = min(len(of), 3)
+    figure, all_axes = panels(len(of), math.ceil(len(of) / n_columns), n_columns, 4.5 / n_columns)
+    for fish, axes in zip(of, all_axes):
         rows = beat_rows(results, fish, options.shapes)
         for row in rows:
             curvature = results.read("natural_curvature", row)[fish, : results.n_nodes[fish] - 2]
@@ -238,9 +261,7 @@ def plot_gait(results, options):
             axes.plot(*reference_shape(curvature).T, color=PHASES(phase), lw=1, marker="o", ms=1.8)
         axes.set_title(results.names[fish], size=9)
         axes.set_aspect("equal")
-        axes.set_xlabel("x / body length")
-        axes.set_ylabel("y / body length")
-        axes.label_outer()
+    label_panels(all_axes, n_columns, "x / body length", "y / body length")
     scale = matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(0, 1), PHASES)
     figure.colorbar(scale, ax=all_axes, label="time / period", aspect=15, pad=0.02)
     return figure
@@ -256,20 +277,31 @@ FORCES = {
 }
 
 
-def draw_forces(axes, results):
-    """The forces by name along the heading, their sum without the constraint (thrust) as full line."""
-    angle = np.radians(results["heading"])
-    styles = {"thrust": "-"}
-    along = {"thrust": results["thrust"]}
-    for name, style in FORCES.items():
-        if name not in results.data.variables or not (force := results[name]).any():
-            continue  # an old file, or a force that this fish does not have
-        styles[name] = style
-        along[name] = np.cos(angle) * force[:, :, 0] + np.sin(angle) * force[:, :, 1]
-    for name, style in styles.items():
-        for f, values in enumerate(along[name].T):
-            axes.plot(results.time, values, color=LINES[f % len(LINES)], lw=1 if name == "thrust" else 0.7, ls=style)
-    return [Line2D([], [], color="black", lw=1, ls=s, label=n.replace("_force", "")) for n, s in styles.items()]
+def last_beats(results, n):
+    """The rows of the last n beats of the slowest fish; all where n is 0, or where nothing beats."""
+    frequency = results["frequency"]
+    beating = frequency[frequency > 0]
+    if n == 0 or beating.size == 0:
+        return np.arange(results.time.size)
+    return np.flatnonzero(results.time >= results.time[-1] - (n + 1e-6) / beating.min())
+
+
+def present(results, names, rows, fish):
+    """Those of the named variables that are in the file and not zero all the time, for some rows of one fish."""
+    values = {name: results[name][rows, fish] for name in names if name in results.data.variables}
+    return {name: value for name, value in values.items() if np.any(np.nan_to_num(value))}
+
+
+def draw_forces(axes, results, fish, rows):
+    """The forces on a fish by name along its heading, their sum without the constraint (thrust) as full line."""
+    time, angle = results.time[rows], np.radians(results["heading"][rows, fish])
+    lines = {"thrust": axes.plot(time, results["thrust"][rows, fish], color="black", lw=1)[0]}
+    for name, force in present(results, FORCES, rows, fish).items():
+        along = np.cos(angle) * force[:, 0] + np.sin(angle) * force[:, 1]
+        lines[name] = axes.plot(time, along, color="black", lw=0.7, ls=FORCES[name])[0]
+    for name, line in lines.items():
+        line.set_label(name.removesuffix("_force"))
+    return list(lines.values())
 
 
 def draw_lines(axes, time, values, labels):
@@ -286,8 +318,33 @@ def draw_lines(axes, time, values, labels):
     ]
 
 
+def plot_each(results, options):
+    """One variable over time, a panel per fish: its line in black before those of the others in grey."""
+    of, values, drawn = chosen(results, options), results[options.each], last_beats(results, options.beats)
+    if values.shape != (results.time.size, results.n_fish):
+        raise UsageError(f"--each {options.each}: not one number per fish and time, such as speed or heading")
+    time, values = results.time[drawn], values[drawn]
+    n_columns = min(len(of), 4)
+    n_rows = math.ceil(len(of) / n_columns)
+    figure, all_axes = panels(len(of), n_rows, n_columns, 1.4 if n_rows > 1 else 2.5)
+    for fish, axes in zip(of, all_axes):
+        axes.plot(time, values[:, [f for f in of if f != fish]], color="#bbbbbb", lw=0.5)
+        axes.plot(time, values[:, fish], color="black", lw=1.1)
+        axes.set_title(results.names[fish], size=9)
+        axes.grid(lw=0.3, color=GRID)
+        axes.margins(x=0)
+    unit = getattr(results.data.variables[options.each], "units", "1")
+    what = options.each.replace("_", " ") + (f" [{unit}]" if unit != "1" else "")
+    label_panels(all_axes, n_columns, "time [s]", what)
+    return figure
+
+
 def plot_time(results, options):
     """Speed, heading, power and forces over time in stacked panels, one line per fish."""
+    if options.each:
+        return plot_each(results, options)
+    of, drawn = chosen(results, options), last_beats(results, options.beats)
+    time, labels = results.time[drawn], [results.names[fish] for fish in of]
     rows = [("speed", "speed [m/s]"), ("heading", "heading [degree]"), ("actuation_power", "muscle power [W]")]
     if options.audit:
         rows.append(("energy_audit", "energy audit [J]"))
@@ -299,23 +356,23 @@ def plot_time(results, options):
     forces = []
     for axes, (variable, label) in zip(stack, rows):
         if variable:
-            fish = draw_lines(axes, results.time, results[variable], results.names)
-        elif results.n_fish == 1:
-            forces = draw_forces(axes, results)
+            fish = draw_lines(axes, time, results[variable][drawn][:, of], labels)
+        elif len(of) == 1:
+            forces = draw_forces(axes, results, of[0], drawn)
         else:
-            draw_lines(axes, results.time, results["thrust"], results.names)
+            draw_lines(axes, time, results["thrust"][drawn][:, of], labels)
             label = "thrust [N]"
         axes.set_ylabel(label)
         axes.grid(lw=0.3, color=GRID)
         axes.margins(x=0)
-    desired = results["desired_heading"]
+    desired = results["desired_heading"][drawn][:, of]
     one = np.allclose(desired, desired[:, :1], atol=1e-6, equal_nan=True)  # for all: drawn once
     for values in desired[:, :1].T if one else desired.T:
-        stack[1].plot(results.time, values, color="#888888", lw=0.8, zorder=1)
+        stack[1].plot(time, values, color="#888888", lw=0.8, zorder=1)
     stack[-1].set_xlabel("time [s]")
     figure.align_ylabels(stack)
     asked = Line2D([], [], color="#888888", lw=0.8, label="desired heading")
-    add_legend(stack[0], [*(fish if results.n_fish > 1 else []), asked])
+    add_legend(stack[0], [*(fish if len(of) > 1 else []), asked])
     if forces:
         add_legend(stack[-1], forces)
     return figure
@@ -337,33 +394,19 @@ POWERS = {
 }
 
 
-def last_beats(results, n):
-    """The rows of the last n beats of the slowest fish; all where n is 0, or where nothing beats."""
-    frequency = results["frequency"]
-    beating = frequency[frequency > 0]
-    if n == 0 or beating.size == 0:
-        return np.arange(results.time.size)
-    return np.flatnonzero(results.time >= results.time[-1] - (n + 1e-6) / beating.min())
-
-
-def present(results, names, rows, fish):
-    """Those of the named variables that are in the file and not zero all the time, for some rows of one fish."""
-    values = {name: results[name][rows, fish] for name in names if name in results.data.variables}
-    return {name: value for name, value in values.items() if np.any(np.nan_to_num(value))}
-
-
 def plot_forces(results, options):
     """Forces ahead and to the left, and powers, by name over the last beats, one column per fish."""
+    of = chosen(results, options, most=4)
     rows = last_beats(results, options.beats)
     time = results.time[rows]
     labels = ["force ahead [N]", "force to the left [N]", "power [W]"]
     figure, grid = pyplot.subplots(
-        3, results.n_fish, squeeze=False, sharex=True, sharey="row", layout="constrained", figsize=(WIDTH, 6)
+        3, len(of), squeeze=False, sharex=True, sharey="row", layout="constrained", figsize=(WIDTH, 6)
     )
     figure.get_layout_engine().set(h_pad=0.13)  # room for a legend above a panel
     lines = {}  # the same line for the same name in all columns
     colour = {name: LINES[i % len(LINES)] for table in (FORCES, POWERS) for i, name in enumerate(table)}
-    for fish, column in enumerate(grid.T):
+    for fish, column in zip(of, grid.T):
         angle = np.radians(results["heading"][rows, fish])
         axis = [(np.cos(angle), np.sin(angle)), (-np.sin(angle), np.cos(angle))]
         for axes, (x, y) in zip(column, axis):
@@ -372,7 +415,7 @@ def plot_forces(results, options):
                 lines[name] = axes.plot(time, along, color=colour[name], lw=0.9, ls=FORCES[name])[0]
         for name, power in present(results, POWERS, rows, fish).items():
             lines[name] = column[2].plot(time, power, color=colour[name], lw=0.9, ls=POWERS[name])[0]
-        column[0].set_title(names(results)[fish], size=9, loc="right")
+        column[0].set_title(names(results)[fish], size=9, pad=18)  # above the legend
         column[2].set_xlabel("time [s]")
     for axes, label in zip(grid[:, 0], labels):
         axes.set_ylabel(label)
@@ -391,13 +434,14 @@ def plot_forces(results, options):
 
 def plot_pressure(results, options):
     """The jump of the pressure along each body at some times of its last beat, one panel per fish."""
-    n_columns = min(results.n_fish, 2)
-    figure, all_axes = panels(results.n_fish, math.ceil(results.n_fish / n_columns), n_columns, 6 / (n_columns + 1))
+    of = chosen(results, options)
+    n_columns = min(len(of), 2)
+    figure, all_axes = panels(len(of), math.ceil(len(of) / n_columns), n_columns, 6 / (n_columns + 1))
     jump, arc = results["pressure"], results["control_arc"]
     if not np.isfinite(jump).any():
         raise FileError(f"{results.path}: no fish has force: pressure")
     drawn = []
-    for fish, axes in enumerate(all_axes):
+    for fish, axes in zip(of, all_axes):
         rows = beat_rows(results, fish, options.shapes)
         along = arc[fish] / results["body_length"][fish]
         for row in rows:
@@ -405,9 +449,9 @@ def plot_pressure(results, options):
             axes.plot(along, jump[row, fish], color=PHASES(phase), lw=0.9)
         drawn.append(np.abs(jump[rows, fish][:, along > NEAR_NOSE]))
         axes.set_title(names(results)[fish], size=9)
-        axes.set(xlim=(0, 1), xlabel="distance from the nose / body length", ylabel="pressure, left less right [Pa]")
+        axes.set_xlim(0, 1)
         axes.grid(lw=0.3, color=GRID)
-        axes.label_outer()
+    label_panels(all_axes, n_columns, "distance from the nose / body length", "pressure, left less right [Pa]")
     most = 1.1 * max(np.nanmax(values) for values in drawn)
     all_axes[0].set_ylim(-most, most)
     scale = matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(0, 1), PHASES)
@@ -480,10 +524,16 @@ def parse(arguments):
     )
     for kind, what in (("gait", "shapes"), ("pressure", "times")):
         options[kind].add_argument("--shapes", type=int, default=12, help=f"how many {what} to draw (12)")
-    options["forces"].add_argument("--beats", type=int, default=4, help="how many beats to draw, 0: the whole run (4)")
+    for kind, n in (("time", 0), ("forces", 4)):
+        options[kind].add_argument("--beats", type=int, default=n, help=f"the last beats, 0: the whole run ({n})")
     options["field"].add_argument("--speed", action="store_true", help="draw the speed, not the vorticity")
     options["field"].add_argument("--no-streamlines", action="store_true", help="draw no streamlines")
     options["study"].add_argument("--of", default="speed", metavar="QUANTITY", help="what a map is of (speed)")
+    options["time"].add_argument(
+        "--each", nargs="?", const="speed", metavar="VARIABLE", help="a panel per fish, of one variable (speed)"
+    )
+    for kind in ("gait", "time", "forces", "pressure"):
+        options[kind].add_argument("--fish", nargs="+", metavar="NAME", help="only these fish (default: all)")
     options["time"].add_argument("--audit", action="store_true", help="add the energy audit")
     if arguments and arguments[0] not in (*PICTURES, "-h", "--help"):
         arguments = [implied_kind(arguments), *arguments]

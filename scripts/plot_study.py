@@ -110,6 +110,12 @@ def case_of(study, member, refined):
     return ", ".join(f"{v.long_name.split('.')[-1]} {text}" for v, text in zip(others, texts))
 
 
+def draw_floor(axes, bound, line):
+    """The error that the finest level may have itself: differences from it say nothing below."""
+    if bound > 0:
+        axes.axhline(bound, color=line["color"], ls=line["ls"], lw=0.5, zorder=1)
+
+
 def plot_convergence(study, refined, figure):
     """Errors of nose, tail, centre of mass and circulation at each level, one panel per fish."""
     level, first = study["level_value"], study["group_member"]
@@ -130,6 +136,8 @@ def plot_convergence(study, refined, figure):
             for name in quantities:
                 words = [study.label(name), case_of(study, member, refined)]
                 axes.loglog(drawn, errors[name][g, f, is_known], label=", ".join(filter(None, words)), **style(i))
+                if not is_known.all():
+                    draw_floor(axes, study[f"index_{name}"][g, f], style(i))
                 i += 1
         slope_triangles(axes, drawn, known.min(), sign)
         axes.set_xlabel(study.label(refined.name))
@@ -138,7 +146,10 @@ def plot_convergence(study, refined, figure):
         if len(names) > 1:
             axes.set_title(names[f], size=9)
         axes.grid(lw=0.3, color=GRID)
-    all_axes[0].set_ylabel("error" if is_known.all() else "difference from the finest level")
+    if is_known.all():
+        all_axes[0].set_ylabel("error")
+    else:
+        all_axes[0].set_ylabel("difference from the finest level;\nthin: bound of its own error")
     legend_above(all_axes[0], figure, 4 if first.size == 1 else 2)
 
 

@@ -15,12 +15,37 @@ export MPLCONFIGDIR=$folder/matplotlib
 # shellcheck source=tests/checks.sh
 . "$root/tests/checks.sh"
 
+# The scripts in one process, which reads their names and arguments between tabs and writes their exit codes: loading
+# matplotlib takes most of the time of a call.
+cat >serve.py <<'end'
+import contextlib, importlib, sys, traceback
+
+sys.path.insert(0, sys.argv[1])
+for line in sys.stdin:
+    name, *arguments = line.rstrip("\n").split("\t")
+    sys.argv = [name, *arguments]
+    with open("out", "w") as out, open("err", "w") as err:
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+            code = 0
+            try:
+                importlib.import_module(name.removesuffix(".py")).main(arguments)
+            except SystemExit as end:
+                code = end.code or 0
+            except BaseException:
+                traceback.print_exc()
+                code = 1
+    if "matplotlib.pyplot" in sys.modules:
+        sys.modules["matplotlib.pyplot"].close("all")
+    print(code, flush=True)
+end
+coproc scripts { /usr/bin/python3 serve.py "$root/scripts" 2>serve.err; }
+
 # Run a script with arguments; leaves out, err and $code.
 script() {
-    local name=$1
-    shift
-    code=0
-    timeout 60 /usr/bin/python3 "$root/scripts/$name" "$@" >out 2>err </dev/null || code=$?
+    local IFS=$'\t'
+    code=died
+    echo "$*" >&"${scripts[1]}"
+    read -r -t 120 code <&"${scripts[0]}"
 }
 
 # A script makes a picture: its name and arguments, the last of them the picture.
@@ -58,6 +83,10 @@ assert np.allclose(run.remaining(ages), [1, 1, 0.5, 0], atol=1e-12), run.remaini
 END
 check "a vortex decays as in the program" test "$code" = 0
 
+/usr/bin/python3 "$root/scripts/plot.py" run.nc >out 2>err || fail "plot.py as a command" "$(head -c 300 err)"
+check "plot.py as a command" grep -qx run.png out
+/usr/bin/python3 "$root/scripts/animate.py" nothing.nc >out 2>err
+check "animate.py as a command" grep -qx "animate.py: nothing.nc: no such file" err
 draws plot.py swim run.nc --limits -1 2 -3 3 --times 1 2 -- swim.png
 draws plot.py gait run.nc gait.svg
 draws plot.py time run.nc --audit time.pdf
@@ -86,6 +115,12 @@ draws animate.py run.nc --fps 10 --dpi 40 --follow movie.gif
   for i in 0 1 2 3 4 5 6; do echo "  - {name: number $i, start: {position: [0, $i]}}"; done; } >seven.yaml
 "$program" run seven.yaml -q -o seven.nc
 draws plot.py time seven.nc many.png
+draws plot.py time seven.nc --each heading small.png
+draws plot.py time seven.nc --fish "number 2" "number 5" -- two.png
+draws plot.py forces seven.nc --fish "number 2" -- one.png
+refuses 2 "7 fish are too many for this picture: choose up to 4 with --fish" plot.py forces seven.nc no.png
+refuses 2 "--fish nobody: there is number 0, number 1" plot.py gait seven.nc --fish nobody -- no.png
+refuses 2 "--each com: not one number per fish and time" plot.py time seven.nc --each com no.png
 draws plot.py seven.nc --times 0.5 1 -- follow.png
 refuses 2 "--times 100: the run covers 0 to 1 s" plot.py seven.nc --times 0.5 100 -- no.png
 "$program" run "$root/cases/demo.yaml" -q -o swim.nc --set time.end=0.2 --set "fish[0].nodes=7"
@@ -101,7 +136,14 @@ options = argparse.Namespace(times=None, limits=None, follow=None)
 assert plot.plot_swim(results, options).axes[0].get_xlabel().endswith("[lengths]"), "a long way is followed"
 options.follow = False
 assert plot.plot_swim(results, options).axes[0].get_xlabel() == "x [m]", "unless told otherwise"
-assert plot.plot_time(results, argparse.Namespace(audit=False)).axes[0].lines[7].get_color() == "black", "a mean of many"
+over_time = argparse.Namespace(audit=False, fish=None, each=None, beats=0)
+assert plot.plot_time(results, over_time).axes[0].lines[7].get_color() == "black", "a mean of many"
+over_time.fish = ["number 2", "number 5"]
+lines = plot.plot_time(results, over_time).axes[0].lines
+assert len(lines) == 2 and len({line.get_linestyle() for line in lines}) == 2, "lines are told apart without colour"
+over_time.fish, over_time.each = None, "speed"
+titles = [axes.get_title() for axes in plot.plot_time(results, over_time).axes if axes.get_visible()]
+assert titles == results.names, "a panel per fish"
 
 # bodies are drawn along the curve of their bound sheet
 for name in ("seven.nc", "swim.nc"):
