@@ -402,6 +402,9 @@ static void diagnostics_one(struct residual *residual, const struct state *state
     to->leading_edge_a0 = fish_has_momentum(fish) && to->speed > 0 ? pressure_leading_edge(fish, to->speed, y) : NAN;
     to->swept_vortices = swept_vortices(residual->school, state, f);
     to->phi0 = y[fish->at.phi0];
+    const struct fish_gait gait = control_gait(fish, &state->control[f], state->t);
+    to->wave_amplitude = gait.amplitude * fish->amplitude;
+    to->wave_frequency = gait.omega / (2 * M_PI);
     to->shed_circulation = y[fish->at.circulation];
     to->shedding_rate = shedding_rate(residual, state, f);
     to->kinetic_energy = kinetic_energy(fish, y);

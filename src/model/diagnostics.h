@@ -17,6 +17,7 @@ struct diagnostics_fish {
     double desired_heading; /* degree */
     double heading_error;   /* of the way through the water over the last period, against it, degree */
     double phi0;
+    double wave_amplitude, wave_frequency;                    /* now: ramped, and as set from outside; rad, Hz */
     double swept_vortices;                                    /* free vortices of any fish inside its outline */
     double shed_circulation;                                  /* m2 s-1 */
     double shedding_rate;                                     /* m2 s-2 */

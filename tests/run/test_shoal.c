@@ -277,6 +277,36 @@ static void what_a_fish_is_set_to_is_checked(void **state) {
     shoal_close(run);
 }
 
+static double of_fish(struct shoal *run, const char *name, int fish) {
+    struct shoal_array array;
+    if (shoal_read(run, name, &array) != SHOAL_OK) fail_msg("%s", shoal_message());
+    return ((const double *)array.values)[fish];
+}
+
+// both go half of their way within half of control.ramp
+static void the_gait_in_force_can_be_read(void **state) {
+    const char *const more[] = {"time.end=0.6", "fish[*].wave.ramp=0.1", "fish[*].control.ramp=0.2"};
+    struct shoal *const run = opened(*state, 3, more);
+    NEAR(of_fish(run, "wave_amplitude", 0), 0, 0, 0);
+    assert_int_equal(shoal_advance(run, 0.2), SHOAL_OK);
+    NEAR(of_fish(run, "wave_amplitude", 0), 0.4, 1e-15, 0);
+    NEAR(of_fish(run, "wave_frequency", 0), 1, 1e-15, 0);
+    const double amplitude = 0.3, frequency = 1.4, bias = 0.1;
+    assert_int_equal(shoal_set(run, 0, "wave.amplitude", 1, &amplitude), SHOAL_OK);
+    assert_int_equal(shoal_set(run, 0, "wave.frequency", 1, &frequency), SHOAL_OK);
+    assert_int_equal(shoal_set(run, 0, "control.bias", 1, &bias), SHOAL_OK);
+    assert_int_equal(shoal_advance(run, 0.3), SHOAL_OK);
+    NEAR(of_fish(run, "wave_amplitude", 0), 0.35, 1e-12, 0);
+    NEAR(of_fish(run, "wave_frequency", 0), 1.2, 1e-12, 0);
+    NEAR(of_fish(run, "phi0", 0), 0.05, 1e-5, 0);  // an unknown, within the tolerance of the solver
+    assert_int_equal(shoal_advance(run, 0.4), SHOAL_OK);
+    NEAR(of_fish(run, "wave_amplitude", 0), 0.3, 1e-12, 0);
+    NEAR(of_fish(run, "wave_frequency", 0), 1.4, 1e-12, 0);
+    NEAR(of_fish(run, "wave_frequency", 1), 1, 0, 0);
+    NEAR(of_fish(run, "frequency", 0), 1, 0, 0);  // that of the case, which means over a period refer to
+    shoal_close(run);
+}
+
 static void assignments_are_checked(void **state) {
     struct shoal *run;
     const char *const none = NULL;
@@ -748,6 +778,7 @@ int main(void) {
         cmocka_unit_test(a_fish_that_is_not_there_is_refused),
         cmocka_unit_test(arrays_that_are_not_there_are_refused),
         cmocka_unit_test(what_a_fish_is_set_to_is_checked),
+        cmocka_unit_test(the_gait_in_force_can_be_read),
         cmocka_unit_test(assignments_are_checked),
         cmocka_unit_test(a_step_past_the_end_is_refused),
         cmocka_unit_test(a_run_advances_to_the_event_at_or_after_a_time),
