@@ -88,7 +88,7 @@ integration succeeded, about the fish for which it is worst. They are printed at
 | bodies touch or cross | at any step of the integrator, or between two; `closest_approach` says who came closest, and when |
 | bodies come near | nearer than `contact.range`, without `contact.action: repel` |
 | the energy balance is open | `energy_audit` is more than 1 % of the largest of the works of muscle, fluid, damping, and all forces |
-| the speed changes | `drift` is more than 1 %: means over the last beat are not those of steady swimming (`run -q` is silent about it) |
+| the speed changes | `drift` is more than 1 %: means over the last beat are not those of steady swimming |
 | few events | fewer than 20 in a beat |
 | few sheet points | `shedding: sheet` where n_sheet - 1 < 0.9 x 3.2/sqrt(U Dt/L), once the speed changes by less than 10 % a beat |
 | slow modes | the slowest bending mode of a body in its fluid is slower than its beat |

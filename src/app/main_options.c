@@ -43,7 +43,7 @@ static const struct option_help all_options[] = {
      "corners of the grid, m (default: around all bodies and wakes, and half a body length more)"},
     {OPTION_SET, "set", "KEY=VALUE", "set a key of the case: fish[0].wave.frequency=1.2, fish[*].nodes=13"},
     {OPTION_THREADS, "threads", "N", "threads of a run: the same as --set solver.threads=N"},
-    {'q', "quiet", NULL, "print no progress and no summary"},
+    {'q', "quiet", NULL, "print no progress, no notes and no summary; warnings all the same"},
     {'v', "verbose", NULL, "print a summary of the result at the end"},
     {OPTION_JSON, "json", NULL, "print JSON"},
     {OPTION_SCHEMA, "schema", NULL, "print the keys as a JSON schema, by which editors check and complete cases"},

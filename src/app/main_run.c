@@ -22,7 +22,7 @@
 /* What a run tells while it goes on. */
 struct teller {
     struct progress progress;
-    int quiet, n_warnings;
+    int n_warnings;
     char *path; /* of the result; owned */
 };
 
@@ -44,11 +44,9 @@ static void tell_progress(const struct simulate_progress *now, void *data) {
     progress_show(now, &teller->progress);
 }
 
-/* Quiet is a run that prints no means over the last beat, and so none that might not be steady. */
-static void tell_warning(enum warning warning, const char *line, void *data) {
+static void tell_warning(const char *line, void *data) {
     struct teller *const teller = data;
     teller->n_warnings++;
-    if (teller->quiet && warning == WARNING_DRIFT) return;
     progress_end(&teller->progress);
     fprintf(stderr, "shoal: warning: %s\n", line);
 }
@@ -77,7 +75,7 @@ static enum status run_and_tell(const struct case_values *values, const struct r
 }
 
 static enum status run_case(const struct case_values *values, const struct request *request, const char *path) {
-    struct teller teller = {.quiet = request->quiet};
+    struct teller teller = {0};
     enum status status = run_and_tell(values, request, path, &teller);
     const char *const result = teller.path ? teller.path : "";
     if (status == STATUS_OK && request->verbose) status = main_print_info(result, 0);

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "model/warnings.h"
+
 static void note_closest(struct result_file *file, const struct simulation *simulation) {
     const struct school *const school = simulation->school;
     const struct closest *const closest = simulation->state->closest;
@@ -15,7 +17,7 @@ static void note_closest(struct result_file *file, const struct simulation *simu
 }
 
 void record_notes_write(struct result_file *file, const struct simulation *simulation,
-                        void (*warn)(enum warning warning, const char *line, void *data), void *data) {
+                        void (*warn)(const char *line, void *data), void *data) {
     char line[WARNING_BYTES], lines[N_WARNINGS * (WARNING_BYTES + 1)];
     size_t length = 0;
     for (enum warning w = 0; w < N_WARNINGS; w++) {
@@ -23,7 +25,7 @@ void record_notes_write(struct result_file *file, const struct simulation *simul
                            simulation->residual->scratch, line))
             continue;
         length += (size_t)snprintf(lines + length, sizeof lines - length, "%s%s", length > 0 ? "\n" : "", line);
-        if (warn) warn(w, line, data);
+        if (warn) warn(line, data);
     }
     if (length > 0) result_file_note(file, RESULT_WARNINGS, lines);
     note_closest(file, simulation);

@@ -3,13 +3,12 @@
 #ifndef RECORD_NOTES_H
 #define RECORD_NOTES_H
 
-#include "model/warnings.h"
 #include "output/result_file.h"
 #include "run/simulate.h"
 
 /* Put all warnings about what the last row holds into the file, and where two bodies have been closest. warn is told
  * each warning with its data; it may be NULL. */
 void record_notes_write(struct result_file *file, const struct simulation *simulation,
-                        void (*warn)(enum warning warning, const char *line, void *data), void *data);
+                        void (*warn)(const char *line, void *data), void *data);
 
 #endif

@@ -7,7 +7,6 @@
 
 #include "base/status.h"
 #include "case/case.h"
-#include "model/warnings.h"
 
 /* What a run tells while it goes on, after every event. */
 struct simulate_progress {
@@ -28,7 +27,7 @@ struct simulate_options {
     enum status (*begin)(const struct case_values *values, const char *path, void *data);
     void (*progress)(const struct simulate_progress *progress, void *data); /* may be NULL */
     /* told each warning about the result, before the run returns; may be NULL */
-    void (*warn)(enum warning warning, const char *line, void *data);
+    void (*warn)(const char *line, void *data);
     /* told in one line what a user should know, such as that a damaged checkpoint is not used; may be NULL */
     void (*note)(const char *line, void *data);
     void *data;
