@@ -24,8 +24,7 @@ static void tell_progress(const struct steady_progress *now, void *data) {
     progress_steady(now, &teller->progress);
 }
 
-static void tell_warning(enum warning warning, const char *line, void *data) {
-    (void)warning;
+static void tell_warning(const char *line, void *data) {
     struct teller *const teller = data;
     teller->n_warnings++;
     progress_end(&teller->progress);

@@ -7,7 +7,6 @@
 
 #include "base/status.h"
 #include "case/case.h"
-#include "model/warnings.h"
 
 /* What a search tells after every beat. */
 struct steady_progress {
@@ -22,7 +21,7 @@ struct steady_options {
     int overwrite;                                                        /* replace one that exists */
     const char *command;                                                  /* command line, for the file's history */
     void (*progress)(const struct steady_progress *progress, void *data); /* may be NULL */
-    void (*warn)(enum warning warning, const char *line, void *data);     /* may be NULL */
+    void (*warn)(const char *line, void *data);                           /* may be NULL */
     void *data;
     const volatile sig_atomic_t *stop; /* the search stops once this is not 0; may be NULL */
 };
