@@ -124,6 +124,9 @@ plate starts at one degree to the stream; growth and frequency of the mode are f
 (units of time 3 to 8) at the theory's threshold and 2 % above it, which gives the U* at which the growth vanishes. The
 error falls with the square of the edge length, so that N and (N + 1)/2 nodes give the limit of many.
 *Heaving nose*: amplitude 0.002 L, the last of 6 or 10 periods (5 in the figures)."""),
+    "walls": ("Walls", """\
+Bodies beside straight walls, model.md 17: a fish beside a wall moves as it does beside its mirror image, a plate between two
+walls has the circulation of thin-foil theory with all images, and a fish that swims against a wall loses no energy to it."""),
 }
 
 # figure: title, x axis, y axis, further keys: scale (log, linear, semilog, semilogx), slopes of the triangles

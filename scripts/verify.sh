@@ -9,7 +9,8 @@
 set -euo pipefail
 export LC_ALL=C
 
-readonly sections=(theory rod force sheet wake plate school interval symmetry start energy control pressure elastic steady)
+readonly sections=(theory rod force sheet wake plate school interval symmetry start energy control pressure elastic
+    steady walls)
 readonly at_once=2
 
 if (($# < 2 || $# > 3)); then

@@ -19,7 +19,8 @@ static const struct {
                 {"sheet", verify_sheet},       {"wake", verify_wake},         {"plate", verify_plate},
                 {"school", verify_school},     {"interval", verify_interval}, {"symmetry", verify_symmetry},
                 {"start", verify_start},       {"energy", verify_energy},     {"control", verify_control},
-                {"pressure", verify_pressure}, {"elastic", verify_elastic},   {"steady", verify_steady}};
+                {"pressure", verify_pressure}, {"elastic", verify_elastic},   {"steady", verify_steady},
+                {"walls", verify_walls}};
 
 int verify_is_fast(void) {
     return fast;

@@ -25,6 +25,7 @@ void verify_control(void);
 void verify_pressure(void);
 void verify_elastic(void);
 void verify_steady(void);
+void verify_walls(void);
 
 /* Only the checks that take seconds are wanted: `make test` runs those. */
 int verify_is_fast(void);

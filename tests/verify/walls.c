@@ -1,0 +1,126 @@
+/* walls.c: the section "walls": bodies and wakes beside straight walls, against thin-foil theory between two walls and
+ * against the same bodies beside their own mirror images. Length L = 1 m. */
+#include <math.h>
+
+#include "model/bound_sheet.h"
+#include "verify.h"
+
+static const double pi = 3.14159265358979323846;
+
+// ---- a plate between two walls
+
+/* Circulation of a plate at small incidence half way between walls at the distance H, over that without walls: the
+ * singular equation with the kernel 1/(2H sinh(pi r/H)) of its row of images, and Kutta's condition at the tail, solved
+ * at 60 Gauss-Jacobi points to 1e-14. To the order (L/H)^2 it is 1 + pi^2 (L/H)^2/24. */
+static const struct {
+    double ratio, circulation; /* L/H, 1 */
+} channel[] = {{0.5, 1.0951764318283912}, {1, 1.3209183476231910}};
+
+static double circulation_between(double distance) {
+    const double degree = 0.5, angle = degree * pi / 180;
+    struct simulation *const simulation = verify_open(
+        VERIFY_SECOND
+        "format: 1\n"
+        "time: {end: %.17g, shedding_interval: 0.04, output_interval: 0.04}\n"
+        "fluid: {velocity: [1, 0], walls: [%.17g, %.17g]}\n"
+        "wake: {lifetime: %.17g}\n"
+        "fish: [{nodes: 4, wave: {amplitude: 0}, start: {heading: %.17g, position: [%.17g, %.17g]},\n"
+        "        motion: {driven: all, speed: 0}}]\n",
+        12 * distance, -distance / 2, distance / 2, 6 * distance, 180 - degree, -0.5 * cos(angle), 0.5 * sin(angle));
+    // a vortex at the distance x counts like exp(-pi x/H); the circulation comes near its end like exp(-0.7 U t/H)
+    verify_run(simulation, 12 * distance);
+    const double circulation = bound_sheet_circulation(&simulation->school->fish[0], simulation->state->y);
+    simulate_free(simulation);
+    return fabs(circulation) / (pi * sin(angle));
+}
+
+static void check_plate(void) {
+    for (int i = 0; i < 2; i++) {
+        const double ratio = channel[i].ratio;
+        verify_relative(verify_text("plate between walls, L/H = %g: circulation over that without", ratio),
+                        "thin foil, row of images", channel[i].circulation, circulation_between(1 / ratio), 2e-3);
+    }
+}
+
+// ---- mirrored fish
+
+static struct simulation *open_fish(const char *force, double rtol, const char *fluid, const char *other) {
+    return verify_open(VERIFY_SECOND
+                       "format: 1\n"
+                       "time: {end: 1, output_interval: 0.1}\n"
+                       "wake: {tolerance: 0}\n"
+                       "solver: {rtol: %.17g}\n"
+                       "%s"
+                       "defaults: {fish: {force: %s}}\n"
+                       "fish: [{start: {position: [0, 0.25]}}%s]\n",
+                       rtol, fluid, force, other);
+}
+
+// the largest difference of the places of nodes and of the wake of the first fish
+static double difference(const struct simulation *a, const struct simulation *b) {
+    const struct fish *const fish = &a->school->fish[0];
+    double worst = 0;
+    for (int i = 0; i < 2 * fish->n_nodes; i++) {
+        worst = fmax(worst, fabs(a->state->y[fish->at.x + i] - b->state->y[fish->at.x + i]));
+    }
+    const struct wake *const wake = &a->state->wake[0], *const other = &b->state->wake[0];
+    for (int i = 0; i < wake->n_vortex; i++) {
+        worst = fmax(worst, hypot(wake->x[i] - other->x[i], wake->y[i] - other->y[i]));
+    }
+    return worst;
+}
+
+static void check_mirror(const char *force, double bound) {
+    const double rtol = 1e-10, end = verify_is_fast() ? 0.1 : 0.5;
+    struct simulation *const wall = open_fish(force, rtol, "fluid: {walls: [0]}\n", "");
+    struct simulation *const pair = open_fish(force, rtol, "", ", {start: {position: [0, -0.25]}, wave: {phase: 180}}");
+    struct simulation *const alone = open_fish(force, rtol, "", "");
+    verify_run(wall, end);
+    verify_run(pair, end);
+    verify_run(alone, end);
+    verify_show(verify_text("%s: a fish 0.25 L beside a wall: place less that without wall, L", force), "",
+                difference(wall, alone));
+    verify_zero(verify_text("%s: the same less that beside its mirror image, L", force), "two fish, rtol 1e-10",
+                difference(wall, pair), bound);
+    simulate_free(wall);
+    simulate_free(pair);
+    simulate_free(alone);
+}
+
+// ---- against the wall
+
+// a fish that swims against the wall of a channel and along it
+static void check_audit(const char *force) {
+    struct simulation *const simulation =
+        verify_open(VERIFY_SECOND
+                    "format: 1\n"
+                    "time: {end: 3, shedding_interval: 0.02, output_interval: 0.02}\n"
+                    "fluid: {walls: [0, 2]}\n"
+                    "fish: [{force: %s, start: {position: [0, 0.6], heading: 215, speed: 0.8}}]\n",
+                    force);
+    double audit = 0, energy = 0, circulation = 0, contact = 0;
+    for (int i = 1; i <= 150; i++) {
+        verify_run(simulation, 0.02 * i);
+        simulate_measure(simulation);
+        const struct diagnostics_fish *const fish = &simulation->diagnostics->fish[0];
+        audit = fmax(audit, fabs(fish->energy_audit));
+        energy = fmax(energy, fish->kinetic_energy);
+        contact = fmax(contact, fish->contact_energy);
+        circulation = fmax(circulation, fabs(simulation->diagnostics->total_circulation));
+    }
+    verify_show(verify_text("%s: a fish swims against a wall and along it: largest contact_energy, J", force), "",
+                contact);
+    verify_zero(verify_text("%s: its energy audit over its largest kinetic energy, rtol 1e-5", force), "conservation",
+                audit / energy, 2e-3);
+    verify_zero(verify_text("%s: its total circulation, m2/s", force), "Kelvin", circulation, 1e-12);
+    simulate_free(simulation);
+}
+
+void verify_walls(void) {
+    check_mirror("reactive", 1e-8);
+    if (verify_is_fast()) return;
+    check_mirror("pressure", 1e-8);
+    check_plate();
+    check_audit("reactive");
+    check_audit("pressure");
+}
