@@ -121,9 +121,16 @@ points and 300 events a period."""),
     "elastic": ("Elastic plates", """\
 `force: pressure` on plates with a clamped nose in a stream, rtol 1e-5, U Dt = 0.01 L, the whole wake kept. *Flutter*: the
 plate starts at one degree to the stream; growth and frequency of the mode are fitted to the tail by Prony's method
-(units of time 3 to 8) at the theory's threshold and 2 % above it, which gives the U* at which the growth vanishes. The
-error falls with the square of the edge length, so that N and (N + 1)/2 nodes give the limit of many.
+(units of time 3 to 8) at the theory's threshold and 2 % above it, which gives the U* at which the growth vanishes;
+`wake.taper` is 0.8 there, as the sheet is straight. The error falls with the square of the edge length, so that N and (N +
+1)/2 nodes give the limit of many.
 *Heaving nose*: amplitude 0.002 L, the last of 6 or 10 periods (5 in the figures)."""),
+    "coupled": ("Coupled bodies", """\
+Free bodies and the fluid that they move, with `force: pressure`: the added mass of a plate; the impulse of a stream of 0.1
+across a plate that starts at once, where places and momenta stay and velocities jump; and fish that swim by a wave of
+curvature 5 (0.2 + 0.8 s) sin(2 pi (t - s)) (mass 0.1 rho L, E I = rho f^2 L^5, friction 0.0133 U^1.5), alone and one
+behind the other. Their speeds are compared with those of the prototype from which the method was taken, another program
+with another body (a polygon) and another solver."""),
     "walls": ("Walls", """\
 Bodies beside straight walls, model.md 17: a fish beside a wall moves as it does beside its mirror image, a plate between two
 walls has the circulation of thin-foil theory with all images, and a fish that swims against a wall loses no energy to it."""),

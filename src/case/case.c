@@ -258,7 +258,7 @@ static enum status is_soft(const struct school_parameters *parameters, int index
     struct school *school;
     TRY(fish_school_create(&school, &alone));
     const struct fish *const fish = &school->fish[0];
-    double *const scratch = calloc(2 * (size_t)fish->n_nodes, sizeof *scratch);
+    double *const scratch = calloc(6 * (size_t)fish->n_nodes, sizeof *scratch);
     if (scratch) *soft = bending_mode_frequency(fish, scratch) < 0.6 * fish->frequency;
     free(scratch);
     fish_school_free(school);

@@ -76,6 +76,15 @@ static void note_body(const struct look *look) {
     }
 }
 
+static void note_nodes(const struct look *look) {
+    const struct fish_parameters *const fish = &look->values->school.fish[look->fish];
+    const int enough = 17;
+    if (fish->force == FORCE_PRESSURE && fish->nodes < enough && fish->motion.prescribed != PRESCRIBED_ALL) {
+        note(look, "fish.nodes", "%d: with force pressure fewer than %d nodes resolve the shape of a body poorly",
+             fish->nodes, enough);
+    }
+}
+
 static void note_wave(const struct look *look) {
     const struct wave_parameters *const wave = &look->values->school.fish[look->fish].wave;
     if (wave->number > 0 && wave->frequency > 0 && wave->table.n == 0) {
@@ -88,6 +97,7 @@ void case_notes(const struct case_values *values, const struct case_tree *tree, 
     struct look look = {values, tree, notes, 0};
     for (look.fish = 0; look.fish < values->school.n_fish; look.fish++) {
         note_body(&look);
+        note_nodes(&look);
         note_wave(&look);
         note_angles(&look);
     }

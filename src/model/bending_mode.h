@@ -5,7 +5,8 @@
 #include "model/fish.h"
 
 /* Frequency of the slowest bending mode of a body in the fluid, straight and small, Hz: free at both ends, or held at
- * the head where its motion is prescribed. scratch: (2 n_nodes). */
+ * the head where its motion is prescribed. With force: pressure in the fluid that a straight sheet moves, with nothing
+ * shed. scratch: (6 n_nodes). */
 double bending_mode_frequency(const struct fish *fish, double *scratch);
 
 #endif

@@ -2,6 +2,7 @@
 #include "model/diagnostics.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -269,7 +270,12 @@ void diagnostics_remember(struct residual *residual, struct state *state) {
         flow_external(residual->school, state->t, sample.com[1], &sample.stream[0], &sample.stream[1]);
         const struct flow_at_body flow = flow_at_body(residual->flow, f);
         const struct fluid_forces forces = fluid_force_sum(fish, &flow, sample.com, y);
+        const struct pressure_forces pressure = pressure_forces(residual, f, sample.com, y);
         memcpy(sample.friction, forces.friction, sizeof sample.friction);
+        for (int i = 0; i < 2; i++) {
+            sample.force[i] = forces.resistive[i] + forces.reactive[i] + pressure.pressure[i] + pressure.suction[i];
+        }
+        if (fish_has_momentum(fish)) sample.leading_edge = pressure_leading_edge(fish, 1, y);
         memcpy(sample.work, state->balance[f].work, sizeof sample.work);
         continue_sample(history, interval, &sample);
         // the newest sample of a full history takes the place of the one of a period and an interval ago
@@ -322,15 +328,22 @@ static double drift_of(const struct history *history) {
     return (now - before) / now;
 }
 
-// the mean friction against the way, by trapezoids over the samples
-static double mean_friction(const struct history *history, const double way[2], double distance) {
+// the mean of a force of the samples against the way, by trapezoids
+static double mean_against(const struct history *history, size_t which, const double way[2], double distance) {
     double sum = 0;
     for (int age = 0; age < history->n; age++) {
-        const double *const friction = state_recall(history, age)->friction;
+        const double *const force = (const double *)state_recall(history, age) + which / sizeof(double);
         const double weight = age == 0 || age == history->n - 1 ? 0.5 : 1;
-        sum -= weight * (friction[0] * way[0] + friction[1] * way[1]) / distance;
+        sum -= weight * (force[0] * way[0] + force[1] * way[1]) / distance;
     }
     return sum / (history->n - 1);
+}
+
+// the largest magnitude of A_0
+static double leading_edge_most(const struct history *history, double speed) {
+    double most = 0;
+    for (int age = 0; age < history->n; age++) most = fmax(most, fabs(state_recall(history, age)->leading_edge));
+    return most / speed;
 }
 
 // what is stated over the last period, or since the start where that is less
@@ -341,6 +354,7 @@ static void diagnostics_period(const struct fish *fish, const struct history *hi
     to->speed = hypot(to->com_velocity[0] - new->stream[0], to->com_velocity[1] - new->stream[1]);
     to->drift = to->heading_error = to->strouhal = NAN;
     to->cost_of_transport = to->cost_of_transport_fluid = to->cost_of_transport_body = to->efficiency = NAN;
+    to->mean_thrust = to->mean_power = to->thrust_efficiency = NAN;
     if (history->n < 2) return;
     const double duration = (history->n - 1) * interval;
     double way[2];
@@ -355,7 +369,11 @@ static void diagnostics_period(const struct fish *fish, const struct history *hi
     to->cost_of_transport = (new->work[WORK_ACTUATION] - old->work[WORK_ACTUATION]) / duration / momentum;
     to->cost_of_transport_fluid = (old->work[WORK_FLUID] - new->work[WORK_FLUID]) / duration / momentum;
     to->cost_of_transport_body = (old->work[WORK_DAMPING] - new->work[WORK_DAMPING]) / duration / momentum;
-    to->efficiency = mean_friction(history, way, distance) * distance / (old->work[WORK_FLUID] - new->work[WORK_FLUID]);
+    const double into_water = old->work[WORK_FLUID] - new->work[WORK_FLUID];
+    to->efficiency = mean_against(history, offsetof(struct sample, friction), way, distance) * distance / into_water;
+    to->mean_thrust = -mean_against(history, offsetof(struct sample, force), way, distance);
+    to->mean_power = into_water / duration + to->mean_thrust * to->speed;
+    to->thrust_efficiency = to->mean_thrust * to->speed / to->mean_power;
     to->strouhal = fish->frequency * peak_to_peak(history, way, distance) / to->speed;
 }
 
@@ -399,7 +417,9 @@ static void diagnostics_one(struct residual *residual, const struct state *state
     to->desired_heading = to->heading - angle_degrees(angle_wrap(angle_radians(to->heading) - desired));
     diagnostics_period(fish, history, residual->school->interval, to);
     find_forces(residual, f, state->t, y, to);
-    to->leading_edge_a0 = fish_has_momentum(fish) && to->speed > 0 ? pressure_leading_edge(fish, to->speed, y) : NAN;
+    const int has_a0 = fish_has_momentum(fish) && to->speed > 0;
+    to->leading_edge_a0 = has_a0 ? pressure_leading_edge(fish, to->speed, y) : NAN;
+    to->leading_edge_most = has_a0 ? leading_edge_most(history, to->speed) : NAN;
     to->swept_vortices = swept_vortices(residual->school, state, f);
     to->phi0 = y[fish->at.phi0];
     const struct fish_gait gait = control_gait(fish, &state->control[f], state->t);

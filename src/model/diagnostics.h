@@ -35,12 +35,16 @@ struct diagnostics_fish {
     double resistive_moment, friction_moment, reactive_moment, constraint_moment;
     struct pressure_forces pressure; /* force: pressure, else 0 */
     double leading_edge_a0;          /* A_0 at the mean speed; NaN without it, and with other forces */
+    double leading_edge_most;        /* the largest magnitude of A_0 over the last period */
     double thrust;                   /* forces of the fluid along the heading, N */
-    double cost_of_transport;        /* mean actuation power over mass and speed, m s-2 */
-    double cost_of_transport_fluid;  /* the part that goes into the fluid, */
-    double cost_of_transport_body;   /* and the part that damping takes */
-    double efficiency;               /* friction times speed over the power that goes into the fluid, over a period */
-    double strouhal;                 /* frequency times peak-to-peak of the tail over speed */
+    double mean_thrust;       /* all forces of the fluid along the way, N, over the last period: 0 when it swims */
+    double mean_power;        /* that the motion takes for thrust and wake, W, over the last period */
+    double thrust_efficiency; /* mean thrust times speed over that power */
+    double cost_of_transport; /* mean actuation power over mass and speed, m s-2 */
+    double cost_of_transport_fluid; /* the part that goes into the fluid, */
+    double cost_of_transport_body;  /* and the part that damping takes */
+    double efficiency;              /* friction times speed over the power that goes into the fluid, over a period */
+    double strouhal;                /* frequency times peak-to-peak of the tail over speed */
 };
 
 /* The school at one event. */

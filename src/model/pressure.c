@@ -290,20 +290,28 @@ void pressure_update_rate(struct pressure *p, const double *y, const double *yp)
     find_matrix(p, y);
 }
 
-double pressure_jump(const struct pressure *p, int c, const double *yp) {
+// how much of a kink the sheet has at the tail, from its strengths or their rates
+static double kink_of(const struct fish *fish, const double *y) {
+    const int last = fish->n_sheet - 1;
+    const double *const strength = y + fish->at.gamma;
+    return fish->sheet_weight[last - 1] * strength[last - 1] - 2 * fish->sheet_weight[last] * strength[last];
+}
+
+double pressure_jump(const struct pressure *p, int c, const double *y, const double *yp) {
     const struct fish *fish = p->fish;
     const double *const circulation = fish->integrals->circulation + (long)c * fish->n_sheet;
     const struct pressure_point *const point = &p->point[c];
     // the length of the line around the control point, in which its circulation lies
     const double length = point->body.length * fish->control_interval[c];
-    double rate = 0;
+    double rate = fish->integrals->kink_circulation[c] * kink_of(fish, yp);
     for (int j = 0; j < fish->n_sheet; j++) {
         rate += circulation[j] * fish->sheet_weight[j] * yp[fish->at.gamma + j];
     }
-    return fish->fluid_density * (rate + point->circulation / length * along(point));
+    const double around = point->circulation + fish->integrals->kink_strength[c] * kink_of(fish, y);
+    return fish->fluid_density * (rate + around / length * along(point));
 }
 
-void pressure_of_edge(const struct pressure *p, int k, const double *yp, double force[2]) {
+void pressure_of_edge(const struct pressure *p, int k, const double *y, const double *yp, double force[2]) {
     const struct fish *fish = p->fish;
     force[0] = force[1] = 0;
     for (int c = 0; c < fish->n_control; c++) {
@@ -311,7 +319,7 @@ void pressure_of_edge(const struct pressure *p, int k, const double *yp, double 
         if ((int)u != k) continue;
         const struct direction *const body = &p->point[c].body;
         const double length = body->length * fish->control_interval[c];
-        const double size = -fish->depth[k] * pressure_jump(p, c, yp) * length;
+        const double size = -fish->depth[k] * pressure_jump(p, c, y, yp) * length;
         for (int i = 0; i < 2; i++) force[i] += size * body->n[i];
     }
 }

@@ -71,12 +71,13 @@ void pressure_flow_jacobian(const struct pressure *pressure, const struct influe
 /* Find momentum_rate for the rates yp of the places and strengths. */
 void pressure_update_rate(struct pressure *pressure, const double *y, const double *yp);
 
-/* After pressure_update_rate: the jump of the pressure at control point c, left less right, Pa. */
-double pressure_jump(const struct pressure *pressure, int c, const double *yp);
+/* After pressure_update_rate: the jump of the pressure at control point c, left less right, Pa. With the kink that the
+ * sheet has at the tail, so that the jump vanishes there. */
+double pressure_jump(const struct pressure *pressure, int c, const double *y, const double *yp);
 
 /* After pressure_update_rate: the force of the pressure on an edge, N: of the control points there, each with its
  * interval of the line. */
-void pressure_of_edge(const struct pressure *pressure, int k, const double *yp, double force[2]);
+void pressure_of_edge(const struct pressure *pressure, int k, const double *y, const double *yp, double force[2]);
 
 /* After pressure_update_rate: the force of the pressure and the suction on the body, N, their moments about a point, N
  * m, and their powers, W; the sum of the added momentum, N s, and its moment, N m s. */

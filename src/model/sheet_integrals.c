@@ -53,6 +53,23 @@ static void fill_control_points(struct sheet_integrals *to) {
     }
 }
 
+// the kink of a sheet whose strength is the place: what g = sin(theta) (1 - cos(theta)) has more than its series
+static void fill_kink(struct sheet_integrals *to) {
+    const int n = to->n_sheet;
+    const double h = pi / to->n_control, scale = sin(pi - h) * (1 - cos(pi - h)) * h;
+    for (int c = 0; c < to->n_control; c++) {
+        const double theta = h * (c + 0.5), place = 1 - cos(theta);
+        double strength = sin(theta) * place * h, circulation = place * place / 2;
+        for (int j = 1; j < to->n_control; j++) {
+            const double here = sin(j * h) * (1 - cos(j * h)) * h;
+            strength -= to->strength[c * n + j] * here;
+            circulation -= to->circulation[c * n + j] * here;
+        }
+        to->kink_strength[c] = strength / scale;
+        to->kink_circulation[c] = circulation / scale;
+    }
+}
+
 // add a point theta with its weight to the integrals of all j
 static void add_point(struct sheet_integrals *to, double theta, double weight, const struct stencil *point,
                       const struct stencil *slope) {
@@ -92,10 +109,13 @@ static enum status fill(struct sheet_integrals *to, const double *density) {
     to->momentum = calloc(n_sheet * n_nodes * n_nodes, sizeof *to->momentum);
     to->strength = calloc(n_control * n_sheet, sizeof *to->strength);
     to->circulation = calloc(n_control * n_sheet, sizeof *to->circulation);
-    if (!to->momentum || !to->strength || !to->circulation) {
+    to->kink_strength = calloc(n_control, sizeof *to->kink_strength);
+    to->kink_circulation = calloc(n_control, sizeof *to->kink_circulation);
+    if (!to->momentum || !to->strength || !to->circulation || !to->kink_strength || !to->kink_circulation) {
         return status_fail(STATUS_MEMORY, "out of memory: the integrals over a sheet of %d vortices", to->n_sheet);
     }
     fill_control_points(to);
+    fill_kink(to);
     for (int k = 0; k < to->n_nodes - 1; k++) TRY(integrate_edge(to, k, density[k]));
     return STATUS_OK;
 }
@@ -122,5 +142,7 @@ void sheet_integrals_free(struct sheet_integrals *integrals) {
     free(integrals->momentum);
     free(integrals->strength);
     free(integrals->circulation);
+    free(integrals->kink_strength);
+    free(integrals->kink_circulation);
     free(integrals);
 }

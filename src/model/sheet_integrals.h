@@ -14,6 +14,9 @@ struct sheet_integrals {
                                                                                       (n_sheet, n_nodes, n_nodes) */
     double *strength;    /* G: circulation of the interval around a control point, 1        (n_control, n_sheet) */
     double *circulation; /* C_j at the control points, 1                                  (n_control, n_sheet) */
+    /* What both sums lack at the control points where the strength at the tail is finite, per q_M-2 - 2 q_M-1: g then
+     * has a kink there, which the series cannot follow                                               (n_control) */
+    double *kink_strength, *kink_circulation;
 };
 
 /* Those on the smooth curve; density: of the fluid times the depth of every edge, kg m-2 (n_nodes - 1). Fails with

@@ -17,10 +17,12 @@ struct sample {
     double com[2], tail[2]; /* m */
     double velocity[2];     /* of the centre of mass, m s-1 */
     double friction[2];     /* on the body, N */
+    double force[2];        /* of the fluid on the body, friction included, N */
     double stream[2];       /* the external flow there, m s-1, */
     double drifted[2];      /* and its integral since the start, m */
     double speed;           /* through the water over the last period, m s-1; NaN before a whole one has passed */
     double heading;         /* rad, unwrapped */
+    double leading_edge;    /* A_0 times the speed, m s-1; 0 unless force: pressure */
     double work[N_WORKS];   /* since the start, J */
 };
 struct history {

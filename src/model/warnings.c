@@ -126,12 +126,30 @@ static void modes_say(const struct subject *subject, const char *who, char line[
              who, bending_mode_frequency(subject->fish, subject->scratch), subject->fish->frequency);
 }
 
+// ---- the leading edge
+
+// once the speed is nearly steady, as for the sheet: a fish that starts from rest has little speed for its strengths
+static double edge_size(const struct subject *subject) {
+    const struct diagnostics_fish *const now = &subject->diagnostics->fish[subject->f];
+    const double most = 0.2, nearly = 0.1;
+    if (subject->fish->period > 0 && !(fabs(now->drift) < nearly)) return 0;
+    return now->leading_edge_most > 0 ? now->leading_edge_most / most : 0;
+}
+
+static void edge_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
+    snprintf(
+        line, WARNING_BYTES,
+        "A_0 at the nose of %s reaches %.2g, more than 0.2: a real flow separates there, and the body has less suction "
+        "than here: compare with pressure.suction: 0",
+        who, subject->diagnostics->fish[subject->f].leading_edge_most);
+}
+
 // ---- all of them
 
 static const struct kind kinds[N_WARNINGS] = {
     [WARNING_ENERGY] = {energy_size, energy_say}, [WARNING_DRIFT] = {drift_size, drift_say},
     [WARNING_EVENTS] = {events_size, events_say}, [WARNING_SHEET] = {sheet_size, sheet_say},
-    [WARNING_MODES] = {modes_size, modes_say},
+    [WARNING_MODES] = {modes_size, modes_say},    [WARNING_EDGE] = {edge_size, edge_say},
 };
 
 static int contact_line(const struct school *school, const struct closest *closest, char line[WARNING_BYTES]) {

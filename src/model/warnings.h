@@ -6,7 +6,8 @@
  *     drift     the speed changes by more than 1 % from beat to beat: means over a beat are not steady
  *     events    fewer than 20 events in a beat
  *     sheet     shedding: sheet with a stretch U Dt too short for the bound vortices at the tail (doc/model.md, 8)
- *     modes     the slowest bending mode is slower than the beat */
+ *     modes     the slowest bending mode is slower than the beat
+ *     edge      force: pressure with A_0 above 0.2 at the leading edge: a real flow separates there */
 #ifndef WARNINGS_H
 #define WARNINGS_H
 
@@ -19,6 +20,7 @@ enum warning {
     WARNING_EVENTS,
     WARNING_SHEET,
     WARNING_MODES,
+    WARNING_EDGE,
     N_WARNINGS
 };
 enum { WARNING_BYTES = 384 /* of a line */ };

@@ -96,7 +96,7 @@ static void gather_control_arc(const struct result_row *row, int f, double *slot
 static void gather_pressure(const struct result_row *row, int f, double *slots) {
     struct pressure *const pressure = row->residual->pressure[f];
     const int n = row->school->fish[f].n_control;
-    for (int c = 0; pressure && c < n; c++) slots[c] = pressure_jump(pressure, c, row->state->yp);
+    for (int c = 0; pressure && c < n; c++) slots[c] = pressure_jump(pressure, c, row->state->y, row->state->yp);
 }
 
 // ---- forces on the edges
@@ -125,7 +125,7 @@ static void gather_edge_pressure_force(const struct result_row *row, int f, doub
     const struct pressure *const pressure = row->residual->pressure[f];
     for (int k = 0; k < row->school->fish[f].n_edges; k++) {
         slots[2 * k] = slots[2 * k + 1] = 0;
-        if (pressure) pressure_of_edge(pressure, k, row->state->yp, slots + 2 * k);
+        if (pressure) pressure_of_edge(pressure, k, row->state->y, row->state->yp, slots + 2 * k);
     }
 }
 
@@ -336,6 +336,12 @@ const struct result_variable result_table[] = {
      .long_name = "part of the cost of transport that is lost inside the body, by damping"},
     {"efficiency",            {TIME, FISH},           RESULT_REAL,    "1",      IN_FISH_DIAGNOSTICS(efficiency),
      .long_name = "friction times speed over the power that goes into the fluid, over the last period"},
+    {"mean_thrust",           {TIME, FISH},           RESULT_REAL,    "N",      IN_FISH_DIAGNOSTICS(mean_thrust),
+     .long_name = "mean of all forces of the fluid along the way, over the last period: 0 once it swims steadily"},
+    {"mean_power",            {TIME, FISH},           RESULT_REAL,    "W",      IN_FISH_DIAGNOSTICS(mean_power),
+     .long_name = "mean power that the motion takes, for thrust and for the wake, over the last period"},
+    {"thrust_efficiency",     {TIME, FISH},           RESULT_REAL,    "1",      IN_FISH_DIAGNOSTICS(thrust_efficiency),
+     .long_name = "mean_thrust times speed over mean_power: that of a body that is held"},
     {"strouhal",              {TIME, FISH},           RESULT_REAL,    "1",      IN_FISH_DIAGNOSTICS(strouhal),
      .long_name = "Strouhal number: frequency times peak-to-peak motion of the tail over speed"},
 
@@ -389,6 +395,8 @@ const struct result_variable result_table[] = {
      .long_name = "pressure jump across the body at the control points, left less right; NaN unless force: pressure"},
     {"leading_edge_a0",       {TIME, FISH},           RESULT_REAL,    "1",      IN_FISH_DIAGNOSTICS(leading_edge_a0),
      .long_name = "leading-edge suction parameter A_0; where it is above 0.2 a real flow may separate at the nose"},
+    {"leading_edge_most",     {TIME, FISH},           RESULT_REAL,    "1",      IN_FISH_DIAGNOSTICS(leading_edge_most),
+     .long_name = "largest magnitude of leading_edge_a0 over the last period"},
 
     // the school and the solver
     {"total_circulation",     {TIME},                 RESULT_REAL,    "m2 s-1", IN_DIAGNOSTICS(total_circulation),

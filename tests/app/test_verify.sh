@@ -15,7 +15,7 @@ trap 'rm -rf "$folder"' EXIT
 
 n_passed=0 n_failed=0 n_skipped=0
 for section in theory rod force sheet wake plate school interval symmetry start energy control pressure elastic \
-    steady walls; do
+    coupled steady walls; do
     code=0
     : >"$folder/table"
     "$verify" "$section" --fast -o "$folder/table" >"$folder/out" 2>&1 </dev/null || code=$?

@@ -40,6 +40,15 @@ static void a_body_like_no_other_is_noted(void **state) {
     notes_are("fish[0].body.modulus=1e13", "1e+13 Pa is stiffer than diamond");
 }
 
+static void few_nodes_under_pressure_are_noted(void **state) {
+    (void)state;
+    notes_are("fish[0]={nodes: 9, force: pressure}", "fish[0].nodes: 9: with force pressure fewer than 17 nodes");
+    notes_are("fish[0]={nodes: 17, force: pressure}", "");
+    notes_are("fish[0]={nodes: 9, force: reactive}", "");
+    // a rigid plate has no shape to resolve
+    notes_are("fish[0]={nodes: 9, force: pressure, motion: {driven: all}}", "");
+}
+
 static void a_wave_that_travels_forwards_is_noted(void **state) {
     (void)state;
     notes_are("fish[0].wave.number=6", "fish[0].wave.number: 6: the wave travels from tail to head");
@@ -62,6 +71,7 @@ int main(void) {
         cmocka_unit_test(a_usual_case_has_no_notes),
         cmocka_unit_test(an_angle_in_radians_is_noted),
         cmocka_unit_test(a_body_like_no_other_is_noted),
+        cmocka_unit_test(few_nodes_under_pressure_are_noted),
         cmocka_unit_test(a_wave_that_travels_forwards_is_noted),
         cmocka_unit_test(a_value_that_fish_share_is_noted_once),
     };

@@ -346,6 +346,37 @@ static void cost_of_transport_has_two_parts(void **state) {
     simulate_free(simulation);
 }
 
+static void thrust_and_power_of_a_held_plate_are_means_over_the_last_period(void **state) {
+    (void)state;
+    enum { N = 50 };
+    struct simulation *const simulation = school_simulation(
+        SCHOOL_SECOND
+        "time: {end: 2, shedding_interval: 0.02}\n"
+        "fluid: {density: 2, viscosity: 1.0e-5}\n"
+        "fish: [{force: pressure, wave: {amplitude: 0}, start: {speed: 1}, body: {profile: uniform},\n"
+        "        motion: {driven: all, heave: 0.05, frequency: 1}}]\n");
+    const struct diagnostics_fish *of = simulation->diagnostics->fish;
+    double thrust = 0, power = 0, edge = 0;
+    for (int i = 0; i <= N; i++) {
+        school_run(simulation, 0.5 + i * 0.02);
+        simulate_measure(simulation);
+        const double part = (i == 0 || i == N ? 0.5 : 1) / N, *const v = simulation->state->y;
+        double force[2];
+        for (int k = 0; k < 2; k++)
+            force[k] = of->pressure.pressure[k] + of->pressure.suction[k] + of->resistive_force[k];
+        thrust -= part * force[0];
+        power -= part * force[1] * v[simulation->school->fish[0].at.vy];
+        edge = fmax(edge, fabs(of->leading_edge_a0));
+    }
+    NEAR(of->mean_thrust, thrust, 0, 1e-9);
+    // works are integrated over steps, the power here over events
+    NEAR(of->mean_power, power, 0, 5e-3);
+    NEAR(of->thrust_efficiency, of->mean_thrust * 1 / of->mean_power, 0, 1e-6);
+    NEAR(of->leading_edge_most, edge, 0, 1e-4);
+    assert_true(thrust > 0 && power > thrust);
+    simulate_free(simulation);
+}
+
 static void forces_by_name_make_up_momentum_and_angular_momentum(void **state) {
     (void)state;
     const char *const texts[] = {
@@ -486,6 +517,7 @@ int main(void) {
         cmocka_unit_test(stream_at_the_fish_is_integrated_by_trapezoids),
         cmocka_unit_test(drift_is_the_change_of_the_speed_in_a_period),
         cmocka_unit_test(cost_of_transport_has_two_parts),
+        cmocka_unit_test(thrust_and_power_of_a_held_plate_are_means_over_the_last_period),
         cmocka_unit_test(forces_by_name_make_up_momentum_and_angular_momentum),
         cmocka_unit_test(vortices_inside_an_outline_are_counted),
         cmocka_unit_test(a_body_that_sweeps_over_a_wake_loses_no_circulation),

@@ -66,6 +66,28 @@ static void control_points_have_the_circulation_of_their_intervals(void **state)
     sheet_integrals_free(integrals);
 }
 
+static void a_kink_at_the_tail_is_what_the_series_lacks(void **state) {
+    (void)state;
+    struct sheet_integrals *const integrals = make(three);
+    const double h = pi / (N_SHEET - 1);
+    for (int c = 0; c < N_SHEET - 1; c++) {
+        // g = sin(theta) (1 - cos(theta)): a strength like the place, finite at the tail
+        const double theta = h * (c + 0.5), end = h * sin(pi - h) * (1 - cos(pi - h));
+        double around = integrals->kink_strength[c] * end, before = integrals->kink_circulation[c] * end;
+        for (int j = 0; j < N_SHEET; j++) {
+            const double q = h * sin(j * h) * (1 - cos(j * h));
+            around += integrals->strength[c * N_SHEET + j] * q;
+            before += integrals->circulation[c * N_SHEET + j] * q;
+        }
+        NEAR(around, h * sin(theta) * (1 - cos(theta)), 1e-14, 0);
+        NEAR(before, pow(1 - cos(theta), 2) / 2, 1e-13, 0);
+    }
+    // it matters at the tail
+    assert_true(fabs(integrals->kink_strength[N_SHEET - 2]) > 0.1);
+    assert_true(fabs(integrals->kink_strength[0]) < 0.01);
+    sheet_integrals_free(integrals);
+}
+
 // sum over nodes k, i and vortices j of weight_k P_kij x_i q_j
 static double integral(const struct sheet_integrals *integrals, const double *weight, const double *x,
                        const double *q) {
@@ -125,6 +147,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(circulation_is_the_integral_of_every_cosine),
         cmocka_unit_test(control_points_have_the_circulation_of_their_intervals),
+        cmocka_unit_test(a_kink_at_the_tail_is_what_the_series_lacks),
         cmocka_unit_test(momentum_of_a_sheet_of_constant_g_is_the_exact_one),
         cmocka_unit_test(no_memory_leaves_nothing),
     };

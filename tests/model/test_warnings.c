@@ -10,7 +10,8 @@
 
 // ---- which warnings a run has
 
-// those of a run up to t, one character each: "contact" c, energy e, drift d, events v, sheet s, modes m
+// those of a run up to t, one character each: "contact" c, energy e, drift d, events v, sheet s, modes m,
+// leading edge l
 static void expect_warnings(const char *text, double t, const char *expected) {
     struct simulation *const simulation = school_simulation(text);
     school_run(simulation, t);
@@ -22,7 +23,7 @@ static void expect_warnings(const char *text, double t, const char *expected) {
             continue;
         print_message("%s\n", line);
         assert_null(strchr(line, '\n'));
-        strncat(found, &"cedvsm"[w], 1);
+        strncat(found, &"cedvsml"[w], 1);
     }
     assert_string_equal(found, expected);
     simulate_free(simulation);
@@ -75,6 +76,17 @@ static void an_open_energy_balance_is_told(void **state) {
                     10, "ev");
 }
 
+static void too_much_suction_is_told(void **state) {
+    (void)state;
+#define INCLINED(degrees)                                                                          \
+    SCHOOL_SECOND TIME                                                                             \
+        "fish: [{force: pressure, wave: {amplitude: 0, frequency: 0}, start: {speed: 1}, motion: " \
+        "{driven: all, pitch: " degrees ", pitch_phase: 90}}]\n"
+    // about half of sin(alpha) after a tenth of a length
+    expect_warnings(INCLINED("15"), 0.1, "");
+    expect_warnings(INCLINED("30"), 0.1, "l");
+}
+
 static void bodies_that_pass_through_each_other_are_told(void **state) {
     (void)state;
     // between two rows, and between two steps: without a fluid a prescribed motion needs few
@@ -107,6 +119,7 @@ int main(void) {
         cmocka_unit_test(a_soft_body_is_slower_than_its_beat),
         cmocka_unit_test(few_sheet_points_for_a_short_stretch_are_told),
         cmocka_unit_test(an_open_energy_balance_is_told),
+        cmocka_unit_test(too_much_suction_is_told),
         cmocka_unit_test(bodies_that_pass_through_each_other_are_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

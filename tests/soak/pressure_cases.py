@@ -2,8 +2,8 @@
 """pressure_cases.py PROGRAM [CASES [FIRST [BEATS]]]: run random legal schools with the force of the pressure (CASES of
 them, numbers FIRST on, for BEATS beats): plates that are driven and fish that swim, 1 to 4 of them in a school, side by
 side, some with the reactive force; from soft to stiff (EI/(rho U^2 L^3) of 0.05 to 1e6) and from light to heavy (mass
-over rho L w of 0.01 to 10). Each run must end well, with finite numbers and no circulation in total. 500 cases of 1.5
-beats: a quarter of an hour."""
+over rho L w of 0.01 to 10; those heavier than the fluid that they move are not limp). Each run must end well, with
+finite numbers and no circulation in total. 500 cases of 1.5 beats: a quarter of an hour."""
 
 import math
 import os
@@ -41,9 +41,10 @@ def draw_fish(draw, number, length, rate, density):
     heading, start_speed = draw.uniform(170, 190), draw.choice([0, 0.5, 1]) * speed
     profile, width = draw.choice(["joukowski", "uniform"]), draw.choice([0.2, 1])
     relaxation = draw.choice([0.001, 0.002, 0.01]) / rate
-    if force == "reactive" and driven == "none":
-        # its slowest mode, 3.6 sqrt(EI/(m L^4)), not below its beat: else nothing keeps it from folding
-        stiffness = max(stiffness, 0.15 * mass)
+    if force == "reactive" or mass > math.pi / 4:
+        # without pressure, or heavier than the fluid that it moves, a limp one folds over itself: its slowest mode, 3.6
+        # sqrt(EI/(m L^4)) or, with a held head, 0.56 of that root, is not below its beat
+        stiffness = max(stiffness, mass * (3.2 if driven == "head" else 0.08))
     modulus = bending_modulus(stiffness, density, speed, length, thickness)
     keys = [f"name: f{number}", f"length: {length}", f"nodes: {nodes}", f"sheet_points: {points}", f"force: {force}",
             f"start: {{position: [{start[0]:.4f}, {start[1]:.4f}], heading: {heading:.3f}, speed: {start_speed}}}",

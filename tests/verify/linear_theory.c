@@ -138,6 +138,28 @@ double linear_theory_heaving_speed(const struct linear_theory_plate *plate, doub
     return low * plate->omega * plate->length;
 }
 
+// ---- impulse
+
+// m v = C = sum b_n sin(n theta), and the stream less v is what the sheet induces: sum n b_n sin(n theta)/sin(theta).
+// Times sin(theta) sin(l theta), integrated: n and l are odd
+double linear_theory_impulse(double mass, double stream) {
+    enum { N = 60 };
+    double matrix[N * N], b[N] = {0};
+    lapack_int pivot[N];
+    for (int i = 0; i < N; i++) {
+        const double l = 2 * i + 1;
+        for (int j = 0; j < N; j++) {
+            const double n = 2 * j + 1;
+            // int sin(theta) sin(l theta) sin(n theta) = -4 l n/((1 - (l - n)^2) (1 - (l + n)^2)) for even l + n
+            matrix[i * N + j] = -4 * l * n / ((1 - (l - n) * (l - n)) * (1 - (l + n) * (l + n))) / mass;
+            if (i == j) matrix[i * N + j] += pi / 2 * n;
+        }
+    }
+    b[0] = pi / 2 * stream;
+    LAPACKE_dgesv(LAPACK_ROW_MAJOR, N, 1, matrix, N, pivot, b, 1);
+    return pi / 4 * b[0] / mass;
+}
+
 // ---- plates of any shape
 
 void linear_theory_sample(const struct linear_theory_function *function, struct linear_theory_shape *shape) {

@@ -63,6 +63,10 @@ struct linear_theory_load linear_theory_flexible(const struct linear_theory_plat
  * plate of span 1 m. */
 double linear_theory_heaving_speed(const struct linear_theory_plate *plate, double amplitude, double friction);
 
+/* A free limp plate of this mass per length over density L, in a stream across it that starts at once: its mean
+ * velocity then. The impulse of the pressure at a point is density C, C the circulation from the nose to there. */
+double linear_theory_impulse(double mass, double stream);
+
 /* ---- elastic plates, clamped at the nose: Galerkin's method with modes of a clamped beam in vacuum */
 
 enum { LINEAR_THEORY_MODES = 8 };

@@ -15,6 +15,7 @@ struct plate {
     int nodes, n_sheet;
     double interval, end; /* s */
     double smoothing;     /* of the wake, L */
+    double taper;         /* of the wake, L; 0: the body sees the same smoothing as all others */
     const char *motion;   /* further keys of the prescribed motion */
 };
 
@@ -23,14 +24,14 @@ static struct simulation *open_plate(const struct plate *plate) {
                        "format: 1\n"
                        "time: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
                        "fluid: {density: 1, viscosity: 0}\n"
-                       "wake: {lifetime: 1000, smoothing: %.17g}\n"
+                       "wake: {lifetime: 1000, smoothing: %.17g, taper: %g, taper_beside: %g}\n"
                        "fish:\n"
                        "  - {nodes: %d, sheet_points: %d, force: pressure, wave: {amplitude: 0, frequency: 0},\n"
                        "     start: {speed: 1},\n"
                        "     body: {profile: uniform, thickness: 0.02, width: 1, density: 1},\n"
                        "     motion: {driven: all, %s}}\n",
-                       plate->end, plate->interval, plate->interval, plate->smoothing, plate->nodes, plate->n_sheet,
-                       plate->motion);
+                       plate->end, plate->interval, plate->interval, plate->smoothing, plate->taper, plate->taper / 4,
+                       plate->nodes, plate->n_sheet, plate->motion);
 }
 
 /* The force of the fluid at an event, N, and its moment about the nose, N m. */
@@ -49,7 +50,8 @@ static struct load load_of(struct simulation *simulation) {
     return load;
 }
 
-/* What the fluid does over the last of some periods: amplitudes across the stream and about the nose, mean thrust. */
+/* What the fluid does over the last of some periods: amplitudes across the stream and about the nose, mean thrust, and
+ * the power that the motion of the nose across the stream takes. */
 static struct linear_theory_load oscillate(struct simulation *simulation, double omega, int n_periods, int per_period) {
     struct linear_theory_load load = {.thrust = 0};
     const double interval = simulation->school->interval;
@@ -61,6 +63,7 @@ static struct linear_theory_load oscillate(struct simulation *simulation, double
         load.lift += now.force[1] * wave;
         load.moment += now.moment * wave;
         load.thrust -= now.force[0] / per_period;
+        load.power -= now.force[1] * simulation->state->y[simulation->school->fish[0].at.vy] / per_period;
     }
     return load;
 }
@@ -69,31 +72,44 @@ static double relative(double complex a, double complex b) {
     return cabs(a - b) / cabs(b);
 }
 
-// heave and pitch of a small amplitude at a reduced frequency; the program has heave to the left of the heading, -y
-static struct linear_theory_load run_oscillation(double k, int n_sheet, int per_period, int n_periods, int is_pitch) {
-    const double omega = 2 * k, period = 2 * pi / omega;
+/* Heave or pitch of a small amplitude at a reduced frequency. */
+struct oscillation {
+    double k;
+    int n_sheet, per_period, n_periods, is_pitch, is_uniform; /* is_uniform: hardly smoothed, no taper */
+};
+
+// the program has heave to the left of the heading, -y
+static struct linear_theory_load run_oscillation(struct oscillation of) {
+    const double omega = 2 * of.k, period = 2 * pi / omega;
     char motion[160];
-    snprintf(motion, sizeof motion, "%s: %.17g, frequency: %.17g", is_pitch ? "pitch" : "heave",
-             is_pitch ? 0.5 : 0.005 / k, omega / (2 * pi));
-    const struct plate plate = {17, n_sheet, period / per_period, n_periods * period, 0.1, motion};
+    snprintf(motion, sizeof motion, "%s: %.17g, frequency: %.17g", of.is_pitch ? "pitch" : "heave",
+             of.is_pitch ? 0.5 : 0.005 / of.k, omega / (2 * pi));
+    const struct plate plate = {17,
+                                of.n_sheet,
+                                period / of.per_period,
+                                of.n_periods * period,
+                                of.is_uniform ? 1e-4 : 0.1,
+                                of.is_uniform ? 0 : 0.4,
+                                motion};
     struct simulation *const simulation = open_plate(&plate);
-    const struct linear_theory_load load = oscillate(simulation, omega, n_periods, per_period);
+    const struct linear_theory_load load = oscillate(simulation, omega, of.n_periods, of.per_period);
     simulate_free(simulation);
     return load;
 }
 
 static void heave(void) {
     const struct {
-        double k, lift, thrust, moment; /* bounds */
-    } cases[] = {{1, 0.005, 0.003, 0.004},
-                 {0.1, 0.001, 0.001, 0.002},
-                 {0.25, 0.001, 0.001, 0.002},
-                 {0.5, 0.004, 0.003, 0.002},
-                 {2, 0.002, 0.001, 0.006}};
+        double k, lift, thrust, power, moment; /* bounds */
+    } cases[] = {{1, 0.005, 0.003, 0.006, 0.004},
+                 {0.1, 0.001, 0.001, 0.001, 0.002},
+                 {0.25, 0.001, 0.001, 0.001, 0.002},
+                 {0.5, 0.004, 0.003, 0.004, 0.002},
+                 {2, 0.002, 0.001, 0.008, 0.006}};
     for (int i = 0; i < (verify_is_fast() ? 1 : 5); i++) {
         const double k = cases[i].k, amplitude = 0.005 / k;
         const int per_period = verify_is_fast() ? 100 : 300;
-        const struct linear_theory_load load = run_oscillation(k, 65, per_period, k < 0.3 ? 2 : 4, 0);
+        const struct linear_theory_load load =
+            run_oscillation((struct oscillation){k, 65, per_period, k < 0.3 ? 2 : 4, 0, 0});
         const struct linear_theory_plate plate = {1, 1, 1, 2 * k};
         const struct linear_theory_load theory = linear_theory_rigid(&plate, I * amplitude, 0, 0);
         if (verify_is_fast()) {
@@ -110,6 +126,8 @@ static void heave(void) {
                     cases[i].moment);
         verify_relative(verify_text("heave, k = %g: mean thrust", k), "Garrick (1936)", theory.thrust, load.thrust,
                         cases[i].thrust);
+        verify_relative(verify_text("heave, k = %g: mean power", k), "Garrick (1936)", theory.power, load.power,
+                        cases[i].power);
     }
 }
 
@@ -117,7 +135,7 @@ static void pitch(void) {
     const struct { double k, lift; } cases[] = {{0.1, 0.001}, {0.5, 0.004}, {1, 0.006}};
     for (int i = 0; i < 3; i++) {
         const double k = cases[i].k;
-        const struct linear_theory_load load = run_oscillation(k, 65, 300, k < 0.3 ? 2 : 4, 1);
+        const struct linear_theory_load load = run_oscillation((struct oscillation){k, 65, 300, k < 0.3 ? 2 : 4, 1, 0});
         const struct linear_theory_plate plate = {1, 1, 1, 2 * k};
         const struct linear_theory_load theory = linear_theory_rigid(&plate, 0, -I * 0.5 * pi / 180, 0);
         verify_zero(verify_text("pitch about the nose, k = %g: relative difference of lift", k), "Theodorsen (1935)",
@@ -125,23 +143,40 @@ static void pitch(void) {
     }
 }
 
+// what the taper costs: a wake with hardly any smoothing, seen by the body as it is
+static void without_taper(void) {
+    const struct linear_theory_plate plate = {1, 1, 1, 2};
+    const struct linear_theory_load theory = linear_theory_rigid(&plate, I * 0.005, 0, 0);
+    const struct linear_theory_load load = run_oscillation((struct oscillation){1, 65, 1200, 2, 0, 1});
+    verify_relative("heave, k = 1, smoothing 1e-4 without taper, 1200 events a period: amplitude of lift",
+                    "Theodorsen (1935)", cabs(theory.lift), cabs(load.lift), 0.0042);
+    verify_value("its phase, degree", "Theodorsen (1935)", 0, carg(load.lift / theory.lift) * 180 / pi, 0.13);
+    verify_relative("its mean thrust", "Garrick (1936)", theory.thrust, load.thrust, 0.0016);
+}
+
 // orders of the lift at k = 1 in the interval and in vortices
 static void orders(void) {
     const struct linear_theory_plate plate = {1, 1, 1, 2};
     const struct linear_theory_load theory = linear_theory_rigid(&plate, I * 0.005, 0, 0);
     double error[4];
+    double complex lift[4];
     for (int i = 0; i < 4; i++) {
-        error[i] = relative(run_oscillation(1, 129, 50 << i, 3, 0).lift, theory.lift);
+        error[i] = relative(run_oscillation((struct oscillation){1, 129, 50 << i, 3, 0, 0}).lift, theory.lift);
         verify_point("pressure_interval", "heave, k = 1", pi / (50 << i), error[i]);
     }
     verify_order("lift of a heaving plate in the interval, k = 1", "events 50 to 200 a period",
                  verify_order_of_errors(error[0], error[2]) / 2, 0.7, 2);
     for (int i = 0; i < 4; i++) {
-        error[i] = relative(run_oscillation(1, (32 << i) + 1, 400, 3, 0).lift, theory.lift);
+        lift[i] = run_oscillation((struct oscillation){1, (32 << i) + 1, 400, 3, 0, 0}).lift;
+        error[i] = relative(lift[i], theory.lift);
         verify_point("pressure_sheet", "heave, k = 1", 32 << i, error[i]);
     }
-    verify_show("lift of a heaving plate, M = 33, U Dt = 0.008 L: relative difference", "Theodorsen (1935)", error[0]);
+    verify_relative("lift of a heaving plate, k = 1, M = 33, U Dt = 0.008 L: amplitude", "Theodorsen (1935)",
+                    cabs(theory.lift), cabs(lift[0]), 0.0115);
     verify_show("lift of a heaving plate, M = 257, U Dt = 0.008 L: relative difference", "Theodorsen (1935)", error[3]);
+    for (int i = 0; i < 3; i++) error[i] = cabs(lift[i + 1] - lift[i]);
+    verify_order("lift of a heaving plate in the vortices, k = 1", "M = 33 to 257, 400 events a period",
+                 verify_order_of_errors(error[0], error[2]) / 2, 0.7, 3);
 }
 
 // ---- sudden starts, and long after
@@ -150,7 +185,7 @@ static void orders(void) {
 static struct simulation *start_plate(double alpha, double interval, double end, int n_sheet) {
     char motion[160];
     snprintf(motion, sizeof motion, "pitch: %.17g, pitch_phase: 90", alpha * 180 / pi);
-    const struct plate plate = {17, n_sheet, interval, end, 0.1, motion};
+    const struct plate plate = {17, n_sheet, interval, end, 0.1, 0.4, motion};
     return open_plate(&plate);
 }
 
@@ -194,29 +229,31 @@ static void steady(void) {
 
 // ---- bodies that go by their thrust
 
-// A heaving plate of length 2, amplitude 0.1, with friction 0.04 U^(3/2). Its mass is 1.5: theory has a uniform speed,
-// and that of a lighter body oscillates with its thrust (mass 0.5: -0.18 %). The wake decays over several periods, for
-// the end of a short one moves with the phase of the heave (fade of one period: 0.4 % of the thrust, none: 1.9 %).
-static void self_propelled(void) {
+// A heaving plate of length 2 with friction 0.04 U^(3/2). Its mass is 1.5: theory has a uniform speed, and that of a
+// lighter body oscillates with its thrust (mass 0.5: -0.18 %). The wake decays over several periods, for the end of a
+// short one moves with the phase of the heave (fade of one period: 0.4 % of the thrust, none: 1.9 %).
+static void self_propelled(double amplitude, double lifetime, int per_period, int n_periods, double bound) {
     const struct linear_theory_plate plate = {2, 1, 1, 2 * pi};
-    const double speed = linear_theory_heaving_speed(&plate, 0.1, 0.04), k = 2 * pi / speed;
+    const double speed = linear_theory_heaving_speed(&plate, amplitude, 0.04), k = 2 * pi / speed;
     const double complex c = linear_theory_theodorsen(k);
     struct simulation *const simulation =
         verify_open(VERIFY_SECOND
                     "format: 1\n"
-                    "time: {end: 24, shedding_interval: 0.01, output_interval: 0.01}\n"
+                    "time: {end: %d, shedding_interval: %.17g, output_interval: %.17g}\n"
                     "fluid: {density: 1, viscosity: %.17g}\n"
-                    "wake: {lifetime: 8, fade: 6, smoothing: 0.05}\n"
+                    "wake: {lifetime: %g, fade: %g, smoothing: 0.05}\n"
                     "fish:\n"
-                    "  - {length: 2, force: pressure, wave: {amplitude: 0, frequency: 0}, start: {speed: 4.19},\n"
+                    "  - {length: 2, force: pressure, wave: {amplitude: 0, frequency: 0}, start: {speed: %.17g},\n"
                     "     body: {profile: uniform, thickness: 0.1, width: 0.5, density: 4.8, modulus: 1.0e+5},\n"
-                    "     motion: {driven: all, surge: free, heave: 0.1, frequency: 1}}\n",
-                    pow(0.04 / 1.328, 2) / 2);
-    verify_run(simulation, 24);
+                    "     motion: {driven: all, surge: free, heave: %g, frequency: 1}}\n",
+                    n_periods, 1.0 / per_period, 1.0 / per_period, pow(0.04 / 1.328, 2) / 2, lifetime, lifetime * 0.75,
+                    speed, amplitude);
+    verify_run(simulation, n_periods);
     simulate_measure(simulation);
-    verify_relative("heaving plate that swims: speed", "Garrick (1936)", speed, simulation->diagnostics->fish[0].speed,
-                    0.0011);
-    verify_relative("heaving plate that swims: efficiency", "Garrick (1936), |C|^2/Re C", cabs(c) * cabs(c) / creal(c),
+    verify_relative(verify_text("heaving plate that swims, A = %g: speed", amplitude), "Garrick (1936)", speed,
+                    simulation->diagnostics->fish[0].speed, bound);
+    verify_relative(verify_text("heaving plate that swims, A = %g: efficiency", amplitude),
+                    "Garrick (1936), |C|^2/Re C", cabs(c) * cabs(c) / creal(c),
                     simulation->diagnostics->fish[0].efficiency, 0.018);
     simulate_free(simulation);
 }
@@ -227,6 +264,8 @@ void verify_pressure(void) {
     pitch();
     wagner();
     steady();
-    self_propelled();
+    self_propelled(0.1, 8, 100, 24, 0.0011);
+    self_propelled(0.2, 4, 200, 16, 0.001);
+    without_taper();
     orders();
 }

@@ -19,8 +19,8 @@ static const struct {
                 {"sheet", verify_sheet},       {"wake", verify_wake},         {"plate", verify_plate},
                 {"school", verify_school},     {"interval", verify_interval}, {"symmetry", verify_symmetry},
                 {"start", verify_start},       {"energy", verify_energy},     {"control", verify_control},
-                {"pressure", verify_pressure}, {"elastic", verify_elastic},   {"steady", verify_steady},
-                {"walls", verify_walls}};
+                {"pressure", verify_pressure}, {"elastic", verify_elastic},   {"coupled", verify_coupled},
+                {"steady", verify_steady},     {"walls", verify_walls}};
 
 int verify_is_fast(void) {
     return fast;
@@ -115,6 +115,10 @@ const char *verify_text(const char *format, ...) {
 static _Noreturn void give_up(void) {
     fprintf(stderr, "verify %s: %s\n", section, status_message());
     exit(1);
+}
+
+void verify_ok(enum status status) {
+    if (status != STATUS_OK) give_up();
 }
 
 struct simulation *verify_open(const char *format, ...) {

@@ -24,6 +24,7 @@ void verify_energy(void);
 void verify_control(void);
 void verify_pressure(void);
 void verify_elastic(void);
+void verify_coupled(void);
 void verify_steady(void);
 void verify_walls(void);
 
@@ -64,6 +65,9 @@ const char *verify_text(const char *format, ...) __attribute__((format(printf, 1
 /* Open a case given as text (printf format), with at most 16 kB, and without VERIFY_SECOND or a preset with the
  * defaults of the first edition (tests/data/first_edition.yaml); the section ends with the message where that fails. */
 struct simulation *verify_open(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+/* The section ends with the message unless the status is STATUS_OK. */
+void verify_ok(enum status status);
 
 /* Step until the time has come; the section ends with the message where that fails. */
 void verify_run(struct simulation *simulation, double t);
