@@ -1,5 +1,24 @@
-# checks.sh: what shell tests of the program share; to be sourced with $program set, in a folder of the test's own.
+# checks.sh: what shell tests of the program share. A test sources it first and is then in a new folder, with
+#
+#     $program    the program, which is the first argument of the test
+#     $root       the top of the tree
+#     $folder     the new folder; it goes when the test ends, and the process $pid with it
+#
 # shellcheck shell=bash
+set -uo pipefail
+export LC_ALL=C.UTF-8
+
+program=$(realpath "${1:?usage: $0 PROGRAM}")
+root=$(realpath "$(dirname "${BASH_SOURCE[0]}")/..")
+folder=$(mktemp -d)
+pid=
+leave() {
+    [[ -z $pid ]] || kill -KILL "$pid" 2>/dev/null
+    chmod -R u+rwx "$folder"
+    rm -rf "$folder"
+}
+trap leave EXIT
+cd "$folder" || exit 2
 
 readonly time_limit=${time_limit:-60}  # seconds for one call, unless the test has set it
 n_passed=0 n_failed=0 n_skipped=0
@@ -47,4 +66,10 @@ refused() {  # name, code, text on standard error, arguments...
 
 has() {  # file, text
     grep -qF -- "$2" "$1" || { echo "'$2' is not in $1"; return 1; }
+}
+
+# The last line of a test, and its exit code.
+finish() {
+    echo "$n_passed passed, $n_failed failed, $n_skipped skipped"
+    ((n_failed == 0))
 }

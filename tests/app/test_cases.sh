@@ -3,16 +3,10 @@
 # expects, and meets it.
 #
 #   tests/app/test_cases.sh PROGRAM
-set -uo pipefail
-export LC_ALL=C
+# shellcheck source=tests/checks.sh
+. "$(dirname "$0")/../checks.sh"
 
-program=$(realpath "${1:?usage: tests/app/test_cases.sh PROGRAM}")
-tests=$(realpath "$(dirname "$0")/..")
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 2
-
-exec /usr/bin/python3 - "$program" "$tests/../cases" "$tests/data/cases.tsv" <<'EOF'
+/usr/bin/python3 - "$program" "$root/cases" "$root/tests/data/cases.tsv" <<'EOF'
 import glob, os, subprocess, sys
 import netCDF4
 import numpy as np

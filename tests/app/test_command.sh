@@ -2,27 +2,12 @@
 # The command line: help, exit codes, files that are in the way, signals, full disks.
 #
 #   tests/app/test_command.sh PROGRAM
-set -uo pipefail
-export LC_ALL=C
+# shellcheck source=tests/checks.sh
+. "$(dirname "$0")/../checks.sh"
 
-program=$(realpath "${1:?usage: tests/app/test_command.sh PROGRAM}")
-cases=$(realpath "$(dirname "$0")/../../cases")
-tests=$(realpath "$(dirname "$0")/..")
-folder=$(mktemp -d)
-cd "$folder" || exit 2
+cases=$root/cases
 readonly demo="$cases/demo.yaml" diamond="$cases/diamond.yaml"
 export short="time.end=0.3"
-
-pid=
-stop() {
-    [[ -z $pid ]] || kill -KILL "$pid" 2>/dev/null
-    chmod -R u+rwx "$folder"
-    rm -rf "$folder"
-}
-trap stop EXIT
-
-# shellcheck source=tests/checks.sh
-. "$tests/checks.sh"
 
 says() { grep -qF -- "$1" err; }
 ended() { ((code == $1)); }
@@ -35,11 +20,6 @@ status_is() { [[ $(status_of "$1") == "$2" ]]; }
 readable() { timeout 20 ncdump -v time,heading,wake_count "$1" >/dev/null; }
 # the name of the case's result and of nothing else: no half-made file is left behind
 only_files() { [[ $(find "$1" -type f -printf '%f\n' | sort | tr '\n' ' ') == "$2" ]]; }
-
-finish() {
-    echo "$n_passed passed, $n_failed failed, $n_skipped skipped"
-    ((n_failed == 0))
-}
 
 # ---- help ----
 
@@ -229,20 +209,20 @@ repeats() {
 
 # Threads on processors of their own, on one that they share, and where the environment says: the same bits.
 spread() {
-    local short=(run "$diamond" -q --force --set time.end=0.2)
-    run "${short[@]}" -o one.nc
-    run "${short[@]}" --threads 3 -o three.nc
+    local spread=(run "$diamond" -q --force --set time.end=0.2)
+    run "${spread[@]}" -o one.nc
+    run "${spread[@]}" --threads 3 -o three.nc
     check "three threads: exit 0" ended 0
     check "three threads: the same bits" same_bits one.nc three.nc
     local processor
     processor=$(taskset -cp $$ | sed 's/.*: \([0-9]*\).*/\1/')
     code=0
-    taskset -c "$processor" timeout "$time_limit" "$program" "${short[@]}" --threads 2 -o shared.nc \
+    taskset -c "$processor" timeout "$time_limit" "$program" "${spread[@]}" --threads 2 -o shared.nc \
         >out 2>err </dev/null || code=$?
     check "two threads on one processor: exit 0" ended 0
     check "two threads on one processor: the same bits" same_bits one.nc shared.nc
     code=0
-    OMP_WAIT_POLICY=passive OMP_PROC_BIND=true timeout "$time_limit" "$program" "${short[@]}" --threads 2 -o bound.nc \
+    OMP_WAIT_POLICY=passive OMP_PROC_BIND=true timeout "$time_limit" "$program" "${spread[@]}" --threads 2 -o bound.nc \
         >out 2>err </dev/null || code=$?
     check "threads where the environment says: exit 0" ended 0
     check "threads where the environment says: the same bits" same_bits one.nc bound.nc

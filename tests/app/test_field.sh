@@ -2,17 +2,8 @@
 # shoal field: the flow of a result on a grid, its messages, and its picture.
 #
 #   tests/app/test_field.sh PROGRAM
-set -uo pipefail
-export LC_ALL=C.UTF-8
-
-program=$(realpath "${1:?usage: tests/app/test_field.sh PROGRAM}")
-root=$(realpath "$(dirname "$0")/../..")
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 2
-
 # shellcheck source=tests/checks.sh
-. "$root/tests/checks.sh"
+. "$(dirname "$0")/../checks.sh"
 
 run run "$root/cases/demo.yaml" -q -o run.nc --set time.end=0.5 --set output.wake_interval=0.2 \
     --set time.output_interval=0.1
@@ -56,5 +47,4 @@ refused "field of a case" 4 "case.yaml" field case.yaml -o a.nc
 refused "field of nothing" 4 "nothing.nc" field nothing.nc
 check "field: a failure leaves no file" test ! -e a.nc
 
-echo "$n_passed passed, $n_failed failed, $n_skipped skipped"
-((n_failed == 0))
+finish

@@ -2,17 +2,8 @@
 # What is made from the program's tables: pages of the manual, completion, the schema of cases.
 #
 #   tests/app/test_manual.sh PROGRAM
-set -uo pipefail
-export LC_ALL=C.UTF-8
-
-program=$(realpath "${1:?usage: tests/app/test_manual.sh PROGRAM}")
-root=$(realpath "$(dirname "$0")/../..")
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 2
-
 # shellcheck source=tests/checks.sh
-. "$root/tests/checks.sh"
+. "$(dirname "$0")/../checks.sh"
 
 run --describe
 check the_program_describes_itself /usr/bin/python3 -m json.tool out
@@ -123,5 +114,4 @@ names_schema() {
 }
 check every_case_names_the_schema names_schema
 
-echo "$n_passed passed, $n_failed failed, $n_skipped skipped"
-((n_failed == 0))
+finish

@@ -2,18 +2,10 @@
 # The scripts that draw: each makes a picture from a short run, and refuses wrong input with the right exit code.
 #
 #   tests/app/test_scripts.sh PROGRAM
-set -uo pipefail
-export LC_ALL=C.UTF-8
-
-program=$(realpath "${1:?usage: tests/app/test_scripts.sh PROGRAM}")
-root=$(realpath "$(dirname "$0")/../..")
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 2
-export MPLCONFIGDIR=$folder/matplotlib
-
 # shellcheck source=tests/checks.sh
-. "$root/tests/checks.sh"
+. "$(dirname "$0")/../checks.sh"
+
+export MPLCONFIGDIR=$folder/matplotlib
 
 # The scripts in one process, which reads their names and arguments between tabs and writes their exit codes: loading
 # matplotlib takes most of the time of a call.
@@ -215,5 +207,4 @@ refuses 2 "unrecognized" plot.py run.nc --colour
 refuses 4 "no such file" animate.py nothing.nc
 refuses 2 ".mp4 or .gif" animate.py run.nc movie.png
 
-echo "$n_passed passed, $n_failed failed, $n_skipped skipped"
-((n_failed == 0))
+finish

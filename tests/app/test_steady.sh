@@ -2,17 +2,8 @@
 # The steady state of a case: what is printed and what is in its file, and what is said where there is none.
 #
 #   tests/app/test_steady.sh PROGRAM
-set -uo pipefail
-export LC_ALL=C.UTF-8
-
-program=$(realpath "${1:?usage: tests/app/test_steady.sh PROGRAM}")
-root=$(realpath "$(dirname "$0")/../..")
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 2
-
 # shellcheck source=tests/checks.sh
-. "$root/tests/checks.sh"
+. "$(dirname "$0")/../checks.sh"
 
 cat >swim.yaml <<'end'
 format: 1
@@ -80,5 +71,4 @@ timeout --signal=TERM 1 "$program" steady swim.yaml -q -o stopped.nc --set stead
 check a_signal_stops_it test "$?" = 75 -o "$?" = 124
 check and_it_says_so grep -q 'stopped by a signal in beat' err
 
-echo "$n_passed passed, $n_failed failed, $n_skipped skipped"
-((n_failed == 0))
+finish

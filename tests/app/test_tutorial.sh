@@ -2,18 +2,10 @@
 # Every case, command and script of doc/tutorial.md works, in its order, in an empty folder. Runs are shortened.
 #
 #   tests/app/test_tutorial.sh PROGRAM
-set -uo pipefail
-export LC_ALL=C.UTF-8
-
-program=$(realpath "${1:?usage: tests/app/test_tutorial.sh PROGRAM}")
-root=$(realpath "$(dirname "$0")/../..")
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 2
-export MPLCONFIGDIR=$folder/matplotlib
-
 # shellcheck source=tests/checks.sh
-. "$root/tests/checks.sh"
+. "$(dirname "$0")/../checks.sh"
+
+export MPLCONFIGDIR=$folder/matplotlib
 
 # the blocks of the tutorial as files: 01-sh, 02-python, ..., and the cases by the names that the text gives them
 /usr/bin/python3 - "$root/doc/tutorial.md" <<'end'
@@ -60,5 +52,4 @@ done
 members() { [[ $(find follower-study -name 'member-*.nc' | wc -l) == 12 ]]; }
 check the_study_has_twelve_members members
 
-echo "$n_passed passed, $n_failed failed, $n_skipped skipped"
-((n_failed == 0))
+finish

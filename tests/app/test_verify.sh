@@ -4,16 +4,12 @@
 #   tests/app/test_verify.sh PROGRAM
 #
 # PROGRAM is build/shoal; the program of the checks is built beside it, as verify/verify.
-set -uo pipefail
-export LC_ALL=C
+# shellcheck source=tests/checks.sh
+. "$(dirname "$0")/../checks.sh"
 
-program=$(realpath "${1:?usage: tests/app/test_verify.sh PROGRAM}")
 verify=$(dirname "$program")/verify/verify
-cd "$(dirname "$0")/../.." || exit 2  # some checks run the cases of the tree
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
+cd "$root" || exit 2  # some checks run the cases of the tree
 
-n_passed=0 n_failed=0 n_skipped=0
 for section in theory rod force sheet wake plate school interval symmetry start energy control pressure elastic \
     coupled steady walls; do
     code=0
@@ -36,5 +32,4 @@ for section in theory rod force sheet wake plate school interval symmetry start 
     n_passed=$((n_passed + passed))
     n_failed=$((n_failed + missed))
 done
-echo "$n_passed passed, $n_failed failed, $n_skipped skipped"
-((n_failed == 0))
+finish

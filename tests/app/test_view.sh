@@ -2,18 +2,10 @@
 # The page of a run: its numbers are those of the result, and a browser draws them without an error.
 #
 #   tests/app/test_view.sh PROGRAM
-set -uo pipefail
-export LC_ALL=C.UTF-8
-
-program=$(realpath "${1:?usage: tests/app/test_view.sh PROGRAM}")
-root=$(realpath "$(dirname "$0")/../..")
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 2
-export MPLCONFIGDIR=$folder/matplotlib
-
 # shellcheck source=tests/checks.sh
-. "$root/tests/checks.sh"
+. "$(dirname "$0")/../checks.sh"
+
+export MPLCONFIGDIR=$folder/matplotlib
 
 # ---- the page
 
@@ -159,5 +151,4 @@ else
     check a_broken_page_is_noticed grep -q nothing_of_this_name <(console)
 fi
 
-echo "$n_passed passed, $n_failed failed, $n_skipped skipped"
-((n_failed == 0))
+finish

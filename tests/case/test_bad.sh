@@ -5,18 +5,12 @@
 #
 # tests/bad/x.yaml is checked against tests/bad/x.expected, all of standard error; the exit code is 2. Other
 # files are made here. To write the expected messages again (then read the difference!): WRITE=1 tests/case/test_bad.sh PROGRAM
-set -uo pipefail
-export LC_ALL=C
-
-program=$(realpath "${1:?usage: tests/case/test_bad.sh PROGRAM}")
-cd "$(dirname "$0")/../bad" || exit 2
-bad=$PWD
-folder=$(mktemp -d)
-trap 'chmod -R u+rwx "$folder"; rm -rf "$folder"' EXIT
-
 time_limit=20  # seconds; hostile files are small and must be refused at once
 # shellcheck source=tests/checks.sh
-. ../checks.sh
+. "$(dirname "$0")/../checks.sh"
+
+bad=$root/tests/bad
+cd "$bad" || exit 2
 
 # Run `check` with the arguments; sets $code, and leaves $folder/out and $folder/err.
 run() {
@@ -203,5 +197,4 @@ else
 fi
 
 cd "$bad" || exit 2
-echo "$n_passed passed, $n_failed failed, $n_skipped skipped"
-((n_failed == 0))
+finish

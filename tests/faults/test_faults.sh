@@ -3,18 +3,10 @@
 # files, closed pipes, signals that are ignored, threads and memory that are not there.
 #
 #   tests/faults/test_faults.sh PROGRAM
-set -uo pipefail
-export LC_ALL=C
-
-program=$(realpath "${1:?usage: tests/faults/test_faults.sh PROGRAM}")
-shim=$(dirname "$program")/faults.so
-tests=$(realpath "$(dirname "$0")/..")
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 2
-
 # shellcheck source=tests/checks.sh
-. "$tests/checks.sh"
+. "$(dirname "$0")/../checks.sh"
+
+shim=$(dirname "$program")/faults.so
 
 cat >small.yaml <<'end'
 format: 1
@@ -28,7 +20,7 @@ complete() { [[ $(ncdump -h "$1" | sed -n 's/.*:run_status = "\(.*\)" ;/\1/p') =
 
 # ---- failing calls
 
-sample=$(/usr/bin/python3 "$tests/faults/faults.py" "$program" "$shim" 61)
+sample=$(/usr/bin/python3 "$root/tests/faults/faults.py" "$program" "$shim" 61)
 check "a sample of failing calls: whole rows, one message, exit code 0 or 4" \
     grep -q '^[1-9][0-9]* passed, 0 failed, 0 skipped$' <(echo "$sample" | tee sample.out | tail -n 1)
 ((n_failed == 0)) || cat sample.out
@@ -96,5 +88,4 @@ else
     check "some of these were too little, and some enough" test $n_out -gt 0 -a $n_good -gt 0
 fi
 
-echo "$n_passed passed, $n_failed failed, $n_skipped skipped"
-((n_failed == 0))
+finish

@@ -2,17 +2,8 @@
 # Names and links: what is written is a regular file of ours, and nothing else is touched; no name is taken for a command.
 #
 #   tests/faults/test_names.sh PROGRAM
-set -uo pipefail
-export LC_ALL=C
-
-program=$(realpath "${1:?usage: tests/faults/test_names.sh PROGRAM}")
-tests=$(realpath "$(dirname "$0")/..")
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 2
-
 # shellcheck source=tests/checks.sh
-. "$tests/checks.sh"
+. "$(dirname "$0")/../checks.sh"
 
 cat >small.yaml <<'end'
 format: 1
@@ -113,5 +104,4 @@ check the_task_works test -s "$odd/member-0000.nc"
 sh "$odd/gather.sbatch" >out 2>err
 check a_name_is_no_command test ! -e PWNED -a ! -e "$odd/PWNED"
 
-echo "$n_passed passed, $n_failed failed, $n_skipped skipped"
-((n_failed == 0))
+finish

@@ -1,16 +1,10 @@
 #!/usr/bin/env bash
 # test_library.sh PROGRAM: the installed library as others use it: found by pkg-config, linked from C and from C++, shared
 # and static, silent, and with no name of its own but shoal_*.
-set -uo pipefail
+# shellcheck source=tests/checks.sh
+. "$(dirname "$0")/../checks.sh"
 
-program=$(realpath "$1")
-root=$(realpath "$(dirname "$0")/../..")
 build=$(dirname "$program")
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder"
-# shellcheck source=../checks.sh
-source "$root/tests/checks.sh"
 
 sanitize=() preload=''
 if nm -D --undefined-only "$build/libshoal.so.0" | grep __asan >/dev/null; then
@@ -80,5 +74,4 @@ for i in 0 1; do
     check "result $i of a thread is that of the program" "$root/tests/run/same_result.py" alone$i.nc together$i.nc
 done
 
-echo "$n_passed passed, $n_failed failed, $n_skipped skipped"
-((n_failed == 0))
+finish

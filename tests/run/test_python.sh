@@ -1,14 +1,10 @@
 #!/usr/bin/env bash
 # test_python.sh PROGRAM: the module shoal, tests/run/test_python.py, in a folder of its own with the library of that
 # build.
-set -uo pipefail
+# shellcheck source=tests/checks.sh
+. "$(dirname "$0")/../checks.sh"
 
-program=$(realpath "$1")
-root=$(realpath "$(dirname "$0")/../..")
 library=$(dirname "$program")/libshoal.so.0
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder"
 
 preload=''
 if nm -D --undefined-only "$library" | grep __asan >/dev/null; then

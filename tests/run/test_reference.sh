@@ -5,14 +5,10 @@
 # millimetre. Forces, energies and powers are compared at the end too; reactive_force has what leaves at the tail in it.
 #
 #   tests/run/test_reference.sh PROGRAM
-set -uo pipefail
-export LC_ALL=C
+# shellcheck source=tests/checks.sh
+. "$(dirname "$0")/../checks.sh"
 
-program=$(realpath "${1:?usage: tests/run/test_reference.sh PROGRAM}")
-data=$(realpath "$(dirname "$0")/../data")
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 2
+data=$root/tests/data
 
 /usr/bin/python3 - "$program" "$data" <<'PYTHON'
 import json, subprocess, sys

@@ -1,19 +1,8 @@
 #!/usr/bin/env bash
 # test_resume.sh PROGRAM: runs that are stopped or killed, and go on: to the bits of the run that was not.
-set -uo pipefail
+# shellcheck source=tests/checks.sh
+. "$(dirname "$0")/../checks.sh"
 
-program=$(realpath "$1")
-root=$(realpath "$(dirname "$0")/../..")
-folder=$(mktemp -d)
-pid=
-stop() {
-    [[ -z $pid ]] || kill -KILL "$pid" 2>/dev/null
-    rm -rf "$folder"
-}
-trap stop EXIT
-cd "$folder" || exit 2
-# shellcheck source=../checks.sh
-source "$root/tests/checks.sh"
 same() { /usr/bin/python3 "$root/tests/run/same_result.py" "$@"; }
 places() { /usr/bin/python3 -c 'import sys, netCDF4; print(netCDF4.Dataset(sys.argv[1]).checkpoint_at.strip("\0"))' "$1"; }
 
@@ -224,5 +213,4 @@ run run member.yaml -q --set "fish[0].wave.amplitude=0.2" --checkpoint-at "$plac
 check its_bits_are_those_of_the_run_that_renewed_itself_there same parts/member-0000.nc member.nc
 check the_other_member_has_the_same_bits same parts/member-0001.nc whole/member-0001.nc
 
-echo "$n_passed passed, $n_failed failed, $n_skipped skipped"
-((n_failed == 0))
+finish

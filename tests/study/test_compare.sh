@@ -2,19 +2,11 @@
 # Comparing methods: what a row says, what ends early, and wrong input.
 #
 #   tests/study/test_compare.sh PROGRAM
-set -uo pipefail
-export LC_ALL=C
-
-program=$(realpath "${1:?usage: tests/study/test_compare.sh PROGRAM}")
-checks=$(realpath "$(dirname "$0")/../checks.sh")
-article=$(realpath "$(dirname "$0")/../../cases/include/article.yaml")
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" || exit 2
-export TMPDIR=$folder  # where comparisons run
-
 # shellcheck source=tests/checks.sh
-. "$checks"
+. "$(dirname "$0")/../checks.sh"
+
+article=$root/cases/include/article.yaml
+export TMPDIR=$folder  # where comparisons run
 
 # The value in a column of the row of a method and a tolerance or step.
 value() {  # method, value, column, file
@@ -94,5 +86,4 @@ check a_signal_stops_a_comparison test "$code" = 75
 
 check its_folder_is_removed test ! -e "$(echo "$TMPDIR"/shoal-compare-*)"
 
-echo "$n_passed passed, $n_failed failed, $n_skipped skipped"
-((n_failed == 0))
+finish
