@@ -1,4 +1,4 @@
-/* state_table.h: every field of a state, with its place and length. Whoever writes, reads, copies or compares a state
+/* state_table.h: every field of a state, with its place and length. Code that writes, reads, copies or compares a state
  * loops over this table: a new field of struct state, or of what it owns, is a new row. Tested by
  * tests/model/test_state_table.c, which fails when a field has no row. */
 #ifndef STATE_TABLE_H

@@ -17,7 +17,7 @@
 
 struct wake {
     unsigned long
-        version; /* counts the changes of the vortices below: whoever keeps something made of them compares it */
+        version; /* counts the changes of the vortices below: what is made of them is kept with it, and compared */
     int n_vortex, capacity;
     double *x, *y;                            /* position at the last event, m                     (n_vortex) */
     double *u, *v;                            /* velocity W at the last event, m s-1               (n_vortex) */
