@@ -153,6 +153,10 @@ const struct key case_table[] = {
      .meaning = "the search fails after this many beats", .synonyms = "max_beats limit"},
     {"steady.output_beats", INTEGER, AT(steady.output_beats), "2", FROM_TO(1, MAX_STEPS), "",
      .meaning = "beats in the result, from the steady state on", .synonyms = "last_beats"},
+    {"steady.formation", CHOICE, AT(steady.formation), "false", ANY, "",
+     .meaning = "true: the places of the other fish, as the first one sees them, are looked for, too: a formation that "
+                "keeps together",
+     .words = WORDS("false", "true"), .synonyms = "places school"},
     {"steady.multipliers", CHOICE, AT(steady.multipliers), "true", ANY, "",
      .meaning = "whether Floquet multipliers are computed", .words = WORDS("false", "true"),
      .synonyms = "floquet stability"},

@@ -39,7 +39,7 @@ struct case_steady {
     double tolerance; /* change from beat to beat, relative */
     int beats;        /* of the search at most */
     int output_beats;
-    enum yes multipliers;
+    enum yes formation, multipliers;
 };
 
 struct sweep_axis;

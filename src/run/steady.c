@@ -9,26 +9,27 @@
 #include "output/result_lock.h"
 #include "run/record.h"
 #include "run/record_notes.h"
+#include "run/steady_multipliers.h"
 #include "run/steady_search.h"
 
 struct run {
     const struct case_values *values;
     const struct steady_options *options;
     struct simulation *simulation;
-    struct steady_search search;
+    struct steady_problem problem;
     struct steady_values found;
     struct record record;
     long first; /* event of the first row */
 };
 
-static void tell(const struct steady_search *search, void *data) {
+static void tell(const struct steady_problem *problem, void *data) {
     const struct run *const run = data;
     if (!run->options->progress) return;
-    const struct steady_progress progress = {.n_beats = search->map.n_beats,
+    const struct steady_progress progress = {.n_beats = problem->map.n_beats,
                                              .max_beats = run->values->steady.beats,
-                                             .residual = steady_map_residual(&search->map),
+                                             .residual = steady_map_residual(&problem->map),
                                              .tolerance = run->values->steady.tolerance,
-                                             .speed = search->map.last[0].speed,
+                                             .speed = problem->map.last[0].speed,
                                              .wall_time = simulate_wall_time(run->simulation)};
     run->options->progress(&progress, run->options->data);
 }
@@ -47,9 +48,9 @@ static enum status allocate(struct run *run) {
 static enum status find_multipliers(struct run *run) {
     struct steady_values *const found = &run->found;
     found->error = NAN;
-    if (run->values->steady.multipliers == NO || run->search.n_unknowns == 0) return STATUS_OK;
-    found->n_multipliers = run->search.n_unknowns;
-    TRY(steady_search_multipliers(&run->search, found->real, found->imaginary, &found->n_multiplier_beats));
+    if (run->values->steady.multipliers == NO || run->problem.n_unknowns == 0) return STATUS_OK;
+    found->n_multipliers = run->problem.n_unknowns;
+    TRY(steady_multipliers_find(&run->problem, found->real, found->imaginary, &found->n_multiplier_beats));
     const double left = 1 - hypot(found->real[0], found->imaginary[0]);
     if (left > 0) found->error = found->residual / left;
     return STATUS_OK;
@@ -57,15 +58,15 @@ static enum status find_multipliers(struct run *run) {
 
 // the means over the last beat
 static void gather(struct run *run) {
-    const struct steady_map *const map = &run->search.map;
+    const struct steady_map *const map = &run->problem.map;
     const struct school *const school = run->simulation->school;
     for (int f = 0; f < school->n_fish; f++) {
         const struct steady_beat *const beat = &map->last[f];
         const struct diagnostics_fish *const last = &run->simulation->diagnostics->fish[f];
-        const struct steady_unknown place[] = {{f, STEADY_AHEAD}, {f, STEADY_ASIDE}};
         struct steady_fish *const found = &run->found.fish[f];
         *found = (struct steady_fish){.speed = beat->speed,
                                       .turn = beat->turn * 180 / M_PI,
+                                      .place = {beat->place[0], beat->place[1]},
                                       .force = {beat->force[0], beat->force[1]},
                                       .thrust = beat->thrust,
                                       .actuation_power = beat->actuation,
@@ -75,7 +76,6 @@ static void gather(struct run *run) {
                                       .cost_of_transport = last->cost_of_transport,
                                       .efficiency = last->efficiency,
                                       .strouhal = last->strouhal};
-        steady_map_read(map, 2, place, found->place);
     }
 }
 
@@ -99,16 +99,16 @@ static enum status write_if_due(void *data) {
 // the last beats, from the steady state on; the energy balance and the closest approach are those of the rows
 static enum status write_beats(struct run *run) {
     struct simulation *const simulation = run->simulation;
-    const int n_beats = run->search.map.n_beats;
+    const int n_beats = run->problem.map.n_beats;
     diagnostics_restart(simulation->residual, simulation->state);
     run->first = simulation->state->event;
-    run->record.n_events = run->first + run->values->steady.output_beats * run->search.map.events;
+    run->record.n_events = run->first + run->values->steady.output_beats * run->problem.map.events;
     TRY(write_row(run, run->first));
     for (int i = 0; i < run->values->steady.output_beats; i++) {
-        TRY(steady_map_beat(&run->search.map, write_if_due, run));
+        TRY(steady_map_beat(&run->problem.map, write_if_due, run));
     }
-    run->search.map.n_beats = n_beats;
-    run->found.residual = fmax(run->found.residual, steady_map_residual(&run->search.map));
+    run->problem.map.n_beats = n_beats;
+    run->found.residual = fmax(run->found.residual, steady_map_residual(&run->problem.map));
     gather(run);
     return STATUS_OK;
 }
@@ -116,15 +116,15 @@ static enum status write_beats(struct run *run) {
 // ---- a run
 
 static enum status search(struct run *run) {
-    const enum status status = steady_search_run(&run->search);
+    const enum status status = steady_search_run(&run->problem);
     if (status == STATUS_STOPPED) {
         return status_fail(status, "stopped %s in beat %d of the search, which cannot be resumed",
                            *run->options->stop == SIGALRM ? "after --max-wall" : "by a signal",
-                           run->search.map.n_beats + 1);
+                           run->problem.map.n_beats + 1);
     }
     TRY(status);
-    run->found.n_beats = run->search.map.n_beats;
-    run->found.residual = steady_map_residual(&run->search.map);
+    run->found.n_beats = run->problem.map.n_beats;
+    run->found.residual = steady_map_residual(&run->problem.map);
     TRY(find_multipliers(run));
     return write_beats(run);
 }
@@ -134,12 +134,12 @@ static enum status start(struct run *run) {
     TRY(netcdf_check_target(options->path, options->overwrite));
     TRY(simulate_create(&run->simulation, run->values));
     run->simulation->stop = options->stop;
-    TRY(steady_search_create(&run->search, run->values, run->simulation));
-    run->search.progress = tell;
-    run->search.data = run;
+    TRY(steady_problem_create(&run->problem, &run->values->steady, run->simulation));
+    run->problem.progress = tell;
+    run->problem.data = run;
     TRY(allocate(run));
     // room for as many vortices as there can be
-    const long n_events = (run->values->steady.beats + run->values->steady.output_beats) * run->search.map.events;
+    const long n_events = (run->values->steady.beats + run->values->steady.output_beats) * run->problem.map.events;
     TRY(record_create_steady(&run->record, run->values, run->simulation->school, n_events, options->path,
                              options->overwrite, options->command));
     const enum status status = search(run);
@@ -151,7 +151,7 @@ static enum status start(struct run *run) {
 }
 
 static void release(struct run *run) {
-    steady_search_free(&run->search);
+    steady_problem_free(&run->problem);
     simulate_free(run->simulation);
     free(run->found.fish);
     free(run->found.real);

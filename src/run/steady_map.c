@@ -102,6 +102,8 @@ static void finish_beat(struct steady_map *map) {
         struct steady_beat *const beat = &map->last[f];
         beat->speed = map->simulation->diagnostics->fish[f].speed;
         beat->turn = new->heading - old->heading;
+        const struct steady_unknown place[] = {{f, STEADY_AHEAD}, {f, STEADY_ASIDE}};
+        steady_map_read(map, 2, place, beat->place);
         beat->fluid = (old->work[WORK_FLUID] - new->work[WORK_FLUID]) / map->period;
         beat->rms_thrust = sqrt(beat->rms_thrust);
         beat->rms_power = sqrt(beat->rms_power);
@@ -139,6 +141,9 @@ double steady_map_residual(const struct steady_map *map) {
         const struct steady_beat *const now = &map->last[f], *const before = &map->before[f];
         residual = fmax(residual, relative(now->speed, before->speed, school->fish[f].length / map->period));
         residual = fmax(residual, relative(now->turn, before->turn, 2 * M_PI));
+        for (int i = 0; i < 2 && map->is_formation; i++) {
+            residual = fmax(residual, relative(now->place[i], before->place[i], school->fish[f].length));
+        }
         if (steady_map_freedom(&school->fish[f]) != STEADY_HELD) continue;
         residual = fmax(residual, relative(now->thrust, before->thrust, now->rms_thrust));
         residual = fmax(residual,

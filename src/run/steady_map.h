@@ -28,6 +28,7 @@ enum steady_freedom steady_map_freedom(const struct fish *fish);
 /* The sums of one beat. */
 struct steady_beat {
     double speed;                              /* m s-1 */
+    double place[2];                           /* at its end, ahead of the first fish and to its left, m */
     double turn;                               /* rad */
     double force[2], thrust;                   /* means, N */
     double rms_thrust;                         /* N */
@@ -37,6 +38,7 @@ struct steady_beat {
 
 struct steady_map {
     struct simulation *simulation;
+    int is_formation;                  /* whether places count in the residual */
     long events;                       /* in a beat */
     double period;                     /* s */
     int n_beats;                       /* so far */
@@ -52,7 +54,8 @@ void steady_map_free(struct steady_map *map);
 enum status steady_map_beat(struct steady_map *map, enum status (*row)(void *data), void *data);
 
 /* The largest change from the last beat but one to the last: of the speed in lengths per beat and of the turn in full
- * circles; of a fish that is held, of thrust and power, over their root mean squares. */
+ * circles; of a formation, of the places in lengths; of a fish that is held, of thrust and power, over their root mean
+ * squares. */
 double steady_map_residual(const struct steady_map *map);
 
 /* The unit in which a quantity is measured: lengths per beat, rad per beat, rad, lengths; in m s-1, s-1, rad, m. */

@@ -52,11 +52,11 @@ static enum status set_up(struct solver *solver, double *u, double *inverse) {
     solver->linear = solver->matrix ? SUNLinSol_Dense(solver->unknowns, solver->matrix, solver->context) : NULL;
     solver->kinsol = KINCreate(solver->context);
     if (!solver->linear || !solver->kinsol) return status_fail(STATUS_MEMORY, "out of memory: KINSOL");
-    // a Jacobian for every step; steps of rounding do not end the iteration
+    // steps of rounding do not end the iteration
     if (KINSetErrHandlerFn(solver->kinsol, sundials_adapter_message, &solver->failure) ||
         KINSetUserData(solver->kinsol, solver) || KINInit(solver->kinsol, value_of, solver->unknowns) ||
         KINSetLinearSolver(solver->kinsol, solver->linear, solver->matrix) ||
-        KINSetJacFn(solver->kinsol, jacobian_of) || KINSetMaxSetupCalls(solver->kinsol, 1) ||
+        KINSetJacFn(solver->kinsol, jacobian_of) || KINSetMaxSetupCalls(solver->kinsol, problem->reuse) ||
         KINSetFuncNormTol(solver->kinsol, problem->tolerance) || KINSetScaledStepTol(solver->kinsol, 1e-14) ||
         KINSetNumMaxIters(solver->kinsol, problem->max_iterations) ||
         KINSetMaxNewtonStep(solver->kinsol, problem->max_step)) {
@@ -67,8 +67,8 @@ static enum status set_up(struct solver *solver, double *u, double *inverse) {
 
 static const char *reason(int code) {
     switch (code) {
+        case KIN_MXNEWT_5X_EXCEEDED:
         case KIN_MAXITER_REACHED: return "Newton's method did not converge";
-        case KIN_MXNEWT_5X_EXCEEDED: return "Newton's method takes one longest step after the other";
         case KIN_LSETUP_FAIL:
         case KIN_LSOLVE_FAIL: return "the Jacobian is singular";
         default: return "KINSOL failed";
@@ -76,7 +76,14 @@ static const char *reason(int code) {
 }
 
 static enum status solve(struct solver *solver) {
-    const int code = KINSol(solver->kinsol, solver->unknowns, KIN_NONE, solver->scales, solver->scales);
+    int code = KIN_MXNEWT_5X_EXCEEDED;
+    long n_iterations = 0, n = 0;
+    // five longest steps in a row are no reason to stop
+    while (code == KIN_MXNEWT_5X_EXCEEDED && n_iterations < solver->problem->max_iterations) {
+        code = KINSol(solver->kinsol, solver->unknowns, KIN_NONE, solver->scales, solver->scales);
+        KINGetNumNonlinSolvIters(solver->kinsol, &n);
+        n_iterations += n;
+    }
     if (solver->failure != STATUS_OK) return solver->failure;
     if (code >= 0) return STATUS_OK;
     char cause[512];

@@ -11,6 +11,7 @@ struct newton {
     const double *scale; /* of unknown i and of equation i, which have the same unit                    (n) */
     double tolerance;    /* solved where no equation is above it, over its scale */
     double max_step;     /* in the norm of the unknowns over their scales; at least 1 */
+    int reuse;           /* steps with one Jacobian */
     int max_iterations;
     enum status (*value)(void *data, const double *u, double *value);
     /* matrix[i + n j] = d value_i / d u_j where value was evaluated last */

@@ -40,6 +40,7 @@ static struct newton problem_of(struct pair *pair) {
                            .scale = scale,
                            .tolerance = 1e-10,
                            .max_step = 10,
+                           .reuse = 1,
                            .max_iterations = 20,
                            .value = pair_value,
                            .jacobian = pair_jacobian,

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "run/steady_multipliers.h"
 #include "run/steady_search.h"
 #include "verify.h"
 
@@ -31,29 +32,29 @@ struct found {
     int n_beats;
 };
 
-static void note_speed(const struct steady_search *search, void *data) {
+static void note_speed(const struct steady_problem *problem, void *data) {
     struct found *const found = data;
-    if (search->map.n_beats <= MOST_BEATS) found->to_bound[search->map.n_beats] = search->map.last[0].speed;
+    if (problem->map.n_beats <= MOST_BEATS) found->to_bound[problem->map.n_beats] = problem->map.last[0].speed;
 }
 
 static struct found search_for(const char *text) {
     struct found found = {.n_beats = 0};
     struct case_values values;
-    struct steady_search search;
+    struct steady_problem problem;
     double real[STEADY_QUANTITIES], imaginary[STEADY_QUANTITIES];
     int n_beats;
     struct simulation *const simulation = verify_open("%s", text);
     ok(case_parse(&values, text, strlen(text), "verify", ".", 0, NULL));
-    ok(steady_search_create(&search, &values, simulation));
-    search.progress = note_speed;
-    search.data = &found;
-    ok(steady_search_run(&search));
-    found.n_beats = search.map.n_beats;
-    found.speed = search.map.last[0].speed;
-    found.cost = search.map.last[0].actuation + search.map.last[0].driving;
-    ok(steady_search_multipliers(&search, real, imaginary, &n_beats));
+    ok(steady_problem_create(&problem, &values.steady, simulation));
+    problem.progress = note_speed;
+    problem.data = &found;
+    ok(steady_search_run(&problem));
+    found.n_beats = problem.map.n_beats;
+    found.speed = problem.map.last[0].speed;
+    found.cost = problem.map.last[0].actuation + problem.map.last[0].driving;
+    ok(steady_multipliers_find(&problem, real, imaginary, &n_beats));
     found.multiplier = hypot(real[0], imaginary[0]);
-    steady_search_free(&search);
+    steady_problem_free(&problem);
     simulate_free(simulation);
     case_free(&values);
     return found;
