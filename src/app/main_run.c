@@ -8,23 +8,14 @@
 
 #include "app/main_commands.h"
 #include "app/main_signals.h"
+#include "app/main_teller.h"
 #include "app/main_threads.h"
 #include "app/progress.h"
 #include "base/parallel.h"
-#include "case/case.h"
-#include "case/sweep_members.h"
 #include "output/page.h"
-#include "run/record.h"
 #include "run/simulate_run.h"
 
 // ---- run
-
-/* What a run tells while it goes on. */
-struct teller {
-    struct progress progress;
-    int n_warnings;
-    char *path; /* of the result; owned */
-};
 
 static enum status tell_begin(const struct case_values *values, const char *path, void *data) {
     struct teller *const teller = data;
@@ -44,13 +35,6 @@ static void tell_progress(const struct simulate_progress *now, void *data) {
     progress_show(now, &teller->progress);
 }
 
-static void tell_warning(const char *line, void *data) {
-    struct teller *const teller = data;
-    teller->n_warnings++;
-    progress_end(&teller->progress);
-    fprintf(stderr, "shoal: warning: %s\n", line);
-}
-
 /* Run, or resume where values is NULL, and tell about it. */
 static enum status run_and_tell(const struct case_values *values, const struct request *request, const char *path,
                                 struct teller *teller) {
@@ -60,7 +44,7 @@ static enum status run_and_tell(const struct case_values *values, const struct r
                                              .checkpoint_at = request->checkpoint_at,
                                              .begin = tell_begin,
                                              .progress = request->quiet ? NULL : tell_progress,
-                                             .warn = tell_warning,
+                                             .warn = main_tell_warning,
                                              .note = tell_note,
                                              .data = teller,
                                              .stop = main_stop_signal()};
@@ -80,26 +64,13 @@ static enum status run_case(const struct case_values *values, const struct reque
     const char *const result = teller.path ? teller.path : "";
     if (status == STATUS_OK && request->verbose) status = main_print_info(result, 0);
     if (status == STATUS_OK && !request->quiet && !request->verbose) printf("%s\n", result);
-    if (status == STATUS_OK && request->strict && teller.n_warnings > 0) {
-        status = status_fail(STATUS_MISSED, "%s: with --strict its %d warning%s", result, teller.n_warnings,
-                             teller.n_warnings > 1 ? "s are errors" : " is an error");
-    }
+    if (status == STATUS_OK) status = main_refuse_warnings(request, &teller, result);
     free(teller.path);
     return status;
 }
 
 enum status main_run(const struct request *request) {
-    struct case_values values;
-    TRY(case_read(&values, request->positional, request->n_assignments, request->assignments));
-    enum status status = sweep_refuse(&values);
-    main_print_notes(request, &values);
-    if (status == STATUS_OK) {
-        char *const path = request->output ? strdup(request->output) : record_path(&values);
-        status = path ? run_case(&values, request, path) : status_fail(STATUS_MEMORY, "out of memory: a file name");
-        free(path);
-    }
-    case_free(&values);
-    return status;
+    return main_with_case(request, run_case);
 }
 
 enum status main_resume(const struct request *request) {
