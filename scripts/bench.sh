@@ -44,7 +44,8 @@ per_event() {
     "$program" info run.nc | awk -v name="$1" '$1 == name { print $3 }'
 }
 
-# Compare a number with its limit: what, number, limit. Limits are ratios within this run: seconds are those of a machine.
+# Compare a number with its limit: what, number, limit. Limits are ratios within this run: seconds are those of one
+# machine.
 check_limit() {
     local result=ok
     if awk "BEGIN { exit !($2 > $3) }"; then
@@ -104,7 +105,8 @@ printf '%-58s %10s %10s\n' '' here limit
 check_limit 'single_free: CPU time over the lower bound' "$(column single_free 1 7)" 5
 check_limit 'diamond: CPU time over the lower bound' "$(column diamond 1 7)" 3
 check_limit 'diamond, 2 threads: CPU time over the lower bound' "$(column diamond 2 7)" 3
-check_limit 'diamond: wall clock with 2 threads over that with 1' "$(awk "BEGIN { printf \"%.2f\", $two / $one }")" 0.556
+check_limit 'diamond: wall clock with 2 threads over that with 1' \
+    "$(awk "BEGIN { printf \"%.2f\", $two / $one }")" 0.556
 check_limit 'diamond: output, % of the CPU time' "$(column diamond 1 15)" 3
 check_limit '256 fish: CPU time per event over that of 64' "$(awk '/^256 fish take/ { print $4 }' schools.txt)" 6
 exit $((missed ? 3 : 0))

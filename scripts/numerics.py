@@ -518,8 +518,8 @@ def evidence_of_energy(bench):
     free = ("time.end=60", NO_WAKE, "fish[0].nodes=7", "fish[0].wave.number=6",
             "fish[0].drag={normal: 0, tangential: 0}")
     what = "neither drag nor wake, wave number +6, after 60 s: speed [m/s], powers [W]"
-    article = ("fish[0].body={section: nodes, density: 2000, relaxation_time: 0, bending_damping: 0.5, stretching_damping: 1}",
-               "fish[0].drag.added_mass=1.5")
+    body = "section: nodes, density: 2000, relaxation_time: 0, bending_damping: 0.5, stretching_damping: 1"
+    article = (f"fish[0].body={{{body}}}", "fish[0].drag.added_mass=1.5")
     pointed = "fish[0].drag.extent=thickness"
     for name, keys in (("force: published", ["fish[0].force=published"]),
                        ("the article's body and C_A", [*article, "fish[0].force=published"]),
@@ -734,9 +734,8 @@ def threads(bench):
 
 
 TABLES = {function.__name__: function for function in
-          (default, highest, nascent, counts, stiffness, tolerance, order, interval, nodes, edge, events, start, explicit, rod, evidence, choices,
-           coupling,
-           school, energy, constants, coupled, threads)}
+          (default, highest, nascent, counts, stiffness, tolerance, order, interval, nodes, edge, events, start,
+           explicit, rod, evidence, choices, coupling, school, energy, constants, coupled, threads)}
 
 
 def main():
