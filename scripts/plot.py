@@ -8,6 +8,7 @@
                                        --each speed: a panel per fish
     plot.py forces RUN.nc [PICTURE]    forces and powers by name over time, one column per fish
     plot.py pressure RUN.nc [PICTURE]  the jump of the pressure along the bodies over the last beat (force: pressure)
+    plot.py school RUN.nc [PICTURE]    polarisation, distances to the nearest neighbour and contacts over time
     plot.py field  FIELD.nc [PICTURE]  vorticity (--speed: speed) and streamlines, from a file of `shoal field`
 """
 
@@ -17,6 +18,7 @@ import os
 import sys
 
 import plot_field as plot_field_module
+import plot_school as plot_school_module
 import plot_study as plot_study_module
 from plot_style import BLUE, BODY, BODY_EDGE, DASHES, GRID, LINES, PATH, PHASES, RED, STYLE, WIDTH, matplotlib
 from shoal_results import DAMAGE, EXIT_FILE, EXIT_USAGE, FileError, Results, kind_of, np, stop
@@ -466,6 +468,15 @@ def plot_field(path, options):
     return figure
 
 
+def plot_school(results, options):
+    """Polarisation, nearest neighbours and contacts of a school over time."""
+    if results.n_fish < 2:
+        raise FileError(f"{options.results}: one fish is no school")
+    figure = pyplot.figure(figsize=(WIDTH, 6), layout="constrained")
+    plot_school_module.draw(results, figure)
+    return figure
+
+
 def plot_study(path, options):
     """Errors, costs or maps of a study.nc, or of a comparison of methods."""
     figure = pyplot.figure(figsize=(WIDTH, 3.4), layout="constrained")
@@ -480,6 +491,7 @@ PICTURES = {
     "time": (plot_time, "speed, heading, power and forces over time"),
     "forces": (plot_forces, "forces and powers by name over time"),
     "pressure": (plot_pressure, "the jump of the pressure along the bodies over one beat"),
+    "school": (plot_school, "polarisation, nearest neighbours and contacts over time"),
     "field": (plot_field, "the flow on a grid, from a file of shoal field"),
     "study": (plot_study, "a study or a comparison of methods"),
 }

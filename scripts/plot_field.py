@@ -26,7 +26,7 @@ class Field:
 
 def end_of_scale(values):
     """The value that all but a few points stay below; never 0."""
-    return max(float(np.quantile(np.abs(values), SPECIAL)), 1e-300)
+    return max(float(np.nanquantile(np.abs(values), SPECIAL)), 1e-300)
 
 
 def draw(path, figure, with_speed=False, with_streamlines=True):

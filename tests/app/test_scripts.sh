@@ -91,6 +91,9 @@ refuses 4 "no fish has force: pressure" plot.py pressure run.nc no.png
 draws plot.py field run-field.nc field.png
 draws plot.py field run-field.nc --speed --no-streamlines speed.png
 draws plot.py run-field.nc of_its_own_kind.png
+"$program" run "$root/cases/channel.yaml" -q -o channel.nc --set time.end=0.2
+"$program" field channel.nc --grid 40,40 -q
+draws plot.py channel-field.nc beyond_walls_is_nothing.png
 refuses 4 "the file of a run, not of a field: use plot.py swim run.nc" plot.py field run.nc no.png
 refuses 4 "the file of a field, not of a run: use plot.py field run-field.nc" plot.py swim run-field.nc no.png
 if command -v ffmpeg >/dev/null; then
@@ -107,6 +110,8 @@ draws animate.py run.nc --fps 10 --dpi 40 --follow movie.gif
   for i in 0 1 2 3 4 5 6; do echo "  - {name: number $i, start: {position: [0, $i]}}"; done; } >seven.yaml
 "$program" run seven.yaml -q -o seven.nc
 draws plot.py time seven.nc many.png
+draws plot.py school seven.nc school.png
+refuses 4 "one fish is no school" plot.py school run.nc no.png
 draws plot.py time seven.nc --each heading small.png
 draws plot.py time seven.nc --fish "number 2" "number 5" -- two.png
 draws plot.py forces seven.nc --fish "number 2" -- one.png
