@@ -12,7 +12,7 @@ void school_ok(enum status status) {
 }
 
 void school_settings(struct case_values *values, const char *text) {
-    char whole[8192];
+    char whole[32768];
     // a preset is weaker than an include
     const char *const include =
         strstr(text, "preset:") || strstr(text, SCHOOL_SECOND) ? "" : "include: [tests/data/first_edition.yaml]\n";

@@ -164,6 +164,18 @@ int rod_is_torn(const struct fish *fish, const double *y) {
     return 0;
 }
 
+int rod_shortest_edge(const struct fish *fish, const double *y, double *ratio) {
+    int shortest = 0;
+    *ratio = INFINITY;
+    for (int k = 0; k < fish->n_edges; k++) {
+        const double here = edge_at(fish, k, y).length / fish->edge_length;
+        if (here >= *ratio) continue;
+        *ratio = here;
+        shortest = k;
+    }
+    return shortest;
+}
+
 double rod_actuation_power(const struct fish *fish, const double *natural_curvature, const double *curvature_rate,
                            const double *y) {
     double power = 0;

@@ -29,6 +29,9 @@ double rod_stretching_energy(const struct fish *fish, const double *y);
 /* Whether an edge is ten times as long as it is by nature: what a step that is too long for the stiffness leads to. */
 int rod_is_torn(const struct fish *fish, const double *y);
 
+/* The edge that is compressed most, and its length over its natural one. */
+int rod_shortest_edge(const struct fish *fish, const double *y, double *ratio);
+
 /* Power of the muscle, which changes the natural curvature at the given rate [s-1], W. */
 double rod_actuation_power(const struct fish *fish, const double *natural_curvature, const double *curvature_rate,
                            const double *y);

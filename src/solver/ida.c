@@ -7,6 +7,7 @@
 #include <stdlib.h>
 
 #include "model/diagnostics.h"
+#include "model/rod.h"
 #include "solver/algebraic_rates.h"
 #include "solver/ida_newton.h"
 #include "solver/sundials_adapter.h"
@@ -247,13 +248,29 @@ static const char *reason(int code) {
     }
 }
 
+// what can be seen of a body: an edge that forces have pressed to nothing, against which a rod has no finite force
+static void tell_crushed(const struct ida *solver, size_t size, char *text) {
+    const struct school *school = solver->residual->school;
+    const double *const y = N_VGetArrayPointer(solver->y);
+    for (int f = 0; f < school->n_fish; f++) {
+        double ratio;
+        const int edge = rod_shortest_edge(&school->fish[f], y, &ratio);
+        if (ratio >= 0.1) continue;
+        snprintf(text, size,
+                 "; edge %d of fish %.80s is pressed to %.2g of its length: body.modulus is too low for the forces on "
+                 "it",
+                 edge, school->fish[f].name, ratio);
+        return;
+    }
+}
+
 static enum status failed(const struct ida *solver, int code, long steps) {
     const struct school *school = solver->residual->school;
     double now = 0, step = 0, size;
     IDAGetCurrentTime(solver->ida, &now);
     IDAGetCurrentStep(solver->ida, &step);
     // the limit of steps is ours: there is no message of IDA
-    char message[512] = "", error[256] = "", last[64] = "";
+    char message[512] = "", error[256] = "", last[64] = "", crushed[256] = "";
     if (code != IDA_TOO_MUCH_WORK) snprintf(message, sizeof message, "; %s", status_message());
     const struct unknown_place place = worst_unknown(solver, &size);
     // an error that has not been estimated, or a step that has not been made, is not told
@@ -262,11 +279,12 @@ static enum status failed(const struct ida *solver, int code, long steps) {
                                     place.name, place.index, school->fish[place.fish].name);
         if (size > 0.01) snprintf(error + length, sizeof error - (size_t)length, ", %.3g tolerances", size);
     }
+    tell_crushed(solver, sizeof crushed, crushed);
     if (steps > 0) snprintf(last, sizeof last, ", the last of %.3g s", step);
     return status_fail(STATUS_SOLVER,
-                       "integration failed at t = %.10g s: %s%s; tried: orders up to %d, %ld steps since the last "
+                       "integration failed at t = %.10g s: %s%s%s; tried: orders up to %d, %ld steps since the last "
                        "event%s%s",
-                       now, reason(code), error, solver->options.order, steps, last, message);
+                       now, reason(code), crushed, error, solver->options.order, steps, last, message);
 }
 
 // The latest end of the next step. Steps that divide the rest of the interval into equal parts keep their size from

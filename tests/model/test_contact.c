@@ -307,6 +307,64 @@ static void a_fixed_step_that_is_too_long_fails_and_says_so(void **state) {
     simulate_free(simulation);
 }
 
+enum { CROWD = 256 };
+
+// 256 fish in pairs that meet, each pair at an angle of its own
+static char *crowd(void) {
+    enum { BYTES = 40000 };
+    char *const text = malloc(BYTES);
+    assert_non_null(text);
+    size_t used = (size_t)snprintf(text, BYTES,
+                                   "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+                                   "fluid: {density: 0}\nwake: {shedding: continuous, taper: 0, taper_beside: 0}\n"
+                                   "defaults: {fish: {nodes: 4, sheet_points: 5, wave: {amplitude: 0}}}\nfish:\n");
+    for (int i = 0; i < CROWD; i++) {
+        const int pair = i / 2, column = pair % 16, row = pair / 16;
+        const double heading = 7.3 * pair + 180 * (i % 2), angle = heading * acos(-1) / 180,
+                     back = 0.075 + 0.0005 * column;
+        used += (size_t)snprintf(
+            text + used, BYTES - used, "  - {start: {position: [%.4f, %.4f], heading: %.4f, speed: 0.1}}\n",
+            3 * column - back * cos(angle) + 0.02 * sin(angle), 3 * row - back * sin(angle), heading);
+        assert_true(used < BYTES);
+    }
+    return text;
+}
+
+static void of_256_fish_no_two_get_through_each_other(void **state) {
+    (void)state;
+    char *const text = crowd();
+    struct simulation *const simulation = school_simulation(text);
+    free(text);
+    double before[2], after[2];
+    const double scale = momentum(simulation, CROWD, before);
+    while (simulation->state->t < 0.05) school_ok(simulate_step(simulation));
+    const struct contact *const contact = simulation->residual->contact;
+    const double *const y = simulation->state->y;
+    school_ok(contact_find(simulation->residual->contact, simulation->state, simulation->state->t, y));
+    // those found from the sorted boxes are those of all pairs
+    const double range = simulation->school->contact_range;
+    int n_contacts = 0;
+    for (int f = 0; f < CROWD; f++) {
+        const int *other;
+        const int n = contact_partners(contact, f, &other);
+        n_contacts += n;
+        for (int g = 0, i = 0; g < CROWD; g++) {
+            if (g == f) continue;
+            const double distance = fish_distance(&simulation->school->fish[f], &simulation->school->fish[g], y, range);
+            assert_int_equal(i < n && other[i] == g, distance < range);
+            i += i < n && other[i] == g;
+        }
+    }
+    momentum(simulation, CROWD, after);
+    print_message("256 fish: %d in contact, least %.2e m, %.1f steps per event\n", n_contacts,
+                  simulation->state->closest->distance,
+                  (double)simulation->totals.steps / (double)simulation->state->event);
+    assert_true(n_contacts > 20);
+    assert_true(simulation->state->closest->distance > 0);
+    NEAR_ARRAY(2, after, before, 1e-10 * scale, 0);
+    simulate_free(simulation);
+}
+
 static void stop_ends_the_run_at_the_time_and_with_the_names(void **state) {
     (void)state;
     struct simulation *const simulation = school_simulation(
@@ -333,6 +391,7 @@ int main(void) {
         cmocka_unit_test(bodies_that_meet_do_not_cross),
         cmocka_unit_test(every_integrator_keeps_bodies_apart),
         cmocka_unit_test(a_fixed_step_that_is_too_long_fails_and_says_so),
+        cmocka_unit_test(of_256_fish_no_two_get_through_each_other),
         cmocka_unit_test(stop_ends_the_run_at_the_time_and_with_the_names),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

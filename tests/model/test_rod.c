@@ -255,6 +255,20 @@ static void a_body_is_torn_at_ten_times_the_length_of_an_edge(void **state) {
     school_clear(&setup);
 }
 
+static void the_shortest_edge_is_the_one_compressed_most(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, "time: {end: 1}\nfish: [{nodes: 7, wave: {amplitude: 0}}]\n");
+    const struct fish *const fish = setup.school->fish;
+    double *const x = &setup.state->y[fish->at.x], ratio;
+    rod_shortest_edge(fish, setup.state->y, &ratio);
+    NEAR(ratio, 1, 1e-14, 0);
+    x[3] += 0.7 * (x[4] - x[3]);
+    assert_int_equal(rod_shortest_edge(fish, setup.state->y, &ratio), 3);
+    NEAR(ratio, 0.3, 1e-14, 0);
+    school_clear(&setup);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(derivatives_agree_with_differences),
@@ -266,6 +280,7 @@ int main(void) {
         cmocka_unit_test(energy_of_a_circular_arc_converges_to_that_of_the_continuum),
         cmocka_unit_test(polygon_of_the_natural_curvature_is_at_rest),
         cmocka_unit_test(turning_angles_keep_their_sign_in_every_direction),
+        cmocka_unit_test(the_shortest_edge_is_the_one_compressed_most),
         cmocka_unit_test(a_body_is_torn_at_ten_times_the_length_of_an_edge),
         cmocka_unit_test(muscle_power_is_the_change_of_energy_at_a_fixed_shape),
     };

@@ -161,6 +161,21 @@ static void equations_without_a_finite_value_end_with_time_fish_and_reason(void 
     simulate_free(simulation);
 }
 
+static void an_edge_that_is_pressed_to_nothing_is_named(void **state) {
+    (void)state;
+    // far more than E A of the last edge
+    struct simulation *const simulation =
+        school_simulation(TIME
+                          "fluid: {density: 0}\nfish: [{name: nemo, nodes: 7, wave: {amplitude: 0}, body: {modulus: "
+                          "100}, load: {tip: [-50, 0]}}]\n");
+    enum status status = STATUS_OK;
+    for (int i = 0; i < 50 && status == STATUS_OK; i++) status = simulate_step(simulation);
+    assert_int_equal(status, STATUS_SOLVER);
+    assert_non_null(strstr(status_message(), "edge 5 of fish nemo is pressed to"));
+    assert_non_null(strstr(status_message(), "body.modulus is too low"));
+    simulate_free(simulation);
+}
+
 static void kinds_of_unknowns_are_the_same_in_all_intervals(void **state) {
     (void)state;
     // IDA and the one-step methods look them up once
@@ -203,6 +218,7 @@ int main(void) {
         cmocka_unit_test(a_restart_without_a_jump_does_not_change_the_path),
         cmocka_unit_test(too_many_steps_end_with_time_and_remedy),
         cmocka_unit_test(equations_without_a_finite_value_end_with_time_fish_and_reason),
+        cmocka_unit_test(an_edge_that_is_pressed_to_nothing_is_named),
         cmocka_unit_test(kinds_of_unknowns_are_the_same_in_all_intervals),
         cmocka_unit_test(an_unreachable_tolerance_ends_with_a_message),
     };
