@@ -7,8 +7,8 @@
 
 #include <stddef.h>
 
-static int n_until_failure = -1;  // -1: never
-static int n_live;                // allocations that have not been freed
+static _Atomic int n_until_failure = -1;  // -1: never
+static _Atomic int n_live;                // allocations that have not been freed
 
 static int may_allocate(void) {
     return n_until_failure < 0 || n_until_failure-- > 0;

@@ -180,6 +180,75 @@ static void each_thread_has_its_own_message(void **state) {
     assert_non_null(strstr(shoal_message(), "/no/such/case.yaml"));
 }
 
+enum { N_THREADS = 6, N_ROUNDS = 2 };
+
+/* What a thread does with runs of its own, and with a copy of a run that all threads copy in turn. */
+struct worker {
+    int number;
+    const char *path;
+    struct shoal *origin;
+    pthread_mutex_t *turn;
+    double nose; /* where all that comes to an end */
+    int failed;
+};
+
+static int swim_a_copy(struct worker *worker, struct shoal *run) {
+    struct shoal *copy, *other;
+    const double frequency = 1 + 0.1 * worker->number;
+    double flow[2], vorticity;
+    if (shoal_clone(&copy, run) != SHOAL_OK) return 1;
+    int failed = shoal_set(copy, 0, "wave.frequency", 1, &frequency) != SHOAL_OK;
+    failed |= shoal_advance(copy, 0.1) != SHOAL_OK || shoal_restore(copy, run) != SHOAL_OK;
+    failed |= shoal_flow(copy, 1, (double[]){1, 0.5}, flow, &vorticity) != SHOAL_OK;
+    pthread_mutex_lock(worker->turn);
+    failed |= shoal_clone(&other, worker->origin) != SHOAL_OK;
+    pthread_mutex_unlock(worker->turn);
+    failed |= shoal_restore(other, copy) == SHOAL_OK;  // not copies of one another
+    failed |= shoal_advance(other, 0.04) != SHOAL_OK;
+    shoal_close(other);
+    shoal_close(copy);
+    return failed;
+}
+
+static void *swim_in_a_thread(void *data) {
+    struct worker *const worker = data;
+    char file[64];
+    snprintf(file, sizeof file, "/tmp/test_shoal_%ld_%d.nc", (long)getpid(), worker->number);
+    for (int round = 0; round < N_ROUNDS; round++) {
+        struct shoal *run;
+        struct shoal_array x;
+        worker->failed |= shoal_open(&run, worker->path, 0, NULL) != SHOAL_OK;
+        worker->failed |= shoal_write(run, file, 1) != SHOAL_OK || shoal_advance(run, 0.04) != SHOAL_OK;
+        worker->failed |= swim_a_copy(worker, run);
+        worker->failed |= shoal_advance(run, 0.1) != SHOAL_OK || shoal_read(run, "x", &x) != SHOAL_OK;
+        if (!worker->failed) worker->nose = ((const double *)x.values)[0];
+        worker->failed |= shoal_write_end(run) != SHOAL_OK;
+        shoal_close(run);
+        worker->failed |= shoal_open(&run, "/no/such/case.yaml", 0, NULL) != SHOAL_FILE;
+    }
+    worker->failed |= unlink(file) != 0;
+    return NULL;
+}
+
+static void runs_in_many_threads_are_those_alone(void **state) {
+    pthread_mutex_t turn = PTHREAD_MUTEX_INITIALIZER;
+    struct shoal *const origin = opened(*state, 0, NULL);
+    struct worker alone = {.path = *state, .origin = origin, .turn = &turn}, worker[N_THREADS];
+    pthread_t thread[N_THREADS];
+    swim_in_a_thread(&alone);
+    assert_int_equal(alone.failed, 0);
+    for (int i = 0; i < N_THREADS; i++) {
+        worker[i] = (struct worker){.number = i, .path = *state, .origin = origin, .turn = &turn};
+        assert_int_equal(pthread_create(&thread[i], NULL, swim_in_a_thread, &worker[i]), 0);
+    }
+    for (int i = 0; i < N_THREADS; i++) {
+        assert_int_equal(pthread_join(thread[i], NULL), 0);
+        assert_int_equal(worker[i].failed, 0);
+        NEAR(worker[i].nose, alone.nose, 0, 0);
+    }
+    shoal_close(origin);
+}
+
 static void closing_nothing_is_allowed(void **state) {
     (void)state;
     shoal_close(NULL);
@@ -772,6 +841,7 @@ int main(void) {
         cmocka_unit_test(what_cannot_be_opened_is_refused_with_the_words_of_the_program),
         cmocka_unit_test(a_run_that_fails_can_be_read_and_closed),
         cmocka_unit_test(each_thread_has_its_own_message),
+        cmocka_unit_test(runs_in_many_threads_are_those_alone),
         cmocka_unit_test(closing_nothing_is_allowed),
         cmocka_unit_test(opening_without_memory_fails_and_leaves_nothing),
         cmocka_unit_test(a_run_that_is_not_there_is_refused_by_every_function),
