@@ -12,7 +12,7 @@
 
 import ast
 
-from plot_style import DASHES, GRID, MARKS, scale_of
+from plot_style import DASHES, GRID, MARKS, few_ticks, scale_of
 from shoal_results import FileError, netCDF4, np
 
 COLOURS = ["#000000", "#0072b2", "#d55e00", "#009e73", "#aa4499", "#b06000", "#3366aa", "#666666"]  # all dark
@@ -215,6 +215,7 @@ def plot_methods(study, over, figure):
             axes.annotate("slope 1/2", (right, low / 2 * 30**0.5), (2, -4), textcoords="offset points", va="top", size=8)
         axes.set_xlabel(study.label(over))
         axes.set_ylabel(label)
+        few_ticks(axes.yaxis)
         axes.grid(which="major", lw=0.3, color=GRID)
     legend_above(panels[0], figure, 5)
 
@@ -302,6 +303,7 @@ def plot_comparison(study, figure):
         axes.axhspan(0, error[N_REFERENCES - 1], color="#eeeeee", zorder=0)
         axes.axhline(error[N_REFERENCES - 1], color="#888888", lw=0.8, zorder=1)
         axes.set_xlabel({"wall_time": "wall time [s]"}.get(name, "evaluations of the equations"))
+        few_ticks(axes.xaxis)
         axes.grid(which="major", lw=0.3, color=GRID)
         if name == "wall_time":
             axes.set_ylabel("error of the tail [body lengths]")

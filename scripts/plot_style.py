@@ -10,6 +10,7 @@ from shoal_results import EXIT_FILE, np, stop
 
 try:
     import matplotlib
+    from matplotlib import ticker
 except ImportError as missing:
     stop(f"{missing}: apt install python3-matplotlib, and run this with /usr/bin/python3", EXIT_FILE)
 
@@ -39,3 +40,14 @@ def scale_of(values):
     values = np.asarray(values, float)
     values = values[np.isfinite(values)]
     return "log" if values.size and values.min() > 0 and values.max() > SPAN * values.min() else "linear"
+
+
+def few_ticks(axis):
+    """Ticks of a logarithmic axis that spans less than SPAN: a few plain numbers, which do not overlap."""
+    low, high = axis.get_view_interval()
+    if high > SPAN * low:
+        return
+    first, last = int(np.floor(np.log10(low))), int(np.ceil(np.log10(high)))
+    axis.set_major_locator(ticker.FixedLocator([m * 10.0**e for e in range(first, last + 1) for m in (1, 2, 3, 5)]))
+    axis.set_major_formatter("{x:g}")
+    axis.set_minor_formatter(ticker.NullFormatter())
