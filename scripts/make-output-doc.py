@@ -117,7 +117,7 @@ resumed needs its places, too: `--checkpoint-at` with the attribute `checkpoint_
 | `history` | when the file was made, by which command |
 | `source` | program, commit, versions of the libraries |
 | `shoal_schema` | 1; a program that expects another number cannot read the file |
-| `run_status`, `warnings`, `closest_approach`, `case_text`, `case_effective` | see above |
+| `run_status`, `warnings`, `closest_approach`, `merged_vortices`, `case_text`, `case_effective` | see above |
 | `checkpoint_at` | times of checkpoints besides those of `time.checkpoint_interval`, as `--checkpoint-at` takes them: `0.3,1.25` |
 
 Every variable has `long_name` and, unless it is a string, `units`. `fish`, `xy`, `fish_name`, `node_arc`, `sheet_arc` and `control_arc` are coordinates.

@@ -107,6 +107,11 @@ const struct key case_table[] = {
      .meaning = "estimated error allowed in the velocity that far vortices induce at the bodies, in body lengths per "
                 "beat; 0: direct summation",
      .derived = "a hundredth of solver.rtol", .synonyms = "accuracy theta"},
+    {"wake.merge", REAL, AT(school.wake.merge), "0", FROM_TO(0, 0.1), "",
+     .meaning =
+         "error allowed in the velocity at a body by neighbours in one wake that are merged far from all bodies, in "
+         "body lengths per beat; 0: none are merged",
+     .synonyms = "coarsen thin"},
 
     {"contact.action", CHOICE, AT(school.contact.action), "repel", ANY, "",
      .meaning = "what happens where the outlines of two bodies are nearer than contact.range; repel: they repel each "

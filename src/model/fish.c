@@ -411,6 +411,7 @@ static void set_fluid(struct school *school, const struct school_parameters *par
     school->kutta_ramp = parameters->wake.kutta_ramp;
     school->removed = parameters->wake.dissipated_circulation;
     school->wake_tolerance = parameters->wake.tolerance;
+    school->wake_merge = parameters->wake.merge;
     school->contact = parameters->contact.action;
     school->rtol = parameters->rtol;
     school->threads = parameters->threads;

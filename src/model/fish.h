@@ -154,6 +154,8 @@ struct school {
     enum removed_circulation removed;
     double wake_tolerance; /* estimated error of the velocity of the wakes at the bodies, lengths per beat; 0: none */
 
+    double wake_merge; /* error of the velocity at a body by what is merged in one wake, lengths per beat; 0: nothing */
+
     enum contact_action contact; /* of bodies whose outlines are nearer than: */
     double contact_range;        /* m */
     double rtol;

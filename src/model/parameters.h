@@ -50,6 +50,7 @@ struct wake_parameters {
     enum collocation collocation;
     enum removed_circulation dissipated_circulation;
     double tolerance; /* lengths per beat; 0: exact */
+    double merge;     /* lengths per beat; 0: never */
 };
 
 struct body_parameters {

@@ -25,6 +25,7 @@ struct wake {
     double *circulation;                      /* m2 s-1, constant once released; of a marker: its label (n_vortex) */
     double *birth;                            /* time of release, s                                (n_vortex) */
     int has_markers;                          /* the queue holds markers of a sheet: free_sheet.h */
+    int n_merged;                             /* how many have become one with a neighbour so far: wake_merge.h */
     double tail_velocity[2], tail_tangent[2]; /* at the last event, m s-1 and 1; with markers only */
     double removed;                           /* circulation of all vortices removed so far, m2 s-1 */
     double shed_before;                       /* circulation shed up to the last event, m2 s-1 */

@@ -17,6 +17,7 @@ static const struct note {
 } notes[] = {
     [RESULT_WARNINGS] = {"warnings", MAX_NOTE_LENGTH},
     [RESULT_CLOSEST_APPROACH] = {"closest_approach", 256},
+    [RESULT_MERGED] = {"merged_vortices", 128},
     [RESULT_CHECKPOINT_AT] = {"checkpoint_at", 1024},
 };
 enum { N_NOTES = sizeof notes / sizeof *notes };

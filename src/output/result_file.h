@@ -50,7 +50,7 @@ enum status result_file_row(struct result_file *result, const struct result_row 
 /* Set an attribute for which the file keeps room, before it is closed: warnings (a line each), closest_approach ("1.2 m
  * between a and b at t = 3 s") or checkpoint_at ("0.3,1.25": when there were checkpoints besides those of
  * time.checkpoint_interval, s); all are empty before. A longer string is cut. */
-enum result_note { RESULT_WARNINGS, RESULT_CLOSEST_APPROACH, RESULT_CHECKPOINT_AT };
+enum result_note { RESULT_WARNINGS, RESULT_CLOSEST_APPROACH, RESULT_MERGED, RESULT_CHECKPOINT_AT };
 void result_file_note(struct result_file *result, enum result_note note, const char *text);
 
 /* Set the attribute run_status ("complete", "failed: why", "stopped") and close. Accepts NULL. Fails with

@@ -186,6 +186,7 @@ static enum status print_all(struct info *info) {
     TRY(steady_info(&info->reader, info->stream));
     TRY(print_solver(info));
     TRY(print_lines(info, "closest_approach", "closest approach"));
+    TRY(print_lines(info, "merged_vortices", "merged vortices"));
     return print_lines(info, "warnings", "warning");
 }
 

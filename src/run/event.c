@@ -5,6 +5,7 @@
 
 #include "model/diagnostics.h"
 #include "model/drag.h"
+#include "model/wake_merge.h"
 
 // evaluate the equations; at an event there is no smaller step to try
 static enum status evaluate(struct residual *residual, const struct state *state) {
@@ -202,6 +203,7 @@ enum status event_next(struct state *state, struct residual *residual, struct in
         TRY(release_nascent(state, school));
     }
     for (int f = 0; f < school->n_fish; f++) wake_remove_old(&state->wake[f], school, state->t);
+    TRY(wake_merge(school, state));
     if (jumps) TRY(initial_conditions_solve(initial, state->t, state->y, state->yp));
     TRY(take_velocities(state, residual, 1));
     return finish_event(state, residual, initial, jumps, jumped);

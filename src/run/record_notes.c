@@ -16,6 +16,20 @@ static void note_closest(struct result_file *file, const struct simulation *simu
     result_file_note(file, RESULT_CLOSEST_APPROACH, text);
 }
 
+static void note_merged(struct result_file *file, const struct simulation *simulation) {
+    const struct school *const school = simulation->school;
+    if (school->wake_merge <= 0) return;
+    long n_merged = 0, n_vortices = 0;
+    for (int f = 0; f < school->n_fish; f++) {
+        n_merged += simulation->state->wake[f].n_merged;
+        n_vortices += simulation->state->wake[f].n_vortex;
+    }
+    char text[128];
+    snprintf(text, sizeof text, "%ld have become one with a neighbour; the wakes have %ld at the end", n_merged,
+             n_vortices);
+    result_file_note(file, RESULT_MERGED, text);
+}
+
 void record_notes_write(struct result_file *file, const struct simulation *simulation,
                         void (*warn)(const char *line, void *data), void *data) {
     char line[WARNING_BYTES], lines[N_WARNINGS * (WARNING_BYTES + 1)];
@@ -29,4 +43,5 @@ void record_notes_write(struct result_file *file, const struct simulation *simul
     }
     if (length > 0) result_file_note(file, RESULT_WARNINGS, lines);
     note_closest(file, simulation);
+    note_merged(file, simulation);
 }
