@@ -118,7 +118,7 @@ void school_stir(struct setup *setup) {
         control_set_frequency(fish, &state->control[f], t, fish->frequency + 0.2);
         control_set_bias(fish, &state->control[f], t, fish->control.bias + 0.1);
     }
-    residual_couple(setup->residual, state->y);
+    school_ok(residual_couple(setup->residual, state->y));
 }
 
 void school_flow(struct setup *setup, const double *y) {

@@ -6,6 +6,23 @@
 
 enum { MAX_ADVANCES = 200 };
 
+struct box clearance_box(const struct fish *fish, double distance, const double *before, const double *y) {
+    double margin = 0;
+    for (int k = 0; k < fish->n_edges; k++) margin = fmax(margin, fish->thickness[k] / 2);
+    // a little more, for rounding
+    margin += (0.5 + 1e-9) * distance;
+    struct box box = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
+    for (int k = 0; k < fish->n_nodes; k++) {
+        const double place[2][2] = {{before[fish->at.x + k], before[fish->at.y + k]},
+                                    {y[fish->at.x + k], y[fish->at.y + k]}};
+        for (int i = 0; i < 2; i++) {
+            box.low[i] = fmin(box.low[i], fmin(place[0][i], place[1][i]) - margin);
+            box.high[i] = fmax(box.high[i], fmax(place[0][i], place[1][i]) + margin);
+        }
+    }
+    return box;
+}
+
 // the displacement of a body during a step: of its nose, and the farthest that another node goes beyond that, m
 struct shift {
     double nose[2], beyond;
@@ -86,20 +103,38 @@ static void compare(const struct school *school, struct state *state, double t, 
     remember(closest, passage.least, when, f, g);
 }
 
-void clearance_step(const struct school *school, struct state *state, double t, const double *y, double *between) {
-    struct closest *const closest = state->closest;
-    // bodies that have touched cannot come closer
+// find the bodies that may have come nearer to each other than the record; returns whether they are known
+static int find_near(const struct school *school, const struct closest *closest, const double *y,
+                     struct neighbours *neighbours) {
+    if (isinf(closest->distance)) return 0;
     for (int f = 0; f < school->n_fish; f++) {
-        for (int g = 0; g < f && closest->distance > 0; g++) compare(school, state, t, y, between, f, g);
+        neighbours->box[f] = clearance_box(&school->fish[f], closest->distance, closest->before, y);
+    }
+    // without memory for them there are still all pairs
+    return neighbours_find(neighbours) == STATUS_OK;
+}
+
+void clearance_step(const struct school *school, struct state *state, double t, const double *y,
+                    struct neighbours *neighbours, double *between) {
+    struct closest *const closest = state->closest;
+    const int is_known = find_near(school, closest, y, neighbours);
+    // bodies that have touched cannot come closer
+    for (int f = 0; f < school->n_fish && closest->distance > 0; f++) {
+        const int *const other = is_known ? neighbours->other + neighbours->first[f] : NULL;
+        const int n = is_known ? neighbours->first[f + 1] - neighbours->first[f] : f;
+        for (int i = 0; i < n && closest->distance > 0; i++) {
+            const int g = other ? other[i] : i;
+            if (g < f) compare(school, state, t, y, between, f, g);
+        }
     }
     memcpy(closest->before, y, (size_t)school->n_unknowns * sizeof *y);
     closest->before_t = t;
 }
 
-void clearance_start(const struct school *school, struct state *state, double *between) {
+void clearance_start(const struct school *school, struct state *state, struct neighbours *neighbours, double *between) {
     struct closest *const closest = state->closest;
     memcpy(closest->before, state->y, (size_t)school->n_unknowns * sizeof *state->y);
     closest->distance = INFINITY;
     closest->before_t = state->t;
-    clearance_step(school, state, state->t, state->y, between);
+    clearance_step(school, state, state->t, state->y, neighbours, between);
 }

@@ -4,10 +4,15 @@
 #define CLEARANCE_H
 
 #include "model/fish.h"
+#include "model/neighbours.h"
 #include "model/state.h"
 
-/* The record begins with the bodies as they are. between: scratch (n_unknowns). */
-void clearance_start(const struct school *school, struct state *state, double *between);
+/* All places of a body while its nodes go straight from those in before to those in y, with half its thickness and half
+ * a distance, m: bodies whose boxes do not overlap never come as near to each other as that. */
+struct box clearance_box(const struct fish *fish, double distance, const double *before, const double *y);
+
+/* The record begins with the bodies as they are. neighbours: workspace (n_fish); between: scratch (n_unknowns). */
+void clearance_start(const struct school *school, struct state *state, struct neighbours *neighbours, double *between);
 
 /* How two bodies pass each other while their nodes go straight. */
 struct passage {
@@ -22,8 +27,9 @@ struct passage clearance_passage(const struct fish *a, const struct fish *b, con
                                  double limit, double *between);
 
 /* A step of the integrator has ended at time t, s, with the unknowns y: bring state->closest up to date. Between two
- * steps nodes go straight: bodies that meet there are found too, however far apart they are at both ends. between:
- * scratch (n_unknowns). */
-void clearance_step(const struct school *school, struct state *state, double t, const double *y, double *between);
+ * steps nodes go straight: bodies that meet there are found too, however far apart they are at both ends. Workspace
+ * as above. */
+void clearance_step(const struct school *school, struct state *state, double t, const double *y,
+                    struct neighbours *neighbours, double *between);
 
 #endif

@@ -53,23 +53,6 @@ void contact_free(struct contact *contact) {
 
 // ---- who is near whom
 
-// all places of a body from before to y, with half its thickness and half the range
-static struct box box_of(const struct fish *fish, double range, const double *before, const double *y) {
-    double margin = 0;
-    for (int k = 0; k < fish->n_edges; k++) margin = fmax(margin, fish->thickness[k] / 2);
-    margin += range / 2;
-    struct box box = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
-    for (int k = 0; k < fish->n_nodes; k++) {
-        const double place[2][2] = {{before[fish->at.x + k], before[fish->at.y + k]},
-                                    {y[fish->at.x + k], y[fish->at.y + k]}};
-        for (int i = 0; i < 2; i++) {
-            box.low[i] = fmin(box.low[i], fmin(place[0][i], place[1][i]) - margin);
-            box.high[i] = fmax(box.high[i], fmax(place[0][i], place[1][i]) + margin);
-        }
-    }
-    return box;
-}
-
 // whether fish f and g are in contact in y; they must not touch on the way there
 static enum status compare(const struct contact *contact, const struct state *state, double t, const double *y, int f,
                            int g, unsigned char *is_near) {
@@ -120,7 +103,7 @@ enum status contact_find(struct contact *contact, const struct state *state, dou
     const int n_fish = contact->school->n_fish;
     for (int f = 0; f < n_fish; f++) {
         neighbours->box[f] =
-            box_of(&contact->school->fish[f], contact->school->contact_range, state->closest->before, y);
+            clearance_box(&contact->school->fish[f], contact->school->contact_range, state->closest->before, y);
     }
     TRY(neighbours_find(neighbours));
     TRY(reserve(contact, neighbours->capacity));

@@ -198,7 +198,7 @@ void diagnostics_step(struct residual *residual, struct state *state, double t, 
         for (int i = 0; i < 2; i++) balance->t[i] = times[i];
         if (balance->n < 2) balance->n++;
     }
-    clearance_step(residual->school, state, t, y, residual->scratch);
+    clearance_step(residual->school, state, t, y, residual->neighbours, residual->scratch);
 }
 
 void diagnostics_before_jump(struct residual *residual, struct state *state) {
@@ -228,7 +228,7 @@ void diagnostics_start(struct residual *residual, struct state *state) {
         state->balance[f].initial_energy = diagnostics_energy(residual, f, state->t, state->y);
         memset(state->balance[f].work, 0, sizeof state->balance[f].work);
     }
-    clearance_start(residual->school, state, residual->scratch);
+    clearance_start(residual->school, state, residual->neighbours, residual->scratch);
 }
 
 void diagnostics_restart(struct residual *residual, struct state *state) {
@@ -236,7 +236,7 @@ void diagnostics_restart(struct residual *residual, struct state *state) {
         struct energy_balance *const balance = &state->balance[f];
         balance->initial_energy = diagnostics_energy(residual, f, state->t, state->y) - balance->work[WORK_ALL];
     }
-    clearance_start(residual->school, state, residual->scratch);
+    clearance_start(residual->school, state, residual->neighbours, residual->scratch);
 }
 
 // the way through the water between two samples, m

@@ -11,6 +11,7 @@
 #include "model/actuation.h"
 #include "model/bound_sheet.h"
 #include "model/clamp.h"
+#include "model/clearance.h"
 #include "model/fluid_force.h"
 #include "model/rod.h"
 
@@ -48,6 +49,7 @@ static enum status allocate(struct residual *residual) {
         !residual->jacobian_scratch) {
         goto no_memory;
     }
+    TRY(neighbours_create(&residual->neighbours, school->n_fish));
     TRY(contact_create(&residual->contact, school));
     return flow_create(&residual->flow, school);
 
@@ -61,12 +63,12 @@ enum status residual_create(struct residual **residual, const struct school *sch
     if (!new) return status_fail(STATUS_MEMORY, "out of memory: the equations");
     new->school = school;
     new->state = state;
-    const enum status status = allocate(new);
+    enum status status = allocate(new);
+    if (status == STATUS_OK) status = residual_couple(new, state->y);
     if (status != STATUS_OK) {
         residual_free(new);
         return status;
     }
-    residual_couple(new, state->y);
     *residual = new;
     return STATUS_OK;
 }
@@ -77,6 +79,7 @@ void residual_free(struct residual *residual) {
     for (int f = 0; residual->pressure && f < residual->school->n_fish; f++) pressure_free(residual->pressure[f]);
     free(residual->pressure);
     contact_free(residual->contact);
+    neighbours_free(residual->neighbours);
     free(residual->joints);
     free(residual->coupled);
     free(residual->natural_curvature);
@@ -91,20 +94,37 @@ void residual_free(struct residual *residual) {
     free(residual);
 }
 
-int residual_couple(struct residual *residual, const double *y) {
+// couple what is within a distance of each other, in place of what was coupled; returns whether that is a change
+static int couple_neighbours(struct residual *residual, const double *y, double distance) {
     const struct school *school = residual->school;
+    const struct neighbours *const neighbours = residual->neighbours;
     int changed = 0;
     for (int f = 0; f < school->n_fish; f++) {
-        for (int g = 0; g <= f; g++) {
-            const double most = school->coupling_distance;
-            const int couple = f == g || fish_distance(&school->fish[f], &school->fish[g], y, most) <= most;
-            unsigned char *const here = &residual->coupled[f * school->n_fish + g];
-            if (*here != couple) changed = 1;
-            *here = residual->coupled[g * school->n_fish + f] = (unsigned char)couple;
+        unsigned char *const before = residual->coupled + (size_t)f * (size_t)school->n_fish;
+        int i = neighbours->first[f];
+        for (int g = 0; g < school->n_fish; g++) {
+            const int overlaps = i < neighbours->first[f + 1] && neighbours->other[i] == g;
+            i += overlaps;
+            // the distance is the same in either direction, to the bit
+            const int a = f > g ? f : g, b = f > g ? g : f;
+            const int couple =
+                f == g || (overlaps && fish_distance(&school->fish[a], &school->fish[b], y, distance) <= distance);
+            changed |= before[g] != couple;
+            before[g] = (unsigned char)couple;
         }
     }
-    residual->pattern += (unsigned)changed;
     return changed;
+}
+
+enum status residual_couple(struct residual *residual, const double *y) {
+    const struct school *school = residual->school;
+    const double distance = school->coupling_distance;
+    for (int f = 0; f < school->n_fish; f++) {
+        residual->neighbours->box[f] = clearance_box(&school->fish[f], distance, y, y);
+    }
+    TRY(neighbours_find(residual->neighbours));
+    residual->pattern += (unsigned)couple_neighbours(residual, y, distance);
+    return STATUS_OK;
 }
 
 static enum bound_sheet_law law_of(const struct residual *residual) {

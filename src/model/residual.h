@@ -20,10 +20,11 @@ struct residual {
     const struct state *state; /* wakes, control memory, time of the last event */
     struct flow *flow;
     struct contact *contact;
-    enum shed_now shed_now;     /* what determines the circulation shed */
-    int at_start;               /* whether the velocities are given, and momenta follow from them */
-    struct pressure **pressure; /* of each fish; NULL where its force is another one   (n_fish) */
-    unsigned pattern;           /* changes whenever coupled does */
+    enum shed_now shed_now;        /* what determines the circulation shed */
+    int at_start;                  /* whether the velocities are given, and momenta follow from them */
+    struct pressure **pressure;    /* of each fish; NULL where its force is another one   (n_fish) */
+    unsigned pattern;              /* changes whenever coupled does */
+    struct neighbours *neighbours; /* workspace                                         (n_fish) */
     unsigned char *coupled; /* whether the Jacobian holds the block of fish g in the rows of fish f (n_fish, n_fish) */
 
     /* natural curvature of the joints of all fish and its derivative with respect to phi0, as last evaluated */
@@ -65,8 +66,9 @@ struct unknown_place {
 enum status residual_create(struct residual **residual, const struct school *school, const struct state *state);
 void residual_free(struct residual *residual);
 
-/* Decide which fish couple in the Jacobian, from the positions in y. Returns whether anything changed. */
-int residual_couple(struct residual *residual, const double *y);
+/* Decide which fish couple in the Jacobian, from the positions in y. Fails with STATUS_MEMORY; then they are those that
+ * were. */
+enum status residual_couple(struct residual *residual, const double *y);
 
 /* value = F(t, y, yp). Returns STATUS_RETRY where a value is not finite, or bodies touch that repel each other. */
 enum status residual_evaluate(struct residual *residual, double t, const double *y, const double *yp, double *value);

@@ -152,7 +152,7 @@ static enum status finish_event(struct state *state, struct residual *residual, 
         TRY(initial_conditions_solve(initial, state->t, state->y, state->yp));
         TRY(flow_interpolate(residual->flow, state));
     }
-    residual_couple(residual, state->y);
+    TRY(residual_couple(residual, state->y));
     *jumped = jumps || steered;
     if (*jumped) diagnostics_after_jump(residual, state);
     return STATUS_OK;

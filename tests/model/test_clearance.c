@@ -1,6 +1,9 @@
 /* test_clearance.c: bodies that touch, that pass each other, and that pass through each other between two steps. */
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
+#include "failing_malloc.h"
 #include "model/clearance.h"
 #include "school.h"
 
@@ -21,7 +24,7 @@ static struct pair place(const char *text) {
     school_build(&pair.setup, text);
     pair.between = calloc((size_t)pair.setup.school->n_unknowns, sizeof *pair.between);
     assert_non_null(pair.between);
-    clearance_start(pair.setup.school, pair.setup.state, pair.between);
+    clearance_start(pair.setup.school, pair.setup.state, pair.setup.residual->neighbours, pair.between);
     return pair;
 }
 
@@ -37,7 +40,8 @@ static const struct closest *step(struct pair *pair, int f, double dx, double dy
         pair->setup.state->y[fish->at.x + k] += dx;
         pair->setup.state->y[fish->at.y + k] += dy;
     }
-    clearance_step(pair->setup.school, pair->setup.state, t, pair->setup.state->y, pair->between);
+    clearance_step(pair->setup.school, pair->setup.state, t, pair->setup.state->y, pair->setup.residual->neighbours,
+                   pair->between);
     return pair->setup.state->closest;
 }
 
@@ -101,6 +105,66 @@ static void bodies_that_have_touched_stay_so(void **state) {
     clear(&pair);
 }
 
+// the smallest distance of all pairs on the way from the places before to those now
+static double of_all_pairs(const struct pair *pair, const double *before) {
+    const struct school *const school = pair->setup.school;
+    double least = INFINITY;
+    for (int f = 0; f < school->n_fish; f++) {
+        for (int g = 0; g < f; g++) {
+            const struct passage passage = clearance_passage(&school->fish[f], &school->fish[g], before,
+                                                             pair->setup.state->y, INFINITY, pair->between);
+            least = fmin(least, passage.least);
+        }
+    }
+    return least;
+}
+
+static void the_record_of_a_school_is_that_of_all_pairs(void **state) {
+    (void)state;
+    enum { FISH = 20, STEPS = 30 };
+    char text[2048];
+    int length = snprintf(text, sizeof text, TIME "defaults: {fish: {body: {thickness: 0.05}}}\nfish:\n");
+    for (int f = 0; f < FISH; f++) {
+        length += snprintf(text + length, sizeof text - (size_t)length, "  - {start: {position: [%d, %d]}}\n",
+                           2 * (f % 5), f / 5);
+    }
+    struct pair pair = place(text);
+    const struct school *const school = pair.setup.school;
+    const size_t size = (size_t)school->n_unknowns * sizeof(double);
+    double *const before = malloc(size), *const y = pair.setup.state->y;
+    assert_non_null(before);
+    double least = of_all_pairs(&pair, y);
+    NEAR(pair.setup.state->closest->distance, least, 0, 0);
+    int n_records = 0;
+    for (int i = 0; i < STEPS; i++) {
+        memcpy(before, y, size);
+        for (int f = 0; f < FISH; f++) {
+            const struct layout *const at = &school->fish[f].at;
+            const double dx = 0.1 * school_random(&pair.setup), dy = 0.1 * school_random(&pair.setup);
+            for (int k = 0; k < school->fish[f].n_nodes; k++) {
+                y[at->x + k] += dx;
+                y[at->y + k] += dy;
+            }
+        }
+        const double here = of_all_pairs(&pair, before);
+        n_records += here < least;
+        least = fmin(least, here);
+        // the last steps without memory for the neighbours
+        if (i == STEPS / 2) {
+            free(pair.setup.residual->neighbours->pair);
+            pair.setup.residual->neighbours->pair = NULL;
+            pair.setup.residual->neighbours->capacity = 0;
+        }
+        n_until_failure = i < STEPS / 2 ? -1 : 0;
+        clearance_step(school, pair.setup.state, i + 1, y, pair.setup.residual->neighbours, pair.between);
+        n_until_failure = -1;
+        NEAR(pair.setup.state->closest->distance, least, 0, 0);
+    }
+    assert_true(n_records > 3);
+    free(before);
+    clear(&pair);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(one_fish_is_close_to_none),
@@ -108,6 +172,7 @@ int main(void) {
         cmocka_unit_test(bodies_that_cross_between_two_steps_have_touched),
         cmocka_unit_test(bodies_that_pass_each_other_have_not),
         cmocka_unit_test(bodies_that_have_touched_stay_so),
+        cmocka_unit_test(the_record_of_a_school_is_that_of_all_pairs),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

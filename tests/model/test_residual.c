@@ -200,9 +200,10 @@ static void far_fish_are_left_out_of_the_jacobian_and_of_nothing_else(void **sta
     // closer by 0.5: coupled, which is another pattern; asked again nothing has changed
     for (int k = 0; k < 7; k++) setup.state->y[b->y + k] -= 0.5;
     const unsigned pattern = setup.residual->pattern;
-    assert_int_equal(residual_couple(setup.residual, setup.state->y), 1);
-    assert_int_not_equal(setup.residual->pattern, pattern);
-    assert_int_equal(residual_couple(setup.residual, setup.state->y), 0);
+    school_ok(residual_couple(setup.residual, setup.state->y));
+    assert_int_equal(setup.residual->pattern, pattern + 1);
+    school_ok(residual_couple(setup.residual, setup.state->y));
+    assert_int_equal(setup.residual->pattern, pattern + 1);
     school_ok(residual_jacobian(setup.residual, 0, 1, setup.state->y, setup.jacobian));
     dense = school_dense_jacobian(setup.jacobian);
     assert_true(fabs(dense[(size_t)a->gamma * n + (size_t)b->gamma]) > 1e-4);
