@@ -131,7 +131,9 @@ const struct key case_table[] = {
      .derived = "3; 5 where the slowest bending mode of every fish has less than 0.6 of the frequency of its beat; 2 "
                 "where a fish has a relaxation_time below a thousandth of its period"},
     {"solver.coupling_distance", REAL, AT(school.coupling_distance), "0.5", FROM(0), "",
-     .meaning = "fish farther apart than this are not coupled in the Jacobian; in lengths of the longest fish"},
+     .meaning =
+         "fish farther apart than this are not coupled in the Jacobian, until it converges too slowly; in lengths of "
+         "the longest fish"},
     {"solver.threads", INTEGER, AT(school.threads), "1", FROM_TO(1, MAX_THREADS), "", .meaning = "number of threads",
      .synonyms = "n_threads cores processes"},
     {"solver.step", REAL, AT(solver.step), "0", FROM(0), "s", .meaning = "fixed step; 0: adaptive steps",

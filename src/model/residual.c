@@ -63,6 +63,7 @@ enum status residual_create(struct residual **residual, const struct school *sch
     if (!new) return status_fail(STATUS_MEMORY, "out of memory: the equations");
     new->school = school;
     new->state = state;
+    new->reach = school->coupling_distance;
     enum status status = allocate(new);
     if (status == STATUS_OK) status = residual_couple(new, state->y);
     if (status != STATUS_OK) {
@@ -118,13 +119,51 @@ static int couple_neighbours(struct residual *residual, const double *y, double 
 
 enum status residual_couple(struct residual *residual, const double *y) {
     const struct school *school = residual->school;
-    const double distance = school->coupling_distance;
     for (int f = 0; f < school->n_fish; f++) {
-        residual->neighbours->box[f] = clearance_box(&school->fish[f], distance, y, y);
+        residual->neighbours->box[f] = clearance_box(&school->fish[f], residual->reach, y, y);
     }
     TRY(neighbours_find(residual->neighbours));
-    residual->pattern += (unsigned)couple_neighbours(residual, y, distance);
+    residual->pattern += (unsigned)couple_neighbours(residual, y, residual->reach);
     return STATUS_OK;
+}
+
+// the distance beyond which no two bodies are apart
+static double extent(const struct school *school, const double *y) {
+    struct box all = clearance_box(&school->fish[0], 0, y, y);
+    for (int f = 1; f < school->n_fish; f++) {
+        const struct box box = clearance_box(&school->fish[f], 0, y, y);
+        for (int i = 0; i < 2; i++) {
+            all.low[i] = fmin(all.low[i], box.low[i]);
+            all.high[i] = fmax(all.high[i], box.high[i]);
+        }
+    }
+    return hypot(all.high[0] - all.low[0], all.high[1] - all.low[1]);
+}
+
+// the numbers in the blocks of all pairs that couple
+static double n_block_values(const struct residual *residual) {
+    const struct school *school = residual->school;
+    double n = 0;
+    for (int f = 0; f < school->n_fish; f++) {
+        const unsigned char *const coupled = residual->coupled + (size_t)f * (size_t)school->n_fish;
+        for (int g = 0; g < school->n_fish; g++) {
+            if (g != f && coupled[g]) n += (double)flow_n_rows(&school->fish[f]) * flow_n_columns(&school->fish[g]);
+        }
+    }
+    return n;
+}
+
+int residual_couple_more(struct residual *residual, const double *y) {
+    const double max_values = 5e7, before = residual->reach, all = extent(residual->school, y);
+    const unsigned pattern = residual->pattern;
+    while (!residual->couples_most && residual->pattern == pattern && residual->reach < all) {
+        residual->reach = fmax(2 * residual->reach, 0.5 * residual->school->fish[0].length);
+        if (residual_couple(residual, y) == STATUS_OK && n_block_values(residual) <= max_values) continue;
+        residual->reach = before;
+        residual->couples_most = 1;
+        if (residual_couple(residual, y) == STATUS_OK) return 0;
+    }
+    return residual->pattern != pattern;
 }
 
 static enum bound_sheet_law law_of(const struct residual *residual) {

@@ -25,6 +25,8 @@ struct residual {
     struct pressure **pressure;    /* of each fish; NULL where its force is another one   (n_fish) */
     unsigned pattern;              /* changes whenever coupled does */
     struct neighbours *neighbours; /* workspace                                         (n_fish) */
+    double reach;                  /* fish couple whose outlines are no further apart, m */
+    int couples_most;              /* no memory for more */
     unsigned char *coupled; /* whether the Jacobian holds the block of fish g in the rows of fish f (n_fish, n_fish) */
 
     /* natural curvature of the joints of all fish and its derivative with respect to phi0, as last evaluated */
@@ -69,6 +71,10 @@ void residual_free(struct residual *residual);
 /* Decide which fish couple in the Jacobian, from the positions in y. Fails with STATUS_MEMORY; then they are those that
  * were. */
 enum status residual_couple(struct residual *residual, const double *y);
+
+/* Couple fish that are further apart than so far, from the positions in y and from now on: twice as far, and again,
+ * until there are more. Returns whether there are; not beyond 400 MB of blocks, or without memory. */
+int residual_couple_more(struct residual *residual, const double *y);
 
 /* value = F(t, y, yp). Returns STATUS_RETRY where a value is not finite, or bodies touch that repel each other. */
 enum status residual_evaluate(struct residual *residual, double t, const double *y, const double *yp, double *value);

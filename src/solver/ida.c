@@ -84,6 +84,12 @@ static void update_jacobian(void *data) {
     linear_update_shed(solver->linear.linear, by_shed);
 }
 
+// the blocks of fish that are further apart were left out
+static int couple_more(void *data) {
+    struct ida *const solver = data;
+    return residual_couple_more(solver->residual, solver->state->y);
+}
+
 static void ida_free(void *data) {
     struct ida *const solver = data;
     if (!solver) return;
@@ -159,7 +165,8 @@ static enum status fill(struct ida *solver) {
                                            .kinds = is_sheet ? solver->kinds : NULL,
                                            .data = solver,
                                            .leading_coefficient = leading_coefficient,
-                                           .update = is_sheet ? update_jacobian : NULL};
+                                           .update = is_sheet ? update_jacobian : NULL,
+                                           .complete = couple_more};
     TRY(ida_newton_create(&solver->newton, solver->context, solver->y, solver->residual->school, rules));
     solver->ida = IDACreate(solver->context);
     if (!solver->ida) return status_fail(STATUS_MEMORY, "out of memory: IDA");

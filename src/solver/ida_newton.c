@@ -28,6 +28,7 @@ struct ida_newton {
 
     /* since the Jacobian was evaluated: solutions, their iterations, iterations of the last solution */
     int n_solutions, n_iterations, n_last;
+    int is_incomplete; /* a new one would be more complete */
 };
 
 static struct ida_newton *newton_of(SUNNonlinearSolver solver) {
@@ -93,11 +94,16 @@ static void initial_guess(struct ida_newton *newton, N_Vector total) {
     newton->coefficient = coefficient;
 }
 
+static int complete(const struct ida_newton *newton) {
+    return newton->rules.complete && newton->rules.complete(newton->rules.data);
+}
+
 static int newton_solve(SUNNonlinearSolver solver, N_Vector predicted, N_Vector total, N_Vector weights,
                         realtype tolerance, booleantype evaluate, void *ida) {
     struct ida_newton *const newton = newton_of(solver);
     newton->iterations = newton->failures = 0;
-    if (jacobian_is_stale(newton)) evaluate = SUNTRUE;
+    if (newton->is_incomplete || jacobian_is_stale(newton)) evaluate = SUNTRUE;
+    newton->is_incomplete = 0;
     if (!evaluate) corotation_set_current(newton->corotation, N_VGetArrayPointer(predicted));
     initial_guess(newton, total);
     for (booleantype failed = SUNFALSE;; failed = SUNTRUE) {
@@ -119,10 +125,11 @@ static int newton_solve(SUNNonlinearSolver solver, N_Vector predicted, N_Vector 
             newton->n_solutions++;
             newton->n_last = newton->done;
             newton->n_iterations += newton->done;
+            if (evaluate && newton->done > newton->rules.max_iterations) newton->is_incomplete = complete(newton);
             return 0;
         }
         newton->failures++;
-        if (code < 0 || evaluate) return code;
+        if (code < 0 || (evaluate && !complete(newton))) return code;
         // try again with a new Jacobian
         evaluate = SUNTRUE;
         N_VConst(0, total);

@@ -22,6 +22,9 @@ struct ida_newton_rules {
     double (*leading_coefficient)(void *data);
     /* bring an old Jacobian up to date where that is cheap, after an evaluation of the residual; NULL: nothing is */
     void (*update)(void *data);
+    /* make the Jacobian more complete, where one that is new needs more iterations than an old one may; returns whether
+     * it is from the next evaluation on. NULL: it is complete */
+    int (*complete)(void *data);
 };
 
 /* Create a solver for IDASetNonlinearSolver; SUNNonlinSolFree releases it. Vectors are those of the school, which must

@@ -329,6 +329,37 @@ static void load_at_the_tip_accelerates_the_tail_only(void **state) {
     school_clear(&without);
 }
 
+static int n_coupled(const struct residual *residual) {
+    int n = 0;
+    const int n_fish = residual->school->n_fish;
+    for (int i = 0; i < n_fish * n_fish; i++) n += residual->coupled[i];
+    return n;
+}
+
+static void more_fish_couple_when_asked_until_all_do(void **state) {
+    (void)state;
+    struct setup setup;
+    // gaps of 0.5, 1.5, and 3 between those that are not neighbours
+    school_build(&setup, TIME
+                 "solver: {coupling_distance: 0.1}\n"
+                 "fish: [{}, {start: {position: [1.5, 0]}}, {start: {position: [4, 0]}}]\n");
+    struct residual *const residual = setup.residual;
+    const double *const y = setup.state->y;
+    assert_int_equal(n_coupled(residual), 3);
+    assert_int_equal(residual_couple_more(residual, y), 1);
+    assert_int_equal(n_coupled(residual), 5);
+    // it stays so
+    school_ok(residual_couple(residual, y));
+    assert_int_equal(n_coupled(residual), 5);
+    assert_int_equal(residual_couple_more(residual, y), 1);
+    assert_int_equal(n_coupled(residual), 7);
+    assert_int_equal(residual_couple_more(residual, y), 1);
+    assert_int_equal(n_coupled(residual), 9);
+    assert_int_equal(residual_couple_more(residual, y), 0);
+    assert_int_equal(n_coupled(residual), 9);
+    school_clear(&setup);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(jacobian_agrees_with_differences_for_every_option),
@@ -338,6 +369,7 @@ int main(void) {
         cmocka_unit_test(a_value_that_is_not_finite_asks_for_a_retry_and_says_where),
         cmocka_unit_test(rows_of_prescribed_nodes_vanish_on_their_motion_only),
         cmocka_unit_test(load_at_the_tip_accelerates_the_tail_only),
+        cmocka_unit_test(more_fish_couple_when_asked_until_all_do),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
