@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "model/sheets_at_wake.h"
 #include "vortex/kernel.h"
 #include "vortex/pairwise.h"
 
@@ -790,11 +791,17 @@ enum status flow_at_wake(struct flow *flow, const struct state *state) {
     TRY(reserve_at_wake(flow, moving->n));
     const struct induced at = {.n = moving->n, .x = moving->x, .y = moving->y, .u = flow->wake_u, .v = flow->wake_v};
     const double tolerance = flow->school->wake_tolerance;
-    const int by_tree = !has_free_sheets(flow) && velocity_sum_by_tree(&flow->sheet, moving->n, tolerance);
+    const struct bound_vortices bound = {flow->school, &flow->sheet, flow->sheet_range, flow->sheet_square};
+    const int by_tree = has_free_sheets(flow) ? sheets_at_wake_by_tree(&bound, moving->n, tolerance)
+                                              : velocity_sum_by_tree(&flow->sheet, moving->n, tolerance);
     const int threads =
         parallel_threads(flow->school->threads, moving->n, (double)moving->n * moving->n, PARALLEL_INTERACTIONS);
     others_at_wake(flow, !by_tree, &at);
-    if (by_tree) TRY(velocity_sum_induce(flow->velocity_sum, &flow->sheet, tolerance, threads, &at));
+    if (by_tree && has_free_sheets(flow)) {
+        TRY(sheets_at_wake_induce(&bound, flow->velocity_sum, tolerance, threads, &at));
+    } else if (by_tree) {
+        TRY(velocity_sum_induce(flow->velocity_sum, &flow->sheet, tolerance, threads, &at));
+    }
     TRY(images_induce_many(&flow->school->walls, flow->velocity_sum, moving, tolerance, threads, &at));
     if (velocity_sum_by_tree(moving, moving->n, tolerance)) {
         return velocity_sum_induce(flow->velocity_sum, moving, tolerance, threads, &at);
