@@ -1,7 +1,8 @@
 # shoal: build, test, install. `make help` lists the targets.
 #
 #   V=1           print the commands
-#   SANITIZE=1    build and test in build-sanitize with the address and undefined behaviour sanitizers
+#   SANITIZE=1    build and test with the address and undefined behaviour sanitizers, of gcc or with CC=clang of clang;
+#                 SANITIZE=thread with that for threads, of clang. Each has a folder build-sanitize...
 #   TIME=600      seconds of `make fuzz`
 #   TEST="rod x"  let `make test` run tests/*/test_rod.c and tests/*/test_x.sh only
 
@@ -24,10 +25,20 @@ SHELL = /bin/bash
 .DEFAULT_GOAL = all
 
 ifdef SANITIZE
-B = build-sanitize
 CFLAGS = -O1 -g
+ifeq ($(SANITIZE),thread)
+# libgomp tells the sanitizer nothing of how threads wait for each other; with libomp Archer does (scripts/run-tests.sh)
+CC = clang
+B = build-sanitize-thread
+sanitize = -fsanitize=thread
+# what lets threads work side by side; `make test SANITIZE=thread TEST="..."` for others
+TEST = parallel pairwise treecode velocity_sum images flow residual linear simulate shoal
+else
+B = build-sanitize$(if $(is_clang),-clang)
 # gcc 12 warns of variables that may be unset where the sanitizer's own code hides how they are set
-sanitize = -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer -Wno-maybe-uninitialized
+sanitize = -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer \
+           $(if $(is_clang),,-Wno-maybe-uninitialized)
+endif
 else
 B = build
 sanitize =
@@ -39,10 +50,9 @@ endif
 clang = $(shell command -v clang)
 ifdef FUZZER
 B = build-fuzzer
-# clang warns of fields left out of an initialiser with a name too, gcc does not
-sanitize = -fsanitize=address,undefined,fuzzer-no-link -fno-sanitize-recover=all -fno-omit-frame-pointer \
-           -Wno-missing-field-initializers
+sanitize = -fsanitize=address,undefined,fuzzer-no-link -fno-sanitize-recover=all -fno-omit-frame-pointer
 endif
+is_clang = $(filter clang%,$(notdir $(lastword $(CC))))
 
 ifdef V
 quiet =
@@ -57,13 +67,15 @@ endif
 shoal_cppflags = -D_XOPEN_SOURCE=700 -iquote src -iquote include -isystem /usr/include/suitesparse $(CPPFLAGS)
 # One set of objects serves the program and the shared library, which shares what include/shoal.h makes visible.
 shoal_cflags   = -std=c11 -ffp-contract=off -fno-math-errno -fopenmp -fPIC -fvisibility=hidden \
-                 -Wall -Wextra -Wconversion -Wshadow -Werror $(sanitize) $(CFLAGS)
+                 -Wall -Wextra -Wconversion -Wshadow -Werror $(warnings) $(sanitize) $(CFLAGS)
+# clang warns of fields left out of an initialiser with a name too, gcc does not
+warnings = $(if $(is_clang),-Wno-missing-field-initializers)
 libraries      = -lsundials_ida -lsundials_kinsol -lsundials_arkode -lsundials_sunlinsolklu \
                  -lsundials_sunmatrixsparse -lsundials_nvecserial -lklu -lamd -lcolamd -lbtf -lsuitesparseconfig \
                  -llapacke -llapack -lblas -lnetcdf -lyaml -lz -lm
 
-# OpenMP as a part of the program, where the compiler has it so: src/app/main_threads.h
-static_gomp = $(wildcard $(shell $(CC) -print-file-name=libgomp.a))
+# OpenMP as a part of the program, where the compiler has it so: src/app/main_threads.h. That of clang is another one.
+static_gomp = $(if $(is_clang),,$(wildcard $(shell $(CC) -print-file-name=libgomp.a)))
 
 # objects.a holds every function for the program and the tests; libshoal, which is installed, shares shoal_* only
 objects = $(B)/objects.a
@@ -88,7 +100,7 @@ verify_objects = $(patsubst tests/verify/%.c,$(B)/verify/%.o,$(wildcard tests/ve
 
 bench_programs = $(patsubst tests/bench/%.c,$(B)/bench/%,$(wildcard tests/bench/*.c))
 
-fuzz_programs  = $(B)/fuzz/fuzz_case $(B)/fuzz/fuzz_result
+fuzz_programs  = $(B)/fuzz/fuzz_case $(B)/fuzz/fuzz_result $(B)/fuzz/fuzz_checkpoint
 
 generated_docs = $(B)/doc/cases.md $(B)/doc/output.md $(B)/doc/case.schema.json
 manual         = $(B)/doc/shoal.1 $(B)/doc/shoal-case.5 $(B)/doc/shoal-output.5
@@ -108,7 +120,7 @@ python_modules = $(prefix)/lib/python$(if $(filter /usr,$(prefix)),3,$(python_ve
 # make again, on all cores unless told otherwise
 parallel = $(MAKE) --no-print-directory $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
-.PHONY: all demo test test-slurm tests verify soak fuzz fuzz-programs mutants bench style format docs install uninstall clean deps help FORCE
+.PHONY: all demo test test-slurm tests valgrind verify soak fuzz fuzz-programs mutants bench style format docs install uninstall clean deps help FORCE
 
 ## Everyday
 
@@ -132,11 +144,16 @@ verify: deps  ## check the program against classical results (minutes) and write
 	@$(parallel) $(verify_program)
 	@scripts/verify.sh $(verify_program) $(B)/verify
 
+valgrind: deps  ## let valgrind watch the tests in C (TEST="..."), and a run of the program (an hour)
+	@scripts/install-deps.sh valgrind
+	@$(parallel) tests
+	@scripts/valgrind.sh $(program) $(c_tests)
+
 soak: deps  ## let everything fail that can: all of tests/soak (an hour)
 	@$(parallel) all $(B)/faults.so
 	@TIME_LIMIT=14400 scripts/run-tests.sh $(program) $(wildcard tests/soak/*.sh)
 
-fuzz: deps  ## mutate cases and results for TIME seconds, on two cores, with the sanitizers
+fuzz: deps  ## mutate cases, results and checkpoints for TIME seconds, with the sanitizers
 	@$(parallel) SANITIZE=1 $(if $(clang),FUZZER=1 CC=clang) fuzz-programs
 	@scripts/fuzz.sh $(if $(clang),build-fuzzer,build-sanitize) $(TIME)
 
@@ -146,7 +163,7 @@ bench: $(program) $(bench_programs)  ## measure: inner loops, phases, schools, w
 	@scripts/bench.sh $(B)
 
 clean:  ## remove everything that was built
-	$(quiet)rm -rf build build-sanitize build-fuzzer
+	$(quiet)rm -rf build build-sanitize build-sanitize-clang build-sanitize-thread build-fuzzer
 
 help:  ## this list
 	@awk -F '  +## ' '/^## / { print "\n" substr($$0, 4) } \
@@ -246,6 +263,13 @@ $(B)/base/version.o: shoal_cppflags += -DSHOAL_VERSION='"$(VERSION)"' -DSHOAL_CO
 $(B)/base/version.o: $(B)/commit
 
 $(B)/output/page.o: src/output/page.html
+
+# with the sanitizers of clang this one, of long sums, takes minutes; the targets of `make fuzz` do not come here
+ifdef FUZZER
+$(B)/vortex/expansions.o: sanitize =
+else ifneq ($(and $(SANITIZE),$(is_clang)),)
+$(B)/vortex/expansions.o: CFLAGS = -O0 -g
+endif
 
 # rewritten only when the commit changes
 $(B)/commit: FORCE | $(folders)

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Fuzz for a time, on two cores: one target each, with the sanitizers; libFuzzer where clang is there, else the driver of
+# Fuzz for a time, all targets at once, with the sanitizers; libFuzzer where clang is there, else the driver of
 # tests/fuzz with one seed after the other. Stops at the first input that is bad, which it keeps.
 #
 #   scripts/fuzz.sh BUILD SECONDS
@@ -32,8 +32,8 @@ fuzz() {  # target, seeds
 }
 
 fuzz fuzz_case "$folder/seeds/cases" & one=$!
-fuzz fuzz_result "$folder/seeds/results" & other=$!
+fuzz fuzz_result "$folder/seeds/results" & two=$!
+fuzz fuzz_checkpoint "$folder/seeds/checkpoints" & three=$!
 code=0
-wait $one || code=1
-wait $other || code=1
+for one in $one $two $three; do wait "$one" || code=1; done
 exit $code

@@ -32,6 +32,11 @@ trap 'exit 130' INT TERM
 
 # the sanitizers, when built in: show the stack, also where cmocka would catch the signal
 export UBSAN_OPTIONS=print_stacktrace=1 ASAN_OPTIONS=handle_segv=2:handle_sigfpe=2
+# that for threads: libraries that are not built for it are not watched; Archer tells it what OpenMP does (Debian keeps it
+# where nobody looks)
+export TSAN_OPTIONS=ignore_noninstrumented_modules=1
+archer=$(printf '%s\n' /usr/lib/llvm-*/lib/libarcher.so | tail -n 1)
+[[ ! -e $archer ]] || export OMP_TOOL_LIBRARIES=$archer
 
 # Sums of a cmocka program: "passed failed skipped". What was announced and neither passed nor was skipped has failed.
 count_cmocka() {

@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
-# Make a folder with what fuzz targets begin with: cases/ and results/ (a run, a study, its member, a field; all small).
+# Make a folder with what fuzz targets begin with: cases/, results/ (a run, a study, its member, a field), checkpoints/;
+# all small.
 #
 #   tests/fuzz/seeds.sh PROGRAM FOLDER
 set -euo pipefail
 program=$(realpath "$1")
 tests=$(realpath "$(dirname "$0")/..")
-mkdir -p "$2/cases" "$2/results"
+mkdir -p "$2/cases" "$2/results" "$2/checkpoints"
 cd "$2"
 for file in "$tests"/../cases/*.yaml "$tests"/../cases/studies/*.yaml "$tests"/bad/*.yaml; do
     cp "$file" "cases/$(basename "$(dirname "$file")")-$(basename "$file")"
@@ -20,3 +21,7 @@ end
 "$program" field results/run.nc -q --force --at 0.04 --grid 4,4 -o results/field.nc
 "$program" study small.yaml -q -o study --set 'sweep=[{key: "fish[*].wave.amplitude", values: [0.2, 0.3]}]' >table
 cp study/study.nc study/member-0000.nc results
+for shedding in sheet impulsive continuous; do
+    "$program" run small.yaml -q --force --checkpoint-at 0.02,0.04 --set wake.shedding=$shedding -o $shedding.nc
+    cp $shedding.ckpt $shedding.ckpt.previous checkpoints
+done

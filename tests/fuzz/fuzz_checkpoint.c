@@ -1,0 +1,118 @@
+/* fuzz_checkpoint.c: any bytes as a checkpoint: it is refused, or read into the state of the case in it. Few changes get
+ * past the checksums, so every input is tried a second time with checksums that fit. */
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include "case/case.h"
+#include "fuzz.h"
+#include "model/fish.h"
+#include "model/state.h"
+#include "output/checkpoint.h"
+#include "output/sections.h"
+
+enum {
+    SIZE_AT = 16, /* in the header of all: the bytes of the file, then the checksum (sections.h) */
+    CHECK_AT = 24,
+    HEADER = 28,
+    SECTION = SECTIONS_NAME + 8, /* the header of a section */
+    CHECK = 4
+};
+
+static char path[64];
+
+static void remove_file(void) {
+    unlink(path);
+}
+
+// a file of this process in memory
+static void write_file(const uint8_t *bytes, size_t n) {
+    if (!*path) {
+        snprintf(path, sizeof path, "/dev/shm/shoal-fuzz-%ld.ckpt", (long)getpid());
+        atexit(remove_file);
+    }
+    const int file = open(path, O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    if (file < 0 || write(file, bytes, n) != (ssize_t)n || close(file) != 0) abort();
+}
+
+static void set_check(uint8_t *bytes, size_t n) {
+    const uint32_t check = (uint32_t)crc32_z(0, bytes, n);
+    memcpy(bytes + n, &check, sizeof check);
+}
+
+// sizes and checksums as they should be for the bytes there are
+static void repair(uint8_t *bytes, size_t n) {
+    if (n < HEADER) return;
+    const uint64_t all = n;
+    memcpy(bytes + SIZE_AT, &all, sizeof all);
+    set_check(bytes, CHECK_AT);
+    for (size_t at = HEADER; n - at >= SECTION + CHECK;) {
+        const uint64_t room = n - at - SECTION - CHECK;
+        uint64_t size;
+        memcpy(&size, bytes + at + SECTIONS_NAME, sizeof size);
+        if (size > room) size = room;
+        memcpy(bytes + at + SECTIONS_NAME, &size, sizeof size);
+        set_check(bytes + at, SECTION + (size_t)size);
+        at += SECTION + (size_t)size + CHECK;
+    }
+}
+
+// refused, if at all, as a file or for the case in it
+static void demand_refusal(enum status status) {
+    if (status == STATUS_OK || status == STATUS_FILE || status == STATUS_CASE) return;
+    fprintf(stderr, "refused with status %d: %s\n", status, status_message());
+    abort();
+}
+
+static int is_small(const struct school_parameters *school) {
+    int n = 0;
+    for (int f = 0; f < school->n_fish; f++) n += school->fish[f].nodes + school->fish[f].sheet_points;
+    return n < 200;
+}
+
+// the state of the case that a checkpoint holds
+static void read_state(const struct checkpoint *checkpoint) {
+    struct case_values values;
+    const char *const text = checkpoint->effective;
+    enum status status = case_parse(&values, text, strlen(text), "fuzz", NULL, 0, NULL);
+    demand_refusal(status);
+    if (status != STATUS_OK) return;
+    struct school *school = NULL;
+    struct state *state = NULL;
+    if (is_small(&values.school) && (status = fish_school_create(&school, &values.school)) == STATUS_OK &&
+        (status = state_create(&state, school)) == STATUS_OK)
+        status = checkpoint_set_state(checkpoint, state, school);
+    demand_refusal(status);
+    state_free(state, school);
+    fish_school_free(school);
+    case_free(&values);
+}
+
+static void try(const uint8_t *bytes, size_t n) {
+    static FILE *nowhere;
+    if (!nowhere) nowhere = fopen("/dev/null", "w");
+    if (!nowhere) abort();
+    write_file(bytes, n);
+    demand_refusal(checkpoint_info(path, false, nowhere));
+    struct checkpoint checkpoint;
+    const enum status status = checkpoint_read(&checkpoint, path);
+    demand_refusal(status);
+    if (status != STATUS_OK) return;
+    demand_refusal(checkpoint_check_program(&checkpoint));
+    read_state(&checkpoint);
+    checkpoint_free(&checkpoint);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t n) {
+    try(bytes, n);
+    uint8_t *const repaired = malloc(n + 1);
+    if (!repaired) abort();
+    memcpy(repaired, bytes, n);
+    repair(repaired, n);
+    try(repaired, n);
+    free(repaired);
+    return 0;
+}
