@@ -43,7 +43,7 @@ fish:
     start: {position: [0, 0], speed: 0.8}
 ```
 
-`shoal check CASE` checks a case, `shoal show CASE` prints it in full, with every key, value and unit, and `shoal keys`
+`shoal check CASE` checks a case and estimates time and memory of its run, `shoal show CASE` prints it in full, with every key, value and unit, and `shoal keys`
 prints the tables below. All errors of a case are listed at once, each with its place and a remedy:
 
 ```

@@ -1,4 +1,5 @@
 /* main_case.c: inspect cases and results. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,6 +16,7 @@
 #include "output/result_info.h"
 #include "output/result_kind.h"
 #include "output/result_table.h"
+#include "run/estimate.h"
 #include "run/record.h"
 #include "run/simulate.h"
 #include "study/study_file.h"
@@ -41,13 +43,53 @@ static enum status prepare(const struct case_values *values, struct simulation *
     return status;
 }
 
-/* Prepare each member of a study, as `shoal study` will. */
-static enum status check_members(const struct case_values *study) {
-    for (int m = 0; study->n_axes > 0 && m < sweep_n_members(study); m++) {
+/* Seconds in which events are done for an estimate of what a run, or all runs of a study, will take. */
+static const double patience = 0.25;
+
+/* What all runs of a case or a study take: times add up, memory does not. */
+struct forecast {
+    double seconds, bytes;
+    char reason[256]; /* why there is none, or "" */
+};
+
+static void add_estimate(struct forecast *forecast, struct simulation *simulation, double seconds) {
+    struct estimate estimate;
+    if (estimate_run(simulation, seconds, &estimate) != STATUS_OK) {
+        snprintf(forecast->reason, sizeof forecast->reason, "%s", status_message());
+        return;
+    }
+    forecast->seconds += estimate.seconds;
+    forecast->bytes = fmax(forecast->bytes, estimate.bytes);
+}
+
+static void print_forecast(const struct forecast *forecast, const struct case_values *values) {
+    static const struct {
+        double seconds;
+        const char *name;
+    } units[] = {{86400, "days"}, {3600, "h"}, {60, "min"}, {0, "s"}};
+    if (*forecast->reason) {
+        printf("    no estimate of its time: %s\n", forecast->reason);
+        return;
+    }
+    int i = 0;
+    while (forecast->seconds < 1.5 * units[i].seconds) i++;
+    const double time = forecast->seconds / fmax(units[i].seconds, 1);
+    printf(
+        "    %s about %.2g %s and %.2g MB on this machine%s: estimated from a few events, often within a factor of "
+        "two\n",
+        values->n_axes > 0 ? "its runs take" : "its run takes", time, units[i].name, 1e-6 * forecast->bytes,
+        values->n_axes > 0 ? ", one after the other" : "");
+}
+
+/* Prepare each member of a study, as `shoal study` will, and estimate what it takes; forecast may be NULL. */
+static enum status check_members(const struct case_values *study, struct forecast *forecast) {
+    const int n = study->n_axes > 0 ? sweep_n_members(study) : 0;
+    for (int m = 0; m < n; m++) {
         struct case_values member;
         struct simulation *simulation = NULL;
         TRY(case_member(&member, study, m));
         const enum status status = simulate_create(&simulation, &member);
+        if (status == STATUS_OK && forecast) add_estimate(forecast, simulation, patience / n);
         simulate_free(simulation);
         case_free(&member);
         TRY(status);
@@ -60,13 +102,17 @@ enum status main_check(const struct request *request) {
     TRY(case_read(&values, request->positional, request->n_assignments, request->assignments));
     struct simulation *simulation = NULL;
     enum status status = prepare(&values, &simulation);
-    if (status == STATUS_OK) status = check_members(&values);
+    struct forecast forecast = {0};
+    if (status == STATUS_OK) status = check_members(&values, request->quiet ? NULL : &forecast);
     if (status == STATUS_OK) main_print_notes(request, &values);
     if (status == STATUS_OK && !request->quiet) {
         printf("%s: ok: %d fish, %d unknowns, %.6g s in %ld events", request->positional, simulation->school->n_fish,
                simulation->school->n_unknowns, values.time.end, simulation->n_events);
         if (values.n_axes > 0) printf("; %d members", sweep_n_members(&values));
         printf("\n");
+        fflush(stdout);
+        if (values.n_axes == 0) add_estimate(&forecast, simulation, patience);
+        print_forecast(&forecast, &values);
     }
     simulate_free(simulation);
     case_free(&values);

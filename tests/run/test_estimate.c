@@ -1,0 +1,91 @@
+/* test_estimate.c: what a run will take, from a few events and from wakes that are made up. */
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+
+#include "run/estimate.h"
+#include "school.h"
+
+#define FISH "fish: [{nodes: 5, sheet_points: 9}, {nodes: 5, sheet_points: 9, start: {position: [0, 3]}}]\n"
+
+static double processor_time(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static struct estimate estimate_of(const char *text, double patience) {
+    struct simulation *const simulation = school_simulation(text);
+    struct estimate estimate = {0};
+    school_ok(estimate_run(simulation, patience, &estimate));
+    simulate_free(simulation);
+    return estimate;
+}
+
+static void a_run_that_is_done_whole_takes_what_it_took(void **state) {
+    (void)state;
+    const double start = processor_time();
+    const struct estimate estimate =
+        estimate_of("time: {end: 2, shedding_interval: 0.02, output_interval: 0.02}\n" FISH, 1e6);
+    const double all = processor_time() - start;
+    print_message("%.3g s of %.3g s, %.3g MB\n", estimate.seconds, all, 1e-6 * estimate.bytes);
+    assert_int_equal(estimate.n_events, 100);
+    // without the start and the measurements; a machine that shares its processors counts some time of others
+    assert_true(estimate.seconds < 1.5 * all && estimate.seconds > 0.3 * all);
+}
+
+static void a_wake_that_grows_costs_more_than_its_first_events(void **state) {
+    (void)state;
+    const char long_run[] =
+        "time: {end: 2000, shedding_interval: 0.02, output_interval: 0.02}\n"
+        "wake: {lifetime: %d}\n" FISH;
+    char text[sizeof long_run + 20];
+    double seconds[2];
+    for (int i = 0; i < 2; i++) {
+        snprintf(text, sizeof text, long_run, i == 0 ? 1 : 100);
+        seconds[i] = estimate_of(text, 0.05).seconds;
+    }
+    print_message("%.3g s with wakes of 50 vortices, %.3g s with 5000\n", seconds[0], seconds[1]);
+    assert_true(seconds[1] > 5 * seconds[0]);
+}
+
+static void every_kind_of_wake_can_be_made_up(void **state) {
+    (void)state;
+    const char *const kinds[] = {"sheet", "continuous", "impulsive"};
+    for (int i = 0; i < 3; i++) {
+        char text[400];
+        snprintf(text, sizeof text,
+                 "time: {end: 10, shedding_interval: 0.02, output_interval: 0.02}\nwake: {shedding: %s}\n" FISH,
+                 kinds[i]);
+        struct simulation *const simulation = school_simulation(text);
+        struct estimate estimate;
+        school_ok(estimate_run(simulation, 0, &estimate));
+        assert_int_equal(estimate.n_events, 1);
+        assert_true(estimate.seconds > 0 && isfinite(estimate.seconds));
+        // the wakes of the end, less what is older than a lifetime
+        assert_true(simulation->state->wake[1].n_vortex >= wake_most(simulation->school, 500) - 1);
+        // a program without a run has some megabytes
+        assert_true(estimate.bytes > 4e6 && estimate.bytes < 1e10);
+        simulate_free(simulation);
+    }
+}
+
+static void a_run_that_fails_at_once_has_no_estimate(void **state) {
+    (void)state;
+    struct simulation *const simulation =
+        school_simulation("time: {end: 1, shedding_interval: 0.02}\nsolver: {max_steps: 1}\n" FISH);
+    struct estimate estimate;
+    assert_int_equal(estimate_run(simulation, 1, &estimate), STATUS_SOLVER);
+    assert_non_null(strstr(status_message(), "solver.max_steps"));
+    simulate_free(simulation);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_run_that_is_done_whole_takes_what_it_took),
+        cmocka_unit_test(a_wake_that_grows_costs_more_than_its_first_events),
+        cmocka_unit_test(every_kind_of_wake_can_be_made_up),
+        cmocka_unit_test(a_run_that_fails_at_once_has_no_estimate),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
