@@ -150,7 +150,7 @@ valgrind: deps  ## let valgrind watch the tests in C (TEST="..."), and a run of 
 	@scripts/valgrind.sh $(program) $(c_tests)
 
 soak: deps  ## let everything fail that can: all of tests/soak (an hour)
-	@$(parallel) all $(B)/faults.so
+	@$(parallel) all $(faults)
 	@TIME_LIMIT=14400 scripts/run-tests.sh $(program) $(wildcard tests/soak/*.sh)
 
 fuzz: deps  ## mutate cases, results and checkpoints for TIME seconds, with the sanitizers
@@ -283,12 +283,15 @@ $(B)/fuzz/%: $(B)/fuzz/%.o $(if $(FUZZER),,$(B)/fuzz/driver.o) $(objects)
 	$(say) LD $@
 	$(quiet)$(CC) $(shoal_cflags) $(if $(FUZZER),-fsanitize=fuzzer) $(LDFLAGS) -o $@ $^ $(libraries)
 
-# to be preloaded: tests/faults/faults.py
-$(B)/faults.so: tests/faults/shim.c Makefile | $(folders)
+# to be preloaded: tests/faults/faults.py, memory.py
+faults = $(B)/faults.so $(B)/memory.so
+$(B)/faults.so: tests/faults/shim.c
+$(B)/memory.so: tests/faults/memory.c
+$(faults): Makefile | $(folders)
 	$(say) LD $@
-	$(quiet)$(CC) -std=c11 -Wall -Wextra -Wconversion -Wshadow -Werror -O2 -shared -fPIC -o $@ $<
+	$(quiet)$(CC) -std=c11 -Wall -Wextra -Wconversion -Wshadow -Werror -O2 -shared -fPIC -o $@ $(filter %.c,$^)
 
-tests: all $(B)/faults.so $(fuzz_programs) $(c_tests) $(verify_program) $(bench_programs)
+tests: all $(faults) $(fuzz_programs) $(c_tests) $(verify_program) $(bench_programs)
 
 $(B)/verify/%.o: tests/verify/%.c Makefile | $(folders)
 	$(say) CC $<

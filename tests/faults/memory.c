@@ -1,0 +1,88 @@
+/* memory.c: allocations of a program that fail on demand, to be preloaded (LD_PRELOAD): tests/faults/memory.py. Those
+ * of its libraries pass. The address sanitizer, which has a malloc of its own, cannot do with this one.
+ *
+ *     MEMORY_AT      which allocation fails, from 1; 0: none
+ *     MEMORY_COUNT   a file to append the number of allocations to at the end */
+#define _GNU_SOURCE
+#include <errno.h>
+#include <link.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+// glibc's own functions, under names that nobody takes
+void *__libc_malloc(size_t size);
+void *__libc_calloc(size_t n, size_t size);
+void *__libc_realloc(void *memory, size_t size);
+void *__libc_memalign(size_t alignment, size_t size);
+
+static uintptr_t program_start, program_end;
+static long count, failing;
+
+// the program comes first
+static int find_program(struct dl_phdr_info *object, size_t size, void *data) {
+    (void)size, (void)data;
+    for (int i = 0; i < object->dlpi_phnum; i++) {
+        const ElfW(Phdr) *const part = &object->dlpi_phdr[i];
+        if (part->p_type != PT_LOAD || !(part->p_flags & PF_X)) continue;
+        program_start = object->dlpi_addr + part->p_vaddr;
+        program_end = program_start + part->p_memsz;
+    }
+    return 1;
+}
+
+__attribute__((constructor)) static void prepare(void) {
+    const char *const at = getenv("MEMORY_AT");
+    failing = at ? atol(at) : 0;
+    dl_iterate_phdr(find_program, NULL);
+}
+
+__attribute__((destructor)) static void report(void) {
+    const char *const path = getenv("MEMORY_COUNT");
+    FILE *const file = path ? fopen(path, "a") : NULL;
+    if (!file) return;
+    fprintf(file, "%ld\n", count);
+    fclose(file);
+}
+
+// whether an allocation for this caller fails
+static int fails(const void *caller) {
+    const uintptr_t at = (uintptr_t)caller;
+    if (at < program_start || at >= program_end || ++count != failing) return 0;
+    errno = ENOMEM;
+    return 1;
+}
+#define FAILS fails(__builtin_return_address(0))
+
+void *malloc(size_t size) {
+    return FAILS ? NULL : __libc_malloc(size);
+}
+
+void *calloc(size_t n, size_t size) {
+    return FAILS ? NULL : __libc_calloc(n, size);
+}
+
+void *realloc(void *memory, size_t size) {
+    return FAILS ? NULL : __libc_realloc(memory, size);
+}
+
+void *aligned_alloc(size_t alignment, size_t size) {
+    return FAILS ? NULL : __libc_memalign(alignment, size);
+}
+
+static char *copy(const char *text, size_t length) {
+    char *const new = __libc_malloc(length + 1);
+    if (!new) return NULL;
+    memcpy(new, text, length);
+    new[length] = '\0';
+    return new;
+}
+
+char *strdup(const char *text) {
+    return FAILS ? NULL : copy(text, strlen(text));
+}
+
+char *strndup(const char *text, size_t n) {
+    return FAILS ? NULL : copy(text, strnlen(text, n));
+}

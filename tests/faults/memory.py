@@ -1,0 +1,94 @@
+#!/usr/bin/python3
+"""Let every allocation of the program fail that a command makes, one at a time.
+
+    memory.py PROGRAM SHIM EVERY      EVERY: 1 tries all of them, n every n-th
+
+The command ends with exit code 0, where it can do without, or 4 (a study whose member fails: 1) and one message with the
+word memory; it leaves no half of a file, and a result that is there can be read.
+Prints a line for what is wrong, and as the last one how many passed and failed.
+"""
+import os, subprocess, sys, tempfile
+
+program, shim, every = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2]), int(sys.argv[3])
+CASE = """format: 1
+name: small
+time: {end: 0.04, shedding_interval: 0.01, output_interval: 0.02, checkpoint_interval: 0.02}
+fish:
+  - {nodes: 5, sheet_points: 9}
+  - {nodes: 5, sheet_points: 9, start: {position: [0, 0.7]}, control: {law: heading, desired_heading: 170}}
+"""
+AXIS = "sweep=[{key: 'fish[0].wave.amplitude', values: [0.2, 0.3]}]"
+# what each command finds, and what it makes
+COMMANDS = {
+    "check": (["check", "small.yaml"], []),
+    "show": (["show", "small.yaml"], []),
+    "run": (["run", "small.yaml", "-q", "-o", "new.nc"], ["new.nc", "new.ckpt", "new.ckpt.previous"]),
+    "resume": (["resume", "new.ckpt", "--end", "0.06", "-q"], ["new.nc", "new.ckpt", "new.ckpt.previous"]),
+    "study": (["study", "small.yaml", "-q", "-j", "1", "-o", "new", "--set", AXIS], ["new"]),
+    "gather": (["gather", "study"], []),
+    "compare": (["compare", "small.yaml", "-q", "--methods", "ida3", "--rtol", "1e-3", "--repeats", "1", "-o", "new.nc"],
+                ["new.nc"]),
+    "info": (["info", "old.nc"], []),
+    "info of a checkpoint": (["info", "old.ckpt"], []),
+    "field": (["field", "old.nc", "-q", "--at", "0.04", "--grid", "4,4", "-o", "new.nc"], ["new.nc"]),
+    "view": (["view", "old.nc", "-q", "-o", "new.html"], ["new.html"]),
+    "export": (["export", "old.nc", "-q", "--vtk", "new"], ["new"]),
+}
+counts = {"passed": 0, "failed": 0}
+
+
+def run(command, **settings):
+    environment = dict(os.environ, LD_PRELOAD=shim, OMP_NUM_THREADS="1", **{f"MEMORY_{k}": v for k, v in settings.items()})
+    return subprocess.run([program, *command], env=environment, timeout=60, stdin=subprocess.DEVNULL, capture_output=True,
+                          text=True, errors="replace")
+
+
+def prepare(name, made):
+    """Remove what the command makes; what is resumed is as it was."""
+    subprocess.run(["rm", "-rf", *made], check=True)
+    if name == "resume":
+        subprocess.run("cp kept/* .", shell=True, check=True)
+
+
+def wrong(done):
+    """What is wrong with the end of a command, or None."""
+    if done.returncode == 0:
+        return None
+    if done.returncode not in (1, 4):
+        return f"exit code {done.returncode}: {done.stderr}"
+    if "memory" not in done.stderr or "Traceback" in done.stderr:
+        return f"message: {done.stderr!r}"
+    left = [name for name in os.listdir(".") if ".part" in name]
+    return f"it leaves {left}" if left else None
+
+
+with tempfile.TemporaryDirectory() as folder:
+    os.chdir(folder)
+    open("small.yaml", "w").write(CASE)
+    for name in ("old", "new"):
+        run(["run", "small.yaml", "-q", "-o", name + ".nc"]).check_returncode()
+    subprocess.run("mkdir kept && mv new.* kept", shell=True, check=True)
+    run(["study", "small.yaml", "-q", "-o", "study", "--set", AXIS]).check_returncode()
+    tried = 0
+    for name, (command, made) in COMMANDS.items():
+        prepare(name, made)
+        if os.path.exists("counted"):
+            os.remove("counted")
+        done = run(command, COUNT="counted")
+        assert done.returncode == 0, f"{name}: {done.stderr}"
+        n = max(int(line) for line in open("counted"))
+        found = 0
+        for at in range(1, n + 1):
+            tried += 1
+            if tried % every:
+                continue
+            prepare(name, made)
+            bad = wrong(done := run(command, AT=str(at)))
+            found += done.returncode != 0
+            counts["failed" if bad else "passed"] += 1
+            if bad:
+                print(f"FAILED  {name}, allocation {at} of {n}: {bad.strip()}", flush=True)
+        print(f"{name}: {n} allocations, {found} of those tried end with a message", flush=True)
+    os.chdir("/")
+print(f"{counts['passed']} passed, {counts['failed']} failed, 0 skipped")
+sys.exit(counts["failed"] > 0)
