@@ -47,49 +47,49 @@ static enum status prepare(const struct case_values *values, struct simulation *
 static const double patience = 0.25;
 
 /* What all runs of a case or a study take: times add up, memory does not. */
-struct forecast {
+struct cost {
     double seconds, bytes;
     char reason[256]; /* why there is none, or "" */
 };
 
-static void add_estimate(struct forecast *forecast, struct simulation *simulation, double seconds) {
+static void add_estimate(struct cost *cost, struct simulation *simulation, double seconds) {
     struct estimate estimate;
     if (estimate_run(simulation, seconds, &estimate) != STATUS_OK) {
-        snprintf(forecast->reason, sizeof forecast->reason, "%s", status_message());
+        snprintf(cost->reason, sizeof cost->reason, "%s", status_message());
         return;
     }
-    forecast->seconds += estimate.seconds;
-    forecast->bytes = fmax(forecast->bytes, estimate.bytes);
+    cost->seconds += estimate.seconds;
+    cost->bytes = fmax(cost->bytes, estimate.bytes);
 }
 
-static void print_forecast(const struct forecast *forecast, const struct case_values *values) {
+static void print_cost(const struct cost *cost, const struct case_values *values) {
     static const struct {
         double seconds;
         const char *name;
     } units[] = {{86400, "days"}, {3600, "h"}, {60, "min"}, {0, "s"}};
-    if (*forecast->reason) {
-        printf("    no estimate of its time: %s\n", forecast->reason);
+    if (*cost->reason) {
+        printf("    no estimate of its time: %s\n", cost->reason);
         return;
     }
     int i = 0;
-    while (forecast->seconds < 1.5 * units[i].seconds) i++;
-    const double time = forecast->seconds / fmax(units[i].seconds, 1);
+    while (cost->seconds < 1.5 * units[i].seconds) i++;
+    const double time = cost->seconds / fmax(units[i].seconds, 1);
     printf(
         "    %s about %.2g %s and %.2g MB on this machine%s: estimated from a few events, often within a factor of "
         "two\n",
-        values->n_axes > 0 ? "its runs take" : "its run takes", time, units[i].name, 1e-6 * forecast->bytes,
+        values->n_axes > 0 ? "its runs take" : "its run takes", time, units[i].name, 1e-6 * cost->bytes,
         values->n_axes > 0 ? ", one after the other" : "");
 }
 
-/* Prepare each member of a study, as `shoal study` will, and estimate what it takes; forecast may be NULL. */
-static enum status check_members(const struct case_values *study, struct forecast *forecast) {
+/* Prepare each member of a study, as `shoal study` will, and estimate what it takes; cost may be NULL. */
+static enum status check_members(const struct case_values *study, struct cost *cost) {
     const int n = study->n_axes > 0 ? sweep_n_members(study) : 0;
     for (int m = 0; m < n; m++) {
         struct case_values member;
         struct simulation *simulation = NULL;
         TRY(case_member(&member, study, m));
         const enum status status = simulate_create(&simulation, &member);
-        if (status == STATUS_OK && forecast) add_estimate(forecast, simulation, patience / n);
+        if (status == STATUS_OK && cost) add_estimate(cost, simulation, patience / n);
         simulate_free(simulation);
         case_free(&member);
         TRY(status);
@@ -102,8 +102,8 @@ enum status main_check(const struct request *request) {
     TRY(case_read(&values, request->positional, request->n_assignments, request->assignments));
     struct simulation *simulation = NULL;
     enum status status = prepare(&values, &simulation);
-    struct forecast forecast = {0};
-    if (status == STATUS_OK) status = check_members(&values, request->quiet ? NULL : &forecast);
+    struct cost cost = {0};
+    if (status == STATUS_OK) status = check_members(&values, request->quiet ? NULL : &cost);
     if (status == STATUS_OK) main_print_notes(request, &values);
     if (status == STATUS_OK && !request->quiet) {
         printf("%s: ok: %d fish, %d unknowns, %.6g s in %ld events", request->positional, simulation->school->n_fish,
@@ -111,8 +111,8 @@ enum status main_check(const struct request *request) {
         if (values.n_axes > 0) printf("; %d members", sweep_n_members(&values));
         printf("\n");
         fflush(stdout);
-        if (values.n_axes == 0) add_estimate(&forecast, simulation, patience);
-        print_forecast(&forecast, &values);
+        if (values.n_axes == 0) add_estimate(&cost, simulation, patience);
+        print_cost(&cost, &values);
     }
     simulate_free(simulation);
     case_free(&values);

@@ -271,13 +271,25 @@ static void tell_crushed(const struct ida *solver, size_t size, char *text) {
     }
 }
 
+// the pairs of fish of which Newton's iteration does not know how they act on each other, if there are any
+static void tell_uncoupled(const struct ida *solver, size_t size, char *text) {
+    const struct school *school = solver->residual->school;
+    const int n_pairs = school->n_fish * (school->n_fish - 1) / 2;
+    const int n_uncoupled = n_pairs - solver->jacobian->n_couplings / 2;
+    if (n_uncoupled == 0) return;
+    snprintf(text, size,
+             "; %d of %d pairs of fish are further apart than solver.coupling_distance, %.3g m, and Newton's iteration "
+             "does not know how they act on each other: raise it",
+             n_uncoupled, n_pairs, school->coupling_distance);
+}
+
 static enum status failed(const struct ida *solver, int code, long steps) {
     const struct school *school = solver->residual->school;
     double now = 0, step = 0, size;
     IDAGetCurrentTime(solver->ida, &now);
     IDAGetCurrentStep(solver->ida, &step);
     // the limit of steps is ours: there is no message of IDA
-    char message[512] = "", error[256] = "", last[64] = "", crushed[256] = "";
+    char message[512] = "", error[256] = "", last[64] = "", seen[256] = "";
     if (code != IDA_TOO_MUCH_WORK) snprintf(message, sizeof message, "; %s", status_message());
     const struct unknown_place place = worst_unknown(solver, &size);
     // an error that has not been estimated, or a step that has not been made, is not told
@@ -286,12 +298,13 @@ static enum status failed(const struct ida *solver, int code, long steps) {
                                     place.name, place.index, school->fish[place.fish].name);
         if (size > 0.01) snprintf(error + length, sizeof error - (size_t)length, ", %.3g tolerances", size);
     }
-    tell_crushed(solver, sizeof crushed, crushed);
+    tell_crushed(solver, sizeof seen, seen);
+    if (code == IDA_CONV_FAIL && !*seen) tell_uncoupled(solver, sizeof seen, seen);
     if (steps > 0) snprintf(last, sizeof last, ", the last of %.3g s", step);
     return status_fail(STATUS_SOLVER,
                        "integration failed at t = %.10g s: %s%s%s; tried: orders up to %d, %ld steps since the last "
                        "event%s%s",
-                       now, reason(code), crushed, error, solver->options.order, steps, last, message);
+                       now, reason(code), seen, error, solver->options.order, steps, last, message);
 }
 
 // The latest end of the next step. Steps that divide the rest of the interval into equal parts keep their size from

@@ -1,5 +1,5 @@
-/* fuzz_checkpoint.c: any bytes as a checkpoint: it is refused, or read into the state of the case in it. Few changes get
- * past the checksums, so every input is tried a second time with checksums that fit. */
+/* fuzz_checkpoint.c: any bytes as a checkpoint: it is refused, or read into the state of the case in it. Few changes
+ * get past the checksums, so every input is tried a second time with checksums that fit. */
 #include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,5 @@
 /* test_ida.c: steps, restarts, failures. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -208,6 +209,24 @@ static void an_unreachable_tolerance_ends_with_a_message(void **state) {
     simulate_free(simulation);
 }
 
+static void an_iteration_that_ignores_other_fish_ends_with_a_remedy(void **state) {
+    (void)state;
+    // a column of fish of which each sees none of the others in its Jacobian
+    char text[2000];
+    int length = snprintf(text, sizeof text,
+                          "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+                          "solver: {coupling_distance: 0}\ncontact: {action: warn}\nfish:\n");
+    for (int f = 0; f < 16; f++)
+        length += snprintf(text + length, sizeof text - (size_t)length, "  - {start: {position: [0, %g]}}\n", 0.3 * f);
+    struct simulation *const simulation = school_simulation(text);
+    enum status status = STATUS_OK;
+    for (int i = 0; i < 5 && status == STATUS_OK; i++) status = simulate_step(simulation);
+    assert_int_equal(status, STATUS_SOLVER);
+    assert_non_null(
+        strstr(status_message(), "120 of 120 pairs of fish are further apart than solver.coupling_distance"));
+    simulate_free(simulation);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_body_with_prescribed_nodes_follows_the_given_motion),
@@ -221,6 +240,7 @@ int main(void) {
         cmocka_unit_test(an_edge_that_is_pressed_to_nothing_is_named),
         cmocka_unit_test(kinds_of_unknowns_are_the_same_in_all_intervals),
         cmocka_unit_test(an_unreachable_tolerance_ends_with_a_message),
+        cmocka_unit_test(an_iteration_that_ignores_other_fish_ends_with_a_remedy),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
