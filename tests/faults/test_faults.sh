@@ -59,7 +59,7 @@ check "signals that are ignored stay so" complete ignored.nc
 if grep -q __asan_init "$program"; then
     skip "little memory" "the address sanitizer needs all of it"
 else
-    sample=$(/usr/bin/python3 "$tests/faults/memory.py" "$program" "$(dirname "$program")/memory.so" 211)
+    sample=$(/usr/bin/python3 "$root/tests/faults/memory.py" "$program" "$(dirname "$program")/memory.so" 211)
     check "a sample of failing allocations of all commands: exit code 0, or 4 and one message" \
         grep -q '^[1-9][0-9]* passed, 0 failed, 0 skipped$' <(echo "$sample" | tee sample.out | tail -n 1)
     ((n_failed == 0)) || cat sample.out
