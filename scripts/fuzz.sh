@@ -15,7 +15,7 @@ fuzz() {  # target, seeds
     local end=$((SECONDS + seconds)) seed n=0 each=2000
     if "$build/fuzz/$1" -help=1 2>&1 | grep -q libFuzzer; then
         mkdir -p corpus
-        "$build/fuzz/$1" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=4096 -max_len=65536 -print_final_stats=1 \
+        "$build/fuzz/$1" -max_total_time="$seconds" -timeout=60 -rss_limit_mb=4096 -max_len=65536 -print_final_stats=1 \
             corpus "$2" >log 2>&1 || { tail -n 40 log; return 1; }
         n=$(sed -n 's/stat::number_of_executed_units: *//p' log)
     else

@@ -26,9 +26,10 @@ format: 1
 time: {end: 0.1, shedding_interval: 0.01, output_interval: 0.02}
 fish: [{nodes: 7, sheet_points: 13}, {nodes: 7, sheet_points: 13, start: {position: [0, 1]}}]
 end
+printf 'sweep: [{key: solver.rtol, values: [1e-4, 1e-5]}]\n' | cat small.yaml - >study.yaml
 for command in "check small.yaml" "run small.yaml -q --checkpoint-at 0.06" "info small.nc" "info small.ckpt" \
     "resume small.ckpt --end 0.2 -q" "field small.nc --at 0.1 --grid 4,4 -q -o field.nc" "view small.nc -q -o small.html" \
-    "export small.nc --vtk -q -o vtk" "study small.yaml -q -o study --set sweep=[{key:solver.rtol,values:[1e-4,1e-5]}]"; do
+    "export small.nc -q --vtk vtk" "study study.yaml -q -j 1 -o study" "gather study"; do
     code=0
     # shellcheck disable=SC2086  # the command has options
     "${watch[@]}" "$program" $command >"$folder/out" 2>&1 </dev/null || code=$?
