@@ -13,7 +13,7 @@ import numpy as np
 
 program, cases, table = sys.argv[1:]
 counts = {"ok": 0, "FAILED": 0, "skipped": 0}
-LONG = ["start_speed", "stiffness"]  # studies of minutes, to be run by hand
+LONG = ["start_speed", "stiffness", "added_mass"]  # studies of minutes, to be run by hand
 
 
 def check(name, good, words=""):

@@ -279,6 +279,38 @@ static void walls_throw_bodies_back(void **state) {
          0.3, 5e-3);
 }
 
+// Two bodies with the pressure of their sheets, the one the other turned by half a turn: what they and the fluid have of
+// momentum stays nothing, and the audit has every power.
+static void bodies_under_pressure_throw_each_other_back(void **state) {
+    (void)state;
+    struct simulation *const simulation = school_simulation(
+        SCHOOL_SECOND TIME
+        "solver: {rtol: 1.0e-6}\n"
+        "defaults: {fish: {nodes: 9, sheet_points: 17, force: pressure, wave: {amplitude: 0}, start: {speed: 1}}}\n"
+        "fish: [{start: {position: [-0.1, 0.01], heading: 0}}, {start: {position: [0.1, -0.01], heading: 180}}]\n");
+    double sum[2], stored = 0, audit = 0;
+    const double scale = momentum(simulation, 2, sum);
+    const double energy = 2 * diagnostics_energy(simulation->residual, 0, 0, simulation->state->y);
+    while (simulation->state->t < 0.2) {
+        school_ok(simulate_step(simulation));
+        simulate_measure(simulation);
+        const struct diagnostics_fish *const of = simulation->diagnostics->fish;
+        stored = fmax(stored, of[0].contact_energy);
+        for (int f = 0; f < 2; f++) audit = fmax(audit, fabs(of[f].energy_audit));
+        momentum(simulation, 2, sum);
+        NEAR_ARRAY(2, sum, ((double[]){0, 0}), 1e-6 * scale, 0);
+        for (int i = 0; i < 2; i++) NEAR(of[0].contact_force[i], -of[1].contact_force[i], 1e-9, 1e-12);
+    }
+    print_message("under pressure: gap %.2g m, audit %.1g of %.3g J\n", simulation->state->closest->distance, audit,
+                  energy);
+    assert_true(simulation->state->closest->distance > 0);
+    assert_true(stored > 0.01 * energy);
+    assert_true(audit < 1e-3 * energy);
+    // they have turned back, aside or into a spin
+    assert_true(simulation->diagnostics->fish[0].com_velocity[0] < 0.5);
+    simulate_free(simulation);
+}
+
 static void every_integrator_keeps_bodies_apart(void **state) {
     (void)state;
     static const char *const methods[] = {"method: implicit_euler, step: 1.0e-3", "method: trapezoid, step: 1.0e-3",
@@ -389,6 +421,7 @@ int main(void) {
         cmocka_unit_test(walls_throw_bodies_back),
         cmocka_unit_test(what_crosses_on_its_way_asks_for_a_smaller_step),
         cmocka_unit_test(bodies_that_meet_do_not_cross),
+        cmocka_unit_test(bodies_under_pressure_throw_each_other_back),
         cmocka_unit_test(every_integrator_keeps_bodies_apart),
         cmocka_unit_test(a_fixed_step_that_is_too_long_fails_and_says_so),
         cmocka_unit_test(of_256_fish_no_two_get_through_each_other),

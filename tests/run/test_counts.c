@@ -110,6 +110,30 @@ static void a_dense_school_couples_what_it_needs(void **state) {
     assert_true(cost.failures <= 0.1);
 }
 
+// the corners of E I/(rho f^2 L^5) = 0.05 to 1e6 and added mass over mass of 1 to 100, without damping; between them:
+// cases/studies/added_mass.yaml
+static void a_light_or_stiff_body_under_pressure_costs_as_little(void **state) {
+    (void)state;
+    const double densities[] = {5.59017, 0.0559017}, moduli[] = {177.94, 3.5588e9};
+    for (int i = 0; i < 4; i++) {
+        char text[512];
+        snprintf(text, sizeof text,
+                 SCHOOL_SECOND
+                 "time: {end: 1, shedding_interval: 0.01}\nfluid: {density: 1, viscosity: 1.0e-4}\n"
+                 "fish: [{force: pressure, start: {speed: 0.65},\n"
+                 "        wave: {amplitude: 0.83, constant: 0.2, linear: 0.8, quadratic: 0, number: -6.28, ramp: 1},\n"
+                 "        body: {profile: uniform, thickness: 0.17888544, width: 1, relaxation_time: 0,\n"
+                 "               density: %g, modulus: %g}}]\n",
+                 densities[i % 2], moduli[i / 2]);
+        const struct cost cost = cost_per_event(text, 1);
+        print_cost(i % 2 ? "light" : "heavy", moduli[i / 2], &cost);
+        assert_true(cost.steps <= 8);
+        assert_true(cost.iterations <= 20);
+        assert_true(cost.jacobians <= 1);
+        assert_true(cost.failures <= 0.02);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(stiffness_costs_nothing),
@@ -117,6 +141,7 @@ int main(void) {
         cmocka_unit_test(a_default_fish_costs_as_little),
         cmocka_unit_test(two_fish_beside_each_other_cost_as_little),
         cmocka_unit_test(a_dense_school_couples_what_it_needs),
+        cmocka_unit_test(a_light_or_stiff_body_under_pressure_costs_as_little),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
