@@ -279,8 +279,8 @@ static void walls_throw_bodies_back(void **state) {
          0.3, 5e-3);
 }
 
-// Two bodies with the pressure of their sheets, the one the other turned by half a turn: what they and the fluid have of
-// momentum stays nothing, and the audit has every power.
+// Two bodies with the pressure of their sheets, the one the other turned by half a turn: what they and the fluid have
+// of momentum stays nothing, and the audit has every power.
 static void bodies_under_pressure_throw_each_other_back(void **state) {
     (void)state;
     struct simulation *const simulation = school_simulation(
