@@ -156,7 +156,7 @@ static void impulses(void) {
 static struct simulation *open_fish(int nodes, double interval, double rtol, double start, double end, double gap,
                                     double smoothing) {
     const double thickness = sqrt(16 / 500.0);
-    char follower[96] = "";
+    char follower[128] = "";
     if (gap > 0) {
         snprintf(follower, sizeof follower, ", {name: follower, start: {position: [%.17g, 0], speed: %.17g}}", 1 + gap,
                  start);
