@@ -43,11 +43,14 @@ static void print_list(FILE *stream, const struct key *key, int n) {
     fprintf(stream, "}");
 }
 
+// true and false without quotes are no strings to a reader of YAML
 static void print_words(FILE *stream, const struct key *key) {
     fprintf(stream, "\"enum\": [");
     for (int i = 0; case_table_word(key, i); i++) {
+        const char *const word = case_table_word(key, i);
         if (i > 0) fputs(", ", stream);
-        print_string(stream, case_table_word(key, i));
+        print_string(stream, word);
+        if (strcmp(word, "true") == 0 || strcmp(word, "false") == 0) fprintf(stream, ", %s", word);
     }
     fputc(']', stream);
 }
