@@ -212,9 +212,10 @@ install: $(program) $(library) $(shared) $(manual) $(completion)  ## install pro
 	$(quiet)install -m 644 cases/include/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases/include'
 	$(quiet)install -m 644 cases/studies/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases/studies'
 	$(quiet)install -m 755 $(filter-out scripts/make-% scripts/verify.py scripts/numerics.py scripts/mutants.py scripts/shoal.py,$(wildcard scripts/*.py)) '$(DESTDIR)$(prefix)/share/shoal/scripts'
-	$(quiet)install -d '$(DESTDIR)$(python_modules)' '$(DESTDIR)$(prefix)/share/shoal/doc/examples'
+	$(quiet)install -d '$(DESTDIR)$(python_modules)' '$(DESTDIR)$(prefix)/share/shoal/doc/'{examples,figures}
 	$(quiet)install -m 644 scripts/shoal.py '$(DESTDIR)$(python_modules)'
 	$(quiet)install -m 755 doc/examples/*.py '$(DESTDIR)$(prefix)/share/shoal/doc/examples'
+	$(quiet)install -m 644 doc/figures/*.png '$(DESTDIR)$(prefix)/share/shoal/doc/figures'
 	$(quiet)install -m 644 scripts/shoal.mplstyle '$(DESTDIR)$(prefix)/share/shoal/scripts'
 	$(quiet)install -m 644 $(filter %.1,$(manual)) '$(DESTDIR)$(prefix)/share/man/man1'
 	$(quiet)install -m 644 $(filter %.5,$(manual)) '$(DESTDIR)$(prefix)/share/man/man5'
