@@ -274,8 +274,10 @@ static enum status go_to(struct flow *flow, const struct state *state, double t)
 
 static enum status update_sources(struct flow *flow, const struct state *state, double t, const double *y) {
     TRY(go_to(flow, state, t));
-    flow->all_interpolated = 1;
-    for (int f = 0; f < flow->school->n_fish; f++) {
+    const struct school *const school = flow->school;
+    const int threads = parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_UNKNOWNS);
+#pragma omp parallel for num_threads(threads) schedule(static)
+    for (int f = 0; f < school->n_fish; f++) {
         const struct fish *fish = &flow->school->fish[f];
         at_points(flow, f, y + fish->at.x, flow->x);
         at_points(flow, f, y + fish->at.y, flow->y);
@@ -285,8 +287,9 @@ static enum status update_sources(struct flow *flow, const struct state *state, 
         flow->by_interpolation[f] =
             flow->is_interpolated &&
             wake_interpolation_is_valid(flow->interpolation, f, flow->x + first, flow->y + first);
-        flow->all_interpolated &= flow->by_interpolation[f];
     }
+    flow->all_interpolated = 1;
+    for (int f = 0; f < school->n_fish; f++) flow->all_interpolated &= flow->by_interpolation[f];
     return STATUS_OK;
 }
 
