@@ -27,6 +27,7 @@ from matplotlib import pyplot
 from matplotlib.collections import PolyCollection
 from matplotlib.lines import Line2D
 
+NAMED = 30  # the names of more fish than these would hide the fish
 MANY = 6  # more fish than these are drawn in grey, with their mean
 
 
@@ -76,8 +77,8 @@ class Snapshot:
 
 
 def names(results):
-    """The names of the fish as a picture needs them: none where there is one fish only."""
-    return results.names if results.n_fish > 1 else [""]
+    """The names of the fish as a picture needs them: none where there is one fish only, or too many to read."""
+    return results.names if 1 < results.n_fish <= NAMED else [""] * results.n_fish
 
 
 def strongest_vortex(results):
