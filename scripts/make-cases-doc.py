@@ -120,7 +120,10 @@ key is a resolution (`time.shedding_interval`, `solver.rtol`, `solver.step`, `no
 
 Orders are those of ORDERS. `shoal study` runs a sweep; `shoal run` refuses one.
 
-### expect
+#One axis may have `steady: true`: every member is then a steady state, looked for from that of the value before
+([steady.md](steady.md)).
+
+## expect
 
 With a sweep, `expect` is a list of expectations of the ends of the members. `shoal study` prints for each the value and
 its bound, and ends with exit code 3 if one is not met, or if a member that it is about is not complete.

@@ -27,7 +27,7 @@ static const struct command commands[] = {
     {"steady",
      "CASE",
      "find the state that a case swims in when all has settled, and whether it is stable",
-     {'o', OPTION_FORCE, OPTION_STRICT, OPTION_SET, OPTION_THREADS, OPTION_MAX_WALL, 'q', 'h'},
+     {'o', OPTION_FROM, OPTION_FORCE, OPTION_STRICT, OPTION_SET, OPTION_THREADS, OPTION_MAX_WALL, 'q', 'h'},
      "file of the result, with the last beats (default: output.file of the case, or its name with .nc)",
      main_steady},
     {"study",

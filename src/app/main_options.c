@@ -32,6 +32,8 @@ static const struct option_help all_options[] = {
     {OPTION_VTK, "vtk", "FOLDER", "write files of VTK, for ParaView, into this folder"},
     {OPTION_FORCE, "force", NULL, "overwrite existing results"},
     {OPTION_END, "end", "SECONDS", "another end of the run, also of one that is complete"},
+    {OPTION_FROM, "from", "RESULT.nc",
+     "start with the speeds of another steady state, and the places in it (default: those of the case)"},
     {OPTION_CHECKPOINT_AT, "checkpoint-at", "LIST",
      "further times of checkpoints in s, separated by commas (see time.checkpoint_interval)"},
     {OPTION_MAX_WALL, "max-wall", "HH:MM:SS",
@@ -156,6 +158,7 @@ static void take_option(struct request *request, int code, char *argument) {
         case OPTION_MEMBERS: request->members = argument; break;
         case OPTION_SLURM: request->slurm = 1; break;
         case OPTION_BUNDLE: request->bundle = argument; break;
+        case OPTION_FROM: request->from = argument; break;
         case OPTION_AT: request->at = argument; break;
         case OPTION_GRID: request->grid = argument; break;
         case OPTION_BOX: request->box = argument; break;

@@ -31,6 +31,7 @@ enum option_code {
     OPTION_BOX,
     OPTION_VTK,
     OPTION_END,
+    OPTION_FROM,
     OPTION_CHECKPOINT_AT,
     OPTION_MAX_WALL
 };
@@ -48,6 +49,7 @@ struct request {
     const char *processes, *members;
     const char *methods, *rtols, *steps, *repeats, *reference_rtol, *limit, *bundle;
     int slurm, strict;
+    const char *from;
     const char *at, *grid, *box;
     const char *vtk;
     const char *positional;

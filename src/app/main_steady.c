@@ -17,6 +17,7 @@ static void tell_progress(const struct steady_progress *now, void *data) {
 static enum status find(const struct case_values *values, const struct request *request, const char *path) {
     struct teller teller = {0};
     const struct steady_options options = {.path = path,
+                                           .from = request->from,
                                            .overwrite = request->force,
                                            .command = request->command_line,
                                            .progress = request->quiet ? NULL : tell_progress,

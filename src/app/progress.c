@@ -1,6 +1,7 @@
 /* progress.c: one line, at most five times a second. */
 #include "app/progress.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <unistd.h>
 
@@ -44,7 +45,8 @@ void progress_show(const struct simulate_progress *now, void *data) {
 
 void progress_steady(const struct steady_progress *now, void *data) {
     struct progress *const progress = data;
-    if (!is_due(progress, (double)now->n_beats / now->max_beats, now->wall_time)) return;
+    // few searches take more than fifty beats: in a log every fifth of them
+    if (!is_due(progress, fmin(1, now->n_beats / 50.0), now->wall_time)) return;
     fprintf(stderr, "beat %4d  speed %8.4f m/s  changes by %.1e, has to by less than %.0e  %.1f s", now->n_beats,
             now->speed, now->residual, now->tolerance, now->wall_time);
     end_line(progress);

@@ -171,16 +171,34 @@ static enum status read_values(struct axis *axis) {
 
 // ---- the sweep
 
+/* Read "steady". */
+static void read_steady(const struct case_values *values, const struct axis *axis) {
+    const struct yaml_node *const steady = yaml_tree_find(axis->node, "steady");
+    if (!steady) return;
+    const bool is_true = steady->kind == YAML_SCALAR && strcmp(steady->text, "true") == 0;
+    const bool is_false = steady->kind == YAML_SCALAR && strcmp(steady->text, "false") == 0;
+    if (!is_true && !is_false) {
+        yaml_errors_add(axis->errors, steady->mark, "%s.steady: expects true or false", axis->name);
+    }
+    for (int i = 0; i < values->n_axes && is_true; i++) {
+        if (!values->sweep[i].steady) continue;
+        yaml_errors_add(axis->errors, steady->mark, "%s.steady: sweep[%d] is steady already; one axis can be",
+                        axis->name, i);
+    }
+    axis->into->steady = is_true;
+}
+
 /* Read one axis into an entry that is zero. */
 static enum status read_axis(const struct case_values *values, struct axis *axis) {
     if (axis->node->kind != YAML_MAP) {
         yaml_errors_add(axis->errors, axis->node->mark, "%s: expects {key: PATH, values: [...]}", axis->name);
         return STATUS_OK;
     }
-    yaml_tree_check_keys(axis->node, axis->name, "key, keys, values, refine, expect, reference", axis->errors);
+    yaml_tree_check_keys(axis->node, axis->name, "key, keys, values, refine, expect, reference, steady", axis->errors);
     TRY(read_axis_keys(values, axis));
     if (axis->n_keys == 0) return STATUS_OK;
     TRY(read_values(axis));
+    read_steady(values, axis);
     return sweep_refine_read(values, axis->into, axis->key[0], axis->name, axis->node, axis->errors);
 }
 

@@ -22,6 +22,21 @@ int sweep_member_value(const struct case_values *study, int member, int axis) {
     return member % study->sweep[axis].n_values;
 }
 
+int sweep_is_steady(const struct case_values *study) {
+    int is_steady = 0;
+    for (int a = 0; a < study->n_axes; a++) is_steady |= study->sweep[a].steady;
+    return is_steady;
+}
+
+int sweep_member_before(const struct case_values *study, int member) {
+    int stride = 1;
+    for (int a = study->n_axes - 1; a >= 0; a--) {
+        if (study->sweep[a].steady) return sweep_member_value(study, member, a) > 0 ? member - stride : -1;
+        stride *= study->sweep[a].n_values;
+    }
+    return -1;
+}
+
 void sweep_add_assignment(struct text *text, const struct sweep_axis *axis, int value, int k) {
     text_add(text, "%s=%s", axis->key[k].path, axis->value[value * axis->n_keys + k]);
 }

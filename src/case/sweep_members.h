@@ -21,6 +21,7 @@ struct sweep_axis {
     int n_values;
     char **value;         /* value i of key k is value[i * n_keys + k], as --set takes it     (n_values * n_keys) */
     int refine;           /* the values are resolutions of the first key: a study of convergence */
+    int steady;           /* every member is a steady state, looked for from that of the value before */
     double order, within; /* the expected order of convergence: order +- within; NaN: none */
     unsigned order_of;    /* bit q: of quantity q */
     double *reference;    /* see sweep_reference; NULL: none */
@@ -34,6 +35,11 @@ int sweep_n_members(const struct case_values *study);
 
 /* Which value of an axis a member has. The last axis runs fastest. */
 int sweep_member_value(const struct case_values *study, int member, int axis);
+
+/* Whether the members are steady states: an axis says steady; and the member with the value before on that axis, from
+ * whose result one is to be found: -1 where it has the first. */
+int sweep_is_steady(const struct case_values *study);
+int sweep_member_before(const struct case_values *study, int member);
 
 /* Add "solver.rtol=1e-5": what --set takes to give key k of an axis the value of this number. */
 void sweep_add_assignment(struct text *text, const struct sweep_axis *axis, int value, int k);

@@ -204,7 +204,7 @@ const struct result_variable result_table[] = {
     {"steady_multiplier_beats", {NONE},               RESULT_INTEGER, "1",      IN_STEADY(n_multiplier_beats),
      .long_name = "beats that its multipliers took"},
     {"steady_residual",       {NONE},                 RESULT_REAL,    "1",      IN_STEADY(residual),
-     .long_name = "change from beat to beat: of speed in lengths per beat, of turn in full circles, or relative"},
+     .long_name = "change from beat to beat: of the speed in lengths per beat, or of what else is compared"},
     {"steady_error",          {NONE},                 RESULT_REAL,    "1",      IN_STEADY(error),
      .long_name = "estimated distance from the steady state: the residual over 1 less the largest multiplier"},
     {"steady_multiplier",     {MULTIPLIER, XY},       RESULT_REAL,    "1",

@@ -11,6 +11,7 @@
 #include "run/record_notes.h"
 #include "run/steady_multipliers.h"
 #include "run/steady_search.h"
+#include "run/steady_start.h"
 
 struct run {
     const struct case_values *values;
@@ -27,6 +28,7 @@ static void tell(const struct steady_problem *problem, void *data) {
     if (!run->options->progress) return;
     const struct steady_progress progress = {.n_beats = problem->map.n_beats,
                                              .max_beats = run->values->steady.beats,
+                                             .t = run->simulation->state->t,
                                              .residual = steady_map_residual(&problem->map),
                                              .tolerance = run->values->steady.tolerance,
                                              .speed = problem->map.last[0].speed,
@@ -129,10 +131,22 @@ static enum status search(struct run *run) {
     return write_beats(run);
 }
 
+// from the start of the case, or from that of another steady state
+static enum status create_simulation(struct run *run) {
+    if (!run->options->from) return simulate_create(&run->simulation, run->values);
+    struct case_values values = *run->values;
+    struct fish_parameters *fish;
+    TRY(steady_start_read(run->options->from, &values.school, &fish));
+    values.school.fish = fish;
+    const enum status status = simulate_create(&run->simulation, &values);
+    free(fish);
+    return status;
+}
+
 static enum status start(struct run *run) {
     const struct steady_options *const options = run->options;
     TRY(netcdf_check_target(options->path, options->overwrite));
-    TRY(simulate_create(&run->simulation, run->values));
+    TRY(create_simulation(run));
     run->simulation->stop = options->stop;
     TRY(steady_problem_create(&run->problem, &run->values->steady, run->simulation));
     run->problem.progress = tell;

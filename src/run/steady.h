@@ -11,15 +11,17 @@
 /* What a search tells after every beat. */
 struct steady_progress {
     int n_beats, max_beats;
+    double t; /* s */
     double residual, tolerance;
     double speed; /* of the first fish, m s-1 */
     double wall_time;
 };
 
 struct steady_options {
-    const char *path;                                                     /* of the result file */
-    int overwrite;                                                        /* replace one that exists */
-    const char *command;                                                  /* command line, for the file's history */
+    const char *path;    /* of the result file */
+    const char *from;    /* result of a steady state with whose speeds and places this one starts; NULL: the case's */
+    int overwrite;       /* replace one that exists */
+    const char *command; /* command line, for the file's history */
     void (*progress)(const struct steady_progress *progress, void *data); /* may be NULL */
     void (*warn)(const char *line, void *data);                           /* may be NULL */
     void *data;

@@ -17,9 +17,11 @@
 #include "case/case.h"
 #include "case/case_member.h"
 #include "case/case_show.h"
+#include "case/sweep_members.h"
 #include "run/checkpoints.h"
 #include "run/resume.h"
 #include "run/simulate_run.h"
+#include "run/steady.h"
 #include "study/study_folder.h"
 #include "study/study_plan.h"
 
@@ -92,6 +94,35 @@ static enum status run_or_resume(const struct case_values *values, const struct 
     return status;
 }
 
+static void report_beats(const struct steady_progress *now, void *data) {
+    struct report *const report = data;
+    report->part = (double)now->n_beats / now->max_beats;
+    report->t = now->t;
+}
+
+/* Find the steady state of a member, from that of the one before it where there is one. */
+static enum status find_steady(const struct study *study, const struct job *job, const struct case_values *values,
+                               const struct simulate_options *options) {
+    const int before = sweep_member_before(study->values, job->member);
+    char *const from = before < 0 ? NULL : study_folder_member(study->options->folder, before, ".nc");
+    if (before >= 0 && !from) return STATUS_MEMORY;
+    struct steady_options search = {.path = options->path,
+                                    .from = from,
+                                    .overwrite = options->overwrite,
+                                    .command = options->command,
+                                    .progress = report_beats,
+                                    .data = options->data,
+                                    .stop = options->stop};
+    enum status status = steady_run(values, &search);
+    if (status == STATUS_FILE && from) {
+        // that one has failed, or has not been run: the start of the case
+        search.from = NULL;
+        status = steady_run(values, &search);
+    }
+    free(from);
+    return status;
+}
+
 static enum status run_member(const struct study *study, const struct job *job) {
     struct case_values values;
     TRY(case_member(&values, study->values, job->member));
@@ -104,7 +135,10 @@ static enum status run_member(const struct study *study, const struct job *job) 
                                              .data = job->report,
                                              .stop = study->options->stop};
     if (!path) status = STATUS_MEMORY;
-    if (status == STATUS_OK) status = run_or_resume(&values, &options);
+    if (status == STATUS_OK) {
+        const int is_steady = sweep_is_steady(study->values);
+        status = is_steady ? find_steady(study, job, &values, &options) : run_or_resume(&values, &options);
+    }
     free(path);
     case_free(&values);
     return status;
@@ -191,6 +225,15 @@ static void show_progress(struct study *study) {
     study->options->progress(progress, study->options->data);
 }
 
+/* Whether the next member begins with the result of one that is still running. */
+static int has_to_wait(const struct study *study) {
+    const int before = sweep_member_before(study->values, study->plan.member[study->n_next]);
+    for (int j = 0; j < study->n_jobs; j++) {
+        if (study->job[j].process && study->job[j].member == before) return 1;
+    }
+    return 0;
+}
+
 /* Ask all processes to stop at their next event, once. */
 static void stop_all(struct study *study) {
     if (study->is_stopping) return;
@@ -231,7 +274,7 @@ static enum status loop(struct study *study, const sigset_t *mask) {
         if (is_stopped(study) || study->required || status != STATUS_OK) stop_all(study);
         stop_late(study);
         for (int j = 0; j < study->n_jobs && !study->is_stopping && status == STATUS_OK; j++) {
-            if (study->job[j].process == 0 && study->n_next < study->plan.n)
+            if (study->job[j].process == 0 && study->n_next < study->plan.n && !has_to_wait(study))
                 status = start(study, &study->job[j], mask);
         }
         show_progress(study);

@@ -56,6 +56,25 @@ check plot_draws_it /usr/bin/python3 "$root/scripts/plot.py" time swim.nc swim.p
 check xarray_opens_it /usr/bin/python3 -c \
     'import xarray; xarray.open_dataset("swim.nc").steady_speed.sel(fish="a fish").item()'
 
+# ---- from another one, and as an axis of a study
+
+run steady swim.yaml -q -o again.nc --from swim.nc --set steady.multipliers=false
+check a_search_starts_from_another_one test "$code" = 0
+beats() { /usr/bin/python3 -c 'import netCDF4, sys; print(int(netCDF4.Dataset(sys.argv[1])["steady_beats"][...]))' "$1"; }
+check and_is_shorter test "$(beats again.nc)" -lt "$(beats swim.nc)"
+refused a_run_is_no_start 4 'does not hold a steady state of 1 fish' steady swim.yaml -o no.nc --from run.nc
+sed 's/0.1}/0.1}\nsteady: {tolerance: 1e-3, multipliers: false, output_beats: 1}/' swim.yaml >axis.yaml
+cat >>axis.yaml <<'end'
+sweep:
+  - keys: ["fish[*].wave.amplitude", steady.beats]
+    values: [[0.4, 99], [0.42, 99], [0.43, 3], [0.44, 99]]
+    steady: true
+end
+run study axis.yaml -q -j 2
+check a_member_that_fails_is_no_end_of_the_study test "$code" = 1 -a -e axis-study/member-0003.nc
+check members_are_steady_states test "$(beats axis-study/member-0000.nc)" -gt "$(beats axis-study/member-0001.nc)"
+check the_next_one_starts_as_the_case_says test "$(beats axis-study/member-0003.nc)" -gt "$(beats axis-study/member-0001.nc)"
+
 # ---- no steady state
 
 refused too_few_beats 1 'no steady state in 4 beats (steady.beats)' steady swim.yaml -q -o few.nc --set steady.beats=4

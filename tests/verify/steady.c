@@ -111,8 +111,7 @@ static void compare(const struct swimmer *swimmer) {
 
 static const struct swimmer swimmers[] = {
     {"default fish", VERIFY_SECOND TIME "fish: [{}]\n", 20, 30},
-    {"soft fish", VERIFY_SECOND TIME "fish: [{body: {modulus: 1e5}}]\n", 20, 30},
-    {"heavy fish", VERIFY_SECOND TIME "fish: [{body: {density: 4000}, drag: {tangential: 2e-3}}]\n", 40, 60},
+    {"stiff fish", VERIFY_SECOND TIME "fish: [{body: {modulus: 1e7}}]\n", 20, 30},
     {"fish with pressure",
      VERIFY_SECOND TIME "wake: {lifetime: 8}\n"
                         "fish: [{force: pressure, start: {speed: 0.5}, body: {width: 1}}]\n",
@@ -125,7 +124,73 @@ static const struct swimmer swimmers[] = {
      4, 12},
 };
 
+// ---- a plate behind another one
+
+#define TANDEM                                                                        \
+    VERIFY_SECOND TIME                                                                \
+        "fluid: {density: 1, viscosity: 2e-3}\nwake: {lifetime: 6, smoothing: 0.2}\n" \
+        "steady: {formation: true, tolerance: 1e-3}\n"                                \
+        "defaults: {fish: {nodes: 5, force: pressure, start: {speed: 3.8},\n"         \
+        "  wave: {amplitude: 0, frequency: 0},\n"                                     \
+        "  body: {profile: uniform, thickness: 0.05, width: 1, density: 20},\n"       \
+        "  motion: {driven: all, surge: free, heave: 0.15, frequency: 1}}}\n"         \
+        "fish: [{}, {start: {position: [%g, 0]}}]\n"
+
+static const char published[] = "near integers: Ramananarivo et al. 2016 (tank), Fang et al. 2026 (vortex sheets)";
+
+// what becomes of a follower that is put 0.1 lengths ahead of its place, in 30 beats
+static double wander(struct steady_problem *problem) {
+    const struct steady_unknown ahead = {1, STEADY_AHEAD};
+    const double place = problem->map.last[1].place[0], add = 0.1;
+    ok(steady_map_add(&problem->map, 1, &ahead, &add));
+    for (int i = 0; i < 30; i++) ok(steady_map_beat(&problem->map, NULL, NULL));
+    return problem->map.last[1].place[0] - place;
+}
+
+// the distance from tail to nose over the wavelength
+static double follow(int number, double start) {
+    struct case_values values;
+    struct steady_problem problem;
+    double real[2 * STEADY_QUANTITIES], imaginary[2 * STEADY_QUANTITIES];
+    int n_beats;
+    char text[1024];
+    snprintf(text, sizeof text, TANDEM, start);
+    struct simulation *const simulation = verify_open("%s", text);
+    ok(case_parse(&values, text, strlen(text), "verify", ".", 0, NULL));
+    ok(steady_problem_create(&problem, &values.steady, simulation));
+    ok(steady_search_run(&problem));
+    const struct steady_beat *const last = problem.map.last;
+    const double spacing = (-last[1].place[0] - 1) / last[0].speed;
+    verify_value(verify_text("follower from %g L behind: place, wavelengths", start - 1), published, number, spacing,
+                 0.15);
+    verify_show(verify_text("follower from %g L behind: beats of the search", start - 1), "speeds and place",
+                problem.map.n_beats);
+    verify_show(verify_text("follower from %g L behind: speed, m/s", start - 1), "of both", last[0].speed);
+    verify_point("steady_tandem", "search", start - 1, spacing);
+    ok(steady_multipliers_find(&problem, real, imaginary, &n_beats));
+    const double largest = hypot(real[0], imaginary[0]);
+    verify_zero(verify_text("follower from %g L behind: largest multiplier", start - 1), "stable: below 1", largest, 1);
+    verify_zero(verify_text("follower from %g L behind: put 0.1 L ahead, 30 beats on, L", start - 1),
+                "it returns to its place", wander(&problem), 0.02);
+    steady_problem_free(&problem);
+    simulate_free(simulation);
+    case_free(&values);
+    return spacing;
+}
+
+static void tandem(void) {
+    const double starts[] = {3.5, 4.5, 6.9, 7.7, 9, 12.9};
+    const int numbers[] = {1, 1, 1, 2, 2, 3};
+    double spacing[4];
+    for (int i = 0; i < 6; i++) spacing[numbers[i]] = follow(numbers[i], starts[i]);
+    for (int i = 1; i < 3; i++) {
+        verify_value(verify_text("from place %d to place %d, wavelengths", i, i + 1), "one", 1,
+                     spacing[i + 1] - spacing[i], 0.05);
+    }
+}
+
 void verify_steady(void) {
     if (verify_is_fast()) return;
     for (size_t i = 0; i < sizeof swimmers / sizeof *swimmers; i++) compare(&swimmers[i]);
+    tandem();
 }
