@@ -111,7 +111,7 @@ draws animate.py run.nc --fps 10 --dpi 40 --follow movie.gif
 "$program" run seven.yaml -q -o seven.nc
 draws plot.py time seven.nc many.png
 draws plot.py school seven.nc school.png
-refuses 4 "one fish is no school" plot.py school run.nc no.png
+refuses 4 "one fish is no school" plot.py school pressure.nc no.png
 draws plot.py time seven.nc --each heading small.png
 draws plot.py time seven.nc --fish "number 2" "number 5" -- two.png
 draws plot.py forces seven.nc --fish "number 2" -- one.png
