@@ -126,6 +126,13 @@ plate starts at one degree to the stream; growth and frequency of the mode are f
 `wake.taper` is 0.8 there, as the sheet is straight. The error falls with the square of the edge length, so that N and (N +
 1)/2 nodes give the limit of many.
 *Heaving nose*: amplitude 0.002 L, the last of 6 or 10 periods (5 in the figures)."""),
+    "steady": ("Steady states", """\
+Steady states, doc/steady.md: what `shoal steady` finds in some twelve to twenty beats against runs of two hundred, and the
+multiplier against the decay of the run. Then a plate behind another one, both of which heave in phase and swim freely:
+from five starts the follower comes to one of three places. Ramananarivo, Fang, Oza, Zhang and Ristroph (Phys. Rev. Fluids
+1, 2016) found such places in a water tank, and Fang, Mavroyiakoumou, Ristroph and Shelley (J. Fluid Mech. 2026,
+arXiv:2505.13149) with vortex sheets, "approximately integer multiples of the wavelength traced out by each wing"; the bound
+of 0.15 is for that word. A follower that is put 0.1 lengths ahead returns."""),
     "coupled": ("Coupled bodies", """\
 Free bodies and the fluid that they move, with `force: pressure`: the added mass of a plate; the impulse of a stream of 0.1
 across a plate that starts at once, where places and momenta stay and velocities jump; and fish that swim by a wave of

@@ -116,12 +116,6 @@ static const struct swimmer swimmers[] = {
      VERIFY_SECOND TIME "wake: {lifetime: 8}\n"
                         "fish: [{force: pressure, start: {speed: 0.5}, body: {width: 1}}]\n",
      20, 30},
-    {"heaving plate",
-     VERIFY_SECOND TIME "fluid: {density: 1, viscosity: 4.536e-4}\nwake: {lifetime: 4, smoothing: 0.05}\n"
-                        "fish: [{length: 2, force: pressure, start: {speed: 4}, wave: {amplitude: 0, frequency: 0},\n"
-                        "  body: {profile: uniform, thickness: 0.1, width: 0.5, density: 1.5915, modulus: 1e5},\n"
-                        "  motion: {driven: all, surge: free, heave: 0.1, frequency: 1}}]\n",
-     4, 12},
 };
 
 // ---- a plate behind another one
@@ -179,10 +173,10 @@ static double follow(int number, double start) {
 }
 
 static void tandem(void) {
-    const double starts[] = {3.5, 4.5, 6.9, 7.7, 9, 12.9};
-    const int numbers[] = {1, 1, 1, 2, 2, 3};
+    const double starts[] = {4.5, 6.9, 7.7, 9, 12.9};
+    const int numbers[] = {1, 1, 2, 2, 3};
     double spacing[4];
-    for (int i = 0; i < 6; i++) spacing[numbers[i]] = follow(numbers[i], starts[i]);
+    for (int i = 0; i < 5; i++) spacing[numbers[i]] = follow(numbers[i], starts[i]);
     for (int i = 1; i < 3; i++) {
         verify_value(verify_text("from place %d to place %d, wavelengths", i, i + 1), "one", 1,
                      spacing[i + 1] - spacing[i], 0.05);
