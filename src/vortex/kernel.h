@@ -15,9 +15,9 @@
 #ifndef KERNEL_H
 #define KERNEL_H
 
-/* Before a function with plain loops: compiled for three widths of vectors, of which the loader chooses. The address
- * sanitizer cannot follow that choice, nor does every clang make the function that is called. */
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__clang__)
+/* Before a function with plain loops: compiled for three widths of vectors, of which the loader chooses. The
+ * sanitizers cannot follow that choice, nor does every clang make the function that is called. */
+#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && !defined(__clang__)
 #define KERNEL_WIDE __attribute__((target_clones("avx512f", "avx2", "default")))
 #else
 #define KERNEL_WIDE

@@ -75,7 +75,7 @@ static double smallest_eigenvalue(struct simulation *simulation) {
 static void added_masses(void) {
     const struct {
         int nodes, points;
-        double heave, rotation, least; /* bounds, and the smallest eigenvalue of the specification */
+        double heave, rotation, least; /* bounds, and the smallest eigenvalue */
     } cases[] = {{17, 33, 3e-5, 1.2e-4, 1.6e-4}, {17, 65, 4e-6, 1.5e-5, 0}, {33, 65, 4e-6, 1.5e-5, 4.0e-5}};
     for (int i = 0; i < 3; i++) {
         const struct plate plate = {cases[i].nodes, cases[i].points, 1, 1, 0, 0};
@@ -151,7 +151,7 @@ static void impulses(void) {
 
 // ---- fish
 
-// The fish of the specification: curvature 5 S(t/2) (0.2 + 0.8 s) sin(2 pi (t - s)), mass 0.1, E I = 1, E A = 500,
+// A fish: curvature 5 S(t/2) (0.2 + 0.8 s) sin(2 pi (t - s)), mass 0.1, E I = 1, E A = 500,
 // friction 0.0133 U^1.5; another one behind it, where the gap is above 0
 static struct simulation *open_fish(int nodes, double interval, double rtol, double start, double end, double gap,
                                     double smoothing) {
