@@ -64,7 +64,7 @@ static const char axes[] =
     "\"type\": \"array\", \"items\": {\"type\": \"object\", \"additionalProperties\": false, \"required\": "
     "[\"values\"], \"properties\": {\"key\": {\"type\": \"string\"}, \"keys\": {\"type\": \"array\", \"items\": "
     "{\"type\": \"string\"}}, \"values\": {\"type\": \"array\", \"minItems\": 1}, \"refine\": {\"type\": \"boolean\"}, "
-    "\"expect\": {\"type\": \"object\"}, \"reference\": {\"type\": \"object\"}}}";
+    "\"steady\": {\"type\": \"boolean\"}, \"expect\": {\"type\": \"object\"}, \"reference\": {\"type\": \"object\"}}}";
 static const char expectations[] = "\"type\": \"array\", \"items\": {\"type\": \"object\"}";
 
 static void print_type(FILE *stream, const struct key *key) {
