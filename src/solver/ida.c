@@ -277,10 +277,11 @@ static void tell_uncoupled(const struct ida *solver, size_t size, char *text) {
     const int n_pairs = school->n_fish * (school->n_fish - 1) / 2;
     const int n_uncoupled = n_pairs - solver->jacobian->n_couplings / 2;
     if (n_uncoupled == 0) return;
-    snprintf(text, size,
-             "; %d of %d pairs of fish are further apart than %.3g m, and Newton's iteration does not know how they act "
-             "on each other: raise solver.coupling_distance",
-             n_uncoupled, n_pairs, solver->residual->reach);
+    snprintf(
+        text, size,
+        "; %d of %d pairs of fish are further apart than %.3g m, and Newton's iteration does not know how they act "
+        "on each other: raise solver.coupling_distance",
+        n_uncoupled, n_pairs, solver->residual->reach);
 }
 
 static enum status failed(const struct ida *solver, int code, long steps) {
