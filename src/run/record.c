@@ -22,26 +22,30 @@ static void begin(struct record *record, const struct case_values *values, long 
     record->events_per_wake = lround(values->output.wake_interval / values->school.shedding_interval);
 }
 
-enum status record_create(struct record *record, const struct case_values *values, const struct school *school,
-                          long n_events, const char *path, int overwrite, const char *command) {
+// result_file_create or result_file_create_steady
+typedef enum status maker(struct result_file **result, const char *path, int overwrite,
+                          const struct case_values *values, const char *effective, const char *command,
+                          const struct school *school, long n_events);
+
+static enum status create(maker *make, struct record *record, const struct case_values *values,
+                          const struct school *school, long n_events, const char *path, int overwrite,
+                          const char *command) {
     begin(record, values, n_events, path);
     char *effective = NULL;
     TRY(case_show(values, &effective));
-    const enum status status =
-        result_file_create(&record->file, path, overwrite, values, effective, command, school, n_events);
+    const enum status status = make(&record->file, path, overwrite, values, effective, command, school, n_events);
     free(effective);
     return status;
 }
 
+enum status record_create(struct record *record, const struct case_values *values, const struct school *school,
+                          long n_events, const char *path, int overwrite, const char *command) {
+    return create(result_file_create, record, values, school, n_events, path, overwrite, command);
+}
+
 enum status record_create_steady(struct record *record, const struct case_values *values, const struct school *school,
                                  long n_events, const char *path, int overwrite, const char *command) {
-    begin(record, values, n_events, path);
-    char *effective = NULL;
-    TRY(case_show(values, &effective));
-    const enum status status =
-        result_file_create_steady(&record->file, path, overwrite, values, effective, command, school, n_events);
-    free(effective);
-    return status;
+    return create(result_file_create_steady, record, values, school, n_events, path, overwrite, command);
 }
 
 enum status record_continue(struct record *record, const struct case_values *values, const struct school *school,
@@ -67,12 +71,12 @@ static int is_last(const struct record *record, long event) {
 }
 
 int record_is_due(const struct record *record, long event) {
-    return record->file && (event % record->events_per_row == 0 || is_last(record, event));
+    return record->file && ((event - record->first) % record->events_per_row == 0 || is_last(record, event));
 }
 
 enum status record_row(const struct record *record, struct result_row *row) {
     const long event = row->state->event;
-    row->with_wake = event % record->events_per_wake == 0 || is_last(record, event);
+    row->with_wake = (event - record->first) % record->events_per_wake == 0 || is_last(record, event);
     return result_file_row(record->file, row);
 }
 

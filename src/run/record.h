@@ -11,7 +11,8 @@
 struct record {
     struct result_file *file;
     const char *path;
-    long events_per_row, events_per_wake, n_events;
+    long events_per_row, events_per_wake;
+    long first, n_events; /* the events of the first row and of the end */
 };
 
 /* The path that a case names for its result: output.file, or the name of the case with .nc. The caller frees it; NULL:

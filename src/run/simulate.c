@@ -80,6 +80,10 @@ enum status simulate_create(struct simulation **simulation, const struct case_va
     return simulate_start(simulation, values, NULL);
 }
 
+const char *simulate_stopped_by(const volatile sig_atomic_t *stop) {
+    return *stop == SIGALRM ? "after --max-wall" : "by a signal";
+}
+
 enum status simulate_renew(struct simulation *simulation) {
     free_solvers(simulation);
     simulation->options.before = simulation->totals;

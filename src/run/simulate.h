@@ -45,6 +45,9 @@ enum status simulate_prepare(struct simulation **simulation, const struct case_v
 enum status simulate_take_up(struct simulation **simulation, const struct case_values *values, struct school *school,
                              struct state *state, const struct integrator_counts *totals);
 
+/* What stopped a run, for its message: --max-wall or a signal. */
+const char *simulate_stopped_by(const volatile sig_atomic_t *stop);
+
 /* At an event: discard all that is not state and totals (the integrator and its history, Jacobians and their factors,
  * the interpolation of wakes), and make it again from these. Nothing is then left that simulate_take_up would not have.
  * Fails with STATUS_MEMORY or STATUS_SOLVER; the simulation can then only be freed. */

@@ -56,16 +56,12 @@ static enum status checkpoint_if_due(struct run *run) {
     return simulation->state->event < simulation->n_events ? simulate_renew(simulation) : STATUS_OK;
 }
 
-static const char *stopped_by(const struct run *run) {
-    return *run->options->stop == SIGALRM ? "after --max-wall" : "by a signal";
-}
-
 // at an event
 static enum status stop(struct run *run) {
     const double t = run->simulation->state->t;
     TRY(checkpoints_write(&run->checkpoints, run->simulation, &run->record));
-    return status_fail(STATUS_STOPPED, "stopped %s at t = %.10g s: go on with 'shoal resume %s'", stopped_by(run), t,
-                       run->checkpoints.path);
+    return status_fail(STATUS_STOPPED, "stopped %s at t = %.10g s: go on with 'shoal resume %s'",
+                       simulate_stopped_by(run->options->stop), t, run->checkpoints.path);
 }
 
 // go on to the next event, or stay at this one and stop
@@ -130,7 +126,8 @@ static enum status start(struct run *run) {
     if (options->begin) TRY(options->begin(run->values, options->path, options->data));
     const enum status started = simulate_start(&run->simulation, run->values, options->stop);
     if (started == STATUS_STOPPED)
-        return status_fail(started, "stopped %s before its start was done: run it again", stopped_by(run));
+        return status_fail(started, "stopped %s before its start was done: run it again",
+                           simulate_stopped_by(run->options->stop));
     TRY(started);
     TRY(record_create(&run->record, run->values, run->simulation->school, run->simulation->n_events, options->path,
                       options->overwrite, options->command));

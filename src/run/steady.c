@@ -20,7 +20,6 @@ struct run {
     struct steady_problem problem;
     struct steady_values found;
     struct record record;
-    long first; /* event of the first row */
 };
 
 static void tell(const struct steady_problem *problem, void *data) {
@@ -83,19 +82,13 @@ static void gather(struct run *run) {
 
 // ---- the rows
 
-static enum status write_row(struct run *run, long event) {
+static enum status write_if_due(void *data) {
+    struct run *const run = data;
+    if (!record_is_due(&run->record, run->simulation->state->event)) return STATUS_OK;
     struct integrator_counts counts;
     struct result_row row;
     simulate_row(run->simulation, &counts, &row);
-    row.with_wake = (event - run->first) % run->record.events_per_wake == 0 || event == run->record.n_events;
-    return result_file_row(run->record.file, &row);
-}
-
-static enum status write_if_due(void *data) {
-    struct run *const run = data;
-    const long event = run->simulation->state->event;
-    const int is_due = (event - run->first) % run->record.events_per_row == 0 || event == run->record.n_events;
-    return is_due ? write_row(run, event) : STATUS_OK;
+    return record_row(&run->record, &row);
 }
 
 // the last beats, from the steady state on; the energy balance and the closest approach are those of the rows
@@ -103,9 +96,9 @@ static enum status write_beats(struct run *run) {
     struct simulation *const simulation = run->simulation;
     const int n_beats = run->problem.map.n_beats;
     diagnostics_restart(simulation->residual, simulation->state);
-    run->first = simulation->state->event;
-    run->record.n_events = run->first + run->values->steady.output_beats * run->problem.map.events;
-    TRY(write_row(run, run->first));
+    run->record.first = simulation->state->event;
+    run->record.n_events = run->record.first + run->values->steady.output_beats * run->problem.map.events;
+    TRY(write_if_due(run));
     for (int i = 0; i < run->values->steady.output_beats; i++) {
         TRY(steady_map_beat(&run->problem.map, write_if_due, run));
     }
@@ -121,8 +114,7 @@ static enum status search(struct run *run) {
     const enum status status = steady_search_run(&run->problem);
     if (status == STATUS_STOPPED) {
         return status_fail(status, "stopped %s in beat %d of the search, which cannot be resumed",
-                           *run->options->stop == SIGALRM ? "after --max-wall" : "by a signal",
-                           run->problem.map.n_beats + 1);
+                           simulate_stopped_by(run->options->stop), run->problem.map.n_beats + 1);
     }
     TRY(status);
     run->found.n_beats = run->problem.map.n_beats;
