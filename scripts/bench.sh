@@ -66,6 +66,22 @@ whole_run() {
         "$(per_event newton_iterations)" "$(per_event jacobian_evaluations)"
 }
 
+# Stop the run of a case in the middle of a long event or a long start: name, arguments of run. Leaves the seconds that it
+# takes to end in $seconds.
+stopped_run() {
+    local name=$1 pid started code=0
+    shift
+    env --default-signal=TERM "$program" run "$@" -q --force -o stopped.nc 2>/dev/null </dev/null &
+    pid=$!
+    sleep 2
+    started=$EPOCHREALTIME
+    kill -TERM "$pid"
+    wait "$pid" || code=$?
+    seconds=$(awk "BEGIN { printf \"%.2f\", $EPOCHREALTIME - $started }")
+    ((code == 75)) || { echo "$name: exit code $code, not 75" >&2; exit 1; }
+    printf '%-58s %10s\n' "$name" "$seconds"
+}
+
 # A number of phases.txt: name, threads, column.
 column() {
     awk -v name="$1" -v threads="$2" -v n="$3" '$1 == name && $2 == threads { print $n }' phases.txt
@@ -100,6 +116,17 @@ for modulus in 1e4 1e6 1e8 1e10; do
         "$(per_event jacobian_evaluations)"
 done
 
+heading 'Stopped by a signal: seconds to the end'
+long_event=(--set time.shedding_interval=10 --set time.end=20 --set time.output_interval=10 --set output.wake_interval=10
+    --set wake.lifetime=20 --set solver.max_steps=1000000000)
+stopped_run 'in an event of hours, ida' "$cases/demo.yaml" "${long_event[@]}" --set solver.rtol=1e-12
+slowest=$seconds
+stopped_run 'in an event of hours, rk4' "$cases/demo.yaml" "${long_event[@]}" --set solver.method=rk4 --set solver.step=1e-8
+slowest+=" $seconds"
+stopped_run 'in a start of seconds, 600 nodes and points a fish' "$cases/pair.yaml" --set 'fish[0].nodes=600' \
+    --set 'fish[0].sheet_points=600' --set 'fish[1].nodes=600' --set 'fish[1].sheet_points=600'
+slowest=$(printf '%s\n' $slowest "$seconds" | sort -g | tail -1)
+
 heading 'Limits'
 printf '%-58s %10s %10s\n' '' here limit
 check_limit 'single_free: CPU time over the lower bound' "$(column single_free 1 7)" 5
@@ -108,5 +135,6 @@ check_limit 'diamond, 2 threads: CPU time over the lower bound' "$(column diamon
 check_limit 'diamond: wall clock with 2 threads over that with 1' \
     "$(awk "BEGIN { printf \"%.2f\", $two / $one }")" 0.556
 check_limit 'diamond: output, % of the CPU time' "$(column diamond 1 15)" 3
+check_limit 'seconds from a signal to the end' "$slowest" 10
 check_limit '256 fish: CPU time per event over that of 64' "$(awk '/^256 fish take/ { print $4 }' schools.txt)" 6
 exit $((missed ? 3 : 0))

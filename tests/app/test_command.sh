@@ -17,7 +17,7 @@ status_of() { ncdump -h "$1" 2>/dev/null | sed -n 's/.*:run_status = "\(.*\)" ;/
 rows_of() { ncdump -h "$1" 2>/dev/null | sed -n 's/.*time = UNLIMITED ; \/\/ (\([0-9]*\) currently).*/\1/p'; }
 has_rows() { (($(rows_of "$1") >= $2)); }
 status_is() { [[ $(status_of "$1") == "$2" ]]; }
-readable() { timeout 20 ncdump -v time,heading,wake_count "$1" >/dev/null; }
+readable() { timeout "$time_limit" ncdump -v time,heading,wake_count "$1" >/dev/null; }
 # the name of the case's result and of nothing else: no half-made file is left behind
 only_files() { [[ $(find "$1" -type f -printf '%f\n' | sort | tr '\n' ' ') == "$2" ]]; }
 

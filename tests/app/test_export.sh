@@ -101,6 +101,6 @@ for one in wakes:
     same("owner", array(data.GetPointData(), "fish"), np.repeat([0, 1], count))
 assert len(wakes) == 4
 end
-check vtk_reads_the_numbers_of_the_result timeout 60 /usr/bin/python3 compare.py 'a <pair>.nc'
+check vtk_reads_the_numbers_of_the_result timeout "$time_limit" /usr/bin/python3 compare.py 'a <pair>.nc'
 
 finish

@@ -90,7 +90,7 @@ for path in sys.argv[1:]:
     for error in validator.iter_errors(yaml.load(open(path, encoding="utf-8"), Loader)):
         print(f"{path}: {'.'.join(map(str, error.absolute_path))}: {error.message}")
 end
-validate() { timeout 60 /usr/bin/python3 validate.py "$@" >wrong 2>&1 && [[ ! -s wrong ]] || { cat wrong; false; }; }
+validate() { timeout "$time_limit" /usr/bin/python3 validate.py "$@" >wrong 2>&1 && [[ ! -s wrong ]] || { cat wrong; false; }; }
 check all_cases_are_valid validate "$root"/cases/*.yaml "$root"/cases/*/*.yaml
 cat >wrong.yaml <<'end'
 format: 1

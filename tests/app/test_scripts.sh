@@ -164,7 +164,7 @@ first, last = plot_style.PHASES(0.0), plot_style.PHASES(1.0)
 assert first == last, "a phase comes round"
 end
 code=0
-timeout 60 /usr/bin/python3 look.py "$root/scripts" >out 2>err || code=$?
+timeout "$time_limit" /usr/bin/python3 look.py "$root/scripts" >out 2>err || code=$?
 check "facts on pictures" test "$code" = 0
 
 # ---- xarray
@@ -182,7 +182,7 @@ assert run.speed.sel(fish=["number 1", "number 2"]).shape == (run.time.size, 2)
 assert {"fish", "xy", "time"} <= set(run.indexes), run.indexes
 end
 code=0
-timeout 60 /usr/bin/python3 open.py >out 2>err || code=$?
+timeout "$time_limit" /usr/bin/python3 open.py >out 2>err || code=$?
 check "names are coordinates in xarray" test "$code" = 0
 
 # ---- what cannot be drawn

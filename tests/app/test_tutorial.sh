@@ -26,9 +26,9 @@ shoal() {
     case $1 in
         run | study) short=(-q --set time.end=1.2 --set 'fish[*].nodes=7' --set 'fish[*].sheet_points=11') ;;
     esac
-    timeout 100 "$program" "$@" "${short[@]}"
+    timeout "$time_limit" "$program" "$@" "${short[@]}"
 }
-plot.py() { timeout 100 /usr/bin/python3 "$root/scripts/plot.py" "${@//[246]/1}"; }
+plot.py() { timeout "$time_limit" /usr/bin/python3 "$root/scripts/plot.py" "${@//[246]/1}"; }
 
 # a command as the tutorial writes it; times of pictures are within the shorter run
 command_works() { eval "$1"; }
@@ -38,7 +38,7 @@ for block in [0-9][0-9]-sh [0-9][0-9]-python; do [[ ! -e $block ]] || n_blocks=$
 check the_tutorial_has_commands test "$n_blocks" -ge 1
 for block in [0-9][0-9]-*; do
     if [[ $block == *-python ]]; then
-        prints() { timeout 60 /usr/bin/python3 "$block" >printed && [[ -s printed ]]; }
+        prints() { timeout "$time_limit" /usr/bin/python3 "$block" >printed && [[ -s printed ]]; }
         check "$block" prints
         continue
     fi

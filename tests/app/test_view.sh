@@ -109,7 +109,7 @@ check what_is_left_out_is_said grep -q '"thinned":"[^"]*wakes: one of ' long.htm
 browse() {  # page#options, options of the browser...
     local page=$1
     shift
-    timeout 60 chromium --headless=new --no-sandbox --disable-gpu --hide-scrollbars --enable-logging=stderr \
+    timeout "$time_limit" chromium --headless=new --no-sandbox --disable-gpu --hide-scrollbars --enable-logging=stderr \
         --user-data-dir="$folder/browser" "$@" "file://$folder/$page" >browser.out 2>browser.err </dev/null
 }
 console() { grep -a ':CONSOLE' browser.err; }

@@ -39,7 +39,7 @@ counts = {"passed": 0, "failed": 0}
 
 def run(command, **settings):
     environment = dict(os.environ, LD_PRELOAD=shim, OMP_NUM_THREADS="1", **{f"MEMORY_{k}": v for k, v in settings.items()})
-    return subprocess.run([program, *command], env=environment, timeout=60, stdin=subprocess.DEVNULL, capture_output=True,
+    return subprocess.run([program, *command], env=environment, timeout=300, stdin=subprocess.DEVNULL, capture_output=True,
                           text=True, errors="replace")
 
 

@@ -11,8 +11,8 @@ targets=$(dirname "$program")/fuzz
 "$root/tests/fuzz/seeds.sh" "$program" seeds
 check the_results_are_good "$targets/fuzz_result" 4 - seeds/results/*
 check the_checkpoints_are_good "$targets/fuzz_checkpoint" 6 - seeds/checkpoints/*
-check a_thousand_cases timeout 100 "$targets/fuzz_case" 1000 1 seeds/cases/*
-check a_thousand_results timeout 100 "$targets/fuzz_result" 1000 1 seeds/results/*
-check a_thousand_checkpoints timeout 100 "$targets/fuzz_checkpoint" 1000 1 seeds/checkpoints/*
+check a_thousand_cases timeout "$time_limit" "$targets/fuzz_case" 1000 1 seeds/cases/*
+check a_thousand_results timeout "$time_limit" "$targets/fuzz_result" 1000 1 seeds/results/*
+check a_thousand_checkpoints timeout "$time_limit" "$targets/fuzz_checkpoint" 1000 1 seeds/checkpoints/*
 
 finish

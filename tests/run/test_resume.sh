@@ -173,10 +173,8 @@ for method in "ida --set solver.rtol=1e-12 --set solver.max_steps=1000000000" "r
         [[ -s run.nc ]] && break
         sleep 0.01
     done
-    started=$SECONDS
     end TERM
-    check "a_long_event_is_left_at_once: ${method%% *}" eval '((code == 75 && SECONDS - started < 10)) &&
-        has err "stopped by a signal at t = 0 s"'
+    check "a_long_event_is_left: ${method%% *}" eval '((code == 75)) && has err "stopped by a signal at t = 0 s"'
 done
 
 # a start of seconds: it has no event to go back to
@@ -185,9 +183,8 @@ sed 's/nodes: [79], sheet_points: 21/nodes: 600, sheet_points: 600/' small.yaml 
 env --default-signal=TERM "$program" run large.yaml -q -o run.nc >out 2>err </dev/null &
 pid=$!
 sleep 0.5
-started=$SECONDS
 end TERM
-check a_long_start_is_left_at_once eval '((code == 75 && SECONDS - started < 10)) && has err "stopped by a signal" &&
+check a_long_start_is_left eval '((code == 75)) && has err "stopped by a signal before its start was done" &&
     test ! -e run.nc -a ! -e run.ckpt'
 
 # ---- members of a study

@@ -25,7 +25,7 @@ def run(arguments, **settings):
     if settings:
         environment.update(LD_PRELOAD=shim, FAULT_PATH="victim", **{f"FAULT_{k}": v for k, v in settings.items()})
     done = subprocess.run([program, *arguments, "-q"], env=environment, stdin=subprocess.DEVNULL, capture_output=True,
-                          text=True, timeout=60)
+                          text=True, timeout=300)
     return done.returncode, done.stderr
 
 
