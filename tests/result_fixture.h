@@ -8,6 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "model/fish_school.h"
 #include "near.h"
 #include "output/result_file.h"
 

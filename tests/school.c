@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "model/fish_school.h"
+
 void school_ok(enum status status) {
     if (status == STATUS_OK) return;
     print_error("%s\n", status_message());

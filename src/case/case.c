@@ -16,6 +16,7 @@
 #include "case/sweep_expect.h"
 #include "case/yaml_write.h"
 #include "model/bending_mode.h"
+#include "model/fish_school.h"
 
 /* A case being read. */
 struct reading {

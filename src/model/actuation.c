@@ -4,6 +4,8 @@
 
 #include <math.h>
 
+#include "model/fish_gait.h"
+
 void actuation_curvature(const struct fish *fish, struct fish_gait gait, double phi0, double *curvature,
                          double *by_phi0) {
     for (int j = 0; j < fish->n_joints; j++) {

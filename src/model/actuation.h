@@ -4,6 +4,7 @@
 #define ACTUATION_H
 
 #include "model/fish.h"
+#include "model/fish_gait.h"
 
 /* Natural curvature kbar (dimensionless, 2 tan of half the natural turning angle) of every joint for the bias phi0, and
  * its derivative with respect to phi0; both (n_joints). */

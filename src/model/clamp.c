@@ -2,6 +2,7 @@
 #include "model/clamp.h"
 
 #include "model/edge.h"
+#include "model/fish_prescribed.h"
 
 // where the clamp is: edge 0, its angle with the given direction, and how fast that changes
 struct clamp {

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "model/fish_distance.h"
+
 enum { MAX_ADVANCES = 200 };
 
 struct box clearance_box(const struct fish *fish, double distance, const double *before, const double *y) {

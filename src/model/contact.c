@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "model/clearance.h"
+#include "model/fish_distance.h"
 #include "model/neighbours.h"
 
 struct contact {

@@ -5,6 +5,7 @@
 
 #include "base/sparse.h"
 #include "model/fish.h"
+#include "model/fish_gait.h"
 #include "model/lead.h"
 
 /* At most so many waypoints can be set during a run. */

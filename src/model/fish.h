@@ -1,5 +1,5 @@
 /* fish.h: the constant data of the fish and of their school, and where the unknowns of each fish stand in the vector
- * of all unknowns. doc/model.md, sections 1, 6 and 10. Tested by tests/model/test_fish.c.
+ * of all unknowns. doc/model.md, sections 1, 6 and 10. fish_school.h makes them. Tested by tests/model/test_fish.c.
  *
  * Body: nodes 0 (nose) .. N-1 (tail), edge k from node k to k+1, joint j at node j+1.
  *
@@ -163,13 +163,6 @@ struct school {
     int threads;
 };
 
-/* Build the school of checked parameters. Fails with STATUS_MEMORY, or STATUS_CASE where fish overlap, or are not
- * between the walls, at the start. */
-enum status fish_school_create(struct school **school, const struct school_parameters *parameters);
-
-/* Release the school and all that it owns. Accepts NULL. */
-void fish_school_free(struct school *school);
-
 /* sum of weight * value over the nodes of the point. */
 double fish_mean(const struct stencil *point, const double *value);
 
@@ -186,65 +179,8 @@ struct direction fish_direction(const struct fish *fish, const struct tangent *t
 /* Whether the fish has the slices px, py: force: pressure. */
 int fish_has_momentum(const struct fish *fish);
 
-/* The number of nodes of the fish, from the nose on, whose motion is given, or that across the heading: 0, 1, 2 or
- * all. */
-int fish_n_prescribed(const struct fish *fish);
-
-/* Whether component i (0: x, 1: y) of the motion of node k is given. */
-int fish_is_prescribed(const struct fish *fish, int k, int i);
-
 /* Its beats per second, or those of its prescribed motion; where it has none, the lengths per second at which it, or
  * the stream, goes; 1 where nothing moves. With the length it gives the scale of velocities. */
 double fish_rate(const struct school *school, const struct fish *fish);
-
-/* The direction from nose to tail of the prescribed motion at time t, and the rate at which it turns, rad s-1. */
-void fish_prescribed_direction(const struct fish *fish, double t, double direction[2], double *rate);
-
-/* Position, velocity, acceleration of prescribed node k at time t; each an array of x and y. */
-void fish_prescribed_node(const struct fish *fish, int k, double t, double position[2], double velocity[2],
-                          double acceleration[2]);
-
-/* Write the positions and velocities of the prescribed motion at time t into the vector of all unknowns: those that are
- * prescribed, or at the start those of all nodes. */
-void fish_prescribe(const struct fish *fish, int at_start, double t, double *y);
-
-/* Where in its gait a fish is: its amplitude over that of the case, which begins with a ramp, and the rate of that,
- * s-1; the angle of its beat, rad, and the rate of that, rad s-1. */
-struct fish_gait {
-    double amplitude, amplitude_rate;
-    double angle, omega;
-};
-
-/* The gait of the case at time t; control_gait (model/control.h) has what has been set since. */
-struct fish_gait fish_own_gait(const struct fish *fish, double t);
-
-/* What the muscle asks of joint j at full amplitude and without steering bias: the sine of the wave, or an angle of the
- * table, rad; and their rates. */
-struct fish_demand {
-    double sine, sine_rate;
-    double angle, angle_rate;
-};
-struct fish_demand fish_demand(const struct fish *fish, int j, const struct fish_gait *gait);
-
-/* The natural turning angle of joint j for the bias phi0, rad. */
-double fish_natural_angle(const struct fish *fish, int j, const struct fish_gait *gait, double phi0);
-
-/* The largest natural turning angle, in absolute value, of any joint at this amplitude over that of the case and a bias
- * up to this one, rad. */
-double fish_largest_turn(const struct fish *fish, double amplitude, double bias);
-
-/* Write nose to tail positions and velocities of the start into the vector of all unknowns: doc/model.md, 4 and 5. */
-void fish_start(const struct fish *fish, double *y);
-
-/* Distance of the point p from the outline of a body at the nodes given in y, negative inside of it, m. */
-double fish_point_distance(const struct fish *fish, const double *y, const double p[2]);
-
-/* Distance of the outline of a body at the nodes given in y from the nearest wall, negative beyond it, m; INFINITY
- * without walls. */
-double fish_wall_distance(const struct school *school, const struct fish *fish, const double *y);
-
-/* Distance between the outlines of two bodies at the nodes given in y, 0 where they touch, m. A distance above the
- * limit may be returned as INFINITY: bodies whose boxes are further apart than that are not compared edge by edge. */
-double fish_distance(const struct fish *a, const struct fish *b, const double *y, double limit);
 
 #endif

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "model/edge.h"
+#include "model/fish_prescribed.h"
 #include "vortex/kernel.h"
 
 static const double pi = 3.14159265358979323846;

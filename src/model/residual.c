@@ -12,6 +12,8 @@
 #include "model/bound_sheet.h"
 #include "model/clamp.h"
 #include "model/clearance.h"
+#include "model/fish_distance.h"
+#include "model/fish_prescribed.h"
 #include "model/fluid_force.h"
 #include "model/rod.h"
 

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "model/fish_start.h"
+
 static enum status history_create(struct history *history, const struct fish *fish, double interval) {
     const double in_a_period = fish->period / interval;
     history->capacity = (int)fmin(floor(in_a_period + 0.5), 1e7) + 1;

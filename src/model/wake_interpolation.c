@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "model/near_field.h"
 #include "vortex/velocity_sum.h"
 
@@ -34,9 +35,8 @@ struct wake_interpolation {
     struct near_field_bounds *bounds;  /* of each wake                             (n_fish) */
 };
 
-static enum status doubles(double **values, int n) {
-    *values = calloc((size_t)(n > 0 ? n : 1), sizeof **values);
-    return *values ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: the wakes' velocity at %d points", n);
+static enum status at_points(double **values, int n) {
+    return array_doubles(values, n, "the wakes' velocity at points");
 }
 
 static enum status allocate(struct wake_interpolation *interpolation) {
@@ -50,16 +50,16 @@ static enum status allocate(struct wake_interpolation *interpolation) {
                            interpolation->school->n_fish);
     }
     const int n = interpolation->n_points;
-    for (int i = 0; i < 6; i++) TRY(doubles(&interpolation->motion[i], n));
-    for (int i = 0; i < 2; i++) TRY(doubles(&interpolation->predicted[i], n));
+    for (int i = 0; i < 6; i++) TRY(at_points(&interpolation->motion[i], n));
+    for (int i = 0; i < 2; i++) TRY(at_points(&interpolation->predicted[i], n));
     for (int i = 0; i < N_TIMES; i++) {
-        for (int k = 0; k < 2; k++) TRY(doubles(&interpolation->path[i][k], n));
-        TRY(doubles(&interpolation->velocity_u[i], n));
-        TRY(doubles(&interpolation->velocity_v[i], n));
+        for (int k = 0; k < 2; k++) TRY(at_points(&interpolation->path[i][k], n));
+        TRY(at_points(&interpolation->velocity_u[i], n));
+        TRY(at_points(&interpolation->velocity_v[i], n));
         if (i > 0 && i < END) continue;
-        TRY(doubles(&interpolation->u_x[i], n));
-        TRY(doubles(&interpolation->u_y[i], n));
-        TRY(doubles(&interpolation->v_x[i], n));
+        TRY(at_points(&interpolation->u_x[i], n));
+        TRY(at_points(&interpolation->u_y[i], n));
+        TRY(at_points(&interpolation->v_x[i], n));
     }
     return STATUS_OK;
 }

@@ -10,6 +10,7 @@
 
 #include "case/case.h"
 #include "model/bound_sheet.h"
+#include "model/fish_school.h"
 #include "output/netcdf.h"
 #include "output/result_table.h"
 

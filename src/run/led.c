@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/angle.h"
+#include "model/fish_gait.h"
 
 /* What is changed: the memory is a copy that counts when all is checked. */
 struct change {

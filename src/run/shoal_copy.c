@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "model/fish_school.h"
 #include "model/state_table.h"
 #include "run/handle.h"
 

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <time.h>
 
+#include "model/fish_school.h"
 #include "output/netcdf.h"
 #include "output/result_table.h"
 #include "run/event.h"

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/version.h"
+#include "model/fish_school.h"
 #include "model/state_table.h"
 #include "output/netcdf.h"
 #include "run/checkpoints.h"

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "model/fish_prescribed.h"
+
 // two translations and a rotation
 enum { N_RIGID = 3 };
 

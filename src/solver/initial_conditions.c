@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "solver/integrator.h"
 #include "solver/sundials_adapter.h"
 
@@ -121,10 +122,7 @@ static enum status fill(struct initial_conditions *c) {
     const int n = c->n;
     double **const arrays[] = {&c->y,     &c->zero,           &c->kind,        &c->scale,
                                &c->value, &c->solution_scale, &c->value_scale, &c->start};
-    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
-        *arrays[i] = calloc((size_t)n, sizeof **arrays[i]);
-        if (!*arrays[i]) return status_fail(STATUS_MEMORY, "out of memory: the initial conditions of %d unknowns", n);
-    }
+    TRY(array_many_doubles(arrays, sizeof arrays / sizeof *arrays, n, "initial conditions"));
     for (int i = 0; i < n; i++) {
         c->scale[i] = residual_scale(c->residual, i);
         const double factor = is_loose(c->residual, i) ? loose : 1;

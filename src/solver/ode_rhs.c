@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "model/bound_sheet.h"
+#include "model/fish_prescribed.h"
 #include "model/rod.h"
 
 struct ode_rhs {

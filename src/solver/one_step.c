@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "model/diagnostics.h"
 #include "solver/algebraic_rates.h"
 #include "solver/linear.h"
@@ -53,10 +54,7 @@ static enum status fill(struct one_step *solver) {
     const int n = solver->residual->school->n_unknowns;
     double **const arrays[] = {&solver->kind,  &solver->tolerance,  &solver->before,
                                &solver->rates, &solver->correction, &solver->right_hand};
-    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
-        *arrays[i] = calloc((size_t)n, sizeof **arrays[i]);
-        if (!*arrays[i]) return status_fail(STATUS_MEMORY, "out of memory: %d unknowns", n);
-    }
+    TRY(array_many_doubles(arrays, sizeof arrays / sizeof *arrays, n, "the unknowns"));
     residual_kinds(solver->residual, solver->kind);
     for (int i = 0; i < n; i++) {
         // the errors of Newton's iteration in the velocities of a stiff body add up to a spurious momentum

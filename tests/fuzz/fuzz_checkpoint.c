@@ -10,6 +10,7 @@
 #include "case/case.h"
 #include "fuzz.h"
 #include "model/fish.h"
+#include "model/fish_school.h"
 #include "model/state.h"
 #include "output/checkpoint.h"
 #include "output/sections.h"

@@ -1,6 +1,7 @@
 /* test_actuation.c: the wave of natural curvature: doc/model.md, section 4. */
 #include "base/ramp.h"
 #include "model/actuation.h"
+#include "model/fish_gait.h"
 #include "school.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"

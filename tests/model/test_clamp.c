@@ -4,6 +4,7 @@
 
 #include "model/clamp.h"
 #include "model/edge.h"
+#include "model/fish_prescribed.h"
 #include "model/rod.h"
 #include "school.h"
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "model/contact.h"
+#include "model/fish_distance.h"
 #include "school.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.01, output_interval: 0.01}\n"

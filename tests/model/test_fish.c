@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "model/fish_school.h"
 #include "school.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
@@ -223,167 +224,6 @@ static void start_without_ramp_has_the_natural_shape(void **state) {
     school_clear(&setup);
 }
 
-static void driven_velocity_and_acceleration_are_derivatives(void **state) {
-    (void)state;
-    struct setup setup;
-    school_build(&setup, TIME
-                 "fish: [{start: {heading: 20}, motion: {driven: all, speed: 0.6, heave: 0.2, pitch: 25, "
-                 "pitch_phase: 70, frequency: 1.3, phase: 15, pivot: 0.3}}]\n");
-    const struct fish *fish = &setup.school->fish[0];
-    const double h = 1e-4;
-    for (int k = 0; k < fish->n_nodes; k++) {
-        double p[3][2], v[3][2], a[3][2];
-        for (int i = 0; i < 3; i++) fish_prescribed_node(fish, k, 0.37 + (i - 1) * h, p[i], v[i], a[i]);
-        for (int i = 0; i < 2; i++) {
-            // truncation h^2/6 omega^3 with omega = 8
-            NEAR(v[1][i], (p[2][i] - p[0][i]) / (2 * h), 1e-6, 0);
-            NEAR(a[1][i], (v[2][i] - v[0][i]) / (2 * h), 1e-5, 0);
-        }
-    }
-    school_clear(&setup);
-}
-
-static void driven_body_is_straight_and_turns_about_its_pivot(void **state) {
-    (void)state;
-    struct setup setup;
-    school_build(&setup, TIME
-                 "fish: [{nodes: 5, start: {heading: 180, speed: 2, position: [1, 1]}, motion: {driven: all, heave: "
-                 "0.2, pitch: 25, frequency: 1, pivot: 0.25}}]\n");
-    const struct fish *fish = &setup.school->fish[0];
-    // a quarter period on: heave and pitch are largest; left of the heading 180 degrees is downwards
-    double p[2], v[2], a[2], q[2];
-    fish_prescribed_node(fish, 1, 0.25, p, v, a);
-    NEAR(p[0], 1 - 0.5 + 0.25, 1e-14, 0);
-    NEAR(p[1], 1 - 0.2, 1e-14, 0);
-    NEAR(v[0], -2, 1e-14, 0);
-    NEAR(v[1], 0, 1e-14, 0);
-    fish_prescribed_node(fish, 4, 0.25, q, v, a);
-    // the body points from its pivot backwards: the heading 205 degrees turned round
-    NEAR(q[0] - p[0], 0.75 * cos(25 * pi / 180), 1e-14, 0);
-    NEAR(q[1] - p[1], 0.75 * sin(25 * pi / 180), 1e-14, 0);
-    school_clear(&setup);
-}
-
-static void pitch_is_its_phase_before_heave(void **state) {
-    (void)state;
-    struct setup setup;
-    school_build(&setup, TIME
-                 "fish: [{start: {heading: 0}, motion: {driven: all, heave: 0.2, pitch: 25, pitch_phase: 90, "
-                 "frequency: 1}}]\n");
-    const struct fish *fish = setup.school->fish;
-    // pitch is largest, to the left, while heave begins: a quarter period later heave is largest and pitch is over
-    const double t[] = {0, 0.25}, pitch[] = {25 * pi / 180, 0}, heave[] = {0, 0.2};
-    for (int i = 0; i < 2; i++) {
-        double nose[2], tail[2], v[2], a[2];
-        fish_prescribed_node(fish, 0, t[i], nose, v, a);
-        fish_prescribed_node(fish, fish->n_nodes - 1, t[i], tail, v, a);
-        NEAR(atan2(nose[1] - tail[1], nose[0] - tail[0]), pitch[i], 1e-15, 0);
-        // the pivot is the nose
-        NEAR(nose[1], heave[i], 1e-15, 0);
-    }
-    school_clear(&setup);
-}
-
-static void distance_is_that_of_the_outlines(void **state) {
-    (void)state;
-    struct setup setup;
-    school_build(&setup, TIME
-                 "defaults: {fish: {body: {profile: uniform, thickness: 0.1}}}\n"
-                 "fish: [{}, {start: {position: [0, 0.5]}}, {start: {position: [1.5, 0]}}]\n");
-    const struct fish *fish = setup.school->fish;
-    NEAR(fish_distance(&fish[0], &fish[1], setup.state->y, INFINITY), 0.4, 1e-14, 0);
-    // tail at x = 1 to nose at 1.5, half of both heights taken off
-    NEAR(fish_distance(&fish[0], &fish[2], setup.state->y, INFINITY), 0.4, 1e-14, 0);
-    NEAR(fish_distance(&fish[2], &fish[0], setup.state->y, INFINITY), 0.4, 1e-14, 0);
-    // not computed where the boxes around them are further apart than the limit
-    NEAR(fish_distance(&fish[0], &fish[1], setup.state->y, 0.4 + 1e-12), 0.4, 1e-14, 0);
-    NEAR(fish_distance(&fish[0], &fish[1], setup.state->y, 0.3), INFINITY, 0, 0);
-    // crossing bodies touch
-    for (int k = 0; k < 7; k++) {
-        setup.state->y[fish[1].at.x + k] = 0.55;
-        setup.state->y[fish[1].at.y + k] = -0.5 + k / 6.0;
-    }
-    NEAR(fish_distance(&fish[0], &fish[1], setup.state->y, INFINITY), 0, 0, 0);
-    school_clear(&setup);
-}
-
-// the distance between two edges takes four of these
-static int n_hypot;
-double __real_hypot(double x, double y);
-double __wrap_hypot(double x, double y);
-double __wrap_hypot(double x, double y) {
-    n_hypot++;
-    return __real_hypot(x, y);
-}
-
-static void bodies_in_boxes_apart_are_not_compared_edge_by_edge(void **state) {
-    (void)state;
-    enum { ROWS = 6, COLUMNS = 5 };
-    char text[4000] = TIME "fish:\n";
-    for (int i = 0; i < ROWS * COLUMNS; i++) {
-        const size_t used = strlen(text);
-        snprintf(text + used, sizeof text - used, "  - {start: {position: [%g, %g]}}\n", 1.5 * (i % COLUMNS),
-                 0.6 * (i / COLUMNS));
-    }
-    struct case_values values;
-    struct school *school;
-    school_settings(&values, text);
-    n_hypot = 0;
-    school_ok(fish_school_create(&school, &values.school));
-    const int per_pair = 4 * school->fish->n_edges * school->fish->n_edges;
-    assert_true(n_hypot < per_pair);
-    fish_school_free(school);
-    case_free(&values);
-}
-
-/* The same by points along the bodies, SAMPLES to an edge; too large by less than the distance between two of them. */
-enum { SAMPLES = 200 };
-static double sampled_distance(const struct fish *a, const struct fish *b, const double *y) {
-    double least = INFINITY;
-    for (int i = 0; i <= SAMPLES * a->n_edges; i++) {
-        const int k = i < SAMPLES * a->n_edges ? i / SAMPLES : a->n_edges - 1;
-        const double q = (double)i / SAMPLES - k, px = (1 - q) * y[a->at.x + k] + q * y[a->at.x + k + 1],
-                     py = (1 - q) * y[a->at.y + k] + q * y[a->at.y + k + 1];
-        for (int j = 0; j <= SAMPLES * b->n_edges; j++) {
-            const int l = j < SAMPLES * b->n_edges ? j / SAMPLES : b->n_edges - 1;
-            const double r = (double)j / SAMPLES - l;
-            least = fmin(least, hypot((1 - r) * y[b->at.x + l] + r * y[b->at.x + l + 1] - px,
-                                      (1 - r) * y[b->at.y + l] + r * y[b->at.y + l + 1] - py));
-        }
-    }
-    return fmax(0, least - (a->thickness[0] + b->thickness[0]) / 2);
-}
-
-static void distance_of_bent_bodies_is_the_least_of_their_points(void **state) {
-    (void)state;
-    struct setup setup;
-    school_build(&setup, TIME
-                 "defaults: {fish: {nodes: 4, sheet_points: 5, body: {profile: uniform, thickness: 0.02}}}\n"
-                 "fish: [{}, {length: 0.7, start: {position: [0, 0.5]}}]\n");
-    const struct fish *a = &setup.school->fish[0], *b = &setup.school->fish[1];
-    double *const y = setup.state->y;
-    int n_touching = 0;
-    for (int example = 0; example < 60; example++) {
-        for (int k = 0; k < 4; k++) {
-            y[a->at.x + k] = k / 3.0 + 0.1 * school_random(&setup);
-            y[a->at.y + k] = 0.3 * school_random(&setup);
-            y[b->at.x + k] = 0.5 + 0.6 * school_random(&setup);
-            y[b->at.y + k] = 0.4 + 0.4 * school_random(&setup);
-        }
-        // edges are up to 1.4 long
-        const double want = sampled_distance(a, b, y), spacing = 1.4 / SAMPLES;
-        const double got = fish_distance(a, b, y, INFINITY);
-        assert_true(got <= want + 1e-14 && got >= want - spacing);
-        NEAR(fish_distance(b, a, y, INFINITY), got, 1e-15, 0);
-        // boxes never hide bodies that are near enough
-        NEAR(fish_distance(a, b, y, got + 1e-12), got, 0, 0);
-        n_touching += got <= 0;
-    }
-    print_message("%d of 60 pairs touch\n", n_touching);
-    assert_in_range(n_touching, 10, 50);
-    school_clear(&setup);
-}
-
 static void overlapping_fish_are_refused(void **state) {
     (void)state;
     struct case_values values;
@@ -464,12 +304,6 @@ int main(void) {
         cmocka_unit_test(smooth_curve_has_the_same_places_and_the_weights_of_the_quadrature),
         cmocka_unit_test(start_is_straight_behind_the_nose_with_one_velocity),
         cmocka_unit_test(start_without_ramp_has_the_natural_shape),
-        cmocka_unit_test(driven_velocity_and_acceleration_are_derivatives),
-        cmocka_unit_test(driven_body_is_straight_and_turns_about_its_pivot),
-        cmocka_unit_test(pitch_is_its_phase_before_heave),
-        cmocka_unit_test(distance_is_that_of_the_outlines),
-        cmocka_unit_test(distance_of_bent_bodies_is_the_least_of_their_points),
-        cmocka_unit_test(bodies_in_boxes_apart_are_not_compared_edge_by_edge),
         cmocka_unit_test(overlapping_fish_are_refused),
         cmocka_unit_test(fish_that_begin_beyond_a_wall_are_refused),
         cmocka_unit_test(unknowns_stand_fish_after_fish_in_the_documented_order),

@@ -6,6 +6,7 @@
 
 #include "failing_malloc.h"
 #include "model/bending_mode.h"
+#include "model/fish_school.h"
 #include "model/pressure.h"
 #include "school.h"
 #include "solver/initial_conditions.h"

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "model/fish_prescribed.h"
 #include "model/fluid_force.h"
 #include "model/reactive.h"
 #include "school.h"

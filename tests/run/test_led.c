@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "model/fish_gait.h"
 #include "run/led.h"
 #include "school.h"
 

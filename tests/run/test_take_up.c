@@ -2,6 +2,7 @@
  * itself there, for every method and every kind of memory that a run has. */
 #include <string.h>
 
+#include "model/fish_school.h"
 #include "model/state_table.h"
 #include "school.h"
 

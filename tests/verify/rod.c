@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "model/fish_prescribed.h"
 #include "verify.h"
 
 enum { N_LEVELS = 4 };
