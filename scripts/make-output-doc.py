@@ -51,6 +51,7 @@ browser and needs no network; `shoal export demo.nc --vtk demo` writes files for
 | `vortex` | slots for free vortices: the largest number that one fish can have |
 | `xy` | 2: x, then y |
 | `name` | bytes of the longest fish name |
+| `wall` | 1, or 2 for a channel; in the files of cases with `fluid.walls` only, as is `wall_y` |
 | `multiplier` | six for each fish; in the files of `shoal steady` only, as are the variables `steady_...` ([steady.md](steady.md)) |
 
 A shorter fish uses the first slots only, `n_nodes`, `n_edges`, `n_joints`, `n_sheet` of them. All other slots hold NaN,

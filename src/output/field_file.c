@@ -11,12 +11,24 @@
 
 // ---- the variables
 
-enum { TIME_AT, X_AT, Y_AT, U, V, VORTICITY, BODY_X, EDGE_HEIGHT, N_NODES, FISH_NAME, N_VARIABLES };
-enum { TIME_AXIS, Y_AXIS, X_AXIS, FISH_AXIS, NODE_AXIS, EDGE_AXIS, XY_AXIS, NAME_AXIS, N_AXES, NO_AXIS = -1 };
+enum { TIME_AT, X_AT, Y_AT, U, V, VORTICITY, BODY_X, EDGE_HEIGHT, N_NODES, FISH_NAME, WALL_Y, N_VARIABLES };
+enum {
+    TIME_AXIS,
+    Y_AXIS,
+    X_AXIS,
+    FISH_AXIS,
+    NODE_AXIS,
+    EDGE_AXIS,
+    XY_AXIS,
+    NAME_AXIS,
+    WALL_AXIS,
+    N_AXES,
+    NO_AXIS = -1
+};
 
-static const char *const axis_name[N_AXES] = {"time", "y", "x", "fish", "node", "edge", "xy", "name"};
+static const char *const axis_name[N_AXES] = {"time", "y", "x", "fish", "node", "edge", "xy", "name", "wall"};
 
-/* In the order of the file. */
+/* In the order of the file; wall_y only where there are walls. */
 static const struct variable {
     const char *name;
     int axis[NETCDF_MAX_DIMENSIONS + 1]; /* NO_AXIS at the end */
@@ -41,6 +53,7 @@ static const struct variable {
      "thickness of the body in the plane of motion"},
     {"n_nodes", {FISH_AXIS, NO_AXIS}, NETCDF_INT, "1", "number of nodes"},
     {"fish_name", {FISH_AXIS, NAME_AXIS, NO_AXIS}, NETCDF_TEXT, "", "name of the fish"},
+    {"wall_y", {WALL_AXIS, NO_AXIS}, NETCDF_DOUBLE, "m", "y of the walls; where there are walls only"},
 };
 
 int field_file_listed(int i, struct result_listed *listed) {
@@ -146,6 +159,7 @@ static void set_lengths(struct field *field, const struct field_grid *grid) {
     length[Y_AXIS] = (size_t)grid->ny;
     length[FISH_AXIS] = (size_t)school->n_fish;
     length[XY_AXIS] = 2;
+    length[WALL_AXIS] = (size_t)school->walls.n;
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
         const size_t n_nodes = (size_t)fish->n_nodes, n_name = strlen(fish->name);
@@ -157,9 +171,11 @@ static void set_lengths(struct field *field, const struct field_grid *grid) {
 
 static void define_all(struct netcdf_writer *writer, const struct field *field, const char *run) {
     int number[N_AXES];
-    for (int a = 0; a < N_AXES; a++) number[a] = netcdf_define_dimension(writer, axis_name[a], field->length[a]);
+    // walls come last
+    const int has_walls = field->length[WALL_AXIS] > 0, n_axes = has_walls ? N_AXES : WALL_AXIS;
+    for (int a = 0; a < n_axes; a++) number[a] = netcdf_define_dimension(writer, axis_name[a], field->length[a]);
     const int is_single = field->row->values.output.precision == PRECISION_SINGLE;
-    for (int i = 0; i < N_VARIABLES; i++) {
+    for (int i = 0; i < (has_walls ? N_VARIABLES : WALL_Y); i++) {
         const struct variable *const variable = &variables[i];
         struct netcdf_variable to_define = {.name = variable->name, .long_name = variable->long_name};
         to_define.units = variable->unit;
@@ -211,6 +227,8 @@ static void write_all(struct netcdf_writer *writer, const struct field *field) {
     netcdf_write_doubles(writer, V, NULL, NULL, field->at.v);
     netcdf_write_doubles(writer, VORTICITY, NULL, NULL, field->vorticity);
     for (int f = 0; f < field->row->school->n_fish; f++) write_body(writer, field, f);
+    const struct walls *const walls = &field->row->school->walls;
+    if (walls->n > 0) netcdf_write_doubles(writer, WALL_Y, NULL, NULL, walls->y);
 }
 
 enum status field_file_write(const char *path, int overwrite, const char *run, const char *command,

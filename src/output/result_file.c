@@ -37,6 +37,7 @@ struct result_file {
 
 /* True if a variable is in the file. */
 static bool is_written(const struct result_file *result, const struct result_variable *variable) {
+    if (result_table_has(variable, WALL) && result->length[WALL] == 0) return false;
     return variable->forces <= result->forces && (result->is_steady || !variable->of_steady);
 }
 
@@ -107,7 +108,7 @@ static void write_attributes(struct result_file *result, const struct case_value
 static void define_all(struct result_file *result, const struct case_values *values, const char *effective) {
     int dimension_number[RESULT_N_DIMENSIONS] = {0};
     for (enum result_dimension d = TIME; d < RESULT_N_DIMENSIONS; d++) {
-        if (d == MULTIPLIER && !result->is_steady) continue;
+        if ((d == MULTIPLIER && !result->is_steady) || (d != TIME && result->length[d] == 0)) continue;
         dimension_number[d] =
             netcdf_define_dimension(&result->writer, result_table_dimension(d), d == TIME ? 0 : result->length[d]);
     }

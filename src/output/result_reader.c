@@ -92,9 +92,17 @@ static enum status read_sections(struct result_reader *reader) {
     return STATUS_OK;
 }
 
+/* The walls, of which most files have none. */
+static enum status read_walls(struct result_reader *reader) {
+    if (!netcdf_has(&reader->file, "wall_y")) return STATUS_OK;
+    TRY(netcdf_read_length(&reader->file, result_table_dimension(WALL), 1, 2, &reader->length[WALL]));
+    return result_reader_row(reader, "wall_y", 0, reader->wall_y);
+}
+
 static enum status fill(struct result_reader *reader) {
     TRY(check_kind(reader));
     TRY(read_lengths(reader));
+    TRY(read_walls(reader));
     TRY(netcdf_read_string(&reader->file, "title", &reader->title));
     TRY(netcdf_read_string(&reader->file, "run_status", &reader->run_status));
     TRY(read_names(reader));

@@ -13,6 +13,7 @@ struct result_reader {
     char **name;                        /* of the fish; owned                          (FISH) */
     int *n_nodes, *n_sheet;             /* of each fish; owned                         (FISH) */
     bool *has_mean_section;             /* edge_height is a mean over the edge; owned  (FISH) */
+    double wall_y[2];                   /* of the walls, m                             (length[WALL]) */
 };
 
 /* Open the file of a run that has at least one row. Fails with STATUS_FILE (also for the file of a study, and says what

@@ -197,6 +197,8 @@ const struct result_variable result_table[] = {
      .long_name = "age at which a free vortex is removed"},
     {"wake_fade",             {NONE},                 RESULT_REAL,    "s",      IN_SCHOOL(decay),
      .long_name = "time before its removal over which a free vortex decays"},
+    {"wall_y",                {WALL},                 RESULT_REAL,    "m",      IN_SCHOOL(walls.y),
+     .long_name = "y of the walls along x, the lower one first; in the files of cases with fluid.walls only"},
 
     // a steady state: means over its last beat
     {"steady_beats",          {NONE},                 RESULT_INTEGER, "1",      IN_STEADY(n_beats),
@@ -431,8 +433,8 @@ _Static_assert(sizeof result_table / sizeof *result_table <= RESULT_TABLE_MAX, "
 // ---- look-ups ----
 
 const char *result_table_dimension(enum result_dimension dimension) {
-    static const char *const name[] = {"",      "time",    "fish",   "node", "edge", "joint",
-                                       "sheet", "control", "vortex", "xy",   "name", "multiplier"};
+    static const char *const name[] = {"",        "time",   "fish", "node", "edge",       "joint", "sheet",
+                                       "control", "vortex", "xy",   "name", "multiplier", "wall"};
     return name[dimension];
 }
 

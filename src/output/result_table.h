@@ -18,7 +18,8 @@ enum {
     RESULT_TABLE_MAX = 128 /* no more variables than these */
 };
 
-/* Dimensions; NONE ends a list of them. Slots beyond what a fish has hold NaN. */
+/* Dimensions; NONE ends a list of them. Slots beyond what a fish has hold NaN. One of length 0 is not in the file, and
+ * neither are its variables. */
 enum result_dimension {
     NONE,
     TIME,
@@ -32,6 +33,7 @@ enum result_dimension {
     XY,
     NAME,
     MULTIPLIER,
+    WALL,
     RESULT_N_DIMENSIONS
 };
 enum { RESULT_MAX_DIMENSIONS = 4 };

@@ -9,6 +9,7 @@ void result_values_lengths(const struct school *school, int n_vortices, size_t l
     length[FISH] = (size_t)school->n_fish;
     length[VORTEX] = (size_t)n_vortices;
     length[XY] = 2;
+    length[WALL] = (size_t)school->walls.n;
     length[MULTIPLIER] = STEADY_QUANTITIES * (size_t)school->n_fish;
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *fish = &school->fish[f];

@@ -30,6 +30,7 @@ static void format_is_cdf5(void **state) {
 static void every_variable_of_the_table_is_there_with_its_dimensions_unit_and_name(void **state) {
     struct fixture *f = *state;
     f->values.output.forces = OUTPUT_FORCES_EDGES;
+    f->school->walls = (struct walls){2, {-7, 8}, {1, -1}};
     struct result_file *result;
     assert_int_equal(result_file_create_steady(&result, f->path, 0, &f->values, EFFECTIVE, "", f->school, 10),
                      STATUS_OK);
@@ -173,6 +174,24 @@ static void derived_quantities_have_their_names(void **state) {
     NEAR(value_at(file, "order", 1, 0, 0, 0), 2, 0, 0);
     NEAR(value_at(file, "wall_time", 1, 0, 0, 0), 28, 0, 0);
     nc_close(file);
+}
+
+static void walls_are_there_where_the_case_has_them(void **state) {
+    struct fixture *f = *state;
+    for (int n = 0; n <= 2; n++) {
+        f->school->walls = (struct walls){n, {-7, 8}, {1, -1}};
+        write_file(f, 1);
+        const int file = open_to_read(f);
+        int number;
+        assert_int_equal(nc_inq_varid(file, "wall_y", &number), n > 0 ? NC_NOERR : NC_ENOTVAR);
+        assert_int_equal(nc_inq_dimid(file, "wall", &number), n > 0 ? NC_NOERR : NC_EBADDIM);
+        if (n > 0) assert_int_equal(length_of(file, "wall"), (size_t)n);
+        for (size_t i = 0; i < (size_t)n; i++) {
+            NEAR(value_at(file, "wall_y", i, 0, 0, 0), f->school->walls.y[i], 0, 0);
+        }
+        nc_close(file);
+        unlink(f->path);
+    }
 }
 
 static void every_diagnostic_of_a_fish_has_a_variable(void **state) {
@@ -412,6 +431,7 @@ int main(void) {
         WITH_FILE(curvature_of_a_right_angle_is_two),
         WITH_FILE(unused_slots_hold_nan),
         WITH_FILE(derived_quantities_have_their_names),
+        cmocka_unit_test_setup_teardown(walls_are_there_where_the_case_has_them, set_up, tear_down),
         cmocka_unit_test(every_diagnostic_of_a_fish_has_a_variable),
         WITH_FILE(wake_is_oldest_first_and_can_be_left_out),
         WITH_FILE(single_precision_keeps_time_and_scalars_double),
