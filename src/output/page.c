@@ -174,6 +174,21 @@ static enum status write_shape(const struct page *page, const double *thickness,
     return status;
 }
 
+/* The walls, and the side on which the fluid is, where the first fish begins. */
+static enum status write_walls(const struct page *page) {
+    const struct result_reader *const reader = &page->reader;
+    double *x;
+    TRY(result_reader_new(reader, "x", 0, &x));
+    fprintf(page->stream, "\"walls\":[");
+    for (size_t i = 0; i < reader->length[WALL]; i++) {
+        const double y = reader->wall_y[i];
+        fprintf(page->stream, "%s{\"y\":%.9g,\"inward\":%d}", i > 0 ? "," : "", y, x[1] > y ? 1 : -1);
+    }
+    fprintf(page->stream, "],\n");
+    free(x);
+    return STATUS_OK;
+}
+
 /* Write the shapes, each once, and the fish with the numbers of theirs. shape, first: (n_fish). */
 static enum status write_fish(const struct page *page, const double *thickness, const double *length, size_t *shape,
                               size_t *first) {
@@ -441,6 +456,7 @@ static enum status write_data(const struct page *page) {
     fprintf(stream, ",\"rows\":%zu,", page->n_rows);
     write_thinned(page);
     fputs(",\n", stream);
+    TRY(write_walls(page));
     TRY(write_all_fish(page));
     TRY(write_bodies(page));
     TRY(write_wakes(page));

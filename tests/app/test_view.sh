@@ -89,6 +89,17 @@ end
 numbers_are() { /usr/bin/python3 compare.py "$@"; }
 check numbers_are_those_of_the_result numbers_are pair.html pair.nc
 
+check no_walls_where_there_are_none grep -q '"walls":\[\],' pair.html
+cat >wall.yaml <<'end'
+format: 1
+time: {end: 0.04, shedding_interval: 0.02}
+fluid: {walls: [0.75]}
+fish: [{nodes: 5}]
+end
+run run wall.yaml -q -o wall.nc
+run view wall.nc -q
+check walls_and_where_the_fluid_is grep -qF '"walls":[{"y":0.75,"inward":-1}],' wall.html
+
 # a long run is thinned, and says so
 cat >long.yaml <<'end'
 format: 1
@@ -125,6 +136,19 @@ height = int(float(sys.argv[2]) * picture.shape[0])
 r, g, b = np.moveaxis(picture[:height], 2, 0)
 print((r - b > 0.25).sum(), (b - r > 0.25).sum(), picture.shape[1], picture.mean() > 0.5)
 end
+# A screenshot has one dark line all the way across, and strokes above it but not below.
+cat >wall.py <<'end'
+import numpy as np
+from matplotlib import image
+
+picture = image.imread("wall.png")[:, :, :3].mean(axis=2)
+height, width = picture.shape
+rows = picture[: int(0.55 * height), int(0.1 * width) : int(0.8 * width)]
+wall = np.flatnonzero((rows < 0.7).all(axis=1))
+assert 1 <= wall.size <= 4 and np.ptp(wall) < 4, wall
+above, below = rows[wall[0] - 7 : wall[0] - 2], rows[wall[-1] + 3 : wall[-1] + 8]
+assert (above < 0.8).mean() > 0.05 > (below < 0.8).mean(), (above.mean(), below.mean())
+end
 # A screenshot has at least so many red and blue pixels of wakes, is so wide, and light or dark.
 shows() {  # picture, red, blue, width, light
     local red blue width light
@@ -145,6 +169,9 @@ else
     browse 'pair.html#t=0.5&play=1' --virtual-time-budget=1500 --dump-dom
     check frames_are_drawn test "$(grep -oE 'data-frames="[0-9]+"' browser.out | grep -oE "[0-9]+")" -gt 3
     check and_time_goes_on test "$(grep -oE 'data-time="[0-9.]+"' browser.out | tr -dc 0-9)" -gt 05000
+    browse 'wall.html#t=0.04&theme=light' --window-size=1280,1000 --virtual-time-budget=500 --screenshot=wall.png
+    check no_error_beside_a_wall test -z "$(console)"
+    check a_wall_is_drawn /usr/bin/python3 wall.py
     # the console is heard
     sed 's/^const run = .*/const run = nothing_of_this_name;/' pair.html >broken.html
     browse broken.html --virtual-time-budget=100 --dump-dom
