@@ -291,6 +291,48 @@ static enum status write_wakes(const struct export *export, size_t row, FILE *st
     return status;
 }
 
+// ---- walls
+
+/* Find the smallest and the largest x of all nodes in all rows, and go two lengths of a body beyond. */
+static enum status find_ends(const struct export *export, double ends[2]) {
+    const size_t n = result_reader_n(&export->reader, "x"), n_fish = export->reader.length[FISH];
+    double *x, *length, longest = 0;
+    ends[0] = INFINITY;
+    ends[1] = -INFINITY;
+    for (size_t row = 0; row < export->reader.length[TIME]; row++) {
+        TRY(result_reader_new(&export->reader, "x", row, &x));
+        // fmin and fmax leave out the NaN of slots without a node
+        for (size_t i = 0; i < n; i += 2) {
+            ends[0] = fmin(ends[0], x[i]);
+            ends[1] = fmax(ends[1], x[i]);
+        }
+        free(x);
+    }
+    TRY(result_reader_new(&export->reader, "body_length", 0, &length));
+    for (size_t f = 0; f < n_fish; f++) longest = fmax(longest, length[f]);
+    free(length);
+    ends[0] -= 2 * longest;
+    ends[1] += 2 * longest;
+    return STATUS_OK;
+}
+
+/* One file for all rows: walls do not move. */
+static enum status write_walls(const struct export *export, size_t row, FILE *stream) {
+    (void)row;
+    const size_t n = export->reader.length[WALL], size[] = {2, 2};
+    double ends[2], xy[8];
+    TRY(find_ends(export, ends));
+    for (size_t i = 0; i < 2 * n; i++) {
+        xy[2 * i] = ends[i % 2];
+        xy[2 * i + 1] = export->reader.wall_y[i / 2];
+    }
+    begin_piece(stream, 2 * n, 0, n, 0);
+    TRY(write_points(export, stream, 2 * n, xy));
+    TRY(write_cells(export, stream, "Lines", n, size, 0));
+    end_piece(stream);
+    return STATUS_OK;
+}
+
 // ---- files
 
 /* The name of a file without the folder. */
@@ -311,12 +353,23 @@ static enum status write_file(const struct export *export, const char *what, siz
     return status;
 }
 
+/* Put the name of the file of a row into the list. */
+static void list_file(const struct export *export, FILE *list, double t, int part, const char *what, size_t row) {
+    struct text name = {0};
+    add_name(&name, export, what, row);
+    fprintf(list, "<DataSet timestep=\"%.12g\" part=\"%d\" name=\"%s\" file=\"%s\"/>\n", t, part, what,
+            name.text ? name.text : "");
+    text_free(&name);
+}
+
 /* Write the files of all rows, and their names into the list. */
 static enum status write_rows(const struct export *export, FILE *list) {
     fputs(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n"
         "<Collection>\n",
         list);
+    const bool has_walls = export->reader.length[WALL] > 0;
+    if (has_walls) TRY(write_file(export, "walls", 0, write_walls));
     for (size_t row = 0; row < export->reader.length[TIME]; row++) {
         double t;
         bool has_wake;
@@ -324,13 +377,9 @@ static enum status write_rows(const struct export *export, FILE *list) {
         TRY(result_reader_has_wake(&export->reader, row, &has_wake));
         TRY(write_file(export, "bodies", row, write_bodies));
         if (has_wake) TRY(write_file(export, "wakes", row, write_wakes));
-        for (int part = 0; part < 1 + has_wake; part++) {
-            struct text name = {0};
-            add_name(&name, export, part == 0 ? "bodies" : "wakes", row);
-            fprintf(list, "<DataSet timestep=\"%.12g\" part=\"%d\" name=\"%s\" file=\"%s\"/>\n", t, part,
-                    part == 0 ? "bodies" : "wakes", name.text ? name.text : "");
-            text_free(&name);
-        }
+        list_file(export, list, t, 0, "bodies", row);
+        if (has_wake) list_file(export, list, t, 1, "wakes", row);
+        if (has_walls) list_file(export, list, t, 2, "walls", 0);
     }
     fputs("</Collection>\n</VTKFile>\n", list);
     return STATUS_OK;

@@ -1,9 +1,10 @@
-/* vtk.h: a run as files of VTK, which ParaView opens: a list of times that names two files for each row. Tested by
+/* vtk.h: a run as files of VTK, which ParaView opens: a list of times that names two or three files for each row. Tested by
  * tests/app/test_export.sh, which reads them with VTK.
  *
  *     FOLDER/NAME.pvd              the times; open this one
  *     FOLDER/NAME-bodies-0000.vtp  each fish as a line of its bound vortices and as an outline
  *     FOLDER/NAME-wakes-0000.vtp   the free vortices, in rows that hold them
+ *     FOLDER/NAME-walls-0000.vtp   the walls as lines, in all rows, where the case has fluid.walls
  *
  * Point data of bodies: sheet_strength [m s-1] and, with force: pressure, the pressure jump [Pa], left less right, on
  * the outline as on the line beside it. Cell data: fish (its number,

@@ -19,6 +19,7 @@ check files_are_written test "$code" = 0
 check the_list_is_named grep -qxF 'out_of_it/a _pair_.pvd' out
 check there_is_a_file_of_bodies_for_each_row test "$(ls out_of_it | grep -c bodies)" = 7
 check and_one_of_wakes_where_there_is_one test "$(ls out_of_it | grep -c wakes)" = 4
+check and_none_of_walls test "$(ls out_of_it | grep -c walls)" = 0
 refused existing_files_are_kept 4 'exists' export 'a <pair>.nc' --vtk out_of_it
 run export 'a <pair>.nc' --vtk out_of_it --force -q
 check force_replaces_them test "$code" = 0 -a ! -s out
@@ -102,5 +103,32 @@ for one in wakes:
 assert len(wakes) == 4
 end
 check vtk_reads_the_numbers_of_the_result timeout "$time_limit" /usr/bin/python3 compare.py 'a <pair>.nc'
+
+# ---- walls
+
+cat >channel.yaml <<'end'
+format: 1
+time: {end: 0.1, shedding_interval: 0.02, output_interval: 0.1}
+fluid: {walls: [-0.5, 1.5]}
+fish: [{nodes: 5, length: 0.5}]
+end
+run run channel.yaml -q -o channel.nc
+run export channel.nc --vtk channel
+cat >walls.py <<'end'
+"""The walls are two lines at their height, longer than the bodies are, and there at all times."""
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+
+reader = vtkXMLPolyDataReader()
+reader.SetFileName("channel/channel-walls-0000.vtp")
+reader.Update()
+data = reader.GetOutput()
+points = vtk_to_numpy(data.GetPoints().GetData())
+assert data.GetNumberOfLines() == 2 and points.shape == (4, 3), points
+assert points[:, 1].tolist() == [-0.5, -0.5, 1.5, 1.5], points
+assert (abs(points[[0, 2], 0] + 1) < 0.1).all() and (abs(points[[1, 3], 0] - 1.5) < 0.1).all(), points
+assert open("channel/channel.pvd").read().count("channel-walls-0000.vtp") == 2
+end
+check walls_are_lines timeout "$time_limit" /usr/bin/python3 walls.py
 
 finish
