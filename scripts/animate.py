@@ -46,9 +46,12 @@ def fixed_window(results, rows):
 
 
 def following_window(results, rows):
-    """The same for a window that moves with the fish and holds them and their wakes all the time."""
+    """The same for a window that moves with the fish and holds them and their wakes all the time; along walls."""
     centre = results["com"].mean(axis=1)
     half = np.zeros(2)
+    if results.walls:
+        x0, x1, y0, y1 = limits(results, rows, with_paths=False)
+        centre[:, 1] = (y0 + y1) / 2
     for row in rows[:: max(1, len(rows) // 50)]:
         low, high = np.reshape(limits(results, [row], with_paths=False), (2, 2)).T
         half = np.maximum(half, np.maximum(high - centre[row], centre[row] - low))

@@ -20,7 +20,7 @@ import sys
 import plot_field as plot_field_module
 import plot_school as plot_school_module
 import plot_study as plot_study_module
-from plot_style import BLUE, BODY, BODY_EDGE, DASHES, GRID, LINES, PATH, PHASES, RED, STYLE, WIDTH, matplotlib
+from plot_style import BLUE, BODY, BODY_EDGE, DASHES, GRID, LINES, PATH, PHASES, RED, STYLE, WIDTH, Wall, matplotlib
 from shoal_results import DAMAGE, EXIT_FILE, EXIT_USAGE, FileError, Results, kind_of, np, stop
 
 from matplotlib import pyplot
@@ -49,6 +49,7 @@ class Snapshot:
         self.paths = [axes.plot([], [], color=PATH, lw=0.8, dashes=(5, 3), zorder=1)[0] for _ in results.names]
         self.bodies = PolyCollection([], facecolors=BODY, edgecolors=BODY_EDGE, linewidths=0.7, zorder=3)
         axes.add_collection(self.bodies)
+        self.walls = [Wall(axes, *wall) for wall in results.walls]
         self.clock = axes.annotate("", (1, 1), (-5, -5), "axes fraction", "offset points", ha="right", va="top")
         self.labels = [axes.text(0, 0, name, size=7, ha="center", va="bottom", zorder=4) for name in names(results)]
         axes.set_aspect("equal")
@@ -63,6 +64,8 @@ class Snapshot:
         """Draw the state of a row."""
         outlines = [self.place(self.results.outline(row, f), row) for f in range(self.results.n_fish)]
         self.bodies.set_verts(outlines)
+        for wall, (y, _) in zip(self.walls, self.results.walls):
+            wall.move(self.place(np.array([[0, y]]), row)[0, 1])
         for label, outline in zip(self.labels, outlines):
             label.set_position((outline[:, 0].mean(), outline[:, 1].max() + 0.03 * np.ptp(outline, axis=0).max()))
         for f, path in enumerate(self.paths):
@@ -98,15 +101,16 @@ def wake_colours(circulation, share):
 
 
 def limits(results, rows, with_paths=True, margin=0.4):
-    """The window that holds bodies and wakes of some rows, and the paths up to them: x0, x1, y0, y1."""
+    """The window that holds bodies and wakes of some rows, the paths up to them, and walls: x0, x1, y0, y1."""
     points = [results.wake(row)[0] for row in rows]
     points += [results.outline(row, f) for row in rows for f in range(results.n_fish)]
     if with_paths:
         points.append(results["com"][: max(rows) + 1].reshape(-1, 2))
     points = np.concatenate(points)
     margin *= float(np.nanmax(results["body_length"]))
-    (x0, y0), (x1, y1) = np.nanmin(points, axis=0) - margin, np.nanmax(points, axis=0) + margin
-    return x0, x1, y0, y1
+    (x0, y0), (x1, y1) = np.nanmin(points, axis=0), np.nanmax(points, axis=0)
+    heights = [y0, y1, *(y for y, _ in results.walls)]
+    return x0 - margin, x1 + margin, min(heights) - margin, max(heights) + margin
 
 
 def add_legend(axes, handles):

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """Draw the file of `shoal field` on a figure: vorticity or speed, streamlines, bodies. Used by plot.py."""
 
-from plot_style import BODY, BODY_EDGE, matplotlib
-from shoal_results import FileError, np, open_dataset, outline, sections
+from plot_style import BODY, BODY_EDGE, Wall, matplotlib
+from shoal_results import FileError, np, open_dataset, outline, sections, walls
 
 SPECIAL = 0.995  # share of the points below the end of the scale: bound sheets are much stronger than wakes
 
@@ -18,6 +18,7 @@ class Field:
         self.x, self.y = (np.ma.filled(data[name][:], np.nan) for name in ("x", "y"))
         self.u, self.v, self.vorticity = (np.ma.filled(data[name][0], np.nan) for name in ("u", "v", "vorticity"))
         self.time = float(data["time"][0])
+        self.walls = walls(data, data["body_x"][0, 0, 0, 1])
         nodes, thickness = (np.ma.filled(data[name][:], np.nan) for name in ("body_x", "edge_height"))
         counts = np.asarray(data["n_nodes"][:], dtype=int)
         means = sections(data, counts.size)
@@ -48,6 +49,8 @@ def draw(path, figure, with_speed=False, with_streamlines=True):
         field.outlines, facecolors=BODY, edgecolors=BODY_EDGE, linewidths=0.7, zorder=3
     )
     axes.add_collection(bodies)
+    for wall in field.walls:
+        Wall(axes, *wall)
     axes.set_aspect("equal")
     axes.set(xlim=field.x[[0, -1]], ylim=field.y[[0, -1]], xlabel="x [m]", ylabel="y [m]")
     axes.set_title(f"$t$ = {field.time:.4g} s", size=9, loc="right")

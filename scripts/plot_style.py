@@ -23,7 +23,7 @@ WIDTH = 7.0  # of a picture, inches: two columns of a journal
 
 # The ends of the red-blue scale of ColorBrewer: dark and light in grey.
 RED, BLUE = "#b2182b", "#4393c3"
-BODY, BODY_EDGE, PATH, GRID = "#d9d9d9", "#222222", "#555555", "#cccccc"
+BODY, BODY_EDGE, PATH, GRID, WALL = "#d9d9d9", "#222222", "#555555", "#cccccc", "#777777"
 # Okabe and Ito's colours, in an order that falls from dark to light in grey.
 LINES = ["#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"]
 MARKS = ["o", "s", "^", "D", "v", "P", "X", "*"]
@@ -32,7 +32,26 @@ DASHES = ["-", "--", "-.", ":", (0, (5, 1)), (0, (3, 1, 1, 1)), (0, (1, 1)), (0,
 PHASES = matplotlib.colors.LinearSegmentedColormap.from_list(
     "phases", ["#000000", "#0072b2", "#56b4e9", "#d55e00", "#000000"]
 )
+BEYOND = 1e6  # where hatching ends, far outside of any picture [m]
 SPAN = 30  # positive values that span more than this are drawn on a logarithmic axis
+
+
+class Wall:
+    """A wall along x on axes: a line, and hatching where no fluid is. inward: 1 where the fluid is above it, -1 below."""
+
+    def __init__(self, axes, y, inward):
+        self.inward = inward
+        self.line = axes.axhline(y, color=WALL, lw=1.2, zorder=2.5)
+        self.solid = matplotlib.patches.Rectangle(
+            (0, 0), 1, BEYOND, transform=axes.get_yaxis_transform(), fc="white", ec=GRID, hatch="////", lw=0, zorder=2.4
+        )
+        axes.add_artist(self.solid)
+        self.move(y)
+
+    def move(self, y):
+        """Put it elsewhere."""
+        self.line.set_ydata([y, y])
+        self.solid.set_y(y - BEYOND if self.inward > 0 else y)
 
 
 def scale_of(values):

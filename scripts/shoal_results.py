@@ -51,6 +51,7 @@ class Results:
         self.n_nodes = self["n_nodes"].astype(int)
         self.thickness = self["edge_height"]
         self.mean_section = sections(self.data, self.n_fish)
+        self.walls = walls(self.data, self.read("x", 0)[0, 0, 1])
         self.title = getattr(self.data, "title", "")
 
     def __getitem__(self, name):
@@ -113,6 +114,11 @@ def sections(data, n_fish):
     """Whether the thickness of the edges is a mean over them: what fish.body.section says of each fish."""
     words = re.findall(r"\bsection: (\w+)", getattr(data, "case_effective", ""))
     return [word == "mean" for word in (words + ["nodes"] * n_fish)[:n_fish]]
+
+
+def walls(data, inside):
+    """The walls as pairs of their y and the side of the fluid: 1 above, -1 below; inside: the y of a point of the fluid."""
+    return [(float(y), 1 if inside > y else -1) for y in (data["wall_y"][:] if "wall_y" in data.variables else [])]
 
 
 def open_dataset(path, kind="shoal_schema"):

@@ -94,6 +94,7 @@ draws plot.py run-field.nc of_its_own_kind.png
 "$program" run "$root/cases/channel.yaml" -q -o channel.nc --set time.end=0.2
 "$program" field channel.nc --grid 40,40 -q
 draws plot.py channel-field.nc beyond_walls_is_nothing.png
+draws plot.py channel.nc channel.png
 refuses 4 "the file of a run, not of a field: use plot.py swim run.nc" plot.py field run.nc no.png
 refuses 4 "the file of a field, not of a run: use plot.py field run-field.nc" plot.py swim run-field.nc no.png
 if command -v ffmpeg >/dev/null; then
@@ -141,6 +142,21 @@ assert len(lines) == 2 and len({line.get_linestyle() for line in lines}) == 2, "
 over_time.fish, over_time.each = None, "speed"
 titles = [axes.get_title() for axes in plot.plot_time(results, over_time).axes if axes.get_visible()]
 assert titles == results.names, "a panel per fish"
+
+# walls are in the window, hatched on the side without fluid, at their height whatever a window follows
+results = shoal_results.Results("channel.nc")
+assert results.walls == [(0, 1), (2, -1)], results.walls
+window = plot.limits(results, [0])
+assert window[2] < 0 and window[3] > 2, window
+for unit, shift in ((None, 0), (0.5, -results["com"][0, 0, 1])):
+    snapshot = plot.Snapshot(plot.pyplot.subplots()[1], results, unit=unit)
+    snapshot.show(0)
+    for wall, (y, inward) in zip(snapshot.walls, results.walls):
+        drawn = (y + shift) / (unit or 1)
+        assert np.allclose(wall.line.get_ydata(), drawn), (unit, wall.line.get_ydata())
+        solid = np.sort([wall.solid.get_y(), wall.solid.get_y() + wall.solid.get_height()])
+        assert np.isclose(solid[1 if inward > 0 else 0], drawn), (unit, solid)
+assert shoal_results.Results("seven.nc").walls == []
 
 # bodies are drawn along the curve of their bound sheet
 for name in ("seven.nc", "swim.nc"):
