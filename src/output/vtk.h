@@ -1,5 +1,5 @@
-/* vtk.h: a run as files of VTK, which ParaView opens: a list of times that names two or three files for each row. Tested by
- * tests/app/test_export.sh, which reads them with VTK.
+/* vtk.h: a run as files of VTK, which ParaView opens: a list of times that names two or three files for each row.
+ * Tested by tests/app/test_export.sh, which reads them with VTK.
  *
  *     FOLDER/NAME.pvd              the times; open this one
  *     FOLDER/NAME-bodies-0000.vtp  each fish as a line of its bound vortices and as an outline
