@@ -341,7 +341,7 @@ LINEAR = [
             sheet->circulation[i] += sheet->part[i] * (1 - 2 * sheet->xi[i]) / 2 * strength *
                                      (middles->circulation[stretch] - middles->circulation[stretch - 1]);
         }"""),
-    ("model/flow.c", r"0, free_sheet_part\[i\],", r"0,"
+    ("model/flow_derivative.c", r"0, free_sheet_part\[i\],", r"0,"
      " free_sheet_part[i] * (1 + free_sheet_share * (1 - 2 * free_sheet_xi[i])),"),
     ("model/free_sheet.h", r"(#endif\n)$", r"extern double free_sheet_share;\n\1"),
 ]
@@ -596,9 +596,9 @@ CHOICES = [
       ("model/reactive.c", r"(by_rate\[1\]\[i\]\[j\] \+=) by_tail / 2", r"\1 0 * by_tail")],
      "1e5 Pa, no wake, after 4 s", (NO_WAKE, "fish[0].body.modulus=1e5", "time.end=4"), (7, 13)),
     ("edge midpoints see the own wake as control points do",
-     [("model/flow.c", r"(const struct range control = \{flow->points\[chunk->fish\].first,) [^;]*;",
+     [("model/flow_at_bodies.c", r"(const struct range control = \{flow->points\[chunk->fish\].first,) [^;]*;",
        r"\1 flow_tail(&flow->school->fish[chunk->fish])};"),
-      ("model/flow.c", r"at->f == at->g \? other->n_control : 0;", "at->f == at->g ? flow_tail(other) : 0;")],
+      ("model/flow_derivative.c", r"at->f == at->g \? other->n_control : 0;", "at->f == at->g ? flow_tail(other) : 0;")],
      "after 8 s", ("time.end=8",), (17, 33)),
 ]
 

@@ -6,6 +6,8 @@
 #include <string.h>
 
 #include "model/fish_school.h"
+#include "model/flow_at_bodies.h"
+#include "model/flow_derivative.h"
 
 void school_ok(enum status status) {
     if (status == STATUS_OK) return;

@@ -5,7 +5,7 @@
 
 #include "base/sparse.h"
 #include "model/fish.h"
-#include "model/flow.h"
+#include "model/flow_derivative.h"
 
 /* What holds for the circulation shed by a fish. */
 enum bound_sheet_law {

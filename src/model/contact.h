@@ -13,7 +13,7 @@
 #define CONTACT_H
 
 #include "base/status.h"
-#include "model/flow.h"
+#include "model/flow_derivative.h"
 #include "model/state.h"
 
 struct contact;

@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "model/edge.h"
+#include "model/flow_at_bodies.h"
 
 static double speed_law(const struct fish *fish, double speed) {
     return speed * (fabs(speed) + fish->linear_speed);

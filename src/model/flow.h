@@ -1,5 +1,5 @@
-/* flow.h: the velocity of the fluid at the points of every body and anywhere else: external flow, free sheets, nascent
- * vortices, bound sheets, and their images in walls. doc/model.md, sections 6 to 9, 17. Tested by
+/* flow.h: where the points of all bodies are that feel the fluid, and the vortices that move it. What these do is in
+ * flow_at_bodies.h, flow_derivative.h, flow_at_wake.h and flow_field.h. doc/model.md, sections 6 to 9, 17. Tested by
  * tests/model/test_flow.c.
  *
  * The points of one fish, in this order; which sheets each of them feels:
@@ -67,20 +67,6 @@ struct flow {
     double *motion[4];               /* velocity and acceleration of the points           (n_points) */
 };
 
-/* Derivative of the velocity at the points of fish f with respect to the unknowns of fish g, column by column:
- * columns are x (N_g), y (N_g), sheet (M_g), shed (1) of fish g. */
-struct influence_block {
-    int n_points, n_columns;
-    double *u, *v; /* (n_columns, n_points) */
-};
-
-/* Derivative of the equations of fish f that feel the fluid with respect to the same unknowns of fish g, column by
- * column: row r is the equation at.ax + r of fish f, so rows are ax, ay, gamma, circulation. */
-struct coupling_block {
-    int n_rows, n_columns;
-    double *value; /* (n_columns, n_rows) */
-};
-
 /* Fails with STATUS_MEMORY. flow_free accepts NULL. */
 enum status flow_create(struct flow **flow, const struct school *school);
 void flow_free(struct flow *flow);
@@ -92,65 +78,19 @@ int flow_n_points(const struct fish *fish);
 int flow_midpoint(const struct fish *fish, int edge);
 int flow_tail(const struct fish *fish);
 
-/* The unknown that column c of the block of fish other stands for. */
-int flow_column(const struct fish *other, int c);
+/* Place all sources where they are at time t (at or after the event of the state) for the unknowns y, and the points of
+ * all fish; the released vortices, which are not needed at bodies for which they are interpolated, on demand. Fail with
+ * STATUS_MEMORY. */
+enum status flow_place(struct flow *flow, const struct state *state, double t, const double *y);
+enum status flow_place_released(struct flow *flow, const struct state *state);
 
-/* The number of rows of fish that feel the fluid, and of columns of the block of fish other. */
-int flow_n_rows(const struct fish *fish);
-int flow_n_columns(const struct fish *other);
+/* Whether the wakes are free sheets: with shedding: sheet. */
+int flow_has_free_sheets(const struct flow *flow);
 
-/* The external flow at height y at time t. */
-void flow_external(const struct school *school, double t, double y, double *u, double *v);
+/* The wakes as vortices that everybody sees: those in the queues, or the middles of the stretches between markers. */
+const struct wake *flow_seen_wakes(const struct flow *flow, const struct state *state);
 
-/* The acceleration Du/Dt of a particle of the external flow at time t, the same everywhere, m s-2. */
-void flow_external_acceleration(const struct school *school, double t, double acceleration[2]);
-
-/* What a body feels of the flow as it was last summed. */
-struct flow_at_body {
-    const double *u, *v;    /* velocity at its points, m s-1 (flow_n_points) */
-    double acceleration[2]; /* of the external flow, m s-2 */
-};
-struct flow_at_body flow_at_body(const struct flow *flow, int f);
-
-/* Velocity of the midpoint of an edge, which moves with the given one, relative to the fluid: w. */
-void flow_relative_velocity(const struct fish *fish, int edge, const double velocity[2], const double *u,
-                            const double *v, double w[2]);
-
-/* Place all sources where they are at time t (at or after the event of the state) for the unknowns y, and sum the
- * velocity at all points of all fish; or the velocity with its gradient. Fail with STATUS_MEMORY. */
-enum status flow_velocity(struct flow *flow, const struct state *state, double t, const double *y);
-enum status flow_gradient(struct flow *flow, const struct state *state, double t, const double *y);
-
-/* Interpolate in time what the released vortices cause at the bodies until the next event: from now on, and until the
- * wakes change, they are summed no more for a fish that stays near the path that it has in the state. At an event, once
- * the vortices have their velocities. Fails with STATUS_MEMORY. */
-enum status flow_interpolate(struct flow *flow, const struct state *state);
-
-/* Sum every released vortex until the next flow_interpolate. */
-void flow_sum_exactly(struct flow *flow);
-
-/* Fill block with the derivative of the velocity at the points of fish f by the unknowns of fish g. After
- * flow_gradient. */
-void flow_derivative(const struct flow *flow, int f, int g, struct influence_block *block);
-
-/* Fill block with the velocity at the points of fish f that each bound vortex of unit strength, and a nascent vortex of
- * unit circulation, of fish g causes: columns gamma (M_g), circulation (1). With the places of the last velocity. */
-void flow_influence(const struct flow *flow, int f, int g, struct influence_block *block);
-
-/* Fill block, of one column, with the velocity at the points of fish f that its own nascent vortex or stretch of unit
- * circulation causes. With the places of the last velocity. */
-void flow_nascent_influence(const struct flow *flow, int f, struct influence_block *block);
-
-/* The velocity of the fluid at the released vortices, or markers, of all fish at the event of the state: wake_u,
- * wake_v, of fish f from wake_range[f].first on. Fails with STATUS_MEMORY. */
-enum status flow_at_wake(struct flow *flow, const struct state *state);
-
-/* The velocity of the fluid and its gradient at any points, at the event of the state, as another body would see them:
- * every wake and every bound sheet with its full smoothing; NaN beyond the walls. Where there are many it sums by the
- * tree, to 1e-7 (velocity_sum.h). Changes nothing that a run depends on. Fails with STATUS_MEMORY. */
-enum status flow_field(struct flow *flow, const struct state *state, const struct induced *at);
-
-/* The fluid's velocity past the tail of fish f, u - v_tail. After flow_velocity. */
-void flow_slip(const struct flow *flow, int f, const double *y, double slip[2]);
+/* What the points of fish f have of a quantity that its nodes have; of_points is that of all fish (n_points). */
+void flow_from_nodes(const struct flow *flow, int f, const double *of_nodes, double *of_points);
 
 #endif

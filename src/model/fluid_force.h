@@ -5,7 +5,8 @@
 
 #include "base/sparse.h"
 #include "model/fish.h"
-#include "model/flow.h"
+#include "model/flow_at_bodies.h"
+#include "model/flow_derivative.h"
 
 /* Take the forces off the rows ax, ay of the residual [N]. */
 void fluid_force_residual(const struct fish *fish, const struct flow_at_body *flow, const double *y, double *residual);

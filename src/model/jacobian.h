@@ -11,7 +11,7 @@
 #include "base/sparse.h"
 #include "base/status.h"
 #include "model/fish.h"
-#include "model/flow.h"
+#include "model/flow_derivative.h"
 
 /* How the equations of one fish change with the unknowns of another. */
 struct jacobian_coupling {

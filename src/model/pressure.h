@@ -12,7 +12,8 @@
 
 #include "base/sparse.h"
 #include "model/fish.h"
-#include "model/flow.h"
+#include "model/flow_at_bodies.h"
+#include "model/flow_derivative.h"
 
 /* A control point: the circulation of the interval around it, m2 s-1; that times density and depth, kg s-1; the
  * velocity of the fluid relative to the body, m s-1; the line of the body. */

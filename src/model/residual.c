@@ -14,6 +14,7 @@
 #include "model/clearance.h"
 #include "model/fish_distance.h"
 #include "model/fish_prescribed.h"
+#include "model/flow_at_bodies.h"
 #include "model/fluid_force.h"
 #include "model/rod.h"
 

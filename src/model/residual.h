@@ -6,6 +6,7 @@
 #include "base/status.h"
 #include "model/contact.h"
 #include "model/flow.h"
+#include "model/flow_derivative.h"
 #include "model/jacobian.h"
 #include "model/pressure.h"
 #include "model/state.h"

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "model/flow.h"
+#include "model/flow_field.h"
 #include "output/netcdf.h"
 
 // ---- the variables

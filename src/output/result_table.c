@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "model/bound_sheet.h"
+#include "model/flow_at_bodies.h"
 #include "model/fluid_force.h"
 #include "model/rod.h"
 

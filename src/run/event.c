@@ -5,6 +5,8 @@
 
 #include "model/diagnostics.h"
 #include "model/drag.h"
+#include "model/flow_at_bodies.h"
+#include "model/flow_at_wake.h"
 #include "model/wake_merge.h"
 
 // evaluate the equations; at an event there is no smaller step to try

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "model/flow_field.h"
 #include "run/handle.h"
 
 static enum shoal_type type_of(enum result_type type) {

@@ -6,6 +6,7 @@
 #include <time.h>
 
 #include "model/fish_school.h"
+#include "model/flow_at_bodies.h"
 #include "output/netcdf.h"
 #include "output/result_table.h"
 #include "run/event.h"

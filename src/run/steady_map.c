@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "model/flow_external.h"
 #include "model/state_table.h"
 
 enum steady_freedom steady_map_freedom(const struct fish *fish) {

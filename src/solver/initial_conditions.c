@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "model/flow_at_bodies.h"
 #include "solver/integrator.h"
 #include "solver/sundials_adapter.h"
 

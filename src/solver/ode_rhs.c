@@ -8,6 +8,8 @@
 
 #include "model/bound_sheet.h"
 #include "model/fish_prescribed.h"
+#include "model/flow_at_bodies.h"
+#include "model/flow_derivative.h"
 #include "model/rod.h"
 
 struct ode_rhs {

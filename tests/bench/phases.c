@@ -20,6 +20,7 @@
 #include <sys/resource.h>
 #include <time.h>
 
+#include "model/flow_at_bodies.h"
 #include "output/result_file.h"
 #include "run/simulate.h"
 #include "run/simulate_run.h"

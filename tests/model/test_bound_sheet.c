@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 #include "model/bound_sheet.h"
+#include "model/flow_at_bodies.h"
 #include "school.h"
 #include "solver/initial_conditions.h"
 

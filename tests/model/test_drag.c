@@ -1,5 +1,6 @@
 /* test_drag.c: the drag on an edge, and the moment of what the flow adds: doc/model.md, sections 9 and 11. */
 #include "model/drag.h"
+#include "model/flow_at_bodies.h"
 #include "school.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"

@@ -3,6 +3,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "model/flow_at_bodies.h"
+#include "model/flow_at_wake.h"
+#include "model/flow_derivative.h"
+#include "model/flow_external.h"
+#include "model/flow_field.h"
 #include "school.h"
 #include "vortex/kernel.h"
 

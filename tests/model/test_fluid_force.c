@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "model/flow_at_bodies.h"
 #include "model/fluid_force.h"
 #include "school.h"
 

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "failing_malloc.h"
+#include "model/flow_derivative.h"
 #include "model/jacobian.h"
 #include "school.h"
 

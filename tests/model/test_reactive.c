@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "model/fish_prescribed.h"
+#include "model/flow_at_bodies.h"
 #include "model/fluid_force.h"
 #include "model/reactive.h"
 #include "school.h"

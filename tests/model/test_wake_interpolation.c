@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "model/flow_at_bodies.h"
 #include "school.h"
 
 // one fish in the wake of another, while the oldest vortices decay

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "model/bound_sheet.h"
+#include "model/flow_at_bodies.h"
 #include "run/event.h"
 #include "school.h"
 

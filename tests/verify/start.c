@@ -9,6 +9,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "model/flow_at_bodies.h"
+#include "model/flow_derivative.h"
 #include "solver/sundials_adapter.h"
 #include "verify.h"
 
