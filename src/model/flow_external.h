@@ -1,5 +1,5 @@
-/* flow_external.h: the flow that is there without fish: a stream with shear and gusts. doc/model.md, sections 8, 9. Tested
- * by tests/model/test_flow.c. */
+/* flow_external.h: the flow that is there without fish: a stream with shear and gusts. doc/model.md, sections 8 and 9.
+ * Tested by tests/model/test_flow.c. */
 #ifndef FLOW_EXTERNAL_H
 #define FLOW_EXTERNAL_H
 
