@@ -9,7 +9,8 @@ FOLDER holds SECTION.tsv of every section. A line of a table, between tabs:
     point  figure   series    x       y
 
 A figure belongs to the section in whose table its points are. How it is drawn stands in FIGURE below; a figure that is
-not there has logarithmic axes if its points allow. A series whose name begins with "exact" is a line without markers.
+not there has logarithmic axes if its points allow. A series whose name begins with "exact" is a line without markers,
+one that begins with "published" a dashed one.
 The same tables give the same files, byte for byte.
 """
 
@@ -128,11 +129,34 @@ plate starts at one degree to the stream; growth and frequency of the mode are f
 *Heaving nose*: amplitude 0.002 L, the last of 6 or 10 periods (5 in the figures)."""),
     "steady": ("Steady states", """\
 Steady states, doc/steady.md: what `shoal steady` finds in some twelve to twenty beats against runs of two hundred, and the
-multiplier against the decay of the run. Then a plate behind another one, both of which heave in phase and swim freely:
-from five starts the follower comes to one of three places. Ramananarivo, Fang, Oza, Zhang and Ristroph (Phys. Rev. Fluids
-1, 2016) found such places in a water tank, and Fang, Mavroyiakoumou, Ristroph and Shelley (J. Fluid Mech. 2026,
-arXiv:2505.13149) with vortex sheets, "approximately integer multiples of the wavelength traced out by each wing"; the bound
-of 0.15 is for that word. A follower that is put 0.1 lengths ahead returns."""),
+multiplier against the decay of the run."""),
+    "tandem": ("A plate behind another one", """\
+Two rigid plates in line heave alike and swim freely along their line: where does the second one stay? Places are given
+from the tail of the first to the nose of the second, in wavelengths, the way that both go in a beat; each is found as
+`shoal steady` does, with `steady.formation: true` (doc/steady.md, cases/tandem_plates.yaml). What others found:
+
+* *Places are one wavelength apart, near integers, and stable.* Fang, Mavroyiakoumou, Ristroph and Shelley (J. Fluid Mech.
+  2026, arXiv:2505.13149), vortex sheets: separations are "approximately integer multiples of the wavelength traced out by
+  each wing", the one that is reached depends on the start, and a follower that is too near has less thrust, one that is
+  too far more. Nitsche, Oza and Siegel (J. Fluid Mech. 2025, arXiv:2410.04626), vortex sheets: "quantized on the flapping
+  wavelength". Before them Ramananarivo, Fang, Oza, Zhang and Ristroph (Phys. Rev. Fluids 1, 2016), in a water tank. The
+  bound of 0.15 is for the word *approximately*.
+* *The follower's phase shifts the place, linearly.* Two foils in a tank (H19.1 of the fluids meeting of the APS, 2016,
+  meetings-archive.aps.org/dfd/2016/h19/1): "shifted to any arbitrary downstream position by varying only the relative
+  flapping phase". Li et al. (Nature Communications 11, 2020, doi:10.1038/s41467-020-19086-0),
+  robots and fish: a phase that "varies linearly with front-back distance". Heydari, Hang and Kanso (eLife 96129, 2024,
+  reply to the reviews) put these, Newbolt, Zhang and Ristroph (PNAS 116, 2019) and simulations on one line.
+* *The leader swims as if alone*, but for compact pairs (Arranz, Flores and Garcia-Villalba, J. Fluid Mech. 2022), pairs that
+  heave "a slight increase in the swimming speed" faster than one (Heydari and Kanso, J. Fluid Mech. 2021,
+  arXiv:2009.12715).
+* *The wavelength that counts is that of the wake*, which moves by itself (Han et al., arXiv:2410.01932): places are 1.02 U/f
+  apart here; with a smaller amplitude they come to those of the linear theory.
+
+Of these papers we had abstracts and replies, no tables; so the numbers come from linear theory: the second plate in the
+flat far wake of the first, by Theodorsen, Garrick and Sears (tests/verify/linear_theory.c). It gives the thrust of the
+second one at every distance, with a stable and an unstable place in each wavelength, whatever the amplitude. The plates
+of Fang et al. are those of their program (github.com/FangMath/VortexSheetSchooling, parameter.m): length 2, heave 0.2,
+mass 2, drag 0.04 U^1.5, for which it lists the speed 13.25 of one alone, as Garrick's theory has, too."""),
     "coupled": ("Coupled bodies", """\
 Free bodies and the fluid that they move, with `force: pressure`: the added mass of a plate; the impulse of a stream of 0.1
 across a plate that starts at once, where places and momenta stay and velocities jump; and fish that swim by a wave of
@@ -144,7 +168,8 @@ Bodies beside straight walls, model.md 17: a fish beside a wall moves as it does
 walls has the circulation of thin-foil theory with all images, and a fish that swims against a wall loses no energy to it."""),
 }
 
-# figure: title, x axis, y axis, further keys: scale (log, linear, semilog, semilogx), slopes of the triangles
+# figure: title, x axis, y axis, further keys: scale (log, linear, semilog, semilogx), slopes of the triangles, joined
+# (True: the points of a series by lines)
 FIGURE = {
     "elastica": ("Elastica: tip deflection", "nodes N", "error of the deflection over L", {"slopes": [-2]}),
     "frequencies": ("Frequencies of beams", "nodes N", "relative error of beta L", {"slopes": [-2]}),
@@ -217,8 +242,12 @@ FIGURE = {
                       "speed: relative error", {"scale": "semilog"}),
     "steady_heaving plate": ("A heaving plate: the way to a steady state", "beats",
                       "speed: relative error", {"scale": "semilog"}),
-    "steady_tandem": ("A follower: where it settles", "tail to nose at the start [lengths]",
-                      "tail to nose [wavelengths]", {"scale": "linear"}),
+    "tandem_starts": ("A follower: where it settles", "tail to nose at the start [wavelengths]",
+                      "tail to nose [wavelengths]", {"scale": "linear", "joined": False}),
+    "tandem_places": ("Places of a follower", "n less the follower's lead [beats]", "tail to nose [wavelengths]",
+                      {"scale": "linear", "joined": False}),
+    "tandem_thrust": ("A follower that is held in place", "tail to nose [wavelengths]", "thrust over the leader's",
+                      {"scale": "linear", "joined": False}),
     "stiffness, tail": ("Plate with a heaving nose, k = pi, m = 0.1", "bending stiffness E I", "tail over nose",
                         {"scale": "semilogx"}),
     "stiffness, efficiency": ("Plate with a heaving nose, k = pi, m = 0.1", "bending stiffness E I",
@@ -291,12 +320,14 @@ def draw_figure(name, figure, path):
         if scale in ("log", "semilog"):
             points = [(x, y) for x, y in points if y > 0]
         x, y = [point[0] for point in points], [point[1] for point in points]
-        if series.startswith("exact"):
-            axes.plot(x, y, color="black", lw=1.0, label=series, zorder=1)
+        if series.startswith(("exact", "published")):
+            axes.plot(x, y, color="black", ls="-" if series.startswith("exact") else "--", lw=1.0, label=series,
+                      zorder=1)
             continue
         filled = MARKERS[number % len(MARKERS)] in "x+"
         dots = len(points) <= 25
-        axes.plot(x, y, color=LINES[markers % len(LINES)], ls=DASHES[markers % len(DASHES)], lw=0.9, ms=4,
+        dash = DASHES[markers % len(DASHES)] if keys.get("joined", True) else "none"
+        axes.plot(x, y, color=LINES[markers % len(LINES)], ls=dash, lw=0.9, ms=4,
                   marker=MARKERS[number % len(MARKERS)], mfc=None if filled else "white", mew=0.9,
                   markevery=1 if dots else max(1, len(points) // 15), label=series)
         markers += 1

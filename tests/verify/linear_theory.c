@@ -138,6 +138,33 @@ double linear_theory_heaving_speed(const struct linear_theory_plate *plate, doub
     return low * plate->omega * plate->length;
 }
 
+// ---- two plates in line
+
+// A velocity w of heave makes A_0 of the sheet at the nose C(k) w, an upwash V exp(i (omega t - k x/b)), x from the
+// middle, S(k) V with the function of Sears, S = 2 i/(pi k (H1 + i H0)). The wake of the leader has V = pi k S w far
+// behind it. So A_0 of the follower over the leader's is exp(i lead) - Z exp(-i k d/b), d the distance of the middles
+// and Z = pi k S^2/C. The thrust goes with its square.
+static double complex wake_over_heave(const struct linear_theory_plate *plate, double smoothing) {
+    const double k = plate->omega * plate->length / 2 / plate->speed;
+    const double complex h0 = j0(k) - I * y0(k), h1 = j1(k) - I * y1(k);
+    return -4 / (pi * k * h1 * (h1 + I * h0)) * exp(-plate->omega * smoothing / plate->speed);
+}
+
+double linear_theory_follower_thrust(const struct linear_theory_plate *plate, double smoothing, double gap,
+                                     double lead) {
+    const double phase = plate->omega * (gap + plate->length) / plate->speed + lead;
+    const double suction = cabs(1 - wake_over_heave(plate, smoothing) * cexp(-I * phase));
+    return suction * suction;
+}
+
+// |1 - Z exp(-i phase)| = 1 where 2 cos(arg Z - phase) = |Z|
+struct linear_theory_places linear_theory_places(const struct linear_theory_plate *plate, double smoothing) {
+    const double complex z = wake_over_heave(plate, smoothing);
+    const double turn = acos(cabs(z) / 2), along = carg(z) - plate->omega * plate->length / plate->speed;
+    const double stable = (along + turn) / (2 * pi), unstable = (along - turn) / (2 * pi);
+    return (struct linear_theory_places){stable - floor(stable), unstable - floor(unstable)};
+}
+
 // ---- impulse
 
 // m v = C = sum b_n sin(n theta), and the stream less v is what the sheet induces: sum n b_n sin(n theta)/sin(theta).

@@ -5,8 +5,8 @@
  * y(x, t) = Re(y(x) exp(i omega t)) to the left (+y); b = L/2, k = omega b/U, x = b (1 + cos theta), so that theta = 0
  * is the tail. [p] is the pressure on the right side less that on the left: the force per area to the left.
  *
- * Sources: T. Theodorsen (1935), NACA report 496; I. E. Garrick (1936), NACA report 567; T. Y. Wu (1961), J. Fluid
- * Mech. 10. Tested by the section "theory" of `make verify`. */
+ * Sources: T. Theodorsen (1935), NACA report 496; I. E. Garrick (1936), NACA report 567; W. R. Sears (1941), J.
+ * Aeronautical Sciences 8; T. Y. Wu (1961), J. Fluid Mech. 10. Tested by the section "theory" of `make verify`. */
 #ifndef LINEAR_THEORY_H
 #define LINEAR_THEORY_H
 
@@ -62,6 +62,20 @@ struct linear_theory_load linear_theory_flexible(const struct linear_theory_plat
 /* The speed [m s-1] at which the mean thrust of a heaving plate, amplitude in m, equals a drag friction U^(3/2) of the
  * plate of span 1 m. */
 double linear_theory_heaving_speed(const struct linear_theory_plate *plate, double amplitude, double friction);
+
+/* Two of these plates in line heave alike, the second one `lead` [rad] ahead, and its nose is `gap` [m] behind the tail
+ * of the first: the mean thrust of the second over that of the first. The second one moves in the far wake of the
+ * first, a flat sheet whose velocity is smoothed over `smoothing` [m], and does not act on it. The sheet goes by with
+ * U, so that the gap and the lead only matter as 2 pi gap/wavelength + lead, wavelength 2 pi U/omega. */
+double linear_theory_follower_thrust(const struct linear_theory_plate *plate, double smoothing, double gap,
+                                     double lead);
+
+/* Where the two thrusts are equal, in wavelengths from 0 to 1 behind the tail, to which any integer may be added:
+ * stable where the thrust of the second grows with its distance, at the other place unstable. Minus lead/(2 pi). */
+struct linear_theory_places {
+    double stable, unstable;
+};
+struct linear_theory_places linear_theory_places(const struct linear_theory_plate *plate, double smoothing);
 
 /* A free limp plate of this mass per length over density L, in a stream across it that starts at once: its mean
  * velocity then. The impulse of the pressure at a point is density C, C the circulation from the nose to there. */

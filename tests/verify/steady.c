@@ -9,15 +9,6 @@
 #include "run/steady_search.h"
 #include "verify.h"
 
-static _Noreturn void give_up(void) {
-    fprintf(stderr, "verify steady: %s\n", status_message());
-    exit(1);
-}
-
-static void ok(enum status status) {
-    if (status != STATUS_OK) give_up();
-}
-
 // ---- one fish, against a run of two hundred beats
 
 enum { BRUTE_BEATS = 200, MOST_BEATS = BRUTE_BEATS / 10 };
@@ -45,15 +36,15 @@ static struct found search_for(const char *text) {
     double real[STEADY_QUANTITIES], imaginary[STEADY_QUANTITIES];
     int n_beats;
     struct simulation *const simulation = verify_open("%s", text);
-    ok(case_parse(&values, text, strlen(text), "verify", ".", 0, NULL));
-    ok(steady_problem_create(&problem, &values.steady, simulation));
+    verify_ok(case_parse(&values, text, strlen(text), "verify", ".", 0, NULL));
+    verify_ok(steady_problem_create(&problem, &values.steady, simulation));
     problem.progress = note_speed;
     problem.data = &found;
-    ok(steady_search_run(&problem));
+    verify_ok(steady_search_run(&problem));
     found.n_beats = problem.map.n_beats;
     found.speed = problem.map.last[0].speed;
     found.cost = problem.map.last[0].actuation + problem.map.last[0].driving;
-    ok(steady_multipliers_find(&problem, real, imaginary, &n_beats));
+    verify_ok(steady_multipliers_find(&problem, real, imaginary, &n_beats));
     found.multiplier = hypot(real[0], imaginary[0]);
     steady_problem_free(&problem);
     simulate_free(simulation);
@@ -65,9 +56,9 @@ static struct found search_for(const char *text) {
 static double run_long(const char *text, double speed[BRUTE_BEATS + 1]) {
     struct simulation *const simulation = verify_open("%s", text);
     struct steady_map map;
-    ok(steady_map_create(&map, simulation));
+    verify_ok(steady_map_create(&map, simulation));
     for (int i = 1; i <= BRUTE_BEATS; i++) {
-        ok(steady_map_beat(&map, NULL, NULL));
+        verify_ok(steady_map_beat(&map, NULL, NULL));
         speed[i] = map.last[0].speed;
     }
     const double power = map.last[0].actuation + map.last[0].driving;
@@ -129,73 +120,7 @@ static const struct swimmer swimmers[] = {
      0, 0},
 };
 
-// ---- a plate behind another one
-
-#define TANDEM                                                                        \
-    VERIFY_SECOND TIME                                                                \
-        "fluid: {density: 1, viscosity: 2e-3}\nwake: {lifetime: 6, smoothing: 0.2}\n" \
-        "steady: {formation: true, tolerance: 1e-3}\n"                                \
-        "defaults: {fish: {nodes: 5, force: pressure, start: {speed: 3.8},\n"         \
-        "  wave: {amplitude: 0, frequency: 0},\n"                                     \
-        "  body: {profile: uniform, thickness: 0.05, width: 1, density: 20},\n"       \
-        "  motion: {driven: all, surge: free, heave: 0.15, frequency: 1}}}\n"         \
-        "fish: [{}, {start: {position: [%g, 0]}}]\n"
-
-static const char published[] = "near integers: Ramananarivo et al. 2016 (tank), Fang et al. 2026 (vortex sheets)";
-
-// what becomes of a follower that is put 0.1 lengths ahead of its place, in 30 beats
-static double wander(struct steady_problem *problem) {
-    const struct steady_unknown ahead = {1, STEADY_AHEAD};
-    const double place = problem->map.last[1].place[0], add = 0.1;
-    ok(steady_map_add(&problem->map, 1, &ahead, &add));
-    for (int i = 0; i < 30; i++) ok(steady_map_beat(&problem->map, NULL, NULL));
-    return problem->map.last[1].place[0] - place;
-}
-
-// the distance from tail to nose over the wavelength
-static double follow(int number, double start) {
-    struct case_values values;
-    struct steady_problem problem;
-    double real[2 * STEADY_QUANTITIES], imaginary[2 * STEADY_QUANTITIES];
-    int n_beats;
-    char text[1024];
-    snprintf(text, sizeof text, TANDEM, start);
-    struct simulation *const simulation = verify_open("%s", text);
-    ok(case_parse(&values, text, strlen(text), "verify", ".", 0, NULL));
-    ok(steady_problem_create(&problem, &values.steady, simulation));
-    ok(steady_search_run(&problem));
-    const struct steady_beat *const last = problem.map.last;
-    const double spacing = (-last[1].place[0] - 1) / last[0].speed;
-    verify_value(verify_text("follower from %g L behind: place, wavelengths", start - 1), published, number, spacing,
-                 0.15);
-    verify_show(verify_text("follower from %g L behind: beats of the search", start - 1), "speeds and place",
-                problem.map.n_beats);
-    verify_show(verify_text("follower from %g L behind: speed, m/s", start - 1), "of both", last[0].speed);
-    verify_point("steady_tandem", "search", start - 1, spacing);
-    ok(steady_multipliers_find(&problem, real, imaginary, &n_beats));
-    const double largest = hypot(real[0], imaginary[0]);
-    verify_zero(verify_text("follower from %g L behind: largest multiplier", start - 1), "stable: below 1", largest, 1);
-    verify_zero(verify_text("follower from %g L behind: put 0.1 L ahead, 30 beats on, L", start - 1),
-                "it returns to its place", wander(&problem), 0.02);
-    steady_problem_free(&problem);
-    simulate_free(simulation);
-    case_free(&values);
-    return spacing;
-}
-
-static void tandem(void) {
-    const double starts[] = {4.5, 6.9, 7.7, 9, 12.9};
-    const int numbers[] = {1, 1, 2, 2, 3};
-    double spacing[4];
-    for (int i = 0; i < 5; i++) spacing[numbers[i]] = follow(numbers[i], starts[i]);
-    for (int i = 1; i < 3; i++) {
-        verify_value(verify_text("from place %d to place %d, wavelengths", i, i + 1), "one", 1,
-                     spacing[i + 1] - spacing[i], 0.05);
-    }
-}
-
 void verify_steady(void) {
     if (verify_is_fast()) return;
     for (size_t i = 0; i < sizeof swimmers / sizeof *swimmers; i++) compare(&swimmers[i]);
-    tandem();
 }

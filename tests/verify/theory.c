@@ -188,6 +188,24 @@ static void flutter(void) {
     }
 }
 
+// ---- a plate behind another one
+
+// H1 = i H0 = sqrt(2/(pi k)) exp(-i (k - 3 pi/4)) where k is large
+static void follower(void) {
+    const struct linear_theory_plate slow = {1.7, 1.3, 2, 1e-7}, fast = {1.7, 1.3e-4, 2, 1.9},
+                                     plate = {1.7, 1.3, 2, 1.9};
+    const struct linear_theory_places at_slow = linear_theory_places(&slow, 0),
+                                      at_fast = linear_theory_places(&fast, 0);
+    verify_value("follower of a plate, k to 0: stable place", "a quarter of a wavelength", 0.25, at_slow.stable, 1e-5);
+    verify_value("its unstable place", "three quarters", 0.75, at_slow.unstable, 1e-5);
+    verify_value("follower of a plate, k to infinity: stable place", "1 - 1/12", 11.0 / 12, at_fast.stable, 1e-4);
+    verify_value("its unstable place", "1/2 + 1/12", 7.0 / 12, at_fast.unstable, 1e-4);
+    const double wavelength = 2 * pi * plate.speed / plate.omega, lead = 1.1;
+    const double gap = (3 + linear_theory_places(&plate, 0.2).stable - lead / (2 * pi)) * wavelength;
+    verify_value("thrust at a stable place over the leader's", "the same", 1,
+                 linear_theory_follower_thrust(&plate, 0.2, gap, lead), 1e-12);
+}
+
 void verify_theory(void) {
     published_functions();
     limits();
@@ -197,4 +215,5 @@ void verify_theory(void) {
     driven_in_vacuum();
     driven_plates();
     flutter();
+    follower();
 }
