@@ -64,6 +64,22 @@ refused() {  # name, code, text on standard error, arguments...
     fi
 }
 
+# Wait until a command succeeds; its code is 1 if it has not after $time_limit seconds.
+wait_for() {  # command...
+    local deadline=$((SECONDS + time_limit))
+    until "$@" >/dev/null 2>&1; do
+        ((SECONDS < deadline)) || return 1
+        sleep 0.01
+    done
+}
+
+# Does a process have a handler for a signal by now? It dies of a signal that comes before.
+handles() {  # process, signal
+    local caught
+    caught=$(awk '$1 == "SigCgt:" { print $2 }' "/proc/$1/status")
+    ((16#$caught >> ($(kill -l "$2") - 1) & 1))
+}
+
 has() {  # file, text
     grep -qF -- "$2" "$1" || { echo "'$2' is not in $1"; return 1; }
 }

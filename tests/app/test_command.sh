@@ -246,12 +246,7 @@ start_long_run() {
     rm -f long.nc
     env --default-signal=INT,TERM "$program" run "$diamond" -q --force -o long.nc >out 2>err </dev/null &
     pid=$!
-    local try
-    for try in $(seq 200); do
-        if [[ -e long.nc ]] && has_rows long.nc 4 2>/dev/null; then return 0; fi
-        sleep 0.1
-    done
-    return 1
+    wait_for eval '[[ -e long.nc ]] && has_rows long.nc 4'
 }
 
 # Stop the long run and set $code.

@@ -19,17 +19,10 @@ CASE
 start() {  # arguments of the program
     env --default-signal=INT,TERM,HUP,USR1 "$program" "$@" -q >out 2>err </dev/null &
     pid=$!
-    local before try
-    for ((try = 0; try < 1000; try++)); do
-        [[ -s run.nc ]] && break
-        sleep 0.01
-    done
+    local before
+    wait_for test -s run.nc
     before=$(stat -c %s run.nc)
-    for ((try = 0; try < 1000; try++)); do
-        (($(stat -c %s run.nc) > before + 6000)) && break
-        kill -0 "$pid" 2>/dev/null || break
-        sleep 0.01
-    done
+    wait_for eval '(($(stat -c %s run.nc) > before + 6000)) || ! kill -0 "$pid"'
 }
 
 # Send a signal to it, wait for its end and set $code.
@@ -95,10 +88,7 @@ rm -f ./*.nc ./*.ckpt*
 regular=(small.yaml --set time.checkpoint_interval=0.1)
 run run "${regular[@]}" -q -o reference.nc
 start run "${regular[@]}" -o run.nc
-for ((i = 0; i < 1000; i++)); do
-    [[ -e run.ckpt.previous ]] && break
-    sleep 0.01
-done
+wait_for test -e run.ckpt.previous
 end KILL
 check killed test "$code" = 137
 # killed between the two renames it leaves the older one only; both are wanted here
@@ -149,10 +139,7 @@ check the_lock_is_removed test ! -e run.nc.lock
 rm -f ./*.nc ./*.ckpt*
 (trap '' HUP && exec "$program" run small.yaml -q --set time.end=100 -o run.nc >out 2>err </dev/null) &
 pid=$!
-for ((i = 0; i < 1000; i++)); do
-    [[ -s run.nc ]] && break
-    sleep 0.01
-done
+wait_for test -s run.nc
 kill -HUP "$pid"
 sleep 0.3
 check an_ignored_signal_stays_ignored kill -0 "$pid"
@@ -169,10 +156,7 @@ for method in "ida --set solver.rtol=1e-12 --set solver.max_steps=1000000000" "r
         --set time.output_interval=10 --set output.wake_interval=10 --set wake.lifetime=20 --set solver.max_steps=1000000000 \
         --set solver.method=$method -o run.nc >out 2>err </dev/null &
     pid=$!
-    for ((i = 0; i < 1000; i++)); do
-        [[ -s run.nc ]] && break
-        sleep 0.01
-    done
+    wait_for test -s run.nc
     end TERM
     check "a_long_event_is_left: ${method%% *}" eval '((code == 75)) && has err "stopped by a signal at t = 0 s"'
 done
@@ -182,6 +166,7 @@ rm -f ./*.nc ./*.ckpt*
 sed 's/nodes: [79], sheet_points: 21/nodes: 600, sheet_points: 600/' small.yaml >large.yaml
 env --default-signal=TERM "$program" run large.yaml -q -o run.nc >out 2>err </dev/null &
 pid=$!
+wait_for handles "$pid" TERM
 sleep 0.5
 end TERM
 check a_long_start_is_left eval '((code == 75)) && has err "stopped by a signal before its start was done" &&
@@ -198,10 +183,7 @@ CASE
 run study study.yaml -q -j 1 -o whole
 env --default-signal=TERM "$program" study study.yaml -q -j 1 -o parts >out 2>err </dev/null &
 pid=$!
-for ((i = 0; i < 1000; i++)); do
-    [[ -s parts/member-0000.nc ]] && break
-    sleep 0.01
-done
+wait_for test -s parts/member-0000.nc
 end TERM
 check a_study_is_stopped test "$code" = 75 -a -e parts/member-0000.ckpt
 run study study.yaml -q -j 1 -o parts

@@ -78,6 +78,7 @@ refused a_sweep 2 'this case has a sweep of 1 axis' compare case.yaml --set 'swe
 
 env --default-signal=INT "$program" compare case.yaml --set time.end=40 --repeats 9 >out 2>err </dev/null &
 comparison=$!
+wait_for handles "$comparison" INT
 sleep 0.3
 kill -INT "$comparison"
 code=0

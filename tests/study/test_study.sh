@@ -279,23 +279,14 @@ end
 start_long() {  # folder
     env --default-signal=INT "$program" study long.yaml -j 2 -o "$1" >out 2>err </dev/null &
     study=$!
-    for ((i = 0; i < 200; i++)); do
-        [[ ! -e $1/member-0002.nc ]] || return 0
-        sleep 0.05
-    done
-    echo "the study does not start: $(<err)"
+    wait_for test -e "$1/member-0002.nc" || echo "the study does not start: $(<err)"
 }
 
 wait_for_end_of() {  # processes...
     local process
     for process in "$@"; do
-        for ((i = 0; i < 200; i++)); do
-            kill -0 "$process" 2>/dev/null || break
-            sleep 0.05
-        done
-        kill -0 "$process" 2>/dev/null && return 1
+        wait_for eval '! kill -0 "$process"' || return 1
     done
-    return 0
 }
 
 start_long stopped
@@ -313,10 +304,7 @@ set -m
     >out 2>err </dev/null &
 study=$!
 set +m
-for ((i = 0; i < 200; i++)); do
-    [[ ! -s grouped/member-0001.nc ]] || break
-    sleep 0.05
-done
+wait_for test -s grouped/member-0001.nc
 kill -TERM -- "-$study"
 code=0
 wait "$study" || code=$?
@@ -327,7 +315,7 @@ check no_member_has_failed_by_it test ! -e grouped/member-0000.failed -a ! -e gr
 
 # the parent of the program may ignore SIGCHLD
 code=0
-timeout -k 1 20 env --ignore-signal=CHLD "$program" study small.yaml -o ignored -q >out 2>err </dev/null || code=$?
+timeout "$time_limit" env --ignore-signal=CHLD "$program" study small.yaml -o ignored -q >out 2>err </dev/null || code=$?
 check a_study_sees_its_members_end_all_the_same eval 'test "$code" = 1 && has err "2 of 6 members in ignored"'
 
 # a processor for each thread of each member, of the processors that the program may use
