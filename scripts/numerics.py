@@ -684,9 +684,9 @@ VARIANTS = [
     ("no corotation", "solver/corotation.c", r"(body->has_moved =) 1;", r"\1 0;"),
     ("no initial guess", "solver/ida_newton.c", r"same \? 1 : 0", r"same ? 0 : 0"),
     ("stop at events only", "solver/ida.c", r"n_steps > 1 \?", r"n_steps < 0 ?"),
-    ("scale of x 0.018 L", "model/residual.c", POSITION, r"\1 0.018 * length"),
-    ("scale of v 10 L f", "model/residual.c", VELOCITY, r"\1 10 * length"),
-    ("scale of v 0.1 L f", "model/residual.c", VELOCITY, r"\1 0.1 * length"),
+    ("scale of x 0.018 L", "model/residual_unknowns.c", POSITION, r"\1 0.018 * length"),
+    ("scale of v 10 L f", "model/residual_unknowns.c", VELOCITY, r"\1 10 * length"),
+    ("scale of v 0.1 L f", "model/residual_unknowns.c", VELOCITY, r"\1 0.1 * length"),
 ]
 
 

@@ -8,6 +8,7 @@
 #include "model/fish_school.h"
 #include "model/flow_at_bodies.h"
 #include "model/flow_derivative.h"
+#include "model/residual_jacobian.h"
 
 void school_ok(enum status status) {
     if (status == STATUS_OK) return;
@@ -122,7 +123,7 @@ void school_stir(struct setup *setup) {
         control_set_frequency(fish, &state->control[f], t, fish->frequency + 0.2);
         control_set_bias(fish, &state->control[f], t, fish->control.bias + 0.1);
     }
-    school_ok(residual_couple(setup->residual, state->y));
+    school_ok(residual_couple(&setup->residual->couplings, state->y));
 }
 
 void school_flow(struct setup *setup, const double *y) {

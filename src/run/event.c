@@ -154,7 +154,7 @@ static enum status finish_event(struct state *state, struct residual *residual, 
         TRY(initial_conditions_solve(initial, state->t, state->y, state->yp));
         TRY(flow_interpolate(residual->flow, state));
     }
-    TRY(residual_couple(residual, state->y));
+    TRY(residual_couple(&residual->couplings, state->y));
     *jumped = jumps || steered;
     if (*jumped) diagnostics_after_jump(residual, state);
     return STATUS_OK;

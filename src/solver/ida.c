@@ -7,6 +7,7 @@
 #include <stdlib.h>
 
 #include "model/diagnostics.h"
+#include "model/residual_jacobian.h"
 #include "model/rod.h"
 #include "solver/algebraic_rates.h"
 #include "solver/ida_newton.h"
@@ -87,7 +88,7 @@ static void update_jacobian(void *data) {
 // the blocks of fish that are further apart were left out
 static int couple_more(void *data) {
     struct ida *const solver = data;
-    return residual_couple_more(solver->residual, solver->state->y);
+    return residual_couple_more(&solver->residual->couplings, solver->state->y);
 }
 
 static void ida_free(void *data) {
@@ -140,7 +141,7 @@ static enum status fill(struct ida *solver) {
     if (!solver->tolerance || !solver->kind) return status_fail(STATUS_MEMORY, "out of memory: %d tolerances", n);
     residual_kinds(solver->residual, solver->kind);
     for (int i = 0; i < n; i++) {
-        solver->tolerance[i] = solver->residual->school->rtol * residual_scale(solver->residual, i);
+        solver->tolerance[i] = solver->residual->school->rtol * residual_scale(solver->residual->school, i);
     }
     TRY(jacobian_create(&solver->jacobian, solver->residual->school));
     TRY(algebraic_rates_create(&solver->algebraic_rates, solver->residual->school));
@@ -281,7 +282,7 @@ static void tell_uncoupled(const struct ida *solver, size_t size, char *text) {
         text, size,
         "; %d of %d pairs of fish are further apart than %.3g m, and Newton's iteration does not know how they act "
         "on each other: raise solver.coupling_distance",
-        n_uncoupled, n_pairs, solver->residual->reach);
+        n_uncoupled, n_pairs, solver->residual->couplings.reach);
 }
 
 static enum status failed(const struct ida *solver, int code, long steps) {

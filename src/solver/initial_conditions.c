@@ -10,6 +10,7 @@
 
 #include "base/array.h"
 #include "model/flow_at_bodies.h"
+#include "model/residual_jacobian.h"
 #include "solver/integrator.h"
 #include "solver/sundials_adapter.h"
 
@@ -97,11 +98,11 @@ static int is_loose(const struct residual *residual, int i) {
 static double row_scale(const struct residual *residual, int i) {
     const struct unknown_place place = residual_place(residual->school, i);
     const struct layout *at = &residual->school->fish[place.fish].at;
-    const double speed = residual_scale(residual, at->gamma);
+    const double speed = residual_scale(residual->school, at->gamma);
     if (place.kind == UNKNOWN_GAMMA) return speed;
     // the relation of p and v has the size of p, in whichever row it stands
     const int is_velocity = place.kind == UNKNOWN_VX || place.kind == UNKNOWN_VY;
-    return residual_scale(residual, is_velocity && at->px < at->ax ? i + (at->px - at->vx) : i);
+    return residual_scale(residual->school, is_velocity && at->px < at->ax ? i + (at->px - at->vx) : i);
 }
 
 static enum status set_up_kinsol(struct initial_conditions *c) {
@@ -125,7 +126,7 @@ static enum status fill(struct initial_conditions *c) {
                                &c->value, &c->solution_scale, &c->value_scale, &c->start};
     TRY(array_many_doubles(arrays, sizeof arrays / sizeof *arrays, n, "initial conditions"));
     for (int i = 0; i < n; i++) {
-        c->scale[i] = residual_scale(c->residual, i);
+        c->scale[i] = residual_scale(c->residual->school, i);
         const double factor = is_loose(c->residual, i) ? loose : 1;
         c->solution_scale[i] = 1 / (factor * c->scale[i]);
         c->value_scale[i] = 1 / (factor * row_scale(c->residual, i));

@@ -7,6 +7,7 @@
 
 #include "base/array.h"
 #include "model/diagnostics.h"
+#include "model/residual_jacobian.h"
 #include "solver/algebraic_rates.h"
 #include "solver/linear.h"
 
@@ -58,8 +59,8 @@ static enum status fill(struct one_step *solver) {
     residual_kinds(solver->residual, solver->kind);
     for (int i = 0; i < n; i++) {
         // the errors of Newton's iteration in the velocities of a stiff body add up to a spurious momentum
-        solver->tolerance[i] = solver->residual->school->rtol * residual_scale(solver->residual, i) *
-                               residual_undamped(solver->residual, i);
+        solver->tolerance[i] = solver->residual->school->rtol * residual_scale(solver->residual->school, i) *
+                               residual_undamped(solver->residual->school, i);
     }
     TRY(jacobian_create(&solver->jacobian, solver->residual->school));
     TRY(algebraic_rates_create(&solver->algebraic_rates, solver->residual->school));
@@ -77,7 +78,7 @@ static enum status one_step_create(void **solver, struct residual *residual, str
     new->residual = residual;
     new->state = state;
     new->options = *options;
-    new->pattern = residual->pattern;
+    new->pattern = residual->couplings.pattern;
     new->counts = options->before;
     new->counts.step_size = options->step;
     new->counts.order = methods_table[options->method].order;
@@ -117,7 +118,7 @@ static void set_rates(struct one_step *solver, double h) {
 
 /* Evaluate and factorise the Jacobian. */
 static enum status set_up(struct one_step *solver, double t, double cj) {
-    solver->pattern = solver->residual->pattern;
+    solver->pattern = solver->residual->couplings.pattern;
     solver->counts.jacobian_evaluations++;
     solver->cj = 0;
     TRY(residual_jacobian(solver->residual, t, cj, solver->state->y, solver->jacobian));
@@ -154,7 +155,7 @@ static enum status iterate(struct one_step *solver, double t, double h, int *con
     const double cj = solver->options.method == METHOD_TRAPEZOID ? 2 / h : 1 / h;
     for (int i = 0; i < MAX_ITERATIONS; i++) {
         TRY(integrator_ask(solver->stop));
-        if (solver->cj != cj || solver->pattern != solver->residual->pattern) TRY(set_up(solver, t, cj));
+        if (solver->cj != cj || solver->pattern != solver->residual->couplings.pattern) TRY(set_up(solver, t, cj));
         double size = 0;
         TRY(correct(solver, t, h, &size));
         const double rate = i > 0 ? size / before : 0;

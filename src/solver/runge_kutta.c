@@ -134,8 +134,8 @@ static enum status fill(struct runge_kutta *solver) {
     // algebraic unknowns have neither rate nor error here; without a tolerance for velocities an explicit method can go
     // wrong unnoticed
     for (int i = 0; i < n; i++) {
-        solver->tolerance[i] = solver->residual->school->rtol * residual_scale(solver->residual, i) *
-                               residual_undamped(solver->residual, i);
+        solver->tolerance[i] = solver->residual->school->rtol * residual_scale(solver->residual->school, i) *
+                               residual_undamped(solver->residual->school, i);
     }
     keep_circulation(solver);
     TRY(ode_rhs_create(&solver->rhs, solver->residual));
@@ -202,7 +202,7 @@ static struct unknown_place worst_velocity(const struct runge_kutta *solver) {
     double max = -1;
     for (int f = 0; f < school->n_fish; f++) {
         for (int i = school->fish[f].at.vx; i < school->fish[f].at.ax; i++) {
-            const double size = fabs(solver->state->y[i]) / residual_scale(solver->residual, i);
+            const double size = fabs(solver->state->y[i]) / residual_scale(solver->residual->school, i);
             if (size <= max) continue;
             worst = i;
             max = isnan(size) ? INFINITY : size;

@@ -21,6 +21,7 @@
 #include <time.h>
 
 #include "model/flow_at_bodies.h"
+#include "model/residual_jacobian.h"
 #include "output/result_file.h"
 #include "run/simulate.h"
 #include "run/simulate_run.h"

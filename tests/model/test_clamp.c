@@ -5,6 +5,7 @@
 #include "model/clamp.h"
 #include "model/edge.h"
 #include "model/fish_prescribed.h"
+#include "model/residual_jacobian.h"
 #include "model/rod.h"
 #include "school.h"
 

@@ -5,6 +5,7 @@
 #include "failing_malloc.h"
 #include "model/flow_derivative.h"
 #include "model/jacobian.h"
+#include "model/residual_jacobian.h"
 #include "school.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
@@ -36,7 +37,7 @@ static void blocks_are_those_of_the_coupled_fish(void **state) {
     for (int f = 0; f < 5; f++) {
         assert_int_equal(jacobian->first[f], n);
         for (int g = 0; g < 5; g++) {
-            if (g == f || !setup.residual->coupled[5 * f + g]) continue;
+            if (g == f || !setup.residual->couplings.coupled[5 * f + g]) continue;
             assert_int_equal(jacobian->coupling[n].other, g);
             assert_int_equal(jacobian->coupling[n].rows.n_rows, flow_n_rows(&setup.school->fish[f]));
             assert_int_equal(jacobian->coupling[n++].rows.n_columns, flow_n_columns(&setup.school->fish[g]));
@@ -44,7 +45,7 @@ static void blocks_are_those_of_the_coupled_fish(void **state) {
     }
     assert_int_equal(jacobian->n_couplings, n);
     // 0 with 1 and 2
-    assert_true(setup.residual->coupled[1] && setup.residual->coupled[2]);
+    assert_true(setup.residual->couplings.coupled[1] && setup.residual->couplings.coupled[2]);
     assert_int_equal(jacobian->first[4] - jacobian->first[3], 0);
     assert_true(n >= 4 && n <= 6);
     school_clear(&setup);

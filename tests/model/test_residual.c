@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "model/fish_prescribed.h"
+#include "model/residual_jacobian.h"
 #include "school.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
@@ -191,7 +192,7 @@ static void far_fish_are_left_out_of_the_jacobian_and_of_nothing_else(void **sta
     school_build(&setup, text);
     const struct layout *a = &setup.school->fish[0].at, *b = &setup.school->fish[1].at;
     const size_t n = (size_t)setup.school->n_unknowns;
-    assert_int_equal(setup.residual->coupled[1], 0);
+    assert_int_equal(setup.residual->couplings.coupled[1], 0);
     school_ok(residual_jacobian(setup.residual, 0, 1, setup.state->y, setup.jacobian));
     double *dense = school_dense_jacobian(setup.jacobian);
     for (int row = a->x; row < a->end; row++) {
@@ -200,11 +201,11 @@ static void far_fish_are_left_out_of_the_jacobian_and_of_nothing_else(void **sta
     free(dense);
     // closer by 0.5: coupled, which is another pattern; asked again nothing has changed
     for (int k = 0; k < 7; k++) setup.state->y[b->y + k] -= 0.5;
-    const unsigned pattern = setup.residual->pattern;
-    school_ok(residual_couple(setup.residual, setup.state->y));
-    assert_int_equal(setup.residual->pattern, pattern + 1);
-    school_ok(residual_couple(setup.residual, setup.state->y));
-    assert_int_equal(setup.residual->pattern, pattern + 1);
+    const unsigned pattern = setup.residual->couplings.pattern;
+    school_ok(residual_couple(&setup.residual->couplings, setup.state->y));
+    assert_int_equal(setup.residual->couplings.pattern, pattern + 1);
+    school_ok(residual_couple(&setup.residual->couplings, setup.state->y));
+    assert_int_equal(setup.residual->couplings.pattern, pattern + 1);
     school_ok(residual_jacobian(setup.residual, 0, 1, setup.state->y, setup.jacobian));
     dense = school_dense_jacobian(setup.jacobian);
     assert_true(fabs(dense[(size_t)a->gamma * n + (size_t)b->gamma]) > 1e-4);
@@ -246,13 +247,13 @@ static void unknowns_have_names_kinds_and_scales(void **state) {
         NEAR(kind[want[k].i], want[k].kind, 0, 0);
     }
     // a fish of twice the length and the same beat
-    NEAR(residual_scale(setup.residual, b->y), 2 * residual_scale(setup.residual, a->y), 0, 1e-14);
-    NEAR(residual_scale(setup.residual, b->vx), 2 * residual_scale(setup.residual, a->vx), 0, 1e-14);
-    NEAR(residual_scale(setup.residual, b->circulation), 4 * residual_scale(setup.residual, a->circulation), 0, 1e-14);
+    NEAR(residual_scale(setup.school, b->y), 2 * residual_scale(setup.school, a->y), 0, 1e-14);
+    NEAR(residual_scale(setup.school, b->vx), 2 * residual_scale(setup.school, a->vx), 0, 1e-14);
+    NEAR(residual_scale(setup.school, b->circulation), 4 * residual_scale(setup.school, a->circulation), 0, 1e-14);
     // velocities of methods without damping: ten times the scale of the positions in the time 1/f, f = 1 Hz
-    NEAR(residual_scale(setup.residual, a->vx) * residual_undamped(setup.residual, a->vx),
-         10 * residual_scale(setup.residual, a->x), 0, 1e-14);
-    NEAR(residual_undamped(setup.residual, a->x), 1, 0, 0);
+    NEAR(residual_scale(setup.school, a->vx) * residual_undamped(setup.school, a->vx),
+         10 * residual_scale(setup.school, a->x), 0, 1e-14);
+    NEAR(residual_undamped(setup.school, a->x), 1, 0, 0);
     school_clear(&setup);
 }
 
@@ -333,7 +334,7 @@ static void load_at_the_tip_accelerates_the_tail_only(void **state) {
 static int n_coupled(const struct residual *residual) {
     int n = 0;
     const int n_fish = residual->school->n_fish;
-    for (int i = 0; i < n_fish * n_fish; i++) n += residual->coupled[i];
+    for (int i = 0; i < n_fish * n_fish; i++) n += residual->couplings.coupled[i];
     return n;
 }
 
@@ -347,16 +348,16 @@ static void more_fish_couple_when_asked_until_all_do(void **state) {
     struct residual *const residual = setup.residual;
     const double *const y = setup.state->y;
     assert_int_equal(n_coupled(residual), 3);
-    assert_int_equal(residual_couple_more(residual, y), 1);
+    assert_int_equal(residual_couple_more(&residual->couplings, y), 1);
     assert_int_equal(n_coupled(residual), 5);
     // it stays so
-    school_ok(residual_couple(residual, y));
+    school_ok(residual_couple(&residual->couplings, y));
     assert_int_equal(n_coupled(residual), 5);
-    assert_int_equal(residual_couple_more(residual, y), 1);
+    assert_int_equal(residual_couple_more(&residual->couplings, y), 1);
     assert_int_equal(n_coupled(residual), 7);
-    assert_int_equal(residual_couple_more(residual, y), 1);
+    assert_int_equal(residual_couple_more(&residual->couplings, y), 1);
     assert_int_equal(n_coupled(residual), 9);
-    assert_int_equal(residual_couple_more(residual, y), 0);
+    assert_int_equal(residual_couple_more(&residual->couplings, y), 0);
     assert_int_equal(n_coupled(residual), 9);
     school_clear(&setup);
 }

@@ -220,7 +220,7 @@ static void an_iteration_that_ignores_other_fish_ends_with_a_remedy(void **state
     for (int f = 0; f < 16; f++)
         length += snprintf(text + length, sizeof text - (size_t)length, "  - {start: {position: [0, %g]}}\n", 0.3 * f);
     struct simulation *const simulation = school_simulation(text);
-    simulation->residual->couples_most = 1;  // as where there is no memory for more
+    simulation->residual->couplings.couples_most = 1;  // as where there is no memory for more
     enum status status = STATUS_OK;
     for (int i = 0; i < 5 && status == STATUS_OK; i++) status = simulate_step(simulation);
     assert_int_equal(status, STATUS_SOLVER);

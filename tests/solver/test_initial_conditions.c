@@ -78,7 +78,7 @@ static void blocks_left_out_of_the_jacobian_change_no_solution(void **state) {
     (void)state;
     struct setup setup;
     school_build(&setup, uncoupled);
-    assert_int_equal(setup.residual->coupled[1], 0);
+    assert_int_equal(setup.residual->couplings.coupled[1], 0);
     struct initial_conditions *solver;
     school_ok(initial_conditions_create(&solver, setup.residual));
     school_ok(initial_conditions_solve(solver, 0, setup.state->y, setup.state->yp));

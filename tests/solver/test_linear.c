@@ -7,6 +7,7 @@
 #include <time.h>
 
 #include "failing_malloc.h"
+#include "model/residual_jacobian.h"
 #include "school.h"
 #include "solver/linear.h"
 
@@ -71,7 +72,7 @@ static void build(struct system *system, const char *text, double relative) {
     system->b = system->scale + system->n;
     system->x = system->b + system->n;
     for (int i = 0; i < system->n; i++) {
-        system->scale[i] = residual_scale(system->setup.residual, i);
+        system->scale[i] = residual_scale(system->setup.school, i);
         system->b[i] = school_random(&system->setup);
     }
     jacobian_at(system, 370);
@@ -82,7 +83,7 @@ static void build(struct system *system, const char *text, double relative) {
 // without the blocks between the fish
 static void uncouple(struct system *system) {
     const unsigned char none[49] = {0};  // 7 fish at most
-    school_ok(jacobian_couple(system->setup.jacobian, none, system->setup.residual->pattern));
+    school_ok(jacobian_couple(system->setup.jacobian, none, system->setup.residual->couplings.pattern));
     assert_int_equal(system->setup.jacobian->n_couplings, 0);
 }
 

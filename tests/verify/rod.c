@@ -13,6 +13,7 @@
 #include <stdlib.h>
 
 #include "model/fish_prescribed.h"
+#include "model/residual_jacobian.h"
 #include "verify.h"
 
 enum { N_LEVELS = 4 };

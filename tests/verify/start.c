@@ -11,6 +11,7 @@
 
 #include "model/flow_at_bodies.h"
 #include "model/flow_derivative.h"
+#include "model/residual_jacobian.h"
 #include "solver/sundials_adapter.h"
 #include "verify.h"
 
@@ -162,7 +163,7 @@ static struct value largest_value(struct simulation *simulation) {
     }
     for (int i = 0; i < n; i++) {
         most.plain = fmax(most.plain, fabs(value[i]));
-        most.scaled = fmax(most.scaled, fabs(value[i]) / residual_scale(simulation->residual, i));
+        most.scaled = fmax(most.scaled, fabs(value[i]) / residual_scale(simulation->residual->school, i));
     }
     free(value);
     return most;
@@ -384,12 +385,12 @@ static double disagreement(struct simulation *simulation) {
         // nodes need their places, those of a driven head too
         const int given = kind[i] > 0 || residual_place(simulation->school, i).kind < UNKNOWN_AX;
         y[i] = given ? simulation->state->y[i] : 0;
-        tolerance[i] = 1e-12 * residual_scale(simulation->residual, i);
+        tolerance[i] = 1e-12 * residual_scale(simulation->residual->school, i);
     }
     const int code = calculate(simulation, y, yp, kind, tolerance);
     double most = code == 0 ? 0 : INFINITY;
     for (int i = 0; i < n; i++) {
-        const double scale = residual_scale(simulation->residual, i);
+        const double scale = residual_scale(simulation->residual->school, i);
         most = fmax(most, fabs(y[i] - simulation->state->y[i]) / scale);
         // the rates of algebraic unknowns are free
         if (kind[i] > 0) most = fmax(most, fabs(yp[i] - simulation->state->yp[i]) / scale);
