@@ -105,83 +105,75 @@ static double square_of(double smoothing) {
     return smoothing * smoothing + no_square;
 }
 
-// The targets after the last whole 16 are copied into 8 or 16, which the last of them fills up.
-struct remainder {
-    int first, n, n_filled;
-    double x[2 * BLOCK], y[2 * BLOCK], sum[5][2 * BLOCK];
+/* What is added to targets: to[0], to[1]: the velocity; where with_gradient: to[2] .. to[4]: u_x, u_y, v_x. The
+ * sources are those of one sum, or changes where there are any. */
+struct addition {
+    const struct kernel_sources *sources;
+    const struct kernel_changes *changes;
+    int with_gradient;
 };
 
-static void remainder_load(struct remainder *rest, int n_targets, const double *x, const double *y) {
-    rest->n = n_targets % (2 * BLOCK);
-    rest->first = n_targets - rest->n;
-    rest->n_filled = rest->n <= BLOCK ? BLOCK : 2 * BLOCK;
-    for (int i = 0; i < rest->n_filled; i++) {
-        const int from = rest->first + (i < rest->n ? i : rest->n - 1);
-        rest->x[i] = x[from];
-        rest->y[i] = y[from];
+// n: a multiple of BLOCK
+static void add_to_blocks(const struct addition *what, int n, const double *x, const double *y, double *const to[5]) {
+    const struct kernel_variant *const variant = kernel_variant(0);
+    if (what->changes && what->with_gradient) {
+        variant->gradient_change(n, x, y, what->changes, to[0], to[1], to[2], to[3], to[4]);
+    } else if (what->changes) {
+        variant->velocity_change(n, x, y, what->changes, to[0], to[1]);
+    } else if (what->with_gradient) {
+        variant->gradient(n, x, y, what->sources, to[0], to[1], to[2], to[3], to[4]);
+    } else {
+        variant->velocity(n, x, y, what->sources, to[0], to[1]);
     }
-    memset(rest->sum, 0, sizeof rest->sum);
 }
 
-static void remainder_add(const struct remainder *rest, int k, double *value) {
-    for (int i = 0; i < rest->n; i++) value[rest->first + i] += rest->sum[k][i];
+// The targets after the last whole 16 are copied into 8 or 16, which the last of them fills up.
+static void add_to_rest(const struct addition *what, int n, const double *x, const double *y, double *const to[5]) {
+    double rest_x[2 * BLOCK], rest_y[2 * BLOCK], sum[5][2 * BLOCK];
+    const int n_filled = n <= BLOCK ? BLOCK : 2 * BLOCK, n_sums = what->with_gradient ? 5 : 2;
+    for (int i = 0; i < n_filled; i++) {
+        rest_x[i] = x[i < n ? i : n - 1];
+        rest_y[i] = y[i < n ? i : n - 1];
+    }
+    memset(sum, 0, (size_t)n_sums * sizeof *sum);
+    add_to_blocks(what, n_filled, rest_x, rest_y, (double *const[5]){sum[0], sum[1], sum[2], sum[3], sum[4]});
+    for (int k = 0; k < n_sums; k++) {
+        for (int i = 0; i < n; i++) to[k][i] += sum[k][i];
+    }
+}
+
+static void add(const struct addition *what, int n, const double *x, const double *y, double *const to[5]) {
+    const int whole = n - n % (2 * BLOCK), n_sums = what->with_gradient ? 5 : 2;
+    add_to_blocks(what, whole, x, y, to);
+    if (whole == n) return;
+    double *rest[5] = {NULL};
+    for (int k = 0; k < n_sums; k++) rest[k] = to[k] + whole;
+    add_to_rest(what, n - whole, x + whole, y + whole, rest);
 }
 
 void kernel_add_velocity(int n_targets, const double *x, const double *y, int n_sources, const double *source_x,
                          const double *source_y, const double *circulation, double smoothing, double *u, double *v) {
-    const struct kernel_variant *const variant = kernel_variant(0);
     const struct kernel_sources sources = {n_sources, source_x, source_y, circulation, square_of(smoothing)};
-    const int whole = n_targets - n_targets % (2 * BLOCK);
-    struct remainder rest;
-    variant->velocity(whole, x, y, &sources, u, v);
-    if (whole == n_targets) return;
-    remainder_load(&rest, n_targets, x, y);
-    variant->velocity(rest.n_filled, rest.x, rest.y, &sources, rest.sum[0], rest.sum[1]);
-    remainder_add(&rest, 0, u);
-    remainder_add(&rest, 1, v);
+    add(&(struct addition){.sources = &sources}, n_targets, x, y, (double *const[5]){u, v});
 }
 
 void kernel_add_gradient(int n_targets, const double *x, const double *y, int n_sources, const double *source_x,
                          const double *source_y, const double *circulation, double smoothing, double *u, double *v,
                          double *u_x, double *u_y, double *v_x) {
-    const struct kernel_variant *const variant = kernel_variant(0);
     const struct kernel_sources sources = {n_sources, source_x, source_y, circulation, square_of(smoothing)};
-    const int whole = n_targets - n_targets % (2 * BLOCK);
-    double *const to[5] = {u, v, u_x, u_y, v_x};
-    struct remainder rest;
-    variant->gradient(whole, x, y, &sources, u, v, u_x, u_y, v_x);
-    if (whole == n_targets) return;
-    remainder_load(&rest, n_targets, x, y);
-    variant->gradient(rest.n_filled, rest.x, rest.y, &sources, rest.sum[0], rest.sum[1], rest.sum[2], rest.sum[3],
-                      rest.sum[4]);
-    for (int k = 0; k < 5; k++) remainder_add(&rest, k, to[k]);
+    add(&(struct addition){.sources = &sources, .with_gradient = 1}, n_targets, x, y,
+        (double *const[5]){u, v, u_x, u_y, v_x});
 }
 
 void kernel_add_velocity_change(int n_targets, const double *x, const double *y, const struct kernel_changes *changes,
                                 double *u, double *v) {
-    const struct kernel_variant *const variant = kernel_variant(0);
-    const int whole = n_targets - n_targets % (2 * BLOCK);
-    struct remainder rest;
-    variant->velocity_change(whole, x, y, changes, u, v);
-    if (whole == n_targets) return;
-    remainder_load(&rest, n_targets, x, y);
-    variant->velocity_change(rest.n_filled, rest.x, rest.y, changes, rest.sum[0], rest.sum[1]);
-    remainder_add(&rest, 0, u);
-    remainder_add(&rest, 1, v);
+    add(&(struct addition){.changes = changes}, n_targets, x, y, (double *const[5]){u, v});
 }
 
 void kernel_add_gradient_change(int n_targets, const double *x, const double *y, const struct kernel_changes *changes,
                                 double *u, double *v, double *u_x, double *u_y, double *v_x) {
-    const struct kernel_variant *const variant = kernel_variant(0);
-    const int whole = n_targets - n_targets % (2 * BLOCK);
-    double *const to[5] = {u, v, u_x, u_y, v_x};
-    struct remainder rest;
-    variant->gradient_change(whole, x, y, changes, u, v, u_x, u_y, v_x);
-    if (whole == n_targets) return;
-    remainder_load(&rest, n_targets, x, y);
-    variant->gradient_change(rest.n_filled, rest.x, rest.y, changes, rest.sum[0], rest.sum[1], rest.sum[2], rest.sum[3],
-                             rest.sum[4]);
-    for (int k = 0; k < 5; k++) remainder_add(&rest, k, to[k]);
+    add(&(struct addition){.changes = changes, .with_gradient = 1}, n_targets, x, y,
+        (double *const[5]){u, v, u_x, u_y, v_x});
 }
 
 void kernel_add_pairwise(const struct kernel_tile *a, const struct kernel_tile *b, double smoothing) {
