@@ -136,7 +136,7 @@ void residual_muscle(struct residual *residual, int f, double t, const double *y
 }
 
 // the rows of a node whose motion is given: its place, velocity and acceleration are the given ones
-static void drive(const struct fish *fish, double t, const double *y, double *value) {
+static void prescribe(const struct fish *fish, double t, const double *y, double *value) {
     for (int k = 0; k < fish_n_prescribed(fish); k++) {
         double position[2], velocity[2], acceleration[2];
         fish_prescribed_node(fish, k, t, position, velocity, acceleration);
@@ -198,7 +198,7 @@ static void evaluate_fish(struct residual *residual, int f, double t, const doub
         value[fish->at.ay + k] /= fish->mass[k];
     }
     if (residual->pressure[f]) pressure_momentum_residual(residual->pressure[f], residual->at_start, y, value);
-    drive(fish, t, y, value);
+    prescribe(fish, t, y, value);
     // impermeability, Kelvin, Kutta
     bound_sheet_residual(fish, residual_lost(residual, f, t), u, v, y, value);
     bound_sheet_kutta_residual(fish, residual_sheet_law(residual), ramp_value(t, school->kutta_ramp), u, v, y, yp,

@@ -6,7 +6,7 @@
 
 static const double pi = 3.14159265358979323846;
 
-static void driven_velocity_and_acceleration_are_derivatives(void **state) {
+static void prescribed_velocity_and_acceleration_are_derivatives(void **state) {
     (void)state;
     struct setup setup;
     school_build(&setup, TIME
@@ -26,7 +26,7 @@ static void driven_velocity_and_acceleration_are_derivatives(void **state) {
     school_clear(&setup);
 }
 
-static void driven_body_is_straight_and_turns_about_its_pivot(void **state) {
+static void prescribed_body_is_straight_and_turns_about_its_pivot(void **state) {
     (void)state;
     struct setup setup;
     school_build(&setup, TIME
@@ -69,8 +69,8 @@ static void pitch_is_its_phase_before_heave(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(driven_velocity_and_acceleration_are_derivatives),
-        cmocka_unit_test(driven_body_is_straight_and_turns_about_its_pivot),
+        cmocka_unit_test(prescribed_velocity_and_acceleration_are_derivatives),
+        cmocka_unit_test(prescribed_body_is_straight_and_turns_about_its_pivot),
         cmocka_unit_test(pitch_is_its_phase_before_heave),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
