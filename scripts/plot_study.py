@@ -6,7 +6,8 @@
                                     method the cheapest that is accurate, also as a table
     a position as the only axis     a map of the places, a number at each
     two axes of numbers             a map over both
-    anything else                   speed, cost of transport and Strouhal number over the first axis
+    anything else                   speed, cost of transport and Strouhal number over the first axis; of fish whose muscle
+                                    does no work the efficiency; of fish that are held at a speed thrust and power over it
     a comparison of methods         error against wall time and evaluations
 """
 
@@ -253,15 +254,24 @@ def plot_map(study, x, y, labels, quantity, figure):
     bar.formatter.set_useOffset(False)
 
 
+def panels_of(study, first):
+    """What is drawn over an axis: speed and cost; of fish that are held at the speeds of the axis what that takes."""
+    speed, given = study["speed"][study.complete], study[first.name][study.complete]
+    if first.long_name.endswith(".speed") and np.allclose(speed, given[:, None], rtol=1e-3):
+        return ["mean_thrust", "mean_power", "thrust_efficiency"]
+    is_paid = np.any(study["cost_of_transport"][study.complete])
+    return ["speed", "cost_of_transport" if is_paid else "efficiency", "strouhal"]
+
+
 def plot_lines(study, figure):
-    """Speed, cost of transport and Strouhal number over the first axis; a line per fish and per value of the rest."""
+    """Three quantities over the first axis; a line per fish and per value of the rest."""
     first = study.axes[0][0]
     x = study[first.name] if study.is_number(first.name) else np.arange(study.complete.size)
     rest = [[case_of(study, m, first)] if study.axes[1:] else [] for m in range(x.size)]
     names = list(study["fish_name"])
     figure.set_figheight(4.8)
     stack = figure.subplots(3, 1, sharex=True)
-    for axes, quantity in zip(stack, ["speed", "cost_of_transport", "strouhal"]):
+    for axes, quantity in zip(stack, panels_of(study, first)):
         i = 0
         for words in dict.fromkeys(map(tuple, rest)):
             rows = np.array([tuple(r) == words for r in rest]) & study.complete
