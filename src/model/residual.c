@@ -96,6 +96,7 @@ void residual_free(struct residual *residual) {
 enum bound_sheet_law residual_sheet_law(const struct residual *residual) {
     const struct school *school = residual->school;
     if (residual->shed_now == SHED_IS_GIVEN) return BOUND_SHEET_FROZEN;
+    if (residual->shed_now == SHED_IS_FAR) return BOUND_SHEET_EDGE;
     if (school->shedding == SHEDDING_IMPULSIVE &&
         !(residual->shed_now == SHED_BY_IMPULSE && school->kutta == KUTTA_EDGE)) {
         return BOUND_SHEET_FROZEN;

@@ -14,8 +14,9 @@
 #include "model/state.h"
 
 /* What determines the circulation that has been shed: the law of the case; Kutta's condition, while an impulsive event
- * is solved; nothing, it is given: before the first marker of a free sheet is born. */
-enum shed_now { SHED_BY_LAW, SHED_BY_IMPULSE, SHED_IS_GIVEN };
+ * is solved; nothing, it is given: before the first marker of a free sheet is born; Kutta's condition, while all of it
+ * is infinitely far away (wake_leave_behind): in an equilibrium. */
+enum shed_now { SHED_BY_LAW, SHED_BY_IMPULSE, SHED_IS_GIVEN, SHED_IS_FAR };
 
 /* What the equations need besides the unknowns; workspace that holds nothing a restart would miss. */
 struct residual {

@@ -12,6 +12,13 @@
 #include "model/fluid_force.h"
 #include "model/rod.h"
 
+// of circulation that is infinitely far away nothing is felt: it is the last column
+static void forget_nascent(struct influence_block *block) {
+    const long n = block->n_points, first = (block->n_columns - 1) * n;
+    memset(block->u + first, 0, (size_t)n * sizeof *block->u);
+    memset(block->v + first, 0, (size_t)n * sizeof *block->v);
+}
+
 // the equations of fish f by what moves with fish g and comes through the velocity of the fluid
 static void flow_jacobian(const struct residual *residual, int f, int g, double t, const double *y,
                           struct influence_block *block, struct coupling_block *rows) {
@@ -21,6 +28,7 @@ static void flow_jacobian(const struct residual *residual, int f, int g, double 
     rows->n_columns = flow_n_columns(&residual->school->fish[g]);
     memset(rows->value, 0, (size_t)rows->n_rows * (size_t)rows->n_columns * sizeof *rows->value);
     flow_derivative(residual->flow, f, g, block);
+    if (residual->shed_now == SHED_IS_FAR) forget_nascent(block);
     fluid_force_flow_jacobian(fish, &flow, block, y, rows);
     if (residual->pressure[f]) pressure_flow_jacobian(residual->pressure[f], block, rows);
     if (residual->pressure[f] && f == g) pressure_own_jacobian(residual->pressure[f], y, rows);

@@ -176,6 +176,12 @@ void wake_remove_old(struct wake *wake, const struct school *school, double t) {
         memmove(*array[i], *array[i] + n_old, (size_t)wake->n_vortex * sizeof **array[i]);
 }
 
+void wake_leave_behind(struct wake *wake, double shed) {
+    wake->n_vortex = 0;
+    wake->shed_before = wake->removed = shed;
+    wake->version++;
+}
+
 void wake_set_velocity(struct wake *wake, const double *u, const double *v, int n_new) {
     const int n_old = wake->n_vortex - n_new;
     wake->version++;

@@ -78,6 +78,9 @@ int wake_n_old(const struct wake *wake, const struct school *school, double t);
 /* Remove the old vortices. */
 void wake_remove_old(struct wake *wake, const struct school *school, double t);
 
+/* There are no vortices any more: all the circulation that has been shed, m2 s-1, is infinitely far away. */
+void wake_leave_behind(struct wake *wake, double shed);
+
 /* Take new velocities; one of the n_new newest vortices, which had none before, moves on its first interval with them
  * alone. */
 void wake_set_velocity(struct wake *wake, const double *u, const double *v, int n_new);

@@ -90,6 +90,8 @@ static double sheet_needs(const struct subject *subject) {
 static double sheet_size(const struct subject *subject) {
     const struct diagnostics_fish *const now = &subject->diagnostics->fish[subject->f];
     if (subject->school->shedding != SHEDDING_SHEET || !(now->speed > 0)) return 0;
+    // an equilibrium sheds nothing
+    if (subject->state->wake[subject->f].n_vortex == 0) return 0;
     const double nearly = 0.1;
     if (subject->fish->period > 0 && !(fabs(now->drift) < nearly)) return 0;
     // what needs more does not swim

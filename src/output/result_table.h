@@ -15,7 +15,7 @@
 
 enum {
     RESULT_SCHEMA = 1,     /* attribute shoal_schema; grows when a reader of the files has to change */
-    RESULT_TABLE_MAX = 128 /* no more variables than these */
+    RESULT_TABLE_MAX = 160 /* no more variables than these */
 };
 
 /* Dimensions; NONE ends a list of them. Slots beyond what a fish has hold NaN. One of length 0 is not in the file, and

@@ -16,6 +16,9 @@ static const struct quantity {
     {"steady_place", "place", "m", "%.5f", true},
     {"steady_force", "force of the fluid", "N", "%.5g", true},
     {"steady_thrust", "thrust", "N", "%.5g", false},
+    {"steady_drag", "drag", "N", "%.5g", false},
+    {"steady_lift", "lift", "N", "%.5g", false},
+    {"steady_deflection", "deflection", "m", "%.5f", false},
     {"steady_actuation_power", "power of the muscle", "W", "%.5g", false},
     {"steady_driving_power", "driving power", "W", "%.5g", false},
     {"steady_damping_power", "power of damping", "W", "%.5g", false},
@@ -25,6 +28,17 @@ static const struct quantity {
     {"steady_strouhal", "Strouhal number", "", "%.5f", false},
 };
 
+/* Of bodies without a beat. */
+static enum status print_equilibrium(const struct netcdf_reader *reader, double residual, FILE *stream) {
+    double stiffness;
+    TRY(netcdf_read_doubles(reader, "steady_stiffness", (struct netcdf_slice[]){{NULL}}, &stiffness));
+    fprintf(stream, "\n  equilibrium: forces are in balance to %.1e\n", residual);
+    if (isnan(stiffness)) return STATUS_OK;
+    fprintf(stream, "  static stiffness over that at rest: %.4f: %s\n", stiffness,
+            stiffness > 0 ? "does not diverge" : "diverges");
+    return STATUS_OK;
+}
+
 static enum status print_effort(const struct netcdf_reader *reader, FILE *stream) {
     const struct netcdf_slice all[] = {{NULL}};
     double beats, multiplier_beats, residual, error;
@@ -32,6 +46,7 @@ static enum status print_effort(const struct netcdf_reader *reader, FILE *stream
     TRY(netcdf_read_doubles(reader, "steady_multiplier_beats", all, &multiplier_beats));
     TRY(netcdf_read_doubles(reader, "steady_residual", all, &residual));
     TRY(netcdf_read_doubles(reader, "steady_error", all, &error));
+    if (!(beats > 0)) return print_equilibrium(reader, residual, stream);
     fprintf(stream, "\n  steady state after %.0f beats: from beat to beat it changes by %.1e", beats, residual);
     if (!isnan(error)) fprintf(stream, ", about %.1e from the fixed point", error);
     fprintf(stream, "\n");
@@ -73,6 +88,19 @@ static enum status print_cells(const struct netcdf_reader *reader, const struct 
     return STATUS_OK;
 }
 
+/* Whether a row has a value at all. */
+static enum status is_empty(const struct netcdf_reader *reader, const struct quantity *quantity, size_t n_fish,
+                            int *is_empty) {
+    *is_empty = 1;
+    for (size_t f = 0; f < n_fish; f++) {
+        double value;
+        const struct netcdf_slice slice[] = {{"fish", f, 1}, {quantity->of_xy ? "xy" : NULL, 0, 1}, {NULL}};
+        TRY(netcdf_read_doubles(reader, quantity->variable, slice, &value));
+        *is_empty &= isnan(value);
+    }
+    return STATUS_OK;
+}
+
 static enum status print_head(const struct netcdf_reader *reader, size_t n_fish, FILE *stream) {
     size_t n_name;
     TRY(netcdf_read_length(reader, "name", 1, INT_MAX, &n_name));
@@ -101,7 +129,9 @@ enum status steady_info(const struct netcdf_reader *reader, FILE *stream) {
     for (size_t q = 0; q < sizeof quantities / sizeof *quantities; q++) {
         const struct quantity *const quantity = &quantities[q];
         const int is_place = strcmp(quantity->head, "place") == 0;
-        if (is_place && n_fish == 1) continue;
+        int has_none;
+        TRY(is_empty(reader, quantity, n_fish, &has_none));
+        if ((is_place && n_fish == 1) || has_none) continue;
         for (size_t xy = 0; xy < (quantity->of_xy ? 2 : 1); xy++) {
             char head[64];
             snprintf(head, sizeof head, "%s%s", quantity->head, quantity->of_xy ? (is_place ? along : axis)[xy] : "");

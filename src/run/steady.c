@@ -12,6 +12,7 @@
 #include "run/steady_multipliers.h"
 #include "run/steady_search.h"
 #include "run/steady_start.h"
+#include "run/steady_static.h"
 
 struct run {
     const struct case_values *values;
@@ -70,6 +71,9 @@ static void gather(struct run *run) {
                                       .place = {beat->place[0], beat->place[1]},
                                       .force = {beat->force[0], beat->force[1]},
                                       .thrust = beat->thrust,
+                                      .drag = NAN,
+                                      .lift = NAN,
+                                      .deflection = NAN,
                                       .actuation_power = beat->actuation,
                                       .damping_power = beat->damping,
                                       .driving_power = beat->driving,
@@ -119,8 +123,16 @@ static enum status search(struct run *run) {
     TRY(status);
     run->found.n_beats = run->problem.map.n_beats;
     run->found.residual = steady_map_residual(&run->problem.map);
+    run->found.stiffness = NAN;
     TRY(find_multipliers(run));
     return write_beats(run);
+}
+
+// of bodies without a beat: one row
+static enum status find_equilibrium(struct run *run) {
+    run->found.error = NAN;
+    TRY(steady_static_find(run->simulation, run->options->from, &run->found));
+    return write_if_due(run);
 }
 
 // from the start of the case, or from that of another steady state
@@ -135,20 +147,27 @@ static enum status create_simulation(struct run *run) {
     return status;
 }
 
+static enum status pose(struct run *run) {
+    TRY(steady_problem_create(&run->problem, &run->values->steady, run->simulation));
+    run->problem.progress = tell;
+    run->problem.data = run;
+    return STATUS_OK;
+}
+
 static enum status start(struct run *run) {
     const struct steady_options *const options = run->options;
     TRY(netcdf_check_target(options->path, options->overwrite));
     TRY(create_simulation(run));
     run->simulation->stop = options->stop;
-    TRY(steady_problem_create(&run->problem, &run->values->steady, run->simulation));
-    run->problem.progress = tell;
-    run->problem.data = run;
+    const int is_static = steady_static_applies(run->simulation->school);
+    TRY(is_static ? steady_static_refuse(run->simulation->school) : pose(run));
     TRY(allocate(run));
     // room for as many vortices as there can be
-    const long n_events = (run->values->steady.beats + run->values->steady.output_beats) * run->problem.map.events;
+    const long n_beats = run->values->steady.beats + run->values->steady.output_beats;
+    const long n_events = is_static ? 1 : n_beats * run->problem.map.events;
     TRY(record_create_steady(&run->record, run->values, run->simulation->school, n_events, options->path,
                              options->overwrite, options->command));
-    const enum status status = search(run);
+    const enum status status = is_static ? find_equilibrium(run) : search(run);
     if (status == STATUS_OK) {
         result_file_steady(run->record.file, run->simulation->school, &run->found);
         record_notes_write(run->record.file, run->simulation, options->warn, options->data);
@@ -164,14 +183,13 @@ static void release(struct run *run) {
     free(run->found.imaginary);
 }
 
-static enum status run_all(void *data) {
-    struct run *const run = data;
-    const enum status status = start(run);
-    release(run);
-    return status;
-}
-
 enum status steady_run(const struct case_values *values, const struct steady_options *options) {
     struct run run = {.values = values, .options = options};
-    return result_lock_hold(options->path, run_all, &run);
+    struct result_lock lock;
+    TRY(netcdf_check_target(options->path, 1));
+    TRY(result_lock_take(&lock, options->path));
+    const enum status status = start(&run);
+    release(&run);
+    result_lock_release(&lock);
+    return status;
 }

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/angle.h"
+#include "model/fish_prescribed.h"
 #include "output/netcdf.h"
 
 struct reading {
@@ -83,5 +84,61 @@ enum status steady_start_read(const char *path, const struct school_parameters *
     } else {
         free(copy);
     }
+    return status;
+}
+
+// ---- shapes
+
+// the places of the nodes of a body: x and y in turns                                              (2 n_nodes)
+static enum status read_nodes(const struct reading *reading, size_t f, const struct fish *fish, double *places) {
+    const size_t n_nodes = (size_t)fish->n_nodes;
+    size_t n = 0;
+    const struct netcdf_slice slice[] = {
+        {"time", reading->last, 1}, {"fish", f, 1}, {"node", 0, n_nodes}, {"xy", 0, 2}, {NULL}};
+    TRY(netcdf_read_length(&reading->reader, "node", 2, INT_MAX, &n));
+    if (n >= n_nodes) TRY(netcdf_read_doubles(&reading->reader, "x", slice, places));
+    int is_other = n < n_nodes;
+    for (size_t i = 0; i < 2 * n_nodes && !is_other; i++) is_other = !isfinite(places[i]);
+    if (!is_other && n > n_nodes) {
+        double beyond[2];
+        const struct netcdf_slice next[] = {
+            {"time", reading->last, 1}, {"fish", f, 1}, {"node", n_nodes, 1}, {"xy", 0, 2}, {NULL}};
+        TRY(netcdf_read_doubles(&reading->reader, "x", next, beyond));
+        is_other = isfinite(beyond[0]);
+    }
+    if (!is_other) return STATUS_OK;
+    return status_fail(STATUS_FILE, "%s: %s has another number of nodes there, not %d", reading->reader.path,
+                       fish->name, fish->n_nodes);
+}
+
+// turn and stretch them so that edge 0 is that of a straight body, from its nose on
+static void place_nodes(const struct fish *fish, const double *places, double *y) {
+    double direction[2], rate;
+    fish_prescribe(fish, 1, 0, y);
+    fish_prescribed_direction(fish, 0, direction, &rate);
+    const double edge[2] = {places[2] - places[0], places[3] - places[1]}, length = hypot(edge[0], edge[1]);
+    const double factor = fish->edge_length / (length * length);
+    const double c = factor * (edge[0] * direction[0] + edge[1] * direction[1]);
+    const double s = factor * (edge[0] * direction[1] - edge[1] * direction[0]);
+    for (int k = fish_n_prescribed(fish); k < fish->n_nodes; k++) {
+        const double way[2] = {places[2 * k] - places[0], places[2 * k + 1] - places[1]};
+        y[fish->at.x + k] = y[fish->at.x] + c * way[0] - s * way[1];
+        y[fish->at.y + k] = y[fish->at.y] + s * way[0] + c * way[1];
+    }
+}
+
+enum status steady_start_shapes(const char *path, const struct school *school, double *y) {
+    struct reading reading;
+    TRY(open(&reading, path, school->n_fish));
+    enum status status = STATUS_OK;
+    for (int f = 0; f < school->n_fish && status == STATUS_OK; f++) {
+        const struct fish *const fish = &school->fish[f];
+        double *const places = calloc(2 * (size_t)fish->n_nodes, sizeof *places);
+        status = places ? read_nodes(&reading, (size_t)f, fish, places)
+                        : status_fail(STATUS_MEMORY, "out of memory: a body of %d nodes", fish->n_nodes);
+        if (status == STATUS_OK) place_nodes(fish, places, y);
+        free(places);
+    }
+    netcdf_close(&reading.reader);
     return status;
 }

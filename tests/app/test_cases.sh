@@ -24,11 +24,11 @@ def check(name, good, words=""):
 
 
 def run(case, end):
-    """Run a case, up to a time; the open result, or None."""
+    """Run a case, up to a time, or find its equilibrium; the open result, or None."""
     path = f"{case}-{end}.nc"
-    shorter = [] if end == "-" else ["--set", f"time.end={end}"]
+    shorter = [] if end in ("-", "steady") else ["--set", f"time.end={end}"]
     done = subprocess.run(
-        [program, "run", f"{cases}/{case}.yaml", "-q", "-o", path, *shorter],
+        [program, "steady" if end == "steady" else "run", f"{cases}/{case}.yaml", "-q", "-o", path, *shorter],
         stdin=subprocess.DEVNULL, capture_output=True, text=True,
     )
     # a case that warns says so, but where it is cut short and its speed is not yet steady
@@ -50,7 +50,8 @@ def run(case, end):
 def quantity(data, name, fish):
     """The number that a line of the table asks for."""
     time = data["time"][:]
-    beat = slice(-round(1 / (time[1] - time[0])), None)  # the rows of the last beat: all cases beat once a second
+    # the rows of the last beat: all cases beat once a second; an equilibrium has one row
+    beat = slice(-round(1 / (time[1] - time[0])), None) if len(time) > 1 else slice(None)
     if name == "steps":
         return data["steps"][-1] * data["shedding_interval"][...] / time[-1]
     if name == "tail":
@@ -59,6 +60,8 @@ def quantity(data, name, fish):
         return np.degrees(2 * np.arctan(data["natural_curvature"][beat, fish] / 2)).sum(axis=1).mean()
     how, _, variable = name.rpartition(":")
     values = np.ma.filled(data[variable][:], np.nan)
+    if variable.startswith("steady_"):
+        return values[fish]  # over the fish only
     values = values if fish is None else values[:, fish]
     return {"": lambda v: v[-1], "beat": lambda v: v[beat].mean(), "least": np.nanmin, "most": np.nanmax}[how](values)
 

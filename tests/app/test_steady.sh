@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The steady state of a case: what is printed and what is in its file, and what is said where there is none.
+# The steady state of a case, and the equilibrium of one without a beat: what is printed and what is in its file, and what is said where there is none.
 #
 #   tests/app/test_steady.sh PROGRAM
 # shellcheck source=tests/checks.sh
@@ -56,34 +56,6 @@ check plot_draws_it /usr/bin/python3 "$root/scripts/plot.py" time swim.nc swim.p
 check xarray_opens_it /usr/bin/python3 -c \
     'import xarray; xarray.open_dataset("swim.nc").steady_speed.sel(fish="a fish").item()'
 
-# ---- as JSON
-
-cat >compare.py <<'end'
-"""What is printed is what is in the file."""
-import json
-import sys
-import netCDF4, numpy as np
-
-found, data = json.load(open("out")), netCDF4.Dataset("json.nc")
-data.set_auto_mask(False)
-names = [name for name in data.variables if name.startswith("steady_")]
-assert sorted(found) == sorted(names + ["file", "fish_name"]), sorted(found)
-assert found["file"] == "json.nc" and found["fish_name"] == ["a \"fish\""], found
-for name in names:
-    values = np.array(data[name][...], float)
-    if name == "steady_multiplier":
-        values = values[np.isfinite(values[:, 0])]
-    assert len(values.shape) == 0 or len(found[name]) == len(values), name
-    assert np.array_equal(np.ravel(np.array(found[name], float)), np.ravel(values), equal_nan=True), name
-assert len(found["steady_multiplier"]) == int(sys.argv[1])
-end
-run steady swim.yaml -o json.nc --json -q --set "fish[0].name='a \"fish\"'"
-check json_is_what_is_in_the_file /usr/bin/python3 compare.py 3
-check and_quiet_progress test ! -s err
-run steady swim.yaml -o json.nc --json --force --set "fish[0].name='a \"fish\"'" --set steady.multipliers=false
-check json_of_a_state_without_multipliers /usr/bin/python3 compare.py 0
-check json_knows_progress_goes_to_stderr grep -q '^beat ' err
-
 # ---- from another one, and as an axis of a study
 
 run steady swim.yaml -q -o again.nc --from swim.nc --set steady.multipliers=false
@@ -102,6 +74,61 @@ run study axis.yaml -q -j 2
 check a_member_that_fails_is_no_end_of_the_study test "$code" = 1 -a -e axis-study/member-0003.nc
 check members_are_steady_states test "$(beats axis-study/member-0000.nc)" -gt "$(beats axis-study/member-0001.nc)"
 check the_next_one_starts_as_the_case_says test "$(beats axis-study/member-0003.nc)" -gt "$(beats axis-study/member-0001.nc)"
+
+# ---- without a beat: an equilibrium
+
+cat >plate.yaml <<'end'
+format: 1
+time: {end: 1, shedding_interval: 0.02}
+fluid: {density: 1, velocity: [1, 0], viscosity: 0}
+fish:
+  - {name: plate, force: pressure, wave: {amplitude: 0, frequency: 0},
+     body: {profile: uniform, thickness: 0.05, width: 1, density: 25, modulus: 8e4},
+     start: {heading: 174, speed: 0}, motion: {driven: head}}
+end
+run steady plate.yaml
+check an_equilibrium_is_found test "$code" = 0 -a ! -s err
+check and_said grep -q 'equilibrium: forces are in balance to [0-9.]*e-1' out
+check whether_it_diverges grep -qE 'static stiffness over that at rest: 1\.[0-9]*: does not diverge' out
+check what_has_no_meaning_is_not_shown test -z "$(grep -E 'muscle|Strouhal|turn' out)"
+cat >static.py <<'end'
+"""What is in the file of an equilibrium: one row, no wake, lift and no drag, in balance with what the clamp takes."""
+import sys
+import netCDF4, numpy as np
+
+data = netCDF4.Dataset("plate.nc")
+data.set_auto_mask(False)
+force, lift = data["steady_force"][0], data["steady_lift"][0]
+problems = []
+def demand(name, good):
+    if not good:
+        problems.append(name)
+demand("complete", data.run_status == "complete" and len(data["time"]) == 1)
+demand("the force of the row", np.allclose(data["pressure_force"][0, 0] + data["suction_force"][0, 0], force))
+demand("the clamp takes it", np.allclose(data["constraint_force"][0, 0], -force, atol=1e-9))
+demand("no drag", abs(data["steady_drag"][0]) < 1e-3 * lift and np.isclose(lift, force[1]))
+demand("Kutta and Joukowski", np.isclose(lift, data["shed_circulation"][0, 0], rtol=2e-3))
+demand("no wake", data["wake_count"][0, 0] == 0)
+demand("no beats", data["steady_beats"][...] == 0 and np.isnan(data["steady_multiplier"][:]).all())
+sys.exit("; ".join(problems) or 0)
+end
+check the_file_of_an_equilibrium /usr/bin/python3 static.py
+check plot_draws_an_equilibrium /usr/bin/python3 "$root/scripts/plot.py" swim plate.nc plate.png
+run steady plate.yaml -q -o other.nc --force --from plate.nc --set 'fluid.velocity=[1.1,0]'
+check an_equilibrium_starts_from_another test "$code" = 0
+sed '/^fish:/i sweep: [{key: fluid.velocity, values: [[0.5, 0], [1, 0], [2, 0]], steady: true}]' plate.yaml >grow.yaml
+run study grow.yaml -q -j 2
+check an_axis_can_be_the_stream test "$code" = 0
+check an_equilibrium_does_not_depend_on_its_start /usr/bin/python3 -c '
+import netCDF4, sys
+lift = [float(netCDF4.Dataset(f)["steady_lift"][0]) for f in ("plate.nc", "grow-study/member-0001.nc")]
+sys.exit(0 if abs(lift[1] / lift[0] - 1) < 1e-8 else str(lift))'
+refused nothing_holds_it 2 'neither beats nor is held' steady plate.yaml -q -o none.nc \
+    --set fish[0].motion.driven=none
+refused a_load_that_crushes_it 1 'the one that grows from rest ends at 0' steady plate.yaml -q -o crushed.nc \
+    --set 'fish[0].load.tip=[-1e4, 0]'
+run info crushed.nc
+check the_file_says_where_the_branch_ends has out 'failed: no equilibrium in this stream'
 
 # ---- no steady state
 

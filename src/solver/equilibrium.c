@@ -1,0 +1,297 @@
+/* equilibrium.c: see equilibrium.h. The residual of a run whose rates are those of bodies that go on as they are, with
+ * the unknowns that then are not known: free places, and sheets. */
+#include "solver/equilibrium.h"
+
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "model/fish_prescribed.h"
+#include "model/jacobian.h"
+#include "model/residual_couplings.h"
+#include "model/residual_jacobian.h"
+#include "solver/newton.h"
+
+/* Equations are solved to this, over their scales; forces no better than the rounding of places makes those along a
+ * body: some times 1e-16 of a place over the length of an edge. */
+static const double tolerance = 1e-10, rounding = 1e-5;
+
+/* A solution that is near takes less than half as many. */
+enum { MAX_ITERATIONS = 16 };
+
+/* An eigenvalue counts as real where its imaginary part is less than this part of it. */
+static const double nearly_real = 1e-3;
+
+struct equilibrium {
+    struct residual *residual;
+    struct state *state;
+    struct jacobian *jacobian;
+    double reach;                    /* of the couplings in a run */
+    int n, n_places;                 /* unknowns: first the free places of all bodies, then their sheets */
+    int *unknown, *row;              /* where they stand among all unknowns, and their equations             (n) */
+    int *number;                     /* of an unknown of the school: in the list of unknowns, or -1      (n_unknowns) */
+    int *row_number;                 /* and of an equation                                               (n_unknowns) */
+    double *scale, *row_scale, *one; /* (n) */
+    double *u, *value;               /* over these scales                                   (n) */
+    double *all;                     /* a residual of the school                            (n_unknowns) */
+};
+
+// ---- what is not known
+
+static void list_one(struct equilibrium *e, int unknown, int row, double scale, double row_scale) {
+    const int i = e->n++;
+    e->unknown[i] = unknown;
+    e->row[i] = row;
+    e->scale[i] = scale;
+    e->row_scale[i] = row_scale;
+    e->number[unknown] = i;
+    e->row_number[row] = i;
+}
+
+// the force that bends a body by its length, and that of the stream
+static double force_scale(const struct school *school, const struct fish *fish) {
+    const double speed = fish->length * fish_rate(school, fish);
+    double stiffness = 0, axial = 0, depth = 0;
+    for (int k = 0; k < fish->n_edges; k++) {
+        axial = fmax(axial, fish->axial_stiffness[k]);
+        depth = fmax(depth, fish->depth[k]);
+    }
+    for (int k = 0; k < fish->n_joints; k++) stiffness = fmax(stiffness, fish->bending_stiffness[k]);
+    const double place = fish->length + hypot(fish->start_position[0], fish->start_position[1]);
+    return stiffness / (fish->length * fish->length) + school->density * speed * speed * fish->length * depth +
+           rounding * axial * place / fish->edge_length;
+}
+
+static void list_places(struct equilibrium *e, const struct fish *fish) {
+    const double force = force_scale(e->residual->school, fish);
+    for (int i = 0; i < 2; i++) {
+        for (int k = 0; k < fish->n_nodes; k++) {
+            const int node = i * fish->n_nodes + k;
+            if (fish_is_prescribed(fish, k, i)) continue;
+            list_one(e, fish->at.x + node, fish->at.ax + node, fish->length, force / fish->mass[k]);
+        }
+    }
+}
+
+static void list_sheet(struct equilibrium *e, const struct fish *fish) {
+    const double speed = fish->length * fish_rate(e->residual->school, fish), circulation = speed * fish->length;
+    for (int j = 0; j < fish->n_sheet; j++) {
+        // the last is Kelvin's equation
+        list_one(e, fish->at.gamma + j, fish->at.gamma + j, speed, j < fish->n_control ? speed : circulation);
+    }
+    list_one(e, fish->at.circulation, fish->at.circulation, circulation, circulation);
+}
+
+static enum status allocate(struct equilibrium *e) {
+    const struct school *school = e->residual->school;
+    const size_t n = (size_t)school->n_unknowns;
+    int **const counts[] = {&e->unknown, &e->row, &e->number, &e->row_number};
+    double **const reals[] = {&e->scale, &e->row_scale, &e->one, &e->u, &e->value, &e->all};
+    int has_all = 1;
+    for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) has_all &= !!(*counts[i] = calloc(n, sizeof(int)));
+    for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) has_all &= !!(*reals[i] = calloc(n, sizeof(double)));
+    if (!has_all) return status_fail(STATUS_MEMORY, "out of memory: the equilibrium of %d bodies", school->n_fish);
+    return jacobian_create(&e->jacobian, school);
+}
+
+static void list(struct equilibrium *e) {
+    const struct school *school = e->residual->school;
+    for (int i = 0; i < school->n_unknowns; i++) {
+        e->number[i] = e->row_number[i] = -1;
+        e->one[i] = 1;
+    }
+    for (int f = 0; f < school->n_fish; f++) list_places(e, &school->fish[f]);
+    e->n_places = e->n;
+    for (int f = 0; f < school->n_fish; f++) list_sheet(e, &school->fish[f]);
+}
+
+enum status equilibrium_create(struct equilibrium **equilibrium, struct residual *residual, struct state *state) {
+    *equilibrium = NULL;
+    struct equilibrium *const new = calloc(1, sizeof *new);
+    if (!new) return status_fail(STATUS_MEMORY, "out of memory: an equilibrium");
+    *new = (struct equilibrium){.residual = residual, .state = state, .reach = residual->couplings.reach};
+    // all bodies couple, however far they are from each other
+    residual->couplings.reach = 1e6 * residual->school->fish[0].length;
+    residual->shed_now = SHED_IS_FAR;
+    enum status status = allocate(new);
+    if (status == STATUS_OK) status = residual_couple(&residual->couplings, state->y);
+    if (status != STATUS_OK) {
+        equilibrium_free(new);
+        return status;
+    }
+    list(new);
+    *equilibrium = new;
+    return STATUS_OK;
+}
+
+void equilibrium_free(struct equilibrium *e) {
+    if (!e) return;
+    e->residual->shed_now = SHED_BY_LAW;
+    e->residual->couplings.reach = e->reach;
+    void *const owned[] = {e->unknown,   e->row, e->number, e->row_number, e->scale,
+                           e->row_scale, e->one, e->u,      e->value,      e->all};
+    for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
+    jacobian_free(e->jacobian);
+    free(e);
+}
+
+// ---- the equations
+
+// what is known: all nodes go as the first one does, nothing accelerates
+static void set_known(struct equilibrium *e) {
+    struct state *const state = e->state;
+    const struct school *school = e->residual->school;
+    memset(state->yp, 0, (size_t)school->n_unknowns * sizeof *state->yp);
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *const fish = &school->fish[f];
+        double position[2], velocity[2], acceleration[2];
+        fish_prescribed_node(fish, 0, state->t, position, velocity, acceleration);
+        for (int i = 0; i < 2 * fish->n_nodes; i++) {
+            state->y[fish->at.vx + i] = state->yp[fish->at.x + i] = velocity[i / fish->n_nodes];
+            state->y[fish->at.ax + i] = 0;
+        }
+        state->y[fish->at.phi0] = fish->control.bias;
+    }
+}
+
+static enum status evaluate(struct equilibrium *e) {
+    struct state *const state = e->state;
+    const struct school *school = e->residual->school;
+    for (int f = 0; f < school->n_fish; f++) {
+        wake_leave_behind(&state->wake[f], state->y[school->fish[f].at.circulation]);
+    }
+    return residual_evaluate(e->residual, state->t, state->y, state->yp, e->all);
+}
+
+static enum status value_of(void *data, const double *u, double *value) {
+    struct equilibrium *const e = data;
+    for (int i = 0; i < e->n; i++) e->state->y[e->unknown[i]] = u[i] * e->scale[i];
+    TRY(evaluate(e));
+    for (int i = 0; i < e->n; i++) value[i] = e->all[e->row[i]] / e->row_scale[i];
+    return STATUS_OK;
+}
+
+static void put(const struct equilibrium *e, int row, int column, double value, double *matrix) {
+    const int i = e->row_number[row], j = e->number[column];
+    if (i >= 0 && j >= 0) matrix[(size_t)i + (size_t)e->n * (size_t)j] = value * e->scale[j] / e->row_scale[i];
+}
+
+static void put_own(const struct equilibrium *e, const struct sparse *own, double *matrix) {
+    for (int c = 0; c < own->n; c++) {
+        for (int64_t k = own->column_start[c]; k < own->column_start[c + 1]; k++) {
+            put(e, own->first + (int)own->row_index[k], own->first + c, own->value[k], matrix);
+        }
+    }
+}
+
+static void put_coupling(const struct equilibrium *e, int f, const struct jacobian_coupling *coupling, double *matrix) {
+    const struct school *school = e->residual->school;
+    const struct coupling_block *const rows = &coupling->rows;
+    for (int c = 0; c < rows->n_columns; c++) {
+        const int column = flow_column(&school->fish[coupling->other], c);
+        for (int r = 0; r < rows->n_rows; r++) {
+            put(e, school->fish[f].at.ax + r, column, rows->value[(long)c * rows->n_rows + r], matrix);
+        }
+    }
+}
+
+static enum status jacobian_of(void *data, double *matrix) {
+    struct equilibrium *const e = data;
+    struct jacobian *const jacobian = e->jacobian;
+    TRY(residual_jacobian(e->residual, e->state->t, 0, e->state->y, jacobian));
+    memset(matrix, 0, (size_t)e->n * (size_t)e->n * sizeof *matrix);
+    for (int f = 0; f < e->residual->school->n_fish; f++) {
+        put_own(e, jacobian->own[f], matrix);
+        for (int i = jacobian->first[f]; i < jacobian->first[f + 1]; i++) {
+            put_coupling(e, f, &jacobian->coupling[i], matrix);
+        }
+    }
+    return STATUS_OK;
+}
+
+// momenta follow from places and sheets: their equations are less them
+static void set_momenta(struct equilibrium *e) {
+    const struct school *school = e->residual->school;
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *const fish = &school->fish[f];
+        for (int i = 0; i < fish->at.ax - fish->at.px; i++) {
+            const int row = pressure_momentum_row(fish, 0, i / fish->n_nodes, i % fish->n_nodes);
+            e->state->y[fish->at.px + i] -= e->all[row];
+        }
+    }
+}
+
+enum status equilibrium_solve(struct equilibrium *e) {
+    const struct newton problem = {.n = e->n,
+                                   .scale = e->one,
+                                   .tolerance = tolerance,
+                                   .max_step = 1e30,
+                                   .reuse = 1,
+                                   .max_iterations = MAX_ITERATIONS,
+                                   .value = value_of,
+                                   .jacobian = jacobian_of,
+                                   .data = e};
+    set_known(e);
+    for (int i = 0; i < e->n; i++) e->u[i] = e->state->y[e->unknown[i]] / e->scale[i];
+    TRY(newton_solve(&problem, e->u));
+    TRY(value_of(e, e->u, e->value));
+    set_momenta(e);
+    return evaluate(e);
+}
+
+double equilibrium_residual(const struct equilibrium *e) {
+    double most = 0;
+    for (int i = 0; i < e->n; i++) most = fmax(most, fabs(e->value[i]));
+    return most;
+}
+
+// ---- the stiffness
+
+// A - B D^-1 C of [A B; C D], A of the first n_places unknowns; in A
+static enum status eliminate_sheets(const struct equilibrium *e, double *matrix, lapack_int *pivot) {
+    const int n = e->n, p = e->n_places, m = n - p;
+    double *const right = matrix + (size_t)n * (size_t)p, *const below = matrix + p;
+    if (LAPACKE_dgesv(LAPACK_COL_MAJOR, m, p, right + p, n, pivot, below, n) != 0) {
+        return status_fail(STATUS_SOLVER, "the sheets do not follow from the places of the bodies");
+    }
+    for (int j = 0; j < p; j++) {
+        double *const column = matrix + (size_t)n * (size_t)j;
+        for (int k = 0; k < m; k++) {
+            const double factor = column[p + k], *const by_sheet = right + (size_t)n * (size_t)k;
+            for (int i = 0; i < p; i++) column[i] -= by_sheet[i] * factor;
+        }
+        for (int i = 0; i < p; i++) column[i] *= e->row_scale[i] / e->scale[j];
+    }
+    return STATUS_OK;
+}
+
+// real, imaginary: scratch for the eigenvalues
+static enum status take_eigenvalues(const struct equilibrium *e, double *matrix, double *real, double *imaginary,
+                                    struct equilibrium_stiffness *stiffness) {
+    if (LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'N', e->n_places, matrix, e->n, real, imaginary, NULL, 1, NULL, 1) != 0) {
+        return status_fail(STATUS_SOLVER, "the eigenvalues of the static stiffness cannot be found");
+    }
+    for (int i = 0; i < e->n_places; i++) {
+        stiffness->log_determinant += log(hypot(real[i], imaginary[i]));
+        stiffness->n_negative += real[i] < 0 && fabs(imaginary[i]) <= nearly_real * fabs(real[i]);
+    }
+    return STATUS_OK;
+}
+
+enum status equilibrium_stiffness(struct equilibrium *e, struct equilibrium_stiffness *stiffness) {
+    *stiffness = (struct equilibrium_stiffness){.n_negative = 0};
+    if (e->n_places == 0) return STATUS_OK;
+    const size_t n = (size_t)e->n;
+    double *const matrix = calloc(n * n, sizeof *matrix), *const values = calloc(2 * n, sizeof *values);
+    lapack_int *const pivot = calloc(n, sizeof *pivot);
+    enum status status = matrix && values && pivot
+                             ? jacobian_of(e, matrix)
+                             : status_fail(STATUS_MEMORY, "out of memory: the stiffness of %d places", e->n_places);
+    if (status == STATUS_OK) status = eliminate_sheets(e, matrix, pivot);
+    if (status == STATUS_OK) status = take_eigenvalues(e, matrix, values, values + n, stiffness);
+    free(matrix);
+    free(values);
+    free(pivot);
+    return status;
+}

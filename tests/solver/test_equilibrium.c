@@ -1,0 +1,162 @@
+/* test_equilibrium.c: bodies at rest in a stream: no force is left on them, and the stiffness is that of differences.
+ * doc/steady.md, "Without a beat". */
+#include <stdlib.h>
+
+#include "school.h"
+#include "solver/equilibrium.h"
+
+#define TIME "time: {end: 1, shedding_interval: 0.1}\n"
+#define STREAM TIME "fluid: {density: 1, velocity: [1, 0.2], viscosity: 0}\n"
+#define PLATE                                                                          \
+    "nodes: 7, sheet_points: 13, force: pressure, wave: {amplitude: 0, frequency: 0}," \
+    " body: {profile: uniform, thickness: 0.05, width: 1, density: 20, modulus: 1e5}," \
+    " start: {heading: 170, speed: 0}, motion: {driven: head, speed: 0}"
+
+// two plates, one behind the other, so that the couplings are in it
+static const char pair[] = SCHOOL_SECOND STREAM "defaults: {fish: {" PLATE
+                                                "}}\n"
+                                                "fish: [{}, {start: {position: [1.2, 0.1]}}]\n";
+
+struct rig {
+    struct simulation *simulation;
+    struct equilibrium *equilibrium;
+};
+
+static struct rig rig_of(const char *text) {
+    struct rig rig = {.simulation = school_simulation(text)};
+    school_ok(equilibrium_create(&rig.equilibrium, rig.simulation->residual, rig.simulation->state));
+    return rig;
+}
+
+static void clear(struct rig *rig) {
+    equilibrium_free(rig->equilibrium);
+    simulate_free(rig->simulation);
+}
+
+// the equations of a run, at the state as it is
+static void run_value(const struct rig *rig, double *value) {
+    const struct state *const state = rig->simulation->state;
+    school_ok(residual_evaluate(rig->simulation->residual, state->t, state->y, state->yp, value));
+}
+
+static void the_equations_of_a_run_hold_at_rest(void **state) {
+    (void)state;
+    struct rig rig = rig_of(pair);
+    const struct school *const school = rig.simulation->school;
+    const struct residual *const residual = rig.simulation->residual;
+    school_ok(equilibrium_solve(rig.equilibrium));
+    assert_true(equilibrium_residual(rig.equilibrium) <= 1e-10);
+    equilibrium_free(rig.equilibrium);
+    rig.equilibrium = NULL;
+    assert_int_equal(residual->shed_now, SHED_BY_LAW);
+    // every equation of the school, not only those that have been solved, and with Kelvin's theorem
+    double *const value = calloc((size_t)school->n_unknowns, sizeof *value);
+    run_value(&rig, value);
+    for (int i = 0; i < school->n_unknowns; i++) {
+        const enum unknown kind = residual_place(school, i).kind;
+        NEAR(value[i], 0, kind == UNKNOWN_AX || kind == UNKNOWN_AY ? 1e-6 : 1e-9, 0);
+    }
+    free(value);
+    for (int f = 0; f < 2; f++) {
+        const double shed = rig.simulation->state->y[school->fish[f].at.circulation];
+        assert_true(fabs(shed) > 0.1);
+        assert_int_equal(rig.simulation->state->wake[f].n_vortex, 0);
+        NEAR(rig.simulation->state->wake[f].removed, shed, 0, 0);
+    }
+    clear(&rig);
+}
+
+static void bodies_that_go_on_together_are_at_rest_in_their_frame(void **state) {
+    (void)state;
+    struct rig held = rig_of(SCHOOL_SECOND STREAM "fish: [{" PLATE "}]\n");
+    struct rig goes = rig_of(SCHOOL_SECOND TIME
+                             "fluid: {density: 1, velocity: [1.5, 0.2], viscosity: 0}\n"
+                             "fish: [{" PLATE "}]\n");
+    // the frame goes at half a metre per second along x, where the heading of the second is
+    for (int i = 0; i < 2; i++) {
+        struct fish *const fish = &(i == 0 ? &held : &goes)->simulation->school->fish[0];
+        fish->motion.pitch = 0.1;
+        fish->motion.pitch_phase = 1.5707963267948966;
+        fish->start_heading = 3.14159265358979323846;
+    }
+    goes.simulation->school->fish[0].motion.speed = -0.5;
+    school_ok(equilibrium_solve(held.equilibrium));
+    school_ok(equilibrium_solve(goes.equilibrium));
+    const struct layout *const at = &held.simulation->school->fish[0].at;
+    const double *const a = held.simulation->state->y, *const b = goes.simulation->state->y;
+    for (int i = 0; i < at->end; i++) {
+        const int along = (i >= at->vx && i < at->vy) || (i >= at->px && i < at->py);
+        NEAR(b[i], a[i] + (along ? 0.5 : 0), 1e-9, 1e-9);
+    }
+    assert_true(fabs(a[at->y + 6] - a[at->y]) > 0.05);
+    clear(&held);
+    clear(&goes);
+}
+
+// what a unit of displacement of one place takes, by differences of equilibria under a load at the tail
+static void the_determinant_is_that_of_the_load_that_moves_the_tail(void **state) {
+    (void)state;
+    // two free nodes of a coarse body: a determinant of four displacements
+    struct rig rig = rig_of(SCHOOL_SECOND TIME
+                            "fluid: {density: 1, velocity: [1, 0.2]}\n"
+                            "fish: [{nodes: 4, sheet_points: 9, force: published,"
+                            " wave: {amplitude: 0, frequency: 0}, drag: {tangential: 0.1},"
+                            " body: {section: nodes, profile: uniform, thickness: 0.05, width: 1,"
+                            " density: 20, modulus: 1e5},"
+                            " start: {heading: 170, speed: 0}, motion: {driven: head, speed: 0}}]\n");
+    struct simulation *const simulation = rig.simulation;
+    const struct fish *const fish = &simulation->school->fish[0];
+    struct equilibrium_stiffness stiffness;
+    school_ok(equilibrium_solve(rig.equilibrium));
+    school_ok(equilibrium_stiffness(rig.equilibrium, &stiffness));
+    const int place[4] = {fish->at.x + 2, fish->at.x + 3, fish->at.y + 2, fish->at.y + 3};
+    const double step = 1e-6;
+    double matrix[4][4], value[2][128];
+    for (int j = 0; j < 4; j++) {
+        for (int side = 0; side < 2; side++) {
+            const double before = simulation->state->y[place[j]];
+            simulation->state->y[place[j]] += side == 0 ? -step : step;
+            run_value(&rig, value[side]);
+            simulation->state->y[place[j]] = before;
+        }
+        for (int i = 0; i < 4; i++) {
+            const int row = place[i] + fish->at.ax - fish->at.x;
+            matrix[i][j] = (value[1][row] - value[0][row]) / (2 * step);
+        }
+    }
+    double determinant = 1;
+    for (int i = 0; i < 4; i++) {
+        determinant *= matrix[i][i];
+        for (int k = i + 1; k < 4; k++) {
+            const double factor = matrix[k][i] / matrix[i][i];
+            for (int j = i; j < 4; j++) matrix[k][j] -= factor * matrix[i][j];
+        }
+    }
+    NEAR(exp(stiffness.log_determinant), determinant, 0, 1e-5);
+    assert_int_equal(stiffness.n_negative, 0);
+    clear(&rig);
+}
+
+static void nothing_bends_where_the_whole_motion_is_given(void **state) {
+    (void)state;
+    struct rig rig = rig_of(SCHOOL_SECOND STREAM
+                            "fish: [{nodes: 7, sheet_points: 13, force: pressure,"
+                            " wave: {amplitude: 0, frequency: 0}, start: {heading: 170, speed: 0},"
+                            " motion: {driven: all, speed: 0}}]\n");
+    struct equilibrium_stiffness stiffness;
+    school_ok(equilibrium_solve(rig.equilibrium));
+    school_ok(equilibrium_stiffness(rig.equilibrium, &stiffness));
+    assert_int_equal(stiffness.n_negative, 0);
+    NEAR(stiffness.log_determinant, 0, 0, 0);
+    clear(&rig);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_equations_of_a_run_hold_at_rest),
+        cmocka_unit_test(bodies_that_go_on_together_are_at_rest_in_their_frame),
+        cmocka_unit_test(the_determinant_is_that_of_the_load_that_moves_the_tail),
+        cmocka_unit_test(nothing_bends_where_the_whole_motion_is_given),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
