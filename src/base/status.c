@@ -4,7 +4,8 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-static _Thread_local char message[65536];
+// aligned as what follows it in the program: mold 1.10 can lay out a program that does not start where it is not
+static _Thread_local _Alignas(64) char message[65536];
 
 enum status status_fail(enum status status, const char *format, ...) {
     // the arguments may point into the old message, so write elsewhere first
