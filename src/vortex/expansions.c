@@ -45,22 +45,6 @@ static const double inverse_factorial[DEGREES] = {
     8.8967913924505741e-22,
     3.8681701706306841e-23,
     1.6117375710961184e-24,
-    6.4469502843844736e-26,
-    2.4795962632247976e-27,
-    9.183689863795546e-29,
-    3.2798892370698378e-30,
-    1.1309962886447716e-31,
-    3.7699876288159054e-33,
-    1.2161250415535179e-34,
-    3.8003907548547434e-36,
-    1.1516335620771951e-37,
-    3.3871575355211618e-39,
-    9.6775929586318907e-41,
-    2.6882202662866363e-42,
-    7.2654601791530714e-44,
-    1.911963205040282e-45,
-    4.9024697565135435e-47,
-    1.2256174391283858e-48,
 };
 
 // ---- expansions of several boxes, one in each lane ----
@@ -415,16 +399,16 @@ INLINE void m2l_sums(const struct derivatives *derivatives, const struct block *
             d_im[i] = d[i] - other[i];
         }
         const lanes *const from_re = multipole->re[mu], *const from_im = multipole->im[mu];
-        switch (n) {  // sums of known length have no loops
+        // sums of known length have no loops
+        _Static_assert(DEPTH == 8, "n is at most 7");
+        switch (n) {
             case 1: correlate(1, d_re, d_im, from_re, from_im, re, im); break;
             case 2: correlate(2, d_re, d_im, from_re, from_im, re, im); break;
             case 3: correlate(3, d_re, d_im, from_re, from_im, re, im); break;
             case 4: correlate(4, d_re, d_im, from_re, from_im, re, im); break;
             case 5: correlate(5, d_re, d_im, from_re, from_im, re, im); break;
             case 6: correlate(6, d_re, d_im, from_re, from_im, re, im); break;
-            case 7: correlate(7, d_re, d_im, from_re, from_im, re, im); break;
-            case 8: correlate(8, d_re, d_im, from_re, from_im, re, im); break;
-            default: correlate(n, d_re, d_im, from_re, from_im, re, im); break;
+            default: correlate(DEPTH - 1, d_re, d_im, from_re, from_im, re, im); break;
         }
     }
 }

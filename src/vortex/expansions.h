@@ -22,8 +22,8 @@
 #include "vortex/tree_boxes.h"
 
 enum {
-    EXPANSION_HARMONIC = 40, /* highest degree of harmonic terms */
-    EXPANSION_MIXED = 26,    /* highest degree of mixed terms */
+    EXPANSION_HARMONIC = 24, /* highest degree of harmonic terms */
+    EXPANSION_MIXED = 14,    /* highest degree of mixed terms */
     EXPANSION_LANES = 8      /* boxes or points that are handled together */
 };
 
