@@ -86,6 +86,25 @@ static enum status place_moving(struct flow *flow, const struct state *state) {
     return STATUS_OK;
 }
 
+// what all free vortices induce at themselves, and the sheets that are not summed otherwise: those that the tree sums
+// share it
+static enum status induce_many(struct flow *flow, int sheets_too, const struct vortices *moving, int threads,
+                               const struct induced *at) {
+    const double tolerance = flow->school->wake_tolerance;
+    const struct bound_vortices bound = {flow->school, &flow->sheet, flow->sheet_range, flow->sheet_square};
+    const int by_tree = velocity_sum_by_tree(moving, moving->n, tolerance);
+    struct velocity_sum *const sum = flow->velocity_sum;
+    if (sheets_too && flow_has_free_sheets(flow)) {
+        TRY(sheets_at_wake_induce(&bound, by_tree ? moving : NULL, sum, tolerance, threads, at));
+    } else if (by_tree) {
+        const struct vortices *const all[] = {moving, &flow->sheet};
+        TRY(velocity_sum_induce_all(sum, sheets_too ? 2 : 1, all, tolerance, threads, at));
+    } else if (sheets_too) {
+        TRY(velocity_sum_induce(sum, &flow->sheet, tolerance, threads, at));
+    }
+    return by_tree ? STATUS_OK : pairwise_add_velocity(moving, threads, at->u, at->v);
+}
+
 enum status flow_at_wake(struct flow *flow, const struct state *state) {
     TRY(flow_place(flow, state, state->t, state->y));
     TRY(place_moving(flow, state));
@@ -93,20 +112,11 @@ enum status flow_at_wake(struct flow *flow, const struct state *state) {
     TRY(reserve_at_wake(flow, moving->n));
     const struct induced at = {.n = moving->n, .x = moving->x, .y = moving->y, .u = flow->wake_u, .v = flow->wake_v};
     const double tolerance = flow->school->wake_tolerance;
-    const struct bound_vortices bound = {flow->school, &flow->sheet, flow->sheet_range, flow->sheet_square};
-    const int by_tree = flow_has_free_sheets(flow) ? sheets_at_wake_by_tree(&bound, moving->n, tolerance)
-                                                   : velocity_sum_by_tree(&flow->sheet, moving->n, tolerance);
+    const int sheets_by_tree = flow_has_free_sheets(flow) ? sheets_at_wake_by_tree(&flow->sheet, moving->n, tolerance)
+                                                          : velocity_sum_by_tree(&flow->sheet, moving->n, tolerance);
     const int threads =
         parallel_threads(flow->school->threads, moving->n, (double)moving->n * moving->n, PARALLEL_INTERACTIONS);
-    others_at_wake(flow, !by_tree, &at);
-    if (by_tree && flow_has_free_sheets(flow)) {
-        TRY(sheets_at_wake_induce(&bound, flow->velocity_sum, tolerance, threads, &at));
-    } else if (by_tree) {
-        TRY(velocity_sum_induce(flow->velocity_sum, &flow->sheet, tolerance, threads, &at));
-    }
+    others_at_wake(flow, !sheets_by_tree, &at);
     TRY(images_induce_many(&flow->school->walls, flow->velocity_sum, moving, tolerance, threads, &at));
-    if (velocity_sum_by_tree(moving, moving->n, tolerance)) {
-        return velocity_sum_induce(flow->velocity_sum, moving, tolerance, threads, &at);
-    }
-    return pairwise_add_velocity(moving, threads, flow->wake_u, flow->wake_v);
+    return induce_many(flow, sheets_by_tree, moving, threads, &at);
 }

@@ -12,9 +12,8 @@ enum { NODES = 3 };
 /* The cosines of Chebyshev's nodes. */
 static const double node_of[NODES] = {0.86602540378443865, 0, -0.86602540378443865};
 
-/* By the tree from a hundred times as many interactions on as for one sum: a school of 256 fish with whole wakes takes
- * 0.24 s directly and 0.30 s by three trees, one of 1024 fish 3.9 and 1.4 s. */
-static const double times_slower = 100;
+/* By the tree from this many times as many interactions on as for one sum. */
+static const double times_slower = 3;
 
 struct sheets {
     const struct bound_vortices *bound;
@@ -97,13 +96,16 @@ static void correct(const struct sheets *sheets, int f, const struct induced *at
                              at->u, at->v);
 }
 
-static enum status induce(struct sheets *sheets, struct velocity_sum *sum, double tolerance, int threads,
-                          const struct induced *markers) {
+static enum status induce(struct sheets *sheets, const struct vortices *others, struct velocity_sum *sum,
+                          double tolerance, int threads, const struct induced *markers) {
     const int n_fish = sheets->bound->school->n_fish, n_chunks = parallel_n_chunks(markers->n);
     sheets->near = calloc((size_t)n_fish, sizeof *sheets->near);
     if (!sheets->near) return status_fail(STATUS_MEMORY, "out of memory: the sheets of %d fish", n_fish);
     for (int f = 0; f < n_fish; f++) TRY(place(sheets, f, tolerance));
-    for (int m = 0; m < NODES; m++) TRY(velocity_sum_induce(sum, &sheets->alike[m], tolerance, threads, markers));
+    const struct vortices *all[NODES + 1];
+    for (int m = 0; m < NODES; m++) all[m] = &sheets->alike[m];
+    all[NODES] = others;
+    TRY(velocity_sum_induce_all(sum, others ? NODES + 1 : NODES, all, tolerance, threads, markers));
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 4)
     for (int chunk = 0; chunk < n_chunks; chunk++) {
         const struct induced at = vortices_targets(markers, parallel_chunk(chunk, markers->n));
@@ -115,14 +117,15 @@ static enum status induce(struct sheets *sheets, struct velocity_sum *sum, doubl
     return STATUS_OK;
 }
 
-int sheets_at_wake_by_tree(const struct bound_vortices *bound, int n_markers, double tolerance) {
-    return velocity_sum_by_tree(bound->vortices, (int)(n_markers / times_slower), tolerance);
+int sheets_at_wake_by_tree(const struct vortices *bound, int n_markers, double tolerance) {
+    return velocity_sum_by_tree(bound, (int)(n_markers / times_slower), tolerance);
 }
 
-enum status sheets_at_wake_induce(const struct bound_vortices *bound, struct velocity_sum *sum, double tolerance,
-                                  int threads, const struct induced *markers) {
+enum status sheets_at_wake_induce(const struct bound_vortices *bound, const struct vortices *others,
+                                  struct velocity_sum *sum, double tolerance, int threads,
+                                  const struct induced *markers) {
     struct sheets sheets = {.bound = bound};
-    const enum status status = induce(&sheets, sum, tolerance, threads, markers);
+    const enum status status = induce(&sheets, others, sum, tolerance, threads, markers);
     sheets_clear(&sheets);
     return status;
 }

@@ -4,6 +4,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/parallel.h"
+
 struct tree_point {
     double at[2], weight;
     int index;
@@ -83,8 +85,19 @@ static int enclose(struct tree_box *box, const struct tree_point *point) {
     return high[1] - low[1] > high[0] - low[0];
 }
 
+// Find the circle around box i, and halve it unless it is a leaf; its points are all that this changes.
+static void divide(struct tree_boxes *boxes, int i, int is_leaf) {
+    struct tree_box *const box = &boxes->box[i];
+    struct tree_point *const point = boxes->work + box->first;
+    const int axis = enclose(box, point), middle = box->n / 2;
+    if (is_leaf) return;
+    halve(point, box->n, middle, axis);
+    boxes->box[2 * i + 1] = (struct tree_box){.first = box->first, .n = middle};
+    boxes->box[2 * i + 2] = (struct tree_box){.first = box->first + middle, .n = box->n - middle};
+}
+
 enum status tree_boxes_fill(struct tree_boxes *boxes, int n, const double *x, const double *y, const double *weight,
-                            int leaf) {
+                            int leaf, int threads) {
     boxes->n = boxes->n_boxes = boxes->depth = 0;
     if (n == 0) return STATUS_OK;
     int depth = 0;
@@ -96,14 +109,10 @@ enum status tree_boxes_fill(struct tree_boxes *boxes, int n, const double *x, co
         point[i] = (struct tree_point){.at = {x[i], y[i]}, .weight = weight ? weight[i] : 0, .index = i};
     }
     boxes->box[0] = (struct tree_box){.first = 0, .n = n};
-    for (int i = 0; i < n_boxes; i++) {
-        struct tree_box *const box = &boxes->box[i];
-        const int axis = enclose(box, point + box->first);
-        if (i >= tree_boxes_level(depth)) continue;
-        const int middle = box->n / 2;
-        halve(point + box->first, box->n, middle, axis);
-        boxes->box[2 * i + 1] = (struct tree_box){.first = box->first, .n = middle};
-        boxes->box[2 * i + 2] = (struct tree_box){.first = box->first + middle, .n = box->n - middle};
+    for (int level = 0; level <= depth; level++) {
+        const int first = tree_boxes_level(level), end = tree_boxes_level(level + 1);
+#pragma omp parallel for num_threads(parallel_threads(threads, end - first, n, PARALLEL_SORTED)) schedule(static)
+        for (int i = first; i < end; i++) divide(boxes, i, level == depth);
     }
     for (int i = 0; i < n; i++) {
         boxes->x[i] = point[i].at[0];

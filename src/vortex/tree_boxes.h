@@ -33,9 +33,9 @@ static inline int tree_boxes_level(int level) {
 }
 
 /* Sort n points with weights (NULL: all 0) into boxes; leaves hold at most leaf points. The memory is kept for the next
- * call. Fails with STATUS_MEMORY; boxes is then empty. */
+ * call. The same boxes for any number of threads. Fails with STATUS_MEMORY; boxes is then empty. */
 enum status tree_boxes_fill(struct tree_boxes *boxes, int n, const double *x, const double *y, const double *weight,
-                            int leaf);
+                            int leaf, int threads);
 
 /* Release what boxes holds, not boxes itself. */
 void tree_boxes_clear(struct tree_boxes *boxes);

@@ -2,8 +2,8 @@
  * doc/performance.md, section "Fast multipole sums". Tested by tests/vortex/test_treecode.c.
  *
  * Vortices and targets are sorted into boxes (tree_boxes.h). Boxes that are far from each other interact by multipole
- * and local expansions (expansions.h), whose degrees are chosen for every pair to meet the tolerance; boxes near each
- * other by the direct sum of kernel.h:
+ * and local expansions (expansions.h), whose degrees are chosen for every pair to meet the tolerance (tree_pairs.h);
+ * boxes near each other by the direct sum of kernel.h:
  *
  *     upward pass      P2M in the leaves of the sources, M2M from halves to wholes
  *     far field        M2L from boxes of sources to boxes of targets
@@ -31,10 +31,14 @@ struct treecode;
 enum status treecode_create(struct treecode **tree);
 void treecode_free(struct treecode *tree);
 
-/* Fill the tree with n vortices of one smoothing length; those it had are removed. The arrays are copied. tolerance:
- * see above; below 1e-13 rounding is larger. Fails with STATUS_MEMORY: the tree is then empty. */
+/* Fill the tree with a set of n vortices of one smoothing length; those it had are removed. The arrays are copied.
+ * tolerance: see above; below 1e-13 rounding is larger. Or add another set, which may have another smoothing: all sets
+ * share the boxes of the targets, their local expansions, and the evaluation of these. Fail with STATUS_MEMORY: the tree
+ * is then empty. */
 enum status treecode_build(struct treecode *tree, int n, const double *x, const double *y, const double *circulation,
-                           double smoothing, double tolerance);
+                           double smoothing, double tolerance, int threads);
+enum status treecode_build_more(struct treecode *tree, int n, const double *x, const double *y,
+                                const double *circulation, double smoothing, double tolerance, int threads);
 
 /* Add to (u, v) at each target the velocity of all vortices. A vortex at a target adds 0. Fails with STATUS_MEMORY:
  * nothing is then added. */

@@ -1,4 +1,4 @@
-/* velocity_sum.c: one tree for the vortices of each smoothing. */
+/* velocity_sum.c: one set of a tree for the vortices of each smoothing. */
 #include "vortex/velocity_sum.h"
 
 #include <stdlib.h>
@@ -64,20 +64,30 @@ static enum status select_alike(struct velocity_sum *sum, const struct vortices 
     return STATUS_OK;
 }
 
-enum status velocity_sum_induce(struct velocity_sum *sum, const struct vortices *vortices, double tolerance,
-                                int threads, const struct induced *at) {
+// add the vortices to the tree, one set for each smoothing
+static enum status build(struct velocity_sum *sum, const struct vortices *vortices, double tolerance, int threads,
+                         int *n_sets) {
     for (int k = 0; k < vortices->n_groups; k++) {
         if (is_done(vortices, k)) continue;
         TRY(select_alike(sum, vortices, k));
         const struct vortices *const all = &sum->alike;
-        TRY(treecode_build(sum->tree, all->n, all->x, all->y, all->circulation, vortices->group[k].smoothing,
-                           tolerance / 10));
-        if (at->u_x) {
-            TRY(treecode_add_gradient(sum->tree, at->n, at->x, at->y, threads, at->u, at->v, at->u_x, at->u_y,
-                                      at->v_x));
-        } else {
-            TRY(treecode_add_velocity(sum->tree, at->n, at->x, at->y, threads, at->u, at->v));
-        }
+        const double smoothing = vortices->group[k].smoothing;
+        TRY(((*n_sets)++ == 0 ? treecode_build : treecode_build_more)(
+            sum->tree, all->n, all->x, all->y, all->circulation, smoothing, tolerance / 10, threads));
     }
     return STATUS_OK;
+}
+
+enum status velocity_sum_induce_all(struct velocity_sum *sum, int n, const struct vortices *const *vortices,
+                                    double tolerance, int threads, const struct induced *at) {
+    int n_sets = 0;
+    for (int i = 0; i < n; i++) TRY(build(sum, vortices[i], tolerance, threads, &n_sets));
+    if (n_sets == 0) return STATUS_OK;
+    if (!at->u_x) return treecode_add_velocity(sum->tree, at->n, at->x, at->y, threads, at->u, at->v);
+    return treecode_add_gradient(sum->tree, at->n, at->x, at->y, threads, at->u, at->v, at->u_x, at->u_y, at->v_x);
+}
+
+enum status velocity_sum_induce(struct velocity_sum *sum, const struct vortices *vortices, double tolerance,
+                                int threads, const struct induced *at) {
+    return velocity_sum_induce_all(sum, 1, &vortices, tolerance, threads, at);
 }

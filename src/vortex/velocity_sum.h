@@ -23,4 +23,8 @@ int velocity_sum_by_tree(const struct vortices *vortices, int n_targets, double 
 enum status velocity_sum_induce(struct velocity_sum *sum, const struct vortices *vortices, double tolerance,
                                 int threads, const struct induced *at);
 
+/* The same for n arrays of vortices by one tree, which costs less than one after the other. The errors add up. */
+enum status velocity_sum_induce_all(struct velocity_sum *sum, int n, const struct vortices *const *vortices,
+                                    double tolerance, int threads, const struct induced *at);
+
 #endif

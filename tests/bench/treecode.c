@@ -98,7 +98,7 @@ static void by_tree(struct treecode *tree, const struct points *to, const struct
                     const double *circulation, double smoothing, double tolerance, int with_gradient, int threads,
                     double *const out[5]) {
     for (int k = 0; k < 5; k++) memset(out[k], 0, (size_t)to->n * sizeof *out[k]);
-    enum status status = treecode_build(tree, from->n, from->x, from->y, circulation, smoothing, tolerance);
+    enum status status = treecode_build(tree, from->n, from->x, from->y, circulation, smoothing, tolerance, threads);
     if (status == STATUS_OK && with_gradient) {
         status = treecode_add_gradient(tree, to->n, to->x, to->y, threads, out[0], out[1], out[2], out[3], out[4]);
     } else if (status == STATUS_OK) {

@@ -1,4 +1,4 @@
-/* test_sheets_at_wake.c: three trees for the bound vortices, and the markers near them. */
+/* test_sheets_at_wake.c: three sets of a tree for the bound vortices, and the markers near them. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -72,7 +72,7 @@ static void induce(struct sums *sums, double tolerance, int threads) {
     memset(sums->u, 0, MARKERS * sizeof(double));
     memset(sums->v, 0, MARKERS * sizeof(double));
     const struct induced at = {MARKERS, sums->markers.x, sums->markers.y, sums->u, sums->v, NULL, NULL, NULL};
-    school_ok(sheets_at_wake_induce(&sums->bound, sum, tolerance, threads, &at));
+    school_ok(sheets_at_wake_induce(&sums->bound, NULL, sum, tolerance, threads, &at));
     velocity_sum_free(sum);
 }
 
@@ -104,6 +104,35 @@ static void it_is_the_direct_sum_to_the_tolerance(void **state) {
     clear(&sums);
 }
 
+static void others_are_summed_too(void **state) {
+    (void)state;
+    struct sums sums;
+    make(&sums);
+    static double u[MARKERS], v[MARKERS];
+    for (int i = 0; i < sums.markers.n; i++) sums.markers.circulation[i] = school_random(&sums.setup);
+    induce(&sums, 1e-7, 1);
+    memcpy(u, sums.u, sizeof u);
+    memcpy(v, sums.v, sizeof v);
+    const struct induced want = {MARKERS, sums.markers.x, sums.markers.y, u, v, NULL, NULL, NULL};
+    vortices_induce(&sums.markers, (struct range){0, MARKERS}, &want);
+    struct velocity_sum *sum;
+    school_ok(velocity_sum_create(&sum));
+    memset(sums.u, 0, MARKERS * sizeof(double));
+    memset(sums.v, 0, MARKERS * sizeof(double));
+    const struct induced at = {MARKERS, sums.markers.x, sums.markers.y, sums.u, sums.v, NULL, NULL, NULL};
+    school_ok(sheets_at_wake_induce(&sums.bound, &sums.markers, sum, 1e-7, 1, &at));
+    velocity_sum_free(sum);
+    double size = 0, worst = 0;
+    for (int i = 0; i < MARKERS; i++) {
+        size = fmax(size, hypot(u[i], v[i]));
+        worst = fmax(worst, hypot(sums.u[i] - u[i], sums.v[i] - v[i]));
+    }
+    print_message("velocities up to %.1e, error %.1e\n", size, worst);
+    // without cancellation velocities are some ten times as large
+    assert_true(worst <= 1e-7 * size);
+    clear(&sums);
+}
+
 static void threads_change_no_bit(void **state) {
     (void)state;
     struct sums sums;
@@ -120,15 +149,16 @@ static void only_large_schools_take_the_tree(void **state) {
     (void)state;
     struct sums sums;
     make(&sums);
-    assert_int_equal(sheets_at_wake_by_tree(&sums.bound, MARKERS, 1e-7), 0);
-    assert_int_equal(sheets_at_wake_by_tree(&sums.bound, 100 * MARKERS, 1e-7), 1);
-    assert_int_equal(sheets_at_wake_by_tree(&sums.bound, 100 * MARKERS, 0), 0);
+    assert_int_equal(sheets_at_wake_by_tree(&sums.vortices, MARKERS, 1e-7), 0);
+    assert_int_equal(sheets_at_wake_by_tree(&sums.vortices, 100 * MARKERS, 1e-7), 1);
+    assert_int_equal(sheets_at_wake_by_tree(&sums.vortices, 100 * MARKERS, 0), 0);
     clear(&sums);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(it_is_the_direct_sum_to_the_tolerance),
+        cmocka_unit_test(others_are_summed_too),
         cmocka_unit_test(threads_change_no_bit),
         cmocka_unit_test(only_large_schools_take_the_tree),
     };

@@ -74,7 +74,7 @@ static void fill(int n, void (*place)(int i)) {
 static struct treecode *build(int n, double smoothing, double tolerance) {
     struct treecode *tree;
     assert_int_equal(treecode_create(&tree), STATUS_OK);
-    assert_int_equal(treecode_build(tree, n, x, y, circulation, smoothing, tolerance), STATUS_OK);
+    assert_int_equal(treecode_build(tree, n, x, y, circulation, smoothing, tolerance, 1), STATUS_OK);
     return tree;
 }
 
@@ -248,7 +248,7 @@ static void a_tree_may_be_built_again(void **state) {
     assert_int_equal(treecode_add_velocity(tree, 5000, x, y, 1, again[0], again[1]), STATUS_OK);
     memset(again, 0, sizeof again);
     fill(2000, square);
-    assert_int_equal(treecode_build(tree, 2000, x, y, circulation, 0.1, 1e-10), STATUS_OK);
+    assert_int_equal(treecode_build(tree, 2000, x, y, circulation, 0.1, 1e-10, 1), STATUS_OK);
     assert_int_equal(treecode_add_velocity(tree, 2000, x, y, 1, again[0], again[1]), STATUS_OK);
     treecode_free(tree);
     assert_memory_equal(again, fresh, sizeof fresh);
@@ -258,7 +258,7 @@ static enum status make_and_add(double *u, double *v) {
     struct treecode *tree;
     enum status status = treecode_create(&tree);
     if (status != STATUS_OK) return status;
-    status = treecode_build(tree, 3000, x, y, circulation, 0.2, 1e-8);
+    status = treecode_build(tree, 3000, x, y, circulation, 0.2, 1e-8, 1);
     if (status == STATUS_OK) status = treecode_add_velocity(tree, 3000, x, y, 1, u, v);
     treecode_free(tree);
     return status;
@@ -292,7 +292,7 @@ static void a_second_sum_needs_no_more_memory(void **state) {
     struct treecode *const tree = build(3000, 0.2, 1e-8);
     assert_int_equal(treecode_add_velocity(tree, 3000, x, y, 1, u, v), STATUS_OK);
     n_until_failure = 0;
-    const enum status built = treecode_build(tree, 3000, x, y, circulation, 0.2, 1e-8);
+    const enum status built = treecode_build(tree, 3000, x, y, circulation, 0.2, 1e-8, 1);
     const enum status added = treecode_add_velocity(tree, 3000, x, y, 1, u, v);
     n_until_failure = -1;
     assert_int_equal(built, STATUS_OK);
@@ -300,12 +300,12 @@ static void a_second_sum_needs_no_more_memory(void **state) {
     // a call that needs more memory and fails leaves an empty tree, which can be filled later
     fill(MAX, strips);
     n_until_failure = 0;
-    assert_int_equal(treecode_build(tree, MAX, x, y, circulation, 0.2, 1e-8), STATUS_MEMORY);
+    assert_int_equal(treecode_build(tree, MAX, x, y, circulation, 0.2, 1e-8, 1), STATUS_MEMORY);
     n_until_failure = -1;
     const double before = u[0];
     assert_int_equal(treecode_add_velocity(tree, 3000, x, y, 1, u, v), STATUS_OK);
     NEAR(u[0], before, 0, 0);
-    assert_int_equal(treecode_build(tree, MAX, x, y, circulation, 0.2, 1e-8), STATUS_OK);
+    assert_int_equal(treecode_build(tree, MAX, x, y, circulation, 0.2, 1e-8, 1), STATUS_OK);
     assert_int_equal(treecode_add_velocity(tree, 3000, x, y, 1, u, v), STATUS_OK);
     assert_true(u[0] != before);
     treecode_free(tree);
