@@ -40,7 +40,7 @@ struct tree_sources {
     struct tree_limits limits;
     struct tree_expansions multipole;
 
-    /* pairs as they are found, and sorted: near ones by their target, far ones by chunks of targets and their degrees */
+    /* pairs as they are found, and sorted: near ones by target, far ones by chunks of targets and their degrees */
     struct expansions_pair *far, *far_sorted;
     struct near_pair *near, *near_sorted;
     int n_far, n_near, far_capacity, near_capacity;

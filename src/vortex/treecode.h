@@ -33,8 +33,8 @@ void treecode_free(struct treecode *tree);
 
 /* Fill the tree with a set of n vortices of one smoothing length; those it had are removed. The arrays are copied.
  * tolerance: see above; below 1e-13 rounding is larger. Or add another set, which may have another smoothing: all sets
- * share the boxes of the targets, their local expansions, and the evaluation of these. Fail with STATUS_MEMORY: the tree
- * is then empty. */
+ * share the boxes of the targets, their local expansions, and the evaluation of these. Fail with STATUS_MEMORY: the
+ * tree is then empty. */
 enum status treecode_build(struct treecode *tree, int n, const double *x, const double *y, const double *circulation,
                            double smoothing, double tolerance, int threads);
 enum status treecode_build_more(struct treecode *tree, int n, const double *x, const double *y,
