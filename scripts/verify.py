@@ -130,6 +130,13 @@ plate starts at one degree to the stream; growth and frequency of the mode are f
     "steady": ("Steady states", """\
 Steady states, doc/steady.md: what `shoal steady` finds in some twelve to twenty beats against runs of two hundred, and the
 multiplier against the decay of the run."""),
+    "static": ("Equilibria", """\
+Bodies without a beat, doc/steady.md: what `shoal steady` finds for a stiff plate, for one that bends (thin airfoils and
+Galerkin's method, a solver of our own), for a plate with its clamp downstream, which the reactive force of slender bodies
+buckles as a column (Euler), and for a plate across the stream with the drag of its edges alone, which is an elastica: its
+drag over that of a stiff plate falls with the Cauchy number, in the end like U^(4/3) over U^2, with Vogel's exponent -2/3
+(Alben, Shelley and Zhang, Nature 420, 2002; Luhar and Nepf, Limnol. Oceanogr. 56, 2011). Thickness and stretching are not
+in theory. Then runs that have settled."""),
     "tandem": ("A plate behind another one", """\
 Two rigid plates in line heave alike and swim freely along their line: where does the second one stay? Places are given
 from the tail of the first to the nose of the second, in wavelengths, the way that both go in a beat; each is found as
@@ -242,6 +249,8 @@ FIGURE = {
                       "speed: relative error", {"scale": "semilog"}),
     "steady_heaving plate": ("A heaving plate: the way to a steady state", "beats",
                       "speed: relative error", {"scale": "semilog"}),
+    "reconfiguration": ("A plate across the stream", "Cauchy number", "drag over that of a stiff plate",
+                        {"slopes": [-1 / 3]}),
     "tandem_starts": ("A follower: where it settles", "tail to nose at the start [wavelengths]",
                       "tail to nose [wavelengths]", {"scale": "linear", "joined": False}),
     "tandem_places": ("Places of a follower", "n less the follower's lead [beats]", "tail to nose [wavelengths]",

@@ -20,7 +20,8 @@ static const struct {
                 {"school", verify_school},     {"interval", verify_interval}, {"symmetry", verify_symmetry},
                 {"start", verify_start},       {"energy", verify_energy},     {"control", verify_control},
                 {"pressure", verify_pressure}, {"elastic", verify_elastic},   {"coupled", verify_coupled},
-                {"steady", verify_steady},     {"tandem", verify_tandem},     {"walls", verify_walls}};
+                {"steady", verify_steady},     {"static", verify_static},     {"tandem", verify_tandem},
+                {"walls", verify_walls}};
 
 int verify_is_fast(void) {
     return fast;

@@ -26,6 +26,7 @@ void verify_pressure(void);
 void verify_elastic(void);
 void verify_coupled(void);
 void verify_steady(void);
+void verify_static(void);
 void verify_tandem(void);
 void verify_walls(void);
 
