@@ -1,5 +1,5 @@
 /* static.c: the section "static" (doc/steady.md, "Without a beat"): foils and plates at rest in a stream against thin
- * airfoils, Euler's column and the elastica, by solvers of our own, and against runs. Density, length and span are 1. */
+ * airfoils, Euler's column and the elastica, by solvers of our own, and against runs. Density, length, span are 1. */
 #include <lapacke.h>
 #include <math.h>
 
@@ -196,8 +196,7 @@ static void divergence(void) {
 
 // ---- a plate across the stream: the elastica with a drag 1/2 U_n^2 across it, of Cauchy number Ca = U^2/(2 E I)
 
-// from the tip, over the distance from there: angle to the stream, its slope, and the force beyond, over that on a stiff
-// plate
+// over the distance from the tip: angle to the stream, its slope, and the force beyond, over that on a stiff plate
 static void bend(double cauchy, const double z[4], double rate[4]) {
     const double f = sin(z[0]) * fabs(sin(z[0]));
     rate[0] = z[1];
