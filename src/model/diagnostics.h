@@ -1,106 +1,15 @@
-/* diagnostics.h: what is derived from a state for the user: energies, powers, headings, means. doc/model.md, section
- * 13. Tested by tests/model/test_diagnostics.c. */
+/* diagnostics.h: what is derived from a state for the user, all together. doc/model.md, section 13. Tested by
+ * tests/model/test_diagnostics.c. */
 #ifndef DIAGNOSTICS_H
 #define DIAGNOSTICS_H
 
-#include "model/fish.h"
+#include "model/diagnostics_values.h"
 #include "model/residual.h"
 #include "model/state.h"
-
-/* One fish at one event. */
-struct diagnostics_fish {
-    double com[2], com_velocity[2]; /* centre of mass, m, m s-1 */
-    double speed,
-        ground_speed;       /* of the centre of mass over the last period, through the water and over ground, m s-1 */
-    double drift;           /* of the speed: change from one period to the next, over it; NaN before the second */
-    double heading;         /* degree, unwrapped */
-    double desired_heading; /* degree */
-    double heading_error;   /* of the way through the water over the last period, against it, degree */
-    double phi0;
-    double wave_amplitude, wave_frequency;                    /* now: ramped, and as set from outside; rad, Hz */
-    double swept_vortices;                                    /* free vortices of any fish inside its outline */
-    double shed_circulation;                                  /* m2 s-1 */
-    double shedding_rate;                                     /* m2 s-2 */
-    double kinetic_energy, bending_energy, stretching_energy; /* J */
-    double contact_energy;                                    /* half of what its contacts store, J */
-    double added_mass_energy;                                 /* of the fluid that the body accelerates, J */
-    double actuation_power, damping_power, drag_power, added_mass_power, wake_power, driving_power; /* W */
-    double friction_power; /* of the part of the drag along the body, W */
-    double contact_power;  /* what it is given for its half of the contacts, W */
-    double energy_audit;   /* J */
-    double actuation_work; /* put in by the muscle since the start, J */
-    /* on the body, N, and about the centre of mass, N m; friction: the part of the resistive force along the body */
-    double resistive_force[2], friction_force[2], reactive_force[2], constraint_force[2];
-    double contact_force[2]; /* of all bodies that it touches, N */
-    double resistive_moment, friction_moment, reactive_moment, constraint_moment;
-    struct pressure_forces pressure; /* force: pressure, else 0 */
-    double leading_edge_a0;          /* A_0 at the mean speed; NaN without it, and with other forces */
-    double leading_edge_most;        /* the largest magnitude of A_0 over the last period */
-    double thrust;                   /* forces of the fluid along the heading, N */
-    double mean_thrust;       /* all forces of the fluid along the way, N, over the last period: 0 when it swims */
-    double mean_power;        /* that the motion takes for thrust and wake, W, over the last period */
-    double thrust_efficiency; /* mean thrust times speed over that power */
-    double cost_of_transport; /* mean actuation power over mass and speed, m s-2 */
-    double cost_of_transport_fluid; /* the part that goes into the fluid, */
-    double cost_of_transport_body;  /* and the part that damping takes */
-    double efficiency;              /* friction times speed over the power that goes into the fluid, over a period */
-    double strouhal;                /* frequency times peak-to-peak of the tail over speed */
-};
-
-/* The school at one event. */
-struct diagnostics {
-    double t;
-    struct diagnostics_fish *fish; /* (n_fish) */
-    double total_circulation;      /* m2 s-1 */
-    double least_distance;         /* between two bodies, m; NaN for one fish */
-    double polarisation;           /* length of the mean unit vector of the headings */
-};
 
 /* Fails with STATUS_MEMORY. diagnostics_free accepts NULL. */
 enum status diagnostics_create(struct diagnostics **diagnostics, const struct school *school);
 void diagnostics_free(struct diagnostics *diagnostics);
-
-/* Powers of one fish, W, from the unknowns, the rates of the state, and the fluid's velocity in the last residual
- * evaluated. */
-struct diagnostics_power {
-    double actuation, damping, drag, friction, added_mass, wake, pressure, suction, driving,
-        contact;     /* friction: of drag */
-    double on_water; /* of all forces of the fluid together, seen from the external flow at the centre of mass */
-};
-struct diagnostics_power diagnostics_power(struct residual *residual, int f, double t, const double *y);
-
-/* Kinetic plus bending plus stretching energy of one fish, and its half of the contacts', J. */
-double diagnostics_energy(struct residual *residual, int f, double t, const double *y);
-
-/* Add the powers of the step that ended at t to the energy balances, by the quadratic through the last three steps, and
- * bring the closest approach of two bodies up to date. */
-void diagnostics_step(struct residual *residual, struct state *state, double t, const double *y);
-
-/* Start the energy balances and the record of the closest approach: at the first event, when the state is
- * consistent. */
-void diagnostics_start(struct residual *residual, struct state *state);
-
-/* Start them again at a later event; the works go on, so that means over a period do not notice. */
-void diagnostics_restart(struct residual *residual, struct state *state);
-
-/* At an event at which powers of fish f jump and its state does not, say because its bias takes another rate: the next
- * step's integral begins with the powers as they are now. */
-void diagnostics_begin(struct residual *residual, struct state *state, int f);
-
-/* Before and after a jump of the state: the energy that the jump brings counts as work done, and no later step reaches
- * back over it. A bias that jumps, for one, changes the natural curvature and with it the energy of bending. */
-void diagnostics_before_jump(struct residual *residual, struct state *state);
-void diagnostics_after_jump(struct residual *residual, struct state *state);
-
-/* The direction in which the centre of mass has gone in the last period, rad, and the rate at which that direction
- * changes, rad s-1. Returns whether there is one: not before a whole period has passed, nor where it has not moved. */
-int diagnostics_course(const struct history *history, double *course, double *rate);
-
-/* Mean of the headings in a history, rad, unwrapped. */
-double diagnostics_mean_heading(const struct history *history);
-
-/* Take a sample of every fish into its history; at every event, before diagnostics_event. */
-void diagnostics_remember(struct residual *residual, struct state *state);
 
 /* Fill *diagnostics from the state at its event; the residual must have been evaluated there. */
 void diagnostics_event(struct residual *residual, const struct state *state, struct diagnostics *diagnostics);

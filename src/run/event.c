@@ -3,7 +3,8 @@
 
 #include <math.h>
 
-#include "model/diagnostics.h"
+#include "model/diagnostics_energy.h"
+#include "model/diagnostics_history.h"
 #include "model/drag.h"
 #include "model/flow_at_bodies.h"
 #include "model/flow_at_wake.h"

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "model/diagnostics_energy.h"
 #include "output/netcdf.h"
 #include "output/result_lock.h"
 #include "run/record.h"

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "model/diagnostics_energy.h"
 #include "model/flow_external.h"
 #include "model/state_table.h"
 

@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "model/diagnostics_energy.h"
+#include "model/diagnostics_history.h"
 #include "model/edge.h"
 #include "model/fish_gait.h"
 #include "model/fish_prescribed.h"

@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "model/diagnostics.h"
+#include "model/diagnostics_energy.h"
 #include "model/residual_jacobian.h"
 #include "model/rod.h"
 #include "solver/algebraic_rates.h"

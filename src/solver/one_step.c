@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "base/array.h"
-#include "model/diagnostics.h"
+#include "model/diagnostics_energy.h"
 #include "model/residual_jacobian.h"
 #include "solver/algebraic_rates.h"
 #include "solver/linear.h"

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "model/diagnostics.h"
+#include "model/diagnostics_energy.h"
 #include "solver/algebraic_rates.h"
 #include "solver/ode_rhs.h"
 #include "solver/sundials_adapter.h"

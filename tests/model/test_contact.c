@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "model/contact.h"
+#include "model/diagnostics_energy.h"
 #include "model/fish_distance.h"
 #include "school.h"
 

@@ -2,6 +2,8 @@
 #include <stdio.h>
 
 #include "model/diagnostics.h"
+#include "model/diagnostics_energy.h"
+#include "model/diagnostics_history.h"
 #include "school.h"
 
 #define TIME "time: {end: 2, shedding_interval: 0.01}\n"

@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "model/diagnostics_energy.h"
 #include "model/fish_prescribed.h"
 #include "model/residual_jacobian.h"
 #include "verify.h"

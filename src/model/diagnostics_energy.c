@@ -1,0 +1,180 @@
+/* diagnostics_energy.c: term by term, then over time. */
+#include "model/diagnostics_energy.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "model/actuation.h"
+#include "model/clamp.h"
+#include "model/clearance.h"
+#include "model/control.h"
+#include "model/diagnostics_forces.h"
+#include "model/fish_prescribed.h"
+#include "model/flow_at_bodies.h"
+#include "model/flow_external.h"
+#include "model/fluid_force.h"
+#include "model/rod.h"
+
+// what holds the prescribed nodes on their path, turns a clamped head, and the load at the tip
+static double driving_power(struct residual *residual, int f, double t, const double *y, double *scratch) {
+    const struct fish *fish = &residual->school->fish[f];
+    const int tail = fish->n_nodes - 1;
+    double power = fish->load_tip[0] * y[fish->at.vx + tail] + fish->load_tip[1] * y[fish->at.vy + tail];
+    if (fish->motion.prescribed == PRESCRIBED_NONE) return power;
+    power += clamp_driving_power(fish, t, y);
+    residual_reaction(residual, f, y, residual->state->yp, scratch);
+    for (int k = 0; k < fish_n_prescribed(fish); k++) {
+        const int has_surge = fish_is_prescribed(fish, k, 0);
+        power += (has_surge ? scratch[fish->at.ax + k] * y[fish->at.vx + k] : 0) +
+                 scratch[fish->at.ay + k] * y[fish->at.vy + k];
+    }
+    return power;
+}
+
+// the power of the fluid's forces as seen by one who drifts with the external flow at the centre of mass
+static double power_on_water(struct residual *residual, int f, double t, const struct fluid_power *power,
+                             const struct pressure_forces *pressure, const double *y) {
+    const struct fish *fish = &residual->school->fish[f];
+    const struct flow_at_body flow = flow_at_body(residual->flow, f);
+    const double com[2] = {fish_mass_mean(fish, y + fish->at.x), fish_mass_mean(fish, y + fish->at.y)};
+    double stream[2], on_water = power->drag + power->added_mass + power->wake;
+    on_water += pressure->pressure_power + pressure->suction_power;
+    flow_external(residual->school, t, com[1], &stream[0], &stream[1]);
+    if (!(fabs(stream[0]) + fabs(stream[1]) > 0)) return on_water;
+    const struct fluid_forces forces = fluid_force_sum(fish, &flow, com, y);
+    for (int i = 0; i < 2; i++) {
+        on_water -=
+            (forces.resistive[i] + forces.reactive[i] + pressure->pressure[i] + pressure->suction[i]) * stream[i];
+    }
+    return on_water;
+}
+
+struct diagnostics_power diagnostics_power(struct residual *residual, int f, double t, const double *y) {
+    const struct fish *fish = &residual->school->fish[f];
+    const struct flow_at_body flow = flow_at_body(residual->flow, f);
+    const struct fluid_power fluid = fluid_force_power(fish, &flow, y);
+    const struct pressure_forces pressure = diagnostics_pressure(residual, f, (const double[2]){0, 0}, y);
+    // natural curvature, its derivative and its rate at this very state
+    double *const curvature = residual->scratch, *const by_phi0 = curvature + fish->n_joints;
+    const struct state *const state = residual->state;
+    const struct fish_gait gait = control_gait(fish, &state->control[f], t);
+    actuation_curvature(fish, gait, y[fish->at.phi0], curvature, by_phi0);
+    double *const rate = by_phi0;
+    const double phi0_rate = control_rate(fish, &state->control[f], t, t - state->t, y);
+    actuation_rate(fish, gait, y[fish->at.phi0], phi0_rate, rate);
+    return (struct diagnostics_power){.actuation = rod_actuation_power(fish, curvature, rate, y),
+                                      .damping = rod_damping_power(fish, y) + clamp_damping_power(fish, t, y),
+                                      .drag = fluid.drag,
+                                      .friction = fluid.friction,
+                                      .added_mass = fluid.added_mass,
+                                      .wake = fluid.wake,
+                                      .pressure = pressure.pressure_power,
+                                      .suction = pressure.suction_power,
+                                      .contact = contact_power(residual->contact, f, y),
+                                      .on_water = power_on_water(residual, f, t, &fluid, &pressure, y),
+                                      .driving = driving_power(residual, f, t, y, residual->scratch)};
+}
+
+static double kinetic_energy(const struct fish *fish, const double *y) {
+    double energy = 0;
+    for (int k = 0; k < fish->n_nodes; k++) {
+        const double vx = y[fish->at.vx + k], vy = y[fish->at.vy + k];
+        energy += fish->mass[k] * (vx * vx + vy * vy) / 2;
+    }
+    return energy;
+}
+
+static double bending_energy(struct residual *residual, int f, double t, const double *y) {
+    const struct fish *fish = &residual->school->fish[f];
+    double *const curvature = residual->scratch;
+    const struct fish_gait gait = control_gait(fish, &residual->state->control[f], t);
+    actuation_curvature(fish, gait, y[fish->at.phi0], curvature, curvature + fish->n_joints);
+    return rod_bending_energy(fish, curvature, y) + clamp_energy(fish, t, y);
+}
+
+struct diagnostics_energies diagnostics_energies(struct residual *residual, int f, double t, const double *y) {
+    const struct fish *fish = &residual->school->fish[f];
+    return (struct diagnostics_energies){.kinetic = kinetic_energy(fish, y),
+                                         .bending = bending_energy(residual, f, t, y),
+                                         .stretching = rod_stretching_energy(fish, y),
+                                         .contact = contact_energy(residual->contact, f, y)};
+}
+
+double diagnostics_energy(struct residual *residual, int f, double t, const double *y) {
+    const struct diagnostics_energies of = diagnostics_energies(residual, f, t, y);
+    return of.kinetic + of.bending + of.stretching + of.contact;
+}
+
+// the powers whose work is kept
+static void gather_powers(const struct diagnostics_power *power, double *of) {
+    of[WORK_ALL] = power->actuation + power->damping + power->drag + power->added_mass + power->wake + power->driving;
+    of[WORK_ALL] += power->pressure + power->suction + power->contact;
+    of[WORK_ACTUATION] = power->actuation;
+    of[WORK_FLUID] = power->on_water;
+    of[WORK_DAMPING] = power->damping;
+}
+
+// integral over the newest interval of the quadratic through three values, or the line through two
+static double newest_area(int n, const double t[3], const double value[3]) {
+    const double h = t[0] - t[1], slope = (value[0] - value[1]) / h;
+    double area = h * (value[0] + value[1]) / 2;
+    if (n == 3) area -= h * h * h / 6 * (slope - (value[1] - value[2]) / (t[1] - t[2])) / (t[0] - t[2]);
+    return area;
+}
+
+void diagnostics_step(struct residual *residual, struct state *state, double t, const double *y) {
+    for (int f = 0; f < residual->school->n_fish; f++) {
+        struct energy_balance *balance = &state->balance[f];
+        const struct diagnostics_power now = diagnostics_power(residual, f, t, y);
+        const double times[3] = {t, balance->t[0], balance->t[1]};
+        double newest[N_WORKS];
+        gather_powers(&now, newest);
+        for (int i = 0; i < N_WORKS; i++) {
+            const double power[3] = {newest[i], balance->power[0][i], balance->power[1][i]};
+            if (t > times[1]) balance->work[i] += newest_area(balance->n + 1, times, power);
+            balance->power[1][i] = power[1];
+            balance->power[0][i] = power[0];
+        }
+        for (int i = 0; i < 2; i++) balance->t[i] = times[i];
+        if (balance->n < 2) balance->n++;
+    }
+    clearance_step(residual->school, state, t, y, residual->neighbours, residual->scratch);
+}
+
+void diagnostics_before_jump(struct residual *residual, struct state *state) {
+    for (int f = 0; f < residual->school->n_fish; f++) {
+        state->balance[f].work[WORK_ALL] -= diagnostics_energy(residual, f, state->t, state->y);
+    }
+}
+
+void diagnostics_begin(struct residual *residual, struct state *state, int f) {
+    struct energy_balance *balance = &state->balance[f];
+    const struct diagnostics_power now = diagnostics_power(residual, f, state->t, state->y);
+    balance->n = 1;
+    balance->t[0] = state->t;
+    gather_powers(&now, balance->power[0]);
+}
+
+void diagnostics_after_jump(struct residual *residual, struct state *state) {
+    for (int f = 0; f < residual->school->n_fish; f++) {
+        state->balance[f].work[WORK_ALL] += diagnostics_energy(residual, f, state->t, state->y);
+        diagnostics_begin(residual, state, f);
+    }
+}
+
+void diagnostics_start(struct residual *residual, struct state *state) {
+    diagnostics_after_jump(residual, state);
+    for (int f = 0; f < residual->school->n_fish; f++) {
+        state->balance[f].initial_energy = diagnostics_energy(residual, f, state->t, state->y);
+        memset(state->balance[f].work, 0, sizeof state->balance[f].work);
+    }
+    clearance_start(residual->school, state, residual->neighbours, residual->scratch);
+}
+
+void diagnostics_restart(struct residual *residual, struct state *state) {
+    for (int f = 0; f < residual->school->n_fish; f++) {
+        struct energy_balance *const balance = &state->balance[f];
+        balance->initial_energy = diagnostics_energy(residual, f, state->t, state->y) - balance->work[WORK_ALL];
+    }
+    clearance_start(residual->school, state, residual->neighbours, residual->scratch);
+}

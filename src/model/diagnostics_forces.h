@@ -1,0 +1,15 @@
+/* diagnostics_forces.h: the forces on a fish by name, and the forces that hold a prescribed one. doc/model.md, section
+ * 13. Tested by tests/model/test_diagnostics.c. */
+#ifndef DIAGNOSTICS_FORCES_H
+#define DIAGNOSTICS_FORCES_H
+
+#include "model/diagnostics_values.h"
+#include "model/residual.h"
+
+/* The forces and moments of *to, whose com is known, at the unknowns y and time t of the last residual evaluated. */
+void diagnostics_forces(struct residual *residual, int f, double t, const double *y, struct diagnostics_fish *to);
+
+/* The forces that come from the pressure, moments about a point; all 0 with other forces. */
+struct pressure_forces diagnostics_pressure(struct residual *residual, int f, const double about[2], const double *y);
+
+#endif
