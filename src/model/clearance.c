@@ -13,16 +13,9 @@ struct box clearance_box(const struct fish *fish, double distance, const double 
     for (int k = 0; k < fish->n_edges; k++) margin = fmax(margin, fish->thickness[k] / 2);
     // a little more, for rounding
     margin += (0.5 + 1e-9) * distance;
-    struct box box = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
-    for (int k = 0; k < fish->n_nodes; k++) {
-        const double place[2][2] = {{before[fish->at.x + k], before[fish->at.y + k]},
-                                    {y[fish->at.x + k], y[fish->at.y + k]}};
-        for (int i = 0; i < 2; i++) {
-            box.low[i] = fmin(box.low[i], fmin(place[0][i], place[1][i]) - margin);
-            box.high[i] = fmax(box.high[i], fmax(place[0][i], place[1][i]) + margin);
-        }
-    }
-    return box;
+    const int n = fish->n_nodes;
+    const struct box old = box_around(n, before + fish->at.x, before + fish->at.y);
+    return box_widen(box_union(old, box_around(n, y + fish->at.x, y + fish->at.y)), margin);
 }
 
 // the displacement of a body during a step: of its nose, and the farthest that another node goes beyond that, m

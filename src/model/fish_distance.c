@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include "base/box.h"
+
 // distance of the point p from the segment a b
 static double point_to_segment(const double p[2], const double a[2], const double b[2]) {
     const double e[2] = {b[0] - a[0], b[1] - a[1]}, r[2] = {p[0] - a[0], p[1] - a[1]};
@@ -42,20 +44,6 @@ static double segment_to_segment(const double a[2], const double b[2], const dou
                 fmin(point_to_segment(c, a, b), point_to_segment(d, a, b)));
 }
 
-// the gap between two intervals, negative where they overlap; each the extent of some numbers and a margin
-static double gap(int n, const double *x, double margin, int m, const double *y, double other_margin) {
-    double low = x[0], high = x[0], other_low = y[0], other_high = y[0];
-    for (int i = 1; i < n; i++) {
-        low = x[i] < low ? x[i] : low;
-        high = x[i] > high ? x[i] : high;
-    }
-    for (int i = 1; i < m; i++) {
-        other_low = y[i] < other_low ? y[i] : other_low;
-        other_high = y[i] > other_high ? y[i] : other_high;
-    }
-    return fmax(other_low - high, low - other_high) - margin - other_margin;
-}
-
 static double max_half_thickness(const struct fish *fish) {
     double max = 0;
     for (int k = 0; k < fish->n_edges; k++) max = fmax(max, fish->thickness[k] / 2);
@@ -64,11 +52,9 @@ static double max_half_thickness(const struct fish *fish) {
 
 double fish_distance(const struct fish *a, const struct fish *b, const double *y, double limit) {
     // the boxes around the bodies exclude most pairs of a school
-    const double margin = max_half_thickness(a), other = max_half_thickness(b);
-    if (gap(a->n_nodes, y + a->at.x, margin, b->n_nodes, y + b->at.x, other) > limit ||
-        gap(a->n_nodes, y + a->at.y, margin, b->n_nodes, y + b->at.y, other) > limit) {
-        return INFINITY;
-    }
+    const struct box box = box_around(a->n_nodes, y + a->at.x, y + a->at.y),
+                     other = box_around(b->n_nodes, y + b->at.x, y + b->at.y);
+    if (box_gap(&box, &other) - max_half_thickness(a) - max_half_thickness(b) > limit) return INFINITY;
     double min = INFINITY;
     for (int i = 0; i < a->n_edges; i++) {
         const double p[2] = {y[a->at.x + i], y[a->at.y + i]}, q[2] = {y[a->at.x + i + 1], y[a->at.y + i + 1]};

@@ -4,12 +4,8 @@
 #ifndef NEIGHBOURS_H
 #define NEIGHBOURS_H
 
+#include "base/box.h"
 #include "base/status.h"
-
-/* A rectangle with its sides along the axes, m. */
-struct box {
-    double low[2], high[2];
-};
 
 struct neighbours {
     int n;

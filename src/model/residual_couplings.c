@@ -58,11 +58,7 @@ enum status residual_couple(struct residual_couplings *couplings, const double *
 static double extent(const struct school *school, const double *y) {
     struct box all = clearance_box(&school->fish[0], 0, y, y);
     for (int f = 1; f < school->n_fish; f++) {
-        const struct box box = clearance_box(&school->fish[f], 0, y, y);
-        for (int i = 0; i < 2; i++) {
-            all.low[i] = fmin(all.low[i], box.low[i]);
-            all.high[i] = fmax(all.high[i], box.high[i]);
-        }
+        all = box_union(all, clearance_box(&school->fish[f], 0, y, y));
     }
     return hypot(all.high[0] - all.low[0], all.high[1] - all.low[1]);
 }

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "model/neighbours.h"
+#include "base/box.h"
 #include "vortex/kernel.h"
 
 enum { NODES = 3 };
@@ -41,24 +41,6 @@ static double lagrange(const struct fish *fish, int m, double square) {
     return value;
 }
 
-// the box around n points, with a margin
-static struct box box_of(int n, const double *x, const double *y, double margin) {
-    struct box box = {{x[0], y[0]}, {x[0], y[0]}};
-    for (int i = 1; i < n; i++) {
-        box = (struct box){{fmin(box.low[0], x[i]), fmin(box.low[1], y[i])},
-                           {fmax(box.high[0], x[i]), fmax(box.high[1], y[i])}};
-    }
-    for (int k = 0; k < 2; k++) {
-        box.low[k] -= margin;
-        box.high[k] += margin;
-    }
-    return box;
-}
-
-static int overlap(const struct box *a, const struct box *b) {
-    return a->low[0] <= b->high[0] && a->high[0] >= b->low[0] && a->low[1] <= b->high[1] && a->high[1] >= b->low[1];
-}
-
 static enum status place(struct sheets *sheets, int f, double tolerance) {
     const struct bound_vortices *const bound = sheets->bound;
     const struct fish *const fish = &bound->school->fish[f];
@@ -74,7 +56,7 @@ static enum status place(struct sheets *sheets, int f, double tolerance) {
                 bound->vortices->circulation[first + j] * lagrange(fish, m, bound->square[first + j]);
         }
     }
-    sheets->near[f] = box_of(n, x, y, fish->sheet_smoothing * pow(0.3125 / tolerance, 1.0 / 6));
+    sheets->near[f] = box_widen(box_around(n, x, y), fish->sheet_smoothing * pow(0.3125 / tolerance, 1.0 / 6));
     return STATUS_OK;
 }
 
@@ -109,9 +91,9 @@ static enum status induce(struct sheets *sheets, const struct vortices *others, 
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 4)
     for (int chunk = 0; chunk < n_chunks; chunk++) {
         const struct induced at = vortices_targets(markers, parallel_chunk(chunk, markers->n));
-        const struct box box = box_of(at.n, at.x, at.y, 0);
+        const struct box box = box_around(at.n, at.x, at.y);
         for (int f = 0; f < n_fish; f++) {
-            if (overlap(&sheets->near[f], &box)) correct(sheets, f, &at);
+            if (box_gap(&sheets->near[f], &box) <= 0) correct(sheets, f, &at);
         }
     }
     return STATUS_OK;

@@ -9,6 +9,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "output/netcdf.h"
+
 enum { OWNER_BYTES = 256 };
 
 static enum status refuse(const char *result, int descriptor) {
@@ -80,4 +82,13 @@ void result_lock_release(struct result_lock *lock) {
     // while it is locked: who waits for the name then finds that it is gone
     if (lock->path) unlink(lock->path);
     forget(lock);
+}
+
+enum status result_lock_hold(const char *result, enum status (*work)(void *data), void *data) {
+    struct result_lock lock;
+    TRY(netcdf_check_target(result, 1));
+    TRY(result_lock_take(&lock, result));
+    const enum status status = work(data);
+    result_lock_release(&lock);
+    return status;
 }

@@ -18,4 +18,8 @@ enum status result_lock_take(struct result_lock *lock, const char *result);
 /* Remove the lock. */
 void result_lock_release(struct result_lock *lock);
 
+/* Do the work under the lock of the result at this path, which may be there or not (netcdf_check_target). Fails with
+ * STATUS_FILE, the work not begun, where nothing can be written there or another run has the lock; then as the work. */
+enum status result_lock_hold(const char *result, enum status (*work)(void *data), void *data);
+
 #endif

@@ -138,15 +138,16 @@ static enum status start(struct run *run) {
     return finish(run, status);
 }
 
+static enum status run_all(void *data) {
+    struct run *const run = data;
+    const enum status status = start(run);
+    release(run);
+    return status;
+}
+
 enum status simulate_run(const struct case_values *values, const struct simulate_options *options) {
     struct run run = {.values = values, .options = options};
-    struct result_lock lock;
-    TRY(netcdf_check_target(options->path, 1));
-    TRY(result_lock_take(&lock, options->path));
-    const enum status status = start(&run);
-    release(&run);
-    result_lock_release(&lock);
-    return status;
+    return result_lock_hold(options->path, run_all, &run);
 }
 
 // ---- a run that is resumed

@@ -184,13 +184,14 @@ static void release(struct run *run) {
     free(run->found.imaginary);
 }
 
+static enum status run_all(void *data) {
+    struct run *const run = data;
+    const enum status status = start(run);
+    release(run);
+    return status;
+}
+
 enum status steady_run(const struct case_values *values, const struct steady_options *options) {
     struct run run = {.values = values, .options = options};
-    struct result_lock lock;
-    TRY(netcdf_check_target(options->path, 1));
-    TRY(result_lock_take(&lock, options->path));
-    const enum status status = start(&run);
-    release(&run);
-    result_lock_release(&lock);
-    return status;
+    return result_lock_hold(options->path, run_all, &run);
 }

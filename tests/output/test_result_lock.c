@@ -86,11 +86,32 @@ static void links_are_not_followed(void **state) {
     unlink(lock_file);
 }
 
+// work that sees the lock of its result, and fails
+static enum status work(void *data) {
+    *(int *)data += access(lock_file, F_OK) == 0;
+    return STATUS_SOLVER;
+}
+
+static void work_is_done_under_the_lock_and_only_then(void **state) {
+    (void)state;
+    int n_locked = 0;
+    assert_int_equal(result_lock_hold(result, work, &n_locked), STATUS_SOLVER);
+    assert_int_equal(n_locked, 1);
+    assert_int_not_equal(access(lock_file, F_OK), 0);
+    const pid_t other = start_other(0);
+    assert_int_equal(result_lock_hold(result, work, &n_locked), STATUS_FILE);
+    end(other);
+    // nothing can be written to a folder
+    assert_int_equal(result_lock_hold(folder, work, &n_locked), STATUS_FILE);
+    assert_int_equal(n_locked, 1);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_second_process_is_refused_and_hears_who_writes),
         cmocka_unit_test(a_released_lock_is_free),
         cmocka_unit_test(links_are_not_followed),
+        cmocka_unit_test(work_is_done_under_the_lock_and_only_then),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }

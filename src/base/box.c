@@ -1,0 +1,39 @@
+/* box.c: smallest and largest coordinates. */
+#include "base/box.h"
+
+#include <math.h>
+
+// fmin and fmax are calls, and boxes are made often
+static double smaller(double a, double b) {
+    return b < a ? b : a;
+}
+
+static double larger(double a, double b) {
+    return b > a ? b : a;
+}
+
+struct box box_around(int n, const double *x, const double *y) {
+    struct box box = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
+    for (int i = 0; i < n; i++) {
+        box.low[0] = smaller(box.low[0], x[i]);
+        box.low[1] = smaller(box.low[1], y[i]);
+        box.high[0] = larger(box.high[0], x[i]);
+        box.high[1] = larger(box.high[1], y[i]);
+    }
+    return box;
+}
+
+struct box box_union(struct box a, struct box b) {
+    return (struct box){{smaller(a.low[0], b.low[0]), smaller(a.low[1], b.low[1])},
+                        {larger(a.high[0], b.high[0]), larger(a.high[1], b.high[1])}};
+}
+
+struct box box_widen(struct box box, double margin) {
+    return (struct box){{box.low[0] - margin, box.low[1] - margin}, {box.high[0] + margin, box.high[1] + margin}};
+}
+
+double box_gap(const struct box *a, const struct box *b) {
+    double gap = -INFINITY;
+    for (int i = 0; i < 2; i++) gap = larger(gap, larger(a->low[i] - b->high[i], b->low[i] - a->high[i]));
+    return gap;
+}
