@@ -108,16 +108,7 @@ static void print_command_help(const struct command *command, FILE *stream) {
 /* A member of an object of JSON: a string, or null. */
 static void print_string(FILE *stream, const char *before, const char *name, const char *string) {
     fprintf(stream, "%s\"%s\": ", before, name);
-    if (!string) {
-        fputs("null", stream);
-        return;
-    }
-    fputc('"', stream);
-    for (; *string; string++) {
-        if (*string == '"' || *string == '\\') fputc('\\', stream);
-        fputc(*string, stream);
-    }
-    fputc('"', stream);
+    text_print_json(stream, string);
 }
 
 static void describe_option(const struct command *command, const struct option_help *option, FILE *stream) {

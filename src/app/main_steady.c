@@ -7,6 +7,7 @@
 #include "app/main_threads.h"
 #include "base/parallel.h"
 #include "output/steady_info.h"
+#include "output/steady_json.h"
 #include "run/steady.h"
 
 static void tell_progress(const struct steady_progress *now, void *data) {
@@ -32,7 +33,9 @@ static enum status find(const struct case_values *values, const struct request *
     const enum status status = steady_run(values, &options);
     progress_end(&teller.progress);
     TRY(status);
-    if (!request->quiet) {
+    if (request->json) {
+        TRY(steady_json_file(path, stdout));
+    } else if (!request->quiet) {
         printf("%s\n", path);
         TRY(steady_info_file(path, stdout));
     }

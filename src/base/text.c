@@ -34,6 +34,23 @@ void text_add(struct text *text, const char *format, ...) {
     text->length += (size_t)length;
 }
 
+void text_print_json(FILE *stream, const char *string) {
+    if (!string) {
+        fputs("null", stream);
+        return;
+    }
+    fputc('"', stream);
+    for (; *string; string++) {
+        if ((unsigned char)*string < ' ') {
+            fprintf(stream, "\\u%04x", *string);
+        } else {
+            if (*string == '"' || *string == '\\') fputc('\\', stream);
+            fputc(*string, stream);
+        }
+    }
+    fputc('"', stream);
+}
+
 void text_free(struct text *text) {
     free(text->text);
     *text = (struct text){0};

@@ -6,6 +6,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
 
 /* Zero it to begin. Once an allocation has failed, nothing more is added and failed stays true. */
 struct text {
@@ -19,6 +20,9 @@ void text_add(struct text *text, const char *format, ...) __attribute__((format(
 
 /* Append the shortest decimal that reads back as exactly this number. */
 void text_add_number(struct text *text, double number);
+
+/* Print a string of JSON, in its quotes; null where string is NULL. */
+void text_print_json(FILE *stream, const char *string);
 
 /* Release the string and zero it. */
 void text_free(struct text *text);

@@ -60,16 +60,7 @@ static void print_text(FILE *stream) {
 /* Print a member of an object of JSON: a string, or null. */
 static void print_string(FILE *stream, const char *before, const char *name, const char *text) {
     fprintf(stream, "%s\"%s\": ", before, name);
-    if (!text) {
-        fprintf(stream, "null");
-        return;
-    }
-    fputc('"', stream);
-    for (; *text; text++) {
-        if (*text == '"' || *text == '\\') fputc('\\', stream);
-        fputc(*text, stream);
-    }
-    fputc('"', stream);
+    text_print_json(stream, text);
 }
 
 /* Add "words", what each word of the methods means, to a key. */

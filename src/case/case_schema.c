@@ -7,16 +7,6 @@
 #include "base/text.h"
 #include "case/case_table.h"
 
-/* A string of JSON. */
-static void print_string(FILE *stream, const char *text) {
-    fputc('"', stream);
-    for (; *text; text++) {
-        if (*text == '"' || *text == '\\') fputc('\\', stream);
-        fputc(*text, stream);
-    }
-    fputc('"', stream);
-}
-
 // ---- values
 
 static void print_bound(FILE *stream, const char *name, double value) {
@@ -49,7 +39,7 @@ static void print_words(FILE *stream, const struct key *key) {
     for (int i = 0; case_table_word(key, i); i++) {
         const char *const word = case_table_word(key, i);
         if (i > 0) fputs(", ", stream);
-        print_string(stream, word);
+        text_print_json(stream, word);
         if (strcmp(word, "true") == 0 || strcmp(word, "false") == 0) fprintf(stream, ", %s", word);
     }
     fputc(']', stream);
@@ -102,7 +92,7 @@ static void print_key(FILE *stream, const struct key *key) {
     text_add(&meaning, "%s%s%s%s; default: %s", key->meaning, *key->unit ? " [" : "", key->unit, *key->unit ? "]" : "",
              standard);
     fputs("{\"description\": ", stream);
-    print_string(stream, meaning.text ? meaning.text : "");
+    text_print_json(stream, meaning.text ? meaning.text : "");
     fputs(", ", stream);
     print_type(stream, key);
     fputs("}", stream);

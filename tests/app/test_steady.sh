@@ -56,6 +56,34 @@ check plot_draws_it /usr/bin/python3 "$root/scripts/plot.py" time swim.nc swim.p
 check xarray_opens_it /usr/bin/python3 -c \
     'import xarray; xarray.open_dataset("swim.nc").steady_speed.sel(fish="a fish").item()'
 
+# ---- as JSON
+
+cat >compare.py <<'end'
+"""What is printed is what is in the file."""
+import json
+import sys
+import netCDF4, numpy as np
+
+found, data = json.load(open("out")), netCDF4.Dataset("json.nc")
+data.set_auto_mask(False)
+names = [name for name in data.variables if name.startswith("steady_")]
+assert sorted(found) == sorted(names + ["file", "fish_name"]), sorted(found)
+assert found["file"] == "json.nc" and found["fish_name"] == ["a \"fish\""], found
+for name in names:
+    values = np.array(data[name][...], float)
+    if name == "steady_multiplier":
+        values = values[np.isfinite(values[:, 0])]
+    assert len(values.shape) == 0 or len(found[name]) == len(values), name
+    assert np.array_equal(np.ravel(np.array(found[name], float)), np.ravel(values), equal_nan=True), name
+assert len(found["steady_multiplier"]) == int(sys.argv[1])
+end
+run steady swim.yaml -o json.nc --json -q --set "fish[0].name='a \"fish\"'"
+check json_is_what_is_in_the_file /usr/bin/python3 compare.py 3
+check and_quiet_progress test ! -s err
+run steady swim.yaml -o json.nc --json --force --set "fish[0].name='a \"fish\"'" --set steady.multipliers=false
+check json_of_a_state_without_multipliers /usr/bin/python3 compare.py 0
+check json_knows_progress_goes_to_stderr grep -q '^beat ' err
+
 # ---- from another one, and as an axis of a study
 
 run steady swim.yaml -q -o again.nc --from swim.nc --set steady.multipliers=false

@@ -68,12 +68,24 @@ static void the_locale_does_not_matter(void **state) {
     text_free(&text);
 }
 
+static void a_string_of_json_has_no_bare_quote_or_control_character(void **state) {
+    (void)state;
+    char written[64] = "";
+    FILE *const stream = fmemopen(written, sizeof written, "w");
+    assert_non_null(stream);
+    text_print_json(stream, "a \"fish\" \\ \n\x01\xc3\xa9");
+    text_print_json(stream, NULL);
+    fclose(stream);
+    assert_string_equal(written, "\"a \\\"fish\\\" \\\\ \\u000a\\u0001\xc3\xa9\"null");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(numbers_are_decimal_and_whole_strings),
         cmocka_unit_test(a_written_number_reads_back_bit_for_bit),
         cmocka_unit_test(a_number_is_written_with_no_more_digits_than_needed),
         cmocka_unit_test(the_locale_does_not_matter),
+        cmocka_unit_test(a_string_of_json_has_no_bare_quote_or_control_character),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
