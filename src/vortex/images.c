@@ -73,87 +73,8 @@ static void induce_by_wall(double wall, const struct sources *sources, const str
 
 // ---- a channel: the sum over all images in closed form
 
-/* Above the lower wall, in half angles: a = pi (y - h)/(2H). */
-struct height {
-    double sine, cosine;
-};
-
-static struct height height_of(const struct walls *walls, double y) {
-    const double a = pi * (y - walls->y[0]) / (2 * (walls->y[1] - walls->y[0]));
-    return (struct height){sin(a), cos(a)};
-}
-
-/* What two places have in common for both rows of images. */
-struct column {
-    double ratio, decay;   /* x/X, e^2/X^3: 1, m-1 */
-    double rate, strength; /* pi/H, m-1, and 1/(4H) */
-    double t, gap;         /* exp(-S), 1 - exp(-S) */
-};
-
-static inline struct column column_of(double rate, double x, double square) {
-    const double length = sqrt(x * x + square), s = rate * length;
-    return (struct column){.ratio = x / length,
-                           .decay = square / (length * length * length),
-                           .rate = rate,
-                           .strength = rate / (4 * pi),
-                           .t = exp(-s),
-                           .gap = -expm1(-s)};
-}
-
-struct velocity {
-    double u, v, u_x, u_y, v_x;
-};
-
-/* The velocity that a row of unit vortices causes, whose half angle to the target has this sine and cosine. With both
- * parts of the fraction times 2t: 2t D = (1 - t)^2 + 4t sin^2(Y/2), 2t sinh S = 1 - t^2. */
-static inline struct velocity row_of(const struct column *c, double sine, double cosine, int with_gradient) {
-    const double t = c->t, gap = c->gap, square = sine * sine, both = sine * cosine;
-    const double inverse = 1 / (gap * gap + 4 * t * square), sinh = gap * (1 + t);
-    struct velocity row = {.u = -c->strength * 4 * t * both * inverse, .v = c->strength * c->ratio * sinh * inverse};
-    if (!with_gradient) return row;
-    const double bend = c->strength * c->rate * 2 * t * inverse * inverse, cos_y = 1 - 2 * square;
-    // cosh S cos Y - 1, without cancellation near the vortex
-    const double turn = gap * gap * cos_y - 4 * t * square;
-    row.u_x = bend * 2 * both * c->ratio * sinh;
-    row.u_y = -bend * turn;
-    row.v_x = c->strength * c->decay * sinh * inverse - bend * c->ratio * c->ratio * turn;
-    return row;
-}
-
-// what a source itself causes, which is among the row
-static inline struct velocity direct_of(double x, double y, double square, int with_gradient) {
-    const double inverse = 1 / (x * x + y * y + square), g = inverse / (2 * pi), twice = 2 * g * inverse;
-    struct velocity direct = {.u = -g * y, .v = g * x};
-    if (!with_gradient) return direct;
-    direct.u_x = twice * x * y;
-    direct.u_y = twice * y * y - g;
-    direct.v_x = g - twice * x * x;
-    return direct;
-}
-
-/* The row of a source less itself, and the row of its mirror image. */
-struct rows {
-    struct velocity shifted, mirrored;
-};
-
-static inline struct rows rows_of(double rate, const double r[2], const struct height *target,
-                                  const struct height *source, double square, int with_gradient) {
-    const struct column column = column_of(rate, r[0], square);
-    const double sc = target->sine * source->cosine, cs = target->cosine * source->sine;
-    const double ss = target->sine * source->sine, cc = target->cosine * source->cosine;
-    struct rows rows = {row_of(&column, sc - cs, cc + ss, with_gradient),
-                        row_of(&column, sc + cs, cc - ss, with_gradient)};
-    const struct velocity direct = direct_of(r[0], r[1], square, with_gradient);
-    rows.shifted.u -= direct.u;
-    rows.shifted.v -= direct.v;
-    rows.shifted.u_x -= direct.u_x;
-    rows.shifted.u_y -= direct.u_y;
-    rows.shifted.v_x -= direct.v_x;
-    return rows;
-}
-
-static inline void add_rows(const struct rows *rows, double circulation, const struct induced *at, int i) {
-    const struct velocity *const a = &rows->shifted, *const b = &rows->mirrored;
+static inline void add_rows(const struct image_rows *rows, double circulation, const struct induced *at, int i) {
+    const struct image_velocity *const a = &rows->shifted, *const b = &rows->mirrored;
     at->u[i] += circulation * (a->u - b->u);
     at->v[i] += circulation * (a->v - b->v);
     if (!at->u_x) return;
@@ -163,21 +84,23 @@ static inline void add_rows(const struct rows *rows, double circulation, const s
 }
 
 static double rate_of(const struct walls *walls) {
-    return pi / (walls->y[1] - walls->y[0]);
+    return pi / image_rows_width(walls);
 }
 
 static void induce_in_channel(const struct walls *walls, const struct sources *s, const struct induced *at) {
-    struct height target[KERNEL_CHUNK];
+    struct image_height target[KERNEL_CHUNK];
     const double rate = rate_of(walls), same = s->smoothing * s->smoothing;
     for (int first = 0; first < at->n; first += KERNEL_CHUNK) {
         const int end = at->n - first < KERNEL_CHUNK ? at->n : first + KERNEL_CHUNK;
-        for (int i = first; i < end; i++) target[i - first] = height_of(walls, at->y[i]);
+        for (int i = first; i < end; i++) target[i - first] = image_height_of(walls, at->y[i]);
         for (int j = 0; j < s->n; j++) {
-            const struct height source = height_of(walls, s->y[j]);
+            const struct image_height source = image_height_of(walls, s->y[j]);
             const double square = s->square ? s->square[j] : same;
             for (int i = first; i < end; i++) {
                 const double r[2] = {at->x[i] - s->x[j], at->y[i] - s->y[j]};
-                const struct rows rows = rows_of(rate, r, &target[i - first], &source, square, at->u_x != NULL);
+                const struct image_column column = image_column_of(rate, r[0], square);
+                const struct image_rows rows =
+                    image_rows_of(&column, r, &target[i - first], &source, square, at->u_x != NULL);
                 add_rows(&rows, s->circulation[j], at, i);
             }
         }
@@ -259,7 +182,7 @@ enum status images_induce_many(const struct walls *walls, struct velocity_sum *s
 
 // ---- one source
 
-static void put(const struct velocity *from, double sign, int i, struct kernel_values *to) {
+static void put(const struct image_velocity *from, double sign, int i, struct kernel_values *to) {
     to->u[i] = sign * from->u;
     to->v[i] = sign * from->v;
     to->u_x[i] = sign * from->u_x;
@@ -275,15 +198,16 @@ void images_unit(const struct walls *walls, int n, const double *x, const double
         struct kernel_values *const to = &values->mirrored;
         kernel_unit(n, x, y, source_x, 2 * walls->y[0] - source_y, smoothing, to);
         for (int i = 0; i < n; i++)
-            put(&(struct velocity){to->u[i], to->v[i], to->u_x[i], to->u_y[i], to->v_x[i]}, -1, i, to);
+            put(&(struct image_velocity){to->u[i], to->v[i], to->u_x[i], to->u_y[i], to->v_x[i]}, -1, i, to);
         return;
     }
     const double rate = rate_of(walls);
-    const struct height source = height_of(walls, source_y);
+    const struct image_height source = image_height_of(walls, source_y);
     for (int i = 0; i < n; i++) {
-        const struct height target = height_of(walls, y[i]);
+        const struct image_height target = image_height_of(walls, y[i]);
         const double r[2] = {x[i] - source_x, y[i] - source_y};
-        const struct rows rows = rows_of(rate, r, &target, &source, smoothing * smoothing, 1);
+        const struct image_column column = image_column_of(rate, r[0], smoothing * smoothing);
+        const struct image_rows rows = image_rows_of(&column, r, &target, &source, smoothing * smoothing, 1);
         put(&rows.shifted, 1, i, &values->shifted);
         put(&rows.mirrored, -1, i, &values->mirrored);
     }

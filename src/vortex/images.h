@@ -2,24 +2,15 @@
  * induce. doc/model.md, section 17. Tested by tests/vortex/test_images.c.
  *
  * A vortex of circulation G at (x, y) has in the wall y = h an image of -G at (x, 2h - y). In a channel, h < y < h + H,
- * each image has images in turn: G at (x, y + 2kH) and -G at (x, 2h - y + 2kH) for every whole k. Their sums with the
- * smoothed kernel are, with X = sqrt(x^2 + e^2), S = pi X/H, Y = pi y/H and D = cosh S - cos Y,
- *
- *     sum_k K_e(x, y + 2kH) = (-sin Y, (x/X) sinh S) / (4 H D),
- *
- * for e = 0 the (Gamma/4H) coth of complex potentials. Nothing is truncated: on the walls the normal velocity is 0. */
+ * each image has images in turn: G at (x, y + 2kH) and -G at (x, 2h - y + 2kH) for every whole k. Their sums have a
+ * closed form (image_rows.h). */
 #ifndef IMAGES_H
 #define IMAGES_H
 
+#include "vortex/image_rows.h"
 #include "vortex/kernel.h"
 #include "vortex/velocity_sum.h"
 #include "vortex/vortices.h"
-
-struct walls {
-    int n;            /* 0, 1, or 2: a channel, the lower one first */
-    double y[2];      /* m */
-    double inward[2]; /* 1: the fluid is above the wall; -1: below */
-};
 
 /* The distance of a point at height y from the nearest wall, m: negative outside; INFINITY without walls. */
 double images_distance(const struct walls *walls, double y);

@@ -1,0 +1,110 @@
+/* image_rows.h: walls along x, and the velocity that an endless row of images of a vortex in a channel induces. Part of
+ * images.h and far_images.h, which say what they are for. With X = sqrt(x^2 + e^2), S = pi X/H, Y = pi y/H and
+ * D = cosh S - cos Y,
+ *
+ *     sum_k K_e(x, y + 2kH) = (-sin Y, (x/X) sinh S) / (4 H D),
+ *
+ * for e = 0 the (Gamma/4H) coth of complex potentials. Nothing is truncated: on the walls the normal velocity is 0. */
+#ifndef IMAGE_ROWS_H
+#define IMAGE_ROWS_H
+
+#include <math.h>
+
+struct walls {
+    int n;            /* 0, 1, or 2: a channel, the lower one first */
+    double y[2];      /* m */
+    double inward[2]; /* 1: the fluid is above the wall; -1: below */
+};
+
+/* H of a channel, m. */
+static inline double image_rows_width(const struct walls *walls) {
+    return walls->y[1] - walls->y[0];
+}
+
+/* A height above the lower wall, in half angles: a = pi (y - h)/(2H). */
+struct image_height {
+    double sine, cosine;
+};
+
+static inline struct image_height image_height_of(const struct walls *walls, double y) {
+    static const double pi = 3.14159265358979323846;
+    const double a = pi * (y - walls->y[0]) / (2 * image_rows_width(walls));
+    return (struct image_height){sin(a), cos(a)};
+}
+
+/* What two places have in common for both rows of images. */
+struct image_column {
+    double ratio, decay;   /* x/X, e^2/X^3: 1, m-1 */
+    double rate, strength; /* pi/H, m-1, and 1/(4H) */
+    double t, gap;         /* exp(-S), 1 - exp(-S) */
+};
+
+/* Of places x apart in x; rate: pi/H; square: e^2. */
+static inline struct image_column image_column_of(double rate, double x, double square) {
+    static const double pi = 3.14159265358979323846;
+    const double length = sqrt(x * x + square), s = rate * length;
+    return (struct image_column){.ratio = x / length,
+                                 .decay = square / (length * length * length),
+                                 .rate = rate,
+                                 .strength = rate / (4 * pi),
+                                 .t = exp(-s),
+                                 .gap = -expm1(-s)};
+}
+
+/* A velocity and, where asked for, its gradient. */
+struct image_velocity {
+    double u, v, u_x, u_y, v_x;
+};
+
+/* The velocity that a row of unit vortices causes, whose half angle to the target has this sine and cosine. With both
+ * parts of the fraction times 2t: 2t D = (1 - t)^2 + 4t sin^2(Y/2), 2t sinh S = 1 - t^2. */
+static inline struct image_velocity image_row_of(const struct image_column *c, double sine, double cosine,
+                                                 int with_gradient) {
+    const double t = c->t, gap = c->gap, square = sine * sine, both = sine * cosine;
+    const double inverse = 1 / (gap * gap + 4 * t * square), sinh = gap * (1 + t);
+    struct image_velocity row = {.u = -c->strength * 4 * t * both * inverse,
+                                 .v = c->strength * c->ratio * sinh * inverse};
+    if (!with_gradient) return row;
+    const double bend = c->strength * c->rate * 2 * t * inverse * inverse, cos_y = 1 - 2 * square;
+    // cosh S cos Y - 1, without cancellation near the vortex
+    const double turn = gap * gap * cos_y - 4 * t * square;
+    row.u_x = bend * 2 * both * c->ratio * sinh;
+    row.u_y = -bend * turn;
+    row.v_x = c->strength * c->decay * sinh * inverse - bend * c->ratio * c->ratio * turn;
+    return row;
+}
+
+/* What one unit vortex causes. */
+static inline struct image_velocity image_direct_of(double x, double y, double square, int with_gradient) {
+    static const double pi = 3.14159265358979323846;
+    const double inverse = 1 / (x * x + y * y + square), g = inverse / (2 * pi), twice = 2 * g * inverse;
+    struct image_velocity direct = {.u = -g * y, .v = g * x};
+    if (!with_gradient) return direct;
+    direct.u_x = twice * x * y;
+    direct.u_y = twice * y * y - g;
+    direct.v_x = g - twice * x * x;
+    return direct;
+}
+
+/* The row of a source less itself, and the row of its mirror image; r: from the source to the target. */
+struct image_rows {
+    struct image_velocity shifted, mirrored;
+};
+
+static inline struct image_rows image_rows_of(const struct image_column *column, const double r[2],
+                                              const struct image_height *target, const struct image_height *source,
+                                              double square, int with_gradient) {
+    const double sc = target->sine * source->cosine, cs = target->cosine * source->sine;
+    const double ss = target->sine * source->sine, cc = target->cosine * source->cosine;
+    struct image_rows rows = {image_row_of(column, sc - cs, cc + ss, with_gradient),
+                              image_row_of(column, sc + cs, cc - ss, with_gradient)};
+    const struct image_velocity direct = image_direct_of(r[0], r[1], square, with_gradient);
+    rows.shifted.u -= direct.u;
+    rows.shifted.v -= direct.v;
+    rows.shifted.u_x -= direct.u_x;
+    rows.shifted.u_y -= direct.u_y;
+    rows.shifted.v_x -= direct.v_x;
+    return rows;
+}
+
+#endif
