@@ -137,6 +137,16 @@ void images_induce_each(const struct walls *walls, int n, const double *x, const
 
 // ---- many
 
+static void induce_all_directly(const struct walls *walls, const struct vortices *vortices, int threads,
+                                const struct induced *at) {
+    const int n_chunks = parallel_n_chunks(at->n);
+#pragma omp parallel for num_threads(threads) schedule(static)
+    for (int chunk = 0; chunk < n_chunks; chunk++) {
+        const struct induced part = vortices_targets(at, parallel_chunk(chunk, at->n));
+        images_induce(walls, vortices, (struct range){0, vortices->n}, &part);
+    }
+}
+
 // what all vortices induce at the mirrored targets, by the tree; memory: (6 or 3 n, 0 but for places)
 static enum status induce_by_tree(double wall, struct velocity_sum *sum, const struct vortices *vortices,
                                   double tolerance, int threads, const struct induced *at) {
@@ -165,18 +175,27 @@ static enum status induce_by_tree(double wall, struct velocity_sum *sum, const s
     return status;
 }
 
+// the images in one wall
+static enum status induce_many_by_wall(double wall, struct velocity_sum *sum, const struct vortices *vortices,
+                                       double tolerance, int threads, const struct induced *at) {
+    if (velocity_sum_by_tree(vortices, at->n, tolerance)) {
+        return induce_by_tree(wall, sum, vortices, tolerance, threads, at);
+    }
+    const struct walls one = {.n = 1, .y = {wall}};
+    induce_all_directly(&one, vortices, threads, at);
+    return STATUS_OK;
+}
+
 enum status images_induce_many(const struct walls *walls, struct velocity_sum *sum, const struct vortices *vortices,
                                double tolerance, int threads, const struct induced *at) {
     if (walls->n == 0 || vortices->n == 0) return STATUS_OK;
-    if (walls->n == 1 && velocity_sum_by_tree(vortices, at->n, tolerance)) {
-        return induce_by_tree(walls->y[0], sum, vortices, tolerance, threads, at);
+    if (walls->n == 1) return induce_many_by_wall(walls->y[0], sum, vortices, tolerance, threads, at);
+    if (!far_images_pay(walls, vortices, tolerance, at)) {
+        induce_all_directly(walls, vortices, threads, at);
+        return STATUS_OK;
     }
-    const int n_chunks = parallel_n_chunks(at->n);
-#pragma omp parallel for num_threads(threads) schedule(static)
-    for (int chunk = 0; chunk < n_chunks; chunk++) {
-        const struct induced part = vortices_targets(at, parallel_chunk(chunk, at->n));
-        images_induce(walls, vortices, (struct range){0, vortices->n}, &part);
-    }
+    TRY(far_images_induce(velocity_sum_far_images(sum), walls, vortices, tolerance, threads, at));
+    for (int i = 0; i < 2; i++) TRY(induce_many_by_wall(walls->y[i], sum, vortices, tolerance, threads, at));
     return STATUS_OK;
 }
 

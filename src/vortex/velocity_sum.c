@@ -14,13 +14,15 @@ static const double min_interactions = 6e6;
 struct velocity_sum {
     struct treecode *tree;
     struct vortices alike; /* those of one smoothing */
+    struct far_images *far_images;
 };
 
 enum status velocity_sum_create(struct velocity_sum **sum) {
     *sum = NULL;
     struct velocity_sum *const new = calloc(1, sizeof *new);
     if (!new) return status_fail(STATUS_MEMORY, "out of memory: a sum");
-    const enum status status = treecode_create(&new->tree);
+    enum status status = treecode_create(&new->tree);
+    if (status == STATUS_OK) status = far_images_create(&new->far_images);
     if (status != STATUS_OK) {
         velocity_sum_free(new);
         return status;
@@ -32,8 +34,13 @@ enum status velocity_sum_create(struct velocity_sum **sum) {
 void velocity_sum_free(struct velocity_sum *sum) {
     if (!sum) return;
     treecode_free(sum->tree);
+    far_images_free(sum->far_images);
     vortices_free(&sum->alike);
     free(sum);
+}
+
+struct far_images *velocity_sum_far_images(struct velocity_sum *sum) {
+    return sum->far_images;
 }
 
 int velocity_sum_by_tree(const struct vortices *vortices, int n_targets, double tolerance) {

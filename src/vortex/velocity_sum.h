@@ -5,6 +5,7 @@
 #define VELOCITY_SUM_H
 
 #include "base/status.h"
+#include "vortex/far_images.h"
 #include "vortex/vortices.h"
 
 struct velocity_sum; /* workspace, kept for the next sum */
@@ -12,6 +13,9 @@ struct velocity_sum; /* workspace, kept for the next sum */
 /* Fails with STATUS_MEMORY; velocity_sum_free accepts NULL. */
 enum status velocity_sum_create(struct velocity_sum **sum);
 void velocity_sum_free(struct velocity_sum *sum);
+
+/* The workspace of images in a channel, which images.h needs; it belongs to the sum. */
+struct far_images *velocity_sum_far_images(struct velocity_sum *sum);
 
 /* Whether the tree is faster for so many vortices and targets, and the tolerance is not 0. */
 int velocity_sum_by_tree(const struct vortices *vortices, int n_targets, double tolerance);

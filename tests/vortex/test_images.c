@@ -300,6 +300,83 @@ static void many_are_summed_by_the_tree_and_by_threads(void **state) {
     vortices_free(&vortices);
 }
 
+// The largest error of the images of many vortices in a channel, in units of the bound: at targets next to both walls
+// and everywhere between them, along the channel for length widths.
+static double error_in_channel(const struct vortices *vortices, double length, double tolerance,
+                               struct velocity_sum *sum) {
+    enum { N = 400 };
+    struct points exact, far;
+    make_points(&exact, N);
+    for (int i = 0; i < N; i++) {
+        exact.memory[i] = length * 1.5 * (0.5 + 0.5 * sin(1 + 11 * i));
+        exact.memory[N + i] = -0.4 + 1.5 * (0.5 - 0.5 * cos(13 * i));
+    }
+    make_points(&far, N);
+    memcpy(far.memory, exact.memory, 2 * N * sizeof(double));
+    const struct range all = {0, vortices->n};
+    images_induce(&channel, vortices, all, &exact.at);
+    assert_int_equal(far_images_induce(velocity_sum_far_images(sum), &channel, vortices, tolerance, 2, &far.at),
+                     STATUS_OK);
+    images_induce(&below, vortices, all, &far.at);
+    images_induce(&above, vortices, all, &far.at);
+    double worst = 0;
+    for (int i = 0; i < N; i++) {
+        double bound = 0, slope = 0;
+        for (int j = 0; j < vortices->n; j++) {
+            const double rx = exact.at.x[i] - vortices->x[j], ry = exact.at.y[i] - vortices->y[j];
+            const double r = sqrt(rx * rx + ry * ry + 0.02 * 0.02), g = fabs(vortices->circulation[j]) / (2 * pi * r);
+            bound += g;
+            slope += 50 * g / r;
+        }
+        const double *const want[] = {exact.at.u, exact.at.v, exact.at.u_x, exact.at.u_y, exact.at.v_x};
+        const double *const got[] = {far.at.u, far.at.v, far.at.u_x, far.at.u_y, far.at.v_x};
+        for (int k = 0; k < 5; k++) {
+            worst = fmax(worst, fabs(got[k][i] - want[k][i]) / ((k < 2 ? bound : slope) * tolerance / 10));
+        }
+    }
+    free(exact.memory);
+    free(far.memory);
+    return worst;
+}
+
+static void far_images_in_a_channel_are_within_the_tolerance(void **state) {
+    (void)state;
+    enum { N = 400 };
+    static const double lengths[] = {2.6, 12.3}, tolerances[] = {1e-4, 1e-7, 1e-10};
+    struct velocity_sum *sum;
+    assert_int_equal(velocity_sum_create(&sum), STATUS_OK);
+    for (int l = 0; l < 2; l++) {
+        const int n_smoothings = l == 0 ? 1 : 3;
+        struct vortices vortices = {0};
+        for (int i = 0; i < N; i += 50) {
+            assert_int_equal(vortices_append(&vortices, 50, 0.02 + 0.04 * (i / 50 % n_smoothings)), STATUS_OK);
+        }
+        for (int i = 0; i < N; i++) {
+            vortices.x[i] = lengths[l] * 1.5 * (0.5 + 0.5 * cos(7 * i));
+            vortices.y[i] = -0.4 + 1.5 * (0.5 + 0.5 * sin(3 * i));
+        }
+        for (size_t t = 0; t < sizeof tolerances / sizeof *tolerances; t++) {
+            // all together, and one alone: beside a wall, in the middle, beside a wall and an end of its cell
+            double worst[4];
+            for (int k = 0; k < 4; k++) {
+                for (int i = 0; i < N; i++) vortices.circulation[i] = k == 0 ? cos(5 * i) : 0;
+                if (k > 0) {
+                    const double y[] = {-0.4, 0.35, 1.1}, x[] = {0.75, 0.75, 1.5};
+                    vortices.circulation[0] = 1;
+                    vortices.x[0] = x[k - 1];
+                    vortices.y[0] = y[k - 1];
+                }
+                worst[k] = error_in_channel(&vortices, lengths[l], tolerances[t], sum);
+                assert_true(worst[k] < 1);
+            }
+            print_message("%d smoothings, %.1f widths, tolerance %.0e: %.2g, %.2g, %.2g, %.2g of the bound\n",
+                          n_smoothings, lengths[l], tolerances[t], worst[0], worst[1], worst[2], worst[3]);
+        }
+        vortices_free(&vortices);
+    }
+    velocity_sum_free(sum);
+}
+
 static void the_nearest_images_leave_only_distant_ones(void **state) {
     (void)state;
     struct image image[IMAGES_NEAREST];
@@ -370,6 +447,7 @@ int main(void) {
         cmocka_unit_test(a_smoothing_for_each_and_one_for_all_agree),
         cmocka_unit_test(images_of_one_source_follow_it),
         cmocka_unit_test(many_are_summed_by_the_tree_and_by_threads),
+        cmocka_unit_test(far_images_in_a_channel_are_within_the_tolerance),
         cmocka_unit_test(the_nearest_images_leave_only_distant_ones),
         cmocka_unit_test(a_pair_that_meets_a_wall_parts_along_it),
     };
