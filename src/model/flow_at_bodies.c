@@ -1,6 +1,8 @@
 /* flow_at_bodies.c: all sources onto all points, in chunks of points. */
 #include "model/flow_at_bodies.h"
 
+#include <stddef.h>
+
 #include "model/flow_external.h"
 #include "vortex/kernel.h"
 
@@ -113,17 +115,24 @@ static void induce_free_sheet(const struct flow *flow, const struct chunk *chunk
     }
 }
 
-// the images of all fish, with the smoothing that others see; those of the sheets unless the tree has summed them
-static void induce_images(const struct flow *flow, const struct chunk *chunk, int by_tree, const struct induced *at) {
+/* What of the sheets has been summed for all chunks at once. */
+struct summed {
+    int sheets, images;
+};
+
+// the images of all fish, with the smoothing that others see
+static void induce_images(const struct flow *flow, const struct chunk *chunk, struct summed summed,
+                          const struct induced *at) {
     const struct walls *const walls = &flow->school->walls;
     if (!flow->by_interpolation[chunk->fish]) {
         images_induce(walls, &flow->released, (struct range){0, flow->released.n}, at);
     }
     images_induce(walls, &flow->nascent, (struct range){0, flow->nascent.n}, at);
-    if (!by_tree) images_induce(walls, &flow->sheet, (struct range){0, flow->sheet.n}, at);
+    if (!summed.images) images_induce(walls, &flow->sheet, (struct range){0, flow->sheet.n}, at);
 }
 
-static void evaluate_chunk(const struct flow *flow, const struct chunk *chunk, int by_tree, const struct induced *all) {
+static void evaluate_chunk(const struct flow *flow, const struct chunk *chunk, struct summed summed,
+                           const struct induced *all) {
     const struct school *school = flow->school;
     const struct induced at = vortices_targets(all, chunk->at);
     for (int p = 0; p < at.n; p++) {
@@ -139,15 +148,16 @@ static void evaluate_chunk(const struct flow *flow, const struct chunk *chunk, i
         vortices_induce(&flow->released, (struct range){0, flow->released.n}, &at);
     }
     vortices_induce(&flow->nascent, (struct range){0, flow->nascent.n}, &at);
-    induce_sheets(flow, chunk, by_tree, all);
+    induce_sheets(flow, chunk, summed.sheets, all);
     if (flow_has_free_sheets(flow)) induce_free_sheet(flow, chunk, all);
-    if (school->walls.n > 0) induce_images(flow, chunk, by_tree, &at);
+    if (school->walls.n > 0) induce_images(flow, chunk, summed, &at);
 }
 
-// all bound sheets and their images at all points, by the tree
-static enum status sheets_by_tree(struct flow *flow, int threads, const struct induced *all) {
+// all bound sheets at all points by the tree, and their images by tree or cells
+static enum status sum_sheets(struct flow *flow, struct summed what, int threads, const struct induced *all) {
     const double tolerance = flow->school->wake_tolerance;
-    TRY(velocity_sum_induce(flow->velocity_sum, &flow->sheet, tolerance, threads, all));
+    if (what.sheets) TRY(velocity_sum_induce(flow->velocity_sum, &flow->sheet, tolerance, threads, all));
+    if (!what.images) return STATUS_OK;
     return images_induce_many(&flow->school->walls, flow->velocity_sum, &flow->sheet, tolerance, threads, all);
 }
 
@@ -171,15 +181,17 @@ static void evaluate(struct flow *flow, int with_gradient) {
     }
     const int threads = parallel_threads(flow->school->threads, flow->n_chunks, work_of(flow), PARALLEL_INTERACTIONS);
     const double tolerance = flow->school->wake_tolerance;
-    int by_tree = velocity_sum_by_tree(&flow->sheet, flow->n_points, tolerance);
+    const int by_tree = velocity_sum_by_tree(&flow->sheet, flow->n_points, tolerance);
+    const int by_cells = images_by_cells(&flow->school->walls, &flow->sheet, NULL, tolerance, &all);
+    struct summed summed = {.sheets = by_tree, .images = by_tree || by_cells};
     vortices_zero(&all);
-    if (by_tree && sheets_by_tree(flow, threads, &all) != STATUS_OK) {
+    if (sum_sheets(flow, summed, threads, &all) != STATUS_OK) {
         // without memory for a tree there is still the direct sum
-        by_tree = 0;
+        summed = (struct summed){0, 0};
         vortices_zero(&all);
     }
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
-    for (int c = 0; c < flow->n_chunks; c++) evaluate_chunk(flow, &flow->chunk[c], by_tree, &all);
+    for (int c = 0; c < flow->n_chunks; c++) evaluate_chunk(flow, &flow->chunk[c], summed, &all);
 }
 
 static enum status sum(struct flow *flow, const struct state *state, double t, const double *y, int with_gradient) {

@@ -19,20 +19,25 @@ static void sheets_at_wake(const struct flow *flow, const struct induced *at) {
     }
 }
 
+/* What of the sheets is summed for all free vortices at once: by the tree, or their images by cells. */
+struct summed {
+    int sheets, images;
+};
+
 // the images of the nascent vortices and of the sheets at free vortices
-static void images_at_wake(const struct flow *flow, const struct induced *at) {
+static void images_at_wake(const struct flow *flow, struct summed summed, const struct induced *at) {
     const struct walls *const walls = &flow->school->walls;
-    if (flow_has_free_sheets(flow)) {
+    if (!flow_has_free_sheets(flow)) {
+        images_induce(walls, &flow->nascent, (struct range){0, flow->nascent.n}, at);
+        if (!summed.images) images_induce(walls, &flow->sheet, (struct range){0, flow->sheet.n}, at);
+    } else if (!summed.images) {
         images_induce_each(walls, flow->sheet.n, flow->sheet.x, flow->sheet.y, flow->sheet.circulation,
                            flow->sheet_square, at);
-    } else {
-        images_induce(walls, &flow->nascent, (struct range){0, flow->nascent.n}, at);
-        images_induce(walls, &flow->sheet, (struct range){0, flow->sheet.n}, at);
     }
 }
 
-// the external flow, the nascent vortices and, where they are not summed by the tree, the sheets at the free vortices
-static void others_at_wake(const struct flow *flow, int sheets_too, const struct induced *all) {
+// the external flow, the nascent vortices and what is not summed of the sheets at the free vortices
+static void others_at_wake(const struct flow *flow, struct summed summed, const struct induced *all) {
     const int n_chunks = parallel_n_chunks(all->n);
     const int threads =
         parallel_threads(flow->school->threads, n_chunks, (double)all->n * flow->sheet.n, PARALLEL_INTERACTIONS);
@@ -42,8 +47,8 @@ static void others_at_wake(const struct flow *flow, int sheets_too, const struct
         for (int i = 0; i < at.n; i++) flow_external(flow->school, flow->t, at.y[i], &at.u[i], &at.v[i]);
         // the newest markers have the nascent stretches
         if (!flow_has_free_sheets(flow)) vortices_induce(&flow->nascent, (struct range){0, flow->nascent.n}, &at);
-        if (sheets_too) sheets_at_wake(flow, &at);
-        if (flow->school->walls.n > 0) images_at_wake(flow, &at);
+        if (!summed.sheets) sheets_at_wake(flow, &at);
+        if (flow->school->walls.n > 0) images_at_wake(flow, summed, &at);
     }
 }
 
@@ -86,6 +91,29 @@ static enum status place_moving(struct flow *flow, const struct state *state) {
     return STATUS_OK;
 }
 
+// whether the tree sums the sheets, and cells their images
+static struct summed summed_at_wake(const struct flow *flow, double tolerance, const struct induced *at) {
+    const int has_free_sheets = flow_has_free_sheets(flow);
+    return (struct summed){.sheets = has_free_sheets ? sheets_at_wake_by_tree(&flow->sheet, at->n, tolerance)
+                                                     : velocity_sum_by_tree(&flow->sheet, at->n, tolerance),
+                           .images = images_by_cells(&flow->school->walls, &flow->sheet,
+                                                     has_free_sheets ? flow->sheet_square : NULL, tolerance, at)};
+}
+
+// the images of all free vortices, and those of the sheets that are summed by cells
+static enum status induce_images(const struct flow *flow, int sheets_too, const struct vortices *moving, int threads,
+                                 const struct induced *at) {
+    const double tolerance = flow->school->wake_tolerance;
+    const struct walls *const walls = &flow->school->walls;
+    struct velocity_sum *const sum = flow->velocity_sum;
+    if (sheets_too && flow_has_free_sheets(flow)) {
+        TRY(images_induce_many_each(walls, sum, &flow->sheet, flow->sheet_square, tolerance, threads, at));
+    } else if (sheets_too) {
+        TRY(images_induce_many(walls, sum, &flow->sheet, tolerance, threads, at));
+    }
+    return images_induce_many(walls, sum, moving, tolerance, threads, at);
+}
+
 // what all free vortices induce at themselves, and the sheets that are not summed otherwise: those that the tree sums
 // share it
 static enum status induce_many(struct flow *flow, int sheets_too, const struct vortices *moving, int threads,
@@ -111,12 +139,10 @@ enum status flow_at_wake(struct flow *flow, const struct state *state) {
     const struct vortices *const moving = flow_has_free_sheets(flow) ? &flow->markers : &flow->released;
     TRY(reserve_at_wake(flow, moving->n));
     const struct induced at = {.n = moving->n, .x = moving->x, .y = moving->y, .u = flow->wake_u, .v = flow->wake_v};
-    const double tolerance = flow->school->wake_tolerance;
-    const int sheets_by_tree = flow_has_free_sheets(flow) ? sheets_at_wake_by_tree(&flow->sheet, moving->n, tolerance)
-                                                          : velocity_sum_by_tree(&flow->sheet, moving->n, tolerance);
+    const struct summed summed = summed_at_wake(flow, flow->school->wake_tolerance, &at);
     const int threads =
         parallel_threads(flow->school->threads, moving->n, (double)moving->n * moving->n, PARALLEL_INTERACTIONS);
-    others_at_wake(flow, !sheets_by_tree, &at);
-    TRY(images_induce_many(&flow->school->walls, flow->velocity_sum, moving, tolerance, threads, &at));
-    return induce_many(flow, sheets_by_tree, moving, threads, &at);
+    others_at_wake(flow, summed, &at);
+    TRY(induce_images(flow, summed.images, moving, threads, &at));
+    return induce_many(flow, summed.sheets, moving, threads, &at);
 }

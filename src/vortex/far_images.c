@@ -56,6 +56,26 @@ struct cells {
     double *velocity;           /* at the nodes, then the coefficients           (n, 2, y x) */
 };
 
+// ---- vortices
+
+/* The vortices of a sum. square: of the smoothing of each; NULL: those of the groups. */
+struct sources {
+    const struct vortices *all;
+    const double *square;
+    double low, high; /* of all squares, m2 */
+};
+
+static struct sources sources_of(const struct vortices *vortices, const double *square) {
+    struct sources sources = {.all = vortices, .square = square, .low = INFINITY};
+    for (int i = 0; i < (square ? vortices->n : vortices->n_groups); i++) {
+        const double smoothing = square ? 0 : vortices->group[i].smoothing;
+        const double one = square ? square[i] : smoothing * smoothing;
+        sources.low = fmin(sources.low, one);
+        sources.high = fmax(sources.high, one);
+    }
+    return sources;
+}
+
 // ---- nodes
 
 static void set_nodes(struct nodes *nodes, int n) {
@@ -182,12 +202,12 @@ static int has_values_of(const struct table *table, const struct table *other) {
 }
 
 // a table for a channel, and vortices with such squares of smoothings
-static struct table *find_table(struct far_images *far, const struct walls *channel, const double square[2],
+static struct table *find_table(struct far_images *far, const struct walls *channel, const struct sources *sources,
                                 double tolerance) {
-    struct table wanted = {.channel = *channel, .low = square[0], .high = square[1]};
+    struct table wanted = {.channel = *channel, .low = sources->low, .high = sources->high};
     wanted.x.n = n_nodes(rho_x, tolerance);
     wanted.y.n = n_nodes(rho_y, tolerance);
-    wanted.square.n = n_squares(square[0], square[1], image_rows_width(channel), tolerance);
+    wanted.square.n = n_squares(wanted.low, wanted.high, image_rows_width(channel), tolerance);
     for (int i = 0; i < N_TABLES; i++) {
         if (has_values_of(&far->table[i], &wanted)) return &far->table[i];
     }
@@ -247,26 +267,15 @@ static struct cells cells_of(const struct walls *channel, const struct vortices 
     return cells;
 }
 
-static void find_squares(const struct vortices *vortices, double square[2]) {
-    square[0] = INFINITY;
-    square[1] = 0;
-    for (int g = 0; g < vortices->n_groups; g++) {
-        const double smoothing = vortices->group[g].smoothing;
-        square[0] = fmin(square[0], smoothing * smoothing);
-        square[1] = fmax(square[1], smoothing * smoothing);
-    }
-}
-
-int far_images_pay(const struct walls *channel, const struct vortices *vortices, double tolerance,
+int far_images_pay(const struct walls *channel, const struct vortices *vortices, const double *square, double tolerance,
                    const struct induced *at) {
     const double interactions = (double)vortices->n * at->n;
     if (!(tolerance > 0) || interactions < MIN_INTERACTIONS) return 0;
     const struct cells cells = cells_of(channel, vortices, at);
     if (cells.n == 0) return 0;
-    double square[2];
-    find_squares(vortices, square);
+    const struct sources sources = sources_of(vortices, square);
     const double n = n_nodes(rho_x, tolerance) * n_nodes(rho_y, tolerance);
-    const double n_smoothings = n_squares(square[0], square[1], cells.width, tolerance);
+    const double n_smoothings = n_squares(sources.low, sources.high, cells.width, tolerance);
     // in interactions of the direct sum; fitted to measurements
     const double points = (vortices->n * n_smoothings + 2.0 * at->n) * n / 40;
     const double pairs = (double)cells.n * cells.n * n_smoothings * n * n / 80;
@@ -297,36 +306,49 @@ static void transform(const struct table *table, int transposed, const double *f
     }
 }
 
-// add the moments of n vortices of one smoothing: their circulations times the polynomials there
-static void add_moments(const struct table *table, const struct cells *cells, const struct vortices *vortices,
-                        const struct vortex_group *group) {
-    const int nx = table->x.n, ny = table->y.n, ns = table->square.n;
-    const double half = (table->high - table->low) / 2, square = group->smoothing * group->smoothing;
-    double of_square[MAX_NODES], share[MAX_NODES] = {0};
-    polynomials(ns, half > 0 ? (square - (table->low + table->high) / 2) / half : 0, of_square, NULL);
-    for (int e = 0; e < ns; e++) {
-        for (int m = 0; m < ns; m++) share[e] += table->square.matrix[m][e] * of_square[m];
+// by how much a vortex of some smoothing is one of each smoothing of the table
+static void share_squares(const struct table *table, double square, double share[MAX_NODES]) {
+    const int n = table->square.n;
+    const double half = (table->high - table->low) / 2;
+    double value[MAX_NODES];
+    polynomials(n, half > 0 ? (square - (table->low + table->high) / 2) / half : 0, value, NULL);
+    for (int e = 0; e < n; e++) {
+        share[e] = 0;
+        for (int m = 0; m < n; m++) share[e] += table->square.matrix[m][e] * value[m];
     }
-    for (int i = group->at.first; i < group->at.first + group->at.n; i++) {
-        const int cell = cell_of(cells, vortices->x[i]);
-        double at[2], x[MAX_NODES], y[MAX_NODES];
-        place(cells, cell, vortices->x[i], vortices->y[i], at);
-        polynomials(nx, at[0], x, NULL);
-        polynomials(ny, at[1], y, NULL);
-        for (int e = 0; e < ns; e++) {
-            double *const moment = cells->weight + (size_t)(cell * ns + e) * (size_t)n_of_cell(table);
-            const double circulation = share[e] * vortices->circulation[i];
-            for (int j = 0; j < ny; j++) {
-                for (int b = 0; b < nx; b++) moment[j * nx + b] += circulation * y[j] * x[b];
-            }
+}
+
+// add the moments of a vortex: its circulation times the polynomials there
+static void add_moments(const struct table *table, const struct cells *cells, const struct vortices *vortices, int i,
+                        const double *share) {
+    const int cell = cell_of(cells, vortices->x[i]), nx = table->x.n, ny = table->y.n, ns = table->square.n;
+    double at[2], x[MAX_NODES], y[MAX_NODES];
+    place(cells, cell, vortices->x[i], vortices->y[i], at);
+    polynomials(nx, at[0], x, NULL);
+    polynomials(ny, at[1], y, NULL);
+    for (int e = 0; e < ns; e++) {
+        double *const moment = cells->weight + (size_t)(cell * ns + e) * (size_t)n_of_cell(table);
+        const double circulation = share[e] * vortices->circulation[i];
+        for (int j = 0; j < ny; j++) {
+            const double part = circulation * y[j];
+            for (int b = 0; b < nx; b++) moment[j * nx + b] += part * x[b];
         }
     }
 }
 
 // the vortices at the nodes of all cells that stand for all vortices
-static void gather(const struct table *table, const struct cells *cells, const struct vortices *vortices) {
+static void gather(const struct table *table, const struct cells *cells, const struct sources *sources) {
+    const struct vortices *const all = sources->all;
     const size_t n = (size_t)n_of_cell(table);
-    for (int g = 0; g < vortices->n_groups; g++) add_moments(table, cells, vortices, &vortices->group[g]);
+    double share[MAX_NODES];
+    for (int g = 0; g < all->n_groups; g++) {
+        const struct vortex_group *const group = &all->group[g];
+        if (!sources->square) share_squares(table, group->smoothing * group->smoothing, share);
+        for (int i = group->at.first; i < group->at.first + group->at.n; i++) {
+            if (sources->square) share_squares(table, sources->square[i], share);
+            add_moments(table, cells, all, i, share);
+        }
+    }
     for (int i = 0; i < cells->n * table->square.n; i++) {
         double moment[MAX_NODES * MAX_NODES];
         memcpy(moment, cells->weight + (size_t)i * n, n * sizeof *moment);
@@ -403,18 +425,17 @@ static void add_velocity(const struct table *table, const struct cells *cells, c
 }
 
 enum status far_images_induce(struct far_images *far, const struct walls *channel, const struct vortices *vortices,
-                              double tolerance, int threads, const struct induced *at) {
-    double square[2];
-    find_squares(vortices, square);
+                              const double *square, double tolerance, int threads, const struct induced *at) {
+    const struct sources sources = sources_of(vortices, square);
     struct cells cells = cells_of(channel, vortices, at);
-    struct table *const table = find_table(far, channel, square, tolerance);
+    struct table *const table = find_table(far, channel, &sources, tolerance);
     TRY(fill(table, cells.n, threads));
     const size_t n_nodes_of_all = (size_t)cells.n * (size_t)n_of_cell(table);
     double *const memory = calloc(n_nodes_of_all * (size_t)(table->square.n + 2), sizeof *memory);
     if (!memory) return status_fail(STATUS_MEMORY, "out of memory: images in a channel");
     cells.weight = memory;
     cells.velocity = memory + n_nodes_of_all * (size_t)table->square.n;
-    gather(table, &cells, vortices);
+    gather(table, &cells, &sources);
     spread(table, &cells, threads);
     const int n_chunks = parallel_n_chunks(at->n);
 #pragma omp parallel for num_threads(threads) schedule(static)

@@ -31,15 +31,17 @@ enum status far_images_create(struct far_images **far);
 void far_images_free(struct far_images *far);
 
 /* Whether this is faster than the direct sum over all images, which is the case from some hundred thousand interactions
- * on where the channel is not much longer than it is wide, and the tolerance is not 0. */
-int far_images_pay(const struct walls *channel, const struct vortices *vortices, double tolerance,
+ * on where the channel is not much longer than it is wide, and the tolerance is not 0. square: of the smoothing of each
+ * vortex, m2; NULL: those of the groups. */
+int far_images_pay(const struct walls *channel, const struct vortices *vortices, const double *square, double tolerance,
                    const struct induced *at);
 
 /* Add to the targets, inside of the channel, what the far images of all vortices induce. The error of the velocity is at
  * most a tenth of the tolerance, times the velocity sum |Gamma| / (2 pi sqrt(r^2 + e^2)) of velocity_sum.h; that of the
  * gradient 50 times as large over sqrt(r^2 + e^2). The same bits for any number of threads, and whatever was summed
- * before. Fails with STATUS_MEMORY; nothing is added then. */
+ * before. Only where it pays: places are finite, and cells not too many. Fails with STATUS_MEMORY; nothing is added
+ * then. */
 enum status far_images_induce(struct far_images *far, const struct walls *channel, const struct vortices *vortices,
-                              double tolerance, int threads, const struct induced *at);
+                              const double *square, double tolerance, int threads, const struct induced *at);
 
 #endif

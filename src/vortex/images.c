@@ -175,6 +175,11 @@ static enum status induce_by_tree(double wall, struct velocity_sum *sum, const s
     return status;
 }
 
+int images_by_cells(const struct walls *walls, const struct vortices *vortices, const double *square, double tolerance,
+                    const struct induced *at) {
+    return walls->n == 2 && far_images_pay(walls, vortices, square, tolerance, at);
+}
+
 // the images in one wall
 static enum status induce_many_by_wall(double wall, struct velocity_sum *sum, const struct vortices *vortices,
                                        double tolerance, int threads, const struct induced *at) {
@@ -190,12 +195,28 @@ enum status images_induce_many(const struct walls *walls, struct velocity_sum *s
                                double tolerance, int threads, const struct induced *at) {
     if (walls->n == 0 || vortices->n == 0) return STATUS_OK;
     if (walls->n == 1) return induce_many_by_wall(walls->y[0], sum, vortices, tolerance, threads, at);
-    if (!far_images_pay(walls, vortices, tolerance, at)) {
+    if (!images_by_cells(walls, vortices, NULL, tolerance, at)) {
         induce_all_directly(walls, vortices, threads, at);
         return STATUS_OK;
     }
-    TRY(far_images_induce(velocity_sum_far_images(sum), walls, vortices, tolerance, threads, at));
+    TRY(far_images_induce(velocity_sum_far_images(sum), walls, vortices, NULL, tolerance, threads, at));
     for (int i = 0; i < 2; i++) TRY(induce_many_by_wall(walls->y[i], sum, vortices, tolerance, threads, at));
+    return STATUS_OK;
+}
+
+enum status images_induce_many_each(const struct walls *walls, struct velocity_sum *sum,
+                                    const struct vortices *vortices, const double *square, double tolerance,
+                                    int threads, const struct induced *at) {
+    TRY(far_images_induce(velocity_sum_far_images(sum), walls, vortices, square, tolerance, threads, at));
+    const int n_chunks = parallel_n_chunks(at->n);
+#pragma omp parallel for num_threads(threads) schedule(static)
+    for (int chunk = 0; chunk < n_chunks; chunk++) {
+        const struct induced part = vortices_targets(at, parallel_chunk(chunk, at->n));
+        for (int i = 0; i < walls->n; i++) {
+            const struct walls one = {.n = 1, .y = {walls->y[i]}};
+            images_induce_each(&one, vortices->n, vortices->x, vortices->y, vortices->circulation, square, &part);
+        }
+    }
     return STATUS_OK;
 }
 

@@ -315,7 +315,7 @@ static double error_in_channel(const struct vortices *vortices, double length, d
     memcpy(far.memory, exact.memory, 2 * N * sizeof(double));
     const struct range all = {0, vortices->n};
     images_induce(&channel, vortices, all, &exact.at);
-    assert_int_equal(far_images_induce(velocity_sum_far_images(sum), &channel, vortices, tolerance, 2, &far.at),
+    assert_int_equal(far_images_induce(velocity_sum_far_images(sum), &channel, vortices, NULL, tolerance, 2, &far.at),
                      STATUS_OK);
     images_induce(&below, vortices, all, &far.at);
     images_induce(&above, vortices, all, &far.at);
@@ -375,6 +375,42 @@ static void far_images_in_a_channel_are_within_the_tolerance(void **state) {
         vortices_free(&vortices);
     }
     velocity_sum_free(sum);
+}
+
+static void many_of_a_smoothing_each_are_summed_by_cells(void **state) {
+    (void)state;
+    enum { N = 400 };
+    const double tolerance = 1e-7;
+    struct velocity_sum *sum;
+    assert_int_equal(velocity_sum_create(&sum), STATUS_OK);
+    struct vortices vortices;
+    struct points direct, cells;
+    make(&vortices, N);
+    make_points(&direct, N);
+    make_points(&cells, N);
+    double square[N];
+    for (int i = 0; i < N; i++) square[i] = 0.01 * (1 + 0.9 * sin(17 * i));
+    images_induce_each(&channel, N, vortices.x, vortices.y, vortices.circulation, square, &direct.at);
+    assert_true(images_by_cells(&channel, &vortices, square, tolerance, &cells.at));
+    assert_int_equal(images_induce_many_each(&channel, sum, &vortices, square, tolerance, 2, &cells.at), STATUS_OK);
+    // the circulations add up to 255; the bound is 1e-8 of some 100 m/s
+    NEAR_ARRAY(N, cells.at.u, direct.at.u, 1e-7, 0);
+    NEAR_ARRAY(N, cells.at.v, direct.at.v, 1e-7, 0);
+    // one wall, no tolerance, few vortices, a channel far too long, a place that is none
+    assert_false(images_by_cells(&below, &vortices, square, tolerance, &cells.at));
+    assert_false(images_by_cells(&channel, &vortices, square, 0, &cells.at));
+    struct induced few = cells.at;
+    few.n = 100;
+    assert_false(images_by_cells(&channel, &vortices, square, tolerance, &few));
+    const double far[] = {1e4, INFINITY, NAN};
+    for (int i = 0; i < 3; i++) {
+        vortices.x[7] = far[i];
+        assert_false(images_by_cells(&channel, &vortices, square, tolerance, &cells.at));
+    }
+    free(direct.memory);
+    free(cells.memory);
+    velocity_sum_free(sum);
+    vortices_free(&vortices);
 }
 
 static void the_nearest_images_leave_only_distant_ones(void **state) {
@@ -448,6 +484,7 @@ int main(void) {
         cmocka_unit_test(images_of_one_source_follow_it),
         cmocka_unit_test(many_are_summed_by_the_tree_and_by_threads),
         cmocka_unit_test(far_images_in_a_channel_are_within_the_tolerance),
+        cmocka_unit_test(many_of_a_smoothing_each_are_summed_by_cells),
         cmocka_unit_test(the_nearest_images_leave_only_distant_ones),
         cmocka_unit_test(a_pair_that_meets_a_wall_parts_along_it),
     };
