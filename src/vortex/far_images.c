@@ -19,7 +19,7 @@ enum {
  * pole. In y that is the image 2H away of a vortex at the other wall, in x one of a vortex beside the other wall. */
 static const double rho_x = 4.2361, rho_y = 5.8284;
 
-/* More than the error of an interpolation over rho^-p, in units of the bound in far_images.h, as the tests measure it. */
+/* More than the error of an interpolation over rho^-p, in units of the bound in far_images.h: as tests measure it. */
 static const double error_factor = 50;
 
 /* A set of Chebyshev nodes on (-1, 1), and what gives the coefficients of a polynomial from its values there:
@@ -30,8 +30,8 @@ struct nodes {
     double matrix[MAX_NODES][MAX_NODES];
 };
 
-/* What unit vortices at the nodes of a cell induce at the nodes of another one, d cells on. A node is a pair: y slowest.
- * Columns are those of the vortices. */
+/* What unit vortices at the nodes of a cell induce at the nodes of another one, d cells on. A node is a pair, of which
+ * y is the slower index. Columns are those of the vortices. */
 struct table {
     struct walls channel;
     double low, high; /* of the squares of the smoothings, m2 */

@@ -1,8 +1,8 @@
 /* far_images.h: what the far images of many vortices in a channel induce at many points. doc/model.md, section 17.
  * Tested by tests/vortex/test_images.c. Part of images.h.
  *
- * Of the images of a vortex the two that its walls mirror are near; all others are a row of them or more away from every
- * point of the fluid:
+ * Of the images of a vortex the two that its walls mirror are near; all others are at least the width H of the channel
+ * away from every point of the fluid:
  *
  *                x  mirrored image of an image             .
  *                o  image of the image                     .  far: their velocity is smooth in the place of the vortex
@@ -36,9 +36,9 @@ void far_images_free(struct far_images *far);
 int far_images_pay(const struct walls *channel, const struct vortices *vortices, const double *square, double tolerance,
                    const struct induced *at);
 
-/* Add to the targets, inside of the channel, what the far images of all vortices induce. The error of the velocity is at
- * most a tenth of the tolerance, times the velocity sum |Gamma| / (2 pi sqrt(r^2 + e^2)) of velocity_sum.h; that of the
- * gradient 50 times as large over sqrt(r^2 + e^2). The same bits for any number of threads, and whatever was summed
+/* Add to the targets, inside of the channel, what the far images of all vortices induce. The error of the velocity is
+ * at most a tenth of the tolerance, times the velocity sum |Gamma| / (2 pi sqrt(r^2 + e^2)) of velocity_sum.h; that of
+ * the gradient 50 times as large over sqrt(r^2 + e^2). The same bits for any number of threads, and whatever was summed
  * before. Only where it pays: places are finite, and cells not too many. Fails with STATUS_MEMORY; nothing is added
  * then. */
 enum status far_images_induce(struct far_images *far, const struct walls *channel, const struct vortices *vortices,

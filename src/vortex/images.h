@@ -33,8 +33,8 @@ void images_induce_each(const struct walls *walls, int n, const double *x, const
                         const double *square, const struct induced *at);
 
 /* The same for all vortices at many targets, by several threads: what one wall mirrors by the tree where
- * velocity_sum_by_tree says so, and the far images in a channel by cells where images_by_cells does. The error is that of
- * velocity_sum_induce, once for a wall, three times for a channel. Fails with STATUS_MEMORY. */
+ * velocity_sum_by_tree says so, and the far images in a channel by cells where images_by_cells does. The error is that
+ * of velocity_sum_induce, once for a wall, three times for a channel. Fails with STATUS_MEMORY. */
 enum status images_induce_many(const struct walls *walls, struct velocity_sum *sum, const struct vortices *vortices,
                                double tolerance, int threads, const struct induced *at);
 
