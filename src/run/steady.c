@@ -54,8 +54,11 @@ static enum status find_multipliers(struct run *run) {
     if (run->values->steady.multipliers == NO || run->problem.n_unknowns == 0) return STATUS_OK;
     found->n_multipliers = run->problem.n_unknowns;
     TRY(steady_multipliers_find(&run->problem, found->real, found->imaginary, &found->n_multiplier_beats));
-    const double left = 1 - hypot(found->real[0], found->imaginary[0]);
-    if (left > 0) found->error = found->residual / left;
+    double nearest = INFINITY;
+    for (int i = 0; i < found->n_multipliers; i++) {
+        nearest = fmin(nearest, hypot(1 - found->real[i], found->imaginary[i]));
+    }
+    found->error = found->residual / nearest;
     return STATUS_OK;
 }
 

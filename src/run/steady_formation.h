@@ -1,11 +1,12 @@
-/* steady_formation.h: Newton's method on all slow quantities of a formation, with a Jacobian by differences.
- * doc/steady.md. Tested by tests/run/test_steady_formation.c. */
+/* steady_formation.h: Newton's method on all slow quantities, those of a formation or of a fish that circles, with a
+ * Jacobian by differences. doc/steady.md. Tested by tests/run/test_steady_formation.c. */
 #ifndef STEADY_FORMATION_H
 #define STEADY_FORMATION_H
 
 #include "run/steady_problem.h"
 
-/* Find places that all fish keep, near those where they are. Fails with STATUS_SOLVER, or as steady_problem_beat. */
-enum status steady_formation_solve(struct steady_problem *problem);
+/* Find values that all slow quantities keep, near those that they have, to a change of no more than tolerance in a
+ * beat, in their scales. Fails with STATUS_SOLVER, or as steady_problem_beat. */
+enum status steady_formation_solve(struct steady_problem *problem, double tolerance);
 
 #endif

@@ -56,7 +56,10 @@ static enum status check_gust(const struct steady_map *map) {
 }
 
 enum status steady_map_create(struct steady_map *map, struct simulation *simulation) {
-    *map = (struct steady_map){.simulation = simulation};
+    *map = (struct steady_map){.simulation = simulation, .steered = -1};
+    for (int f = simulation->school->n_fish - 1; f >= 0; f--) {
+        if (simulation->school->fish[f].control.law != CONTROL_NONE) map->steered = f;
+    }
     TRY(find_period(map));
     if (map->period <= 0) return status_fail(STATUS_CASE, "no fish beats: there is no beat to repeat");
     TRY(check_events(map));
@@ -177,6 +180,17 @@ static void stream_along(const struct steady_map *map, const struct rigid *rigid
     stream[1] = c * v - s * u;
 }
 
+// the heading of a fish, as the first one sees it; of that one, as the law of control does
+static double heading_seen(const struct steady_map *map, int f, double heading, double first) {
+    const struct simulation *const simulation = map->simulation;
+    const struct state *const state = simulation->state;
+    const int by = map->steered;
+    if (f == 0 && by >= 0) {
+        first = control_desired_heading(&simulation->school->fish[by], &state->control[by], state->t, state->y);
+    }
+    return remainder(heading - first, 2 * M_PI);
+}
+
 void steady_map_read(const struct steady_map *map, int n, const struct steady_unknown *unknown, double *value) {
     const struct school *const school = map->simulation->school;
     const double *const y = map->simulation->state->y;
@@ -191,7 +205,7 @@ void steady_map_read(const struct steady_map *map, int n, const struct steady_un
             case STEADY_SPEED: value[i] = rigid.velocity[0] - stream[0]; break;
             case STEADY_SLIP: value[i] = rigid.velocity[1] - stream[1]; break;
             case STEADY_TURN: value[i] = rigid.turn; break;
-            case STEADY_HEADING: value[i] = remainder(rigid.heading - first.heading, 2 * M_PI); break;
+            case STEADY_HEADING: value[i] = heading_seen(map, unknown[i].fish, rigid.heading, first.heading); break;
             case STEADY_AHEAD: value[i] = c * way[0] + s * way[1]; break;
             case STEADY_ASIDE: value[i] = c * way[1] - s * way[0]; break;
         }
@@ -216,6 +230,15 @@ static void add_one(struct rigid *change, const struct rigid *first, enum steady
     }
 }
 
+// what turning the first fish adds to another one, so that it stays where that one sees it
+static void turn_with(struct rigid *change, const struct rigid *first, const struct rigid *other, double turn) {
+    const double c = cos(turn) - 1, s = sin(turn);
+    const double way[2] = {other->place[0] - first->place[0], other->place[1] - first->place[1]};
+    change->heading += turn;
+    change->place[0] += c * way[0] - s * way[1];
+    change->place[1] += s * way[0] + c * way[1];
+}
+
 // all but the state is made again, and the velocity of the fluid is that at the event
 static enum status renew(struct simulation *simulation) {
     TRY(simulate_renew(simulation));
@@ -230,12 +253,16 @@ enum status steady_map_add(struct steady_map *map, int n, const struct steady_un
     struct state *const state = simulation->state;
     const struct school *const school = simulation->school;
     const struct rigid first = rigid_of(&school->fish[0], state->y);
+    double turn = 0;
     diagnostics_before_jump(simulation->residual, state);
     for (int f = 0; f < school->n_fish; f++) {
         struct rigid change = {.heading = 0};
         for (int i = 0; i < n; i++) {
             if (unknown[i].fish == f) add_one(&change, &first, unknown[i].quantity, add[i]);
         }
+        if (f == 0) turn = change.heading;
+        const struct rigid other = rigid_of(&school->fish[f], state->y);
+        if (f > 0 && fabs(turn) > 0) turn_with(&change, &first, &other, turn);
         rigid_change(school, state, f, &change);
     }
     memcpy(state->closest->before, state->y, (size_t)school->n_unknowns * sizeof *state->y);

@@ -9,7 +9,8 @@
 #include "run/simulate.h"
 
 /* The slow quantities of a fish: velocity through the water along its heading and to the left of it, rate of turning;
- * heading, and place ahead of the first fish and to its left, seen from that one. */
+ * heading, and place ahead of the first fish and to its left, seen from that one. The heading of the first fish counts
+ * from the one that the first law of control wants, and all fish turn with it, around the first. */
 enum steady_quantity { STEADY_SPEED, STEADY_SLIP, STEADY_TURN, STEADY_HEADING, STEADY_AHEAD, STEADY_ASIDE };
 
 struct steady_unknown {
@@ -39,6 +40,7 @@ struct steady_beat {
 struct steady_map {
     struct simulation *simulation;
     int is_formation;                  /* whether places count in the residual */
+    int steered;                       /* the first fish with a law of control; -1: none has */
     long events;                       /* in a beat */
     double period;                     /* s */
     int n_beats;                       /* so far */

@@ -1,68 +1,92 @@
 /* steady_multipliers.c: see steady_multipliers.h. */
 #include "run/steady_multipliers.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "solver/multipliers.h"
 
-/* How much is added to a slow quantity to see what becomes of it, in its scale; the beats after which what is fast has
- * gone, and those that are looked at then. */
-static const double disturbance = 0.01;
-enum { FAST_BEATS = 2, SLOW_BEATS = 4 };
+/* How much is added to a slow quantity to see what becomes of it, in its scale; what grows beyond small is followed no
+ * longer. Of at most BEATS beats the last SLOW_BEATS count, in which what is fast has gone, and none of the first
+ * two. */
+static const double disturbance = 0.01, small = 0.1;
+enum { BEATS = 8, SLOW_BEATS = 4 };
 
-// the unknowns over their scales after FAST_BEATS beats, from the state that is kept with something added, and after
-// each of the SLOW_BEATS that follow: the columns of seen                              (n_unknowns, 1 + SLOW_BEATS)
-static enum status follow(struct steady_problem *problem, const struct state *kept, const double *add, double *seen) {
-    struct steady_map *const map = &problem->map;
-    const int n = problem->n_unknowns;
-    TRY(steady_map_return(map, kept));
-    TRY(steady_map_add(map, n, problem->unknown, add));
-    for (int i = 1; i < FAST_BEATS; i++) TRY(steady_map_beat(map, NULL, NULL));
-    for (int k = 0; k <= SLOW_BEATS; k++) {
+/* The unknowns over their scales after each beat, the first column at the start; columns that are used, one after the
+ * other, as what is before a beat and after it. */
+struct disturbances {
+    struct steady_problem *problem;
+    struct state *kept;        /* the state that is disturbed */
+    double *add, *base, *seen; /* (n_unknowns), (n_unknowns, BEATS + 1) */
+    double *before, *after;    /* (n_unknowns, n_columns) */
+    int n_columns;
+};
+
+static double largest(int n, const double *value) {
+    double most = 0;
+    for (int i = 0; i < n; i++) most = fmax(most, fabs(value[i]));
+    return most;
+}
+
+// from the state that is kept with something added; less what is without, if that is given, and then while it is small
+static enum status follow(struct disturbances *all, double *seen, const double *without, int *n_beats) {
+    struct steady_map *const map = &all->problem->map;
+    const int n = all->problem->n_unknowns;
+    TRY(steady_map_return(map, all->kept));
+    TRY(steady_map_add(map, n, all->problem->unknown, all->add));
+    for (*n_beats = 0; *n_beats < BEATS; ++*n_beats) {
+        double *const now = seen + (*n_beats + 1) * n;
         TRY(steady_map_beat(map, NULL, NULL));
-        steady_map_read(map, n, problem->unknown, seen + k * n);
-        for (int i = 0; i < n; i++) seen[i + k * n] /= steady_map_scale(map, problem->unknown[i]);
+        steady_problem_read(all->problem, now);
+        for (int i = 0; i < n && without; i++) now[i] -= without[i + (*n_beats + 1) * n];
+        if (without && *n_beats > 0 && largest(n, now) > small) break;
     }
     return STATUS_OK;
 }
 
-// what a disturbance of each unknown adds: before and after each of the SLOW_BEATS  (n_unknowns, n_unknowns SLOW_BEATS)
-static enum status disturb(struct steady_problem *problem, const struct state *kept, double *seen, double *before,
-                           double *after) {
-    const int n = problem->n_unknowns, size = n * (1 + SLOW_BEATS);
-    double *const add = problem->scratch, *const base = seen, *const disturbed = seen + size;
-    memset(add, 0, (size_t)n * sizeof *add);
-    TRY(follow(problem, kept, add, base));
-    for (int j = 0; j < n; j++) {
-        memset(add, 0, (size_t)n * sizeof *add);
-        add[j] = disturbance * steady_map_scale(&problem->map, problem->unknown[j]);
-        TRY(follow(problem, kept, add, disturbed));
-        for (int i = 0; i < size; i++) disturbed[i] -= base[i];
-        const size_t bytes = (size_t)(n * SLOW_BEATS) * sizeof *before;
-        memcpy(before + j * n * SLOW_BEATS, disturbed, bytes);
-        memcpy(after + j * n * SLOW_BEATS, disturbed + n, bytes);
+// the last beats, before and after, of which there are n_beats; one at least
+static void collect(struct disturbances *all, int n_beats) {
+    const size_t n = (size_t)all->problem->n_unknowns, bytes = n * sizeof *all->seen;
+    int first = n_beats - SLOW_BEATS;
+    if (first < 2) first = n_beats > 2 ? 2 : 1;
+    for (int k = first; k == first || k < n_beats; k++) {
+        memcpy(all->before + (size_t)all->n_columns * n, all->seen + (size_t)k * n, bytes);
+        memcpy(all->after + (size_t)all->n_columns * n, all->seen + (size_t)(k + 1) * n, bytes);
+        all->n_columns++;
+    }
+}
+
+static enum status disturb(struct disturbances *all) {
+    const struct steady_problem *const problem = all->problem;
+    int n_beats;
+    TRY(follow(all, all->base, NULL, &n_beats));
+    for (int j = 0; j < problem->n_unknowns; j++) {
+        memset(all->add, 0, (size_t)problem->n_unknowns * sizeof *all->add);
+        all->add[j] = disturbance * steady_map_scale(&problem->map, problem->unknown[j]);
+        TRY(follow(all, all->seen, all->base, &n_beats));
+        collect(all, n_beats);
     }
     return STATUS_OK;
 }
 
 enum status steady_multipliers_find(struct steady_problem *problem, double *real, double *imaginary, int *n_beats) {
-    const size_t n = (size_t)problem->n_unknowns, n_columns = n * SLOW_BEATS;
+    const size_t n = (size_t)problem->n_unknowns, size = n * n * SLOW_BEATS, seen = n * (BEATS + 1);
     const int n_before = problem->map.n_beats;
-    struct state *kept = NULL;
-    double *const before = calloc(n * n_columns, sizeof *before), *const after = calloc(n * n_columns, sizeof *after),
-                  *const seen = calloc(2 * n * (1 + SLOW_BEATS), sizeof *seen);
-    enum status status = before && after && seen ? steady_map_save(&problem->map, &kept)
-                                                 : status_fail(STATUS_MEMORY, "out of memory: %zu multipliers", n);
-    if (status == STATUS_OK) status = disturb(problem, kept, seen, before, after);
-    if (status == STATUS_OK) {
-        status = multipliers_of((int)n, (int)n_columns, before, after, real, imaginary);
-    }
-    if (status == STATUS_OK) status = steady_map_return(&problem->map, kept);
-    state_free(kept, problem->map.simulation->school);
-    free(before);
-    free(after);
-    free(seen);
+    double *const memory = calloc(n + 2 * seen + 2 * size, sizeof *memory);
+    if (!memory) return status_fail(STATUS_MEMORY, "out of memory: %zu multipliers", n);
+    struct disturbances all = {.problem = problem,
+                               .add = memory,
+                               .base = memory + n,
+                               .seen = memory + n + seen,
+                               .before = memory + n + 2 * seen,
+                               .after = memory + n + 2 * seen + size};
+    enum status status = steady_map_save(&problem->map, &all.kept);
+    if (status == STATUS_OK) status = disturb(&all);
+    if (status == STATUS_OK) status = multipliers_of((int)n, all.n_columns, all.before, all.after, real, imaginary);
+    if (status == STATUS_OK) status = steady_map_return(&problem->map, all.kept);
+    state_free(all.kept, problem->map.simulation->school);
+    free(memory);
     *n_beats = problem->map.n_beats - n_before;
     problem->map.n_beats = n_before;
     return status;

@@ -28,7 +28,7 @@ static void list_fish(struct steady_problem *problem, int f, const struct fish *
     if (follows) {
         add_pin(problem, f, STEADY_ASIDE);
         add_pin(problem, f, STEADY_HEADING);
-    } else if (fish->control.law != CONTROL_NONE) {
+    } else if (problem->map.steered >= 0) {
         add_unknown(problem, f, STEADY_HEADING);
     }
 }
@@ -122,8 +122,8 @@ enum status steady_problem_beat(struct steady_problem *problem) {
     return STATUS_OK;
 }
 
-enum status steady_problem_put(struct steady_problem *problem, int n, const struct steady_unknown *unknown,
-                               const double *to) {
+// make n quantities what they are to be, m s-1 and so on; nothing is touched where they are that already
+static enum status put(struct steady_problem *problem, int n, const struct steady_unknown *unknown, const double *to) {
     double *const add = problem->scratch;
     steady_map_read(&problem->map, n, unknown, add);
     int is_elsewhere = 0;
@@ -134,9 +134,21 @@ enum status steady_problem_put(struct steady_problem *problem, int n, const stru
     return is_elsewhere ? steady_map_add(&problem->map, n, unknown, add) : STATUS_OK;
 }
 
+void steady_problem_read(const struct steady_problem *problem, double *value) {
+    steady_map_read(&problem->map, problem->n_unknowns, problem->unknown, value);
+    for (int i = 0; i < problem->n_unknowns; i++) value[i] /= steady_map_scale(&problem->map, problem->unknown[i]);
+}
+
+enum status steady_problem_put(struct steady_problem *problem, const double *to) {
+    const int n = problem->n_unknowns;
+    double *const target = problem->scratch + n;
+    for (int i = 0; i < n; i++) target[i] = to[i] * steady_map_scale(&problem->map, problem->unknown[i]);
+    return put(problem, n, problem->unknown, target);
+}
+
 enum status steady_problem_put_pins(struct steady_problem *problem, double speed) {
     for (int i = 0; i < problem->n_pins; i++) {
         if (problem->pin[i].quantity == STEADY_SPEED) problem->pinned[i] = speed;
     }
-    return steady_problem_put(problem, problem->n_pins, problem->pin, problem->pinned);
+    return put(problem, problem->n_pins, problem->pin, problem->pinned);
 }

@@ -32,9 +32,11 @@ void steady_problem_free(struct steady_problem *problem);
  * steady_map_beat. */
 enum status steady_problem_beat(struct steady_problem *problem);
 
-/* Make n quantities what they are to be; nothing is touched where they are that already. Fails as steady_map_add. */
-enum status steady_problem_put(struct steady_problem *problem, int n, const struct steady_unknown *unknown,
-                               const double *to);
+/* What the unknowns are now, over their scales                                                   (n_unknowns) */
+void steady_problem_read(const struct steady_problem *problem, double *value);
+
+/* Make the unknowns what they are to be, over their scales. Fails as steady_map_add.               (n_unknowns) */
+enum status steady_problem_put(struct steady_problem *problem, const double *to);
 
 /* Put all pins where they belong, and the speeds among them to this one, m s-1. */
 enum status steady_problem_put_pins(struct steady_problem *problem, double speed);

@@ -12,14 +12,29 @@ static const double longest_step = 1;
 /* The change of the speed in a beat by the speed, where it is not known or makes no sense: one that grows. */
 static const double first_slope = -0.2, least_slope = -0.01;
 
-/* Each addition to the state lets the integrator begin again, with errors of its own: Newton's method stops at this
- * multiple of the tolerance. Beats follow to which nothing is added, so many before it is tried again; two in a row
- * must meet the tolerance. */
+/* Each addition to the state lets the integrator begin again, with errors of its own: Newton's method on the speed
+ * stops at this multiple of the tolerance. Beats follow to which nothing is added, so many before it is tried again;
+ * two in a row must meet the tolerance. */
 enum { ROUGH = 3, PATIENCE = 8 };
+
+/* On all slow quantities it stops at this part of the tolerance, and where the beats that follow run away, as they do
+ * from what is unstable, at a smaller one, by this factor, the next time; it begins where it was then. */
+static const double margin = 0.5, sharper = 0.3;
+
+/* Change over the tolerance in a beat that has run away. */
+static const double lost = 10;
+
+/* Iterations of Newton's method on the speed alone, after which all slow quantities are solved for. */
+enum { SPEED_ITERATIONS = 20 };
 
 /* The speed of the first fish, and what is known of its change in a beat. */
 struct search {
     struct steady_problem *problem;
+    int solves_all;      /* slow quantities, not the speed alone: of a formation, of a fish that circles, and where the
+                            speed alone has not been found */
+    double margin;       /* part of the tolerance to which they are solved for */
+    struct state *found; /* where that has ended */
+    int has_failed;      /* a beat has */
     struct steady_unknown speed;
     double scale;        /* m s-1 */
     double from, change; /* in the last beat, m s-1 */
@@ -34,7 +49,9 @@ static double speed_now(const struct search *search) {
 
 // one beat that begins with a speed: what it tells of the slope
 static enum status try_beat(struct search *search, double speed, double *change) {
-    TRY(steady_problem_beat(search->problem));
+    const enum status status = steady_problem_beat(search->problem);
+    search->has_failed = status != STATUS_OK;
+    TRY(status);
     *change = speed_now(search) - speed;
     const double way = speed - search->from;
     // below that the secant is that of the integrator's errors
@@ -65,12 +82,15 @@ static enum status solve_speed(struct search *search) {
                                    .tolerance = ROUGH * settings->tolerance,
                                    .max_step = longest_step,
                                    .reuse = 1,
-                                   .max_iterations = settings->beats + 1,
+                                   .max_iterations = SPEED_ITERATIONS,
                                    .value = value,
                                    .jacobian = slope,
                                    .data = search};
     double speed = speed_now(search);
-    return newton_solve(&problem, &speed);
+    const enum status status = newton_solve(&problem, &speed);
+    if (status != STATUS_SOLVER || search->has_failed) return status;
+    search->solves_all = 1;
+    return STATUS_OK;
 }
 
 // the first beats: the muscle begins smoothly, and the wake has to grow
@@ -84,28 +104,62 @@ static enum status settle(struct search *search) {
     return STATUS_OK;
 }
 
-// a formation first gets one speed with its places kept; then all follows
 static enum status solve(struct search *search) {
     struct steady_problem *const problem = search->problem;
-    if (problem->map.is_formation && problem->n_unknowns > 0) return steady_formation_solve(problem);
-    return problem->solves_speed ? solve_speed(search) : STATUS_OK;
+    if (problem->n_unknowns == 0) return STATUS_OK;
+    if (!search->solves_all) return solve_speed(search);
+    TRY(steady_formation_solve(problem, search->margin * problem->settings->tolerance));
+    return steady_map_save(&problem->map, &search->found);
+}
+
+static int circles(const struct school *school) {
+    int circles = 0;
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *const fish = &school->fish[f];
+        circles |= steady_map_freedom(fish) == STEADY_SWIMS && fabs(fish->control.bias) > 0;
+    }
+    return circles;
+}
+
+// beats to which nothing is added, until two in a row are steady
+static enum status let_go(struct search *search, int *is_steady) {
+    struct steady_problem *const problem = search->problem;
+    const double tolerance = problem->settings->tolerance;
+    int n_good = 0;
+    double change = 0;
+    for (int i = 0; i < PATIENCE && n_good < 2 && change <= lost * tolerance; i++) {
+        TRY(steady_problem_beat(problem));
+        change = steady_map_residual(&problem->map);
+        n_good = change <= tolerance ? n_good + 1 : 0;
+        // how the first of them compares with one that was held says nothing
+        if (i == 0 && search->solves_all) change = 0;
+    }
+    *is_steady = n_good == 2;
+    if (*is_steady || !search->solves_all || change <= lost * tolerance) return STATUS_OK;
+    search->margin *= sharper;
+    return steady_map_return(&problem->map, search->found);
+}
+
+static enum status run(struct search *search) {
+    struct steady_problem *const problem = search->problem;
+    TRY(settle(search));
+    // a formation first gets one speed with its places kept; then all follows
+    if (problem->map.is_formation) {
+        if (problem->solves_speed) TRY(solve_speed(search));
+        TRY(steady_problem_put_pins(problem, speed_now(search)));
+    }
+    for (int is_steady = 0; !is_steady;) {
+        TRY(solve(search));
+        TRY(let_go(search, &is_steady));
+    }
+    return STATUS_OK;
 }
 
 enum status steady_search_run(struct steady_problem *problem) {
-    struct search search = {.problem = problem, .speed = {0, STEADY_SPEED}, .slope = first_slope};
+    struct search search = {.problem = problem, .speed = {0, STEADY_SPEED}, .slope = first_slope, .margin = margin};
     search.scale = steady_map_scale(&problem->map, search.speed);
-    TRY(settle(&search));
-    if (problem->map.is_formation) {
-        if (problem->solves_speed) TRY(solve_speed(&search));
-        TRY(steady_problem_put_pins(problem, speed_now(&search)));
-    }
-    int n_good = 0;
-    while (n_good < 2) {
-        TRY(solve(&search));
-        for (int i = 0; i < PATIENCE && n_good < 2; i++) {
-            TRY(steady_problem_beat(problem));
-            n_good = steady_map_residual(&problem->map) <= problem->settings->tolerance ? n_good + 1 : 0;
-        }
-    }
-    return STATUS_OK;
+    search.solves_all = problem->map.is_formation || circles(problem->map.simulation->school);
+    const enum status status = run(&search);
+    state_free(search.found, problem->map.simulation->school);
+    return status;
 }

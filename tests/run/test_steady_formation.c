@@ -1,47 +1,89 @@
 /* test_steady_formation.c: the places that fish keep behind one another. doc/steady.md. */
-#include "run/steady_multipliers.h"
-#include "run/steady_search.h"
-#include "school.h"
+#include "steady_setup.h"
 
-// two plates that heave, the follower about a wavelength behind
+// two plates that heave, from a start of the follower
+#define PLATES                                                                                               \
+    SCHOOL_SECOND                                                                                            \
+    "time: {end: 1, shedding_interval: 0.05, output_interval: 0.05}\n"                                       \
+    "fluid: {density: 1, viscosity: 2e-3}\nwake: {lifetime: 3, smoothing: 0.2}\n"                            \
+    "steady: {formation: true, tolerance: 3e-3}\n"                                                           \
+    "defaults: {fish: {nodes: 5, sheet_points: 13, force: pressure, start: {speed: 4.1},\n"                  \
+    "  wave: {amplitude: 0, frequency: 0}, motion: {driven: all, surge: free, heave: 0.15, frequency: 1},\n" \
+    "  body: {profile: uniform, thickness: 0.05, width: 1, density: 20}}}\n"
+
+// from tail to nose, in wavelengths of the way that they go in a beat
+static double spacing(const struct steady_setup *setup) {
+    const struct steady_beat *const last = setup->problem.map.last;
+    return (-last[1].place[0] - 1) / last[0].speed;
+}
+
 static void a_follower_finds_the_place_where_it_is_as_fast_as_its_leader(void **state) {
     (void)state;
-    static const char text[] = SCHOOL_SECOND
-        "time: {end: 1, shedding_interval: 0.05, output_interval: 0.05}\nfluid: {density: 1, viscosity: 2e-3}\nwake: "
-        "{lifetime: 3, smoothing: 0.2}\n"
-        "steady: {formation: true, tolerance: 3e-3}\n"
-        "defaults: {fish: {nodes: 5, sheet_points: 17, force: pressure, start: {speed: 3.8},\n"
-        "  wave: {amplitude: 0, frequency: 0}, motion: {driven: all, surge: free, heave: 0.15, frequency: 1},\n"
-        "  body: {profile: uniform, thickness: 0.05, width: 1, density: 20}}}\n"
-        "fish: [{}, {start: {position: [4.8, 0]}}]\n";
-    struct case_values values;
-    school_settings(&values, text);
-    struct simulation *const simulation = school_simulation(text);
-    struct steady_problem problem;
-    school_ok(steady_problem_create(&problem, &values.steady, simulation));
+    struct steady_setup setup;
+    steady_setup_find(&setup, PLATES "fish: [{}, {start: {position: [5.2, 0]}}]\n");
     // two speeds and a distance
-    assert_int_equal(problem.n_unknowns, 3);
-    school_ok(steady_search_run(&problem));
-    const struct steady_beat *const last = problem.map.last;
-    NEAR(last[1].speed, last[0].speed, 3e-3, 0);
-    // from tail to nose about one wavelength, as in experiments: doc/verification.md
-    NEAR((-last[1].place[0] - 1) / last[0].speed, 1, 0.1, 0);
+    assert_int_equal(setup.problem.n_unknowns, 3);
+    const struct steady_beat *const last = setup.problem.map.last;
+    // lengths per beat; the last two beats changed by no more than the tolerance, and the beat of the follower is 1 s
+    NEAR(last[1].speed, last[0].speed, 2 * 3e-3, 0);
+    // about one wavelength, as in experiments: doc/verification.md
+    NEAR(spacing(&setup), 1, 0.1, 0);
     NEAR(last[1].place[1], 0, 1e-12, 0);
-    double real[3], imaginary[3];
-    int n_beats;
-    school_ok(steady_multipliers_find(&problem, real, imaginary, &n_beats));
-    assert_true(hypot(real[0], imaginary[0]) < 1);
+    assert_true(hypot(setup.real[0], setup.imaginary[0]) < 1);
     // it is stable, so beats without a search keep it
-    for (int i = 0; i < 5; i++) school_ok(steady_map_beat(&problem.map, NULL, NULL));
-    assert_true(steady_map_residual(&problem.map) < 3e-3);
-    steady_problem_free(&problem);
-    simulate_free(simulation);
-    case_free(&values);
+    steady_setup_beats(&setup, 5);
+    assert_true(steady_map_residual(&setup.problem.map) < 3e-3);
+    steady_setup_close(&setup);
+}
+
+static void between_two_stable_places_is_one_that_the_follower_leaves(void **state) {
+    (void)state;
+    struct steady_setup setup;
+    steady_setup_find(&setup, PLATES "fish: [{}, {start: {position: [7.4, 0]}}]\n");
+    // half a wavelength beyond the first stable place
+    NEAR(spacing(&setup), 1.57, 0.1, 0);
+    assert_true(setup.real[0] > 1.5);
+    NEAR(setup.imaginary[0], 0, 0, 0);
+    // put to either side it goes on to the next stable place there, by a length at least
+    struct state *kept = NULL;
+    school_ok(steady_map_save(&setup.problem.map, &kept));
+    const double place = setup.problem.map.last[1].place[0];
+    for (int side = -1; side <= 1; side += 2) {
+        const struct steady_unknown ahead = {1, STEADY_AHEAD};
+        const double add = side * 0.1;
+        school_ok(steady_map_return(&setup.problem.map, kept));
+        school_ok(steady_map_add(&setup.problem.map, 1, &ahead, &add));
+        steady_setup_beats(&setup, 5);
+        assert_true(side * (setup.problem.map.last[1].place[0] - place) > 1);
+    }
+    state_free(kept, setup.simulation->school);
+    steady_setup_close(&setup);
+}
+
+static void fish_that_swim_freely_keep_the_place_that_is_found(void **state) {
+    (void)state;
+    struct steady_setup setup;
+    steady_setup_open(&setup, COARSE
+                      "steady: {formation: true, tolerance: 1e-3}\n"
+                      "defaults: {fish: {" FISH
+                      ", start: {speed: 0.75}, control: {law: heading, desired_heading: 180}}}\n"
+                      "fish: [{}, {start: {position: [1.4, 0]}}]\n");
+    // speed, slip and turn of both, the heading of the first, place and heading of the second as that one sees it
+    assert_int_equal(setup.problem.n_unknowns, 10);
+    school_ok(steady_search_run(&setup.problem));
+    const struct steady_beat found = setup.problem.map.last[1];
+    NEAR(found.place[0], -1.4, 0.1, 0);
+    // let go it stays for some beats: 0.1 lengths from there it would be off by 0.05 by now
+    steady_setup_beats(&setup, 4);
+    for (int i = 0; i < 2; i++) NEAR(setup.problem.map.last[1].place[i], found.place[i], 0.02, 0);
+    steady_setup_close(&setup);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_follower_finds_the_place_where_it_is_as_fast_as_its_leader),
+        cmocka_unit_test(between_two_stable_places_is_one_that_the_follower_leaves),
+        cmocka_unit_test(fish_that_swim_freely_keep_the_place_that_is_found),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

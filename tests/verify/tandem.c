@@ -119,7 +119,7 @@ static double follow(int number, double gap, double speed_alone) {
 }
 
 static void in_phase(double speed_alone, double place[4]) {
-    const double gaps[] = {3.5, 5.9, 6.7, 8, 11.9};
+    const double gaps[] = {3.5, 5, 7.3, 8, 11.9};
     const int numbers[] = {1, 1, 2, 2, 3};
     for (int i = 0; i < 5; i++) place[numbers[i]] = follow(numbers[i], gaps[i], speed_alone);
     for (int i = 1; i < 3; i++) {

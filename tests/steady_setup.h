@@ -1,0 +1,35 @@
+/* steady_setup.h: what the tests of steady states share: the problem of a case, from its text to what is found. */
+#ifndef STEADY_SETUP_H
+#define STEADY_SETUP_H
+
+#include "run/steady_multipliers.h"
+#include "run/steady_search.h"
+#include "school.h"
+
+// coarse, so that a beat takes some milliseconds: 20 events, 7 nodes, 13 points of the sheet
+#define COARSE SCHOOL_SECOND "time: {end: 1, shedding_interval: 0.05, output_interval: 0.05}\n"
+#define FISH "nodes: 7, sheet_points: 13"
+
+struct steady_setup {
+    struct case_values values;
+    struct simulation *simulation;
+    struct steady_problem problem;
+    int n_multiplier_beats;
+    double real[4 * STEADY_QUANTITIES], imaginary[4 * STEADY_QUANTITIES]; /* multipliers, of at most four fish */
+};
+
+/* Pose the problem of a case. Fails the test with the message where there is one. */
+void steady_setup_open(struct steady_setup *setup, const char *text);
+void steady_setup_close(struct steady_setup *setup);
+
+/* The same, and find its steady state, and the multipliers. */
+void steady_setup_find(struct steady_setup *setup, const char *text);
+void steady_setup_multipliers(struct steady_setup *setup);
+
+/* Go on by some beats to which nothing is added. */
+void steady_setup_beats(struct steady_setup *setup, int n);
+
+/* The problem of a case is refused, or its search fails, with these words. */
+void steady_setup_fails(const char *text, enum status want, const char *words);
+
+#endif
