@@ -142,7 +142,8 @@ OTHERS = {
 its sweep, `shoal_study` is 1. For each swept key there is a variable over `member`, named like the key with `_` for `.`
 and without brackets; its `long_name` is the path, its `axis` the number of its axis, and `refine` is 1 where that is
 refined. Every variable over (time), (time, fish) or (time, fish, xy) of a result file is there with its last row, over
-(member), (member, fish) or (member, fish, xy). It also has the variables below; a member without rows has NaN.
+(member), (member, fish) or (member, fish, xy); where members are steady states, so are the numbers `steady_...` of
+these. It also has the variables below; a member without rows has NaN.
 
 With a refined axis, each of the last six kinds has one variable for each of the quantities Q: `nose`, `tail`, `com`,
 `speed`, `mean_heading`, `shed_circulation`, `cost_of_transport`, `mean_actuation_power`; the order of the nose is

@@ -7,7 +7,8 @@
     a position as the only axis     a map of the places, a number at each
     two axes of numbers             a map over both
     anything else                   speed, cost of transport and Strouhal number over the first axis; of fish whose muscle
-                                    does no work the efficiency; of fish that are held at a speed thrust and power over it
+                                    does no work the efficiency; of fish that are held at a speed thrust and power over it;
+                                    of bodies without a beat drag, lift and deflection
     a comparison of methods         error against wall time and evaluations
 """
 
@@ -255,7 +256,10 @@ def plot_map(study, x, y, labels, quantity, figure):
 
 
 def panels_of(study, first):
-    """What is drawn over an axis: speed and cost; of fish that are held at the speeds of the axis what that takes."""
+    """What is drawn over an axis: speed and cost; of fish that are held at the speeds of the axis what that takes; of
+    bodies at rest what the stream does to them."""
+    if "steady_drag" in study.data.variables and np.isfinite(study["steady_drag"][study.complete]).all():
+        return ["steady_drag", "steady_lift", "steady_deflection"]
     speed, given = study["speed"][study.complete], study[first.name][study.complete]
     if first.long_name.endswith(".speed") and np.allclose(speed, given[:, None], rtol=1e-3):
         return ["mean_thrust", "mean_power", "thrust_efficiency"]

@@ -29,6 +29,10 @@ const struct sweep_quantity sweep_quantities[SWEEP_N_QUANTITIES] = {
     {"wall_time", 0, 0, NULL, NULL},
     {"nose_error", 1, 0, "1", "distance of the nose from that of the reference of a comparison, in body lengths"},
     {"tail_error", 1, 0, "1", "distance of the tail from that of the reference of a comparison, in body lengths"},
+    {"steady_drag", 1, 0, NULL, NULL},
+    {"steady_lift", 1, 0, NULL, NULL},
+    {"steady_deflection", 1, 0, NULL, NULL},
+    {"steady_stiffness", 0, 0, NULL, NULL},
 };
 
 int sweep_quantity_find(const char *name, int n_known) {

@@ -15,7 +15,7 @@ enum {
     SWEEP_NOSE,
     SWEEP_TAIL,
     SWEEP_N_ORDERS = 8, /* of the first ones orders of convergence are observed */
-    SWEEP_N_QUANTITIES = 22
+    SWEEP_N_QUANTITIES = 26
 };
 
 extern const struct sweep_quantity sweep_quantities[SWEEP_N_QUANTITIES];

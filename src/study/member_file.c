@@ -25,22 +25,37 @@ static int has_end(const struct result_variable *variable) {
     return d[1] == NONE || (d[1] == FISH && (d[2] == NONE || d[2] == XY));
 }
 
+/* True for real numbers of a steady state, and of each fish; counts have the names of keys. */
+static int is_of_steady(const struct result_variable *variable) {
+    const enum result_dimension *const d = variable->dimension;
+    if (!variable->of_steady || variable->type != RESULT_REAL) return 0;
+    return d[0] == NONE || (d[0] == FISH && (d[1] == NONE || d[1] == XY));
+}
+
 const struct member_file_quantity *member_file_quantity(int i) {
     static struct member_file_quantity all[RESULT_TABLE_MAX + N_COMPUTED];
     static int n;
     if (n == 0) {
         for (int v = 0; v < result_table_n; v++) {
             const struct result_variable *const from = &result_table[v];
-            if (!has_end(from)) continue;
-            all[n++] = (struct member_file_quantity){
-                from->name, from->unit, from->long_name, result_table_has(from, FISH), result_table_has(from, XY),
-                0,          0};
+            if (!has_end(from) && !is_of_steady(from)) continue;
+            all[n++] = (struct member_file_quantity){.name = from->name,
+                                                     .unit = from->unit,
+                                                     .long_name = from->long_name,
+                                                     .of_fish = result_table_has(from, FISH),
+                                                     .of_xy = result_table_has(from, XY),
+                                                     .of_steady = from->of_steady};
         }
         for (int c = 0; c < N_COMPUTED; c++) {
             const struct sweep_quantity *const from =
                 &sweep_quantities[sweep_quantity_find(computed[c], SWEEP_N_QUANTITIES)];
-            all[n++] = (struct member_file_quantity){from->name,  from->unit, from->meaning,  from->of_fish,
-                                                     from->of_xy, 1,          c >= NOSE_ERROR};
+            all[n++] = (struct member_file_quantity){.name = from->name,
+                                                     .unit = from->unit,
+                                                     .long_name = from->meaning,
+                                                     .of_fish = from->of_fish,
+                                                     .of_xy = from->of_xy,
+                                                     .is_computed = 1,
+                                                     .of_comparison = c >= NOSE_ERROR};
         }
     }
     return i < n ? &all[i] : NULL;
@@ -88,7 +103,7 @@ struct reading {
     struct member_file *member;
 };
 
-/* The last row of a variable that gives a quantity. */
+/* The last row of a variable that gives a quantity, or the value of a steady state. */
 static enum status read_quantity(const struct reading *reading, int q) {
     const struct member_file_quantity *const quantity = member_file_quantity(q);
     if (!netcdf_has(&reading->reader, quantity->name)) return STATUS_OK;
@@ -96,7 +111,7 @@ static enum status read_quantity(const struct reading *reading, int q) {
                                          {quantity->of_fish ? "fish" : NULL, 0, reading->n_fish},
                                          {quantity->of_xy ? "xy" : NULL, 0, 2},
                                          {NULL}};
-    TRY(netcdf_read_doubles(&reading->reader, quantity->name, slice, reading->values));
+    TRY(netcdf_read_doubles(&reading->reader, quantity->name, slice + quantity->of_steady, reading->values));
     const double *from = reading->values;
     for (int f = 0; f < (quantity->of_fish ? reading->member->n_fish : 1); f++) {
         for (int k = 0; k < 1 + quantity->of_xy; k++) *member_file_place(reading->member, q, f, k) = *from++;

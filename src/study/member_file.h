@@ -1,6 +1,7 @@
 /* member_file.h: what a study reads from the result of a member. Tested by tests/study/test_member_file.c.
  *
- * A quantity is what a variable of a result holds in its last row, or what is computed from the last rows. */
+ * A quantity is what a variable of a result holds in its last row, what is computed from the last rows, or a value of a
+ * steady state. */
 #ifndef MEMBER_FILE_H
 #define MEMBER_FILE_H
 
@@ -11,6 +12,7 @@ struct member_file_quantity {
     int of_fish, of_xy; /* one value for every fish; for every direction */
     int is_computed;    /* not the last row of a variable of a result */
     int of_comparison;  /* NaN but for the members of a comparison: study_comparison.h */
+    int of_steady;      /* NaN but for members that are steady states; not of a row */
 };
 
 /* Quantity number i, from 0; NULL beyond the last. */

@@ -106,6 +106,7 @@ static void define_quantity(struct writing *writing, const struct member_file_qu
 
 /* Whether the file of a study has a quantity. */
 static bool has_quantity(const struct case_values *study, const struct member_file_quantity *quantity) {
+    if (quantity->of_steady) return sweep_is_steady(study);
     return !quantity->of_comparison || study_comparison_is(study);
 }
 

@@ -42,6 +42,30 @@ static void quantities_of_the_table_are_those_of_the_last_row(void **state) {
     member_file_free(&member);
 }
 
+static void a_steady_state_has_its_own_values(void **state) {
+    struct fixture *const f = *state;
+    struct result_file *file;
+    struct member_file member;
+    struct steady_fish fish[N_FISH] = {{.drag = 3, .force = {4, 5}}, {.drag = 6, .force = {7, 8}}};
+    const struct steady_values values = {.stiffness = 0.5, .fish = fish};
+    assert_int_equal(
+        result_file_create_steady(&file, f->path, 0, &f->values, EFFECTIVE, "shoal steady case.yaml", f->school, 10),
+        STATUS_OK);
+    assert_int_equal(append(f, file, 0, 0), STATUS_OK);
+    result_file_steady(file, f->school, &values);
+    assert_int_equal(result_file_close(file, "complete"), STATUS_OK);
+    assert_int_equal(member_file_read(&member, f->path), STATUS_OK);
+    NEAR(value(&member, "steady_drag", 1, 0), 6, 0, 0);
+    NEAR(value(&member, "steady_force", 0, 1), 5, 0, 0);
+    NEAR(value(&member, "steady_stiffness", 0, 0), 0.5, 0, 0);
+    NEAR(value(&member, "speed", 1, 0), f->of_fish[1].speed, 0, 0);
+    member_file_free(&member);
+    unlink(f->path);
+    read_member(f, &member);
+    assert_true(isnan(value(&member, "steady_drag", 1, 0)));
+    member_file_free(&member);
+}
+
 static void nose_and_tail_are_the_ends_of_each_body(void **state) {
     struct fixture *const f = *state;
     struct member_file member;
@@ -182,6 +206,7 @@ static void a_body_cannot_have_more_nodes_than_there_are_places(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         WITH_FILE(quantities_of_the_table_are_those_of_the_last_row),
+        WITH_FILE(a_steady_state_has_its_own_values),
         WITH_FILE(nose_and_tail_are_the_ends_of_each_body),
         WITH_FILE(lateral_drift_is_to_the_left_of_the_first_heading),
         WITH_FILE(mean_heading_is_that_of_trapezoids_over_the_last_period),
