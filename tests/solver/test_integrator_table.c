@@ -22,8 +22,9 @@ static void methods_have_their_integrators(void **state) {
     assert_ptr_equal(integrator_of(METHOD_TRAPEZOID), &one_step_integrator);
     for (int i = 0; i < methods_n; i++) {
         if (methods_table[i].is_implicit) continue;
-        const int is_verlet = i == METHOD_VERLET;
-        assert_ptr_equal(integrator_of(i), is_verlet ? &verlet_integrator : &runge_kutta_integrator);
+        const enum method method = (enum method)i;
+        const struct integrator *const want = method == METHOD_VERLET ? &verlet_integrator : &runge_kutta_integrator;
+        assert_ptr_equal(integrator_of(method), want);
     }
 }
 
