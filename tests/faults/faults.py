@@ -4,8 +4,8 @@
     faults.py PROGRAM SHIM EVERY      EVERY: 1 tries all of them, n every n-th
 
 After each fault the exit code is 0 or 4 (killed: -9); on standard error is one message, with the path and the reason;
-the result, where there is one, has rows that are to the bit those of an undisturbed run, and `shoal info` reads it. Where there is a checkpoint, `shoal resume` ends in the
-bits of the undisturbed run.
+the result, where there is one, has rows that are to the bit those of an undisturbed run, and `shoal info` reads it.
+Where there is a checkpoint, `shoal resume` ends in the bits of the undisturbed run.
 Prints a line for what is wrong, and as the last one how many passed and failed.
 """
 import os, resource, subprocess, sys, tempfile

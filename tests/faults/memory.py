@@ -3,8 +3,8 @@
 
     memory.py PROGRAM SHIM EVERY      EVERY: 1 tries all of them, n every n-th
 
-The command ends with exit code 0, where it can do without, or 4 (a study whose member fails: 1) and one message with the
-word memory; it leaves no half of a file, and a result that is there can be read.
+The command ends with exit code 0, where it can do without, or 4 and one message with the word memory, or 1: a study
+whose members fail, and whose table says so. It leaves no half of a file, and a result that is there can be read.
 Prints a line for what is wrong, and as the last one how many passed and failed.
 """
 import os, subprocess, sys, tempfile
@@ -56,8 +56,9 @@ def wrong(done):
         return None
     if done.returncode not in (1, 4):
         return f"exit code {done.returncode}: {done.stderr}"
-    if "memory" not in done.stderr or "Traceback" in done.stderr:
-        return f"message: {done.stderr!r}"
+    said = done.stdout if done.returncode == 1 else done.stderr
+    if "memory" not in said or "Traceback" in done.stderr:
+        return f"message: {said!r}"
     left = [name for name in os.listdir(".") if ".part" in name]
     return f"it leaves {left}" if left else None
 
