@@ -107,7 +107,8 @@ static enum status settle(struct search *search) {
 static enum status solve(struct search *search) {
     struct steady_problem *const problem = search->problem;
     if (problem->n_unknowns == 0) return STATUS_OK;
-    if (!search->solves_all) return solve_speed(search);
+    if (!search->solves_all) TRY(solve_speed(search));
+    if (!search->solves_all) return STATUS_OK;
     TRY(steady_formation_solve(problem, search->margin * problem->settings->tolerance));
     return steady_map_save(&problem->map, &search->found);
 }

@@ -140,6 +140,13 @@ static void a_search_that_takes_too_long_says_how_far_it_came(void **state) {
                        "no steady state in 5 beats (steady.beats)");
 }
 
+// the speed alone never meets such a tolerance, nor do all slow quantities
+static void what_is_not_found_alone_is_looked_for_with_slip_and_turn(void **state) {
+    (void)state;
+    steady_setup_fails(COARSE "steady: {tolerance: 1e-12, beats: 45}\nfish: [{" FISH "}]\n", STATUS_SOLVER,
+                       "no steady state in 45 beats (steady.beats)");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(speed_and_multiplier_are_those_of_a_long_run),
@@ -149,6 +156,7 @@ int main(void) {
         cmocka_unit_test(a_held_fish_is_steady_when_its_forces_repeat),
         cmocka_unit_test(what_can_have_no_steady_state_is_refused_with_the_reason),
         cmocka_unit_test(a_search_that_takes_too_long_says_how_far_it_came),
+        cmocka_unit_test(what_is_not_found_alone_is_looked_for_with_slip_and_turn),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
