@@ -11,6 +11,7 @@
 #include "run/record.h"
 #include "run/record_notes.h"
 #include "run/steady_multipliers.h"
+#include "run/steady_reason.h"
 #include "run/steady_search.h"
 #include "run/steady_start.h"
 #include "run/steady_static.h"
@@ -59,7 +60,7 @@ static enum status find_multipliers(struct run *run) {
         nearest = fmin(nearest, hypot(1 - found->real[i], found->imaginary[i]));
     }
     found->error = found->residual / nearest;
-    return STATUS_OK;
+    return steady_reason_check(&run->problem, nearest);
 }
 
 // the means over the last beat

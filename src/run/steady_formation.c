@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "run/steady_reason.h"
 #include "solver/newton.h"
 
 /* A step changes the slow quantities by no more than this, in lengths, and in their other scales. */
@@ -52,6 +53,23 @@ static enum status value(void *data, const double *u, double *change) {
     return STATUS_OK;
 }
 
+static double norm(int n, const double *value) {
+    double square = 0;
+    for (int i = 0; i < n; i++) square += value[i] * value[i];
+    return sqrt(square);
+}
+
+// each place has to tell
+static enum status check_places(const struct formation *formation) {
+    const struct steady_problem *const problem = formation->problem;
+    for (int j = 0; j < problem->n_unknowns; j++) {
+        const enum steady_quantity quantity = problem->unknown[j].quantity;
+        if (quantity != STEADY_AHEAD && quantity != STEADY_ASIDE) continue;
+        TRY(steady_reason_check(problem, norm(problem->n_unknowns, formation->matrix + j * problem->n_unknowns)));
+    }
+    return STATUS_OK;
+}
+
 // by differences: from the same state with something added to one quantity
 static enum status differences(struct formation *formation) {
     struct steady_map *const map = &formation->problem->map;
@@ -66,13 +84,8 @@ static enum status differences(struct formation *formation) {
         formation->held[j] = formation->u[j];
         for (int i = 0; i < n; i++) column[i] = (column[i] - formation->change[i]) / difference;
     }
-    return steady_map_return(map, formation->reached);
-}
-
-static double norm(int n, const double *value) {
-    double square = 0;
-    for (int i = 0; i < n; i++) square += value[i] * value[i];
-    return sqrt(square);
+    TRY(steady_map_return(map, formation->reached));
+    return check_places(formation);
 }
 
 static enum status jacobian(void *data, double *matrix) {

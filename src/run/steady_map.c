@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "model/clearance.h"
 #include "model/diagnostics_energy.h"
 #include "model/flow_external.h"
 #include "model/state_table.h"
@@ -248,6 +249,17 @@ static enum status renew(struct simulation *simulation) {
     return status == STATUS_RETRY ? status_fail(STATUS_SOLVER, "%s", status_message()) : status;
 }
 
+// the record of the closest approach begins again
+static enum status check_overlap(struct simulation *simulation) {
+    const struct school *const school = simulation->school;
+    struct residual *const residual = simulation->residual;
+    const struct closest *const closest = simulation->state->closest;
+    clearance_start(school, simulation->state, residual->neighbours, residual->scratch);
+    if (closest->distance > 0 || school->contact == CONTACT_WARN) return STATUS_OK;
+    return status_fail(STATUS_SOLVER, "collision: the places that the search tries next put %s onto %s",
+                       school->fish[closest->fish[0]].name, school->fish[closest->fish[1]].name);
+}
+
 enum status steady_map_add(struct steady_map *map, int n, const struct steady_unknown *unknown, const double *add) {
     struct simulation *const simulation = map->simulation;
     struct state *const state = simulation->state;
@@ -265,7 +277,7 @@ enum status steady_map_add(struct steady_map *map, int n, const struct steady_un
         if (f > 0 && fabs(turn) > 0) turn_with(&change, &first, &other, turn);
         rigid_change(school, state, f, &change);
     }
-    memcpy(state->closest->before, state->y, (size_t)school->n_unknowns * sizeof *state->y);
+    TRY(check_overlap(simulation));
     // velocities are given, as at a start: momenta follow from them
     simulation->residual->at_start = 1;
     const enum status status = initial_conditions_solve(simulation->consistent, state->t, state->y, state->yp);

@@ -66,8 +66,8 @@ double steady_map_scale(const struct steady_map *map, struct steady_unknown unkn
 /* What the quantities are now, in SI units                                                        (n) */
 void steady_map_read(const struct steady_map *map, int n, const struct steady_unknown *unknown, double *value);
 
-/* Add to them; the state is then consistent again, and the integration has begun again. Fails with STATUS_SOLVER or
- * STATUS_MEMORY. */
+/* Add to them; the state is then consistent again, and the integration has begun again. Fails with STATUS_SOLVER, as
+ * where bodies overlap then, or with STATUS_MEMORY. */
 enum status steady_map_add(struct steady_map *map, int n, const struct steady_unknown *unknown, const double *add);
 
 /* Keep the state, and return to it; both begin the integration again. *state is made where it is NULL; state_free

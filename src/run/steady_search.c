@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "run/steady_formation.h"
+#include "run/steady_reason.h"
 #include "solver/newton.h"
 
 /* A step of Newton's method changes the speed by no more than this, in lengths per beat. */
@@ -162,5 +163,7 @@ enum status steady_search_run(struct steady_problem *problem) {
     search.solves_all = problem->map.is_formation || circles(problem->map.simulation->school);
     const enum status status = run(&search);
     state_free(search.found, problem->map.simulation->school);
-    return status;
+    const int is_late = problem->map.n_beats >= problem->settings->beats;
+    if (status != STATUS_SOLVER || !is_late || !problem->map.is_formation || problem->n_unknowns == 0) return status;
+    return steady_reason_find(problem);
 }

@@ -6,7 +6,7 @@
 #include "run/steady_problem.h"
 
 /* Go on until the simulation repeats itself from beat to beat. Fails with STATUS_SOLVER and the reason where it does
- * not within steady.beats, or as simulate_step. */
+ * not within steady.beats (of a formation, what its fish do then), or as simulate_step. */
 enum status steady_search_run(struct steady_problem *problem);
 
 #endif

@@ -160,6 +160,22 @@ refused a_load_that_crushes_it 1 'the one that grows from rest ends at 0' steady
 run info crushed.nc
 check the_file_says_where_the_branch_ends has out 'failed: no equilibrium in this stream'
 
+# ---- bodies that touch
+
+cat >touch.yaml <<'end'
+format: 1
+time: {end: 1, shedding_interval: 0.05, output_interval: 0.1}
+contact: {action: warn}
+steady: {tolerance: 1e-2}
+fluid: {velocity: [1, 0]}
+defaults: {fish: {nodes: 7, sheet_points: 17, wave: {amplitude: 0}, motion: {driven: all, speed: 0, heave: 0.05, frequency: 1}}}
+fish: [{name: upper, start: {position: [0, 0.16]}}, {name: lower, start: {position: [0, -0.16]}, motion: {phase: 180}}]
+end
+run steady touch.yaml -q --strict
+check bodies_that_touch_are_warned_of_as_in_a_run test "$code" = 3
+check with_their_names has err 'the bodies of upper and lower touch or cross at t ='
+check in_the_file_too /usr/bin/python3 -c 'import netCDF4; assert "upper and lower touch" in netCDF4.Dataset("touch.nc").warnings'
+
 # ---- no steady state
 
 refused too_few_beats 1 'no steady state in 4 beats (steady.beats)' steady swim.yaml -q -o few.nc --set steady.beats=4

@@ -79,11 +79,27 @@ static void fish_that_swim_freely_keep_the_place_that_is_found(void **state) {
     steady_setup_close(&setup);
 }
 
+/* Two fish, and 20 beats at most to find a formation in. */
+#define SCHOOL COARSE "steady: {formation: true, beats: 20}\ndefaults: {fish: {" FISH ", start: {speed: 0.8}}}\n"
+
+static void where_no_formation_is_found_the_reason_is_what_the_fish_do(void **state) {
+    (void)state;
+    // across the way of the first
+    steady_setup_fails(SCHOOL "fish: [{name: a}, {name: b, start: {position: [0.4, 0.8], heading: 210}}]\n",
+                       STATUS_SOLVER, "in 20 beats (steady.beats): collision: let go, a and b come within");
+    steady_setup_fails(SCHOOL "fish: [{name: a}, {name: b, wave: {amplitude: 0.05}, start: {position: [3, 0]}}]\n",
+                       STATUS_SOLVER, "in 20 beats (steady.beats): drift: let go, b goes back, as a sees it, by 0.");
+    // beside each other they go apart
+    steady_setup_fails(PLATES "fish: [{}, {start: {position: [0, 40]}}]\n", STATUS_SOLVER,
+                       "no equilibrium: the fish hardly feel each other");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_follower_finds_the_place_where_it_is_as_fast_as_its_leader),
         cmocka_unit_test(between_two_stable_places_is_one_that_the_follower_leaves),
         cmocka_unit_test(fish_that_swim_freely_keep_the_place_that_is_found),
+        cmocka_unit_test(where_no_formation_is_found_the_reason_is_what_the_fish_do),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
