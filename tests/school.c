@@ -299,3 +299,22 @@ struct simulation *school_simulation(const char *text) {
 void school_run(struct simulation *simulation, double t) {
     while (simulation->state->t < t - simulation->school->interval / 2) school_ok(simulate_step(simulation));
 }
+
+void school_fails(struct simulation *simulation, const char *message) {
+    enum status status = STATUS_OK;
+    for (int event = 0; event < 50 && status == STATUS_OK; event++) status = simulate_step(simulation);
+    assert_int_equal(status, STATUS_SOLVER);
+    if (!strstr(status_message(), message)) fail_msg("'%s' is not in: %s", message, status_message());
+}
+
+void school_shed_step_by_step(struct simulation *simulation) {
+    const struct layout *at = &simulation->school->fish[0].at;
+    const double *const y = simulation->state->y, *const yp = simulation->state->yp;
+    const double step = simulation->school->interval;
+    for (int n = 0; n < 20; n++) {
+        const double circulation = y[at->circulation];
+        school_ok(simulate_step(simulation));
+        NEAR(yp[at->circulation], (y[at->circulation] - circulation) / step, 1e-12, 1e-12);
+    }
+    assert_true(fabs(yp[at->circulation]) > 1e-3);
+}

@@ -60,6 +60,12 @@ double *school_dense_jacobian(const struct jacobian *jacobian);
 struct simulation *school_simulation(const char *text);
 void school_run(struct simulation *simulation, double t);
 
+/* The integration fails within 50 events, and the message has this text. */
+void school_fails(struct simulation *simulation, const char *message);
+
+/* A fish with one step in each interval: the rate of its circulation is the difference over the step. */
+void school_shed_step_by_step(struct simulation *simulation);
+
 /* Fail the test with the message unless the status is STATUS_OK. */
 void school_ok(enum status status);
 

@@ -124,25 +124,14 @@ static void rates_of_algebraic_unknowns_are_differences_over_the_step(void **sta
                  "fish: [{wave: {ramp: 0}, control: {law: heading, desired_heading: 150}}]\n",
                  methods[i]);
         struct simulation *const simulation = school_simulation(text);
-        const struct layout *at = &simulation->school->fish[0].at;
-        const double *const y = simulation->state->y, *const yp = simulation->state->yp;
-        for (int n = 0; n < 20; n++) {
-            const double circulation = y[at->circulation];
-            school_ok(simulate_step(simulation));
-            // one step in each interval
-            NEAR(yp[at->circulation], (y[at->circulation] - circulation) / 0.005, 1e-12, 1e-12);
-        }
-        assert_true(fabs(yp[at->circulation]) > 1e-3);
+        school_shed_step_by_step(simulation);
         simulate_free(simulation);
     }
 }
 
 static void fails(const char *text, const char *message) {
     struct simulation *const simulation = school_simulation(text);
-    enum status status = STATUS_OK;
-    for (int event = 0; event < 50 && status == STATUS_OK; event++) status = simulate_step(simulation);
-    assert_int_equal(status, STATUS_SOLVER);
-    if (!strstr(status_message(), message)) fail_msg("'%s' is not in: %s", message, status_message());
+    school_fails(simulation, message);
     simulate_free(simulation);
 }
 

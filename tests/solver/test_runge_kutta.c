@@ -56,10 +56,7 @@ static void an_unstable_step_ends_with_a_message_that_tells_the_time(void **stat
         "time: {end: 1, shedding_interval: 0.02}\n"
         "solver: {method: rk4, step: 0.02}\n"
         "fish: [{nodes: 7, sheet_points: 13, body: {modulus: 1.0e+9}}]\n");
-    enum status status = STATUS_OK;
-    for (int event = 0; event < 50 && status == STATUS_OK; event++) status = simulate_step(simulation);
-    assert_int_equal(status, STATUS_SOLVER);
-    assert_non_null(strstr(status_message(), "unstable at t = "));
+    school_fails(simulation, "unstable at t = ");
     assert_non_null(strstr(status_message(), "solver.method: ida"));
     // which one, and where
     assert_non_null(strstr(status_message(), "the largest velocity is v"));
@@ -75,10 +72,7 @@ static void a_torn_body_is_no_result(void **state) {
         "solver: {method: rk4, step: 0.01}\n"
         "fish: [{nodes: 7, sheet_points: 5, body: {modulus: 1.0e+7, bending_damping: 0,\n"
         "        stretching_damping: 0}}]\n");
-    enum status status = STATUS_OK;
-    for (int event = 0; event < 50 && status == STATUS_OK; event++) status = simulate_step(simulation);
-    assert_int_equal(status, STATUS_SOLVER);
-    assert_non_null(strstr(status_message(), "unstable at t = "));
+    school_fails(simulation, "unstable at t = ");
     simulate_free(simulation);
 }
 
@@ -108,15 +102,7 @@ static void rate_of_an_algebraic_circulation_is_a_difference_over_the_step(void 
         "solver: {method: rk4, step: 0.005}\n"
         "fish: [{nodes: 7, sheet_points: 13, body: {modulus: 1.0e+4}, wave: {ramp: 0},\n"
         "        control: {law: heading, desired_heading: 150}}]\n");
-    const struct layout *at = &simulation->school->fish[0].at;
-    const double *const y = simulation->state->y, *const yp = simulation->state->yp;
-    for (int n = 0; n < 20; n++) {
-        const double circulation = y[at->circulation];
-        school_ok(simulate_step(simulation));
-        // one step in each interval
-        NEAR(yp[at->circulation], (y[at->circulation] - circulation) / 0.005, 1e-12, 1e-12);
-    }
-    assert_true(fabs(yp[at->circulation]) > 1e-3);
+    school_shed_step_by_step(simulation);
     simulate_free(simulation);
 }
 
