@@ -1,6 +1,5 @@
 /* test_one_step.c: order, agreement with the other methods, counts, failures. */
 #include <stdio.h>
-#include <string.h>
 
 #include "school.h"
 #include "solver/one_step.h"

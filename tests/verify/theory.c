@@ -62,7 +62,7 @@ static void rigid_at(double x, const void *data, double complex *place, double c
 
 // the series of a rigid motion against the closed form
 static void series_of_rigid_motions(void) {
-    static const struct {
+    const struct {
         const char *name;
         double complex heave, pitch;
         double axis;
