@@ -9,6 +9,7 @@
 #include "model/flow_external.h"
 #include "model/flow_field.h"
 #include "school.h"
+#include "vortex/images.h"
 #include "vortex/kernel.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
@@ -169,6 +170,7 @@ static void by_tree_every_point_feels_the_same_sources(void **state) {
     (void)state;
     compare_every_point("");
     compare_every_point("fluid: {walls: [-1.5]}\n");
+    compare_every_point("fluid: {walls: [-1.5, 4]}\n");
 }
 
 static void compare_wake_vortices(const char *fluid) {
@@ -196,6 +198,31 @@ static void by_tree_wake_vortices_feel_every_sheet_once(void **state) {
     (void)state;
     compare_wake_vortices("");
     compare_wake_vortices("fluid: {walls: [-1.5]}\n");
+}
+
+// Free sheets, which see the bound ones with a smoothing of each: too few for a tree, enough for the cells of a channel.
+static void by_cells_free_sheets_feel_the_same_images(void **state) {
+    (void)state;
+    struct setup setup;
+    build_many(&setup, SCHOOL_SECOND "fluid: {walls: [-1.5, 4]}\n");
+    struct flow *const flow = setup.residual->flow;
+    const struct walls *const walls = &setup.school->walls;
+    setup.school->wake_tolerance = 0;
+    school_ok(flow_at_wake(flow, setup.state));
+    const int n = flow->markers.n;
+    assert_int_equal(n, MANY_FISH * MANY_VORTICES);
+    double *const u = malloc(2 * (size_t)n * sizeof *u), *const v = u + n;
+    assert_non_null(u);
+    memcpy(u, flow->wake_u, (size_t)n * sizeof *u);
+    memcpy(v, flow->wake_v, (size_t)n * sizeof *v);
+    setup.school->wake_tolerance = 1e-6;
+    const struct induced at = {.n = n, .x = flow->markers.x, .y = flow->markers.y};
+    assert_true(images_by_cells(walls, &flow->sheet, flow->sheet_square, setup.school->wake_tolerance, &at));
+    school_ok(flow_at_wake(flow, setup.state));
+    const double error = difference(n, u, v, flow->wake_u, flow->wake_v);
+    assert_true(error > 0 && error < 1e-6);
+    free(u);
+    school_clear(&setup);
 }
 
 static void external_flow_is_stream_plus_shear_plus_gust(void **state) {
@@ -449,6 +476,7 @@ int main(void) {
         cmocka_unit_test(wake_vortices_feel_everything_with_smoothed_sheets),
         cmocka_unit_test(by_tree_every_point_feels_the_same_sources),
         cmocka_unit_test(by_tree_wake_vortices_feel_every_sheet_once),
+        cmocka_unit_test(by_cells_free_sheets_feel_the_same_images),
         cmocka_unit_test(external_flow_is_stream_plus_shear_plus_gust),
         cmocka_unit_test(external_acceleration_is_that_of_a_particle_of_the_fluid),
         cmocka_unit_test(derivative_by_every_unknown_agrees_with_differences),
