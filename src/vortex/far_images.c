@@ -15,6 +15,9 @@ enum {
     MIN_INTERACTIONS = 100000
 };
 
+/* What a table may take, bytes. */
+static const double max_table = 2e8;
+
 /* An interpolation with p nodes leaves about rho^-p; rho is the sum of the half axes of the ellipse through the next
  * pole. In y that is the image 2H away of a vortex at the other wall, in x one of a vortex beside the other wall. */
 static const double rho_x = 4.2361, rho_y = 5.8284;
@@ -276,6 +279,7 @@ int far_images_pay(const struct walls *channel, const struct vortices *vortices,
     const struct sources sources = sources_of(vortices, square);
     const double n = n_nodes(rho_x, tolerance) * n_nodes(rho_y, tolerance);
     const double n_smoothings = n_squares(sources.low, sources.high, cells.width, tolerance);
+    if (cells.n * n_smoothings * 2 * n * n * sizeof(double) > max_table) return 0;
     // in interactions of the direct sum; fitted to measurements
     const double points = (vortices->n * n_smoothings + 2.0 * at->n) * n / 40;
     const double pairs = (double)cells.n * cells.n * n_smoothings * n * n / 80;
