@@ -200,7 +200,7 @@ static void by_tree_wake_vortices_feel_every_sheet_once(void **state) {
     compare_wake_vortices("fluid: {walls: [-1.5]}\n");
 }
 
-// Free sheets, which see the bound ones with a smoothing of each: too few for a tree, enough for the cells of a channel.
+// Free sheets, which see the bound ones with a smoothing of each: the images in a channel, by cells and directly.
 static void by_cells_free_sheets_feel_the_same_images(void **state) {
     (void)state;
     struct setup setup;
