@@ -128,6 +128,21 @@ static void in_phase(double speed_alone, double place[4]) {
     }
 }
 
+// ---- between two stable places
+
+static void between(double speed) {
+    struct pair pair = light;
+    pair.heave /= 4;
+    pair.friction /= 16;
+    pair.mass /= 16;
+    pair.gap = 1.6 * speed;
+    const struct found found = find(&pair, 2, 1);
+    verify_value("between places 1 and 2: place, wavelengths", "linear theory",
+                 1 + theory_of(&pair, found.speed).unstable, found.place, 0.015);
+    verify_zero("between places 1 and 2: 1 over the largest multiplier", "unstable: below 1", 1 / found.largest, 1);
+    verify_point("tandem_places", "unstable", 1.5, found.place);
+}
+
 // ---- out of phase
 
 // a whole beat of lead is one place nearer; the shift is the slope of the line of least squares
@@ -241,6 +256,7 @@ void verify_tandem(void) {
     const struct found lone = find(&light, 1, 0);
     verify_show("plate alone: speed, m/s", "of shoal steady", lone.speed);
     in_phase(lone.speed, place);
+    between(lone.speed);
     out_of_phase(lone.speed, place[2], place[2] - place[1]);
     small_amplitudes(lone.speed);
     published_plates();
