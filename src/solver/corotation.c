@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/parallel.h"
 #include "model/fish_prescribed.h"
 
 // two translations and a rotation
@@ -22,6 +23,7 @@ struct body {
 
 struct corotation {
     int n_fish;
+    int threads;       /* that share the loops over bodies */
     struct body *body; /* (n_fish) */
     double *values;    /* all arrays of all bodies */
 };
@@ -36,6 +38,7 @@ enum status corotation_create(struct corotation **corotation, const struct schoo
     size_t n_nodes = 0;
     for (int f = 0; f < school->n_fish; f++) n_nodes += (size_t)school->fish[f].n_nodes;
     new->n_fish = school->n_fish;
+    new->threads = parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_UNKNOWNS);
     new->body = calloc(n_fish, sizeof *new->body);
     new->values = calloc(n_nodes * 2 * N_ARRAYS, sizeof *new->values);
     if (!new->body || !new->values) goto no_memory;
@@ -144,6 +147,7 @@ static void find_rotations(struct body *body, const double *position) {
 }
 
 void corotation_set_current(struct corotation *corotation, const double *y) {
+#pragma omp parallel for num_threads(corotation->threads) schedule(static)
     for (int f = 0; f < corotation->n_fish; f++) {
         struct body *body = &corotation->body[f];
         const struct fish *fish = body->fish;
@@ -171,6 +175,7 @@ static void body_to_reference(const struct body *body, double *a) {
 }
 
 static void map_all(const struct corotation *corotation, void (*map)(const struct body *, double *), double *vector) {
+#pragma omp parallel for num_threads(corotation->threads) schedule(static)
     for (int f = 0; f < corotation->n_fish; f++) {
         const struct body *body = &corotation->body[f];
         if (!body->has_moved) continue;
