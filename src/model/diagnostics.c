@@ -6,6 +6,7 @@
 
 #include "base/angle.h"
 #include "model/bound_sheet.h"
+#include "model/clearance.h"
 #include "model/control.h"
 #include "model/diagnostics_energy.h"
 #include "model/diagnostics_forces.h"
@@ -17,8 +18,12 @@
 enum status diagnostics_create(struct diagnostics **diagnostics, const struct school *school) {
     *diagnostics = NULL;
     struct diagnostics *const new = calloc(1, sizeof *new);
-    if (new) new->fish = calloc((size_t)school->n_fish, sizeof *new->fish);
-    if (!new || !new->fish) {
+    if (new) {
+        new->fish = calloc((size_t)school->n_fish, sizeof *new->fish);
+        new->body = calloc((size_t)school->n_fish, sizeof *new->body);
+        new->wake = calloc((size_t)school->n_fish, sizeof *new->wake);
+    }
+    if (!new || !new->fish || !new->body || !new->wake) {
         diagnostics_free(new);
         return status_fail(STATUS_MEMORY, "out of memory: the diagnostics of %d fish", school->n_fish);
     }
@@ -29,6 +34,8 @@ enum status diagnostics_create(struct diagnostics **diagnostics, const struct sc
 void diagnostics_free(struct diagnostics *diagnostics) {
     if (!diagnostics) return;
     free(diagnostics->fish);
+    free(diagnostics->body);
+    free(diagnostics->wake);
     free(diagnostics);
 }
 
@@ -37,29 +44,29 @@ static double shedding_rate(const struct residual *residual, const struct state 
     return residual_kutta_rate(residual, f, state->t, state->y);
 }
 
-// whether a place can lie inside a body, none of whose points is farther from the middle than half its length
-static int is_close(const struct fish *fish, const double *y, const double p[2]) {
-    const int middle = fish->n_nodes / 2;
-    const double dx = p[0] - y[fish->at.x + middle], dy = p[1] - y[fish->at.y + middle];
-    return dx * dx + dy * dy < fish->length * fish->length;
-}
-
 // the free vortices, or markers, inside the outline of a body; its own newest marker is on its tail
-static double swept_vortices(const struct school *school, const struct state *state, int f) {
+static double swept_vortices(const struct school *school, const struct state *state,
+                             const struct diagnostics *diagnostics, int f) {
     const struct fish *const fish = &school->fish[f];
+    const struct box *const body = &diagnostics->body[f];
     int n = 0;
     for (int g = 0; g < school->n_fish; g++) {
         const struct wake *const wake = &state->wake[g];
         const int end = wake->n_vortex - (g == f && wake->n_vortex > 0);
+        if (box_gap(body, &diagnostics->wake[g]) > 0) continue;
         for (int i = 0; i < end; i++) {
             const double p[2] = {wake->x[i], wake->y[i]};
-            n += is_close(fish, state->y, p) && fish_point_distance(fish, state->y, p) < 0;
+            const int is_close =
+                p[0] >= body->low[0] && p[0] <= body->high[0] && p[1] >= body->low[1] && p[1] <= body->high[1];
+            n += is_close && fish_point_distance(fish, state->y, p) < 0;
         }
     }
     return n;
 }
 
-static void diagnostics_one(struct residual *residual, const struct state *state, int f, struct diagnostics_fish *to) {
+static void diagnostics_one(struct residual *residual, const struct state *state, int f,
+                            struct diagnostics *diagnostics) {
+    struct diagnostics_fish *const to = &diagnostics->fish[f];
     const struct fish *fish = &residual->school->fish[f];
     const struct history *history = &state->history[f];
     const double *const y = state->y;
@@ -74,7 +81,7 @@ static void diagnostics_one(struct residual *residual, const struct state *state
     diagnostics_forces(residual, f, state->t, y, to);
     const int has_a0 = fish_has_momentum(fish) && to->speed > 0;
     to->leading_edge_a0 = has_a0 ? pressure_leading_edge(fish, to->speed, y) : NAN;
-    to->swept_vortices = swept_vortices(residual->school, state, f);
+    to->swept_vortices = swept_vortices(residual->school, state, diagnostics, f);
     to->phi0 = y[fish->at.phi0];
     const struct fish_gait gait = control_gait(fish, &state->control[f], state->t);
     to->wave_amplitude = gait.amplitude * fish->amplitude;
@@ -120,21 +127,33 @@ static double total_circulation(const struct residual *residual, const struct st
     return total;
 }
 
+// between any two bodies
+static double least_distance(const struct school *school, const double *y, const struct box *body) {
+    double least = INFINITY;
+    for (int f = 0; f < school->n_fish; f++) {
+        for (int g = 0; g < f; g++) {
+            if (box_gap(&body[f], &body[g]) > least) continue;
+            least = fmin(least, fish_distance(&school->fish[f], &school->fish[g], y, least));
+        }
+    }
+    return school->n_fish > 1 ? least : NAN;
+}
+
 void diagnostics_event(struct residual *residual, const struct state *state, struct diagnostics *diagnostics) {
     const struct school *school = residual->school;
     double sum[2] = {0, 0};
     diagnostics->t = state->t;
-    diagnostics->least_distance = NAN;
     for (int f = 0; f < school->n_fish; f++) {
-        diagnostics_one(residual, state, f, &diagnostics->fish[f]);
+        const struct wake *const wake = &state->wake[f];
+        diagnostics->body[f] = clearance_box(&school->fish[f], 0, state->y, state->y);
+        diagnostics->wake[f] = box_around(wake->n_vortex, wake->x, wake->y);
+    }
+    for (int f = 0; f < school->n_fish; f++) {
+        diagnostics_one(residual, state, f, diagnostics);
         sum[0] += cos(angle_radians(diagnostics->fish[f].heading));
         sum[1] += sin(angle_radians(diagnostics->fish[f].heading));
-        for (int g = 0; g < f; g++) {
-            const double most = isnan(diagnostics->least_distance) ? INFINITY : diagnostics->least_distance;
-            diagnostics->least_distance =
-                fmin(diagnostics->least_distance, fish_distance(&school->fish[f], &school->fish[g], state->y, most));
-        }
     }
+    diagnostics->least_distance = least_distance(school, state->y, diagnostics->body);
     diagnostics->polarisation = hypot(sum[0], sum[1]) / school->n_fish;
     diagnostics->total_circulation = total_circulation(residual, state);
 }

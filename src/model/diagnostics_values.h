@@ -2,6 +2,7 @@
 #ifndef DIAGNOSTICS_VALUES_H
 #define DIAGNOSTICS_VALUES_H
 
+#include "base/box.h"
 #include "model/pressure.h"
 
 /* One fish at one event. */
@@ -47,7 +48,8 @@ struct diagnostics_fish {
 /* The school at one event. */
 struct diagnostics {
     double t;
-    struct diagnostics_fish *fish; /* (n_fish) */
+    struct diagnostics_fish *fish; /*                                                       (n_fish) */
+    struct box *body, *wake;       /* scratch: around each body, around its free vortices   (n_fish) */
     double total_circulation;      /* m2 s-1 */
     double least_distance;         /* between two bodies, m; NaN for one fish */
     double polarisation;           /* length of the mean unit vector of the headings */

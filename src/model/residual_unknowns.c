@@ -8,8 +8,16 @@ int residual_component(enum unknown kind) {
 }
 
 struct unknown_place residual_place(const struct school *school, int i) {
-    int f = 0;
-    while (i >= school->fish[f].at.end) f++;
+    // the first fish that ends behind i
+    int f = 0, last = school->n_fish - 1;
+    while (f < last) {
+        const int middle = (f + last) / 2;
+        if (i >= school->fish[middle].at.end) {
+            f = middle + 1;
+        } else {
+            last = middle;
+        }
+    }
     const struct layout *at = &school->fish[f].at;
     const struct {
         int first;
