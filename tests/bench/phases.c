@@ -3,6 +3,7 @@
  *   phases CASES           single_free and diamond, with one thread and with two: time per event, simulated time per
  *                          second of wall clock, the ratio to the lower bound, the parts of the time
  *   phases CASES --schools schools of 1, 4, 16, 64 and 256 fish with full wakes: time and memory per event
+ *   phases CASES --schools THREADS N... the same for other schools
  *
  * CASES is the folder of the cases. The linker wraps the functions below in a clock, which is not in the program. The
  * lower bound is the CPU time of the interactions of an event that no method of this accuracy can avoid, at the best
@@ -247,32 +248,38 @@ static double school(int n_fish, int threads) {
     return 1e3 * cpu / EVENTS;
 }
 
-static void schools(void) {
-    const int n_fish[] = {1, 4, 16, 64, 256};
-    enum { N = sizeof n_fish / sizeof *n_fish };
-    double time[N];
-    for (int i = 0; i < N; i++) time[i] = school(n_fish[i], 2);
-    printf("\nCPU time per event grows like the number of fish to the power");
-    for (int i = 1; i < N; i++) {
-        printf(" %.2f (%d to %d)%s", log(time[i] / time[i - 1]) / log((double)n_fish[i] / n_fish[i - 1]), n_fish[i - 1],
-               n_fish[i], i + 1 < N ? "," : "\n");
+static void schools(int threads, int n, const int *n_fish) {
+    double last = 0;
+    for (int i = 0; i < n; i++) {
+        const double time = school(n_fish[i], threads);
+        if (i > 0) {
+            printf("%d fish take %.1f times the CPU time per event of %d: the number of fish to the power %.2f\n",
+                   n_fish[i], time / last, n_fish[i - 1], log(time / last) / log((double)n_fish[i] / n_fish[i - 1]));
+        }
+        last = time;
     }
-    printf("256 fish take %.1f times the CPU time per event of 64\n", time[N - 1] / time[N - 2]);
 }
 
 int main(int argc, char **argv) {
-    if (argc < 2 || argc > 3 || (argc == 3 && strcmp(argv[2], "--schools") != 0)) {
-        fputs("usage: phases CASES [--schools]\n", stderr);
+    enum { MOST = 16 };
+    int n_fish[MOST] = {1, 4, 16, 64, 256}, n = 5, threads = 2;
+    if (argc < 2 || argc == 4 || argc > 4 + MOST || (argc > 2 && strcmp(argv[2], "--schools") != 0)) {
+        fputs("usage: phases CASES [--schools [THREADS N...]]\n", stderr);
         return 2;
     }
+    if (argc > 4) {
+        threads = atoi(argv[3]);
+        n = argc - 4;
+        for (int i = 0; i < n; i++) n_fish[i] = atoi(argv[4 + i]);
+    }
     print_head();
-    if (argc == 3) {
-        schools();
+    if (argc > 2) {
+        schools(threads, n, n_fish);
         return 0;
     }
     const char *const names[] = {"single_free", "diamond"};
     for (int i = 0; i < 2; i++) {
-        for (int threads = 1; threads <= 2; threads++) whole_run(argv[1], names[i], threads);
+        for (threads = 1; threads <= 2; threads++) whole_run(argv[1], names[i], threads);
     }
     return 0;
 }
