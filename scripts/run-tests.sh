@@ -5,7 +5,8 @@
 #
 # A TEST that ends in .sh is a shell test: it gets PROGRAM as its argument and ends with "N passed, N failed, N skipped".
 # Any other TEST is a cmocka program. Those in shell take longest and begin; one more runs at a time than there are
-# processors, since some of them wait. The report has the whole output of what failed. A test that crashes, exits early, runs longer than the limit or tests nothing has failed.
+# processors, since some of them wait. The report has the whole output of what failed. A test that crashes, exits early,
+# runs longer than the limit or tests nothing has failed.
 # The last line printed is the sum: "N passed, N failed, N skipped".
 set -euo pipefail
 
@@ -34,6 +35,9 @@ trap 'exit 130' INT TERM
 
 # the sanitizers, when built in: show the stack, also where cmocka would catch the signal
 export UBSAN_OPTIONS=print_stacktrace=1 ASAN_OPTIONS=handle_segv=2:handle_sigfpe=2
+# what OpenMP of clang keeps for its own threads is no leak of ours
+echo 'leak:libomp.so' >"$folder/leaks"
+export LSAN_OPTIONS=suppressions=$folder/leaks:print_suppressions=0
 # that for threads: libraries that are not built for it are not watched; Archer tells it what OpenMP does (Debian keeps it
 # where nobody looks)
 export TSAN_OPTIONS=ignore_noninstrumented_modules=1
