@@ -1,5 +1,5 @@
-/* steady_formation.h: Newton's method on all slow quantities, those of a formation or of a fish that circles, with a
- * Jacobian by differences. doc/steady.md. Tested by tests/run/test_steady_formation.c. */
+/* steady_formation.h: Newton's method on all slow quantities of a formation, with a Jacobian by differences.
+ * doc/steady.md. Tested by tests/run/test_steady_formation.c. */
 #ifndef STEADY_FORMATION_H
 #define STEADY_FORMATION_H
 

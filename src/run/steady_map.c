@@ -146,7 +146,8 @@ double steady_map_residual(const struct steady_map *map) {
     for (int f = 0; f < school->n_fish; f++) {
         const struct steady_beat *const now = &map->last[f], *const before = &map->before[f];
         residual = fmax(residual, relative(now->speed, before->speed, school->fish[f].length / map->period));
-        residual = fmax(residual, relative(now->turn, before->turn, 10 * 2 * M_PI));
+        const int circles = fabs(school->fish[f].control.bias) > 0;
+        residual = fmax(residual, relative(now->turn, before->turn, (circles ? 1 : 10) * 2 * M_PI));
         for (int i = 0; i < 2 && map->is_formation; i++) {
             residual = fmax(residual, relative(now->place[i], before->place[i], school->fish[f].length));
         }

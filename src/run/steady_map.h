@@ -55,9 +55,9 @@ void steady_map_free(struct steady_map *map);
 /* Go on by a beat. row, if any, is called at each event. Fails as simulate_step or row. */
 enum status steady_map_beat(struct steady_map *map, enum status (*row)(void *data), void *data);
 
-/* The largest change from the last beat but one to the last: of the speed in lengths per beat, of a tenth of the turn
- * in full circles; of a formation, of the places in lengths; of a fish that is held, of thrust and power over their
- * root mean squares. */
+/* The largest change from the last beat but one to the last: of the speed in lengths per beat; of a tenth of the turn
+ * in full circles, or of the whole where a fish has a steering bias; of a formation, of the places in lengths; of a
+ * fish that is held, of thrust and power over their root mean squares. */
 double steady_map_residual(const struct steady_map *map);
 
 /* The unit in which a quantity is measured: lengths per beat, rad per beat, rad, lengths; in m s-1, s-1, rad, m. */

@@ -2,6 +2,7 @@
 #include "run/steady_problem.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 // ---- which quantities are slow
@@ -105,19 +106,50 @@ void steady_problem_free(struct steady_problem *problem) {
 
 // ---- beats
 
+// the largest difference of two of the last beats that are so many beats apart, m s-1
+static double unlike(const struct steady_problem *problem, int apart) {
+    double most = 0;
+    for (int i = 0; i + apart < STEADY_RECENT; i++) {
+        const int n = problem->map.n_beats - i;
+        most = fmax(most, fabs(problem->recent[n % STEADY_RECENT] - problem->recent[(n - apart) % STEADY_RECENT]));
+    }
+    return most;
+}
+
+// what the last beats have in common: after how many they repeat themselves, or by how much they differ
+static void say_rhythm(const struct steady_problem *problem, size_t size, char *words) {
+    const struct steady_map *const map = &problem->map;
+    const double speed = map->last[0].speed;
+    const double equal = problem->settings->tolerance * map->simulation->school->fish[0].length / map->period;
+    double most = 0;
+    words[0] = 0;
+    if (map->n_beats < STEADY_RECENT) return;
+    for (int apart = 1; apart < STEADY_RECENT; apart++) most = fmax(most, unlike(problem, apart));
+    for (int apart = 2; apart <= STEADY_RECENT / 4; apart++) {
+        if (unlike(problem, apart) > equal) continue;
+        snprintf(words, size, ", and repeats itself every %d beats", apart);
+        return;
+    }
+    snprintf(words, size, ", which differs by %.2g %% between the last %d beats", 100 * most / fabs(speed),
+             STEADY_RECENT);
+}
+
 static enum status no_steady_state(const struct steady_problem *problem) {
+    char rhythm[128];
+    say_rhythm(problem, sizeof rhythm, rhythm);
     const struct steady_map *const map = &problem->map;
     const struct fish *const first = map->simulation->school->fish;
     return status_fail(STATUS_SOLVER,
                        "no steady state in %d beats (steady.beats): from beat to beat it still changes by %.2g, more "
-                       "than steady.tolerance, %.2g; %s has %.4g m/s, %.2g lengths per beat",
+                       "than steady.tolerance, %.2g; %s has %.4g m/s, %.2g lengths per beat%s",
                        map->n_beats, steady_map_residual(map), problem->settings->tolerance, first->name,
-                       map->last[0].speed, map->last[0].speed * map->period / first->length);
+                       map->last[0].speed, map->last[0].speed * map->period / first->length, rhythm);
 }
 
 enum status steady_problem_beat(struct steady_problem *problem) {
     if (problem->map.n_beats >= problem->settings->beats) return no_steady_state(problem);
     TRY(steady_map_beat(&problem->map, NULL, NULL));
+    problem->recent[problem->map.n_beats % STEADY_RECENT] = problem->map.last[0].speed;
     if (problem->progress) problem->progress(problem, problem->data);
     return STATUS_OK;
 }

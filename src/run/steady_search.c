@@ -18,23 +18,24 @@ static const double first_slope = -0.2, least_slope = -0.01;
  * two in a row must meet the tolerance. */
 enum { ROUGH = 3, PATIENCE = 8 };
 
-/* On all slow quantities it stops at this part of the tolerance, and where the beats that follow run away, as they do
- * from what is unstable, at a smaller one, by this factor, the next time; it begins where it was then. */
+/* On all slow quantities of a formation it stops at this part of the tolerance, and where the beats that follow run
+ * away, as they do from what is unstable, at a smaller one, by this factor, the next time; it begins where it was
+ * then. */
 static const double margin = 0.5, sharper = 0.3;
 
 /* Change over the tolerance in a beat that has run away. */
 static const double lost = 10;
 
-/* Iterations of Newton's method on the speed alone, after which all slow quantities are solved for. */
-enum { SPEED_ITERATIONS = 20 };
+/* Iterations of Newton's method on the speed alone, and how often it is begun; then the fish swims until it is
+ * steady. */
+enum { SPEED_ITERATIONS = 20, TRIES = 3 };
 
 /* The speed of the first fish, and what is known of its change in a beat. */
 struct search {
     struct steady_problem *problem;
-    int solves_all;      /* slow quantities, not the speed alone: of a formation, of a fish that circles, and where the
-                            speed alone has not been found */
-    double margin;       /* part of the tolerance to which they are solved for */
-    struct state *found; /* where that has ended */
+    int n_tries;         /* of Newton's method on the speed alone that are left */
+    double margin;       /* part of the tolerance to which a formation is solved for */
+    struct state *found; /* what that came to; NULL: none has been */
     int has_failed;      /* a beat has */
     struct steady_unknown speed;
     double scale;        /* m s-1 */
@@ -90,7 +91,7 @@ static enum status solve_speed(struct search *search) {
     double speed = speed_now(search);
     const enum status status = newton_solve(&problem, &speed);
     if (status != STATUS_SOLVER || search->has_failed) return status;
-    search->solves_all = 1;
+    search->n_tries = 0;
     return STATUS_OK;
 }
 
@@ -108,12 +109,12 @@ static enum status settle(struct search *search) {
 static enum status solve(struct search *search) {
     struct steady_problem *const problem = search->problem;
     if (problem->n_unknowns == 0) return STATUS_OK;
-    if (!search->solves_all) TRY(solve_speed(search));
-    if (!search->solves_all) return STATUS_OK;
+    if (!problem->map.is_formation) return search->n_tries-- > 0 ? solve_speed(search) : STATUS_OK;
     TRY(steady_formation_solve(problem, search->margin * problem->settings->tolerance));
     return steady_map_save(&problem->map, &search->found);
 }
 
+// the speed of a fish that circles cannot be found without its slip and turn, which remember more than a beat
 static int circles(const struct school *school) {
     int circles = 0;
     for (int f = 0; f < school->n_fish; f++) {
@@ -129,15 +130,15 @@ static enum status let_go(struct search *search, int *is_steady) {
     const double tolerance = problem->settings->tolerance;
     int n_good = 0;
     double change = 0;
-    for (int i = 0; i < PATIENCE && n_good < 2 && change <= lost * tolerance; i++) {
+    for (int i = 0; i < PATIENCE && n_good < 2 && (!search->found || change <= lost * tolerance); i++) {
         TRY(steady_problem_beat(problem));
         change = steady_map_residual(&problem->map);
         n_good = change <= tolerance ? n_good + 1 : 0;
         // how the first of them compares with one that was held says nothing
-        if (i == 0 && search->solves_all) change = 0;
+        if (i == 0 && search->found) change = 0;
     }
     *is_steady = n_good == 2;
-    if (*is_steady || !search->solves_all || change <= lost * tolerance) return STATUS_OK;
+    if (*is_steady || !search->found || change <= lost * tolerance) return STATUS_OK;
     search->margin *= sharper;
     return steady_map_return(&problem->map, search->found);
 }
@@ -160,7 +161,7 @@ static enum status run(struct search *search) {
 enum status steady_search_run(struct steady_problem *problem) {
     struct search search = {.problem = problem, .speed = {0, STEADY_SPEED}, .slope = first_slope, .margin = margin};
     search.scale = steady_map_scale(&problem->map, search.speed);
-    search.solves_all = problem->map.is_formation || circles(problem->map.simulation->school);
+    search.n_tries = circles(problem->map.simulation->school) ? 0 : TRIES;
     const enum status status = run(&search);
     state_free(search.found, problem->map.simulation->school);
     const int is_late = problem->map.n_beats >= problem->settings->beats;

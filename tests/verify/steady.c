@@ -120,7 +120,83 @@ static const struct swimmer swimmers[] = {
      0, 0},
 };
 
+// ---- a fish that is steered, and two that swim freely
+
+struct steered {
+    struct case_values values;
+    struct simulation *simulation;
+    struct steady_problem problem;
+    double multiplier;
+};
+
+static void open_steered(struct steered *steered, const char *text) {
+    steered->simulation = verify_open("%s", text);
+    verify_ok(case_parse(&steered->values, text, strlen(text), "verify", ".", 0, NULL));
+    verify_ok(steady_problem_create(&steered->problem, &steered->values.steady, steered->simulation));
+}
+
+static void let_run(struct steered *steered, int n_beats) {
+    for (int i = 0; i < n_beats; i++) verify_ok(steady_map_beat(&steered->problem.map, NULL, NULL));
+}
+
+static void find_steered(struct steered *steered, const char *text) {
+    double real[2 * STEADY_QUANTITIES], imaginary[2 * STEADY_QUANTITIES];
+    int n_beats;
+    open_steered(steered, text);
+    verify_ok(steady_search_run(&steered->problem));
+    verify_ok(steady_multipliers_find(&steered->problem, real, imaginary, &n_beats));
+    steered->multiplier = hypot(real[0], imaginary[0]);
+    // the last beat was one of a disturbance
+    let_run(steered, 1);
+}
+
+static void close_steered(struct steered *steered) {
+    steady_problem_free(&steered->problem);
+    simulate_free(steered->simulation);
+    case_free(&steered->values);
+}
+
+static void circle(void) {
+    static const char text[] = VERIFY_SECOND TIME "fish: [{start: {speed: 0.6}, control: {bias: 0.1}}]\n";
+    struct steered found, run;
+    find_steered(&found, text);
+    open_steered(&run, text);
+    let_run(&run, 80);
+    const struct steady_beat *const last = found.problem.map.last, *const reference = run.problem.map.last;
+    verify_relative("fish in a circle: speed, m/s", "a run of 80 beats", reference->speed, last->speed, 1e-4);
+    verify_relative("fish in a circle: radius, m", "a run of 80 beats", fabs(reference->speed / reference->turn),
+                    fabs(last->speed / last->turn), 1e-4);
+    verify_show("fish in a circle: beats of the search", "as in a run", found.problem.map.n_beats);
+    close_steered(&run);
+    close_steered(&found);
+}
+
+/* cases/formation.yaml */
+#define PAIR                                           \
+    VERIFY_SECOND TIME                                 \
+        "steady: {formation: true, tolerance: 3e-4}\n" \
+        "defaults: {fish: {start: {speed: 0.8}, control: {law: heading, desired_heading: 180}}}\n"
+
+static void formation(void) {
+    struct steered found, run;
+    find_steered(&found, PAIR "fish: [{}, {start: {position: [1.5, 0]}}]\n");
+    open_steered(&run, PAIR "fish: [{}, {start: {position: [1.7, 0.1]}}]\n");
+    let_run(&run, 150);
+    const struct steady_beat *const last = found.problem.map.last, *const reference = run.problem.map.last;
+    static const char source[] = "a run of 150 beats from 0.2 L behind, 0.1 L aside";
+    verify_relative("two free fish: place of the second, m", source, reference[1].place[0], last[1].place[0], 1e-3);
+    verify_value("two free fish: to the side, m", source, reference[1].place[1], last[1].place[1], 1e-3);
+    verify_relative("two free fish: speed, m/s", source, reference[1].speed, last[1].speed, 3e-4);
+    verify_zero("two free fish: largest multiplier", "stable: below 1", found.multiplier, 1);
+    verify_show("two free fish: beats of the search", "speeds, slips, turns, headings, a place",
+                found.problem.map.n_beats);
+    close_steered(&run);
+    close_steered(&found);
+}
+
 void verify_steady(void) {
     if (verify_is_fast()) return;
     for (size_t i = 0; i < sizeof swimmers / sizeof *swimmers; i++) compare(&swimmers[i]);
+    circle();
+    formation();
 }

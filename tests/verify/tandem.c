@@ -55,6 +55,7 @@ struct found {
     double place; /* from tail to nose, wavelengths of the way that they go in a beat */
     int n_beats;
     double largest; /* multiplier */
+    double growth;  /* of the distance of two followers in a beat */
     double wander;  /* what is left after 30 beats of a follower's way that is put 0.1 m ahead, m */
 };
 
@@ -64,6 +65,22 @@ static double wander(struct steady_problem *problem) {
     verify_ok(steady_map_add(&problem->map, 1, &ahead, &add));
     for (int i = 0; i < 30; i++) verify_ok(steady_map_beat(&problem->map, NULL, NULL));
     return problem->map.last[1].place[0] - place;
+}
+
+// by which the distance of two followers, put to either side of their place, grows from the second beat to the third
+static double growth(struct steady_problem *problem, const struct state *kept) {
+    const struct steady_unknown ahead = {1, STEADY_AHEAD};
+    double apart[2] = {0};
+    for (int side = -1; side <= 1; side += 2) {
+        const double add = side * 0.01;
+        verify_ok(steady_map_return(&problem->map, kept));
+        verify_ok(steady_map_add(&problem->map, 1, &ahead, &add));
+        for (int beat = 1; beat <= 3; beat++) {
+            verify_ok(steady_map_beat(&problem->map, NULL, NULL));
+            if (beat > 1) apart[beat - 2] += side * problem->map.last[1].place[0];
+        }
+    }
+    return apart[1] / apart[0];
 }
 
 static struct found find(const struct pair *pair, int n_fish, int is_stability_wanted) {
@@ -84,7 +101,11 @@ static struct found find(const struct pair *pair, int n_fish, int is_stability_w
     if (is_stability_wanted) {
         verify_ok(steady_multipliers_find(&problem, real, imaginary, &n_beats));
         found.largest = hypot(real[0], imaginary[0]);
+        struct state *kept = NULL;
+        verify_ok(steady_map_save(&problem.map, &kept));
         found.wander = wander(&problem);
+        found.growth = growth(&problem, kept);
+        state_free(kept, simulation->school);
     }
     steady_problem_free(&problem);
     simulate_free(simulation);
@@ -141,6 +162,19 @@ static void between(double speed) {
                  1 + theory_of(&pair, found.speed).unstable, found.place, 0.015);
     verify_zero("between places 1 and 2: 1 over the largest multiplier", "unstable: below 1", 1 / found.largest, 1);
     verify_point("tandem_places", "unstable", 1.5, found.place);
+}
+
+static void leave(int number, double gap) {
+    struct pair pair = light;
+    pair.gap = gap;
+    const struct found found = find(&pair, 2, 1);
+    char from[64];
+    snprintf(from, sizeof from, "follower from %g L behind", gap);
+    verify_value(verify_text("%s: place, wavelengths", from), "linear theory",
+                 number + theory_of(&pair, found.speed).unstable, found.place, 0.1);
+    verify_relative(verify_text("%s: multiplier", from), "growth in a beat of a run", found.growth, found.largest,
+                    0.05);
+    verify_point("tandem_places", "unstable", number + 0.5, found.place);
 }
 
 // ---- out of phase
@@ -257,6 +291,8 @@ void verify_tandem(void) {
     verify_show("plate alone: speed, m/s", "of shoal steady", lone.speed);
     in_phase(lone.speed, place);
     between(lone.speed);
+    leave(1, 5.4);
+    leave(2, 9.3);
     out_of_phase(lone.speed, place[2], place[2] - place[1]);
     small_amplitudes(lone.speed);
     published_plates();
