@@ -33,6 +33,21 @@ end() {  # signal
     pid=
 }
 
+# Start a run and send a signal to it while it goes on; where it has been faster than the signal, begin again.
+attempt() {  # signal, arguments of the program
+    local try
+    rm -rf before
+    mkdir before
+    cp ./*.nc ./*.ckpt* before 2>/dev/null
+    for ((try = 0; try < 20; try++)); do
+        start "${@:2}"
+        end "$1"
+        ((code != 0)) && return
+        rm -f ./*.nc ./*.ckpt*
+        cp before/* . 2>/dev/null
+    done
+}
+
 # ---- stopped, and stopped again; the reference renews itself at the same places
 
 stopped() {  # name, signals, arguments of run...
@@ -41,8 +56,7 @@ stopped() {  # name, signals, arguments of run...
     rm -f ./*.nc ./*.ckpt*
     command=(run "$@" -o run.nc)
     for signal in $signals; do
-        start "${command[@]}"
-        end "$signal"
+        attempt "$signal" "${command[@]}"
         check "$name: SIG$signal: exit code 75" test "$code" = 75
         command=(resume run.ckpt)
     done
