@@ -16,7 +16,8 @@ void steady_setup_close(struct steady_setup *setup) {
 }
 
 void steady_setup_multipliers(struct steady_setup *setup) {
-    school_ok(steady_multipliers_find(&setup->problem, setup->real, setup->imaginary, &setup->n_multiplier_beats));
+    school_ok(steady_multipliers_find(&setup->problem, setup->real, setup->imaginary, setup->way,
+                                      &setup->n_multiplier_beats));
 }
 
 void steady_setup_find(struct steady_setup *setup, const char *text) {

@@ -213,7 +213,8 @@ const struct result_variable result_table[] = {
      .long_name = "determinant of the static stiffness of an equilibrium without a beat, over that at rest; below 0 "
                   "the bodies diverge"},
     {"steady_error",          {NONE},                 RESULT_REAL,    "1",      IN_STEADY(error),
-     .long_name = "estimated distance from the steady state: the residual over that of 1 from the next multiplier"},
+     .long_name = "estimated distance from the steady state: the residual over that of 1 from the next multiplier, "
+                  "at least the speed that is missing, in lengths per beat"},
     {"steady_multiplier",     {MULTIPLIER, XY},       RESULT_REAL,    "1",
      .of_steady = true, .owner = OF_STEADY, GATHERED(gather_multiplier),
      .long_name = "Floquet multipliers of the slow quantities, real and imaginary parts; stable where all are below 1"},

@@ -16,11 +16,19 @@
 #include "run/steady_start.h"
 #include "run/steady_static.h"
 
+/* Where the estimated distance of the speed from that of the fixed point, in lengths per beat, is above this multiple of
+ * the tolerance, the state is corrected: so often at most, and while that brings it to half of the distance; the first
+ * time from a distance of one at most. A beat may change the speed by little for another reason than that it is steady:
+ * where one slow quantity still swings, it is at the end of a swing. */
+static const double far_away = 10, half = 0.5, farthest = 2;
+enum { CORRECTIONS = 6 };
+
 struct run {
     const struct case_values *values;
     const struct steady_options *options;
     struct simulation *simulation;
     struct steady_problem problem;
+    double *way; /* to the fixed point, as the multipliers tell it                 (problem.n_unknowns) */
     struct steady_values found;
     struct record record;
 };
@@ -45,22 +53,47 @@ static enum status allocate(struct run *run) {
     run->found.fish = calloc(n_fish, sizeof *run->found.fish);
     run->found.real = calloc(n, sizeof *run->found.real);
     run->found.imaginary = calloc(n, sizeof *run->found.imaginary);
-    if (run->found.fish && run->found.real && run->found.imaginary) return STATUS_OK;
+    run->way = calloc(n, sizeof *run->way);
+    if (run->found.fish && run->found.real && run->found.imaginary && run->way) return STATUS_OK;
     return status_fail(STATUS_MEMORY, "out of memory: the steady state of %zu fish", n_fish);
+}
+
+// of the speed that is to be found, in lengths per beat; places that a formation keeps are solved for
+static double distance(const struct run *run) {
+    const struct steady_problem *const problem = &run->problem;
+    double most = 0;
+    for (int i = 0; i < problem->n_unknowns && !problem->map.is_formation; i++) {
+        if (problem->unknown[i].quantity == STEADY_SPEED) most = fmax(most, fabs(run->way[i]));
+    }
+    return most;
 }
 
 static enum status find_multipliers(struct run *run) {
     struct steady_values *const found = &run->found;
-    found->error = NAN;
-    if (run->values->steady.multipliers == NO || run->problem.n_unknowns == 0) return STATUS_OK;
+    int n_beats;
+    found->residual = steady_map_residual(&run->problem.map);
+    TRY(steady_multipliers_find(&run->problem, found->real, found->imaginary, run->way, &n_beats));
     found->n_multipliers = run->problem.n_unknowns;
-    TRY(steady_multipliers_find(&run->problem, found->real, found->imaginary, &found->n_multiplier_beats));
+    found->n_multiplier_beats += n_beats;
     double nearest = INFINITY;
     for (int i = 0; i < found->n_multipliers; i++) {
         nearest = fmin(nearest, hypot(1 - found->real[i], found->imaginary[i]));
     }
-    found->error = found->residual / nearest;
+    found->error = fmax(found->residual / nearest, distance(run));
     return steady_reason_check(&run->problem, nearest);
+}
+
+static enum status correct(struct run *run) {
+    double last = farthest;
+    TRY(find_multipliers(run));
+    for (int i = 0; i < CORRECTIONS; i++) {
+        const double now = distance(run);
+        if (now <= far_away * run->values->steady.tolerance || now > half * last) break;
+        last = now;
+        TRY(steady_search_correct(&run->problem, run->way));
+        TRY(find_multipliers(run));
+    }
+    return STATUS_OK;
 }
 
 // the means over the last beat
@@ -126,10 +159,11 @@ static enum status search(struct run *run) {
                            simulate_stopped_by(run->options->stop), run->problem.map.n_beats + 1);
     }
     TRY(status);
-    run->found.n_beats = run->problem.map.n_beats;
     run->found.residual = steady_map_residual(&run->problem.map);
+    run->found.error = NAN;
     run->found.stiffness = NAN;
-    TRY(find_multipliers(run));
+    if (run->values->steady.multipliers != NO && run->problem.n_unknowns > 0) TRY(correct(run));
+    run->found.n_beats = run->problem.map.n_beats;
     return write_beats(run);
 }
 
@@ -186,6 +220,7 @@ static void release(struct run *run) {
     free(run->found.fish);
     free(run->found.real);
     free(run->found.imaginary);
+    free(run->way);
 }
 
 static enum status run_all(void *data) {

@@ -45,6 +45,13 @@ static enum status follow(struct disturbances *all, double *seen, const double *
     return STATUS_OK;
 }
 
+// what a beat changes where nothing is disturbed: the mean of the last beats, in the disturbance that is no longer needed
+static void mean_change(struct disturbances *all) {
+    const int n = all->problem->n_unknowns;
+    const double *const last = all->base + BEATS * n, *const first = last - SLOW_BEATS * n;
+    for (int i = 0; i < n; i++) all->add[i] = (last[i] - first[i]) / SLOW_BEATS;
+}
+
 // the last beats, before and after, of which there are n_beats; one at least
 static void collect(struct disturbances *all, int n_beats) {
     const size_t n = (size_t)all->problem->n_unknowns, bytes = n * sizeof *all->seen;
@@ -70,7 +77,8 @@ static enum status disturb(struct disturbances *all) {
     return STATUS_OK;
 }
 
-enum status steady_multipliers_find(struct steady_problem *problem, double *real, double *imaginary, int *n_beats) {
+enum status steady_multipliers_find(struct steady_problem *problem, double *real, double *imaginary, double *way,
+                                    int *n_beats) {
     const size_t n = (size_t)problem->n_unknowns, size = n * n * SLOW_BEATS, seen = n * (BEATS + 1);
     const int n_before = problem->map.n_beats;
     double *const memory = calloc(n + 2 * seen + 2 * size, sizeof *memory);
@@ -83,7 +91,10 @@ enum status steady_multipliers_find(struct steady_problem *problem, double *real
                                .after = memory + n + 2 * seen + size};
     enum status status = steady_map_save(&problem->map, &all.kept);
     if (status == STATUS_OK) status = disturb(&all);
-    if (status == STATUS_OK) status = multipliers_of((int)n, all.n_columns, all.before, all.after, real, imaginary);
+    if (status == STATUS_OK) {
+        mean_change(&all);
+        status = multipliers_of((int)n, all.n_columns, all.before, all.after, all.add, real, imaginary, way);
+    }
     if (status == STATUS_OK) status = steady_map_return(&problem->map, all.kept);
     state_free(all.kept, problem->map.simulation->school);
     free(memory);

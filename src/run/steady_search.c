@@ -158,6 +158,16 @@ static enum status run(struct search *search) {
     return STATUS_OK;
 }
 
+enum status steady_search_correct(struct steady_problem *problem, const double *way) {
+    struct search search = {.problem = problem};
+    double *const to = problem->scratch + 2 * problem->n_unknowns;
+    steady_problem_read(problem, to);
+    for (int i = 0; i < problem->n_unknowns; i++) to[i] += way[i];
+    TRY(steady_problem_put(problem, to));
+    for (int is_steady = 0; !is_steady;) TRY(let_go(&search, &is_steady));
+    return STATUS_OK;
+}
+
 enum status steady_search_run(struct steady_problem *problem) {
     struct search search = {.problem = problem, .speed = {0, STEADY_SPEED}, .slope = first_slope, .margin = margin};
     search.scale = steady_map_scale(&problem->map, search.speed);

@@ -9,4 +9,8 @@
  * not within steady.beats (of a formation, what its fish do then), or as simulate_step. */
 enum status steady_search_run(struct steady_problem *problem);
 
+/* Go the way to the fixed point that steady_multipliers_find tells, and go on until the simulation repeats itself there.
+ * Fails as steady_search_run.                                                                       (n_unknowns) */
+enum status steady_search_correct(struct steady_problem *problem, const double *way);
+
 #endif

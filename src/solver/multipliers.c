@@ -4,6 +4,7 @@
 #include <lapacke.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static int comes_before(const double *real, const double *imaginary, int i, int j) {
     const double a = hypot(real[i], imaginary[i]), b = hypot(real[j], imaginary[j]);
@@ -37,28 +38,59 @@ static void transpose(int n, int m, const double *from, double *to) {
 /* Directions in which the columns are smaller than this part of the largest are rounding. */
 static const double least_singular = 1e-10;
 
+// (I - A) way = change, with the transposed map in the first n rows of images                        (m, n)
+static enum status find_fixed_point(int n, int m, const double *images, const double *change, double *way) {
+    double *const matrix = calloc((size_t)n * (size_t)n, sizeof *matrix);
+    lapack_int *const pivot = calloc((size_t)n, sizeof *pivot);
+    enum status status = STATUS_OK;
+    if (matrix && pivot) {
+        for (int i = 0; i < n; i++) {
+            for (int j = 0; j < n; j++) matrix[i + n * j] = (i == j) - images[j + m * i];
+        }
+        memcpy(way, change, (size_t)n * sizeof *way);
+        if (LAPACKE_dgesv(LAPACK_COL_MAJOR, n, 1, matrix, n, pivot, way, n) != 0) {
+            memset(way, 0, (size_t)n * sizeof *way);
+        }
+    } else {
+        status = status_fail(STATUS_MEMORY, "out of memory: the fixed point of %d quantities", n);
+    }
+    free(matrix);
+    free(pivot);
+    return status;
+}
+
+/* A map of n dimensions and m images of it; what is found. */
+struct map {
+    int n, m;
+    const double *before, *after, *change;
+    double *real, *imaginary, *way;
+};
+
 // the transposed map is the solution X of before^T X = after^T, and has the same eigenvalues
-static enum status solve(int n, int m, const double *before, const double *after, double *matrix, double *images,
-                         double *real, double *imaginary) {
-    transpose(n, m, before, matrix);
-    transpose(n, m, after, images);
+static enum status solve(const struct map *map, double *matrix, double *images) {
+    const int n = map->n, m = map->m;
+    transpose(n, m, map->before, matrix);
+    transpose(n, m, map->after, images);
     // real serves as scratch; the rows below n of images hold what is left over
     lapack_int rank = 0;
+    double *const real = map->real, *const imaginary = map->imaginary;
     const int failed = LAPACKE_dgelsd(LAPACK_COL_MAJOR, m, n, n, matrix, m, images, m, real, least_singular, &rank);
-    if (failed != 0 || rank < n ||
-        LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'N', n, images, m, real, imaginary, NULL, 1, NULL, 1) != 0) {
+    if (failed != 0 || rank < n) return status_fail(STATUS_SOLVER, "the multipliers cannot be told apart");
+    TRY(find_fixed_point(n, m, images, map->change, map->way));
+    if (LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'N', n, images, m, real, imaginary, NULL, 1, NULL, 1) != 0) {
         return status_fail(STATUS_SOLVER, "the multipliers cannot be told apart");
     }
     sort(n, real, imaginary);
     return STATUS_OK;
 }
 
-enum status multipliers_of(int n, int n_columns, const double *before, const double *after, double *real,
-                           double *imaginary) {
+enum status multipliers_of(int n, int n_columns, const double *before, const double *after, const double *change,
+                           double *real, double *imaginary, double *way) {
+    const struct map map = {n, n_columns, before, after, change, real, imaginary, way};
     const size_t size = (size_t)n * (size_t)n_columns;
     double *const matrix = calloc(size, sizeof *matrix), *const images = calloc(size, sizeof *images);
-    const enum status status = matrix && images ? solve(n, n_columns, before, after, matrix, images, real, imaginary)
-                                                : status_fail(STATUS_MEMORY, "out of memory: %d multipliers", n);
+    const enum status status =
+        matrix && images ? solve(&map, matrix, images) : status_fail(STATUS_MEMORY, "out of memory: %d multipliers", n);
     free(matrix);
     free(images);
     return status;

@@ -1,4 +1,4 @@
-/* multipliers.h: the eigenvalues of a linear map of which only images are known. Tested by
+/* multipliers.h: the eigenvalues of a linear map of which only images are known, and its fixed point. Tested by
  * tests/solver/test_multipliers.c. */
 #ifndef MULTIPLIERS_H
 #define MULTIPLIERS_H
@@ -8,8 +8,9 @@
 /* The eigenvalues of the map of n dimensions that takes the columns of before to those of after best, in the sense of
  * least squares; both (n, n_columns), column after column, n_columns >= n. By falling absolute value,
  * of a pair the one above the real axis first. Fails with STATUS_SOLVER where the columns of before do not span n
- * dimensions, or with STATUS_MEMORY. */
-enum status multipliers_of(int n, int n_columns, const double *before, const double *after, double *real,
-                           double *imaginary);
+ * dimensions, or with STATUS_MEMORY. way: from where x -> A x + b changes x by change to its fixed point,
+ * (I - A) way = change (n); 0 where 1 is an eigenvalue, and no point is fixed. */
+enum status multipliers_of(int n, int n_columns, const double *before, const double *after, const double *change,
+                           double *real, double *imaginary, double *way);
 
 #endif

@@ -14,13 +14,17 @@ static void image_of(const double *v, double *image) {
 
 enum { N = 3, COLUMNS = 5 };
 
-static void eigenvalues_come_by_size_and_a_pair_with_the_upper_one_first(void **state) {
+static void eigenvalues_come_by_size_and_the_way_to_the_fixed_point_is_told(void **state) {
     (void)state;
     // five vectors that span the space, mixed so that no column is an eigenvector
     const double before[N * COLUMNS] = {1, 2, -1, 0, 1, 3, 2, -1, 1, -2, 0, 1, 1, 1, 1};
-    double after[N * COLUMNS], real[N], imaginary[N];
+    const double want_way[N] = {3, -1, 2};
+    double after[N * COLUMNS], real[N], imaginary[N], way[N], change[N];
+    image_of(want_way, change);
+    for (int i = 0; i < N; i++) change[i] = want_way[i] - change[i];
     for (int k = 0; k < COLUMNS; k++) image_of(before + N * k, after + N * k);
-    assert_int_equal(multipliers_of(N, COLUMNS, before, after, real, imaginary), STATUS_OK);
+    assert_int_equal(multipliers_of(N, COLUMNS, before, after, change, real, imaginary, way), STATUS_OK);
+    NEAR_ARRAY(N, way, want_way, 1e-13, 0);
     const double want_real[N] = {0.9, 0.8 * cos(M_PI / 6), 0.8 * cos(M_PI / 6)}, want_imaginary[N] = {0, 0.4, -0.4};
     NEAR_ARRAY(N, real, want_real, 1e-14, 0);
     NEAR_ARRAY(N, imaginary, want_imaginary, 1e-14, 0);
@@ -30,25 +34,37 @@ static void errors_of_single_images_are_averaged(void **state) {
     (void)state;
     // one dimension: images of 1, 2, -2 under 0.5, of which the first is wrong by 0.09: least squares have 0.5 + 0.09/9
     const double before[3] = {1, 2, -2}, after[3] = {0.59, 1, -1};
-    double real, imaginary;
-    assert_int_equal(multipliers_of(1, 3, before, after, &real, &imaginary), STATUS_OK);
+    const double change = 0.98;
+    double real, imaginary, way;
+    assert_int_equal(multipliers_of(1, 3, before, after, &change, &real, &imaginary, &way), STATUS_OK);
     NEAR(real, 0.51, 1e-14, 0);
     NEAR(imaginary, 0, 0, 0);
+    NEAR(way, 2, 1e-13, 0);
 }
 
 static void columns_that_do_not_span_the_space_tell_nothing(void **state) {
     (void)state;
     const double before[4] = {0, 0, 0, 0}, after[4] = {1, 1, 2, 2};
-    double real[2], imaginary[2];
-    assert_int_equal(multipliers_of(2, 2, before, after, real, imaginary), STATUS_SOLVER);
+    const double change[2] = {0, 0};
+    double real[2], imaginary[2], way[2];
+    assert_int_equal(multipliers_of(2, 2, before, after, change, real, imaginary, way), STATUS_SOLVER);
     assert_non_null(strstr(status_message(), "multipliers"));
+}
+
+static void a_map_that_keeps_what_it_gets_has_no_fixed_point(void **state) {
+    (void)state;
+    const double before[4] = {1, 0, 0, 1}, change[2] = {1, 1};
+    double real[2], imaginary[2], way[2];
+    assert_int_equal(multipliers_of(2, 2, before, before, change, real, imaginary, way), STATUS_OK);
+    assert_true(way[0] == 0 && way[1] == 0);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(eigenvalues_come_by_size_and_a_pair_with_the_upper_one_first),
+        cmocka_unit_test(eigenvalues_come_by_size_and_the_way_to_the_fixed_point_is_told),
         cmocka_unit_test(errors_of_single_images_are_averaged),
         cmocka_unit_test(columns_that_do_not_span_the_space_tell_nothing),
+        cmocka_unit_test(a_map_that_keeps_what_it_gets_has_no_fixed_point),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -32,7 +32,7 @@ static struct found search_for(const char *text) {
     struct found found = {.n_beats = 0};
     struct case_values values;
     struct steady_problem problem;
-    double real[STEADY_QUANTITIES], imaginary[STEADY_QUANTITIES];
+    double real[STEADY_QUANTITIES], imaginary[STEADY_QUANTITIES], way[STEADY_QUANTITIES];
     int n_beats;
     struct simulation *const simulation = verify_open("%s", text);
     verify_ok(case_parse(&values, text, strlen(text), "verify", ".", 0, NULL));
@@ -43,7 +43,7 @@ static struct found search_for(const char *text) {
     found.n_beats = problem.map.n_beats;
     found.speed = problem.map.last[0].speed;
     found.cost = problem.map.last[0].actuation + problem.map.last[0].driving;
-    verify_ok(steady_multipliers_find(&problem, real, imaginary, &n_beats));
+    verify_ok(steady_multipliers_find(&problem, real, imaginary, way, &n_beats));
     found.multiplier = hypot(real[0], imaginary[0]);
     steady_problem_free(&problem);
     simulate_free(simulation);
@@ -136,11 +136,11 @@ static void let_run(struct steered *steered, int n_beats) {
 }
 
 static void find_steered(struct steered *steered, const char *text) {
-    double real[2 * STEADY_QUANTITIES], imaginary[2 * STEADY_QUANTITIES];
+    double real[2 * STEADY_QUANTITIES], imaginary[2 * STEADY_QUANTITIES], way[2 * STEADY_QUANTITIES];
     int n_beats;
     open_steered(steered, text);
     verify_ok(steady_search_run(&steered->problem));
-    verify_ok(steady_multipliers_find(&steered->problem, real, imaginary, &n_beats));
+    verify_ok(steady_multipliers_find(&steered->problem, real, imaginary, way, &n_beats));
     steered->multiplier = hypot(real[0], imaginary[0]);
     // the last beat was one of a disturbance
     let_run(steered, 1);

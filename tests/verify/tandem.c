@@ -87,7 +87,7 @@ static struct found find(const struct pair *pair, int n_fish, int is_stability_w
     struct case_values values;
     struct steady_problem problem;
     struct found found = {.largest = NAN};
-    double real[2 * STEADY_QUANTITIES], imaginary[2 * STEADY_QUANTITIES];
+    double real[2 * STEADY_QUANTITIES], imaginary[2 * STEADY_QUANTITIES], way[2 * STEADY_QUANTITIES];
     int n_beats;
     char text[1024];
     text_of(pair, n_fish, "surge: free", sizeof text, text);
@@ -99,7 +99,7 @@ static struct found find(const struct pair *pair, int n_fish, int is_stability_w
     if (n_fish > 1) found.place = (-problem.map.last[1].place[0] - pair->length) / found.speed;
     found.n_beats = problem.map.n_beats;
     if (is_stability_wanted) {
-        verify_ok(steady_multipliers_find(&problem, real, imaginary, &n_beats));
+        verify_ok(steady_multipliers_find(&problem, real, imaginary, way, &n_beats));
         found.largest = hypot(real[0], imaginary[0]);
         struct state *kept = NULL;
         verify_ok(steady_map_save(&problem.map, &kept));
