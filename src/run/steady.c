@@ -16,10 +16,10 @@
 #include "run/steady_start.h"
 #include "run/steady_static.h"
 
-/* Where the estimated distance of the speed from that of the fixed point, in lengths per beat, is above this multiple of
- * the tolerance, the state is corrected: so often at most, and while that brings it to half of the distance; the first
- * time from a distance of one at most. A beat may change the speed by little for another reason than that it is steady:
- * where one slow quantity still swings, it is at the end of a swing. */
+/* Where the estimated distance of the speed from that of the fixed point, in lengths per beat, is above this multiple
+ * of the tolerance, the state is corrected: so often at most, and while that brings it to half of the distance; the
+ * first time from a distance of one at most. A beat may change the speed by little for another reason than that it is
+ * steady: where one slow quantity still swings, it is at the end of a swing. */
 static const double far_away = 10, half = 0.5, farthest = 2;
 enum { CORRECTIONS = 6 };
 

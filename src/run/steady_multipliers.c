@@ -45,7 +45,7 @@ static enum status follow(struct disturbances *all, double *seen, const double *
     return STATUS_OK;
 }
 
-// what a beat changes where nothing is disturbed: the mean of the last beats, in the disturbance that is no longer needed
+// what a beat changes where nothing is disturbed, as the mean of the last beats; in add, which is no longer needed
 static void mean_change(struct disturbances *all) {
     const int n = all->problem->n_unknowns;
     const double *const last = all->base + BEATS * n, *const first = last - SLOW_BEATS * n;
