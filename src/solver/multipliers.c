@@ -35,8 +35,12 @@ static void transpose(int n, int m, const double *from, double *to) {
     }
 }
 
-/* Directions in which the columns are smaller than this part of the largest are rounding. */
-static const double least_singular = 1e-10;
+/* Directions in which the columns are smaller than this part of the largest have died: what is left of them are the
+ * errors of the integration, which have a multiplier of their own. */
+static const double least_singular = 0.03;
+
+/* An eigenvalue below this is that of a direction that has died. */
+static const double rounding = 1e-10;
 
 // (I - A) way = change, with the transposed map in the first n rows of images                        (m, n)
 static enum status find_fixed_point(int n, int m, const double *images, const double *change, double *way) {
@@ -75,10 +79,13 @@ static enum status solve(const struct map *map, double *matrix, double *images) 
     lapack_int rank = 0;
     double *const real = map->real, *const imaginary = map->imaginary;
     const int failed = LAPACKE_dgelsd(LAPACK_COL_MAJOR, m, n, n, matrix, m, images, m, real, least_singular, &rank);
-    if (failed != 0 || rank < n) return status_fail(STATUS_SOLVER, "the multipliers cannot be told apart");
+    if (failed != 0 || rank < 1) return status_fail(STATUS_SOLVER, "the multipliers cannot be told apart");
     TRY(find_fixed_point(n, m, images, map->change, map->way));
     if (LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'N', n, images, m, real, imaginary, NULL, 1, NULL, 1) != 0) {
         return status_fail(STATUS_SOLVER, "the multipliers cannot be told apart");
+    }
+    for (int i = 0; i < n; i++) {
+        if (hypot(real[i], imaginary[i]) < rounding) real[i] = imaginary[i] = 0;
     }
     sort(n, real, imaginary);
     return STATUS_OK;

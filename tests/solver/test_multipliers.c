@@ -51,6 +51,18 @@ static void columns_that_do_not_span_the_space_tell_nothing(void **state) {
     assert_non_null(strstr(status_message(), "multipliers"));
 }
 
+static void a_direction_that_has_died_has_a_multiplier_of_zero(void **state) {
+    (void)state;
+    // 0.8 along the first axis; of the second only errors are left, which seem to grow
+    const double before[8] = {1, 1e-3, 0.8, 2e-3, 0.64, -1e-3, 0.512, 3e-3};
+    const double after[8] = {0.8, 2e-3, 0.64, -1e-3, 0.512, 3e-3, 0.4096, -5e-3}, change[2] = {0.2, 0};
+    double real[2], imaginary[2], way[2];
+    assert_int_equal(multipliers_of(2, 4, before, after, change, real, imaginary, way), STATUS_OK);
+    NEAR(real[0], 0.8, 1e-5, 0);
+    assert_true(real[1] == 0 && imaginary[1] == 0);
+    NEAR(way[0], 1, 1e-4, 0);
+}
+
 static void a_map_that_keeps_what_it_gets_has_no_fixed_point(void **state) {
     (void)state;
     const double before[4] = {1, 0, 0, 1}, change[2] = {1, 1};
@@ -64,6 +76,7 @@ int main(void) {
         cmocka_unit_test(eigenvalues_come_by_size_and_the_way_to_the_fixed_point_is_told),
         cmocka_unit_test(errors_of_single_images_are_averaged),
         cmocka_unit_test(columns_that_do_not_span_the_space_tell_nothing),
+        cmocka_unit_test(a_direction_that_has_died_has_a_multiplier_of_zero),
         cmocka_unit_test(a_map_that_keeps_what_it_gets_has_no_fixed_point),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
