@@ -135,8 +135,8 @@ job=$(squeue -h -t running -o %A | head -1)
 scancel --signal=TERM --batch "$job"
 check a_stopped_task_is_requeued wait_for 30 sh -c "scontrol show job $job | grep -q Restarts=1"
 check its_member_has_a_checkpoint test -s long/member-0000.ckpt
-# Slurm lets a requeued task wait for two minutes
-wait_for 30 scontrol update jobid="$job" starttime=now
+# Slurm lets a requeued task wait for two minutes; in the second in which it was stopped its node would refuse it
+wait_for 30 scontrol update jobid="$job" starttime=now+3
 check it_goes_on wait_for 400 sh -c 'ncdump -h long/member-0000.nc | grep -q "run_status = .complete"'
 check from_its_checkpoint sh -c 'ncdump -h long/member-0000.nc | grep -q "checkpoint_at = .[0-9]"'
 
