@@ -137,4 +137,10 @@ check_limit 'diamond: wall clock with 2 threads over that with 1' \
 check_limit 'diamond: output, % of the CPU time' "$(column diamond 1 15)" 3
 check_limit 'seconds from a signal to the end' "$slowest" 10
 check_limit '256 fish: CPU time per event over that of 64' "$(awk '/^256 fish take/ { print $4 }' schools.txt)" 6
+check_limit '64 to 1024 fish: power of the CPU time per event' "$(awk '/^(256|1024) fish take/ { growth += $NF / 2 }
+    END { print growth }' schools.txt)" 1.15
+for n in 16 64 256 1024; do
+    check_limit "$n fish: wall clock with 2 threads over that with 1" \
+        "$(awk -v n=$n '$1 == n && /times as fast/ { printf "%.2f", 1 / $4 }' schools.txt)" 0.588
+done
 exit $((missed ? 3 : 0))

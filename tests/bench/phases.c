@@ -2,8 +2,12 @@
  *
  *   phases CASES           single_free and diamond, with one thread and with two: time per event, simulated time per
  *                          second of wall clock, the ratio to the lower bound, the parts of the time
- *   phases CASES --schools schools of 1, 4, 16, 64 and 256 fish with full wakes: time and memory per event
- *   phases CASES --schools THREADS N... the same for other schools
+ *   phases CASES --schools schools of 1 to 1024 fish with full wakes: time and memory per event, on one thread and on
+ *       two in turn
+ *   phases CASES --schools THREADS N... the same for other schools and more threads
+ *
+ * Schools take turns, event by event, and their ratios are those of the least times: what else the machine does makes
+ * some events slower, one of the cores or both, but hardly all of them.
  *
  * CASES is the folder of the cases. The linker wraps the functions below in a clock, which is not in the program. The
  * lower bound is the CPU time of the interactions of an event that no method of this accuracy can avoid, at the best
@@ -18,8 +22,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
 #include <time.h>
+#include <unistd.h>
 
 #include "model/flow_at_bodies.h"
 #include "model/residual_jacobian.h"
@@ -40,9 +44,11 @@ static double now(void) {
     return read_clock(CLOCK_MONOTONIC);
 }
 
-/* Of all threads together: a busy machine changes it least, so all but "wall ms" and "x real" is made of it. */
+/* Of all threads together, or of the one that works: a busy machine changes it least, so all but "wall ms" and "x real"
+ * is made of it. */
+static clockid_t cpu_clock = CLOCK_PROCESS_CPUTIME_ID;
 static double cpu_time(void) {
-    return read_clock(CLOCK_PROCESS_CPUTIME_ID);
+    return read_clock(cpu_clock);
 }
 
 // ---- the clock
@@ -50,7 +56,7 @@ static double cpu_time(void) {
 enum { WAKE, INTERPOLATION, RESIDUAL, JACOBIAN, LINEAR, DIAGNOSTICS, OUTPUT, N_PHASES };
 static const char *const phase_name[N_PHASES] = {"wake",   "interpolation", "residual", "Jacobian",
                                                  "linear", "diagnostics",   "output"};
-static struct {
+static struct seen {
     double time[N_PHASES];
     double interactions; /* of the lower bound */
     struct integrator_counts counts;
@@ -146,10 +152,13 @@ static double best_rate(void) {
     return best;
 }
 
-static double peak_memory(void) {
-    struct rusage usage;
-    getrusage(RUSAGE_SELF, &usage);
-    return (double)usage.ru_maxrss / 1024;
+// MB that the process holds now
+static double memory(void) {
+    long pages = 0;
+    FILE *const file = fopen("/proc/self/statm", "r");
+    if (!file || fscanf(file, "%*d %ld", &pages) != 1) abort();
+    fclose(file);
+    return (double)pages * (double)sysconf(_SC_PAGESIZE) / (1 << 20);
 }
 
 static void read_case(struct case_values *values, const char *text, int threads) {
@@ -168,11 +177,10 @@ static void print_head(void) {
 }
 
 static void print_row(const char *name, int threads, int n_vortices, long n_events, double interval, double wall,
-                      double cpu) {
+                      double cpu, double megabytes) {
     const double rate = best_rate();
     printf("%-12s %7d %8d %8.3f %8.3f %8.3g %8.2f %7.0f ", name, threads, n_vortices, 1e3 * wall / (double)n_events,
-           1e3 * cpu / (double)n_events, (double)n_events * interval / wall, cpu * rate / seen.interactions,
-           peak_memory());
+           1e3 * cpu / (double)n_events, (double)n_events * interval / wall, cpu * rate / seen.interactions, megabytes);
     double rest = 1;
     for (int i = 0; i < N_PHASES; i++) {
         printf(" %13.1f", 100 * seen.time[i] / cpu);
@@ -199,7 +207,7 @@ static void whole_run(const char *cases, const char *name, int threads) {
     const double wall = now() - since, cpu = cpu_time() - cpu_since, interval = values.school.shedding_interval;
     const long n_events = lround(values.time.end / interval);
     const int n_vortices = values.school.n_fish * (int)fmin(values.school.wake.lifetime / interval, (double)n_events);
-    print_row(name, threads, n_vortices, n_events, interval, wall, cpu);
+    print_row(name, threads, n_vortices, n_events, interval, wall, cpu, memory());
     case_free(&values);
     remove("phases.nc");
 }
@@ -223,46 +231,97 @@ static char *school_text(int n_fish) {
     return text;
 }
 
-// CPU milliseconds per event with wakes of a whole lifetime
-static double school(int n_fish, int threads) {
-    enum { EVENTS = 20 };
-    char *const text = school_text(n_fish);
+enum { EVENTS = 40 };
+
+struct school_run {
     struct case_values values;
     struct simulation *simulation;
-    read_case(&values, text, threads);
+    double megabytes;
+    struct measured {
+        struct seen seen;
+        double wall[EVENTS], cpu[EVENTS];
+    } on[2]; /* on one thread, on all */
+};
+
+// bring a school to wakes of a whole lifetime
+static void school_begin(struct school_run *run, int n_fish, int threads) {
+    const double before = memory();
+    char *const text = school_text(n_fish);
+    read_case(&run->values, text, threads);
     free(text);
-    must(simulate_create(&simulation, &values));
-    const long full = lround(values.school.wake.lifetime / values.school.shedding_interval);
-    while (simulation->state->event < full) must(simulate_step(simulation));
-    memset(&seen, 0, sizeof seen);
+    must(simulate_create(&run->simulation, &run->values));
+    const long full = lround(run->values.school.wake.lifetime / run->values.school.shedding_interval);
+    while (run->simulation->state->event < full) must(simulate_step(run->simulation));
+    run->megabytes = memory() - before;
+}
+
+// one event; no result depends on the number of threads
+static void school_event(struct school_run *run, int all, int threads, int event) {
+    struct measured *const on = &run->on[all];
+    run->simulation->school->threads = all ? threads : 1;
+    cpu_clock = all ? CLOCK_PROCESS_CPUTIME_ID : CLOCK_THREAD_CPUTIME_ID;  // the others may still wait for work
+    seen = on->seen;
     const double since = now(), cpu_since = cpu_time();
-    for (int i = 0; i < EVENTS; i++) must(simulate_step(simulation));
-    const double wall = now() - since, cpu = cpu_time() - cpu_since;
+    must(simulate_step(run->simulation));
+    on->wall[event] = now() - since;
+    on->cpu[event] = cpu_time() - cpu_since;
+    on->seen = seen;
+    run->simulation->school->threads = threads;
+}
+
+// that of an event during which the machine did nothing else
+static double least(const double *value) {
+    double found = value[0];
+    for (int i = 1; i < EVENTS; i++) found = fmin(found, value[i]);
+    return found;
+}
+
+static double sum(const double *value) {
+    double total = 0;
+    for (int i = 0; i < EVENTS; i++) total += value[i];
+    return total;
+}
+
+static void school_end(struct school_run *run, int n_fish, int threads) {
     char name[32];
     snprintf(name, sizeof name, "%d fish", n_fish);
     int n_vortices = 0;
-    for (int f = 0; f < n_fish; f++) n_vortices += simulation->state->wake[f].n_vortex;
-    print_row(name, threads, n_vortices, EVENTS, values.school.shedding_interval, wall, cpu);
-    simulate_free(simulation);
-    case_free(&values);
-    return 1e3 * cpu / EVENTS;
+    for (int f = 0; f < n_fish; f++) n_vortices += run->simulation->state->wake[f].n_vortex;
+    for (int all = 0; all < 2; all++) {
+        const struct measured *const on = &run->on[all];
+        seen = on->seen;
+        print_row(name, all ? threads : 1, n_vortices, EVENTS, run->values.school.shedding_interval, sum(on->wall),
+                  sum(on->cpu), run->megabytes);
+    }
+    simulate_free(run->simulation);
+    case_free(&run->values);
 }
 
 static void schools(int threads, int n, const int *n_fish) {
-    double last = 0;
-    for (int i = 0; i < n; i++) {
-        const double time = school(n_fish[i], threads);
-        if (i > 0) {
-            printf("%d fish take %.1f times the CPU time per event of %d: the number of fish to the power %.2f\n",
-                   n_fish[i], time / last, n_fish[i - 1], log(time / last) / log((double)n_fish[i] / n_fish[i - 1]));
+    struct school_run *const run = calloc((size_t)n, sizeof *run);
+    if (!run) abort();
+    for (int i = 0; i < n; i++) school_begin(&run[i], n_fish[i], threads);
+    for (int event = 0; event < EVENTS; event++) {
+        for (int i = 0; i < n; i++) {
+            for (int all = 0; all < 2; all++) school_event(&run[i], all, threads, event);
         }
-        last = time;
     }
+    for (int i = 0; i < n; i++) school_end(&run[i], n_fish[i], threads);
+    for (int i = 0; i < n; i++) {
+        printf("%d fish are %.2f times as fast on %d threads as on one\n", n_fish[i],
+               least(run[i].on[0].wall) / least(run[i].on[1].wall), threads);
+    }
+    for (int i = 1; i < n; i++) {
+        const double growth = least(run[i].on[0].cpu) / least(run[i - 1].on[0].cpu);
+        printf("%d fish take %.1f times the CPU time per event of %d: the number of fish to the power %.2f\n",
+               n_fish[i], growth, n_fish[i - 1], log(growth) / log((double)n_fish[i] / n_fish[i - 1]));
+    }
+    free(run);
 }
 
 int main(int argc, char **argv) {
     enum { MOST = 16 };
-    int n_fish[MOST] = {1, 4, 16, 64, 256}, n = 5, threads = 2;
+    int n_fish[MOST] = {1, 4, 16, 64, 256, 1024}, n = 6, threads = 2;
     if (argc < 2 || argc == 4 || argc > 4 + MOST || (argc > 2 && strcmp(argv[2], "--schools") != 0)) {
         fputs("usage: phases CASES [--schools [THREADS N...]]\n", stderr);
         return 2;
