@@ -42,10 +42,9 @@ static double power_on_water(struct residual *residual, int f, double t, const s
     flow_external(residual->school, t, com[1], &stream[0], &stream[1]);
     if (!(fabs(stream[0]) + fabs(stream[1]) > 0)) return on_water;
     const struct fluid_forces forces = fluid_force_sum(fish, &flow, com, y);
-    for (int i = 0; i < 2; i++) {
-        on_water -=
-            (forces.resistive[i] + forces.reactive[i] + pressure->pressure[i] + pressure->suction[i]) * stream[i];
-    }
+    double force[2];
+    diagnostics_fluid_force(&forces, pressure, force);
+    for (int i = 0; i < 2; i++) on_water -= force[i] * stream[i];
     return on_water;
 }
 

@@ -86,10 +86,7 @@ static void add_event(struct steady_map *map, double share) {
     for (int f = 0; f < map->simulation->school->n_fish; f++) {
         const struct diagnostics_fish *const now = &map->simulation->diagnostics->fish[f];
         struct steady_beat *const sum = &map->last[f];
-        for (int i = 0; i < 2; i++) {
-            sum->force[i] += share * (now->resistive_force[i] + now->reactive_force[i] + now->pressure.pressure[i] +
-                                      now->pressure.suction[i]);
-        }
+        for (int i = 0; i < 2; i++) sum->force[i] += share * now->fluid_force[i];
         const double power = now->actuation_power + now->driving_power;
         sum->thrust += share * now->thrust;
         sum->rms_thrust += share * now->thrust * now->thrust;

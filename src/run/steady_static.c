@@ -312,8 +312,7 @@ static void fill(const struct simulation *simulation, int f, struct steady_fish 
                                   .efficiency = NAN,
                                   .strouhal = NAN};
     for (int i = 0; i < 2; i++) {
-        found->force[i] =
-            now->resistive_force[i] + now->reactive_force[i] + now->pressure.pressure[i] + now->pressure.suction[i];
+        found->force[i] = now->fluid_force[i];
         stream[i] -= now->com_velocity[i];
     }
     const double speed = hypot(stream[0], stream[1]);
