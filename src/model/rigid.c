@@ -21,6 +21,13 @@ struct rigid rigid_of(const struct fish *fish, const double *y) {
     return rigid;
 }
 
+void rigid_relative_place(const struct rigid *seen_from, const struct rigid *other, double place[2]) {
+    const double c = cos(seen_from->heading), s = sin(seen_from->heading);
+    const double way[2] = {other->place[0] - seen_from->place[0], other->place[1] - seen_from->place[1]};
+    place[0] = c * way[0] + s * way[1];
+    place[1] = c * way[1] - s * way[0];
+}
+
 // turn the vector from a centre to (*x, *y)
 static void rotate(const double centre[2], double angle, double *x, double *y) {
     const double c = cos(angle), s = sin(angle), dx = *x - centre[0], dy = *y - centre[1];

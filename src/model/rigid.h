@@ -17,6 +17,9 @@ struct rigid {
 /* What the fish is at the unknowns y. place and velocity are those over ground. */
 struct rigid rigid_of(const struct fish *fish, const double *y);
 
+/* The place of another fish as one sees it: ahead of its centre of mass and to its left, m. */
+void rigid_relative_place(const struct rigid *seen_from, const struct rigid *other, double place[2]);
+
 /* Add to what fish f is: velocity and turn first, along the heading as it was; then the body turns about its centre of
  * mass and is displaced, with its wake and what is remembered of the last period.
  *

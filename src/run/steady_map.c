@@ -194,19 +194,18 @@ void steady_map_read(const struct steady_map *map, int n, const struct steady_un
     const struct school *const school = map->simulation->school;
     const double *const y = map->simulation->state->y;
     const struct rigid first = rigid_of(&school->fish[0], y);
-    const double c = cos(first.heading), s = sin(first.heading);
     for (int i = 0; i < n; i++) {
         const struct rigid rigid = rigid_of(&school->fish[unknown[i].fish], y);
-        const double way[2] = {rigid.place[0] - first.place[0], rigid.place[1] - first.place[1]};
-        double stream[2];
+        double stream[2], place[2];
         stream_along(map, &rigid, stream);
+        rigid_relative_place(&first, &rigid, place);
         switch (unknown[i].quantity) {
             case STEADY_SPEED: value[i] = rigid.velocity[0] - stream[0]; break;
             case STEADY_SLIP: value[i] = rigid.velocity[1] - stream[1]; break;
             case STEADY_TURN: value[i] = rigid.turn; break;
             case STEADY_HEADING: value[i] = heading_seen(map, unknown[i].fish, rigid.heading, first.heading); break;
-            case STEADY_AHEAD: value[i] = c * way[0] + s * way[1]; break;
-            case STEADY_ASIDE: value[i] = c * way[1] - s * way[0]; break;
+            case STEADY_AHEAD: value[i] = place[0]; break;
+            case STEADY_ASIDE: value[i] = place[1]; break;
         }
     }
 }

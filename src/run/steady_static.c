@@ -12,6 +12,7 @@
 #include "model/fish_gait.h"
 #include "model/fish_prescribed.h"
 #include "model/flow_external.h"
+#include "model/rigid.h"
 #include "run/steady_start.h"
 #include "solver/equilibrium.h"
 
@@ -329,14 +330,11 @@ enum status steady_static_find(struct simulation *simulation, const char *from, 
     diagnostics_remember(simulation->residual, simulation->state);
     diagnostics_restart(simulation->residual, simulation->state);
     simulate_measure(simulation);
-    const struct diagnostics_fish *const first = &simulation->diagnostics->fish[0];
+    const struct rigid first = rigid_of(&simulation->school->fish[0], simulation->state->y);
     for (int f = 0; f < simulation->school->n_fish; f++) {
-        const double *const com = simulation->diagnostics->fish[f].com;
-        const double way[2] = {com[0] - first->com[0], com[1] - first->com[1]};
-        const double c = cos(first->heading * M_PI / 180), s = sin(first->heading * M_PI / 180);
+        const struct rigid rigid = rigid_of(&simulation->school->fish[f], simulation->state->y);
         fill(simulation, f, &found->fish[f]);
-        found->fish[f].place[0] = c * way[0] + s * way[1];
-        found->fish[f].place[1] = c * way[1] - s * way[0];
+        rigid_relative_place(&first, &rigid, found->fish[f].place);
     }
     return STATUS_OK;
 }

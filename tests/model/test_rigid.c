@@ -38,6 +38,15 @@ static void a_rigid_motion_is_read_exactly(void **state) {
     school_clear(&setup);
 }
 
+static void a_place_is_seen_ahead_and_to_the_left(void **state) {
+    (void)state;
+    const struct rigid one = {.place = {1, 2}, .heading = M_PI / 2}, other = {.place = {0.7, 4}, .heading = 3};
+    double place[2];
+    rigid_relative_place(&one, &other, place);
+    NEAR(place[0], 2, 1e-15, 0);
+    NEAR(place[1], 0.3, 1e-15, 0);
+}
+
 static void what_is_added_is_read_and_other_fish_stay(void **state) {
     (void)state;
     struct setup setup;
@@ -94,6 +103,7 @@ static void means_over_the_last_period_do_not_notice_a_displacement(void **state
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_rigid_motion_is_read_exactly),
+        cmocka_unit_test(a_place_is_seen_ahead_and_to_the_left),
         cmocka_unit_test(what_is_added_is_read_and_other_fish_stay),
         cmocka_unit_test(a_vortex_lies_where_the_faster_tail_would_have_left_it),
         cmocka_unit_test(means_over_the_last_period_do_not_notice_a_displacement),
