@@ -37,7 +37,7 @@ static const struct option_help all_options[] = {
     {OPTION_CHECKPOINT_AT, "checkpoint-at", "LIST",
      "further times of checkpoints in s, separated by commas (see time.checkpoint_interval)"},
     {OPTION_MAX_WALL, "max-wall", "HH:MM:SS",
-     "stop after this time, as by a signal: with a checkpoint and exit code 75"},
+     "stop after this time, as by a signal: with exit code 75, and of a run with a checkpoint"},
     {OPTION_STRICT, "strict", NULL, "warnings about a result end with exit code 3"},
     {OPTION_AT, "at", "T", "time of a row of the result, s (default: the last one with its wake)"},
     {OPTION_GRID, "grid", "NX,NY", "points in x and y (default: 400 along the longer side, at equal distances)"},
