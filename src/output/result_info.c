@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "output/netcdf.h"
+#include "output/result_reader.h"
 #include "output/steady_info.h"
 
 struct info {
@@ -66,10 +66,11 @@ static void print_cell(const struct info *info, const char *format, double value
     fprintf(info->stream, "  %10s", isnan(value) ? "-" : text);
 }
 
-static enum status print_fish(const struct info *info, int n_columns, size_t f, char *name, int width) {
-    const struct netcdf_slice slice[] = {{"fish", f, 1}, {"name", 0, info->n_name}, {NULL}};
-    TRY(netcdf_read_text(&info->reader, "fish_name", slice, name));
+static enum status print_fish(const struct info *info, int n_columns, size_t f, int width) {
+    char *name;
+    TRY(result_reader_name(&info->reader, f, &name));
     fprintf(info->stream, "  %-*s", width, name);
+    free(name);
     for (int c = 0; c < n_columns; c++) {
         const struct column *const column = &columns[c];
         double value;
@@ -85,8 +86,6 @@ static enum status print_fish(const struct info *info, int n_columns, size_t f, 
 }
 
 static enum status print_table(const struct info *info) {
-    char *const name = calloc(info->n_name + 1, 1);
-    if (!name) return status_fail(STATUS_MEMORY, "%s: out of memory while reading", info->reader.path);
     const int width = info->n_name > 4 ? (int)info->n_name : 4;
     const int n_columns = info->n_rows > 0 ? N_COLUMNS : N_CONSTANT_COLUMNS;
     fprintf(info->stream, "\n  %-*s", width, "fish");
@@ -94,11 +93,8 @@ static enum status print_table(const struct info *info) {
     fprintf(info->stream, "\n  %-*s", width, "");
     for (int c = 0; c < n_columns; c++) fprintf(info->stream, "  %10s", columns[c].unit);
     fprintf(info->stream, "\n");
-    enum status status = STATUS_OK;
-    for (size_t f = 0; f < info->n_fish && status == STATUS_OK; f++)
-        status = print_fish(info, n_columns, f, name, width);
-    free(name);
-    return status;
+    for (size_t f = 0; f < info->n_fish; f++) TRY(print_fish(info, n_columns, f, width));
+    return STATUS_OK;
 }
 
 // ---- what there is once

@@ -7,8 +7,8 @@
 
 enum { MAX_LENGTH = 100000000 /* of a dimension */ };
 
-static enum status out_of_memory(const struct result_reader *reader) {
-    return status_fail(STATUS_MEMORY, "%s: out of memory while reading", reader->file.path);
+static enum status out_of_memory(const struct netcdf_reader *file) {
+    return status_fail(STATUS_MEMORY, "%s: out of memory while reading", file->path);
 }
 
 static const struct result_variable *find(const char *name) {
@@ -47,12 +47,9 @@ static enum status read_lengths(struct result_reader *reader) {
 
 static enum status read_names(struct result_reader *reader) {
     reader->name = calloc(reader->length[FISH], sizeof *reader->name);
-    if (!reader->name) return out_of_memory(reader);
+    if (!reader->name) return out_of_memory(&reader->file);
     for (size_t f = 0; f < reader->length[FISH]; f++) {
-        reader->name[f] = calloc(reader->length[NAME] + 1, 1);
-        if (!reader->name[f]) return out_of_memory(reader);
-        const struct netcdf_slice slice[] = {{"fish", f, 1}, {"name", 0, reader->length[NAME]}, {NULL}};
-        TRY(netcdf_read_text(&reader->file, "fish_name", slice, reader->name[f]));
+        TRY(result_reader_name(&reader->file, f, &reader->name[f]));
     }
     return STATUS_OK;
 }
@@ -63,7 +60,7 @@ static enum status read_counts(const struct result_reader *reader, const char *n
     double *values;
     TRY(result_reader_new(reader, name, 0, &values));
     *counts = calloc(reader->length[FISH], sizeof **counts);
-    enum status status = *counts ? STATUS_OK : out_of_memory(reader);
+    enum status status = *counts ? STATUS_OK : out_of_memory(&reader->file);
     for (size_t f = 0; status == STATUS_OK && f < reader->length[FISH]; f++) {
         if (values[f] >= (double)min && values[f] <= (double)max) {
             (*counts)[f] = (int)values[f];
@@ -81,7 +78,7 @@ static enum status read_sections(struct result_reader *reader) {
     static const char key[] = "section: ";
     char *text;
     reader->has_mean_section = calloc(reader->length[FISH], sizeof *reader->has_mean_section);
-    if (!reader->has_mean_section) return out_of_memory(reader);
+    if (!reader->has_mean_section) return out_of_memory(&reader->file);
     TRY(netcdf_read_string(&reader->file, "case_effective", &text));
     const char *place = text;
     for (size_t f = 0; f < reader->length[FISH] && (place = strstr(place, key)); f++) {
@@ -133,6 +130,20 @@ void result_reader_close(struct result_reader *reader) {
 
 // ---- values
 
+enum status result_reader_name(const struct netcdf_reader *file, size_t f, char **name) {
+    size_t n;
+    *name = NULL;
+    TRY(netcdf_read_length(file, "name", 1, MAX_LENGTH, &n));
+    *name = calloc(n + 1, 1);
+    if (!*name) return out_of_memory(file);
+    const struct netcdf_slice slice[] = {{"fish", f, 1}, {"name", 0, n}, {NULL}};
+    const enum status status = netcdf_read_text(file, "fish_name", slice, *name);
+    if (status == STATUS_OK) return STATUS_OK;
+    free(*name);
+    *name = NULL;
+    return status;
+}
+
 size_t result_reader_n(const struct result_reader *reader, const char *name) {
     size_t n = 1;
     for (const enum result_dimension *d = find(name)->dimension; *d != NONE; d++)
@@ -154,7 +165,7 @@ enum status result_reader_row(const struct result_reader *reader, const char *na
 
 enum status result_reader_new(const struct result_reader *reader, const char *name, size_t row, double **values) {
     *values = calloc(result_reader_n(reader, name) + 1, sizeof **values);
-    if (!*values) return out_of_memory(reader);
+    if (!*values) return out_of_memory(&reader->file);
     const enum status status = result_reader_row(reader, name, row, *values);
     if (status == STATUS_OK) return STATUS_OK;
     free(*values);
@@ -169,7 +180,7 @@ enum status result_reader_has_wake(const struct result_reader *reader, size_t ro
     const struct netcdf_slice slice[] = {{"time", row, 1}, {"fish", 0, n_fish}, {"vortex", 0, 1}, {NULL}};
     double *const first = calloc(n_fish, sizeof *first);
     const enum status status =
-        first ? netcdf_read_doubles(&reader->file, "wake_circulation", slice, first) : out_of_memory(reader);
+        first ? netcdf_read_doubles(&reader->file, "wake_circulation", slice, first) : out_of_memory(&reader->file);
     *has_wake = status == STATUS_OK;
     for (size_t f = 0; *has_wake && f < n_fish; f++) *has_wake = count[f] == 0 || isfinite(first[f]);
     free(count);

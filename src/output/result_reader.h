@@ -30,6 +30,9 @@ enum status result_reader_row(const struct result_reader *reader, const char *na
 /* The same in an array that the caller frees. */
 enum status result_reader_new(const struct result_reader *reader, const char *name, size_t row, double **values);
 
+/* The name of fish f in the file of a run, with or without rows; the caller frees it. */
+enum status result_reader_name(const struct netcdf_reader *file, size_t f, char **name);
+
 /* Whether the wake was written in a row, or there was none to write: *has_wake. */
 enum status result_reader_has_wake(const struct result_reader *reader, size_t row, bool *has_wake);
 

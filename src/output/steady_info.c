@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "output/result_reader.h"
+
 /* The rows of the table; those of each direction have two. */
 static const struct quantity {
     const char *variable, *head, *unit, *format;
@@ -102,20 +104,15 @@ static enum status is_empty(const struct netcdf_reader *reader, const struct qua
 }
 
 static enum status print_head(const struct netcdf_reader *reader, size_t n_fish, FILE *stream) {
-    size_t n_name;
-    TRY(netcdf_read_length(reader, "name", 1, INT_MAX, &n_name));
-    char *const name = calloc(n_name + 1, 1);
-    if (!name) return status_fail(STATUS_MEMORY, "%s: out of memory while reading", reader->path);
     fprintf(stream, "\n  %-22s", "");
-    enum status status = STATUS_OK;
-    for (size_t f = 0; f < n_fish && status == STATUS_OK; f++) {
-        const struct netcdf_slice slice[] = {{"fish", f, 1}, {"name", 0, n_name}, {NULL}};
-        status = netcdf_read_text(reader, "fish_name", slice, name);
+    for (size_t f = 0; f < n_fish; f++) {
+        char *name;
+        TRY(result_reader_name(reader, f, &name));
         fprintf(stream, "  %12s", name);
+        free(name);
     }
     fprintf(stream, "\n");
-    free(name);
-    return status;
+    return STATUS_OK;
 }
 
 enum status steady_info(const struct netcdf_reader *reader, FILE *stream) {

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 #include "base/text.h"
-#include "output/result_table.h"
+#include "output/result_reader.h"
 
 /* A number; JSON has none that is not finite. */
 static void print_number(double value, FILE *stream) {
@@ -58,22 +58,18 @@ static enum status print_variable(const struct netcdf_reader *reader, const stru
 }
 
 static enum status print_names(const struct netcdf_reader *reader, FILE *stream) {
-    size_t n_fish, n_name;
+    size_t n_fish;
     TRY(netcdf_read_length(reader, "fish", 1, INT_MAX, &n_fish));
-    TRY(netcdf_read_length(reader, "name", 1, INT_MAX, &n_name));
-    char *const name = calloc(n_name + 1, 1);
-    if (!name) return status_fail(STATUS_MEMORY, "%s: out of memory while reading", reader->path);
-    enum status status = STATUS_OK;
     fputs(",\n  \"fish_name\": [", stream);
-    for (size_t f = 0; f < n_fish && status == STATUS_OK; f++) {
-        const struct netcdf_slice slice[] = {{"fish", f, 1}, {"name", 0, n_name}, {NULL, 0, 0}};
-        status = netcdf_read_text(reader, "fish_name", slice, name);
+    for (size_t f = 0; f < n_fish; f++) {
+        char *name;
+        TRY(result_reader_name(reader, f, &name));
         if (f > 0) fputs(", ", stream);
         text_print_json(stream, name);
+        free(name);
     }
     fputc(']', stream);
-    free(name);
-    return status;
+    return STATUS_OK;
 }
 
 static enum status print_all(const struct netcdf_reader *reader, FILE *stream) {
