@@ -34,10 +34,10 @@ static enum status find(const struct case_values *values, const struct request *
     progress_end(&teller.progress);
     TRY(status);
     if (request->json) {
-        TRY(steady_json_file(path, stdout));
+        TRY(netcdf_print(path, steady_json, stdout));
     } else if (!request->quiet) {
         printf("%s\n", path);
-        TRY(steady_info_file(path, stdout));
+        TRY(netcdf_print(path, steady_info, stdout));
     }
     return main_refuse_warnings(request, &teller, path);
 }

@@ -283,9 +283,5 @@ static enum status print_all(const struct netcdf_reader *file, FILE *stream) {
 }
 
 enum status field_file_info(const char *path, FILE *stream) {
-    struct netcdf_reader file;
-    TRY(netcdf_open(&file, path));
-    const enum status status = print_all(&file, stream);
-    netcdf_close(&file);
-    return status;
+    return netcdf_print(path, print_all, stream);
 }

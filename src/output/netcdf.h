@@ -7,6 +7,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 
 #include "base/status.h"
 
@@ -117,6 +118,10 @@ struct netcdf_slice {
  * header says. The path must live as long as the reader. */
 enum status netcdf_open(struct netcdf_reader *reader, const char *path);
 void netcdf_close(struct netcdf_reader *reader);
+
+/* Open a file, print what is in it, close it. Fails as these. */
+enum status netcdf_print(const char *path, enum status (*print)(const struct netcdf_reader *reader, FILE *stream),
+                         FILE *stream);
 
 /* An attribute of the file: a string, "" where it is missing, that the caller frees; or an integer. */
 enum status netcdf_read_string(const struct netcdf_reader *reader, const char *name, char **string);

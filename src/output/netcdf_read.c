@@ -42,6 +42,15 @@ void netcdf_close(struct netcdf_reader *reader) {
     reader->file = -1;
 }
 
+enum status netcdf_print(const char *path, enum status (*print)(const struct netcdf_reader *reader, FILE *stream),
+                         FILE *stream) {
+    struct netcdf_reader reader;
+    TRY(netcdf_open(&reader, path));
+    const enum status status = print(&reader, stream);
+    netcdf_close(&reader);
+    return status;
+}
+
 // ---- attributes and dimensions
 
 enum status netcdf_read_string(const struct netcdf_reader *reader, const char *name, char **string) {

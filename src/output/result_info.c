@@ -12,7 +12,7 @@
 #include "output/steady_info.h"
 
 struct info {
-    struct netcdf_reader reader;
+    const struct netcdf_reader *reader;
     size_t n_rows, n_fish, n_name;
     FILE *stream;
 };
@@ -21,21 +21,21 @@ struct info {
 
 /* A value of a row, of the school or of fish f. */
 static enum status of_school(const struct info *info, size_t row, const char *name, double *value) {
-    return netcdf_read_doubles(&info->reader, name, (struct netcdf_slice[]){{"time", row, 1}, {NULL}}, value);
+    return netcdf_read_doubles(info->reader, name, (struct netcdf_slice[]){{"time", row, 1}, {NULL}}, value);
 }
 
 static enum status of_fish(const struct info *info, size_t row, const char *name, size_t f, double *value) {
-    return netcdf_read_doubles(&info->reader, name, (struct netcdf_slice[]){{"time", row, 1}, {"fish", f, 1}, {NULL}},
+    return netcdf_read_doubles(info->reader, name, (struct netcdf_slice[]){{"time", row, 1}, {"fish", f, 1}, {NULL}},
                                value);
 }
 
 /* A value that does not change with time. */
 static enum status constant_of_fish(const struct info *info, const char *name, size_t f, double *value) {
-    return netcdf_read_doubles(&info->reader, name, (struct netcdf_slice[]){{"fish", f, 1}, {NULL}}, value);
+    return netcdf_read_doubles(info->reader, name, (struct netcdf_slice[]){{"fish", f, 1}, {NULL}}, value);
 }
 
 static enum status interval_of(const struct info *info, double *interval) {
-    return netcdf_read_doubles(&info->reader, "shedding_interval", (struct netcdf_slice[]){{NULL}}, interval);
+    return netcdf_read_doubles(info->reader, "shedding_interval", (struct netcdf_slice[]){{NULL}}, interval);
 }
 
 // ---- the table of fish
@@ -68,7 +68,7 @@ static void print_cell(const struct info *info, const char *format, double value
 
 static enum status print_fish(const struct info *info, int n_columns, size_t f, int width) {
     char *name;
-    TRY(result_reader_name(&info->reader, f, &name));
+    TRY(result_reader_name(info->reader, f, &name));
     fprintf(info->stream, "  %-*s", width, name);
     free(name);
     for (int c = 0; c < n_columns; c++) {
@@ -101,7 +101,7 @@ static enum status print_table(const struct info *info) {
 
 static enum status print_status(const struct info *info) {
     char *run_status;
-    TRY(netcdf_read_string(&info->reader, "run_status", &run_status));
+    TRY(netcdf_read_string(info->reader, "run_status", &run_status));
     fprintf(info->stream, "  status      %s\n", run_status);
     free(run_status);
     return STATUS_OK;
@@ -124,7 +124,7 @@ static enum status print_rows(const struct info *info) {
 /* An attribute of several lines, each after a word; nothing where it is empty or missing. */
 static enum status print_lines(const struct info *info, const char *name, const char *word) {
     char *text;
-    TRY(netcdf_read_string(&info->reader, name, &text));
+    TRY(netcdf_read_string(info->reader, name, &text));
     if (*text) fprintf(info->stream, "\n");
     for (char *line = strtok(text, "\n"); line; line = strtok(NULL, "\n"))
         fprintf(info->stream, "  %-20s  %s\n", word, line);
@@ -170,26 +170,23 @@ static enum status print_solver(const struct info *info) {
     return STATUS_OK;
 }
 
-static enum status print_all(struct info *info) {
-    TRY(netcdf_read_length(&info->reader, "time", 0, SIZE_MAX, &info->n_rows));
-    TRY(netcdf_read_length(&info->reader, "fish", 1, INT_MAX, &info->n_fish));
-    TRY(netcdf_read_length(&info->reader, "name", 1, INT_MAX, &info->n_name));
-    TRY(print_status(info));
-    TRY(print_rows(info));
-    TRY(print_table(info));
-    if (info->n_rows == 0) return STATUS_OK;
-    TRY(print_school(info));
-    TRY(steady_info(&info->reader, info->stream));
-    TRY(print_solver(info));
-    TRY(print_lines(info, "closest_approach", "closest approach"));
-    TRY(print_lines(info, "merged_vortices", "merged vortices"));
-    return print_lines(info, "warnings", "warning");
+static enum status print_all(const struct netcdf_reader *reader, FILE *stream) {
+    struct info info = {.reader = reader, .stream = stream};
+    TRY(netcdf_read_length(reader, "time", 0, SIZE_MAX, &info.n_rows));
+    TRY(netcdf_read_length(reader, "fish", 1, INT_MAX, &info.n_fish));
+    TRY(netcdf_read_length(reader, "name", 1, INT_MAX, &info.n_name));
+    TRY(print_status(&info));
+    TRY(print_rows(&info));
+    TRY(print_table(&info));
+    if (info.n_rows == 0) return STATUS_OK;
+    TRY(print_school(&info));
+    TRY(steady_info(reader, stream));
+    TRY(print_solver(&info));
+    TRY(print_lines(&info, "closest_approach", "closest approach"));
+    TRY(print_lines(&info, "merged_vortices", "merged vortices"));
+    return print_lines(&info, "warnings", "warning");
 }
 
 enum status result_info(const char *path, FILE *stream) {
-    struct info info = {.stream = stream};
-    TRY(netcdf_open(&info.reader, path));
-    const enum status status = print_all(&info);
-    netcdf_close(&info.reader);
-    return status;
+    return netcdf_print(path, print_all, stream);
 }

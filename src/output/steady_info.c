@@ -138,11 +138,3 @@ enum status steady_info(const struct netcdf_reader *reader, FILE *stream) {
     }
     return STATUS_OK;
 }
-
-enum status steady_info_file(const char *path, FILE *stream) {
-    struct netcdf_reader reader;
-    TRY(netcdf_open(&reader, path));
-    const enum status status = steady_info(&reader, stream);
-    netcdf_close(&reader);
-    return status;
-}

@@ -10,7 +10,4 @@
  * steady state. Fails with STATUS_FILE or STATUS_MEMORY. */
 enum status steady_info(const struct netcdf_reader *reader, FILE *stream);
 
-/* The same of the file at a path, which must hold one. */
-enum status steady_info_file(const char *path, FILE *stream);
-
 #endif

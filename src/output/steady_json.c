@@ -72,7 +72,7 @@ static enum status print_names(const struct netcdf_reader *reader, FILE *stream)
     return STATUS_OK;
 }
 
-static enum status print_all(const struct netcdf_reader *reader, FILE *stream) {
+enum status steady_json(const struct netcdf_reader *reader, FILE *stream) {
     fputs("{\"file\": ", stream);
     text_print_json(stream, reader->path);
     TRY(print_names(reader, stream));
@@ -82,12 +82,4 @@ static enum status print_all(const struct netcdf_reader *reader, FILE *stream) {
     }
     fputs("}\n", stream);
     return STATUS_OK;
-}
-
-enum status steady_json_file(const char *path, FILE *stream) {
-    struct netcdf_reader reader;
-    TRY(netcdf_open(&reader, path));
-    const enum status status = print_all(&reader, stream);
-    netcdf_close(&reader);
-    return status;
 }

@@ -9,6 +9,6 @@
 #include "output/netcdf.h"
 
 /* Print it; the file must be one of a steady state. Fails with STATUS_FILE or STATUS_MEMORY. */
-enum status steady_json_file(const char *path, FILE *stream);
+enum status steady_json(const struct netcdf_reader *reader, FILE *stream);
 
 #endif
