@@ -43,7 +43,7 @@ static double power_on_water(struct residual *residual, int f, double t, const s
     if (!(fabs(stream[0]) + fabs(stream[1]) > 0)) return on_water;
     const struct fluid_forces forces = fluid_force_sum(fish, &flow, com, y);
     double force[2];
-    diagnostics_fluid_force(&forces, pressure, force);
+    diagnostics_fluid_force(forces.resistive, forces.reactive, pressure, force);
     for (int i = 0; i < 2; i++) on_water -= force[i] * stream[i];
     return on_water;
 }

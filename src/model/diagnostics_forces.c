@@ -7,6 +7,7 @@
 #include "model/control.h"
 #include "model/fish_prescribed.h"
 #include "model/flow_at_bodies.h"
+#include "model/fluid_force.h"
 
 // what a prescribed motion takes: the reactions of its nodes, and their moment with that of the clamp
 static void find_constraint(struct residual *residual, int f, double t, const double *y, struct diagnostics_fish *to) {
@@ -34,11 +35,9 @@ struct pressure_forces diagnostics_pressure(struct residual *residual, int f, co
     return pressure_sum(pressure, about, y);
 }
 
-void diagnostics_fluid_force(const struct fluid_forces *forces, const struct pressure_forces *pressure,
-                             double force[2]) {
-    for (int i = 0; i < 2; i++) {
-        force[i] = forces->resistive[i] + forces->reactive[i] + pressure->pressure[i] + pressure->suction[i];
-    }
+void diagnostics_fluid_force(const double resistive[2], const double reactive[2],
+                             const struct pressure_forces *pressure, double force[2]) {
+    for (int i = 0; i < 2; i++) force[i] = resistive[i] + reactive[i] + pressure->pressure[i] + pressure->suction[i];
 }
 
 void diagnostics_forces(struct residual *residual, int f, double t, const double *y, struct diagnostics_fish *to) {
@@ -47,13 +46,14 @@ void diagnostics_forces(struct residual *residual, int f, double t, const double
     const struct fluid_forces forces = fluid_force_sum(fish, &flow, to->com, y);
     const double heading = control_heading(fish, y), ahead[2] = {cos(heading), sin(heading)};
     to->pressure = diagnostics_pressure(residual, f, to->com, y);
-    diagnostics_fluid_force(&forces, &to->pressure, to->fluid_force);
+    double force[2];
+    diagnostics_fluid_force(forces.resistive, forces.reactive, &to->pressure, force);
     to->thrust = 0;
     for (int i = 0; i < 2; i++) {
         to->resistive_force[i] = forces.resistive[i];
         to->friction_force[i] = forces.friction[i];
         to->reactive_force[i] = forces.reactive[i];
-        to->thrust += to->fluid_force[i] * ahead[i];
+        to->thrust += force[i] * ahead[i];
     }
     to->resistive_moment = forces.resistive_moment;
     to->friction_moment = forces.friction_moment;

@@ -45,7 +45,7 @@ void diagnostics_remember(struct residual *residual, struct state *state) {
         const struct fluid_forces forces = fluid_force_sum(fish, &flow, sample.com, y);
         const struct pressure_forces pressure = diagnostics_pressure(residual, f, sample.com, y);
         memcpy(sample.friction, forces.friction, sizeof sample.friction);
-        diagnostics_fluid_force(&forces, &pressure, sample.force);
+        diagnostics_fluid_force(forces.resistive, forces.reactive, &pressure, sample.force);
         if (fish_has_momentum(fish)) sample.leading_edge = pressure_leading_edge(fish, 1, y);
         memcpy(sample.work, state->balance[f].work, sizeof sample.work);
         continue_sample(history, interval, &sample);

@@ -29,7 +29,6 @@ struct diagnostics_fish {
     double actuation_work; /* put in by the muscle since the start, J */
     /* on the body, N, and about the centre of mass, N m; friction: the part of the resistive force along the body */
     double resistive_force[2], friction_force[2], reactive_force[2], constraint_force[2];
-    double fluid_force[2];   /* all that the fluid does: resistive, reactive, pressure and suction, N */
     double contact_force[2]; /* of all bodies that it touches, N */
     double resistive_moment, friction_moment, reactive_moment, constraint_moment;
     struct pressure_forces pressure; /* force: pressure, else 0 */

@@ -7,6 +7,7 @@
 
 #include "model/clearance.h"
 #include "model/diagnostics_energy.h"
+#include "model/diagnostics_forces.h"
 #include "model/flow_external.h"
 #include "model/state_table.h"
 
@@ -86,7 +87,9 @@ static void add_event(struct steady_map *map, double share) {
     for (int f = 0; f < map->simulation->school->n_fish; f++) {
         const struct diagnostics_fish *const now = &map->simulation->diagnostics->fish[f];
         struct steady_beat *const sum = &map->last[f];
-        for (int i = 0; i < 2; i++) sum->force[i] += share * now->fluid_force[i];
+        double force[2];
+        diagnostics_fluid_force(now->resistive_force, now->reactive_force, &now->pressure, force);
+        for (int i = 0; i < 2; i++) sum->force[i] += share * force[i];
         const double power = now->actuation_power + now->driving_power;
         sum->thrust += share * now->thrust;
         sum->rms_thrust += share * now->thrust * now->thrust;

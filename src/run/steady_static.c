@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "model/diagnostics_energy.h"
+#include "model/diagnostics_forces.h"
 #include "model/diagnostics_history.h"
 #include "model/edge.h"
 #include "model/fish_gait.h"
@@ -312,10 +313,8 @@ static void fill(const struct simulation *simulation, int f, struct steady_fish 
                                   .cost_of_transport = NAN,
                                   .efficiency = NAN,
                                   .strouhal = NAN};
-    for (int i = 0; i < 2; i++) {
-        found->force[i] = now->fluid_force[i];
-        stream[i] -= now->com_velocity[i];
-    }
+    diagnostics_fluid_force(now->resistive_force, now->reactive_force, &now->pressure, found->force);
+    for (int i = 0; i < 2; i++) stream[i] -= now->com_velocity[i];
     const double speed = hypot(stream[0], stream[1]);
     found->fluid_power = edge_dot(found->force, stream);
     found->drag = edge_dot(found->force, stream) / speed;
