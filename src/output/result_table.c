@@ -1,134 +1,7 @@
 /* result_table.c: the table of variables. */
 #include "output/result_table.h"
 
-#include <string.h>
-
-#include "model/bound_sheet.h"
-#include "model/flow_at_bodies.h"
-#include "model/fluid_force.h"
-#include "model/rod.h"
-
-// ---- values that have to be put together ----
-
-static void interleave(int n, const double *x, const double *y, double *slots) {
-    for (int i = 0; i < n; i++) {
-        slots[2 * i] = x[i];
-        slots[2 * i + 1] = y[i];
-    }
-}
-
-static void copy(int n, const double *value, double *slots) {
-    for (int i = 0; i < n; i++) slots[i] = value[i];
-}
-
-static void gather_position(const struct result_row *row, int f, double *slots) {
-    const struct fish *fish = &row->school->fish[f];
-    interleave(fish->n_nodes, row->state->y + fish->at.x, row->state->y + fish->at.y, slots);
-}
-
-static void gather_velocity(const struct result_row *row, int f, double *slots) {
-    const struct fish *fish = &row->school->fish[f];
-    interleave(fish->n_nodes, row->state->y + fish->at.vx, row->state->y + fish->at.vy, slots);
-}
-
-static void gather_acceleration(const struct result_row *row, int f, double *slots) {
-    const struct fish *fish = &row->school->fish[f];
-    // where there are momenta, the unknowns a are their rates
-    const double *const a = fish_has_momentum(fish) ? row->state->yp + fish->at.vx : row->state->y + fish->at.ax;
-    interleave(fish->n_nodes, a, a + fish->n_nodes, slots);
-}
-
-static void gather_curvature(const struct result_row *row, int f, double *slots) {
-    rod_curvature(&row->school->fish[f], row->state->y, slots);
-}
-
-static void gather_natural_curvature(const struct result_row *row, int f, double *slots) {
-    const struct range joints = row->residual->joints[f];
-    copy(joints.n, row->residual->natural_curvature + joints.first, slots);
-}
-
-static void gather_sheet_position(const struct result_row *row, int f, double *slots) {
-    const struct fish *fish = &row->school->fish[f];
-    for (int j = 0; j < fish->n_sheet; j++) {
-        slots[2 * j] = fish_mean(&fish->sheet_point[j], row->state->y + fish->at.x);
-        slots[2 * j + 1] = fish_mean(&fish->sheet_point[j], row->state->y + fish->at.y);
-    }
-}
-
-static void gather_sheet_strength(const struct result_row *row, int f, double *slots) {
-    const struct fish *fish = &row->school->fish[f];
-    for (int j = 0; j < fish->n_sheet; j++) slots[j] = bound_sheet_strength(fish, j, row->state->y);
-}
-
-static void gather_sheet_arc(const struct result_row *row, int f, double *slots) {
-    const struct fish *fish = &row->school->fish[f];
-    for (int j = 0; j < fish->n_sheet; j++) slots[j] = fish_mean(&fish->sheet_point[j], fish->arc);
-}
-
-static void gather_wake_position(const struct result_row *row, int f, double *slots) {
-    const struct wake *wake = &row->state->wake[f];
-    if (row->with_wake) interleave(wake->n_vortex, wake->x, wake->y, slots);
-}
-
-static void gather_wake_circulation(const struct result_row *row, int f, double *slots) {
-    const struct wake *wake = &row->state->wake[f];
-    for (int i = 0; row->with_wake && i < wake->n_vortex; i++) slots[i] = wake_circulation(wake, i);
-}
-
-static void gather_wake_birth(const struct result_row *row, int f, double *slots) {
-    const struct wake *wake = &row->state->wake[f];
-    if (row->with_wake) copy(wake->n_vortex, wake->birth, slots);
-}
-
-// ---- a steady state
-
-static void gather_multiplier(const struct result_row *row, int f, double *slots) {
-    (void)f;
-    if (row->steady) interleave(row->steady->n_multipliers, row->steady->real, row->steady->imaginary, slots);
-}
-
-// ---- pressure
-
-static void gather_control_arc(const struct result_row *row, int f, double *slots) {
-    const struct fish *fish = &row->school->fish[f];
-    for (int c = 0; c < fish->n_control; c++) slots[c] = fish_mean(&fish->control_point[c], fish->arc);
-}
-
-static void gather_pressure(const struct result_row *row, int f, double *slots) {
-    struct pressure *const pressure = row->residual->pressure[f];
-    const int n = row->school->fish[f].n_control;
-    for (int c = 0; pressure && c < n; c++) slots[c] = pressure_jump(pressure, c, row->state->y, row->state->yp);
-}
-
-// ---- forces on the edges
-
-enum named_force { RESISTIVE, REACTIVE };
-
-static void gather_edge_force(const struct result_row *row, int f, enum named_force name, double *slots) {
-    const struct fish *fish = &row->school->fish[f];
-    const struct flow_at_body flow = flow_at_body(row->residual->flow, f);
-    const double *const about = row->diagnostics->fish[f].com;
-    for (int k = 0; k < fish->n_edges; k++) {
-        const struct fluid_forces forces = fluid_force_of_edge(fish, &flow, k, about, row->state->y);
-        copy(2, name == RESISTIVE ? forces.resistive : forces.reactive, slots + 2 * k);
-    }
-}
-
-static void gather_edge_resistive_force(const struct result_row *row, int f, double *slots) {
-    gather_edge_force(row, f, RESISTIVE, slots);
-}
-
-static void gather_edge_reactive_force(const struct result_row *row, int f, double *slots) {
-    gather_edge_force(row, f, REACTIVE, slots);
-}
-
-static void gather_edge_pressure_force(const struct result_row *row, int f, double *slots) {
-    const struct pressure *const pressure = row->residual->pressure[f];
-    for (int k = 0; k < row->school->fish[f].n_edges; k++) {
-        slots[2 * k] = slots[2 * k + 1] = 0;
-        if (pressure) pressure_of_edge(pressure, k, row->state->y, row->state->yp, slots + 2 * k);
-    }
-}
+#include <stdio.h>
 
 // ---- the table
 
@@ -184,9 +57,9 @@ const struct result_variable result_table[] = {
      .long_name = "thickness of the body in the plane of motion"},
     {"edge_width",            {FISH, EDGE},           RESULT_REAL,    "m",      ARRAY_IN_FISH(depth),
      .long_name = "depth (span) of the body, out of the plane of motion"},
-    {"sheet_arc",             {FISH, SHEET},          RESULT_REAL,    "m",      GATHERED(gather_sheet_arc),
+    {"sheet_arc",             {FISH, SHEET},          RESULT_REAL,    "m",      GATHERED(result_row_sheet_arc),
      .long_name = "arc coordinate of the bound vortices, from the nose"},
-    {"control_arc",           {FISH, CONTROL},        RESULT_REAL,    "m",      GATHERED(gather_control_arc),
+    {"control_arc",           {FISH, CONTROL},        RESULT_REAL,    "m",      GATHERED(result_row_control_arc),
      .long_name = "arc coordinate of the control points, from the nose"},
     {"sheet_weight",          {FISH, SHEET},          RESULT_REAL,    "m",      ARRAY_IN_FISH(sheet_weight),
      .long_name = "natural length of body of a bound vortex: circulation over strength where nothing is stretched"},
@@ -216,7 +89,7 @@ const struct result_variable result_table[] = {
      .long_name = "estimated distance from the steady state: the residual over that of 1 from the next multiplier, "
                   "at least the speed that is missing, in lengths per beat"},
     {"steady_multiplier",     {MULTIPLIER, XY},       RESULT_REAL,    "1",
-     .of_steady = true, .owner = OF_STEADY, GATHERED(gather_multiplier),
+     .of_steady = true, .owner = OF_STEADY, GATHERED(result_row_multiplier),
      .long_name = "Floquet multipliers of the slow quantities, real and imaginary parts; stable where all are below 1"},
     {"steady_speed",          {FISH},                 RESULT_REAL,    "m s-1",  IN_STEADY_FISH(speed),
      .long_name = "speed through the water"},
@@ -252,27 +125,27 @@ const struct result_variable result_table[] = {
     // the bodies and the fluid
     {"time",                  {TIME},                 RESULT_REAL,    "s",      IN_STATE(t),
      .long_name = "time"},
-    {"x",                     {TIME, FISH, NODE, XY}, RESULT_BULK,    "m",      GATHERED(gather_position),
+    {"x",                     {TIME, FISH, NODE, XY}, RESULT_BULK,    "m",      GATHERED(result_row_position),
      .long_name = "position of the nodes, nose first"},
-    {"v",                     {TIME, FISH, NODE, XY}, RESULT_BULK,    "m s-1",  GATHERED(gather_velocity),
+    {"v",                     {TIME, FISH, NODE, XY}, RESULT_BULK,    "m s-1",  GATHERED(result_row_velocity),
      .long_name = "velocity of the nodes"},
-    {"a",                     {TIME, FISH, NODE, XY}, RESULT_BULK,    "m s-2",  GATHERED(gather_acceleration),
+    {"a",                     {TIME, FISH, NODE, XY}, RESULT_BULK,    "m s-2",  GATHERED(result_row_acceleration),
      .long_name = "acceleration of the nodes"},
-    {"natural_curvature",     {TIME, FISH, JOINT},    RESULT_BULK,    "1",      GATHERED(gather_natural_curvature),
+    {"natural_curvature",     {TIME, FISH, JOINT},    RESULT_BULK,    "1",      GATHERED(result_row_natural_curvature),
      .long_name = "natural curvature of the joints, 2 tan(angle/2), which the muscle prescribes"},
-    {"curvature",             {TIME, FISH, JOINT},    RESULT_BULK,    "1",      GATHERED(gather_curvature),
+    {"curvature",             {TIME, FISH, JOINT},    RESULT_BULK,    "1",      GATHERED(result_row_curvature),
      .long_name = "curvature of the joints, 2 tan(angle/2)"},
-    {"sheet_x",               {TIME, FISH, SHEET, XY},RESULT_BULK,    "m",      GATHERED(gather_sheet_position),
+    {"sheet_x",               {TIME, FISH, SHEET, XY},RESULT_BULK,    "m",      GATHERED(result_row_sheet_position),
      .long_name = "position of the bound vortices"},
-    {"sheet_strength",        {TIME, FISH, SHEET},    RESULT_BULK,    "m s-1",  GATHERED(gather_sheet_strength),
+    {"sheet_strength",        {TIME, FISH, SHEET},    RESULT_BULK,    "m s-1",  GATHERED(result_row_sheet_strength),
      .long_name = "strength of the bound vortices: circulation per length of body"},
     {"wake_count",            {TIME, FISH},           RESULT_INTEGER, "1",      IN_WAKE(n_vortex),
      .long_name = "number of free vortices"},
-    {"wake_x",                {TIME, FISH, VORTEX, XY},RESULT_BULK,    "m",      GATHERED(gather_wake_position),
+    {"wake_x",                {TIME, FISH, VORTEX, XY},RESULT_BULK,    "m",      GATHERED(result_row_wake_position),
      .long_name = "position of the free vortices, oldest first"},
-    {"wake_circulation",      {TIME, FISH, VORTEX},   RESULT_BULK,    "m2 s-1", GATHERED(gather_wake_circulation),
+    {"wake_circulation",      {TIME, FISH, VORTEX},   RESULT_BULK,    "m2 s-1", GATHERED(result_row_wake_circulation),
      .long_name = "circulation of the free vortices, without decay"},
-    {"wake_birth",            {TIME, FISH, VORTEX},   RESULT_BULK,    "s",      GATHERED(gather_wake_birth),
+    {"wake_birth",            {TIME, FISH, VORTEX},   RESULT_BULK,    "s",      GATHERED(result_row_wake_birth),
      .long_name = "time of release of the free vortices"},
 
     // derived quantities of each fish
@@ -396,16 +269,16 @@ const struct result_variable result_table[] = {
     {"constraint_moment",     {TIME, FISH},           RESULT_REAL,    "N m",    IN_FISH_DIAGNOSTICS(constraint_moment),
      .long_name = "moment about the centre of mass of what holds a prescribed motion"},
     {"edge_resistive_force",  {TIME, FISH, EDGE, XY}, RESULT_BULK,    "N",
-     GATHERED(gather_edge_resistive_force), .forces = OUTPUT_FORCES_EDGES,
+     GATHERED(result_row_edge_resistive_force), .forces = OUTPUT_FORCES_EDGES,
      .long_name = "drag on every edge; with output.forces: edges only"},
     {"edge_reactive_force",   {TIME, FISH, EDGE, XY}, RESULT_BULK,    "N",
-     GATHERED(gather_edge_reactive_force), .forces = OUTPUT_FORCES_EDGES,
+     GATHERED(result_row_edge_reactive_force), .forces = OUTPUT_FORCES_EDGES,
      .long_name = "reactive force on every edge, the last with the tail flux; with output.forces: edges only"},
 
     {"edge_pressure_force",   {TIME, FISH, EDGE, XY}, RESULT_BULK,    "N",
-     GATHERED(gather_edge_pressure_force), .forces = OUTPUT_FORCES_EDGES,
+     GATHERED(result_row_edge_pressure_force), .forces = OUTPUT_FORCES_EDGES,
      .long_name = "force of the pressure on every edge; with output.forces: edges only"},
-    {"pressure",              {TIME, FISH, CONTROL},  RESULT_BULK,    "Pa",     GATHERED(gather_pressure),
+    {"pressure",              {TIME, FISH, CONTROL},  RESULT_BULK,    "Pa",     GATHERED(result_row_pressure),
      .long_name = "pressure jump across the body at the control points, left less right; NaN unless force: pressure"},
     {"leading_edge_a0",       {TIME, FISH},           RESULT_REAL,    "1",      IN_FISH_DIAGNOSTICS(leading_edge_a0),
      .long_name = "leading-edge suction parameter A_0; where it is above 0.2 a real flow may separate at the nose"},

@@ -7,11 +7,8 @@
 #include <stddef.h>
 
 #include "case/case_values.h"
-#include "model/diagnostics.h"
-#include "model/residual.h"
 #include "output/result_kind.h"
-#include "output/steady_values.h"
-#include "solver/integrator.h"
+#include "output/result_row.h"
 
 enum {
     RESULT_SCHEMA = 1,     /* attribute shoal_schema; grows when a reader of the files has to change */
@@ -59,18 +56,6 @@ enum result_owner {
     OF_STEADY,
     OF_STEADY_FISH,
     OF_ROW
-};
-
-/* All that a row is made of; for the constants school is enough. */
-struct result_row {
-    const struct school *school;
-    const struct state *state;
-    const struct residual *residual;
-    const struct diagnostics *diagnostics;
-    const struct integrator_counts *counts;
-    const struct steady_values *steady; /* NULL: not of a steady state */
-    double wall_time;                   /* since the start, s */
-    bool with_wake;                     /* else the variables of the wake hold NaN */
 };
 
 struct result_variable {
