@@ -270,9 +270,9 @@ $(B)/output/page.o: src/output/page.html
 
 # with the sanitizers of clang this one, of long sums, takes minutes; the targets of `make fuzz` do not come here
 ifdef FUZZER
-$(B)/vortex/expansions.o: sanitize =
+$(B)/vortex/expansions_boxes.o: sanitize =
 else ifneq ($(and $(SANITIZE),$(is_clang)),)
-$(B)/vortex/expansions.o: CFLAGS = -O0 -g
+$(B)/vortex/expansions_boxes.o: CFLAGS = -O0 -g
 endif
 
 # rewritten only when the commit changes
