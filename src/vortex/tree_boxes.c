@@ -1,10 +1,12 @@
-/* tree_boxes.c: boxes are halved across their longer side, at the median. */
+/* tree_boxes.c: boxes are halved across their longer side, at the median; their points may move. */
 #include "vortex/tree_boxes.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/parallel.h"
+#include "vortex/kernel.h"
 
 struct tree_point {
     double at[2], weight;
@@ -96,15 +98,23 @@ static void divide(struct tree_boxes *boxes, int i, int is_leaf) {
     boxes->box[2 * i + 2] = (struct tree_box){.first = box->first + middle, .n = box->n - middle};
 }
 
+// the number of times that n points are halved
+static int depth_for(int n, int leaf) {
+    int depth = 0;
+    while ((n + (1 << depth) - 1) >> depth > leaf) depth++;
+    return depth;
+}
+
 enum status tree_boxes_fill(struct tree_boxes *boxes, int n, const double *x, const double *y, const double *weight,
                             int leaf, int threads) {
     boxes->n = boxes->n_boxes = boxes->depth = 0;
     if (n == 0) return STATUS_OK;
-    int depth = 0;
-    while ((n + (1 << depth) - 1) >> depth > leaf) depth++;
+    const int depth = depth_for(n, leaf);
     const int n_boxes = tree_boxes_level(depth + 1);
     TRY(reserve(boxes, n, n_boxes));
     struct tree_point *const point = boxes->work;
+    const int sharing = parallel_threads(threads, n, n, PARALLEL_SORTED);
+#pragma omp parallel for num_threads(sharing) schedule(static)
     for (int i = 0; i < n; i++) {
         point[i] = (struct tree_point){.at = {x[i], y[i]}, .weight = weight ? weight[i] : 0, .index = i};
     }
@@ -114,6 +124,7 @@ enum status tree_boxes_fill(struct tree_boxes *boxes, int n, const double *x, co
 #pragma omp parallel for num_threads(parallel_threads(threads, end - first, n, PARALLEL_SORTED)) schedule(static)
         for (int i = first; i < end; i++) divide(boxes, i, level == depth);
     }
+#pragma omp parallel for num_threads(sharing) schedule(static)
     for (int i = 0; i < n; i++) {
         boxes->x[i] = point[i].at[0];
         boxes->y[i] = point[i].at[1];
@@ -124,6 +135,98 @@ enum status tree_boxes_fill(struct tree_boxes *boxes, int n, const double *x, co
     boxes->depth = depth;
     boxes->n_boxes = n_boxes;
     return STATUS_OK;
+}
+
+int tree_boxes_hold(const struct tree_boxes *boxes, int n, const double *x, const double *y, int leaf) {
+    if (boxes->n != n || n == 0 || boxes->depth != depth_for(n, leaf)) return 0;
+    for (int i = 0; i < n; i++) {
+        if (boxes->x[i] != x[boxes->index[i]] || boxes->y[i] != y[boxes->index[i]]) return 0;
+    }
+    return 1;
+}
+
+enum status tree_boxes_copy(struct tree_boxes *boxes, const struct tree_boxes *from, const double *weight) {
+    const size_t n = (size_t)from->n;
+    boxes->n = boxes->n_boxes = boxes->depth = 0;
+    TRY(reserve(boxes, from->n, from->n_boxes));
+    memcpy(boxes->box, from->box, (size_t)from->n_boxes * sizeof *boxes->box);
+    memcpy(boxes->index, from->index, n * sizeof *boxes->index);
+    memcpy(boxes->x, from->x, n * sizeof *boxes->x);
+    memcpy(boxes->y, from->y, n * sizeof *boxes->y);
+    for (size_t i = 0; i < n; i++) boxes->weight[i] = weight ? weight[from->index[i]] : 0;
+    boxes->n = from->n;
+    boxes->depth = from->depth;
+    boxes->n_boxes = from->n_boxes;
+    return STATUS_OK;
+}
+
+enum { LANES = 8 };
+
+// the largest and the smallest of n values
+KERNEL_WIDE static void find_extremes(int n, const double *value, double *low, double *high) {
+    double least[LANES], most[LANES];
+    for (int k = 0; k < LANES; k++) least[k] = most[k] = value[0];
+    int i = 0;
+    for (; i + LANES <= n; i += LANES) {
+        for (int k = 0; k < LANES; k++) {
+            least[k] = value[i + k] < least[k] ? value[i + k] : least[k];
+            most[k] = value[i + k] > most[k] ? value[i + k] : most[k];
+        }
+    }
+    *low = *high = value[0];
+    for (int k = 0; k < LANES; k++) {
+        *low = least[k] < *low ? least[k] : *low;
+        *high = most[k] > *high ? most[k] : *high;
+    }
+    for (; i < n; i++) {
+        *low = value[i] < *low ? value[i] : *low;
+        *high = value[i] > *high ? value[i] : *high;
+    }
+}
+
+// the largest square of a distance of n points from a centre
+KERNEL_WIDE static double find_farthest(int n, const double *x, const double *y, double centre_x, double centre_y) {
+    double most[LANES] = {0}, all = 0;
+    int i = 0;
+    for (; i + LANES <= n; i += LANES) {
+        for (int k = 0; k < LANES; k++) {
+            const double rx = x[i + k] - centre_x, ry = y[i + k] - centre_y;
+            const double square = rx * rx + ry * ry;
+            most[k] = square > most[k] ? square : most[k];
+        }
+    }
+    for (int k = 0; k < LANES; k++) all = most[k] > all ? most[k] : all;
+    for (; i < n; i++) {
+        const double rx = x[i] - centre_x, ry = y[i] - centre_y;
+        all = rx * rx + ry * ry > all ? rx * rx + ry * ry : all;
+    }
+    return all;
+}
+
+// the circle that enclose finds
+static void enclose_again(const struct tree_boxes *boxes, struct tree_box *box) {
+    const double *const x = boxes->x + box->first, *const y = boxes->y + box->first;
+    double low[2], high[2];
+    find_extremes(box->n, x, &low[0], &high[0]);
+    find_extremes(box->n, y, &low[1], &high[1]);
+    box->x = low[0] + (high[0] - low[0]) / 2;
+    box->y = low[1] + (high[1] - low[1]) / 2;
+    box->radius = fmax(sqrt(find_farthest(box->n, x, y, box->x, box->y)), 1e-100);
+}
+
+void tree_boxes_move(struct tree_boxes *boxes, const double *x, const double *y, const double *weight, int threads) {
+    const int n = boxes->n;
+    threads = parallel_threads(threads, n, n, PARALLEL_SORTED);
+#pragma omp parallel for num_threads(threads) schedule(static)
+    for (int i = 0; i < n; i++) {
+        const int from = boxes->index[i];
+        boxes->x[i] = x[from];
+        boxes->y[i] = y[from];
+        boxes->weight[i] = weight ? weight[from] : 0;
+    }
+    // the largest ones first, which take the longest
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 4)
+    for (int i = 0; i < boxes->n_boxes; i++) enclose_again(boxes, &boxes->box[i]);
 }
 
 void tree_boxes_clear(struct tree_boxes *boxes) {

@@ -1,4 +1,5 @@
 /* tree_boxes.h: points sorted into nested boxes, each of two halves with equally many points. Part of treecode.h.
+ * Tested by tests/vortex/test_tree_boxes.c.
  *
  * Boxes are numbered from the largest down; 1 and 2 are the halves of 0, box i has the halves 2 i + 1 and 2 i + 2:
  *
@@ -36,6 +37,17 @@ static inline int tree_boxes_level(int level) {
  * call. The same boxes for any number of threads. Fails with STATUS_MEMORY; boxes is then empty. */
 enum status tree_boxes_fill(struct tree_boxes *boxes, int n, const double *x, const double *y, const double *weight,
                             int leaf, int threads);
+
+/* Whether boxes holds exactly these points in this order, in leaves of this size. */
+int tree_boxes_hold(const struct tree_boxes *boxes, int n, const double *x, const double *y, int leaf);
+
+/* What tree_boxes_fill would make of the points of other boxes with these weights. Fails with STATUS_MEMORY; boxes is
+ * then empty. */
+enum status tree_boxes_copy(struct tree_boxes *boxes, const struct tree_boxes *from, const double *weight);
+
+/* Move the points, in the order in which they were given; each stays in its boxes, and the circles around these follow:
+ * those of points that have not moved are the same. */
+void tree_boxes_move(struct tree_boxes *boxes, const double *x, const double *y, const double *weight, int threads);
 
 /* Release what boxes holds, not boxes itself. */
 void tree_boxes_clear(struct tree_boxes *boxes);

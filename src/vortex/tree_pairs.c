@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/parallel.h"
+
 // The bound on the error of a pair takes all sources and targets to be as near to each other as their boxes allow. True
 // errors are so much smaller (tests/vortex/test_treecode.c) that the bound may be this many tolerances.
 static const double bound_per_tolerance = 4;
@@ -17,6 +19,7 @@ struct search {
     const struct tree_boxes *targets;
     struct tree_expansions *local;
     int with_gradient;
+    double stretch; /* 1 + margin */
 };
 
 // ---- memory ----
@@ -167,11 +170,12 @@ static enum status pair_up(const struct search *search, int target, int source) 
     const struct tree_box *const to = &search->targets->box[target], *const from = &sources->boxes.box[source];
     const double rx = to->x - from->x, ry = to->y - from->y, radius = to->radius + from->radius;
     const double square = sources->smoothing * sources->smoothing, scale = rx * rx + ry * ry + square;
-    const double limit = sources->limits.theta[EXPANSION_HARMONIC];
+    const double limit = sources->limits.theta[EXPANSION_HARMONIC], stretch = search->stretch;
     const double direct = (search->with_gradient ? 2.0 : 1.0) * to->n * from->n;
     if (radius * radius <= limit * limit * scale) {
+        const double theta = stretch * radius / sqrt(scale), eta = stretch * stretch * square / scale;
         struct expansion_order order;
-        if (find_order(&sources->limits, search->with_gradient, radius / sqrt(scale), square / scale, &order)) {
+        if (find_order(&sources->limits, search->with_gradient, theta, eta, &order)) {
             return far_cost(order) < direct ? add_far(search, target, source, order) : add_near(search, target, source);
         }
     }
@@ -220,7 +224,7 @@ static void sort_pairs(struct tree_sources *sources, int n_boxes) {
 }
 
 enum status tree_pairs_find(struct tree_sources *sources, const struct tree_boxes *targets, int with_gradient,
-                            struct tree_expansions *local) {
+                            double margin, struct tree_expansions *local) {
     if (targets->n_boxes + 1 > sources->first_capacity) {
         const size_t n = (size_t)targets->n_boxes + 1;
         sources->first_capacity = 0;
@@ -231,8 +235,33 @@ enum status tree_pairs_find(struct tree_sources *sources, const struct tree_boxe
     find_limits(&sources->limits, bound_per_tolerance * sources->tolerance);
     TRY(tree_expansions_reset(&sources->multipole, sources->boxes.n_boxes));
     sources->n_far = sources->n_near = 0;
-    const struct search search = {sources, targets, local, with_gradient};
+    const struct search search = {sources, targets, local, with_gradient, 1 + margin};
     TRY(pair_up(&search, 0, 0));
     sort_pairs(sources, targets->n_boxes);
     return tree_expansions_allocate(&sources->multipole, sources->boxes.n_boxes);
+}
+
+// not the negation of a comparison that is false for places that are not finite
+static int fits(const struct tree_limits *limits, int with_gradient, double smoothing, const struct tree_box *to,
+                const struct tree_box *from, struct expansion_order order) {
+    const double rx = to->x - from->x, ry = to->y - from->y, radius = to->radius + from->radius;
+    const double square = smoothing * smoothing, scale = rx * rx + ry * ry + square;
+    const int p = order.harmonic - with_gradient, q = order.mixed - with_gradient;
+    return radius * radius <= limits->theta[p] * limits->theta[p] * scale && square <= limits->eta[p][q] * scale;
+}
+
+int tree_pairs_fit(const struct tree_sources *sources, const struct tree_boxes *targets, int with_gradient,
+                   int threads) {
+    int all = 1;
+    threads = parallel_threads(threads, sources->n_far, sources->n_far, PARALLEL_SORTED);
+#pragma omp parallel for num_threads(threads) schedule(static)
+    for (int i = 0; i < sources->n_far; i++) {
+        const struct expansions_pair *const pair = &sources->far_sorted[i];
+        if (fits(&sources->limits, with_gradient, sources->smoothing, &targets->box[pair->target],
+                 &sources->boxes.box[pair->source], pair->order))
+            continue;
+#pragma omp atomic write
+        all = 0;
+    }
+    return all;
 }

@@ -49,9 +49,14 @@ struct tree_sources {
 };
 
 /* Find and sort the pairs of all boxes with those of the targets, allocate the multipole expansions, and raise the
- * degrees of the local expansions to what the pairs need. Fails with STATUS_MEMORY. */
+ * degrees of the local expansions to what the pairs need. margin >= 0: the degrees are those that the pairs would need
+ * if theta and e/S were larger by this part. Fails with STATUS_MEMORY. */
 enum status tree_pairs_find(struct tree_sources *sources, const struct tree_boxes *targets, int with_gradient,
-                            struct tree_expansions *local);
+                            double margin, struct tree_expansions *local);
+
+/* Whether the degrees of all pairs still keep the tolerance for the boxes as they are now. */
+int tree_pairs_fit(const struct tree_sources *sources, const struct tree_boxes *targets, int with_gradient,
+                   int threads);
 
 /* Give each of n_boxes no expansion; then allocate those of the degrees that have been found since. Fail with
  * STATUS_MEMORY. */

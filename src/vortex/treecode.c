@@ -14,10 +14,14 @@ enum {
     CHUNK = TREE_PAIRS_CHUNK
 };
 
+/* By how much theta may grow until a plan no longer fits. */
+static const double plan_margin = 0.02;
+
 struct treecode {
     struct tree_sources *sources; /* of each set                       (capacity) */
     int n_sets, capacity;
     struct tree_boxes targets;
+    int with_gradient;            /* whether the pairs have the degrees for it */
     struct tree_expansions local; /* of the targets, for all sets together */
     double *sum;                  /* u, v and the gradient at the sorted targets, one after another (5 n) */
     size_t sum_capacity;
@@ -38,10 +42,21 @@ void treecode_free(struct treecode *tree) {
     free(tree);
 }
 
+// sort points into boxes, or take those of a set that has the same points
+static enum status fill(const struct treecode *tree, struct tree_boxes *boxes, int n, const double *x, const double *y,
+                        const double *weight, int leaf, int threads) {
+    for (int s = 0; s < tree->n_sets; s++) {
+        const struct tree_boxes *const other = &tree->sources[s].boxes;
+        if (tree_boxes_hold(other, n, x, y, leaf)) return tree_boxes_copy(boxes, other, weight);
+    }
+    return tree_boxes_fill(boxes, n, x, y, weight, leaf, threads);
+}
+
 // sort the targets, and find the pairs of every set
-static enum status plan(struct treecode *tree, int n_targets, const double *x, const double *y, int with_gradient,
-                        int threads) {
-    TRY(tree_boxes_fill(&tree->targets, n_targets, x, y, NULL, with_gradient ? LEAF_GRADIENT : LEAF, threads));
+static enum status pair_up(struct treecode *tree, int n_targets, const double *x, const double *y, int with_gradient,
+                           double margin, int threads) {
+    tree->with_gradient = with_gradient;
+    TRY(fill(tree, &tree->targets, n_targets, x, y, NULL, with_gradient ? LEAF_GRADIENT : LEAF, threads));
     const size_t n_sum = (with_gradient ? 5 : 2) * (size_t)n_targets;
     if (n_sum > tree->sum_capacity) {
         tree->sum_capacity = 0;
@@ -50,7 +65,7 @@ static enum status plan(struct treecode *tree, int n_targets, const double *x, c
     }
     TRY(tree_expansions_reset(&tree->local, tree->targets.n_boxes));
     for (int s = 0; s < tree->n_sets; s++) {
-        TRY(tree_pairs_find(&tree->sources[s], &tree->targets, with_gradient, &tree->local));
+        TRY(tree_pairs_find(&tree->sources[s], &tree->targets, with_gradient, margin, &tree->local));
     }
     return tree_expansions_allocate(&tree->local, tree->targets.n_boxes);
 }
@@ -153,16 +168,21 @@ static void evaluate_leaves(struct treecode *tree, int threads, double *const su
     }
 }
 
-static enum status add(struct treecode *tree, int n_targets, const double *x, const double *y, int threads,
-                       double *const out[5]) {
-    if (n_targets == 0 || tree->n_sets == 0) return STATUS_OK;
-    TRY(plan(tree, n_targets, x, y, out[2] != NULL, threads));
+// all passes, for the pairs that have been found
+static void sum_pairs(struct treecode *tree, int threads, double *const out[5]) {
     double *sum[5] = {0};
-    for (int k = 0; k < 5 && out[k]; k++) sum[k] = tree->sum + (size_t)k * (size_t)n_targets;
+    for (int k = 0; k < 5 && out[k]; k++) sum[k] = tree->sum + (size_t)k * (size_t)tree->targets.n;
     for (int s = 0; s < tree->n_sets; s++) upward_pass(&tree->sources[s], threads);
     far_field(tree, threads);
     downward_pass(tree, threads);
     evaluate_leaves(tree, threads, sum, out);
+}
+
+static enum status add(struct treecode *tree, int n_targets, const double *x, const double *y, int threads,
+                       double *const out[5]) {
+    if (n_targets == 0 || tree->n_sets == 0) return STATUS_OK;
+    TRY(pair_up(tree, n_targets, x, y, out[2] != NULL, 0, threads));
+    sum_pairs(tree, threads, out);
     return STATUS_OK;
 }
 
@@ -182,7 +202,7 @@ enum status treecode_build_more(struct treecode *tree, int n, const double *x, c
         struct tree_sources *const sources = &tree->sources[tree->n_sets];
         sources->smoothing = smoothing;
         sources->tolerance = tolerance;
-        status = tree_boxes_fill(&sources->boxes, n, x, y, circulation, LEAF, threads);
+        status = fill(tree, &sources->boxes, n, x, y, circulation, LEAF, threads);
     }
     tree->n_sets = status == STATUS_OK ? tree->n_sets + 1 : 0;
     return status;
@@ -202,4 +222,31 @@ enum status treecode_add_velocity(struct treecode *tree, int n_targets, const do
 enum status treecode_add_gradient(struct treecode *tree, int n_targets, const double *x, const double *y, int threads,
                                   double *u, double *v, double *u_x, double *u_y, double *v_x) {
     return add(tree, n_targets, x, y, threads, (double *const[5]){u, v, u_x, u_y, v_x});
+}
+
+enum status treecode_plan(struct treecode *tree, int n_targets, const double *x, const double *y, int with_gradient,
+                          int threads) {
+    return pair_up(tree, n_targets, x, y, with_gradient, plan_margin, threads);
+}
+
+void treecode_move_vortices(struct treecode *tree, int set, const double *x, const double *y, const double *circulation,
+                            int threads) {
+    tree_boxes_move(&tree->sources[set].boxes, x, y, circulation, threads);
+}
+
+void treecode_move_targets(struct treecode *tree, const double *x, const double *y, int threads) {
+    tree_boxes_move(&tree->targets, x, y, NULL, threads);
+}
+
+int treecode_fits(const struct treecode *tree, int threads) {
+    int all = 1;
+    for (int s = 0; s < tree->n_sets && all; s++) {
+        all = tree_pairs_fit(&tree->sources[s], &tree->targets, tree->with_gradient, threads);
+    }
+    return all;
+}
+
+void treecode_add_planned(struct treecode *tree, int threads, double *u, double *v, double *u_x, double *u_y,
+                          double *v_x) {
+    sum_pairs(tree, threads, (double *const[5]){u, v, u_x, u_y, v_x});
 }

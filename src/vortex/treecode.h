@@ -49,4 +49,27 @@ enum status treecode_add_velocity(struct treecode *tree, int n_targets, const do
 enum status treecode_add_gradient(struct treecode *tree, int n_targets, const double *x, const double *y, int threads,
                                   double *u, double *v, double *u_x, double *u_y, double *v_x);
 
+/* Plan sums for vortices and targets that will move a little: the vortices are those of the tree, the targets are
+ * sorted into boxes and the pairs are found for where all of them are now; with_gradient: of sums with the gradient as
+ * well. The degrees of the pairs are those for a theta that is 2 % larger: they last while vortices and targets move by
+ * about a fiftieth of the distance between two boxes that are a pair. Fails with STATUS_MEMORY. */
+enum status treecode_plan(struct treecode *tree, int n_targets, const double *x, const double *y, int with_gradient,
+                          int threads);
+
+/* Move the vortices of a set, number 0 .. in the order of treecode_build and treecode_build_more; or the targets. All
+ * arrays are as long and in the order as when they were given; every point stays in its boxes. After treecode_plan. */
+void treecode_move_vortices(struct treecode *tree, int set, const double *x, const double *y, const double *circulation,
+                            int threads);
+void treecode_move_targets(struct treecode *tree, const double *x, const double *y, int threads);
+
+/* Whether the degrees of the plan are high enough for where all points are now: the errors of treecode_add_planned are
+ * then below those bounds that hold for treecode_add_velocity. It depends on the plan and on the places, not on those
+ * in between. */
+int treecode_fits(const struct treecode *tree, int threads);
+
+/* Add the velocity of all vortices at all targets of a plan that fits, and, where it is one with the gradient and u_x
+ * is not NULL, the gradient. The sum is a continuous function of all places. */
+void treecode_add_planned(struct treecode *tree, int threads, double *u, double *v, double *u_x, double *u_y,
+                          double *v_x);
+
 #endif

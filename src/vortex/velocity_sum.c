@@ -12,7 +12,7 @@ static const int min_vortices = 1000;
 static const double min_interactions = 6e6;
 
 struct velocity_sum {
-    struct treecode *tree;
+    struct treecode *tree, *planned;
     struct vortices alike; /* those of one smoothing */
     struct far_images *far_images;
 };
@@ -22,6 +22,7 @@ enum status velocity_sum_create(struct velocity_sum **sum) {
     struct velocity_sum *const new = calloc(1, sizeof *new);
     if (!new) return status_fail(STATUS_MEMORY, "out of memory: a sum");
     enum status status = treecode_create(&new->tree);
+    if (status == STATUS_OK) status = treecode_create(&new->planned);
     if (status == STATUS_OK) status = far_images_create(&new->far_images);
     if (status != STATUS_OK) {
         velocity_sum_free(new);
@@ -34,6 +35,7 @@ enum status velocity_sum_create(struct velocity_sum **sum) {
 void velocity_sum_free(struct velocity_sum *sum) {
     if (!sum) return;
     treecode_free(sum->tree);
+    treecode_free(sum->planned);
     far_images_free(sum->far_images);
     vortices_free(&sum->alike);
     free(sum);
@@ -71,16 +73,16 @@ static enum status select_alike(struct velocity_sum *sum, const struct vortices 
     return STATUS_OK;
 }
 
-// add the vortices to the tree, one set for each smoothing
-static enum status build(struct velocity_sum *sum, const struct vortices *vortices, double tolerance, int threads,
-                         int *n_sets) {
+// add the vortices to a tree, one set for each smoothing
+static enum status build(struct velocity_sum *sum, struct treecode *tree, const struct vortices *vortices,
+                         double tolerance, int threads, int *n_sets) {
     for (int k = 0; k < vortices->n_groups; k++) {
         if (is_done(vortices, k)) continue;
         TRY(select_alike(sum, vortices, k));
         const struct vortices *const all = &sum->alike;
         const double smoothing = vortices->group[k].smoothing;
-        TRY(((*n_sets)++ == 0 ? treecode_build : treecode_build_more)(
-            sum->tree, all->n, all->x, all->y, all->circulation, smoothing, tolerance / 10, threads));
+        TRY(((*n_sets)++ == 0 ? treecode_build : treecode_build_more)(tree, all->n, all->x, all->y, all->circulation,
+                                                                      smoothing, tolerance / 10, threads));
     }
     return STATUS_OK;
 }
@@ -88,7 +90,7 @@ static enum status build(struct velocity_sum *sum, const struct vortices *vortic
 enum status velocity_sum_induce_all(struct velocity_sum *sum, int n, const struct vortices *const *vortices,
                                     double tolerance, int threads, const struct induced *at) {
     int n_sets = 0;
-    for (int i = 0; i < n; i++) TRY(build(sum, vortices[i], tolerance, threads, &n_sets));
+    for (int i = 0; i < n; i++) TRY(build(sum, sum->tree, vortices[i], tolerance, threads, &n_sets));
     if (n_sets == 0) return STATUS_OK;
     if (!at->u_x) return treecode_add_velocity(sum->tree, at->n, at->x, at->y, threads, at->u, at->v);
     return treecode_add_gradient(sum->tree, at->n, at->x, at->y, threads, at->u, at->v, at->u_x, at->u_y, at->v_x);
@@ -97,4 +99,26 @@ enum status velocity_sum_induce_all(struct velocity_sum *sum, int n, const struc
 enum status velocity_sum_induce(struct velocity_sum *sum, const struct vortices *vortices, double tolerance,
                                 int threads, const struct induced *at) {
     return velocity_sum_induce_all(sum, 1, &vortices, tolerance, threads, at);
+}
+
+enum status velocity_sum_plan(struct velocity_sum *sum, const struct vortices *vortices, double tolerance, int threads,
+                              const struct induced *at) {
+    int n_sets = 0;
+    TRY(build(sum, sum->planned, vortices, tolerance, threads, &n_sets));
+    return treecode_plan(sum->planned, at->n, at->x, at->y, at->u_x != NULL, threads);
+}
+
+enum status velocity_sum_by_plan(struct velocity_sum *sum, const struct vortices *vortices, double tolerance,
+                                 int threads, const struct induced *at) {
+    const struct vortices *const all = &sum->alike;
+    int set = 0;
+    for (int k = 0; k < vortices->n_groups; k++) {
+        if (is_done(vortices, k)) continue;
+        TRY(select_alike(sum, vortices, k));
+        treecode_move_vortices(sum->planned, set++, all->x, all->y, all->circulation, threads);
+    }
+    treecode_move_targets(sum->planned, at->x, at->y, threads);
+    if (!treecode_fits(sum->planned, threads)) return velocity_sum_induce(sum, vortices, tolerance, threads, at);
+    treecode_add_planned(sum->planned, threads, at->u, at->v, at->u_x, at->u_y, at->v_x);
+    return STATUS_OK;
 }

@@ -31,4 +31,15 @@ enum status velocity_sum_induce(struct velocity_sum *sum, const struct vortices 
 enum status velocity_sum_induce_all(struct velocity_sum *sum, int n, const struct vortices *const *vortices,
                                     double tolerance, int threads, const struct induced *at);
 
+/* Plan sums for vortices and targets that will move a little, with gradients where at->u_x is not NULL: they are sorted
+ * for where they are now; the velocities are not touched. Fails with STATUS_MEMORY: there is no plan then. */
+enum status velocity_sum_plan(struct velocity_sum *sum, const struct vortices *vortices, double tolerance, int threads,
+                              const struct induced *at);
+
+/* velocity_sum_induce without sorting, where nothing has moved too far for the last plan (treecode.h), which was for as
+ * many vortices in the same groups, as many targets, and this tolerance; else velocity_sum_induce itself. Where
+ * at->u_x is not NULL, the plan was one with gradients. It depends on the plan, and not on what was summed since. */
+enum status velocity_sum_by_plan(struct velocity_sum *sum, const struct vortices *vortices, double tolerance,
+                                 int threads, const struct induced *at);
+
 #endif

@@ -89,17 +89,10 @@ static void keep_worse(double *worst, double error) {
     if (!(error <= *worst)) *worst = error;
 }
 
-// at every seventh target
-static struct errors errors(int n, double smoothing, double tolerance, int n_targets, const double *at_x,
-                            const double *at_y) {
-    static double got[5][MAX], want[5];
-    memset(got, 0, sizeof got);
-    struct treecode *const tree = build(n, smoothing, tolerance);
-    double u[MAX] = {0}, v[MAX] = {0};
-    assert_int_equal(treecode_add_velocity(tree, n_targets, at_x, at_y, 1, u, v), STATUS_OK);
-    assert_int_equal(treecode_add_gradient(tree, n_targets, at_x, at_y, 1, got[0], got[1], got[2], got[3], got[4]),
-                     STATUS_OK);
-    treecode_free(tree);
+// those of two velocities and a gradient at every seventh target
+static struct errors compare(int n, double smoothing, int n_targets, const double *at_x, const double *at_y,
+                             const double *u, const double *v, double got[5][MAX]) {
+    double want[5];
     struct errors worst = {0};
     for (int i = 0; i < n_targets; i += 7) {
         memset(want, 0, sizeof want);
@@ -118,6 +111,19 @@ static struct errors errors(int n, double smoothing, double tolerance, int n_tar
         for (int k = 2; k < 5; k++) keep_worse(&worst.gradient, fabs(got[k][i] - want[k]) / b);
     }
     return worst;
+}
+
+static struct errors errors(int n, double smoothing, double tolerance, int n_targets, const double *at_x,
+                            const double *at_y) {
+    static double got[5][MAX];
+    memset(got, 0, sizeof got);
+    struct treecode *const tree = build(n, smoothing, tolerance);
+    double u[MAX] = {0}, v[MAX] = {0};
+    assert_int_equal(treecode_add_velocity(tree, n_targets, at_x, at_y, 1, u, v), STATUS_OK);
+    assert_int_equal(treecode_add_gradient(tree, n_targets, at_x, at_y, 1, got[0], got[1], got[2], got[3], got[4]),
+                     STATUS_OK);
+    treecode_free(tree);
+    return compare(n, smoothing, n_targets, at_x, at_y, u, v, got);
 }
 
 struct cloud {
@@ -180,6 +186,160 @@ static void targets_need_not_be_the_sources(void **state) {
             NEAR(now.gradient, 0, 50e-8, 0);
         }
     }
+}
+
+// ---- plans ----
+
+enum { N_PLANNED = 4000, BODIES = 27 * 40 };
+
+struct targets {
+    double x[BODIES], y[BODIES];
+};
+
+// points of bodies, 27 along each, and wakes, all of which have moved by up to a distance, each its own way
+static void move(struct targets *targets, double far) {
+    fill(N_PLANNED, strips);
+    for (int i = 0; i < N_PLANNED; i++) {
+        x[i] += far * sin(0.1 * i);
+        y[i] += far * cos(0.3 * i);
+        circulation[i] *= 1 + far * sin(i);
+    }
+    for (int i = 0; i < BODIES; i++) {
+        targets->x[i] = 1.5 * (i / 27 % 8) - (i % 27) / 26.0 + far * cos(0.2 * i);
+        targets->y[i] = 1.5 * (i / 27 / 8) + 0.05 * sin(0.2 * i) + far * sin(0.1 * i);
+    }
+}
+
+static struct treecode *plan(double smoothing, double tolerance, int with_gradient, int threads) {
+    struct targets targets;
+    move(&targets, 0);
+    struct treecode *const tree = build(N_PLANNED, smoothing, tolerance);
+    assert_int_equal(treecode_plan(tree, BODIES, targets.x, targets.y, with_gradient, threads), STATUS_OK);
+    return tree;
+}
+
+// whether a plan fits where all have moved by a distance
+static int move_all(struct treecode *tree, struct targets *targets, double far, int threads) {
+    move(targets, far);
+    treecode_move_vortices(tree, 0, x, y, circulation, threads);
+    treecode_move_targets(tree, targets->x, targets->y, threads);
+    return treecode_fits(tree, threads);
+}
+
+// The sums of a plan for a distance; with the gradient where there is room for it.
+static void sum_planned(struct treecode *tree, int threads, double value[5][MAX], int with_gradient) {
+    memset(value, 0, 5 * sizeof *value);
+    double *const none = NULL, *const *const g = with_gradient ? (double *[]){value[2], value[3], value[4]}
+                                                               : (double *[]){none, none, none};
+    treecode_add_planned(tree, threads, value[0], value[1], g[0], g[1], g[2]);
+}
+
+static void a_plan_keeps_the_tolerance_wherever_it_fits(void **state) {
+    (void)state;
+    static const double far[] = {0, 1e-6, 1e-3, 0.005, 0.01, 0.02, 0.03, 0.05, 0.1, 0.3, 1, 10, 0};
+    static const double smoothing[] = {0, 0.2, 3};
+    enum { N_FAR = sizeof far / sizeof *far };
+    static double velocity[5][MAX], gradient[5][MAX];
+    for (int t = 0; t < N_TOLERANCES; t++) {
+        for (int e = 0; e < 3; e++) {
+            struct treecode *const one = plan(smoothing[e], tolerances[t], 0, 1);
+            struct treecode *const both = plan(smoothing[e], tolerances[t], 1, 1);
+            int n_fit = 0;
+            for (int k = 0; k < N_FAR; k++) {
+                struct targets targets;
+                const int fits = move_all(one, &targets, far[k], 1) && move_all(both, &targets, far[k], 1);
+                n_fit += fits;
+                // at small tolerances there are so few pairs that they may fit anywhere
+                assert_true(far[k] > 0.02 || fits);
+                assert_false(far[k] >= 1 && tolerances[t] > 1e-9 && fits);
+                if (!fits) continue;
+                sum_planned(one, 1, velocity, 0);
+                sum_planned(both, 1, gradient, 1);
+                struct errors now =
+                    compare(N_PLANNED, smoothing[e], BODIES, targets.x, targets.y, velocity[0], velocity[1], gradient);
+                NEAR(now.velocity, 0, tolerances[t] + 1e-14, 0);
+                NEAR(now.gradient, 0, 50 * tolerances[t] + 1e-13, 0);
+                // a plan with the gradient is good for velocities alone
+                sum_planned(both, 1, velocity, 0);
+                now =
+                    compare(N_PLANNED, smoothing[e], BODIES, targets.x, targets.y, velocity[0], velocity[1], gradient);
+                NEAR(now.velocity, 0, tolerances[t] + 1e-14, 0);
+            }
+            print_message("tolerance %.0e, smoothing %-3g: fits %d of %d\n", tolerances[t], smoothing[e], n_fit, N_FAR);
+            treecode_free(one);
+            treecode_free(both);
+        }
+    }
+}
+
+static void a_plan_is_the_tree_that_is_built_there(void **state) {
+    (void)state;
+    const double tolerance = 1e-8;
+    static double planned[5][MAX], built[5][MAX];
+    struct treecode *const tree = plan(0.2, tolerance, 0, 1);
+    for (int k = 0; k < 3; k++) {
+        struct targets targets;
+        assert_true(move_all(tree, &targets, 0.004 * k, 1));
+        sum_planned(tree, 1, planned, 0);
+        memset(built, 0, sizeof built);
+        struct treecode *const fresh = build(N_PLANNED, 0.2, tolerance);
+        assert_int_equal(treecode_add_velocity(fresh, BODIES, targets.x, targets.y, 1, built[0], built[1]), STATUS_OK);
+        treecode_free(fresh);
+        // the error of each, A is below 160
+        NEAR_ARRAY(BODIES, planned[0], built[0], 2 * 160 * tolerance, 0);
+        NEAR_ARRAY(BODIES, planned[1], built[1], 2 * 160 * tolerance, 0);
+    }
+    treecode_free(tree);
+}
+
+static void neither_threads_nor_what_came_between_change_a_bit_of_a_plan(void **state) {
+    (void)state;
+    static double one[5][MAX], more[5][MAX];
+    for (int with_gradient = 0; with_gradient < 2; with_gradient++) {
+        struct targets targets;
+        struct treecode *const tree = plan(0.2, 1e-8, with_gradient, 1);
+        assert_true(move_all(tree, &targets, 0.01, 1));
+        sum_planned(tree, 1, one, with_gradient);
+        for (int threads = 2; threads < 5; threads++) {
+            struct treecode *const other = plan(0.2, 1e-8, with_gradient, threads);
+            assert_false(move_all(other, &targets, 3, threads));
+            assert_true(move_all(other, &targets, 0.005, threads));
+            sum_planned(other, threads, more, with_gradient);
+            assert_true(move_all(other, &targets, 0.01, threads));
+            sum_planned(other, threads, more, with_gradient);
+            assert_memory_equal(more, one, sizeof one);
+            treecode_free(other);
+        }
+        treecode_free(tree);
+    }
+}
+
+// A sum whose pairs change as points move jumps by up to its tolerance; the second difference shows it.
+static void a_planned_sum_is_continuous(void **state) {
+    (void)state;
+    enum { STEPS = 100 };
+    const double tolerance = 1e-4;
+    static double planned[3][5][MAX], built[3][5][MAX];
+    double jump[2] = {0};
+    struct treecode *const tree = plan(0.2, tolerance, 0, 1);
+    for (int k = 0; k < STEPS; k++) {
+        struct targets targets;
+        assert_true(move_all(tree, &targets, 2e-5 * k, 1));
+        sum_planned(tree, 1, planned[k % 3], 0);
+        memset(built[k % 3], 0, sizeof built[k % 3]);
+        struct treecode *const fresh = build(N_PLANNED, 0.2, tolerance);
+        assert_int_equal(
+            treecode_add_velocity(fresh, BODIES, targets.x, targets.y, 1, built[k % 3][0], built[k % 3][1]), STATUS_OK);
+        treecode_free(fresh);
+        for (int i = 0; k >= 2 && i < BODIES; i++) {
+            const int a = (k - 2) % 3, b = (k - 1) % 3, c = k % 3;
+            keep_worse(&jump[0], fabs(planned[a][0][i] - 2 * planned[b][0][i] + planned[c][0][i]));
+            keep_worse(&jump[1], fabs(built[a][0][i] - 2 * built[b][0][i] + built[c][0][i]));
+        }
+    }
+    print_message("second differences: planned %.1e, built %.1e\n", jump[0], jump[1]);
+    assert_true(10 * jump[0] < jump[1]);
+    treecode_free(tree);
 }
 
 // ---- everything else ----
@@ -315,6 +475,10 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(errors_are_below_the_tolerance_and_not_far_below),
         cmocka_unit_test(targets_need_not_be_the_sources),
+        cmocka_unit_test(a_plan_keeps_the_tolerance_wherever_it_fits),
+        cmocka_unit_test(a_plan_is_the_tree_that_is_built_there),
+        cmocka_unit_test(neither_threads_nor_what_came_between_change_a_bit_of_a_plan),
+        cmocka_unit_test(a_planned_sum_is_continuous),
         cmocka_unit_test(few_points_are_summed_directly),
         cmocka_unit_test(a_vortex_adds_nothing_at_itself),
         cmocka_unit_test(threads_do_not_change_a_bit),

@@ -66,6 +66,60 @@ static void trees_of_every_smoothing_add_up_to_the_direct_sum(void **state) {
     vortices_free(&vortices);
 }
 
+// the largest difference of two results
+static double difference(const struct result *one, const struct result *other) {
+    double worst = 0;
+    for (int k = 0; k < 5; k++) {
+        for (int i = 0; i < TARGETS; i++) worst = fmax(worst, fabs(one->value[k][i] - other->value[k][i]));
+    }
+    return worst;
+}
+
+static void move(struct vortices *vortices, double far) {
+    for (int i = 0; i < vortices->n; i++) {
+        vortices->x[i] += far * sin(i);
+        vortices->y[i] += far * cos(0.2 * i);
+    }
+}
+
+static void by_plan_it_is_the_same_sum_to_the_tolerance(void **state) {
+    (void)state;
+    const double tolerance = 1e-6;
+    struct vortices vortices;
+    struct velocity_sum *sum;
+    assert_int_equal(velocity_sum_create(&sum), STATUS_OK);
+    for (int with_gradient = 0; with_gradient < 2; with_gradient++) {
+        make(&vortices);
+        struct result planned, again, fresh;
+        struct induced targets = at(&planned, with_gradient);
+        assert_int_equal(velocity_sum_plan(sum, &vortices, tolerance, 1, &targets), STATUS_OK);
+        assert_true(planned.value[0][0] == 1 && planned.value[1][TARGETS - 1] == 1);
+        move(&vortices, 0.003);
+        assert_int_equal(velocity_sum_by_plan(sum, &vortices, tolerance, 1, &targets), STATUS_OK);
+        targets = at(&fresh, with_gradient);
+        assert_int_equal(velocity_sum_induce(sum, &vortices, tolerance, 1, &targets), STATUS_OK);
+        // the bits tell which of both it was
+        const double small = difference(&planned, &fresh);
+        assert_true(small > 0 && small < 50 * tolerance);
+        // too far for the plan: that of velocity_sum_induce
+        move(&vortices, 2);
+        targets = at(&again, with_gradient);
+        assert_int_equal(velocity_sum_by_plan(sum, &vortices, tolerance, 1, &targets), STATUS_OK);
+        targets = at(&fresh, with_gradient);
+        assert_int_equal(velocity_sum_induce(sum, &vortices, tolerance, 1, &targets), STATUS_OK);
+        assert_memory_equal(again.value, fresh.value, sizeof fresh.value);
+        // the plan is still there, for any number of threads
+        vortices_free(&vortices);
+        make(&vortices);
+        move(&vortices, 0.003);
+        targets = at(&again, with_gradient);
+        assert_int_equal(velocity_sum_by_plan(sum, &vortices, tolerance, 3, &targets), STATUS_OK);
+        assert_memory_equal(again.value, planned.value, sizeof planned.value);
+        vortices_free(&vortices);
+    }
+    velocity_sum_free(sum);
+}
+
 static void the_tree_is_for_many_vortices_and_a_tolerance(void **state) {
     (void)state;
     const struct vortices few = {.n = 1600}, many = {.n = 12800};
@@ -79,6 +133,7 @@ static void the_tree_is_for_many_vortices_and_a_tolerance(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(trees_of_every_smoothing_add_up_to_the_direct_sum),
+        cmocka_unit_test(by_plan_it_is_the_same_sum_to_the_tolerance),
         cmocka_unit_test(the_tree_is_for_many_vortices_and_a_tolerance),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
