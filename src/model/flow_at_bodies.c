@@ -30,9 +30,29 @@ void flow_sum_exactly(struct flow *flow) {
     flow->is_interpolated = 0;
 }
 
+// all points of all fish as targets
+static struct induced targets(const struct flow *flow, int with_gradient) {
+    struct induced all = {.n = flow->n_points, .x = flow->x, .y = flow->y, .u = flow->u, .v = flow->v};
+    if (with_gradient) {
+        all.u_x = flow->u_x;
+        all.u_y = flow->u_y;
+        all.v_x = flow->v_x;
+    }
+    return all;
+}
+
+// sort the bound vortices and the points for the sums until the next event, where the tree sums them
+static enum status plan_sheets(struct flow *flow) {
+    const struct induced at = targets(flow, 0);
+    const double tolerance = flow->school->wake_tolerance;
+    if (!velocity_sum_by_tree(&flow->sheet, at.n, tolerance)) return STATUS_OK;
+    return velocity_sum_plan(flow->velocity_sum, &flow->sheet, tolerance, flow->school->threads, &at);
+}
+
 enum status flow_interpolate(struct flow *flow, const struct state *state) {
     if (!flow->interpolation) return STATUS_OK;
     TRY(flow_place(flow, state, state->t, state->y));
+    flow_sum_exactly(flow);
     for (int f = 0; f < flow->school->n_fish; f++) {
         const struct fish *const fish = &flow->school->fish[f];
         // where there are momenta, a is their rate
@@ -46,6 +66,7 @@ enum status flow_interpolate(struct flow *flow, const struct state *state) {
                                                      flow->motion[1], flow->motion[2], flow->motion[3]};
     TRY(wake_interpolation_build(flow->interpolation, flow_seen_wakes(flow, state), state->t, &points));
     wake_interpolation_update(flow->interpolation, flow->t);
+    TRY(plan_sheets(flow));
     flow->is_interpolated = 1;
     flow->interpolated_version = flow->version;
     return STATUS_OK;
@@ -156,7 +177,11 @@ static void evaluate_chunk(const struct flow *flow, const struct chunk *chunk, s
 // all bound sheets at all points by the tree, and their images by tree or cells
 static enum status sum_sheets(struct flow *flow, struct summed what, int threads, const struct induced *all) {
     const double tolerance = flow->school->wake_tolerance;
-    if (what.sheets) TRY(velocity_sum_induce(flow->velocity_sum, &flow->sheet, tolerance, threads, all));
+    if (what.sheets) {
+        const int is_planned = flow->is_interpolated && !all->u_x;
+        TRY((is_planned ? velocity_sum_by_plan : velocity_sum_induce)(flow->velocity_sum, &flow->sheet, tolerance,
+                                                                      threads, all));
+    }
     if (!what.images) return STATUS_OK;
     return images_induce_many(&flow->school->walls, flow->velocity_sum, &flow->sheet, tolerance, threads, all);
 }
@@ -173,12 +198,7 @@ static double work_of(const struct flow *flow) {
 }
 
 static void evaluate(struct flow *flow, int with_gradient) {
-    struct induced all = {.n = flow->n_points, .x = flow->x, .y = flow->y, .u = flow->u, .v = flow->v};
-    if (with_gradient) {
-        all.u_x = flow->u_x;
-        all.u_y = flow->u_y;
-        all.v_x = flow->v_x;
-    }
+    const struct induced all = targets(flow, with_gradient);
     const int threads = parallel_threads(flow->school->threads, flow->n_chunks, work_of(flow), PARALLEL_INTERACTIONS);
     const double tolerance = flow->school->wake_tolerance;
     const int by_tree = velocity_sum_by_tree(&flow->sheet, flow->n_points, tolerance);

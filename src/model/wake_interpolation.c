@@ -158,15 +158,19 @@ static void sum_directly(const struct wake_interpolation *interpolation) {
     }
 }
 
-// the same by the tree, and the images of all in walls, one time after another
+// the same by the tree, planned once for all times, and the images of all in walls, one time after another
 static enum status sum_by_tree(const struct wake_interpolation *interpolation, int by_tree, int threads) {
     const double tolerance = interpolation->school->wake_tolerance;
+    struct velocity_sum *const sum = interpolation->velocity_sum;
+    if (by_tree) {
+        const struct induced first = targets_at(interpolation, 0);
+        TRY(velocity_sum_plan(sum, &interpolation->released[0], tolerance, threads, &first));
+    }
     for (int i = 0; i < N_TIMES; i++) {
         const struct induced at = targets_at(interpolation, i);
         const struct vortices *const released = &interpolation->released[i];
-        if (by_tree) TRY(velocity_sum_induce(interpolation->velocity_sum, released, tolerance, threads, &at));
-        TRY(images_induce_many(&interpolation->school->walls, interpolation->velocity_sum, released, tolerance, threads,
-                               &at));
+        if (by_tree) TRY(velocity_sum_by_plan(sum, released, tolerance, threads, &at));
+        TRY(images_induce_many(&interpolation->school->walls, sum, released, tolerance, threads, &at));
     }
     return STATUS_OK;
 }

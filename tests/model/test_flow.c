@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "failing_malloc.h"
 #include "model/flow_at_bodies.h"
 #include "model/flow_at_wake.h"
 #include "model/flow_derivative.h"
@@ -222,6 +223,64 @@ static void by_cells_free_sheets_feel_the_same_images(void **state) {
     const double error = difference(n, u, v, flow->wake_u, flow->wake_v);
     assert_true(error > 0 && error < 1e-6);
     free(u);
+    school_clear(&setup);
+}
+
+// unknowns of a school whose bodies have moved by a distance, each point its own way
+static void move(const struct setup *setup, double far, double *y) {
+    memcpy(y, setup->state->y, (size_t)setup->school->n_unknowns * sizeof *y);
+    for (int f = 0; f < setup->school->n_fish; f++) {
+        const struct layout *const at = &setup->school->fish[f].at;
+        for (int i = at->x; i < at->vx; i++) y[i] += far * sin(0.7 * i);
+    }
+}
+
+// Between two events the tree needs no memory, because it does not sort what has moved; without memory and without a
+// plan there is the direct sum.
+static void the_tree_is_planned_at_the_event(void **state) {
+    (void)state;
+    struct setup setup;
+    build_many(&setup, "");
+    struct flow *const flow = setup.residual->flow;
+    const size_t n = (size_t)flow->n_points;
+    double *const u = malloc(4 * n * sizeof *u), *const v = u + n, *const exact_u = v + n, *const exact_v = exact_u + n;
+    double *const y = malloc((size_t)setup.school->n_unknowns * sizeof *y);
+    assert_true(u && y);
+    const double far[] = {0, 0.004, 5};
+    school_ok(flow_interpolate(flow, setup.state));
+    const double tolerance = setup.school->wake_tolerance;
+    for (int k = 0; k < 3; k++) {
+        // every sheet directly; this makes room for the released vortices too
+        move(&setup, far[k], y);
+        setup.school->wake_tolerance = 0;
+        school_ok(flow_velocity(flow, setup.state, setup.t, y));
+        setup.school->wake_tolerance = tolerance;
+        memcpy(exact_u, flow->u, n * sizeof *u);
+        memcpy(exact_v, flow->v, n * sizeof *v);
+        n_until_failure = far[k] < 1 ? 0 : -1;
+        school_ok(flow_velocity(flow, setup.state, setup.t, y));
+        n_until_failure = -1;
+        memcpy(u, flow->u, n * sizeof *u);
+        memcpy(v, flow->v, n * sizeof *v);
+        for (int threads = 2; threads < 4; threads++) {
+            setup.school->threads = threads;
+            school_ok(flow_velocity(flow, setup.state, setup.t, y));
+            assert_memory_equal(flow->u, u, n * sizeof *u);
+            assert_memory_equal(flow->v, v, n * sizeof *v);
+            setup.school->threads = 1;
+        }
+        // the same after the bodies were elsewhere
+        move(&setup, 1, y);
+        school_ok(flow_velocity(flow, setup.state, setup.t, y));
+        move(&setup, far[k], y);
+        school_ok(flow_velocity(flow, setup.state, setup.t, y));
+        assert_memory_equal(flow->u, u, n * sizeof *u);
+        const double error = difference(flow->n_points, u, v, exact_u, exact_v);
+        // see compare_every_point
+        assert_true(error > 0 && error < tolerance);
+    }
+    free(u);
+    free(y);
     school_clear(&setup);
 }
 
@@ -475,6 +534,7 @@ int main(void) {
         cmocka_unit_test(every_point_feels_the_sources_that_the_model_says),
         cmocka_unit_test(wake_vortices_feel_everything_with_smoothed_sheets),
         cmocka_unit_test(by_tree_every_point_feels_the_same_sources),
+        cmocka_unit_test(the_tree_is_planned_at_the_event),
         cmocka_unit_test(by_tree_wake_vortices_feel_every_sheet_once),
         cmocka_unit_test(by_cells_free_sheets_feel_the_same_images),
         cmocka_unit_test(external_flow_is_stream_plus_shear_plus_gust),

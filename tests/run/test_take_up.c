@@ -1,5 +1,6 @@
 /* test_take_up.c: a run that is taken up from its state and totals alone goes on with the bits of the run that renewed
  * itself there, for every method and every kind of memory that a run has. */
+#include <stdio.h>
 #include <string.h>
 
 #include "model/fish_school.h"
@@ -115,10 +116,45 @@ static void a_run_may_be_taken_up_at_its_first_event(void **state) {
     simulate_free(other);
 }
 
+// Sheets and wakes that the tree sums, as it was planned at the event: also on another number of threads.
+static void a_large_school_goes_on_with_the_same_bits_on_other_threads(void **state) {
+    (void)state;
+    enum { MANY = 20 };
+    char text[2][4096];
+    for (int k = 0; k < 2; k++) {
+        int used = snprintf(text[k], sizeof text[k],
+                            TIME
+                            "wake: {shedding: sheet}\nsolver: {threads: %d}\n"
+                            "defaults: {fish: {nodes: 7, sheet_points: 120}}\nfish:\n",
+                            k + 1);
+        for (int f = 0; f < MANY; f++) {
+            used += snprintf(text[k] + used, sizeof text[k] - (size_t)used,
+                             "  - {start: {position: [%g, %g]}, wave: {phase: %d}}\n", 1.4 * (f % 5), 0.4 * (f / 5),
+                             36 * f);
+            assert_true((size_t)used < sizeof text[k]);
+        }
+    }
+    struct simulation *const one = school_simulation(text[0]);
+    const struct flow *flow = one->residual->flow;
+    assert_true(velocity_sum_by_tree(&flow->sheet, flow->n_points, one->school->wake_tolerance));
+    steps(one, 1);
+    school_ok(simulate_renew(one));
+    struct simulation *const other = taken_up(one, text[1]);
+    assert_int_equal(other->school->threads, 2);
+    flow = one->residual->flow;
+    assert_true(flow->is_interpolated);
+    steps(one, 2);
+    steps(other, 2);
+    compare(other, one, text[1]);
+    simulate_free(one);
+    simulate_free(other);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_run_goes_on_from_its_state_alone_with_the_same_bits),
         cmocka_unit_test(a_run_may_be_taken_up_at_its_first_event),
+        cmocka_unit_test(a_large_school_goes_on_with_the_same_bits_on_other_threads),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
