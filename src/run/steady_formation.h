@@ -6,7 +6,8 @@
 #include "run/steady_problem.h"
 
 /* Find values that all slow quantities keep, near those that they have, to a change of no more than tolerance in a
- * beat, in their scales. Fails with STATUS_SOLVER, or as steady_problem_beat. */
+ * beat, in their scales. Where that leads nowhere, begin again, and follow what the fish do. Fails with STATUS_SOLVER,
+ * or as steady_problem_beat. */
 enum status steady_formation_solve(struct steady_problem *problem, double tolerance);
 
 #endif

@@ -101,6 +101,7 @@ void steady_problem_free(struct steady_problem *problem) {
     free(problem->pin);
     free(problem->pinned);
     free(problem->scratch);
+    free(problem->jacobian);
     *problem = (struct steady_problem){.n_unknowns = 0};
 }
 

@@ -17,8 +17,10 @@ struct steady_problem {
     int n_pins;       /* of these the ones that are set while its speed is solved for: all speeds, to that one, and the
                          places and directions in a formation, to what they are at the start (n_pins) */
     struct steady_unknown *pin;
-    double *pinned;               /* (n_pins) */
-    double *scratch;              /* (4 n_unknowns) */
+    double *pinned;   /* (n_pins) */
+    double *scratch;  /* (4 n_unknowns) */
+    double *jacobian; /* of a formation: by what each unknown changes what a beat does to all of them, in their scales,
+                         column after column; NULL: not known yet (n_unknowns, n_unknowns) */
     double recent[STEADY_RECENT]; /* speed of the first fish in the last beats, beat n at n % STEADY_RECENT, m s-1 */
     /* told after each beat of the search; may be NULL */
     void (*progress)(const struct steady_problem *problem, void *data);

@@ -30,6 +30,8 @@ static void a_follower_finds_the_place_where_it_is_as_fast_as_its_leader(void **
     NEAR(spacing(&setup), 1, 0.1, 0);
     NEAR(last[1].place[1], 0, 1e-12, 0);
     assert_true(hypot(setup.real[0], setup.imaginary[0]) < 1);
+    // a run needs more than a hundred beats from here; five for each unknown and Jacobian took 60
+    assert_true(setup.problem.map.n_beats <= 40);
     // it is stable, so beats without a search keep it
     steady_setup_beats(&setup, 5);
     assert_true(steady_map_residual(&setup.problem.map) < 3e-3);
@@ -73,9 +75,67 @@ static void fish_that_swim_freely_keep_the_place_that_is_found(void **state) {
     school_ok(steady_search_run(&setup.problem));
     const struct steady_beat found = setup.problem.map.last[1];
     NEAR(found.place[0], -1.4, 0.1, 0);
+    assert_true(setup.problem.map.n_beats <= 60);
     // let go it stays for some beats: 0.1 lengths from there it would be off by 0.05 by now
     steady_setup_beats(&setup, 4);
     for (int i = 0; i < 2; i++) NEAR(setup.problem.map.last[1].place[i], found.place[i], 0.02, 0);
+    steady_setup_close(&setup);
+}
+
+static void a_diamond_of_plates_is_found_and_stable(void **state) {
+    (void)state;
+    struct steady_setup setup;
+    steady_setup_find(&setup, PLATES
+                      "fish: [{}, {start: {position: [5.3, 0.5]}}, {start: {position: [5.3, -0.5]}},\n"
+                      "  {start: {position: [10.6, 0]}}]\n");
+    assert_int_equal(setup.problem.n_unknowns, 7);
+    assert_true(setup.problem.map.n_beats <= 60);
+    assert_true(hypot(setup.real[0], setup.imaginary[0]) < 1);
+    const struct steady_beat *const last = setup.problem.map.last;
+    double place[4];
+    for (int f = 0; f < 4; f++) place[f] = last[f].place[0];
+    // what is to the right of the leader half a beat later is to its left now
+    NEAR(place[1], place[2], 0.02, 0);
+    // put aside it comes back, as a run from there does
+    const struct steady_unknown ahead = {3, STEADY_AHEAD};
+    const double add = 0.2;
+    school_ok(steady_map_add(&setup.problem.map, 1, &ahead, &add));
+    steady_setup_beats(&setup, 30);
+    for (int f = 1; f < 4; f++) NEAR(setup.problem.map.last[f].place[0], place[f], 0.02, 0);
+    steady_setup_close(&setup);
+}
+
+static void a_follower_of_a_held_leader_takes_its_speed(void **state) {
+    (void)state;
+    struct steady_setup setup;
+    steady_setup_find(&setup, PLATES "fish: [{motion: {surge: given, speed: 4}}, {start: {position: [5.2, 0]}}]\n");
+    // speed and distance of the follower
+    assert_int_equal(setup.problem.n_unknowns, 2);
+    // its place changes by no more than the tolerance in a beat, nor does its speed
+    NEAR(setup.problem.map.last[1].speed, 4, 2 * 3e-3, 0);
+    NEAR(spacing(&setup), 1, 0.15, 0);
+    assert_true(hypot(setup.real[0], setup.imaginary[0]) < 1);
+    steady_setup_close(&setup);
+    // behind one that is faster, and hardly beats, it stays back
+    steady_setup_fails(PLATES
+                       "fish: [{motion: {surge: given, speed: 6, heave: 0.03}}, {start: {position: [5.2, 0]}}]\n",
+                       STATUS_SOLVER, "drift: let go, fish2 goes back, as fish1 sees it, by");
+}
+
+static void from_between_two_places_it_goes_where_the_fish_would(void **state) {
+    (void)state;
+    struct steady_setup setup;
+    // the thrust is largest near there: Newton's method alone goes to the side until they do not feel each other
+    steady_setup_open(&setup, SCHOOL_SECOND
+                      "time: {end: 1, shedding_interval: 0.025, output_interval: 0.025}\n"
+                      "steady: {formation: true, tolerance: 3e-4}\n"
+                      "defaults: {fish: {nodes: 13, sheet_points: 25, start: {speed: 0.75},\n"
+                      "  control: {law: heading, desired_heading: 180}}}\n"
+                      "fish: [{}, {start: {position: [1.75, 0.1]}}]\n");
+    school_ok(steady_search_run(&setup.problem));
+    const double *const place = setup.problem.map.last[1].place;
+    NEAR(place[0], -1.6, 0.05, 0);
+    NEAR(place[1], 0, 0.1, 0);
     steady_setup_close(&setup);
 }
 
@@ -98,7 +158,10 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_follower_finds_the_place_where_it_is_as_fast_as_its_leader),
         cmocka_unit_test(between_two_stable_places_is_one_that_the_follower_leaves),
+        cmocka_unit_test(a_diamond_of_plates_is_found_and_stable),
+        cmocka_unit_test(a_follower_of_a_held_leader_takes_its_speed),
         cmocka_unit_test(fish_that_swim_freely_keep_the_place_that_is_found),
+        cmocka_unit_test(from_between_two_places_it_goes_where_the_fish_would),
         cmocka_unit_test(where_no_formation_is_found_the_reason_is_what_the_fish_do),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
