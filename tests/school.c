@@ -9,6 +9,7 @@
 #include "model/flow_at_bodies.h"
 #include "model/flow_derivative.h"
 #include "model/residual_jacobian.h"
+#include "model/state_table.h"
 
 void school_ok(enum status status) {
     if (status == STATUS_OK) return;
@@ -317,4 +318,24 @@ void school_shed_step_by_step(struct simulation *simulation) {
         NEAR(yp[at->circulation], (y[at->circulation] - circulation) / step, 1e-12, 1e-12);
     }
     assert_true(fabs(yp[at->circulation]) > 1e-3);
+}
+
+void school_same_bits(const struct simulation *got, const struct simulation *want, const char *text) {
+    for (int i = 0; i < state_table_n; i++) {
+        const struct state_row *const row = &state_table[i];
+        for (int f = 0; f < state_table_n_owners(row, want->school) && row->type != STATE_UNKEPT; f++) {
+            const size_t n = state_table_length(row, want->state, want->school, f);
+            const void *const one = state_table_values(row, got->state, f);
+            const void *const other = state_table_values(row, want->state, f);
+            if (state_table_length(row, got->state, got->school, f) != n ||
+                memcmp(one, other, n * state_table_size(row)) != 0) {
+                fail_msg("%s of fish %d differs, case:\n%s", row->name, f, text);
+            }
+        }
+    }
+    struct integrator_counts counts[2];
+    got->integrator->count(got->solver, &counts[0]);
+    want->integrator->count(want->solver, &counts[1]);
+    if (memcmp(&counts[0], &counts[1], sizeof *counts) != 0) fail_msg("the totals differ, case:\n%s", text);
+    assert_true(counts[0].steps > want->options.before.steps);
 }

@@ -60,6 +60,10 @@ double *school_dense_jacobian(const struct jacobian *jacobian);
 struct simulation *school_simulation(const char *text);
 void school_run(struct simulation *simulation, double t);
 
+/* Fail the test, with the text of the case, unless two runs of it have the same bits in every field of their states and
+ * the same totals. */
+void school_same_bits(const struct simulation *got, const struct simulation *want, const char *text);
+
 /* The integration fails within 50 events, and the message has this text. */
 void school_fails(struct simulation *simulation, const char *message);
 

@@ -54,7 +54,7 @@ struct diagnostics_power diagnostics_power(struct residual *residual, int f, dou
     const struct fluid_power fluid = fluid_force_power(fish, &flow, y);
     const struct pressure_forces pressure = diagnostics_pressure(residual, f, (const double[2]){0, 0}, y);
     // natural curvature, its derivative and its rate at this very state
-    double *const curvature = residual->scratch, *const by_phi0 = curvature + fish->n_joints;
+    double *const curvature = residual->scratch + fish->at.x, *const by_phi0 = curvature + fish->n_joints;
     const struct state *const state = residual->state;
     const struct fish_gait gait = control_gait(fish, &state->control[f], t);
     actuation_curvature(fish, gait, y[fish->at.phi0], curvature, by_phi0);
@@ -85,7 +85,7 @@ static double kinetic_energy(const struct fish *fish, const double *y) {
 
 static double bending_energy(struct residual *residual, int f, double t, const double *y) {
     const struct fish *fish = &residual->school->fish[f];
-    double *const curvature = residual->scratch;
+    double *const curvature = residual->scratch + fish->at.x;
     const struct fish_gait gait = control_gait(fish, &residual->state->control[f], t);
     actuation_curvature(fish, gait, y[fish->at.phi0], curvature, curvature + fish->n_joints);
     return rod_bending_energy(fish, curvature, y) + clamp_energy(fish, t, y);
@@ -121,26 +121,31 @@ static double newest_area(int n, const double t[3], const double value[3]) {
     return area;
 }
 
-void diagnostics_step(struct residual *residual, struct state *state, double t, const double *y) {
-    for (int f = 0; f < residual->school->n_fish; f++) {
-        struct energy_balance *balance = &state->balance[f];
-        const struct diagnostics_power now = diagnostics_power(residual, f, t, y);
-        const double times[3] = {t, balance->t[0], balance->t[1]};
-        double newest[N_WORKS];
-        gather_powers(&now, newest);
-        for (int i = 0; i < N_WORKS; i++) {
-            const double power[3] = {newest[i], balance->power[0][i], balance->power[1][i]};
-            if (t > times[1]) balance->work[i] += newest_area(balance->n + 1, times, power);
-            balance->power[1][i] = power[1];
-            balance->power[0][i] = power[0];
-        }
-        for (int i = 0; i < 2; i++) balance->t[i] = times[i];
-        if (balance->n < 2) balance->n++;
+static void add_works(struct residual *residual, int f, double t, const double *y, struct energy_balance *balance) {
+    const struct diagnostics_power now = diagnostics_power(residual, f, t, y);
+    const double times[3] = {t, balance->t[0], balance->t[1]};
+    double newest[N_WORKS];
+    gather_powers(&now, newest);
+    for (int i = 0; i < N_WORKS; i++) {
+        const double power[3] = {newest[i], balance->power[0][i], balance->power[1][i]};
+        if (t > times[1]) balance->work[i] += newest_area(balance->n + 1, times, power);
+        balance->power[1][i] = power[1];
+        balance->power[0][i] = power[0];
     }
+    for (int i = 0; i < 2; i++) balance->t[i] = times[i];
+    if (balance->n < 2) balance->n++;
+}
+
+void diagnostics_step(struct residual *residual, struct state *state, double t, const double *y) {
+    const int threads = fish_threads(residual->school);
+#pragma omp parallel for num_threads(threads) schedule(static)
+    for (int f = 0; f < residual->school->n_fish; f++) add_works(residual, f, t, y, &state->balance[f]);
     clearance_step(residual->school, state, t, y, residual->neighbours, residual->scratch);
 }
 
 void diagnostics_before_jump(struct residual *residual, struct state *state) {
+    const int threads = fish_threads(residual->school);
+#pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < residual->school->n_fish; f++) {
         state->balance[f].work[WORK_ALL] -= diagnostics_energy(residual, f, state->t, state->y);
     }
@@ -155,6 +160,8 @@ void diagnostics_begin(struct residual *residual, struct state *state, int f) {
 }
 
 void diagnostics_after_jump(struct residual *residual, struct state *state) {
+    const int threads = fish_threads(residual->school);
+#pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < residual->school->n_fish; f++) {
         state->balance[f].work[WORK_ALL] += diagnostics_energy(residual, f, state->t, state->y);
         diagnostics_begin(residual, state, f);

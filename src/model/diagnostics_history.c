@@ -29,6 +29,8 @@ static void continue_sample(const struct history *history, double interval, stru
 
 void diagnostics_remember(struct residual *residual, struct state *state) {
     const double interval = residual->school->interval;
+    const int threads = fish_threads(residual->school);
+#pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < residual->school->n_fish; f++) {
         const struct fish *fish = &residual->school->fish[f];
         const double *const y = state->y;

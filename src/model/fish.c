@@ -3,6 +3,12 @@
 
 #include <math.h>
 
+#include "base/parallel.h"
+
+int fish_threads(const struct school *school) {
+    return parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_UNKNOWNS);
+}
+
 double fish_mean(const struct stencil *point, const double *value) {
     double mean = 0;
     for (int i = 0; i < point->n; i++) mean += point->weight[i] * value[point->node[i]];

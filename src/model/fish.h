@@ -163,6 +163,9 @@ struct school {
     int threads;
 };
 
+/* The threads of a loop over all fish that computes with their unknowns: one or all. */
+int fish_threads(const struct school *school);
+
 /* sum of weight * value over the nodes of the point. */
 double fish_mean(const struct stencil *point, const double *value);
 

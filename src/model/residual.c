@@ -208,21 +208,37 @@ static void evaluate_fish(struct residual *residual, int f, double t, const doub
     control_residual(fish, &state->control[f], t, t - state->t, y, value);
 }
 
+static int all_finite(const double *value, int first, int end) {
+    for (int i = first; i < end; i++) {
+        if (!isfinite(value[i])) return 0;
+    }
+    return 1;
+}
+
+// which of the equations has none
+static enum status not_finite(const struct school *school, double t, const double *value) {
+    int i = 0;
+    while (isfinite(value[i])) i++;
+    const struct unknown_place place = residual_place(school, i);
+    return status_fail(STATUS_RETRY, "the equation for %s[%d] of fish %s has no finite value at t = %g s", place.name,
+                       place.index, school->fish[place.fish].name, t);
+}
+
 enum status residual_evaluate(struct residual *residual, double t, const double *y, const double *yp, double *value) {
     TRY(residual_contact(residual, t, y));
     TRY(flow_velocity(residual->flow, residual->state, t, y));
     const struct school *school = residual->school;
-    const int threads = parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_UNKNOWNS);
+    const int threads = fish_threads(school);
+    int failed = 0;
 #pragma omp parallel for num_threads(threads) schedule(static)
-    for (int f = 0; f < school->n_fish; f++) evaluate_fish(residual, f, t, y, yp, value);
-    for (int i = 0; i < residual->school->n_unknowns; i++) {
-        if (!isfinite(value[i])) {
-            const struct unknown_place place = residual_place(residual->school, i);
-            return status_fail(STATUS_RETRY, "the equation for %s[%d] of fish %s has no finite value at t = %g s",
-                               place.name, place.index, residual->school->fish[place.fish].name, t);
-        }
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct layout *const at = &school->fish[f].at;
+        evaluate_fish(residual, f, t, y, yp, value);
+        if (all_finite(value, at->x, at->end)) continue;
+#pragma omp atomic write
+        failed = 1;
     }
-    return STATUS_OK;
+    return failed ? not_finite(school, t, value) : STATUS_OK;
 }
 
 void residual_balance(const struct residual *residual, int f, const double *y, double *value) {

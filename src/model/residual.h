@@ -35,7 +35,7 @@ struct residual {
     double *natural_curvature; /* dimensionless, doc/model.md section 4          (joints of all fish) */
     double *curvature_by_phi0;
     struct jacobian_scratch *jacobian_scratch; /* scratch of each thread                          (threads) */
-    double *scratch;                           /* for those who read the results                   (n_unknowns) */
+    double *scratch; /* for those who read the results; of fish f: its own slices    (n_unknowns) */
 };
 
 /* Scratch of the derivatives through the flow, large enough for any pair of fish. */

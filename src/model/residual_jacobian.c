@@ -141,7 +141,7 @@ enum status residual_jacobian(struct residual *residual, double t, double cj, co
 
 void residual_by_shed(struct residual *residual, const double *y, double *value) {
     const struct school *school = residual->school;
-    const int threads = parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_UNKNOWNS);
+    const int threads = fish_threads(school);
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *fish = &school->fish[f];

@@ -93,6 +93,8 @@ static enum status take_velocities(struct state *state, struct residual *residua
     const struct school *school = residual->school;
     struct flow *const flow = residual->flow;
     TRY(flow_at_wake(flow, state));
+    const int threads = fish_threads(school);
+#pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < school->n_fish; f++) {
         const int first = flow->wake_range[f].first, newest = first + state->wake[f].n_vortex - 1;
         if (state->wake[f].has_markers) {
@@ -130,13 +132,18 @@ static struct control_view view_of(const struct state *state, const struct resid
 // the control of every fish takes its decision; returns whether a bias jumps
 static int steer(struct state *state, struct residual *residual) {
     const struct school *school = residual->school;
+    const int threads = fish_threads(school);
     int jumps = 0;
+#pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *fish = &school->fish[f];
         struct control_memory *const memory = &state->control[f];
         const struct control_view view = view_of(state, residual, f);
         const double before = control_rate(fish, memory, state->t, 0, state->y);
-        jumps |= control_event(fish, memory, &view, state->y);
+        if (control_event(fish, memory, &view, state->y)) {
+#pragma omp atomic write
+            jumps = 1;
+        }
         const double change = control_rate(fish, memory, state->t, 0, state->y) - before;
         if (fabs(change) > 0) diagnostics_begin(residual, state, f);
     }
@@ -190,6 +197,8 @@ enum status event_start(struct state *state, struct residual *residual, struct i
 enum status event_next(struct state *state, struct residual *residual, struct initial_conditions *initial,
                        int *jumped) {
     const struct school *school = residual->school;
+    const int threads = fish_threads(school);
+#pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < school->n_fish; f++) {
         wake_advance(&state->wake[f], school->interval);
         control_advance(&state->control[f], school->interval);
@@ -205,6 +214,7 @@ enum status event_next(struct state *state, struct residual *residual, struct in
     } else {
         TRY(release_nascent(state, school));
     }
+#pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < school->n_fish; f++) wake_remove_old(&state->wake[f], school, state->t);
     TRY(wake_merge(school, state));
     if (jumps) TRY(initial_conditions_solve(initial, state->t, state->y, state->yp));

@@ -4,7 +4,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "base/parallel.h"
 #include "model/fish_prescribed.h"
 
 // two translations and a rotation
@@ -22,8 +21,7 @@ struct body {
 };
 
 struct corotation {
-    int n_fish;
-    int threads;       /* that share the loops over bodies */
+    const struct school *school;
     struct body *body; /* (n_fish) */
     double *values;    /* all arrays of all bodies */
 };
@@ -37,8 +35,7 @@ enum status corotation_create(struct corotation **corotation, const struct schoo
     const size_t n_fish = (size_t)school->n_fish;
     size_t n_nodes = 0;
     for (int f = 0; f < school->n_fish; f++) n_nodes += (size_t)school->fish[f].n_nodes;
-    new->n_fish = school->n_fish;
-    new->threads = parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_UNKNOWNS);
+    new->school = school;
     new->body = calloc(n_fish, sizeof *new->body);
     new->values = calloc(n_nodes * 2 * N_ARRAYS, sizeof *new->values);
     if (!new->body || !new->values) goto no_memory;
@@ -112,7 +109,7 @@ static void rotate_nodes(const struct body *body, double sign, double *a) {
 }
 
 void corotation_set_reference(struct corotation *corotation, const double *y) {
-    for (int f = 0; f < corotation->n_fish; f++) {
+    for (int f = 0; f < corotation->school->n_fish; f++) {
         struct body *body = &corotation->body[f];
         for (int i = 0; i < 2 * body->fish->n_nodes; i++) body->reference[i] = y[body->fish->at.x + i];
         body->has_moved = 0;
@@ -147,8 +144,9 @@ static void find_rotations(struct body *body, const double *position) {
 }
 
 void corotation_set_current(struct corotation *corotation, const double *y) {
-#pragma omp parallel for num_threads(corotation->threads) schedule(static)
-    for (int f = 0; f < corotation->n_fish; f++) {
+    const int threads = fish_threads(corotation->school);
+#pragma omp parallel for num_threads(threads) schedule(static)
+    for (int f = 0; f < corotation->school->n_fish; f++) {
         struct body *body = &corotation->body[f];
         const struct fish *fish = body->fish;
         const double *const position = y + fish->at.x;
@@ -175,8 +173,9 @@ static void body_to_reference(const struct body *body, double *a) {
 }
 
 static void map_all(const struct corotation *corotation, void (*map)(const struct body *, double *), double *vector) {
-#pragma omp parallel for num_threads(corotation->threads) schedule(static)
-    for (int f = 0; f < corotation->n_fish; f++) {
+    const int threads = fish_threads(corotation->school);
+#pragma omp parallel for num_threads(threads) schedule(static)
+    for (int f = 0; f < corotation->school->n_fish; f++) {
         const struct body *body = &corotation->body[f];
         if (!body->has_moved) continue;
         map(body, vector + body->fish->at.x);

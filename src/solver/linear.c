@@ -123,7 +123,7 @@ static void find_change(const struct fish *fish, const struct sparse *own, const
 void linear_update_shed(struct linear *linear, const double *value) {
     const struct jacobian *jacobian = linear->jacobian;
     const struct school *school = jacobian->school;
-    const int threads = parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_UNKNOWNS);
+    const int threads = fish_threads(school);
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *fish = &school->fish[f];
@@ -140,7 +140,7 @@ void linear_update_shed(struct linear *linear, const double *value) {
 // x = D^-1 b with the diagonal blocks D alone; both may be the same array
 static void solve_blocks(struct linear *linear, const double *b, double *x) {
     const struct school *school = linear->jacobian->school;
-    const int threads = parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_UNKNOWNS);
+    const int threads = fish_threads(school);
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < school->n_fish; f++) {
         const struct layout *at = &school->fish[f].at;
@@ -154,7 +154,7 @@ static void solve_blocks(struct linear *linear, const double *b, double *x) {
 static void multiply(struct linear *linear, const double *v, double *product) {
     const struct jacobian *jacobian = linear->jacobian;
     const struct school *school = jacobian->school;
-    const int threads = parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_UNKNOWNS);
+    const int threads = fish_threads(school);
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < school->n_fish; f++) {
         const struct layout *at = &school->fish[f].at;

@@ -1,7 +1,6 @@
 /* test_take_up.c: a run that is taken up from its state and totals alone goes on with the bits of the run that renewed
  * itself there, for every method and every kind of memory that a run has. */
 #include <stdio.h>
-#include <string.h>
 
 #include "model/fish_school.h"
 #include "model/state_table.h"
@@ -69,26 +68,6 @@ static struct simulation *taken_up(const struct simulation *from, const char *te
     return simulation;
 }
 
-static void compare(const struct simulation *got, const struct simulation *want, const char *text) {
-    for (int i = 0; i < state_table_n; i++) {
-        const struct state_row *const row = &state_table[i];
-        for (int f = 0; f < state_table_n_owners(row, want->school) && row->type != STATE_UNKEPT; f++) {
-            const size_t n = state_table_length(row, want->state, want->school, f);
-            const void *const one = state_table_values(row, got->state, f);
-            const void *const other = state_table_values(row, want->state, f);
-            if (state_table_length(row, got->state, got->school, f) != n ||
-                memcmp(one, other, n * state_table_size(row)) != 0) {
-                fail_msg("%s of fish %d differs, case:\n%s", row->name, f, text);
-            }
-        }
-    }
-    struct integrator_counts counts[2];
-    got->integrator->count(got->solver, &counts[0]);
-    want->integrator->count(want->solver, &counts[1]);
-    if (memcmp(&counts[0], &counts[1], sizeof *counts) != 0) fail_msg("the totals differ, case:\n%s", text);
-    assert_true(counts[0].steps > want->options.before.steps);
-}
-
 static void a_run_goes_on_from_its_state_alone_with_the_same_bits(void **state) {
     (void)state;
     for (int i = 0; i < N_CASES; i++) {
@@ -98,7 +77,7 @@ static void a_run_goes_on_from_its_state_alone_with_the_same_bits(void **state) 
         struct simulation *const other = taken_up(one, cases[i]);
         steps(one, N_AFTER);
         steps(other, N_AFTER);
-        compare(other, one, cases[i]);
+        school_same_bits(other, one, cases[i]);
         simulate_free(one);
         simulate_free(other);
     }
@@ -111,7 +90,7 @@ static void a_run_may_be_taken_up_at_its_first_event(void **state) {
     struct simulation *const other = taken_up(one, cases[0]);
     steps(one, N_AFTER);
     steps(other, N_AFTER);
-    compare(other, one, cases[0]);
+    school_same_bits(other, one, cases[0]);
     simulate_free(one);
     simulate_free(other);
 }
@@ -145,7 +124,7 @@ static void a_large_school_goes_on_with_the_same_bits_on_other_threads(void **st
     assert_true(flow->is_interpolated);
     steps(one, 2);
     steps(other, 2);
-    compare(other, one, text[1]);
+    school_same_bits(other, one, text[1]);
     simulate_free(one);
     simulate_free(other);
 }

@@ -1,0 +1,68 @@
+/* test_threads.c: runs with several threads have the bits of those with one: all of the state, and the totals. */
+#include <stdio.h>
+
+#include "base/parallel.h"
+#include "school.h"
+
+/* Pairs of fish that meet head on between two walls; every third fish has another force, some steer. Enough unknowns
+ * for loops over fish to be shared. */
+enum { N_PAIRS = 9 };
+#define MEETING                                                            \
+    "time: {end: 1, shedding_interval: 0.01}\nfluid: {walls: [-0.3, 4]}\n" \
+    "contact: {range: 0.05}\ndefaults: {fish: {nodes: 7, sheet_points: 15, start: {speed: 0.5}}}\n"
+
+static void meeting_text(size_t size, char *text, const char *settings, const char *force, int threads) {
+    static const char *const law[] = {"none", "heading", "course, desired_heading: 170"};
+    size_t used = (size_t)snprintf(text, size, "%s" MEETING "solver: {threads: %d}\nfish:\n", settings, threads);
+    for (int f = 0; f < 2 * N_PAIRS; f++) {
+        const int right = f % 2;
+        used += (size_t)snprintf(text + used, size - used,
+                                 "  - {force: %s, control: {law: %s}, wave: {phase: %d}, start: {position: [%g, %g], "
+                                 "heading: %d}}\n",
+                                 f % 3 == 0 ? force : "reactive", law[f % 4 % 3], 40 * f, right ? 0.1 : -0.1,
+                                 0.4 * (f / 2) + 0.01 * right, right ? 180 : 0);
+    }
+    assert_true(used < size);
+}
+
+// a run of some events
+static struct simulation *run_of(const char *settings, const char *force, int threads, int n_events) {
+    char text[8192];
+    meeting_text(sizeof text, text, settings, force, threads);
+    struct simulation *const simulation = school_simulation(text);
+    assert_true(simulation->school->n_unknowns >= PARALLEL_UNKNOWNS);
+    for (int i = 0; i < n_events; i++) school_ok(simulate_step(simulation));
+    return simulation;
+}
+
+static void compare_threads(const char *settings, const char *force, int n_events) {
+    struct simulation *const one = run_of(settings, force, 1, n_events);
+    const int *partner;
+    int n_contacts = 0;
+    for (int f = 0; f < one->school->n_fish; f++) n_contacts += contact_partners(one->residual->contact, f, &partner);
+    assert_true(n_contacts > 0);
+    for (int threads = 2; threads <= 3; threads++) {
+        struct simulation *const many = run_of(settings, force, threads, n_events);
+        school_same_bits(many, one, settings);
+        simulate_free(many);
+    }
+    simulate_free(one);
+}
+
+static void threads_change_no_bit_of_a_school_in_contact(void **state) {
+    (void)state;
+    compare_threads(SCHOOL_SECOND, "pressure", 2);
+}
+
+static void threads_change_no_bit_where_vortices_are_shed_at_once(void **state) {
+    (void)state;
+    compare_threads(SCHOOL_SECOND "wake: {shedding: impulsive, kutta: rate}\n", "published", 2);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(threads_change_no_bit_of_a_school_in_contact),
+        cmocka_unit_test(threads_change_no_bit_where_vortices_are_shed_at_once),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
