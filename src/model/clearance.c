@@ -70,6 +70,18 @@ static double meeting(const struct fish *a, const struct fish *b, const double *
     return 1;
 }
 
+// on the way from the places in before to those in y
+static double travel_of(const struct fish *a, const struct fish *b, const double *before, const double *y) {
+    const struct shift shift = shift_of(a, before, y), other = shift_of(b, before, y);
+    return approach(&shift, &other);
+}
+
+int clearance_may_be_near(const struct fish *a, const struct fish *b, const double *before, const double *y,
+                          double limit) {
+    const double travel = travel_of(a, b, before, y), now = fish_distance(a, b, y, limit + travel);
+    return now < limit || now < travel;
+}
+
 static void remember(struct closest *closest, double distance, double t, int f, int g) {
     if (distance >= closest->distance) return;
     closest->distance = distance;
@@ -80,8 +92,7 @@ static void remember(struct closest *closest, double distance, double t, int f, 
 
 struct passage clearance_passage(const struct fish *a, const struct fish *b, const double *before, const double *y,
                                  double limit, double *between) {
-    const struct shift shift = shift_of(a, before, y), other = shift_of(b, before, y);
-    const double travel = approach(&shift, &other);
+    const double travel = travel_of(a, b, before, y);
     // what is farther apart now cannot have been closer than the limit on the way
     const double now = fish_distance(a, b, y, limit + travel);
     struct passage passage = {.now = now, .least = now, .part = 1};
@@ -98,15 +109,31 @@ static void compare(const struct school *school, struct state *state, double t, 
     remember(closest, passage.least, when, f, g);
 }
 
-// find the bodies that may have come nearer to each other than the record; returns whether they are known
+// whether a fish before fish f may have come nearer to it than the record
+static int may_be_nearest(const struct school *school, const struct closest *closest, const double *y,
+                          const struct neighbours *neighbours, int f) {
+    for (int i = neighbours->first[f]; i < neighbours->first[f + 1] && neighbours->other[i] < f; i++) {
+        const struct fish *const other = &school->fish[neighbours->other[i]];
+        if (clearance_may_be_near(&school->fish[f], other, closest->before, y, closest->distance)) return 1;
+    }
+    return 0;
+}
+
+// Find the bodies that may have come nearer to each other than the record; returns whether they are known. All that
+// takes time is shared by threads: then hardly any fish is left that needs a second look.
 static int find_near(const struct school *school, const struct closest *closest, const double *y,
                      struct neighbours *neighbours) {
     if (isinf(closest->distance)) return 0;
+    const int threads = fish_threads(school);
+#pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < school->n_fish; f++) {
         neighbours->box[f] = clearance_box(&school->fish[f], closest->distance, closest->before, y);
     }
     // without memory for them there are still all pairs
-    return neighbours_find(neighbours) == STATUS_OK;
+    if (neighbours_find(neighbours) != STATUS_OK) return 0;
+#pragma omp parallel for num_threads(threads) schedule(static)
+    for (int f = 0; f < school->n_fish; f++) neighbours->filled[f] = may_be_nearest(school, closest, y, neighbours, f);
+    return 1;
 }
 
 void clearance_step(const struct school *school, struct state *state, double t, const double *y,
@@ -115,6 +142,7 @@ void clearance_step(const struct school *school, struct state *state, double t, 
     const int is_known = find_near(school, closest, y, neighbours);
     // bodies that have touched cannot come closer
     for (int f = 0; f < school->n_fish && closest->distance > 0; f++) {
+        if (is_known && !neighbours->filled[f]) continue;
         const int *const other = is_known ? neighbours->other + neighbours->first[f] : NULL;
         const int n = is_known ? neighbours->first[f + 1] - neighbours->first[f] : f;
         for (int i = 0; i < n && closest->distance > 0; i++) {

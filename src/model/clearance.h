@@ -14,6 +14,10 @@ struct box clearance_box(const struct fish *fish, double distance, const double 
 /* The record begins with the bodies as they are. neighbours: workspace (n_fish); between: scratch (n_unknowns). */
 void clearance_start(const struct school *school, struct state *state, struct neighbours *neighbours, double *between);
 
+/* Whether two bodies may be nearer to each other than a limit, m, at the end or, should they have met, on the way. */
+int clearance_may_be_near(const struct fish *a, const struct fish *b, const double *before, const double *y,
+                          double limit);
+
 /* How two bodies pass each other while their nodes go straight. */
 struct passage {
     double now;   /* distance at the end, m; INFINITY: above the limit */

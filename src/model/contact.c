@@ -14,7 +14,7 @@ struct contact {
     struct neighbours *neighbours; /* NULL: nobody repels anybody */
     int *first;                    /* the partners of each fish in other                       (n_fish + 1) */
     int *other;
-    unsigned char *is_near; /* whether the overlaps of neighbours->other are partners */
+    unsigned char *is_near; /* whether the overlaps of neighbours->other are partners, or may be */
     int capacity;           /* of these two */
     double *between;        /* scratch                                                   (n_unknowns) */
 };
@@ -68,6 +68,23 @@ static enum status compare(const struct contact *contact, const struct state *st
     return status_fail(STATUS_RETRY, "the bodies of %s and %s touch or cross before t = %.10g s", a->name, b->name, t);
 }
 
+// who may be in contact of those whose boxes overlap
+static void find_near(const struct contact *contact, const struct state *state, const double *y) {
+    const struct neighbours *const neighbours = contact->neighbours;
+    const struct school *const school = contact->school;
+    const double *const before = state->closest->before, range = school->contact_range;
+    const int threads = fish_threads(school);
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 4)
+    for (int f = 0; f < school->n_fish; f++) {
+        for (int i = neighbours->first[f]; i < neighbours->first[f + 1]; i++) {
+            const int g = neighbours->other[i];
+            if (g < f) continue;
+            contact->is_near[i] =
+                (unsigned char)clearance_may_be_near(&school->fish[f], &school->fish[g], before, y, range);
+        }
+    }
+}
+
 // what is known of fish g and f where g < f
 static unsigned char seen_before(const struct contact *contact, int f, int g) {
     const struct neighbours *const neighbours = contact->neighbours;
@@ -101,20 +118,22 @@ enum status contact_find(struct contact *contact, const struct state *state, dou
     struct neighbours *const neighbours = contact->neighbours;
     TRY(compare_with_walls(contact, t, y));
     if (!neighbours) return STATUS_OK;
-    const int n_fish = contact->school->n_fish;
+    const int n_fish = contact->school->n_fish, threads = fish_threads(contact->school);
+#pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < n_fish; f++) {
         neighbours->box[f] =
             clearance_box(&contact->school->fish[f], contact->school->contact_range, state->closest->before, y);
     }
     TRY(neighbours_find(neighbours));
     TRY(reserve(contact, neighbours->capacity));
+    find_near(contact, state, y);
     int n = 0;
     for (int f = 0; f < n_fish; f++) {
         contact->first[f] = n;
         for (int i = neighbours->first[f]; i < neighbours->first[f + 1]; i++) {
             const int g = neighbours->other[i];
             if (g < f) contact->is_near[i] = seen_before(contact, f, g);
-            if (g > f) TRY(compare(contact, state, t, y, f, g, &contact->is_near[i]));
+            if (g > f && contact->is_near[i]) TRY(compare(contact, state, t, y, f, g, &contact->is_near[i]));
             if (contact->is_near[i]) contact->other[n++] = g;
         }
     }

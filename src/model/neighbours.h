@@ -18,7 +18,7 @@ struct neighbours {
     int *other; /* (first[n]) */
     int capacity;
     int *pair;   /* scratch: pairs as they are found                                         (capacity) */
-    int *filled; /* scratch: how many of the overlaps of each box are in their place                (n) */
+    int *filled; /* scratch: how many of the overlaps of each box are in their place; then free     (n) */
 };
 
 /* Make room for n boxes. Fails with STATUS_MEMORY; neighbours_free accepts NULL. */

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/parallel.h"
 #include "failing_malloc.h"
 #include "model/clearance.h"
 #include "school.h"
@@ -43,6 +44,42 @@ static const struct closest *step(struct pair *pair, int f, double dx, double dy
     clearance_step(pair->setup.school, pair->setup.state, t, pair->setup.state->y, pair->setup.residual->neighbours,
                    pair->between);
     return pair->setup.state->closest;
+}
+
+// many pairs at the same distance, and as many fish as threads need
+static void of_pairs_at_the_same_distance_the_first_one_counts(void **state) {
+    (void)state;
+    enum { N_FISH = 30 };
+    char text[4096] = TIME "defaults: {fish: {wave: {amplitude: 0}}}\nfish: [{}";
+    for (int f = 1; f < N_FISH; f++) {
+        snprintf(text + strlen(text), sizeof text - strlen(text), ", {start: {position: [0, %d]}}", f);
+    }
+    strcat(text, "]\n");
+    struct pair pair = place(text);
+    assert_true(pair.setup.school->n_unknowns >= PARALLEL_UNKNOWNS);
+    double *const at_start = calloc((size_t)pair.setup.school->n_unknowns, sizeof *at_start);
+    assert_non_null(at_start);
+    memcpy(at_start, pair.setup.state->y, (size_t)pair.setup.school->n_unknowns * sizeof *at_start);
+    for (int threads = 1; threads <= 3; threads++) {
+        pair.setup.school->threads = threads;
+        // all but the first two come nearer to their neighbours by halves
+        for (int f = 0; f < N_FISH; f++) {
+            const struct fish *const fish = &pair.setup.school->fish[f];
+            for (int k = 0; k < fish->n_nodes; k++) pair.setup.state->y[fish->at.y + k] = f < 2 ? 2 * f : 3 + 0.5 * f;
+        }
+        clearance_start(pair.setup.school, pair.setup.state, pair.setup.residual->neighbours, pair.between);
+        const struct closest *const closest = pair.setup.state->closest;
+        assert_int_equal(closest->fish[0], 2);
+        assert_int_equal(closest->fish[1], 3);
+        // the record is not taken by another pair at the same distance
+        step(&pair, 1, 0, 1.5, threads);
+        assert_int_equal(closest->fish[0], 2);
+        memcpy(pair.setup.state->y, at_start, (size_t)pair.setup.school->n_unknowns * sizeof *at_start);
+    }
+    // those that the residual has made room for
+    pair.setup.school->threads = 1;
+    free(at_start);
+    clear(&pair);
 }
 
 static void one_fish_is_close_to_none(void **state) {
@@ -167,6 +204,7 @@ static void the_record_of_a_school_is_that_of_all_pairs(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(of_pairs_at_the_same_distance_the_first_one_counts),
         cmocka_unit_test(one_fish_is_close_to_none),
         cmocka_unit_test(closest_approach_is_that_of_all_steps),
         cmocka_unit_test(bodies_that_cross_between_two_steps_have_touched),
