@@ -11,6 +11,7 @@
 #include "model/rod.h"
 #include "solver/algebraic_rates.h"
 #include "solver/ida_newton.h"
+#include "solver/shared_vector.h"
 #include "solver/sundials_adapter.h"
 
 /* Newton's iteration has converged when its error is this fraction of the error test's unit. Velocities are outside the
@@ -37,10 +38,11 @@ struct ida {
     struct jacobian *jacobian;
     const volatile sig_atomic_t *stop; /* see integrator.h */
     enum status failure;               /* of the last callback */
-    double *tolerance, *kind;          /* absolute tolerance and kind of each unknown             (n_unknowns) */
+    /* absolute tolerance, one over it, and kind of each unknown                                  (n_unknowns) */
+    double *tolerance, *weight, *kind;
 
     SUNContext context;
-    N_Vector y, yp, tolerances, kinds, scratch[2];
+    N_Vector y, yp, weights, kinds, scratch[2];
     struct sundials_adapter_linear linear;
     SUNNonlinearSolver newton;
     void *ida;
@@ -66,6 +68,14 @@ static int jacobian_callback(realtype t, realtype cj, N_Vector y, N_Vector yp, N
     solver->jacobians++;
     solver->failure = residual_jacobian(solver->residual, t, cj, N_VGetArrayPointer(y), solver->jacobian);
     return solver->failure;
+}
+
+// the same in every step
+static int weights_callback(N_Vector y, N_Vector weights, void *data) {
+    (void)y;
+    const struct ida *const solver = data;
+    N_VScale(1, solver->weights, weights);
+    return 0;
 }
 
 static double leading_coefficient(void *data) {
@@ -97,7 +107,7 @@ static void ida_free(void *data) {
     if (solver->ida) IDAFree(&solver->ida);
     if (solver->newton) SUNNonlinSolFree(solver->newton);
     sundials_adapter_linear_free(&solver->linear);
-    const N_Vector vectors[] = {solver->y,     solver->yp,         solver->tolerances,
+    const N_Vector vectors[] = {solver->y,     solver->yp,         solver->weights,
                                 solver->kinds, solver->scratch[0], solver->scratch[1]};
     for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
         if (vectors[i]) N_VDestroy(vectors[i]);
@@ -105,6 +115,7 @@ static void ida_free(void *data) {
     jacobian_free(solver->jacobian);
     algebraic_rates_free(solver->algebraic_rates);
     free(solver->tolerance);
+    free(solver->weight);
     free(solver->kind);
     if (solver->context) SUNContext_Free(&solver->context);
     free(solver);
@@ -124,7 +135,7 @@ static enum status set_up_ida(struct ida *solver) {
     void *const ida = solver->ida;
     if (IDASetErrHandlerFn(ida, sundials_adapter_message, &solver->failure) || IDASetUserData(ida, solver) ||
         IDAInit(ida, residual_callback, solver->state->t, solver->y, solver->yp) ||
-        IDASVtolerances(ida, 0, solver->tolerances) || IDASetId(ida, solver->kinds) || IDASetSuppressAlg(ida, 1) ||
+        IDAWFtolerances(ida, weights_callback) || IDASetId(ida, solver->kinds) || IDASetSuppressAlg(ida, 1) ||
         IDASetLinearSolver(ida, solver->linear.solver, solver->linear.matrix) || IDASetJacFn(ida, jacobian_callback) ||
         IDASetNonlinearSolver(ida, solver->newton) || IDASetNonlinConvCoef(ida, newton_coefficient) ||
         IDASetMaxOrd(ida, solver->options.order) || IDASetDeltaCjLSetup(ida, cj_change) ||
@@ -135,23 +146,27 @@ static enum status set_up_ida(struct ida *solver) {
 }
 
 static enum status fill(struct ida *solver) {
-    const int n = solver->residual->school->n_unknowns;
+    const struct school *const school = solver->residual->school;
+    const int n = school->n_unknowns;
     solver->tolerance = calloc((size_t)n, sizeof *solver->tolerance);
+    solver->weight = calloc((size_t)n, sizeof *solver->weight);
     solver->kind = calloc((size_t)n, sizeof *solver->kind);
-    if (!solver->tolerance || !solver->kind) return status_fail(STATUS_MEMORY, "out of memory: %d tolerances", n);
+    if (!solver->tolerance || !solver->weight || !solver->kind)
+        return status_fail(STATUS_MEMORY, "out of memory: %d tolerances", n);
     residual_kinds(solver->residual, solver->kind);
     for (int i = 0; i < n; i++) {
-        solver->tolerance[i] = solver->residual->school->rtol * residual_scale(solver->residual->school, i);
+        solver->tolerance[i] = school->rtol * residual_scale(school, i);
+        solver->weight[i] = 1 / solver->tolerance[i];
     }
-    TRY(jacobian_create(&solver->jacobian, solver->residual->school));
-    TRY(algebraic_rates_create(&solver->algebraic_rates, solver->residual->school));
+    TRY(jacobian_create(&solver->jacobian, school));
+    TRY(algebraic_rates_create(&solver->algebraic_rates, school));
     algebraic_rates_begin(solver->algebraic_rates, solver->state);
     residual_mask(solver->residual, solver->jacobian);
-    TRY(sundials_adapter_context(&solver->context, solver->residual->school->n_unknowns));
-    TRY(sundials_adapter_vector(&solver->y, solver->context, n, solver->state->y));
-    TRY(sundials_adapter_vector(&solver->yp, solver->context, n, solver->state->yp));
-    TRY(sundials_adapter_vector(&solver->tolerances, solver->context, n, solver->tolerance));
-    TRY(sundials_adapter_vector(&solver->kinds, solver->context, n, solver->kind));
+    TRY(sundials_adapter_context(&solver->context, n));
+    TRY(shared_vector_create(&solver->y, solver->context, school, solver->state->y));
+    TRY(shared_vector_create(&solver->yp, solver->context, school, solver->state->yp));
+    TRY(shared_vector_create(&solver->weights, solver->context, school, solver->weight));
+    TRY(shared_vector_create(&solver->kinds, solver->context, school, solver->kind));
     for (int i = 0; i < 2; i++) {
         solver->scratch[i] = N_VClone(solver->y);
         if (!solver->scratch[i]) return status_fail(STATUS_MEMORY, "out of memory: a vector of %d unknowns", n);
@@ -159,7 +174,7 @@ static enum status fill(struct ida *solver) {
     const struct linear_tolerance linear = {linear_relative, linear_absolute * newton_coefficient};
     TRY(sundials_adapter_linear_create(&solver->linear, solver->context, solver->jacobian, solver->tolerance, linear,
                                        &solver->failure));
-    const int is_sheet = solver->residual->school->shedding == SHEDDING_SHEET;
+    const int is_sheet = school->shedding == SHEDDING_SHEET;
     const struct ida_newton_rules rules = {.max_iterations = max_iterations,
                                            .max_with_new = max_with_new,
                                            .jacobian_cost = jacobian_cost,
@@ -168,7 +183,7 @@ static enum status fill(struct ida *solver) {
                                            .leading_coefficient = leading_coefficient,
                                            .update = is_sheet ? update_jacobian : NULL,
                                            .complete = couple_more};
-    TRY(ida_newton_create(&solver->newton, solver->context, solver->y, solver->residual->school, rules));
+    TRY(ida_newton_create(&solver->newton, solver->context, solver->y, school, rules));
     solver->ida = IDACreate(solver->context);
     if (!solver->ida) return status_fail(STATUS_MEMORY, "out of memory: IDA");
     return set_up_ida(solver);

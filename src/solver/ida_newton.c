@@ -52,11 +52,28 @@ static int test_norm(struct ida_newton *newton, int norm, double size, double to
     return newton->done < newton->most ? SUN_NLS_CONTINUE : SUN_NLS_CONV_RECVR;
 }
 
+// both norms of the correction, weighted root mean squares, in one pass; each of the two sums in the order of unknowns
+static void find_norms(const struct ida_newton *newton, N_Vector weights, double norm[N_NORMS]) {
+    const double *const correction = N_VGetArrayPointer(newton->correction), *const weight =
+                                                                                 N_VGetArrayPointer(weights);
+    const double *const kind = newton->rules.kinds ? N_VGetArrayPointer(newton->rules.kinds) : NULL;
+    const sunindextype n = N_VGetLength(newton->correction);
+    double all = 0, differential = 0;
+    for (sunindextype i = 0; i < n; i++) {
+        const double weighted = correction[i] * weight[i], square = weighted * weighted;
+        all += square;
+        differential += kind && kind[i] > 0 ? square : 0;
+    }
+    norm[ALL] = sqrt(all / (double)n);
+    norm[DIFFERENTIAL] = sqrt(differential / (double)n);
+}
+
 static int test_convergence(struct ida_newton *newton, N_Vector weights, double tolerance) {
-    const int all = test_norm(newton, ALL, N_VWrmsNorm(newton->correction, weights), tolerance);
+    double norm[N_NORMS];
+    find_norms(newton, weights, norm);
+    const int all = test_norm(newton, ALL, norm[ALL], tolerance);
     if (all == SUN_NLS_CONV_RECVR || !newton->rules.kinds) return all;
-    const double size = N_VWrmsNormMask(newton->correction, weights, newton->rules.kinds);
-    if (test_norm(newton, DIFFERENTIAL, size, tolerance) == SUN_NLS_SUCCESS) return all;
+    if (test_norm(newton, DIFFERENTIAL, norm[DIFFERENTIAL], tolerance) == SUN_NLS_SUCCESS) return all;
     // the places may begin to converge later than the rest
     return newton->done < newton->most ? SUN_NLS_CONTINUE : SUN_NLS_CONV_RECVR;
 }
