@@ -200,7 +200,7 @@ static int compare_far(const void *left, const void *right) {
 }
 
 // sort pairs by their target
-static void sort_pairs(struct tree_sources *sources, int n_boxes) {
+static void sort_pairs(struct tree_sources *sources, int n_boxes, int threads) {
     int *const far_first = sources->far_first, *const near_first = sources->near_first;
     memset(far_first, 0, ((size_t)n_boxes + 1) * sizeof *far_first);
     memset(near_first, 0, ((size_t)n_boxes + 1) * sizeof *near_first);
@@ -213,6 +213,8 @@ static void sort_pairs(struct tree_sources *sources, int n_boxes) {
     for (int i = sources->n_far - 1; i >= 0; i--) {
         sources->far_sorted[--far_first[sources->far[i].target]] = sources->far[i];
     }
+    threads = parallel_threads(threads, n_boxes, sources->n_far, PARALLEL_SORTED);
+#pragma omp parallel for num_threads(threads) schedule(dynamic)
     for (int b = 0; b < n_boxes; b += CHUNK) {
         const int first = far_first[b], end = far_first[b + CHUNK < n_boxes ? b + CHUNK : n_boxes];
         if (first == end) continue;
@@ -224,7 +226,7 @@ static void sort_pairs(struct tree_sources *sources, int n_boxes) {
 }
 
 enum status tree_pairs_find(struct tree_sources *sources, const struct tree_boxes *targets, int with_gradient,
-                            double margin, struct tree_expansions *local) {
+                            double margin, int threads, struct tree_expansions *local) {
     if (targets->n_boxes + 1 > sources->first_capacity) {
         const size_t n = (size_t)targets->n_boxes + 1;
         sources->first_capacity = 0;
@@ -237,8 +239,15 @@ enum status tree_pairs_find(struct tree_sources *sources, const struct tree_boxe
     sources->n_far = sources->n_near = 0;
     const struct search search = {sources, targets, local, with_gradient, 1 + margin};
     TRY(pair_up(&search, 0, 0));
-    sort_pairs(sources, targets->n_boxes);
+    sort_pairs(sources, targets->n_boxes, threads);
     return tree_expansions_allocate(&sources->multipole, sources->boxes.n_boxes);
+}
+
+void tree_pairs_raise(struct tree_sources *sources, int by) {
+    for (int i = 0; i < sources->n_far; i++) {
+        struct expansion_order *const order = &sources->far_sorted[i].order;
+        *order = (struct expansion_order){order->harmonic + by, order->mixed + by};
+    }
 }
 
 // not the negation of a comparison that is false for places that are not finite

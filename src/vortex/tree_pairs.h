@@ -52,7 +52,10 @@ struct tree_sources {
  * degrees of the local expansions to what the pairs need. margin >= 0: the degrees are those that the pairs would need
  * if theta and e/S were larger by this part. Fails with STATUS_MEMORY. */
 enum status tree_pairs_find(struct tree_sources *sources, const struct tree_boxes *targets, int with_gradient,
-                            double margin, struct tree_expansions *local);
+                            double margin, int threads, struct tree_expansions *local);
+
+/* Change the degrees of all pairs: by -1 from those for gradients to those for velocities alone, or by 1 back. */
+void tree_pairs_raise(struct tree_sources *sources, int by);
 
 /* Whether the degrees of all pairs still keep the tolerance for the boxes as they are now. */
 int tree_pairs_fit(const struct tree_sources *sources, const struct tree_boxes *targets, int with_gradient,

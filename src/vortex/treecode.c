@@ -21,7 +21,7 @@ struct treecode {
     struct tree_sources *sources; /* of each set                       (capacity) */
     int n_sets, capacity;
     struct tree_boxes targets;
-    int with_gradient;            /* whether the pairs have the degrees for it */
+    int with_gradient;            /* whether the pairs have now the degrees for it */
     struct tree_expansions local; /* of the targets, for all sets together */
     double *sum;                  /* u, v and the gradient at the sorted targets, one after another (5 n) */
     size_t sum_capacity;
@@ -65,7 +65,7 @@ static enum status pair_up(struct treecode *tree, int n_targets, const double *x
     }
     TRY(tree_expansions_reset(&tree->local, tree->targets.n_boxes));
     for (int s = 0; s < tree->n_sets; s++) {
-        TRY(tree_pairs_find(&tree->sources[s], &tree->targets, with_gradient, margin, &tree->local));
+        TRY(tree_pairs_find(&tree->sources[s], &tree->targets, with_gradient, margin, threads, &tree->local));
     }
     return tree_expansions_allocate(&tree->local, tree->targets.n_boxes);
 }
@@ -238,6 +238,14 @@ void treecode_move_targets(struct treecode *tree, const double *x, const double 
     tree_boxes_move(&tree->targets, x, y, NULL, threads);
 }
 
+// The degrees of the pairs for this sum: a gradient needs one more. Expansions keep those for which they have room.
+static void set_degrees(struct treecode *tree, int with_gradient) {
+    for (int s = 0; s < tree->n_sets && with_gradient != tree->with_gradient; s++) {
+        tree_pairs_raise(&tree->sources[s], with_gradient - tree->with_gradient);
+    }
+    tree->with_gradient = with_gradient;
+}
+
 int treecode_fits(const struct treecode *tree, int threads) {
     int all = 1;
     for (int s = 0; s < tree->n_sets && all; s++) {
@@ -248,5 +256,6 @@ int treecode_fits(const struct treecode *tree, int threads) {
 
 void treecode_add_planned(struct treecode *tree, int threads, double *u, double *v, double *u_x, double *u_y,
                           double *v_x) {
+    set_degrees(tree, u_x != NULL);
     sum_pairs(tree, threads, (double *const[5]){u, v, u_x, u_y, v_x});
 }
