@@ -192,18 +192,18 @@ class DefaultFish:
                                "solver.max_steps=100000", "wake.tolerance=1e-9")
 
     def row(self, *more, program=None):
-        """Error after 3 s, then counts per event over 8 s, then work of the muscle and energy audit."""
+        """Error after 3 s, then counts per event over 8 s, then work of the muscle and energy balance."""
         run = self.bench.run(DEFAULT, *self.keys, *more, program=program)
         if not run:
             return ["failed", *[""] * 5]
         error = "-"
         if self.right:
             error = short(max(distance(a, b) for a, b in zip(ends_at(run, 3), ends_at(self.right, 3))))
-        audit = abs(run["energy_audit"][-1, 0] / run["actuation_work"][-1, 0])
-        return [error, *per_event(run), failures(run), short(audit)]
+        balance = abs(run["energy_audit"][-1, 0] / run["actuation_work"][-1, 0])
+        return [error, *per_event(run), failures(run), short(balance)]
 
 
-DEFAULT_ROW = ["nose or tail [L]", *COUNTS, "failures", "audit over work"]
+DEFAULT_ROW = ["nose or tail [L]", *COUNTS, "failures", "balance over work"]
 
 
 def default(bench):

@@ -106,7 +106,7 @@ a muscle that starts at once they are the same."""),
 The consistent start of model.md 10: the algebraic equations determine the algebraic unknowns, and the start satisfies
 all equations."""),
     "energy": ("Energy", """\
-The audit of model.md 13: energy of the body less its initial value less all the work done on it, over long runs. And a
+The energy balance of model.md 13: energy of the body less its initial value less all the work done on it, over long runs. And a
 default fish (but for 7 nodes) over one beat: what its muscle puts in is found again in damping, drag and wake; and its
 speed in the long run does not depend on the speed at which it was started."""),
     "control": ("Control", """\
@@ -211,9 +211,9 @@ FIGURE = {
                        "relative difference from Theodorsen", {"scale": "log", "slopes": [-1]}),
     "heave_interval": ("Heaving plate: order in Dt", "shedding interval Dt [s]", "error",
                        {"scale": "log", "slopes": [1]}),
-    "energy audit": ("Energy audit over the work done", "t [s]", "audit over work", {"scale": "linear"}),
-    "energy audit, order 2": ("Energy audit, order 2", "mean step [s]", "audit over work", {"slopes": [2]}),
-    "energy audit, order 5": ("Energy audit, order 5", "solver.rtol", "audit over work", {"scale": "log"}),
+    "energy balance": ("Energy balance over the work done", "t [s]", "balance over work", {"scale": "linear"}),
+    "energy balance, order 2": ("Energy balance, order 2", "mean step [s]", "balance over work", {"slopes": [2]}),
+    "energy balance, order 5": ("Energy balance, order 5", "solver.rtol", "balance over work", {"scale": "log"}),
     "condition of the start": ("Condition number of the consistent start", "sheet points M", "condition number",
                                {"scale": "log"}),
     "school_interval": ("School, continuous shedding", "shedding interval Dt [s]", "change when halved [m, m2/s]",

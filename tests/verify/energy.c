@@ -1,7 +1,6 @@
-/* energy.c: the section "energy": what the muscle puts in is where the audit finds it. The audit is the energy less
- * what it was at the start less all work done since; its error is that of the integrator and of summing powers over its
- * steps.
- */
+/* energy.c: the section "energy": what the muscle puts in is where the energy balance finds it. The balance is the
+ * energy less what it was at the start less all work done since; its error is that of the integrator and of summing
+ * powers over its steps. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -22,8 +21,8 @@ static struct simulation *open_case(const char *path, const char *more) {
     return verify_open("%s\n%s", text, more);
 }
 
-// the largest audit of any fish now, over the work of its muscle
-static double relative_audit(struct simulation *simulation) {
+// the largest energy balance of any fish now, over the work of its muscle
+static double relative_balance(struct simulation *simulation) {
     double most = 0;
     simulate_measure(simulation);
     for (int f = 0; f < simulation->school->n_fish; f++) {
@@ -33,7 +32,7 @@ static double relative_audit(struct simulation *simulation) {
     return most;
 }
 
-// the audit at the end of a run of a case with one more line of keys
+// the energy balance at the end of a run of a case with one more line of keys
 static void whole_case(const char *name, const char *more, double end, double bound, const char *source) {
     const double every = 1;
     char path[80], quantity[120];
@@ -42,17 +41,18 @@ static void whole_case(const char *name, const char *more, double end, double bo
     double balance = 0;
     for (double t = every; t < end + every / 2; t += every) {
         verify_run(simulation, t);
-        balance = relative_audit(simulation);
+        balance = relative_balance(simulation);
         snprintf(quantity, sizeof quantity, "%s%s%s", name, more[0] ? ", " : "", more);
-        verify_point("energy audit", quantity, t, balance);
+        verify_point("energy balance", quantity, t, balance);
     }
-    snprintf(quantity, sizeof quantity, "%s%s%s: audit after %g s over work", name, more[0] ? ", " : "", more, end);
+    snprintf(quantity, sizeof quantity, "%s%s%s: energy balance after %g s over work", name, more[0] ? ", " : "", more,
+             end);
     verify_zero(quantity, source, balance, bound);
     simulate_free(simulation);
 }
 
-// the audit of single_free at time end with another tolerance and order, and the mean step
-static double audit_with(double rtol, int order, double end, double *step) {
+// the energy balance of single_free at time end with another tolerance and order, and the mean step
+static double balance_with(double rtol, int order, double end, double *step) {
     char more[80];
     snprintf(more, sizeof more, "solver: {rtol: %g, order: %d}", rtol, order);
     struct simulation *const simulation = open_case("cases/single_free.yaml", more);
@@ -60,7 +60,7 @@ static double audit_with(double rtol, int order, double end, double *step) {
     struct integrator_counts counts;
     simulation->integrator->count(simulation->solver, &counts);
     *step = end / (double)counts.steps;
-    const double balance = relative_audit(simulation);
+    const double balance = relative_balance(simulation);
     simulate_free(simulation);
     return balance;
 }
@@ -73,14 +73,14 @@ static void second_order(void) {
     double step[MOST], balance[MOST], rtol = 1e-3;
     for (int i = 0; i < n; i++) {
         rtol /= 10;
-        balance[i] = audit_with(rtol, 2, end, &step[i]);
-        verify_point("energy audit, order 2", "single_free", step[i], balance[i]);
+        balance[i] = balance_with(rtol, 2, end, &step[i]);
+        verify_point("energy balance, order 2", "single_free", step[i], balance[i]);
         char name[80];
-        snprintf(name, sizeof name, "single_free, order 2, rtol %.0e: audit after %g s", rtol, end);
+        snprintf(name, sizeof name, "single_free, order 2, rtol %.0e: energy balance after %g s", rtol, end);
         verify_show(name, "over the work of the muscle", balance[i]);
     }
-    verify_order("single_free: audit, order in the mean step", "method of order 2", verify_slope(n, step, balance), 1.8,
-                 2.5);
+    verify_order("single_free: energy balance, order in the mean step", "method of order 2",
+                 verify_slope(n, step, balance), 1.8, 2.5);
 }
 
 // The formulas of orders above 2 are unstable on modes that hardly decay. From 1e-6 on the error test sees that in
@@ -89,10 +89,10 @@ static void fifth_order(void) {
     double rtol = 1e-3, step;
     for (int i = 0; i < 5; i++) {
         rtol /= 10;
-        const double balance = audit_with(rtol, 5, 4, &step);
-        verify_point("energy audit, order 5", "single_free", rtol, balance);
+        const double balance = balance_with(rtol, 5, 4, &step);
+        verify_point("energy balance, order 5", "single_free", rtol, balance);
         char name[80];
-        snprintf(name, sizeof name, "single_free, order 5, rtol %.0e: audit after 4 s", rtol);
+        snprintf(name, sizeof name, "single_free, order 5, rtol %.0e: energy balance after 4 s", rtol);
         if (rtol > 2e-6) {
             verify_show(name, "over the work of the muscle", balance);
         } else {

@@ -90,7 +90,7 @@ static void check_mirror(const char *force, double bound) {
 // ---- against the wall
 
 // a fish that swims against the wall of a channel and along it
-static void check_audit(const char *force) {
+static void check_energy(const char *force) {
     struct simulation *const simulation =
         verify_open(VERIFY_SECOND
                     "format: 1\n"
@@ -110,7 +110,7 @@ static void check_audit(const char *force) {
     }
     verify_show(verify_text("%s: a fish swims against a wall and along it: largest contact_energy, J", force), "",
                 contact);
-    verify_zero(verify_text("%s: its energy audit over its largest kinetic energy, rtol 1e-5", force), "conservation",
+    verify_zero(verify_text("%s: its energy balance over its largest kinetic energy, rtol 1e-5", force), "conservation",
                 audit / energy, 2e-3);
     verify_zero(verify_text("%s: its total circulation, m2/s", force), "Kelvin", circulation, 1e-12);
     simulate_free(simulation);
@@ -121,6 +121,6 @@ void verify_walls(void) {
     if (verify_is_fast()) return;
     check_mirror("pressure", 1e-8);
     check_plate();
-    check_audit("reactive");
-    check_audit("pressure");
+    check_energy("reactive");
+    check_energy("pressure");
 }
