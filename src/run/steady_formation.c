@@ -208,13 +208,18 @@ static enum status solve_or_follow(struct formation *formation, double *scale, d
     const int most_beats = formation->problem->settings->beats;
     formation->most_beats = (map->n_beats + most_beats) / 2;
     TRY(steady_map_save(map, &formation->begun));
-    const enum status status = solve(formation, scale, u);
-    const int has_moved = formation->last_norm > 0;
-    if (status != STATUS_SOLVER || !has_moved || map->n_beats >= most_beats) return status;
-    formation->follows = 1;
-    formation->has_matrix = 0;
+    enum status status = solve(formation, scale, u);
+    if (status != STATUS_SOLVER || formation->last_norm <= 0) return status;
     TRY(steady_map_return(map, formation->begun));
-    return solve(formation, scale, u);
+    if (map->n_beats < most_beats) {
+        formation->follows = 1;
+        formation->has_matrix = 0;
+        status = solve(formation, scale, u);
+        if (status != STATUS_SOLVER) return status;
+        // what they do from the start says more than what they do where the search has gone
+        TRY(steady_map_return(map, formation->begun));
+    }
+    return map->n_beats < most_beats ? steady_reason_find(formation->problem) : status;
 }
 
 enum status steady_formation_solve(struct steady_problem *problem, double tolerance) {

@@ -2,6 +2,7 @@
 #include "run/steady_reason.h"
 
 #include <math.h>
+#include <stdio.h>
 
 #include "model/diagnostics_energy.h"
 
@@ -14,15 +15,20 @@ static const double clear = 3;
 /* Lengths within which a place has to tell. */
 static const double longest_place = 0.25;
 
-static enum status collision(const struct steady_problem *problem, int n_beats) {
+// what is said first
+static void say_beats(const struct steady_problem *problem, size_t size, char *words) {
+    const int n_beats = problem->map.n_beats, is_late = n_beats >= problem->settings->beats;
+    snprintf(words, size, "no steady state in %d beats%s", n_beats, is_late ? " (steady.beats)" : " near the start");
+}
+
+static enum status collision(const struct steady_problem *problem, const char *first, int n_beats) {
     const struct simulation *const simulation = problem->map.simulation;
     const struct closest *const closest = simulation->state->closest;
     const struct fish *const fish = simulation->school->fish;
     return status_fail(STATUS_SOLVER,
-                       "no steady state in %d beats (steady.beats): collision: let go, %s and %s come within %.2g m of "
-                       "each other in beat %d, nearer than contact.range",
-                       problem->settings->beats, fish[closest->fish[0]].name, fish[closest->fish[1]].name,
-                       closest->distance, n_beats);
+                       "%s: collision: let go, %s and %s come within %.2g m of each other in beat %d, nearer than "
+                       "contact.range",
+                       first, fish[closest->fish[0]].name, fish[closest->fish[1]].name, closest->distance, n_beats);
 }
 
 // how a fish goes as the first one sees it, ahead and to the left, lengths per beat
@@ -36,7 +42,7 @@ static const char *direction(const double drift[2]) {
     return drift[1] > 0 ? "to the left" : "to the right";
 }
 
-static enum status drift(const struct steady_problem *problem) {
+static enum status drift(const struct steady_problem *problem, const char *first) {
     const struct steady_map *const map = &problem->map;
     const struct school *const school = map->simulation->school;
     int fastest = 0;
@@ -47,28 +53,38 @@ static enum status drift(const struct steady_problem *problem) {
         most = hypot(drift[0], drift[1]);
         fastest = f;
     }
-    if (most <= clear * problem->settings->tolerance) {
+    const double change = steady_map_residual(map), tolerance = problem->settings->tolerance;
+    if (most <= clear * tolerance) {
         return status_fail(STATUS_SOLVER,
-                           "no steady state in %d beats (steady.beats): let go, the fish stay together, but from beat "
-                           "to beat they change by %.2g, more than steady.tolerance, %.2g",
-                           problem->settings->beats, steady_map_residual(map), problem->settings->tolerance);
+                           "%s: let go, the fish stay together, but from beat to beat they change by %.2g, %s "
+                           "steady.tolerance, %.2g",
+                           first, change, change > tolerance ? "more than" : "which shows only with a smaller",
+                           tolerance);
     }
     drift_of(map, fastest, drift);
-    return status_fail(STATUS_SOLVER,
-                       "no steady state in %d beats (steady.beats): drift: let go, %s goes %s, as %s sees it, by %.2g "
-                       "lengths a beat, %.2g m/s",
-                       problem->settings->beats, school->fish[fastest].name, direction(drift), school->fish[0].name,
-                       most, most * school->fish[fastest].length / map->period);
+    return status_fail(STATUS_SOLVER, "%s: drift: let go, %s goes %s, as %s sees it, by %.2g lengths a beat, %.2g m/s",
+                       first, school->fish[fastest].name, direction(drift), school->fish[0].name, most,
+                       most * school->fish[fastest].length / map->period);
 }
 
-enum status steady_reason_find(struct steady_problem *problem) {
+static enum status let_go(struct steady_problem *problem, const char *first) {
     struct simulation *const simulation = problem->map.simulation;
     diagnostics_restart(simulation->residual, simulation->state);
     for (int i = 0; i < BEATS; i++) {
         TRY(steady_map_beat(&problem->map, NULL, NULL));
-        if (simulation->state->closest->distance < simulation->school->contact_range) return collision(problem, i + 1);
+        const double distance = simulation->state->closest->distance;
+        if (distance < simulation->school->contact_range) return collision(problem, first, i + 1);
     }
-    return drift(problem);
+    return drift(problem, first);
+}
+
+enum status steady_reason_find(struct steady_problem *problem) {
+    const int n_beats = problem->map.n_beats;
+    char first[64];
+    say_beats(problem, sizeof first, first);
+    const enum status status = let_go(problem, first);
+    problem->map.n_beats = n_beats;
+    return status;
 }
 
 enum status steady_reason_check(const struct steady_problem *problem, double in_a_length) {

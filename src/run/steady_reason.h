@@ -7,7 +7,7 @@
 
 /* Let all fish go for some beats, and fail with STATUS_SOLVER and what becomes of them: two that come within
  * contact.range of each other, the one that drifts fastest from where the first one sees it, or neither. Or fail as
- * steady_map_beat. */
+ * steady_map_beat. The beats do not count. */
 enum status steady_reason_find(struct steady_problem *problem);
 
 /* Of a formation that has been found: fail with STATUS_SOLVER where nothing keeps its places: 0.25 lengths away, times

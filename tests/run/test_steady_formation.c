@@ -149,6 +149,11 @@ static void where_no_formation_is_found_the_reason_is_what_the_fish_do(void **st
                        STATUS_SOLVER, "in 20 beats (steady.beats): collision: let go, a and b come within");
     steady_setup_fails(SCHOOL "fish: [{name: a}, {name: b, wave: {amplitude: 0.05}, start: {position: [3, 0]}}]\n",
                        STATUS_SOLVER, "in 20 beats (steady.beats): drift: let go, b goes back, as a sees it, by 0.");
+    // the search has gone somewhere else and back when it gives up, before its beats are at an end
+    steady_setup_fails(COARSE "steady: {formation: true, tolerance: 1e-3}\ndefaults: {fish: {" FISH
+                              ", start: {speed: 0.75}, control: {law: heading, desired_heading: 180}}}\n"
+                              "fish: [{name: a}, {name: b, start: {position: [1, 0.3]}}]\n",
+                       STATUS_SOLVER, "beats near the start: collision: let go, a and b come within");
     // beside each other they go apart
     steady_setup_fails(PLATES "fish: [{}, {start: {position: [0, 40]}}]\n", STATUS_SOLVER,
                        "no equilibrium: the fish hardly feel each other");
