@@ -20,6 +20,15 @@ int parallel_threads(int threads, int n, double work, double min_work) {
     return n > 1 && work >= min_work ? threads : 1;
 }
 
+void parallel_for(int threads, int n, parallel_body *body, void *data) {
+    if (threads == 1) {
+        for (int i = 0; i < n; i++) body(data, i);
+        return;
+    }
+#pragma omp parallel for num_threads(threads) schedule(static)
+    for (int i = 0; i < n; i++) body(data, i);
+}
+
 // a thread that lives until all of them do
 static void *hold(void *lock) {
     pthread_mutex_lock(lock);

@@ -4,6 +4,8 @@
 #include <nvector/nvector_serial.h>
 #include <stdlib.h>
 
+#include "base/parallel.h"
+
 /* Elements of a part: of all vectors of an operation they stay in the cache while it goes through its terms. */
 enum { PART = 512 };
 
@@ -31,9 +33,13 @@ static N_Vector part_of(N_Vector vector, int i, struct part *part) {
     return &part->vector;
 }
 
-static int n_parts(N_Vector vector) {
-    return (int)((NV_LENGTH_S(vector) + PART - 1) / PART);
-}
+/* An operation on n vectors each: their factors and their vectors. */
+struct operation {
+    int n;
+    double a, b;
+    const double *factor; /* (n) */
+    N_Vector *x, *y, *z;  /* (n) */
+};
 
 static void linear_sum_of_part(int i, double a, N_Vector x, double b, N_Vector y, N_Vector z) {
     struct part of_x, of_y, of_z;
@@ -45,55 +51,58 @@ static void scale_part(int i, double c, N_Vector x, N_Vector z) {
     N_VScale_Serial(c, part_of(x, i, &of_x), part_of(z, i, &of_z));
 }
 
-static void linear_sum(double a, N_Vector x, double b, N_Vector y, N_Vector z) {
-    const int n = n_parts(z), threads = fish_threads(school_of(z));
-#pragma omp parallel for num_threads(threads) schedule(static)
-    for (int i = 0; i < n; i++) linear_sum_of_part(i, a, x, b, y, z);
+// the operations on part i; one vector after another: each may be an argument of the next
+static void set_constants(void *data, int i) {
+    const struct operation *const of = data;
+    struct part of_z;
+    N_VConst_Serial(of->a, part_of(of->z[0], i, &of_z));
 }
 
-static void scale(double c, N_Vector x, N_Vector z) {
-    const int n = n_parts(z), threads = fish_threads(school_of(z));
-#pragma omp parallel for num_threads(threads) schedule(static)
-    for (int i = 0; i < n; i++) scale_part(i, c, x, z);
+static void scale_all(void *data, int i) {
+    const struct operation *const of = data;
+    for (int k = 0; k < of->n; k++) scale_part(i, of->factor[k], of->x[k], of->z[k]);
 }
 
-static void set_constant(double c, N_Vector z) {
-    const int n = n_parts(z), threads = fish_threads(school_of(z));
-#pragma omp parallel for num_threads(threads) schedule(static)
-    for (int i = 0; i < n; i++) {
-        struct part of_z;
-        N_VConst_Serial(c, part_of(z, i, &of_z));
-    }
+static void sum_all(void *data, int i) {
+    const struct operation *const of = data;
+    for (int k = 0; k < of->n; k++) linear_sum_of_part(i, of->a, of->x[k], of->b, of->y[k], of->z[k]);
 }
 
 // term after term, as SUNDIALS does it with operations on two vectors
-static int linear_combination(int n_terms, double *c, N_Vector *x, N_Vector z) {
-    const int n = n_parts(z), threads = fish_threads(school_of(z));
-#pragma omp parallel for num_threads(threads) schedule(static)
-    for (int i = 0; i < n; i++) {
-        scale_part(i, c[0], x[0], z);
-        for (int k = 1; k < n_terms; k++) linear_sum_of_part(i, c[k], x[k], 1, z, z);
-    }
+static void combine(void *data, int i) {
+    const struct operation *const of = data;
+    scale_part(i, of->factor[0], of->x[0], of->z[0]);
+    for (int k = 1; k < of->n; k++) linear_sum_of_part(i, of->factor[k], of->x[k], 1, of->z[0], of->z[0]);
+}
+
+static int operate(parallel_body *operation, struct operation of) {
+    const int n_parts = (int)((NV_LENGTH_S(of.z[0]) + PART - 1) / PART);
+    parallel_for(fish_threads(school_of(of.z[0])), n_parts, operation, &of);
     return 0;
 }
 
-static int scale_many(int n_vectors, double *c, N_Vector *x, N_Vector *z) {
-    const int n = n_parts(z[0]), threads = fish_threads(school_of(z[0]));
-#pragma omp parallel for num_threads(threads) schedule(static)
-    for (int i = 0; i < n; i++) {
-        for (int k = 0; k < n_vectors; k++) scale_part(i, c[k], x[k], z[k]);
-    }
-    return 0;
+static void linear_sum(double a, N_Vector x, double b, N_Vector y, N_Vector z) {
+    operate(sum_all, (struct operation){.n = 1, .a = a, .b = b, .x = &x, .y = &y, .z = &z});
 }
 
-// one vector after another: each may be an argument of the next
-static int linear_sum_many(int n_vectors, double a, N_Vector *x, double b, N_Vector *y, N_Vector *z) {
-    const int n = n_parts(z[0]), threads = fish_threads(school_of(z[0]));
-#pragma omp parallel for num_threads(threads) schedule(static)
-    for (int i = 0; i < n; i++) {
-        for (int k = 0; k < n_vectors; k++) linear_sum_of_part(i, a, x[k], b, y[k], z[k]);
-    }
-    return 0;
+static void scale(double c, N_Vector x, N_Vector z) {
+    operate(scale_all, (struct operation){.n = 1, .factor = &c, .x = &x, .z = &z});
+}
+
+static void set_constant(double c, N_Vector z) {
+    operate(set_constants, (struct operation){.a = c, .z = &z});
+}
+
+static int linear_combination(int n, double *c, N_Vector *x, N_Vector z) {
+    return operate(combine, (struct operation){.n = n, .factor = c, .x = x, .z = &z});
+}
+
+static int scale_many(int n, double *c, N_Vector *x, N_Vector *z) {
+    return operate(scale_all, (struct operation){.n = n, .factor = c, .x = x, .z = z});
+}
+
+static int linear_sum_many(int n, double a, N_Vector *x, double b, N_Vector *y, N_Vector *z) {
+    return operate(sum_all, (struct operation){.n = n, .a = a, .b = b, .x = x, .y = y, .z = z});
 }
 
 // put the school into the content of a serial vector; the vector is released where there is no memory for it

@@ -27,8 +27,23 @@ static void short_loops_are_not_worth_threads(void **state) {
     assert_int_equal(parallel_threads(4, 1, 1e9, 100), 1);
 }
 
+static void mark(void *data, int i) {
+    int *const mark = data;
+    mark[i] += i + 1;
+}
+
+static void a_loop_calls_its_body_once_for_each_number(void **state) {
+    (void)state;
+    for (int threads = 1; threads <= 3; threads++) {
+        int marks[8] = {0};
+        parallel_for(threads, 7, mark, marks);
+        for (int i = 0; i < 8; i++) assert_int_equal(marks[i], i < 7 ? i + 1 : 0);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_loop_calls_its_body_once_for_each_number),
         cmocka_unit_test(chunks_cover_every_element_once),
         cmocka_unit_test(short_loops_are_not_worth_threads),
     };
