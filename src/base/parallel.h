@@ -22,6 +22,7 @@ enum {
     PARALLEL_VORTICES = 4000,      /* free vortices that are placed at one time */
     PARALLEL_BOXES = 64,           /* boxes of a tree whose expansions are translated */
     PARALLEL_SORTED = 2000,        /* points that are divided among the boxes of one level */
+    PARALLEL_ELEMENTS = 4000,      /* results of sums of two vectors */
     PARALLEL_UNKNOWNS = 1000,      /* unknowns in a loop over fish that multiplies or solves */
     PARALLEL_MATRICES = 200        /* unknowns in a loop over fish that fills or factorises their matrices */
 };

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "base/parallel.h"
 #include "model/actuation.h"
 #include "model/clamp.h"
 #include "model/clearance.h"
@@ -121,8 +122,19 @@ static double newest_area(int n, const double t[3], const double value[3]) {
     return area;
 }
 
-static void add_works(struct residual *residual, int f, double t, const double *y, struct energy_balance *balance) {
-    const struct diagnostics_power now = diagnostics_power(residual, f, t, y);
+/* The end of a step. */
+struct step {
+    struct residual *residual;
+    struct state *state;
+    double t;
+    const double *y;
+};
+
+static void add_works(void *data, int f) {
+    const struct step *const step = data;
+    const double t = step->t;
+    struct energy_balance *const balance = &step->state->balance[f];
+    const struct diagnostics_power now = diagnostics_power(step->residual, f, t, step->y);
     const double times[3] = {t, balance->t[0], balance->t[1]};
     double newest[N_WORKS];
     gather_powers(&now, newest);
@@ -137,9 +149,8 @@ static void add_works(struct residual *residual, int f, double t, const double *
 }
 
 void diagnostics_step(struct residual *residual, struct state *state, double t, const double *y) {
-    const int threads = fish_threads(residual->school);
-#pragma omp parallel for num_threads(threads) schedule(static)
-    for (int f = 0; f < residual->school->n_fish; f++) add_works(residual, f, t, y, &state->balance[f]);
+    const struct school *const school = residual->school;
+    parallel_for(fish_threads(school), school->n_fish, add_works, &(struct step){residual, state, t, y});
     clearance_step(residual->school, state, t, y, residual->neighbours, residual->scratch);
 }
 

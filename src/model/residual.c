@@ -182,8 +182,27 @@ static void kinematics(const struct fish *fish, const double *y, const double *y
     }
 }
 
-static void evaluate_fish(struct residual *residual, int f, double t, const double *y, const double *yp,
-                          double *value) {
+static int all_finite(const double *value, int first, int end) {
+    for (int i = first; i < end; i++) {
+        if (!isfinite(value[i])) return 0;
+    }
+    return 1;
+}
+
+/* An evaluation; n_failed: of the fish with values that are not finite. */
+struct evaluation {
+    struct residual *residual;
+    double t;
+    const double *y, *yp;
+    double *value;
+    int n_failed;
+};
+
+static void evaluate_fish(void *data, int f) {
+    struct evaluation *const of = data;
+    struct residual *const residual = of->residual;
+    const double t = of->t, *const y = of->y, *const yp = of->yp;
+    double *const value = of->value;
     const struct school *school = residual->school;
     const struct state *state = residual->state;
     const struct fish *fish = &school->fish[f];
@@ -206,13 +225,9 @@ static void evaluate_fish(struct residual *residual, int f, double t, const doub
                                value);
     // the control law
     control_residual(fish, &state->control[f], t, t - state->t, y, value);
-}
-
-static int all_finite(const double *value, int first, int end) {
-    for (int i = first; i < end; i++) {
-        if (!isfinite(value[i])) return 0;
-    }
-    return 1;
+    if (all_finite(value, fish->at.x, fish->at.end)) return;
+#pragma omp atomic
+    of->n_failed++;
 }
 
 // which of the equations has none
@@ -228,17 +243,9 @@ enum status residual_evaluate(struct residual *residual, double t, const double 
     TRY(residual_contact(residual, t, y));
     TRY(flow_velocity(residual->flow, residual->state, t, y));
     const struct school *school = residual->school;
-    const int threads = fish_threads(school);
-    int failed = 0;
-#pragma omp parallel for num_threads(threads) schedule(static)
-    for (int f = 0; f < school->n_fish; f++) {
-        const struct layout *const at = &school->fish[f].at;
-        evaluate_fish(residual, f, t, y, yp, value);
-        if (all_finite(value, at->x, at->end)) continue;
-#pragma omp atomic write
-        failed = 1;
-    }
-    return failed ? not_finite(school, t, value) : STATUS_OK;
+    struct evaluation evaluation = {residual, t, y, yp, value, 0};
+    parallel_for(fish_threads(school), school->n_fish, evaluate_fish, &evaluation);
+    return evaluation.n_failed > 0 ? not_finite(school, t, value) : STATUS_OK;
 }
 
 void residual_balance(const struct residual *residual, int f, const double *y, double *value) {

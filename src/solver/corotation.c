@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "base/parallel.h"
 #include "model/fish_prescribed.h"
 
 // two translations and a rotation
@@ -143,23 +144,30 @@ static void find_rotations(struct body *body, const double *position) {
     }
 }
 
-void corotation_set_current(struct corotation *corotation, const double *y) {
-    const int threads = fish_threads(corotation->school);
-#pragma omp parallel for num_threads(threads) schedule(static)
-    for (int f = 0; f < corotation->school->n_fish; f++) {
-        struct body *body = &corotation->body[f];
-        const struct fish *fish = body->fish;
-        const double *const position = y + fish->at.x;
-        body->has_moved = 1;
-        find_rotations(body, position);
-        if (body->n_rigid == 0) continue;
-        rigid_motions(fish, body->reference, body->from);
-        rigid_motions(fish, position, body->to);
-        for (int i = 0; i < N_RIGID; i++) {
-            rotate_nodes(body, 1, body->from[i]);
-            for (int j = 0; j < i; j++) rotate(fish, body->from[j], body->to[j], body->from[i]);
-        }
+struct configuration {
+    struct corotation *corotation;
+    const double *y;
+};
+
+static void set_current(void *data, int f) {
+    const struct configuration *const current = data;
+    struct body *body = &current->corotation->body[f];
+    const struct fish *fish = body->fish;
+    const double *const position = current->y + fish->at.x;
+    body->has_moved = 1;
+    find_rotations(body, position);
+    if (body->n_rigid == 0) return;
+    rigid_motions(fish, body->reference, body->from);
+    rigid_motions(fish, position, body->to);
+    for (int i = 0; i < N_RIGID; i++) {
+        rotate_nodes(body, 1, body->from[i]);
+        for (int j = 0; j < i; j++) rotate(fish, body->from[j], body->to[j], body->from[i]);
     }
+}
+
+void corotation_set_current(struct corotation *corotation, const double *y) {
+    const struct school *const school = corotation->school;
+    parallel_for(fish_threads(school), school->n_fish, set_current, &(struct configuration){corotation, y});
 }
 
 static void body_to_current(const struct body *body, double *a) {
@@ -172,23 +180,31 @@ static void body_to_reference(const struct body *body, double *a) {
     rotate_nodes(body, -1, a);
 }
 
-static void map_all(const struct corotation *corotation, void (*map)(const struct body *, double *), double *vector) {
-    const int threads = fish_threads(corotation->school);
-#pragma omp parallel for num_threads(threads) schedule(static)
-    for (int f = 0; f < corotation->school->n_fish; f++) {
-        const struct body *body = &corotation->body[f];
-        if (!body->has_moved) continue;
-        map(body, vector + body->fish->at.x);
-        map(body, vector + body->fish->at.vx);
-        if (fish_has_momentum(body->fish)) map(body, vector + body->fish->at.px);
-        map(body, vector + body->fish->at.ax);
-    }
+struct map {
+    const struct corotation *corotation;
+    void (*of_body)(const struct body *body, double *a);
+    double *vector;
+};
+
+static void map_fish(void *data, int f) {
+    const struct map *const map = data;
+    const struct body *body = &map->corotation->body[f];
+    if (!body->has_moved) return;
+    map->of_body(body, map->vector + body->fish->at.x);
+    map->of_body(body, map->vector + body->fish->at.vx);
+    if (fish_has_momentum(body->fish)) map->of_body(body, map->vector + body->fish->at.px);
+    map->of_body(body, map->vector + body->fish->at.ax);
+}
+
+static void map_all(struct map map) {
+    const struct school *const school = map.corotation->school;
+    parallel_for(fish_threads(school), school->n_fish, map_fish, &map);
 }
 
 void corotation_to_current(const struct corotation *corotation, double *vector) {
-    map_all(corotation, body_to_current, vector);
+    map_all((struct map){corotation, body_to_current, vector});
 }
 
 void corotation_to_reference(const struct corotation *corotation, double *vector) {
-    map_all(corotation, body_to_reference, vector);
+    map_all((struct map){corotation, body_to_reference, vector});
 }

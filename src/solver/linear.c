@@ -120,49 +120,54 @@ static void find_change(const struct fish *fish, const struct sparse *own, const
     }
 }
 
+/* A product or solution, fish by fish, with one vector and for another. */
+struct operation {
+    struct linear *linear;
+    const double *from;
+    double *to;
+};
+
+static void for_each_fish(parallel_body *body, struct operation operation) {
+    const struct school *const school = operation.linear->jacobian->school;
+    parallel_for(fish_threads(school), school->n_fish, body, &operation);
+}
+
+static void update_shed(void *data, int f) {
+    const struct operation *const of = data;
+    const struct jacobian *const jacobian = of->linear->jacobian;
+    const struct fish *fish = &jacobian->school->fish[f];
+    struct block *const block = &of->linear->block[f];
+    find_change(fish, jacobian->own[f], of->from, block->update);
+    block->is_updated = 0;
+    solve_block(of->linear, f, block->update);
+    const double divisor = 1 + block->update[fish->at.circulation - fish->at.x];
+    for (int i = 0; i < jacobian->own[f]->n; i++) block->update[i] /= divisor;
+    block->is_updated = 1;
+}
+
 void linear_update_shed(struct linear *linear, const double *value) {
-    const struct jacobian *jacobian = linear->jacobian;
-    const struct school *school = jacobian->school;
-    const int threads = fish_threads(school);
-#pragma omp parallel for num_threads(threads) schedule(static)
-    for (int f = 0; f < school->n_fish; f++) {
-        const struct fish *fish = &school->fish[f];
-        struct block *const block = &linear->block[f];
-        find_change(fish, jacobian->own[f], value, block->update);
-        block->is_updated = 0;
-        solve_block(linear, f, block->update);
-        const double divisor = 1 + block->update[fish->at.circulation - fish->at.x];
-        for (int i = 0; i < jacobian->own[f]->n; i++) block->update[i] /= divisor;
-        block->is_updated = 1;
-    }
+    for_each_fish(update_shed, (struct operation){linear, value, NULL});
 }
 
 // x = D^-1 b with the diagonal blocks D alone; both may be the same array
-static void solve_blocks(struct linear *linear, const double *b, double *x) {
-    const struct school *school = linear->jacobian->school;
-    const int threads = fish_threads(school);
-#pragma omp parallel for num_threads(threads) schedule(static)
-    for (int f = 0; f < school->n_fish; f++) {
-        const struct layout *at = &school->fish[f].at;
-        const int n = at->end - at->x;
-        if (x != b) memcpy(x + at->x, b + at->x, (size_t)n * sizeof *x);
-        solve_block(linear, f, x + at->x);
-    }
+static void solve_one(void *data, int f) {
+    const struct operation *const of = data;
+    const struct layout *at = &of->linear->jacobian->school->fish[f].at;
+    const int n = at->end - at->x;
+    if (of->to != of->from) memcpy(of->to + at->x, of->from + at->x, (size_t)n * sizeof *of->to);
+    solve_block(of->linear, f, of->to + at->x);
 }
 
 // product = v + D^-1 C v, C being the coupling blocks
-static void multiply(struct linear *linear, const double *v, double *product) {
-    const struct jacobian *jacobian = linear->jacobian;
-    const struct school *school = jacobian->school;
-    const int threads = fish_threads(school);
-#pragma omp parallel for num_threads(threads) schedule(static)
-    for (int f = 0; f < school->n_fish; f++) {
-        const struct layout *at = &school->fish[f].at;
-        memset(product + at->x, 0, (size_t)(at->ax - at->x) * sizeof *product);
-        jacobian_multiply_couplings(jacobian, f, v, product + at->ax);
-        solve_block(linear, f, product + at->x);
-        for (int i = at->x; i < at->end; i++) product[i] += v[i];
-    }
+static void multiply_one(void *data, int f) {
+    const struct operation *const of = data;
+    const struct jacobian *jacobian = of->linear->jacobian;
+    const struct layout *at = &jacobian->school->fish[f].at;
+    double *const product = of->to;
+    memset(product + at->x, 0, (size_t)(at->ax - at->x) * sizeof *product);
+    jacobian_multiply_couplings(jacobian, f, of->from, product + at->ax);
+    solve_block(of->linear, f, product + at->x);
+    for (int i = at->x; i < at->end; i++) product[i] += of->from[i];
 }
 
 static double dot(const struct linear *linear, const double *a, const double *b) {
@@ -233,7 +238,7 @@ static enum status solve_coupled(struct linear *linear, double *x) {
     while (j < MAX_ITERATIONS && fabs(ls.rhs[j]) > limit) {
         TRY(reserve(linear, j + 2));
         double *const next = linear->direction + (long)(j + 1) * n;
-        multiply(linear, linear->direction + (long)j * n, next);
+        for_each_fish(multiply_one, (struct operation){linear, linear->direction + (long)j * n, next});
         for (int k = 0; k <= j; k++) {
             const double *const direction = linear->direction + (long)k * n;
             ls.h[j][k] = dot(linear, direction, next);
@@ -251,7 +256,7 @@ static enum status solve_coupled(struct linear *linear, double *x) {
 
 enum status linear_solve(struct linear *linear, const double *b, double *x) {
     linear->solves++;
-    solve_blocks(linear, b, x);
+    for_each_fish(solve_one, (struct operation){linear, b, x});
     if (linear->jacobian->n_couplings > 0) TRY(solve_coupled(linear, x));
     for (int i = 0; i < n_unknowns(linear); i++) {
         if (!isfinite(x[i])) return status_fail(STATUS_RETRY, "a linear system has no finite solution");

@@ -76,8 +76,10 @@ static void combine(void *data, int i) {
 }
 
 static int operate(parallel_body *operation, struct operation of) {
-    const int n_parts = (int)((NV_LENGTH_S(of.z[0]) + PART - 1) / PART);
-    parallel_for(fish_threads(school_of(of.z[0])), n_parts, operation, &of);
+    const sunindextype length = NV_LENGTH_S(of.z[0]);
+    const int n_parts = (int)((length + PART - 1) / PART), all = school_of(of.z[0])->threads;
+    const int threads = parallel_threads(all, n_parts, (double)length * of.n, PARALLEL_ELEMENTS);
+    parallel_for(threads, n_parts, operation, &of);
     return 0;
 }
 
@@ -90,7 +92,7 @@ static void scale(double c, N_Vector x, N_Vector z) {
 }
 
 static void set_constant(double c, N_Vector z) {
-    operate(set_constants, (struct operation){.a = c, .z = &z});
+    operate(set_constants, (struct operation){.n = 1, .a = c, .z = &z});
 }
 
 static int linear_combination(int n, double *c, N_Vector *x, N_Vector z) {

@@ -9,7 +9,7 @@
 #include "solver/shared_vector.h"
 
 // several parts, the last of which is not whole, and enough for threads
-enum { N = 2 * PARALLEL_UNKNOWNS + 77, N_VECTORS = 4, SHARED = 0, SERIAL = 1 };
+enum { N = PARALLEL_ELEMENTS + 77, N_VECTORS = 4, SHARED = 0, SERIAL = 1 };
 
 static double values[2][N_VECTORS][N];
 
