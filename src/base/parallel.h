@@ -18,12 +18,12 @@ struct range parallel_chunk(int i, int n);
 /* The minimum work of a loop for which several threads are faster than one: starting them and waiting for the last one
  * takes some microseconds. Measured by `make bench`. */
 enum {
-    PARALLEL_INTERACTIONS = 30000, /* velocities that one vortex induces at one point */
+    PARALLEL_INTERACTIONS = 15000, /* velocities that one vortex induces at one point */
     PARALLEL_VORTICES = 4000,      /* free vortices that are placed at one time */
     PARALLEL_BOXES = 64,           /* boxes of a tree whose expansions are translated */
     PARALLEL_SORTED = 2000,        /* points that are divided among the boxes of one level */
     PARALLEL_ELEMENTS = 4000,      /* results of sums of two vectors */
-    PARALLEL_UNKNOWNS = 1000,      /* unknowns in a loop over fish that multiplies or solves */
+    PARALLEL_UNKNOWNS = 500,       /* unknowns in a loop over fish that multiplies or solves */
     PARALLEL_MATRICES = 200        /* unknowns in a loop over fish that fills or factorises their matrices */
 };
 
