@@ -116,15 +116,14 @@ static void induce(const struct walls *walls, const struct sources *sources, con
 
 void images_induce(const struct walls *walls, const struct vortices *vortices, struct range which,
                    const struct induced *at) {
-    const int end = which.first + which.n;
     for (int g = 0; g < vortices->n_groups; g++) {
-        const struct vortex_group *const group = &vortices->group[g];
-        const int group_end = group->at.first + group->at.n;
-        const int i = group->at.first > which.first ? group->at.first : which.first;
-        const int n = (group_end < end ? group_end : end) - i;
-        if (n <= 0) continue;
-        const struct sources sources = {n,    vortices->x + i, vortices->y + i, vortices->circulation + i,
-                                        NULL, group->smoothing};
+        const struct range of = vortices_of_group(vortices, g, which);
+        if (of.n <= 0) continue;
+        const struct sources sources = {.n = of.n,
+                                        .x = vortices->x + of.first,
+                                        .y = vortices->y + of.first,
+                                        .circulation = vortices->circulation + of.first,
+                                        .smoothing = vortices->group[g].smoothing};
         induce(walls, &sources, at);
     }
 }

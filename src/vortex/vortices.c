@@ -68,21 +68,24 @@ struct induced vortices_targets(const struct induced *all, struct range which) {
     return part;
 }
 
+struct range vortices_of_group(const struct vortices *vortices, int g, struct range which) {
+    const struct range group = vortices->group[g].at;
+    const int group_end = group.first + group.n, which_end = which.first + which.n;
+    const int first = group.first > which.first ? group.first : which.first;
+    return (struct range){first, (group_end < which_end ? group_end : which_end) - first};
+}
+
 void vortices_induce(const struct vortices *vortices, struct range which, const struct induced *at) {
-    const int end = which.first + which.n;
     for (int g = 0; g < vortices->n_groups; g++) {
-        const struct vortex_group *group = &vortices->group[g];
-        const int group_end = group->at.first + group->at.n;
-        const int i = group->at.first > which.first ? group->at.first : which.first;
-        const int n = (group_end < end ? group_end : end) - i;
-        if (n <= 0) continue;
-        const double *const x = vortices->x + i, *const y = vortices->y + i;
-        const double *const circulation = vortices->circulation + i;
+        const struct range of = vortices_of_group(vortices, g, which);
+        if (of.n <= 0) continue;
+        const double *const x = vortices->x + of.first, *const y = vortices->y + of.first;
+        const double *const circulation = vortices->circulation + of.first, smoothing = vortices->group[g].smoothing;
         if (at->u_x) {
-            kernel_add_gradient(at->n, at->x, at->y, n, x, y, circulation, group->smoothing, at->u, at->v, at->u_x,
-                                at->u_y, at->v_x);
+            kernel_add_gradient(at->n, at->x, at->y, of.n, x, y, circulation, smoothing, at->u, at->v, at->u_x, at->u_y,
+                                at->v_x);
         } else {
-            kernel_add_velocity(at->n, at->x, at->y, n, x, y, circulation, group->smoothing, at->u, at->v);
+            kernel_add_velocity(at->n, at->x, at->y, of.n, x, y, circulation, smoothing, at->u, at->v);
         }
     }
 }

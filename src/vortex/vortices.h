@@ -29,6 +29,9 @@ struct induced {
     double *u_x, *u_y, *v_x; /* s-1 */
 };
 
+/* Those of group g that are in a range; n <= 0: none. */
+struct range vortices_of_group(const struct vortices *vortices, int g, struct range which);
+
 /* Release what the vortices own. Accepts a zeroed struct, as all functions here do. */
 void vortices_free(struct vortices *vortices);
 
