@@ -16,17 +16,28 @@ static enum status evaluate(struct residual *residual, const struct state *state
     return status == STATUS_RETRY ? status_fail(STATUS_SOLVER, "%s", status_message()) : status;
 }
 
+static void place_of_tail(const struct state *state, const struct fish *fish, double place[2]) {
+    const int last = fish->n_nodes - 1;
+    place[0] = state->y[fish->at.x + last];
+    place[1] = state->y[fish->at.y + last];
+}
+
+// a vortex of all that has been shed since the last one
+static enum status release(struct state *state, const struct school *school, int f, const double place[2]) {
+    struct wake *const wake = &state->wake[f];
+    const double circulation = state->y[school->fish[f].at.circulation];
+    TRY(wake_release(wake, place[0], place[1], circulation - wake->shed_before, state->t));
+    wake->shed_before = circulation;
+    return STATUS_OK;
+}
+
 // continuous shedding: the nascent vortex is set free where it is, with the strength it has
 static enum status release_nascent(struct state *state, const struct school *school) {
     for (int f = 0; f < school->n_fish; f++) {
-        const struct fish *fish = &school->fish[f];
-        struct wake *wake = &state->wake[f];
-        const int last = fish->n_nodes - 1;
-        const double tail[2] = {state->y[fish->at.x + last], state->y[fish->at.y + last]};
-        double position[2];
-        wake_nascent(wake, school->interval, tail, position);
-        TRY(wake_release(wake, position[0], position[1], state->y[fish->at.circulation] - wake->shed_before, state->t));
-        wake->shed_before = state->y[fish->at.circulation];
+        double tail[2], position[2];
+        place_of_tail(state, &school->fish[f], tail);
+        wake_nascent(&state->wake[f], school->interval, tail, position);
+        TRY(release(state, school, f, position));
     }
     return STATUS_OK;
 }
@@ -50,12 +61,9 @@ static enum status release_impulse(struct state *state, struct residual *residua
         }
     }
     for (int f = 0; f < school->n_fish; f++) {
-        const struct fish *fish = &school->fish[f];
-        struct wake *wake = &state->wake[f];
-        const int last = fish->n_nodes - 1;
-        TRY(wake_release(wake, state->y[fish->at.x + last], state->y[fish->at.y + last],
-                         state->y[fish->at.circulation] - wake->shed_before, state->t));
-        wake->shed_before = state->y[fish->at.circulation];
+        double tail[2];
+        place_of_tail(state, &school->fish[f], tail);
+        TRY(release(state, school, f, tail));
     }
     return STATUS_OK;
 }
@@ -63,11 +71,11 @@ static enum status release_impulse(struct state *state, struct residual *residua
 // a free sheet: a marker is born at the tail
 static enum status release_markers(struct state *state, const struct school *school) {
     for (int f = 0; f < school->n_fish; f++) {
-        const struct fish *fish = &school->fish[f];
-        struct wake *wake = &state->wake[f];
-        const int last = fish->n_nodes - 1;
-        wake->shed_before = state->y[fish->at.circulation];
-        TRY(wake_release(wake, state->y[fish->at.x + last], state->y[fish->at.y + last], wake->shed_before, state->t));
+        struct wake *const wake = &state->wake[f];
+        double tail[2];
+        place_of_tail(state, &school->fish[f], tail);
+        wake->shed_before = state->y[school->fish[f].at.circulation];
+        TRY(wake_release(wake, tail[0], tail[1], wake->shed_before, state->t));
     }
     return STATUS_OK;
 }
