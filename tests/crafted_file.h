@@ -33,6 +33,15 @@ static inline void write_bytes(const char *path, size_t n, const char *bytes) {
     fclose(file);
 }
 
+/* The length of a file without the zeros at its end, which NetCDF may leave there. */
+static inline off_t length_of_data(const char *path) {
+    size_t n;
+    char *const bytes = read_bytes(path, &n);
+    while (n > 0 && bytes[n - 1] == 0) n--;
+    free(bytes);
+    return (off_t)n;
+}
+
 /* The name of a variable of a file, by its number; 0 beyond the last. */
 static inline int name_of_variable(const char *path, int number, char name[NC_MAX_NAME + 1]) {
     int file;

@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "crafted_file.h"
 #include "failing_malloc.h"
 #include "near.h"
 #include "output/netcdf.h"
@@ -333,17 +334,6 @@ static void write_rows(const char *path, int format, int n_growing) {
         }
     }
     assert_int_equal(nc_close(file), NC_NOERR);
-}
-
-/* The length of a file without the zeros that fill it up. */
-static off_t length_of_data(const char *path) {
-    FILE *const file = fopen(path, "rb");
-    off_t length = 0;
-    int byte;
-    for (off_t i = 1; (byte = fgetc(file)) != EOF; i++)
-        if (byte != 0) length = i;
-    fclose(file);
-    return length;
 }
 
 static void a_file_that_was_cut_anywhere_is_refused(void **state) {

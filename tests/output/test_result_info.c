@@ -89,17 +89,6 @@ static void info_refuses_another_schema(void **state) {
     assert_no_info(f, "written in schema 2");
 }
 
-/* The number of bytes of a file without the zeros at its end, which NetCDF may leave there. */
-static off_t length_of_data(const char *path) {
-    FILE *file = fopen(path, "rb");
-    off_t length = 0;
-    int byte;
-    for (off_t i = 1; (byte = fgetc(file)) != EOF; i++)
-        if (byte != 0) length = i;
-    fclose(file);
-    return length;
-}
-
 static void info_refuses_a_file_that_was_cut(void **state) {
     struct fixture *f = *state;
     write_file(f, 4);
