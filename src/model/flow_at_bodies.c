@@ -53,6 +53,8 @@ enum status flow_interpolate(struct flow *flow, const struct state *state) {
     if (!flow->interpolation) return STATUS_OK;
     TRY(flow_place(flow, state, state->t, state->y));
     flow_sum_exactly(flow);
+    const int threads = fish_threads(flow->school);
+#pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < flow->school->n_fish; f++) {
         const struct fish *const fish = &flow->school->fish[f];
         // where there are momenta, a is their rate

@@ -288,6 +288,8 @@ void wake_interpolation_update(struct wake_interpolation *interpolation, double 
         }
     }
     predict(interpolation, tau, interpolation->predicted);
+    const int threads = fish_threads(interpolation->school);
+#pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < interpolation->school->n_fish; f++) near_field_update(&interpolation->near_field[f], tau, q, 1);
 }
 

@@ -1,6 +1,7 @@
 /* shared_vector.c: the serial operations of SUNDIALS on parts of the vectors. */
 #include "solver/shared_vector.h"
 
+#include <math.h>
 #include <nvector/nvector_serial.h>
 #include <stdlib.h>
 
@@ -107,6 +108,18 @@ static int linear_sum_many(int n, double a, N_Vector *x, double b, N_Vector *y, 
     return operate(sum_all, (struct operation){.n = n, .a = a, .b = b, .x = x, .y = y, .z = z});
 }
 
+// in the order of the serial vector, without its branch on the kind of an element
+static double masked_norm(N_Vector x, N_Vector weight, N_Vector mask) {
+    const double *const value = NV_DATA_S(x), *const w = NV_DATA_S(weight), *const kind = NV_DATA_S(mask);
+    const sunindextype n = NV_LENGTH_S(x);
+    double sum = 0;
+    for (sunindextype i = 0; i < n; i++) {
+        const double weighted = value[i] * w[i];
+        sum += kind[i] > 0 ? weighted * weighted : 0;
+    }
+    return sqrt(sum / (double)n);
+}
+
 // put the school into the content of a serial vector; the vector is released where there is no memory for it
 static N_Vector give_school(N_Vector vector, const struct school *school) {
     if (!vector) return NULL;
@@ -132,6 +145,7 @@ enum status shared_vector_create(N_Vector *vector, SUNContext context, const str
     ops->nvlinearsum = linear_sum;
     ops->nvscale = scale;
     ops->nvconst = set_constant;
+    ops->nvwrmsnormmask = masked_norm;
     ops->nvlinearcombination = linear_combination;
     ops->nvscalevectorarray = scale_many;
     ops->nvlinearsumvectorarray = linear_sum_many;

@@ -1,6 +1,6 @@
 /* shared_vector.h: vectors of SUNDIALS whose operations on single elements are shared by the threads of the school.
- * Each element has the bits that the serial vector of SUNDIALS gives it; norms and other sums are those of the serial
- * vector. Tested by tests/solver/test_shared_vector.c. */
+ * Each element has the bits that the serial vector of SUNDIALS gives it, and norms are summed in its order. Tested by
+ * tests/solver/test_shared_vector.c. */
 #ifndef SHARED_VECTOR_H
 #define SHARED_VECTOR_H
 

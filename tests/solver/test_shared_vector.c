@@ -74,6 +74,23 @@ static void every_element_has_the_bits_of_the_serial_vector(void **state) {
     }
 }
 
+static void norms_have_the_bits_of_the_serial_vector(void **state) {
+    (void)state;
+    struct both both;
+    fill();
+    create(&both);
+    double all[2], masked[2];
+    for (int k = 0; k < 2; k++) {
+        N_Vector *const v = both.vector[k];
+        all[k] = N_VWrmsNorm(v[0], v[1]);
+        masked[k] = N_VWrmsNormMask(v[0], v[1], v[2]);
+    }
+    NEAR(all[SHARED], all[SERIAL], 0, 0);
+    NEAR(masked[SHARED], masked[SERIAL], 0, 0);
+    assert_true(masked[SERIAL] > 0 && masked[SERIAL] < all[SERIAL]);
+    clear(&both);
+}
+
 static void a_clone_is_a_shared_vector_with_values_of_its_own(void **state) {
     (void)state;
     struct both both;
@@ -107,6 +124,7 @@ static void without_memory_there_is_no_vector(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_element_has_the_bits_of_the_serial_vector),
+        cmocka_unit_test(norms_have_the_bits_of_the_serial_vector),
         cmocka_unit_test(a_clone_is_a_shared_vector_with_values_of_its_own),
         cmocka_unit_test(without_memory_there_is_no_vector),
     };
