@@ -176,6 +176,14 @@ void wake_remove_old(struct wake *wake, const struct school *school, double t) {
         memmove(*array[i], *array[i] + n_old, (size_t)wake->n_vortex * sizeof **array[i]);
 }
 
+void wake_add_shed(struct wake *wake, double circulation) {
+    // the label of a marker is what had been shed at its birth
+    for (int i = 0; i < wake->n_vortex && wake->has_markers; i++) wake->circulation[i] += circulation;
+    wake->shed_before += circulation;
+    wake->removed += circulation;
+    wake->version++;
+}
+
 void wake_leave_behind(struct wake *wake, double shed) {
     wake->n_vortex = 0;
     wake->shed_before = wake->removed = shed;

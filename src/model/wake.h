@@ -78,6 +78,9 @@ int wake_n_old(const struct wake *wake, const struct school *school, double t);
 /* Remove the old vortices. */
 void wake_remove_old(struct wake *wake, const struct school *school, double t);
 
+/* So much more circulation has been shed, m2 s-1, all of it infinitely long ago: no vortex changes. */
+void wake_add_shed(struct wake *wake, double circulation);
+
 /* There are no vortices any more: all the circulation that has been shed, m2 s-1, is infinitely far away. */
 void wake_leave_behind(struct wake *wake, double shed);
 

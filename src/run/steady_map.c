@@ -168,6 +168,7 @@ double steady_map_scale(const struct steady_map *map, struct steady_unknown unkn
         case STEADY_SLIP: return length / map->period;
         case STEADY_TURN: return 1 / map->period;
         case STEADY_HEADING: return 1;
+        case STEADY_SHED: return length * length / map->period;
         default: return length;
     }
 }
@@ -209,6 +210,7 @@ void steady_map_read(const struct steady_map *map, int n, const struct steady_un
             case STEADY_HEADING: value[i] = heading_seen(map, unknown[i].fish, rigid.heading, first.heading); break;
             case STEADY_AHEAD: value[i] = place[0]; break;
             case STEADY_ASIDE: value[i] = place[1]; break;
+            case STEADY_SHED: value[i] = map->simulation->state->wake[unknown[i].fish].shed_before; break;
         }
     }
 }
@@ -228,7 +230,16 @@ static void add_one(struct rigid *change, const struct rigid *first, enum steady
             change->place[0] -= s * add;
             change->place[1] += c * add;
             break;
+        case STEADY_SHED: break;
     }
+}
+
+// as if it had been shed infinitely long ago
+static void add_shed(const struct school *school, struct state *state, const struct steady_unknown *unknown,
+                     double add) {
+    if (unknown->quantity != STEADY_SHED) return;
+    state->y[school->fish[unknown->fish].at.circulation] += add;
+    wake_add_shed(&state->wake[unknown->fish], add);
 }
 
 // what turning the first fish adds to another one, so that it stays where that one sees it
@@ -267,6 +278,7 @@ enum status steady_map_add(struct steady_map *map, int n, const struct steady_un
     const struct rigid first = rigid_of(&school->fish[0], state->y);
     double turn = 0;
     diagnostics_before_jump(simulation->residual, state);
+    for (int i = 0; i < n; i++) add_shed(school, state, &unknown[i], add[i]);
     for (int f = 0; f < school->n_fish; f++) {
         struct rigid change = {.heading = 0};
         for (int i = 0; i < n; i++) {

@@ -9,9 +9,18 @@
 #include "run/simulate.h"
 
 /* The slow quantities of a fish: velocity through the water along its heading and to the left of it, rate of turning;
- * heading, and place ahead of the first fish and to its left, seen from that one. The heading of the first fish counts
- * from the one that the first law of control wants, and all fish turn with it, around the first. */
-enum steady_quantity { STEADY_SPEED, STEADY_SLIP, STEADY_TURN, STEADY_HEADING, STEADY_AHEAD, STEADY_ASIDE };
+ * heading, and place ahead of the first fish and to its left, seen from that one; circulation that it has shed. The
+ * heading of the first fish counts from the one that the first law of control wants, and all fish turn with it, around
+ * the first. What is added to the circulation has been shed infinitely long ago. */
+enum steady_quantity {
+    STEADY_SPEED,
+    STEADY_SLIP,
+    STEADY_TURN,
+    STEADY_HEADING,
+    STEADY_AHEAD,
+    STEADY_ASIDE,
+    STEADY_SHED
+};
 
 struct steady_unknown {
     int fish;
@@ -60,7 +69,8 @@ enum status steady_map_beat(struct steady_map *map, enum status (*row)(void *dat
  * fish that is held, of thrust and power over their root mean squares. */
 double steady_map_residual(const struct steady_map *map);
 
-/* The unit in which a quantity is measured: lengths per beat, rad per beat, rad, lengths; in m s-1, s-1, rad, m. */
+/* The unit in which a quantity is measured: lengths per beat, rad per beat, rad, lengths, squares of them per beat; in
+ * m s-1, s-1, rad, m, m2 s-1. */
 double steady_map_scale(const struct steady_map *map, struct steady_unknown unknown);
 
 /* What the quantities are now, in SI units                                                        (n) */

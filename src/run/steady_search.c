@@ -5,6 +5,7 @@
 
 #include "run/steady_formation.h"
 #include "run/steady_reason.h"
+#include "run/steady_together.h"
 #include "solver/newton.h"
 
 /* A step of Newton's method changes the speed by no more than this, in lengths per beat. */
@@ -26,14 +27,17 @@ static const double margin = 0.5, sharper = 0.3;
 /* Change over the tolerance in a beat that has run away. */
 static const double lost = 10;
 
-/* Iterations of Newton's method on the speed alone, and how often it is begun; then the fish swims until it is
- * steady. */
-enum { SPEED_ITERATIONS = 20, TRIES = 3 };
+/* Iterations of Newton's method on the speed alone; how often it is begun, and then, or at once where a fish circles,
+ * that on all slow quantities; then the fish swims until it is steady. What the speed alone does not tell has a long
+ * memory: an evaluation is then so many beats. */
+enum { SPEED_ITERATIONS = 20, TRIES = 2, TRIES_TOGETHER = 6, AGED = 3 };
 
 /* The speed of the first fish, and what is known of its change in a beat. */
 struct search {
     struct steady_problem *problem;
-    int n_tries;         /* of Newton's method on the speed alone that are left */
+    int n_tries;    /* of Newton's method on the speed alone that are left */
+    int n_together; /* and on all slow quantities of the fish */
+    struct steady_together together;
     double margin;       /* part of the tolerance to which a formation is solved for */
     struct state *found; /* what that came to; NULL: none has been */
     int has_failed;      /* a beat has */
@@ -106,10 +110,20 @@ static enum status settle(struct search *search) {
     return STATUS_OK;
 }
 
+static enum status solve_fish(struct search *search) {
+    if (search->n_tries-- > 0) return solve_speed(search);
+    if (search->n_together-- <= 0) return STATUS_OK;
+    int is_done;
+    TRY(steady_together_solve(&search->together, search->problem, ROUGH * search->problem->settings->tolerance,
+                              &is_done));
+    if (!is_done) search->n_together = 0;
+    return STATUS_OK;
+}
+
 static enum status solve(struct search *search) {
     struct steady_problem *const problem = search->problem;
     if (problem->n_unknowns == 0) return STATUS_OK;
-    if (!problem->map.is_formation) return search->n_tries-- > 0 ? solve_speed(search) : STATUS_OK;
+    if (!problem->map.is_formation) return solve_fish(search);
     TRY(steady_formation_solve(problem, search->margin * problem->settings->tolerance));
     return steady_map_save(&problem->map, &search->found);
 }
@@ -159,19 +173,27 @@ static enum status run(struct search *search) {
 }
 
 enum status steady_search_correct(struct steady_problem *problem, const double *way) {
-    struct search search = {.problem = problem};
+    struct search search = {.problem = problem, .n_together = TRIES_TOGETHER, .together = {.beats = AGED}};
     double *const to = problem->scratch + 2 * problem->n_unknowns;
     steady_problem_read(problem, to);
     for (int i = 0; i < problem->n_unknowns; i++) to[i] += way[i];
     TRY(steady_problem_put(problem, to));
-    for (int is_steady = 0; !is_steady;) TRY(let_go(&search, &is_steady));
+    int is_steady;
+    TRY(let_go(&search, &is_steady));
+    while (!is_steady) {
+        if (!problem->map.is_formation) TRY(solve_fish(&search));
+        TRY(let_go(&search, &is_steady));
+    }
     return STATUS_OK;
 }
 
 enum status steady_search_run(struct steady_problem *problem) {
     struct search search = {.problem = problem, .speed = {0, STEADY_SPEED}, .slope = first_slope, .margin = margin};
     search.scale = steady_map_scale(&problem->map, search.speed);
-    search.n_tries = circles(problem->map.simulation->school) ? 0 : TRIES;
+    const int is_circle = circles(problem->map.simulation->school);
+    search.n_tries = is_circle ? 0 : TRIES;
+    search.n_together = TRIES_TOGETHER;
+    search.together.beats = is_circle ? 1 : AGED;
     const enum status status = run(&search);
     state_free(search.found, problem->map.simulation->school);
     const int is_late = problem->map.n_beats >= problem->settings->beats;

@@ -145,6 +145,26 @@ static void without_fade_a_vortex_vanishes_within_one_interval(void **state) {
     school_clear(&setup);
 }
 
+static void what_was_shed_long_ago_changes_no_vortex(void **state) {
+    (void)state;
+    // as vortices, and as markers, whose labels are what had been shed before
+    for (int has_markers = 0; has_markers <= 1; has_markers++) {
+        struct wake wake;
+        school_ok(wake_create(&wake, 3));
+        wake.has_markers = has_markers;
+        wake.shed_before = 9;
+        for (int i = 0; i < 3; i++) school_ok(wake_release(&wake, i, 0, 1 << i, i));
+        const unsigned long version = wake.version;
+        wake_add_shed(&wake, 0.5);
+        for (int i = 0; i < wake_n_sources(&wake); i++) NEAR(wake_source(&wake, i), 1 << i, 0, 0);
+        NEAR(wake.circulation[2], has_markers ? 4.5 : 4, 0, 0);
+        NEAR(wake.shed_before, 9.5, 0, 0);
+        NEAR(wake.removed, 0.5, 0, 0);
+        assert_true(wake.version > version);
+        wake_free(&wake);
+    }
+}
+
 static void most_is_enough_and_not_too_much(void **state) {
     (void)state;
     struct setup setup;
@@ -173,6 +193,7 @@ int main(void) {
         cmocka_unit_test(strength_fades_as_the_ramp_over_the_last_part_of_life),
         cmocka_unit_test(old_vortices_go_and_leave_their_circulation),
         cmocka_unit_test(without_fade_a_vortex_vanishes_within_one_interval),
+        cmocka_unit_test(what_was_shed_long_ago_changes_no_vortex),
         cmocka_unit_test(most_is_enough_and_not_too_much),
         cmocka_unit_test(nascent_vortex_is_the_centroid_of_what_was_shed),
     };

@@ -1,7 +1,9 @@
 /* test_steady.c: the search for a steady state: what it finds is what a long run comes to, with how fast it comes; and
  * what can have none is refused with the reason. doc/steady.md. */
+#include <stdio.h>
 #include <string.h>
 
+#include "model/bound_sheet.h"
 #include "steady_setup.h"
 
 // mean speed, and change of the heading, over the last of some beats of a run
@@ -39,21 +41,80 @@ static void speed_and_multiplier_are_those_of_a_long_run(void **state) {
     steady_setup_close(&setup);
 }
 
+// a run takes 25 to 45 beats to 1e-4
+static void circle(const char *text, double least_turn, int most_beats) {
+    struct steady_setup setup;
+    struct brute brute[80];
+    steady_setup_open(&setup, text);
+    school_ok(steady_search_run(&setup.problem));
+    run_long(text, 80, brute);
+    const struct steady_beat *const last = setup.problem.map.last;
+    assert_true(last[0].turn < -least_turn);
+    NEAR(last[0].speed, brute[79].speed, 0, 1e-4);
+    // the radius is speed over turn
+    NEAR(last[0].turn, brute[79].turn, 0, 3e-4);
+    assert_in_range(setup.problem.map.n_beats, 1, most_beats);
+    steady_setup_multipliers(&setup);
+    assert_true(setup.real[0] < 1);
+    steady_setup_close(&setup);
+}
+
 static void a_fish_that_is_steered_to_one_side_goes_in_a_circle(void **state) {
     (void)state;
-    static const char text[] = COARSE
-        "steady: {tolerance: 5e-5}\n"
-        "fish: [{" FISH ", start: {speed: 0.6}, control: {bias: 0.2}}]\n";
+    circle(COARSE "steady: {tolerance: 2e-5}\nfish: [{" FISH ", start: {speed: 0.6}, control: {bias: 0.02}}]\n", 0.02,
+           22);
+    circle(COARSE "steady: {tolerance: 2e-5}\nfish: [{" FISH ", start: {speed: 0.6}, control: {bias: 0.2}}]\n", 0.2,
+           22);
+    circle(COARSE "steady: {tolerance: 2e-5}\nfish: [{" FISH ", control: {bias: 0.4}}]\n", 0.4, 30);
+    circle(COARSE "steady: {tolerance: 2e-5}\nfish: [{" FISH ", force: pressure, control: {bias: 0.2}}]\n", 0.2, 25);
+    // what is removed of the wake is forgotten: the circulation is no quantity of its own
+    circle(COARSE
+           "steady: {tolerance: 2e-5}\nwake: {dissipated_circulation: dropped}\n"
+           "fish: [{" FISH ", start: {speed: 0.6}, control: {bias: 0.2}}]\n",
+           0.2, 22);
+}
+
+// a run forgets its start by 1 % in a beat
+static void a_fish_that_coasts_has_the_same_speed_from_two_starts(void **state) {
+    (void)state;
+    double speed[2];
+    for (int i = 0; i < 2; i++) {
+        struct steady_setup setup;
+        char text[512];
+        snprintf(text, sizeof text,
+                 "include: [cases/include/article.yaml]\n# preset:\n"
+                 "time: {end: 1, shedding_interval: 0.05, output_interval: 0.05}\n"
+                 "steady: {beats: 120}\nfish: [{" FISH ", start: {speed: %d}}]\n",
+                 i);
+        steady_setup_open(&setup, text);
+        school_ok(steady_search_run(&setup.problem));
+        speed[i] = setup.problem.map.last[0].speed;
+        steady_setup_multipliers(&setup);
+        assert_true(setup.real[0] > 0.97 && setup.real[0] < 1);
+        steady_setup_close(&setup);
+    }
+    NEAR(speed[0], speed[1], 0, 3e-3);
+}
+
+static void circulation_that_is_added_changes_nothing_else(void **state) {
+    (void)state;
+    static const struct steady_unknown unknown[] = {
+        {0, STEADY_SPEED}, {0, STEADY_SLIP}, {0, STEADY_TURN}, {0, STEADY_SHED}};
+    const double add[] = {0, 0, 0, 0.1};
+    double before[4], after[4];
     struct steady_setup setup;
-    struct brute brute[40];
-    steady_setup_find(&setup, text);
-    run_long(text, 40, brute);
-    const struct steady_beat *const last = setup.problem.map.last;
-    assert_true(last[0].turn < -0.2);
-    NEAR(last[0].speed, brute[39].speed, 0, 1e-4);
-    // the radius is speed over turn
-    NEAR(last[0].turn, brute[39].turn, 0, 1e-3);
-    assert_true(setup.real[0] < 1);
+    steady_setup_open(&setup, COARSE "fish: [{" FISH ", start: {speed: 0.8}}]\n");
+    steady_setup_beats(&setup, 2);
+    const struct state *const now = setup.simulation->state;
+    const struct fish *const fish = &setup.simulation->school->fish[0];
+    const double bound = bound_sheet_circulation(fish, now->y), source = wake_source(&now->wake[0], 3);
+    steady_map_read(&setup.problem.map, 4, unknown, before);
+    school_ok(steady_map_add(&setup.problem.map, 4, unknown, add));
+    steady_map_read(&setup.problem.map, 4, unknown, after);
+    for (int i = 0; i < 4; i++) NEAR(after[i] - before[i], add[i], 1e-12, 0);
+    // Kelvin: around the body as much the other way round, less what the nascent stretch has of it
+    NEAR(bound_sheet_circulation(fish, now->y) - bound, -0.1, 0, 0.05);
+    NEAR(wake_source(&now->wake[0], 3), source, 1e-14, 0);
     steady_setup_close(&setup);
 }
 
@@ -151,6 +212,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(speed_and_multiplier_are_those_of_a_long_run),
         cmocka_unit_test(a_fish_that_is_steered_to_one_side_goes_in_a_circle),
+        cmocka_unit_test(a_fish_that_coasts_has_the_same_speed_from_two_starts),
+        cmocka_unit_test(circulation_that_is_added_changes_nothing_else),
         cmocka_unit_test(a_law_of_control_brings_the_heading_to_where_a_run_has_it),
         cmocka_unit_test(the_state_stays_where_its_multipliers_are_taken),
         cmocka_unit_test(a_held_fish_is_steady_when_its_forces_repeat),

@@ -152,19 +152,27 @@ static void close_steered(struct steered *steered) {
     case_free(&steered->values);
 }
 
-static void circle(void) {
-    static const char text[] = VERIFY_SECOND TIME "fish: [{start: {speed: 0.6}, control: {bias: 0.1}}]\n";
+static void circle(const char *name, const char *text) {
     struct steered found, run;
     find_steered(&found, text);
     open_steered(&run, text);
-    let_run(&run, 80);
+    let_run(&run, BRUTE_BEATS);
     const struct steady_beat *const last = found.problem.map.last, *const reference = run.problem.map.last;
-    verify_relative("fish in a circle: speed, m/s", "a run of 80 beats", reference->speed, last->speed, 1e-4);
-    verify_relative("fish in a circle: radius, m", "a run of 80 beats", fabs(reference->speed / reference->turn),
-                    fabs(last->speed / last->turn), 1e-4);
-    verify_show("fish in a circle: beats of the search", "as in a run", found.problem.map.n_beats);
+    static const char source[] = "a run of 200 beats";
+    verify_relative(verify_text("%s: speed, m/s", name), source, reference->speed, last->speed, 1e-4);
+    verify_relative(verify_text("%s: turn in a beat, rad", name), source, reference->turn, last->turn, 1e-4);
+    // one more beat has been taken for the means
+    verify_zero(verify_text("%s: beats of the search", name), "about a tenth of the run's",
+                found.problem.map.n_beats - 1, 24);
     close_steered(&run);
     close_steered(&found);
+}
+
+static void circles(void) {
+    circle("fish in a wide circle", VERIFY_SECOND TIME "fish: [{start: {speed: 0.6}, control: {bias: 0.03}}]\n");
+    circle("fish in a circle", VERIFY_SECOND TIME "fish: [{start: {speed: 0.6}, control: {bias: 0.1}}]\n");
+    circle("fish in a narrow circle", VERIFY_SECOND TIME "fish: [{start: {speed: 0.6}, control: {bias: 0.4}}]\n");
+    circle("fish with pressure in a circle", VERIFY_SECOND TIME "fish: [{force: pressure, control: {bias: 0.2}}]\n");
 }
 
 /* cases/formation.yaml */
@@ -193,6 +201,6 @@ static void formation(void) {
 void verify_steady(void) {
     if (verify_is_fast()) return;
     for (size_t i = 0; i < sizeof swimmers / sizeof *swimmers; i++) compare(&swimmers[i]);
-    circle();
+    circles();
     formation();
 }
