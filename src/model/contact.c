@@ -7,6 +7,7 @@
 
 #include "model/clearance.h"
 #include "model/fish_distance.h"
+#include "model/fish_prescribed.h"
 #include "model/neighbours.h"
 
 struct contact {
@@ -54,6 +55,11 @@ void contact_free(struct contact *contact) {
 
 // ---- who is near whom
 
+// whether all of a body is where it is told to be
+static int is_given(const struct fish *fish) {
+    return fish_is_prescribed(fish, fish->n_nodes - 1, 0);
+}
+
 // whether fish f and g are in contact in y; they must not touch on the way there
 static enum status compare(const struct contact *contact, const struct state *state, double t, const double *y, int f,
                            int g, unsigned char *is_near) {
@@ -61,7 +67,7 @@ static enum status compare(const struct contact *contact, const struct state *st
     const double range = contact->school->contact_range;
     *is_near = 0;
     // nothing keeps apart what is moved by force
-    if (a->motion.prescribed == PRESCRIBED_ALL && b->motion.prescribed == PRESCRIBED_ALL) return STATUS_OK;
+    if (is_given(a) && is_given(b)) return STATUS_OK;
     const struct passage passage = clearance_passage(a, b, state->closest->before, y, range, contact->between);
     *is_near = passage.now < range;
     if (passage.least > 0) return STATUS_OK;

@@ -260,6 +260,39 @@ static void bodies_that_meet_do_not_cross(void **state) {
          ", body: {profile: uniform, thickness: 0.1}, start: {speed: 0.01}}}\n"
          "fish: [{}, {start: {position: [0.3, 0.1001]}}]\n",
          0.1, 5e-3);
+    meet("in line, free along it",
+         "solver: {rtol: 1.0e-7}\n" VACUUM "defaults: {fish: {" PASSIVE
+         ", motion: {driven: all, surge: free}, start: {speed: 3}}}\n"
+         "fish: [{start: {position: [-0.2, 0], heading: 0}}, {start: {position: [0.2, 0], heading: 180}}]\n",
+         0.3, 5e-3);
+}
+
+// Of two plates that heave and swim the one behind is faster: it pushes the other one, and does not get through.
+static void plates_that_swim_in_line_do_not_cross(void **state) {
+    (void)state;
+    struct simulation *const simulation = school_simulation(
+        SCHOOL_SECOND TIME
+        "defaults: {fish: {nodes: 5, sheet_points: 17, force: pressure, wave: {amplitude: 0, frequency: 0}, "
+        "body: {profile: uniform, thickness: 0.05, width: 1, density: 2000}, "
+        "motion: {driven: all, surge: free, heave: 0.05, frequency: 1}}}\n"
+        "fish: [{start: {speed: 1}}, {start: {position: [1.3, 0], speed: 2}}]\n");
+    double stored = 0, audit = 0;
+    const double energy = diagnostics_energy(simulation->residual, 1, 0, simulation->state->y);
+    while (simulation->state->t < 1) {
+        school_ok(simulate_step(simulation));
+        simulate_measure(simulation);
+        const struct diagnostics_fish *const of = simulation->diagnostics->fish;
+        stored = fmax(stored, of[0].contact_energy);
+        for (int f = 0; f < 2; f++) audit = fmax(audit, fabs(of[f].energy_audit));
+        for (int i = 0; i < 2; i++) NEAR(of[0].contact_force[i], -of[1].contact_force[i], 1e-9, 1e-9);
+    }
+    print_message("plates in line: gap %.2g m, audit %.1g of %.3g J\n", simulation->state->closest->distance, audit,
+                  energy);
+    assert_true(simulation->state->closest->distance > 0);
+    assert_true(stored > 0.01 * energy);
+    assert_true(audit < 5e-3 * energy);
+    assert_true(simulation->diagnostics->fish[0].com[0] < simulation->diagnostics->fish[1].com[0]);
+    simulate_free(simulation);
 }
 
 #define AT_A_WALL(height, speed)                                                                                 \
@@ -423,6 +456,7 @@ int main(void) {
         cmocka_unit_test(walls_throw_bodies_back),
         cmocka_unit_test(what_crosses_on_its_way_asks_for_a_smaller_step),
         cmocka_unit_test(bodies_that_meet_do_not_cross),
+        cmocka_unit_test(plates_that_swim_in_line_do_not_cross),
         cmocka_unit_test(bodies_under_pressure_throw_each_other_back),
         cmocka_unit_test(every_integrator_keeps_bodies_apart),
         cmocka_unit_test(a_fixed_step_that_is_too_long_fails_and_says_so),
