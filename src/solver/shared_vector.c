@@ -20,6 +20,13 @@ static const struct school *school_of(N_Vector vector) {
     return ((const struct content *)vector->content)->school;
 }
 
+static void set_constant(double c, N_Vector z);
+
+// a clone that found no memory for its school is a serial vector
+static int threads_of(N_Vector vector) {
+    return vector->ops->nvconst == set_constant ? school_of(vector)->threads : 1;
+}
+
 /* A part of a vector as a serial vector of its own. */
 struct part {
     struct _N_VectorContent_Serial content;
@@ -78,7 +85,7 @@ static void combine(void *data, int i) {
 
 static int operate(parallel_body *operation, struct operation of) {
     const sunindextype length = NV_LENGTH_S(of.z[0]);
-    const int n_parts = (int)((length + PART - 1) / PART), all = school_of(of.z[0])->threads;
+    const int n_parts = (int)((length + PART - 1) / PART), all = threads_of(of.z[0]);
     const int threads = parallel_threads(all, n_parts, (double)length * of.n, PARALLEL_ELEMENTS);
     parallel_for(threads, n_parts, operation, &of);
     return 0;
@@ -133,8 +140,28 @@ static N_Vector give_school(N_Vector vector, const struct school *school) {
     return vector;
 }
 
+static void take_serial_operations(N_Vector_Ops ops) {
+    ops->nvclone = N_VClone_Serial;
+    ops->nvlinearsum = N_VLinearSum_Serial;
+    ops->nvscale = N_VScale_Serial;
+    ops->nvconst = N_VConst_Serial;
+    ops->nvlinearcombination = NULL;
+    ops->nvscalevectorarray = NULL;
+    ops->nvlinearsumvectorarray = NULL;
+}
+
+// SUNDIALS crashes where there is no clone: without memory for the school it is a serial vector
 static N_Vector clone(N_Vector vector) {
-    return give_school(N_VClone_Serial(vector), school_of(vector));
+    const N_Vector new = N_VClone_Serial(vector);
+    if (!new) return NULL;
+    struct content *const content = realloc(new->content, sizeof *content);
+    if (content) {
+        content->school = school_of(vector);
+        new->content = content;
+    } else {
+        take_serial_operations(new->ops);
+    }
+    return new;
 }
 
 enum status shared_vector_create(N_Vector *vector, SUNContext context, const struct school *school, double *values) {
