@@ -2,6 +2,7 @@
 #include "run/steady.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -17,9 +18,9 @@
 #include "run/steady_static.h"
 
 /* Where the estimated distance of the speed from that of the fixed point, in lengths per beat, is above this multiple
- * of the tolerance, the state is corrected: so often at most, and while that brings it to half of the distance; the
- * first time from a distance of one at most. A beat may change the speed by little for another reason than that it is
- * steady: where one slow quantity still swings, it is at the end of a swing. */
+ * of the tolerance, the state is corrected, so often at most. A beat may change the speed by little for another reason
+ * than that it is steady: where one slow quantity still swings, it is at the end of a swing. The multipliers tell the
+ * way; where that is longer than this, or not half of the last one, Newton's method goes on instead. */
 static const double far_away = 10, half = 0.5, farthest = 2;
 enum { CORRECTIONS = 6 };
 
@@ -88,9 +89,9 @@ static enum status correct(struct run *run) {
     TRY(find_multipliers(run));
     for (int i = 0; i < CORRECTIONS; i++) {
         const double now = distance(run);
-        if (now <= far_away * run->values->steady.tolerance || now > half * last) break;
+        if (now <= far_away * run->values->steady.tolerance) return STATUS_OK;
+        TRY(steady_search_correct(&run->problem, now <= half * last ? run->way : NULL));
         last = now;
-        TRY(steady_search_correct(&run->problem, run->way));
         TRY(find_multipliers(run));
     }
     return STATUS_OK;
@@ -150,6 +151,19 @@ static enum status write_beats(struct run *run) {
     return STATUS_OK;
 }
 
+// the integrator begins again where the rows do, with errors that a small tolerance does not allow
+static void warn_of_change(const struct run *run) {
+    const double tolerance = run->values->steady.tolerance;
+    if (!(run->found.residual > tolerance) || !run->options->warn) return;
+    char line[256];
+    snprintf(
+        line, sizeof line,
+        "the beats of the result change by %.2g from one to the next, more than steady.tolerance, %g: the state is "
+        "unstable, or these are the errors of the integrator, which begins again there: lower solver.rtol",
+        run->found.residual, tolerance);
+    run->options->warn(line, run->options->data);
+}
+
 // ---- a run
 
 static enum status search(struct run *run) {
@@ -164,7 +178,9 @@ static enum status search(struct run *run) {
     run->found.stiffness = NAN;
     if (run->values->steady.multipliers != NO && run->problem.n_unknowns > 0) TRY(correct(run));
     run->found.n_beats = run->problem.map.n_beats;
-    return write_beats(run);
+    TRY(write_beats(run));
+    warn_of_change(run);
+    return STATUS_OK;
 }
 
 // of bodies without a beat: one row

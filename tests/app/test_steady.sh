@@ -73,6 +73,18 @@ assert max(error) < 0.01 and abs(speed[1] - speed[0]) < 2 * sum(error), (speed, 
 end
 check the_speed_does_not_depend_on_the_start /usr/bin/python3 same.py
 
+run steady "$root/cases/single_free.yaml" -q -o swings.nc --set time.shedding_interval=0.02 \
+    --set time.output_interval=0.1 --set output.wake_interval=0.1 --set steady.tolerance=1e-4
+check a_swing_is_left_for_a_steady_state test "$code" = 0
+cat >near.py <<'end'
+"""What is found is near the fixed point: it was 0.1 lengths per beat from one, at the end of a swing, once."""
+import netCDF4
+
+data = netCDF4.Dataset("swings.nc")
+assert data["steady_error"][...] < 3e-3, data["steady_error"][...]
+end
+check and_that_is_near /usr/bin/python3 near.py
+
 # ---- as JSON
 
 cat >compare.py <<'end'
@@ -192,6 +204,12 @@ run steady touch.yaml -q --strict
 check bodies_that_touch_are_warned_of_as_in_a_run test "$code" = 3
 check with_their_names has err 'the bodies of upper and lower touch or cross at t ='
 check in_the_file_too /usr/bin/python3 -c 'import netCDF4; assert "upper and lower touch" in netCDF4.Dataset("touch.nc").warnings'
+
+# ---- less than the errors of the integrator
+
+run steady swim.yaml -q -o least.nc --set steady.tolerance=1e-8 --set steady.beats=1000 --set steady.multipliers=true
+check what_the_rows_do_not_keep_is_warned_of test "$code" = 0
+check with_the_remedy grep -q 'more than steady.tolerance, 1e-08: .* lower solver.rtol$' err
 
 # ---- no steady state
 
