@@ -9,8 +9,8 @@
  * not within steady.beats (of a formation, what its fish do then), or as simulate_step. */
 enum status steady_search_run(struct steady_problem *problem);
 
-/* Go the way to the fixed point that steady_multipliers_find tells (n_unknowns), or take a step of Newton's method where
- * way is NULL; then go on until the simulation repeats itself. Fails as steady_search_run. */
+/* Go the way to the fixed point that steady_multipliers_find tells (n_unknowns), or, where that is NULL, take a step of
+ * Newton's method; then go on until the simulation repeats itself. Fails as steady_search_run. */
 enum status steady_search_correct(struct steady_problem *problem, const double *way);
 
 #endif
