@@ -166,8 +166,13 @@ else
     browse 'pair.html#t=1.2&theme=dark&follow=1' --window-size=390,844 --virtual-time-budget=500 --screenshot=dark.png
     check on_a_phone_in_the_dark shows dark.png 60 60 390 False
     check no_error_on_a_phone test -z "$(console)"
-    browse 'pair.html#t=0.5&play=1' --virtual-time-budget=1500 --dump-dom
-    check frames_are_drawn test "$(grep -oE 'data-frames="[0-9]+"' browser.out | grep -oE "[0-9]+")" -gt 3
+    # a busy machine draws fewer frames in a second
+    for budget in 1500 6000 24000 96000; do
+        browse 'pair.html#t=0.5&play=1' --virtual-time-budget=$budget --dump-dom
+        frames=$(grep -oE 'data-frames="[0-9]+"' browser.out | grep -oE "[0-9]+")
+        ((${frames:-0} > 3)) && break
+    done
+    check frames_are_drawn test "${frames:-0}" -gt 3
     # it begins again at the end, so any other time than that of the start is right
     check and_time_goes_on grep -qE 'data-time="[0-9.]+"' <(grep -v 'data-time="0.50*"' browser.out)
     browse 'wall.html#t=0.04&theme=light' --window-size=1280,1000 --virtual-time-budget=500 --screenshot=wall.png
