@@ -56,7 +56,7 @@ static void threads_change_no_bit_of_a_school_in_contact(void **state) {
 
 static void threads_change_no_bit_where_vortices_are_shed_at_once(void **state) {
     (void)state;
-    compare_threads(SCHOOL_SECOND "wake: {shedding: impulsive, kutta: rate}\n", "published", 2);
+    compare_threads(SCHOOL_SECOND "wake: {shedding: impulsive}\n", "published", 2);
 }
 
 int main(void) {
