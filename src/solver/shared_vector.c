@@ -127,17 +127,13 @@ static double masked_norm(N_Vector x, N_Vector weight, N_Vector mask) {
     return sqrt(sum / (double)n);
 }
 
-// put the school into the content of a serial vector; the vector is released where there is no memory for it
-static N_Vector give_school(N_Vector vector, const struct school *school) {
-    if (!vector) return NULL;
+// make room for the school in the content of a serial vector, and put it there; returns whether there was memory for it
+static int give_school(N_Vector vector, const struct school *school) {
     struct content *const content = realloc(vector->content, sizeof *content);
-    if (!content) {
-        N_VDestroy(vector);
-        return NULL;
-    }
+    if (!content) return 0;
     content->school = school;
     vector->content = content;
-    return vector;
+    return 1;
 }
 
 static void take_serial_operations(N_Vector_Ops ops) {
@@ -154,18 +150,16 @@ static void take_serial_operations(N_Vector_Ops ops) {
 static N_Vector clone(N_Vector vector) {
     const N_Vector new = N_VClone_Serial(vector);
     if (!new) return NULL;
-    struct content *const content = realloc(new->content, sizeof *content);
-    if (content) {
-        content->school = school_of(vector);
-        new->content = content;
-    } else {
-        take_serial_operations(new->ops);
-    }
+    if (!give_school(new, school_of(vector))) take_serial_operations(new->ops);
     return new;
 }
 
 enum status shared_vector_create(N_Vector *vector, SUNContext context, const struct school *school, double *values) {
-    *vector = give_school(N_VMake_Serial(school->n_unknowns, values, context), school);
+    *vector = N_VMake_Serial(school->n_unknowns, values, context);
+    if (*vector && !give_school(*vector, school)) {
+        N_VDestroy(*vector);
+        *vector = NULL;
+    }
     if (!*vector) return status_fail(STATUS_MEMORY, "out of memory: a vector of %d unknowns", school->n_unknowns);
     const N_Vector_Ops ops = (*vector)->ops;
     ops->nvclone = clone;
