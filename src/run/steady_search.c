@@ -174,12 +174,14 @@ static enum status run(struct search *search) {
 
 enum status steady_search_correct(struct steady_problem *problem, const double *way) {
     struct search search = {.problem = problem, .n_together = TRIES_TOGETHER, .together = {.beats = AGED}};
-    double *const to = problem->scratch + 2 * problem->n_unknowns;
-    steady_problem_read(problem, to);
-    for (int i = 0; way && i < problem->n_unknowns; i++) to[i] += way[i];
-    TRY(steady_problem_put(problem, to));
     int is_steady = 0;
-    if (way) TRY(let_go(&search, &is_steady));
+    if (way) {
+        double *const to = problem->scratch + 2 * problem->n_unknowns;
+        steady_problem_read(problem, to);
+        for (int i = 0; i < problem->n_unknowns; i++) to[i] += way[i];
+        TRY(steady_problem_put(problem, to));
+        TRY(let_go(&search, &is_steady));
+    }
     while (!is_steady) {
         if (!problem->map.is_formation) TRY(solve_fish(&search));
         TRY(let_go(&search, &is_steady));
