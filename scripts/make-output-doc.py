@@ -93,7 +93,7 @@ integration succeeded, about the fish for which it is worst. They are printed at
 | few events | fewer than 20 in a beat |
 | few sheet points | `shedding: sheet` where n_sheet - 1 < 0.9 x 3.2/sqrt(U Dt/L), once the speed changes by less than 10 % a beat |
 | slow modes | the slowest bending mode of a body in its fluid is slower than its beat |
-| too much suction | `leading_edge_most` is above 0.2, once the speed changes by less than 10 % a beat: a real flow separates at the nose |
+| separation at the nose | `separation_share` is above 0.1: the limit of the suction acts for more than 10 % of the last period, once the speed changes by less than 10 % a beat |
 
 A file whose end is missing, for instance because it was cut while it was copied, is refused by every command and script;
 a study runs such a member again.

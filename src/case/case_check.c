@@ -352,6 +352,9 @@ static void check_pressure(const struct check *check) {
         if (is_given(check, "fish.pressure.suction")) {
             complain(check, "fish.pressure.suction", "is for 'force: pressure' only: remove it");
         }
+        if (is_given(check, "fish.pressure.suction_limit")) {
+            complain(check, "fish.pressure.suction_limit", "is for 'force: pressure' only: remove it");
+        }
         return;
     }
     if (wake->shedding != SHEDDING_SHEET) complain(check, force, "pressure needs 'wake.shedding: sheet'");

@@ -247,6 +247,11 @@ const struct key case_table[] = {
      .words = WORDS("reactive", "published", "pressure"), .published = "published"},
     {"fish.pressure.suction", REAL, IN_FISH(suction), "1", FROM_TO(0, 1), "",
      .meaning = "force pressure: the part of the suction at the leading edge that acts on the body"},
+    {"fish.pressure.suction_limit", REAL, IN_FISH(suction_limit), "0.18", FROM(0), "",
+     .meaning =
+         "force pressure: largest leading-edge suction parameter A_0 that the flow round the nose holds before it "
+         "separates, 0.11 (sharp nose, low Reynolds number) to 0.25 (round nose, high); 0: no limit",
+     .synonyms = "lesp critical a0 leading_edge"},
 
     {"fish.drag.tangential", REAL, IN_FISH(drag.tangential), "4e-3", FROM(0), "",
      .meaning = "tangential drag coefficient (friction)", .synonyms = "friction c_f cf", .published = "1e-3"},

@@ -79,8 +79,6 @@ static void diagnostics_one(struct residual *residual, const struct state *state
     to->desired_heading = to->heading - angle_degrees(angle_wrap(angle_radians(to->heading) - desired));
     diagnostics_period(fish, history, residual->school->interval, to);
     diagnostics_forces(residual, f, state->t, y, to);
-    const int has_a0 = fish_has_momentum(fish) && to->speed > 0;
-    to->leading_edge_a0 = has_a0 ? pressure_leading_edge(fish, to->speed, y) : NAN;
     to->swept_vortices = swept_vortices(residual->school, state, diagnostics, f);
     to->phi0 = y[fish->at.phi0];
     const struct fish_gait gait = control_gait(fish, &state->control[f], state->t);

@@ -28,7 +28,7 @@ static void find_constraint(struct residual *residual, int f, double t, const do
 
 struct pressure_forces diagnostics_pressure(struct residual *residual, int f, const double about[2], const double *y) {
     struct pressure *const pressure = residual->pressure[f];
-    if (!pressure) return (struct pressure_forces){.pressure_moment = 0};
+    if (!pressure) return (struct pressure_forces){.leading_edge_a0 = NAN};
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
     pressure_update(pressure, &flow, y);
     pressure_update_rate(pressure, y, residual->state->yp);

@@ -13,7 +13,7 @@ void diagnostics_forces(struct residual *residual, int f, double t, const double
 void diagnostics_fluid_force(const double resistive[2], const double reactive[2],
                              const struct pressure_forces *pressure, double force[2]);
 
-/* The forces that come from the pressure, moments about a point; all 0 with other forces. */
+/* The forces that come from the pressure, moments about a point; all 0, and no A_0, with other forces. */
 struct pressure_forces diagnostics_pressure(struct residual *residual, int f, const double about[2], const double *y);
 
 #endif

@@ -48,7 +48,7 @@ void diagnostics_remember(struct residual *residual, struct state *state) {
         const struct pressure_forces pressure = diagnostics_pressure(residual, f, sample.com, y);
         memcpy(sample.friction, forces.friction, sizeof sample.friction);
         diagnostics_fluid_force(forces.resistive, forces.reactive, &pressure, sample.force);
-        if (fish_has_momentum(fish)) sample.leading_edge = pressure_leading_edge(fish, 1, y);
+        sample.leading_edge = pressure.leading_edge_a0;
         memcpy(sample.work, state->balance[f].work, sizeof sample.work);
         continue_sample(history, interval, &sample);
         // the newest sample of a full history takes the place of the one of a period and an interval ago
@@ -112,11 +112,22 @@ static double mean_against(const struct history *history, size_t which, const do
     return sum / (history->n - 1);
 }
 
-// the largest magnitude of A_0
-static double leading_edge_most(const struct history *history, double speed) {
-    double most = 0;
+// the largest magnitude of A_0; NaN with other forces, and where no fluid moves past the nose
+static double leading_edge_most(const struct history *history) {
+    double most = NAN;
     for (int age = 0; age < history->n; age++) most = fmax(most, fabs(state_recall(history, age)->leading_edge));
-    return most / speed;
+    return most;
+}
+
+// the part of the period in which A_0 is above its limit, by trapezoids
+static double separation_share(const struct history *history, double limit) {
+    if (history->n == 1) return fabs(state_recall(history, 0)->leading_edge) > limit;
+    double sum = 0;
+    for (int age = 0; age < history->n; age++) {
+        const double weight = age == 0 || age == history->n - 1 ? 0.5 : 1;
+        sum += fabs(state_recall(history, age)->leading_edge) > limit ? weight : 0;
+    }
+    return sum / (history->n - 1);
 }
 
 static void means_over_period(const struct fish *fish, const struct history *history, double interval,
@@ -152,6 +163,6 @@ static void means_over_period(const struct fish *fish, const struct history *his
 void diagnostics_period(const struct fish *fish, const struct history *history, double interval,
                         struct diagnostics_fish *to) {
     means_over_period(fish, history, interval, to);
-    const int has_a0 = fish_has_momentum(fish) && to->speed > 0;
-    to->leading_edge_most = has_a0 ? leading_edge_most(history, to->speed) : NAN;
+    to->leading_edge_most = leading_edge_most(history);
+    to->separation_share = fish->suction_limit > 0 ? separation_share(history, fish->suction_limit) : 0;
 }

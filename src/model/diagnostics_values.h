@@ -32,8 +32,8 @@ struct diagnostics_fish {
     double contact_force[2]; /* of all bodies that it touches, N */
     double resistive_moment, friction_moment, reactive_moment, constraint_moment;
     struct pressure_forces pressure; /* force: pressure, else 0 */
-    double leading_edge_a0;          /* A_0 at the mean speed; NaN without it, and with other forces */
-    double leading_edge_most;        /* the largest magnitude of A_0 over the last period */
+    double leading_edge_most;        /* the largest magnitude of A_0 over the last period; NaN with other forces */
+    double separation_share;         /* part of the last period in which A_0 is above its limit */
     double thrust;                   /* forces of the fluid along the heading, N */
     double mean_thrust;       /* all forces of the fluid along the way, N, over the last period: 0 when it swims */
     double mean_power;        /* that the motion takes for thrust and wake, W, over the last period */

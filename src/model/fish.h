@@ -104,7 +104,9 @@ struct fish {
 
     /* force: pressure */
     double fluid_density;              /* kg m-3 */
-    double suction;                    /* of the nose, over the square of the unknown there, kg m-1 */
+    double suction;                    /* S pi rho_f w L: of the nose, over a square of velocities, kg m-1 */
+    double suction_limit;              /* A_c; 0: none */
+    double nose_factor;                /* (M-1) ds_0/(pi L): qhat over the unknown at the nose, 1 */
     double *control_density;           /* density of the fluid times depth, kg m-2         (n_control) */
     double *control_interval;          /* u of the interval around a control point, 1      (n_control) */
     struct tangent nose_tangent;       /* the direction of the body at the nose */

@@ -113,8 +113,9 @@ static enum status set_pressure(struct fish *fish, const struct fish_parameters 
         fish->control_interval[c] = fish->n_edges / 2.0 * sin((c + 0.5) * h) * h;
     }
     fish->fluid_density = density;
-    const double first = fish->sheet_weight[0] * fish->n_control;
-    fish->suction = from->suction * per_edge[0] * first * first / (M_PI * fish->length);
+    fish->nose_factor = fish->n_control * fish->sheet_weight[0] / (M_PI * fish->length);
+    fish->suction = from->suction * M_PI * per_edge[0] * fish->length;
+    fish->suction_limit = from->suction_limit;
     const enum status status = sheet_integrals_create(&fish->integrals, fish->n_nodes, fish->n_sheet, per_edge);
     free(per_edge);
     return status;

@@ -113,8 +113,9 @@ struct fish_parameters {
     int nodes, reference_nodes, sheet_points;
     struct body_parameters body;
     struct wave_parameters wave;
-    enum force force; /* of the fluid on the body */
-    double suction;   /* force: pressure: the part of the leading-edge suction that acts */
+    enum force force;     /* of the fluid on the body */
+    double suction;       /* force: pressure: the part of the leading-edge suction that acts */
+    double suction_limit; /* force: pressure: the largest leading-edge parameter that a nose holds; 0: none */
     struct drag_parameters drag;
     double start_position[2]; /* m */
     double start_heading;     /* degree */

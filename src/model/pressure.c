@@ -107,6 +107,34 @@ static void convect(struct pressure *p, const struct flow_at_body *flow, const d
     }
 }
 
+// f = full bound/(full^4 + bound^4)^(1/4), from the ratio of the smaller to the larger
+struct suction_law pressure_suction_law(double full, double bound) {
+    const double least = fmin(full, bound), most = fmax(full, bound);
+    const double ratio = most > 0 ? least / most : 0, fourth = ratio * ratio * ratio * ratio;
+    const double share = 1 / sqrt(sqrt(1 + fourth)), by_least = share / (1 + fourth),
+                 by_most = by_least * fourth * ratio;
+    const int is_attached = full <= bound;
+    return (struct suction_law){.value = least * share,
+                                .by_full = is_attached ? by_least : by_most,
+                                .by_bound = is_attached ? by_most : by_least};
+}
+
+// the suction on the nose, with what the limit takes from it
+static void suck(struct pressure *p, const double *y) {
+    const struct fish *fish = p->fish;
+    const double strength = fish->nose_factor * y[fish->at.gamma], full = strength * strength;
+    const double square = fish->suction_limit * fish->suction_limit, tau = along(&p->point[0]);
+    const struct suction_law law =
+        square > 0 ? pressure_suction_law(full, square * tau * tau) : (struct suction_law){full, 1, 0};
+    p->nose = fish_direction(fish, &fish->nose_tangent, y);
+    p->by_strength = fish->suction * law.by_full * 2 * strength * fish->nose_factor;
+    p->by_slip = fish->suction * law.by_bound * 2 * square * tau;
+    for (int i = 0; i < 2; i++) {
+        p->suction[i] = -fish->suction * law.value * p->nose.t[i];
+        p->separation[i] = -fish->suction * (full - law.value) * p->nose.t[i];
+    }
+}
+
 void pressure_update(struct pressure *p, const struct flow_at_body *flow, const double *y) {
     const struct fish *fish = p->fish;
     const size_t size = 2 * (size_t)fish->n_nodes * sizeof *p->momentum;
@@ -116,9 +144,7 @@ void pressure_update(struct pressure *p, const struct flow_at_body *flow, const 
     add_product(p, y + fish->at.x, p->momentum);
     add_product(p, y + fish->at.vx, p->force);
     convect(p, flow, y);
-    const struct direction nose = fish_direction(fish, &fish->nose_tangent, y);
-    const double strength = y[fish->at.gamma];
-    for (int i = 0; i < 2; i++) p->suction[i] = -fish->suction * strength * strength * nose.t[i];
+    suck(p, y);
 }
 
 double pressure_momentum_ratio(const struct fish *fish, int k) {
@@ -184,6 +210,7 @@ void pressure_momentum_jacobian(const struct pressure *p, int at_start, const do
 
 void pressure_jacobian(const struct pressure *p, struct sparse *jacobian) {
     const struct fish *fish = p->fish;
+    const struct direction *const first = &p->point[0].body;
     const int n = fish->n_nodes;
     for (int k = 0; k < n; k++) {
         for (int m = 0; m < n; m++) {
@@ -195,6 +222,12 @@ void pressure_jacobian(const struct pressure *p, struct sparse *jacobian) {
                 const double factor = weight[k] * weight[m] * p->point[c].strength;
                 for (int i = 0; i < 2; i++) {
                     for (int j = 0; j < 2; j++) sum[i][j] -= factor * body->n[i] * body->t[j];
+                }
+            }
+            // suction: tau
+            for (int i = 0; i < 2 && k == 0; i++) {
+                for (int j = 0; j < 2; j++) {
+                    sum[i][j] -= p->by_slip * p->nose.t[i] * first->t[j] * fish->control_point[0].weight[m];
                 }
             }
             for (int i = 0; i < 2; i++) {
@@ -235,16 +268,20 @@ static void convection_by_places(const struct pressure *p, struct coupling_block
     }
 }
 
-static void suction_jacobian(const struct pressure *p, const double *y, struct coupling_block *rows) {
+// suction by the strength at the nose, by its direction, and by the turn of tau's, at control point 0
+static void suction_jacobian(const struct pressure *p, struct coupling_block *rows) {
     const struct fish *fish = p->fish;
     const int n = fish->n_nodes;
-    const struct direction nose = fish_direction(fish, &fish->nose_tangent, y);
-    const double strength = y[fish->at.gamma], *const slope = fish->nose_tangent.to.weight;
+    const struct direction *const nose = &p->nose, *const first = &p->point[0].body;
+    const double *const turn = fish->nose_tangent.to.weight, *const turn_first = fish->control_tangent[0].to.weight;
+    const double size = -edge_dot(p->suction, nose->t), across = edge_dot(p->point[0].slip, first->n);
     for (int i = 0; i < 2; i++) {
-        rows->value[2L * n * rows->n_rows + i * n] += 2 * fish->suction * strength * nose.t[i] / fish->mass[0];
-        const double by_turn = fish->suction * strength * strength * nose.n[i] / nose.length / fish->mass[0];
+        rows->value[2L * n * rows->n_rows + i * n] += p->by_strength * nose->t[i] / fish->mass[0];
+        const double by_turn = size * nose->n[i] / nose->length / fish->mass[0];
+        const double by_slip = p->by_slip * nose->t[i] / fish->mass[0] * across / first->length;
         for (long m = 0; m < 2 * n; m++) {
-            rows->value[m * rows->n_rows + i * n] += by_turn * nose.n[m / n] * slope[m % n];
+            rows->value[m * rows->n_rows + i * n] +=
+                by_turn * nose->n[m / n] * turn[m % n] + by_slip * first->n[m / n] * turn_first[m % n];
         }
     }
 }
@@ -253,7 +290,7 @@ void pressure_own_jacobian(const struct pressure *p, const double *y, struct cou
     const struct fish *fish = p->fish;
     const int n = fish->n_nodes;
     convection_by_places(p, rows);
-    suction_jacobian(p, y, rows);
+    suction_jacobian(p, rows);
     for (int j = 0; j < fish->n_sheet; j++) {
         double *const column = rows->value + (long)(2 * n + j) * rows->n_rows;
         for (int c = 0; c < fish->n_control; c++) {
@@ -272,6 +309,7 @@ void pressure_own_jacobian(const struct pressure *p, const double *y, struct cou
 void pressure_flow_jacobian(const struct pressure *p, const struct influence_block *block,
                             struct coupling_block *rows) {
     const struct fish *fish = p->fish;
+    const struct direction *const first = &p->point[0].body;
     for (long m = 0; m < block->n_columns; m++) {
         const double *const u = block->u + m * block->n_points, *const v = block->v + m * block->n_points;
         for (int c = 0; c < fish->n_control; c++) {
@@ -279,6 +317,9 @@ void pressure_flow_jacobian(const struct pressure *p, const struct influence_blo
             const double size = p->point[c].strength * (body->t[0] * u[c] + body->t[1] * v[c]);
             spread(p, c, size * body->n[0], size * body->n[1], rows->value + m * rows->n_rows);
         }
+        // suction: tau
+        const double by_slip = p->by_slip * (first->t[0] * u[0] + first->t[1] * v[0]) / fish->mass[0];
+        for (int i = 0; i < 2; i++) rows->value[m * rows->n_rows + i * fish->n_nodes] += by_slip * p->nose.t[i];
     }
 }
 
@@ -332,7 +373,8 @@ static double moment_of(const double arm[2], const double vector[2]) {
 struct pressure_forces pressure_sum(const struct pressure *p, const double about[2], const double *y) {
     const struct fish *fish = p->fish;
     const int n = fish->n_nodes;
-    struct pressure_forces sum = {.pressure_moment = 0};
+    const double tau = along(&p->point[0]), strength = fish->nose_factor * y[fish->at.gamma];
+    struct pressure_forces sum = {.leading_edge_a0 = fabs(tau) > 0 ? strength / tau : NAN};
     for (int k = 0; k < n; k++) {
         const double arm[2] = {y[fish->at.x + k] - about[0], y[fish->at.y + k] - about[1]};
         const double velocity[2] = {y[fish->at.vx + k], y[fish->at.vy + k]};
@@ -348,11 +390,11 @@ struct pressure_forces pressure_sum(const struct pressure *p, const double about
         if (k > 0) continue;
         sum.suction_moment = moment_of(arm, p->suction);
         sum.suction_power = edge_dot(p->suction, velocity);
+        sum.separation_power = edge_dot(p->separation, velocity);
     }
-    for (int i = 0; i < 2; i++) sum.suction[i] = p->suction[i];
+    for (int i = 0; i < 2; i++) {
+        sum.suction[i] = p->suction[i];
+        sum.separation[i] = p->separation[i];
+    }
     return sum;
-}
-
-double pressure_leading_edge(const struct fish *fish, double speed, const double *y) {
-    return fish->n_control * fish->sheet_weight[0] * y[fish->at.gamma] / (pi * speed * fish->length);
 }

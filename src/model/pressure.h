@@ -31,9 +31,21 @@ struct pressure {
     double *momentum_rate; /* dI/dt, N: of pressure_update_rate                               (2 n_nodes) */
     double *force;         /* turning and convection: the force of the pressure and dI/dt, N  (2 n_nodes) */
     double suction[2];     /* on the nose, N */
+    double separation[2];  /* what full suction has more than that, N */
+    struct direction nose; /* of the body at the nose */
+    double by_strength;    /* of the size of the suction: by the unknown at the nose, N s m-1, */
+    double by_slip;        /* and by tau, N s m-1 */
     double *share;         /* of a force at a control point in the row of a node, kg-1           (n_control, n_nodes) */
     struct pressure_point *point; /* (n_control) */
 };
+
+/* The suction that a nose holds, over S pi rho_f w L: full is that of attached flow, qhat^2, bound the most that the
+ * flow past the nose allows, A_c^2 tau^2, both m2 s-2 and not negative. The value is about the smaller one of them, and
+ * at rest, where both are 0, it is 0; with its derivatives by both. */
+struct suction_law {
+    double value, by_full, by_bound;
+};
+struct suction_law pressure_suction_law(double full, double bound);
 
 /* For a fish with force: pressure. Fails with STATUS_MEMORY; pressure_free accepts NULL. */
 enum status pressure_create(struct pressure **pressure, const struct fish *fish);
@@ -81,16 +93,15 @@ double pressure_jump(const struct pressure *pressure, int c, const double *y, co
 void pressure_of_edge(const struct pressure *pressure, int k, const double *y, const double *yp, double force[2]);
 
 /* After pressure_update_rate: the force of the pressure and the suction on the body, N, their moments about a point, N
- * m, and their powers, W; the sum of the added momentum, N s, and its moment, N m s. */
+ * m, and their powers, W; the same of what full suction has more (separation), which acts on nothing; the sum of the
+ * added momentum, N s, and its moment, N m s; the leading-edge suction parameter A_0 = qhat/tau, the tangent of the
+ * incidence of a flat plate, NaN where no fluid moves past the nose. */
 struct pressure_forces {
-    double pressure[2], suction[2], momentum[2];
+    double pressure[2], suction[2], separation[2], momentum[2];
     double pressure_moment, suction_moment, momentum_moment;
-    double pressure_power, suction_power;
+    double pressure_power, suction_power, separation_power;
+    double leading_edge_a0;
 };
 struct pressure_forces pressure_sum(const struct pressure *pressure, const double about[2], const double *y);
-
-/* The leading-edge suction parameter A_0 of a body that goes at this speed, m s-1: that of a flat plate at the
- * incidence whose sine is A_0. */
-double pressure_leading_edge(const struct fish *fish, double speed, const double *y);
 
 #endif

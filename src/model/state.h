@@ -22,7 +22,7 @@ struct sample {
     double drifted[2];      /* and its integral since the start, m */
     double speed;           /* through the water over the last period, m s-1; NaN before a whole one has passed */
     double heading;         /* rad, unwrapped */
-    double leading_edge;    /* A_0 times the speed, m s-1; 0 unless force: pressure */
+    double leading_edge;    /* A_0; NaN unless force: pressure */
     double work[N_WORKS];   /* since the start, J */
 };
 struct history {

@@ -133,17 +133,17 @@ static void modes_say(const struct subject *subject, const char *who, char line[
 // once the speed is nearly steady, as for the sheet: a fish that starts from rest has little speed for its strengths
 static double edge_size(const struct subject *subject) {
     const struct diagnostics_fish *const now = &subject->diagnostics->fish[subject->f];
-    const double most = 0.2, nearly = 0.1;
+    const double most = 0.1, nearly = 0.1;
     if (subject->fish->period > 0 && !(fabs(now->drift) < nearly)) return 0;
-    return now->leading_edge_most > 0 ? now->leading_edge_most / most : 0;
+    return subject->fish->suction > 0 ? now->separation_share / most : 0;
 }
 
 static void edge_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
-    snprintf(
-        line, WARNING_BYTES,
-        "A_0 at the nose of %s reaches %.2g, more than 0.2: a real flow separates there, and the body has less suction "
-        "than here: compare with pressure.suction: 0",
-        who, subject->diagnostics->fish[subject->f].leading_edge_most);
+    const struct diagnostics_fish *const now = &subject->diagnostics->fish[subject->f];
+    snprintf(line, WARNING_BYTES,
+             "the flow separates at the nose of %s for %.0f %% of the last period (A_0 up to %.2g, "
+             "pressure.suction_limit %.3g): thrust and efficiency depend on this limit, compare with 0.11 and 0.25",
+             who, 100 * now->separation_share, now->leading_edge_most, subject->fish->suction_limit);
 }
 
 // ---- all of them

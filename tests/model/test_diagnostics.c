@@ -368,7 +368,7 @@ static void thrust_and_power_of_a_held_plate_are_means_over_the_last_period(void
             force[k] = of->pressure.pressure[k] + of->pressure.suction[k] + of->resistive_force[k];
         thrust -= part * force[0];
         power -= part * force[1] * v[simulation->school->fish[0].at.vy];
-        edge = fmax(edge, fabs(of->leading_edge_a0));
+        edge = fmax(edge, fabs(of->pressure.leading_edge_a0));
     }
     NEAR(of->mean_thrust, thrust, 0, 1e-9);
     // works are integrated over steps, the power here over events

@@ -208,10 +208,123 @@ static void force_and_reaction_are_those_of_the_jump(void **state) {
         NEAR(sum[i], of->pressure.pressure[i], 1e-3 * fabs(of->pressure.pressure[1]), 0);
         NEAR(of->constraint_force[i], inertia[i] - of->pressure.pressure[i] - of->pressure.suction[i], 1e-9, 1e-9);
     }
-    // A_0: suction = pi rho w U^2 L A_0^2, with the speed through the water since the start
-    NEAR(hypot(of->pressure.suction[0], of->pressure.suction[1]),
-         pi * 2 * 0.5 * pow(of->speed * of->leading_edge_a0, 2), 0, 1e-12);
     simulate_free(simulation);
+}
+
+// ---- the limit of the suction
+
+static void suction_law_has_its_limits_its_bound_and_its_derivatives(void **state) {
+    (void)state;
+    // attached: the fourth power of the ratio is lost; separated: the bound
+    NEAR(pressure_suction_law(3e-4, 3).value, 3e-4, 0, 1e-15);
+    NEAR(pressure_suction_law(0.5, 1).value, 0.5 / pow(1 + 1.0 / 16, 0.25), 0, 1e-15);
+    NEAR(pressure_suction_law(3, 3e-4).value, 3e-4, 0, 1e-15);
+    NEAR(pressure_suction_law(2, 2).value, 2 / pow(2, 0.25), 0, 1e-15);
+    const double values[] = {1e-6, 0.02, 0.3, 0.9, 1, 1.1, 3.5, 2e4};
+    enum { N = sizeof values / sizeof *values };
+    for (int i = 0; i < N * N; i++) {
+        const double a = values[i / N], b = values[i % N], h = 1e-5;
+        const struct suction_law law = pressure_suction_law(a, b);
+        assert_true(law.value > 0 && law.value <= fmin(a, b) && law.by_full > 0 && law.by_bound > 0);
+        // of degree 1 (Euler): both derivatives make up the value
+        NEAR(law.by_full * a + law.by_bound * b, law.value, 0, 1e-14);
+        const double by_full = pressure_suction_law(a * (1 + h), b).value - pressure_suction_law(a * (1 - h), b).value;
+        const double by_bound = pressure_suction_law(a, b * (1 + h)).value - pressure_suction_law(a, b * (1 - h)).value;
+        // the second difference of a function of degree 1, and rounding
+        NEAR(law.by_full * a, by_full / (2 * h), 1e-10 * law.value, 1e-8);
+        NEAR(law.by_bound * b, by_bound / (2 * h), 1e-10 * law.value, 1e-8);
+    }
+}
+
+// at rest there is no suction, and no number that is none
+static void suction_law_has_a_value_at_rest(void **state) {
+    (void)state;
+    const double at[][2] = {{0, 0}, {0, 2}, {2, 0}, {1e-300, 1e-300}, {1e-310, 2}, {2, 1e-310}};
+    for (size_t i = 0; i < sizeof at / sizeof *at; i++) {
+        const struct suction_law law = pressure_suction_law(at[i][0], at[i][1]);
+        assert_true(law.value <= fmin(at[i][0], at[i][1]) && law.value >= 0);
+        assert_true(law.by_full >= 0 && law.by_full <= 1 && law.by_bound >= 0 && law.by_bound <= 1);
+    }
+}
+
+// a plate at an incidence in a stream, with this limit; the caller frees it
+static struct simulation *inclined_plate(double degrees, double limit) {
+    char text[512];
+    snprintf(
+        text, sizeof text,
+        SCHOOL_SECOND
+        "time: {end: 1, shedding_interval: 0.01}\n"
+        "fluid: {density: 2, viscosity: 0}\n"
+        "fish: [{force: pressure, pressure: {suction: 0.8, suction_limit: %g}, wave: {amplitude: 0, frequency: 0},\n"
+        "        start: {speed: 3}, body: {profile: uniform, thickness: 0.1, width: 0.5},\n"
+        "        motion: {driven: all, pitch: %g, pitch_phase: 90}}]\n",
+        limit, degrees);
+    struct simulation *const simulation = school_simulation(text);
+    school_run(simulation, 0.1);
+    simulate_measure(simulation);
+    return simulation;
+}
+
+static double size_of(const double force[2]) {
+    return hypot(force[0], force[1]);
+}
+
+// A_0 = qhat/tau: attached, the suction is S pi rho w L qhat^2, and the flow past the nose is that along the plate
+static void suction_of_a_plate_ends_at_its_limit(void **state) {
+    (void)state;
+    const double scale = 0.8 * pi * 2 * 0.5, along = 3 * cos(20 * pi / 180);
+    struct simulation *plate[4];
+    const double limit[4] = {0, 1000, 0.15, 0.03};
+    for (int i = 0; i < 4; i++) plate[i] = inclined_plate(20, limit[i]);
+    const struct pressure_forces *const full = &plate[0]->diagnostics->fish[0].pressure;
+    const double a0 = fabs(full->leading_edge_a0);
+    assert_true(a0 > 0.15);
+    // the flow that the wake induces along the plate: of its curvature
+    NEAR(size_of(full->suction), scale * pow(along * a0, 2), 0, 0.01);
+    NEAR(size_of(plate[1]->diagnostics->fish[0].pressure.suction), size_of(full->suction), 0, 1e-12);
+    for (int i = 0; i < 4; i++) {
+        const struct diagnostics_fish *const of = plate[i]->diagnostics->fish;
+        const double ratio = i == 0 ? 0 : pow(a0 / limit[i], 2), part = pow(1 + pow(ratio, 4), -0.25);
+        // the motion is given: no limit changes the circulation
+        NEAR(of->pressure.leading_edge_a0, full->leading_edge_a0, 0, 1e-9);
+        NEAR(of->leading_edge_most, a0, 0, 1e-9);
+        NEAR(size_of(of->pressure.suction), part * size_of(full->suction), 0, 1e-9);
+        NEAR(size_of(of->pressure.separation), (1 - part) * size_of(full->suction), 1e-9, 1e-9);
+        // along the plate, and ahead, as the suction: 20 degrees to the way
+        NEAR(of->pressure.separation[0], (1 - part) * full->suction[0], 1e-9, 1e-9);
+        NEAR(of->pressure.separation[1], (1 - part) * full->suction[1], 1e-9, 1e-9);
+        NEAR(of->pressure.separation_power, -3 * of->pressure.separation[0], 1e-9, 1e-9);
+        // without a period: now
+        NEAR(of->separation_share, limit[i] > 0 && a0 > limit[i], 0, 0);
+    }
+    assert_true(plate[3]->diagnostics->fish[0].pressure.separation_power > 0);
+    for (int i = 0; i < 4; i++) simulate_free(plate[i]);
+}
+
+// a free fish whose nose holds next to nothing: its energy balance is closed as without a limit
+static void energy_balance_is_closed_where_the_limit_acts(void **state) {
+    (void)state;
+    double audit[2];
+    for (int i = 0; i < 2; i++) {
+        char text[512];
+        snprintf(text, sizeof text,
+                 SCHOOL_SECOND
+                 "time: {end: 2, shedding_interval: 0.02}\n"
+                 "fish: [{nodes: 9, sheet_points: 17, force: pressure, pressure: {suction_limit: %g},\n"
+                 "        body: {modulus: 3.0e+5}, wave: {ramp: 0.3}, start: {speed: 0.5}}]\n",
+                 i == 0 ? 0 : 0.003);
+        struct simulation *const simulation = school_simulation(text);
+        school_run(simulation, 1.5);
+        simulate_measure(simulation);
+        const struct diagnostics_fish *const of = simulation->diagnostics->fish;
+        audit[i] = fabs(of->energy_audit) / of->actuation_work;
+        print_message("limit %s: audit over work %.2g, separated for %.2g of the period\n", i == 0 ? "none" : "0.003",
+                      audit[i], of->separation_share);
+        assert_true(i == 0 ? of->separation_share <= 0 : of->separation_share > 0.5);
+        simulate_free(simulation);
+    }
+    assert_true(audit[0] < 1e-3);
+    assert_true(audit[1] < 1e-3);
 }
 
 // a soft free fish that begins to beat: the audit, and momentum against forces by name
@@ -264,6 +377,10 @@ int main(void) {
         cmocka_unit_test(slow_modes_have_the_added_mass_of_the_sheet),
         cmocka_unit_test(a_stream_that_starts_at_once_pushes_by_the_added_mass),
         cmocka_unit_test(force_and_reaction_are_those_of_the_jump),
+        cmocka_unit_test(suction_law_has_its_limits_its_bound_and_its_derivatives),
+        cmocka_unit_test(suction_law_has_a_value_at_rest),
+        cmocka_unit_test(suction_of_a_plate_ends_at_its_limit),
+        cmocka_unit_test(energy_balance_is_closed_where_the_limit_acts),
         cmocka_unit_test(energy_and_momentum_of_a_free_fish_are_accounted_for),
         cmocka_unit_test(no_memory_leaves_nothing),
     };

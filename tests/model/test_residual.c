@@ -183,6 +183,31 @@ static void jacobian_agrees_with_differences_for_every_option(void **state) {
     }
 }
 
+// Below, at, and above the leading-edge parameter that the bodies have; they are soft, so that the derivatives by the
+// places are those of the fluid. In a channel, with a second fish.
+static void jacobian_agrees_with_differences_where_the_suction_ends(void **state) {
+    (void)state;
+    static const char text[] = TIME FAR
+        "wake: {shedding: sheet, curve: smooth, smoothing: 0.1, taper: 0.4, taper_beside: 0.1}\n"
+        "fluid: {velocity: [0.3, 0], shear: 0.7, walls: [-1.2, 1.3]}\n"
+        "defaults: {fish: {nodes: 5, sheet_points: 9, force: pressure, body: {modulus: 1}}}\n"
+        "fish: [{}, {start: {position: [0.2, 0.5], heading: 170}}]\n";
+    const double factor[] = {0.3, 0.9, 1, 1.1, 2};
+    for (size_t i = 0; i < sizeof factor / sizeof *factor; i++) {
+        struct setup setup;
+        school_build(&setup, text);
+        school_stir(&setup);
+        value_of_school(&setup, setup.state->y, setup.state->yp, setup.value);
+        for (int f = 0; f < 2; f++) {
+            const double about[2] = {0, 0};
+            const struct pressure_forces forces = pressure_sum(setup.residual->pressure[f], about, setup.state->y);
+            setup.school->fish[f].suction_limit = factor[i] * fabs(forces.leading_edge_a0);
+        }
+        school_compare(&setup, value_of_school, NULL, "limited suction");
+        school_clear(&setup);
+    }
+}
+
 static void far_fish_are_left_out_of_the_jacobian_and_of_nothing_else(void **state) {
     (void)state;
     const char *const text = TIME
@@ -365,6 +390,7 @@ static void more_fish_couple_when_asked_until_all_do(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(jacobian_agrees_with_differences_for_every_option),
+        cmocka_unit_test(jacobian_agrees_with_differences_where_the_suction_ends),
         cmocka_unit_test(far_fish_are_left_out_of_the_jacobian_and_of_nothing_else),
         cmocka_unit_test(unknowns_have_names_kinds_and_scales),
         cmocka_unit_test(circulation_shed_is_differential_only_with_a_rate),

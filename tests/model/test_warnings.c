@@ -76,15 +76,19 @@ static void an_open_energy_balance_is_told(void **state) {
                     10, "ev");
 }
 
-static void too_much_suction_is_told(void **state) {
+static void separation_at_the_nose_is_told(void **state) {
     (void)state;
-#define INCLINED(degrees)                                                                          \
-    SCHOOL_SECOND TIME                                                                             \
-        "fish: [{force: pressure, wave: {amplitude: 0, frequency: 0}, start: {speed: 1}, motion: " \
-        "{driven: all, pitch: " degrees ", pitch_phase: 90}}]\n"
-    // about half of sin(alpha) after a tenth of a length
-    expect_warnings(INCLINED("15"), 0.1, "");
-    expect_warnings(INCLINED("30"), 0.1, "l");
+#define INCLINED(degrees, more)                                                            \
+    SCHOOL_SECOND TIME "fish: [{force: pressure" more                                      \
+                       ", wave: {amplitude: 0, frequency: 0}, start: {speed: 1}, motion: " \
+                       "{driven: all, pitch: " degrees ", pitch_phase: 90}}]\n"
+    // A_0 is about half of tan(alpha) after a tenth of a length
+    expect_warnings(INCLINED("15", ""), 0.1, "");
+    expect_warnings(INCLINED("30", ""), 0.1, "l");
+    expect_warnings(INCLINED("30", ", pressure: {suction_limit: 0.35}"), 0.1, "");
+    // there is no limit, or nothing that it limits
+    expect_warnings(INCLINED("30", ", pressure: {suction_limit: 0}"), 0.1, "");
+    expect_warnings(INCLINED("30", ", pressure: {suction: 0}"), 0.1, "");
 }
 
 static void bodies_that_pass_through_each_other_are_told(void **state) {
@@ -119,7 +123,7 @@ int main(void) {
         cmocka_unit_test(a_soft_body_is_slower_than_its_beat),
         cmocka_unit_test(few_sheet_points_for_a_short_stretch_are_told),
         cmocka_unit_test(an_open_energy_balance_is_told),
-        cmocka_unit_test(too_much_suction_is_told),
+        cmocka_unit_test(separation_at_the_nose_is_told),
         cmocka_unit_test(bodies_that_pass_through_each_other_are_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -70,7 +70,7 @@ static void forces_are_those_along_and_across_the_stream(void **state) {
     answer(&found, SCHOOL_SECOND TIME
            "fluid: {density: 1, velocity: [0, 2], viscosity: 0}\n"
            "fish: [{" BODY
-           ", force: pressure, start: {heading: 260, speed: 0},"
+           ", force: pressure, pressure: {suction_limit: 0}, start: {heading: 260, speed: 0},"
            " motion: {driven: all, speed: 0}}]\n");
     school_ok(found.status);
     // 2 pi sin(alpha), to the left of the stream; no drag

@@ -167,7 +167,8 @@ static struct simulation *open_fish(int nodes, double interval, double rtol, dou
                        "fluid: {density: 1, viscosity: 1.003e-4}\n"
                        "wake: {lifetime: 8, smoothing: %g}\n"
                        "solver: {rtol: %g}\n"
-                       "defaults: {fish: {nodes: %d, sheet_points: %d, force: pressure, start: {speed: %.17g},\n"
+                       "defaults: {fish: {nodes: %d, sheet_points: %d, " VERIFY_ATTACHED
+                       ", start: {speed: %.17g},\n"
                        "  wave: {amplitude: 0.83333333333333337, constant: 0.2, linear: 0.8, quadratic: 0,\n"
                        "         number: -6.2831853071795862, ramp: 2},\n"
                        "  body: {profile: uniform, thickness: %.17g, width: 1, density: %.17g, modulus: %.17g,\n"

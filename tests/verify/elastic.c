@@ -38,7 +38,8 @@ static struct simulation *open_plate(const struct setting *setting, double end, 
                        "wake: {lifetime: 1000, taper: %g}\n"
                        "solver: {rtol: %g}\n"
                        "fish:\n"
-                       "  - {nodes: %d, sheet_points: %d, force: pressure, wave: {amplitude: 0},\n"
+                       "  - {nodes: %d, sheet_points: %d, " VERIFY_ATTACHED
+                       ", wave: {amplitude: 0},\n"
                        "     body: {profile: uniform, thickness: %g, width: 1, density: %.17g, modulus: %.17g,\n"
                        "            relaxation_time: 0},\n"
                        "     start: {heading: %.17g, speed: 0}, motion: {driven: head, speed: 0%s}}\n",

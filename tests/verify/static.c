@@ -19,7 +19,7 @@ struct body {
     double end;                /* of a run, s */
 };
 
-static const char pressure[] = "force: pressure", slender[] = "drag: {tangential: 0}",
+static const char pressure[] = VERIFY_ATTACHED, slender[] = "drag: {tangential: 0}",
                   drag_alone[] = "drag: {tangential: 0, added_mass: 0}";
 
 static struct simulation *open_body(const struct body *body) {

@@ -33,7 +33,8 @@ static void text_of(const struct pair *pair, int n_fish, const char *keys, size_
                                 "fluid: {density: 1, viscosity: %.17g}\n"
                                 "wake: {lifetime: %g, smoothing: %g}\n"
                                 "steady: {formation: %s, tolerance: 1e-3}\n"
-                                "defaults: {fish: {length: %g, nodes: 5, force: pressure, start: {speed: %.17g},\n"
+                                "defaults: {fish: {length: %g, nodes: 5, " VERIFY_ATTACHED
+                                ", start: {speed: %.17g},\n"
                                 "  wave: {amplitude: 0, frequency: 0},\n"
                                 "  body: {profile: uniform, thickness: %g, width: 1, density: %.17g},\n"
                                 "  motion: {driven: all, heave: %g, frequency: 1, %s}}}\n"
