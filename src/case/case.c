@@ -207,6 +207,7 @@ static void derive(double *value, double standard) {
 static enum status derive_fish(struct fish_parameters *fish, int index) {
     const double period = fish->wave.frequency > 0 ? 1 / fish->wave.frequency : 0;
     if (fish->sheet_points == 0) fish->sheet_points = fish->nodes > 17 ? 2 * fish->nodes - 1 : 33;
+    derive(&fish->body.tail_thickness, fish->body.profile == PROFILE_JOUKOWSKI ? 0.04 : 0);
     derive(&fish->body.relaxation_time, period / 1000);
     derive(&fish->wave.ramp, period);
     const bool has_pressure = fish->force == FORCE_PRESSURE;

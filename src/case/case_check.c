@@ -235,6 +235,15 @@ static void check_edge_list(const struct check *check, const char *path, const s
     if (is_other && list->n > 0) complain(check, path, "is for 'profile: table' only: remove it");
 }
 
+/* A tail of its own thickness on an outline that has one anyway. */
+static void check_tail(const struct check *check) {
+    const struct body_parameters *const body = &check->values->school.fish[check->fish].body;
+    const bool is_other = body->profile == PROFILE_UNIFORM || body->profile == PROFILE_TABLE;
+    if (is_other && body->tail_thickness > 0) {
+        complain(check, "fish.body.tail_thickness", "is for 'profile: joukowski' only: remove it");
+    }
+}
+
 /* The largest turning angle that the muscle asks of a joint for a steering bias up to the given one, in radians. */
 static double largest_turn(const struct fish_parameters *fish, double bias) {
     const struct wave_parameters *const wave = &fish->wave;
@@ -472,6 +481,7 @@ void case_check(const struct case_values *values, const struct case_tree *tree, 
         check_verlet(&check);
         check_edge_list(&check, "fish.body.h", &fish->body.h);
         check_edge_list(&check, "fish.body.w", &fish->body.w);
+        check_tail(&check);
         check_wave_form(&check);
         check_turn(&check);
         check_drag(&check);

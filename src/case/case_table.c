@@ -14,6 +14,8 @@
     { min, INFINITY, true, false }
 #define FROM_TO(min, max) \
     { min, max, false, false }
+#define FROM_BELOW(min, max) \
+    { min, max, false, true }
 #define BETWEEN(min, max) \
     { min, max, true, true }
 #define WORDS(...)          \
@@ -188,6 +190,9 @@ const struct key case_table[] = {
      .words = WORDS("joukowski", "uniform", "table"), .synonyms = "shape"},
     {"fish.body.thickness", REAL, IN_FISH(body.thickness), "0.2", BETWEEN(0, 1), "",
      .meaning = "joukowski: parameter d of the foil; uniform: thickness over length"},
+    {"fish.body.tail_thickness", REAL, IN_FISH(body.tail_thickness), NULL, FROM_BELOW(0, 1), "",
+     .meaning = "joukowski: thickness at the tail over length; 0: a cusp, with which results do not converge in nodes",
+     .derived = "0.04 with profile joukowski, else 0", .published = "0"},
     {"fish.body.width", REAL, IN_FISH(body.depth), "0.25", ABOVE(0), "",
      .meaning = "depth of the body (its span, out of the plane of motion) over length"},
     {"fish.body.h", NUMBERS, IN_FISH(body.h), "[]", ABOVE(0), "m", .meaning = "profile table: thickness of every edge",
@@ -424,6 +429,6 @@ void case_table_range(const struct key *key, struct text *range) {
     }
     text_add(range, bounds->is_min_open ? "between " : "from ");
     text_add_number(range, bounds->min);
-    text_add(range, bounds->is_min_open ? " and " : " to ");
+    text_add(range, bounds->is_min_open ? " and " : bounds->is_max_open ? " to below " : " to ");
     text_add_number(range, bounds->max);
 }

@@ -56,6 +56,7 @@ struct wake_parameters {
 struct body_parameters {
     enum profile profile;
     double thickness, depth; /* fractions of the body length; the depth is the span, out of the plane of motion */
+    double tail_thickness;   /* fraction of the body length: profile joukowski only */
     struct number_list h, w; /* m, one value per edge: profile table only */
     enum section section;    /* of an edge: means over it, or over its two nodes */
     double density;          /* kg m-3 */

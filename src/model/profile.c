@@ -10,24 +10,33 @@ static const double pi = 3.14159265358979323846;
 /* zeta = r0 (exp(i theta) + d), z = zeta + c^2/zeta: the nose is at theta = pi, the tail at 0. */
 struct joukowski {
     double r0, c, d, nose;
+    double length, tail; /* thickness at the tail, m */
 };
 
-static struct joukowski joukowski(double length, double d) {
-    const double r0 = length * (1 - d) / 4;
-    return (struct joukowski){.r0 = r0, .c = r0 * (1 + d), .d = d, .nose = 2 * r0 * (1 + d * d) / (d - 1)};
+static struct joukowski joukowski(const struct fish_parameters *fish) {
+    const double length = fish->length, d = fish->body.thickness, r0 = length * (1 - d) / 4;
+    return (struct joukowski){.r0 = r0,
+                              .c = r0 * (1 + d),
+                              .d = d,
+                              .nose = 2 * r0 * (1 + d * d) / (d - 1),
+                              .length = length,
+                              .tail = fish->body.tail_thickness * length};
+}
+
+// the chord coordinate, which falls from tail to nose
+static double chord_at(const struct joukowski *foil, double theta) {
+    const double re = foil->r0 * (cos(theta) + foil->d), im = foil->r0 * sin(theta), c = foil->c;
+    return re * (1 + c * c / (re * re + im * im));
 }
 
 // the angle of the point at arc coordinate s
 static double angle_at(const struct joukowski *foil, double s) {
-    const double r0 = foil->r0, c = foil->c;
-    // the chord coordinate falls from tail (theta = 0) to nose (theta = pi): bisect down to neighbouring numbers
+    // from tail (theta = 0) to nose (theta = pi): bisect down to neighbouring numbers
     double low = 0, high = pi;
     for (;;) {
         const double theta = (low + high) / 2;
         if (theta <= low || theta >= high) break;
-        const double re = r0 * (cos(theta) + foil->d), im = r0 * sin(theta);
-        const double x = re * (1 + c * c / (re * re + im * im));
-        if (x > foil->nose + s) {
+        if (chord_at(foil, theta) > foil->nose + s) {
             low = theta;
         } else {
             high = theta;
@@ -36,9 +45,11 @@ static double angle_at(const struct joukowski *foil, double s) {
     return (low + high) / 2;
 }
 
+// half of h: that of the foil, which ends in a cusp, and of the wedge that gives the tail its thickness
 static double half_thickness(const struct joukowski *foil, double theta) {
     const double re = foil->r0 * (cos(theta) + foil->d), im = foil->r0 * sin(theta), c = foil->c;
-    return fabs(im * (1 - c * c / (re * re + im * im)));
+    const double sigma = (chord_at(foil, theta) - foil->nose) / foil->length;
+    return hypot(im * (1 - c * c / (re * re + im * im)), foil->tail / 2 * sigma);
 }
 
 // minus ds/dtheta
@@ -78,7 +89,7 @@ static void joukowski_means(const struct joukowski *foil, double from, double to
 static struct profile_edge joukowski_edge(const struct fish_parameters *fish, int k) {
     const int n_edges = fish->nodes - 1;
     const double edge_length = fish->length / n_edges, from = k * edge_length, to = (k + 1) * edge_length;
-    const struct joukowski foil = joukowski(fish->length, fish->body.thickness);
+    const struct joukowski foil = joukowski(fish);
     struct profile_edge edge = {.w = fish->body.depth * fish->length, .square = 1, .cube = 1};
     if (fish->body.section == SECTION_MEAN) {
         double mean[3];
@@ -87,9 +98,9 @@ static struct profile_edge joukowski_edge(const struct fish_parameters *fish, in
         edge.square = mean[1] / (mean[0] * mean[0]);
         edge.cube = mean[2] / (mean[0] * mean[0] * mean[0]);
     } else {
-        // both tips are sharp, however the last arc coordinate is rounded
+        // the thickness of nose and tail is exact, however the last arc coordinate is rounded
         edge.h = (k > 0 ? half_thickness(&foil, angle_at(&foil, from)) : 0) +
-                 (k + 1 < n_edges ? half_thickness(&foil, angle_at(&foil, to)) : 0);
+                 (k + 1 < n_edges ? half_thickness(&foil, angle_at(&foil, to)) : foil.tail / 2);
     }
     return edge;
 }
@@ -112,5 +123,6 @@ struct profile_edge profile_edge(const struct fish_parameters *fish, int k) {
 }
 
 double profile_tail_thickness(const struct fish_parameters *fish) {
-    return fish->body.profile == PROFILE_JOUKOWSKI ? 0 : profile_edge(fish, fish->nodes - 2).h;
+    return fish->body.profile == PROFILE_JOUKOWSKI ? fish->body.tail_thickness * fish->length
+                                                   : profile_edge(fish, fish->nodes - 2).h;
 }

@@ -19,7 +19,7 @@ struct profile_edge {
 /* Edge k of a fish. body.section mean: means over the edge; nodes: the mean of both ends, square and cube are 1. */
 struct profile_edge profile_edge(const struct fish_parameters *fish, int k);
 
-/* Thickness at the tail, m: that of the last edge but for a joukowski outline, which ends in a point. */
+/* Thickness at the tail, m: that of the last edge; of a joukowski outline body.tail_thickness. */
 double profile_tail_thickness(const struct fish_parameters *fish);
 
 #endif
