@@ -1,9 +1,11 @@
-/* fluid_force.c: edge by edge, the forces of drag.c and reactive.c on its two nodes, and their derivatives. */
+/* fluid_force.c: edge by edge, the forces of drag.c and reactive.c on its two nodes, that of tail_flux.c on the last
+ * one, and their derivatives. */
 #include "model/fluid_force.h"
 
 #include "model/drag.h"
 #include "model/edge.h"
 #include "model/reactive.h"
+#include "model/tail_flux.h"
 
 // drag on an edge, the reactive force on its two nodes, and what leaves at the tail: on the tail node, of the last edge
 struct edge_forces {
@@ -19,7 +21,7 @@ static struct edge_forces forces_of_edge(const struct fish *fish, const struct f
     drag_force(fish, k, &on.edge, w, on.drag);
     drag_friction(fish, k, &on.edge, w, on.friction);
     reactive_force(fish, k, &on.edge, w, flow->acceleration, on.reactive);
-    if (k == fish->n_edges - 1) reactive_tail_force(fish, &on.edge, w, on.tail);
+    if (k == fish->n_edges - 1) tail_flux_force(fish, flow, y, on.tail);
     return on;
 }
 
@@ -114,6 +116,7 @@ void fluid_force_jacobian(const struct fish *fish, const struct flow_at_body *fl
             }
         }
     }
+    tail_flux_jacobian(fish, flow, y, jacobian);
 }
 
 void fluid_force_flow_jacobian(const struct fish *fish, const struct flow_at_body *flow,
@@ -134,10 +137,11 @@ void fluid_force_flow_jacobian(const struct fish *fish, const struct flow_at_bod
             }
         }
     }
+    tail_flux_flow_jacobian(fish, flow, block, y, rows);
 }
 
 struct fluid_power fluid_force_power(const struct fish *fish, const struct flow_at_body *flow, const double *y) {
-    struct fluid_power power = {.drag = 0};
+    struct fluid_power power = {.wake = tail_flux_power(fish, flow, y)};
     for (int k = 0; k < fish->n_edges; k++) {
         const struct edge edge = edge_at(fish, k, y);
         double w[2], drag[2], friction[2];
@@ -147,7 +151,6 @@ struct fluid_power fluid_force_power(const struct fish *fish, const struct flow_
         power.drag += edge_dot(drag, edge.velocity);
         power.friction += edge_dot(friction, edge.velocity);
         power.added_mass += reactive_power(fish, k, &edge, w, flow->acceleration);
-        if (k == fish->n_edges - 1) power.wake = reactive_wake_power(fish, &edge, w);
     }
     return power;
 }

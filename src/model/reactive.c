@@ -1,4 +1,4 @@
-/* reactive.c: the published added mass; Lagrange's equations of mu w_n^2/2; the flux at the tail. */
+/* reactive.c: the published added mass; Lagrange's equations of mu w_n^2/2. */
 #include "model/reactive.h"
 
 #include <math.h>
@@ -39,39 +39,6 @@ void reactive_force(const struct fish *fish, int k, const struct edge *edge, con
         const double gradient = fish->displaced_mass[k] / 2 * b[i];
         force[0][i] = both + gradient + f.pair * edge->n[i];
         force[1][i] = both + gradient - f.pair * edge->n[i];
-    }
-}
-
-// the velocity of the tail node relative to the fluid at the midpoint of the last edge
-static void tail_velocity(const struct edge *edge, const double w[2], double at_tail[2]) {
-    for (int i = 0; i < 2; i++) at_tail[i] = w[i] + edge->rate[i] / 2;
-}
-
-void reactive_tail_force(const struct fish *fish, const struct edge *edge, const double w[2], double force[2]) {
-    double at_tail[2];
-    tail_velocity(edge, w, at_tail);
-    const double wt = edge_dot(at_tail, edge->t), wn = edge_dot(at_tail, edge->n), leaving = fmin(wt, 0);
-    for (int i = 0; i < 2; i++) {
-        force[i] = fish->tail_added_mass * (leaving * wn * edge->n[i] - wn * wn / 2 * edge->t[i]);
-    }
-}
-
-// of the force on the tail node: by its own velocity, which is w and half the rate, and by a turn
-static void add_tail_slope(const struct fish *fish, const struct edge *edge, const double w[2],
-                           struct reactive_slope *slope) {
-    double at_tail[2];
-    tail_velocity(edge, w, at_tail);
-    const double *const t = edge->t, *const n = edge->n, mass = fish->tail_added_mass;
-    const double wt = edge_dot(at_tail, t), wn = edge_dot(at_tail, n);
-    const double leaving = fmin(wt, 0), leaves = wt < 0;
-    for (int i = 0; i < 2; i++) {
-        for (int j = 0; j < 2; j++) {
-            const double by_tail = mass * (leaves * wn * n[i] * t[j] + (leaving * n[i] - wn * t[i]) * n[j]);
-            slope->by_velocity[1][i][j] += by_tail;
-            slope->by_rate[1][i][j] += by_tail / 2;
-        }
-        slope->by_turn[1][i] +=
-            mass * ((leaves * wn * wn - leaving * wt - wn * wn / 2) * n[i] + (wn * wt - leaving * wn) * t[i]);
     }
 }
 
@@ -123,7 +90,6 @@ void reactive_slope(const struct fish *fish, int k, const struct edge *edge, con
         return;
     }
     lagrange_slope(fish, k, edge, w, b, slope);
-    if (k == fish->n_edges - 1) add_tail_slope(fish, edge, w, slope);
 }
 
 double reactive_power(const struct fish *fish, int k, const struct edge *edge, const double w[2], const double b[2]) {
@@ -136,12 +102,6 @@ double reactive_power(const struct fish *fish, int k, const struct edge *edge, c
         power += (force[0][i] + force[1][i]) * edge->velocity[i] + (force[1][i] - force[0][i]) * edge->rate[i] / 2;
     }
     return power;
-}
-
-double reactive_wake_power(const struct fish *fish, const struct edge *edge, const double w[2]) {
-    double force[2];
-    reactive_tail_force(fish, edge, w, force);
-    return edge_dot(force, edge->velocity) + edge_dot(force, edge->rate) / 2;
 }
 
 double reactive_energy(const struct fish *fish, int k, const struct edge *edge, const double w[2]) {

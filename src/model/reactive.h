@@ -1,4 +1,4 @@
-/* reactive.h: the force of the fluid that a body accelerates: of every edge, and of what leaves at the tail.
+/* reactive.h: the force of the fluid that a body accelerates, edge by edge; what leaves at the tail is in tail_flux.h.
  * doc/model.md, section 9. Tested by tests/model/test_reactive.c.
  *
  * fish->force decides between the force that follows from the fluid's kinetic energy (reactive) and the article's
@@ -20,20 +20,16 @@ struct reactive_slope {
     double by_acceleration[2][2]; /* of either node's force, by that of the midpoint */
 };
 
-/* The force of edge k on its two nodes, N: without the flux at the tail. */
+/* The force of edge k on its two nodes, N. */
 void reactive_force(const struct fish *fish, int k, const struct edge *edge, const double w[2], const double b[2],
                     double force[2][2]);
 
-/* The force on the tail node of what leaves there, N; edge and w are those of the last edge. */
-void reactive_tail_force(const struct fish *fish, const struct edge *edge, const double w[2], double force[2]);
-
-/* The derivatives of reactive_force, for the last edge those of reactive_tail_force with them. */
+/* The derivatives of reactive_force. */
 void reactive_slope(const struct fish *fish, int k, const struct edge *edge, const double w[2], const double b[2],
                     struct reactive_slope *slope);
 
-/* Power of reactive_force on edge k, and of reactive_tail_force, W. */
+/* Power of reactive_force on edge k, W. */
 double reactive_power(const struct fish *fish, int k, const struct edge *edge, const double w[2], const double b[2]);
-double reactive_wake_power(const struct fish *fish, const struct edge *edge, const double w[2]);
 
 /* Kinetic energy of the fluid that edge k accelerates, mu w_n^2/2, J. */
 double reactive_energy(const struct fish *fish, int k, const struct edge *edge, const double w[2]);

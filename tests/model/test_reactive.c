@@ -203,43 +203,6 @@ static void mean_thrust_of_a_plate_of_small_amplitude_is_lighthill_s(void **stat
     NEAR(thrust, lighthill, 0, 2e-5);
 }
 
-static void flux_at_the_tail_takes_from_the_body_what_it_leaves_in_the_wake(void **state) {
-    (void)state;
-    struct setup setup;
-    school_build(&setup, TIME "fish: [{force: reactive, body: {width: 0.3}, drag: {extent: width, added_mass: 1}}]\n");
-    const struct fish *fish = setup.school->fish;
-    for (int trial = 0; trial < 20; trial++) {
-        const double angle = 3 * school_random(&setup), wt = 2 * school_random(&setup), wn = school_random(&setup);
-        struct edge edge = {.length = 0.1, .t = {cos(angle), sin(angle)}, .n = {-sin(angle), cos(angle)}};
-        for (int i = 0; i < 2; i++) {
-            edge.rate[i] = school_random(&setup);
-            edge.velocity[i] = wt * edge.t[i] + wn * edge.n[i] - edge.rate[i] / 2;
-        }
-        // the node's own velocity: wt along, wn across; never a gain, whether the tail follows or leads
-        NEAR(reactive_wake_power(fish, &edge, edge.velocity), -mass_per_length * wn * wn * fabs(wt) / 2, 1e-12, 1e-12);
-    }
-    school_clear(&setup);
-}
-
-static void nothing_leaves_at_a_pointed_tail_nor_with_the_published_force(void **state) {
-    (void)state;
-    const struct {
-        const char *keys;
-        double mass;
-    } cases[] = {{"force: reactive", 0},
-                 {"force: reactive, drag: {extent: width}", 1000 * 1.5 * 0.0625},
-                 {"force: reactive, body: {profile: uniform, thickness: 0.1}", 1000 * 1.5 * 0.01},
-                 {"force: published, drag: {extent: width}", 0}};
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        char text[256];
-        snprintf(text, sizeof text, TIME "fish: [{%s}]\n", cases[i].keys);
-        struct setup setup;
-        school_build(&setup, text);
-        NEAR(setup.school->fish[0].tail_added_mass, pi / 4 * cases[i].mass, 0, 1e-14);
-        school_clear(&setup);
-    }
-}
-
 static const struct diagnostics_fish *measured(struct simulation *simulation) {
     simulate_measure(simulation);
     return &simulation->diagnostics->fish[0];
@@ -356,8 +319,6 @@ int main(void) {
         cmocka_unit_test(towed_plate_feels_a_couple_and_loses_at_its_tail),
         cmocka_unit_test(oscillating_plate_feels_its_added_mass),
         cmocka_unit_test(mean_thrust_of_a_plate_of_small_amplitude_is_lighthill_s),
-        cmocka_unit_test(flux_at_the_tail_takes_from_the_body_what_it_leaves_in_the_wake),
-        cmocka_unit_test(nothing_leaves_at_a_pointed_tail_nor_with_the_published_force),
         cmocka_unit_test(energy_of_body_and_fluid_is_the_work_of_the_muscle),
         cmocka_unit_test(no_fish_gains_energy_from_still_fluid),
         cmocka_unit_test(reversing_the_wave_reverses_the_path),

@@ -44,6 +44,7 @@ static const struct variant {
      TIME "fluid: {velocity: [0.3, -0.2], shear: 0.7, gust: {amplitude: 0.4, frequency: 1.3}}\n"
           "fish: [{sheet_points: 9, force: reactive, control: {law: heading},\n"
           "        drag: {extent: width, law: linear_quadratic, linear_speed: 0.5}}]\n"},
+    {"reactive, four nodes", TIME "fish: [{nodes: 4, sheet_points: 7, force: reactive, drag: {extent: width}}]\n"},
     {"reactive, midpoint, kutta rate, backwards",
      TIME "wake: {kutta: rate, collocation: midpoint}\n"
           "fish: [{sheet_points: 9, force: reactive, drag: {extent: width}, start: {speed: -2}}]\n"},
