@@ -37,6 +37,10 @@ int fish_has_momentum(const struct fish *fish) {
     return fish->at.px < fish->at.ax;
 }
 
+int fish_feels_own_wake(const struct fish *fish) {
+    return fish->force != FORCE_REACTIVE;
+}
+
 double fish_rate(const struct school *school, const struct fish *fish) {
     if (fish->frequency > 0) return fish->frequency;
     const double drift = hypot(school->velocity[0], school->velocity[1]);

@@ -184,6 +184,9 @@ struct direction fish_direction(const struct fish *fish, const struct tangent *t
 /* Whether the fish has the slices px, py: force: pressure. */
 int fish_has_momentum(const struct fish *fish);
 
+/* Whether the edge midpoints of the fish feel its own wake: not with force: reactive. doc/model.md, section 9. */
+int fish_feels_own_wake(const struct fish *fish);
+
 /* Its beats per second, or those of its prescribed motion; where it has none, the lengths per second at which it, or
  * the stream, goes; 1 where nothing moves. With the length it gives the scale of velocities. */
 double fish_rate(const struct school *school, const struct fish *fish);

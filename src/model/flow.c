@@ -36,19 +36,23 @@ static enum status flow_fill(struct flow *flow) {
     const struct school *school = flow->school;
     const size_t n_fish = (size_t)school->n_fish;
     flow->points = calloc(n_fish, sizeof *flow->points);
+    flow->without_own = calloc(n_fish, sizeof *flow->without_own);
     flow->released_range = calloc(n_fish, sizeof *flow->released_range);
     flow->sheet_range = calloc(n_fish, sizeof *flow->sheet_range);
     flow->by_interpolation = calloc(n_fish, sizeof *flow->by_interpolation);
     flow->wake_range = calloc(n_fish, sizeof *flow->wake_range);
     flow->middles = calloc(n_fish, sizeof *flow->middles);
     flow->free_sheet = calloc(n_fish, sizeof *flow->free_sheet);
-    if (!flow->points || !flow->released_range || !flow->sheet_range || !flow->by_interpolation || !flow->wake_range ||
-        !flow->middles || !flow->free_sheet) {
+    if (!flow->points || !flow->without_own || !flow->released_range || !flow->sheet_range || !flow->by_interpolation ||
+        !flow->wake_range || !flow->middles || !flow->free_sheet) {
         return status_fail(STATUS_MEMORY, "out of memory: the flow around %d fish", school->n_fish);
     }
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *fish = &school->fish[f];
         flow->points[f] = (struct range){flow->n_points, flow_n_points(fish)};
+        if (!fish_feels_own_wake(fish)) {
+            flow->without_own[f] = (struct range){flow->n_points + flow_midpoint(fish, 0), fish->n_edges};
+        }
         flow->n_points += flow->points[f].n;
         flow->sheet_range[f] = (struct range){flow->sheet.n, fish->n_sheet};
         TRY(vortices_append(&flow->sheet, fish->n_sheet, fish->sheet_smoothing));
@@ -69,7 +73,7 @@ static enum status flow_fill(struct flow *flow) {
     }
     TRY(velocity_sum_create(&flow->velocity_sum));
     if (school->wake_tolerance <= 0) return STATUS_OK;
-    return wake_interpolation_create(&flow->interpolation, school, flow->points);
+    return wake_interpolation_create(&flow->interpolation, school, flow->points, flow->without_own);
 }
 
 enum status flow_create(struct flow **flow, const struct school *school) {
@@ -95,6 +99,7 @@ void flow_free(struct flow *flow) {
         if (flow->free_sheet) free_sheet_free(&flow->free_sheet[f]);
     }
     void *const owned[] = {flow->points,
+                           flow->without_own,
                            flow->chunk,
                            flow->x,
                            flow->y,

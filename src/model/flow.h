@@ -7,6 +7,8 @@
  *     | control points (M-1)          | edge midpoints (N-1)  | tail (1)                         |
  *     | all; own with no smoothing    | those of other fish   | all, with sheet_smoothing        |
  *
+ * With force: reactive the edge midpoints leave out the own wake too (doc/model.md, section 9).
+ *
  * The sources: per fish its free vortices, released ones and the nascent one, and its bound vortices. With shedding:
  * sheet the free vortices are the middles of the stretches of a sheet, and the control points of the own fish see more
  * (free_sheet.h). */
@@ -34,7 +36,8 @@ struct flow {
     int has_sources;       /* whether they have been placed at all */
 
     /* points */
-    struct range *points; /* of each fish                                           (n_fish) */
+    struct range *points;      /* of each fish                                      (n_fish) */
+    struct range *without_own; /* those of them that leave out the own wake         (n_fish) */
     int n_points;
     int n_chunks;
     struct chunk *chunk;     /* all points, in pieces for the threads               (n_chunks) */

@@ -138,6 +138,18 @@ static void induce_free_sheet(const struct flow *flow, const struct chunk *chunk
     }
 }
 
+// the wakes as others see them at a chunk, and at points that leave out the own wake those of others
+static void induce_wakes(const struct flow *flow, const struct chunk *chunk, const struct induced *at) {
+    const struct range unfelt = {flow->without_own[chunk->fish].first - chunk->at.first,
+                                 flow->without_own[chunk->fish].n};
+    if (flow->by_interpolation[chunk->fish]) {
+        wake_interpolation_induce(flow->interpolation, chunk->fish, chunk->at.first, at);
+    } else {
+        vortices_induce_without(&flow->released, flow->released_range[chunk->fish], unfelt, at);
+    }
+    vortices_induce_without(&flow->nascent, (struct range){chunk->fish, 1}, unfelt, at);
+}
+
 /* What of the sheets has been summed for all chunks at once. */
 struct summed {
     int sheets, images;
@@ -165,12 +177,7 @@ static void evaluate_chunk(const struct flow *flow, const struct chunk *chunk, s
         at.v[p] += v;
     }
     for (int p = 0; at.u_x && p < at.n; p++) at.u_y[p] += school->shear;
-    if (flow->by_interpolation[chunk->fish]) {
-        wake_interpolation_induce(flow->interpolation, chunk->fish, chunk->at.first, &at);
-    } else {
-        vortices_induce(&flow->released, (struct range){0, flow->released.n}, &at);
-    }
-    vortices_induce(&flow->nascent, (struct range){0, flow->nascent.n}, &at);
+    induce_wakes(flow, chunk, &at);
     induce_sheets(flow, chunk, summed.sheets, all);
     if (flow_has_free_sheets(flow)) induce_free_sheet(flow, chunk, all);
     if (school->walls.n > 0) induce_images(flow, chunk, summed, &at);

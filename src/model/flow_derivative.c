@@ -89,12 +89,18 @@ static void derive_nascent_source(const struct target *at, struct range points, 
 static void derive_nascent(const struct target *at) {
     const struct flow *flow = at->flow;
     const struct fish *other = &flow->school->fish[at->g];
-    const int n_points = flow->points[at->f].n, is_sheet = flow_has_free_sheets(flow);
-    // the own control points see the stretch point by point, everybody else its middle
-    const int n_own = is_sheet && at->f == at->g ? other->n_control : 0;
+    const int n_points = flow->points[at->f].n, is_sheet = flow_has_free_sheets(flow), is_own = at->f == at->g;
+    // the own control points see the stretch point by point, all others its middle, or leave it out
+    const int n_own = is_sheet && is_own ? other->n_control : 0;
+    const int n_unfelt = is_own ? flow->without_own[at->f].n : 0, behind = other->n_control + n_unfelt;
     const struct nascent_source whole = {flow->nascent.x[at->g], flow->nascent.y[at->g], other->smoothing, 1,
                                          is_sheet ? 0.5 : 1};
-    derive_nascent_source(at, (struct range){n_own, n_points - n_own}, &whole);
+    if (n_unfelt == 0) {
+        derive_nascent_source(at, (struct range){n_own, n_points - n_own}, &whole);
+    } else {
+        derive_nascent_source(at, (struct range){n_own, other->n_control - n_own}, &whole);
+        derive_nascent_source(at, (struct range){behind, n_points - behind}, &whole);
+    }
     const struct free_sheet *const sheet = is_sheet ? &flow->free_sheet[at->g] : NULL;
     for (int i = 0; n_own > 0 && i < FREE_SHEET_PANEL; i++) {
         const int source = sheet->n - (FREE_SHEET_PANEL + 1) + i;

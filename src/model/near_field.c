@@ -143,7 +143,7 @@ static struct near_field_bounds bounds_of_image(const struct near_field_bounds *
 
 // the vortices of one wake, or of an image of it: those with an error up to max_error go to the far field, the others
 // may be near
-static enum status divide_wake(const struct near_field_input *input, int g, const struct image *image,
+static enum status divide_wake(const struct near_field_input *input, int g, const struct image *image, int is_own,
                                const struct body *body, double max_error, struct near_field *near_field) {
     const struct wake *const wake = &input->wakes[g];
     const struct near_field_bounds *const bounds = &input->bounds[g];
@@ -170,6 +170,7 @@ static enum status divide_wake(const struct near_field_input *input, int g, cons
             .strength = image->sign * start[i],
             .change = image->sign * (end[i] - start[i]),
             .smoothing = smoothing,
+            .is_own = is_own,
         };
         TRY(add_to_near(near_field, &near));
     }
@@ -209,7 +210,7 @@ static void move_to_far(struct near_field *near_field, double max_error) {
 
 // a wake or an image of it: as a whole to the far field, or vortex by vortex; n_images: of every wake
 static enum status divide_image(struct near_field *near_field, const struct near_field_input *input, int g,
-                                const struct image *image, int n_images, const struct body *body) {
+                                const struct image *image, int is_own, int n_images, const struct body *body) {
     const struct school *const school = input->school;
     const struct near_field_bounds bounds = bounds_of_image(&input->bounds[g], image);
     const double acceleration = body->acceleration + bounds.acceleration;
@@ -222,7 +223,8 @@ static enum status divide_image(struct near_field *near_field, const struct near
         add_to_far(near_field, &error);
         return STATUS_OK;
     }
-    return divide_wake(input, g, image, body, near_field->tolerance / 8 / (input->n_released * n_images), near_field);
+    const double max_error = near_field->tolerance / 8 / (input->n_released * n_images);
+    return divide_wake(input, g, image, is_own, body, max_error, near_field);
 }
 
 /* Half of the tolerance is for the far field on the predicted path (an eighth of it all for whole wakes, one for single
@@ -238,12 +240,25 @@ static enum status divide(struct near_field *near_field, const struct near_field
     struct image image[1 + IMAGES_NEAREST] = {{1, 0}};
     const int n_images = 1 + images_nearest(&school->walls, image + 1);
     for (int g = 0; g < school->n_fish; g++) {
-        for (int i = 0; i < n_images; i++) TRY(divide_image(near_field, input, g, &image[i], n_images, &body));
+        for (int i = 0; i < n_images; i++) {
+            TRY(divide_image(near_field, input, g, &image[i], g == f && i == 0, n_images, &body));
+        }
     }
     move_to_far(near_field, near_field->tolerance / 4);
     // a near vortex is evaluated about twice as often as a far one
     near_field->is_interpolated = 3 * near_field->n_near <= n_released || near_field->n_near <= FEW;
     return STATUS_OK;
+}
+
+// those of the own wake follow one another
+static struct range own_of(const struct near_field *near_field) {
+    struct range own = {0, 0};
+    for (int i = 0; i < near_field->n_near; i++) {
+        if (!near_field->near[i].is_own) continue;
+        if (own.n == 0) own.first = i;
+        own.n++;
+    }
+    return own;
 }
 
 // allocate the near vortices, in groups of one smoothing
@@ -259,6 +274,7 @@ static enum status reserve(struct near_field *near_field) {
 
 enum status near_field_find(struct near_field *near_field, const struct near_field_input *input, int f) {
     TRY(divide(near_field, input, f));
+    near_field->own = own_of(near_field);
     return reserve(near_field);
 }
 

@@ -41,6 +41,7 @@ struct near_field_vortex {
     double x[2], u[2], a[2];       /* at the event */
     double strength, change;       /* at the event, and until the end of the interval, m2 s-1 */
     double smoothing;              /* m */
+    int is_own;                    /* of the wake of the fish itself, and no image in a wall */
 };
 
 /* The near and the far field of one fish. */
@@ -50,6 +51,7 @@ struct near_field {
     struct near_field_error far; /* sum over the far field */
     int n_near, capacity;
     struct near_field_vortex *near; /* (n_near) */
+    struct range own;               /* those of the own wake */
     struct vortices vortices;       /* the near ones, where near_field_update has put them */
 };
 

@@ -40,9 +40,9 @@ static void flow_jacobian(const struct residual *residual, int f, int g, double 
 }
 
 // add the rows of a fish by its own unknowns to its block: those entries that may differ from zero. The midpoint of an
-// edge feels the nodes of that edge and, through the nascent vortex, the tail and the circulation shed; the flux at the
-// tail those of the last two edges; the pressure everything, and so does an edge that has walls beside it, through the
-// images of the body.
+// edge feels the nodes of that edge and, where it feels its own wake, through the nascent vortex the tail and the
+// circulation shed; the flux at the tail the nodes of the last two edges; the pressure everything, and so does an edge
+// that has walls beside it, through the images of the body.
 static void add_own(const struct residual *residual, const struct fish *fish, const struct coupling_block *rows,
                     struct sparse *own) {
     const int n_nodes = fish->n_nodes, n_places = 2 * n_nodes;
@@ -51,11 +51,11 @@ static void add_own(const struct residual *residual, const struct fish *fish, co
     for (int c = 0; c < rows->n_columns; c++) {
         const double *const value = rows->value + (long)c * rows->n_rows;
         const int column = flow_column(fish, c), node = c % n_nodes;
-        const int feels_all = fish_has_momentum(fish) || residual->school->walls.n > 0;
-        const int is_shed = c == rows->n_columns - 1, is_sheet = c >= n_places && !is_shed && !feels_all;
-        const int all = is_shed || node == n_nodes - 1 || feels_all;
+        const int is_place = c < n_places, is_shed = c == rows->n_columns - 1;
+        const int is_nascent = fish_feels_own_wake(fish) && (is_shed || (is_place && node == n_nodes - 1));
+        const int all = is_nascent || fish_has_momentum(fish) || residual->school->walls.n > 0;
         const int first = all || node == 0 ? 0 : node - 1, last = all || node >= felt_at_tail ? n_nodes - 1 : node + 1;
-        for (int k = first; !is_sheet && k <= last; k++) {
+        for (int k = first; (is_place || all) && k <= last; k++) {
             sparse_add(own, fish->at.ax + k, column, value[k]);
             sparse_add(own, fish->at.ay + k, column, value[n_nodes + k]);
         }

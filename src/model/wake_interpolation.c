@@ -20,8 +20,9 @@ struct wake_interpolation {
     double start, q;        /* time of the event, s; now, as part of the interval */
     double weight[N_TIMES]; /* of the values at the four times, now */
     int n_points;
-    const struct range *points;    /* of each fish                                    (n_fish) */
-    struct near_field *near_field; /*                                                    (n_fish) */
+    const struct range *points;      /* of each fish                                    (n_fish) */
+    const struct range *without_own; /* see wake_interpolation_create                 (n_fish) */
+    struct near_field *near_field;   /*                                                    (n_fish) */
 
     double *motion[6];                                  /* of all points at the event: x y, u v, a b (n_points) */
     double *predicted[2];                               /* their predicted positions now, m          (n_points) */
@@ -32,7 +33,9 @@ struct wake_interpolation {
     struct velocity_sum *velocity_sum;
     struct vortices released[N_TIMES]; /* of all fish */
     struct range *wake;                /* those of each fish                       (n_fish) */
-    struct near_field_bounds *bounds;  /* of each wake                             (n_fish) */
+    double *opposite;                  /* their circulations at one time with the other sign     (n_opposite) */
+    int n_opposite;
+    struct near_field_bounds *bounds; /* of each wake                             (n_fish) */
 };
 
 static enum status at_points(double **values, int n) {
@@ -65,7 +68,7 @@ static enum status allocate(struct wake_interpolation *interpolation) {
 }
 
 enum status wake_interpolation_create(struct wake_interpolation **interpolation, const struct school *school,
-                                      const struct range *points) {
+                                      const struct range *points, const struct range *without_own) {
     *interpolation = NULL;
     struct wake_interpolation *const new = calloc(1, sizeof *new);
     if (!new) return status_fail(STATUS_MEMORY, "out of memory: the interpolation of wakes");
@@ -73,6 +76,7 @@ enum status wake_interpolation_create(struct wake_interpolation **interpolation,
     const struct range last = points[school->n_fish - 1];
     new->n_points = last.first + last.n;
     new->points = points;
+    new->without_own = without_own;
     const enum status status = allocate(new);
     if (status != STATUS_OK) {
         wake_interpolation_free(new);
@@ -98,6 +102,7 @@ void wake_interpolation_free(struct wake_interpolation *interpolation) {
     }
     velocity_sum_free(interpolation->velocity_sum);
     free(interpolation->near_field);
+    free(interpolation->opposite);
     free(interpolation->wake);
     free(interpolation->bounds);
     free(interpolation);
@@ -120,6 +125,17 @@ static enum status reserve_released(const struct school *school, const struct wa
         wake[g] = (struct range){released->n, wakes[g].n_vortex};
         TRY(vortices_append(released, wake[g].n, school->fish[g].smoothing));
     }
+    return STATUS_OK;
+}
+
+// room for the opposite of all circulations
+static enum status reserve_opposite(struct wake_interpolation *interpolation) {
+    const int n = interpolation->released[0].n;
+    if (n <= interpolation->n_opposite) return STATUS_OK;
+    free(interpolation->opposite);
+    interpolation->n_opposite = 0;
+    TRY(array_doubles(&interpolation->opposite, n + n / 2, "the vortices of all wakes"));
+    interpolation->n_opposite = n + n / 2;
     return STATUS_OK;
 }
 
@@ -175,20 +191,40 @@ static enum status sum_by_tree(const struct wake_interpolation *interpolation, i
     return STATUS_OK;
 }
 
-// subtract the near field of a fish from the sums of all times
-static void subtract_near(struct wake_interpolation *interpolation, int f) {
+// the points of fish f, from its point number first on, that leave out its own vortices
+static struct range without_own(const struct wake_interpolation *interpolation, int f, int first) {
+    const struct range points = interpolation->without_own[f];
+    return (struct range){points.first - first, points.n};
+}
+
+// subtract the own wake of a fish, at time i, where its points leave it out
+static void subtract_own(const struct wake_interpolation *interpolation, int f, int i) {
+    const struct range own = interpolation->wake[f];
+    const struct induced all = targets_at(interpolation, i);
+    const struct induced at = vortices_targets(&all, interpolation->without_own[f]);
+    struct vortices released = interpolation->released[i];
+    if (at.n == 0) return;
+    for (int k = own.first; k < own.first + own.n; k++) interpolation->opposite[k] = -released.circulation[k];
+    released.circulation = interpolation->opposite;
+    vortices_induce(&released, own, &at);
+}
+
+// subtract from the sums of all times what a fish does not have in the far field
+static void subtract(struct wake_interpolation *interpolation, int f) {
     struct near_field *const near_field = &interpolation->near_field[f];
-    if (!near_field->is_interpolated || near_field->n_near == 0) return;
-    for (int i = 0; i < N_TIMES; i++) {
-        const struct induced all = targets_at(interpolation, i), at = vortices_targets(&all, interpolation->points[f]);
+    const struct range points = interpolation->points[f];
+    for (int i = 0; i < N_TIMES && near_field->is_interpolated; i++) {
+        const struct induced all = targets_at(interpolation, i), at = vortices_targets(&all, points);
         near_field_update(near_field, time_of[i] * interpolation->school->interval, time_of[i], -1);
-        vortices_induce(&near_field->vortices, (struct range){0, near_field->n_near}, &at);
+        vortices_induce_without(&near_field->vortices, near_field->own, without_own(interpolation, f, points.first),
+                                &at);
+        subtract_own(interpolation, f, i);
     }
 }
 
-static void subtract_all_near(struct wake_interpolation *interpolation) {
+static void subtract_all(struct wake_interpolation *interpolation) {
 #pragma omp for schedule(dynamic)
-    for (int f = 0; f < interpolation->school->n_fish; f++) subtract_near(interpolation, f);
+    for (int f = 0; f < interpolation->school->n_fish; f++) subtract(interpolation, f);
 }
 
 // the released vortices at the four times, and what holds for each wake
@@ -246,6 +282,7 @@ static enum status build(struct wake_interpolation *interpolation, const struct 
     for (int i = 0; i < N_TIMES; i++) {
         TRY(reserve_released(school, wakes, &interpolation->released[i], interpolation->wake));
     }
+    TRY(reserve_opposite(interpolation));
     const double work = (double)N_TIMES * n_points * released[0].n;
     const int threads = parallel_threads(school->threads, n_points, work, PARALLEL_INTERACTIONS);
     const int by_tree = velocity_sum_by_tree(&released[0], n_points, school->wake_tolerance);
@@ -257,14 +294,14 @@ static enum status build(struct wake_interpolation *interpolation, const struct 
         place_targets(interpolation);
         find_near_fields(interpolation, wakes, &n_failed);
         if (!by_tree) sum_directly(interpolation);
-        if (is_whole && n_failed == 0) subtract_all_near(interpolation);
+        if (is_whole && n_failed == 0) subtract_all(interpolation);
     }
     // a message stays with the thread that wrote it
     if (n_failed > 0) return status_fail(STATUS_MEMORY, "out of memory: the near vortices of %d fish", n_failed);
     if (is_whole) return STATUS_OK;
     TRY(sum_by_tree(interpolation, by_tree, threads));
 #pragma omp parallel num_threads(threads)
-    subtract_all_near(interpolation);
+    subtract_all(interpolation);
     return STATUS_OK;
 }
 
@@ -328,8 +365,8 @@ void wake_interpolation_induce(const struct wake_interpolation *interpolation, i
             at->v_x[i] += v_x;
         }
     }
-    const struct vortices *const near = &interpolation->near_field[f].vortices;
-    vortices_induce(near, (struct range){0, near->n}, at);
+    const struct near_field *const near_field = &interpolation->near_field[f];
+    vortices_induce_without(&near_field->vortices, near_field->own, without_own(interpolation, f, first), at);
 }
 
 int wake_interpolation_n_near(const struct wake_interpolation *interpolation, int f) {

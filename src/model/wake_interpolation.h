@@ -26,10 +26,11 @@ struct wake_interpolation_points {
     const double *a, *b; /* acceleration in x and y, m s-2 */
 };
 
-/* points, those of each fish (n_fish), stay the caller's and must outlive the interpolation. Fails with STATUS_MEMORY;
- * wake_interpolation_free accepts NULL. */
+/* points, those of each fish, and without_own, those among them that leave out the vortices of that fish itself (both
+ * n_fish), stay the caller's and must outlive the interpolation. Fails with STATUS_MEMORY; wake_interpolation_free
+ * accepts NULL. */
 enum status wake_interpolation_create(struct wake_interpolation **interpolation, const struct school *school,
-                                      const struct range *points);
+                                      const struct range *points, const struct range *without_own);
 void wake_interpolation_free(struct wake_interpolation *interpolation);
 
 /* Interpolate the interval that begins with the event at time t, for points that are there now; wakes: of each fish.

@@ -90,6 +90,25 @@ void vortices_induce(const struct vortices *vortices, struct range which, const 
     }
 }
 
+void vortices_induce_without(const struct vortices *vortices, struct range left_out, struct range where,
+                             const struct induced *at) {
+    const struct range all = {0, vortices->n};
+    const int first = where.first > 0 ? where.first : 0, where_end = where.first + where.n;
+    const int end = where_end < at->n ? where_end : at->n;
+    if (first >= end || left_out.n == 0) {
+        vortices_induce(vortices, all, at);
+        return;
+    }
+    const struct induced before = vortices_targets(at, (struct range){0, first});
+    const struct induced there = vortices_targets(at, (struct range){first, end - first});
+    const struct induced behind = vortices_targets(at, (struct range){end, at->n - end});
+    const int rest = left_out.first + left_out.n;
+    vortices_induce(vortices, all, &before);
+    vortices_induce(vortices, (struct range){0, left_out.first}, &there);
+    vortices_induce(vortices, (struct range){rest, vortices->n - rest}, &there);
+    vortices_induce(vortices, all, &behind);
+}
+
 void vortices_zero(const struct induced *at) {
     double *const values[] = {at->u, at->v, at->u_x, at->u_y, at->v_x};
     for (size_t k = 0; k < sizeof values / sizeof *values; k++) {

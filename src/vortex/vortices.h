@@ -44,6 +44,10 @@ enum status vortices_append(struct vortices *vortices, int n, double smoothing);
 /* Add what the vortices of a range induce at the targets, group after group. */
 void vortices_induce(const struct vortices *vortices, struct range which, const struct induced *at);
 
+/* The same of all vortices but, at the targets in a range, those left out. */
+void vortices_induce_without(const struct vortices *vortices, struct range left_out, struct range where,
+                             const struct induced *at);
+
 /* A range of the targets. */
 struct induced vortices_targets(const struct induced *all, struct range which);
 

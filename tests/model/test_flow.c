@@ -17,7 +17,7 @@
 #define TWO                                                                                  \
     TIME "fluid: {velocity: [0.1, 0.2], shear: 0.3, gust: {amplitude: 0.2, frequency: 1}}\n" \
          "fish:\n"                                                                           \
-         "  - {nodes: 5, sheet_points: 7}\n"                                                 \
+         "  - {nodes: 5, sheet_points: 7, force: reactive}\n"                                \
          "  - {nodes: 6, sheet_points: 9, length: 0.8, start: {position: [0.2, 0.5], heading: 165}}\n"
 
 // velocity at (x, y) from the sources of fish g: free vortices, and the bound sheet with a smoothing (< 0: left out)
@@ -66,7 +66,9 @@ static void every_point_feels_the_sources_that_the_model_says(void **state) {
             double u, v;
             flow_external(setup.school, setup.t, flow->y[at], &u, &v);
             const double own = p < fish->n_control ? 0 : p == flow_tail(fish) ? fish->sheet_smoothing : -1;
-            add_fish(&setup, f, flow->x[at], flow->y[at], own, &u, &v);
+            // with force: reactive the midpoints leave out the own wake
+            const int feels_own = fish->force != FORCE_REACTIVE || own >= 0;
+            if (feels_own) add_fish(&setup, f, flow->x[at], flow->y[at], own, &u, &v);
             add_fish(&setup, 1 - f, flow->x[at], flow->y[at], other->sheet_smoothing, &u, &v);
             // rounding of sums of 40 terms, of at most 100 next to a bound vortex
             NEAR(flow->u[at], u, 1e-13, 1e-13);
@@ -117,8 +119,8 @@ enum { MANY_FISH = 30, MANY_SHEET = 100, MANY_VORTICES = 70 };
 // a school whose sheets and wakes are so large that they are summed by the tree where the tolerance is not 0
 static void build_many(struct setup *setup, const char *fluid) {
     char text[4096];
-    size_t used =
-        (size_t)snprintf(text, sizeof text, TIME "%sdefaults: {fish: {sheet_points: %d}}\nfish:\n", fluid, MANY_SHEET);
+    size_t used = (size_t)snprintf(
+        text, sizeof text, TIME "%sdefaults: {fish: {sheet_points: %d, force: reactive}}\nfish:\n", fluid, MANY_SHEET);
     for (int f = 0; f < MANY_FISH; f++) {
         used += (size_t)snprintf(text + used, sizeof text - used, "  - {start: {position: [%g, %g]}}\n",
                                  1.4 * (f % 6) + 0.1 * (f / 6), 0.5 * (f / 6));
@@ -361,12 +363,12 @@ static void derivative_by_every_unknown_agrees_with_differences(void **state) {
 
 // ---- walls
 
-#define BESIDE                                                       \
-    "fish:\n"                                                        \
-    "  - {nodes: 5, sheet_points: 7, start: {position: [0, 0.5]}}\n" \
+#define BESIDE                                                                        \
+    "fish:\n"                                                                         \
+    "  - {nodes: 5, sheet_points: 7, force: reactive, start: {position: [0, 0.5]}}\n" \
     "  - {nodes: 6, sheet_points: 9, length: 0.8, start: {position: [0.2, 1.1], heading: 165}}\n"
-#define MIRRORED                                                      \
-    "  - {nodes: 5, sheet_points: 7, start: {position: [0, -0.5]}}\n" \
+#define MIRRORED                                                                       \
+    "  - {nodes: 5, sheet_points: 7, force: reactive, start: {position: [0, -0.5]}}\n" \
     "  - {nodes: 6, sheet_points: 9, length: 0.8, start: {position: [0.2, -1.1], heading: -165}}\n"
 
 // what causes velocities: fish and wake g are fish and wake f of another setup, seen in the mirror y = 0 or as they are

@@ -7,13 +7,14 @@
 #include "model/flow_at_bodies.h"
 #include "school.h"
 
-// one fish in the wake of another, while the oldest vortices decay
+// one fish in the wake of another, while the oldest vortices decay; of one the midpoints leave out its own wake
 static struct simulation *two_fish_in(const char *fluid, double tolerance, double interval, double smoothing) {
     char text[512];
     snprintf(text, sizeof text,
              "%stime: {end: 1, shedding_interval: %g, output_interval: %g}\n"
              "wake: {tolerance: %g, smoothing: %g, lifetime: 0.5}\n"
-             "fish: [{nodes: 5, sheet_points: 9}, {nodes: 6, sheet_points: 11, start: {position: [1.3, 0.2]}}]\n",
+             "fish: [{nodes: 5, sheet_points: 9, force: reactive}, {nodes: 6, sheet_points: 11, start: {position: "
+             "[1.3, 0.2]}}]\n",
              fluid, interval, interval, tolerance, smoothing);
     struct simulation *const simulation = school_simulation(text);
     school_run(simulation, 0.8);

@@ -86,6 +86,34 @@ static void a_range_induces_what_its_vortices_do_one_by_one(void **state) {
     vortices_free(&vortices);
 }
 
+static void some_targets_leave_out_a_range(void **state) {
+    (void)state;
+    struct vortices vortices;
+    make(&vortices);
+    enum { N = 3 };
+    const double x[N] = {0.3, -0.2, 2}, y[N] = {0.1, 0.4, -1};
+    const struct range left_out = {1, vortices.n - 2}, all = {0, vortices.n};
+    // ranges of targets that begin before the first one, or end behind the last one, too
+    for (int first = -2; first < N + 2; first++) {
+        for (int n = 0; n <= N + 2; n++) {
+            double value[5][N] = {{0}}, whole[5][N] = {{0}}, out[5][N] = {{0}};
+            const struct induced got = {N, x, y, value[0], value[1], value[2], value[3], value[4]};
+            const struct induced every = {N, x, y, whole[0], whole[1], whole[2], whole[3], whole[4]};
+            const struct induced of_range = {N, x, y, out[0], out[1], out[2], out[3], out[4]};
+            vortices_induce_without(&vortices, left_out, (struct range){first, n}, &got);
+            vortices_induce(&vortices, all, &every);
+            vortices_induce(&vortices, left_out, &of_range);
+            for (int p = 0; p < N; p++) {
+                const int without = p >= first && p < first + n;
+                for (int k = 0; k < 5; k++) {
+                    NEAR(value[k][p], whole[k][p] - (without ? out[k][p] : 0), 1e-13, 1e-13);
+                }
+            }
+        }
+    }
+    vortices_free(&vortices);
+}
+
 static void a_range_of_the_targets_points_into_all(void **state) {
     (void)state;
     double value[7][4] = {{0}};
@@ -103,6 +131,7 @@ int main(void) {
         cmocka_unit_test(neighbours_of_one_smoothing_are_one_group),
         cmocka_unit_test(values_are_kept_when_the_capacity_grows),
         cmocka_unit_test(a_range_induces_what_its_vortices_do_one_by_one),
+        cmocka_unit_test(some_targets_leave_out_a_range),
         cmocka_unit_test(a_range_of_the_targets_points_into_all),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
