@@ -17,8 +17,8 @@ struct sundials_adapter_linear {
     SUNLinearSolver solver;
 };
 
-/* Create a context whose errors, those of KINSOL and ARKODE among them, go to sundials_adapter_message with failure. Fails with STATUS_MEMORY, also where there is none for what IDA, KINSOL or ARKODE allocate for n
- * unknowns: they crash where they find none. */
+/* Create a context, whose errors go to sundials_adapter_message with failure. Fails with STATUS_MEMORY, also where
+ * there is none for what IDA, KINSOL or ARKODE allocate for n unknowns: they crash where they find none. */
 enum status sundials_adapter_context(SUNContext *context, int n, enum status *failure);
 
 /* Create a vector of n values that are not copied; it does not own them. Fails with STATUS_MEMORY. */
