@@ -146,8 +146,8 @@ refined. Every variable over (time), (time, fish) or (time, fish, xy) of a resul
 these. It also has the variables below; a member without rows has NaN.
 
 With a refined axis, each of the last six kinds has one variable for each of the quantities Q: `nose`, `tail`, `com`,
-`speed`, `mean_heading`, `shed_circulation`, `cost_of_transport`, `mean_actuation_power`; the order of the nose is
-`order_nose`. A group is a set of members that differ in the refined key only.
+`speed`, `mean_heading`, `shed_circulation`, `cost_of_transport`, `mean_actuation_power`; where members are steady
+states, `steady_speed` and what else [cases.md](cases.md) lists. The order of the nose is `order_nose`. A group is a set of members that differ in the refined key only.
 
 `shoal compare -o FILE` writes the same file: its one axis sets `solver.method`, `solver.order`, `solver.rtol` and
 `solver.step`. Member 0 is the reference, member 1 shows how good that is, and of the others those with equal values are

@@ -1,5 +1,5 @@
-/* test_error_budget.c: what levels of refinement say about the error of a value. The sequences are steady speeds [m s-1]
- * and costs of transport [m s-2] of the default fish, measured with earlier and later forms of its tail. */
+/* test_error_budget.c: errors of a value by levels of refinement. The sequences are steady speeds [m s-1] and costs of
+ * transport [m s-2] of the default fish, measured with several forms of its tail. */
 #include <string.h>
 
 #include "near.h"
@@ -129,8 +129,8 @@ static void what_is_known_before_flags_whatever_the_levels_say(void **state) {
     NEAR(judged.of[SPEED].error, 0.32, 0.005, 0);
 }
 
-/* Points of the sheet with `force: pressure`: the changes grow, -0.11 % and -0.13 %; both finer levels are known, so that
- * the largest difference counts once. */
+/* Points of the sheet with `force: pressure`: the changes grow, -0.11 % and -0.13 %; both finer levels are known, so
+ * that the largest difference counts once. */
 static void differences_that_do_not_fall_are_flagged(void **state) {
     (void)state;
     const struct key key = {3, 2, {97, 69, 49}, 1, NULL};
