@@ -4,19 +4,25 @@
 #   SANITIZE=1    build and test with the address and undefined behaviour sanitizers, of gcc or with CC=clang of clang;
 #                 SANITIZE=thread with that for threads, of clang. Each has a folder build-sanitize...
 #   TIME=600      seconds of `make fuzz`
+#   WERROR=1      make warnings errors
+#   CC=clang      another compiler; CFLAGS, CPPFLAGS and LDFLAGS too are taken from here or from the environment
+#   SUNDIALS_DIR=... and SUITESPARSE_DIR, NETCDF_DIR, LAPACKE_DIR, YAML_DIR, ZLIB_DIR
+#                 the folder with include/ and lib/ of a library that is not found (scripts/find-libraries.sh)
 #   TEST="rod x"  let `make test` run tests/*/test_rod.c and tests/*/test_x.sh only
 
 VERSION   = 0.1.0
 SOVERSION = 0
 
 prefix = /usr/local
-CC     = gcc
+ifeq ($(origin CC),default)
+CC = $(if $(shell command -v gcc),gcc,cc)
+endif
 PYTHON = /usr/bin/python3
 TIME   = 600
 
-CPPFLAGS =
-CFLAGS   = -O3 -g
-LDFLAGS  =
+CPPFLAGS ?=
+CFLAGS   ?= -O3 -g
+LDFLAGS  ?=
 
 SHELL = /bin/bash
 .SHELLFLAGS = -euo pipefail -c
@@ -55,7 +61,7 @@ ifdef FUZZER
 B = build-fuzzer
 sanitize = -fsanitize=address,undefined,fuzzer-no-link -fno-sanitize-recover=all -fno-omit-frame-pointer $(null_plus_0)
 endif
-is_clang = $(filter clang%,$(notdir $(lastword $(CC))))
+is_clang := $(findstring clang,$(shell $(CC) --version 2>/dev/null))
 
 ifdef V
 quiet =
@@ -67,15 +73,14 @@ endif
 
 # -iquote, not -I: <netcdf.h> is the library's header and "output/netcdf.h" is ours. _XOPEN_SOURCE=700 is POSIX 2008 with M_PI.
 # The results must not depend on the machine: nothing that reorders sums or fuses operations belongs here.
-shoal_cppflags = -D_XOPEN_SOURCE=700 -iquote src -iquote include -isystem /usr/include/suitesparse $(CPPFLAGS)
+shoal_cppflags = -D_XOPEN_SOURCE=700 -iquote src -iquote include $(file <$(B)/cppflags) $(CPPFLAGS)
 # One set of objects serves the program and the shared library, which shares what include/shoal.h makes visible.
 shoal_cflags   = -std=c11 -ffp-contract=off -fno-math-errno -fopenmp -fPIC -fvisibility=hidden \
-                 -Wall -Wextra -Wconversion -Wshadow -Werror $(warnings) $(sanitize) $(CFLAGS)
+                 -Wall -Wextra -Wconversion -Wshadow $(if $(WERROR),-Werror) $(warnings) $(sanitize) $(CFLAGS)
 # clang warns of fields left out of an initialiser with a name too, gcc does not
 warnings = $(if $(is_clang),-Wno-missing-field-initializers)
-libraries      = -lsundials_ida -lsundials_kinsol -lsundials_arkode -lsundials_sunlinsolklu \
-                 -lsundials_sunmatrixsparse -lsundials_nvecserial -lklu -lamd -lcolamd -lbtf -lsuitesparseconfig \
-                 -llapacke -llapack -lblas -lnetcdf -lyaml -lz -lm
+# what scripts/find-libraries.sh has found
+libraries      = $(file <$(B)/libraries) -lm
 
 # OpenMP as a part of the program, where the compiler has it so: src/app/main_threads.h. That of clang is another one.
 static_gomp = $(if $(is_clang),,$(wildcard $(shell $(CC) -print-file-name=libgomp.a)))
@@ -170,12 +175,14 @@ clean:  ## remove everything that was built
 
 help:  ## this list
 	@awk -F '  +## ' '/^## / { print "\n" substr($$0, 4) } \
-	    /^[a-z-]+:.*  ## / { sub(/:.*/, "", $$1); printf "  make %-10s %s\n", $$1, $$2 }' Makefile
+	    /^[a-z_.-]+:.*  ## / { sub(/:.*/, "", $$1); printf "  make %-10s %s\n", $$1, $$2 }' Makefile
 	@printf '\nVariables\n'; sed -n 's/^#   \([A-Z]\)/  \1/p' Makefile
 
 ## For developers
 
-style: all $(generated_docs)  ## check format, layers, names and the generated documents
+style: WERROR = 1
+style: all $(generated_docs)  ## check warnings, format, layers, names and the generated documents
+	@! cat $(wildcard $(B)/*/*.warnings $(B)/tests/*/*.warnings) | grep .
 	@clang-format --dry-run -Werror $(c_files)
 	@scripts/check-layers.sh $(B)
 	@scripts/check-names.sh $(B)
@@ -190,6 +197,11 @@ mutants: deps  ## see that the tests notice errors: 50 small ones are built in, 
 
 format:  ## lay out all C files as `make style` wants them
 	$(quiet)clang-format -i $(c_files)
+
+compile_commands.json: $(B)/libraries Makefile  ## tell editors how each file is compiled
+	@for file in $(filter %.c,$(c_files)); do \
+	    echo "$$file" $(call quoted,$(CC) $(shoal_cppflags) $(version_cppflags) -iquote tests $(shoal_cflags) -c); \
+	done | sed 's/["\\]/\\&/g; s|\([^ ]*\) \(.*\)|{"directory": "$(CURDIR)", "file": "\1", "command": "\2 \1"}|; 1s/^/[/; $$!s/$$/,/; $$s/$$/]/' >$@
 
 docs: $(generated_docs)  ## write cases.md, output.md and case.schema.json in doc from the tables of the program
 	$(quiet)cp $^ doc/
@@ -259,14 +271,31 @@ $(shared): $(library_objects) src/run/shoal.map
 	$(quiet)$(CC) $(shoal_cflags) $(LDFLAGS) -shared -Wl,-soname,$(soname) -Wl,--version-script=src/run/shoal.map \
 	    $(complete) -o $@ $(library_objects) $(libraries)
 
-$(B)/%.o: src/%.c Makefile | $(folders)
-	$(say) CC $<
-	$(quiet)$(CC) $(shoal_cppflags) $(shoal_cflags) -MMD -MP -c -o $@ $<
+# again when the compiler or one of these variables is another one
+library_variables = CC CPPFLAGS LDFLAGS PKG_CONFIG_PATH CONDA_PREFIX $(addsuffix _DIR,SUNDIALS SUITESPARSE NETCDF LAPACKE YAML ZLIB)
+configuration = $(foreach variable,$(library_variables),$(variable)='$(filter-out ccache,$($(variable)))')
+$(B)/configuration: FORCE | $(folders)
+	@echo "$(configuration)" | cmp -s - $@ || echo "$(configuration)" >$@
 
-$(B)/base/version.o: shoal_cppflags += -DSHOAL_VERSION='"$(VERSION)"' -DSHOAL_COMMIT='"$(commit)"'
+$(B)/libraries: $(B)/configuration scripts/find-libraries.sh
+	$(say) FIND '$(B)/libraries'
+	$(quiet)$(configuration) scripts/find-libraries.sh $(B) $(CC)
+
+quoted = '$(subst ','\'',$(1))'
+
+# warnings are kept for `make style`
+compile = $(CC) $(shoal_cppflags) $(shoal_cflags) -MMD -MP -c -o $@ $< 2> >(tee $(@:.o=.warnings) >&2)
+
+$(B)/%.o: src/%.c Makefile $(B)/libraries | $(folders)
+	$(say) CC $<
+	$(quiet)$(compile)
+
+version_cppflags = -DSHOAL_VERSION='"$(VERSION)"' -DSHOAL_COMMIT='"$(commit)"'
+$(B)/base/version.o: shoal_cppflags += $(version_cppflags)
 $(B)/base/version.o: $(B)/commit
 
 $(B)/output/page.o: src/output/page.html
+$(B)/output/page.o: shoal_cflags += -Wa,-I$(abspath src/output)
 
 # with the sanitizers of clang this one, of long sums, takes minutes; the targets of `make fuzz` do not come here
 ifdef FUZZER
@@ -279,9 +308,9 @@ endif
 $(B)/commit: FORCE | $(folders)
 	@echo '$(commit)' | cmp -s - $@ || echo '$(commit)' >$@
 
-$(B)/fuzz/%.o: tests/fuzz/%.c Makefile | $(folders)
+$(B)/fuzz/%.o: tests/fuzz/%.c Makefile $(B)/libraries | $(folders)
 	$(say) CC $<
-	$(quiet)$(CC) $(shoal_cppflags) $(shoal_cflags) -MMD -MP -c -o $@ $<
+	$(quiet)$(compile)
 
 $(B)/fuzz/%: $(B)/fuzz/%.o $(if $(FUZZER),,$(B)/fuzz/driver.o) $(objects)
 	$(say) LD $@
@@ -293,25 +322,26 @@ $(B)/faults.so: tests/faults/shim.c
 $(B)/memory.so: tests/faults/memory.c
 $(faults): Makefile | $(folders)
 	$(say) LD $@
-	$(quiet)$(CC) -std=c11 -Wall -Wextra -Wconversion -Wshadow -Werror -O2 -shared -fPIC -o $@ $(filter %.c,$^)
+	$(quiet)$(CC) -std=c11 -Wall -Wextra -Wconversion -Wshadow $(if $(WERROR),-Werror) -O2 -shared -fPIC -o $@ $(filter %.c,$^)
 
 tests: all $(faults) $(fuzz_programs) $(c_tests) $(verify_program) $(bench_programs)
 
-$(B)/verify/%.o: tests/verify/%.c Makefile | $(folders)
+$(B)/verify/%.o: tests/verify/%.c Makefile $(B)/libraries | $(folders)
 	$(say) CC $<
-	$(quiet)$(CC) $(shoal_cppflags) $(shoal_cflags) -MMD -MP -c -o $@ $<
+	$(quiet)$(compile)
 
 $(verify_program): $(verify_objects) $(objects)
 	$(say) LD $@
 	$(quiet)$(CC) $(shoal_cflags) $(LDFLAGS) -o $@ $^ $(libraries)
 
-$(B)/bench/%.o: tests/bench/%.c Makefile | $(folders)
+$(B)/bench/%.o: tests/bench/%.c Makefile $(B)/libraries | $(folders)
 	$(say) CC $<
-	$(quiet)$(CC) $(shoal_cppflags) $(shoal_cflags) -MMD -MP -c -o $@ $<
+	$(quiet)$(compile)
 
-$(B)/tests/%.o: tests/%.c Makefile | $(folders)
+$(B)/tests/%.o: shoal_cppflags += -iquote tests
+$(B)/tests/%.o: tests/%.c Makefile $(B)/libraries | $(folders)
 	$(say) CC $<
-	$(quiet)$(CC) $(shoal_cppflags) -iquote tests $(shoal_cflags) -MMD -MP -c -o $@ $<
+	$(quiet)$(compile)
 
 # A program that defines __wrap_calloc receives every calloc of the library, and finds the true one as __real_calloc.
 wrapped = $$(nm $(filter %.o,$^) | sed -n 's/.* T __wrap_\(.*\)/-Wl,--wrap=\1/p')

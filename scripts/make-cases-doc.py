@@ -110,15 +110,17 @@ sweep:
 ```
 
 The members are numbered from 0, the last axis fastest. With `keys` several keys change together. An axis whose first
-key is a resolution (`time.shedding_interval`, `solver.rtol`, `solver.step`, `nodes`, `sheet_points`) may have
-`refine: true`: the study then prints observed orders of convergence. Such an axis can also have
+key is numerical (`nodes`, `sheet_points`, `time.shedding_interval`, `solver.rtol`, `solver.step`, `wake.tolerance`,
+`wake.merge`, `wake.lifetime`), or a length of the model (`wake.smoothing`, `wake.sheet_smoothing`, `wake.taper`), may
+have `refine: true`: the study then prints observed orders of convergence, and the error of the finest level
+([studies.md](studies.md)). Such an axis can also have
 
 | key | meaning |
 |---|---|
-| `expect: {order: 2, within: 0.2, of: [nose, speed]}` | the study ends with exit code 3 if an order is not within these bounds; without `of`, the orders of nose and tail are checked |
+| `expect: {order: 2, within: 0.2, of: [nose, speed]}` | the study ends with exit code 3 if an order is not within these bounds; without `of`, the orders of nose and tail are checked, or of `steady_speed` |
 | `reference: {speed: 1.014, nose: [-1.6, 0.01]}` | errors and orders of these quantities refer to these values instead of the finest level: those of an exact solution, or of much finer levels. In a school a value may be a list with one for each fish |
 
-Orders are those of ORDERS. `shoal study` runs a sweep; `shoal run` refuses one.
+Orders are those of ORDERS; the `steady_` ones where members are steady states. `shoal study` runs a sweep; `shoal run` refuses one.
 
 #One axis may have `steady: true`: every member is then a steady state, looked for from that of the value before
 ([steady.md](steady.md)).

@@ -125,7 +125,10 @@ def output_page(page, variables):
     for variable in variables:
         if variable["file"] != file:
             file = variable["file"]
-            lines += [f".SH VARIABLES OF A {file.upper()}"]
+            lines += [".SH WARNINGS" if file == "warning" else f".SH VARIABLES OF A {file.upper()}"]
+        if file == "warning":
+            lines += [".TP", bold(variable["name"]), text(variable["meaning"] + ".")]
+            continue
         unit = f" [{variable['unit']}]" if variable["unit"] else ""
         dimensions = f"({', '.join(variable['dimensions'])})"
         lines += [".TP", f"{bold(variable['name'])} {text(dimensions + unit)}", text(variable["meaning"] + ".")]

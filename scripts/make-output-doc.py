@@ -2,12 +2,13 @@
 """Write doc/output.md: reads what `shoal keys --output --json` prints on stdin, writes markdown on stdout."""
 
 import json
+import re
 import sys
 
 INTRODUCTION = """\
 # The result file
 
-<!-- Written by `make docs` from the table in src/output/result_table.c and the words in scripts/make-output-doc.py. -->
+<!-- Written by `make docs` from the tables in src/output/result_table.c and src/model/warnings.c and the words in scripts/make-output-doc.py. -->
 
 `shoal run CASE` writes one NetCDF file, in the classic format with 64-bit sizes (CDF-5): every NetCDF library since
 4.4 reads it, and a run that is killed or fills the disk loses none of the rows written before. The file contains all
@@ -84,16 +85,7 @@ The attribute `warnings` is written at the end: one line for each thing that is 
 integration succeeded, about the fish for which it is worst. They are printed at the end of a run, by `shoal info` and by
 `shoal gather`; with `--strict` they end with exit code 3.
 
-| warning | when |
-|---|---|
-| bodies touch or cross | at any step of the integrator, or between two; `closest_approach` says who came closest, and when |
-| bodies come near | nearer than `contact.range`, without `contact.action: repel` |
-| the energy balance is open | `energy_audit` is more than 1 % of the largest of the works of muscle, fluid, damping, and all forces |
-| the speed changes | `drift` is more than 1 %: means over the last beat are not those of steady swimming |
-| few events | fewer than 20 in a beat |
-| few sheet points | `shedding: sheet` where n_sheet - 1 < 0.9 x 3.2/sqrt(U Dt/L), once the speed changes by less than 10 % a beat |
-| slow modes | the slowest bending mode of a body in its fluid is slower than its beat |
-| separation at the nose | `separation_share` is above 0.1: the limit of the suction acts for more than 10 % of the last period, once the speed changes by less than 10 % a beat |
+@WARNINGS@
 
 A file whose end is missing, for instance because it was cut while it was copied, is refused by every command and script;
 a study runs such a member again.
@@ -146,8 +138,8 @@ refined. Every variable over (time), (time, fish) or (time, fish, xy) of a resul
 these. It also has the variables below; a member without rows has NaN.
 
 With a refined axis, each of the last six kinds has one variable for each of the quantities Q: `nose`, `tail`, `com`,
-`speed`, `mean_heading`, `shed_circulation`, `cost_of_transport`, `mean_actuation_power`; the order of the nose is
-`order_nose`. A group is a set of members that differ in the refined key only.
+`speed`, `mean_heading`, `shed_circulation`, `cost_of_transport`, `mean_actuation_power`; where members are steady
+states, `steady_speed` and what else [cases.md](cases.md) lists. The order of the nose is `order_nose`. A group is a set of members that differ in the refined key only.
 
 `shoal compare -o FILE` writes the same file: its one axis sets `solver.method`, `solver.order`, `solver.rtol` and
 `solver.step`. Member 0 is the reference, member 1 shows how good that is, and of the others those with equal values are
@@ -188,9 +180,22 @@ def table(variables):
         yield "| " + " | ".join([f"`{variable['name']}`", ", ".join(variable["dimensions"]), *cells]) + " |"
 
 
+def warnings(rows):
+    """The rows of the table of warnings: words of cases and of files as code."""
+    yield "| warning | when |"
+    yield "|---|---|"
+    for row in rows:
+        yield f"| {row['name']} | {code(row['meaning'])} |"
+
+
+def code(text):
+    """What stands in quotes, and what is a name with a dot or a low line in it, as code."""
+    return re.sub(r"'([^']+)'|\b([a-z]+[_.][a-z_]+)\b", lambda match: f"`{match[1] or match[2]}`", text)
+
+
 def main():
     variables = json.load(sys.stdin)
-    print(INTRODUCTION)
+    print(INTRODUCTION.replace("@WARNINGS@", "\n".join(warnings(v for v in variables if v["file"] == "warning"))))
     print("## Variables")
     for title, _ in SECTIONS:
         print(f"\n### {title}\n")

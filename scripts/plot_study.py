@@ -125,7 +125,7 @@ def plot_convergence(study, refined, figure):
     names = list(study["fish_name"])
     all_axes = figure.subplots(1, len(names), squeeze=False, sharey=True)[0]
     quantities = ["nose", "tail", "com", "shed_circulation"]
-    errors = {name: study[f"error_{name}"] for name in quantities}
+    errors = {name: study[f"difference_{name}"] for name in quantities}
     known = np.concatenate([e[np.isfinite(e) & (e > 0)] for e in errors.values()])
     if known.size == 0:
         raise FileError(f"{study.path}: no errors to draw: all levels are equal, or too few are complete")
@@ -139,7 +139,7 @@ def plot_convergence(study, refined, figure):
                 words = [study.label(name), case_of(study, member, refined)]
                 axes.loglog(drawn, errors[name][g, f, is_known], label=", ".join(filter(None, words)), **style(i))
                 if not is_known.all():
-                    draw_floor(axes, study[f"index_{name}"][g, f], style(i))
+                    draw_floor(axes, study[f"error_{name}"][g, f], style(i))
                 i += 1
         slope_triangles(axes, drawn, known.min(), sign)
         axes.set_xlabel(study.label(refined.name))

@@ -11,6 +11,7 @@
 #include "case/case_schema.h"
 #include "case/case_show.h"
 #include "case/sweep_members.h"
+#include "model/warnings.h"
 #include "output/checkpoint.h"
 #include "output/field_file.h"
 #include "output/result_info.h"
@@ -22,13 +23,21 @@
 #include "study/study_file.h"
 #include "study/study_gather.h"
 
-/* The kinds of files. */
+/* Row i of the list of warnings about a result. */
+static int list_warning(int i, struct result_listed *listed) {
+    if (i >= N_WARNINGS) return 0;
+    *listed = (struct result_listed){warnings_words[i].subject, "", "", warnings_words[i].cause, ""};
+    return 1;
+}
+
+/* The kinds of files, and the list of warnings. */
 static const struct result_kind kinds[] = {
     {"run", "shoal_schema", RESULT_SCHEMA, "case_effective", result_info, result_table_listed},
     {"study", "shoal_study", STUDY_FILE_SCHEMA, "study_case", study_info, study_file_listed},
     {"field", "shoal_field", FIELD_FILE_SCHEMA, "case_effective", field_file_info, field_file_listed},
+    {.name = "warning", .listed = list_warning},
 };
-enum { N_KINDS = sizeof kinds / sizeof *kinds };
+enum { N_LISTS = sizeof kinds / sizeof *kinds, N_KINDS = N_LISTS - 1 };
 
 void main_print_notes(const struct request *request, const struct case_values *values) {
     if (!request->quiet && *values->notes) fprintf(stderr, "%s\n", values->notes);
@@ -132,7 +141,7 @@ enum status main_show(const struct request *request) {
 
 enum status main_keys(const struct request *request) {
     if (request->of_output) {
-        result_kind_variables(N_KINDS, kinds, request->json, stdout);
+        result_kind_variables(N_LISTS, kinds, request->json, stdout);
     } else if (request->schema) {
         case_schema(stdout);
     } else {

@@ -13,6 +13,9 @@
 
 static const double max_events = 1e9, max_vortices = 1e7 /* of one fish */;
 
+/* A place keeps digits below 1e-9 lengths, and a phase those below 1e-6 of a cycle. */
+static const double max_lengths = 1e6, max_cycles = 1e9;
+
 /* The case that is checked, and the list that errors are added to. fish: the one being checked. */
 struct check {
     const struct case_values *values;
@@ -181,8 +184,27 @@ static void check_shedding(const struct check *check) {
     }
 }
 
+/* Complain about an oscillation of which a double does not keep the phase until the end. */
+static void check_cycles(const struct check *check, const char *path, double frequency) {
+    const double cycles = frequency * check->values->time.end;
+    if (cycles > max_cycles) {
+        complain(check, path, "%g cycles until time.end; the maximum is %g: rounding destroys the phase of more",
+                 cycles, max_cycles);
+    }
+}
+
+/* Complain about a place of which a double does not keep the parts of a body. */
+static void check_place(const struct check *check, const char *path, double place, double length) {
+    if (fabs(place) > max_lengths * length) {
+        complain(check, path,
+                 "%g m is %g body lengths; the maximum is %g: rounding destroys the shape of a body farther out", place,
+                 fabs(place) / length, max_lengths);
+    }
+}
+
 static void check_gust(const struct check *check) {
     const struct fluid_parameters *const fluid = &check->values->school.fluid;
+    check_cycles(check, "fluid.gust.frequency", fluid->gust_frequency);
     if (fabs(fluid->gust_amplitude) > 0 && fluid->gust_frequency == 0) {
         complain(check, "fluid.gust.amplitude", "has no effect while fluid.gust.frequency is 0");
     }
@@ -193,6 +215,9 @@ static void check_walls(const struct check *check) {
     const struct fluid_parameters *const fluid = &check->values->school.fluid;
     const struct number_list *const walls = &fluid->walls;
     if (walls->n == 0) return;
+    double length = 0;
+    for (int f = 0; f < check->values->school.n_fish; f++) length = fmax(length, check->values->school.fish[f].length);
+    for (int i = 0; i < walls->n; i++) check_place(check, "fluid.walls", walls->value[i], length);
     if (walls->n > 2) {
         complain(check, "fluid.walls", "expects the y of one wall, or of two; got %d numbers", walls->n);
     } else if (walls->n == 2 && walls->value[0] >= walls->value[1]) {
@@ -454,6 +479,14 @@ static void check_control(const struct check *check) {
     }
 }
 
+static void check_digits(const struct check *check) {
+    const struct fish_parameters *const fish = &check->values->school.fish[check->fish];
+    for (int i = 0; i < 2; i++) check_place(check, "fish.start.position", fish->start_position[i], fish->length);
+    check_place(check, "fish.motion.heave", fish->motion.heave, fish->length);
+    check_cycles(check, "fish.wave.frequency", fish->wave.frequency);
+    check_cycles(check, "fish.motion.frequency", fish->motion.frequency);
+}
+
 static void check_name(const struct check *check) {
     const struct fish_parameters *const fish = check->values->school.fish;
     for (int i = 0; i < check->fish; i++) {
@@ -478,6 +511,7 @@ void case_check(const struct case_values *values, const struct case_tree *tree, 
     for (check.fish = 0; check.fish < values->school.n_fish; check.fish++) {
         const struct fish_parameters *const fish = &values->school.fish[check.fish];
         check_name(&check);
+        check_digits(&check);
         check_verlet(&check);
         check_edge_list(&check, "fish.body.h", &fish->body.h);
         check_edge_list(&check, "fish.body.w", &fish->body.w);

@@ -75,9 +75,12 @@ static void print_type(FILE *stream, const struct key *key) {
         case HEADING:
             fputs("\"anyOf\": [{", stream);
             print_number(stream, key, "number");
-            fputs("}, {\"type\": \"array\", \"items\": {", stream);
-            print_list(stream, key, 2);
-            fputs("}}]", stream);
+            // the bounds are those of the angle, not of the time
+            fputs("}, {\"type\": \"array\", \"items\": {\"type\": \"array\", \"minItems\": 2, \"maxItems\": 2, ",
+                  stream);
+            fputs("\"items\": [{\"type\": \"number\"}, {", stream);
+            print_number(stream, key, "number");
+            fputs("}]}}]", stream);
             break;
         case FILES: fputs(files, stream); break;
         case DEFAULTS: fputs(defaults, stream); break;

@@ -94,7 +94,7 @@ static void show_group(struct text *text, const struct sweep_axis *axis, int val
 }
 
 /* Add "[nose, tail]". */
-static void show_quantities(struct text *text, unsigned all) {
+static void show_quantities(struct text *text, uint64_t all) {
     const char *before = "[";
     for (int q = 0; q < SWEEP_N_QUANTITIES; q++) {
         if (!(all >> q & 1)) continue;
@@ -134,6 +134,7 @@ static void show_axis(struct text *text, const struct case_values *values, int a
         show_group(text, axis, i);
     }
     text_add(text, "]\n");
+    if (axis->steady) text_add(text, "    steady: true\n");
     if (!axis->refine) return;
     text_add(text, "    refine: true\n");
     if (axis->reference) show_reference(text, values, a);

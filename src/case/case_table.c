@@ -18,6 +18,8 @@
     { min, max, false, true }
 #define BETWEEN(min, max) \
     { min, max, true, true }
+// an angle keeps digits below 1e-9 degrees, and a wave those of its phase
+#define ANGLE FROM_TO(-1e6, 1e6)
 #define WORDS(...)          \
     (const char *const[]) { \
         __VA_ARGS__, NULL   \
@@ -228,10 +230,10 @@ const struct key case_table[] = {
      .meaning = "coefficient of q in the envelope of the wave", .synonyms = "c1"},
     {"fish.wave.quadratic", REAL, IN_FISH(wave.quadratic), "0.2", ANY, "",
      .meaning = "coefficient of q^2 in the envelope of the wave", .synonyms = "c2"},
-    {"fish.wave.number", REAL, IN_FISH(wave.number), "-6", ANY, "rad",
+    {"fish.wave.number", REAL, IN_FISH(wave.number), "-6", ANGLE, "rad",
      .meaning = "wavenumber: phase difference over one body length; negative: the wave travels from head to tail",
      .synonyms = "beta wavenumber wave_number k"},
-    {"fish.wave.wavelength", REAL, IN_FISH(wave.wavelength), NULL, ABOVE(0), "",
+    {"fish.wave.wavelength", REAL, IN_FISH(wave.wavelength), NULL, FROM(1e-5), "",
      .meaning = "length of the wave in body lengths, from head to tail: another way to say number, -2 pi/wavelength",
      .derived = "that of wave.number", .synonyms = "lambda"},
     {"fish.wave.table", ROWS, IN_FISH(wave.table), "[]", ANY, "",
@@ -240,7 +242,7 @@ const struct key case_table[] = {
      .synonyms = "curvature profile"},
     {"fish.wave.frequency", REAL, IN_FISH(wave.frequency), "1", FROM(0), "Hz", .meaning = "beat frequency",
      .synonyms = "omega freq f beat period"},
-    {"fish.wave.phase", REAL, IN_FISH(wave.phase), "0", ANY, "degree", .meaning = "phase at time 0"},
+    {"fish.wave.phase", REAL, IN_FISH(wave.phase), "0", ANGLE, "degree", .meaning = "phase at time 0"},
     {"fish.wave.ramp", REAL, IN_FISH(wave.ramp), NULL, FROM(0), "s",
      .meaning = "time over which the amplitude is ramped up",
      .derived = "one period, 1/frequency (0 when the frequency is 0)", .published = "0"},
@@ -280,7 +282,7 @@ const struct key case_table[] = {
 
     {"fish.start.position", PAIR, IN_FISH(start_position), "[0, 0]", ANY, "m",
      .meaning = "position of the nose at time 0", .synonyms = "x0 nose"},
-    {"fish.start.heading", REAL, IN_FISH(start_heading), "180", ANY, "degree",
+    {"fish.start.heading", REAL, IN_FISH(start_heading), "180", ANGLE, "degree",
      .meaning = "heading at time 0, counter-clockwise from the x axis", .synonyms = "angle direction"},
     {"fish.start.speed", REAL, IN_FISH(start_speed), "0", ANY, "m s-1",
      .meaning = "speed of every node along the heading at time 0", .synonyms = "velocity u0 v0", .published = "1"},
@@ -302,13 +304,13 @@ const struct key case_table[] = {
     {"fish.motion.heave", REAL, IN_FISH(motion.heave), "0", ANY, "m",
      .meaning = "amplitude of heave, the displacement to the left heave sin(2 pi frequency t + phase)",
      .synonyms = "plunge"},
-    {"fish.motion.pitch", REAL, IN_FISH(motion.pitch), "0", ANY, "degree",
+    {"fish.motion.pitch", REAL, IN_FISH(motion.pitch), "0", ANGLE, "degree",
      .meaning = "amplitude of pitch, the rotation pitch sin(2 pi frequency t + pitch_phase + phase)"},
-    {"fish.motion.pitch_phase", REAL, IN_FISH(motion.pitch_phase), "0", ANY, "degree",
+    {"fish.motion.pitch_phase", REAL, IN_FISH(motion.pitch_phase), "0", ANGLE, "degree",
      .meaning = "phase by which pitch leads heave"},
     {"fish.motion.frequency", REAL, IN_FISH(motion.frequency), "0", FROM(0), "Hz",
      .meaning = "frequency of heave and pitch"},
-    {"fish.motion.phase", REAL, IN_FISH(motion.phase), "0", ANY, "degree",
+    {"fish.motion.phase", REAL, IN_FISH(motion.phase), "0", ANGLE, "degree",
      .meaning = "phase of heave and pitch at time 0"},
     {"fish.motion.pivot", REAL, IN_FISH(motion.pivot), "0", FROM_TO(0, 1), "",
      .meaning = "pitch axis, in body lengths from the nose"},
@@ -320,7 +322,7 @@ const struct key case_table[] = {
      .derived = "course where there are waypoints, else none"},
     {"fish.control.bias", REAL, IN_FISH(control.bias), "0", ANY, "",
      .meaning = "law none: the steering bias; positive turns right", .synonyms = "phi0 offset"},
-    {"fish.control.desired_heading", HEADING, IN_FISH(control.desired_heading), NULL, ANY, "degree",
+    {"fish.control.desired_heading", HEADING, IN_FISH(control.desired_heading), NULL, ANGLE, "degree",
      .meaning = "desired heading: a number, or a list of [time in s, angle], linear between the times",
      .derived = "start.heading", .synonyms = "target h_des target_heading"},
     {"fish.control.waypoints", PAIRS, IN_FISH(control.waypoints), "[]", ANY, "m",

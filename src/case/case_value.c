@@ -50,7 +50,7 @@ void case_value_free(const struct key *key, void *field) {
 static void report_range(const struct context *context, const struct yaml_node *node) {
     struct text range = {0};
     case_table_range(context->key, &range);
-    const char *const unit = context->unit;
+    const char *const unit = context->key->unit;
     yaml_errors_add(context->errors, node->mark, "%s: must be %s%s%s, got %.40s", context->path,
                     range.text ? range.text : "in range", *unit ? " " : "", unit, node->text);
     if (range.failed) context->errors->out_of_memory = true;
@@ -62,8 +62,8 @@ static bool is_in(const struct bounds *bounds, double value) {
     return bounds->is_max_open ? value < bounds->max : value <= bounds->max;
 }
 
-/* Read one number in the range of the key. what: "a number", "two numbers [x, y]": the form that messages name. */
-static bool read_number(const struct context *context, const struct yaml_node *node, const char *what, double *value) {
+/* Read one number. what: "a number", "two numbers [x, y]": the form that messages name. */
+static bool read_any(const struct context *context, const struct yaml_node *node, const char *what, double *value) {
     char shown[64];
     const char *const unit = context->unit;
     double number;
@@ -76,6 +76,14 @@ static bool read_number(const struct context *context, const struct yaml_node *n
         yaml_errors_add(context->errors, node->mark, "%s: %.40s is too large a number", context->path, node->text);
         return false;
     }
+    *value = number;
+    return true;
+}
+
+/* The same in the range of the key. */
+static bool read_number(const struct context *context, const struct yaml_node *node, const char *what, double *value) {
+    double number;
+    if (!read_any(context, node, what, &number)) return false;
     if (!is_in(&context->key->bounds, number)) {
         report_range(context, node);
         return false;
@@ -158,7 +166,9 @@ static bool read_pair(const struct context *context, const struct yaml_node *nod
         return false;
     }
     double pair[2];
-    if (!read_number(context, node->entry[0].value, what, &pair[0])) return false;
+    // the range of desired headings is that of the angles, not of the times
+    const bool has_time = context->key->type == HEADING;
+    if (!(has_time ? read_any : read_number)(context, node->entry[0].value, what, &pair[0])) return false;
     if (!read_number(context, node->entry[1].value, what, &pair[1])) return false;
     value[0] = pair[0];
     value[1] = pair[1];

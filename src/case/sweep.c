@@ -89,6 +89,7 @@ static enum status read_key(const struct case_values *values, struct axis *axis,
     axis->key[axis->n_keys++] = key;
     axis->into->n_keys++;
     if (!key) return STATUS_OK;
+    swept->row = key->path;
     swept->unit = key->unit;
     swept->is_number = key->type == REAL || key->type == INTEGER;
     swept->path = strdup(node->text);
@@ -225,6 +226,7 @@ enum status sweep_read(struct case_values *values, const struct yaml_node *root,
     if (n_members > max_members) {
         yaml_errors_add(errors, list->mark, "sweep: %.0f members or more; the maximum is %.0f", n_members, max_members);
     }
+    if (errors->n == n_before) sweep_refine_check(values, list, errors);
     // axes with values that are missing, or too many of them, must not be counted through
     if (errors->n > n_before) sweep_free(values);
     return STATUS_OK;

@@ -2,6 +2,8 @@
 #ifndef SWEEP_EXPECT_H
 #define SWEEP_EXPECT_H
 
+#include <stdint.h>
+
 #include "base/status.h"
 #include "case/case_values.h"
 #include "case/yaml_tree.h"
@@ -15,7 +17,7 @@ struct sweep_condition {
 /* An expectation of the ends of members: of all, or of those that have the values of where. */
 struct sweep_expectation {
     char *fails; /* they fail with these words in their messages, and nothing else is expected; NULL: they do not */
-    unsigned of; /* bit q: of quantity q */
+    uint64_t of; /* bit q: of quantity q */
     int fish;    /* -1: of all */
     int n_where;
     struct sweep_condition *where; /* one of each key must hold                (n_where) */

@@ -3,6 +3,8 @@
 #ifndef SWEEP_MEMBERS_H
 #define SWEEP_MEMBERS_H
 
+#include <stdint.h>
+
 #include "base/status.h"
 #include "base/text.h"
 #include "case/case_values.h"
@@ -10,6 +12,7 @@
 /* A key that an axis of a sweep changes. */
 struct sweep_key {
     char *path;       /* as --set takes it */
+    const char *row;  /* path of its row in the table of keys: fish.nodes */
     const char *unit; /* of the table of keys */
     int is_number;    /* each value is one number */
 };
@@ -23,7 +26,7 @@ struct sweep_axis {
     int refine;           /* the values are resolutions of the first key: a study of convergence */
     int steady;           /* every member is a steady state, looked for from that of the value before */
     double order, within; /* the expected order of convergence: order +- within; NaN: none */
-    unsigned order_of;    /* bit q: of quantity q */
+    uint64_t order_of;    /* bit q: of quantity q */
     double *reference;    /* see sweep_reference; NULL: none */
 };
 

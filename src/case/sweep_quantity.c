@@ -7,32 +7,40 @@
 #include "base/text.h"
 
 const struct sweep_quantity sweep_quantities[SWEEP_N_QUANTITIES] = {
-    {"nose", 1, 1, "m", "position of the nose at the end"},
-    {"tail", 1, 1, "m", "position of the tail at the end"},
-    {"com", 1, 1, NULL, NULL},
-    {"speed", 1, 0, NULL, NULL},
-    {"mean_heading", 1, 0, "degree", "mean of the heading over the last period"},
-    {"shed_circulation", 1, 0, NULL, NULL},
-    {"cost_of_transport", 1, 0, NULL, NULL},
-    {"mean_actuation_power", 1, 0, "W", "mean power of the muscle over the last period"},
-    {"lateral_drift", 1, 0, "m", "displacement of the centre of mass across the first heading, to the left"},
-    {"strouhal", 1, 0, NULL, NULL},
-    {"efficiency", 1, 0, NULL, NULL},
-    {"mean_thrust", 1, 0, NULL, NULL},
-    {"mean_power", 1, 0, NULL, NULL},
-    {"thrust_efficiency", 1, 0, NULL, NULL},
-    {"energy_audit", 1, 0, NULL, NULL},
-    {"steps", 0, 0, NULL, NULL},
-    {"newton_iterations", 0, 0, NULL, NULL},
-    {"residual_evaluations", 0, 0, NULL, NULL},
-    {"jacobian_evaluations", 0, 0, NULL, NULL},
-    {"wall_time", 0, 0, NULL, NULL},
-    {"nose_error", 1, 0, "1", "distance of the nose from that of the reference of a comparison, in body lengths"},
-    {"tail_error", 1, 0, "1", "distance of the tail from that of the reference of a comparison, in body lengths"},
-    {"steady_drag", 1, 0, NULL, NULL},
-    {"steady_lift", 1, 0, NULL, NULL},
-    {"steady_deflection", 1, 0, NULL, NULL},
-    {"steady_stiffness", 0, 0, NULL, NULL},
+    {"nose", 1, 1, "m", "position of the nose at the end", 0},
+    {"tail", 1, 1, "m", "position of the tail at the end", 0},
+    {"com", 1, 1, NULL, NULL, 0},
+    {"speed", 1, 0, NULL, NULL, SWEEP_JUDGE},
+    {"mean_heading", 1, 0, "degree", "mean of the heading over the last period", 0},
+    {"shed_circulation", 1, 0, NULL, NULL, 0},
+    {"cost_of_transport", 1, 0, NULL, NULL, SWEEP_JUDGE},
+    {"mean_actuation_power", 1, 0, "W", "mean power of the muscle over the last period", 0},
+    {"steady_speed", 1, 0, NULL, NULL, SWEEP_OF_STEADY | SWEEP_JUDGE},
+    {"steady_turn", 1, 0, NULL, NULL, SWEEP_OF_STEADY},
+    {"steady_thrust", 1, 0, NULL, NULL, SWEEP_OF_STEADY},
+    {"steady_cost_of_transport", 1, 0, NULL, NULL, SWEEP_OF_STEADY | SWEEP_JUDGE},
+    {"steady_efficiency", 1, 0, NULL, NULL, SWEEP_OF_STEADY},
+    {"steady_strouhal", 1, 0, NULL, NULL, SWEEP_OF_STEADY | SWEEP_JUDGE},
+    {"steady_actuation_power", 1, 0, NULL, NULL, SWEEP_OF_STEADY},
+    {"steady_fluid_power", 1, 0, NULL, NULL, SWEEP_OF_STEADY},
+    {"steady_drag", 1, 0, NULL, NULL, SWEEP_OF_STEADY},
+    {"steady_lift", 1, 0, NULL, NULL, SWEEP_OF_STEADY},
+    {"steady_deflection", 1, 0, NULL, NULL, SWEEP_OF_STEADY},
+    {"strouhal", 1, 0, NULL, NULL, SWEEP_JUDGE},
+    {"lateral_drift", 1, 0, "m", "displacement of the centre of mass across the first heading, to the left", 0},
+    {"efficiency", 1, 0, NULL, NULL, 0},
+    {"mean_thrust", 1, 0, NULL, NULL, 0},
+    {"mean_power", 1, 0, NULL, NULL, 0},
+    {"thrust_efficiency", 1, 0, NULL, NULL, 0},
+    {"energy_audit", 1, 0, NULL, NULL, 0},
+    {"steps", 0, 0, NULL, NULL, 0},
+    {"newton_iterations", 0, 0, NULL, NULL, 0},
+    {"residual_evaluations", 0, 0, NULL, NULL, 0},
+    {"jacobian_evaluations", 0, 0, NULL, NULL, 0},
+    {"wall_time", 0, 0, NULL, NULL, 0},
+    {"nose_error", 1, 0, "1", "distance of the nose from that of the reference of a comparison, in body lengths", 0},
+    {"tail_error", 1, 0, "1", "distance of the tail from that of the reference of a comparison, in body lengths", 0},
+    {"steady_stiffness", 0, 0, NULL, NULL, SWEEP_OF_STEADY},
 };
 
 int sweep_quantity_find(const char *name, int n_known) {
@@ -55,10 +63,10 @@ int sweep_quantity_read(const char *name, struct yaml_mark mark, const char *pat
     return -1;
 }
 
-unsigned sweep_quantities_read(const struct yaml_node *of, const char *path, int n_known, struct yaml_errors *errors) {
+uint64_t sweep_quantities_read(const struct yaml_node *of, const char *path, int n_known, struct yaml_errors *errors) {
     char place[64];
     snprintf(place, sizeof place, "%s.of", path);
-    unsigned all = 0;
+    uint64_t all = 0;
     const int n = of->kind == YAML_LIST ? of->n : 1;
     for (int i = 0; i < n; i++) {
         const struct yaml_node *const name = of->kind == YAML_LIST ? of->entry[i].value : of;
@@ -67,7 +75,7 @@ unsigned sweep_quantities_read(const struct yaml_node *of, const char *path, int
             continue;
         }
         const int q = sweep_quantity_read(name->text, name->mark, place, n_known, errors);
-        if (q >= 0) all |= 1U << q;
+        if (q >= 0) all |= UINT64_C(1) << q;
     }
     if (n == 0) yaml_errors_add(errors, of->mark, "%s: expects the name of a quantity, or a list of names", place);
     return all;

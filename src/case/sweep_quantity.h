@@ -3,19 +3,28 @@
 #ifndef SWEEP_QUANTITY_H
 #define SWEEP_QUANTITY_H
 
+#include <stdint.h>
+
 #include "case/yaml_tree.h"
+
+enum {
+    SWEEP_OF_STEADY = 1, /* of a steady state, or of an equilibrium */
+    SWEEP_JUDGE = 2      /* speed, cost and Strouhal number: the error of any other quantity is judged with them */
+};
 
 struct sweep_quantity {
     const char *name;
     int of_fish, of_xy;         /* one value for every fish; a point in the plane */
     const char *unit, *meaning; /* NULL: those of the variable of a result file that has this name */
+    unsigned traits;
 };
 
 enum {
     SWEEP_NOSE,
     SWEEP_TAIL,
-    SWEEP_N_ORDERS = 8, /* of the first ones orders of convergence are observed */
-    SWEEP_N_QUANTITIES = 26
+    SWEEP_STEADY_SPEED = 8,
+    SWEEP_N_ORDERS = 19, /* of the first ones orders of convergence are observed: of runs or of steady states */
+    SWEEP_N_QUANTITIES = 34
 };
 
 extern const struct sweep_quantity sweep_quantities[SWEEP_N_QUANTITIES];
@@ -28,6 +37,6 @@ int sweep_quantity_read(const char *name, struct yaml_mark mark, const char *pat
                         struct yaml_errors *errors);
 
 /* The same for a name or a list of names under path.of, as a set: bit q is set for quantity q. */
-unsigned sweep_quantities_read(const struct yaml_node *of, const char *path, int n_known, struct yaml_errors *errors);
+uint64_t sweep_quantities_read(const struct yaml_node *of, const char *path, int n_known, struct yaml_errors *errors);
 
 #endif

@@ -12,6 +12,7 @@
 #include <string.h>
 
 #include "base/text.h"
+#include "case/sweep_error.h"
 #include "case/sweep_members.h"
 #include "case/sweep_quantity.h"
 
@@ -25,25 +26,21 @@ struct reading {
     struct yaml_errors *errors;
 };
 
-/* True if the values of a key are resolutions: errors vanish with them, or with their inverse. */
-static bool is_resolution(const struct key *key) {
-    static const char *const paths[] = {"time.shedding_interval", "solver.rtol", "solver.step", "fish.nodes",
-                                        "fish.sheet_points"};
-    for (size_t i = 0; i < sizeof paths / sizeof *paths; i++) {
-        if (strcmp(key->path, paths[i]) == 0) return true;
-    }
-    return false;
-}
-
 /* Complain unless the values of an axis are different resolutions. */
 static void check_refine(const struct reading *axis, const struct key *key, const struct yaml_node *node) {
     const struct sweep_axis *const into = axis->into;
     if (!key) return;
-    if (!is_resolution(key)) {
-        yaml_errors_add(axis->errors, node->mark,
-                        "%s.refine: '%.60s' is not a resolution; these are: time.shedding_interval, solver.rtol, "
-                        "solver.step, fish[*].nodes, fish[*].sheet_points",
-                        axis->name, into->key[0].path);
+    if (!sweep_error_find(key->path)) {
+        struct text known = {0};
+        for (int i = 0; i < SWEEP_N_ERROR_KEYS; i++) {
+            const char *const path = sweep_error_keys[i].path;
+            const int is_of_fish = strncmp(path, "fish.", 5) == 0;
+            text_add(&known, "%s%s%s", i > 0 ? ", " : "", is_of_fish ? "fish[*]" : "", is_of_fish ? path + 4 : path);
+        }
+        yaml_errors_add(axis->errors, node->mark, "%s.refine: '%.60s' is not a resolution; these are: %s", axis->name,
+                        into->key[0].path, known.text ? known.text : "");
+        if (known.failed) axis->errors->out_of_memory = true;
+        text_free(&known);
         return;
     }
     int n_different = 0;
@@ -101,7 +98,6 @@ static void read_expect(const struct reading *axis, const struct yaml_node *expe
     axis->into->order = read_positive(axis, expect, "order");
     axis->into->within = read_positive(axis, expect, "within");
     const struct yaml_node *const of = yaml_tree_find(expect, "of");
-    axis->into->order_of = 1U << SWEEP_NOSE | 1U << SWEEP_TAIL;
     if (of) axis->into->order_of = sweep_quantities_read(of, path, SWEEP_N_ORDERS, axis->errors);
 }
 
@@ -158,6 +154,31 @@ double sweep_reference(const struct case_values *study, int axis, int quantity, 
 }
 
 // ---- all
+
+uint64_t sweep_refine_orders(const struct case_values *study) {
+    uint64_t all = 0;
+    for (int q = 0; q < SWEEP_N_ORDERS; q++) {
+        const int of_steady = (sweep_quantities[q].traits & SWEEP_OF_STEADY) != 0;
+        if (of_steady == sweep_is_steady(study)) all |= UINT64_C(1) << q;
+    }
+    return all;
+}
+
+void sweep_refine_check(struct case_values *values, const struct yaml_node *sweep, struct yaml_errors *errors) {
+    const uint64_t known = sweep_refine_orders(values);
+    const uint64_t standard = UINT64_C(1) << SWEEP_NOSE | UINT64_C(1) << SWEEP_TAIL;
+    for (int a = 0; a < values->n_axes; a++) {
+        struct sweep_axis *const axis = &values->sweep[a];
+        if (axis->order_of == 0 && axis->order > 0) {
+            axis->order_of = sweep_is_steady(values) ? UINT64_C(1) << SWEEP_STEADY_SPEED : standard;
+        }
+        for (int q = 0; q < SWEEP_N_ORDERS; q++) {
+            if (!(axis->order_of & ~known & UINT64_C(1) << q)) continue;
+            yaml_errors_add(errors, sweep->entry[a].value->mark, "sweep[%d].expect.of: %s is a quantity of %s", a,
+                            sweep_quantities[q].name, sweep_is_steady(values) ? "runs" : "steady states");
+        }
+    }
+}
 
 enum status sweep_refine_read(const struct case_values *values, struct sweep_axis *into, const struct key *key,
                               const char *name, const struct yaml_node *node, struct yaml_errors *errors) {

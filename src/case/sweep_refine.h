@@ -13,6 +13,13 @@
 enum status sweep_refine_read(const struct case_values *values, struct sweep_axis *into, const struct key *key,
                               const char *name, const struct yaml_node *node, struct yaml_errors *errors);
 
+/* Of a sweep that has been read: give expected orders without `of` their default, and complain about quantities of runs
+ * where members are steady states, or of steady states where they are not. sweep: the list of axes. */
+void sweep_refine_check(struct case_values *values, const struct yaml_node *sweep, struct yaml_errors *errors);
+
+/* The quantities whose orders a study observes, as a set: bit q is set for quantity q. */
+uint64_t sweep_refine_orders(const struct case_values *study);
+
 /* The reference value of a quantity (one with orders) for errors along a refined axis; NaN if the case has none. xy is
  * 0 where the quantity is not a point. */
 double sweep_reference(const struct case_values *study, int axis, int quantity, int fish, int xy);

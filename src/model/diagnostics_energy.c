@@ -15,6 +15,7 @@
 #include "model/flow_external.h"
 #include "model/fluid_force.h"
 #include "model/rod.h"
+#include "model/self_crossing.h"
 
 // what holds the prescribed nodes on their path, turns a clamped head, and the load at the tip
 static double driving_power(struct residual *residual, int f, double t, const double *y, double *scratch) {
@@ -194,4 +195,6 @@ void diagnostics_restart(struct residual *residual, struct state *state) {
         balance->initial_energy = diagnostics_energy(residual, f, state->t, state->y) - balance->work[WORK_ALL];
     }
     clearance_start(residual->school, state, residual->neighbours, residual->scratch);
+    state->crossed = -1;
+    self_crossing_remember(residual->school, state, residual->scratch);
 }

@@ -29,10 +29,10 @@ double diagnostics_energy(struct residual *residual, int f, double t, const doub
 void diagnostics_step(struct residual *residual, struct state *state, double t, const double *y);
 
 /* Start the energy balances and the record of the closest approach: at the first event, when the state is
- * consistent. */
+ * consistent. The record of bodies that cross themselves has begun with the event. */
 void diagnostics_start(struct residual *residual, struct state *state);
 
-/* Start them again at a later event; the works go on, so that means over a period do not notice. */
+/* Start all of them again at a later event; the works go on, so that means over a period do not notice. */
 void diagnostics_restart(struct residual *residual, struct state *state);
 
 /* At an event at which powers of fish f jump and its state does not, say because its bias takes another rate: the next

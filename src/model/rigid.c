@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include "model/flow_external.h"
+
 struct rigid rigid_of(const struct fish *fish, const double *y) {
     const double *const x[2] = {y + fish->at.x, y + fish->at.y}, *const v[2] = {y + fish->at.vx, y + fish->at.vy};
     struct rigid rigid = {.place = {fish_mass_mean(fish, x[0]), fish_mass_mean(fish, x[1])},
@@ -43,15 +45,21 @@ static void change_velocity(const struct fish *fish, const struct rigid *before,
     }
 }
 
-// the wake of a fish that has always had the new velocity and turn
-static void change_wake(struct wake *wake, double t, const double centre[2], const double velocity[2], double turn) {
+// the wake of a fish that has always had the new velocity and turn; tail: place of the last node
+static void change_wake(struct wake *wake, double t, const double centre[2], const double tail[2],
+                        const double velocity[2], double turn) {
+    const double of_tail[2] = {velocity[0] - turn * (tail[1] - centre[1]), velocity[1] + turn * (tail[0] - centre[0])};
     for (int i = 0; i < wake->n_vortex; i++) {
         const double age = t - wake->birth[i];
         rotate(centre, -turn * age, &wake->x[i], &wake->y[i]);
         wake->x[i] -= age * velocity[0];
         wake->y[i] -= age * velocity[1];
     }
-    for (int i = 0; i < 2; i++) wake->tail_velocity[i] += velocity[i];
+    // the slip is the velocity of the fluid less that of the tail
+    for (int i = 0; i < 2; i++) {
+        wake->tail_velocity[i] += of_tail[i];
+        wake->slip[i] -= of_tail[i];
+    }
     wake->version++;
 }
 
@@ -80,7 +88,7 @@ static void move_wake(struct wake *wake, const double centre[2], double angle, c
     wake->version++;
 }
 
-// what is remembered of the last period goes along, so that means over it have no jump
+// every vector of the samples of the last period turns with the fish, so that means over the period do not jump
 static void move_history(struct history *history, const double centre[2], double angle, const double way[2]) {
     for (int i = 0; i < history->n; i++) {
         struct sample *const sample = &history->sample[i];
@@ -88,6 +96,9 @@ static void move_history(struct history *history, const double centre[2], double
         rotate(centre, angle, &sample->tail[0], &sample->tail[1]);
         rotate(origin, angle, &sample->velocity[0], &sample->velocity[1]);
         rotate(origin, angle, &sample->friction[0], &sample->friction[1]);
+        rotate(origin, angle, &sample->force[0], &sample->force[1]);
+        rotate(origin, angle, &sample->stream[0], &sample->stream[1]);
+        rotate(origin, angle, &sample->drifted[0], &sample->drifted[1]);
         sample->heading += angle;
         for (int j = 0; j < 2; j++) {
             sample->com[j] += way[j];
@@ -96,15 +107,24 @@ static void move_history(struct history *history, const double centre[2], double
     }
 }
 
+// the newest sample, from which the drift of the stream goes on, has the stream at the new place
+static void renew_stream(const struct school *school, double t, struct history *history) {
+    struct sample *const newest = &history->sample[history->last];
+    flow_external(school, t, newest->com[1], &newest->stream[0], &newest->stream[1]);
+}
+
 void rigid_change(const struct school *school, struct state *state, int f, const struct rigid *change) {
     const struct fish *const fish = &school->fish[f];
+    const int last = fish->n_nodes - 1;
+    const double tail[2] = {state->y[fish->at.x + last], state->y[fish->at.y + last]};
     const struct rigid before = rigid_of(fish, state->y);
     const double c = cos(before.heading), s = sin(before.heading);
     const double velocity[2] = {c * change->velocity[0] - s * change->velocity[1],
                                 s * change->velocity[0] + c * change->velocity[1]};
     change_velocity(fish, &before, velocity, change->turn, state->y);
-    change_wake(&state->wake[f], state->t, before.place, velocity, change->turn);
+    change_wake(&state->wake[f], state->t, before.place, tail, velocity, change->turn);
     move_body(fish, before.place, change->heading, change->place, state->y);
     move_wake(&state->wake[f], before.place, change->heading, change->place);
     move_history(&state->history[f], before.place, change->heading, change->place);
+    if (state->history[f].n > 0) renew_stream(school, state->t, &state->history[f]);
 }

@@ -32,6 +32,7 @@ static enum status fill(struct state *state, const struct school *school) {
         return status_fail(STATUS_MEMORY, "out of memory: the state of %d fish", school->n_fish);
     }
     state->closest->distance = INFINITY;
+    state->crossed = -1;
     for (int f = 0; f < school->n_fish; f++) {
         TRY(wake_create(&state->wake[f], 16));
         state->wake[f].has_markers = school->shedding == SHEDDING_SHEET;

@@ -58,6 +58,8 @@ struct state {
     struct history *history;        /* (n_fish) */
     struct energy_balance *balance; /* (n_fish) */
     struct closest *closest;        /* (1) */
+    long crossed;                   /* the first fish whose body has crossed itself at an event, or -1; and */
+    double crossed_t;               /* when, s */
 };
 
 /* The state before the start: bodies placed, everything else zero. Fails with STATUS_MEMORY. */

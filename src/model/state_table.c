@@ -88,6 +88,9 @@ const struct state_row state_table[] = {
     {"closest.fish", OF_CLOSEST(STATE_INTEGER, fish), NULL},
     {"closest.before_t", OF_CLOSEST(STATE_REAL, before_t), NULL},
     {"closest.before", OF_CLOSEST(STATE_REAL, before), of_unknowns},
+
+    {"crossed", OF_STATE(STATE_COUNT, crossed), NULL},
+    {"crossed_t", OF_STATE(STATE_REAL, crossed_t), NULL},
 };
 const int state_table_n = sizeof state_table / sizeof *state_table;
 
@@ -154,7 +157,7 @@ enum status state_table_copy(struct state *to, const struct state *from, const s
 }
 
 enum status state_table_check(const struct state *state, const struct school *school) {
-    int is_good = state->event >= 0;
+    int is_good = state->event >= 0 && state->crossed >= -1 && state->crossed < school->n_fish;
     for (int i = 0; i < 2; i++) is_good &= state->closest->fish[i] >= 0 && state->closest->fish[i] < school->n_fish;
     for (int f = 0; f < school->n_fish; f++) {
         const struct history *const history = &state->history[f];

@@ -33,13 +33,17 @@ static double work_of(const struct subject *subject) {
     return max;
 }
 
-// a whole beat has to pass before there is work to speak of
 static double energy_size(const struct subject *subject) {
-    if (subject->state->t < subject->fish->period) return 0;
     const struct diagnostics_fish *const now = &subject->diagnostics->fish[subject->f];
-    const double audit = fabs(now->energy_audit);
-    const double rounding = 1e-12 * (now->kinetic_energy + now->bending_energy + now->stretching_energy);
-    return audit > rounding ? audit / (0.01 * work_of(subject)) : 0;
+    const double energy = now->kinetic_energy + now->bending_energy + now->stretching_energy;
+    const double audit = fabs(now->energy_audit), rounding = 1e-12 * energy;
+    double work = work_of(subject);
+    // within the first beat there is little work: then the energy of one length per beat counts, and that of the body
+    if (subject->state->t < subject->fish->period) {
+        const double speed = subject->fish->length / subject->fish->period;
+        work = fmax(work, fmax(energy, subject->fish->total_mass * speed * speed));
+    }
+    return audit > rounding ? audit / (0.01 * work) : 0;
 }
 
 static void energy_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
@@ -48,6 +52,58 @@ static void energy_say(const struct subject *subject, const char *who, char line
         "the energy balance of %s is open by %.2g J, of %.2g J of work: a smaller solver.rtol or solver.step has to "
         "close it, else the case asks for more than the model can give",
         who, subject->diagnostics->fish[subject->f].energy_audit, work_of(subject));
+}
+
+// ---- divergence
+
+// the largest speed that the case gives to anything, m s-1: of beats, motions, starts, the external flow, and of loads
+// that nothing resists
+static double case_speed(const struct subject *subject) {
+    const struct school *const school = subject->school;
+    double most = 0;
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *const fish = &school->fish[f];
+        const double beat = 2 * 3.14159265358979323846 * fish->length * fish_rate(school, fish);
+        const double motion = fish->motion.omega * (fabs(fish->motion.heave) + fabs(fish->motion.pitch) * fish->length);
+        const double load = hypot(fish->load_tip[0], fish->load_tip[1]) * subject->state->t / fish->total_mass;
+        const double stream = hypot(school->velocity[0], school->velocity[1]) +
+                              hypot(school->gust[0], school->gust[1]) +
+                              fabs(school->shear * subject->diagnostics->fish[f].com[1]);
+        most = fmax(most, beat + motion + load + stream + fabs(fish->start_speed) + fabs(fish->motion.speed));
+    }
+    return most;
+}
+
+static double largest_speed(const struct subject *subject) {
+    const struct layout *const at = &subject->fish->at;
+    const double *const y = subject->state->y;
+    double most = 0;
+    for (int k = 0; k < subject->fish->n_nodes; k++) most = fmax(most, hypot(y[at->vx + k], y[at->vy + k]));
+    return most;
+}
+
+// shed now, and in the wake: of markers up to their births
+static double largest_circulation(const struct subject *subject) {
+    const struct wake *const wake = &subject->state->wake[subject->f];
+    double most = fabs(subject->state->y[subject->fish->at.circulation]);
+    for (int i = 0; i < wake->n_vortex; i++) most = fmax(most, fabs(wake->circulation[i]));
+    return most;
+}
+
+// a foil has a circulation of 3 lengths times its speed; a tail may go some times faster than the body
+static const double most_of_case = 100;
+
+static double divergence_size(const struct subject *subject) {
+    const double speed = most_of_case * case_speed(subject);
+    return fmax(largest_speed(subject), largest_circulation(subject) / subject->fish->length) / speed;
+}
+
+static void divergence_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
+    snprintf(
+        line, WARNING_BYTES,
+        "%s has diverged: its nodes reach %.2g m/s and its circulation %.2g m2/s, more than %g times what the case "
+        "gives cause for: lower solver.rtol, solver.step or time.shedding_interval, or stiffen the body",
+        who, largest_speed(subject), largest_circulation(subject), most_of_case);
 }
 
 // ---- drift of the speed
@@ -149,9 +205,37 @@ static void edge_say(const struct subject *subject, const char *who, char line[W
 // ---- all of them
 
 static const struct kind kinds[N_WARNINGS] = {
-    [WARNING_ENERGY] = {energy_size, energy_say}, [WARNING_DRIFT] = {drift_size, drift_say},
-    [WARNING_EVENTS] = {events_size, events_say}, [WARNING_SHEET] = {sheet_size, sheet_say},
-    [WARNING_MODES] = {modes_size, modes_say},    [WARNING_EDGE] = {edge_size, edge_say},
+    [WARNING_DIVERGENCE] = {divergence_size, divergence_say},
+    [WARNING_ENERGY] = {energy_size, energy_say},
+    [WARNING_DRIFT] = {drift_size, drift_say},
+    [WARNING_EVENTS] = {events_size, events_say},
+    [WARNING_SHEET] = {sheet_size, sheet_say},
+    [WARNING_MODES] = {modes_size, modes_say},
+    [WARNING_EDGE] = {edge_size, edge_say},
+};
+
+const struct warning_words warnings_words[N_WARNINGS] = {
+    [WARNING_CONTACT] = {"bodies touch, cross or come near",
+                         "at any step of the integrator or between two; near: below contact.range without "
+                         "'contact.action: repel'; closest_approach says who came closest, and when"},
+    [WARNING_CROSSING] = {"a body crosses itself",
+                          "its centre line or its outline, at an event; contact does not act within a body"},
+    [WARNING_DIVERGENCE] = {"a fish has diverged",
+                            "at the end its speed, or the circulation in its wake over its length, is above 100 times "
+                            "the speeds that the case gives"},
+    [WARNING_ENERGY] = {"the energy balance is open",
+                        "energy_audit is more than 1 % of the largest of the works of muscle, fluid, damping, and all "
+                        "forces; within the first beat, also of the energy of the body and of one length per beat"},
+    [WARNING_DRIFT] = {"the speed changes",
+                       "drift is more than 1 %: means over the last beat are not those of steady swimming"},
+    [WARNING_EVENTS] = {"few events", "fewer than 20 in a beat"},
+    [WARNING_SHEET] = {"few sheet points",
+                       "'shedding: sheet' where n_sheet - 1 < 0.9 x 3.2/sqrt(U Dt/L), once the speed changes by less "
+                       "than 10 % a beat"},
+    [WARNING_MODES] = {"slow modes", "the slowest bending mode of a body in its fluid is slower than its beat"},
+    [WARNING_EDGE] = {"separation at the nose",
+                      "separation_share is above 0.1, once the speed changes by less than 10 % a beat: the limit of the "
+                      "suction acts for more than 10 % of the last period"},
 };
 
 static int contact_line(const struct school *school, const struct closest *closest, char line[WARNING_BYTES]) {
@@ -170,9 +254,20 @@ static int contact_line(const struct school *school, const struct closest *close
     return 1;
 }
 
+static int crossing_line(const struct school *school, const struct state *state, char line[WARNING_BYTES]) {
+    if (state->crossed < 0) return 0;
+    snprintf(
+        line, WARNING_BYTES,
+        "the body of %.40s crosses itself at t = %.4g s: what follows is no solution; a stiffer body, or a smaller "
+        "wave.amplitude, does not",
+        school->fish[state->crossed].name, state->crossed_t);
+    return 1;
+}
+
 int warnings_line(enum warning warning, const struct school *school, const struct state *state,
                   const struct diagnostics *diagnostics, double *scratch, char line[WARNING_BYTES]) {
     if (warning == WARNING_CONTACT) return contact_line(school, state->closest, line);
+    if (warning == WARNING_CROSSING) return crossing_line(school, state, line);
     struct subject worst = {.size = 1};
     int n = 0;
     for (int f = 0; f < school->n_fish; f++) {

@@ -190,7 +190,7 @@ int netcdf_define_variable(struct netcdf_writer *writer, const struct netcdf_var
     }
     netcdf_write_string(writer, number, "units", *variable->units ? variable->units : "1");
     const double gap = NAN;
-    if (variable->has_gaps) CALL(writer, nc_put_att_double(writer->file, number, _FillValue, type, 1, &gap));
+    if (variable->has_gaps) CALL(writer, nc_put_att_double(writer->file, number, "_FillValue", type, 1, &gap));
     return number;
 }
 

@@ -17,7 +17,7 @@
 
 /* src/output/page.html; the data go where it says PAGE_DATA */
 extern const char page_template[];
-__asm__(".pushsection .rodata\npage_template: .incbin \"src/output/page.html\"\n.byte 0\n.popsection");
+__asm__(".pushsection .rodata\npage_template: .incbin \"page.html\"\n.byte 0\n.popsection");
 static const char placeholder[] = "PAGE_DATA";
 
 /* What each part of the page may take, bytes of base 64. */

@@ -5,11 +5,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "model/warnings.h"
 #include "output/netcdf.h"
 #include "output/result_values.h"
 
 /* Bytes of attributes that are rewritten in place and must never move what follows. */
-enum { STATUS_LENGTH = 256, MAX_NOTE_LENGTH = 2560 };
+enum { STATUS_LENGTH = 256, MAX_NOTE_LENGTH = N_WARNINGS * WARNING_BYTES };
 
 static const struct note {
     const char *name;

@@ -85,13 +85,17 @@ static void print_json(const char *kind, const struct result_listed *listed, FIL
 void result_kind_variables(int n_kinds, const struct result_kind *kinds, int as_json, FILE *stream) {
     struct result_listed listed;
     for (int k = 0; k < n_kinds; k++) {
-        if (k > 0 && !as_json) fprintf(stream, "\nIn the file of a %s:\n\n", kinds[k].name);
+        const int is_file = kinds[k].schema_name != NULL;
+        if (k > 0 && !as_json)
+            fprintf(stream, is_file ? "\nIn the file of a %s:\n\n" : "\nThe %ss about a result:\n\n", kinds[k].name);
         for (int i = 0; kinds[k].listed(i, &listed); i++) {
             if (as_json) {
                 fputs(k == 0 && i == 0 ? "[" : ",", stream);
                 print_json(kinds[k].name, &listed, stream);
-            } else {
+            } else if (is_file) {
                 print_text(&listed, stream);
+            } else {
+                fprintf(stream, "%s: %s\n", listed.name, listed.meaning);
             }
         }
     }

@@ -15,10 +15,11 @@ struct result_listed {
 };
 
 struct result_kind {
-    const char *name;        /* "run": what the file is of */
-    const char *schema_name; /* the attribute that says that a file is of this kind */
-    int schema;              /* what it is in files that this program reads */
-    const char *case_name;   /* the attribute that holds the case */
+    const char *name; /* "run": what the file is of */
+    const char
+        *schema_name;      /* the attribute that says that a file is of this kind; NULL: a list in words, of no file */
+    int schema;            /* what it is in files that this program reads */
+    const char *case_name; /* the attribute that holds the case */
 
     /* Print what a file holds, after what is the same for all kinds. Fails with STATUS_FILE or STATUS_MEMORY. */
     enum status (*info)(const char *path, FILE *stream);
@@ -31,7 +32,8 @@ struct result_kind {
 enum status result_kind_info(int n_kinds, const struct result_kind *kinds, const char *path, int case_only,
                              FILE *stream);
 
-/* Print the variables of all kinds: name, dimensions, unit, meaning; as aligned text, or as JSON. */
+/* Print the variables of all kinds: name, dimensions, unit, meaning; as aligned text, or as JSON; and the lists in
+ * words. */
 void result_kind_variables(int n_kinds, const struct result_kind *kinds, int as_json, FILE *stream);
 
 #endif

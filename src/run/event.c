@@ -8,6 +8,7 @@
 #include "model/drag.h"
 #include "model/flow_at_bodies.h"
 #include "model/flow_at_wake.h"
+#include "model/self_crossing.h"
 #include "model/wake_merge.h"
 
 // evaluate the equations; at an event there is no smaller step to try
@@ -164,6 +165,7 @@ static enum status finish_event(struct state *state, struct residual *residual, 
                                 int jumps, int *jumped) {
     TRY(take_flow(state, residual));
     diagnostics_remember(residual, state);
+    self_crossing_remember(residual->school, state, residual->scratch);
     const int steered = steer(state, residual);
     if (steered) {
         if (!jumps) diagnostics_before_jump(residual, state);

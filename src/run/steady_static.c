@@ -81,10 +81,10 @@ enum status steady_static_refuse(const struct school *school) {
 
 struct growth {
     struct simulation *simulation;
+    struct school school; /* that of the simulation with a part of its stream and loads; only its bodies are its own */
+    struct residual *residual; /* of this school */
     struct equilibrium *equilibrium;
-    double velocity[2], shear; /* of the case */
-    double *speed, *load;      /* of each body; (n_fish), (n_fish, 2) */
-    double *last, *before;     /* the last two solutions, at these parts of them            (n_unknowns) */
+    double *last, *before; /* the last two solutions, at these parts of them            (n_unknowns) */
     double last_part, before_part;
     int n_solutions;
     struct equilibrium_stiffness rest; /* without any */
@@ -99,36 +99,38 @@ static const double least_step = 1e-4;
 
 static enum status begin(struct growth *growth) {
     const struct school *const school = growth->simulation->school;
+    struct state *const state = growth->simulation->state;
     const size_t n_fish = (size_t)school->n_fish, n = (size_t)school->n_unknowns;
-    double **const arrays[] = {&growth->speed, &growth->load, &growth->last, &growth->before, &growth->kept};
-    const size_t sizes[] = {n_fish, 2 * n_fish, n, n, n};
-    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
-        *arrays[i] = calloc(sizes[i], sizeof **arrays[i]);
-        if (!*arrays[i]) return status_fail(STATUS_MEMORY, "out of memory: the equilibrium of %zu bodies", n_fish);
-    }
-    memcpy(growth->velocity, school->velocity, sizeof growth->velocity);
-    growth->shear = school->shear;
-    for (int f = 0; f < school->n_fish; f++) {
-        growth->speed[f] = school->fish[f].motion.speed;
-        memcpy(growth->load + 2 * f, school->fish[f].load_tip, 2 * sizeof *growth->load);
-    }
-    return equilibrium_create(&growth->equilibrium, growth->simulation->residual, growth->simulation->state);
+    double **const arrays[] = {&growth->last, &growth->before, &growth->kept};
+    int has_all = 1;
+    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
+        has_all &= !!(*arrays[i] = calloc(n, sizeof **arrays[i]));
+    growth->school = *school;
+    growth->school.fish = malloc(n_fish * sizeof *school->fish);
+    if (!has_all || !growth->school.fish)
+        return status_fail(STATUS_MEMORY, "out of memory: the equilibrium of %zu bodies", n_fish);
+    memcpy(growth->school.fish, school->fish, n_fish * sizeof *school->fish);
+    TRY(residual_create(&growth->residual, &growth->school, state));
+    return equilibrium_create(&growth->equilibrium, growth->residual, state);
 }
 
 static void end(struct growth *growth) {
-    double *const owned[] = {growth->speed, growth->load, growth->last, growth->before, growth->kept};
+    double *const owned[] = {growth->last, growth->before, growth->kept};
     for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
     equilibrium_free(growth->equilibrium);
+    residual_free(growth->residual);
+    free(growth->school.fish);
 }
 
-// give the case this part of its stream, and of the loads its square: what the stream does grows like that
-static void set_part(const struct growth *growth, double part) {
-    struct school *const school = growth->simulation->school;
-    for (int i = 0; i < 2; i++) school->velocity[i] = part * growth->velocity[i];
-    school->shear = part * growth->shear;
+// this part of the stream of the case, and the square of this part of the loads: forces of a stream grow like that
+static void set_part(struct growth *growth, double part) {
+    const struct school *const whole = growth->simulation->school;
+    struct school *const school = &growth->school;
+    for (int i = 0; i < 2; i++) school->velocity[i] = part * whole->velocity[i];
+    school->shear = part * whole->shear;
     for (int f = 0; f < school->n_fish; f++) {
-        school->fish[f].motion.speed = part * growth->speed[f];
-        for (int i = 0; i < 2; i++) school->fish[f].load_tip[i] = part * part * growth->load[2 * f + i];
+        school->fish[f].motion.speed = part * whole->fish[f].motion.speed;
+        for (int i = 0; i < 2; i++) school->fish[f].load_tip[i] = part * part * whole->fish[f].load_tip[i];
     }
 }
 
@@ -323,15 +325,18 @@ static void fill(const struct simulation *simulation, int f, struct steady_fish 
 
 enum status steady_static_find(struct simulation *simulation, const char *from, struct steady_values *found) {
     struct growth growth = {.simulation = simulation};
+    struct state *const state = simulation->state;
     const enum status status = find(&growth, from, found);
     end(&growth);
     TRY(status);
-    diagnostics_remember(simulation->residual, simulation->state);
-    diagnostics_restart(simulation->residual, simulation->state);
+    // the flow of the simulation itself
+    TRY(residual_evaluate(simulation->residual, state->t, state->y, state->yp, simulation->residual->scratch));
+    diagnostics_remember(simulation->residual, state);
+    diagnostics_restart(simulation->residual, state);
     simulate_measure(simulation);
-    const struct rigid first = rigid_of(&simulation->school->fish[0], simulation->state->y);
+    const struct rigid first = rigid_of(&simulation->school->fish[0], state->y);
     for (int f = 0; f < simulation->school->n_fish; f++) {
-        const struct rigid rigid = rigid_of(&simulation->school->fish[f], simulation->state->y);
+        const struct rigid rigid = rigid_of(&simulation->school->fish[f], state->y);
         fill(simulation, f, &found->fish[f]);
         rigid_relative_place(&first, &rigid, found->fish[f].place);
     }

@@ -1,7 +1,6 @@
 /* ida.c: IDA applied to the residual of the school. */
 #include "solver/ida.h"
 
-#include <ida/ida.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,6 +11,7 @@
 #include "solver/algebraic_rates.h"
 #include "solver/ida_newton.h"
 #include "solver/shared_vector.h"
+#include "solver/sundials.h"
 #include "solver/sundials_adapter.h"
 
 /* Newton's iteration has converged when its error is this fraction of the error test's unit. Velocities are outside the
@@ -51,7 +51,7 @@ struct ida {
     long jacobians; /* evaluations so far: IDA sets its own total to zero only some time after a restart */
 };
 
-static int residual_callback(realtype t, N_Vector y, N_Vector yp, N_Vector value, void *data) {
+static int residual_callback(sunrealtype t, N_Vector y, N_Vector yp, N_Vector value, void *data) {
     struct ida *const solver = data;
     solver->failure = integrator_ask(solver->stop);
     if (solver->failure == STATUS_OK) {
@@ -61,7 +61,7 @@ static int residual_callback(realtype t, N_Vector y, N_Vector yp, N_Vector value
     return solver->failure;
 }
 
-static int jacobian_callback(realtype t, realtype cj, N_Vector y, N_Vector yp, N_Vector value, SUNMatrix matrix,
+static int jacobian_callback(sunrealtype t, sunrealtype cj, N_Vector y, N_Vector yp, N_Vector value, SUNMatrix matrix,
                              void *data, N_Vector scratch1, N_Vector scratch2, N_Vector scratch3) {
     (void)yp, (void)value, (void)matrix, (void)scratch1, (void)scratch2, (void)scratch3;
     struct ida *const solver = data;
@@ -162,7 +162,7 @@ static enum status fill(struct ida *solver) {
     TRY(algebraic_rates_create(&solver->algebraic_rates, school));
     algebraic_rates_begin(solver->algebraic_rates, solver->state);
     residual_mask(solver->residual, solver->jacobian);
-    TRY(sundials_adapter_context(&solver->context, n));
+    TRY(sundials_adapter_context(&solver->context, n, &solver->failure));
     TRY(shared_vector_create(&solver->y, solver->context, school, solver->state->y));
     TRY(shared_vector_create(&solver->yp, solver->context, school, solver->state->yp));
     TRY(shared_vector_create(&solver->weights, solver->context, school, solver->weight));

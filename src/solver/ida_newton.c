@@ -41,12 +41,12 @@ static int test_norm(struct ida_newton *newton, int norm, double size, double to
     if (newton->done == 1) {
         newton->first[norm] = size;
         // mere rounding
-        return size <= 1e-4 * tolerance ? SUN_NLS_SUCCESS : SUN_NLS_CONTINUE;
+        return size <= 1e-4 * tolerance ? SUN_SUCCESS : SUN_NLS_CONTINUE;
     }
     const double rate = size > 0 ? pow(size / newton->first[norm], 1.0 / (newton->done - 1)) : 0;
     // corrections that are noise of the linear solver no longer shrink: accept them when they are small
     const double remaining = rate < 0.9 ? rate / (1 - rate) : 10;
-    if (size * remaining <= tolerance) return SUN_NLS_SUCCESS;
+    if (size * remaining <= tolerance) return SUN_SUCCESS;
     // with an old Jacobian the first two corrections may grow
     if (newton->done > 2 && rate >= 0.9) return SUN_NLS_CONV_RECVR;
     return newton->done < newton->most ? SUN_NLS_CONTINUE : SUN_NLS_CONV_RECVR;
@@ -73,7 +73,7 @@ static int test_convergence(struct ida_newton *newton, N_Vector weights, double 
     find_norms(newton, weights, norm);
     const int all = test_norm(newton, ALL, norm[ALL], tolerance);
     if (all == SUN_NLS_CONV_RECVR || !newton->rules.kinds) return all;
-    if (test_norm(newton, DIFFERENTIAL, norm[DIFFERENTIAL], tolerance) == SUN_NLS_SUCCESS) return all;
+    if (test_norm(newton, DIFFERENTIAL, norm[DIFFERENTIAL], tolerance) == SUN_SUCCESS) return all;
     // the places may begin to converge later than the rest
     return newton->done < newton->most ? SUN_NLS_CONTINUE : SUN_NLS_CONV_RECVR;
 }
@@ -116,18 +116,18 @@ static int complete(const struct ida_newton *newton) {
 }
 
 static int newton_solve(SUNNonlinearSolver solver, N_Vector predicted, N_Vector total, N_Vector weights,
-                        realtype tolerance, booleantype evaluate, void *ida) {
+                        sunrealtype tolerance, sunbooleantype evaluate, void *ida) {
     struct ida_newton *const newton = newton_of(solver);
     newton->iterations = newton->failures = 0;
     if (newton->is_incomplete || jacobian_is_stale(newton)) evaluate = SUNTRUE;
     newton->is_incomplete = 0;
     if (!evaluate) corotation_set_current(newton->corotation, N_VGetArrayPointer(predicted));
     initial_guess(newton, total);
-    for (booleantype failed = SUNFALSE;; failed = SUNTRUE) {
+    for (sunbooleantype failed = SUNFALSE;; failed = SUNTRUE) {
         int code = newton->residual(total, newton->correction, ida);
         if (code != 0) return code;
         if (evaluate) {
-            booleantype current;
+            sunbooleantype current;
             code = newton->set_up(failed, &current, ida);
             if (code != 0) return code;
             corotation_set_reference(newton->corotation, N_VGetArrayPointer(predicted));

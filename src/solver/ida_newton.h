@@ -3,10 +3,9 @@
 #ifndef IDA_NEWTON_H
 #define IDA_NEWTON_H
 
-#include <sundials/sundials_nonlinearsolver.h>
-
 #include "base/status.h"
 #include "solver/corotation.h"
+#include "solver/sundials.h"
 
 /* When an iteration ends, and when the Jacobian is re-evaluated. */
 struct ida_newton_rules {

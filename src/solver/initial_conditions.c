@@ -2,7 +2,6 @@
  * equation that they do not change, so that the Jacobian of the school can be used with their rows masked. */
 #include "solver/initial_conditions.h"
 
-#include <kinsol/kinsol.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,6 +11,7 @@
 #include "model/flow_at_bodies.h"
 #include "model/residual_jacobian.h"
 #include "solver/integrator.h"
+#include "solver/sundials.h"
 #include "solver/sundials_adapter.h"
 
 /* Rows are scaled to order one; Newton's method has converged at this norm, or when its steps no longer change the
@@ -137,7 +137,7 @@ static enum status fill(struct initial_conditions *c) {
         c->kind[i] = -1;  // unknown
     }
     TRY(jacobian_create(&c->jacobian, c->residual->school));
-    TRY(sundials_adapter_context(&c->context, c->n));
+    TRY(sundials_adapter_context(&c->context, c->n, &c->failure));
     TRY(sundials_adapter_vector(&c->solution, c->context, n, c->start));
     TRY(sundials_adapter_vector(&c->solution_scales, c->context, n, c->solution_scale));
     TRY(sundials_adapter_vector(&c->value_scales, c->context, n, c->value_scale));

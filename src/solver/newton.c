@@ -1,12 +1,10 @@
 /* newton.c: KINSOL with a dense matrix. */
 #include "solver/newton.h"
 
-#include <kinsol/kinsol.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <sunlinsol/sunlinsol_dense.h>
-#include <sunmatrix/sunmatrix_dense.h>
 
+#include "solver/sundials.h"
 #include "solver/sundials_adapter.h"
 
 struct solver {
@@ -45,7 +43,7 @@ static void release(struct solver *solver) {
 static enum status set_up(struct solver *solver, double *u, double *inverse) {
     const struct newton *const problem = solver->problem;
     for (int i = 0; i < problem->n; i++) inverse[i] = 1 / problem->scale[i];
-    TRY(sundials_adapter_context(&solver->context, problem->n));
+    TRY(sundials_adapter_context(&solver->context, problem->n, &solver->failure));
     TRY(sundials_adapter_vector(&solver->unknowns, solver->context, problem->n, u));
     TRY(sundials_adapter_vector(&solver->scales, solver->context, problem->n, inverse));
     solver->matrix = SUNDenseMatrix(problem->n, problem->n, solver->context);

@@ -1,15 +1,14 @@
 /* runge_kutta.c: ARKStep applied to the right-hand side of ode_rhs.c. */
 #include "solver/runge_kutta.h"
 
-#include <arkode/arkode_arkstep.h>
 #include <math.h>
-#include <nvector/nvector_serial.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "model/diagnostics_energy.h"
 #include "solver/algebraic_rates.h"
 #include "solver/ode_rhs.h"
+#include "solver/sundials.h"
 #include "solver/sundials_adapter.h"
 
 struct runge_kutta {
@@ -66,7 +65,7 @@ static enum status evaluate(struct runge_kutta *solver, double t, const double *
     return STATUS_OK;
 }
 
-static int rates_callback(realtype t, N_Vector y, N_Vector rates, void *data) {
+static int rates_callback(sunrealtype t, N_Vector y, N_Vector rates, void *data) {
     struct runge_kutta *const solver = data;
     solver->failure = integrator_ask(solver->stop);
     if (solver->failure == STATUS_OK) solver->failure = evaluate(solver, t, N_VGetArrayPointer(y));
@@ -88,7 +87,7 @@ static ARKodeButcherTable tableau_of(enum method method, int adaptive) {
 static void runge_kutta_free(void *data) {
     struct runge_kutta *const solver = data;
     if (!solver) return;
-    if (solver->arkode) ARKStepFree(&solver->arkode);
+    if (solver->arkode) ARKodeFree(&solver->arkode);
     if (solver->y) N_VDestroy(solver->y);
     if (solver->tolerances) N_VDestroy(solver->tolerances);
     ode_rhs_free(solver->rhs);
@@ -107,11 +106,11 @@ static enum status set_up_arkode(struct runge_kutta *solver) {
     const ARKodeButcherTable table = tableau_of(solver->options.method, step <= 0);
     if (!table) return status_fail(STATUS_MEMORY, "out of memory: the tableau of a Runge-Kutta method");
     const int failed = ARKStepSetErrHandlerFn(arkode, sundials_adapter_message, &solver->failure) ||
-                       ARKStepSetUserData(arkode, solver) || ARKStepSetTables(arkode, 0, 0, NULL, table) ||
-                       ARKStepSVtolerances(arkode, 0, solver->tolerances) || ARKStepSetMaxNumSteps(arkode, -1) ||
-                       ARKStepSetMaxErrTestFails(arkode, 20) ||
-                       ARKStepSetMinStep(arkode, step > 0 ? 0 : 1e-10 * solver->residual->school->interval) ||
-                       (step > 0 && ARKStepSetFixedStep(arkode, step));
+                       ARKodeSetUserData(arkode, solver) || ARKStepSetTables(arkode, 0, 0, NULL, table) ||
+                       ARKodeSVtolerances(arkode, 0, solver->tolerances) || ARKodeSetMaxNumSteps(arkode, -1) ||
+                       ARKodeSetMaxErrTestFails(arkode, 20) ||
+                       ARKodeSetMinStep(arkode, step > 0 ? 0 : 1e-10 * solver->residual->school->interval) ||
+                       (step > 0 && ARKodeSetFixedStep(arkode, step));
     ARKodeButcherTable_Free(table);
     return failed ? status_fail(STATUS_SOLVER, "ARKODE cannot be set up: %s", status_message()) : STATUS_OK;
 }
@@ -141,7 +140,7 @@ static enum status fill(struct runge_kutta *solver) {
     TRY(ode_rhs_create(&solver->rhs, solver->residual));
     TRY(algebraic_rates_create(&solver->algebraic_rates, solver->residual->school));
     algebraic_rates_begin(solver->algebraic_rates, solver->state);
-    TRY(sundials_adapter_context(&solver->context, solver->residual->school->n_unknowns));
+    TRY(sundials_adapter_context(&solver->context, n, &solver->failure));
     TRY(sundials_adapter_vector(&solver->y, solver->context, n, solver->state->y));
     TRY(sundials_adapter_vector(&solver->tolerances, solver->context, n, solver->tolerance));
     solver->arkode = ARKStepCreate(rates_callback, NULL, solver->state->t, solver->y, solver->context);
@@ -173,9 +172,9 @@ static void runge_kutta_count(const void *data, struct integrator_counts *counts
     long steps = 0, error_failures = 0;
     double last_step = 0;
     *counts = solver->before;
-    ARKStepGetNumSteps(solver->arkode, &steps);
-    ARKStepGetNumErrTestFails(solver->arkode, &error_failures);
-    ARKStepGetLastStep(solver->arkode, &last_step);
+    ARKodeGetNumSteps(solver->arkode, &steps);
+    ARKodeGetNumErrTestFails(solver->arkode, &error_failures);
+    ARKodeGetLastStep(solver->arkode, &last_step);
     counts->steps += steps;
     counts->residual_evaluations = solver->evaluations;
     counts->error_test_failures += error_failures;
@@ -191,7 +190,7 @@ static enum status runge_kutta_restart(void *data) {
     if (ARKStepReInit(solver->arkode, rates_callback, NULL, solver->state->t, solver->y)) {
         return status_fail(STATUS_SOLVER, "ARKODE cannot start again: %s", status_message());
     }
-    if (solver->options.step > 0 && ARKStepSetFixedStep(solver->arkode, solver->options.step)) return STATUS_SOLVER;
+    if (solver->options.step > 0 && ARKodeSetFixedStep(solver->arkode, solver->options.step)) return STATUS_SOLVER;
     return STATUS_OK;
 }
 
@@ -213,7 +212,7 @@ static struct unknown_place worst_velocity(const struct runge_kutta *solver) {
 
 static enum status unstable(const struct runge_kutta *solver, double t, const char *why) {
     double step = 0;
-    ARKStepGetLastStep(solver->arkode, &step);
+    ARKodeGetLastStep(solver->arkode, &step);
     const struct unknown_place place = worst_velocity(solver);
     const struct fish *const fish = &solver->residual->school->fish[place.fish];
     // a body that is too stiff and a control that goes wrong look alike from here
@@ -258,10 +257,10 @@ static enum status runge_kutta_advance(void *data, double t, const volatile sig_
         if (steps == solver->options.max_steps) {
             return unstable(solver, reached, "more steps between two events than solver.max_steps");
         }
-        if (ARKStepSetStopTime(solver->arkode, t)) return status_fail(STATUS_SOLVER, "ARKODE: %s", status_message());
+        if (ARKodeSetStopTime(solver->arkode, t)) return status_fail(STATUS_SOLVER, "ARKODE: %s", status_message());
         solver->failure = STATUS_OK;
         const double before = reached;
-        const int code = ARKStepEvolve(solver->arkode, t, solver->y, &reached, ARK_ONE_STEP);
+        const int code = ARKodeEvolve(solver->arkode, t, solver->y, &reached, ARK_ONE_STEP);
         if (solver->failure == STATUS_MEMORY || solver->failure == STATUS_STOPPED) return solver->failure;
         if (code < 0) return unstable(solver, reached, status_message());
         if (code == ARK_TSTOP_RETURN) reached = t;

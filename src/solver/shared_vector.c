@@ -2,7 +2,6 @@
 #include "solver/shared_vector.h"
 
 #include <math.h>
-#include <nvector/nvector_serial.h>
 #include <stdlib.h>
 
 #include "base/parallel.h"

@@ -4,10 +4,9 @@
 #ifndef SHARED_VECTOR_H
 #define SHARED_VECTOR_H
 
-#include <sundials/sundials_nvector.h>
-
 #include "base/status.h"
 #include "model/fish.h"
+#include "solver/sundials.h"
 
 /* Create a vector of the unknowns of a school, which must outlive it and its clones. The values are not copied, and the
  * vector does not own them. Fails with STATUS_MEMORY. SUNDIALS does not ask whether a clone could be made:

@@ -1,28 +1,30 @@
 /* sundials_adapter.c: objects of SUNDIALS that wrap our arrays and our linear solver. */
 #include "solver/sundials_adapter.h"
 
-#include <nvector/nvector_serial.h>
 #include <stdlib.h>
-#include <sundials/sundials_context.h>
 
-static enum status find_memory(long n) {
+static enum status find_memory(int n) {
     // vectors of doubles, of which IDA makes about 25, and what is small
     enum { VECTORS = 40, SMALL = 1 << 20 };
     void *volatile const needed = malloc((size_t)n * VECTORS * sizeof(double) + SMALL);
     free(needed);
-    return needed ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: the solver of %ld unknowns", n);
+    return needed ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: the solver of %d unknowns", n);
 }
 
-enum status sundials_adapter_context(SUNContext *context, long n) {
+enum status sundials_adapter_context(SUNContext *context, int n, enum status *failure) {
     TRY(find_memory(n));
-    if (SUNContext_Create(NULL, context) != 0)
+    // without a logger: it would print warnings
+    if (SUNContext_Create(SUN_COMM_NULL, context) != SUN_SUCCESS ||
+        SUNContext_SetLogger(*context, NULL) != SUN_SUCCESS || SUNContext_ClearErrHandlers(*context) != SUN_SUCCESS ||
+        SUNContext_PushErrHandler(*context, sundials_adapter_message, failure) != SUN_SUCCESS) {
         return status_fail(STATUS_MEMORY, "out of memory: a context of SUNDIALS");
+    }
     return STATUS_OK;
 }
 
-enum status sundials_adapter_vector(N_Vector *vector, SUNContext context, long n, double *values) {
+enum status sundials_adapter_vector(N_Vector *vector, SUNContext context, int n, double *values) {
     *vector = N_VMake_Serial(n, values, context);
-    return *vector ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: a vector of %ld unknowns", n);
+    return *vector ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: a vector of %d unknowns", n);
 }
 
 static SUNMatrix_ID matrix_id(SUNMatrix matrix) {
@@ -33,7 +35,7 @@ static SUNMatrix_ID matrix_id(SUNMatrix matrix) {
 // residual_jacobian sets the values to zero itself
 static int matrix_zero(SUNMatrix matrix) {
     (void)matrix;
-    return SUNMAT_SUCCESS;
+    return SUN_SUCCESS;
 }
 
 static SUNLinearSolver_Type solver_type(SUNLinearSolver solver) {
@@ -48,7 +50,7 @@ static int solver_setup(SUNLinearSolver solver, SUNMatrix matrix) {
     return *adapter->failure;
 }
 
-static int solver_solve(SUNLinearSolver solver, SUNMatrix matrix, N_Vector x, N_Vector b, realtype tolerance) {
+static int solver_solve(SUNLinearSolver solver, SUNMatrix matrix, N_Vector x, N_Vector b, sunrealtype tolerance) {
     (void)matrix, (void)tolerance;
     const struct sundials_adapter_linear *const adapter = solver->content;
     *adapter->failure = linear_solve(adapter->linear, N_VGetArrayPointer(b), N_VGetArrayPointer(x));
@@ -82,8 +84,8 @@ void sundials_adapter_linear_free(struct sundials_adapter_linear *adapter) {
     *adapter = (struct sundials_adapter_linear){0};
 }
 
-void sundials_adapter_message(int code, const char *module, const char *function, char *text, void *data) {
+void sundials_adapter_message(SUNDIALS_ERROR_ARGUMENTS) {
     const enum status *const failure = data;
     // warnings are dropped: what matters also comes back as a code
-    if (code < 0 && *failure == STATUS_OK) status_fail(STATUS_SOLVER, "%s (%s, %s)", text, module, function);
+    if (code < 0 && *failure == STATUS_OK) status_fail(STATUS_SOLVER, "%s (%s)", text, function);
 }

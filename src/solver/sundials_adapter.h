@@ -4,13 +4,10 @@
 #ifndef SUNDIALS_ADAPTER_H
 #define SUNDIALS_ADAPTER_H
 
-#include <sundials/sundials_linearsolver.h>
-#include <sundials/sundials_matrix.h>
-#include <sundials/sundials_nvector.h>
-
 #include "base/status.h"
 #include "model/jacobian.h"
 #include "solver/linear.h"
+#include "solver/sundials.h"
 
 /* The Jacobian as SUNDIALS sees it, and its linear solver. */
 struct sundials_adapter_linear {
@@ -20,12 +17,12 @@ struct sundials_adapter_linear {
     SUNLinearSolver solver;
 };
 
-/* Create a context. Fails with STATUS_MEMORY, also where there is none for what IDA, KINSOL or ARKODE allocate for n
- * unknowns: they crash where they find none. */
-enum status sundials_adapter_context(SUNContext *context, long n);
+/* Create a context, whose errors go to sundials_adapter_message with failure. Fails with STATUS_MEMORY, also where
+ * there is none for what IDA, KINSOL or ARKODE allocate for n unknowns: they crash where they find none. */
+enum status sundials_adapter_context(SUNContext *context, int n, enum status *failure);
 
 /* Create a vector of n values that are not copied; it does not own them. Fails with STATUS_MEMORY. */
-enum status sundials_adapter_vector(N_Vector *vector, SUNContext context, long n, double *values);
+enum status sundials_adapter_vector(N_Vector *vector, SUNContext context, int n, double *values);
 
 /* Create the solver for a Jacobian, which must outlive it; scale and tolerance as in linear_create. It declares itself
  * a direct solver, so that IDA scales its solutions when the step has changed since the Jacobian was evaluated.
@@ -39,6 +36,6 @@ void sundials_adapter_linear_free(struct sundials_adapter_linear *adapter);
 
 /* Error handler for SUNDIALS; data is the status of the last callback. If the callback failed, its message is the cause
  * and stays; else the text of SUNDIALS becomes this thread's message. */
-void sundials_adapter_message(int code, const char *module, const char *function, char *text, void *data);
+void sundials_adapter_message(SUNDIALS_ERROR_ARGUMENTS);
 
 #endif

@@ -11,7 +11,7 @@
 #include "output/netcdf.h"
 #include "study/study_comparison.h"
 
-enum { MIN_TEXT = 64 /* bytes of the flag of an order */, NAME_BYTES = 256 };
+enum { MIN_TEXT = 128 /* bytes of the flag of an order */, NAME_BYTES = 256 };
 
 /* The variables of its own; those of the swept keys and the quantities follow. */
 enum { MEMBER, STATUS, WARNINGS, FISH_NAME, N_OWN };
@@ -29,7 +29,7 @@ struct writing {
     struct netcdf_writer writer;
     const struct case_values *study;
     const struct member_file *member;
-    const struct study_file_orders *orders;
+    const struct study_orders *orders;
     int n_members, n_fish;
     size_t n_text; /* length of the dimension text */
     int member_dimension, fish_dimension, xy_dimension, text_dimension;
@@ -140,7 +140,7 @@ static void define_all(struct writing *writing) {
         if (has_quantity(study, member_file_quantity(q))) define_quantity(writing, member_file_quantity(q));
     }
     const int of_orders[] = {writing->fish_dimension, writing->xy_dimension, writing->text_dimension};
-    study_file_orders_define(writer, study, writing->orders, of_orders);
+    study_orders_define(writer, study, writing->orders, of_orders);
     netcdf_end_definitions(writer);
 }
 
@@ -195,7 +195,7 @@ static void write_all(struct writing *writing) {
     for (int q = 0; member_file_quantity(q); q++) {
         if (has_quantity(study, member_file_quantity(q))) write_quantity(writing, q);
     }
-    study_file_orders_write(&writing->writer, study, writing->orders, writing->n_text, writing->text);
+    study_orders_write(&writing->writer, study, writing->orders, writing->n_text, writing->text);
 }
 
 /* Write under a temporary name, and give it its own. */
@@ -210,7 +210,7 @@ static enum status write_file(struct writing *writing, const char *path, const c
 }
 
 enum status study_file_write(const char *path, const struct case_values *study, const struct member_file *member,
-                             const struct study_file_orders *orders, const char *command) {
+                             const struct study_orders *orders, const char *command) {
     struct writing writing = {.study = study,
                               .member = member,
                               .orders = orders,
@@ -247,5 +247,5 @@ int study_file_listed(int i, struct result_listed *listed) {
         snprintf(listed->dimensions, sizeof listed->dimensions, "member, fish%s", quantity->of_xy ? ", xy" : "");
         return 1;
     }
-    return study_file_orders_listed(k, listed);
+    return study_orders_listed(k, listed);
 }

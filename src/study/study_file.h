@@ -7,14 +7,14 @@
 #include "case/case.h"
 #include "output/result_kind.h"
 #include "study/member_file.h"
-#include "study/study_file_orders.h"
+#include "study/study_orders.h"
 
 enum { STUDY_FILE_SCHEMA = 1 /* attribute shoal_study */ };
 
 /* Write study.nc: the members (as many as the study has), what each of them set, all quantities, and the orders. A file
  * that is there is replaced when the new one is complete. Fails with STATUS_FILE or STATUS_MEMORY. */
 enum status study_file_write(const char *path, const struct case_values *study, const struct member_file *member,
-                             const struct study_file_orders *orders, const char *command);
+                             const struct study_orders *orders, const char *command);
 
 /* Read it back: the study, and its members as far as the file has them (effective is empty). The caller frees them with
  * case_free and, each, member_file_free. Fails with STATUS_FILE or STATUS_MEMORY; nothing is then owned. */

@@ -33,7 +33,7 @@ static enum status print_members(const struct case_values *study, const struct m
 
 /* Print orders and expectations; the first that is missed counts. */
 static enum status print_expected(const struct case_values *study, const struct member_file *members,
-                                  const struct study_file_orders *orders, FILE *stream) {
+                                  const struct study_orders *orders, FILE *stream) {
     const enum status of_orders = study_orders_print(study, orders, stream);
     if (of_orders != STATUS_OK && of_orders != STATUS_MISSED) return of_orders;
     const enum status of_members = study_expect(study, members, stream);
@@ -52,7 +52,7 @@ static enum status print_warnings(const struct case_values *study, const struct 
 /* Print all and write the file, before anything that is missed ends the report. */
 static enum status report(const struct case_values *study, const struct member_file *members, const char *path,
                           const char *command, int strict, FILE *stream) {
-    struct study_file_orders orders;
+    struct study_orders orders;
     enum status status = study_orders_create(&orders, study, members);
     if (status == STATUS_OK) status = print_members(study, members, stream);
     if (status == STATUS_OK) status = study_file_write(path, study, members, &orders, command);
@@ -61,7 +61,7 @@ static enum status report(const struct case_values *study, const struct member_f
         const enum status warned = print_warnings(study, members, strict && status == STATUS_OK, stream);
         if (status == STATUS_OK) status = warned;
     }
-    study_file_orders_free(&orders);
+    study_orders_free(&orders);
     return status;
 }
 
@@ -113,12 +113,12 @@ enum status study_info(const char *path, FILE *stream) {
     struct member_file *members;
     TRY(study_file_read(path, &study, &members));
     print_head(&study, members, stream);
-    struct study_file_orders orders;
+    struct study_orders orders;
     enum status status = print_members(&study, members, stream);
     if (status == STATUS_OK) {
         status = study_orders_create(&orders, &study, members);
         if (status == STATUS_OK) status = print_expected(&study, members, &orders, stream);
-        study_file_orders_free(&orders);
+        study_orders_free(&orders);
     }
     // that an expectation is missed is a part of what the file holds
     if (status == STATUS_MISSED) fprintf(stream, "missed: %s\n", status_message());

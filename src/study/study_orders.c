@@ -1,12 +1,4 @@
-/* study_orders.c: a study of convergence: observed orders, extrapolated values and the grid convergence index (GCI).
- *
- * P. J. Roache, Annual Review of Fluid Mechanics 29 (1997) 123-160: with h1 < h2 < h3, r21 = h2/h1, r32 = h3/h2 and
- * values f1, f2, f3 the order p solves
- *
- *     |f3 - f2| / |f2 - f1| = r21^p (r32^p - 1) / (r21^p - 1),
- *
- * the extrapolated value is f1 + (f1 - f2) / (r21^p - 1), and the GCI 1.25 |f1 - f2| / (r21^p - 1). Where the exact
- * value f is given, p is log(|f2 - f| / |f1 - f|) / log r21 instead. */
+/* study_orders.c: see study_orders.h. */
 #include "study/study_orders.h"
 
 #include <math.h>
@@ -14,115 +6,100 @@
 #include <string.h>
 
 #include "base/text.h"
+#include "case/sweep_error.h"
 #include "case/sweep_members.h"
 #include "case/sweep_quantity.h"
 #include "case/sweep_refine.h"
 #include "study/study_table.h"
 
-static const double safety_factor = 1.25;
+enum { NAME_BYTES = 64, MEANING_BYTES = 160, WORDS_BYTES = 128 };
 
-/* Values that differ by less than this part of their size are equal: rounding hides the order. */
-static const double min_difference = 1e-12;
+/* A search without multipliers does not estimate how far the steady state is: this many times its change in a beat. */
+static const double of_residual = 10;
 
-/* Orders outside of these, or that change by more than that from three levels to the next, are not asymptotic. */
-static const double min_order = 0.5, max_order = 6, max_change = 0.5;
-
-// ---- two or three levels
-
-/* The ratio of differences that an order gives. */
-static double ratio_of_order(double p, double r21, double r32) {
-    if (fabs(p) < 1e-9) return log(r32) / log(r21);
-    return pow(r21, p) * (pow(r32, p) - 1) / (pow(r21, p) - 1);
+static int is_observed(const struct case_values *study, int q) {
+    return (int)(sweep_refine_orders(study) >> q & 1);
 }
 
-/* The order that gives a ratio of differences; that ratio grows with the order. */
-static double order_of_ratio(double ratio, double r21, double r32) {
-    double low = -20, high = 20;
-    while (high - low > 1e-12) {
-        const double middle = (low + high) / 2;
-        if (ratio_of_order(middle, r21, r32) < ratio) {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    return (low + high) / 2;
+// ---- against a given value
+
+// NaN where one of the levels is exact to rounding
+static double order_of_two(const double *size, const double (*f)[2], const double *exact) {
+    const double fine = hypot(f[0][0] - exact[0], f[0][1] - exact[1]);
+    const double coarse = hypot(f[1][0] - exact[0], f[1][1] - exact[1]);
+    const double least = 1e-12 * fmax(1, hypot(exact[0], exact[1]));
+    return fine > least && coarse > least ? log(coarse / fine) / log(size[1] / size[0]) : NAN;
 }
 
-/* Observed order of three levels, coarse to fine; NaN where two neighbours are equal. */
-static double three_levels(const double *h, const double (*f)[2], int *is_oscillating) {
-    const double fine[2] = {f[2][0] - f[1][0], f[2][1] - f[1][1]}, coarse[2] = {f[1][0] - f[0][0], f[1][1] - f[0][1]};
-    const double d21 = hypot(fine[0], fine[1]), d32 = hypot(coarse[0], coarse[1]);
-    const double lower_bound = min_difference * fmax(1, hypot(f[2][0], f[2][1]));
-    *is_oscillating = fine[0] * coarse[0] + fine[1] * coarse[1] < 0;
-    if (!(d21 > lower_bound) || !(d32 > lower_bound)) return NAN;
-    return order_of_ratio(d32 / d21, h[1] / h[2], h[0] / h[1]);
-}
-
-/* The same of two levels and the exact value. */
-static double two_levels(const double *h, const double (*f)[2], const double *exact, int *is_oscillating) {
-    const double fine[2] = {f[1][0] - exact[0], f[1][1] - exact[1]},
-                 coarse[2] = {f[0][0] - exact[0], f[0][1] - exact[1]};
-    const double e1 = hypot(fine[0], fine[1]), e2 = hypot(coarse[0], coarse[1]);
-    const double lower_bound = min_difference * fmax(1, hypot(exact[0], exact[1]));
-    *is_oscillating = fine[0] * coarse[0] + fine[1] * coarse[1] < 0;
-    if (!(e1 > lower_bound) || !(e2 > lower_bound)) return NAN;
-    return log(e2 / e1) / log(h[0] / h[1]);
-}
-
-struct study_file_order study_order(int n, const double *sizes, const double (*values)[2], const double *reference) {
-    struct study_file_order result = {.coarse_order = NAN};
-    int is_oscillating, was_oscillating;
-    if (reference) {
-        result.order = two_levels(sizes + n - 2, values + n - 2, reference, &is_oscillating);
-        result.coarse_order = two_levels(sizes + n - 3, values + n - 3, reference, &was_oscillating);
-    } else {
-        result.order = three_levels(sizes + n - 3, values + n - 3, &is_oscillating);
-        if (n > 3) result.coarse_order = three_levels(sizes + n - 4, values + n - 4, &was_oscillating);
-    }
-    const double part = 1 / (pow(sizes[n - 2] / sizes[n - 1], result.order) - 1);
-    const double *const f1 = values[n - 1], *const f2 = values[n - 2];
-    for (int k = 0; k < 2; k++) result.extrapolated[k] = f1[k] + (f1[k] - f2[k]) * part;
-    result.gci = safety_factor * hypot(f1[0] - f2[0], f1[1] - f2[1]) * fabs(part);
-    double sum = 0;
-    for (int i = 0; i < n; i++) sum += values[i][0] + values[i][1];
-    if (isnan(sum)) {
-        result.flag = "a level is missing";
-    } else if (isnan(result.order)) {
-        result.flag = "levels are equal to rounding";
-    } else if (is_oscillating) {
-        result.flag = "oscillates: not in the asymptotic range";
-    } else if (result.order < min_order || result.order > max_order) {
-        result.flag = "order out of range: not in the asymptotic range";
-    } else if (fabs(result.order - result.coarse_order) > max_change) {
-        result.flag = "order still changes: not in the asymptotic range";
+struct study_order study_order_of_errors(int n, const double *size, const double (*f)[2], const double *exact) {
+    struct study_order result = {.order = order_of_two(size, f, exact),
+                                 .coarse_order = n > 2 ? order_of_two(size + 1, f + 1, exact) : NAN,
+                                 .error = hypot(f[0][0] - exact[0], f[0][1] - exact[1]),
+                                 .verdict = ERROR_BUDGET_ACCEPTED,
+                                 .culprit = -1};
+    for (int i = 0; i < n; i++) {
+        const int is_missing = isnan(f[i][0] + f[i][1]);
+        if (is_missing) result.verdict = ERROR_BUDGET_UNKNOWN;
+        result.is_known |= !is_missing;
     }
     return result;
 }
 
 // ---- all groups
 
+static enum status allocate(struct study_orders *orders, int n_groups, int n_levels) {
+    const size_t n = (size_t)n_groups * SWEEP_N_ORDERS * (size_t)orders->n_fish;
+    orders->level = calloc((size_t)n_levels, sizeof *orders->level);
+    orders->grid_spacing = calloc((size_t)n_levels, sizeof *orders->grid_spacing);
+    orders->first = calloc((size_t)n_groups, sizeof *orders->first);
+    orders->order = calloc(n, sizeof *orders->order);
+    orders->error = calloc(n * (size_t)n_levels, sizeof *orders->error);
+    if (!orders->level || !orders->grid_spacing || !orders->first || !orders->order || !orders->error) {
+        return status_fail(STATUS_MEMORY, "out of memory: the orders of %d levels", n_levels);
+    }
+    orders->n_groups = n_groups;
+    orders->n_levels = n_levels;
+    orders->n_judged = n_levels < ERROR_BUDGET_LEVELS ? n_levels : ERROR_BUDGET_LEVELS;
+    return STATUS_OK;
+}
+
+void study_orders_free(struct study_orders *orders) {
+    free(orders->level);
+    free(orders->grid_spacing);
+    free(orders->first);
+    free(orders->order);
+    free(orders->error);
+    *orders = (struct study_orders){0};
+}
+
+// the index of a quantity of a fish of a group
+static int place_of(const struct study_orders *orders, int group, int quantity, int fish) {
+    return (group * SWEEP_N_ORDERS + quantity) * orders->n_fish + fish;
+}
+
 /* What is needed to fill the orders of a study. */
 struct refinement {
     const struct case_values *study;
     const struct member_file *members;
-    struct study_file_orders *orders;
-    double (*value)[2]; /* one quantity at each level                                   (n_levels) */
+    struct study_orders *orders;
+    const struct sweep_error_key *key; /* that is refined */
 };
 
-/* The grid spacing of a value: 1/(n - 1) of n points, else the value itself. */
-static double size_of(const struct sweep_axis *axis, int value) {
+/* The grid spacing of a value. */
+static double size_of(const struct refinement *refinement, int value) {
+    const struct sweep_axis *const axis = &refinement->study->sweep[refinement->orders->axis];
     double number = NAN;
     text_number(axis->value[value * axis->n_keys], &number);
-    const char *const dot = strrchr(axis->key[0].path, '.');
-    const int are_points = dot && (strcmp(dot, ".nodes") == 0 || strcmp(dot, ".sheet_points") == 0);
-    return are_points ? 1 / (number - 1) : number;
+    return refinement->key->kind == SWEEP_POINTS     ? 1 / (number - 1)
+           : refinement->key->kind == SWEEP_DURATION ? 1 / number
+                                                     : number;
 }
 
 /* Sort the levels from coarse to fine: insertion, as there are few. */
-static void sort_levels(const struct case_values *study, struct study_file_orders *orders) {
+static void sort_levels(const struct refinement *refinement) {
+    struct study_orders *const orders = refinement->orders;
     for (int i = 0; i < orders->n_levels; i++) {
-        const double size = size_of(&study->sweep[orders->axis], i);
+        const double size = size_of(refinement, i);
         int j = i;
         for (; j > 0 && orders->grid_spacing[j - 1] < size; j--) {
             orders->grid_spacing[j] = orders->grid_spacing[j - 1];
@@ -134,90 +111,181 @@ static void sort_levels(const struct case_values *study, struct study_file_order
 }
 
 /* Each member with the first value of the refined axis begins a group. */
-static void find_groups(const struct case_values *study, struct study_file_orders *orders) {
+static void find_groups(const struct refinement *refinement) {
     int n = 0;
-    for (int m = 0; m < sweep_n_members(study); m++) {
-        if (sweep_member_value(study, m, orders->axis) == 0) orders->first[n++] = m;
+    for (int m = 0; m < sweep_n_members(refinement->study); m++) {
+        const int value = sweep_member_value(refinement->study, m, refinement->orders->axis);
+        if (value == 0) refinement->orders->first[n++] = m;
     }
 }
 
 /* The member at a level of a group. */
 static const struct member_file *member_at(const struct refinement *refinement, int group, int level) {
-    const struct study_file_orders *const orders = refinement->orders;
+    const struct study_orders *const orders = refinement->orders;
     int stride = 1;
     for (int a = orders->axis + 1; a < refinement->study->n_axes; a++) stride *= refinement->study->sweep[a].n_values;
     return &refinement->members[orders->first[group] + orders->level[level] * stride];
 }
 
-/* One quantity of one fish of a group. */
-static void fill_order(struct refinement *refinement, int group, int q, int f) {
-    struct study_file_orders *const orders = refinement->orders;
-    const int n = orders->n_levels, quantity = member_file_quantity_number(sweep_quantities[q].name);
-    const int of_xy = sweep_quantities[q].of_xy;
-    for (int i = 0; i < n; i++) {
-        const struct member_file *const member = member_at(refinement, group, i);
-        const int is_complete = strcmp(member->status, "complete") == 0;
-        refinement->value[i][0] = is_complete ? member_file_value(member, quantity, f, 0) : NAN;
-        refinement->value[i][1] = of_xy ? member_file_value(member, quantity, f, 1) : 0;
+/* A quantity of a fish at a level of a group; NaN where the member is not complete. */
+static void read_value(const struct refinement *refinement, int group, int level, int q, int f, double value[2]) {
+    const struct member_file *const member = member_at(refinement, group, level);
+    const int quantity = member_file_quantity_number(sweep_quantities[q].name);
+    const int is_complete = strcmp(member->status, "complete") == 0;
+    value[0] = is_complete ? member_file_value(member, quantity, f, 0) : NAN;
+    value[1] = sweep_quantities[q].of_xy ? member_file_value(member, quantity, f, 1) : 0;
+}
+
+/* The error of the values of a member that no level shows: of the integrator, and of the search for a steady state. */
+static double noise_of(const struct refinement *refinement, const struct member_file *member) {
+    const struct case_values *const study = refinement->study;
+    double rtol = study->solver.step > 0 ? 0 : study->school.rtol;
+    for (int a = 0; a < study->n_axes; a++) {
+        const struct sweep_axis *const axis = &study->sweep[a];
+        const int value = sweep_member_value(study, (int)(member - refinement->members), a);
+        for (int k = 0; k < axis->n_keys; k++) {
+            if (strcmp(axis->key[k].path, "solver.rtol") != 0) continue;
+            text_number(axis->value[value * axis->n_keys + k], &rtol);
+        }
     }
+    if (!sweep_is_steady(study)) return rtol;
+    const double error = member_file_value(member, member_file_quantity_number("steady_error"), 0, 0);
+    const double residual = member_file_value(member, member_file_quantity_number("steady_residual"), 0, 0);
+    return rtol + (isnan(error) ? of_residual * residual : error);
+}
+
+/* The levels of a quantity that are judged, from the finest on, and their noise. */
+struct sequence {
+    double value[ERROR_BUDGET_LEVELS][2], noise;
+    int is_known; /* whether any level has a value */
+};
+
+static void read_sequence(const struct refinement *refinement, int group, int q, int f, struct sequence *sequence) {
+    const int finest = refinement->orders->n_levels - 1;
+    sequence->is_known = 0;
+    for (int i = 0; i < refinement->orders->n_judged; i++) {
+        read_value(refinement, group, finest - i, q, f, sequence->value[i]);
+        sequence->is_known |= !isnan(sequence->value[i][0]);
+    }
+    sequence->noise = noise_of(refinement, member_at(refinement, group, finest));
+}
+
+/* Judge a quantity of a fish together with its speed, cost and Strouhal number. */
+static struct study_order judge(const struct refinement *refinement, int group, int q, int f, const double *size) {
+    struct sequence sequence[SWEEP_N_QUANTITIES];
+    struct error_budget_sequence judged[SWEEP_N_QUANTITIES];
+    struct error_budget_result results[SWEEP_N_QUANTITIES];
+    int number[SWEEP_N_QUANTITIES] = {q}, n = 1, culprit;
+    read_sequence(refinement, group, q, f, &sequence[0]);
+    for (int other = 0; other < SWEEP_N_QUANTITIES; other++) {
+        const unsigned traits = sweep_quantities[other].traits;
+        const int is_alike = ((traits ^ sweep_quantities[q].traits) & SWEEP_OF_STEADY) == 0;
+        if (other == q || !(traits & SWEEP_JUDGE) || !is_alike) continue;
+        read_sequence(refinement, group, other, f, &sequence[n]);
+        if (sequence[n].is_known) number[n++] = other;
+    }
+    for (int i = 0; i < n; i++) {
+        judged[i] = (struct error_budget_sequence){(const double(*)[2])sequence[i].value, sequence[i].noise};
+    }
+    const double design = sweep_error_order(refinement->study, refinement->key);
+    const struct error_budget_levels levels = {refinement->orders->n_judged, 0, size, design, NULL};
+    const enum error_budget_verdict verdict = error_budget_judge(&levels, n, judged, results, &culprit);
+    return (struct study_order){.order = results[0].order,
+                                .coarse_order = results[0].coarse_order,
+                                .error = results[0].error,
+                                .is_known = sequence[0].is_known,
+                                .verdict = verdict,
+                                .culprit = culprit < 0 ? -1 : number[culprit]};
+}
+
+/* One quantity of one fish of a group. */
+static void fill_order(const struct refinement *refinement, int group, int q, int f) {
+    struct study_orders *const orders = refinement->orders;
+    const int n = orders->n_levels, of_xy = sweep_quantities[q].of_xy, place = place_of(orders, group, q, f);
     const double given[2] = {sweep_reference(refinement->study, orders->axis, q, f, 0),
                              of_xy ? sweep_reference(refinement->study, orders->axis, q, f, 1) : 0};
     const int is_given = !isnan(given[0]);
-    const double *const exact = is_given ? given : refinement->value[n - 1];
-    const int place = study_file_orders_place(orders, group, q, f);
-    for (int i = 0; i < n; i++) {
-        const double error = hypot(refinement->value[i][0] - exact[0], refinement->value[i][1] - exact[1]);
-        orders->error[place * n + i] = i < n - 1 || is_given ? error : NAN;
+
+    // from the finest level on
+    double size[ERROR_BUDGET_LEVELS], value[ERROR_BUDGET_LEVELS][2];
+    for (int i = 0; i < orders->n_judged; i++) {
+        size[i] = orders->grid_spacing[n - 1 - i];
+        read_value(refinement, group, n - 1 - i, q, f, value[i]);
     }
-    orders->order[place] =
-        study_order(n, orders->grid_spacing, (const double(*)[2])refinement->value, is_given ? given : NULL);
+    struct study_order *const order = &orders->order[place];
+    *order = is_given ? study_order_of_errors(orders->n_judged, size, (const double(*)[2])value, given)
+                      : judge(refinement, group, q, f, size);
+    const double part = 1 / (pow(size[1] / size[0], order->order) - 1);
+    for (int k = 0; k < 2; k++) {
+        const double limit = value[0][k] + (value[0][k] - value[1][k]) * part;
+        order->limit[k] = error_budget_is_flagged(order->verdict) ? NAN : limit;
+    }
+
+    for (int i = 0; i < n; i++) {
+        double at[2];
+        const double *const exact = is_given ? given : value[0];
+        read_value(refinement, group, i, q, f, at);
+        orders->error[place * n + i] = i < n - 1 || is_given ? hypot(at[0] - exact[0], at[1] - exact[1]) : NAN;
+    }
 }
 
-enum status study_orders_create(struct study_file_orders *orders, const struct case_values *study,
+enum status study_orders_create(struct study_orders *orders, const struct case_values *study,
                                 const struct member_file *members) {
-    *orders = (struct study_file_orders){.n_fish = study->school.n_fish};
+    *orders = (struct study_orders){.n_fish = study->school.n_fish};
     while (orders->axis < study->n_axes && !study->sweep[orders->axis].refine) orders->axis++;
     if (orders->axis == study->n_axes) return STATUS_OK;
-    const int n = study->sweep[orders->axis].n_values, n_groups = sweep_n_members(study) / n;
-    struct refinement refinement = {study, members, orders, calloc((size_t)n, sizeof *refinement.value)};
-    enum status status = refinement.value ? study_file_orders_create(orders, n_groups, n) : STATUS_MEMORY;
-    if (status == STATUS_OK) {
-        sort_levels(study, orders);
-        find_groups(study, orders);
-        for (int g = 0; g < n_groups; g++) {
-            for (int q = 0; q < SWEEP_N_ORDERS; q++) {
-                for (int f = 0; f < study->school.n_fish; f++) fill_order(&refinement, g, q, f);
-            }
+    const struct sweep_axis *const axis = &study->sweep[orders->axis];
+    const int n = axis->n_values, n_groups = sweep_n_members(study) / n;
+    TRY(allocate(orders, n_groups, n));
+    const struct refinement refinement = {study, members, orders, sweep_error_find(axis->key[0].row)};
+    sort_levels(&refinement);
+    find_groups(&refinement);
+    for (int g = 0; g < n_groups; g++) {
+        for (int q = 0; q < SWEEP_N_ORDERS; q++) {
+            for (int f = 0; f < study->school.n_fish && is_observed(study, q); f++) fill_order(&refinement, g, q, f);
         }
-    } else {
-        status_fail(STATUS_MEMORY, "out of memory: the orders of %d levels", n);
     }
-    free(refinement.value);
-    return status;
+    return STATUS_OK;
+}
+
+/* Why the levels of a quantity are flagged: "differences change sign (cost_of_transport)"; "" where they are not. */
+static void write_flag(const struct study_order *order, int q, size_t size, char *text) {
+    *text = '\0';
+    if (!error_budget_is_flagged(order->verdict)) return;
+    const int is_own = order->culprit < 0 || order->culprit == q;
+    snprintf(text, size, "%s%s%s%s", error_budget_words(order->verdict), is_own ? "" : " (",
+             is_own ? "" : sweep_quantities[order->culprit].name, is_own ? "" : ")");
 }
 
 // ---- the table
 
 /* Head: the values of the axis over the columns of errors. */
 static void fill_head(const struct study_table *table, const struct case_values *study,
-                      const struct study_file_orders *orders) {
-    static const char *const heads[] = {"coarse order", "order", "extrapolated", "", "GCI"};
+                      const struct study_orders *orders) {
+    static const char *const heads[] = {"coarse order", "order", "extrapolated", "", "error", "by"};
     const struct sweep_axis *const axis = &study->sweep[orders->axis];
-    study_table_set(table, 0, 0, "error of");
+    study_table_set(table, 0, 0, "difference of");
     study_table_set(table, 0, 1, "fish");
     study_table_set(table, 0, 2, "unit");
     for (int i = 0; i < orders->n_levels; i++) {
         study_table_set(table, 0, 3 + i, "%s", axis->value[orders->level[i] * axis->n_keys]);
     }
-    for (int i = 0; i < 5; i++) study_table_set(table, 0, 3 + orders->n_levels + i, "%s", heads[i]);
+    for (int i = 0; i < 6; i++) study_table_set(table, 0, 3 + orders->n_levels + i, "%s", heads[i]);
+}
+
+/* What an error comes from. */
+static const char *basis_of(const struct study_orders *orders, const struct study_order *order, int is_given) {
+    if (is_given) return "reference";
+    if (order->verdict == ERROR_BUDGET_NONE) return "noise";
+    return orders->n_judged < ERROR_BUDGET_LEVELS ? "3 levels (wider bounds)" : "4 levels";
 }
 
 /* One quantity of one fish. */
 static void fill_row(const struct study_table *table, int row, const struct case_values *study,
-                     const struct study_file_orders *orders, int group, int q, int f) {
-    const int n = orders->n_levels, place = study_file_orders_place(orders, group, q, f);
+                     const struct study_orders *orders, int group, int q, int f) {
+    const int n = orders->n_levels, place = place_of(orders, group, q, f);
     const int is_given = !isnan(sweep_reference(study, orders->axis, q, f, 0));
-    const struct study_file_order *const order = &orders->order[place];
+    const struct study_order *const order = &orders->order[place];
     study_table_set(table, row, 0, "%s%s", sweep_quantities[q].name, is_given ? "*" : "");
     study_table_set(table, row, 1, "%s", study->school.fish[f].name);
     study_table_set(table, row, 2, "%s",
@@ -225,18 +293,21 @@ static void fill_row(const struct study_table *table, int row, const struct case
     for (int i = 0; i < n; i++) study_table_number(table, row, 3 + i, "%.2e", orders->error[place * n + i]);
     study_table_number(table, row, n + 3, "%.2f", order->coarse_order);
     study_table_number(table, row, n + 4, "%.2f", order->order);
-    study_table_number(table, row, n + 5, "%.9g", order->extrapolated[0]);
-    if (sweep_quantities[q].of_xy) study_table_number(table, row, n + 6, "%.9g", order->extrapolated[1]);
-    study_table_number(table, row, n + 7, "%.1e", order->gci);
+    study_table_number(table, row, n + 5, "%.9g", order->limit[0]);
+    if (sweep_quantities[q].of_xy) study_table_number(table, row, n + 6, "%.9g", order->limit[1]);
+    study_table_number(table, row, n + 7, "%.1e", order->error);
+    study_table_set(table, row, n + 8, "%s", basis_of(orders, order, is_given));
 }
 
 /* Print the flag of an order, and whether the order is as expected: STATUS_MISSED if it is not. */
-static enum status test_order(const struct case_values *study, const struct study_file_orders *orders, int group, int q,
+static enum status test_order(const struct case_values *study, const struct study_orders *orders, int group, int q,
                               int f, FILE *stream) {
     const struct sweep_axis *const axis = &study->sweep[orders->axis];
-    const struct study_file_order *const order = &orders->order[study_file_orders_place(orders, group, q, f)];
+    const struct study_order *const order = &orders->order[place_of(orders, group, q, f)];
     const char *const fish = study->school.fish[f].name, *const quantity = sweep_quantities[q].name;
-    if (order->flag) fprintf(stream, "warning: %s of %s: %s\n", quantity, fish, order->flag);
+    char flag[WORDS_BYTES];
+    write_flag(order, q, sizeof flag, flag);
+    if (order->is_known && *flag) fprintf(stream, "warning: %s of %s: %s\n", quantity, fish, flag);
     if (!(axis->order_of >> q & 1) || !(axis->order > 0)) return STATUS_OK;
     const int is_met = fabs(order->order - axis->order) <= axis->within;
     fprintf(stream, "%s: order of %s of %s is %.2f, expected %g +- %g\n", is_met ? "met" : "MISSED", quantity, fish,
@@ -247,38 +318,203 @@ static enum status test_order(const struct case_values *study, const struct stud
 }
 
 /* Errors and orders of one group: the members that differ in the refined axis only. */
-static enum status print_group(const struct case_values *study, const struct study_file_orders *orders, int group,
+static enum status print_group(const struct case_values *study, const struct study_orders *orders, int group,
                                FILE *stream) {
-    const int n_fish = study->school.n_fish, n_rows = SWEEP_N_ORDERS * n_fish;
     struct study_table table;
-    TRY(study_table_create(&table, 1 + n_rows, orders->n_levels + 8));
+    TRY(study_table_create(&table, 1 + SWEEP_N_ORDERS * orders->n_fish, orders->n_levels + 9));
     fill_head(&table, study, orders);
-    for (int row = 0; row < n_rows; row++) fill_row(&table, 1 + row, study, orders, group, row / n_fish, row % n_fish);
+    int n_rows = 1;
+    for (int q = 0; q < SWEEP_N_ORDERS; q++) {
+        for (int f = 0; f < orders->n_fish; f++) {
+            if (!orders->order[place_of(orders, group, q, f)].is_known) continue;
+            fill_row(&table, n_rows++, study, orders, group, q, f);
+        }
+    }
+    table.n_rows = n_rows;
     study_table_print(&table, stream);
     study_table_free(&table);
     enum status status = STATUS_OK;
-    for (int row = 0; row < n_rows; row++) {
-        const enum status tested = test_order(study, orders, group, row / n_fish, row % n_fish, stream);
-        if (status == STATUS_OK) status = tested;
+    for (int q = 0; q < SWEEP_N_ORDERS; q++) {
+        for (int f = 0; f < orders->n_fish; f++) {
+            const enum status tested = test_order(study, orders, group, q, f, stream);
+            if (status == STATUS_OK) status = tested;
+        }
     }
     return status;
 }
 
-enum status study_orders_print(const struct case_values *study, const struct study_file_orders *orders, FILE *stream) {
+enum status study_orders_print(const struct case_values *study, const struct study_orders *orders, FILE *stream) {
     enum status status = STATUS_OK;
     for (int g = 0; g < orders->n_groups; g++) {
         const struct sweep_axis *const axis = &study->sweep[orders->axis];
         char *text;
         TRY(sweep_member_text(study, orders->first[g], &text));
-        fprintf(stream, "\nRefinement of %s", axis->key[0].path);
+        fprintf(stream, "\nRefinement of ");
+        for (int k = 0; k < axis->n_keys; k++) fprintf(stream, "%s%s", k > 0 ? " with " : "", axis->key[k].path);
         if (study->n_axes > 1) fprintf(stream, ", from member %d (%s) on", orders->first[g], text);
         fprintf(stream,
-                ": errors against the finest level%s; observed order of the next coarser and of the finest\n"
-                "levels, Richardson's extrapolation and the grid convergence index (GCI, safety factor %g)\n",
-                axis->reference ? " (*: against the reference of the case)" : "", safety_factor);
+                ": differences from the finest level%s; observed order of the next coarser and of the\n"
+                "finest levels, Richardson's extrapolation, and the error of the finest level (doc/studies.md)\n",
+                axis->reference ? " (*: from the reference of the case)" : "");
         free(text);
         const enum status printed = print_group(study, orders, g, stream);
         if (status == STATUS_OK) status = printed;
     }
     return status;
+}
+
+// ---- study.nc
+
+enum orders_dimension { GROUP, LEVEL, ORDERS_FISH, ORDERS_XY, ORDERS_TEXT, N_ORDERS_DIMENSIONS };
+
+static const char *const dimension_names[] = {"group", "level", "fish", "xy", "text"};
+
+/* What there is once. */
+enum { LEVEL_VALUE, LEVEL_SIZE, GROUP_MEMBER, N_SINGLE };
+static const struct single {
+    const char *name, *meaning;
+    enum orders_dimension dimension;
+} singles[N_SINGLE] = {
+    {"level_value", "value of the refined key, from coarse to fine", LEVEL},
+    {"level_size", "grid spacing: the value, or 1/(n - 1) of n points", LEVEL},
+    {"group_member", "first member of each group: members that differ in the refined key only", GROUP},
+};
+
+/* What there is for each quantity: name and meaning take its name. The dimensions begin with group, fish. */
+enum { DIFFERENCE, COARSE_ORDER, ORDER, LIMIT, ERROR, FLAG, N_KINDS };
+static const struct kind {
+    const char *name, *unit, *meaning; /* unit NULL: that of the quantity */
+    enum orders_dimension last;        /* a third dimension; GROUP: none */
+} kinds[N_KINDS] = {
+    {"difference_%s", NULL, "distance of %s from the finest level, or from the reference that the case gives", LEVEL},
+    {"order_before_%s", "1", "observed order of %s of the next coarser levels", GROUP},
+    {"order_%s", "1", "observed order of %s of the finest levels", GROUP},
+    {"limit_%s", NULL, "%s extrapolated to zero spacing by Richardson's method (xy: of positions only)", ORDERS_XY},
+    {"error_%s", NULL, "error of %s at the finest level, as the levels state it (doc/studies.md)", GROUP},
+    {"objection_%s", "", "why the levels of %s state no order, so that the error is a largest difference", ORDERS_TEXT},
+};
+
+// the third dimension of a quantity's variable: an extrapolated value has directions only where the quantity has
+static enum orders_dimension last_of(int kind, int of_xy) {
+    return kinds[kind].last == ORDERS_XY && !of_xy ? GROUP : kinds[kind].last;
+}
+
+// name or meaning of a kind for a quantity
+static void fill_name(char *text, size_t size, const char *format, const char *quantity) {
+    const int before = (int)(strstr(format, "%s") - format);
+    snprintf(text, size, "%.*s%s%s", before, format, quantity, format + before + 2);
+}
+
+int study_orders_listed(int i, struct result_listed *listed) {
+    if (i < N_SINGLE) {
+        *listed = (struct result_listed){.name = singles[i].name,
+                                         .type = i == GROUP_MEMBER ? "int" : "double",
+                                         .unit = i == GROUP_MEMBER ? "1" : "of the key",
+                                         .meaning = singles[i].meaning};
+        snprintf(listed->dimensions, sizeof listed->dimensions, "%s", dimension_names[singles[i].dimension]);
+        return 1;
+    }
+    static char name[N_KINDS][NAME_BYTES], meaning[N_KINDS][MEANING_BYTES];
+    const int k = i - N_SINGLE;
+    if (k >= N_KINDS) return 0;
+    fill_name(name[k], NAME_BYTES, kinds[k].name, "Q");
+    fill_name(meaning[k], MEANING_BYTES, kinds[k].meaning, "Q");
+    *listed = (struct result_listed){.name = name[k],
+                                     .type = k == FLAG ? "char" : "double",
+                                     .unit = kinds[k].unit ? kinds[k].unit : "of Q",
+                                     .meaning = meaning[k]};
+    const char *const last = kinds[k].last == GROUP ? "" : dimension_names[kinds[k].last];
+    snprintf(listed->dimensions, sizeof listed->dimensions, "group, fish%s%s", *last ? ", " : "", last);
+    return 1;
+}
+
+// ---- definition
+
+static void define(struct netcdf_writer *writer, const char *name, enum netcdf_type type, int n, const int *dimensions,
+                   const char *units, const char *meaning) {
+    struct netcdf_variable variable = {.name = name,
+                                       .long_name = meaning,
+                                       .units = units,
+                                       .type = type,
+                                       .n_dimensions = n,
+                                       .has_gaps = type == NETCDF_DOUBLE};
+    memcpy(variable.dimension, dimensions, (size_t)n * sizeof *dimensions);
+    netcdf_define_variable(writer, &variable);
+}
+
+static void define_quantity(struct netcdf_writer *writer, int q, const int dimensions[N_ORDERS_DIMENSIONS]) {
+    const struct sweep_quantity *const quantity = &sweep_quantities[q];
+    const char *const own_units = member_file_quantity(member_file_quantity_number(quantity->name))->unit;
+    for (int k = 0; k < N_KINDS; k++) {
+        char name[NAME_BYTES], meaning[MEANING_BYTES];
+        fill_name(name, sizeof name, kinds[k].name, quantity->name);
+        fill_name(meaning, sizeof meaning, kinds[k].meaning, quantity->name);
+        const enum orders_dimension last = last_of(k, quantity->of_xy);
+        const int of_variable[] = {dimensions[GROUP], dimensions[ORDERS_FISH], dimensions[last]};
+        define(writer, name, k == FLAG ? NETCDF_TEXT : NETCDF_DOUBLE, last == GROUP ? 2 : 3, of_variable,
+               kinds[k].unit ? kinds[k].unit : own_units, meaning);
+    }
+}
+
+void study_orders_define(struct netcdf_writer *writer, const struct case_values *study,
+                         const struct study_orders *orders, const int dimensions[3]) {
+    if (orders->n_groups == 0) return;
+    int all[N_ORDERS_DIMENSIONS] = {0, 0, dimensions[0], dimensions[1], dimensions[2]};
+    all[GROUP] = netcdf_define_dimension(writer, dimension_names[GROUP], (size_t)orders->n_groups);
+    all[LEVEL] = netcdf_define_dimension(writer, dimension_names[LEVEL], (size_t)orders->n_levels);
+    const char *const key_unit = study->sweep[orders->axis].key[0].unit;
+    for (int i = 0; i < N_SINGLE; i++) {
+        define(writer, singles[i].name, i == GROUP_MEMBER ? NETCDF_INT : NETCDF_DOUBLE, 1, &all[singles[i].dimension],
+               i == GROUP_MEMBER ? "1" : key_unit, singles[i].meaning);
+    }
+    for (int q = 0; q < SWEEP_N_ORDERS; q++) {
+        if (is_observed(study, q)) define_quantity(writer, q, all);
+    }
+}
+
+// ---- writing
+
+/* One quantity of one fish of a group. */
+static void write_order(struct netcdf_writer *writer, const struct study_orders *orders, int group, int q, int f,
+                        size_t n_text, char *text) {
+    const int place = place_of(orders, group, q, f);
+    const struct study_order *const order = &orders->order[place];
+    const double *const values[] = {[DIFFERENCE] = orders->error + (long)place * orders->n_levels,
+                                    [COARSE_ORDER] = &order->coarse_order,
+                                    [ORDER] = &order->order,
+                                    [LIMIT] = order->limit,
+                                    [ERROR] = &order->error};
+    const size_t start[] = {(size_t)group, (size_t)f, 0};
+    const struct sweep_quantity *const quantity = &sweep_quantities[q];
+    char name[NAME_BYTES];
+    for (int k = 0; k < FLAG; k++) {
+        const size_t n_last = k == DIFFERENCE ? (size_t)orders->n_levels : k == LIMIT && quantity->of_xy ? 2 : 1;
+        fill_name(name, sizeof name, kinds[k].name, quantity->name);
+        netcdf_write_doubles(writer, netcdf_number(writer, name), start, (size_t[]){1, 1, n_last}, values[k]);
+    }
+    fill_name(name, sizeof name, kinds[FLAG].name, quantity->name);
+    memset(text, 0, n_text);
+    write_flag(order, q, n_text, text);
+    netcdf_write_text(writer, netcdf_number(writer, name), start, (size_t[]){1, 1, n_text}, text);
+}
+
+void study_orders_write(struct netcdf_writer *writer, const struct case_values *study,
+                        const struct study_orders *orders, size_t n_text, char *text) {
+    if (orders->n_groups == 0) return;
+    const struct sweep_axis *const axis = &study->sweep[orders->axis];
+    const int value_number = netcdf_number(writer, singles[LEVEL_VALUE].name);
+    for (int i = 0; i < orders->n_levels; i++) {
+        double value = NAN;
+        text_number(axis->value[orders->level[i] * axis->n_keys], &value);
+        netcdf_write_doubles(writer, value_number, (size_t[]){(size_t)i}, (size_t[]){1}, &value);
+    }
+    netcdf_write_doubles(writer, netcdf_number(writer, singles[LEVEL_SIZE].name), NULL, NULL, orders->grid_spacing);
+    netcdf_write_ints(writer, netcdf_number(writer, singles[GROUP_MEMBER].name), NULL, NULL, orders->first);
+    for (int g = 0; g < orders->n_groups; g++) {
+        for (int q = 0; q < SWEEP_N_ORDERS; q++) {
+            for (int f = 0; f < orders->n_fish && is_observed(study, q); f++) {
+                write_order(writer, orders, g, q, f, n_text, text);
+            }
+        }
+    }
 }

@@ -100,6 +100,91 @@ static void means_over_the_last_period_do_not_notice_a_displacement(void **state
     simulate_free(simulation);
 }
 
+static void means_over_the_last_period_do_not_notice_a_turn_in_a_stream(void **state) {
+    (void)state;
+    struct simulation *const simulation = school_simulation(
+        SCHOOL_SECOND
+        "time: {end: 3, shedding_interval: 0.02, output_interval: 0.02}\nfluid: {velocity: [0.4, -0.2]}\n"
+        "fish: [{start: {speed: 0.5}}]\n");
+    school_run(simulation, 1.5);
+    simulate_measure(simulation);
+    const struct diagnostics_fish before = *simulation->diagnostics->fish;
+    rigid_change(simulation->school, simulation->state, 0, &(struct rigid){.place = {3, 1}, .heading = 0.7});
+    simulate_measure(simulation);
+    const struct diagnostics_fish *const now = simulation->diagnostics->fish;
+    // the way over ground is 0.3 to 0.5 of that through the water: a stream left as it was changes all of them
+    const double rounding = 1e-12;
+    NEAR(now->speed, before.speed, 0, rounding);
+    NEAR(now->ground_speed, before.ground_speed, 0, rounding);
+    NEAR(now->mean_thrust, before.mean_thrust, 0, rounding);
+    NEAR(now->mean_power, before.mean_power, 0, rounding);
+    NEAR(now->efficiency, before.efficiency, 0, rounding);
+    NEAR(now->thrust_efficiency, before.thrust_efficiency, 0, rounding);
+    NEAR(now->strouhal, before.strouhal, 0, rounding);
+    // the way through the water turns with the desired heading where it was
+    NEAR(now->heading_error, before.heading_error + 0.7 * 180 / M_PI, 1e-10, 0);
+    simulate_free(simulation);
+}
+
+static void the_drift_of_a_stream_goes_on_with_the_stream_that_is_there(void **state) {
+    (void)state;
+    struct simulation *const simulation = school_simulation(
+        "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\nfluid: {velocity: [0.4, 0], shear: 0.5}\n"
+        "fish: [{}]\n");
+    school_run(simulation, 0.2);
+    rigid_change(simulation->school, simulation->state, 0, &(struct rigid){.place = {0, 2}, .heading = 1});
+    const struct sample *const newest = state_recall(&simulation->state->history[0], 0);
+    NEAR(newest->stream[0], 0.4 + 0.5 * newest->com[1], 1e-14, 0);
+    NEAR(newest->stream[1], 0, 1e-14, 0);
+    simulate_free(simulation);
+}
+
+static void the_tail_of_a_fish_that_turns_faster_goes_faster(void **state) {
+    (void)state;
+    struct setup setup;
+    set_up(&setup);
+    const struct fish *const fish = &setup.school->fish[1];
+    struct wake *const wake = &setup.state->wake[1];
+    const double *const y = setup.state->y;
+    const int at[2] = {fish->at.vx + fish->n_nodes - 1, fish->at.vy + fish->n_nodes - 1};
+    double fluid[2];
+    for (int i = 0; i < 2; i++) {
+        wake->tail_velocity[i] = y[at[i]];
+        fluid[i] = wake->slip[i] + y[at[i]];
+    }
+    // without a turn of the body itself what is kept of the tail has to be what its node does
+    rigid_change(setup.school, setup.state, 1, &(struct rigid){.velocity = {0.2, 0.1}, .turn = 3});
+    for (int i = 0; i < 2; i++) {
+        NEAR(wake->tail_velocity[i], y[at[i]], 1e-14, 0);
+        NEAR(wake->slip[i], fluid[i] - y[at[i]], 1e-14, 0);
+    }
+    school_clear(&setup);
+}
+
+static void all_vectors_of_fish_and_wake_turn_together(void **state) {
+    (void)state;
+    struct setup setup;
+    set_up(&setup);
+    struct history *const history = &setup.state->history[1];
+    const struct wake *const wake = &setup.state->wake[1];
+    state_remember(history,
+                   &(struct sample){.velocity = {1, 2}, .friction = {3, 4}, .force = {5, 6}, .drifted = {7, 8}});
+    state_remember(history, &(struct sample){.heading = 1});
+    const double velocity[2] = {wake->tail_velocity[0], wake->tail_velocity[1]},
+                 slip[2] = {wake->slip[0], wake->slip[1]};
+    // a quarter turn to the left makes (a, b) into (-b, a)
+    rigid_change(setup.school, setup.state, 1, &(struct rigid){.heading = M_PI / 2});
+    const struct sample *const sample = state_recall(history, 1);
+    NEAR_ARRAY(2, sample->velocity, ((double[]){-2, 1}), 1e-14, 0);
+    NEAR_ARRAY(2, sample->friction, ((double[]){-4, 3}), 1e-14, 0);
+    NEAR_ARRAY(2, sample->force, ((double[]){-6, 5}), 1e-14, 0);
+    NEAR_ARRAY(2, sample->drifted, ((double[]){-8, 7}), 1e-14, 0);
+    NEAR_ARRAY(2, wake->tail_velocity, ((double[]){-velocity[1], velocity[0]}), 1e-14, 0);
+    NEAR_ARRAY(2, wake->slip, ((double[]){-slip[1], slip[0]}), 1e-14, 0);
+    NEAR(state_recall(history, 0)->heading, 1 + M_PI / 2, 1e-15, 0);
+    school_clear(&setup);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_rigid_motion_is_read_exactly),
@@ -107,6 +192,10 @@ int main(void) {
         cmocka_unit_test(what_is_added_is_read_and_other_fish_stay),
         cmocka_unit_test(a_vortex_lies_where_the_faster_tail_would_have_left_it),
         cmocka_unit_test(means_over_the_last_period_do_not_notice_a_displacement),
+        cmocka_unit_test(means_over_the_last_period_do_not_notice_a_turn_in_a_stream),
+        cmocka_unit_test(the_drift_of_a_stream_goes_on_with_the_stream_that_is_there),
+        cmocka_unit_test(the_tail_of_a_fish_that_turns_faster_goes_faster),
+        cmocka_unit_test(all_vectors_of_fish_and_wake_turn_together),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -10,11 +10,9 @@
 
 // ---- which warnings a run has
 
-// those of a run up to t, one character each: "contact" c, energy e, drift d, events v, sheet s, modes m,
-// leading edge l
-static void expect_warnings(const char *text, double t, const char *expected) {
-    struct simulation *const simulation = school_simulation(text);
-    school_run(simulation, t);
+// those of a simulation, one character each: contact c, a body crosses itself x, divergence i, energy e, drift d,
+// events v, sheet s, modes m, leading edge l
+static void expect_of(struct simulation *simulation, const char *expected) {
     simulate_measure(simulation);
     char line[WARNING_BYTES], found[N_WARNINGS + 1] = "";
     for (enum warning w = 0; w < N_WARNINGS; w++) {
@@ -23,9 +21,16 @@ static void expect_warnings(const char *text, double t, const char *expected) {
             continue;
         print_message("%s\n", line);
         assert_null(strchr(line, '\n'));
-        strncat(found, &"cedvsml"[w], 1);
+        strncat(found, &"cxiedvsml"[w], 1);
     }
     assert_string_equal(found, expected);
+}
+
+// those of a run up to t
+static void expect_warnings(const char *text, double t, const char *expected) {
+    struct simulation *const simulation = school_simulation(text);
+    school_run(simulation, t);
+    expect_of(simulation, expected);
     simulate_free(simulation);
 }
 
@@ -76,6 +81,91 @@ static void an_open_energy_balance_is_told(void **state) {
                     10, "ev");
 }
 
+static void an_open_energy_balance_is_told_within_the_first_beat(void **state) {
+    (void)state;
+    struct simulation *const simulation = school_simulation(SCHOOL_SECOND TIME "fish: [{start: {speed: 1}}]\n");
+    school_run(simulation, 0.5);
+    const struct fish *const fish = simulation->school->fish;
+    // of a fish at 1 m/s, one length per beat, the energy of one length per beat is m, that of the body m/2
+    double *const work = &simulation->state->balance[0].work[WORK_ALL];
+    const double closed = *work;
+    *work = closed + 0.008 * fish->total_mass;
+    expect_of(simulation, "");
+    *work = closed + 0.012 * fish->total_mass;
+    expect_of(simulation, "e");
+    simulate_free(simulation);
+}
+
+static void a_run_that_diverges_in_its_first_beat_says_so(void **state) {
+    (void)state;
+    struct simulation *const simulation =
+        school_simulation(SCHOOL_SECOND TIME "fish: [{}, {start: {position: [0, 2]}}]\n");
+    school_run(simulation, 0.1);
+    const struct layout *const at = &simulation->school->fish[1].at;
+    const double limit = 100 * 2 * 3.14159265358979;  // a hundred times the circular speed of a length per beat
+    double *const y = simulation->state->y;
+    const double kept[] = {y[at->circulation], y[at->vy + 3]};
+    y[at->circulation] = -0.99 * limit;
+    expect_of(simulation, "");
+    y[at->circulation] = -1.01 * limit;
+    expect_of(simulation, "i");
+    y[at->circulation] = kept[0];
+    // it has passed, but the wake has it
+    simulation->state->wake[1].circulation[2] = 3e5;
+    expect_of(simulation, "i");
+    simulation->state->wake[1].circulation[2] = 0;
+    expect_of(simulation, "");
+    y[at->vy + 3] = 1.01 * limit;
+    char line[WARNING_BYTES];
+    simulate_measure(simulation);
+    assert_true(warnings_line(WARNING_DIVERGENCE, simulation->school, simulation->state, simulation->diagnostics,
+                              simulation->residual->scratch, line));
+    assert_non_null(strstr(line, "fish2 has diverged"));
+    y[at->vy + 3] = kept[1];
+    simulate_free(simulation);
+}
+
+static void speeds_that_the_case_gives_are_no_divergence(void **state) {
+    (void)state;
+    // a beat of 1 Hz alone would be exceeded a hundred times at 628 m/s, or m2/s
+#define REST SCHOOL_SECOND TIME "fluid: {density: 0%s}\nfish: [{wave: {amplitude: 0}, %s}]\n"
+    static const struct {
+        const char *fluid, *fish;
+    } fast[] = {{", velocity: [0, 1e3]", "motion: {driven: all, speed: 0}"},
+                {", shear: 1e3", "start: {position: [0, 1], heading: 90}, motion: {driven: all, speed: 0}"},
+                {", gust: {amplitude: 1e3, frequency: 1}", "motion: {driven: all, speed: 0}"},
+                {"", "start: {speed: 1e3}"},
+                {"", "motion: {driven: all, heave: 200, frequency: 1}"},
+                {"", "motion: {driven: all, speed: 1e3}"},
+                {"", "load: {tip: [5e5, 0]}, body: {modulus: 1e12}"}};
+    double least = INFINITY;
+    for (size_t i = 0; i < sizeof fast / sizeof *fast; i++) {
+        char text[1024];
+        snprintf(text, sizeof text, REST, fast[i].fluid, fast[i].fish);
+        struct simulation *const simulation = school_simulation(text);
+        school_run(simulation, 0.1);
+        simulate_measure(simulation);
+        char line[WARNING_BYTES] = "";
+        warnings_line(WARNING_DIVERGENCE, simulation->school, simulation->state, simulation->diagnostics,
+                      simulation->residual->scratch, line);
+        assert_string_equal(line, "");
+        const struct layout *const at = &simulation->school->fish[0].at;
+        const double *const y = simulation->state->y;
+        least = fmin(least, fmax(fabs(y[at->circulation]), hypot(y[at->vx], y[at->vy])));
+        simulate_free(simulation);
+    }
+    assert_true(least > 700);
+}
+
+static void a_body_that_crosses_itself_is_told_without_a_fluid_too(void **state) {
+    (void)state;
+    expect_warnings(SCHOOL_SECOND TIME "fluid: {density: 0}\nfish: [{}]\n", 0.9, "");
+    expect_warnings(SCHOOL_SECOND TIME
+                    "fluid: {density: 0}\nfish: [{wave: {amplitude: 0.4, constant: 3, linear: 0, quadratic: 0,"
+                    " number: 0, ramp: 1}}]\n",
+                    0.9, "x");
+}
+
 static void separation_at_the_nose_is_told(void **state) {
     (void)state;
 #define INCLINED(degrees, more)                                                            \
@@ -123,6 +213,10 @@ int main(void) {
         cmocka_unit_test(a_soft_body_is_slower_than_its_beat),
         cmocka_unit_test(few_sheet_points_for_a_short_stretch_are_told),
         cmocka_unit_test(an_open_energy_balance_is_told),
+        cmocka_unit_test(an_open_energy_balance_is_told_within_the_first_beat),
+        cmocka_unit_test(a_run_that_diverges_in_its_first_beat_says_so),
+        cmocka_unit_test(speeds_that_the_case_gives_are_no_divergence),
+        cmocka_unit_test(a_body_that_crosses_itself_is_told_without_a_fluid_too),
         cmocka_unit_test(separation_at_the_nose_is_told),
         cmocka_unit_test(bodies_that_pass_through_each_other_are_told),
     };

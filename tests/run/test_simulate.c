@@ -1,5 +1,4 @@
 /* test_simulate.c: whole short runs: symmetries of the model, events, failures, result files. */
-#include <kinsol/kinsol.h>
 #include <netcdf.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,6 +9,7 @@
 #include "run/checkpoints.h"
 #include "run/simulate_run.h"
 #include "school.h"
+#include "solver/sundials.h"
 
 #define TIME "time: {end: 0.5, shedding_interval: 0.02}\n"
 #define TIGHT "solver: {rtol: 1.0e-8, order: 2, coupling_distance: 100}\n"

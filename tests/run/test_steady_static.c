@@ -163,6 +163,10 @@ static void where_there_is_none_it_says_how_far_the_stream_can_grow(void **state
     const char *const words = strstr(status_message(), "ends at ");
     assert_non_null(words);
     NEAR(strtod(words + strlen("ends at "), NULL), sqrt(0.62832), 2e-3, 0);
+    // the stream and the loads of the case are constants, also where only a part of them has an equilibrium
+    const struct school *const school = found.simulation->school;
+    NEAR(school->velocity[0], 0.01, 0, 0);
+    NEAR(school->fish[0].load_tip[0], -1000, 0, 0);
     simulate_free(found.simulation);
 }
 

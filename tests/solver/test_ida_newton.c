@@ -1,5 +1,4 @@
 /* test_ida_newton.c: Newton's iteration on equations whose Jacobian is wrong by a known factor. */
-#include <nvector/nvector_serial.h>
 #include <stdlib.h>
 
 #include "school.h"
@@ -41,7 +40,7 @@ static int residual(N_Vector total, N_Vector value, void *data) {
     return 0;
 }
 
-static int set_up_matrix(booleantype bad, booleantype *current, void *data) {
+static int set_up_matrix(sunbooleantype bad, sunbooleantype *current, void *data) {
     struct problem *const problem = data;
     problem->n_set_ups++;
     problem->n_bad += bad;
@@ -76,7 +75,7 @@ static void set_up(struct problem *problem) {
     *problem = (struct problem){.root = 1, .coefficient = 100, .updated = problem->updated};
     school_build(&problem->setup, "time: {end: 1}\nfish: [{nodes: 4, sheet_points: 5}]\n");
     const int n = problem->setup.school->n_unknowns;
-    assert_int_equal(SUNContext_Create(NULL, &problem->context), 0);
+    assert_int_equal(SUNContext_Create(SUN_COMM_NULL, &problem->context), 0);
     problem->predicted = N_VNew_Serial(n, problem->context);
     problem->total = N_VNew_Serial(n, problem->context);
     problem->weights = N_VNew_Serial(n, problem->context);

@@ -1,7 +1,5 @@
 /* test_shared_vector.c: against the serial vectors of SUNDIALS, bit by bit, with any number of threads. */
 #include <math.h>
-#include <nvector/nvector_serial.h>
-#include <sundials/sundials_context.h>
 
 #include "base/parallel.h"
 #include "failing_malloc.h"
@@ -28,7 +26,7 @@ static void fill(void) {
 
 static void create(struct both *both) {
     both->school = (struct school){.n_fish = 5, .n_unknowns = N, .threads = 1};
-    assert_int_equal(SUNContext_Create(NULL, &both->context), 0);
+    assert_int_equal(SUNContext_Create(SUN_COMM_NULL, &both->context), 0);
     for (int k = 0; k < N_VECTORS; k++) {
         school_ok(shared_vector_create(&both->vector[SHARED][k], both->context, &both->school, values[SHARED][k]));
         both->vector[SERIAL][k] = N_VMake_Serial(N, values[SERIAL][k], both->context);

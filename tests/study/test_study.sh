@@ -156,6 +156,7 @@ end
 run study refined.yaml -q
 check the_expected_order_gives_exit_code_0 test "$code" = 0
 check orders_are_printed grep -qE '^ +nose +fish1 +m +[0-9.e-]+ +[0-9.e-]+ +- +- +[12]\.[0-9]+ ' out
+check three_levels_have_wider_bounds grep -qE '^ +nose .* 3 levels \(wider bounds\)$' out
 check levels_are_sorted_from_coarse_to_fine grep -qE 'unit +0\.04 +0\.02 +0\.01 ' out
 refused another_order_gives_exit_code_3 3 \
     'in time.shedding_interval, expected 3 +- 0.1' study refined.yaml -o third -q \
@@ -168,7 +169,7 @@ run study refined.yaml -o given -q \
 check errors_are_against_the_reference grep -qE \
     '^ +speed\* +fish1 +m s-1 +9\.9.e\+01 +9\.9.e\+01 +9\.9.e\+01 +-?0\.00 ' out
 check other_errors_are_against_the_finest grep -qE '^ +nose +fish1 +m +[0-9.e-]+ +[0-9.e-]+ +- ' out
-check the_head_says_so has out "against the finest level (*: against the reference of the case)"
+check the_head_says_so has out "from the finest level (*: from the reference of the case)"
 run info given/study.nc
 check info_prints_orders_too grep -qE '^ +speed\* +fish1 ' out
 refused the_order_of_any_quantity_can_be_expected 3 'speed of fish1: observed order' \
@@ -180,6 +181,16 @@ check info_prints_what_was_missed eval 'test "$code" = 0 && has out "missed: spe
 run study refined.yaml -o groups -q --set time.end=0.08 \
     --set 'sweep=[{key: solver.rtol, values: [1e-4, 1e-5, 1e-6], refine: true}, {key: solver.order, values: [1, 2]}]'
 check other_axes_make_groups has out 'Refinement of solver.rtol, from member 1 (solver.rtol=1e-4, solver.order=2) on'
+
+run study refined.yaml -o swimming -q --set solver.rtol=1e-5 --set time.shedding_interval=0.05 \
+    --set steady.multipliers=false --set steady.tolerance=1e-4 --set 'sweep=[{
+    keys: [time.shedding_interval, wake.smoothing, "fish[*].sheet_points"], steady: true, refine: true,
+    values: [[0.1, 0.2, 17], [0.05, 0.14, 25], [0.025, 0.1, 33], [0.0125, 0.07, 47]],
+    expect: {order: 1, within: 20}}]'
+check steady_states_are_refined eval 'test "$code" = 0 && grep -qE "^ +steady_speed +fish1 .* 4 levels$" out'
+check several_keys_are_refined_together has out 'of time.shedding_interval with wake.smoothing with fish[*].sheet_points'
+check quantities_without_values_are_left_out eval '! grep -qE "^ +(nose|steady_drag)" out'
+check the_order_of_the_steady_speed_is_expected grep -qE '^met: order of steady_speed of fish1 is ' out
 
 # ---- what is expected of members
 

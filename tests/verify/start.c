@@ -4,7 +4,6 @@
  * Its rows and columns come in accelerations, velocities, circulations and numbers; each is divided by its largest
  * entry, rows first, before the condition number is taken: what is left of a bad one is no matter of units.
  */
-#include <ida/ida.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,6 +11,7 @@
 #include "model/flow_at_bodies.h"
 #include "model/flow_derivative.h"
 #include "model/residual_jacobian.h"
+#include "solver/sundials.h"
 #include "solver/sundials_adapter.h"
 #include "verify.h"
 
@@ -323,14 +323,14 @@ struct correction {
     enum status failure;
 };
 
-static int value_callback(realtype t, N_Vector y, N_Vector yp, N_Vector value, void *data) {
+static int value_callback(sunrealtype t, N_Vector y, N_Vector yp, N_Vector value, void *data) {
     const struct correction *const correction = data;
     flow_sum_exactly(correction->simulation->residual->flow);
     return residual_evaluate(correction->simulation->residual, t, N_VGetArrayPointer(y), N_VGetArrayPointer(yp),
                              N_VGetArrayPointer(value));
 }
 
-static int jacobian_callback(realtype t, realtype cj, N_Vector y, N_Vector yp, N_Vector value, SUNMatrix matrix,
+static int jacobian_callback(sunrealtype t, sunrealtype cj, N_Vector y, N_Vector yp, N_Vector value, SUNMatrix matrix,
                              void *data, N_Vector scratch1, N_Vector scratch2, N_Vector scratch3) {
     (void)yp, (void)value, (void)matrix, (void)scratch1, (void)scratch2, (void)scratch3;
     struct correction *const correction = data;
@@ -346,7 +346,7 @@ static int calculate(struct simulation *simulation, double *y, double *yp, doubl
     double *const values[4] = {y, yp, kind, tolerance};
     SUNContext context;
     N_Vector vector[4];
-    if (sundials_adapter_context(&context, n) != STATUS_OK) abort();
+    if (sundials_adapter_context(&context, n, &correction.failure) != STATUS_OK) abort();
     for (int i = 0; i < 4; i++) {
         if (sundials_adapter_vector(&vector[i], context, n, values[i]) != STATUS_OK) abort();
     }
