@@ -128,7 +128,7 @@ python_modules = $(prefix)/lib/python$(if $(filter /usr,$(prefix)),3,$(python_ve
 # make again, on all cores unless told otherwise
 parallel = $(MAKE) --no-print-directory $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
-.PHONY: all demo test test-slurm tests valgrind verify soak fuzz fuzz-programs mutants bench style format docs install uninstall clean deps help FORCE
+.PHONY: all demo test test-slurm tests valgrind verify numbers soak fuzz fuzz-programs mutants bench style format docs install uninstall clean deps help FORCE
 
 ## Everyday
 
@@ -148,9 +148,14 @@ test-slurm: deps  ## install Slurm where it is missing, start it, run a study on
 	@$(parallel) all
 	@tests/slurm/test_slurm.sh $(program)
 
-verify: deps  ## check the program against classical results (minutes) and write doc/verification.md
+verify: deps  ## check the program against classical results (minutes): build/verify/report.md with figures
 	@$(parallel) $(verify_program)
-	@scripts/verify.sh $(verify_program) $(B)/verify
+	@scripts/verify.sh $(verify_program) $(B)/verify doc/verification.md
+
+numbers: deps  ## measure all tables of README.md and doc/*.md again, and draw doc/figures (an hour)
+	@$(parallel) all
+	@scripts/measure.py --write README.md doc/*.md
+	@scripts/measure.py --figures doc/figures
 
 valgrind: deps  ## let valgrind watch the tests in C (TEST="..."), and a run of the program (an hour)
 	@scripts/install-deps.sh valgrind
@@ -223,7 +228,7 @@ install: $(program) $(library) $(shared) $(manual) $(completion)  ## install pro
 	$(quiet)install -m 644 cases/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases'
 	$(quiet)install -m 644 cases/include/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases/include'
 	$(quiet)install -m 644 cases/studies/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases/studies'
-	$(quiet)install -m 755 $(filter-out scripts/make-% scripts/verify.py scripts/numerics.py scripts/mutants.py scripts/shoal.py,$(wildcard scripts/*.py)) '$(DESTDIR)$(prefix)/share/shoal/scripts'
+	$(quiet)install -m 755 $(filter-out scripts/make-% scripts/verify.py scripts/measure.py scripts/mutants.py scripts/shoal.py,$(wildcard scripts/*.py)) '$(DESTDIR)$(prefix)/share/shoal/scripts'
 	$(quiet)install -d '$(DESTDIR)$(python_modules)' '$(DESTDIR)$(prefix)/share/shoal/doc/'{examples,figures}
 	$(quiet)install -m 644 scripts/shoal.py '$(DESTDIR)$(python_modules)'
 	$(quiet)install -m 755 doc/examples/*.py '$(DESTDIR)$(prefix)/share/shoal/doc/examples'

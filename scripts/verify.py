@@ -1,9 +1,10 @@
 #!/usr/bin/python3
-"""Write doc/verification.md and its figures from the tables of the checks (scripts/verify.sh makes them).
+"""Write the report of the checks (scripts/verify.sh runs them), and their summary into doc/verification.md.
 
-    scripts/verify.py FOLDER DOCUMENT FIGURES
+    scripts/verify.py FOLDER [DOCUMENT]
 
-FOLDER holds SECTION.tsv of every section. A line of a table, between tabs:
+FOLDER holds SECTION.tsv of every section and receives report.md and figures/. The table of DOCUMENT that starts with
+"| section |" is replaced. A line of SECTION.tsv, between tabs:
 
     row    section  quantity  source  reference  obtained  error  bound  order  verdict
     point  figure   series    x       y
@@ -17,6 +18,7 @@ The same tables give the same files, byte for byte.
 import math
 import os
 import re
+import shutil
 import sys
 
 from plot_style import LINES, STYLE
@@ -25,17 +27,16 @@ from matplotlib import pyplot
 from PIL import Image
 
 INTRODUCTION = """\
-# Verification
+# Verification report
 
-Every number below was obtained by running the program: `make verify` runs all the checks (minutes), writes this page
-and its figures from what they find, and fails where a bound is missed; `make test` runs those that take seconds. The
-equations are those of doc/model.md. The checks are C programs in tests/verify, one file per section; each opens a case
-like those of a user, runs it, and compares with a result that does not come from this program: a closed formula, a
-number from the literature, a conservation law, a symmetry, or the same run refined.
+Every number below was obtained by `make verify`. The checks are C programs in tests/verify, one file per section; each
+runs a case like those of a user and compares with a result that does not come from this program: a closed formula, a
+number from the literature, a conservation law, a symmetry, or the same run refined. Equation numbers refer to
+doc/model.md.
 
-How to read the tables: *error* is the difference from the reference, relative where it says so (rel); *order* is the
-observed order of convergence, log2 of the ratio of two errors at a refinement by two, or a slope. A row without a bound
-shows a number and checks nothing. A bound that is not the obvious one has its reason under *reference*.
+*error* is the difference from the reference, relative where marked (rel); *order* is the observed order of
+convergence, log2 of the ratio of two errors at a refinement by two, or a slope. A row without a bound shows a number
+and checks nothing. A bound that is not obvious has its reason under *reference*.
 """
 
 # per section: its heading and what stands above its table
@@ -391,34 +392,46 @@ def summary(tables):
         missed = sum(1 for row in rows if row[8] == "MISSED")
         totals = [totals[0] + checks, totals[1] + missed]
         heading = SECTIONS[name][0]
-        lines.append(f"| [{heading}](#{heading.lower().replace(' ', '-')}) | {checks} | {missed} |")
+        lines.append(f"| {heading} | {checks} | {missed} |")
     lines.append(f"| all | {totals[0]} | {totals[1]} |")
     return "\n".join(lines)
 
 
+def replace_summary(document, table):
+    """Put the summary into a document, in place of the table that starts with "| section |"."""
+    with open(document, encoding="utf-8") as file:
+        text = file.read()
+    text, n_tables = re.subn(r"^\| section \|.*\n(\|.*\n)*", lambda _: table + "\n", text, flags=re.MULTILINE)
+    if n_tables != 1:
+        sys.exit(f"verify.py: {document} has {n_tables} tables that start with '| section |', not one")
+    with open(document, "w", encoding="utf-8") as file:
+        file.write(text)
+
+
 def main():
-    if len(sys.argv) != 4:
+    if len(sys.argv) not in (2, 3):
         sys.exit(__doc__)
-    folder, document, pictures = sys.argv[1:]
+    folder = sys.argv[1]
+    pictures = os.path.join(folder, "figures")
     tables = {name: read_table(os.path.join(folder, f"{name}.tsv"))
               for name in SECTIONS if os.path.exists(os.path.join(folder, f"{name}.tsv"))}
     if not tables:
         sys.exit(f"verify.py: no table in {folder}: scripts/verify.sh makes them")
-    os.makedirs(pictures, exist_ok=True)
-    for old in os.listdir(pictures):
-        if old.startswith("verify_"):
-            os.remove(os.path.join(pictures, old))
+    shutil.rmtree(pictures, ignore_errors=True)
+    os.makedirs(pictures)
     parts = [INTRODUCTION, summary(tables)]
     for name, (rows, figures) in tables.items():
         heading, text = SECTIONS[name]
         parts += [f"\n## {heading}\n\n{text}\n", table_of(rows)]
         for figure, series in figures.items():
-            picture = os.path.join(pictures, f"verify_{slug(figure)}.png")
-            draw_figure(figure, series, picture)
+            picture = f"{slug(figure)}.png"
+            draw_figure(figure, series, os.path.join(pictures, picture))
             caption = FIGURE[figure][0] if figure in FIGURE else figure.replace("_", " ")
-            parts.append(f"\n![{caption}]({os.path.relpath(picture, os.path.dirname(document) or '.')})")
-    with open(document, "w", encoding="utf-8") as file:
+            parts.append(f"\n![{caption}](figures/{picture})")
+    with open(os.path.join(folder, "report.md"), "w", encoding="utf-8") as file:
         file.write("\n".join(parts) + "\n")
+    if len(sys.argv) == 3:
+        replace_summary(sys.argv[2], summary(tables))
 
 
 if __name__ == "__main__":

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Run the checks against classical results, and write doc/verification.md with its figures from what they find.
+# Run the checks against classical results; write a report with figures and the summary in doc/verification.md.
 #
-#   scripts/verify.sh PROGRAM FOLDER [DOC]
+#   scripts/verify.sh PROGRAM FOLDER [DOCUMENT]
 #
 # PROGRAM is build/verify/verify. Each section writes its table FOLDER/SECTION.tsv; two sections run at a time, and
-# their rows are printed in the order of the document. DOC is the folder of the document (doc). Run it from the top of
-# the tree: some sections read cases/. Exit code: 0, 3 where a bound was missed, 1 where a section or the report failed.
+# their rows are printed in the order of the report, FOLDER/report.md. DOCUMENT receives the summary. Run it from the top
+# of the tree: some sections read cases/. Exit code: 0, 3 if a bound is missed, 1 if a section or the report fails.
 set -euo pipefail
 export LC_ALL=C
 
@@ -14,13 +14,12 @@ readonly sections=(theory rod force sheet wake plate school interval symmetry st
 readonly at_once=2
 
 if (($# < 2 || $# > 3)); then
-    echo "usage: scripts/verify.sh PROGRAM FOLDER [DOC]" >&2
+    echo "usage: scripts/verify.sh PROGRAM FOLDER [DOCUMENT]" >&2
     exit 2
 fi
 program=$1 folder=$2
 scripts=$(dirname "$0")
-doc=${3:-$scripts/../doc}
-mkdir -p "$folder" "$doc/figures"
+mkdir -p "$folder"
 
 stop() {
     local pids
@@ -61,9 +60,9 @@ while ((shown < ${#sections[@]})); do
     done
 done
 
-# a report is written of whatever came to its end; a section that failed must not vanish from the document
+# a section that failed must not vanish from the report
 ((failed == 0)) || exit 1
-/usr/bin/python3 "$scripts/verify.py" "$folder" "$doc/verification.md" "$doc/figures"
+/usr/bin/python3 "$scripts/verify.py" "$folder" ${3+"$3"}
 if ((missed)); then
     echo "a bound was missed: see the rows marked MISSED above" >&2
     exit 3

@@ -1,0 +1,516 @@
+#!/usr/bin/python3
+"""Measure the tables of README.md and doc/, and write them into the documents.
+
+    scripts/measure.py NAME...              print tables as markdown
+    scripts/measure.py --write FILE...      measure every table of these documents again, in place
+    scripts/measure.py --figures FOLDER     draw the pictures of doc/figures again
+    scripts/measure.py --list               names of the tables, with a line about each
+
+A table belongs to the line above it that starts with its command, for example "`scripts/measure.py tolerance`". Runs
+build/shoal in a folder of its own and removes the folder afterwards. Counts are exact; seconds are CPU seconds of one
+machine, and ratios of seconds come from the same table.
+"""
+
+import argparse
+import json
+import math
+import os
+import re
+import resource
+import shutil
+import subprocess
+import sys
+import tempfile
+
+from shoal_results import Results, np
+
+HERE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+CASES = os.path.join(HERE, "cases")
+
+# A default fish from rest: all values that are not written are those of doc/cases.md.
+DEFAULT = """\
+format: 1
+time: {end: 8, output_interval: 0.1}
+fish:
+  - {name: fish}
+"""
+
+# The article's fish with the settings that make it converge.
+ARTICLE = f"""\
+format: 1
+include: [{CASES}/include/article.yaml]
+time: {{end: 2, shedding_interval: 0.01, output_interval: 2}}
+wake: {{lifetime: 2, fade: 0.2}}
+fish:
+  - {{name: fish}}
+"""
+
+# Two default fish side by side.
+PAIR = """\
+format: 1
+time: {end: 4, shedding_interval: 0.02, output_interval: 4}
+defaults: {fish: {control: {law: heading}}}
+fish:
+  - {name: right}
+  - {name: left, start: {position: [0, 0.5]}}
+"""
+
+# The elastic rod of the article's fish, without fluid and damping.
+ROD = f"""\
+format: 1
+include: [{CASES}/include/article.yaml]
+time: {{end: 3, shedding_interval: 0.02, output_interval: 3}}
+fluid: {{density: 0}}
+wake: {{lifetime: 0.2}}
+solver: {{max_steps: 100000}}
+fish:
+  - name: rod
+    sheet_points: 5
+    start: {{speed: 0}}
+    body: {{second_moment: published, bending_damping: 0, stretching_damping: 0}}
+"""
+
+MODULUS = "fish[*].body.modulus"
+
+
+class Bench:
+    """Runs cases in a folder of its own."""
+
+    def __init__(self, program, verbose):
+        self.program, self.verbose = program, verbose
+        self.folder = tempfile.mkdtemp(prefix="shoal-measure-")
+
+    def call(self, *arguments, may_fail=False):
+        """Run the program; its standard output, or None where it ended with exit code 1 and may."""
+        command = [self.program, *arguments]
+        if self.verbose:
+            print(" ".join(command), file=sys.stderr)
+        done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, check=False)
+        if done.returncode == 1 and may_fail:
+            return None
+        if done.returncode != 0:
+            sys.exit(f"measure.py: {' '.join(command)} failed:\n{done.stderr}")
+        return done.stdout
+
+    def case(self, text):
+        """The path of a case: of a file in cases/ by its name, else of a new file with this text."""
+        if "\n" not in text:
+            return os.path.join(CASES, f"{text}.yaml")
+        path = os.path.join(self.folder, "case.yaml")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
+        return path
+
+    def run(self, text, *assignments):
+        """The result of a case with some keys changed; None where the integration failed."""
+        result = os.path.join(self.folder, "result.nc")
+        sets = [word for one in assignments for word in ("--set", one)]
+        done = self.call("run", self.case(text), "--force", "-q", "-o", result, *sets, may_fail=True)
+        return None if done is None else Results(result)
+
+    def steady(self, text, *assignments):
+        """The steady state of a case, as `shoal steady --json` prints it; None where none was found."""
+        sets = [word for one in assignments for word in ("--set", one)]
+        done = self.call("steady", self.case(text), "--force", "-q", "--json", "-o", "steady.nc", *sets, may_fail=True)
+        return None if done is None else json.loads(done)
+
+    def seconds(self, text, *assignments):
+        """CPU seconds of a run, the smallest of three."""
+        times = []
+        for _ in range(3):
+            before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+            self.run(text, *assignments)
+            times.append(resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before)
+        return min(times)
+
+
+# ---- cells ----
+
+
+def markdown(heads, rows):
+    """A table in markdown."""
+    cells = [heads] + [[str(cell) for cell in row] for row in rows]
+    widths = [max(len(row[column]) for row in cells) for column in range(len(heads))]
+    lines = ["| " + " | ".join(cell.rjust(width) for cell, width in zip(row, widths)) + " |" for row in cells]
+    lines.insert(1, "|" + "|".join("-" * (width + 1) + ":" for width in widths) + "|")
+    return "\n".join(lines) + "\n"
+
+
+def power(value):
+    """1e+06 as 1e6."""
+    mantissa, exponent = f"{value:.0e}".split("e")
+    return f"{mantissa}e{int(exponent)}"
+
+
+def short(value):
+    """Two digits of an error."""
+    return f"{value:.1e}"
+
+
+COUNTS = ["steps", "Newton iterations", "Jacobians"]
+
+
+def n_events(results):
+    return round(float(results.time[-1]) / float(results["shedding_interval"]))
+
+
+def per_event(results):
+    """Steps, Newton iterations and Jacobians per event."""
+    names = ("steps", "newton_iterations", "jacobian_evaluations")
+    return [f"{results[name][-1] / n_events(results):.2f}" for name in names]
+
+
+def nose_and_tail(results, t=None):
+    """Positions of nose and tail of the first fish at a time, by default the last one."""
+    row = -1 if t is None else int(np.argmin(np.abs(results.time - t)))
+    x = results["x"][row, 0]
+    return x[0], x[results.n_nodes[0] - 1]
+
+
+def error_of(results, right, t=None):
+    """The larger of the errors of nose and tail."""
+    pairs = zip(nose_and_tail(results, t), nose_and_tail(right, t))
+    return max(float(np.linalg.norm(np.subtract(a, b))) for a, b in pairs)
+
+
+# ---- tables ----
+
+TABLES = {}
+
+
+def table(*heads):
+    """Register a function that yields the rows of a table."""
+
+    def register(rows):
+        TABLES[rows.__name__] = (heads, rows)
+        return rows
+
+    return register
+
+
+@table("case", "speed [m/s]", "cost [m/s2]", "Strouhal", "residual per beat", "beats", "decay per beat")
+def steady_states(bench):
+    """cruising speed, cost and stability of the cases of cases/ (a minute)"""
+    for name in ("swim", "fish_pressure", "heaving_plate", "tandem_plates", "diamond_plates", "foil_flexible"):
+        state = bench.steady(name)
+        largest = max(math.hypot(*value) for value in state["steady_multiplier"])
+        strouhal = state["steady_strouhal"][0]
+        yield (f"[{name}](cases/{name}.yaml)", f"{state['steady_speed'][0]:.4f}",
+               f"{state['steady_cost_of_transport'][0]:.4f}", "" if strouhal is None else f"{strouhal:.3f}",
+               short(state["steady_residual"]), state["steady_beats"], f"{largest:.2f}")
+
+
+@table("modulus [Pa]", "speed [m/s]", "cost [m/s2]", "steps", "Newton iterations", "Jacobians")
+def stiff_fish(bench):
+    """the default fish over the stiffness of its body: results and cost of an event (two minutes)"""
+    for modulus in (1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11):
+        state = bench.steady("swim", f"{MODULUS}={modulus:g}", "steady.multipliers=false")
+        run = bench.run(DEFAULT, f"{MODULUS}={modulus:g}")
+        if state is None:
+            yield power(modulus), "none", "", *per_event(run)
+        else:
+            yield (power(modulus), f"{state['steady_speed'][0]:.4f}", f"{state['steady_cost_of_transport'][0]:.4f}",
+                   *per_event(run))
+
+
+@table("nodes", "speed, 1e6 Pa [m/s]", "cost [m/s2]", "speed, 1e8 Pa", "cost", "speed, pressure", "cost")
+def nodes(bench):
+    """speed and cost of the default fish over the number of its nodes (two minutes)"""
+    for n in (9, 13, 17, 25, 35, 49):
+        row = [n]
+        for keys in ((f"{MODULUS}=1e6",), (f"{MODULUS}=1e8",), ("fish[*].force=pressure",)):
+            state = bench.steady("swim", f"fish[*].nodes={n}", "steady.multipliers=false", *keys)
+            row += ["none", ""] if state is None else [f"{state['steady_speed'][0]:.4f}",
+                                                      f"{state['steady_cost_of_transport'][0]:.4f}"]
+        yield row
+
+
+@table("shedding", "kutta", *COUNTS)
+def events(bench):
+    """cost of an event with and without a jump of the state"""
+    for shedding in ("continuous", "impulsive"):
+        for kutta in ("edge", "rate"):
+            run = bench.run(ARTICLE, f"wake.shedding={shedding}", f"wake.kutta={kutta}")
+            yield shedding, kutta, *per_event(run)
+
+
+@table("modulus [Pa]", "ramp [s]", *COUNTS)
+def start(bench):
+    """cost of a muscle that starts at once, on an undamped body"""
+    for modulus in (1e6, 1e8, 1e10):
+        for ramp in (0, 0.25, 1):
+            run = bench.run(ARTICLE, f"{MODULUS}={modulus:g}", f"fish[*].wave.ramp={ramp:g}")
+            yield power(modulus), f"{ramp:g}", *(per_event(run) if run else ["failed", "", ""])
+
+
+@table("rtol", "nose or tail [L]", "work of the muscle", "balance over work", *COUNTS)
+def tolerance(bench):
+    """errors of the default fish and cost over solver.rtol"""
+    reference = bench.run(DEFAULT, "time.end=3", "solver.rtol=1e-9", "wake.tolerance=1e-9")
+    work = reference["actuation_work"][-1, 0]
+    for rtol in (1e-3, 1e-4, 1e-5, 1e-6, 1e-7):
+        run = bench.run(DEFAULT, "time.end=3", f"solver.rtol={rtol:g}")
+        balance = abs(run["energy_audit"][-1, 0] / work)
+        yield (power(rtol), short(error_of(run, reference)), short(abs(run["actuation_work"][-1, 0] / work - 1)),
+               short(balance), *per_event(run))
+
+
+@table("modulus [Pa]", "order", "nose or tail [L]", "balance over work", *COUNTS)
+def order(bench):
+    """the default fish over the highest order of the method (minutes)"""
+    for modulus in (1e5, 1e6, 1e8, 1e10):
+        keys = (f"{MODULUS}={modulus:g}",)
+        right = bench.run(DEFAULT, *keys, "time.end=3", "solver.rtol=1e-8", "solver.order=2",
+                          "solver.max_steps=100000", "wake.tolerance=1e-9")
+        for highest in range(2, 6):
+            run = bench.run(DEFAULT, *keys, f"solver.order={highest}")
+            balance = abs(run["energy_audit"][-1, 0] / run["actuation_work"][-1, 0])
+            yield power(modulus), highest, short(error_of(run, right, 3)), short(balance), *per_event(run)
+
+
+@table("from", "to [periods]", "nose [L]", "order", "tail [L]", "order")
+def interval(bench):
+    """change of the default fish from one shedding interval to the next, as root mean squares over 1.5 s"""
+    sizes = (0.04, 0.02, 0.01, 0.005, 0.0025)
+    runs = [bench.run(DEFAULT, "time.end=1.6", "time.output_interval=0.04", f"time.shedding_interval={size:g}",
+                      "solver.rtol=1e-8", "fish[*].sheet_points=65")["x"][:, 0] for size in sizes]
+    changes = [[math.sqrt(float(np.mean(np.sum((a[:, node] - b[:, node]) ** 2, axis=1)))) for node in (0, -1)]
+               for a, b in zip(runs, runs[1:])]
+    for number, size in enumerate(sizes[:-1]):
+        row = [f"{size:g}", f"{sizes[number + 1]:g}"]
+        for quantity in range(2):
+            change = changes[number][quantity]
+            row += [short(change), f"{math.log2(changes[number - 1][quantity] / change):.2f}" if number else ""]
+        yield row
+
+
+@table("modulus [Pa]", "method", "tail [L]", "steps per event", "evaluations", "Jacobians")
+def explicit(bench):
+    """cost of adaptive explicit methods over the stiffness of the article's fish (a minute)"""
+    for modulus in (1e6, 1e8, 1e10):
+        keys = (f"{MODULUS}={modulus:g}",)
+        right = bench.run(ARTICLE, *keys, "solver.rtol=1e-9")
+        for method in ("ida", "heun", "rk4", "dormand_prince"):
+            run = bench.run(ARTICLE, *keys, f"solver.method={method}", "solver.max_steps=20000")
+            if run is None:
+                yield power(modulus), method, "failed", "", "", ""
+                continue
+            cost = [f"{run[name][-1] / n_events(run):.2f}" for name in
+                    ("steps", "residual_evaluations", "jacobian_evaluations")]
+            yield power(modulus), method, short(error_of(run, right)), *cost
+
+
+def rod_settings(modulus):
+    """Settings tried on the rod: implicit methods, and explicit ones with their longest stable step."""
+    stable = math.sqrt(modulus / 1e4)
+    for rtol in ("1e-4", "3e-5", "1e-5"):
+        yield "ida", f"rtol {rtol}", [f"solver.rtol={rtol}"]
+    for method, counts in (("trapezoid", (1, 2, 4)), ("verlet", (round(5 * stable),)), ("rk4", (round(3 * stable),))):
+        for n in counts:
+            yield method, f"{0.02 / n:.2g} s", [f"solver.method={method}", f"solver.step={0.02 / n:.12g}"]
+
+
+@table("modulus [Pa]", "method", "setting", "nose or tail [L]", "evaluations", "CPU time over ida")
+def rod(bench):
+    """the cheapest setting of each method on an undamped rod with an error below 1e-4 lengths (two minutes)"""
+    for modulus in (1e4, 1e6, 1e8, 1e10):
+        body = f"{MODULUS}={modulus:g}"
+        exact = bench.run(ROD, body, "solver.method=verlet",
+                          f"solver.step={0.02 / round(15 * math.sqrt(modulus / 1e4)):.12g}")
+        seconds = {}
+        for method, setting, assignments in rod_settings(modulus):
+            run = bench.run(ROD, body, *assignments) if method not in seconds else None
+            error = error_of(run, exact) if run else math.inf
+            if error > 1e-4:
+                continue
+            seconds[method] = bench.seconds(ROD, body, *assignments)
+            ratio = seconds[method] / seconds["ida"] if "ida" in seconds else math.nan
+            yield (power(modulus), method, setting, short(error), int(run["residual_evaluations"][-1]),
+                   f"{ratio:.2g}")
+
+
+@table("layout", "gap [L]", "Newton iterations, not coupled", "coupled", "Jacobians, not coupled", "coupled",
+       "CPU time, coupled over not")
+def coupling(bench):
+    """cost of two fish near each other, with and without their coupling blocks in the Jacobian (two minutes)"""
+    for layout, gaps in (("side by side", (0.1, 0.2, 0.5, 1, 2)), ("one after the other", (0.1, 0.5, 1))):
+        for gap in gaps:
+            # 0.25: the thickness of two fish, and their approach within four seconds
+            place = f"[0, {gap + 0.25:g}]" if layout == "side by side" else f"[{gap + 1:g}, 0]"
+            runs, times = [], []
+            for reach in (0, 100):
+                keys = f"fish[1].start.position={place}", f"solver.coupling_distance={reach}"
+                runs.append(bench.run(PAIR, *keys))
+                times.append(bench.seconds(PAIR, *keys))
+            if None in runs:
+                yield layout, f"{gap:g}", *["failed"] * 5
+                continue
+            (_, apart, apart_jacobians), (_, coupled, coupled_jacobians) = (per_event(run) for run in runs)
+            yield layout, f"{gap:g}", apart, coupled, apart_jacobians, coupled_jacobians, f"{times[1] / times[0]:.2f}"
+
+
+def lattice(n, spacing, end):
+    """n default fish in a square, with heading control."""
+    side = math.ceil(math.sqrt(n))
+    places = [f"  - {{start: {{position: [{spacing[0] * (i % side):g}, {spacing[1] * (i // side):g}]}}}}"
+              for i in range(n)]
+    return "\n".join(["format: 1", f"time: {{end: {end}, shedding_interval: 0.01, output_interval: {end}}}",
+                      "defaults: {fish: {control: {law: heading}}}", "fish:", *places, ""])
+
+
+@table("fish", "spacing [L]", "coupling distance [L]", *COUNTS)
+def school(bench):
+    """cost of an event over the number of fish and the coupling distance (a minute)"""
+    for n, spacing, reach in ((4, (1.5, 1.5), 0.5), (16, (1.5, 1.5), 0.5), (64, (1.5, 1.5), 0.5), (64, (1.5, 1.5), 0),
+                              (9, (1.3, 0.4), 0), (9, (1.3, 0.4), 0.5), (9, (1.3, 0.4), 100)):
+        run = bench.run(lattice(n, spacing, 0.5), f"solver.coupling_distance={reach}")
+        yield n, f"{spacing[0]:g} x {spacing[1]:g}", reach, *(per_event(run) if run else ["failed", "", ""])
+
+
+@table("threads", "same bits as one")
+def threads(bench):
+    """bodies and wakes of 64 fish after 0.1 s"""
+    reference = None
+    for n in (1, 2, 3):
+        run = bench.run(lattice(64, (1.4, 0.6), 0.1), f"solver.threads={n}")
+        bits = run["x"].tobytes() + run["wake_x"].tobytes()
+        reference = reference or bits
+        yield n, "yes" if bits == reference else "NO"
+
+
+@table("wake.merge", "vortices at the end", "velocity of the centre of mass [m/s]", "position [m]", "CPU time over none")
+def merge(bench):
+    """error and saving of wake.merge: one fish, a wake of 16 s, 20 s from 1 m/s (a minute)"""
+    case = DEFAULT.replace("end: 8", "end: 20").replace("{name: fish}", "{name: fish, start: {speed: 1}}")
+    case += "wake: {lifetime: 16}\n"
+    exact, seconds = bench.run(case), bench.seconds(case)
+    for limit in ("1e-5", "1e-4", "1e-3", "1e-2"):
+        run = bench.run(case, f"wake.merge={limit}")
+        errors = [float(np.abs(run[name] - exact[name]).max()) for name in ("com_velocity", "com")]
+        yield (limit, int(run["wake_count"][-1].sum()), *(short(error) for error in errors),
+               f"{bench.seconds(case, f'wake.merge={limit}') / seconds:.2f}")
+
+
+def last_beat(results, name, fish=0):
+    """Mean of a variable over the last second of a run of 1 Hz."""
+    n = int(round(1 / (results.time[-1] - results.time[-2])))
+    return float(np.mean(results[name][-n:, fish]))
+
+
+@table("quantity", "case", "the article's model, converged", "case", "default model")
+def article(bench):
+    """results of the article's cases, with its model made to converge and with the defaults (two minutes)"""
+    speeds = [bench.run("single_free", f"fish[0].start.speed={v}")["speed"][-1, 0] for v in (0, 1, 3)]
+    swim = bench.run("swim")
+    yield ("speed of one fish after the run [m/s]", "single_free", ", ".join(f"{v:.3f}" for v in speeds), "swim",
+           f"{swim['speed'][-1, 0]:.3f}")
+    for what, theirs, ours, fishes in (("headings of a diamond [degree]", "diamond", "school", range(4)),
+                                       ("headings of a pair [degree]", "pair_heading", "pair", range(2)),
+                                       ("heading after a turn to 135 degrees", "single_turn", "turn", range(1))):
+        cells = []
+        for name in (theirs, ours):
+            run = bench.run(name)
+            cells += [name, ", ".join(f"{last_beat(run, 'heading', f):.1f}" for f in fishes)]
+        yield what, *cells
+    for what, name in (("steps per event, own scheme", "single_published"),):
+        run, other = bench.run(name), bench.run("single_free")
+        yield (what, name, per_event(run)[0], "swim", per_event(swim)[0])
+        yield ("steps per event, made to converge", "single_free", per_event(other)[0], "", "")
+
+
+# ---- documents and figures ----
+
+COMMAND = re.compile(r"^`scripts/measure\.py ([a-z_]+)`")
+
+
+def write(bench, path):
+    """Replace every table of a document that stands below its command."""
+    with open(path, encoding="utf-8") as file:
+        lines = file.read().split("\n")
+    out, name = [], None
+    for line in lines:
+        found = COMMAND.match(line)
+        if found:
+            name = found[1]
+            if name not in TABLES:
+                sys.exit(f"measure.py: {path}: there is no table {name}")
+        if name and line.startswith("|"):
+            if out[-1].startswith("|"):
+                continue  # a line of the table that was replaced
+            print(f"{path}: {name}", file=sys.stderr)
+            heads, rows = TABLES[name]
+            out += markdown(list(heads), [list(row) for row in rows(bench)]).rstrip("\n").split("\n")
+            continue
+        if name and out and out[-1].startswith("|"):
+            name = None
+        out.append(line)
+    with open(path, "w", encoding="utf-8") as file:
+        file.write("\n".join(out))
+
+
+# Per figure: cases to run, and the options of scripts/plot.py.
+FIGURES = {
+    "demo.png": (["run demo"], ["swim", "demo.nc"]),
+    "gait.png": (["run gait"], ["gait", "gait.nc", "--shapes", "20"]),
+    "single_turn.png": (["run single_turn"], ["swim", "single_turn.nc", "--times", "3", "5", "8", "15"]),
+    "diamond.png": (["run diamond"], ["swim", "diamond.nc", "--times", "2", "10", "25"]),
+    "school.png": (["run school"], ["swim", "school.nc", "--times", "2", "10", "30"]),
+    "steady_frequency.png": (["study studies/steady_frequency"], ["study", "steady_frequency/study.nc"]),
+    "steady_amplitude.png": (["study studies/steady_amplitude"], ["study", "steady_amplitude/study.nc"]),
+    "steady_resonance.png": (["study studies/steady_resonance"], ["study", "steady_resonance/study.nc"]),
+    "steady_thrust.png": (["study studies/steady_thrust"], ["study", "steady_thrust/study.nc"]),
+    "crowd.png": (["run crowd"], ["swim", "crowd.nc", "--times", "3"]),
+    "crowd_distances.png": (["run crowd"], ["school", "crowd.nc"]),
+    "stiffness.png": (["study studies/stiffness"], ["study", "stiffness/study.nc"]),
+}
+
+
+def figures(bench, folder, names):
+    """Draw pictures of doc/figures."""
+    done = set()
+    for figure in names or FIGURES:
+        commands, plot = FIGURES[figure]
+        for command in commands:
+            if command not in done:
+                verb, name = command.split()
+                bare = os.path.basename(name)
+                bench.call(verb, bench.case(name), "-q", *(["-j", "1"] if verb == "study" else []), "-o",
+                           bare if verb == "study" else f"{bare}.nc")
+                done.add(command)
+        target = os.path.join(os.path.abspath(folder), figure)
+        print(target, file=sys.stderr)
+        subprocess.run([sys.executable, os.path.join(HERE, "scripts", "plot.py"), *plot[:2], target, *plot[2:]],
+                       cwd=bench.folder, check=True)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("names", nargs="*", metavar="NAME", help="tables, documents or figures")
+    parser.add_argument("--write", action="store_true", help="NAMEs are documents")
+    parser.add_argument("--figures", metavar="FOLDER", help="NAMEs are figures, by default all")
+    parser.add_argument("--list", action="store_true", help="list the tables")
+    parser.add_argument("--program", default=os.path.join(HERE, "build", "shoal"), help="default: build/shoal")
+    parser.add_argument("--verbose", action="store_true", help="show the commands")
+    options = parser.parse_args()
+    if options.list:
+        for name, (_, rows) in TABLES.items():
+            print(f"{name:14s} {rows.__doc__}")
+        return
+    bench = Bench(os.path.abspath(options.program), options.verbose)
+    try:
+        if options.figures:
+            figures(bench, options.figures, options.names)
+        for name in [] if options.figures else options.names:
+            if options.write:
+                write(bench, name)
+            elif name in TABLES:
+                heads, rows = TABLES[name]
+                print(markdown(list(heads), [list(row) for row in rows(bench)]), end="")
+            else:
+                parser.error(f"there is no table {name}: {', '.join(TABLES)}")
+    finally:
+        shutil.rmtree(bench.folder)
+
+
+if __name__ == "__main__":
+    main()
