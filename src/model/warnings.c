@@ -233,9 +233,10 @@ const struct warning_words warnings_words[N_WARNINGS] = {
                        "'shedding: sheet' where n_sheet - 1 < 0.9 x 3.2/sqrt(U Dt/L), once the speed changes by less "
                        "than 10 % a beat"},
     [WARNING_MODES] = {"slow modes", "the slowest bending mode of a body in its fluid is slower than its beat"},
-    [WARNING_EDGE] = {"separation at the nose",
-                      "separation_share is above 0.1, once the speed changes by less than 10 % a beat: the limit of the "
-                      "suction acts for more than 10 % of the last period"},
+    [WARNING_EDGE] =
+        {"separation at the nose",
+         "separation_share is above 0.1, once the speed changes by less than 10 % a beat: the limit of the "
+         "suction acts for more than 10 % of the last period"},
 };
 
 static int contact_line(const struct school *school, const struct closest *closest, char line[WARNING_BYTES]) {
