@@ -1,6 +1,7 @@
 /* flow.c: points and sources, and where they are at a time. */
 #include "model/flow.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #include "base/array.h"
@@ -32,6 +33,61 @@ static enum status make_chunks(struct flow *flow) {
     return STATUS_OK;
 }
 
+// fish of one length, in the order of the first of each
+static enum status find_classes(struct flow *flow) {
+    const struct school *const school = flow->school;
+    const size_t n_fish = (size_t)school->n_fish;
+    flow->class_of = calloc(n_fish, sizeof *flow->class_of);
+    flow->class = calloc(n_fish, sizeof *flow->class);
+    if (!flow->class_of || !flow->class) return status_fail(STATUS_MEMORY, "out of memory: classes of fish");
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *const fish = &school->fish[f];
+        int c = 0;
+        while (flow_has_free_sheets(flow) && c < flow->n_classes &&
+               (fabs(flow->class[c].smoothing - fish->smoothing) > 0 ||
+                fabs(flow->class[c].sheet_smoothing - fish->sheet_smoothing) > 0)) {
+            c++;
+        }
+        flow->class_of[f] = c;
+        if (c < flow->n_classes) continue;
+        flow->class[c] = (struct flow_class){.smoothing = fish->smoothing, .sheet_smoothing = fish->sheet_smoothing};
+        flow->n_classes++;
+    }
+    for (int c = 0; c < flow->n_classes; c++) {
+        struct flow_class *const class = &flow->class[c];
+        class->group = calloc(n_fish + (size_t)flow->n_classes + 1, sizeof *class->group);
+        if (!class->group) return status_fail(STATUS_MEMORY, "out of memory: classes of fish");
+        class->points.first = flow->n_points;
+        for (int f = 0; f < school->n_fish; f++) {
+            const struct fish *const fish = &school->fish[f];
+            if (flow->class_of[f] != c) continue;
+            flow->points[f] = (struct range){flow->n_points, flow_n_points(fish)};
+            if (!fish_feels_own_wake(fish)) {
+                flow->without_own[f] = (struct range){flow->n_points + flow_midpoint(fish, 0), fish->n_edges};
+            }
+            flow->n_points += flow->points[f].n;
+        }
+        class->points.n = flow->n_points - class->points.first;
+    }
+    return STATUS_OK;
+}
+
+// the bound sheets as each class feels them
+static void view_sheets(struct flow *flow) {
+    for (int c = 0; c < flow->n_classes; c++) {
+        struct flow_class *const class = &flow->class[c];
+        class->sheet = flow->sheet;
+        if (!flow_has_free_sheets(flow)) continue;
+        class->sheet = vortices_felt_by(&flow->sheet, class->sheet_smoothing, class->group);
+    }
+}
+
+double flow_sheet_smoothing(const struct flow *flow, int f, int g) {
+    const double of_other = flow->school->fish[g].sheet_smoothing;
+    if (!flow_has_free_sheets(flow)) return of_other;
+    return vortices_pair_smoothing(of_other, flow->school->fish[f].sheet_smoothing);
+}
+
 static enum status flow_fill(struct flow *flow) {
     const struct school *school = flow->school;
     const size_t n_fish = (size_t)school->n_fish;
@@ -41,19 +97,16 @@ static enum status flow_fill(struct flow *flow) {
     flow->sheet_range = calloc(n_fish, sizeof *flow->sheet_range);
     flow->by_interpolation = calloc(n_fish, sizeof *flow->by_interpolation);
     flow->wake_range = calloc(n_fish, sizeof *flow->wake_range);
+    flow->body_range = calloc(n_fish, sizeof *flow->body_range);
     flow->middles = calloc(n_fish, sizeof *flow->middles);
     flow->free_sheet = calloc(n_fish, sizeof *flow->free_sheet);
     if (!flow->points || !flow->without_own || !flow->released_range || !flow->sheet_range || !flow->by_interpolation ||
-        !flow->wake_range || !flow->middles || !flow->free_sheet) {
+        !flow->wake_range || !flow->body_range || !flow->middles || !flow->free_sheet) {
         return status_fail(STATUS_MEMORY, "out of memory: the flow around %d fish", school->n_fish);
     }
+    TRY(find_classes(flow));
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *fish = &school->fish[f];
-        flow->points[f] = (struct range){flow->n_points, flow_n_points(fish)};
-        if (!fish_feels_own_wake(fish)) {
-            flow->without_own[f] = (struct range){flow->n_points + flow_midpoint(fish, 0), fish->n_edges};
-        }
-        flow->n_points += flow->points[f].n;
         flow->sheet_range[f] = (struct range){flow->sheet.n, fish->n_sheet};
         TRY(vortices_append(&flow->sheet, fish->n_sheet, fish->sheet_smoothing));
         TRY(vortices_append(&flow->nascent, 1, fish->smoothing));
@@ -64,13 +117,7 @@ static enum status flow_fill(struct flow *flow) {
     TRY(array_many_doubles(at_points, sizeof at_points / sizeof *at_points, flow->n_points, "the points of the flow"));
     TRY(make_chunks(flow));
     TRY(array_doubles(&flow->opposite, flow->sheet.n, "the bound vortices"));
-    TRY(array_doubles(&flow->sheet_square, flow->sheet.n, "the bound vortices"));
-    for (int f = 0; f < school->n_fish; f++) {
-        for (int j = 0; j < flow->sheet_range[f].n; j++) {
-            const double smoothing = free_sheet_bound_smoothing(&school->fish[f], j);
-            flow->sheet_square[flow->sheet_range[f].first + j] = smoothing * smoothing;
-        }
-    }
+    view_sheets(flow);
     TRY(velocity_sum_create(&flow->velocity_sum));
     if (school->wake_tolerance <= 0) return STATUS_OK;
     return wake_interpolation_create(&flow->interpolation, school, flow->points, flow->without_own);
@@ -98,8 +145,12 @@ void flow_free(struct flow *flow) {
         if (flow->middles) wake_free(&flow->middles[f]);
         if (flow->free_sheet) free_sheet_free(&flow->free_sheet[f]);
     }
+    for (int c = 0; flow->class && c < flow->n_classes; c++) free(flow->class[c].group);
     void *const owned[] = {flow->points,
                            flow->without_own,
+                           flow->class,
+                           flow->class_of,
+                           flow->body_range,
                            flow->chunk,
                            flow->x,
                            flow->y,
@@ -119,12 +170,11 @@ void flow_free(struct flow *flow) {
                            flow->sheet_range,
                            flow->by_interpolation,
                            flow->opposite,
-                           flow->sheet_square,
                            flow->wake_u,
                            flow->wake_v};
     for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
     vortices_free(&flow->released);
-    vortices_free(&flow->markers);
+    vortices_free(&flow->convecting);
     vortices_free(&flow->nascent);
     vortices_free(&flow->sheet);
     free(flow);

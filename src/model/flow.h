@@ -1,6 +1,6 @@
 /* flow.h: where the points of all bodies are that feel the fluid, and the vortices that move it. What these do is in
- * flow_at_bodies.h, flow_derivative.h, flow_at_wake.h and flow_field.h. doc/model.md, sections 6 to 9, 17. Tested by
- * tests/model/test_flow.c.
+ * flow_at_bodies.h, flow_derivative.h, flow_at_wake.h, flow_at_markers.h and flow_field.h. doc/model.md, sections 6 to
+ * 9, 17. Tested by tests/model/test_flow.c.
  *
  * The points of one fish, in this order; which sheets each of them feels:
  *
@@ -11,7 +11,11 @@
  *
  * The sources: per fish its free vortices, released ones and the nascent one, and its bound vortices. With shedding:
  * sheet the free vortices are the middles of the stretches of a sheet, and the control points of the own fish see more
- * (free_sheet.h). */
+ * (free_sheet.h).
+ *
+ * Smoothing: a point vortex has its own whoever feels it. With shedding: sheet a source and a target have one smoothing
+ * for each other in both directions (model.md, section 8), which differs between targets of different lengths: fish of
+ * one length are a class. */
 #ifndef FLOW_H
 #define FLOW_H
 
@@ -29,14 +33,28 @@ struct chunk {
     struct range at; /* among the points of all fish */
 };
 
+/* Fish that feel every source with the same smoothing: with shedding: sheet those of one length, else all. Their points
+ * follow one another, and so do their markers. */
+struct flow_class {
+    double smoothing, sheet_smoothing; /* delta and e of these fish, m */
+    struct range points, markers;      /* of all of them; markers: at the last flow_at_wake */
+    struct vortices sheet;             /* the bound vortices as their points feel them: a view of those of the flow */
+    struct vortex_group *group; /* of that view and of another (flow_at_markers.c)     (n_fish + n_classes + 1) */
+    int sheet_by_tree, images_by_many; /* what of it is summed for all points at once, in this evaluation */
+};
+
 struct flow {
     const struct school *school;
     double t;              /* time of the sources, s */
     unsigned long version; /* of the wakes that the sources below were made of */
     int has_sources;       /* whether they have been placed at all */
 
+    int n_classes;
+    struct flow_class *class; /*                                                      (n_classes) */
+    int *class_of;            /* of each fish                                         (n_fish) */
+
     /* points */
-    struct range *points;      /* of each fish                                      (n_fish) */
+    struct range *points;      /* of each fish, class after class                   (n_fish) */
     struct range *without_own; /* those of them that leave out the own wake         (n_fish) */
     int n_points;
     int n_chunks;
@@ -51,14 +69,17 @@ struct flow {
     struct vortices released;      /* the free vortices of all fish; placed only where a fish is not interpolated */
     struct range *released_range;  /* of each fish                                   (n_fish) */
     int has_released;              /* whether they are placed at t */
-    struct vortices markers;       /* of all fish, at the last flow_at_wake */
-    struct range *wake_range;      /* what each fish has of the following arrays         (n_fish) */
-    double *wake_u, *wake_v;       /* velocity at vortices or markers, after flow_at_wake, m s-1 */
+    /* with shedding: sheet, what convects the markers, as of the last flow_at_wake: they themselves, class after class,
+     * then the bodies */
+    struct vortices convecting;
+    int n_markers;
+    struct range *body_range; /* what each fish has of the bodies                          (n_fish) */
+    struct range *wake_range; /* what each fish has of the markers, or of the vortices in `released` (n_fish) */
+    double *wake_u, *wake_v;  /* velocity at vortices or markers, after flow_at_wake, m s-1 */
     int wake_capacity;
     struct vortices nascent;   /* one of each fish                               (n_fish) */
     struct vortices sheet;     /* the bound vortices of all fish */
     struct range *sheet_range; /* of each fish                                   (n_fish) */
-    double *sheet_square;      /* of the smoothing with which markers see them, m2 (sheet.n) */
     double *opposite;          /* circulations of the bound vortices with the other sign (sheet.n) */
 
     struct velocity_sum *velocity_sum;        /* where wakes or sheets are summed by the tree */
@@ -89,6 +110,9 @@ enum status flow_place_released(struct flow *flow, const struct state *state);
 
 /* Whether the wakes are free sheets: with shedding: sheet. */
 int flow_has_free_sheets(const struct flow *flow);
+
+/* The smoothing with which the points of fish f feel the bound sheet of another fish g, and the images of any, m. */
+double flow_sheet_smoothing(const struct flow *flow, int f, int g);
 
 /* The wakes as vortices that everybody sees: those in the queues, or the middles of the stretches between markers. */
 const struct wake *flow_seen_wakes(const struct flow *flow, const struct state *state);

@@ -41,12 +41,13 @@ static struct induced targets(const struct flow *flow, int with_gradient) {
     return all;
 }
 
-// sort the bound vortices and the points for the sums until the next event, where the tree sums them
+// sort the bound vortices and the points for the sums until the next event, where the tree sums them: there is one
+// plan, for one class
 static enum status plan_sheets(struct flow *flow) {
     const struct induced at = targets(flow, 0);
     const double tolerance = flow->school->wake_tolerance;
-    if (!velocity_sum_by_tree(&flow->sheet, at.n, tolerance)) return STATUS_OK;
-    return velocity_sum_plan(flow->velocity_sum, &flow->sheet, tolerance, flow->school->threads, &at);
+    if (flow->n_classes > 1 || !velocity_sum_by_tree(&flow->sheet, at.n, tolerance)) return STATUS_OK;
+    return velocity_sum_plan(flow->velocity_sum, &flow->class[0].sheet, tolerance, flow->school->threads, &at);
 }
 
 enum status flow_interpolate(struct flow *flow, const struct state *state) {
@@ -98,12 +99,13 @@ static void induce_own(const struct flow *flow, const struct chunk *chunk, struc
 
 // the bound sheets at a chunk: those of other fish; the own one at control points with no smoothing, at the tail with
 // some, not at the midpoints
-static void induce_sheets(const struct flow *flow, const struct chunk *chunk, int by_tree, const struct induced *all) {
+static void induce_sheets(const struct flow *flow, const struct chunk *chunk, const struct induced *all) {
     const struct fish *fish = &flow->school->fish[chunk->fish];
+    const struct flow_class *const class = &flow->class[flow->class_of[chunk->fish]];
     const struct range own = flow->sheet_range[chunk->fish], points = flow->points[chunk->fish];
     const struct range control = {points.first, fish->n_control}, tail = {points.first + flow_tail(fish), 1};
     induce_own(flow, chunk, control, 0, flow->sheet.circulation, all);
-    if (by_tree) {
+    if (class->sheet_by_tree) {
         // the tree has summed all of them at all points
         const struct range but_tail = {points.first, points.n - 1};
         induce_own(flow, chunk, but_tail, fish->sheet_smoothing, flow->opposite, all);
@@ -111,8 +113,8 @@ static void induce_sheets(const struct flow *flow, const struct chunk *chunk, in
     }
     const struct induced at = vortices_targets(all, chunk->at);
     const int behind = own.first + own.n;
-    vortices_induce(&flow->sheet, (struct range){0, own.first}, &at);
-    vortices_induce(&flow->sheet, (struct range){behind, flow->sheet.n - behind}, &at);
+    vortices_induce(&class->sheet, (struct range){0, own.first}, &at);
+    vortices_induce(&class->sheet, (struct range){behind, flow->sheet.n - behind}, &at);
     induce_own(flow, chunk, tail, fish->sheet_smoothing, flow->sheet.circulation, all);
 }
 
@@ -150,24 +152,18 @@ static void induce_wakes(const struct flow *flow, const struct chunk *chunk, con
     vortices_induce_without(&flow->nascent, (struct range){chunk->fish, 1}, unfelt, at);
 }
 
-/* What of the sheets has been summed for all chunks at once. */
-struct summed {
-    int sheets, images;
-};
-
 // the images of all fish, with the smoothing that others see
-static void induce_images(const struct flow *flow, const struct chunk *chunk, struct summed summed,
-                          const struct induced *at) {
+static void induce_images(const struct flow *flow, const struct chunk *chunk, const struct induced *at) {
     const struct walls *const walls = &flow->school->walls;
+    const struct flow_class *const class = &flow->class[flow->class_of[chunk->fish]];
     if (!flow->by_interpolation[chunk->fish]) {
         images_induce(walls, &flow->released, (struct range){0, flow->released.n}, at);
     }
     images_induce(walls, &flow->nascent, (struct range){0, flow->nascent.n}, at);
-    if (!summed.images) images_induce(walls, &flow->sheet, (struct range){0, flow->sheet.n}, at);
+    if (!class->images_by_many) images_induce(walls, &class->sheet, (struct range){0, class->sheet.n}, at);
 }
 
-static void evaluate_chunk(const struct flow *flow, const struct chunk *chunk, struct summed summed,
-                           const struct induced *all) {
+static void evaluate_chunk(const struct flow *flow, const struct chunk *chunk, const struct induced *all) {
     const struct school *school = flow->school;
     const struct induced at = vortices_targets(all, chunk->at);
     for (int p = 0; p < at.n; p++) {
@@ -178,21 +174,37 @@ static void evaluate_chunk(const struct flow *flow, const struct chunk *chunk, s
     }
     for (int p = 0; at.u_x && p < at.n; p++) at.u_y[p] += school->shear;
     induce_wakes(flow, chunk, &at);
-    induce_sheets(flow, chunk, summed.sheets, all);
+    induce_sheets(flow, chunk, all);
     if (flow_has_free_sheets(flow)) induce_free_sheet(flow, chunk, all);
-    if (school->walls.n > 0) induce_images(flow, chunk, summed, &at);
+    if (school->walls.n > 0) induce_images(flow, chunk, &at);
 }
 
-// all bound sheets at all points by the tree, and their images by tree or cells
-static enum status sum_sheets(struct flow *flow, struct summed what, int threads, const struct induced *all) {
+// all bound sheets at all points of a class by the tree, and their images by tree or cells
+static enum status sum_sheets(struct flow *flow, const struct flow_class *class, int threads,
+                              const struct induced *all) {
     const double tolerance = flow->school->wake_tolerance;
-    if (what.sheets) {
-        const int is_planned = flow->is_interpolated && !all->u_x;
-        TRY((is_planned ? velocity_sum_by_plan : velocity_sum_induce)(flow->velocity_sum, &flow->sheet, tolerance,
-                                                                      threads, all));
+    const struct induced at = vortices_targets(all, class->points);
+    if (class->sheet_by_tree) {
+        const int is_planned = flow->is_interpolated && flow->n_classes == 1 && !at.u_x;
+        TRY((is_planned ? velocity_sum_by_plan : velocity_sum_induce)(flow->velocity_sum, &class->sheet, tolerance,
+                                                                      threads, &at));
     }
-    if (!what.images) return STATUS_OK;
-    return images_induce_many(&flow->school->walls, flow->velocity_sum, &flow->sheet, tolerance, threads, all);
+    if (!class->images_by_many) return STATUS_OK;
+    return images_induce_many(&flow->school->walls, flow->velocity_sum, &class->sheet, tolerance, threads, &at);
+}
+
+// decide what is summed for all points of a class at once, and sum it
+static enum status sum_many(struct flow *flow, int threads, const struct induced *all) {
+    const double tolerance = flow->school->wake_tolerance;
+    for (int c = 0; c < flow->n_classes; c++) {
+        struct flow_class *const class = &flow->class[c];
+        const struct induced at = vortices_targets(all, class->points);
+        const int by_cells = images_by_cells(&flow->school->walls, &class->sheet, tolerance, &at);
+        class->sheet_by_tree = velocity_sum_by_tree(&class->sheet, at.n, tolerance);
+        class->images_by_many = class->sheet_by_tree || by_cells;
+        TRY(sum_sheets(flow, class, threads, all));
+    }
+    return STATUS_OK;
 }
 
 // interactions of an evaluation that depend on the unknowns
@@ -209,18 +221,14 @@ static double work_of(const struct flow *flow) {
 static void evaluate(struct flow *flow, int with_gradient) {
     const struct induced all = targets(flow, with_gradient);
     const int threads = parallel_threads(flow->school->threads, flow->n_chunks, work_of(flow), PARALLEL_INTERACTIONS);
-    const double tolerance = flow->school->wake_tolerance;
-    const int by_tree = velocity_sum_by_tree(&flow->sheet, flow->n_points, tolerance);
-    const int by_cells = images_by_cells(&flow->school->walls, &flow->sheet, NULL, tolerance, &all);
-    struct summed summed = {.sheets = by_tree, .images = by_tree || by_cells};
     vortices_zero(&all);
-    if (sum_sheets(flow, summed, threads, &all) != STATUS_OK) {
+    if (sum_many(flow, threads, &all) != STATUS_OK) {
         // without memory for a tree there is still the direct sum
-        summed = (struct summed){0, 0};
+        for (int c = 0; c < flow->n_classes; c++) flow->class[c].sheet_by_tree = flow->class[c].images_by_many = 0;
         vortices_zero(&all);
     }
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
-    for (int c = 0; c < flow->n_chunks; c++) evaluate_chunk(flow, &flow->chunk[c], summed, &all);
+    for (int c = 0; c < flow->n_chunks; c++) evaluate_chunk(flow, &flow->chunk[c], &all);
 }
 
 static enum status sum(struct flow *flow, const struct state *state, double t, const double *y, int with_gradient) {

@@ -195,7 +195,7 @@ static void derive_sheet_images(const struct target *at) {
         const int bound = flow->sheet_range[at->g].first + j;
         const struct mirrored_source source = {.x = flow->sheet.x[bound],
                                                .y = flow->sheet.y[bound],
-                                               .smoothing = other->sheet_smoothing,
+                                               .smoothing = flow_sheet_smoothing(flow, at->f, at->g),
                                                .column = strength + j,
                                                .weight = other->sheet_weight[j],
                                                .circulation = flow->sheet.circulation[bound],
@@ -208,7 +208,7 @@ static void derive_sheet_images(const struct target *at) {
 // all that moves with fish g, at the points of fish f that feel it
 static void derive_sources(const struct target *at) {
     const struct flow *flow = at->flow;
-    const struct fish *fish = &flow->school->fish[at->f], *other = &flow->school->fish[at->g];
+    const struct fish *fish = &flow->school->fish[at->f];
     const size_t size = (size_t)at->block->n_points * (size_t)at->block->n_columns;
     memset(at->block->u, 0, size * sizeof *at->block->u);
     memset(at->block->v, 0, size * sizeof *at->block->v);
@@ -219,7 +219,7 @@ static void derive_sources(const struct target *at) {
         derive_sheet(at, (struct range){0, fish->n_control}, 0);
         derive_sheet(at, (struct range){flow_tail(fish), 1}, fish->sheet_smoothing);
     } else {
-        derive_sheet(at, (struct range){0, flow->points[at->f].n}, other->sheet_smoothing);
+        derive_sheet(at, (struct range){0, flow->points[at->f].n}, flow_sheet_smoothing(flow, at->f, at->g));
     }
 }
 

@@ -71,8 +71,7 @@ void free_sheet_strengths(const struct wake *markers, const struct school *schoo
     if (n > 0) strength[n - 1] += nascent;
 }
 
-// the smoothing at a displacement from the tail, tangent being the direction of the body there
-static double tapered(const struct fish *fish, const double from_tail[2], const double tangent[2]) {
+double free_sheet_smoothing(const struct fish *fish, const double from_tail[2], const double tangent[2]) {
     if (fish->taper <= 0) return fish->smoothing;
     const double square = from_tail[0] * from_tail[0] + from_tail[1] * from_tail[1];
     if (square <= 0) return 0;
@@ -128,7 +127,7 @@ static void add(struct free_sheet *sheet, const struct fish *fish, const struct 
         double point[2];
         point_of(&at[end], xi, point);
         const double from_tail[2] = {point[0] - tail[0], point[1] - tail[1]};
-        sheet->smoothing[end][i] = tapered(fish, from_tail, markers->tail_tangent);
+        sheet->smoothing[end][i] = free_sheet_smoothing(fish, from_tail, markers->tail_tangent);
     }
 }
 
@@ -139,23 +138,25 @@ static int is_untapered(const struct free_sheet *sheet, const struct fish *fish,
            fish->smoothing - sheet->smoothing[1][i] <= rounding * fish->smoothing;
 }
 
-/* Whether the middle of a stretch, whose ends are at[0] now and at[1] at the end of the interval, is so far from the
- * tail that it is untapered whatever its direction: the taper is exp(-ratio) short of 1, and that of 31 is below the
- * rounding above. */
+// the taper is exp(-ratio) short of 1, and that of 31 is below the rounding above
+int free_sheet_is_far(const struct fish *fish, const double from_tail[2]) {
+    const double length = fmax(fish->taper, fish->taper_beside);
+    return from_tail[0] * from_tail[0] + from_tail[1] * from_tail[1] > 31 * length * length;
+}
+
+// whether the middle of a stretch, whose ends are at[0] now and at[1] at the end of the interval, is far at both
 static int is_far_behind(const struct fish *fish, const struct wake *markers, double interval,
                          const struct ends at[2]) {
     const int newest = markers->n_vortex - 1;
-    const double length = fish->taper > fish->taper_beside ? fish->taper : fish->taper_beside;
-    double square = INFINITY;
+    int is_far = 1;
     for (int end = 0; end < 2; end++) {
         const double tau = end * interval;
-        const double rx =
-            (at[end].newer[0] + at[end].older[0]) / 2 - markers->x[newest] - tau * markers->tail_velocity[0];
-        const double ry =
-            (at[end].newer[1] + at[end].older[1]) / 2 - markers->y[newest] - tau * markers->tail_velocity[1];
-        square = fmin(square, rx * rx + ry * ry);
+        const double from_tail[2] = {
+            (at[end].newer[0] + at[end].older[0]) / 2 - markers->x[newest] - tau * markers->tail_velocity[0],
+            (at[end].newer[1] + at[end].older[1]) / 2 - markers->y[newest] - tau * markers->tail_velocity[1]};
+        is_far &= free_sheet_is_far(fish, from_tail);
     }
-    return square > 31 * length * length;
+    return is_far;
 }
 
 enum status free_sheet_build(struct free_sheet *sheet, const struct fish *fish, const struct school *school,
@@ -224,10 +225,4 @@ void free_sheet_place_nascent(struct free_sheet *sheet, const struct fish *fish,
         sheet->circulation[first + i] = (is_middle ? -1 : free_sheet_part[i]) * circulation;
         sheet->square[first + i] = is_middle ? fish->smoothing * fish->smoothing : 0;
     }
-}
-
-double free_sheet_bound_smoothing(const struct fish *fish, int j) {
-    const double pi = 3.14159265358979323846, step = pi / (fish->n_sheet - 1);
-    const int is_end = j == 0 || j == fish->n_sheet - 1;
-    return fish->sheet_smoothing * sin(is_end ? step / 2 : j * step);
 }

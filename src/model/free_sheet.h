@@ -10,7 +10,8 @@
  *
  * Markers see markers: each with half of both stretches that meet there. Other bodies, and the edge midpoints of the
  * own one, see the middle of every stretch with the smoothing of the wake. The control points of the own body see the
- * newest stretches as points graded towards the tail, and all of its wake with a smoothing that tapers to 0 there. */
+ * newest stretches as points graded towards the tail, and all of its wake with a smoothing that tapers to 0 there; with
+ * the same smoothing the markers see the own body (flow_at_markers.h). */
 #ifndef FREE_SHEET_H
 #define FREE_SHEET_H
 
@@ -69,8 +70,10 @@ void free_sheet_nascent_point(const struct wake *markers, double interval, doubl
 void free_sheet_place_nascent(struct free_sheet *sheet, const struct fish *fish, const struct wake *markers,
                               double interval, double tau, const double tail[2], double circulation);
 
-/* The smoothing with which markers see bound vortex j of a fish, m: it vanishes at the edges together with the
- * spacing. */
-double free_sheet_bound_smoothing(const struct fish *fish, int j);
+/* The smoothing that a vortex of the wake and the own body have for each other, m; from_tail: the place of the vortex
+ * less that of the tail, m, tangent: the direction of the body there. And whether it is untapered to rounding,
+ * whatever its direction. */
+double free_sheet_smoothing(const struct fish *fish, const double from_tail[2], const double tangent[2]);
+int free_sheet_is_far(const struct fish *fish, const double from_tail[2]);
 
 #endif

@@ -74,15 +74,6 @@ static void add_product(const struct pressure *p, const double *x, double *to) {
     }
 }
 
-// the circulation of the interval around control point c
-static double circulation_at(const struct pressure *p, int c) {
-    const struct fish *fish = p->fish;
-    const double *const weight = fish->integrals->strength + (long)c * fish->n_sheet;
-    double sum = 0;
-    for (int j = 0; j < fish->n_sheet; j++) sum += weight[j] * p->circulation[j];
-    return sum;
-}
-
 // tau, the fluid's velocity past the body along it
 static double along(const struct pressure_point *point) {
     return edge_dot(point->slip, point->body.t);
@@ -97,7 +88,7 @@ static void convect(struct pressure *p, const struct flow_at_body *flow, const d
         point->body = fish_direction(fish, &fish->control_tangent[c], y);
         point->slip[0] = flow->u[c] - fish_mean(at, y + fish->at.vx);
         point->slip[1] = flow->v[c] - fish_mean(at, y + fish->at.vy);
-        point->circulation = circulation_at(p, c);
+        point->circulation = sheet_integrals_around(fish->integrals, c, p->circulation);
         point->strength = fish->control_density[c] * point->circulation;
         const double size = -point->strength * along(point);
         for (int k = 0; k < n; k++) {

@@ -146,3 +146,10 @@ void sheet_integrals_free(struct sheet_integrals *integrals) {
     free(integrals->kink_circulation);
     free(integrals);
 }
+
+double sheet_integrals_around(const struct sheet_integrals *integrals, int c, const double *circulation) {
+    const double *const weight = integrals->strength + (long)c * integrals->n_sheet;
+    double sum = 0;
+    for (int j = 0; j < integrals->n_sheet; j++) sum += weight[j] * circulation[j];
+    return sum;
+}

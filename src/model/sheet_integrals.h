@@ -24,6 +24,9 @@ struct sheet_integrals {
 enum status sheet_integrals_create(struct sheet_integrals **integrals, int n_nodes, int n_sheet, const double *density);
 void sheet_integrals_free(struct sheet_integrals *integrals);
 
+/* Q_c: the circulation of the interval around control point c, of a sheet with these circulations (n_sheet), m2 s-1. */
+double sheet_integrals_around(const struct sheet_integrals *integrals, int c, const double *circulation);
+
 /* C_j(theta) of a sheet of n vortices. */
 double sheet_integrals_circulation(int n, int j, double theta);
 

@@ -73,8 +73,7 @@ enum status wake_interpolation_create(struct wake_interpolation **interpolation,
     struct wake_interpolation *const new = calloc(1, sizeof *new);
     if (!new) return status_fail(STATUS_MEMORY, "out of memory: the interpolation of wakes");
     new->school = school;
-    const struct range last = points[school->n_fish - 1];
-    new->n_points = last.first + last.n;
+    for (int f = 0; f < school->n_fish; f++) new->n_points += points[f].n;
     new->points = points;
     new->without_own = without_own;
     const enum status status = allocate(new);

@@ -43,8 +43,8 @@ struct table {
     double *value;           /* (n_offsets, squares, 2, y x, y x) */
 };
 
-// free vortices, bound ones, and those of a field
-enum { N_TABLES = 3 };
+// free vortices, bound ones, and those of a field; the first two for every smoothing of the targets
+enum { N_TABLES = 8 };
 
 struct far_images {
     struct table table[N_TABLES];
@@ -61,22 +61,19 @@ struct cells {
 
 // ---- vortices
 
-/* The vortices of a sum. square: of the smoothing of each; NULL: those of the groups. */
-struct sources {
-    const struct vortices *all;
-    const double *square;
-    double low, high; /* of all squares, m2 */
+/* The squares of the smoothings of all groups, m2. */
+struct squares {
+    double low, high;
 };
 
-static struct sources sources_of(const struct vortices *vortices, const double *square) {
-    struct sources sources = {.all = vortices, .square = square, .low = INFINITY};
-    for (int i = 0; i < (square ? vortices->n : vortices->n_groups); i++) {
-        const double smoothing = square ? 0 : vortices->group[i].smoothing;
-        const double one = square ? square[i] : smoothing * smoothing;
-        sources.low = fmin(sources.low, one);
-        sources.high = fmax(sources.high, one);
+static struct squares squares_of(const struct vortices *vortices) {
+    struct squares squares = {.low = INFINITY};
+    for (int g = 0; g < vortices->n_groups; g++) {
+        const double one = vortices->group[g].smoothing * vortices->group[g].smoothing;
+        squares.low = fmin(squares.low, one);
+        squares.high = fmax(squares.high, one);
     }
-    return sources;
+    return squares;
 }
 
 // ---- nodes
@@ -205,9 +202,9 @@ static int has_values_of(const struct table *table, const struct table *other) {
 }
 
 // a table for a channel, and vortices with such squares of smoothings
-static struct table *find_table(struct far_images *far, const struct walls *channel, const struct sources *sources,
+static struct table *find_table(struct far_images *far, const struct walls *channel, const struct squares *squares,
                                 double tolerance) {
-    struct table wanted = {.channel = *channel, .low = sources->low, .high = sources->high};
+    struct table wanted = {.channel = *channel, .low = squares->low, .high = squares->high};
     wanted.x.n = n_nodes(rho_x, tolerance);
     wanted.y.n = n_nodes(rho_y, tolerance);
     wanted.square.n = n_squares(wanted.low, wanted.high, image_rows_width(channel), tolerance);
@@ -270,15 +267,15 @@ static struct cells cells_of(const struct walls *channel, const struct vortices 
     return cells;
 }
 
-int far_images_pay(const struct walls *channel, const struct vortices *vortices, const double *square, double tolerance,
+int far_images_pay(const struct walls *channel, const struct vortices *vortices, double tolerance,
                    const struct induced *at) {
     const double interactions = (double)vortices->n * at->n;
     if (!(tolerance > 0) || interactions < MIN_INTERACTIONS) return 0;
     const struct cells cells = cells_of(channel, vortices, at);
     if (cells.n == 0) return 0;
-    const struct sources sources = sources_of(vortices, square);
+    const struct squares squares = squares_of(vortices);
     const double n = n_nodes(rho_x, tolerance) * n_nodes(rho_y, tolerance);
-    const double n_smoothings = n_squares(sources.low, sources.high, cells.width, tolerance);
+    const double n_smoothings = n_squares(squares.low, squares.high, cells.width, tolerance);
     if (cells.n * n_smoothings * 2 * n * n * sizeof(double) > max_table) return 0;
     // in interactions of the direct sum; fitted to measurements
     const double points = (vortices->n * n_smoothings + 2.0 * at->n) * n / 40;
@@ -341,17 +338,13 @@ static void add_moments(const struct table *table, const struct cells *cells, co
 }
 
 // the vortices at the nodes of all cells that stand for all vortices
-static void gather(const struct table *table, const struct cells *cells, const struct sources *sources) {
-    const struct vortices *const all = sources->all;
+static void gather(const struct table *table, const struct cells *cells, const struct vortices *all) {
     const size_t n = (size_t)n_of_cell(table);
     double share[MAX_NODES];
     for (int g = 0; g < all->n_groups; g++) {
         const struct vortex_group *const group = &all->group[g];
-        if (!sources->square) share_squares(table, group->smoothing * group->smoothing, share);
-        for (int i = group->at.first; i < group->at.first + group->at.n; i++) {
-            if (sources->square) share_squares(table, sources->square[i], share);
-            add_moments(table, cells, all, i, share);
-        }
+        share_squares(table, group->smoothing * group->smoothing, share);
+        for (int i = group->at.first; i < group->at.first + group->at.n; i++) add_moments(table, cells, all, i, share);
     }
     for (int i = 0; i < cells->n * table->square.n; i++) {
         double moment[MAX_NODES * MAX_NODES];
@@ -429,17 +422,17 @@ static void add_velocity(const struct table *table, const struct cells *cells, c
 }
 
 enum status far_images_induce(struct far_images *far, const struct walls *channel, const struct vortices *vortices,
-                              const double *square, double tolerance, int threads, const struct induced *at) {
-    const struct sources sources = sources_of(vortices, square);
+                              double tolerance, int threads, const struct induced *at) {
+    const struct squares squares = squares_of(vortices);
     struct cells cells = cells_of(channel, vortices, at);
-    struct table *const table = find_table(far, channel, &sources, tolerance);
+    struct table *const table = find_table(far, channel, &squares, tolerance);
     TRY(fill(table, cells.n, threads));
     const size_t n_nodes_of_all = (size_t)cells.n * (size_t)n_of_cell(table);
     double *const memory = calloc(n_nodes_of_all * (size_t)(table->square.n + 2), sizeof *memory);
     if (!memory) return status_fail(STATUS_MEMORY, "out of memory: images in a channel");
     cells.weight = memory;
     cells.velocity = memory + n_nodes_of_all * (size_t)table->square.n;
-    gather(table, &cells, &sources);
+    gather(table, &cells, vortices);
     spread(table, &cells, threads);
     const int n_chunks = parallel_n_chunks(at->n);
 #pragma omp parallel for num_threads(threads) schedule(static)

@@ -31,9 +31,8 @@ enum status far_images_create(struct far_images **far);
 void far_images_free(struct far_images *far);
 
 /* Whether this is faster than the direct sum over all images, which is the case from some hundred thousand interactions
- * on where the channel is not much longer than it is wide, and the tolerance is not 0. square: of the smoothing of each
- * vortex, m2; NULL: those of the groups. */
-int far_images_pay(const struct walls *channel, const struct vortices *vortices, const double *square, double tolerance,
+ * on where the channel is not much longer than it is wide, and the tolerance is not 0. */
+int far_images_pay(const struct walls *channel, const struct vortices *vortices, double tolerance,
                    const struct induced *at);
 
 /* Add to the targets, inside of the channel, what the far images of all vortices induce. The error of the velocity is
@@ -42,6 +41,6 @@ int far_images_pay(const struct walls *channel, const struct vortices *vortices,
  * before. Only where it pays: places are finite, and cells not too many. Fails with STATUS_MEMORY; nothing is added
  * then. */
 enum status far_images_induce(struct far_images *far, const struct walls *channel, const struct vortices *vortices,
-                              const double *square, double tolerance, int threads, const struct induced *at);
+                              double tolerance, int threads, const struct induced *at);
 
 #endif

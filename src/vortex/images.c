@@ -22,10 +22,10 @@ int images_nearest(const struct walls *walls, struct image image[IMAGES_NEAREST]
     return 4;
 }
 
-/* The sources of one sum; square: of the smoothing of each, NULL where all have the same. */
+/* The sources of one sum. */
 struct sources {
     int n;
-    const double *x, *y, *circulation, *square;
+    const double *x, *y, *circulation;
     double smoothing;
 };
 
@@ -47,14 +47,9 @@ static void add_reflected(int n, const struct kernel_values *value, const struct
 static void induce_directly(const struct sources *s, int n, const double *x, const double *y, int with_gradient,
                             struct kernel_values *to) {
     memset(to, 0, sizeof *to);
-    if (with_gradient && s->square) {
-        kernel_add_gradient_each(n, x, y, s->n, s->x, s->y, s->circulation, s->square, to->u, to->v, to->u_x, to->u_y,
-                                 to->v_x);
-    } else if (with_gradient) {
+    if (with_gradient) {
         kernel_add_gradient(n, x, y, s->n, s->x, s->y, s->circulation, s->smoothing, to->u, to->v, to->u_x, to->u_y,
                             to->v_x);
-    } else if (s->square) {
-        kernel_add_velocity_each(n, x, y, s->n, s->x, s->y, s->circulation, s->square, to->u, to->v);
     } else {
         kernel_add_velocity(n, x, y, s->n, s->x, s->y, s->circulation, s->smoothing, to->u, to->v);
     }
@@ -89,13 +84,12 @@ static double rate_of(const struct walls *walls) {
 
 static void induce_in_channel(const struct walls *walls, const struct sources *s, const struct induced *at) {
     struct image_height target[KERNEL_CHUNK];
-    const double rate = rate_of(walls), same = s->smoothing * s->smoothing;
+    const double rate = rate_of(walls), square = s->smoothing * s->smoothing;
     for (int first = 0; first < at->n; first += KERNEL_CHUNK) {
         const int end = at->n - first < KERNEL_CHUNK ? at->n : first + KERNEL_CHUNK;
         for (int i = first; i < end; i++) target[i - first] = image_height_of(walls, at->y[i]);
         for (int j = 0; j < s->n; j++) {
             const struct image_height source = image_height_of(walls, s->y[j]);
-            const double square = s->square ? s->square[j] : same;
             for (int i = first; i < end; i++) {
                 const double r[2] = {at->x[i] - s->x[j], at->y[i] - s->y[j]};
                 const struct image_column column = image_column_of(rate, r[0], square);
@@ -126,12 +120,6 @@ void images_induce(const struct walls *walls, const struct vortices *vortices, s
                                         .smoothing = vortices->group[g].smoothing};
         induce(walls, &sources, at);
     }
-}
-
-void images_induce_each(const struct walls *walls, int n, const double *x, const double *y, const double *circulation,
-                        const double *square, const struct induced *at) {
-    const struct sources sources = {n, x, y, circulation, square, 0};
-    induce(walls, &sources, at);
 }
 
 // ---- many
@@ -174,9 +162,9 @@ static enum status induce_by_tree(double wall, struct velocity_sum *sum, const s
     return status;
 }
 
-int images_by_cells(const struct walls *walls, const struct vortices *vortices, const double *square, double tolerance,
+int images_by_cells(const struct walls *walls, const struct vortices *vortices, double tolerance,
                     const struct induced *at) {
-    return walls->n == 2 && far_images_pay(walls, vortices, square, tolerance, at);
+    return walls->n == 2 && far_images_pay(walls, vortices, tolerance, at);
 }
 
 // the images in one wall
@@ -194,28 +182,12 @@ enum status images_induce_many(const struct walls *walls, struct velocity_sum *s
                                double tolerance, int threads, const struct induced *at) {
     if (walls->n == 0 || vortices->n == 0) return STATUS_OK;
     if (walls->n == 1) return induce_many_by_wall(walls->y[0], sum, vortices, tolerance, threads, at);
-    if (!images_by_cells(walls, vortices, NULL, tolerance, at)) {
+    if (!images_by_cells(walls, vortices, tolerance, at)) {
         induce_all_directly(walls, vortices, threads, at);
         return STATUS_OK;
     }
-    TRY(far_images_induce(velocity_sum_far_images(sum), walls, vortices, NULL, tolerance, threads, at));
+    TRY(far_images_induce(velocity_sum_far_images(sum), walls, vortices, tolerance, threads, at));
     for (int i = 0; i < 2; i++) TRY(induce_many_by_wall(walls->y[i], sum, vortices, tolerance, threads, at));
-    return STATUS_OK;
-}
-
-enum status images_induce_many_each(const struct walls *walls, struct velocity_sum *sum,
-                                    const struct vortices *vortices, const double *square, double tolerance,
-                                    int threads, const struct induced *at) {
-    TRY(far_images_induce(velocity_sum_far_images(sum), walls, vortices, square, tolerance, threads, at));
-    const int n_chunks = parallel_n_chunks(at->n);
-#pragma omp parallel for num_threads(threads) schedule(static)
-    for (int chunk = 0; chunk < n_chunks; chunk++) {
-        const struct induced part = vortices_targets(at, parallel_chunk(chunk, at->n));
-        for (int i = 0; i < walls->n; i++) {
-            const struct walls one = {.n = 1, .y = {walls->y[i]}};
-            images_induce_each(&one, vortices->n, vortices->x, vortices->y, vortices->circulation, square, &part);
-        }
-    }
     return STATUS_OK;
 }
 

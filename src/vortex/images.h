@@ -25,12 +25,9 @@ struct image {
 enum { IMAGES_NEAREST = 4 };
 int images_nearest(const struct walls *walls, struct image image[IMAGES_NEAREST]);
 
-/* Add to the targets what all images of a range of vortices induce; of vortices with a smoothing each, of which the
- * squares [m2] are given. In a channel smoothings are above 0. */
+/* Add to the targets what all images of a range of vortices induce. In a channel smoothings are above 0. */
 void images_induce(const struct walls *walls, const struct vortices *vortices, struct range which,
                    const struct induced *at);
-void images_induce_each(const struct walls *walls, int n, const double *x, const double *y, const double *circulation,
-                        const double *square, const struct induced *at);
 
 /* The same for all vortices at many targets, by several threads: what one wall mirrors by the tree where
  * velocity_sum_by_tree says so, and the far images in a channel by cells where images_by_cells does. The error is that
@@ -38,15 +35,9 @@ void images_induce_each(const struct walls *walls, int n, const double *x, const
 enum status images_induce_many(const struct walls *walls, struct velocity_sum *sum, const struct vortices *vortices,
                                double tolerance, int threads, const struct induced *at);
 
-/* Whether far images are summed by cells: far_images_pay in a channel, else not. square: NULL, or of the smoothing of
- * each vortex in place of its group's, m2. */
-int images_by_cells(const struct walls *walls, const struct vortices *vortices, const double *square, double tolerance,
+/* Whether far images are summed by cells: far_images_pay in a channel, else not. */
+int images_by_cells(const struct walls *walls, const struct vortices *vortices, double tolerance,
                     const struct induced *at);
-
-/* images_induce_many for vortices of a smoothing each: only where far images are summed by cells. */
-enum status images_induce_many_each(const struct walls *walls, struct velocity_sum *sum,
-                                    const struct vortices *vortices, const double *square, double tolerance,
-                                    int threads, const struct induced *at);
 
 /* What the images of one source of unit circulation induce at n <= KERNEL_CHUNK targets: those that move with the
  * source, and those that move against it in y. */

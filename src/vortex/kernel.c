@@ -214,6 +214,23 @@ KERNEL_WIDE void kernel_add_gradient_each(int n_targets, const double *restrict 
     }
 }
 
+// 1/d_to - 1/d_from = (from - to)/(d_to d_from): no digits are lost where both are nearly the same
+KERNEL_WIDE void kernel_add_velocity_change_at(int n_targets, const double *restrict x, const double *restrict y,
+                                               const double *restrict square, int n_sources,
+                                               const double *restrict source_x, const double *restrict source_y,
+                                               const double *restrict circulation, double from, double *restrict u,
+                                               double *restrict v) {
+    for (int j = 0; j < n_sources; j++) {
+        const double g = inverse_two_pi * circulation[j];
+        for (int i = 0; i < n_targets; i++) {
+            const double rx = x[i] - source_x[j], ry = y[i] - source_y[j], r_square = rx * rx + ry * ry;
+            const double h = g * (from - square[i]) / ((r_square + (square[i] + no_square)) * (r_square + from));
+            u[i] -= h * ry;
+            v[i] += h * rx;
+        }
+    }
+}
+
 KERNEL_WIDE void kernel_unit(int n, const double *x, const double *y, double source_x, double source_y,
                              double smoothing, struct kernel_values *values) {
     const double square = square_of(smoothing);

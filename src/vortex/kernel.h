@@ -54,6 +54,12 @@ void kernel_add_velocity_change(int n_targets, const double *x, const double *y,
 void kernel_add_gradient_change(int n_targets, const double *x, const double *y, const struct kernel_changes *changes,
                                 double *u, double *v, double *u_x, double *u_y, double *v_x);
 
+/* The same where the smoothing changes with the target: square [m2] (n_targets) takes the place of `from` of all
+ * sources. */
+void kernel_add_velocity_change_at(int n_targets, const double *x, const double *y, const double *square, int n_sources,
+                                   const double *source_x, const double *source_y, const double *circulation,
+                                   double from, double *u, double *v);
+
 /* Vortices of a pairwise sum. */
 struct kernel_tile {
     int n;                             /* a multiple of 16, at most KERNEL_TILE; vortices of strength 0 fill it up */

@@ -104,13 +104,14 @@ no_memory:
 }
 
 // add what the vortices of tiles a and b induce at each other to the sum of a share
-static void add_pair(const struct sorted *sorted, const struct tile *a, const struct tile *b, double *u, double *v) {
+static void add_pair(const struct sorted *sorted, enum pairwise_smoothing smoothing, const struct tile *a,
+                     const struct tile *b, double *u, double *v) {
     const double *const x = sorted->x, *const y = sorted->y, *const g = sorted->circulation;
     const int i = a->first, j = b->first;
-    if (a != b && a->smoothing == b->smoothing) {
+    if (a != b && (a->smoothing == b->smoothing || smoothing == PAIRWISE_OF_PAIR)) {
         const struct kernel_tile at_a = {a->n, x + i, y + i, g + i, u + i, v + i};
         const struct kernel_tile at_b = {b->n, x + j, y + j, g + j, u + j, v + j};
-        kernel_add_pairwise(&at_a, &at_b, a->smoothing);
+        kernel_add_pairwise(&at_a, &at_b, vortices_pair_smoothing(a->smoothing, b->smoothing));
         return;
     }
     kernel_add_velocity(a->n, x + i, y + i, b->n, x + j, y + j, g + j, b->smoothing, u + i, v + i);
@@ -127,7 +128,7 @@ static void begin_tile(const struct sorted *sorted, int share, int tile, double 
     memset(v + sorted->tile[tile].first, 0, (size_t)sorted->tile[tile].n * sizeof *v);
 }
 
-static void sum_share(const struct sorted *sorted, int share) {
+static void sum_share(const struct sorted *sorted, enum pairwise_smoothing smoothing, int share) {
     const int n_tiles = sorted->n_tiles;
     const long begin = n_pairs(n_tiles) * share / sorted->n_shares;
     const long end = n_pairs(n_tiles) * (share + 1) / sorted->n_shares;
@@ -139,7 +140,7 @@ static void sum_share(const struct sorted *sorted, int share) {
             if (pair < begin || pair >= end) continue;
             begin_tile(sorted, share, a, u, v);
             begin_tile(sorted, share, b, u, v);
-            add_pair(sorted, &sorted->tile[a], &sorted->tile[b], u, v);
+            add_pair(sorted, smoothing, &sorted->tile[a], &sorted->tile[b], u, v);
         }
     }
 }
@@ -158,14 +159,15 @@ static void add_shares(const struct sorted *sorted, int tile) {
     }
 }
 
-enum status pairwise_add_velocity(const struct vortices *vortices, int threads, double *u, double *v) {
+enum status pairwise_add_velocity(const struct vortices *vortices, enum pairwise_smoothing smoothing, int threads,
+                                  double *u, double *v) {
     struct sorted sorted = {0};
     const enum status status = sorted_fill(&sorted, vortices);
     if (status == STATUS_OK) {
 #pragma omp parallel num_threads(threads)
         {
 #pragma omp for schedule(dynamic)
-            for (int share = 0; share < sorted.n_shares; share++) sum_share(&sorted, share);
+            for (int share = 0; share < sorted.n_shares; share++) sum_share(&sorted, smoothing, share);
 #pragma omp for nowait
             for (int tile = 0; tile < sorted.n_tiles; tile++) add_shares(&sorted, tile);
         }

@@ -1,6 +1,7 @@
 /* vortices.c: groups of vortices onto targets. */
 #include "vortex/vortices.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -55,6 +56,21 @@ enum status vortices_append(struct vortices *vortices, int n, double smoothing) 
     }
     vortices->n = all;
     return STATUS_OK;
+}
+
+double vortices_pair_smoothing(double one, double other) {
+    // one smoothing is kept to the bit
+    return fabs(one - other) > 0 ? sqrt((one * one + other * other) / 2) : one;
+}
+
+struct vortices vortices_felt_by(const struct vortices *from, double smoothing, struct vortex_group *group) {
+    struct vortices felt = *from;
+    for (int g = 0; g < from->n_groups; g++) {
+        group[g] = from->group[g];
+        group[g].smoothing = vortices_pair_smoothing(from->group[g].smoothing, smoothing);
+    }
+    felt.group = group;
+    return felt;
 }
 
 struct induced vortices_targets(const struct induced *all, struct range which) {

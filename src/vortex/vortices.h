@@ -20,6 +20,10 @@ struct vortices {
     struct vortex_group *group; /* (n_groups) */
 };
 
+/* The smoothing of a pair of vortices, or sheets, with a smoothing each: the root of the mean of the squares, m. It is
+ * the same in both directions, so that the two velocities conserve the impulse of the pair. */
+double vortices_pair_smoothing(double one, double other);
+
 /* Points at which a velocity, and its gradient where u_x is not NULL, are induced and added; all arrays (n).
  * u_x = du/dx = -dv/dy, u_y = du/dy, v_x = dv/dx. */
 struct induced {
@@ -47,6 +51,10 @@ void vortices_induce(const struct vortices *vortices, struct range which, const 
 /* The same of all vortices but, at the targets in a range, those left out. */
 void vortices_induce_without(const struct vortices *vortices, struct range left_out, struct range where,
                              const struct induced *at);
+
+/* The same vortices as vortices of another smoothing feel them: *from with these groups, one for each of its groups, in
+ * which every smoothing is that of the pair. It owns nothing. */
+struct vortices vortices_felt_by(const struct vortices *from, double smoothing, struct vortex_group *group);
 
 /* A range of the targets. */
 struct induced vortices_targets(const struct induced *all, struct range which);

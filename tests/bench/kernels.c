@@ -97,7 +97,7 @@ static void wake(const struct kernel_variant *variant, int n, int m) {
     struct vortex_group all = {{0, n}, 0.2};
     const struct vortices vortices = {
         .n = n, .x = cloud.x, .y = cloud.y, .circulation = cloud.circulation, .n_groups = 1, .group = &all};
-    if (pairwise_add_velocity(&vortices, m, cloud.u, cloud.v) != STATUS_OK) abort();
+    if (pairwise_add_velocity(&vortices, PAIRWISE_OF_SOURCE, m, cloud.u, cloud.v) != STATUS_OK) abort();
 }
 
 // ---- the tables

@@ -199,31 +199,6 @@ static void gradients_are_differences_of_velocities(void **state) {
     vortices_free(&vortices);
 }
 
-static void a_smoothing_for_each_and_one_for_all_agree(void **state) {
-    (void)state;
-    const struct walls *const walls[] = {&below, &channel};
-    struct vortices vortices;
-    struct points a, b;
-    make(&vortices, N_SOURCES);
-    make_points(&a, N_TARGETS);
-    make_points(&b, N_TARGETS);
-    double square[N_SOURCES];
-    for (int j = 0; j < N_SOURCES; j++) square[j] = j < N_SOURCES / 3 ? 0.1 * 0.1 : 0.02 * 0.02;
-    for (int w = 0; w < 2; w++) {
-        vortices_zero(&a.at);
-        vortices_zero(&b.at);
-        images_induce(walls[w], &vortices, (struct range){0, N_SOURCES}, &a.at);
-        images_induce_each(walls[w], N_SOURCES, vortices.x, vortices.y, vortices.circulation, square, &b.at);
-        const double *const one[] = {a.at.u, a.at.v, a.at.u_x, a.at.u_y, a.at.v_x};
-        const double *const other[] = {b.at.u, b.at.v, b.at.u_x, b.at.u_y, b.at.v_x};
-        for (int k = 0; k < 5; k++) NEAR_ARRAY(N_TARGETS, one[k], other[k], 1e-12, 1e-12);
-    }
-    free(a.memory);
-    free(b.memory);
-    vortices_free(&vortices);
-}
-
-// the velocity of the images of one source
 static void images_of(const struct walls *walls, int n, const double *x, const double *y, const double source[2],
                       double *u, double *v) {
     double sx = source[0], sy = source[1], circulation = 1;
@@ -315,7 +290,7 @@ static double error_in_channel(const struct vortices *vortices, double length, d
     memcpy(far.memory, exact.memory, 2 * N * sizeof(double));
     const struct range all = {0, vortices->n};
     images_induce(&channel, vortices, all, &exact.at);
-    assert_int_equal(far_images_induce(velocity_sum_far_images(sum), &channel, vortices, NULL, tolerance, 2, &far.at),
+    assert_int_equal(far_images_induce(velocity_sum_far_images(sum), &channel, vortices, tolerance, 2, &far.at),
                      STATUS_OK);
     images_induce(&below, vortices, all, &far.at);
     images_induce(&above, vortices, all, &far.at);
@@ -377,39 +352,27 @@ static void far_images_in_a_channel_are_within_the_tolerance(void **state) {
     velocity_sum_free(sum);
 }
 
-static void many_of_a_smoothing_each_are_summed_by_cells(void **state) {
+static void cells_sum_where_that_pays(void **state) {
     (void)state;
     enum { N = 400 };
     const double tolerance = 1e-7;
-    struct velocity_sum *sum;
-    assert_int_equal(velocity_sum_create(&sum), STATUS_OK);
     struct vortices vortices;
-    struct points direct, cells;
+    struct points points;
     make(&vortices, N);
-    make_points(&direct, N);
-    make_points(&cells, N);
-    double square[N];
-    for (int i = 0; i < N; i++) square[i] = 0.01 * (1 + 0.9 * sin(17 * i));
-    images_induce_each(&channel, N, vortices.x, vortices.y, vortices.circulation, square, &direct.at);
-    assert_true(images_by_cells(&channel, &vortices, square, tolerance, &cells.at));
-    assert_int_equal(images_induce_many_each(&channel, sum, &vortices, square, tolerance, 2, &cells.at), STATUS_OK);
-    // the circulations add up to 255; the bound is 1e-8 of some 100 m/s
-    NEAR_ARRAY(N, cells.at.u, direct.at.u, 1e-7, 0);
-    NEAR_ARRAY(N, cells.at.v, direct.at.v, 1e-7, 0);
+    make_points(&points, N);
+    assert_true(images_by_cells(&channel, &vortices, tolerance, &points.at));
     // one wall, no tolerance, few vortices, a channel far too long, a place that is none
-    assert_false(images_by_cells(&below, &vortices, square, tolerance, &cells.at));
-    assert_false(images_by_cells(&channel, &vortices, square, 0, &cells.at));
-    struct induced few = cells.at;
+    assert_false(images_by_cells(&below, &vortices, tolerance, &points.at));
+    assert_false(images_by_cells(&channel, &vortices, 0, &points.at));
+    struct induced few = points.at;
     few.n = 100;
-    assert_false(images_by_cells(&channel, &vortices, square, tolerance, &few));
+    assert_false(images_by_cells(&channel, &vortices, tolerance, &few));
     const double far[] = {1e4, INFINITY, NAN};
     for (int i = 0; i < 3; i++) {
         vortices.x[7] = far[i];
-        assert_false(images_by_cells(&channel, &vortices, square, tolerance, &cells.at));
+        assert_false(images_by_cells(&channel, &vortices, tolerance, &points.at));
     }
-    free(direct.memory);
-    free(cells.memory);
-    velocity_sum_free(sum);
+    free(points.memory);
     vortices_free(&vortices);
 }
 
@@ -480,11 +443,10 @@ int main(void) {
         cmocka_unit_test(a_vortex_goes_along_the_wall_at_the_classical_speed),
         cmocka_unit_test(nothing_goes_through_the_walls),
         cmocka_unit_test(gradients_are_differences_of_velocities),
-        cmocka_unit_test(a_smoothing_for_each_and_one_for_all_agree),
         cmocka_unit_test(images_of_one_source_follow_it),
         cmocka_unit_test(many_are_summed_by_the_tree_and_by_threads),
         cmocka_unit_test(far_images_in_a_channel_are_within_the_tolerance),
-        cmocka_unit_test(many_of_a_smoothing_each_are_summed_by_cells),
+        cmocka_unit_test(cells_sum_where_that_pays),
         cmocka_unit_test(the_nearest_images_leave_only_distant_ones),
         cmocka_unit_test(a_pair_that_meets_a_wall_parts_along_it),
     };

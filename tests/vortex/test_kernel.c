@@ -197,6 +197,36 @@ static void a_change_of_smoothing_is_the_difference_of_two_sums(void **state) {
     }
 }
 
+// the same where the smoothing changes with the target
+static void a_change_at_every_target_is_the_difference_of_two_sums(void **state) {
+    (void)state;
+    const double from = 0.1;
+    double square[N_TARGETS], minus[N_SOURCES];
+    for (int i = 0; i < N_TARGETS; i++) square[i] = from * from * (i % 5) / 4;
+    for (int j = 0; j < N_SOURCES; j++) minus[j] = -cloud.circulation[j];
+    for (int n = 0; n <= N_TARGETS; n++) {
+        double got[2][N_TARGETS] = {{0}}, want[2][N_TARGETS] = {{0}};
+        kernel_add_velocity_change_at(n, cloud.x, cloud.y, square, N_SOURCES, cloud.source_x, cloud.source_y,
+                                      cloud.circulation, from * from, got[0], got[1]);
+        for (int i = 0; i < n; i++) {
+            kernel_add_velocity(1, cloud.x + i, cloud.y + i, N_SOURCES, cloud.source_x, cloud.source_y,
+                                cloud.circulation, sqrt(square[i]), want[0] + i, want[1] + i);
+            kernel_add_velocity(1, cloud.x + i, cloud.y + i, N_SOURCES, cloud.source_x, cloud.source_y, minus, from,
+                                want[0] + i, want[1] + i);
+        }
+        for (int k = 0; k < 2; k++) NEAR_ARRAY(N_TARGETS, got[k], want[k], 1e-13, 1e-12);
+    }
+    // the full smoothing changes nothing
+    for (int i = 0; i < N_TARGETS; i++) square[i] = from * from;
+    double none[2][N_TARGETS] = {{0}};
+    kernel_add_velocity_change_at(N_TARGETS, cloud.x, cloud.y, square, N_SOURCES, cloud.source_x, cloud.source_y,
+                                  cloud.circulation, from * from, none[0], none[1]);
+    for (int i = 0; i < N_TARGETS; i++) {
+        NEAR(none[0][i], 0, 0, 0);
+        NEAR(none[1][i], 0, 0, 0);
+    }
+}
+
 // where both smoothings are nearly the same, the change keeps the digits that the difference of two sums loses
 static void a_small_change_keeps_its_digits(void **state) {
     (void)state;
@@ -406,6 +436,7 @@ int main(void) {
         cmocka_unit_test(all_variants_give_the_same_bits),
         cmocka_unit_test(every_processor_has_a_variant),
         cmocka_unit_test(a_change_of_smoothing_is_the_difference_of_two_sums),
+        cmocka_unit_test(a_change_at_every_target_is_the_difference_of_two_sums),
         cmocka_unit_test(a_small_change_keeps_its_digits),
         cmocka_unit_test(two_tiles_induce_velocities_at_each_other),
         cmocka_unit_test(a_tile_may_be_as_large_as_promised),

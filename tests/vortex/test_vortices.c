@@ -44,6 +44,25 @@ static void neighbours_of_one_smoothing_are_one_group(void **state) {
     vortices_free(&vortices);
 }
 
+static void a_pair_has_the_mean_of_squares_in_both_directions(void **state) {
+    (void)state;
+    NEAR(vortices_pair_smoothing(0.1, 0.1), 0.1, 0, 0);
+    NEAR(vortices_pair_smoothing(0.1, 0.7), 0.5, 1e-16, 0);
+    NEAR(vortices_pair_smoothing(0.7, 0.1), 0.5, 1e-16, 0);
+    struct vortices vortices;
+    struct vortex_group group[3];
+    make(&vortices);
+    const struct vortices felt = vortices_felt_by(&vortices, 0.7, group);
+    assert_int_equal(felt.n, 10);
+    assert_ptr_equal(felt.x, vortices.x);
+    for (int g = 0; g < 3; g++) {
+        assert_int_equal(felt.group[g].at.first, vortices.group[g].at.first);
+        NEAR(felt.group[g].smoothing, g == 1 ? sqrt(0.53 / 2) : 0.5, 1e-15, 0);
+        NEAR(vortices.group[g].smoothing, g == 1 ? 0.2 : 0.1, 0, 0);
+    }
+    vortices_free(&vortices);
+}
+
 static void values_are_kept_when_the_capacity_grows(void **state) {
     (void)state;
     struct vortices vortices;
@@ -129,6 +148,7 @@ static void a_range_of_the_targets_points_into_all(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(neighbours_of_one_smoothing_are_one_group),
+        cmocka_unit_test(a_pair_has_the_mean_of_squares_in_both_directions),
         cmocka_unit_test(values_are_kept_when_the_capacity_grows),
         cmocka_unit_test(a_range_induces_what_its_vortices_do_one_by_one),
         cmocka_unit_test(some_targets_leave_out_a_range),
