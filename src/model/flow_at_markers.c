@@ -1,11 +1,14 @@
 /* flow_at_markers.c: what all fish cause with the full smoothing, class after class; then the own bodies near tails. */
 #include "model/flow_at_markers.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "model/flow_external.h"
 #include "vortex/kernel.h"
 #include "vortex/pairwise.h"
+
+static const double two_pi = 6.28318530717958647692;
 
 // ---- places and strengths
 
@@ -139,16 +142,20 @@ static void induce_near_tail(const struct flow *flow, int f, const struct near_t
     }
 }
 
-// a newborn marker is on the tail, where nothing is smoothed
-static void induce_at_newborn(const struct flow *flow, const struct wake *wake, int f, const double tail[2]) {
+// A newborn marker feels the own body not from the tail, where the velocity of the sheet is singular, but h/(2 pi)
+// behind it, h being the length of the stretch that it begins: so its first step is that of steady shedding.
+static void induce_at_newborn(const struct flow *flow, const struct wake *wake, int f, const double tail[2],
+                              const double tangent[2]) {
     const struct vortices *const body = &flow->convecting;
     const int first = flow->body_range[f].first, n = flow->body_range[f].n;
     const int newborn = flow->wake_range[f].first + wake->n_vortex - 1;
+    const double along = wake->slip[0] * tangent[0] + wake->slip[1] * tangent[1];
+    const double behind = fmax(0, along) * flow->school->interval / two_pi;
+    const double x = tail[0] + behind * tangent[0], y = tail[1] + behind * tangent[1];
     double u[2] = {0}, v[2] = {0};
     kernel_add_velocity(1, &tail[0], &tail[1], n, body->x + first, body->y + first, body->circulation + first,
                         flow->school->fish[f].smoothing, &u[0], &v[0]);
-    kernel_add_velocity(1, &tail[0], &tail[1], n, body->x + first, body->y + first, body->circulation + first, 0, &u[1],
-                        &v[1]);
+    kernel_add_velocity(1, &x, &y, n, body->x + first, body->y + first, body->circulation + first, 0, &u[1], &v[1]);
     flow->wake_u[newborn] += u[1] - u[0];
     flow->wake_v[newborn] += v[1] - v[0];
 }
@@ -174,7 +181,7 @@ static void taper_own(const struct flow *flow, const struct state *state, int f)
         near.n = 0;
     }
     induce_near_tail(flow, f, &near);
-    induce_at_newborn(flow, wake, f, tail);
+    induce_at_newborn(flow, wake, f, tail, body.t);
 }
 
 enum status flow_at_markers(struct flow *flow, const struct state *state) {

@@ -226,7 +226,8 @@ static void add_fish(const struct setup *setup, int f, int i, int g, double *u, 
     const double tail[2] = {state->y[fish->at.x + last], state->y[fish->at.y + last]};
     const struct direction body = fish_direction(fish, &fish->tail_tangent, state->y);
     const double r[2] = {x - tail[0], y - tail[1]};
-    const double behind = 0;
+    const double along = own->slip[0] * body.t[0] + own->slip[1] * body.t[1];
+    const double behind = fmax(0, along) * setup->school->interval / (2 * M_PI);
     const int is_newborn = f == g && i == own->n_vortex - 1;
     const double smoothing = is_newborn ? 0 : f == g ? free_sheet_smoothing(fish, r, body.t) : fish->smoothing;
     const double at[2] = {is_newborn ? tail[0] + behind * body.t[0] : x, is_newborn ? tail[1] + behind * body.t[1] : y};
