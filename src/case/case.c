@@ -283,8 +283,8 @@ static enum status derive_all(struct case_values *values, const char *origin) {
     derive(&values->time.output_interval, 10 * values->school.shedding_interval);
     derive(&values->school.wake.decay, values->school.wake.lifetime / 10);
     const bool is_sheet = values->school.wake.shedding == SHEDDING_SHEET;
-    derive(&values->school.wake.taper, is_sheet ? 0.4 : 0);
-    derive(&values->school.wake.taper_beside, is_sheet ? 0.1 : 0);
+    derive(&values->school.wake.taper, is_sheet ? 0.6 : 0);
+    derive(&values->school.wake.taper_beside, is_sheet ? 0.07 : 0);
     derive(&values->school.wake.tolerance, values->school.rtol / 100);
     derive(&values->output.wake_interval, values->time.output_interval);
     if (!values->name && !(values->name = stem(origin))) return out_of_memory();

@@ -78,10 +78,10 @@ const struct key case_table[] = {
     {"wake.taper", REAL, AT(school.wake.taper), NULL, FROM(0), "",
      .meaning = "shedding sheet: distance from the tail over which the smoothing radius of the wake, as the body sees "
                 "it, grows from 0, in body lengths; 0: no taper",
-     .derived = "0.4 with shedding sheet, else 0"},
+     .derived = "0.6 with shedding sheet, else 0"},
     {"wake.taper_beside", REAL, AT(school.wake.taper_beside), NULL, FROM(0), "",
      .meaning = "shedding sheet: the same distance for vortices beside the body, in body lengths",
-     .derived = "0.1 with shedding sheet, else 0"},
+     .derived = "0.07 with shedding sheet, else 0"},
     {"wake.lifetime", REAL, AT(school.wake.lifetime), "2", ABOVE(0), "s", .meaning = "age at which a vortex is removed",
      .synonyms = "life max_age age"},
     {"wake.fade", REAL, AT(school.wake.decay), NULL, FROM(0), "s",

@@ -79,7 +79,7 @@ double free_sheet_smoothing(const struct fish *fish, const double from_tail[2], 
     const double behind = along >= 0 ? 1 : ramp_step(1 + 2 * along / sqrt(square));
     const double length = fish->taper * behind + fish->taper_beside * (1 - behind);
     if (length <= 0) return fish->smoothing;
-    const double ratio = square / (length * length);
+    const double ratio = square / (length * length) * (square / (length * length));
     // exp is faster, and as good where its digits do not cancel
     return fish->smoothing * (ratio > 1 ? 1 - exp(-ratio) : -expm1(-ratio));
 }
@@ -138,10 +138,11 @@ static int is_untapered(const struct free_sheet *sheet, const struct fish *fish,
            fish->smoothing - sheet->smoothing[1][i] <= rounding * fish->smoothing;
 }
 
-// the taper is exp(-ratio) short of 1, and that of 31 is below the rounding above
+// the taper is exp(-ratio^2) short of 1, and that of a square ratio of 31 is below the rounding above
 int free_sheet_is_far(const struct fish *fish, const double from_tail[2]) {
+    static const double far = 5.5677643628300219;
     const double length = fmax(fish->taper, fish->taper_beside);
-    return from_tail[0] * from_tail[0] + from_tail[1] * from_tail[1] > 31 * length * length;
+    return from_tail[0] * from_tail[0] + from_tail[1] * from_tail[1] > far * length * length;
 }
 
 // whether the middle of a stretch, whose ends are at[0] now and at[1] at the end of the interval, is far at both

@@ -86,8 +86,8 @@ static void the_defaults_are_those_of_the_reference(void **state) {
     NEAR(s.school.shedding_interval, 0.01, 0, 0);
     NEAR(s.school.fluid.density, 1000, 0, 0);
     NEAR(s.school.wake.smoothing, 0.1, 0, 0);
-    NEAR(s.school.wake.taper, 0.4, 0, 0);
-    NEAR(s.school.wake.taper_beside, 0.1, 0, 0);
+    NEAR(s.school.wake.taper, 0.6, 0, 0);
+    NEAR(s.school.wake.taper_beside, 0.07, 0, 0);
     assert_int_equal(s.school.wake.curve, BODY_LINE_SMOOTH);
     NEAR(s.school.wake.sheet_smoothing, 0.05, 0, 0);
     NEAR(s.school.wake.lifetime, 2, 0, 0);

@@ -94,13 +94,36 @@ static void the_smoothing_tapers_to_nothing_at_the_tail(void **state) {
     for (int i = 0; i < sheet->n - FREE_SHEET_PANEL - 1; i++) {
         if (sheet->part[i] < 0) continue;
         const double dx = sheet->x[i] - y[fish->at.x + last], dy = sheet->y[i] - y[fish->at.y + last];
-        const double want = 0.1 * (1 - exp(-(dx * dx + dy * dy) / 0.16));
+        const double want = 0.1 * (1 - exp(-pow(hypot(dx, dy) / 0.4, 4)));
         // a wake behind the body; to the rounding of a difference near the tail
         NEAR(sqrt(sheet->square[i]), want, 1e-12, 1e-9);
         n++;
     }
     assert_true(n > 20);
     simulate_free(simulation);
+}
+
+// beyond 2.36 times the longer taper nothing is left of it, in any direction; just before it there is something
+static void far_from_the_tail_the_smoothing_is_full(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME SHEET "fish: [{length: 2}]\n");
+    const struct fish *const fish = setup.school->fish;
+    const double along[2] = {1, 0};
+    for (double angle = 0; angle < 6.3; angle += 0.3) {
+        const double direction[2] = {cos(angle), sin(angle)};
+        for (int i = 0; i < 2; i++) {
+            const double distance = 2 * 0.4 * (i == 0 ? 2.355 : 2.365);
+            const double at[2] = {distance * direction[0], distance * direction[1]};
+            assert_int_equal(free_sheet_is_far(fish, at), i);
+            NEAR(free_sheet_smoothing(fish, at, along), 0.2, 0, i == 0 ? 1e-12 : 1e-13);
+        }
+    }
+    // a spacing of the bound sheet beside the body: with the defaults 0.023 L at 0.05 L
+    NEAR(free_sheet_smoothing(fish, (const double[]){-0.1, 0.02}, along), 0.2 * (1 - exp(-pow(0.10198 / 0.2, 4))), 1e-6,
+         0);
+    NEAR(free_sheet_smoothing(fish, (const double[]){0, 0}, along), 0, 0, 0);
+    school_clear(&setup);
 }
 
 static void total_circulation_vanishes(void **state) {
@@ -123,6 +146,7 @@ int main(void) {
         cmocka_unit_test(stretches_lie_between_markers_and_markers_have_half_of_both),
         cmocka_unit_test(the_own_body_sees_the_same_circulation_as_others),
         cmocka_unit_test(the_smoothing_tapers_to_nothing_at_the_tail),
+        cmocka_unit_test(far_from_the_tail_the_smoothing_is_full),
         cmocka_unit_test(total_circulation_vanishes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

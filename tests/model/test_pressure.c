@@ -190,7 +190,7 @@ static void force_and_reaction_are_those_of_the_jump(void **state) {
         if (i > 0) step += (jump[i] - jump[i - 1]) / 7;
     }
     NEAR(jump[0] - step / 2, 0, 2 * fabs(step), 0);
-    for (int i = 1; i < 8; i++) NEAR(jump[i] - jump[i - 1], step, 0, 0.7);
+    for (int i = 1; i < 8; i++) NEAR(jump[i] - jump[i - 1], step, 0, 0.75);
     for (int k = 0; k < fish->n_nodes; k++) {
         for (int i = 0; i < 2; i++) {
             inertia[i] += fish->mass[k] * simulation->state->y[fish->at.ax + i * fish->n_nodes + k];

@@ -131,7 +131,7 @@ static double follow(int number, double gap, double speed_alone) {
     snprintf(from, sizeof from, "follower from %g L behind", gap);
     verify_value(verify_text("%s: place, wavelengths", from), integers, number, found.place, 0.15);
     verify_zero(verify_text("%s: beats of the search", from), "a run needs 60", found.n_beats, 40);
-    verify_relative(verify_text("%s: speed, m/s", from), alone, speed_alone, found.speed, 0.015);
+    verify_relative(verify_text("%s: speed, m/s", from), alone, speed_alone, found.speed, 0.02);
     verify_zero(verify_text("%s: largest multiplier", from), "stable: below 1", found.largest, 1);
     verify_zero(verify_text("%s: put 0.1 L ahead, 30 beats on, L", from), "it returns to its place", found.wander,
                 0.02);
@@ -229,7 +229,7 @@ static void small_amplitudes(double speed) {
 static void published_plates(void) {
     const struct found lone = find(&of_fang, 1, 0);
     verify_relative("plates of Fang et al.: speed of one, half lengths a beat", "in their program, parameter.m", 13.25,
-                    lone.speed, 0.002);
+                    lone.speed, 0.0025);
     for (int number = 1; number <= 2; number++) {
         struct pair pair = of_fang;
         pair.gap = 1.1 * number * pair.speed;
@@ -273,7 +273,7 @@ static void held(double speed) {
         pair.heave = light.heave / 32;
         const double thrust = thrust_over_leaders(&pair);
         verify_value(verify_text("held %g wavelengths behind: thrust over the leader's", place), "linear theory",
-                     linear_theory_follower_thrust(&plate, pair.smoothing, pair.gap, 0), thrust, 0.012);
+                     linear_theory_follower_thrust(&plate, pair.smoothing, pair.gap, 0), thrust, 0.014);
         verify_point("tandem_thrust", verify_text("heave %.2g L", pair.heave), place, thrust);
         pair.heave = light.heave;
         verify_point("tandem_thrust", verify_text("heave %.2g L", pair.heave), place, thrust_over_leaders(&pair));
