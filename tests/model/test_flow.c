@@ -14,8 +14,8 @@
 #include "vortex/kernel.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
-#define TWO_FISH                                          \
-    "fish:\n"                                             \
+#define TWO_FISH                                         \
+    "fish:\n"                                            \
     "  - {nodes: 5, sheet_points: 7, force: reactive}\n" \
     "  - {nodes: 6, sheet_points: 9, length: 0.8, start: {position: [0.2, 0.5], heading: 165}}\n"
 #define TWO TIME "fluid: {velocity: [0.1, 0.2], shear: 0.3, gust: {amplitude: 0.2, frequency: 1}}\n" TWO_FISH
