@@ -322,7 +322,8 @@ static void bodies_under_pressure_throw_each_other_back(void **state) {
         SCHOOL_SECOND TIME
         "solver: {rtol: 1.0e-6}\n"
         "defaults: {fish: {nodes: 9, sheet_points: 17, force: pressure, pressure: {suction_limit: 0},\n"
-        "                  drag: {skin: laminar}, wave: {amplitude: 0}, start: {speed: 1}}}\n"
+        "                  drag: {skin: laminar}, wave: {amplitude: 0}, body: {relaxation_time: 0.02},\n"
+        "                  start: {speed: 1}}}\n"
         "fish: [{start: {position: [-0.1, 0.01], heading: 0}}, {start: {position: [0.1, -0.01], heading: 180}}]\n");
     double sum[2], stored = 0, audit = 0;
     const double scale = momentum(simulation, 2, sum);
