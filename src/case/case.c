@@ -211,7 +211,7 @@ static enum status derive_fish(struct fish_parameters *fish, int index) {
     derive(&fish->body.relaxation_time, period / 1000);
     derive(&fish->wave.ramp, period);
     const bool has_pressure = fish->force == FORCE_PRESSURE;
-    if ((int)fish->drag.skin < 0) fish->drag.skin = has_pressure ? SKIN_LAMINAR : SKIN_QUADRATIC;
+    if ((int)fish->drag.skin < 0) fish->drag.skin = has_pressure ? SKIN_BOUNDARY_LAYER : SKIN_QUADRATIC;
     derive(&fish->drag.normal, has_pressure ? 0 : 1);
     if (!isnan(fish->wave.wavelength)) fish->wave.number = -2 * 3.14159265358979323846 / fish->wave.wavelength;
     fish->wave.wavelength = NAN;

@@ -238,10 +238,10 @@ static void check_viscosity(const struct check *check) {
     static const char path[] = "fluid.viscosity";
     double initial;
     for (int f = 0; f < school->n_fish; f++) {
-        if (school->fish[f].drag.skin == SKIN_LAMINAR) return;
+        if (school->fish[f].drag.skin != SKIN_QUADRATIC) return;
     }
     if (text_number(case_table_row(path)->initial, &initial) && fabs(school->fluid.viscosity - initial) > 0) {
-        complain(check, path, "has no effect: no fish has 'drag.skin: laminar'; friction is then drag.tangential");
+        complain(check, path, "has no effect: all fish have 'drag.skin: quadratic', whose friction is drag.tangential");
     }
 }
 
@@ -301,6 +301,7 @@ static bool is_given(const struct check *check, const char *path) {
     const char *const fish = (const char *)&check->values->school.fish[check->fish];
     const double value = *(const double *)(fish + key->offset);
     double initial = NAN, published;
+    if (!key->initial) return !isnan(value);  // its default is none that a case could print
     text_number(key->initial, &initial);
     if (!key->published || !text_number(key->published, &published)) published = initial;
     return fabs(value - initial) > 0 && fabs(value - published) > 0;
@@ -371,9 +372,13 @@ static void check_drag(const struct check *check) {
         complain(check, "fish.drag.law",
                  "needs wave.frequency above 0, for its linear_speed is in lengths per beat; choose quadratic");
     }
-    if (drag->skin == SKIN_LAMINAR && is_given(check, "fish.drag.tangential")) {
-        complain(check, "fish.drag.tangential",
-                 "has no effect with 'skin: laminar', which has fluid.viscosity: remove it");
+    if (drag->skin != SKIN_QUADRATIC && is_given(check, "fish.drag.tangential")) {
+        complain(check, "fish.drag.tangential", "has no effect with 'skin: %s', which has fluid.viscosity: remove it",
+                 drag->skin == SKIN_LAMINAR ? "laminar" : "boundary_layer");
+    }
+    static const char *const of_layer[] = {"fish.drag.transition", "fish.drag.waving", "fish.drag.form"};
+    for (size_t i = 0; i < sizeof of_layer / sizeof *of_layer && drag->skin != SKIN_BOUNDARY_LAYER; i++) {
+        if (is_given(check, of_layer[i])) complain(check, of_layer[i], "is for 'skin: boundary_layer' only: remove it");
     }
 }
 

@@ -22,7 +22,7 @@ static const struct {
     const char *words, *instead;
 } missing[] = {
     {"kinematic_viscosity dynamic_viscosity mu reynolds reynolds_number",
-     "; friction is drag.tangential of a fish, or fluid.viscosity with 'drag.skin: laminar'"},
+     "; friction is drag.tangential of a fish, or fluid.viscosity with 'drag.skin: boundary_layer' or 'laminar'"},
 };
 
 static char lower(char c) {

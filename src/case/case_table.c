@@ -54,7 +54,9 @@ const struct key case_table[] = {
     {"fluid.density", REAL, AT(school.fluid.density), "1000", FROM(0), "kg m-3",
      .meaning = "density of the fluid; 0: no fluid forces", .synonyms = "rho rho_f"},
     {"fluid.viscosity", REAL, AT(school.fluid.viscosity), "1e-6", FROM(0), "m2 s-1",
-     .meaning = "kinematic viscosity of the fluid: 'drag.skin: laminar' uses it", .synonyms = "nu"},
+     .meaning = "kinematic viscosity of the fluid, of which the friction of a boundary layer and of 'drag.skin: "
+                "laminar' is made",
+     .synonyms = "nu"},
     {"fluid.velocity", PAIR, AT(school.fluid.velocity), "[0, 0]", ANY, "m s-1", .meaning = "uniform background flow",
      .synonyms = "current stream flow wind u_inf"},
     {"fluid.shear", REAL, AT(school.fluid.shear), "0", ANY, "s-1",
@@ -264,9 +266,22 @@ const struct key case_table[] = {
      .meaning = "tangential drag coefficient (friction)", .synonyms = "friction c_f cf", .published = "1e-3"},
     {"fish.drag.skin", CHOICE, IN_FISH(drag.skin), NULL, ANY, "",
      .meaning =
-         "law of the tangential drag; quadratic: the one of drag.law, with drag.tangential; laminar: the friction of "
-         "a boundary layer on a plate, with fluid.viscosity",
-     .words = WORDS("quadratic", "laminar"), .derived = "laminar with force pressure, else quadratic"},
+         "law of the tangential drag; quadratic: the one of drag.law, with drag.tangential; laminar: the friction of a "
+         "laminar boundary layer on a plate, with fluid.viscosity; boundary_layer: with transition, and factors for "
+         "waving and thick bodies",
+     .words = WORDS("quadratic", "laminar", "boundary_layer"),
+     .derived = "boundary_layer with force pressure, else quadratic"},
+    {"fish.drag.transition", REAL, IN_FISH(drag.transition), "2e5", FROM(0), "",
+     .meaning =
+         "skin boundary_layer: Reynolds number of the distance from the nose at which the boundary layer becomes "
+         "turbulent; 0: turbulent from the nose",
+     .synonyms = "turbulence re_t"},
+    {"fish.drag.waving", REAL, IN_FISH(drag.waving), NULL, ABOVE(0), "",
+     .meaning = "skin boundary_layer: factor of the laminar friction, for the waves of the body",
+     .derived = "1.5 for a body with a wave, else 1"},
+    {"fish.drag.form", REAL, IN_FISH(drag.form), NULL, ABOVE(0), "",
+     .meaning = "skin boundary_layer: factor of the friction, for the thickness of the body",
+     .derived = "1 + 2 h/L + 60 (h/L)^4 with the largest thickness h of an edge", .synonyms = "form_factor"},
     {"fish.drag.normal", REAL, IN_FISH(drag.normal), NULL, FROM(0), "", .meaning = "normal drag coefficient",
      .synonyms = "c_d cd lateral", .published = "0.5", .derived = "1, or 0 with force pressure"},
     {"fish.drag.added_mass", REAL, IN_FISH(drag.added_mass), "1", FROM(0), "", .meaning = "added-mass coefficient",

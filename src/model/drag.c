@@ -14,35 +14,67 @@ static double speed_law_slope(const struct fish *fish, double speed) {
     return 2 * fabs(speed) + fish->linear_speed;
 }
 
-// the law of the tangential drag; laminar: (u^2 + u0^2)^(1/4) u
-static double skin_law(const struct fish *fish, double speed) {
-    if (fish->skin == SKIN_QUADRATIC) return speed_law(fish, speed);
-    return sqrt(hypot(speed, fish->friction_speed)) * speed;
+/* The friction of a boundary layer on an edge over the velocity along it, kg s-1, and the derivative of that by s2, the
+ * square of the velocity and of u0. */
+struct boundary_layer {
+    double resistance, by_square;
+};
+
+static struct boundary_layer boundary_layer(const struct fish *fish, int k, double square) {
+    // B: the turbulent part, 1 - B the laminar one; dB/ds2 = 2 B (1 - B)/s2
+    const double ratio = square * fish->past_transition[k], laminar = 1 / (1 + ratio * ratio), turbulent = 1 - laminar;
+    const double by_square = 2 * turbulent * laminar / square;
+    const double factor = fish->form * (1 + (fish->waving - 1) * laminar);
+    const double factor_slope = -fish->form * (fish->waving - 1) * by_square;
+    const double blasius = fish->drag_tangential[k] * sqrt(sqrt(square));
+    const double power_law = fish->drag_turbulent[k] * pow(square, 0.4);
+    const double sum = laminar * blasius + turbulent * power_law;
+    const double slope =
+        by_square * (power_law - blasius) + (laminar * blasius / 4 + turbulent * power_law * 2 / 5) / square;
+    return (struct boundary_layer){factor * sum, factor * slope + factor_slope * sum};
 }
 
-static double skin_law_slope(const struct fish *fish, double speed) {
-    if (fish->skin == SKIN_QUADRATIC) return speed_law_slope(fish, speed);
+static double square_of(const struct fish *fish, double speed) {
+    return speed * speed + fish->friction_speed * fish->friction_speed;
+}
+
+// the tangential drag on edge k; laminar: c_t (u^2 + u0^2)^(1/4) u
+static double skin_drag(const struct fish *fish, int k, double speed) {
+    switch (fish->skin) {
+        case SKIN_LAMINAR: return fish->drag_tangential[k] * (sqrt(hypot(speed, fish->friction_speed)) * speed);
+        case SKIN_BOUNDARY_LAYER: return boundary_layer(fish, k, square_of(fish, speed)).resistance * speed;
+        case SKIN_QUADRATIC: break;
+    }
+    return fish->drag_tangential[k] * speed_law(fish, speed);
+}
+
+static double skin_drag_slope(const struct fish *fish, int k, double speed) {
+    if (fish->skin == SKIN_BOUNDARY_LAYER) {
+        const struct boundary_layer layer = boundary_layer(fish, k, square_of(fish, speed));
+        return layer.resistance + 2 * layer.by_square * speed * speed;
+    }
+    if (fish->skin == SKIN_QUADRATIC) return fish->drag_tangential[k] * speed_law_slope(fish, speed);
     const double size = hypot(speed, fish->friction_speed);
-    return sqrt(size) * (1 + speed / size * (speed / size) / 2);
+    return fish->drag_tangential[k] * (sqrt(size) * (1 + speed / size * (speed / size) / 2));
 }
 
 void drag_force(const struct fish *fish, int k, const struct edge *s, const double w[2], double force[2]) {
-    const double along = fish->drag_tangential[k] * skin_law(fish, edge_dot(w, s->t));
+    const double along = skin_drag(fish, k, edge_dot(w, s->t));
     const double across = fish->drag_normal[k] * speed_law(fish, edge_dot(w, s->n));
     for (int i = 0; i < 2; i++) force[i] = -along * s->t[i] - across * s->n[i];
 }
 
 void drag_friction(const struct fish *fish, int k, const struct edge *s, const double w[2], double force[2]) {
-    const double along = fish->drag_tangential[k] * skin_law(fish, edge_dot(w, s->t));
+    const double along = skin_drag(fish, k, edge_dot(w, s->t));
     for (int i = 0; i < 2; i++) force[i] = -along * s->t[i];
 }
 
 void drag_slope(const struct fish *fish, int k, const struct edge *s, const double w[2], double by_velocity[2][2],
                 double by_turn[2]) {
     const double wt = edge_dot(w, s->t), wn = edge_dot(w, s->n);
-    const double along = fish->drag_tangential[k] * skin_law(fish, wt);
+    const double along = skin_drag(fish, k, wt);
     const double across = fish->drag_normal[k] * speed_law(fish, wn);
-    const double along_slope = fish->drag_tangential[k] * skin_law_slope(fish, wt);
+    const double along_slope = skin_drag_slope(fish, k, wt);
     const double across_slope = fish->drag_normal[k] * speed_law_slope(fish, wn);
     for (int i = 0; i < 2; i++) {
         for (int j = 0; j < 2; j++) {

@@ -41,6 +41,12 @@ int fish_feels_own_wake(const struct fish *fish) {
     return fish->force != FORCE_REACTIVE;
 }
 
+int fish_has_wave(const struct fish *fish) {
+    int has = fish->n_harmonics > 0;
+    for (int j = 0; j < fish->n_joints; j++) has |= fabs(fish->wave_amplitude[j]) > 0;
+    return has && fish->omega > 0 && fish->motion.prescribed != PRESCRIBED_ALL;
+}
+
 double fish_rate(const struct school *school, const struct fish *fish) {
     if (fish->frequency > 0) return fish->frequency;
     const double drift = hypot(school->velocity[0], school->velocity[1]);

@@ -100,7 +100,10 @@ struct fish {
     double tail_added_mass;  /* m_L, kg m-1; 0: nothing leaves at the tail */
     double linear_speed;     /* V1 of the drag law v (V1 + |v|), m s-1; 0: v |v| */
     enum skin skin;
-    double friction_speed; /* u0 of laminar friction, m s-1 */
+    double friction_speed;   /* u0 of laminar friction and of a boundary layer, m s-1 */
+    double *drag_turbulent;  /* c_T of a boundary layer, kg m-0.8 s-0.2           (n_edges) */
+    double *past_transition; /* (x_k/(nu Re_t))^2: 1 over the square of the speed of transition, s2 m-2   (n_edges) */
+    double form, waving;     /* K_form, K_w of a boundary layer */
 
     /* force: pressure */
     double fluid_density;              /* kg m-3 */
@@ -186,6 +189,9 @@ int fish_has_momentum(const struct fish *fish);
 
 /* Whether the edge midpoints of the fish feel its own wake: not with force: reactive. doc/model.md, section 9. */
 int fish_feels_own_wake(const struct fish *fish);
+
+/* Whether its muscle sends a wave along the body. */
+int fish_has_wave(const struct fish *fish);
 
 /* Its beats per second, or those of its prescribed motion; where it has none, the lengths per second at which it, or
  * the stream, goes; 1 where nothing moves. With the length it gives the scale of velocities. */

@@ -9,8 +9,9 @@
 static enum status allocate(struct fish *fish) {
     double **const per_node[] = {&fish->arc, &fish->mass};
     double **const per_edge[] = {
-        &fish->thickness,     &fish->depth,           &fish->square,      &fish->cube,       &fish->axial_stiffness,
-        &fish->axial_damping, &fish->drag_tangential, &fish->drag_normal, &fish->added_mass, &fish->displaced_mass};
+        &fish->thickness,       &fish->depth,          &fish->square,          &fish->cube,
+        &fish->axial_stiffness, &fish->axial_damping,  &fish->drag_tangential, &fish->drag_normal,
+        &fish->added_mass,      &fish->displaced_mass, &fish->drag_turbulent,  &fish->past_transition};
     double **const per_joint[] = {&fish->bending_stiffness, &fish->bending_damping};
     TRY(array_many_doubles(per_node, sizeof per_node / sizeof *per_node, fish->n_nodes, "the nodes of a fish"));
     TRY(array_many_doubles(per_edge, sizeof per_edge / sizeof *per_edge, fish->n_edges, "the edges of a fish"));
@@ -69,6 +70,26 @@ static double laminar_friction(const struct fish *fish, int k, const struct flui
     return 1.328 * fluid->density * fish->depth[k] * sqrt(fluid->viscosity * fish->length) * share;
 }
 
+// a turbulent boundary layer's on both sides of an edge, over u^(9/5)
+static double turbulent_friction(const struct fish *fish, int k, const struct fluid_parameters *fluid) {
+    const double share = pow((k + 1.0) / fish->n_edges, 0.8) - pow((double)k / fish->n_edges, 0.8);
+    return 0.074 * fluid->density * fish->depth[k] * pow(fluid->viscosity, 0.2) * pow(fish->length, 0.8) * share;
+}
+
+// friction of a boundary layer with transition
+static void set_boundary_layer(struct fish *fish, const struct drag_parameters *drag,
+                               const struct fluid_parameters *fluid) {
+    const double at_transition = fluid->viscosity * drag->transition;
+    double largest = 0;
+    for (int k = 0; k < fish->n_edges; k++) {
+        const double place = fish->length * (k + 0.5) / fish->n_edges, past = place / at_transition;
+        fish->drag_turbulent[k] = turbulent_friction(fish, k, fluid);
+        fish->past_transition[k] = at_transition > 0 ? past * past : INFINITY;
+        largest = fmax(largest, fish->thickness[k] / fish->length);
+    }
+    fish->form = isnan(drag->form) ? 1 + 2 * largest + 60 * largest * largest * largest * largest : drag->form;
+}
+
 // drag, added mass and what leaves at the tail: doc/model.md, section 9
 static void set_fluid_forces(struct fish *fish, const struct fish_parameters *from,
                              const struct fluid_parameters *fluid) {
@@ -78,15 +99,16 @@ static void set_fluid_forces(struct fish *fish, const struct fish_parameters *fr
     for (int k = 0; k < fish->n_edges; k++) {
         const double h = fish->thickness[k], w = fish->depth[k], l = fish->edge_length;
         const double across = wide ? w : h, square = wide ? 1 : fish->square[k];
-        fish->drag_tangential[k] = drag->skin == SKIN_LAMINAR
-                                       ? laminar_friction(fish, k, fluid)
-                                       : density * M_PI * drag->tangential * l * (h + w) / (published ? 8 : 4);
+        fish->drag_tangential[k] = drag->skin == SKIN_QUADRATIC
+                                       ? density * M_PI * drag->tangential * l * (h + w) / (published ? 8 : 4)
+                                       : laminar_friction(fish, k, fluid);
         fish->drag_normal[k] = density * drag->normal * l * across / 2;
         fish->added_mass[k] = reactive * M_PI * density * drag->added_mass * across * across * l / 4 * square;
         fish->displaced_mass[k] = reactive * density * M_PI * h * w / 4 * l;
     }
     fish->force = from->force;
     fish->skin = drag->skin;
+    set_boundary_layer(fish, drag, fluid);
     const double at_tail = wide ? fish->depth[fish->n_edges - 1] : profile_tail_thickness(from);
     fish->tail_added_mass = published ? 0 : reactive * M_PI * density * drag->added_mass * at_tail * at_tail / 4;
     // the published law has 1 m s-1

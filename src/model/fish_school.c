@@ -189,6 +189,8 @@ enum status fish_school_create(struct school **school, const struct school_param
         fish->at = layout_after(new->n_unknowns, fish->n_nodes, n_momenta, fish->n_sheet);
         const double rate = fish_rate(new, fish);
         fish->friction_speed = 1e-4 * fish->length * rate;
+        const double waving = parameters->fish[f].drag.waving;
+        fish->waving = !isnan(waving) ? waving : fish_has_wave(fish) ? 1.5 : 1;
         fish->contact_strength = fish->total_mass * fish->length * rate * rate;
         new->n_unknowns = fish->at.end;
     }
@@ -226,6 +228,8 @@ void fish_school_free(struct school *school) {
                                fish->wave_phase,
                                fish->harmonic,
                                fish->drag_tangential,
+                               fish->drag_turbulent,
+                               fish->past_transition,
                                fish->drag_normal,
                                fish->added_mass,
                                fish->displaced_mass,

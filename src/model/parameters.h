@@ -14,7 +14,7 @@ enum section { SECTION_MEAN, SECTION_NODES };
 enum second_moment { SECOND_MOMENT_ELLIPSE, SECOND_MOMENT_PUBLISHED };
 enum force { FORCE_REACTIVE, FORCE_PUBLISHED, FORCE_PRESSURE };
 enum drag_law { DRAG_QUADRATIC, DRAG_LINEAR_QUADRATIC };
-enum skin { SKIN_QUADRATIC, SKIN_LAMINAR };
+enum skin { SKIN_QUADRATIC, SKIN_LAMINAR, SKIN_BOUNDARY_LAYER };
 enum extent { EXTENT_THICKNESS, EXTENT_DEPTH };
 enum prescribed { PRESCRIBED_NONE, PRESCRIBED_HEAD, PRESCRIBED_ALL };
 enum contact_action { CONTACT_REPEL, CONTACT_WARN, CONTACT_STOP };
@@ -79,7 +79,10 @@ struct wave_parameters {
 
 struct drag_parameters {
     double tangential, normal, added_mass;
-    enum skin skin; /* law of the tangential drag */
+    enum skin skin;    /* law of the tangential drag */
+    double transition; /* Reynolds number of the distance from the nose; 0: turbulent from there */
+    double waving;     /* factor of laminar friction; NaN: 1.5 with a wave, else 1 */
+    double form;       /* factor of all friction; NaN: by the largest thickness */
     enum drag_law law;
     double linear_speed; /* lengths per beat: force reactive, law linear_quadratic */
     enum extent extent;

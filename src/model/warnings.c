@@ -166,15 +166,9 @@ static void sheet_say(const struct subject *subject, const char *who, char line[
 
 // ---- the slowest bending mode
 
-static int has_muscle(const struct fish *fish) {
-    int has = fish->n_harmonics > 0;
-    for (int j = 0; j < fish->n_joints; j++) has |= fabs(fish->wave_amplitude[j]) > 0;
-    return has && fish->frequency > 0 && fish->motion.prescribed != PRESCRIBED_ALL;
-}
-
 static double modes_size(const struct subject *subject) {
     const struct fish *const fish = subject->fish;
-    return has_muscle(fish) ? fish->frequency / bending_mode_frequency(fish, subject->scratch) : 0;
+    return fish_has_wave(fish) ? fish->frequency / bending_mode_frequency(fish, subject->scratch) : 0;
 }
 
 static void modes_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {

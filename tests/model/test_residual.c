@@ -112,6 +112,12 @@ static const struct variant {
      PRESSURE "fish: [{nodes: 5, sheet_points: 9, force: pressure, drag: {skin: laminar, normal: 0.5},\n"
               "        body: {profile: table, h: [0.1, 0.2, 0.15, 0.05], w: [0.2, 0.3, 0.25, 0.1]},\n"
               "        control: {law: heading, feedforward: 0, desired_heading: 150}}]\n"},
+    {"pressure, a boundary layer with transition, waving and form",
+     PRESSURE "fluid: {viscosity: 1.0e-4, velocity: [0.3, -0.2], shear: 0.7}\n"
+              "fish: [{nodes: 5, sheet_points: 9, force: pressure, body: {modulus: 1.0e+4}, control: {bias: 0.2},\n"
+              "        drag: {skin: boundary_layer, transition: 5000, waving: 1.7, form: 100, normal: 0.5}}]\n"},
+    {"reactive, a turbulent boundary layer",
+     TIME "fish: [{sheet_points: 9, force: reactive, drag: {skin: boundary_layer, transition: 0, form: 100}}]\n"},
     {"pressure, clamped head",
      PRESSURE "fish: [{nodes: 5, sheet_points: 9, force: pressure, body: {section: mean, relaxation_time: 0.05},\n"
               "        load: {tip: [3, -2]},\n"

@@ -359,8 +359,8 @@ static void the_column_of_the_circulation_shed_can_be_updated(void **state) {
         school_ok(linear_solve(system.linear, system.b, system.x));
         assert_true(error_of(&system) < 1e-9);
         jacobian_at(&system, 370);
-        // sums over many points are rounded in two ways
-        assert_true(replace(&system, by_shed) <= (variant < 2 ? DBL_EPSILON : 0));
+        // sums over many points are rounded in two ways, and friction depends on them
+        assert_true(replace(&system, by_shed) <= (variant / 2 == 1 ? 0 : 4 * DBL_EPSILON));
         // factors of a new matrix have no update
         school_ok(linear_setup(system.linear));
         school_ok(linear_solve(system.linear, system.b, system.x));

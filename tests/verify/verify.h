@@ -64,8 +64,9 @@ const char *verify_text(const char *format, ...) __attribute__((format(printf, 1
 /* A text with this line has the defaults of the second edition of the model. */
 #define VERIFY_SECOND "# second edition\n"
 
-/* The keys of a fish with the pressure of attached flow, as linear theory has it: with all of the suction. */
-#define VERIFY_ATTACHED "force: pressure, pressure: {suction_limit: 0}"
+/* The keys of a fish with the pressure of attached flow, as linear theory has it: all of the suction, and the friction
+ * of a laminar boundary layer on a plate. */
+#define VERIFY_ATTACHED "force: pressure, pressure: {suction_limit: 0}, drag: {skin: laminar}"
 
 /* Open a case given as text (printf format), with at most 16 kB, and without VERIFY_SECOND or a preset with the
  * defaults of the first edition (tests/data/first_edition.yaml); the section ends with the message where that fails. */
