@@ -120,7 +120,7 @@ static void a_light_or_stiff_body_under_pressure_costs_as_little(void **state) {
         snprintf(text, sizeof text,
                  SCHOOL_SECOND
                  "time: {end: 1, shedding_interval: 0.01}\nfluid: {density: 1, viscosity: 1.0e-4}\n"
-                 "fish: [{force: pressure, start: {speed: 0.65},\n"
+                 "fish: [{force: pressure, drag: {skin: laminar}, start: {speed: 0.65},\n"
                  "        wave: {amplitude: 0.83, constant: 0.2, linear: 0.8, quadratic: 0, number: -6.28, ramp: 1},\n"
                  "        body: {profile: uniform, thickness: 0.17888544, width: 1, relaxation_time: 0,\n"
                  "               density: %g, modulus: %g}}]\n",
