@@ -15,13 +15,16 @@ static const char *section;
 static const struct {
     const char *name;
     void (*run)(void);
-} sections[] = {{"theory", verify_theory},     {"rod", verify_rod},           {"force", verify_force},
-                {"sheet", verify_sheet},       {"wake", verify_wake},         {"plate", verify_plate},
-                {"school", verify_school},     {"interval", verify_interval}, {"symmetry", verify_symmetry},
-                {"start", verify_start},       {"energy", verify_energy},     {"control", verify_control},
-                {"pressure", verify_pressure}, {"elastic", verify_elastic},   {"coupled", verify_coupled},
-                {"steady", verify_steady},     {"static", verify_static},     {"tandem", verify_tandem},
-                {"walls", verify_walls}};
+} sections[] = {{"theory", verify_theory},     {"rod", verify_rod},
+                {"force", verify_force},       {"sheet", verify_sheet},
+                {"wake", verify_wake},         {"plate", verify_plate},
+                {"school", verify_school},     {"interval", verify_interval},
+                {"symmetry", verify_symmetry}, {"start", verify_start},
+                {"energy", verify_energy},     {"control", verify_control},
+                {"pressure", verify_pressure}, {"elastic", verify_elastic},
+                {"coupled", verify_coupled},   {"steady", verify_steady},
+                {"static", verify_static},     {"tandem", verify_tandem},
+                {"walls", verify_walls},       {"validation", verify_validation}};
 
 int verify_is_fast(void) {
     return fast;
@@ -71,6 +74,17 @@ void verify_order(const char *quantity, const char *source, double order, double
     snprintf(bounds, sizeof bounds, "%.2f to %.2f", least, most);
     row(quantity, source, "", "", "", bounds, obtained, judge(order >= least && order <= most));
     printf("%-8s %-58s order %s\n", "", "", obtained);
+}
+
+void verify_ratio(const char *quantity, const char *source, double reference, double obtained, double least,
+                  double most) {
+    char texts[4][32];
+    const double ratio = obtained / reference;
+    snprintf(texts[0], sizeof texts[0], "%.4g", reference);
+    snprintf(texts[1], sizeof texts[1], "%.4g", obtained);
+    snprintf(texts[2], sizeof texts[2], "x %.3f", ratio);
+    snprintf(texts[3], sizeof texts[3], "x %.2f to %.2f", least, most);
+    row(quantity, source, texts[0], texts[1], texts[2], texts[3], "", judge(ratio >= least && ratio <= most));
 }
 
 void verify_show(const char *quantity, const char *source, double obtained) {
@@ -139,6 +153,17 @@ struct simulation *verify_open(const char *format, ...) {
     struct case_values values;
     struct simulation *simulation;
     if (case_parse(&values, text, (size_t)length, "verify", is_case ? "cases" : ".", 0, NULL) != STATUS_OK) give_up();
+    if (simulate_create(&simulation, &values) != STATUS_OK) give_up();
+    case_free(&values);
+    return simulation;
+}
+
+struct simulation *verify_open_case(const char *name, int n, const char *const *assignments) {
+    char path[256];
+    struct case_values values;
+    struct simulation *simulation;
+    snprintf(path, sizeof path, "cases/%s", name);
+    if (case_read(&values, path, n, assignments) != STATUS_OK) give_up();
     if (simulate_create(&simulation, &values) != STATUS_OK) give_up();
     case_free(&values);
     return simulation;

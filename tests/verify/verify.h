@@ -29,6 +29,7 @@ void verify_steady(void);
 void verify_static(void);
 void verify_tandem(void);
 void verify_walls(void);
+void verify_validation(void);
 
 /* Only the checks that take seconds are wanted: `make test` runs those. */
 int verify_is_fast(void);
@@ -43,6 +44,10 @@ void verify_zero(const char *quantity, const char *source, double obtained, doub
 
 /* A check: an observed order of convergence between least and most. */
 void verify_order(const char *quantity, const char *source, double order, double least, double most);
+
+/* A check: the ratio of what was obtained to what was measured, or computed by better means, between least and most. */
+void verify_ratio(const char *quantity, const char *source, double reference, double obtained, double least,
+                  double most);
 
 /* No check: a number that the reader wants to see. */
 void verify_show(const char *quantity, const char *source, double obtained);
@@ -71,6 +76,9 @@ const char *verify_text(const char *format, ...) __attribute__((format(printf, 1
 /* Open a case given as text (printf format), with at most 16 kB, and without VERIFY_SECOND or a preset with the
  * defaults of the first edition (tests/data/first_edition.yaml); the section ends with the message where that fails. */
 struct simulation *verify_open(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+/* Open a case of cases/, with n assignments "path=value". */
+struct simulation *verify_open_case(const char *name, int n, const char *const *assignments);
 
 /* The section ends with the message unless the status is STATUS_OK. */
 void verify_ok(enum status status);

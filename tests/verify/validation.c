@@ -1,0 +1,256 @@
+/* validation.c: the section "validation": foils and a swimmer with force: pressure, as cases/ has them, against an
+ * experiment and Navier-Stokes solutions (tests/verify/data). The bounds are ratios: what the model does not have
+ * (leading-edge vortices, thickness in the sheet, history of the boundary layer) is in them. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "verify.h"
+
+static const double pi = 3.14159265358979323846;
+
+// ---- tables of data
+
+enum { MOST_LINES = 64, LINE_BYTES = 256 };
+
+/* A table with its lines without comments and the heading. */
+struct table {
+    int n;
+    char line[MOST_LINES][LINE_BYTES];
+};
+
+static void read_table(const char *path, struct table *table) {
+    FILE *const file = fopen(path, "r");
+    char line[LINE_BYTES];
+    int has_heading = 0;
+    table->n = 0;
+    while (file && fgets(line, sizeof line, file) && table->n < MOST_LINES) {
+        if (line[0] == '#') continue;
+        if (has_heading) memcpy(table->line[table->n++], line, sizeof line);
+        has_heading = 1;
+    }
+    if (file) fclose(file);
+    verify_ok(table->n > 0 ? STATUS_OK : status_fail(STATUS_FILE, "%s: no data", path));
+}
+
+// ---- a period of a run
+
+/* The last period of a run of a body of length 1 and depth 1, whose period is 1. */
+struct period {
+    double speed, thrust, power;   /* means, m s-1, N, W */
+    double across, along;          /* force of the fluid across the way, and along it less its mean: rms, N */
+    double circulation;            /* the largest less the least circulation that was shed, m2 s-1 */
+    double separation_share, edge; /* part with separation at the nose; largest A_0 */
+    double audit;                  /* the energy balance over the work of all periods */
+};
+
+/* Run a case of cases/ for so many periods, with further assignments, and look at the last of them. At every period the
+ * speed is a point of the series of a figure, where there is one. */
+static struct period run_case(const char *name, int n_periods, int n_assignments, const char *const *assignments,
+                              const char *figure, const char *series) {
+    struct simulation *const simulation = verify_open_case(name, n_assignments, assignments);
+    const struct diagnostics_fish *const of = simulation->diagnostics->fish;
+    for (int i = 1; i < n_periods; i++) {
+        verify_run(simulation, i);
+        simulate_measure(simulation);
+        if (figure) verify_point(figure, series, i, of->speed);
+    }
+    struct period period = {0};
+    const int n = (int)lround(1 / simulation->school->interval);
+    double mean = 0, square[2] = {0, 0}, least = INFINITY, most = -INFINITY;
+    for (int i = 1; i <= n; i++) {
+        verify_run(simulation, n_periods - 1 + (double)i / n);
+        simulate_measure(simulation);
+        double force[2];
+        for (int k = 0; k < 2; k++) {
+            force[k] = of->pressure.pressure[k] + of->pressure.suction[k] + of->resistive_force[k];
+            square[k] += force[k] * force[k] / n;
+        }
+        mean += force[0] / n;
+        least = fmin(least, of->shed_circulation);
+        most = fmax(most, of->shed_circulation);
+    }
+    if (figure) verify_point(figure, series, n_periods, of->speed);
+    period.speed = of->speed;
+    period.thrust = of->mean_thrust;
+    period.power = of->mean_power;
+    period.across = sqrt(square[1]);
+    period.along = sqrt(square[0] - mean * mean);
+    period.circulation = most - least;
+    period.separation_share = of->separation_share;
+    period.edge = of->leading_edge_most;
+    period.audit = of->energy_audit / (n_periods * of->mean_power);
+    simulate_free(simulation);
+    return period;
+}
+
+// ---- heave and pitch
+
+// the excursion of the trailing edge of a foil that heaves by h and pitches by theta, rad, about a third of the chord
+static double excursion(double h, double theta, double lead) {
+    enum { N = 720 };
+    double most = 0;
+    for (int i = 0; i < N; i++) {
+        const double t = 2 * pi * i / N;
+        most = fmax(most, fabs(h * sin(t) - 2.0 / 3 * sin(theta * sin(t + lead))));
+    }
+    return 2 * most;
+}
+
+/* Chords per period, U/(f c), and pitch, rad, at which St = f A/U has this value. */
+struct foil {
+    double speed, pitch;
+};
+static struct foil foil_at(double strouhal, double lead) {
+    const double heave = 0.75, incidence = 15 * pi / 180;
+    struct foil foil = {2 * heave / strouhal, 0};
+    for (int i = 0; i < 100; i++) {
+        foil.pitch = atan(2 * pi * heave / foil.speed) - incidence;
+        foil.speed = (foil.speed + excursion(heave, foil.pitch, lead) / strouhal) / 2;
+    }
+    return foil;
+}
+
+static struct period run_anderson(const struct foil *foil, int psi, const char *more) {
+    char text[4][64];
+    snprintf(text[0], sizeof *text, "fish[0].start.speed=%.17g", foil->speed);
+    snprintf(text[1], sizeof *text, "fluid.viscosity=%.17g", foil->speed / 4e4);
+    snprintf(text[2], sizeof *text, "fish[0].motion.pitch=%.17g", foil->pitch * 180 / pi);
+    snprintf(text[3], sizeof *text, "fish[0].motion.pitch_phase=%d", psi);
+    const char *const assignments[] = {text[0], text[1], text[2], text[3], more};
+    return run_case("foil_anderson.yaml", 4, more ? 5 : 4, assignments, NULL, NULL);
+}
+
+static void anderson(void) {
+    static const char source[] = "Anderson et al. (1998), experiment";
+    static struct table table;
+    read_table("tests/verify/data/anderson1998.csv", &table);
+    for (int i = 0; i < table.n; i++) {
+        int psi;
+        double strouhal, thrust, theory, power;
+        if (sscanf(table.line[i], "%d,%lf,%lf,%lf,%lf", &psi, &strouhal, &thrust, &theory, &power) != 5) abort();
+        if (verify_is_fast() && (psi != 90 || fabs(strouhal - 0.3) > 0.01)) continue;
+        const struct foil foil = foil_at(strouhal, psi * pi / 180);
+        const double pressure = foil.speed * foil.speed / 2;
+        const struct period period = run_anderson(&foil, psi, NULL);
+        // with the friction of a plate 0.88 to 1.16; the factor for the thickness takes 0.01. At the smallest St the
+        // thrust is a small difference of suction, pressure and friction
+        const double least = strouhal > 0.15 ? 0.86 : 0.7, most = strouhal > 0.15 ? 1.17 : 1.3;
+        verify_ratio(verify_text("foil, psi %d, St %.1f: thrust coefficient", psi, strouhal), source, thrust,
+                     period.thrust / pressure, least, most);
+        verify_ratio(verify_text("foil, psi %d, St %.1f: power coefficient", psi, strouhal), source, power,
+                     period.power / pressure / foil.speed, least, most);
+        if (verify_is_fast()) continue;
+        const struct period attached = run_anderson(&foil, psi, "fish[0].pressure.suction_limit=0");
+        const char *const figure = psi == 90 ? "foil_thrust_90" : "foil_thrust_75";
+        verify_point(figure, "experiment", strouhal, thrust);
+        verify_point(figure, "published theory", strouhal, theory);
+        verify_point(figure, "here", strouhal, period.thrust / pressure);
+        verify_point(figure, "all of the suction", strouhal, attached.thrust / pressure);
+        verify_point("foil_power", verify_text("experiment, psi %d", psi), strouhal, power);
+        verify_point("foil_power", verify_text("psi %d", psi), strouhal, period.power / pressure / foil.speed);
+    }
+}
+
+// ---- Navier-Stokes
+
+/* A number of the table of Navier-Stokes solutions: its mean, and what the table says of its spread. */
+struct reference {
+    double value;
+    char source[64];
+};
+static struct reference reference_of(const struct table *table, const char *flow, const char *quantity) {
+    char start[LINE_BYTES];
+    const int length = snprintf(start, sizeof start, "%s,%s,", flow, quantity);
+    for (int i = 0; i < table->n; i++) {
+        double low, high;
+        if (strncmp(table->line[i], start, (size_t)length) != 0) continue;
+        if (sscanf(table->line[i] + length, "%lf,%lf", &low, &high) != 2) abort();
+        struct reference reference = {(low + high) / 2, "Navier-Stokes"};
+        if (high > low) {
+            snprintf(reference.source, sizeof reference.source, "Navier-Stokes, %g to %g", low, high);
+        }
+        return reference;
+    }
+    abort();
+}
+
+static void compare_flow(const struct table *table, const char *flow, const char *quantity, const char *text,
+                         double obtained, double least, double most) {
+    const struct reference reference = reference_of(table, flow, quantity);
+    verify_ratio(verify_text("%s: %s", flow, text), reference.source, reference.value, obtained, least, most);
+}
+
+// the thrust is what is left of a large suction and a large friction: its ratio is the widest
+static void heave(const struct table *table) {
+    static const char *const flows[] = {"heave of an ellipse at Re 1000", "heave of an ellipse at Re 4000",
+                                        "heave of a NACA 0012 at Re 4000"};
+    const double speed = 1.25, pressure = speed * speed / 2, reynolds[] = {1000, 4000, 4000};
+    const double least[] = {0.8, 1.0, 0.65}, most[] = {1.0, 1.2, 0.8};
+    for (int i = 0; i < 3; i++) {
+        char viscosity[64];
+        snprintf(viscosity, sizeof viscosity, "fluid.viscosity=%.17g", speed / reynolds[i]);
+        const char *const assignments[] = {viscosity, "fish[0].drag.form=1", "fish[0].pressure.suction_limit=0"};
+        const struct period period = run_case("foil_heave.yaml", 6, 1, assignments, NULL, NULL);
+        compare_flow(table, flows[i], "CT", "thrust coefficient", period.thrust / pressure, least[i], most[i]);
+        compare_flow(table, flows[i], "CP", "power coefficient", period.power / pressure / speed, 1.0, 1.16);
+        compare_flow(table, flows[i], "CL", "lift coefficient, rms", period.across / pressure, 1.1, 1.27);
+        if (i == 0) {
+            verify_zero("heave at Re 1000: energy balance of the body over the work", "the limit acts", period.audit,
+                        1e-3);
+        }
+        if (i == 2) continue;
+        verify_show(verify_text("%s: part of the period with separation at the nose", flows[i]),
+                    verify_text("largest A_0 %.2f", period.edge), period.separation_share);
+        if (i == 0) {
+            compare_flow(table, flows[i], "circulation", "of a wake vortex over U c", period.circulation / speed, 1.0,
+                         1.3);
+        }
+        const struct period plate = run_case("foil_heave.yaml", 6, 2, assignments, NULL, NULL);
+        if (i == 0) {
+            verify_value("heave at Re 1000, friction of a plate: thrust coefficient", "the prototype of the limit",
+                         0.087, plate.thrust / pressure, 0.005);
+        }
+        const struct period attached = run_case("foil_heave.yaml", 6, 3, assignments, NULL, NULL);
+        verify_show(verify_text("%s: thrust coefficient of attached flow, friction of a plate", flows[i]), "",
+                    attached.thrust / pressure);
+        if (verify_is_fast()) return;
+    }
+}
+
+static void swimmer(const struct table *table) {
+    static const char name[] = "swimmer_navier_stokes.yaml", figure[] = "swimmer_speed";
+    enum { N_PERIODS = 12 };
+    const struct period period = run_case(name, N_PERIODS, 0, NULL, figure, "here");
+    compare_flow(table, "swimmer", "speed", "speed, L/T", period.speed, 1.04, 1.12);
+    compare_flow(table, "swimmer", "power", "power into the fluid, rho L^4/T^3", period.power, 0.83, 0.91);
+    compare_flow(table, "swimmer", "lateral force", "lateral force, rms, rho L^3/T^2", period.across, 0.65, 0.85);
+    compare_flow(table, "swimmer", "force along the course", "force along the course, rms, rho L^3/T^2", period.along,
+                 1, 1.2);
+    compare_flow(table, "swimmer", "circulation", "circulation of a wake vortex, L^2/T", period.circulation, 0.65, 0.8);
+    verify_value("swimmer: speed, L/T", "the prototype of this friction", 0.627, period.speed, 0.008);
+    verify_value("swimmer: power into the fluid, rho L^4/T^3", "the prototype of this friction", 0.0201, period.power,
+                 3e-4);
+    verify_show("swimmer: largest A_0", "", period.edge);
+    const char *const plate[] = {"fish[0].drag.skin=laminar"};
+    const struct period on_plate = run_case(name, N_PERIODS, 1, plate, figure, "friction of a laminar plate");
+    verify_value("swimmer, friction of a laminar plate: speed, L/T", "the prototype", 0.709, on_plate.speed, 0.005);
+    verify_value("swimmer, friction of a laminar plate: power, rho L^4/T^3", "the prototype", 0.0153, on_plate.power,
+                 1e-4);
+    const double lines[] = {0.55, 0.62};
+    for (int i = 0; i < 2; i++) {
+        for (int t = 0; t <= N_PERIODS; t += N_PERIODS) {
+            verify_point(figure, verify_text("Navier-Stokes, %s", i == 0 ? "least" : "most"), t, lines[i]);
+        }
+    }
+}
+
+void verify_validation(void) {
+    static struct table table;
+    read_table("tests/verify/data/navier_stokes.csv", &table);
+    anderson();
+    heave(&table);
+    if (verify_is_fast()) return;
+    swimmer(&table);
+}
