@@ -333,6 +333,7 @@ static void energy_and_momentum_of_a_free_fish_are_accounted_for(void **state) {
     struct simulation *const simulation =
         school_simulation(SCHOOL_SECOND
                           "time: {end: 1, shedding_interval: 0.02}\n"
+                          "solver: {rtol: 1.0e-6}\n"
                           "fish: [{nodes: 9, sheet_points: 17, force: pressure, body: {modulus: 3.0e+4}, wave: {ramp: "
                           "0.3}, start: {speed: 0.5}}]\n");
     school_run(simulation, 0.5);
