@@ -204,11 +204,18 @@ static void derive(double *value, double standard) {
     if (isnan(*value)) *value = standard;
 }
 
+/* The beats per second of a fish, or those of its prescribed motion; 0 where it has none. */
+static double beat_frequency(const struct fish_parameters *fish) {
+    const bool is_prescribed = (int)fish->motion.prescribed > PRESCRIBED_NONE && fish->motion.frequency > 0;
+    return is_prescribed ? fish->motion.frequency : fish->wave.frequency;
+}
+
 static enum status derive_fish(struct fish_parameters *fish, int index) {
     const double period = fish->wave.frequency > 0 ? 1 / fish->wave.frequency : 0;
     if (fish->sheet_points == 0) fish->sheet_points = fish->nodes > 17 ? 2 * fish->nodes - 1 : 33;
     derive(&fish->body.tail_thickness, fish->body.profile == PROFILE_JOUKOWSKI ? 0.04 : 0);
-    derive(&fish->body.relaxation_time, period / 1000);
+    const double beat = beat_frequency(fish);
+    derive(&fish->body.relaxation_time, beat > 0 ? 0.02 / beat : 0);
     derive(&fish->wave.ramp, period);
     const bool has_pressure = fish->force == FORCE_PRESSURE;
     if ((int)fish->drag.skin < 0) fish->drag.skin = has_pressure ? SKIN_BOUNDARY_LAYER : SKIN_QUADRATIC;
@@ -246,7 +253,7 @@ static char *stem(const char *path) {
 static bool are_damped(const struct school_parameters *school) {
     for (int i = 0; i < school->n_fish; i++) {
         const struct fish_parameters *const fish = &school->fish[i];
-        const double periods = fish->body.relaxation_time * fish->wave.frequency;
+        const double periods = fish->body.relaxation_time * beat_frequency(fish);
         if (!(periods > 0.001 * (1 - 1e-9))) return false;
     }
     return true;

@@ -221,7 +221,11 @@ const struct key case_table[] = {
      .published = "1"},
     {"fish.body.relaxation_time", REAL, IN_FISH(body.relaxation_time), NULL, FROM(0), "s",
      .meaning = "Kelvin-Voigt damping: ratio of damping to stiffness", .published = "0",
-     .derived = "a thousandth of a period (0 when the frequency is 0)"},
+     .derived = "a fiftieth of the period of the beat, or of the prescribed motion (0 without one)"},
+    {"fish.body.damping", CHOICE, IN_FISH(body.damping), "strain", ANY, "",
+     .meaning = "internal damping of bending; strain: of the curvature less the natural one; curvature: of the "
+                "curvature, also where the muscle asks for it",
+     .words = WORDS("strain", "curvature"), .published = "curvature"},
 
     {"fish.wave.amplitude", REAL, IN_FISH(wave.amplitude), "0.4", ANY, "rad",
      .meaning = "A of the turning angle A (constant + linear q + quadratic q^2) sin(number q + 2 pi frequency t + "

@@ -6,12 +6,19 @@
 #include "model/fish.h"
 #include "model/fish_gait.h"
 
-/* Natural curvature kbar (dimensionless, 2 tan of half the natural turning angle) of every joint for the bias phi0, and
- * its derivative with respect to phi0; both (n_joints). */
-void actuation_curvature(const struct fish *fish, struct fish_gait gait, double phi0, double *curvature,
-                         double *by_phi0);
+/* What the muscle asks of every joint; all arrays (n_joints). */
+struct actuation {
+    double *curvature;         /* kbar, dimensionless: 2 tan of half the natural turning angle */
+    double *rate;              /* its rate, s-1 */
+    double *curvature_by_phi0; /* their derivatives by the bias, at a given rate of the bias */
+    double *rate_by_phi0;
+};
 
-/* The rate of change of the natural curvature, s-1 (n_joints); phi0_rate in s-1. */
-void actuation_rate(const struct fish *fish, struct fish_gait gait, double phi0, double phi0_rate, double *rate);
+/* Those from a joint on of arrays for the joints of all fish. */
+struct actuation actuation_from(const struct actuation *all, int first);
+
+/* Fill all four for the bias phi0 and its rate, s-1. */
+void actuation_find(const struct fish *fish, struct fish_gait gait, double phi0, double phi0_rate,
+                    const struct actuation *to);
 
 #endif

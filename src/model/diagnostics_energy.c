@@ -5,10 +5,8 @@
 #include <string.h>
 
 #include "base/parallel.h"
-#include "model/actuation.h"
 #include "model/clamp.h"
 #include "model/clearance.h"
-#include "model/control.h"
 #include "model/diagnostics_forces.h"
 #include "model/fish_prescribed.h"
 #include "model/flow_at_bodies.h"
@@ -55,16 +53,10 @@ struct diagnostics_power diagnostics_power(struct residual *residual, int f, dou
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
     const struct fluid_power fluid = fluid_force_power(fish, &flow, y);
     const struct pressure_forces pressure = diagnostics_pressure(residual, f, (const double[2]){0, 0}, y);
-    // natural curvature, its derivative and its rate at this very state
-    double *const curvature = residual->scratch + fish->at.x, *const by_phi0 = curvature + fish->n_joints;
-    const struct state *const state = residual->state;
-    const struct fish_gait gait = control_gait(fish, &state->control[f], t);
-    actuation_curvature(fish, gait, y[fish->at.phi0], curvature, by_phi0);
-    double *const rate = by_phi0;
-    const double phi0_rate = control_rate(fish, &state->control[f], t, t - state->t, y);
-    actuation_rate(fish, gait, y[fish->at.phi0], phi0_rate, rate);
-    return (struct diagnostics_power){.actuation = rod_actuation_power(fish, curvature, rate, y),
-                                      .damping = rod_damping_power(fish, y) + clamp_damping_power(fish, t, y),
+    const struct actuation muscle = residual_muscle(residual, f, t, y);
+    const double damping = rod_damping_power(fish, &muscle, y) + clamp_damping_power(fish, t, y);
+    return (struct diagnostics_power){.actuation = rod_actuation_power(fish, &muscle, y),
+                                      .damping = damping,
                                       .drag = fluid.drag,
                                       .friction = fluid.friction,
                                       .added_mass = fluid.added_mass,
@@ -87,10 +79,8 @@ static double kinetic_energy(const struct fish *fish, const double *y) {
 
 static double bending_energy(struct residual *residual, int f, double t, const double *y) {
     const struct fish *fish = &residual->school->fish[f];
-    double *const curvature = residual->scratch + fish->at.x;
-    const struct fish_gait gait = control_gait(fish, &residual->state->control[f], t);
-    actuation_curvature(fish, gait, y[fish->at.phi0], curvature, curvature + fish->n_joints);
-    return rod_bending_energy(fish, curvature, y) + clamp_energy(fish, t, y);
+    const struct actuation muscle = residual_muscle(residual, f, t, y);
+    return rod_bending_energy(fish, &muscle, y) + clamp_energy(fish, t, y);
 }
 
 struct diagnostics_energies diagnostics_energies(struct residual *residual, int f, double t, const double *y) {

@@ -42,6 +42,7 @@ static void weigh_body(struct fish *fish, const struct fish_parameters *from) {
     const struct body_parameters *body = &from->body;
     const double reference = fish->length / (from->reference_nodes - 1), refinement = reference / fish->edge_length;
     double moment_before = 0;
+    fish->damping = body->damping;
     for (int k = 0; k < fish->n_edges; k++) {
         const double h = fish->thickness[k], w = fish->depth[k], area = M_PI * h * w / 4;
         const double edge_mass = body->density * area * fish->edge_length;

@@ -11,6 +11,7 @@ enum collocation { COLLOCATION_CHEBYSHEV, COLLOCATION_MIDPOINT };
 enum removed_circulation { REMOVED_RETAINED, REMOVED_DROPPED };
 enum profile { PROFILE_JOUKOWSKI, PROFILE_UNIFORM, PROFILE_TABLE };
 enum section { SECTION_MEAN, SECTION_NODES };
+enum damping { DAMPING_STRAIN, DAMPING_CURVATURE };
 enum second_moment { SECOND_MOMENT_ELLIPSE, SECOND_MOMENT_PUBLISHED };
 enum force { FORCE_REACTIVE, FORCE_PUBLISHED, FORCE_PRESSURE };
 enum drag_law { DRAG_QUADRATIC, DRAG_LINEAR_QUADRATIC };
@@ -65,6 +66,7 @@ struct body_parameters {
     double bending_damping;    /* N m s, per joint of a body of reference_nodes: doc/model.md, section 3 */
     double stretching_damping; /* N s m-1, per edge of such a body */
     double relaxation_time;    /* s */
+    enum damping damping;      /* what internal damping of bending is the rate of */
 };
 
 struct wave_parameters {

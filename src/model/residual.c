@@ -7,7 +7,6 @@
 #include "base/array.h"
 #include "base/parallel.h"
 #include "base/ramp.h"
-#include "model/actuation.h"
 #include "model/clamp.h"
 #include "model/fish_prescribed.h"
 #include "model/flow_at_bodies.h"
@@ -48,8 +47,9 @@ static enum status allocate(struct residual *residual) {
         if (flow_n_rows(fish) > most_rows) most_rows = flow_n_rows(fish);
     }
     TRY(allocate_scratch(residual, most_points, most_columns, most_rows));
-    TRY(array_doubles(&residual->natural_curvature, n_joints, "the joints"));
-    TRY(array_doubles(&residual->curvature_by_phi0, n_joints, "the joints"));
+    struct actuation *const muscle = &residual->muscle;
+    double **const per_joint[] = {&muscle->curvature, &muscle->rate, &muscle->curvature_by_phi0, &muscle->rate_by_phi0};
+    TRY(array_many_doubles(per_joint, sizeof per_joint / sizeof *per_joint, n_joints, "the joints"));
     TRY(neighbours_create(&residual->neighbours, school->n_fish));
     TRY(residual_couplings_fill(&residual->couplings, school, residual->neighbours));
     TRY(contact_create(&residual->contact, school));
@@ -81,8 +81,10 @@ void residual_free(struct residual *residual) {
     neighbours_free(residual->neighbours);
     free(residual->joints);
     residual_couplings_free(&residual->couplings);
-    free(residual->natural_curvature);
-    free(residual->curvature_by_phi0);
+    free(residual->muscle.curvature);
+    free(residual->muscle.rate);
+    free(residual->muscle.curvature_by_phi0);
+    free(residual->muscle.rate_by_phi0);
     free(residual->scratch);
     for (int i = 0; residual->jacobian_scratch && i < residual->school->threads; i++) {
         free(residual->jacobian_scratch[i].block.u);
@@ -128,12 +130,13 @@ enum status residual_contact(struct residual *residual, double t, const double *
     return contact_find(residual->contact, residual->state, t, y);
 }
 
-void residual_muscle(struct residual *residual, int f, double t, const double *y) {
+struct actuation residual_muscle(struct residual *residual, int f, double t, const double *y) {
     const struct fish *fish = &residual->school->fish[f];
-    const int first = residual->joints[f].first;
-    const struct fish_gait gait = control_gait(fish, &residual->state->control[f], t);
-    actuation_curvature(fish, gait, y[fish->at.phi0], residual->natural_curvature + first,
-                        residual->curvature_by_phi0 + first);
+    const struct state *const state = residual->state;
+    const struct actuation muscle = actuation_from(&residual->muscle, residual->joints[f].first);
+    const double phi0_rate = control_rate(fish, &state->control[f], t, t - state->t, y);
+    actuation_find(fish, control_gait(fish, &state->control[f], t), y[fish->at.phi0], phi0_rate, &muscle);
+    return muscle;
 }
 
 // the rows of a node whose motion is given: its place, velocity and acceleration are the given ones
@@ -159,7 +162,8 @@ static void balance(const struct residual *residual, int f, const double *y, dou
         value[fish->at.ax + k] = fish->mass[k] * y[fish->at.ax + k];
         value[fish->at.ay + k] = fish->mass[k] * y[fish->at.ay + k];
     }
-    rod_residual(fish, residual->natural_curvature + residual->joints[f].first, y, value);
+    const struct actuation muscle = actuation_from(&residual->muscle, residual->joints[f].first);
+    rod_residual(fish, &muscle, y, value);
     clamp_residual(fish, residual->flow->t, y, value);
     contact_residual(residual->contact, f, y, value);
     fluid_force_residual(fish, &flow, y, value);

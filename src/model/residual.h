@@ -4,6 +4,7 @@
 #define RESIDUAL_H
 
 #include "base/status.h"
+#include "model/actuation.h"
 #include "model/bound_sheet.h"
 #include "model/contact.h"
 #include "model/flow.h"
@@ -30,10 +31,8 @@ struct residual {
     struct neighbours *neighbours;       /* workspace                                         (n_fish) */
     struct residual_couplings couplings; /* which blocks of other fish the Jacobian has */
 
-    /* natural curvature of the joints of all fish and its derivative with respect to phi0, as last evaluated */
-    struct range *joints;      /* of each fish                                   (n_fish) */
-    double *natural_curvature; /* dimensionless, doc/model.md section 4          (joints of all fish) */
-    double *curvature_by_phi0;
+    struct range *joints;    /* of each fish                                     (n_fish) */
+    struct actuation muscle; /* what they are asked for, as last evaluated       (joints of all fish) */
     struct jacobian_scratch *jacobian_scratch; /* scratch of each thread                          (threads) */
     double *scratch; /* for those who read the results; of fish f: its own slices    (n_unknowns) */
 };
@@ -53,10 +52,9 @@ void residual_free(struct residual *residual);
 enum status residual_evaluate(struct residual *residual, double t, const double *y, const double *yp, double *value);
 
 /* Parts of an evaluation, for who solves the equations one after another: the contacts, which can fail as
- * residual_evaluate does; and the natural curvature of fish f for the phi0
- * in y. */
+ * residual_evaluate does; and what the muscle of fish f asks of its joints for the phi0 in y, which is returned. */
 enum status residual_contact(struct residual *residual, double t, const double *y);
-void residual_muscle(struct residual *residual, int f, double t, const double *y);
+struct actuation residual_muscle(struct residual *residual, int f, double t, const double *y);
 
 /* The rows ax, ay of fish f in N, before given motions replace them: m a less all forces. With the fluid's velocity and
  * the natural curvature and the contacts of the last evaluation. */

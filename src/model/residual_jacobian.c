@@ -88,12 +88,11 @@ static enum status fish_jacobian(struct residual *residual, int f, double t, dou
     struct sparse *const own = jacobian->own[f];
     const double *const u = residual->flow->u + residual->flow->points[f].first;
     const double *const v = residual->flow->v + residual->flow->points[f].first;
-    const int joints = residual->joints[f].first;
 
     sparse_begin(own);
     kinematics_jacobian(residual, fish, cj, own);
-    residual_muscle(residual, f, t, y);
-    rod_jacobian(fish, residual->natural_curvature + joints, residual->curvature_by_phi0 + joints, y, own);
+    const struct actuation muscle = residual_muscle(residual, f, t, y);
+    rod_jacobian(fish, &muscle, y, own);
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
     clamp_jacobian(fish, t, y, own);
     fluid_force_jacobian(fish, &flow, y, own);

@@ -50,20 +50,27 @@ static void joint_hessian(const struct joint *joint, double hessian[N_LOCAL][N_L
     }
 }
 
-static double bending_moment(const struct fish *fish, int j, double curvature, double natural_curvature) {
+static double elastic_moment(const struct fish *fish, int j, double curvature, double natural_curvature) {
     return fish->bending_stiffness[j] * (curvature - natural_curvature) / fish->edge_length;
+}
+
+// the part of the rate of curvature that is not damped: that of the natural curvature, where the strain is damped
+static double undamped_rate(const struct fish *fish, const struct actuation *muscle, int j) {
+    return fish->damping == DAMPING_STRAIN ? muscle->rate[j] : 0;
 }
 
 void rod_curvature(const struct fish *fish, const double *y, double *curvature) {
     for (int j = 0; j < fish->n_joints; j++) curvature[j] = joint_at(fish, j, y).bend.curvature;
 }
 
-void rod_residual(const struct fish *fish, const double *natural_curvature, const double *y, double *residual) {
+void rod_residual(const struct fish *fish, const struct actuation *muscle, const double *y, double *residual) {
     double *const force[2] = {residual + fish->at.ax, residual + fish->at.ay};
     for (int j = 0; j < fish->n_joints; j++) {
         const struct joint joint = joint_at(fish, j, y);
-        const double elastic = bending_moment(fish, j, joint.bend.curvature, natural_curvature[j]) * joint.bend.slope;
-        const double damping = fish->bending_damping[j] * joint.bend.slope * joint.bend.slope * joint.angle_rate;
+        const double elastic = elastic_moment(fish, j, joint.bend.curvature, muscle->curvature[j]) * joint.bend.slope;
+        const double d = fish->bending_damping[j], undamped = undamped_rate(fish, muscle, j);
+        const double damping =
+            d * joint.bend.slope * joint.bend.slope * joint.angle_rate - d * joint.bend.slope * undamped;
         for (int i = 0; i < N_LOCAL; i++) force[i % 2][j + i / 2] += (elastic + damping) * joint.gradient[i];
     }
     for (int k = 0; k < fish->n_edges; k++) {
@@ -77,17 +84,23 @@ void rod_residual(const struct fish *fish, const double *natural_curvature, cons
     }
 }
 
-static void joint_jacobian(const struct fish *fish, int j, double natural_curvature, double by_phi0, const double *y,
+static void joint_jacobian(const struct fish *fish, int j, const struct actuation *muscle, const double *y,
                            struct sparse *jacobian) {
     const struct joint joint = joint_at(fish, j, y);
     double hessian[N_LOCAL][N_LOCAL], turned[N_LOCAL];
     joint_hessian(&joint, hessian);
     const double stiffness = fish->bending_stiffness[j] / fish->edge_length, d = fish->bending_damping[j];
-    const double moment = bending_moment(fish, j, joint.bend.curvature, natural_curvature);
-    const double first = moment * joint.bend.slope + d * joint.bend.slope * joint.bend.slope * joint.angle_rate;
+    const double moment = elastic_moment(fish, j, joint.bend.curvature, muscle->curvature[j]);
+    const double undamped = undamped_rate(fish, muscle, j);
+    const double first = moment * joint.bend.slope + d * joint.bend.slope * joint.bend.slope * joint.angle_rate -
+                         d * joint.bend.slope * undamped;
     const double second = stiffness * joint.bend.slope * joint.bend.slope + moment * joint.bend.second +
-                          2 * d * joint.bend.slope * joint.bend.second * joint.angle_rate;
+                          2 * d * joint.bend.slope * joint.bend.second * joint.angle_rate -
+                          d * joint.bend.second * undamped;
     const double rate = d * joint.bend.slope * joint.bend.slope;
+    const double undamped_by_phi0 = fish->damping == DAMPING_STRAIN ? muscle->rate_by_phi0[j] : 0;
+    const double by_phi0 =
+        -(stiffness * joint.bend.slope * muscle->curvature_by_phi0[j] + d * joint.bend.slope * undamped_by_phi0);
     // derivative of the angle's rate with respect to positions: hessian times velocity
     for (int i = 0; i < N_LOCAL; i++) {
         turned[i] = 0;
@@ -106,7 +119,7 @@ static void joint_jacobian(const struct fish *fish, int j, double natural_curvat
             sparse_add(jacobian, row, (k % 2 == 0 ? fish->at.vx : fish->at.vy) + other,
                        rate * b[i] * b[k] / fish->mass[node]);
         }
-        sparse_add(jacobian, row, fish->at.phi0, -stiffness * joint.bend.slope * by_phi0 * b[i] / fish->mass[node]);
+        sparse_add(jacobian, row, fish->at.phi0, by_phi0 * b[i] / fish->mass[node]);
     }
 }
 
@@ -130,18 +143,15 @@ static void edge_jacobian(const struct fish *fish, int k, const double *y, struc
     }
 }
 
-void rod_jacobian(const struct fish *fish, const double *natural_curvature, const double *curvature_by_phi0,
-                  const double *y, struct sparse *jacobian) {
-    for (int j = 0; j < fish->n_joints; j++) {
-        joint_jacobian(fish, j, natural_curvature[j], curvature_by_phi0[j], y, jacobian);
-    }
+void rod_jacobian(const struct fish *fish, const struct actuation *muscle, const double *y, struct sparse *jacobian) {
+    for (int j = 0; j < fish->n_joints; j++) joint_jacobian(fish, j, muscle, y, jacobian);
     for (int k = 0; k < fish->n_edges; k++) edge_jacobian(fish, k, y, jacobian);
 }
 
-double rod_bending_energy(const struct fish *fish, const double *natural_curvature, const double *y) {
+double rod_bending_energy(const struct fish *fish, const struct actuation *muscle, const double *y) {
     double energy = 0;
     for (int j = 0; j < fish->n_joints; j++) {
-        const double excess = joint_at(fish, j, y).bend.curvature - natural_curvature[j];
+        const double excess = joint_at(fish, j, y).bend.curvature - muscle->curvature[j];
         energy += fish->bending_stiffness[j] * excess * excess / (2 * fish->edge_length);
     }
     return energy;
@@ -176,20 +186,28 @@ int rod_shortest_edge(const struct fish *fish, const double *y, double *ratio) {
     return shortest;
 }
 
-double rod_actuation_power(const struct fish *fish, const double *natural_curvature, const double *curvature_rate,
-                           const double *y) {
+// the rate that is damped
+static double damped_rate(const struct fish *fish, const struct actuation *muscle, int j, const struct joint *joint) {
+    return joint->bend.slope * joint->angle_rate - undamped_rate(fish, muscle, j);
+}
+
+double rod_actuation_power(const struct fish *fish, const struct actuation *muscle, const double *y) {
     double power = 0;
     for (int j = 0; j < fish->n_joints; j++) {
-        power -= bending_moment(fish, j, joint_at(fish, j, y).bend.curvature, natural_curvature[j]) * curvature_rate[j];
+        const struct joint joint = joint_at(fish, j, y);
+        double moment = elastic_moment(fish, j, joint.bend.curvature, muscle->curvature[j]);
+        // what damps the curvature alone lies beside the muscle, not in its path
+        if (fish->damping == DAMPING_STRAIN) moment += fish->bending_damping[j] * damped_rate(fish, muscle, j, &joint);
+        power -= moment * muscle->rate[j];
     }
     return power;
 }
 
-double rod_damping_power(const struct fish *fish, const double *y) {
+double rod_damping_power(const struct fish *fish, const struct actuation *muscle, const double *y) {
     double power = 0;
     for (int j = 0; j < fish->n_joints; j++) {
         const struct joint joint = joint_at(fish, j, y);
-        const double rate = joint.bend.slope * joint.angle_rate;
+        const double rate = damped_rate(fish, muscle, j, &joint);
         power -= fish->bending_damping[j] * rate * rate;
     }
     for (int k = 0; k < fish->n_edges; k++) {

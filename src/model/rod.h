@@ -10,20 +10,20 @@
 #define ROD_H
 
 #include "base/sparse.h"
+#include "model/actuation.h"
 #include "model/fish.h"
 
 /* Curvature kappa = 2 tan(phi/2) of every joint, dimensionless (n_joints). */
 void rod_curvature(const struct fish *fish, const double *y, double *curvature);
 
-/* Take the elastic and damping forces off the rows ax, ay of the residual [N]; natural_curvature is (n_joints). */
-void rod_residual(const struct fish *fish, const double *natural_curvature, const double *y, double *residual);
+/* Take the elastic and damping forces off the rows ax, ay of the residual [N]. */
+void rod_residual(const struct fish *fish, const struct actuation *muscle, const double *y, double *residual);
 
-/* Add the derivatives of rod_residual, each row divided by its node's mass; curvature_by_phi0 is (n_joints). */
-void rod_jacobian(const struct fish *fish, const double *natural_curvature, const double *curvature_by_phi0,
-                  const double *y, struct sparse *jacobian);
+/* Add the derivatives of rod_residual, each row divided by its node's mass; the rate of phi0 counts as given. */
+void rod_jacobian(const struct fish *fish, const struct actuation *muscle, const double *y, struct sparse *jacobian);
 
 /* Energies, J. */
-double rod_bending_energy(const struct fish *fish, const double *natural_curvature, const double *y);
+double rod_bending_energy(const struct fish *fish, const struct actuation *muscle, const double *y);
 double rod_stretching_energy(const struct fish *fish, const double *y);
 
 /* Whether an edge is ten times as long as it is by nature: what a step that is too long for the stiffness leads to. */
@@ -32,11 +32,10 @@ int rod_is_torn(const struct fish *fish, const double *y);
 /* The edge that is compressed most, and its length over its natural one. */
 int rod_shortest_edge(const struct fish *fish, const double *y, double *ratio);
 
-/* Power of the muscle, which changes the natural curvature at the given rate [s-1], W. */
-double rod_actuation_power(const struct fish *fish, const double *natural_curvature, const double *curvature_rate,
-                           const double *y);
+/* Power of the muscle, which changes the natural curvature against the moments of the joints, W. */
+double rod_actuation_power(const struct fish *fish, const struct actuation *muscle, const double *y);
 
 /* Power of the internal damping, W: never positive. */
-double rod_damping_power(const struct fish *fish, const double *y);
+double rod_damping_power(const struct fish *fish, const struct actuation *muscle, const double *y);
 
 #endif

@@ -42,7 +42,7 @@ void result_row_curvature(const struct result_row *row, int f, double *slots) {
 
 void result_row_natural_curvature(const struct result_row *row, int f, double *slots) {
     const struct range joints = row->residual->joints[f];
-    copy(joints.n, row->residual->natural_curvature + joints.first, slots);
+    copy(joints.n, row->residual->muscle.curvature + joints.first, slots);
 }
 
 void result_row_sheet_position(const struct result_row *row, int f, double *slots) {

@@ -110,7 +110,8 @@ static void the_defaults_are_those_of_the_reference(void **state) {
     assert_int_equal(fish->body.profile, PROFILE_JOUKOWSKI);
     assert_int_equal(fish->body.second_moment, SECOND_MOMENT_ELLIPSE);
     NEAR(fish->body.density, 1000, 0, 0);
-    NEAR(fish->body.relaxation_time, 0.001, 0, 0);
+    NEAR(fish->body.relaxation_time, 0.02, 0, 0);
+    assert_int_equal(fish->body.damping, DAMPING_STRAIN);
     NEAR(fish->body.bending_damping, 0, 0, 0);
     NEAR(fish->body.stretching_damping, 0, 0, 0);
     NEAR(fish->body.modulus, 1e6, 0, 0);

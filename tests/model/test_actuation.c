@@ -9,18 +9,31 @@
     "fish: [{wave: {frequency: 1.2, phase: 35, amplitude: 0.5, constant: 0.1, linear: 0.8, quadratic: 0.4, number: " \
     "-5}}]\n"
 
+/* What the muscle of the first fish asks at a time. */
+enum { JOINTS = 300 };
+struct asked {
+    double curvature[JOINTS], rate[JOINTS], by_phi0[JOINTS], rate_by_phi0[JOINTS];
+};
+
+static void ask(const struct setup *setup, double t, double phi0, double phi0_rate, struct asked *asked) {
+    const struct fish *const fish = setup->school->fish;
+    assert_true(fish->n_joints <= JOINTS);
+    actuation_find(fish, fish_own_gait(fish, t), phi0, phi0_rate,
+                   &(struct actuation){asked->curvature, asked->rate, asked->by_phi0, asked->rate_by_phi0});
+}
+
 static void curvature_is_the_formula_of_the_model(void **state) {
     (void)state;
     struct setup setup;
     school_build(&setup, TIME WAVE);
-    double curvature[5], by_phi0[5];
+    struct asked asked;
     for (double t = 0; t < 1.5; t += 0.3) {
-        actuation_curvature(setup.school->fish, fish_own_gait(setup.school->fish, t), 0.2, curvature, by_phi0);
+        ask(&setup, t, 0.2, 0, &asked);
         for (int j = 0; j < 5; j++) {
             const double s = (j + 1) / 6.0, pi = acos(-1);
             const double angle = ramp_value(t, 1 / 1.2) * 0.5 * (0.1 + 0.8 * s + 0.4 * s * s) *
                                  (sin(-5 * s + 2 * pi * 1.2 * t + 35 * pi / 180) + 0.2);
-            NEAR(curvature[j], 2 * tan(angle / 2), 1e-14, 0);
+            NEAR(asked.curvature[j], 2 * tan(angle / 2), 1e-14, 0);
         }
     }
     school_clear(&setup);
@@ -29,20 +42,21 @@ static void curvature_is_the_formula_of_the_model(void **state) {
 static void derivatives_agree(const char *text) {
     struct setup setup;
     school_build(&setup, text);
-    const struct fish *fish = setup.school->fish;
     const double h = 1e-4, rate = 0.7;
     for (double t = 0.1; t < 1.5; t += 0.3) {
-        double low[5], high[5], scratch[5], at[5], by_phi0[5], changes[5];
-        actuation_curvature(fish, fish_own_gait(fish, t), 0.2, at, by_phi0);
-        actuation_rate(fish, fish_own_gait(fish, t), 0.2, rate, changes);
-        actuation_curvature(fish, fish_own_gait(fish, t), 0.2 - h, low, scratch);
-        actuation_curvature(fish, fish_own_gait(fish, t), 0.2 + h, high, scratch);
-        // truncation h^2/6 times third derivatives of at most 0.1
-        for (int j = 0; j < 5; j++) NEAR(by_phi0[j], (high[j] - low[j]) / (2 * h), 1e-9, 0);
-        actuation_curvature(fish, fish_own_gait(fish, t - h), 0.2 - rate * h, low, scratch);
-        actuation_curvature(fish, fish_own_gait(fish, t + h), 0.2 + rate * h, high, scratch);
+        struct asked at, low, high;
+        ask(&setup, t, 0.2, rate, &at);
+        ask(&setup, t, 0.2 - h, rate, &low);
+        ask(&setup, t, 0.2 + h, rate, &high);
+        for (int j = 0; j < 5; j++) {
+            // truncation h^2/6 times third derivatives of at most 0.1, and of the rate at most 10
+            NEAR(at.by_phi0[j], (high.curvature[j] - low.curvature[j]) / (2 * h), 1e-9, 0);
+            NEAR(at.rate_by_phi0[j], (high.rate[j] - low.rate[j]) / (2 * h), 1e-7, 0);
+        }
+        ask(&setup, t - h, 0.2 - rate * h, rate, &low);
+        ask(&setup, t + h, 0.2 + rate * h, rate, &high);
         // the same with omega^3 = 430 and the ramp's 53/0.8^3
-        for (int j = 0; j < 5; j++) NEAR(changes[j], (high[j] - low[j]) / (2 * h), 1e-6, 0);
+        for (int j = 0; j < 5; j++) NEAR(at.rate[j], (high.curvature[j] - low.curvature[j]) / (2 * h), 1e-6, 0);
     }
     school_clear(&setup);
 }
@@ -74,15 +88,12 @@ static void a_table_of_a_wave_is_that_wave(void **state) {
                  "fish: [{wave: {amplitude: 0.5, constant: 0.2, linear: 0.8, quadratic: 0,\n"
                  "  table: [[0, 0.6, 0, -0.6], [0, 3, 0, -3]]}}]\n");
     for (double t = 0.1; t < 2; t += 0.3) {
-        double curvature[2][5], by_phi0[2][5], rate[2][5];
-        for (int i = 0; i < 2; i++) {
-            actuation_curvature(setup[i].school->fish, fish_own_gait(setup[i].school->fish, t), 0.2, curvature[i],
-                                by_phi0[i]);
-            actuation_rate(setup[i].school->fish, fish_own_gait(setup[i].school->fish, t), 0.2, 0.3, rate[i]);
-        }
-        NEAR_ARRAY(5, curvature[1], curvature[0], 1e-14, 1e-13);
-        NEAR_ARRAY(5, by_phi0[1], by_phi0[0], 1e-14, 1e-13);
-        NEAR_ARRAY(5, rate[1], rate[0], 1e-13, 1e-13);
+        struct asked asked[2];
+        for (int i = 0; i < 2; i++) ask(&setup[i], t, 0.2, 0.3, &asked[i]);
+        NEAR_ARRAY(5, asked[1].curvature, asked[0].curvature, 1e-14, 1e-13);
+        NEAR_ARRAY(5, asked[1].by_phi0, asked[0].by_phi0, 1e-14, 1e-13);
+        NEAR_ARRAY(5, asked[1].rate, asked[0].rate, 1e-13, 1e-13);
+        NEAR_ARRAY(5, asked[1].rate_by_phi0, asked[0].rate_by_phi0, 1e-13, 1e-13);
     }
     for (int i = 0; i < 2; i++) school_clear(&setup[i]);
 }
@@ -115,13 +126,13 @@ static void wave_travels_from_head_to_tail(void **state) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{nodes: 31, wave: {ramp: 0}}]\n");
     // a crest stands where number s + omega t is constant: after 0.1 s it is 0.1 omega/6 lengths further back
-    double now[29], later[29], scratch[29];
+    struct asked now, later;
     const double delay = 6.0 * 3 / 30 / (2 * acos(-1));
-    actuation_curvature(setup.school->fish, fish_own_gait(setup.school->fish, 0.5), 0, now, scratch);
-    actuation_curvature(setup.school->fish, fish_own_gait(setup.school->fish, 0.5 + delay), 0, later, scratch);
+    ask(&setup, 0.5, 0, 0, &now);
+    ask(&setup, 0.5 + delay, 0, 0, &later);
     for (int j = 0; j + 3 < 29; j++) {
         const double a = setup.school->fish[0].wave_amplitude[j], b = setup.school->fish[0].wave_amplitude[j + 3];
-        NEAR(2 * atan(later[j + 3] / 2) / b, 2 * atan(now[j] / 2) / a, 1e-12, 0);
+        NEAR(2 * atan(later.curvature[j + 3] / 2) / b, 2 * atan(now.curvature[j] / 2) / a, 1e-12, 0);
     }
     school_clear(&setup);
 }
@@ -132,12 +143,11 @@ static void ramp_starts_from_a_straight_body_and_no_ramp_does_not(void **state) 
     for (int i = 0; i < 2; i++) {
         struct setup setup;
         school_build(&setup, texts[i]);
-        double curvature[5], by_phi0[5], rate[5];
-        actuation_curvature(setup.school->fish, fish_own_gait(setup.school->fish, 0), 0.3, curvature, by_phi0);
-        actuation_rate(setup.school->fish, fish_own_gait(setup.school->fish, 0), 0.3, 0, rate);
+        struct asked asked;
+        ask(&setup, 0, 0.3, 0, &asked);
         for (int j = 0; j < 5; j++) {
-            assert_true((curvature[j] == 0) == (i == 0));
-            assert_true((rate[j] == 0) == (i == 0));
+            assert_true((asked.curvature[j] == 0) == (i == 0));
+            assert_true((asked.rate[j] == 0) == (i == 0));
         }
         school_clear(&setup);
     }
@@ -150,10 +160,10 @@ static void turn_of_the_whole_body_does_not_depend_on_the_number_of_nodes(void *
     for (int i = 0; i < 2; i++) {
         struct setup setup;
         school_build(&setup, texts[i]);
-        static double curvature[300], scratch[300];
-        actuation_curvature(setup.school->fish, fish_own_gait(setup.school->fish, 1.3), 1, curvature, scratch);
+        struct asked asked;
+        ask(&setup, 1.3, 1, 0, &asked);
         total[i] = 0;
-        for (int j = 0; j < setup.school->fish[0].n_joints; j++) total[i] += 2 * atan(curvature[j] / 2);
+        for (int j = 0; j < setup.school->fish[0].n_joints; j++) total[i] += 2 * atan(asked.curvature[j] / 2);
         school_clear(&setup);
     }
     // the sum is a Riemann sum without its end, of the size 1/N

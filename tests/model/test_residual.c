@@ -25,6 +25,12 @@ static const struct variant {
     {"profile table", TIME "fish: [{sheet_points: 9, nodes: 5, body: {profile: table, h: [0.1, 0.2, 0.15, 0.05], "
                            "w: [0.2, 0.3, 0.25, 0.1]}}]\n"},
     {"relaxation time", TIME "fish: [{sheet_points: 9, body: {relaxation_time: 0.1, bending_damping: 2}}]\n"},
+    {"damping of the strain",
+     TIME "fish: [{sheet_points: 9, body: {damping: strain, relaxation_time: 0.1, bending_damping: 2}}]\n"},
+    {"damping of the strain, free sheet, table, course", TIME
+     "wake: {shedding: sheet, smoothing: 0.1, taper: 0.4, taper_beside: 0.1}\n"
+     "fish: [{sheet_points: 9, force: reactive, body: {damping: strain, relaxation_time: 0.1},\n"
+     "        wave: {ramp: 2, table: [[0, 1, -1, 0.4], [2, -3, 1, 1], [1, 0, -2, 5]]}, control: {law: course}}]\n"},
     {"load at the tip", TIME "fish: [{sheet_points: 9, load: {tip: [3, -2]}}]\n"},
     {"collocation midpoint", TIME "wake: {collocation: midpoint}\n" FISH},
     {"smooth curve", TIME "wake: {curve: smooth}\n" FISH},
@@ -63,7 +69,7 @@ static const struct variant {
     {"driven head", TIME "fish: [{sheet_points: 9, motion: {driven: head, heave: 0.1, pitch: 10, pitch_phase: 70, "
                          "frequency: 1, pivot: 0.2}}]\n"},
     {"clamped head",
-     TIME "fish: [{sheet_points: 9, body: {section: mean, relaxation_time: 0.05}, force: reactive,\n"
+     TIME "fish: [{sheet_points: 9, body: {section: mean, damping: strain, relaxation_time: 0.05}, force: reactive,\n"
           "        motion: {driven: head, heave: 0.1, pitch: 10, pitch_phase: 70, frequency: 1, pivot: 0.2}}]\n"},
     {"driven body", TIME "fish: [{sheet_points: 9, motion: {driven: all, heave: 0.1, pitch: 10, frequency: 1}}]\n"},
     {"driven head, kutta rate, load",

@@ -1,4 +1,5 @@
 /* test_rod.c: energies, forces, damping and their derivatives: doc/model.md, sections 2 and 3. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -7,18 +8,26 @@
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 #define BODY "body: {modulus: 1.0e+5, bending_damping: 0.7, stretching_damping: 30}"
+#define STRAIN \
+    "body: {modulus: 1.0e+5, damping: strain, bending_damping: 0.7, stretching_damping: 30, relaxation_time: 0.1}"
 
-/* The natural curvature that the tests take, and its derivative by phi0. */
-static const double natural[] = {0.1, -0.2, 0.3, 0.05, -0.15};
-static const double by_phi0[] = {0.3, 0.2, 0.4, 0.1, 0.5};
+/* What the tests ask of the joints: natural curvature and its rate, and their derivatives by phi0. */
+static double natural[] = {0.1, -0.2, 0.3, 0.05, -0.15}, natural_rate[] = {0.5, -1, 2, 0.3, 1};
+static double by_phi0[] = {0.3, 0.2, 0.4, 0.1, 0.5}, rate_by_phi0[] = {-2, 1, 3, -1, 4};
+static const struct actuation muscle = {natural, natural_rate, by_phi0, rate_by_phi0};
+static double zero[64];
+static const struct actuation no_muscle = {zero, zero, zero, zero};
 
 static void value_of_rod(struct setup *setup, const double *y, const double *yp, double *value) {
     (void)yp;
     const struct fish *fish = setup->school->fish;
-    double curvature[5];
-    for (int j = 0; j < 5; j++)
-        curvature[j] = natural[j] + by_phi0[j] * (y[fish->at.phi0] - setup->state->y[fish->at.phi0]);
-    rod_residual(fish, curvature, y, value);
+    double curvature[5], rate[5];
+    for (int j = 0; j < 5; j++) {
+        const double more = y[fish->at.phi0] - setup->state->y[fish->at.phi0];
+        curvature[j] = natural[j] + by_phi0[j] * more;
+        rate[j] = natural_rate[j] + rate_by_phi0[j] * more;
+    }
+    rod_residual(fish, &(struct actuation){.curvature = curvature, .rate = rate}, y, value);
     for (int k = 0; k < fish->n_nodes; k++) {
         value[fish->at.ax + k] /= fish->mass[k];
         value[fish->at.ay + k] /= fish->mass[k];
@@ -27,14 +36,15 @@ static void value_of_rod(struct setup *setup, const double *y, const double *yp,
 
 static void jacobian_of_rod(struct setup *setup, double cj, const double *y, struct sparse *jacobian) {
     (void)cj;
-    rod_jacobian(setup->school->fish, natural, by_phi0, y, jacobian);
+    rod_jacobian(setup->school->fish, &muscle, y, jacobian);
 }
 
 static void derivatives_agree_with_differences(void **state) {
     (void)state;
     const char *const texts[] = {TIME "fish: [{" BODY "}]\n", TIME "fish: [{body: {second_moment: published}}]\n",
                                  TIME "fish: [{body: {modulus: 1.0e+9}}]\n",
-                                 TIME "fish: [{body: {relaxation_time: 0.1, profile: uniform}}]\n"};
+                                 TIME "fish: [{body: {relaxation_time: 0.1, profile: uniform}}]\n",
+                                 TIME "fish: [{" STRAIN "}]\n"};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         struct setup setup;
         school_build(&setup, texts[i]);
@@ -45,7 +55,7 @@ static void derivatives_agree_with_differences(void **state) {
 }
 
 static double elastic_energy(const struct fish *fish, const double *y) {
-    return rod_bending_energy(fish, natural, y) + rod_stretching_energy(fish, y);
+    return rod_bending_energy(fish, &muscle, y) + rod_stretching_energy(fish, y);
 }
 
 static void elastic_force_is_minus_the_gradient_of_the_energy(void **state) {
@@ -57,7 +67,7 @@ static void elastic_force_is_minus_the_gradient_of_the_energy(void **state) {
     double *const y = setup.state->y;
     // nodes at rest: no damping
     for (int i = fish->at.vx; i < fish->at.ax; i++) y[i] = 0;
-    rod_residual(fish, natural, y, setup.value);
+    rod_residual(fish, &muscle, y, setup.value);
     const double h = 1e-5;
     for (int i = 0; i < 2 * fish->n_nodes; i++) {
         const double here = y[i];
@@ -79,7 +89,7 @@ static void internal_forces_have_no_sum_and_no_moment(void **state) {
     school_stir(&setup);
     const struct fish *fish = setup.school->fish;
     const double *const y = setup.state->y;
-    rod_residual(fish, natural, y, setup.value);
+    rod_residual(fish, &muscle, y, setup.value);
     double sum[2] = {0, 0}, moment = 0, size = 0;
     for (int k = 0; k < fish->n_nodes; k++) {
         const double fx = setup.value[fish->at.ax + k], fy = setup.value[fish->at.ay + k];
@@ -110,17 +120,17 @@ static void damping_power_is_that_of_the_damping_forces_and_never_positive(void 
         double velocity[14];
         for (int i = 0; i < 14; i++) velocity[i] = school_random(&setup);
         memset(y + fish->at.vx, 0, sizeof velocity);
-        rod_residual(fish, natural, y, elastic);
+        rod_residual(fish, &muscle, y, elastic);
         memcpy(y + fish->at.vx, velocity, sizeof velocity);
-        rod_residual(fish, natural, y, setup.value);
+        rod_residual(fish, &muscle, y, setup.value);
         double power = 0, size = 0;
         for (int i = 0; i < 14; i++) {
             power -= (setup.value[fish->at.ax + i] - elastic[fish->at.ax + i]) * velocity[i];
             size += fabs(elastic[fish->at.ax + i]);
         }
         // rounding of the elastic forces that are taken off
-        NEAR(rod_damping_power(fish, y), power, 1e-14 * size, 1e-12);
-        assert_true(rod_damping_power(fish, y) < 0);
+        NEAR(rod_damping_power(fish, &muscle, y), power, 1e-14 * size, 1e-12);
+        assert_true(rod_damping_power(fish, &muscle, y) < 0);
     }
     free(elastic);
     school_clear(&setup);
@@ -137,7 +147,7 @@ static void rigid_motion_is_not_damped(void **state) {
         y[fish->at.vx + k] = 0.3 - 2 * y[fish->at.y + k];
         y[fish->at.vy + k] = -0.1 + 2 * y[fish->at.x + k];
     }
-    NEAR(rod_damping_power(fish, y), 0, 1e-25, 0);
+    NEAR(rod_damping_power(fish, &muscle, y), 0, 1e-25, 0);
     school_clear(&setup);
 }
 
@@ -159,14 +169,14 @@ static void energies_of_a_regular_polygon_are_exact(void **state) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{body: {profile: uniform, thickness: 0.1, modulus: 2.0e+5}}]\n");
     const struct fish *fish = setup.school->fish;
-    const double straight[5] = {0}, angle = 0.3, stretch = 1.05, pi = acos(-1);
+    const double angle = 0.3, stretch = 1.05, pi = acos(-1);
     bend(&setup, angle, stretch);
     const double EI = 2e5 * pi * 0.25 * 0.001 / 64, EA = 2e5 * pi * 0.1 * 0.25 / 4, kappa = 2 * tan(0.15), l = 1.0 / 6;
     double curvature[5];
     rod_curvature(fish, setup.state->y, curvature);
     for (int j = 0; j < 5; j++) NEAR(curvature[j], kappa, 1e-14, 0);
     // rounding of 1e-16 in places a sixth apart
-    NEAR(rod_bending_energy(fish, straight, setup.state->y), 5 * EI * kappa * kappa / (2 * l), 0, 1e-13);
+    NEAR(rod_bending_energy(fish, &no_muscle, setup.state->y), 5 * EI * kappa * kappa / (2 * l), 0, 1e-13);
     NEAR(rod_stretching_energy(fish, setup.state->y), EA * 0.05 * 0.05 / 2, 0, 1e-12);
     school_clear(&setup);
 }
@@ -179,11 +189,11 @@ static void energy_of_a_circular_arc_converges_to_that_of_the_continuum(void **s
     for (int i = 0; i < 2; i++) {
         struct setup setup;
         school_build(&setup, texts[i]);
-        const double straight[64] = {0}, R = 0.5, pi = acos(-1), EI = 1e6 * pi * 0.25 * 0.001 / 64;
+        const double R = 0.5, pi = acos(-1), EI = 1e6 * pi * 0.25 * 0.001 / 64;
         const struct fish *fish = setup.school->fish;
         bend(&setup, fish->edge_length / R, 1);
         // N - 2 joints bend, of N - 1 that a closed ring would have: per joint EI lbar/(2 R^2)
-        const double energy = rod_bending_energy(fish, straight, setup.state->y) * fish->n_edges / fish->n_joints;
+        const double energy = rod_bending_energy(fish, &no_muscle, setup.state->y) * fish->n_edges / fish->n_joints;
         error[i] = energy / (EI / (2 * R * R)) - 1;
         school_clear(&setup);
     }
@@ -197,13 +207,14 @@ static void polygon_of_the_natural_curvature_is_at_rest(void **state) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{" BODY "}]\n");
     const struct fish *fish = setup.school->fish;
-    const double angle = 0.4, kappa = 2 * tan(0.2), curvature[5] = {kappa, kappa, kappa, kappa, kappa};
+    const double angle = 0.4, kappa = 2 * tan(0.2);
+    double curvature[5] = {kappa, kappa, kappa, kappa, kappa};
+    const struct actuation bent = {curvature, zero, zero, zero};
     bend(&setup, angle, 1);
-    rod_residual(fish, curvature, setup.state->y, setup.value);
+    rod_residual(fish, &bent, setup.state->y, setup.value);
     // EA = 4e3 N times the rounding of the length
     for (int i = fish->at.ax; i < fish->at.gamma; i++) NEAR(setup.value[i], 0, 1e-10, 0);
-    NEAR(rod_bending_energy(fish, curvature, setup.state->y) + rod_stretching_energy(fish, setup.state->y), 0, 1e-20,
-         0);
+    NEAR(rod_bending_energy(fish, &bent, setup.state->y) + rod_stretching_energy(fish, setup.state->y), 0, 1e-20, 0);
     school_clear(&setup);
 }
 
@@ -227,17 +238,85 @@ static void muscle_power_is_the_change_of_energy_at_a_fixed_shape(void **state) 
     school_build(&setup, TIME "fish: [{" BODY "}]\n");
     school_stir(&setup);
     const struct fish *fish = setup.school->fish;
-    const double rate[5] = {0.5, -1, 2, 0.3, 1}, h = 1e-4;
+    const double h = 1e-4;
     double low[5], high[5];
     for (int j = 0; j < 5; j++) {
-        low[j] = natural[j] - h * rate[j];
-        high[j] = natural[j] + h * rate[j];
+        low[j] = natural[j] - h * natural_rate[j];
+        high[j] = natural[j] + h * natural_rate[j];
     }
+    const struct actuation before = {.curvature = low}, after = {.curvature = high};
     const double *const y = setup.state->y;
     // the energy is quadratic in the natural curvature: central differences are exact but for rounding, 1e-16 E/h
-    NEAR(rod_actuation_power(fish, natural, rate, y),
-         (rod_bending_energy(fish, high, y) - rod_bending_energy(fish, low, y)) / (2 * h), 1e-10, 1e-10);
-    assert_true(fabs(rod_actuation_power(fish, natural, rate, y)) > 1e-3);
+    NEAR(rod_actuation_power(fish, &muscle, y),
+         (rod_bending_energy(fish, &after, y) - rod_bending_energy(fish, &before, y)) / (2 * h), 1e-10, 1e-10);
+    assert_true(fabs(rod_actuation_power(fish, &muscle, y)) > 1e-3);
+    school_clear(&setup);
+}
+
+// the rate of the energies where the nodes move with their velocities and the muscle goes on, by differences of fourth
+// order
+static double rate_of_energy(struct setup *setup) {
+    static const double node[4] = {-2, -1, 1, 2}, weight[4] = {1.0 / 12, -8.0 / 12, 8.0 / 12, -1.0 / 12};
+    const struct fish *fish = setup->school->fish;
+    const double h = 3e-4;
+    double rate = 0, curvature[5];
+    const struct actuation moved = {.curvature = curvature};
+    double *const y = malloc((size_t)fish->at.end * sizeof *y);
+    assert_non_null(y);
+    for (int i = 0; i < 4; i++) {
+        const double tau = node[i] * h;
+        memcpy(y, setup->state->y, (size_t)fish->at.end * sizeof *y);
+        for (int m = 0; m < 2 * fish->n_nodes; m++) y[fish->at.x + m] += tau * y[fish->at.vx + m];
+        for (int j = 0; j < 5; j++) curvature[j] = natural[j] + tau * natural_rate[j];
+        rate += weight[i] / h * (rod_bending_energy(fish, &moved, y) + rod_stretching_energy(fish, y));
+    }
+    free(y);
+    return rate;
+}
+
+static void what_the_muscle_gives_is_stored_damped_or_work_on_the_nodes(void **state) {
+    (void)state;
+    const char *const bodies[] = {BODY, STRAIN};
+    for (int i = 0; i < 2; i++) {
+        char text[256];
+        snprintf(text, sizeof text, TIME "fish: [{%s}]\n", bodies[i]);
+        struct setup setup;
+        school_build(&setup, text);
+        school_stir(&setup);
+        const struct fish *fish = setup.school->fish;
+        const double *const y = setup.state->y;
+        rod_residual(fish, &muscle, y, setup.value);
+        double work = 0;
+        for (int m = 0; m < 2 * fish->n_nodes; m++) work -= setup.value[fish->at.ax + m] * y[fish->at.vx + m];
+        const double power = rod_actuation_power(fish, &muscle, y) + rod_damping_power(fish, &muscle, y);
+        assert_true(fabs(power) > 1);
+        // what the differences of an energy of 10 J cut and round off
+        NEAR(power, work + rate_of_energy(&setup), 1e-9 * fabs(work), 1e-9);
+        school_clear(&setup);
+    }
+}
+
+static void a_body_that_does_what_its_muscle_asks_is_not_damped(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{" STRAIN "}]\n");
+    school_stir(&setup);
+    const struct fish *fish = setup.school->fish;
+    double *const y = setup.state->y;
+    // edges keep their length; edge k turns at the sum of the rates of the joints before it
+    double turn = 0.7, rate[5], damped[5];
+    const struct actuation follows = {natural, rate, by_phi0, rate_by_phi0};
+    for (int k = 0; k < fish->n_edges; k++) {
+        const double ex = y[fish->at.x + k + 1] - y[fish->at.x + k], ey = y[fish->at.y + k + 1] - y[fish->at.y + k];
+        y[fish->at.vx + k + 1] = y[fish->at.vx + k] - turn * ey;
+        y[fish->at.vy + k + 1] = y[fish->at.vy + k] + turn * ex;
+        if (k < fish->n_joints) turn += damped[k] = 0.3 * (k + 1);
+    }
+    // dkappa/dt = dphi/dt (1 + kappa^2/4)
+    rod_curvature(fish, y, rate);
+    for (int j = 0; j < 5; j++) rate[j] = damped[j] * (1 + rate[j] * rate[j] / 4);
+    NEAR(rod_damping_power(fish, &follows, y), 0, 1e-24, 0);
+    assert_true(rod_damping_power(fish, &muscle, y) < -0.1);
     school_clear(&setup);
 }
 
@@ -283,6 +362,8 @@ int main(void) {
         cmocka_unit_test(the_shortest_edge_is_the_one_compressed_most),
         cmocka_unit_test(a_body_is_torn_at_ten_times_the_length_of_an_edge),
         cmocka_unit_test(muscle_power_is_the_change_of_energy_at_a_fixed_shape),
+        cmocka_unit_test(what_the_muscle_gives_is_stored_damped_or_work_on_the_nodes),
+        cmocka_unit_test(a_body_that_does_what_its_muscle_asks_is_not_damped),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

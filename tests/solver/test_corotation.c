@@ -224,11 +224,12 @@ static void other_unknowns_are_not_mapped(void **state) {
 // the elastic part of the Jacobian of fish f, accelerations by positions
 static void stiffness(struct configurations *both, int f, const double *y, double *dense) {
     const struct fish *fish = &both->setup.school->fish[f];
-    const double natural[MAX_NODES] = {0};
+    double zero[MAX_NODES] = {0};
+    const struct actuation at_rest = {zero, zero, zero, zero};
     struct sparse *matrix;
     school_ok(sparse_create(&matrix, 0, both->n));
     sparse_begin(matrix);
-    rod_jacobian(fish, natural, natural, y, matrix);
+    rod_jacobian(fish, &at_rest, y, matrix);
     school_ok(sparse_end(matrix));
     double *const all = school_dense(matrix);
     for (int row = 0; row < 2 * fish->n_nodes; row++) {
