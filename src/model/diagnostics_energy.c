@@ -13,6 +13,7 @@
 #include "model/flow_external.h"
 #include "model/fluid_force.h"
 #include "model/rod.h"
+#include "model/rod_stress.h"
 #include "model/self_crossing.h"
 
 // what holds the prescribed nodes on their path, turns a clamped head, and the load at the tip
@@ -48,14 +49,62 @@ static double power_on_water(struct residual *residual, int f, double t, const s
     return on_water;
 }
 
+// the strains of fish f, what damping takes of them, and what the muscle works against: by the places of the nodes, or,
+// with damping of the strain, as the stresses of the steps have made them
+static struct rod_strains strains_of(struct residual *residual, int f, const struct actuation *muscle,
+                                     const double *y) {
+    const struct fish *fish = &residual->school->fish[f];
+    const struct energy_balance *const balance = &residual->state->balance[f];
+    double *const scratch = residual->scratch;
+    const struct rod_strains by_places = {scratch + fish->at.x, scratch + fish->at.vx, scratch + fish->at.ax};
+    if (fish->damping == DAMPING_CURVATURE) {
+        rod_strains(fish, muscle, y, &by_places);
+        return by_places;
+    }
+    rod_stress_rates(fish, balance->strain, balance->stress, by_places.rate);
+    return (struct rod_strains){balance->strain, by_places.rate, balance->stress};
+}
+
+// those of a consistent state, from which the steps go on
+static void start_strains(struct residual *residual, struct state *state, int f) {
+    const struct fish *fish = &residual->school->fish[f];
+    struct energy_balance *const balance = &state->balance[f];
+    const struct actuation muscle = residual_muscle(residual, f, state->t, state->y);
+    const struct rod_strains strains = {balance->strain, residual->scratch + fish->at.vx, balance->stress};
+    rod_strains(fish, &muscle, state->y, &strains);
+}
+
+// take those of fish f to the end of a step at time t
+static void advance_strains(struct residual *residual, struct state *state, int f, double t, const double *y) {
+    const struct fish *fish = &residual->school->fish[f];
+    struct energy_balance *const balance = &state->balance[f];
+    const double h = t - balance->t[0], g = balance->n > 1 ? balance->t[0] - balance->t[1] : 0;
+    if (fish->damping == DAMPING_CURVATURE || h <= 0) return;
+
+    // stresses by the strains of the places, corrected by the balance of momentum
+    double *const scratch = residual->scratch, *const stress = scratch + fish->at.vx;
+    const struct rod_strains by_places = {scratch + fish->at.x, scratch + fish->at.ax, stress};
+    const struct actuation muscle = residual_muscle(residual, f, t, y);
+    rod_strains(fish, &muscle, y, &by_places);
+    residual_balance(residual, f, y, scratch);
+    rod_stress_balance(fish, scratch, y, stress);
+
+    rod_stress_creep(fish, h, g, balance->stress_before, balance->stress, stress, balance->strain);
+    const size_t size = (size_t)rod_n_strains(fish) * sizeof *stress;
+    memcpy(balance->stress_before, balance->stress, size);
+    memcpy(balance->stress, stress, size);
+}
+
 struct diagnostics_power diagnostics_power(struct residual *residual, int f, double t, const double *y) {
     const struct fish *fish = &residual->school->fish[f];
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
     const struct fluid_power fluid = fluid_force_power(fish, &flow, y);
     const struct pressure_forces pressure = diagnostics_pressure(residual, f, (const double[2]){0, 0}, y);
     const struct actuation muscle = residual_muscle(residual, f, t, y);
-    const double damping = rod_damping_power(fish, &muscle, y) + clamp_damping_power(fish, t, y);
-    return (struct diagnostics_power){.actuation = rod_actuation_power(fish, &muscle, y),
+    const struct rod_strains strains = strains_of(residual, f, &muscle, y);
+    const double actuation = rod_actuation_power(fish, &muscle, strains.stress);
+    const double damping = rod_damping_power(fish, strains.rate) + clamp_damping_power(fish, t, y);
+    return (struct diagnostics_power){.actuation = actuation,
                                       .damping = damping,
                                       .drag = fluid.drag,
                                       .friction = fluid.friction,
@@ -77,17 +126,13 @@ static double kinetic_energy(const struct fish *fish, const double *y) {
     return energy;
 }
 
-static double bending_energy(struct residual *residual, int f, double t, const double *y) {
-    const struct fish *fish = &residual->school->fish[f];
-    const struct actuation muscle = residual_muscle(residual, f, t, y);
-    return rod_bending_energy(fish, &muscle, y) + clamp_energy(fish, t, y);
-}
-
 struct diagnostics_energies diagnostics_energies(struct residual *residual, int f, double t, const double *y) {
     const struct fish *fish = &residual->school->fish[f];
+    const struct actuation muscle = residual_muscle(residual, f, t, y);
+    const struct rod_strains strains = strains_of(residual, f, &muscle, y);
     return (struct diagnostics_energies){.kinetic = kinetic_energy(fish, y),
-                                         .bending = bending_energy(residual, f, t, y),
-                                         .stretching = rod_stretching_energy(fish, y),
+                                         .bending = rod_bending_energy(fish, strains.strain) + clamp_energy(fish, t, y),
+                                         .stretching = rod_stretching_energy(fish, strains.strain),
                                          .contact = contact_energy(residual->contact, f, y)};
 }
 
@@ -125,6 +170,7 @@ static void add_works(void *data, int f) {
     const struct step *const step = data;
     const double t = step->t;
     struct energy_balance *const balance = &step->state->balance[f];
+    advance_strains(step->residual, step->state, f, t, step->y);
     const struct diagnostics_power now = diagnostics_power(step->residual, f, t, step->y);
     const double times[3] = {t, balance->t[0], balance->t[1]};
     double newest[N_WORKS];
@@ -165,6 +211,7 @@ void diagnostics_after_jump(struct residual *residual, struct state *state) {
     const int threads = fish_threads(residual->school);
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < residual->school->n_fish; f++) {
+        start_strains(residual, state, f);
         state->balance[f].work[WORK_ALL] += diagnostics_energy(residual, f, state->t, state->y);
         diagnostics_begin(residual, state, f);
     }

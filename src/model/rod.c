@@ -148,20 +148,42 @@ void rod_jacobian(const struct fish *fish, const struct actuation *muscle, const
     for (int k = 0; k < fish->n_edges; k++) edge_jacobian(fish, k, y, jacobian);
 }
 
-double rod_bending_energy(const struct fish *fish, const struct actuation *muscle, const double *y) {
+int rod_n_strains(const struct fish *fish) {
+    return fish->n_joints + fish->n_edges;
+}
+
+void rod_strains(const struct fish *fish, const struct actuation *muscle, const double *y,
+                 const struct rod_strains *to) {
+    for (int j = 0; j < fish->n_joints; j++) {
+        const struct joint joint = joint_at(fish, j, y);
+        to->strain[j] = joint.bend.curvature - muscle->curvature[j];
+        to->rate[j] = joint.bend.slope * joint.angle_rate - undamped_rate(fish, muscle, j);
+        to->stress[j] = elastic_moment(fish, j, joint.bend.curvature, muscle->curvature[j]);
+        // what damps the curvature alone lies beside the muscle, not in its path
+        if (fish->damping == DAMPING_STRAIN) to->stress[j] += fish->bending_damping[j] * to->rate[j];
+    }
+    for (int k = 0; k < fish->n_edges; k++) {
+        const struct edge edge = edge_at(fish, k, y);
+        const int i = fish->n_joints + k;
+        to->strain[i] = edge.length / fish->edge_length - 1;
+        to->rate[i] = edge_dot(edge.t, edge.rate);
+        to->stress[i] = fish->axial_stiffness[k] * to->strain[i] + fish->axial_damping[k] * to->rate[i];
+    }
+}
+
+double rod_bending_energy(const struct fish *fish, const double *strain) {
     double energy = 0;
     for (int j = 0; j < fish->n_joints; j++) {
-        const double excess = joint_at(fish, j, y).bend.curvature - muscle->curvature[j];
-        energy += fish->bending_stiffness[j] * excess * excess / (2 * fish->edge_length);
+        energy += fish->bending_stiffness[j] * strain[j] * strain[j] / (2 * fish->edge_length);
     }
     return energy;
 }
 
-double rod_stretching_energy(const struct fish *fish, const double *y) {
+double rod_stretching_energy(const struct fish *fish, const double *strain) {
     double energy = 0;
     for (int k = 0; k < fish->n_edges; k++) {
-        const double strain = edge_at(fish, k, y).length / fish->edge_length - 1;
-        energy += fish->axial_stiffness[k] * strain * strain * fish->edge_length / 2;
+        const double of_edge = strain[fish->n_joints + k];
+        energy += fish->axial_stiffness[k] * of_edge * of_edge * fish->edge_length / 2;
     }
     return energy;
 }
@@ -186,34 +208,18 @@ int rod_shortest_edge(const struct fish *fish, const double *y, double *ratio) {
     return shortest;
 }
 
-// the rate that is damped
-static double damped_rate(const struct fish *fish, const struct actuation *muscle, int j, const struct joint *joint) {
-    return joint->bend.slope * joint->angle_rate - undamped_rate(fish, muscle, j);
-}
-
-double rod_actuation_power(const struct fish *fish, const struct actuation *muscle, const double *y) {
+double rod_actuation_power(const struct fish *fish, const struct actuation *muscle, const double *stress) {
     double power = 0;
-    for (int j = 0; j < fish->n_joints; j++) {
-        const struct joint joint = joint_at(fish, j, y);
-        double moment = elastic_moment(fish, j, joint.bend.curvature, muscle->curvature[j]);
-        // what damps the curvature alone lies beside the muscle, not in its path
-        if (fish->damping == DAMPING_STRAIN) moment += fish->bending_damping[j] * damped_rate(fish, muscle, j, &joint);
-        power -= moment * muscle->rate[j];
-    }
+    for (int j = 0; j < fish->n_joints; j++) power -= stress[j] * muscle->rate[j];
     return power;
 }
 
-double rod_damping_power(const struct fish *fish, const struct actuation *muscle, const double *y) {
+double rod_damping_power(const struct fish *fish, const double *rate) {
     double power = 0;
-    for (int j = 0; j < fish->n_joints; j++) {
-        const struct joint joint = joint_at(fish, j, y);
-        const double rate = damped_rate(fish, muscle, j, &joint);
-        power -= fish->bending_damping[j] * rate * rate;
-    }
+    for (int j = 0; j < fish->n_joints; j++) power -= fish->bending_damping[j] * rate[j] * rate[j];
     for (int k = 0; k < fish->n_edges; k++) {
-        const struct edge edge = edge_at(fish, k, y);
-        const double rate = edge_dot(edge.t, edge.rate);
-        power -= fish->axial_damping[k] * rate * rate;
+        const double of_edge = rate[fish->n_joints + k];
+        power -= fish->axial_damping[k] * of_edge * of_edge;
     }
     return power;
 }

@@ -5,7 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "model/fish_start.h"
+#include "model/rod.h"
 
 static enum status history_create(struct history *history, const struct fish *fish, double interval) {
     const double in_a_period = fish->period / interval;
@@ -15,6 +17,11 @@ static enum status history_create(struct history *history, const struct fish *fi
     history->sample = calloc((size_t)history->capacity, sizeof *history->sample);
     if (!history->sample) return status_fail(STATUS_MEMORY, "out of memory: %d samples", history->capacity);
     return STATUS_OK;
+}
+
+static enum status balance_create(struct energy_balance *balance, const struct fish *fish) {
+    double **const per_strain[] = {&balance->strain, &balance->stress, &balance->stress_before};
+    return array_many_doubles(per_strain, sizeof per_strain / sizeof *per_strain, rod_n_strains(fish), "the strains");
 }
 
 static enum status fill(struct state *state, const struct school *school) {
@@ -37,6 +44,7 @@ static enum status fill(struct state *state, const struct school *school) {
         TRY(wake_create(&state->wake[f], 16));
         state->wake[f].has_markers = school->shedding == SHEDDING_SHEET;
         TRY(history_create(&state->history[f], &school->fish[f], school->interval));
+        TRY(balance_create(&state->balance[f], &school->fish[f]));
         state->control[f].held_heading = school->fish[f].start_heading;
         fish_start(&school->fish[f], state->y);
     }
@@ -62,6 +70,10 @@ void state_free(struct state *state, const struct school *school) {
     for (int f = 0; f < school->n_fish; f++) {
         if (state->wake) wake_free(&state->wake[f]);
         if (state->history) free(state->history[f].sample);
+        if (!state->balance) continue;
+        free(state->balance[f].strain);
+        free(state->balance[f].stress);
+        free(state->balance[f].stress_before);
     }
     free(state->y);
     free(state->yp);

@@ -38,6 +38,8 @@ struct energy_balance {
     double t[2];              /* the last two steps: times, s; [0] is the newer */
     double power[2][N_WORKS]; /* and powers, W */
     int n;                    /* how many of those there are */
+    /* with damping of the strain: the strains of the rod, and the stresses at the last two steps  (rod_n_strains) */
+    double *strain, *stress, *stress_before;
 };
 
 /* The closest that two bodies have come to each other, at any step of the integrator or between two of them. */

@@ -3,6 +3,8 @@
 
 #include <string.h>
 
+#include "model/rod.h"
+
 // ---- lengths of arrays
 
 static size_t of_unknowns(const struct state *state, const struct school *school, int f) {
@@ -19,6 +21,11 @@ static size_t of_wake(const struct state *state, const struct school *school, in
 static size_t of_history(const struct state *state, const struct school *school, int f) {
     (void)school;
     return (size_t)state->history[f].capacity * (sizeof(struct sample) / sizeof(double));
+}
+
+static size_t of_strains(const struct state *state, const struct school *school, int f) {
+    (void)state;
+    return (size_t)rod_n_strains(&school->fish[f]);
 }
 
 // ---- the table
@@ -82,6 +89,9 @@ const struct state_row state_table[] = {
     {"balance.t", OF_BALANCE(STATE_REAL, t), NULL},
     {"balance.power", OF_BALANCE(STATE_REAL, power), NULL},
     {"balance.n", OF_BALANCE(STATE_INTEGER, n), NULL},
+    {"balance.strain", OF_BALANCE(STATE_REAL, strain), of_strains},
+    {"balance.stress", OF_BALANCE(STATE_REAL, stress), of_strains},
+    {"balance.stress_before", OF_BALANCE(STATE_REAL, stress_before), of_strains},
 
     {"closest.distance", OF_CLOSEST(STATE_REAL, distance), NULL},
     {"closest.t", OF_CLOSEST(STATE_REAL, t), NULL},

@@ -332,6 +332,7 @@ enum status steady_static_find(struct simulation *simulation, const char *from, 
     // the flow of the simulation itself
     TRY(residual_evaluate(simulation->residual, state->t, state->y, state->yp, simulation->residual->scratch));
     diagnostics_remember(simulation->residual, state);
+    diagnostics_after_jump(simulation->residual, state);
     diagnostics_restart(simulation->residual, state);
     simulate_measure(simulation);
     const struct rigid first = rigid_of(&simulation->school->fish[0], state->y);

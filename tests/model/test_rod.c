@@ -18,6 +18,37 @@ static const struct actuation muscle = {natural, natural_rate, by_phi0, rate_by_
 static double zero[64];
 static const struct actuation no_muscle = {zero, zero, zero, zero};
 
+/* Energies and powers by the places of the nodes. */
+struct energetics {
+    double bending, stretching, actuation, damping;
+};
+
+static struct energetics energetics_of(const struct fish *fish, const struct actuation *asked, const double *y) {
+    double strain[128], rate[128], stress[128];
+    assert_true(rod_n_strains(fish) <= 128);
+    rod_strains(fish, asked, y, &(struct rod_strains){strain, rate, stress});
+    return (struct energetics){.bending = rod_bending_energy(fish, strain),
+                               .stretching = rod_stretching_energy(fish, strain),
+                               .actuation = rod_actuation_power(fish, asked, stress),
+                               .damping = rod_damping_power(fish, rate)};
+}
+
+static double bending_energy(const struct fish *fish, const struct actuation *asked, const double *y) {
+    return energetics_of(fish, asked, y).bending;
+}
+
+static double damping_power(const struct fish *fish, const struct actuation *asked, const double *y) {
+    return energetics_of(fish, asked, y).damping;
+}
+
+static double stretching_energy(const struct fish *fish, const double *y) {
+    return energetics_of(fish, &no_muscle, y).stretching;
+}
+
+static double actuation_power(const struct fish *fish, const double *y) {
+    return energetics_of(fish, &muscle, y).actuation;
+}
+
 static void value_of_rod(struct setup *setup, const double *y, const double *yp, double *value) {
     (void)yp;
     const struct fish *fish = setup->school->fish;
@@ -55,7 +86,7 @@ static void derivatives_agree_with_differences(void **state) {
 }
 
 static double elastic_energy(const struct fish *fish, const double *y) {
-    return rod_bending_energy(fish, &muscle, y) + rod_stretching_energy(fish, y);
+    return bending_energy(fish, &muscle, y) + stretching_energy(fish, y);
 }
 
 static void elastic_force_is_minus_the_gradient_of_the_energy(void **state) {
@@ -129,8 +160,8 @@ static void damping_power_is_that_of_the_damping_forces_and_never_positive(void 
             size += fabs(elastic[fish->at.ax + i]);
         }
         // rounding of the elastic forces that are taken off
-        NEAR(rod_damping_power(fish, &muscle, y), power, 1e-14 * size, 1e-12);
-        assert_true(rod_damping_power(fish, &muscle, y) < 0);
+        NEAR(damping_power(fish, &muscle, y), power, 1e-14 * size, 1e-12);
+        assert_true(damping_power(fish, &muscle, y) < 0);
     }
     free(elastic);
     school_clear(&setup);
@@ -147,7 +178,7 @@ static void rigid_motion_is_not_damped(void **state) {
         y[fish->at.vx + k] = 0.3 - 2 * y[fish->at.y + k];
         y[fish->at.vy + k] = -0.1 + 2 * y[fish->at.x + k];
     }
-    NEAR(rod_damping_power(fish, &muscle, y), 0, 1e-25, 0);
+    NEAR(damping_power(fish, &muscle, y), 0, 1e-25, 0);
     school_clear(&setup);
 }
 
@@ -176,8 +207,8 @@ static void energies_of_a_regular_polygon_are_exact(void **state) {
     rod_curvature(fish, setup.state->y, curvature);
     for (int j = 0; j < 5; j++) NEAR(curvature[j], kappa, 1e-14, 0);
     // rounding of 1e-16 in places a sixth apart
-    NEAR(rod_bending_energy(fish, &no_muscle, setup.state->y), 5 * EI * kappa * kappa / (2 * l), 0, 1e-13);
-    NEAR(rod_stretching_energy(fish, setup.state->y), EA * 0.05 * 0.05 / 2, 0, 1e-12);
+    NEAR(bending_energy(fish, &no_muscle, setup.state->y), 5 * EI * kappa * kappa / (2 * l), 0, 1e-13);
+    NEAR(stretching_energy(fish, setup.state->y), EA * 0.05 * 0.05 / 2, 0, 1e-12);
     school_clear(&setup);
 }
 
@@ -193,7 +224,7 @@ static void energy_of_a_circular_arc_converges_to_that_of_the_continuum(void **s
         const struct fish *fish = setup.school->fish;
         bend(&setup, fish->edge_length / R, 1);
         // N - 2 joints bend, of N - 1 that a closed ring would have: per joint EI lbar/(2 R^2)
-        const double energy = rod_bending_energy(fish, &no_muscle, setup.state->y) * fish->n_edges / fish->n_joints;
+        const double energy = bending_energy(fish, &no_muscle, setup.state->y) * fish->n_edges / fish->n_joints;
         error[i] = energy / (EI / (2 * R * R)) - 1;
         school_clear(&setup);
     }
@@ -214,7 +245,7 @@ static void polygon_of_the_natural_curvature_is_at_rest(void **state) {
     rod_residual(fish, &bent, setup.state->y, setup.value);
     // EA = 4e3 N times the rounding of the length
     for (int i = fish->at.ax; i < fish->at.gamma; i++) NEAR(setup.value[i], 0, 1e-10, 0);
-    NEAR(rod_bending_energy(fish, &bent, setup.state->y) + rod_stretching_energy(fish, setup.state->y), 0, 1e-20, 0);
+    NEAR(bending_energy(fish, &bent, setup.state->y) + stretching_energy(fish, setup.state->y), 0, 1e-20, 0);
     school_clear(&setup);
 }
 
@@ -244,12 +275,12 @@ static void muscle_power_is_the_change_of_energy_at_a_fixed_shape(void **state) 
         low[j] = natural[j] - h * natural_rate[j];
         high[j] = natural[j] + h * natural_rate[j];
     }
-    const struct actuation before = {.curvature = low}, after = {.curvature = high};
+    const struct actuation before = {low, zero, zero, zero}, after = {high, zero, zero, zero};
     const double *const y = setup.state->y;
     // the energy is quadratic in the natural curvature: central differences are exact but for rounding, 1e-16 E/h
-    NEAR(rod_actuation_power(fish, &muscle, y),
-         (rod_bending_energy(fish, &after, y) - rod_bending_energy(fish, &before, y)) / (2 * h), 1e-10, 1e-10);
-    assert_true(fabs(rod_actuation_power(fish, &muscle, y)) > 1e-3);
+    NEAR(actuation_power(fish, y), (bending_energy(fish, &after, y) - bending_energy(fish, &before, y)) / (2 * h),
+         1e-10, 1e-10);
+    assert_true(fabs(actuation_power(fish, y)) > 1e-3);
     school_clear(&setup);
 }
 
@@ -260,7 +291,7 @@ static double rate_of_energy(struct setup *setup) {
     const struct fish *fish = setup->school->fish;
     const double h = 3e-4;
     double rate = 0, curvature[5];
-    const struct actuation moved = {.curvature = curvature};
+    const struct actuation moved = {curvature, zero, zero, zero};
     double *const y = malloc((size_t)fish->at.end * sizeof *y);
     assert_non_null(y);
     for (int i = 0; i < 4; i++) {
@@ -268,7 +299,7 @@ static double rate_of_energy(struct setup *setup) {
         memcpy(y, setup->state->y, (size_t)fish->at.end * sizeof *y);
         for (int m = 0; m < 2 * fish->n_nodes; m++) y[fish->at.x + m] += tau * y[fish->at.vx + m];
         for (int j = 0; j < 5; j++) curvature[j] = natural[j] + tau * natural_rate[j];
-        rate += weight[i] / h * (rod_bending_energy(fish, &moved, y) + rod_stretching_energy(fish, y));
+        rate += weight[i] / h * (bending_energy(fish, &moved, y) + stretching_energy(fish, y));
     }
     free(y);
     return rate;
@@ -288,7 +319,7 @@ static void what_the_muscle_gives_is_stored_damped_or_work_on_the_nodes(void **s
         rod_residual(fish, &muscle, y, setup.value);
         double work = 0;
         for (int m = 0; m < 2 * fish->n_nodes; m++) work -= setup.value[fish->at.ax + m] * y[fish->at.vx + m];
-        const double power = rod_actuation_power(fish, &muscle, y) + rod_damping_power(fish, &muscle, y);
+        const double power = actuation_power(fish, y) + damping_power(fish, &muscle, y);
         assert_true(fabs(power) > 1);
         // what the differences of an energy of 10 J cut and round off
         NEAR(power, work + rate_of_energy(&setup), 1e-9 * fabs(work), 1e-9);
@@ -315,8 +346,8 @@ static void a_body_that_does_what_its_muscle_asks_is_not_damped(void **state) {
     // dkappa/dt = dphi/dt (1 + kappa^2/4)
     rod_curvature(fish, y, rate);
     for (int j = 0; j < 5; j++) rate[j] = damped[j] * (1 + rate[j] * rate[j] / 4);
-    NEAR(rod_damping_power(fish, &follows, y), 0, 1e-24, 0);
-    assert_true(rod_damping_power(fish, &muscle, y) < -0.1);
+    NEAR(damping_power(fish, &follows, y), 0, 1e-24, 0);
+    assert_true(damping_power(fish, &muscle, y) < -0.1);
     school_clear(&setup);
 }
 
