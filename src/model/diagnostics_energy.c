@@ -148,6 +148,7 @@ static void gather_powers(const struct diagnostics_power *power, double *of) {
     of[WORK_ACTUATION] = power->actuation;
     of[WORK_FLUID] = power->on_water;
     of[WORK_DAMPING] = power->damping;
+    of[WORK_DRIVING] = power->driving;
 }
 
 // integral over the newest interval of the quadratic through three values, or the line through two

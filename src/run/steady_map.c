@@ -93,14 +93,11 @@ static void add_event(struct steady_map *map, double share) {
         const double power = now->actuation_power + now->driving_power;
         sum->thrust += share * now->thrust;
         sum->rms_thrust += share * now->thrust * now->thrust;
-        sum->actuation += share * now->actuation_power;
-        sum->damping += share * now->damping_power;
-        sum->driving += share * now->driving_power;
         sum->rms_power += share * power * power;
     }
 }
 
-// what the history of the beat has
+// what the history of the beat has; means of powers are works, which know the steps between the events
 static void finish_beat(struct steady_map *map) {
     for (int f = 0; f < map->simulation->school->n_fish; f++) {
         const struct history *const history = &map->simulation->state->history[f];
@@ -110,6 +107,9 @@ static void finish_beat(struct steady_map *map) {
         beat->turn = new->heading - old->heading;
         const struct steady_unknown place[] = {{f, STEADY_AHEAD}, {f, STEADY_ASIDE}};
         steady_map_read(map, 2, place, beat->place);
+        beat->actuation = (new->work[WORK_ACTUATION] - old->work[WORK_ACTUATION]) / map->period;
+        beat->damping = (new->work[WORK_DAMPING] - old->work[WORK_DAMPING]) / map->period;
+        beat->driving = (new->work[WORK_DRIVING] - old->work[WORK_DRIVING]) / map->period;
         beat->fluid = (old->work[WORK_FLUID] - new->work[WORK_FLUID]) / map->period;
         beat->rms_thrust = sqrt(beat->rms_thrust);
         beat->rms_power = sqrt(beat->rms_power);

@@ -177,6 +177,35 @@ static void a_held_fish_is_steady_when_its_forces_repeat(void **state) {
     steady_setup_close(&setup);
 }
 
+static void mean_powers_are_the_works_of_a_beat(void **state) {
+    (void)state;
+    static const char *const fish[] = {
+        "fish: [{" FISH ", body: {modulus: 1e8}}]\n",
+        "fluid: {velocity: [1, 0]}\n"
+        "fish: [{" FISH ", wave: {amplitude: 0}, motion: {driven: head, heave: 0.05, frequency: 1, speed: 0}}]\n"};
+    for (int i = 0; i < 2; i++) {
+        char text[512];
+        snprintf(text, sizeof text, COARSE "%s", fish[i]);
+        struct steady_setup setup;
+        steady_setup_open(&setup, text);
+        steady_setup_beats(&setup, 2);
+        const double *const work = setup.simulation->state->balance[0].work;
+        double before[N_WORKS];
+        memcpy(before, work, sizeof before);
+        steady_setup_beats(&setup, 1);
+        const struct steady_beat *const beat = &setup.problem.map.last[0];
+        const struct diagnostics_fish *const now = &setup.simulation->diagnostics->fish[0];
+        // a beat of a second
+        NEAR(beat->actuation, work[WORK_ACTUATION] - before[WORK_ACTUATION], 1e-12, 1e-6);
+        NEAR(beat->damping, work[WORK_DAMPING] - before[WORK_DAMPING], 1e-12, 1e-6);
+        NEAR(beat->driving, work[WORK_DRIVING] - before[WORK_DRIVING], 1e-12, 1e-6);
+        NEAR(beat->actuation, now->cost_of_transport * setup.simulation->school->fish[0].total_mass * now->speed, 1e-12,
+             1e-6);
+        assert_true(fabs(i == 0 ? beat->actuation : beat->driving) > 1e-3);
+        steady_setup_close(&setup);
+    }
+}
+
 static void what_can_have_no_steady_state_is_refused_with_the_reason(void **state) {
     (void)state;
     steady_setup_fails(COARSE "fish: [{" FISH ", wave: {frequency: 1.01}}]\n", STATUS_CASE,
@@ -217,6 +246,7 @@ int main(void) {
         cmocka_unit_test(a_law_of_control_brings_the_heading_to_where_a_run_has_it),
         cmocka_unit_test(the_state_stays_where_its_multipliers_are_taken),
         cmocka_unit_test(a_held_fish_is_steady_when_its_forces_repeat),
+        cmocka_unit_test(mean_powers_are_the_works_of_a_beat),
         cmocka_unit_test(what_can_have_no_steady_state_is_refused_with_the_reason),
         cmocka_unit_test(a_search_that_takes_too_long_says_how_far_it_came),
         cmocka_unit_test(a_search_that_fails_says_what_the_last_beats_have_in_common),
