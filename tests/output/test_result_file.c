@@ -150,7 +150,7 @@ static void unused_slots_hold_nan(void **state) {
     assert_true(isnan(value_at(file, "node_mass", 0, 5, 0, 0)));
     assert_true(isnan(value_at(file, "wake_x", 0, 0, 0, 0)));
     double fill = 0;
-    assert_int_equal(nc_get_att_double(file, number_of(file, "x"), _FillValue, &fill), NC_NOERR);
+    assert_int_equal(nc_get_att_double(file, number_of(file, "x"), "_FillValue", &fill), NC_NOERR);
     assert_true(isnan(fill));
     nc_close(file);
 }
