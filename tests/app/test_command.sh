@@ -35,16 +35,6 @@ help_and_versions() {
         check "$command --help shows its usage" grep -q "^Usage: shoal $command" out
     done
     run --version
-    run check "$demo"
-    check "check estimates time and memory" \
-        grep -qE '^    its run takes about [0-9.e+]+ (s|min|h) and [0-9.e+]+ MB on this machine' out
-    run check "$demo" --set solver.max_steps=1
-    check "check says why it has no estimate" grep -q '^    no estimate of its time: .*solver.max_steps' out
-    check "which is no error" ended 0
-    run check "$cases/studies/phase.yaml" --set time.end=1
-    check "check adds up the runs of a study" grep -q '^    its runs take about .* on this machine, one after the other' out
-    run check "$demo" -q
-    check "check -q says nothing" silent
     run --version
     check "--version names the libraries" grep -qE 'SUNDIALS.*KLU.*LAPACK [0-9.]+, NetCDF' out
     check "--version ends with 0" ended 0
