@@ -14,6 +14,7 @@
 #include "output/result_info.h"
 #include "output/result_kind.h"
 #include "output/result_table.h"
+#include "output/target.h"
 #include "study/study_file.h"
 #include "study/study_gather.h"
 
@@ -64,6 +65,6 @@ enum status main_info(const struct request *request) {
 }
 
 enum status main_print_info(const char *path, int case_only) {
-    if (checkpoint_is(path)) return checkpoint_info(path, case_only, stdout);
+    if (target_is(path, TARGET_CHECKPOINT)) return checkpoint_info(path, case_only, stdout);
     return result_kind_info(N_KINDS, kinds, path, case_only, stdout);
 }

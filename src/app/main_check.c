@@ -11,7 +11,7 @@
 #include "case/sweep_members.h"
 #include "model/fish_school.h"
 #include "model/warnings.h"
-#include "output/netcdf.h"
+#include "output/target.h"
 #include "run/estimate.h"
 #include "run/record.h"
 
@@ -122,10 +122,10 @@ static enum status check(struct checked *checked) {
     if (is_study(checked)) return check_members(checked);
     char *const path = record_path(values);
     if (!path) return status_fail(STATUS_MEMORY, "out of memory: a file name");
-    enum status status = netcdf_check_target(path, 1);
+    enum status status = target_check(path, TARGET_NETCDF, true);
     if (status == STATUS_OK) status = check_start(checked, 0, values);
     // what has to be there or not for this command alone is no fault of the case
-    if (status == STATUS_OK && !checked->request->quiet && netcdf_check_target(path, 0) != STATUS_OK) {
+    if (status == STATUS_OK && !checked->request->quiet && target_check(path, TARGET_NETCDF, false) != STATUS_OK) {
         fprintf(stderr, "shoal: note: %s\n", status_message());
     }
     free(path);

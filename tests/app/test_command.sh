@@ -88,10 +88,13 @@ output_paths() {
     echo precious >mine.nc
     run run "$demo" -q --set "$short" -o mine.nc
     check "existing file: exit 2 or 4" test "$code" = 2 -o "$code" = 4
-    check "existing file: --force is named" says --force
-    check "existing file is untouched" grep -q precious mine.nc
+    check "existing file of another program is untouched" grep -q precious mine.nc
     run run "$demo" -q --set "$short" -o mine.nc --force
-    check "--force replaces it" status_is mine.nc complete
+    check "--force does not replace it" grep -q precious mine.nc
+    run run "$demo" -q --set "$short"
+    check "existing result: --force is named" says --force
+    run run "$demo" -q --set "$short" --force
+    check "--force replaces it" status_is demo.nc complete
 
     run run "$demo" -q --set "$short" -o no/such/folder.nc
     check "missing folder: exit 4" ended 4
