@@ -3,7 +3,7 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
+#include <unistd.h>
 
 #include "base/version.h"
 #include "model/state_table.h"
@@ -190,15 +190,9 @@ enum status checkpoint_set_state(const struct checkpoint *checkpoint, struct sta
 // ---- files
 
 enum status checkpoint_check_target(const char *path, const char *result) {
-    struct stat facts;
     struct checkpoint there;
-    if (lstat(path, &facts) != 0) return STATUS_OK;
-    if (!S_ISREG(facts.st_mode) || !target_is(path, TARGET_CHECKPOINT)) {
-        return status_fail(STATUS_FILE,
-                           "%s is no checkpoint of shoal, and checkpoints of this run would replace it: choose another "
-                           "name with -o",
-                           path);
-    }
+    TRY(target_check(path, TARGET_CHECKPOINT, true));
+    if (access(path, F_OK) != 0) return STATUS_OK;
     const enum status status = checkpoint_read(&there, path);
     // a damaged one is of no use to anybody
     if (status != STATUS_OK) return status == STATUS_MEMORY ? status : STATUS_OK;

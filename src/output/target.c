@@ -53,14 +53,26 @@ static bool is_kind(const char *head, size_t n, enum target_kind kind) {
     return false;
 }
 
-bool target_is(const char *path, enum target_kind kind) {
+/* Whether the file at path is a regular file of a kind; errno or 0. */
+static int examine(const char *path, enum target_kind kind, bool *is_ours) {
     struct stat facts;
     char head[HEAD];
+    *is_ours = false;
     const int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-    const bool is_file = file >= 0 && fstat(file, &facts) == 0 && S_ISREG(facts.st_mode);
-    const ssize_t n = is_file ? pread(file, head, HEAD, 0) : -1;
-    const bool is_ours = n > 0 && is_kind(head, (size_t)n, kind);
-    if (file >= 0) close(file);
+    if (file < 0) return errno;
+    int code = fstat(file, &facts) == 0 ? 0 : errno;
+    if (code == 0 && S_ISREG(facts.st_mode)) {
+        const ssize_t n = pread(file, head, HEAD, 0);
+        if (n < 0) code = errno;
+        *is_ours = n > 0 && is_kind(head, (size_t)n, kind);
+    }
+    close(file);
+    return code;
+}
+
+bool target_is(const char *path, enum target_kind kind) {
+    bool is_ours;
+    examine(path, kind, &is_ours);
     return is_ours;
 }
 
@@ -118,7 +130,13 @@ enum status target_check(const char *path, enum target_kind kind, bool overwrite
         return status_fail(STATUS_FILE, "%s is a link: name the file that it points to, or another one, with -o", path);
     if (!S_ISREG(target.st_mode))
         return status_fail(STATUS_FILE, "%s is not an ordinary file: choose another name with -o", path);
-    if (target.st_size > 0 && !target_is(path, kind)) {
+    bool is_ours;
+    const int code = examine(path, kind, &is_ours);
+    if (code != 0) {
+        return status_fail(STATUS_FILE, "%s exists and cannot be read (%s): choose another name with -o", path,
+                           strerror(code));
+    }
+    if (target.st_size > 0 && !is_ours) {
         return status_fail(
             STATUS_FILE,
             "%s exists and is no %s of shoal, so that no option replaces it: remove it, or choose another "

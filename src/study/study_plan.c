@@ -26,9 +26,7 @@ static enum status look_at_member(const struct planning *planning, const struct 
     struct member_file member;
     *is_finished = 0;
     if (access(path, F_OK) != 0) return STATUS_OK;
-    if (target_check(path, TARGET_NETCDF, true) != STATUS_OK) {
-        return status_fail(STATUS_FILE, "%s is no result of shoal: choose another folder with -o, or remove it", path);
-    }
+    TRY(target_check(path, TARGET_NETCDF, true));
     const enum status read = member_file_read(&member, path);
     if (read == STATUS_FILE) return STATUS_OK;  // cut off by a crash: it runs again
     TRY(read);

@@ -69,9 +69,9 @@ for foreign in text netcdf; do
         netcdf) ncgen -o foreign/member-0000.nc - <<<'netcdf x { dimensions: a = 3 ; }' ;;
     esac
     cp foreign/member-0000.nc before
-    refused "a foreign member stays ($foreign)" 4 'is no result of shoal' study study/case.yaml -q -o foreign
+    refused "a foreign member stays ($foreign)" 4 'is no NetCDF file of shoal' study study/case.yaml -q -o foreign
     check "it is untouched ($foreign)" cmp before foreign/member-0000.nc
-    refused "nor does --force replace it ($foreign)" 4 'is no result of shoal' study study/case.yaml -q -o foreign --force
+    refused "nor does --force replace it ($foreign)" 4 'is no NetCDF file of shoal' study study/case.yaml -q -o foreign --force
     check "it is still untouched ($foreign)" cmp before foreign/member-0000.nc
     rm foreign/member-0000.nc && cp before foreign/member-0002.nc
     refused "one behind the last member stays ($foreign)" 4 'is a result of another study' study study/case.yaml -q \
