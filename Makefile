@@ -136,7 +136,7 @@ all: $(program) $(library) $(shared)  ## build build/shoal, build/libshoal.a and
 
 demo: deps  ## install what is missing, build, swim: demo.nc, demo.png and demo.html
 	@$(parallel) all
-	@$(program) demo
+	@$(program) demo --force
 
 test:  ## install what is missing, build, run every test
 	@scripts/install-deps.sh $(test_packages)

@@ -54,7 +54,8 @@ void shoal_close(struct shoal *run);
  * the run can only be read and closed. */
 int shoal_step(struct shoal *run);
 
-/* Go on to the first event at or after time t, s; to none where that is now. */
+/* Advance to the first event at or after time t, s; no-op if the run is already there. A time before the last event is
+ * SHOAL_USAGE. */
 int shoal_advance(struct shoal *run, double t);
 
 /* A copy of a run at its last event, without its result file; run and copy go on with the same bits, each by itself.
@@ -120,8 +121,10 @@ int shoal_vortices(const struct shoal *run, int fish, double *x, double *y, doub
 const char *shoal_result_path(const struct shoal *run);
 
 /* Write a result file from now on: each event from this one that is a multiple of time.output_interval, and the end.
- * overwrite: replace a file that exists, else that is an error. When a row cannot be written, shoal_step returns
- * SHOAL_FILE; the step is made, and the run goes on without the file. */
+ * overwrite: replace a result of shoal that exists, else that is an error. A result that another run writes is an
+ * error, whether that run is of this process or of another one. The file belongs to the process that began it: in a
+ * fork of it the run continues without the file, and the first step, checkpoint or end there returns SHOAL_FILE. When a
+ * row cannot be written, shoal_step returns SHOAL_FILE; the step is made, and the run goes on without the file. */
 int shoal_write(struct shoal *run, const char *path, int overwrite);
 
 /* Write a checkpoint beside the result file, RESULT.ckpt for RESULT.nc, from which `shoal resume` goes on with the bits

@@ -14,6 +14,7 @@ is installed.
 import ctypes
 import importlib.util
 import json
+import operator
 import os
 import pathlib
 
@@ -122,6 +123,14 @@ def version():
     return _library.shoal_version().decode()
 
 
+def _c_text(text):
+    """A string for the library, which would take its first zero byte for its end."""
+    encoded = os.fsencode(text)
+    if b"\0" in encoded:
+        raise CaseError(f"{text!r} has a zero byte in it")
+    return encoded
+
+
 # ---- cases
 
 
@@ -183,14 +192,14 @@ class Run:
     """
 
     def __init__(self, case, assignments=None, folder=None):
-        strings = [text.encode() for text in _assignments(assignments)]
+        strings = [_c_text(text) for text in _assignments(assignments)]
         array = (ctypes.c_char_p * len(strings))(*strings)
         pointer = ctypes.c_void_p()
         if isinstance(case, dict):
-            text, place = _yaml({"format": 1, "name": "run", **case}).encode(), os.fsencode(folder) if folder else None
+            text, place = _c_text(_yaml({"format": 1, "name": "run", **case})), _c_text(folder) if folder else None
             _check(_library.shoal_open_text(pointer, text, place, len(strings), array))
         else:
-            _check(_library.shoal_open(pointer, os.fsencode(case), len(strings), array))
+            _check(_library.shoal_open(pointer, _c_text(case), len(strings), array))
         self._take(pointer.value)
 
     def _take(self, pointer):
@@ -221,7 +230,7 @@ class Run:
             _check(code)
 
     def advance(self, time):
-        """Go on to the first event at or after a time, s."""
+        """Advance to the first event at or after a time, s, which must not be before the last event."""
         _check(_library.shoal_advance(self._pointer, time))
 
     @property
@@ -234,10 +243,17 @@ class Run:
     def set(self, fish, key, value):
         """Set wave.amplitude, wave.frequency, control.bias, control.desired_heading (degree) or control.waypoints (a
         list of pairs) of a fish, by number or name. The change is made within control.ramp."""
-        fish = self.names.index(fish) if isinstance(fish, str) else fish
+        if isinstance(fish, str):
+            names = self.names
+            if fish not in names:
+                raise CaseError(f"set: there is no fish '{fish}': the names are {', '.join(names)}")
+            fish = names.index(fish)
+        n_fish = _check(_library.shoal_n_fish(self._pointer))
+        if not 0 <= operator.index(fish) < n_fish:  # before ctypes cuts it to an int
+            raise CaseError(f"set: there is no fish {fish}: this run has {n_fish}, numbered from 0")
         values = np.ascontiguousarray(value, dtype=float)
         pointer = values.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
-        _check(_library.shoal_set(self._pointer, fish, key.encode(), values.size, pointer))
+        _check(_library.shoal_set(self._pointer, fish, _c_text(key), values.size, pointer))
 
     def clone(self):
         """A copy at the last event. Run and copy go on with the same bits, each by itself."""
@@ -271,7 +287,7 @@ class Run:
     def __getitem__(self, name):
         """A view of a variable, without copying. It holds until the next step; copy() what is to stay."""
         array = _Array()
-        code = _library.shoal_read(self._pointer, name.encode(), array)
+        code = _library.shoal_read(self._pointer, _c_text(name), array)
         if code:
             _check(code)
         shape = tuple(array.shape[: array.n_dimensions])
@@ -290,6 +306,8 @@ class Run:
         if points.ndim == 0 or points.shape[-1] != 2:
             raise CaseError(f"flow: points have the shape (..., 2), not {points.shape}")
         velocity, vorticity = np.empty(points.shape), np.empty(points.shape[:-1])
+        if vorticity.size > 2**31 - 1:
+            raise CaseError(f"flow: {vorticity.size} points are too many")
         _check(_library.shoal_flow(self._pointer, vorticity.size, points.ctypes.data, velocity.ctypes.data,
                                    vorticity.ctypes.data))
         return velocity, vorticity
@@ -299,8 +317,8 @@ class Run:
     def write(self, path=None, overwrite=False):
         """Write a result file from now on, until the end or write_end(); returns its path. None: as the program would
         name it."""
-        path = _library.shoal_result_path(self._pointer) if path is None else os.fsencode(path)
-        _check(_library.shoal_write(self._pointer, path, overwrite))
+        path = _library.shoal_result_path(self._pointer) if path is None else _c_text(path)
+        _check(_library.shoal_write(self._pointer, path, bool(overwrite)))
         return os.fsdecode(path)
 
     def checkpoint(self):
@@ -312,8 +330,9 @@ class Run:
         _check(_library.shoal_write_end(self._pointer))
 
 
-def simulate(case, assignments=None, path=None, overwrite=True):
-    """Run a case to its end and return the path of its result file: that of `shoal run`."""
+def simulate(case, assignments=None, path=None, overwrite=False):
+    """Run a case to its end and return the path of its result file: that of `shoal run`. overwrite: replace a result
+    that exists, as --force does; else that is a FileError."""
     with Run(case, assignments) as run:
         path = run.write(path, overwrite)
         run.advance(run.end)

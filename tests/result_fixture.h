@@ -94,6 +94,7 @@ static inline struct result_file *create(struct fixture *f) {
     assert_int_equal(
         result_file_create(&result, f->path, 0, &f->values, EFFECTIVE, "shoal run case.yaml", f->school, 10),
         STATUS_OK);
+    assert_int_equal(result_file_publish(result, "running"), STATUS_OK);
     return result;
 }
 

@@ -91,7 +91,7 @@ static const struct command commands[] = {
     {"demo",
      NULL,
      "let a fish swim: write demo.nc, demo.png and demo.html in this folder",
-     {'q', 'h'},
+     {OPTION_FORCE, 'q', 'h'},
      NULL,
      main_demo},
 };
@@ -101,7 +101,7 @@ static const char summary[] = "schools of flexible swimmers";
 static const char exit_codes[] =
     "0 success, 1 integration failed, 2 wrong usage or wrong case, 3 an expectation is not met\n"
     "or bodies met with contact.action: stop, 4 file or memory error, 75 stopped by a signal or --max-wall:\n"
-    "shoal resume goes on.";
+    "shoal resume continues a run.";
 
 static void print_help(FILE *stream) {
     fprintf(stream, "shoal: %s\n\nUsage: shoal COMMAND [OPTIONS] [FILE]\n\n", summary);

@@ -5,7 +5,8 @@
  *     main_steady.c   steady
  *     main_study.c    study, gather, compare
  *     main_field.c    field
- *     main_case.c     check, show, keys, info
+ *     main_check.c    check
+ *     main_case.c     show, keys, info
  *     main_view.c     view, export */
 #ifndef MAIN_COMMANDS_H
 #define MAIN_COMMANDS_H

@@ -7,6 +7,7 @@
 #include "app/main_commands.h"
 #include "base/text.h"
 #include "output/field_file.h"
+#include "output/target.h"
 
 /* Points along the longer side where no grid is given. */
 enum { STANDARD_POINTS = 400 };
@@ -88,6 +89,7 @@ enum status main_field(const struct request *request) {
     struct field_row row;
     double t;
     TRY(read_time(request->at, &t));
+    if (request->output) TRY(target_refuse_input(request->output, request->positional));
     TRY(field_row_read(&row, request->positional, t, request->n_assignments, request->assignments));
     char *const path = request->output ? strdup(request->output) : default_path(request->positional);
     const enum status status =

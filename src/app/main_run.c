@@ -13,6 +13,7 @@
 #include "app/progress.h"
 #include "base/parallel.h"
 #include "output/page.h"
+#include "output/target.h"
 #include "run/simulate_run.h"
 
 // ---- run
@@ -118,18 +119,27 @@ static enum status draw(const char *share, const char *result, const char *pictu
     return STATUS_OK;
 }
 
+static enum status check_demo_target(const char *path, enum target_kind kind, int force) {
+    if (!force && access(path, F_OK) == 0) {
+        return status_fail(STATUS_FILE, "%s exists: allow replacing it with --force, or go to another folder", path);
+    }
+    return target_check(path, kind, true);
+}
+
 enum status main_demo(const struct request *request) {
     char share[PATH_MAX], path[PATH_MAX + 32];
     TRY(find_share(share));
+    TRY(check_demo_target("demo.nc", TARGET_NETCDF, request->force));
+    TRY(check_demo_target("demo.png", TARGET_PICTURE, request->force));
+    TRY(check_demo_target("demo.html", TARGET_PAGE, request->force));
     snprintf(path, sizeof path, "%s/cases/demo.yaml", share);
     struct request demo = *request;
     demo.positional = path;
     demo.output = "demo.nc";
-    demo.force = 1; /* the demonstration owns its files */
     demo.verbose = !request->quiet;
     TRY(main_run(&demo));
     TRY(draw(share, "demo.nc", "demo.png"));
-    TRY(page_write("demo.nc", "demo.html", true));
+    TRY(page_write("demo.nc", "demo.html", request->force));
     if (!request->quiet)
         printf("\nThe picture is demo.png, the movie demo.html (open it in a browser); the case is %s.\n", path);
     return STATUS_OK;

@@ -2,8 +2,10 @@
 #include "app/main_signals.h"
 
 #include <fcntl.h>
+#include <math.h>
 #include <stddef.h>
 #include <stdio.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 static volatile sig_atomic_t stop_signal;
@@ -54,6 +56,15 @@ enum status main_limit_wall_time(const char *text) {
     sigaction(SIGALRM, &action, NULL);
     alarm((unsigned)total);
     return STATUS_OK;
+}
+
+void main_limit_processor_time(double seconds) {
+    struct sigaction action = {.sa_handler = on_signal};
+    sigemptyset(&action.sa_mask);
+    sigaction(SIGPROF, &action, NULL);
+    const double whole = floor(seconds);
+    const struct itimerval once = {.it_value = {(time_t)whole, (suseconds_t)(1e6 * (seconds - whole))}};
+    setitimer(ITIMER_PROF, &once, NULL);
 }
 
 const volatile sig_atomic_t *main_stop_signal(void) {

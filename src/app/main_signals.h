@@ -20,7 +20,10 @@ void main_catch_signals(void);
 /* Ask the work to stop after this time, "HH:MM:SS" (--max-wall). Fails with STATUS_CASE where it is none. */
 enum status main_limit_wall_time(const char *text);
 
-/* The number of the last of these signals, SIGALRM where the time is over; 0 before. */
+/* Ask the work to stop once it has used this time of the processor, s. */
+void main_limit_processor_time(double seconds);
+
+/* The number of the last of these signals, SIGALRM or SIGPROF where the time is over; 0 before. */
 const volatile sig_atomic_t *main_stop_signal(void);
 
 #endif

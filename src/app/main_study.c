@@ -5,7 +5,7 @@
 #include "app/main_signals.h"
 #include "app/progress.h"
 #include "case/case.h"
-#include "output/netcdf.h"
+#include "output/target.h"
 #include "study/study.h"
 #include "study/study_compare.h"
 #include "study/study_gather.h"
@@ -113,7 +113,7 @@ enum status main_compare(const struct request *request) {
     if (request->repeats) TRY(read_count("--repeats", request->repeats, &options.repeats));
     TRY(read_number("--reference-rtol", request->reference_rtol, 1e-9, &options.reference_rtol));
     TRY(read_number("--limit", request->limit, 60, &limit));
-    if (request->output) TRY(netcdf_check_target(request->output, request->force));
+    if (request->output) TRY(target_check(request->output, TARGET_NETCDF, request->force));
     struct case_values values;
     TRY(case_read(&values, request->positional, request->n_assignments, request->assignments));
     const enum status status = run_comparison(&values, request, &options, limit);

@@ -6,6 +6,7 @@
 #include "app/main_commands.h"
 #include "base/text.h"
 #include "output/page.h"
+#include "output/target.h"
 #include "output/vtk.h"
 
 /* Add the name of a file without its folders and its ending. */
@@ -17,6 +18,7 @@ static void add_stem(struct text *text, const char *path) {
 
 enum status main_view(const struct request *request) {
     struct text path = {0};
+    if (request->output) TRY(target_refuse_input(request->output, request->positional));
     if (request->output) {
         text_add(&path, "%s", request->output);
     } else {

@@ -14,12 +14,14 @@ const char *version_short(void) {
 }
 
 void version_processor(char text[VERSION_LENGTH]) {
-#ifdef __x86_64__
+#if defined(__x86_64__)
     snprintf(text, VERSION_LENGTH, "x86-64 with%s%s%s%s", __builtin_cpu_supports("sse4.1") ? " sse4.1" : "",
              __builtin_cpu_supports("fma") ? " fma" : "", __builtin_cpu_supports("avx2") ? " avx2" : "",
              __builtin_cpu_supports("avx512f") ? " avx512f" : "");
+#elif defined(__aarch64__)
+    snprintf(text, VERSION_LENGTH, "arm64");
 #else
-    snprintf(text, VERSION_LENGTH, "no x86-64");
+    snprintf(text, VERSION_LENGTH, "neither x86-64 nor arm64");
 #endif
 }
 

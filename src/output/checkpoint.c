@@ -1,17 +1,15 @@
 /* checkpoint.c: sections for what is not state, then one section for each row of the table of the state. */
 #include "output/checkpoint.h"
 
-#include <errno.h>
-#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/version.h"
 #include "model/state_table.h"
 #include "output/durable.h"
 #include "output/sections.h"
+#include "output/target.h"
 
 // ---- what is not state: strings and numbers, each a section
 
@@ -191,22 +189,22 @@ enum status checkpoint_set_state(const struct checkpoint *checkpoint, struct sta
 
 // ---- files
 
-bool checkpoint_is(const char *path) {
-    unsigned char first[8];
-    const int descriptor = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-    if (descriptor < 0) return false;
-    const ssize_t n = pread(descriptor, first, sizeof first, 0);
-    close(descriptor);
-    return n > 0 && sections_begin_so(first, (size_t)n);
-}
-
-enum status checkpoint_check_target(const char *path) {
-    struct stat facts;
-    if (lstat(path, &facts) != 0 || (S_ISREG(facts.st_mode) && checkpoint_is(path))) return STATUS_OK;
-    return status_fail(STATUS_FILE,
-                       "%s is no checkpoint of shoal, and checkpoints of this run would replace it: choose another "
-                       "name with -o",
-                       path);
+enum status checkpoint_check_target(const char *path, const char *result) {
+    struct checkpoint there;
+    TRY(target_check(path, TARGET_CHECKPOINT, true));
+    if (access(path, F_OK) != 0) return STATUS_OK;
+    const enum status status = checkpoint_read(&there, path);
+    // a damaged one is of no use to anybody
+    if (status != STATUS_OK) return status == STATUS_MEMORY ? status : STATUS_OK;
+    const bool is_of_result = strcmp(there.result, result) == 0;
+    if (!is_of_result) {
+        status_fail(STATUS_FILE,
+                    "%s is a checkpoint of %s, and checkpoints of this run would replace it: choose another name "
+                    "with -o",
+                    path, there.result);
+    }
+    checkpoint_free(&there);
+    return is_of_result ? STATUS_OK : STATUS_FILE;
 }
 
 // ---- summary

@@ -43,11 +43,9 @@ enum status checkpoint_check_program(const struct checkpoint *checkpoint);
  * can then only be freed. */
 enum status checkpoint_set_state(const struct checkpoint *checkpoint, struct state *state, const struct school *school);
 
-/* Whether the file at path begins as a checkpoint. */
-bool checkpoint_is(const char *path);
-
-/* Fail with STATUS_FILE where something else is at path. */
-enum status checkpoint_check_target(const char *path);
+/* Fail with STATUS_FILE where another file than a checkpoint of the result of this name is at path, or with
+ * STATUS_MEMORY. */
+enum status checkpoint_check_target(const char *path, const char *result);
 
 /* Print what a checkpoint holds, or the case in it alone. Fails as checkpoint_read. */
 enum status checkpoint_info(const char *path, bool case_only, FILE *stream);

@@ -9,6 +9,7 @@
 #include "model/flow.h"
 #include "model/flow_field.h"
 #include "output/netcdf.h"
+#include "output/target.h"
 
 // ---- the variables
 
@@ -236,7 +237,7 @@ enum status field_file_write(const char *path, int overwrite, const char *run, c
                              const struct field_row *row, const struct field_grid *grid) {
     struct field field = {.row = row};
     struct netcdf_writer writer;
-    TRY(netcdf_check_target(path, overwrite));
+    TRY(target_check(path, TARGET_NETCDF, overwrite));
     set_lengths(&field, grid);
     enum status status = make_points(&field, grid);
     if (status == STATUS_OK) status = sum_field(&field);

@@ -3,18 +3,16 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <limits.h>
 #include <math.h>
 #include <netcdf.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
 #include "base/version.h"
-#include "output/durable.h"
+#include "output/target.h"
 
 enum {
     SPARE_BYTES = 4096,     /* kept at the end of the header for attributes that other programs add later */
@@ -40,8 +38,8 @@ const char *netcdf_reason(int code) {
 
 // ---- places and failures
 
-char *netcdf_local_path(const char *path, size_t more) {
-    const size_t size = strlen(path) + more + 3;
+char *netcdf_local_path(const char *path) {
+    const size_t size = strlen(path) + sizeof "./";
     char *const local = calloc(size, 1);
     if (local) snprintf(local, size, "%s%s", path[0] == '/' ? "" : "./", path);
     return local;
@@ -54,51 +52,8 @@ bool netcdf_has_memory(void) {
     return needed != NULL;
 }
 
-/* What can be wrong with the place of a file, and what to do about it. */
-static enum status creation_failed(const char *path, int code) {
-    char folder[PATH_MAX];
-    durable_folder_of(path, folder);
-    switch (code) {
-        case ENOENT:
-        case ENOTDIR:
-            if (access(folder, F_OK) == 0) {
-                return status_fail(STATUS_FILE, "%s: the folder %s takes no new files: choose another place with -o",
-                                   path, folder);
-            }
-            return status_fail(STATUS_FILE, "%s: there is no folder %s: make it, or choose another name with -o", path,
-                               folder);
-        case EACCES:
-        case EPERM:
-        case EROFS:
-            return status_fail(STATUS_FILE, "%s: the folder cannot be written to (%s): choose another name with -o",
-                               path, strerror(code));
-        case NC_ENOMEM:
-        case ENOMEM: return status_fail(STATUS_MEMORY, "%s: out of memory while writing", path);
-        default:
-            return status_fail(STATUS_FILE, "%s: cannot be written (%s): make room or choose another place with -o",
-                               path, nc_strerror(code));
-    }
-}
-
-static enum status refuse_existing(const char *path) {
-    return status_fail(STATUS_FILE, "%s exists: choose another name with -o or allow replacing it with --force", path);
-}
-
-enum status netcdf_check_target(const char *path, bool overwrite) {
-    struct stat target;
-    if (path[0] == '\0') return status_fail(STATUS_FILE, "the name of the result file is empty: choose one with -o");
-    if (lstat(path, &target) != 0) {
-        char folder[PATH_MAX];
-        durable_folder_of(path, folder);
-        return access(folder, W_OK | X_OK) == 0 ? STATUS_OK : creation_failed(path, errno);
-    }
-    if (S_ISDIR(target.st_mode))
-        return status_fail(STATUS_FILE, "%s is a folder: name a file with -o, as in -o %s/run.nc", path, path);
-    if (S_ISLNK(target.st_mode))
-        return status_fail(STATUS_FILE, "%s is a link: name the file that it points to, or another one, with -o", path);
-    if (!S_ISREG(target.st_mode))
-        return status_fail(STATUS_FILE, "%s is not an ordinary file: choose another name with -o", path);
-    return overwrite ? STATUS_OK : refuse_existing(path);
+static enum status failed(const char *path, int code) {
+    return target_failed(path, code == NC_ENOMEM ? ENOMEM : code, nc_strerror(code));
 }
 
 // ---- definitions
@@ -118,53 +73,46 @@ static void write_origin(struct netcdf_writer *writer, const char *title, const 
     netcdf_write_string(writer, NETCDF_GLOBAL, "source", source);
 }
 
-// the file under this name, which has just been opened, also as what can be synchronised
-static void take_descriptor(struct netcdf_writer *writer, const char *name) {
-    if (writer->code != NC_NOERR) return;
-    writer->descriptor = open(name, O_RDONLY | O_CLOEXEC);
-    if (writer->descriptor < 0) writer->code = errno;
-}
-
 // whether all went well; a writer that is not open is closed
 static enum status opened(struct netcdf_writer *writer, const char *path) {
-    if (writer->code == NC_NOERR) return STATUS_OK;
-    const enum status status = creation_failed(path, writer->code);
+    const int code = writer->code;
+    if (code == NC_NOERR) return STATUS_OK;
     netcdf_finish(writer);
-    return status;
+    return failed(path, code);
+}
+
+/* Begin with a writer without a file; the path for NetCDF, NULL: out of memory. The caller frees it. */
+static char *begin(struct netcdf_writer *writer, const char *path) {
+    *writer = (struct netcdf_writer){.path = path, .part.descriptor = -1, .file = -1, .last_fsync = -INFINITY};
+    char *const local = netcdf_has_memory() ? netcdf_local_path(path) : NULL;
+    if (!local) writer->code = ENOMEM;
+    return local;
+}
+
+static void keep_path(struct netcdf_writer *writer) {
+    if (writer->code == NC_NOERR) writer->path = writer->part.target + (writer->path[0] == '/' ? 0 : strlen("./"));
 }
 
 enum status netcdf_create(struct netcdf_writer *writer, const char *path, const char *title, const char *command) {
-    enum { ENDING = 32 };
-    *writer = (struct netcdf_writer){.file = -1, .descriptor = -1, .last_fsync = -INFINITY};
-    writer->target = netcdf_local_path(path, 0);
-    writer->temporary = netcdf_local_path(path, ENDING);
-    if (writer->target && writer->temporary && netcdf_has_memory()) {
-        writer->path = writer->target + (path[0] == '/' ? 0 : strlen("./"));
-        snprintf(writer->temporary + strlen(writer->temporary), ENDING, ".%ld.part", (long)getpid());
-        // what is there was left by a run that was killed, or is a link; a new file is never written through one
-        unlink(writer->temporary);
-        size_t buffer_bytes = BUFFER_BYTES;
-        CALL(writer, nc__create(writer->temporary, NC_NOCLOBBER | NC_64BIT_DATA, 0, &buffer_bytes, &writer->file));
-        take_descriptor(writer, writer->temporary);
-        write_origin(writer, title, command);
-    } else {
-        writer->code = ENOMEM;
-    }
+    char *const local = begin(writer, path);
+    if (local) durable_sweep(local);
+    CALL(writer, durable_begin(&writer->part, local, 0666));
+    free(local);
+    keep_path(writer);
+    size_t buffer_bytes = BUFFER_BYTES;
+    CALL(writer, nc__create(writer->part.name, NC_CLOBBER | NC_64BIT_DATA, 0, &buffer_bytes, &writer->file));
+    write_origin(writer, title, command);
     return opened(writer, path);
 }
 
 enum status netcdf_continue(struct netcdf_writer *writer, const char *path) {
-    *writer = (struct netcdf_writer){.file = -1, .descriptor = -1, .last_fsync = -INFINITY};
-    writer->target = netcdf_local_path(path, 0);
-    if (writer->target) {
-        writer->path = writer->target + (path[0] == '/' ? 0 : strlen("./"));
-        size_t buffer_bytes = BUFFER_BYTES;
-        CALL(writer, nc__open(writer->target, NC_WRITE, &buffer_bytes, &writer->file));
-        CALL(writer, nc_set_fill(writer->file, NC_NOFILL, NULL));
-        take_descriptor(writer, writer->target);
-    } else {
-        writer->code = ENOMEM;
-    }
+    writer->part.target = begin(writer, path);
+    keep_path(writer);
+    size_t buffer_bytes = BUFFER_BYTES;
+    CALL(writer, nc__open(writer->part.target, NC_WRITE, &buffer_bytes, &writer->file));
+    CALL(writer, nc_set_fill(writer->file, NC_NOFILL, NULL));
+    if (writer->code == NC_NOERR) writer->part.descriptor = open(writer->part.target, O_RDONLY | O_CLOEXEC);
+    if (writer->code == NC_NOERR && writer->part.descriptor < 0) writer->code = errno;
     return opened(writer, path);
 }
 
@@ -249,51 +197,42 @@ void netcdf_write_text(struct netcdf_writer *writer, int variable, const size_t 
 void netcdf_sync(struct netcdf_writer *writer, bool now) {
     CALL(writer, nc_sync(writer->file));
     if (!now && seconds_now() - writer->last_fsync < 1) return;
-    CALL(writer, durable_sync(writer->descriptor));
+    CALL(writer, durable_sync(writer->part.descriptor));
     writer->last_fsync = seconds_now();
 }
 
-/* Give the file its name; errno or 0. A link, unlike a renaming, refuses to replace what another run has made in the
- * meantime; a file system without links has to do with the renaming. */
-static int give_name(const struct netcdf_writer *writer, bool overwrite) {
-    if (!overwrite) {
-        if (link(writer->temporary, writer->target) == 0) return unlink(writer->temporary) == 0 ? NC_NOERR : errno;
-        if (errno == EEXIST) return EEXIST;
-    }
-    return rename(writer->temporary, writer->target) == 0 ? NC_NOERR : errno;
-}
-
 enum status netcdf_publish(struct netcdf_writer *writer, bool overwrite) {
-    netcdf_sync(writer, true);
-    CALL(writer, give_name(writer, overwrite));
-    if (writer->code == EEXIST && !overwrite) return refuse_existing(writer->path);
-    if (writer->code != NC_NOERR) return creation_failed(writer->path, writer->code);
-    free(writer->temporary);
-    writer->temporary = NULL;
-    CALL(writer, durable_sync_folder(writer->path));
-    return writer->code == NC_NOERR ? STATUS_OK : creation_failed(writer->path, writer->code);
+    CALL(writer, nc_sync(writer->file));
+    if (writer->code == NC_NOERR) TRY(target_check(writer->path, TARGET_NETCDF, overwrite));
+    CALL(writer, durable_publish(&writer->part, overwrite));
+    writer->last_fsync = seconds_now();
+    return writer->code == NC_NOERR ? STATUS_OK : failed(writer->path, writer->code);
 }
 
 void netcdf_reopen(struct netcdf_writer *writer) {
     // nc_close and nc_abort write: the old number stays open until the program ends
     writer->file = -1;
     writer->code = NC_NOERR;
-    CALL(writer, nc_open(writer->target, NC_WRITE, &writer->file));
+    CALL(writer, nc_open(writer->part.target, NC_WRITE, &writer->file));
 }
 
 enum status netcdf_finish(struct netcdf_writer *writer) {
     const int closed = writer->file >= 0 ? nc_close(writer->file) : NC_NOERR;
     CALL(writer, closed);
-    if (writer->descriptor >= 0) close(writer->descriptor);
     enum status status = STATUS_OK;
-    if (writer->temporary) {
-        unlink(writer->temporary);
-    } else if (writer->code != NC_NOERR) {
+    if (!writer->part.name && writer->code != NC_NOERR) {
         status = status_fail(STATUS_FILE, "%s: cannot be closed (%s): its end may be missing", writer->path,
                              nc_strerror(writer->code));
     }
-    free(writer->temporary);
-    free(writer->target);
-    *writer = (struct netcdf_writer){.file = -1, .descriptor = -1};
+    durable_end(&writer->part);
+    *writer = (struct netcdf_writer){.part.descriptor = -1, .file = -1};
     return status;
+}
+
+void netcdf_abandon(struct netcdf_writer *writer) {
+    // nc_close and nc_abort write: the number stays open until the process ends
+    free(writer->part.name);
+    writer->part.name = NULL;
+    durable_end(&writer->part);
+    *writer = (struct netcdf_writer){.part.descriptor = -1, .file = -1};
 }

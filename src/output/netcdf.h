@@ -10,6 +10,7 @@
 #include <stdio.h>
 
 #include "base/status.h"
+#include "output/durable.h"
 
 enum { NETCDF_MAX_DIMENSIONS = 4 /* of a variable */, NETCDF_GLOBAL = -1 /* attributes of the file */ };
 
@@ -21,13 +22,11 @@ enum netcdf_type { NETCDF_TEXT, NETCDF_INT, NETCDF_INT64, NETCDF_FLOAT, NETCDF_D
 
 /* A file that is being written. Once a call has failed, later ones do nothing, and code tells why. */
 struct netcdf_writer {
-    const char *path;  /* as the caller names it */
-    char *target;      /* the same for NetCDF; owned */
-    char *temporary;   /* its name before netcdf_publish, NULL after it; owned */
-    int file;          /* NetCDF's number; -1: none */
-    int descriptor;    /* of the same file, for fsync; -1: none */
-    double last_fsync; /* s on the monotonic clock */
-    int code;          /* 0, or the reason of the first failure: see netcdf_reason */
+    const char *path;         /* as the caller names it */
+    struct durable_part part; /* part.target: the path for NetCDF; part.name: NULL after netcdf_publish */
+    int file;                 /* NetCDF's number; -1: none */
+    double last_fsync;        /* s on the monotonic clock */
+    int code;                 /* 0, or the reason of the first failure: see netcdf_reason */
 };
 
 /* A variable to define. */
@@ -39,13 +38,9 @@ struct netcdf_variable {
     bool has_gaps;                                      /* NaN marks where there is no value */
 };
 
-/* Fail with STATUS_FILE if no file can be made at path: its folder is missing, it is a folder, a device or a link
- * (which would be replaced, not what it points to), or it exists and must not be overwritten. */
-enum status netcdf_check_target(const char *path, bool overwrite);
-
 /* Create a file in the classic format with 64-bit sizes (CDF-5), with the attributes Conventions, title, history (now,
  * and the command line) and source (this version and its libraries). Fails with STATUS_FILE or STATUS_MEMORY; nothing
- * is then left, and netcdf_finish does nothing. */
+ * has then changed, and netcdf_finish does nothing. */
 enum status netcdf_create(struct netcdf_writer *writer, const char *path, const char *title, const char *command);
 
 /* Go on writing a file of ours that is there, where the last one ended: its definitions stay as they are. Fails with
@@ -84,7 +79,7 @@ void netcdf_write_text(struct netcdf_writer *writer, int variable, const size_t 
 void netcdf_sync(struct netcdf_writer *writer, bool now);
 
 /* Make the file survive a power cut and then give it its name. Fails with STATUS_FILE or STATUS_MEMORY, also where a
- * call before has failed, or where the file exists and must not be overwritten. */
+ * call before has failed, or where a file exists that must not be overwritten (target_check). */
 enum status netcdf_publish(struct netcdf_writer *writer, bool overwrite);
 
 /* Open a published file again after a failure: a header on a full disk has its place already, and counts whole rows
@@ -95,6 +90,9 @@ void netcdf_reopen(struct netcdf_writer *writer);
 /* Close the file and release the writer. Removes a file that has not been published; fails with STATUS_FILE where a
  * call after netcdf_publish, or closing itself, has failed. */
 enum status netcdf_finish(struct netcdf_writer *writer);
+
+/* Release the writer without touching its file, which another process writes: this one is a fork of it. */
+void netcdf_abandon(struct netcdf_writer *writer);
 
 /* What a code means. */
 const char *netcdf_reason(int code);
@@ -160,8 +158,8 @@ enum status netcdf_cut_rows(const char *path, const struct netcdf_rows *rows, ui
 /* ---- shared by the files of netcdf only */
 
 /* The path as NetCDF needs it: "./" keeps it from taking a name for an address or dropping blanks that it begins with.
- * more: room for a longer ending, bytes. NULL: out of memory. The caller frees it. */
-char *netcdf_local_path(const char *path, size_t more);
+ * NULL: out of memory. The caller frees it. */
+char *netcdf_local_path(const char *path);
 
 /* Whether there is memory for what NetCDF may need to create or open a file: it crashes where there is none. */
 bool netcdf_has_memory(void);

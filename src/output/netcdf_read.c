@@ -27,7 +27,7 @@ enum status netcdf_open(struct netcdf_reader *reader, const char *path) {
     if (S_ISDIR(facts.st_mode)) return status_fail(STATUS_FILE, "%s is a folder: name a file that shoal wrote", path);
     if (!S_ISREG(facts.st_mode)) return status_fail(STATUS_FILE, "%s: cannot be read: not an ordinary file", path);
     TRY(netcdf_check_header(path));
-    char *const local = netcdf_has_memory() ? netcdf_local_path(path, 0) : NULL;
+    char *const local = netcdf_has_memory() ? netcdf_local_path(path) : NULL;
     if (!local) return out_of_memory(path);
     const int code = nc_open(local, NC_NOWRITE, &reader->file);
     free(local);

@@ -483,8 +483,9 @@ static enum status fill(struct page *page) {
 enum status page_write(const char *from, const char *to, bool overwrite) {
     struct page page = {0};
     struct plain_file file;
+    durable_sweep(to);
     TRY(result_reader_open(&page.reader, from));
-    enum status status = plain_file_open(&file, to, overwrite);
+    enum status status = plain_file_open(&file, to, TARGET_PAGE, overwrite, 0666);
     if (status == STATUS_OK) {
         page.stream = file.stream;
         status = plain_file_close(&file, fill(&page));

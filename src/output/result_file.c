@@ -8,6 +8,7 @@
 #include "model/warnings.h"
 #include "output/netcdf.h"
 #include "output/result_values.h"
+#include "output/target.h"
 
 /* Bytes of attributes that are rewritten in place and must never move what follows. */
 enum { STATUS_LENGTH = 256, MAX_NOTE_LENGTH = N_WARNINGS * WARNING_BYTES };
@@ -25,6 +26,7 @@ enum { N_NOTES = sizeof notes / sizeof *notes };
 
 struct result_file {
     struct netcdf_writer writer;
+    bool overwrite;                     /* when the file gets its name */
     size_t length[RESULT_N_DIMENSIONS]; /* of the dimensions; 1 for TIME, as one row is written at a time */
     int *number;                        /* of the variables in the file                (result_table_n) */
     enum output_forces forces;          /* which of them it has */
@@ -199,19 +201,26 @@ static enum status write_new(struct result_file *result, const struct origin *or
     TRY(netcdf_create(&result->writer, origin->path, origin->values->name, origin->command));
     define_all(result, origin->values, origin->effective);
     write_variables(result, false, &(struct result_row){.school = origin->school});
-    const enum status status =
-        origin->source ? copy_rows(result, origin->source) : netcdf_publish(&result->writer, origin->overwrite);
+    netcdf_sync(&result->writer, true);
+    const int code = result->writer.code;
+    enum status status = STATUS_OK;
+    if (code != 0) {
+        status = target_failed(origin->path, code, netcdf_reason(code));
+    } else if (origin->source) {
+        status = copy_rows(result, origin->source);
+    }
     if (status != STATUS_OK) netcdf_finish(&result->writer);
     return status;
 }
 
 static enum status create(struct result_file **result, const struct origin *origin, long n_events) {
     *result = NULL;
-    TRY(netcdf_check_target(origin->path, origin->overwrite));
+    TRY(target_check(origin->path, TARGET_NETCDF, origin->overwrite));
     struct result_file *const new = allocate(origin->school, n_events);
     if (!new) return status_fail(STATUS_MEMORY, "%s: out of memory while writing", origin->path);
     new->forces = origin->values->output.forces;
     new->is_steady = origin->is_steady;
+    new->overwrite = origin->overwrite;
     const enum status status = write_new(new, origin);
     if (status == STATUS_OK) {
         *result = new;
@@ -249,8 +258,9 @@ enum status result_file_extend(struct result_file **result, const struct result_
     return create(result, &origin, n_events);
 }
 
-enum status result_file_publish(struct result_file *result) {
-    return netcdf_publish(&result->writer, true);
+enum status result_file_publish(struct result_file *result, const char *run_status) {
+    write_run_status(result, run_status);
+    return netcdf_publish(&result->writer, result->overwrite);
 }
 
 /* Find all variables of a file that is there, and mark it as running. */
@@ -312,14 +322,14 @@ enum status result_file_mark(struct result_file *result, struct result_mark *mar
         return status_fail(STATUS_FILE, "%s: cannot be written (%s): make room or choose another place with -o",
                            result->writer.path, netcdf_reason(result->writer.code));
     }
-    const char *const path = result->writer.temporary ? result->writer.temporary : result->writer.path;
+    const char *const path = result->writer.part.name ? result->writer.part.name : result->writer.path;
     return result_mark_take(path, (long)result->n_rows, &result->checksum, mark);
 }
 
 enum status result_file_close(struct result_file *result, const char *run_status) {
     if (!result) return STATUS_OK;
     struct netcdf_writer *const writer = &result->writer;
-    const bool is_published = !writer->temporary;
+    const bool is_published = !writer->part.name;
     // what NetCDF holds after a failed write cannot be written
     if (is_published && writer->code != 0) netcdf_reopen(writer);
     write_run_status(result, run_status);
@@ -334,4 +344,9 @@ enum status result_file_close(struct result_file *result, const char *run_status
     const enum status finished = netcdf_finish(writer);
     release(result);
     return status == STATUS_OK ? finished : status;
+}
+
+void result_file_abandon(struct result_file *result) {
+    netcdf_abandon(&result->writer);
+    release(result);
 }

@@ -12,10 +12,10 @@
 
 struct result_file; /* an open result file */
 
-/* Create the file at path, with the constants of the school. overwrite: replace one that exists, else that is an error.
- * The file gets its name when its header is complete, so that a failure leaves nothing half made. effective: the
- * complete case (case_show); command: the command line, for the attribute history; n_events: of the whole run, without
- * the one at the start. Fails with STATUS_FILE or STATUS_MEMORY; *result is then NULL. */
+/* Begin a file for path, with the constants of the school. The file gets its name with result_file_publish;
+ * result_file_close before that removes the file. overwrite: replace a result that exists, else that is an error.
+ * effective: the complete case (case_show); command: the command line, for the attribute history; n_events: of the
+ * whole run, without the one at the start. Fails with STATUS_FILE or STATUS_MEMORY; *result is then NULL. */
 enum status result_file_create(struct result_file **result, const char *path, int overwrite,
                                const struct case_values *values, const char *effective, const char *command,
                                const struct school *school, long n_events);
@@ -26,13 +26,15 @@ enum status result_file_create_steady(struct result_file **result, const char *p
                                       const struct school *school, long n_events);
 void result_file_steady(struct result_file *result, const struct school *school, const struct steady_values *steady);
 
-/* Make such a file from one that a shorter or longer run of the same case left at the same path: it begins with rows of
- * that one, which it replaces with result_file_publish; result_file_close before that removes it. */
+/* The same with the rows of a file that a shorter or longer run of the same case left at the same path, which
+ * result_file_publish replaces. */
 enum status result_file_extend(struct result_file **result, const struct result_source *source,
                                const struct case_values *values, const char *effective, const char *command,
                                const struct school *school, long n_events);
 
-enum status result_file_publish(struct result_file *result);
+/* Make all rows so far survive a power cut, set the attribute run_status, and give the file its name. Fails with
+ * STATUS_FILE or STATUS_MEMORY; a file that existed at the path is then unchanged. */
+enum status result_file_publish(struct result_file *result, const char *run_status);
 
 /* Go on writing a file that result_file_create made for this case, behind the rows of a mark with this checksum; what
  * follows them is removed. run_status is "running" again. Fails with STATUS_FILE or STATUS_MEMORY; *result is then
@@ -52,6 +54,9 @@ enum status result_file_row(struct result_file *result, const struct result_row 
  * time.checkpoint_interval, s); all are empty before. A longer string is cut. */
 enum result_note { RESULT_WARNINGS, RESULT_CLOSEST_APPROACH, RESULT_MERGED, RESULT_CHECKPOINT_AT };
 void result_file_note(struct result_file *result, enum result_note note, const char *text);
+
+/* Release the file in a fork of the process that writes it: netcdf_abandon. */
+void result_file_abandon(struct result_file *result);
 
 /* Set the attribute run_status ("complete", "failed: why", "stopped") and close. Accepts NULL. Fails with
  * STATUS_FILE. */

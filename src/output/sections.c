@@ -5,10 +5,9 @@
 #include <string.h>
 #include <zlib.h>
 
-static const unsigned char magic[8] = {'S', 'H', 'O', 'A', 'L', '\r', '\n', 0x1a};
 static const uint32_t order = 0x01020304;
 enum {
-    FORMAT_AT = sizeof magic,
+    FORMAT_AT = sizeof SECTIONS_MAGIC - 1,
     ORDER_AT = FORMAT_AT + 4,
     SIZE_AT = ORDER_AT + 4,
     CHECK_AT = SIZE_AT + 8,
@@ -42,7 +41,7 @@ void sections_start(struct sections_writer *writer) {
     const uint32_t format = SECTIONS_FORMAT;
     const unsigned char size_and_check[HEADER_BYTES - SIZE_AT] = {0};
     *writer = (struct sections_writer){0};
-    sections_add(writer, magic, sizeof magic);
+    sections_add(writer, SECTIONS_MAGIC, FORMAT_AT);
     sections_add(writer, &format, sizeof format);
     sections_add(writer, &order, sizeof order);
     sections_add(writer, size_and_check, sizeof size_and_check);
@@ -93,10 +92,6 @@ static uint64_t size_at(const unsigned char *bytes) {
     return size;
 }
 
-bool sections_begin_so(const unsigned char *bytes, size_t n) {
-    return n >= sizeof magic && memcmp(bytes, magic, sizeof magic) == 0;
-}
-
 // the bytes of the section that begins at a place, header and checksum included; 0: they are not all there
 static size_t whole_section(const unsigned char *bytes, size_t n, size_t at) {
     const size_t around = SECTION_HEADER + sizeof(uint32_t);
@@ -106,7 +101,8 @@ static size_t whole_section(const unsigned char *bytes, size_t n, size_t at) {
 }
 
 static enum status check_header(const unsigned char *bytes, size_t n) {
-    if (!sections_begin_so(bytes, n)) return status_fail(STATUS_FILE, "it is no checkpoint of shoal");
+    if (n < FORMAT_AT || memcmp(bytes, SECTIONS_MAGIC, FORMAT_AT) != 0)
+        return status_fail(STATUS_FILE, "it is no checkpoint of shoal");
     if (n < HEADER_BYTES) return status_fail(STATUS_FILE, "it is cut off");
     const uint32_t found = number_at(bytes + ORDER_AT), format = number_at(bytes + FORMAT_AT);
     if (number_at(bytes + CHECK_AT) != checksum(bytes, CHECK_AT)) {

@@ -15,6 +15,9 @@
 
 #include "base/status.h"
 
+/* The first eight bytes. */
+#define SECTIONS_MAGIC "SHOAL\r\n\x1a"
+
 enum { SECTIONS_FORMAT = 1, SECTIONS_NAME = 24 /* bytes of a name, the zero included */ };
 
 /* ---- writing: once an allocation has failed, nothing more is added and failed stays true */
@@ -44,9 +47,6 @@ struct section_reader {
     bool is_short;  /* more has been asked for than there is */
     uint32_t check; /* its checksum */
 };
-
-/* Whether bytes begin as those of sections do. */
-bool sections_begin_so(const unsigned char *bytes, size_t n);
 
 /* Fail with STATUS_FILE unless these n bytes are whole: the message ("it is cut off", "it is damaged behind byte 28",
  * "it has format 2, and this program reads format 1") says why. */

@@ -59,7 +59,8 @@ static void write_integers(FILE *stream, const char *name, size_t n, const int64
 
 static void begin_piece(FILE *stream, size_t n_points, size_t n_verts, size_t n_lines, size_t n_polys) {
     fprintf(stream,
-            "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
+            "<?xml version=\"1.0\"?>\n" TARGET_VTK_MARK
+            "\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
             "header_type=\"UInt64\">\n<PolyData>\n<Piece NumberOfPoints=\"%zu\" NumberOfVerts=\"%zu\" "
             "NumberOfLines=\"%zu\" NumberOfStrips=\"0\" NumberOfPolys=\"%zu\">\n",
             n_points, n_verts, n_lines, n_polys);
@@ -347,7 +348,8 @@ static enum status write_file(const struct export *export, const char *what, siz
     struct plain_file file;
     text_add(&path, "%s/", export->folder);
     add_name(&path, export, what, row);
-    enum status status = path.failed ? out_of_memory(export) : plain_file_open(&file, path.text, export->overwrite);
+    enum status status =
+        path.failed ? out_of_memory(export) : plain_file_open(&file, path.text, TARGET_VTK, export->overwrite, 0666);
     if (status == STATUS_OK) status = plain_file_close(&file, write(export, row, file.stream));
     text_free(&path);
     return status;
@@ -364,10 +366,10 @@ static void list_file(const struct export *export, FILE *list, double t, int par
 
 /* Write the files of all rows, and their names into the list. */
 static enum status write_rows(const struct export *export, FILE *list) {
-    fputs(
-        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n"
-        "<Collection>\n",
-        list);
+    fputs("<?xml version=\"1.0\"?>\n" TARGET_VTK_MARK
+          "\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n"
+          "<Collection>\n",
+          list);
     const bool has_walls = export->reader.length[WALL] > 0;
     if (has_walls) TRY(write_file(export, "walls", 0, write_walls));
     for (size_t row = 0; row < export->reader.length[TIME]; row++) {
@@ -431,7 +433,7 @@ static enum status write_list(const struct export *export, char **name) {
     struct plain_file list;
     text_add(&path, "%s/%s.pvd", export->folder, export->stem);
     if (path.failed) return out_of_memory(export);
-    enum status status = plain_file_open(&list, path.text, export->overwrite);
+    enum status status = plain_file_open(&list, path.text, TARGET_VTK, export->overwrite, 0666);
     if (status == STATUS_OK) status = plain_file_close(&list, write_rows(export, list.stream));
     if (status == STATUS_OK && name) {
         *name = path.text;

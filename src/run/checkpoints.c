@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "case/case_show.h"
+#include "output/durable.h"
 
 // ---- names
 
@@ -18,10 +19,17 @@ static char *with_ending(const char *path, size_t length, const char *ending) {
     return name;
 }
 
+// without its folders
+static const char *name_of(const char *path) {
+    const char *const slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
 char *checkpoints_path(const char *result) {
     const size_t length = strlen(result), n = strlen(".nc");
     const int has_ending = length > n && strcmp(result + length - n, ".nc") == 0 && result[length - n - 1] != '/';
-    return with_ending(result, has_ending ? length - n : length, ".ckpt");
+    // of two results "a" and "a.nc" each has its own
+    return has_ending ? with_ending(result, length - n, ".ckpt") : with_ending(result, length, ".checkpoint");
 }
 
 char *checkpoints_previous(const char *path) {
@@ -65,8 +73,9 @@ enum status checkpoints_create(struct checkpoints *checkpoints, const struct cas
     checkpoints->previous = checkpoints->path ? checkpoints_previous(checkpoints->path) : NULL;
     if (!checkpoints->previous) return status_fail(STATUS_MEMORY, "out of memory: a file name");
     if (at) TRY(read_places(checkpoints, values, at));
-    TRY(checkpoint_check_target(checkpoints->path));
-    TRY(checkpoint_check_target(checkpoints->previous));
+    TRY(checkpoint_check_target(checkpoints->path, name_of(result)));
+    TRY(checkpoint_check_target(checkpoints->previous, name_of(result)));
+    durable_sweep(checkpoints->path);
     return case_show(values, &checkpoints->effective);
 }
 
@@ -117,9 +126,8 @@ int checkpoints_are_due(const struct checkpoints *checkpoints, long event) {
 
 static enum status write_one(struct checkpoints *checkpoints, const struct simulation *simulation,
                              const struct record *record) {
-    const char *const slash = strrchr(record->path, '/');
     const struct checkpoint all = {.effective = checkpoints->effective,
-                                   .result = (char *)(slash ? slash + 1 : record->path),
+                                   .result = (char *)name_of(record->path),
                                    .places = checkpoints->places.text ? checkpoints->places.text : "",
                                    .totals = simulation->totals,
                                    .wall_time = simulate_wall_time(simulation)};

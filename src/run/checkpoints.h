@@ -1,5 +1,6 @@
-/* checkpoints.h: when a run writes checkpoints, and where: RESULT.ckpt beside RESULT.nc, and the one before it as
- * RESULT.ckpt.previous. Tested by tests/run/test_checkpoints.c and tests/run/test_resume.sh.
+/* checkpoints.h: when a run writes checkpoints, and where: RESULT.ckpt beside RESULT.nc, RESULT.checkpoint beside a
+ * RESULT without that ending, and the one before it with the ending .previous. Tested by tests/run/test_checkpoints.c
+ * and tests/run/test_resume.sh.
  *
  * At each checkpoint but one at the end of the run, every run renews itself (simulate_renew), whether anybody resumes
  * it or not: a run that is resumed there is then the same run. */

@@ -1,4 +1,4 @@
-/* estimate.c: a few events, wakes that are made up, and a parabola through what they cost. */
+/* estimate.c: a few events, wakes that are made up, and how their costs grow. */
 #include "run/estimate.h"
 
 #include <math.h>
@@ -6,6 +6,7 @@
 #include <time.h>
 
 #include "run/event.h"
+#include "vortex/velocity_sum.h"
 
 /* A wake that is made up leaves the tail with this part of the speed of the beat, and is as wide as this part of the
  * body. */
@@ -14,6 +15,23 @@ static const double drift = 0.5, width = 0.1;
 /* What NetCDF takes, and the state that a run keeps of its last event, if that is not large. */
 static const double bytes_of_file = 7e6;
 
+/* The evaluations of the equations in an event, where not one of them has been done to its end: doc/numerics.md,
+ * section 4. */
+static const double usual_evaluations = 12;
+
+/* Memory of a vortex, where the wakes that are made up are too short to show it. */
+static const double usual_bytes = 600;
+
+/* Sizes of wakes that are made up: from this number of vortices of a fish on, each twice the one before. */
+enum { FIRST_WAKE = 64, MAX_WAKES = 24 };
+
+/* The costs of events by the number of vortices of one fish: the first one is that of the wakes as they are. Beyond the
+ * last one the time that is added grows with this power of the number, and memory in proportion to it. */
+struct costs {
+    int n;
+    double vortices[MAX_WAKES + 1], seconds[MAX_WAKES + 1], bytes[MAX_WAKES + 1], power;
+};
+
 /* Of this thread, which has a part in all work and does not count what other programs do. */
 static double processor_time(void) {
     struct timespec now;
@@ -21,11 +39,11 @@ static double processor_time(void) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-// vortices of all fish
-static double n_vortices(const struct state *state, const struct school *school) {
-    double n = 0;
-    for (int f = 0; f < school->n_fish; f++) n += state->wake[f].n_vortex;
-    return n;
+// the most that the program has had so far
+static double bytes_so_far(void) {
+    struct rusage usage;
+    getrusage(RUSAGE_SELF, &usage);
+    return 1024.0 * (double)usage.ru_maxrss;
 }
 
 // replace the wake of a fish by one of n vortices, the newest at its tail
@@ -64,6 +82,13 @@ static enum status measure_event(struct simulation *simulation, double evaluatio
     return STATUS_OK;
 }
 
+// what an event costs of which a part has been done
+static double whole_event(const struct simulation *simulation, double spent) {
+    struct integrator_counts now;
+    simulation->integrator->count(simulation->solver, &now);
+    return spent * fmax(1, usual_evaluations / fmax(1, (double)now.residual_evaluations));
+}
+
 // the first events of the run; what one costs, and how often it evaluates the equations
 static enum status measure_start(struct simulation *simulation, double patience, struct estimate *estimate,
                                  double *seconds, double *evaluations) {
@@ -72,7 +97,9 @@ static enum status measure_start(struct simulation *simulation, double patience,
     struct integrator_counts after_first = {0};
     long n = 0;
     while (n < simulation->n_events && (n == 0 || spent < patience)) {
-        TRY(simulate_step(simulation));
+        const enum status status = simulate_step(simulation);
+        if (status == STATUS_STOPPED) break;
+        TRY(status);
         spent = processor_time() - start;
         if (n++ == 0) {
             first = spent;
@@ -80,6 +107,9 @@ static enum status measure_start(struct simulation *simulation, double patience,
         }
     }
     estimate->n_events = n;
+    *evaluations = usual_evaluations;
+    *seconds = whole_event(simulation, processor_time() - start);
+    if (n == 0) return STATUS_OK;
     // the first one is dearer than those that follow
     *seconds = n > 1 ? (spent - first) / (double)(n - 1) : first;
     const long rest = simulation->totals.residual_evaluations - (n > 1 ? after_first.residual_evaluations : 0);
@@ -87,46 +117,77 @@ static enum status measure_start(struct simulation *simulation, double patience,
     return STATUS_OK;
 }
 
-/* What is added to the cost of an event with w vortices: 0, e[1], e[2] at w[0], w[1], w[2]; between them a parabola. */
-static double added(const double w[3], const double e[3], double at) {
-    const double slope = e[1] / (w[1] - w[0]), next = (e[2] - e[1]) / (w[2] - w[1]);
-    const double value = (at - w[0]) * (slope + (at - w[1]) * (next - slope) / (w[2] - w[0]));
-    return fmax(0, value);
+// what is left of the time that an estimate may take
+static double time_left(const struct simulation *simulation, double end) {
+    return simulation->stop && *simulation->stop ? 0 : end - processor_time();
 }
 
-// the sum over all events that have not been done
-static double sum_up(const struct simulation *simulation, const double w[3], const double e[3], double each) {
+// Events with wakes of more and more vortices, while there is time for the next one: twice as many vortices cost up to
+// four times as much.
+static enum status measure_wakes(struct simulation *simulation, double end, double evaluations, struct costs *costs) {
     const struct school *const school = simulation->school;
-    const double per_event = school->n_fish;
-    const int is_long = w[2] > w[1] && w[1] > w[0];
-    double sum = 0;
-    for (long event = 1; event <= simulation->n_events; event++) {
-        const double at = fmin((double)event * per_event, w[2]);
-        sum += each + (is_long ? added(w, e, at) : 0);
+    struct state *const state = simulation->state;
+    const int most = wake_most(school, simulation->n_events);
+    int n = state->wake[0].n_vortex;
+    costs->vortices[0] = fmax(1, n);
+    TRY(measure_event(simulation, evaluations, &costs->seconds[0]));
+    costs->bytes[0] = bytes_so_far();
+    while (n < most && costs->n <= MAX_WAKES && time_left(simulation, end) > 4 * costs->seconds[costs->n - 1]) {
+        n = (int)fmin(most, fmax(FIRST_WAKE, 2.0 * n));
+        for (int f = 0; f < school->n_fish; f++) TRY(make_up_wake(school, state, f, n));
+        costs->vortices[costs->n] = n;
+        TRY(measure_event(simulation, evaluations, &costs->seconds[costs->n]));
+        costs->bytes[costs->n] = bytes_so_far();
+        costs->n++;
     }
-    return sum;
+    return STATUS_OK;
+}
+
+// by tree the work grows like n log n, else with the square of the number
+static double power_of(const struct school *school, const struct costs *costs) {
+    const double all = costs->vortices[costs->n - 1] * school->n_fish;
+    const struct vortices wakes = {.n = (int)fmin(all, 1e9)};
+    return velocity_sum_by_tree(&wakes, wakes.n, school->wake_tolerance) ? 1.1 : 2;
+}
+
+// by how much an event with so many vortices of each fish costs more than the first one
+static double added(const struct costs *costs, double vortices) {
+    int i = 0;
+    while (i < costs->n - 1 && vortices > costs->vortices[i + 1]) i++;
+    const double from = costs->seconds[i] - costs->seconds[0];
+    if (i == costs->n - 1) return fmax(0, from * pow(vortices / costs->vortices[i], costs->power));
+    const double part = (vortices - costs->vortices[i]) / (costs->vortices[i + 1] - costs->vortices[i]);
+    return fmax(0, from + part * (costs->seconds[i + 1] - costs->seconds[i]));
+}
+
+// the sum over all events: while the wakes grow, in panels of many events, and after that
+static double sum_up(const struct simulation *simulation, const struct costs *costs, double each) {
+    enum { PANELS = 2000 };
+    const double n_events = (double)simulation->n_events;
+    const double most = wake_most(simulation->school, simulation->n_events), growing = fmin(most, n_events);
+    double sum = 0;
+    for (int i = 0; i < PANELS; i++) sum += added(costs, (i + 0.5) * growing / PANELS) * growing / PANELS;
+    return n_events * each + sum + (n_events - growing) * added(costs, most);
+}
+
+// memory with the longest wakes: the last doubling of the wakes says what a vortex takes
+static double sum_up_bytes(const struct simulation *simulation, const struct costs *costs) {
+    const int last = costs->n - 1, n_fish = simulation->school->n_fish, enough = 4000;
+    const double missing = wake_most(simulation->school, simulation->n_events) - costs->vortices[last];
+    const double more = last > 0 ? (costs->vortices[last] - costs->vortices[last - 1]) * n_fish : 0;
+    const double each = more > enough ? (costs->bytes[last] - costs->bytes[last - 1]) / more : usual_bytes;
+    return bytes_so_far() + bytes_of_file + fmax(0, missing) * n_fish * each;
 }
 
 enum status estimate_run(struct simulation *simulation, double patience, struct estimate *estimate) {
-    struct state *const state = simulation->state;
-    const struct school *const school = simulation->school;
-    double each, evaluations, w[3], e[3] = {0};
-    TRY(measure_start(simulation, patience, estimate, &each, &evaluations));
-    w[0] = n_vortices(state, school);
-    double now = 0;
-    TRY(measure_event(simulation, evaluations, &now));
-    for (int i = 1; i < 3; i++) {
-        const int n = (int)(wake_most(school, simulation->n_events) * (i / 2.0));
-        for (int f = 0; f < school->n_fish; f++) {
-            if (n > state->wake[f].n_vortex) TRY(make_up_wake(school, state, f, n));
-        }
-        w[i] = n_vortices(state, school);
-        TRY(measure_event(simulation, evaluations, &e[i]));
-        e[i] -= now;
-    }
-    estimate->seconds = sum_up(simulation, w, e, each);
-    struct rusage usage;
-    getrusage(RUSAGE_SELF, &usage);
-    estimate->bytes = 1024.0 * (double)usage.ru_maxrss + bytes_of_file;
+    const double end = processor_time() + patience;
+    double each, evaluations;
+    struct costs costs = {.n = 1, .vortices = {1}};
+    TRY(measure_start(simulation, patience / 2, estimate, &each, &evaluations));
+    // wakes that are made up fit no body: what fails with them says nothing of the run
+    if (measure_wakes(simulation, end, evaluations, &costs) == STATUS_MEMORY) return STATUS_MEMORY;
+    costs.power = power_of(simulation->school, &costs);
+    estimate->seconds = sum_up(simulation, &costs, each);
+    estimate->bytes = sum_up_bytes(simulation, &costs);
     return STATUS_OK;
 }

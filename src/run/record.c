@@ -65,6 +65,10 @@ enum status record_extend(struct record *record, const struct case_values *value
     return status;
 }
 
+enum status record_publish(const struct record *record, int is_complete) {
+    return result_file_publish(record->file, is_complete ? "complete" : "running");
+}
+
 // the end is a row of its own where it is no multiple of an interval
 static int is_last(const struct record *record, long event) {
     return event == record->n_events;

@@ -19,8 +19,8 @@ struct record {
  * out of memory. */
 char *record_path(const struct case_values *values);
 
-/* Create the file at path (kept until record_close), without a row. overwrite, command: as in result_file_create.
- * n_events: of the whole run. Fails with STATUS_FILE or STATUS_MEMORY; there is no file then. */
+/* Begin the file for path (kept until record_close), without a row. overwrite, command: as in result_file_create.
+ * n_events: of the whole run. Fails with STATUS_FILE or STATUS_MEMORY; nothing is then left. */
 enum status record_create(struct record *record, const struct case_values *values, const struct school *school,
                           long n_events, const char *path, int overwrite, const char *command);
 
@@ -35,6 +35,9 @@ enum status record_continue(struct record *record, const struct case_values *val
                             const struct result_checksum *checksum);
 enum status record_extend(struct record *record, const struct case_values *values, const struct school *school,
                           long n_events, const struct result_source *source, const char *command);
+
+/* Give the file its name, as "running" or, where that was the last row, as "complete": result_file_publish. */
+enum status record_publish(const struct record *record, int is_complete);
 
 /* Whether an event is a row: every output interval, and the end. Not without a file. */
 int record_is_due(const struct record *record, long event);

@@ -5,10 +5,11 @@
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "base/version.h"
 #include "case/sweep_members.h"
-#include "output/netcdf.h"
+#include "output/target.h"
 #include "run/handle.h"
 #include "run/led.h"
 #include "run/record_notes.h"
@@ -110,6 +111,18 @@ static void forget_record(struct shoal *run) {
     run->lock = (struct result_lock){.descriptor = -1};
 }
 
+/* Fail with STATUS_FILE in a fork of the process that writes the result: the file is no longer this run's. */
+static enum status check_process(struct shoal *run, const char *function) {
+    if (!run->record.file || run->lock.owner == getpid()) return STATUS_OK;
+    status_fail(STATUS_FILE,
+                "%s: %s is written by process %ld, of which this one is a fork: the run goes on without it", function,
+                run->record_path, (long)run->lock.owner);
+    result_file_abandon(run->record.file);
+    run->record = (struct record){0};
+    forget_record(run);
+    return STATUS_FILE;
+}
+
 static enum status end_record(struct shoal *run) {
     enum status status = STATUS_OK;
     if (run->has_failed) {
@@ -128,7 +141,7 @@ static enum status end_record(struct shoal *run) {
 
 void shoal_close(struct shoal *run) {
     if (!run) return;
-    if (run->record.file) end_record(run);
+    if (check_process(run, __func__) == STATUS_OK && run->record.file) end_record(run);
     for (int i = 0; i < RESULT_TABLE_MAX; i++) free(run->buffer[i]);
     simulate_free(run->simulation);
     if (atomic_fetch_sub(&run->shared->n_users, 1) == 1) {
@@ -139,11 +152,16 @@ void shoal_close(struct shoal *run) {
     free(run);
 }
 
-static enum status write_if_due(struct shoal *run) {
+static enum status write_row(struct shoal *run) {
     if (!record_is_due(&run->record, run->simulation->state->event)) return STATUS_OK;
     struct result_row row = *handle_row(run);
+    return record_row(&run->record, &row);
+}
+
+static enum status write_if_due(struct shoal *run) {
+    TRY(check_process(run, "shoal_step"));
     pthread_mutex_lock(&netcdf_lock);
-    enum status status = record_row(&run->record, &row);
+    enum status status = write_row(run);
     if (status != STATUS_OK) status = record_close(&run->record, status);
     pthread_mutex_unlock(&netcdf_lock);
     if (status != STATUS_OK) forget_record(run);
@@ -158,6 +176,7 @@ static int is_checkpoint(const struct shoal *run) {
 }
 
 static enum status checkpoint(struct shoal *run) {
+    TRY(check_process(run, "shoal_checkpoint"));
     if (run->record.file) {
         pthread_mutex_lock(&netcdf_lock);
         const enum status status = checkpoints_write(&run->checkpoints, run->simulation, &run->record);
@@ -187,6 +206,10 @@ int shoal_advance(struct shoal *run, double t) {
     const double events = ceil(t / simulation->school->interval * (1 - 1e-12));
     if (events > (double)simulation->n_events) {
         return status_fail(STATUS_CASE, "%s: t = %g s is after the end of the case, %g s", __func__, t, shoal_end(run));
+    }
+    if (events < (double)simulation->state->event) {
+        return status_fail(STATUS_CASE, "%s: t = %g s is before the last event, at %g s: shoal_restore goes back",
+                           __func__, t, simulation->state->t);
     }
     while ((double)simulation->state->event < events) TRY(shoal_step(run));
     return STATUS_OK;
@@ -220,17 +243,24 @@ const char *shoal_result_path(const struct shoal *run) {
     return handle_need(run, __func__, "run") == STATUS_OK ? run->result_path : NULL;
 }
 
+// an earlier result stays until the first row of this one is safe
+static enum status create_file(struct shoal *run, int overwrite) {
+    TRY(record_create(&run->record, &run->shared->values, run->simulation->school, run->simulation->n_events,
+                      run->record_path, overwrite, "libshoal"));
+    enum status status = write_row(run);
+    if (status == STATUS_OK) status = record_publish(&run->record, 0);
+    return status == STATUS_OK ? STATUS_OK : record_close(&run->record, status);
+}
+
 // the file, its lock, and the plan of its checkpoints
 static enum status start_record(struct shoal *run, const char *path, int overwrite) {
-    const struct case_values *const values = &run->shared->values;
     run->record_path = strdup(path);
     if (!run->record_path) return status_fail(STATUS_MEMORY, "out of memory: a path");
-    TRY(netcdf_check_target(path, overwrite));
+    TRY(target_check(path, TARGET_NETCDF, overwrite));
     TRY(result_lock_take(&run->lock, path));
-    TRY(checkpoints_create(&run->checkpoints, values, path, NULL));
+    TRY(checkpoints_create(&run->checkpoints, &run->shared->values, path, NULL));
     pthread_mutex_lock(&netcdf_lock);
-    const enum status status = record_create(&run->record, values, run->simulation->school, run->simulation->n_events,
-                                             run->record_path, overwrite, "libshoal");
+    const enum status status = create_file(run, overwrite);
     pthread_mutex_unlock(&netcdf_lock);
     if (status == STATUS_OK) checkpoints_remove(&run->checkpoints);
     return status;
@@ -240,16 +270,14 @@ int shoal_write(struct shoal *run, const char *path, int overwrite) {
     TRY(handle_need(run, __func__, "run"));
     TRY(handle_need(path, __func__, "path"));
     if (handle_has_failed(run, __func__)) return STATUS_SOLVER;
+    TRY(check_process(run, __func__));
     if (run->record.file) {
         return status_fail(STATUS_CASE, "%s: the run writes %s: end that with shoal_write_end", __func__,
                            run->record_path);
     }
     const enum status status = start_record(run, path, overwrite);
-    if (status != STATUS_OK) {
-        forget_record(run);
-        return status;
-    }
-    return write_if_due(run);
+    if (status != STATUS_OK) forget_record(run);
+    return status;
 }
 
 int shoal_checkpoint(struct shoal *run) {
@@ -264,6 +292,7 @@ int shoal_checkpoint(struct shoal *run) {
 
 int shoal_write_end(struct shoal *run) {
     TRY(handle_need(run, __func__, "run"));
+    TRY(check_process(run, __func__));
     return run->record.file ? end_record(run) : STATUS_OK;
 }
 

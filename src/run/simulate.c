@@ -7,7 +7,6 @@
 
 #include "model/fish_school.h"
 #include "model/flow_at_bodies.h"
-#include "output/netcdf.h"
 #include "output/result_table.h"
 #include "run/event.h"
 #include "solver/integrator_table.h"
@@ -109,13 +108,6 @@ enum status simulate_take_up(struct simulation **simulation, const struct case_v
     enum status status = diagnostics_create(&new->diagnostics, school);
     if (status == STATUS_OK) status = simulate_renew(new);
     return give_up(simulation, status);
-}
-
-enum status simulate_prepare(struct simulation **simulation, const struct case_values *values, const char *path,
-                             int overwrite) {
-    *simulation = NULL;
-    TRY(netcdf_check_target(path, overwrite));
-    return simulate_create(simulation, values);
 }
 
 void simulate_free(struct simulation *simulation) {

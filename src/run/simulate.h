@@ -35,11 +35,6 @@ enum status simulate_start(struct simulation **simulation, const struct case_val
                            const volatile sig_atomic_t *stop);
 enum status simulate_create(struct simulation **simulation, const struct case_values *values);
 
-/* What can keep a run from its start: refuses a place where no result can be written, or one that exists and must not
- * be overwritten, with STATUS_FILE; then the same as simulate_create. */
-enum status simulate_prepare(struct simulation **simulation, const struct case_values *values, const char *path,
-                             int overwrite);
-
 /* Build everything around a state at one of its events: a run goes on as after simulate_renew, with these totals. The
  * simulation owns school and state from now on, also where this fails, which it does as simulate_create. */
 enum status simulate_take_up(struct simulation **simulation, const struct case_values *values, struct school *school,

@@ -9,7 +9,7 @@
 #include "base/version.h"
 #include "model/fish_school.h"
 #include "model/state_table.h"
-#include "output/netcdf.h"
+#include "output/target.h"
 #include "run/checkpoints.h"
 #include "run/record.h"
 #include "run/record_notes.h"
@@ -122,7 +122,7 @@ static enum status start(struct run *run) {
     TRY(checkpoints_create(checkpoints, run->values, options->path, options->checkpoint_at));
     if (!options->overwrite) {
         TRY(refuse_unfinished(options->path, checkpoints));
-        TRY(netcdf_check_target(options->path, 0));
+        TRY(target_check(options->path, TARGET_NETCDF, false));
     }
     if (options->begin) TRY(options->begin(run->values, options->path, options->data));
     const enum status started = simulate_start(&run->simulation, run->values, options->stop);
@@ -132,9 +132,13 @@ static enum status start(struct run *run) {
     TRY(started);
     TRY(record_create(&run->record, run->values, run->simulation->school, run->simulation->n_events, options->path,
                       options->overwrite, options->command));
-    checkpoints_remove(checkpoints);
+    // an earlier result stays until the first row of this one is safe
     enum status status = write_if_due(run);
-    if (status == STATUS_OK) status = checkpoint_if_due(run);
+    if (status == STATUS_OK) status = record_publish(&run->record, 0);
+    if (status == STATUS_OK) {
+        checkpoints_remove(checkpoints);
+        status = checkpoint_if_due(run);
+    }
     return finish(run, status);
 }
 
@@ -182,7 +186,7 @@ static enum status extend(struct run *run, const struct resume *resume) {
     result_file_note(run->record.file, RESULT_CHECKPOINT_AT, resume->checkpoint.places);
     // in this order one of the two last checkpoints always has its result
     TRY(checkpoints_write(&run->checkpoints, simulation, &run->record));
-    return result_file_publish(run->record.file);
+    return record_publish(&run->record, 0);
 }
 
 // the file as it is, without the rows that the checkpoint does not count

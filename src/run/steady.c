@@ -5,10 +5,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "model/diagnostics_energy.h"
-#include "output/netcdf.h"
 #include "output/result_lock.h"
+#include "output/target.h"
 #include "run/record.h"
 #include "run/record_notes.h"
 #include "run/steady_multipliers.h"
@@ -209,9 +210,23 @@ static enum status pose(struct run *run) {
     return STATUS_OK;
 }
 
+/* Give the file its name and close it. An earlier result stays where nothing has been found. */
+static enum status finish(struct run *run, enum status status) {
+    char reason[4096];
+    snprintf(reason, sizeof reason, "%s", status_message());
+    if (status == STATUS_OK) {
+        status = record_publish(&run->record, 1);
+    } else {
+        if (access(run->options->path, F_OK) != 0) record_publish(&run->record, 0);
+        status_fail(status, "%s", reason);
+    }
+    return record_close(&run->record, status);
+}
+
 static enum status start(struct run *run) {
     const struct steady_options *const options = run->options;
-    TRY(netcdf_check_target(options->path, options->overwrite));
+    TRY(target_check(options->path, TARGET_NETCDF, options->overwrite));
+    if (options->from) TRY(target_refuse_input(options->path, options->from));
     TRY(create_simulation(run));
     run->simulation->stop = options->stop;
     const int is_static = steady_static_applies(run->simulation->school);
@@ -227,7 +242,7 @@ static enum status start(struct run *run) {
         result_file_steady(run->record.file, run->simulation->school, &run->found);
         record_notes_write(run->record.file, run->simulation, options->warn, options->data);
     }
-    return record_close(&run->record, status);
+    return finish(run, status);
 }
 
 static void release(struct run *run) {

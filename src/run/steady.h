@@ -30,8 +30,8 @@ struct steady_options {
 };
 
 /* Find the steady state of a case, and write its result file. Where the search fails with STATUS_SOLVER, STATUS_CONTACT
- * or STATUS_STOPPED the file has no rows, and says why. Fails with STATUS_CASE where the case can have no steady state,
- * with STATUS_FILE or STATUS_MEMORY; there is no file then. */
+ * or STATUS_STOPPED the file has no rows, and says why; an earlier result, which it would replace, stays. Fails with
+ * STATUS_CASE where the case can have no steady state, with STATUS_FILE or STATUS_MEMORY; there is no file then. */
 enum status steady_run(const struct case_values *values, const struct steady_options *options);
 
 #endif

@@ -18,6 +18,7 @@
 #include "case/case_member.h"
 #include "case/case_show.h"
 #include "case/sweep_members.h"
+#include "output/result_lock.h"
 #include "run/checkpoints.h"
 #include "run/resume.h"
 #include "run/simulate_run.h"
@@ -46,6 +47,7 @@ struct job {
 struct study {
     const struct case_values *values;
     const struct study_options *options;
+    struct result_lock lock; /* on its members */
     int n_jobs;
     struct job *job;       /* (n_jobs) */
     struct report *report; /* shared memory                                        (n_jobs) */
@@ -318,23 +320,35 @@ static int n_at_once(const struct study *study) {
     return n < study->plan.n ? n : study->plan.n;
 }
 
+/* No other study may run members of this one in the folder. */
+static enum status lock_members(struct study *study) {
+    const struct study_options *const options = study->options;
+    TRY(study_folder_create(options->folder));
+    const int n = options->last < 0 ? 0 : options->last - options->first + 1;
+    return result_lock_members(&study->lock, options->folder, options->last < 0 ? 0 : options->first, n);
+}
+
 static enum status plan_and_run(struct study *study) {
     const struct study_options *const options = study->options;
+    // a plan that is refused makes no folder
+    const int exists = access(options->folder, F_OK) == 0;
+    if (exists) TRY(lock_members(study));
     TRY(study_plan_create(&study->plan, study->values, options->folder, options->first, options->last, options->force));
     study->progress.n_members = study->plan.n_members;
     study->progress.n_done = study->plan.n_done;
-    TRY(study_folder_create(options->folder));
+    if (!exists) TRY(lock_members(study));
     study->n_jobs = n_at_once(study);
     return study->n_jobs > 0 ? run_all(study) : STATUS_OK;
 }
 
 enum status study_run(const struct case_values *values, const struct study_options *options, int *n_failed) {
-    struct study study = {.values = values, .options = options};
+    struct study study = {.values = values, .options = options, .lock.descriptor = -1};
     clock_gettime(CLOCK_MONOTONIC, &study.started);
     const enum status status = plan_and_run(&study);
     *n_failed = study.progress.n_failed;
     if (study.report) munmap(study.report, (size_t)study.n_jobs * sizeof *study.report);
     free(study.job);
     study_plan_free(&study.plan);
+    result_lock_release(&study.lock);
     return status;
 }

@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "case/sweep_members.h"
 #include "output/netcdf.h"
+#include "output/target.h"
 #include "study/study_comparison.h"
 
 enum { MIN_TEXT = 128 /* bytes of the flag of an order */, NAME_BYTES = 256 };
@@ -200,7 +201,7 @@ static void write_all(struct writing *writing) {
 
 /* Write under a temporary name, and give it its own. */
 static enum status write_file(struct writing *writing, const char *path, const char *command) {
-    TRY(netcdf_check_target(path, true));
+    TRY(target_check(path, TARGET_NETCDF, true));
     TRY(netcdf_create(&writing->writer, path, writing->study->name, command));
     define_all(writing);
     write_all(writing);

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "case/sweep_members.h"
+#include "output/durable.h"
 
 enum { REASON_BYTES = 2048 };
 
@@ -53,28 +54,6 @@ void study_folder_free_members(struct member_file *members, int n) {
     free(members);
 }
 
-FILE *study_folder_open(const char *path, int is_script) {
-    unlink(path);
-    const int file = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, is_script ? 0777 : 0666);
-    return file < 0 ? NULL : fdopen(file, "w");
-}
-
-int study_folder_is_result(const char *path) {
-    enum { HEAD = 32768 };
-    static const char *const marks[] = {"shoal_schema", "run_status", "study_case", "study_member"};
-    char *const head = calloc(HEAD + 1, 1);
-    const int file = head ? open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC) : -1;
-    const ssize_t length = file >= 0 ? read(file, head, HEAD) : 0;
-    int is_result = 0;
-    // the attributes follow each other in the header, with zeros in between
-    for (ssize_t i = 0; i < length && !is_result && memcmp(head, "CDF", 3) == 0; i++) {
-        for (int m = 0; m < 4; m++) is_result |= strncmp(head + i, marks[m], strlen(marks[m])) == 0;
-    }
-    if (file >= 0) close(file);
-    free(head);
-    return is_result;
-}
-
 /* Replace the status of a member. */
 static enum status replace_status(struct member_file *member, const char *format, const char *text) {
     char line[REASON_BYTES + 16];
@@ -87,14 +66,15 @@ static enum status replace_status(struct member_file *member, const char *format
 enum status study_folder_set_reason(const char *folder, int member, const char *reason) {
     char *const path = study_folder_member(folder, member, ".failed");
     if (!path) return STATUS_MEMORY;
+    struct durable_part part = {.descriptor = -1};
     // nothing can be done about a full disk here: the result file says "running" or "failed" itself
-    FILE *const file = reason ? study_folder_open(path, 0) : NULL;
-    if (file) {
-        fprintf(file, "%s\n", reason);
-        fclose(file);
-    } else {
+    if (!reason) {
         unlink(path);
+    } else if (durable_begin(&part, path, 0666) == 0 && durable_write(part.descriptor, reason, strlen(reason)) == 0 &&
+               durable_write(part.descriptor, "\n", 1) == 0) {
+        durable_publish(&part, true);
     }
+    durable_end(&part);
     free(path);
     return STATUS_OK;
 }

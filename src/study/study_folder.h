@@ -23,13 +23,6 @@ void study_folder_remove(const char *folder);
 char *study_folder_path(const char *folder, const char *name);
 char *study_folder_member(const char *folder, int member, const char *ending);
 
-/* Open a new text file for writing in the place of one of ours, which is removed first: never through a link. NULL, and
- * errno: it cannot be made. */
-FILE *study_folder_open(const char *path, int is_script);
-
-/* Whether a file that cannot be read is nevertheless the result of a run, cut or damaged. */
-int study_folder_is_result(const char *path);
-
 /* Keep the reason of a failure next to the result of a member; NULL: remove that of an earlier run. Fails with
  * STATUS_MEMORY. */
 enum status study_folder_set_reason(const char *folder, int member, const char *reason);

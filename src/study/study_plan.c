@@ -9,6 +9,7 @@
 #include "case/case_member.h"
 #include "case/case_show.h"
 #include "case/sweep_members.h"
+#include "output/target.h"
 #include "study/study_file.h"
 #include "study/study_folder.h"
 
@@ -25,16 +26,9 @@ static enum status look_at_member(const struct planning *planning, const struct 
     struct member_file member;
     *is_finished = 0;
     if (access(path, F_OK) != 0) return STATUS_OK;
+    TRY(target_check(path, TARGET_NETCDF, true));
     const enum status read = member_file_read(&member, path);
-    if (read == STATUS_FILE && (planning->force || study_folder_is_result(path))) {
-        return STATUS_OK;  // cut off by a crash: it runs again
-    }
-    if (read == STATUS_FILE) {
-        return status_fail(STATUS_FILE,
-                           "%s is no result of shoal: choose another folder with -o, or replace what is there with "
-                           "--force",
-                           path);
-    }
+    if (read == STATUS_FILE) return STATUS_OK;  // cut off by a crash: it runs again
     TRY(read);
     enum status status = STATUS_OK;
     char *effective = NULL;
@@ -78,25 +72,31 @@ static enum status clear_rest(const struct planning *planning) {
         char *const path = study_folder_member(planning->folder, number, ".nc");
         if (!path) return STATUS_MEMORY;
         const int exists = access(path, F_OK) == 0;
-        if (exists && planning->force) unlink(path);
-        if (exists && !planning->force) {
-            status_fail(STATUS_FILE,
-                        "%s is a result of another study: choose another folder with -o, or remove it with --force",
-                        path);
+        const int is_removed = exists && planning->force && target_is(path, TARGET_NETCDF) && unlink(path) == 0;
+        if (exists && !is_removed) {
+            status_fail(STATUS_FILE, "%s is a result of another study: choose another folder with -o, or remove it%s",
+                        path, planning->force ? "" : " with --force");
         }
         free(path);
         if (!exists) return STATUS_OK;
-        if (!planning->force) return STATUS_FILE;
+        if (!is_removed) return STATUS_FILE;
     }
 }
 
-/* Refuse to replace what another study has gathered there; a file that cannot be read is none. */
+/* Refuse to replace a file of another program, or, without force, what another study has gathered there; a result that
+ * cannot be read is none. */
 static enum status look_at_gathered(const struct planning *planning) {
     char *const path = study_folder_path(planning->folder, "study.nc");
     if (!path) return STATUS_MEMORY;
     struct case_values values;
     struct member_file *members;
-    enum status status = access(path, F_OK) == 0 ? study_file_read(path, &values, &members) : STATUS_FILE;
+    const int exists = access(path, F_OK) == 0;
+    enum status status = exists ? target_check(path, TARGET_NETCDF, true) : STATUS_OK;
+    if (!exists || planning->force || status != STATUS_OK) {
+        free(path);
+        return status;
+    }
+    status = study_file_read(path, &values, &members);
     if (status == STATUS_OK) {
         if (strcmp(values.merged, planning->study->merged) != 0) {
             status = status_fail(STATUS_FILE,
@@ -127,7 +127,7 @@ enum status study_plan_create(struct study_plan *plan, const struct case_values 
     if (!plan->member) return status_fail(STATUS_MEMORY, "out of memory for a study of %d members", plan->n_members);
     for (int number = first; number <= last; number++) TRY(plan_member(&planning, plan, number));
     if (is_part) return STATUS_OK;
-    if (!force) TRY(look_at_gathered(&planning));
+    TRY(look_at_gathered(&planning));
     return clear_rest(&planning);
 }
 

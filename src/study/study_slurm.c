@@ -5,61 +5,43 @@
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "case/case.h"
 #include "case/case_member.h"
 #include "case/sweep_members.h"
+#include "output/plain_file.h"
 #include "study/study_folder.h"
 
 enum { MAX_TASKS = 1000 /* Slurm's own default is 1001 */ };
 
-/* Every file begins with this line, after that of the shell. */
-#define MARK "# Written by shoal study --slurm.\n"
-
-/* Whether there is no file, or one of ours. */
-static int is_ours(const char *path) {
-    char head[128] = "";
-    struct stat facts;
-    if (lstat(path, &facts) != 0) return 1;
-    FILE *const file = S_ISREG(facts.st_mode) ? fopen(path, "r") : NULL;
-    if (!file) return 0;
-    const size_t length = fread(head, 1, sizeof head - 1, file);
-    fclose(file);
-    head[length] = '\0';
-    return strstr(head, MARK) != NULL;
-}
-
-/* Open a file of the folder for writing. */
-static enum status open_file(FILE **file, const char *folder, const char *name, int is_script) {
+/* A file of the folder, and its path. */
+struct script {
+    struct plain_file file;
     char path[PATH_MAX];
-    if (snprintf(path, sizeof path, "%s/%s", folder, name) >= (int)sizeof path) {
+};
+
+/* Open a file of the folder for writing; it begins with its mark. */
+static enum status open_file(struct script *script, const char *folder, const char *name, int is_script) {
+    if (snprintf(script->path, sizeof script->path, "%s/%s", folder, name) >= (int)sizeof script->path) {
         return status_fail(STATUS_FILE, "%s: too long a name", folder);
     }
-    if (!is_ours(path)) {
+    if (access(script->path, F_OK) == 0 && !target_is(script->path, TARGET_SCRIPT)) {
         return status_fail(STATUS_FILE,
                            "%s exists and was not written by shoal study --slurm: remove it, or choose another folder "
                            "with -o",
-                           path);
+                           script->path);
     }
-    *file = study_folder_open(path, is_script);
-    if (!*file) return status_fail(STATUS_FILE, "%s: cannot be written: %s", path, strerror(errno));
-    fputs(is_script ? "#!/bin/sh\n" MARK : MARK, *file);
+    TRY(plain_file_open(&script->file, script->path, TARGET_SCRIPT, true, is_script ? 0777 : 0666));
+    fputs(is_script ? "#!/bin/sh\n" TARGET_SCRIPT_MARK "\n" : TARGET_SCRIPT_MARK "\n", script->file.stream);
     return STATUS_OK;
-}
-
-static enum status close_file(FILE *file, const char *folder) {
-    const int failed = ferror(file);
-    if (fclose(file) == 0 && !failed) return STATUS_OK;
-    return status_fail(STATUS_FILE, "%s: the scripts cannot be written: %s", folder, strerror(errno));
 }
 
 static enum status write_array(const struct case_values *study, const char *folder, const char *program, int n_tasks,
                                int bundle) {
-    FILE *file;
-    TRY(open_file(&file, folder, "array.sbatch", 1));
-    fprintf(file,
+    struct script script;
+    TRY(open_file(&script, folder, "array.sbatch", 1));
+    fprintf(script.file.stream,
             "#SBATCH --job-name='%s'\n"
             "#SBATCH --array=0-%d\n"
             "#SBATCH --ntasks=1\n"
@@ -85,22 +67,22 @@ static enum status write_array(const struct case_values *study, const char *fold
             "exit $code\n",
             study->name, n_tasks - 1, study->school.threads, folder, bundle, sweep_n_members(study), bundle, bundle - 1,
             sweep_n_members(study), sweep_n_members(study) - 1, program, folder, folder);
-    return close_file(file, folder);
+    return plain_file_close(&script.file, STATUS_OK);
 }
 
 static enum status write_gather(const struct case_values *study, const char *folder, const char *program) {
-    FILE *file;
-    TRY(open_file(&file, folder, "gather.sbatch", 1));
-    fprintf(file,
+    struct script script;
+    TRY(open_file(&script, folder, "gather.sbatch", 1));
+    fprintf(script.file.stream,
             "#SBATCH --job-name='%s-gather'\n"
             "#SBATCH --ntasks=1\n"
             "#SBATCH --output='%s/study.txt'\n"
             "exec '%s' gather '%s'\n",
             study->name, folder, program, folder);
-    TRY(close_file(file, folder));
-    TRY(open_file(&file, folder, "submit.sh", 1));
+    TRY(plain_file_close(&script.file, STATUS_OK));
+    TRY(open_file(&script, folder, "submit.sh", 1));
     fprintf(
-        file,
+        script.file.stream,
         "# Submit the members as an array job, and after the last of them the job that gathers what they end with.\n"
         "set -eu\n"
         "folder='%s'\n"
@@ -108,14 +90,14 @@ static enum status write_gather(const struct case_values *study, const char *fol
         "gather=$(sbatch --parsable --dependency=\"afterany:$array\" \"$folder/gather.sbatch\")\n"
         "printf '%%s\\n' \"members: job $array; results: job $gather, $folder/study.txt and study.nc\"\n",
         folder);
-    return close_file(file, folder);
+    return plain_file_close(&script.file, STATUS_OK);
 }
 
 static enum status write_case(const struct case_values *study, const char *folder) {
-    FILE *file;
-    TRY(open_file(&file, folder, "study.yaml", 0));
-    fputs(study->merged, file);
-    return close_file(file, folder);
+    struct script script;
+    TRY(open_file(&script, folder, "study.yaml", 0));
+    fputs(study->merged, script.file.stream);
+    return plain_file_close(&script.file, STATUS_OK);
 }
 
 enum status study_slurm(const struct case_values *study, const char *folder, int bundle, FILE *stream) {

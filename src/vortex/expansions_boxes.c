@@ -143,8 +143,9 @@ INLINE void local_shift(lanes *re, lanes *im, int stride, int degree, int last, 
     }
 }
 
-KERNEL_WIDE void expansions_m2m(const struct tree_boxes *boxes, int parent, int n_parents,
-                                const struct expansion *multipole) {
+KERNEL_WIDE(void, expansions_m2m,
+            (const struct tree_boxes *boxes, int parent, int n_parents, const struct expansion *multipole),
+            (boxes, parent, n_parents, multipole)) {
     struct expansion_order order = {-1, 0};
     for (int i = 0; i < n_parents; i++) order = expansion_order_max(order, multipole[parent + i].order);
     if (order.harmonic < 0) return;
@@ -191,8 +192,9 @@ KERNEL_WIDE void expansions_m2m(const struct tree_boxes *boxes, int parent, int 
     }
 }
 
-KERNEL_WIDE void expansions_l2l(const struct tree_boxes *boxes, int parent, int n_parents,
-                                const struct expansion *local) {
+KERNEL_WIDE(void, expansions_l2l,
+            (const struct tree_boxes *boxes, int parent, int n_parents, const struct expansion *local),
+            (boxes, parent, n_parents, local)) {
     struct expansion_order order = {-1, 0};
     for (int i = 0; i < n_parents; i++) order = expansion_order_max(order, local[parent + i].order);
     if (order.harmonic < 0) return;
@@ -344,9 +346,10 @@ INLINE void m2l(const struct tree_boxes *targets, const struct tree_boxes *sourc
     for (int i = 0; i < n; i++) block_add(&local[pair[i].target], pair[i].order, &result, i);
 }
 
-KERNEL_WIDE void expansions_m2l(const struct tree_boxes *targets, const struct tree_boxes *sources, double smoothing,
-                                int n, const struct expansions_pair *pair, const struct expansion *multipole,
-                                const struct expansion *local) {
+KERNEL_WIDE(void, expansions_m2l,
+            (const struct tree_boxes *targets, const struct tree_boxes *sources, double smoothing, int n,
+             const struct expansions_pair *pair, const struct expansion *multipole, const struct expansion *local),
+            (targets, sources, smoothing, n, pair, multipole, local)) {
     for (int i = 0; i < n; i += LANES) {
         m2l(targets, sources, smoothing, n - i < LANES ? n - i : LANES, pair + i, multipole, local);
     }

@@ -30,7 +30,8 @@ INLINE void points_read(lanes *block, const double *value, int n, int is_weight)
     }
 }
 
-KERNEL_WIDE void expansions_p2m(const struct tree_boxes *boxes, int box, const struct expansion *multipole) {
+KERNEL_WIDE(void, expansions_p2m, (const struct tree_boxes *boxes, int box, const struct expansion *multipole),
+            (boxes, box, multipole)) {
     const struct tree_box *const own = &boxes->box[box];
     const struct expansion_order order = multipole->order;
     struct block block;
@@ -153,8 +154,10 @@ INLINE void points_add(double *value, const lanes *block, int n) {
     for (int i = 0; i < LANES && i < n; i++) value[i] += (*block)[i];
 }
 
-KERNEL_WIDE void expansions_l2p(const struct tree_boxes *boxes, int box, const struct expansion *local, double *u,
-                                double *v, double *const gradient[3]) {
+KERNEL_WIDE(void, expansions_l2p,
+            (const struct tree_boxes *boxes, int box, const struct expansion *local, double *u, double *v,
+             double *const gradient[3]),
+            (boxes, box, local, u, v, gradient)) {
     const struct tree_box *const own = &boxes->box[box];
     const double inverse = 1 / own->radius, unit = inverse / two_pi;
     for (int i = 0; i < own->n; i += LANES) {

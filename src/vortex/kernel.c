@@ -1,11 +1,12 @@
-/* kernel.c: the same loops for three widths of vectors, and the choice between them. */
+/* kernel.c: the same loops for all sets of vector instructions, and the choice between them. */
 #include "vortex/kernel.h"
 
 #include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-#ifdef __x86_64__
+#if defined(__x86_64__)
 #include <immintrin.h>
+#elif defined(__aarch64__)
+#include <arm_neon.h>
 #endif
 
 enum { BLOCK = 8 }; /* targets that are treated alike; a multiple of the width of every variant */
@@ -20,7 +21,7 @@ static inline double sum_of_block(const double *value) {
     return ((value[0] + value[4]) + (value[2] + value[6])) + ((value[1] + value[5]) + (value[3] + value[7]));
 }
 
-#ifdef __x86_64__
+#if defined(__x86_64__)
 
 #define VARIANT(name) name##_avx512
 #define VARIANT_NAME "avx512"
@@ -36,56 +37,24 @@ static inline double sum_of_block(const double *value) {
 #define FUSED(a, b, c) _mm256_fmadd_pd(a, b, c)
 #include "vortex/kernel_loops.h"
 
+#elif defined(__aarch64__)
+
+#define VARIANT(name) name##_neon
+#define VARIANT_NAME "neon"
+#define TARGET
+#define lanes float64x2_t
+#define FUSED(a, b, c) vfmaq_f64(c, a, b)
+#include "vortex/kernel_loops.h"
+
 #endif
 
-// ---- without fused products in the processor
-
+// any processor: vectors of two numbers, products that are not fused
 typedef double two __attribute__((vector_size(2 * sizeof(double))));
-typedef uint64_t two_bits __attribute__((vector_size(2 * sizeof(uint64_t))));
-
-// a + b, and what rounding takes from it (Knuth)
-static inline two sum(two a, two b, two *error) {
-    const two s = a + b, t = s - a;
-    *error = (a - (s - t)) + (b - t);
-    return s;
-}
-
-// the first 26 digits of 53, rounded; the others, with a sign, are 26 too
-static inline two upper(two a) {
-    return (two)(((two_bits)a + (1 << 26)) & -((uint64_t)1 << 27));
-}
-
-// a b, and what rounding takes from it (Dekker)
-static inline two product(two a, two b, two *error) {
-    const two p = a * b, a1 = upper(a), b1 = upper(b), a2 = a - a1, b2 = b - b1;
-    *error = ((a1 * b1 - p) + a1 * b2 + a2 * b1) + a2 * b2;
-    return p;
-}
-
-// a + b; where that is not exact, the neighbour with an odd last digit: a second rounding then sees that it was not
-static inline two sum_to_odd(two a, two b) {
-    two error;
-    const two s = sum(a, b, &error);
-    const two_bits bits = (two_bits)s;
-    const two_bits inexact_and_even = (two_bits)(error != 0) & ((bits & 1) - 1);
-    const two_bits outwards = 1 - 2 * (((two_bits)error ^ bits) >> 63); /* 1: the error has the sign of the sum */
-    return (two)(bits + (outwards & inexact_and_even));
-}
-
-// a b + c with one rounding: Boldo and Melquiond, Emulation of FMA and correctly rounded sums, IEEE Trans. Comp. 2008.
-// It needs products above 1e-290, or a c so much larger that they do not matter.
-static inline two fused(two a, two b, two c) {
-    two product_error, low_error, high_error;
-    const two high_product = product(a, b, &product_error);
-    const two low = sum(c, product_error, &low_error), high = sum(high_product, low, &high_error);
-    return high + sum_to_odd(low_error, high_error);
-}
-
 #define VARIANT(name) name##_baseline
 #define VARIANT_NAME "baseline"
 #define TARGET
 #define lanes two
-#define FUSED(a, b, c) fused(a, b, c)
+#define FUSED(a, b, c) ((a) * (b) + (c))
 #include "vortex/kernel_loops.h"
 
 // ---- the choice of a variant
@@ -93,9 +62,11 @@ static inline two fused(two a, two b, two c) {
 const struct kernel_variant *kernel_variant(int i) {
     const struct kernel_variant *found[3];
     int n = 0;
-#ifdef __x86_64__
+#if defined(__x86_64__)
     if (__builtin_cpu_supports("avx512f")) found[n++] = &loops_avx512;
     if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) found[n++] = &loops_avx2;
+#elif defined(__aarch64__)
+    found[n++] = &loops_neon;
 #endif
     found[n++] = &loops_baseline;
     return i < n ? found[i] : NULL;
@@ -180,10 +151,11 @@ void kernel_add_pairwise(const struct kernel_tile *a, const struct kernel_tile *
     kernel_variant(0)->pairwise(a, b, square_of(smoothing));
 }
 
-KERNEL_WIDE void kernel_add_velocity_each(int n_targets, const double *restrict x, const double *restrict y,
-                                          int n_sources, const double *restrict source_x,
-                                          const double *restrict source_y, const double *restrict circulation,
-                                          const double *restrict square, double *restrict u, double *restrict v) {
+KERNEL_WIDE(void, kernel_add_velocity_each,
+            (int n_targets, const double *restrict x, const double *restrict y, int n_sources,
+             const double *restrict source_x, const double *restrict source_y, const double *restrict circulation,
+             const double *restrict square, double *restrict u, double *restrict v),
+            (n_targets, x, y, n_sources, source_x, source_y, circulation, square, u, v)) {
     for (int j = 0; j < n_sources; j++) {
         const double g = inverse_two_pi * circulation[j], e = square[j] + no_square;
         for (int i = 0; i < n_targets; i++) {
@@ -195,11 +167,12 @@ KERNEL_WIDE void kernel_add_velocity_each(int n_targets, const double *restrict 
     }
 }
 
-KERNEL_WIDE void kernel_add_gradient_each(int n_targets, const double *restrict x, const double *restrict y,
-                                          int n_sources, const double *restrict source_x,
-                                          const double *restrict source_y, const double *restrict circulation,
-                                          const double *restrict square, double *restrict u, double *restrict v,
-                                          double *restrict u_x, double *restrict u_y, double *restrict v_x) {
+KERNEL_WIDE(void, kernel_add_gradient_each,
+            (int n_targets, const double *restrict x, const double *restrict y, int n_sources,
+             const double *restrict source_x, const double *restrict source_y, const double *restrict circulation,
+             const double *restrict square, double *restrict u, double *restrict v, double *restrict u_x,
+             double *restrict u_y, double *restrict v_x),
+            (n_targets, x, y, n_sources, source_x, source_y, circulation, square, u, v, u_x, u_y, v_x)) {
     for (int j = 0; j < n_sources; j++) {
         const double g = inverse_two_pi * circulation[j], e = square[j] + no_square;
         for (int i = 0; i < n_targets; i++) {
@@ -215,11 +188,11 @@ KERNEL_WIDE void kernel_add_gradient_each(int n_targets, const double *restrict 
 }
 
 // 1/d_to - 1/d_from = (from - to)/(d_to d_from): no digits are lost where both are nearly the same
-KERNEL_WIDE void kernel_add_velocity_change_at(int n_targets, const double *restrict x, const double *restrict y,
-                                               const double *restrict square, int n_sources,
-                                               const double *restrict source_x, const double *restrict source_y,
-                                               const double *restrict circulation, double from, double *restrict u,
-                                               double *restrict v) {
+KERNEL_WIDE(void, kernel_add_velocity_change_at,
+            (int n_targets, const double *restrict x, const double *restrict y, const double *restrict square,
+             int n_sources, const double *restrict source_x, const double *restrict source_y,
+             const double *restrict circulation, double from, double *restrict u, double *restrict v),
+            (n_targets, x, y, square, n_sources, source_x, source_y, circulation, from, u, v)) {
     for (int j = 0; j < n_sources; j++) {
         const double g = inverse_two_pi * circulation[j];
         for (int i = 0; i < n_targets; i++) {
@@ -231,8 +204,10 @@ KERNEL_WIDE void kernel_add_velocity_change_at(int n_targets, const double *rest
     }
 }
 
-KERNEL_WIDE void kernel_unit(int n, const double *x, const double *y, double source_x, double source_y,
-                             double smoothing, struct kernel_values *values) {
+KERNEL_WIDE(void, kernel_unit,
+            (int n, const double *x, const double *y, double source_x, double source_y, double smoothing,
+             struct kernel_values *values),
+            (n, x, y, source_x, source_y, smoothing, values)) {
     const double square = square_of(smoothing);
     for (int i = 0; i < n; i++) {
         const double rx = x[i] - source_x, ry = y[i] - source_y;
@@ -247,9 +222,10 @@ KERNEL_WIDE void kernel_unit(int n, const double *x, const double *y, double sou
     }
 }
 
-KERNEL_WIDE void kernel_add_motion(int n, int n_sources, const double *factor, double sign,
-                                   const struct kernel_values *values, double *restrict u_by_x, double *restrict v_by_x,
-                                   double *restrict u_by_y, double *restrict v_by_y) {
+KERNEL_WIDE(void, kernel_add_motion,
+            (int n, int n_sources, const double *factor, double sign, const struct kernel_values *values,
+             double *restrict u_by_x, double *restrict v_by_x, double *restrict u_by_y, double *restrict v_by_y),
+            (n, n_sources, factor, sign, values, u_by_x, v_by_x, u_by_y, v_by_y)) {
     int j = 0;
     // four sources at a time, so that a sum is read and written once for them
     for (; j + 4 <= n_sources; j += 4) {
@@ -274,8 +250,10 @@ KERNEL_WIDE void kernel_add_motion(int n, int n_sources, const double *factor, d
     }
 }
 
-KERNEL_WIDE void kernel_multiply(int n_rows, int n_columns, const double *restrict matrix,
-                                 const double *restrict vector, double *restrict product) {
+KERNEL_WIDE(void, kernel_multiply,
+            (int n_rows, int n_columns, const double *restrict matrix, const double *restrict vector,
+             double *restrict product),
+            (n_rows, n_columns, matrix, vector, product)) {
     int c = 0;
     // four columns at a time, so that a product is read and written once for them
     for (; c + 4 <= n_columns; c += 4) {

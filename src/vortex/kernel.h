@@ -1,11 +1,12 @@
 /* kernel.h: the velocity that smoothed point vortices induce at points, the innermost loops. doc/model.md, first
  * paragraph: K_e(r) = (-r_y, r_x) / (2 pi (|r|^2 + e^2)). Tested by tests/vortex/test_kernel.c.
  *
- * Every target sums over the sources in their order, and every operation is rounded as written here, so the results
- * have the same bits on every x86-64, whatever the width of its vectors:
+ * Every target sums over the sources in their order, and every operation is rounded as written here. So the results
+ * have the same bits on all processors of a family, whatever the width of their vectors:
  *
- * - |r|^2 + e^2 and the sums are fused products, a b + c with one rounding. They are written as such; the compiler
- *   fuses nothing. A processor without them computes the same bits, slowly.
+ * - |r|^2 + e^2 and the sums are fused products, a b + c with one rounding, on x86-64 with AVX2 and on arm64. They are
+ *   written as such; the compiler fuses nothing. The baseline, for any other processor, rounds twice: its last bits
+ *   differ.
  * - Targets are taken in blocks of 16. In a block, targets i and i + 8 share a division, 1/(d_i d_i+8): the last bits
  *   of a target depend on the other. Where 8 targets or fewer are left, each has its own division; so have all targets
  *   of a gradient. Lengths between 1e-75 and 1e75 m do not overflow.
@@ -15,12 +16,35 @@
 #ifndef KERNEL_H
 #define KERNEL_H
 
-/* Before a function with plain loops: compiled for three widths of vectors, of which the loader chooses. The
- * sanitizers cannot follow that choice, nor does every clang make the function that is called. */
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && !defined(__clang__)
-#define KERNEL_WIDE __attribute__((target_clones("avx512f", "avx2", "default")))
+/* The head of a function whose plain loops are compiled for several widths of vectors, of which each call takes the
+ * widest that the processor has. The body follows; static may precede it:
+ *
+ *     KERNEL_WIDE(void, double_all, (int n, double *x), (n, x)) {
+ *         for (int i = 0; i < n; i++) x[i] *= 2;
+ *     } */
+#ifdef __x86_64__
+#define KERNEL_WIDE(type, name, parameters, arguments)                         \
+    type name parameters;                                                      \
+    static inline __attribute__((always_inline)) type name##_loops parameters; \
+    static __attribute__((target("avx512f"))) type name##_avx512 parameters {  \
+        return name##_loops arguments;                                         \
+    }                                                                          \
+    static __attribute__((target("avx2"))) type name##_avx2 parameters {       \
+        return name##_loops arguments;                                         \
+    }                                                                          \
+    static type name##_baseline parameters {                                   \
+        return name##_loops arguments;                                         \
+    }                                                                          \
+    type name parameters {                                                     \
+        if (__builtin_cpu_supports("avx512f")) return name##_avx512 arguments; \
+        if (__builtin_cpu_supports("avx2")) return name##_avx2 arguments;      \
+        return name##_baseline arguments;                                      \
+    }                                                                          \
+    static inline type name##_loops parameters
 #else
-#define KERNEL_WIDE
+#define KERNEL_WIDE(type, name, parameters, arguments) \
+    type name parameters;                              \
+    type name parameters
 #endif
 
 /* Add to (u, v) at each target the velocity of all sources; smoothing is the length e. A source at a target adds 0. */

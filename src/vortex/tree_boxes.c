@@ -163,7 +163,8 @@ enum status tree_boxes_copy(struct tree_boxes *boxes, const struct tree_boxes *f
 enum { LANES = 8 };
 
 // the largest and the smallest of n values
-KERNEL_WIDE static void find_extremes(int n, const double *value, double *low, double *high) {
+static KERNEL_WIDE(void, find_extremes, (int n, const double *value, double *low, double *high),
+                   (n, value, low, high)) {
     double least[LANES], most[LANES];
     for (int k = 0; k < LANES; k++) least[k] = most[k] = value[0];
     int i = 0;
@@ -185,7 +186,8 @@ KERNEL_WIDE static void find_extremes(int n, const double *value, double *low, d
 }
 
 // the largest square of a distance of n points from a centre
-KERNEL_WIDE static double find_farthest(int n, const double *x, const double *y, double centre_x, double centre_y) {
+static KERNEL_WIDE(double, find_farthest, (int n, const double *x, const double *y, double centre_x, double centre_y),
+                   (n, x, y, centre_x, centre_y)) {
     double most[LANES] = {0}, all = 0;
     int i = 0;
     for (; i + LANES <= n; i += LANES) {

@@ -35,16 +35,6 @@ help_and_versions() {
         check "$command --help shows its usage" grep -q "^Usage: shoal $command" out
     done
     run --version
-    run check "$demo"
-    check "check estimates time and memory" \
-        grep -qE '^    its run takes about [0-9.e+]+ (s|min|h) and [0-9.e+]+ MB on this machine' out
-    run check "$demo" --set solver.max_steps=1
-    check "check says why it has no estimate" grep -q '^    no estimate of its time: .*solver.max_steps' out
-    check "which is no error" ended 0
-    run check "$cases/studies/phase.yaml" --set time.end=1
-    check "check adds up the runs of a study" grep -q '^    its runs take about .* on this machine, one after the other' out
-    run check "$demo" -q
-    check "check -q says nothing" silent
     run --version
     check "--version names the libraries" grep -qE 'SUNDIALS.*KLU.*LAPACK [0-9.]+, NetCDF' out
     check "--version ends with 0" ended 0
@@ -98,10 +88,13 @@ output_paths() {
     echo precious >mine.nc
     run run "$demo" -q --set "$short" -o mine.nc
     check "existing file: exit 2 or 4" test "$code" = 2 -o "$code" = 4
-    check "existing file: --force is named" says --force
-    check "existing file is untouched" grep -q precious mine.nc
+    check "existing file of another program is untouched" grep -q precious mine.nc
     run run "$demo" -q --set "$short" -o mine.nc --force
-    check "--force replaces it" status_is mine.nc complete
+    check "--force does not replace it" grep -q precious mine.nc
+    run run "$demo" -q --set "$short"
+    check "existing result: --force is named" says --force
+    run run "$demo" -q --set "$short" --force
+    check "--force replaces it" status_is demo.nc complete
 
     run run "$demo" -q --set "$short" -o no/such/folder.nc
     check "missing folder: exit 4" ended 4

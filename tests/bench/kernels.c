@@ -24,32 +24,46 @@ typedef void some_use(const struct kernel_variant *variant, int n, int m);
 
 // ---- the processor
 
+#ifdef __aarch64__
+#define IN_VECTOR "w"
+#else
+#define IN_VECTOR "x"
+#endif
+
 // 10 n m operations on vectors, none of which waits for another
-#define OPERATIONS(name, target, width, operation)                                                      \
-    target static void name(int n, int m) {                                                             \
-        typedef double lanes __attribute__((vector_size(width * sizeof(double))));                      \
-        lanes a = 1.1 - (lanes){0}, b = 1.3 - (lanes){0};                                               \
-        for (long i = 0; i < (long)n * m; i++) {                                                        \
-            _Pragma("GCC unroll 10") for (int k = 0; k < 10; k++) {                                     \
-                const lanes result = a operation b;                                                     \
-                __asm__ volatile("" : "+x"(a), "+x"(b) : "x"(result)); /* must not be optimised away */ \
-            }                                                                                           \
-        }                                                                                               \
+#define OPERATIONS(name, target, width, operation)                                 \
+    target static void name(int n, int m) {                                        \
+        typedef double lanes __attribute__((vector_size(width * sizeof(double)))); \
+        lanes a = 1.1 - (lanes){0}, b = 1.3 - (lanes){0};                          \
+        for (long i = 0; i < (long)n * m; i++) {                                   \
+            _Pragma("GCC unroll 10") for (int k = 0; k < 10; k++) {                \
+                const lanes result = a operation b;                                \
+                __asm__ volatile(""                                                \
+                                 : "+" IN_VECTOR(a), "+" IN_VECTOR(b)              \
+                                 : IN_VECTOR(result)); /* is not optimised away */ \
+            }                                                                      \
+        }                                                                          \
     }
+#ifdef __x86_64__
 OPERATIONS(products_avx512, __attribute__((target("avx512f"))), 8, *)
 OPERATIONS(products_avx2, __attribute__((target("avx2"))), 4, *)
-OPERATIONS(products_baseline, , 2, *)
 OPERATIONS(divisions_avx512, __attribute__((target("avx512f"))), 8, /)
 OPERATIONS(divisions_avx2, __attribute__((target("avx2"))), 4, /)
-OPERATIONS(divisions_baseline, , 2, /)
+#endif
+OPERATIONS(products_two, , 2, *)
+OPERATIONS(divisions_two, , 2, /)
 
 static const struct {
     const char *name;
     int width;
     void (*products)(int n, int m), (*divisions)(int n, int m);
-} processor[] = {{"avx512", 8, products_avx512, divisions_avx512},
-                 {"avx2", 4, products_avx2, divisions_avx2},
-                 {"baseline", 2, products_baseline, divisions_baseline}};
+} processor[] = {
+#ifdef __x86_64__
+    {"avx512", 8, products_avx512, divisions_avx512},
+    {"avx2", 4, products_avx2, divisions_avx2},
+#endif
+    {"neon", 2, products_two, divisions_two},
+    {"baseline", 2, products_two, divisions_two}};
 
 static int processor_of(const struct kernel_variant *variant) {
     int i = 0;

@@ -4,10 +4,11 @@
     memory.py PROGRAM SHIM EVERY      EVERY: 1 tries all of them, n every n-th
 
 The command ends with exit code 0, where it can do without, or 4 and one message with the word memory, or 1: a study
-whose members fail, and whose table says so. It leaves no half of a file, and a result that is there can be read.
+whose members fail, and whose table says so. It leaves no half of a file. A result that the command would replace is there
+byte for byte, or, once a run has begun to write rows, the new one is there and can be read.
 Prints a line for what is wrong, and as the last one how many passed and failed.
 """
-import os, subprocess, sys, tempfile
+import os, shutil, subprocess, sys, tempfile
 
 program, shim, every = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2]), int(sys.argv[3])
 CASE = """format: 1
@@ -18,11 +19,24 @@ fish:
   - {nodes: 5, sheet_points: 9, start: {position: [0, 0.7]}, control: {law: heading, desired_heading: 170}}
 """
 AXIS = "sweep=[{key: 'fish[0].wave.amplitude', values: [0.2, 0.3]}]"
-# what each command finds, and what it makes
+STEADY = """format: 1
+name: steady
+time: {end: 1, shedding_interval: 0.1}
+fish: [{nodes: 5, sheet_points: 9, wave: {frequency: 1}}]
+steady: {tolerance: 0.01, multipliers: false}
+"""
+# what each command is, and what it makes; what it replaces is in the folder kept
 COMMANDS = {
     "check": (["check", "small.yaml"], []),
     "show": (["show", "small.yaml"], []),
     "run": (["run", "small.yaml", "-q", "-o", "new.nc"], ["new.nc", "new.ckpt", "new.ckpt.previous"]),
+    "run --force": (["run", "small.yaml", "-q", "-o", "new.nc", "--force", "--set", "fish[0].wave.amplitude=0.2"],
+                    ["new.nc", "new.ckpt", "new.ckpt.previous"]),
+    "run with pressure": (["run", "small.yaml", "-q", "-o", "new.nc", "--force", "--set", "fish[*].force=pressure"],
+                          ["new.nc", "new.ckpt", "new.ckpt.previous"]),
+    "run with threads": (["run", "small.yaml", "-q", "-o", "new.nc", "--force", "--threads", "2"],
+                         ["new.nc", "new.ckpt", "new.ckpt.previous"]),
+    "steady": (["steady", "steady.yaml", "-q", "-o", "steady.nc", "--force"], ["steady.nc"]),
     "resume": (["resume", "new.ckpt", "--end", "0.06", "-q"], ["new.nc", "new.ckpt", "new.ckpt.previous"]),
     "study": (["study", "small.yaml", "-q", "-j", "1", "-o", "new", "--set", AXIS], ["new"]),
     "gather": (["gather", "study"], []),
@@ -30,10 +44,12 @@ COMMANDS = {
                 ["new.nc"]),
     "info": (["info", "old.nc"], []),
     "info of a checkpoint": (["info", "old.ckpt"], []),
-    "field": (["field", "old.nc", "-q", "--at", "0.04", "--grid", "4,4", "-o", "new.nc"], ["new.nc"]),
-    "view": (["view", "old.nc", "-q", "-o", "new.html"], ["new.html"]),
+    "field": (["field", "old.nc", "-q", "--at", "0.04", "--grid", "4,4", "-o", "field.nc", "--force"], ["field.nc"]),
+    "view": (["view", "old.nc", "-q", "-o", "new.html", "--force"], ["new.html"]),
     "export": (["export", "old.nc", "-q", "--vtk", "new"], ["new"]),
 }
+# those that find what they replace
+REPLACING = ["resume", "run --force", "run with pressure", "run with threads", "steady", "field", "view"]
 counts = {"passed": 0, "failed": 0}
 
 
@@ -44,10 +60,27 @@ def run(command, **settings):
 
 
 def prepare(name, made):
-    """Remove what the command makes; what is resumed is as it was."""
+    """Remove what the command makes; what is resumed or replaced is as it was."""
     subprocess.run(["rm", "-rf", *made], check=True)
-    if name == "resume":
-        subprocess.run("cp kept/* .", shell=True, check=True)
+    for file in made if name in REPLACING else []:
+        shutil.copy("kept/" + file, file)
+
+
+def lost(name, made):
+    """What is wrong with the results that a command has not replaced, or None."""
+    for file in made:
+        with open("kept/" + file, "rb") as kept:
+            if os.path.exists(file) and open(file, "rb").read() == kept.read():
+                continue
+        if not name.startswith(("run", "resume")):
+            return f"{file} is not what it was"
+        if file == "new.nc":
+            said = subprocess.run([program, "info", file], capture_output=True, text=True)
+            if said.returncode != 0 or "none yet" in said.stdout:
+                return f"{file} is neither what it was nor a result: {said.stderr}"
+        elif name == "resume" and not os.path.exists(file):
+            return f"{file} is gone"
+    return None
 
 
 def wrong(done):
@@ -56,7 +89,7 @@ def wrong(done):
         return None
     if done.returncode not in (1, 4):
         return f"exit code {done.returncode}: {done.stderr}"
-    said = done.stdout if done.returncode == 1 else done.stderr
+    said = done.stderr + (done.stdout if done.returncode == 1 else "")
     if "memory" not in said or "Traceback" in done.stderr:
         return f"message: {said!r}"
     left = [name for name in os.listdir(".") if ".part" in name]
@@ -68,7 +101,11 @@ with tempfile.TemporaryDirectory() as folder:
     open("small.yaml", "w").write(CASE)
     for name in ("old", "new"):
         run(["run", "small.yaml", "-q", "-o", name + ".nc"]).check_returncode()
-    subprocess.run("mkdir kept && mv new.* kept", shell=True, check=True)
+    open("steady.yaml", "w").write(STEADY)
+    run(["steady", "steady.yaml", "-q"]).check_returncode()
+    run(["field", "old.nc", "-q", "--grid", "3,3", "-o", "field.nc"]).check_returncode()
+    run(["view", "old.nc", "-q", "-o", "new.html"]).check_returncode()
+    subprocess.run("mkdir kept && mv new.* steady.nc field.nc kept", shell=True, check=True)
     run(["study", "small.yaml", "-q", "-o", "study", "--set", AXIS]).check_returncode()
     tried = 0
     for name, (command, made) in COMMANDS.items():
@@ -85,6 +122,8 @@ with tempfile.TemporaryDirectory() as folder:
                 continue
             prepare(name, made)
             bad = wrong(done := run(command, AT=str(at)))
+            if not bad and done.returncode != 0 and name in REPLACING:
+                bad = lost(name, made)
             found += done.returncode != 0
             counts["failed" if bad else "passed"] += 1
             if bad:

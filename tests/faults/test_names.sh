@@ -45,7 +45,7 @@ refused compare_finds_a_missing_folder_first 4 'there is no folder no/such' comp
 check and_has_not_begun test ! -s out
 
 # the name under which a result is made has the number of the process: a link for each that may be next
-bash -c 'for i in $(seq 0 40); do ln -s precious "part.nc.$(($$ + i)).part"; done
+bash -c 'for i in $(seq 0 40); do ln -s precious "part.nc.$(($$ + i))-0.part"; done
     exec "$0" run small.yaml -q -o part.nc' "$program" >out 2>err
 check nothing_is_written_through_a_part precious
 check the_result_is_there test -s part.nc -a ! -L part.nc
@@ -69,11 +69,20 @@ for foreign in text netcdf; do
         netcdf) ncgen -o foreign/member-0000.nc - <<<'netcdf x { dimensions: a = 3 ; }' ;;
     esac
     cp foreign/member-0000.nc before
-    refused "a foreign member stays ($foreign)" 4 'is no result of shoal' study study/case.yaml -q -o foreign
+    refused "a foreign member stays ($foreign)" 4 'is no NetCDF file of shoal' study study/case.yaml -q -o foreign
     check "it is untouched ($foreign)" cmp before foreign/member-0000.nc
-    run study study/case.yaml -q -o foreign --force
-    check "--force replaces it ($foreign)" test "$code" = 0
+    refused "nor does --force replace it ($foreign)" 4 'is no NetCDF file of shoal' study study/case.yaml -q -o foreign --force
+    check "it is still untouched ($foreign)" cmp before foreign/member-0000.nc
+    rm foreign/member-0000.nc && cp before foreign/member-0002.nc
+    refused "one behind the last member stays ($foreign)" 4 'is a result of another study' study study/case.yaml -q \
+        -o foreign --force
+    check "it too is untouched ($foreign)" cmp before foreign/member-0002.nc
+    rm foreign/member-0002.nc && cp before foreign/study.nc
+    refused "a foreign study.nc stays ($foreign)" 4 'no option replaces it' study study/case.yaml -q -o foreign --force
+    check "that is found before a member runs ($foreign)" test ! -e foreign/member-0000.nc
+    rm foreign/study.nc
 done
+run study study/case.yaml -q -o foreign
 truncate -s -100 foreign/member-0000.nc
 run study study/case.yaml -q -o foreign
 check a_cut_member_runs_again test "$code" = 0

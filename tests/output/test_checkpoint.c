@@ -185,19 +185,18 @@ static void only_checkpoints_may_be_replaced(void **state) {
     (void)state;
     char other[64];
     snprintf(other, sizeof other, "%s/other", folder);
-    school_ok(checkpoint_check_target(other));
-    school_ok(checkpoint_check_target(path));
-    assert_true(checkpoint_is(path));
+    school_ok(checkpoint_check_target(other, "run.nc"));
+    school_ok(checkpoint_check_target(path, "run.nc"));
+    assert_int_equal(checkpoint_check_target(path, "run"), STATUS_FILE);
+    if (!strstr(status_message(), "is a checkpoint of run.nc")) fail_msg("%s", status_message());
     FILE *const file = fopen(other, "w");
     fputs("SHOAL is not enough", file);
     fclose(file);
-    assert_int_equal(checkpoint_check_target(other), STATUS_FILE);
-    assert_int_equal(checkpoint_check_target(folder), STATUS_FILE);
-    assert_false(checkpoint_is(other));
-    assert_false(checkpoint_is(folder));
+    assert_int_equal(checkpoint_check_target(other, "run.nc"), STATUS_FILE);
+    assert_int_equal(checkpoint_check_target(folder, "run.nc"), STATUS_FILE);
     unlink(other);
     assert_int_equal(symlink(path, other), 0);
-    assert_int_equal(checkpoint_check_target(other), STATUS_FILE);
+    assert_int_equal(checkpoint_check_target(other, "run.nc"), STATUS_FILE);
     unlink(other);
 }
 

@@ -12,6 +12,7 @@
 #include "failing_malloc.h"
 #include "near.h"
 #include "output/netcdf.h"
+#include "output/target.h"
 
 // ---- what happens on disk: every fsync, link and rename is noted in one line
 
@@ -20,7 +21,8 @@ static char deeds[4096];
 static void note(const char *deed, const char *path) {
     const char *const slash = strrchr(path, '/');
     const size_t length = strlen(deeds);
-    snprintf(deeds + length, sizeof deeds - length, "%s %s; ", deed, slash ? slash + 1 : path);
+    const char *const name = strstr(path, ".part") ? "a part" : slash ? slash + 1 : path;
+    snprintf(deeds + length, sizeof deeds - length, "%s %s; ", deed, name);
 }
 
 int __real_fsync(int descriptor);
@@ -93,6 +95,7 @@ static enum status write_file(const char *path, bool overwrite) {
     const int names = netcdf_define_variable(
         &writer, &(struct netcdf_variable){"names", "names", "", NETCDF_TEXT, 2, {fish, name}, false});
     netcdf_write_integer(&writer, NETCDF_GLOBAL, "number", 7);
+    netcdf_write_integer(&writer, NETCDF_GLOBAL, "shoal_schema", 1);
     netcdf_end_definitions(&writer);
     netcdf_write_ints(&writer, count, NULL, NULL, (int[]){4, 5});
     netcdf_write_text(&writer, names, NULL, NULL, "first2nd\0\0");
@@ -142,13 +145,13 @@ static void a_file_is_on_disk_before_its_name_and_the_name_before_the_rows(void 
     const struct fixture *const f = *state;
     const char *const folder = strrchr(f->folder, '/') + 1;
     char want[512];
-    // the rows come within a second of the last fsync; the descriptor still has the temporary name of its opening
-    snprintf(want, sizeof want, "fsync of a.nc.%ld.part; link to a.nc; fsync of folder %s; ", (long)getpid(), folder);
+    // the rows come within a second of the last fsync; the descriptor still has the name of its opening
+    snprintf(want, sizeof want, "fsync of a part; link to a.nc; fsync of folder %s; ", folder);
     deeds[0] = '\0';
     assert_int_equal(write_file(f->path, false), STATUS_OK);
     assert_string_equal(deeds, want);
 
-    snprintf(want, sizeof want, "fsync of a.nc.%ld.part; rename to a.nc; fsync of folder %s; ", (long)getpid(), folder);
+    snprintf(want, sizeof want, "fsync of a part; rename to a.nc; fsync of folder %s; ", folder);
     deeds[0] = '\0';
     assert_int_equal(write_file(f->path, true), STATUS_OK);
     assert_string_equal(deeds, want);
@@ -156,33 +159,40 @@ static void a_file_is_on_disk_before_its_name_and_the_name_before_the_rows(void 
 
 static void a_file_that_came_meanwhile_is_not_replaced(void **state) {
     const struct fixture *const f = *state;
-    assert_int_equal(netcdf_check_target(f->path, false), STATUS_OK);
+    assert_int_equal(target_check(f->path, TARGET_NETCDF, false), STATUS_OK);
     assert_int_equal(write_file(f->path, false), STATUS_OK);
     assert_int_equal(write_file(f->path, false), STATUS_FILE);
     assert_message("exists");
-    assert_int_equal(netcdf_check_target(f->path, false), STATUS_FILE);
-    assert_int_equal(netcdf_check_target(f->path, true), STATUS_OK);
+    assert_int_equal(target_check(f->path, TARGET_NETCDF, false), STATUS_FILE);
+    assert_int_equal(target_check(f->path, TARGET_NETCDF, true), STATUS_OK);
 }
 
 static void a_missing_folder_is_named(void **state) {
     const struct fixture *const f = *state;
     char path[96];
     snprintf(path, sizeof path, "%s/no/run.nc", f->folder);
-    assert_int_equal(netcdf_check_target(path, true), STATUS_FILE);
+    assert_int_equal(target_check(path, TARGET_NETCDF, true), STATUS_FILE);
     assert_message("there is no folder");
     assert_int_equal(write_file(path, true), STATUS_FILE);
     assert_message("there is no folder");
-    assert_int_equal(netcdf_check_target("/no-such-folder.nc", true), STATUS_OK);
+    assert_int_equal(target_check("/no-such-folder.nc", TARGET_NETCDF, true), STATUS_OK);
 }
 
-static void every_failing_allocation_leaves_nothing(void **state) {
+static void every_failing_allocation_leaves_what_was_there(void **state) {
     const struct fixture *const f = *state;
-    for (int n = 0; n < 2; n++) {
-        n_until_failure = n;
-        assert_int_equal(write_file(f->path, false), STATUS_MEMORY);
-        n_until_failure = -1;
-        assert_int_equal(n_live, 0);
-        assert_int_not_equal(access(f->path, F_OK), 0);
+    for (int overwrite = 0; overwrite < 2; overwrite++) {
+        if (overwrite) assert_int_equal(write_file(f->path, false), STATUS_OK);
+        struct stat before, after;
+        const int exists = stat(f->path, &before) == 0;
+        assert_int_equal(exists, overwrite);
+        for (int n = 0; n < 4; n++) {
+            n_until_failure = n;
+            assert_int_equal(write_file(f->path, overwrite), STATUS_MEMORY);
+            n_until_failure = -1;
+            assert_int_equal(n_live, 0);
+            assert_int_equal(stat(f->path, &after) == 0, overwrite);
+            if (overwrite) assert_true(after.st_ino == before.st_ino && after.st_size == before.st_size);
+        }
     }
 }
 
@@ -406,7 +416,7 @@ int main(void) {
         WITH_FILE(a_file_is_on_disk_before_its_name_and_the_name_before_the_rows),
         WITH_FILE(a_file_that_came_meanwhile_is_not_replaced),
         WITH_FILE(a_missing_folder_is_named),
-        WITH_FILE(every_failing_allocation_leaves_nothing),
+        WITH_FILE(every_failing_allocation_leaves_what_was_there),
         WITH_FILE(only_what_is_expected_is_read),
         WITH_FILE(attributes_and_lengths_are_checked_too),
         WITH_FILE(what_is_no_file_is_refused),

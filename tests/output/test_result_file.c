@@ -34,6 +34,7 @@ static void every_variable_of_the_table_is_there_with_its_dimensions_unit_and_na
     struct result_file *result;
     assert_int_equal(result_file_create_steady(&result, f->path, 0, &f->values, EFFECTIVE, "", f->school, 10),
                      STATUS_OK);
+    assert_int_equal(result_file_publish(result, "running"), STATUS_OK);
     assert_int_equal(result_file_close(result, "complete"), STATUS_OK);
     const int file = open_to_read(f);
     for (int i = 0; i < result_table_n; i++) {
@@ -150,7 +151,7 @@ static void unused_slots_hold_nan(void **state) {
     assert_true(isnan(value_at(file, "node_mass", 0, 5, 0, 0)));
     assert_true(isnan(value_at(file, "wake_x", 0, 0, 0, 0)));
     double fill = 0;
-    assert_int_equal(nc_get_att_double(file, number_of(file, "x"), _FillValue, &fill), NC_NOERR);
+    assert_int_equal(nc_get_att_double(file, number_of(file, "x"), "_FillValue", &fill), NC_NOERR);
     assert_true(isnan(fill));
     nc_close(file);
 }
@@ -315,7 +316,7 @@ static void existing_file_stays_untouched(void **state) {
     FILE *other = fopen(f->path, "w");
     fputs("mine", other);
     fclose(other);
-    assert_refused(f, f->path, 0, "exists: choose another name with -o or allow replacing it with --force");
+    assert_refused(f, f->path, 0, "exists and is no NetCDF file of shoal");
     char text[8] = {0};
     other = fopen(f->path, "r");
     assert_int_equal(fread(text, 1, 7, other), 4);
@@ -323,15 +324,44 @@ static void existing_file_stays_untouched(void **state) {
     assert_string_equal(text, "mine");
 }
 
+static size_t number_of_rows(const struct fixture *f) {
+    const int file = open_to_read(f);
+    const size_t n = length_of(file, "time");
+    nc_close(file);
+    return n;
+}
+
+static void a_file_without_its_name_leaves_nothing(void **state) {
+    struct fixture *f = *state;
+    struct result_file *result;
+    write_file(f, 3);
+    assert_int_equal(result_file_create(&result, f->path, 1, &f->values, EFFECTIVE, "", f->school, 10), STATUS_OK);
+    assert_int_equal(append(f, result, 0, 1), STATUS_OK);
+    assert_int_equal(result_file_close(result, "failed: for a reason"), STATUS_OK);
+    assert_int_equal(number_of_rows(f), 3);
+}
+
+/* What another program, or a user, has made is not replaced, however the file begins. */
+static void existing_file_of_another_program_is_never_replaced(void **state) {
+    struct fixture *f = *state;
+    const char *const texts[] = {"mine", "format: 1\n", "CDF\1 of another program", "<!DOCTYPE html>"};
+    for (int i = 0; i < 4; i++) {
+        FILE *const other = fopen(f->path, "w");
+        fputs(texts[i], other);
+        fclose(other);
+        assert_refused(f, f->path, 1, "is no NetCDF file of shoal, so that no option replaces it");
+    }
+}
+
 static void existing_file_is_replaced_when_asked(void **state) {
     struct fixture *f = *state;
     write_file(f, 3);
     struct result_file *result;
     assert_int_equal(result_file_create(&result, f->path, 1, &f->values, EFFECTIVE, "", f->school, 10), STATUS_OK);
+    assert_int_equal(number_of_rows(f), 3);
+    assert_int_equal(result_file_publish(result, "running"), STATUS_OK);
     assert_int_equal(result_file_close(result, "complete"), STATUS_OK);
-    const int file = open_to_read(f);
-    assert_int_equal(length_of(file, "time"), 0);
-    nc_close(file);
+    assert_int_equal(number_of_rows(f), 0);
 }
 
 static void wrong_places_are_named(void **state) {
@@ -440,6 +470,8 @@ int main(void) {
         WITH_FILE(file_can_be_read_between_rows),
         cmocka_unit_test(closing_nothing_is_allowed),
         WITH_FILE(existing_file_stays_untouched),
+        WITH_FILE(a_file_without_its_name_leaves_nothing),
+        WITH_FILE(existing_file_of_another_program_is_never_replaced),
         WITH_FILE(existing_file_is_replaced_when_asked),
         WITH_FILE(wrong_places_are_named),
         WITH_FILE(full_disk_leaves_no_file_without_a_header),

@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -77,6 +78,100 @@ static void a_released_lock_is_free(void **state) {
     end(other);
 }
 
+static void two_runs_of_one_process_exclude_each_other(void **state) {
+    (void)state;
+    struct result_lock one, other;
+    assert_int_equal(result_lock_take(&one, result), STATUS_OK);
+    assert_int_equal(result_lock_take(&other, result), STATUS_FILE);
+    result_lock_release(&other);
+    // it still holds for another process
+    const pid_t child = fork();
+    if (child == 0) _exit(result_lock_take(&other, result) == STATUS_FILE ? 0 : 1);
+    int outcome;
+    waitpid(child, &outcome, 0);
+    assert_int_equal(outcome, 0);
+    result_lock_release(&one);
+    assert_int_not_equal(access(lock_file, F_OK), 0);
+}
+
+static void a_fork_does_not_release_the_lock(void **state) {
+    (void)state;
+    struct result_lock lock, other;
+    assert_int_equal(result_lock_take(&lock, result), STATUS_OK);
+    const pid_t child = fork();
+    if (child == 0) {
+        result_lock_release(&lock);
+        _exit(0);
+    }
+    waitpid(child, NULL, 0);
+    assert_int_equal(access(lock_file, F_OK), 0);
+    assert_int_equal(result_lock_take(&other, result), STATUS_FILE);
+    result_lock_release(&lock);
+    assert_int_not_equal(access(lock_file, F_OK), 0);
+}
+
+static void put(const char *text, size_t n) {
+    FILE *const file = fopen(lock_file, "w");
+    fwrite(text, 1, n, file);
+    fclose(file);
+}
+
+static void a_file_that_is_no_lock_is_not_touched(void **state) {
+    (void)state;
+    struct result_lock lock;
+    const char *const foreign[] = {"mine", "process x", "process 12 off host\n", "process 1 on h\nmine\n", "\nprocess"};
+    for (int i = 0; i < 5; i++) {
+        put(foreign[i], strlen(foreign[i]));
+        assert_int_equal(result_lock_take(&lock, result), STATUS_FILE);
+        if (!strstr(status_message(), "exists and is no lock of shoal")) fail_msg("%s", status_message());
+        char text[64] = "";
+        FILE *const file = fopen(lock_file, "r");
+        assert_int_equal(fread(text, 1, sizeof text - 1, file), strlen(foreign[i]));
+        fclose(file);
+        assert_string_equal(text, foreign[i]);
+    }
+    unlink(lock_file);
+}
+
+static void what_a_power_cut_leaves_of_a_lock_is_removed_and_an_empty_file_stays(void **state) {
+    (void)state;
+    struct result_lock lock;
+    const char left[] = "process 12 on a host\n", zeros[sizeof left] = "";
+    for (size_t n = 0; n < sizeof left; n++) {
+        for (int i = 0; i < 2; i++) {
+            put(i == 0 ? left : zeros, n);
+            assert_int_equal(result_lock_take(&lock, result), STATUS_OK);
+            result_lock_release(&lock);
+            struct stat facts;
+            assert_int_equal(stat(lock_file, &facts), n == 0 ? 0 : -1);
+            if (n == 0) assert_int_equal(facts.st_size, 0);
+        }
+    }
+    unlink(lock_file);
+}
+
+static void studies_share_a_folder_but_not_its_members(void **state) {
+    (void)state;
+    struct result_lock one, other, all;
+    char file[64];
+    snprintf(file, sizeof file, "%s/study.lock", folder);
+    assert_int_equal(result_lock_members(&one, folder, 0, 4), STATUS_OK);
+    assert_int_equal(result_lock_members(&other, folder, 3, 2), STATUS_FILE);
+    if (!strstr(status_message(), "another study runs members of it")) fail_msg("%s", status_message());
+    assert_int_equal(result_lock_members(&other, folder, 4, 2), STATUS_OK);
+    assert_int_equal(result_lock_members(&all, folder, 0, 0), STATUS_FILE);
+    // the last one removes the file
+    result_lock_release(&one);
+    assert_int_equal(access(file, F_OK), 0);
+    assert_int_equal(result_lock_members(&all, folder, 0, 0), STATUS_FILE);
+    result_lock_release(&other);
+    assert_int_not_equal(access(file, F_OK), 0);
+    assert_int_equal(result_lock_members(&all, folder, 0, 0), STATUS_OK);
+    assert_int_equal(result_lock_members(&one, folder, 7, 1), STATUS_FILE);
+    result_lock_release(&all);
+    assert_int_not_equal(access(file, F_OK), 0);
+}
+
 static void links_are_not_followed(void **state) {
     (void)state;
     struct result_lock lock;
@@ -110,6 +205,11 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_second_process_is_refused_and_hears_who_writes),
         cmocka_unit_test(a_released_lock_is_free),
+        cmocka_unit_test(two_runs_of_one_process_exclude_each_other),
+        cmocka_unit_test(a_fork_does_not_release_the_lock),
+        cmocka_unit_test(a_file_that_is_no_lock_is_not_touched),
+        cmocka_unit_test(what_a_power_cut_leaves_of_a_lock_is_removed_and_an_empty_file_stays),
+        cmocka_unit_test(studies_share_a_folder_but_not_its_members),
         cmocka_unit_test(links_are_not_followed),
         cmocka_unit_test(work_is_done_under_the_lock_and_only_then),
     };

@@ -104,7 +104,7 @@ static void a_longer_run_begins_with_the_rows(void **state) {
     const int still = open_to_read(f);
     assert_int_equal(length_of(still, "time"), 3);
     nc_close(still);
-    assert_int_equal(result_file_publish(result), STATUS_OK);
+    assert_int_equal(result_file_publish(result, "running"), STATUS_OK);
     assert_int_equal(append(f, result, 9, 1), STATUS_OK);
     assert_int_equal(result_file_close(result, "complete"), STATUS_OK);
     const int file = open_to_read(f);

@@ -11,9 +11,9 @@
 
 static void a_checkpoint_is_named_after_its_result(void **state) {
     (void)state;
-    const char *const names[][2] = {{"run.nc", "run.ckpt"}, {"a/b.nc", "a/b.ckpt"},
-                                    {"run", "run.ckpt"},    {"run.nc.old", "run.nc.old.ckpt"},
-                                    {".nc", ".nc.ckpt"},    {"a/.nc", "a/.nc.ckpt"}};
+    const char *const names[][2] = {{"run.nc", "run.ckpt"},    {"a/b.nc", "a/b.ckpt"},
+                                    {"run", "run.checkpoint"}, {"run.nc.old", "run.nc.old.checkpoint"},
+                                    {".nc", ".nc.checkpoint"}, {"a/.nc", "a/.nc.checkpoint"}};
     for (int i = 0; i < 6; i++) {
         char *const path = checkpoints_path(names[i][0]), *const previous = checkpoints_previous(path);
         assert_string_equal(path, names[i][1]);

@@ -49,6 +49,43 @@ static void a_wake_that_grows_costs_more_than_its_first_events(void **state) {
     assert_true(seconds[1] > 5 * seconds[0]);
 }
 
+static void a_long_wake_is_extrapolated_from_a_short_one(void **state) {
+    (void)state;
+    // 200,000 vortices, of which whole events cost seconds; and a direct sum, which grows with the square of the number
+    static const char *const texts[] = {
+        "time: {end: 4000, shedding_interval: 0.02}\nwake: {lifetime: 4000}\nfish: [{nodes: 5, sheet_points: 9}]\n",
+        "time: {end: 200, shedding_interval: 0.02}\nwake: {lifetime: 200, tolerance: 0}\n"
+        "fish: [{nodes: 5, sheet_points: 9}]\n"};
+    for (int i = 0; i < 2; i++) {
+        const double start = processor_time();
+        const struct estimate quick = estimate_of(texts[i], 0.1);
+        const double spent = processor_time() - start;
+        const struct estimate slow = estimate_of(texts[i], 1);
+        print_message("%.3g s and %.3g MB after %.2g s, %.3g s and %.3g MB\n", quick.seconds, 1e-6 * quick.bytes, spent,
+                      slow.seconds, 1e-6 * slow.bytes);
+        assert_true(spent < 0.5);
+        NEAR(log(quick.seconds / slow.seconds), 0, log(2), 0);
+        NEAR(log(quick.bytes / slow.bytes), 0, log(1.5), 0);
+    }
+}
+
+static volatile sig_atomic_t stop_at_once;
+
+static void a_first_event_that_is_stopped_is_estimated_from_its_part(void **state) {
+    (void)state;
+    static const char text[] = "time: {end: 2, shedding_interval: 0.02, output_interval: 0.02}\n" FISH;
+    struct simulation *const simulation = school_simulation(text);
+    struct estimate part;
+    stop_at_once = 1;
+    simulation->stop = &stop_at_once;
+    school_ok(estimate_run(simulation, 0.1, &part));
+    simulate_free(simulation);
+    assert_int_equal(part.n_events, 0);
+    const struct estimate whole = estimate_of(text, 0.1);
+    print_message("%.3g s, %.3g s\n", part.seconds, whole.seconds);
+    assert_true(part.seconds > 0 && part.seconds < 20 * whole.seconds);
+}
+
 static void every_kind_of_wake_can_be_made_up(void **state) {
     (void)state;
     const char *const kinds[] = {"sheet", "continuous", "impulsive"};
@@ -59,8 +96,7 @@ static void every_kind_of_wake_can_be_made_up(void **state) {
                  kinds[i]);
         struct simulation *const simulation = school_simulation(text);
         struct estimate estimate;
-        school_ok(estimate_run(simulation, 0, &estimate));
-        assert_int_equal(estimate.n_events, 1);
+        school_ok(estimate_run(simulation, 1, &estimate));
         assert_true(estimate.seconds > 0 && isfinite(estimate.seconds));
         // the wakes of the end, less what is older than a lifetime
         assert_true(simulation->state->wake[1].n_vortex >= wake_most(simulation->school, 500) - 1);
@@ -84,6 +120,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_run_that_is_done_whole_takes_what_it_took),
         cmocka_unit_test(a_wake_that_grows_costs_more_than_its_first_events),
+        cmocka_unit_test(a_long_wake_is_extrapolated_from_a_short_one),
+        cmocka_unit_test(a_first_event_that_is_stopped_is_estimated_from_its_part),
         cmocka_unit_test(every_kind_of_wake_can_be_made_up),
         cmocka_unit_test(a_run_that_fails_at_once_has_no_estimate),
     };

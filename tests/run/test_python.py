@@ -97,6 +97,32 @@ class Runs(unittest.TestCase):
         with self.assertRaisesRegex(shoal.CaseError, "run is NULL"):
             run.step()
 
+    def test_arguments_are_not_cut(self):
+        run = shoal.Run(PAIR)
+        before = run["wave_amplitude"].copy()
+        for fish in 2, -1, 2**32, 2**40, 2**64, "c":
+            with self.assertRaisesRegex(shoal.CaseError, f"there is no fish '?{fish}"):
+                run.set(fish, "wave.amplitude", 0.5)
+        with self.assertRaises(TypeError):
+            run.set(0.5, "wave.amplitude", 0.5)
+        for wrong in (lambda: run.set(0, "wave.amplitude\0 of it", 0.5), lambda: run["speed\0s"], lambda: "speed\0" in run,
+                      lambda: run.write("cut.nc\0 here"), lambda: shoal.Run("cut.yaml\0 here"),
+                      lambda: shoal.Run(PAIR, ["name=a\0b"]), lambda: shoal.Run(PAIR, folder=".\0")):
+            try:
+                self.assertFalse(wrong())
+            except shoal.CaseError as error:
+                self.assertIn("has a zero byte in it", str(error))
+        self.assertFalse(os.path.exists("cut.nc"))
+        run.step()
+        for time in -1, 0:
+            with self.assertRaisesRegex(shoal.CaseError, "before the last event"):
+                run.advance(time)
+        run.advance(run.end)
+        alone = shoal.Run(PAIR)
+        alone.advance(alone.end)
+        self.assertEqual(run["wave_amplitude"].tobytes(), alone["wave_amplitude"].tobytes())
+        self.assertEqual(before.tobytes(), shoal.Run(PAIR)["wave_amplitude"].tobytes())
+
     def test_a_fish_is_led(self):
         run, alone = shoal.Run(PAIR), shoal.Run(PAIR)
         run.set("a", "wave.amplitude", 0.1)
@@ -193,11 +219,50 @@ class Results(unittest.TestCase):
         subprocess.run([os.environ["SHOAL"], "resume", "-q", "stopped.ckpt"], check=True)
         subprocess.run([ROOT / "tests/run/same_result.py", "stopped.nc", "whole.nc"], check=True)
 
+    def test_of_threads_with_the_same_result_one_writes_it(self):
+        case = {**PAIR, "time": {**PAIR["time"], "end": 2}}
+        for overwrite in False, True:
+            ended = []
+
+            def swim():
+                try:
+                    ended.append(shoal.simulate(case, path="shared.nc", overwrite=overwrite))
+                except shoal.FileError as error:
+                    ended.append(str(error))
+
+            threads = [threading.Thread(target=swim) for _ in range(3)]
+            for thread in threads:
+                thread.start()
+            for thread in threads:
+                thread.join()
+            # one that comes after another has ended may write it again where it was told to
+            self.assertIn("shared.nc", ended)
+            for end in ended:
+                self.assertRegex(end, "^shared.nc$|another run writes it|exists")
+            with shoal.open("shared.nc") as data:
+                self.assertEqual((data.attrs["run_status"], data["time"].size), ("complete", 101))
+            self.assertFalse(os.path.exists("shared.nc.lock"))
+
+    def test_the_end_of_a_fork_leaves_the_result_alone(self):
+        run = shoal.Run(PAIR)
+        run.write("forked.nc")
+        run.step()
+        child = os.fork()
+        if child == 0:
+            del run
+            gc.collect()
+            os._exit(0 if os.path.exists("forked.nc.lock") else 1)
+        self.assertEqual(os.waitpid(child, 0)[1], 0)
+        run.advance(run.end)
+        run.write_end()
+        with shoal.open("forked.nc") as data:
+            self.assertEqual((data.attrs["run_status"], data["time"].size), ("complete", 11))
+
     def test_the_path_is_that_of_the_case(self):
         self.assertEqual(shoal.simulate({**PAIR, "name": "named"}), "named.nc")
         self.assertEqual(shoal.simulate(PAIR, {"output.file": "filed.nc"}), "filed.nc")
         with self.assertRaisesRegex(shoal.FileError, "filed.nc"):
-            shoal.simulate(PAIR, {"output.file": "filed.nc"}, overwrite=False)
+            shoal.simulate(PAIR, {"output.file": "filed.nc"})
 
     def test_a_result_opens_with_names(self):
         data = shoal.open(shoal.simulate(PAIR, path="names.nc"))

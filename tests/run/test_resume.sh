@@ -154,7 +154,7 @@ restore
 run run "${regular[@]}" -q -o run.nc --set time.checkpoint_interval=0 --force
 check a_new_run_removes_old_checkpoints test "$code" = 0 -a ! -e run.ckpt -a ! -e run.ckpt.previous
 echo mine >run.ckpt
-refused a_file_of_another_program 4 'run.ckpt is no checkpoint of shoal' run "${regular[@]}" -q -o run.nc --force
+refused a_file_of_another_program 4 'run.ckpt exists and is no checkpoint of shoal' run "${regular[@]}" -q -o run.nc --force
 
 # ---- one run at a time, signals that are ignored, and a signal within a long event
 

@@ -4,12 +4,15 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "base/version.h"
 #include "failing_malloc.h"
 #include "output/checkpoint.h"
 #include "output/netcdf.h"
+#include "output/result_lock.h"
 #include "output/result_table.h"
 #include "school.h"
 #include "shoal.h"
@@ -403,8 +406,10 @@ static void a_run_advances_to_the_event_at_or_after_a_time(void **state) {
     NEAR(shoal_time(run), 0.04, 0, 0);
     assert_int_equal(shoal_advance(run, 3 * 0.02), SHOAL_OK);  // a rounding error above 0.06
     NEAR(shoal_time(run), 0.06, 0, 0);
-    assert_int_equal(shoal_advance(run, 0.01), SHOAL_OK);
+    assert_int_equal(shoal_advance(run, 0.05), SHOAL_OK);  // its event is this one
     NEAR(shoal_time(run), 0.06, 0, 0);
+    refuses(shoal_advance(run, 0.04), "before the last event, at 0.06 s");
+    refuses(shoal_advance(run, -1), "before the last event, at 0.06 s");
     refuses(shoal_advance(run, 0.11), "after the end of the case");
     refuses(shoal_advance(run, NAN), "not finite");
     NEAR(shoal_time(run), 0.06, 0, 0);
@@ -682,6 +687,94 @@ static void a_checkpoint_stands_beside_the_result(void **state) {
     assert_int_equal(rmdir(folder), 0);
 }
 
+// a folder, and the path of a result in it
+static char result_folder[32], result_path[64];
+static const char *const every_event[] = {"time.output_interval=0.02"};
+
+static void make_result_folder(void) {
+    strcpy(result_folder, "/tmp/test_shoal_XXXXXX");
+    assert_non_null(mkdtemp(result_folder));
+    snprintf(result_path, sizeof result_path, "%s/run.nc", result_folder);
+}
+
+static size_t n_rows_of(const char *path) {
+    struct netcdf_reader reader;
+    size_t n_rows;
+    school_ok(netcdf_open(&reader, path));
+    school_ok(netcdf_read_length(&reader, "time", 0, 100, &n_rows));
+    netcdf_close(&reader);
+    return n_rows;
+}
+
+static void two_runs_of_one_process_do_not_write_the_same_result(void **state) {
+    struct shoal *const one = opened(*state, 1, every_event), *const other = opened(*state, 1, every_event);
+    make_result_folder();
+    assert_int_equal(shoal_write(one, result_path, 0), SHOAL_OK);
+    assert_int_equal(shoal_step(one), SHOAL_OK);
+    assert_int_equal(shoal_checkpoint(one), SHOAL_OK);
+    for (int overwrite = 0; overwrite < 2; overwrite++) {
+        assert_int_equal(shoal_write(other, result_path, overwrite), SHOAL_FILE);
+    }
+    assert_non_null(strstr(shoal_message(), "another run writes it"));
+    shoal_close(other);
+    // the lock holds for other processes too
+    const pid_t child = fork();
+    if (child == 0) {
+        struct result_lock lock;
+        _exit(result_lock_take(&lock, result_path) == STATUS_FILE ? 0 : 1);
+    }
+    int outcome;
+    assert_int_equal(waitpid(child, &outcome, 0), child);
+    assert_int_equal(outcome, 0);
+    assert_int_equal(shoal_advance(one, 0.1), SHOAL_OK);
+    shoal_close(one);
+    assert_int_equal(n_rows_of(result_path), 6);
+    assert_int_equal(unlink(result_path), 0);
+    snprintf(result_path, sizeof result_path, "%s/run.ckpt", result_folder);
+    assert_int_equal(unlink(result_path), 0);
+    assert_int_equal(rmdir(result_folder), 0);
+}
+
+/* What a fork of the process does with a run whose result the process writes; its exit code. */
+static int use_in_a_fork(struct shoal *run, int how) {
+    if (how == 0) shoal_close(run);
+    if (how == 1 && shoal_step(run) != SHOAL_FILE) return 1;
+    if (how == 2 && shoal_checkpoint(run) != SHOAL_FILE) return 2;
+    if (how == 3 && shoal_write_end(run) != SHOAL_FILE) return 3;
+    if (how == 0) return 0;
+    // from then on it is a run without a file
+    if (!strstr(shoal_message(), "of which this one is a fork")) return 4;
+    if (shoal_step(run) != SHOAL_OK || shoal_write_end(run) != SHOAL_OK) return 5;
+    shoal_close(run);
+    return 0;
+}
+
+static void a_fork_leaves_the_result_and_its_lock_alone(void **state) {
+    struct shoal *const run = opened(*state, 1, every_event);
+    make_result_folder();
+    assert_int_equal(shoal_write(run, result_path, 0), SHOAL_OK);
+    for (int how = 0; how < 4; how++) {
+        assert_int_equal(shoal_step(run), SHOAL_OK);
+        struct stat before, after;
+        assert_int_equal(stat(result_path, &before), 0);
+        const pid_t child = fork();
+        if (child == 0) exit(use_in_a_fork(run, how));
+        int outcome;
+        assert_int_equal(waitpid(child, &outcome, 0), child);
+        assert_int_equal(outcome, 0);
+        assert_int_equal(stat(result_path, &after), 0);
+        assert_memory_equal(&before.st_mtim, &after.st_mtim, sizeof before.st_mtim);
+        struct result_lock lock;
+        assert_int_equal(result_lock_take(&lock, result_path), STATUS_FILE);
+    }
+    assert_int_equal(shoal_advance(run, 0.1), SHOAL_OK);
+    shoal_close(run);
+    assert_int_equal(n_rows_of(result_path), 6);
+    assert_int_equal(unlink(result_path), 0);
+    // the lock is gone too
+    assert_int_equal(rmdir(result_folder), 0);
+}
+
 static void a_result_file_that_cannot_be_written_is_said_so(void **state) {
     struct shoal *const run = opened(*state, 0, NULL);
     assert_int_equal(shoal_write(run, "/no/such/folder/x.nc", 0), SHOAL_FILE);
@@ -866,6 +959,8 @@ int main(void) {
         cmocka_unit_test(looking_does_not_change_a_run),
         cmocka_unit_test(a_result_file_has_the_rows_that_are_due),
         cmocka_unit_test(a_checkpoint_stands_beside_the_result),
+        cmocka_unit_test(two_runs_of_one_process_do_not_write_the_same_result),
+        cmocka_unit_test(a_fork_leaves_the_result_and_its_lock_alone),
         cmocka_unit_test(a_result_file_that_cannot_be_written_is_said_so),
         cmocka_unit_test(a_copy_goes_on_with_the_bits_of_the_run),
         cmocka_unit_test(a_copy_shows_what_the_run_shows),

@@ -53,6 +53,7 @@ static void a_steady_state_has_its_own_values(void **state) {
         STATUS_OK);
     assert_int_equal(append(f, file, 0, 0), STATUS_OK);
     result_file_steady(file, f->school, &values);
+    assert_int_equal(result_file_publish(file, "complete"), STATUS_OK);
     assert_int_equal(result_file_close(file, "complete"), STATUS_OK);
     assert_int_equal(member_file_read(&member, f->path), STATUS_OK);
     NEAR(value(&member, "steady_drag", 1, 0), 6, 0, 0);

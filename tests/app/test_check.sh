@@ -1,0 +1,93 @@
+#!/usr/bin/env bash
+# `shoal check`: one verdict, whatever a run knows before its first step, and half a second of the processor.
+#
+#   tests/app/test_check.sh PROGRAM
+# shellcheck source=tests/checks.sh
+. "$(dirname "$0")/../checks.sh"
+
+cases=$root/cases
+readonly demo="$cases/demo.yaml"
+
+ended() { ((code == $1)); }
+silent() { [[ ! -s out && ! -s err ]]; }
+
+# Run `check` with a limit of the time of the processor, user and system, in ms.
+spends() {  # ms, arguments...
+    local limit=$1 before after
+    shift
+    # the times of children are in the second line of `times`
+    before=$(times | sed -n 2p)
+    run check "$@"
+    after=$(times | sed -n 2p)
+    awk -v before="$before" -v after="$after" -v limit="$limit" '
+        function seconds(text, part) { split(text, part, /[ms]/); return 60 * part[1] + part[2] }
+        function both(line, word) { split(line, word, " "); return seconds(word[1]) + seconds(word[2]) }
+        BEGIN { spent = 1000 * (both(after) - both(before)); print spent " ms"; exit !(spent <= limit) }'
+}
+
+estimates() {
+    run check "$demo"
+    check "time and memory are estimated" \
+        grep -qE '^    its run takes about [0-9.e+]+ (s|min|h) and [0-9.e+]+ MB on this machine' out
+    run check "$cases/studies/phase.yaml" --set time.end=1
+    check "the runs of a study add up" grep -q '^    its runs take about .* on this machine, one after the other' out
+    run check "$demo" -q
+    check "-q says nothing" silent
+}
+
+one_verdict() {
+    run check "$demo" --set solver.max_steps=1
+    check "a case whose integration fails is not ok" ended 1
+    check "which is all that is said" test ! -s out
+    check "with the message of the run" grep -q 'solver.max_steps' err
+    run check "$demo" --set solver.max_steps=1 -q
+    check "nor is it with -q" ended 1
+    # member 10 of 11 goes wrong at once: a result of the study
+    run check "$cases/studies/vibration.yaml"
+    check "members that fail are results of a study" ended 0
+    check "and are told" grep -q '^    1 of its members fails in the first events, as member 10: unstable' out
+}
+
+before_the_first_step() {
+    run check "$demo" --set time.shedding_interval=0.3 --set time.output_interval=0.3
+    check "few events in a beat: no error" ended 0
+    check "few events in a beat: a warning" has err "shoal: warning: a beat of fish has only 3.33 events"
+    run check "$demo" --set 'fish[0].body.modulus=1e5'
+    check "slow bending modes" has err "shoal: warning: the slowest bending mode of fish has"
+    run check "$demo" --set 'fish[0].wave.frequency=0' --set 'fish[0].motion.driven=all' --set 'fish[0].motion.speed=1' \
+        --set 'fish[0].sheet_points=21'
+    check "few sheet points for a given speed" has err "shoal: warning: fish swims"
+    printf '%s\n' 'format: 1' 'time: {end: 1}' 'contact: {action: warn}' \
+        'fish: [{body: {profile: uniform, thickness: 0.1}}, {body: {profile: uniform, thickness: 0.1},' \
+        '  start: {position: [0, 0.115]}}]' >near.yaml
+    run check near.yaml
+    check "bodies that begin near each other" has err "shoal: warning: fish1 and fish2 come within"
+    run check "$cases/studies/added_mass.yaml"
+    check "a study says which members" has err "shoal: warning: member 0 and 1 other: the slowest bending mode"
+
+    run run "$demo" --set time.end=0.1 -o demo.nc -q
+    run check "$demo"
+    check "a result that is there: no error" ended 0
+    check "a result that is there: a note" has err "shoal: note: demo.nc"
+    run check "$demo" --set solver.threads=900 --set output.file=x/y.nc
+    check "a folder that is not there: exit 4" ended 4
+}
+
+half_a_second() {
+    printf '%s\n' 'format: 1' 'time: {end: 2000, shedding_interval: 0.01}' 'wake: {lifetime: 2000}' 'fish: [{}]' >long.yaml
+    check "200,000 vortices: half a second" spends 500 long.yaml
+    check "and hours of a run" grep -qE 'its run takes about [0-9.]+ h and [0-9.e+]+ MB' out
+    check "in a channel" spends 500 long.yaml --set 'fluid.walls=[-1, 1]'
+    check "without a tree" spends 500 long.yaml --set wake.tolerance=0
+    awk 'BEGIN { print "format: 1\ntime: {end: 10}\nfish:"
+                 for (i = 0; i < 150; i++) printf "  - {start: {position: [%g, %g]}}\n", i % 10 * 2, int(i / 10) / 2 }' >many.yaml
+    check "150 fish" spends 500 many.yaml
+    check "a study of 88 members, of which some take long" spends 500 "$cases/studies/stiffness.yaml"
+    check "says of how many it knows" grep -q 'estimated from a few events of [0-9]* members' out
+}
+
+estimates
+one_verdict
+before_the_first_step
+half_a_second
+finish
