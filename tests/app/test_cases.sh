@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
 # Every case in cases/ runs, and gives the numbers of tests/data/cases.tsv; every study in cases/studies/ states what it
-# expects, and meets it.
+# expects, and meets it. The line "# Expected" of a case states the same numbers. WRITE=1 writes the numbers of this program
+# into the table and into the cases (then read the difference!).
 #
 #   tests/app/test_cases.sh PROGRAM
 # shellcheck source=tests/checks.sh
 . "$(dirname "$0")/../checks.sh"
 
 /usr/bin/python3 - "$program" "$root/cases" "$root/tests/data/cases.tsv" <<'EOF'
-import glob, os, subprocess, sys
+import glob, math, os, re, subprocess, sys
 import netCDF4
 import numpy as np
 
@@ -66,15 +67,63 @@ def quantity(data, name, fish):
     return {"": lambda v: v[-1], "beat": lambda v: v[beat].mean(), "least": np.nanmin, "most": np.nanmax}[how](values)
 
 
+PHRASES = {  # of a quantity in the line "# Expected" of a case
+    "speed": "speed {} m/s", "beat:heading": "mean heading {} degrees", "least:least_distance": "least distance {} m",
+    "tail": "sweep of the tail {} m", "turning": "sum of the turning angles {} degrees", "steps": "{} steps per event",
+    "efficiency": "efficiency {}", "most:leading_edge_a0": "largest A_0 {}", "beat:thrust": "mean thrust {} N",
+    "most:contact_energy": "largest contact energy {} J", "kinetic_energy": "kinetic energy {} J",
+    "polarisation": "polarisation {}", "steady_drag": "drag {} N", "steady_lift": "lift {} N",
+    "steady_deflection": "deflection of the tail {} m",
+}
+
+
+def expected(case):
+    """The line "# Expected" of a case, from the table."""
+    parts = []
+    for name, end, quantity, fish, value, _ in rows:
+        if name == case:
+            several = sum(1 for row in rows if row[0] == case and row[3] != fish) > 0 and fish != "-"
+            parts.append(PHRASES[quantity].format(value) + (f" (fish[{fish}])" if several else ""))
+    when = {"-": "at the end", "steady": "in equilibrium"}.get(next(row[1] for row in rows if row[0] == case))
+    when = when or f"after {next(row[1] for row in rows if row[0] == case)} s"
+    return f"# Expected {when}: {', '.join(parts)}."
+
+
+def write_expected(case):
+    """Put the line "# Expected" into a case, above its commands."""
+    path = f"{cases}/{case}.yaml"
+    lines = [line for line in open(path).read().split("\n") if not line.startswith("# Expected ")]
+    command = next((i for i, line in enumerate(lines) if line.startswith("#   ")), None)
+    lines.insert(command - 1 if command else 1, expected(case))
+    open(path, "w").write("\n".join(lines))
+
+
 rows = [line.split() for line in open(table) if line.strip() and not line.startswith("#")]
 results = {}
+written = {}
 for case, end, name, fish, value, tolerance in rows:
     if (case, end) not in results:
         results[case, end] = run(case, end)
     if results[case, end] is not None:
         got = quantity(results[case, end], name, None if fish == "-" else int(fish))
+        if os.environ.get("WRITE"):
+            value = f"{got:.{max(0, math.ceil(-math.log10(float(tolerance))))}f}"
+            written[case, end, name, fish] = value
         good = abs(got - float(value)) <= float(tolerance)
         check(f"{case} {name} {fish}", good, f"{got:.5f}, expected {value} within {tolerance}")
+if os.environ.get("WRITE"):
+    lines = open(table).read().split("\n")
+    for i, line in enumerate(lines):
+        words = line.split()
+        if line.startswith("#") or tuple(words[:4]) not in written:
+            continue
+        lines[i] = re.sub(r"^((?:\S+\s+){4})(\S+)(\s+)(\S+)$", lambda m: m[1] + written[tuple(words[:4])].ljust(10) + m[4], line)
+    open(table, "w").write("\n".join(lines))
+    rows = [line.split() for line in lines if line.strip() and not line.startswith("#")]
+    for case in dict.fromkeys(row[0] for row in rows):
+        write_expected(case)
+for case in dict.fromkeys(row[0] for row in rows):
+    check(f"{case} states what is expected", expected(case) in open(f"{cases}/{case}.yaml").read().split("\n"))
 for path in sorted(glob.glob(f"{cases}/*.yaml")):
     case = os.path.basename(path)[:-5]
     if case not in (row[0] for row in rows):
