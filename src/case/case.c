@@ -286,13 +286,34 @@ static enum status derive_order(struct case_values *values) {
     return STATUS_OK;
 }
 
+/* The longest period of a beat in the school, s; 0 where no fish beats. */
+static double longest_period(const struct school_parameters *school) {
+    double longest = 0;
+    for (int i = 0; i < school->n_fish; i++) {
+        const struct fish_parameters *const fish = &school->fish[i];
+        const int is_given = fish->motion.prescribed > PRESCRIBED_NONE && fish->motion.frequency > 0;
+        const double frequency = is_given ? fish->motion.frequency : fish->wave.frequency;
+        if (frequency > 0) longest = fmax(longest, 1 / frequency);
+    }
+    return longest;
+}
+
+static void derive_wake(struct school_parameters *school) {
+    struct wake_parameters *const wake = &school->wake;
+    const double period = longest_period(school);
+    derive(&wake->lifetime.seconds, wake->lifetime.beats * period);
+    derive(&wake->lifetime.seconds, period > 0 ? 3 * period : 2);
+    derive(&wake->decay.seconds, wake->decay.beats * period);
+    derive(&wake->decay.seconds, 0.75 * wake->lifetime.seconds);
+    const bool is_sheet = wake->shedding == SHEDDING_SHEET;
+    derive(&wake->taper, is_sheet ? 0.6 : 0);
+    derive(&wake->taper_beside, is_sheet ? 0.07 : 0);
+    derive(&wake->tolerance, school->rtol / 100);
+}
+
 static enum status derive_all(struct case_values *values, const char *origin) {
     derive(&values->time.output_interval, 10 * values->school.shedding_interval);
-    derive(&values->school.wake.decay, values->school.wake.lifetime / 10);
-    const bool is_sheet = values->school.wake.shedding == SHEDDING_SHEET;
-    derive(&values->school.wake.taper, is_sheet ? 0.6 : 0);
-    derive(&values->school.wake.taper_beside, is_sheet ? 0.07 : 0);
-    derive(&values->school.wake.tolerance, values->school.rtol / 100);
+    derive_wake(&values->school);
     derive(&values->output.wake_interval, values->time.output_interval);
     if (!values->name && !(values->name = stem(origin))) return out_of_memory();
     for (int i = 0; i < values->school.n_fish; i++) TRY(derive_fish(&values->school.fish[i], i));

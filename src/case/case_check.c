@@ -148,13 +148,18 @@ static void check_verlet(const struct check *check) {
 static void check_wake(const struct check *check) {
     const struct wake_parameters *const wake = &check->values->school.wake;
     const double interval = check->values->school.shedding_interval;
-    if (wake->decay > wake->lifetime) {
-        complain(check, "wake.fade", "%g s is longer than wake.lifetime, %g s", wake->decay, wake->lifetime);
+    const double lifetime = wake->lifetime.seconds, fade = wake->decay.seconds;
+    static const char no_beat[] = "is in beats, but no fish beats: use a number of seconds";
+    if (wake->lifetime.beats > 0 && !(lifetime > 0)) {
+        complain(check, "wake.lifetime", no_beat);
+        return;
     }
-    if (wake->lifetime < interval) {
-        complain(check, "wake.lifetime", "%g s is less than time.shedding_interval, %g s", wake->lifetime, interval);
+    if (wake->decay.beats > 0 && !(fade > 0)) complain(check, "wake.fade", no_beat);
+    if (fade > lifetime) complain(check, "wake.fade", "%g s is longer than wake.lifetime, %g s", fade, lifetime);
+    if (lifetime < interval) {
+        complain(check, "wake.lifetime", "%g s is less than time.shedding_interval, %g s", lifetime, interval);
     }
-    const double n_vortices = fmin(wake->lifetime, check->values->time.end) / interval;
+    const double n_vortices = fmin(lifetime, check->values->time.end) / interval;
     if (n_vortices > max_vortices) {
         complain(check, "wake.lifetime", "%g vortices in the wake of a fish; the maximum is %g", n_vortices,
                  max_vortices);

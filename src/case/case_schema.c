@@ -60,6 +60,11 @@ static const char expectations[] = "\"type\": \"array\", \"items\": {\"type\": \
 static void print_type(FILE *stream, const struct key *key) {
     switch (key->type) {
         case REAL: print_number(stream, key, "number"); break;
+        case DURATION:
+            fputs("\"anyOf\": [{", stream);
+            print_number(stream, key, "number");
+            fputs("}, {\"type\": \"string\", \"pattern\": \"^[0-9.eE+-]+ beats?$\"}]", stream);
+            break;
         case INTEGER: print_number(stream, key, "integer"); break;
         case CHOICE:
         case METHOD: print_words(stream, key); break;

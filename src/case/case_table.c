@@ -84,11 +84,12 @@ const struct key case_table[] = {
     {"wake.taper_beside", REAL, AT(school.wake.taper_beside), NULL, FROM(0), "",
      .meaning = "shedding sheet: the same distance for vortices beside the body, in body lengths",
      .derived = "0.07 with shedding sheet, else 0"},
-    {"wake.lifetime", REAL, AT(school.wake.lifetime), "2", ABOVE(0), "s", .meaning = "age at which a vortex is removed",
-     .synonyms = "life max_age age"},
-    {"wake.fade", REAL, AT(school.wake.decay), NULL, FROM(0), "s",
-     .meaning = "last part of the lifetime, over which the strength of a vortex decays to 0",
-     .derived = "a tenth of the lifetime", .published = "0"},
+    {"wake.lifetime", DURATION, AT(school.wake.lifetime), NULL, ABOVE(0), "s",
+     .meaning = "age at which a vortex is removed, in seconds, or in beats of the slowest fish as in '3 beats'",
+     .derived = "3 beats; 2 s where no fish beats", .published = "2", .synonyms = "life max_age age"},
+    {"wake.fade", DURATION, AT(school.wake.decay), NULL, FROM(0), "s",
+     .meaning = "last part of the lifetime, over which the strength of a vortex decays to 0, in seconds or in beats",
+     .derived = "three quarters of the lifetime", .published = "0"},
     {"wake.shedding", CHOICE, AT(school.wake.shedding), "sheet", ANY, "",
      .meaning = "sheet: a vortex sheet grows from the tail; continuous: a nascent vortex grows between events; "
                 "impulsive: a vortex of full strength appears at each event",
@@ -414,6 +415,7 @@ const char *case_table_word(const struct key *key, int i) {
 
 const char *case_table_type(const struct key *key) {
     static const char *const names[] = {[REAL] = "number",
+                                        [DURATION] = "number, or 'number beats'",
                                         [INTEGER] = "integer",
                                         [CHOICE] = "word",
                                         [METHOD] = "word",

@@ -12,6 +12,7 @@ enum { CASE_MAX_FISH = 10000 };
 
 enum key_type {
     REAL,        /* double */
+    DURATION,    /* struct duration: a number of seconds, or '3 beats' */
     INTEGER,     /* int */
     CHOICE,      /* an enum: the index of the word in .words */
     METHOD,      /* enum method: the index of the word in the table of methods (base/methods.h) */

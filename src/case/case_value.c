@@ -3,6 +3,7 @@
 
 #include <limits.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,6 +22,7 @@ struct context {
 void case_value_clear(const struct key *key, void *field) {
     switch (key->type) {
         case REAL: *(double *)field = NAN; break;
+        case DURATION: *(struct duration *)field = (struct duration){NAN, NAN}; break;
         case PAIR: ((double *)field)[0] = ((double *)field)[1] = NAN; break;
         case INTEGER: *(int *)field = 0; break;
         case CHOICE:
@@ -90,6 +92,26 @@ static bool read_number(const struct context *context, const struct yaml_node *n
     }
     *value = number;
     return true;
+}
+
+/* A number of seconds, or of beats: '3 beats', '1 beat'. */
+static void read_duration(const struct context *context, const struct yaml_node *node, struct duration *duration) {
+    static const char form[] = "a number in s, or a number of beats as in '3 beats'";
+    const char *const word = node->kind == YAML_SCALAR ? strchr(node->text, ' ') : NULL;
+    char digits[64];
+    if (!word || (strcmp(word, " beats") != 0 && strcmp(word, " beat") != 0) ||
+        (size_t)(word - node->text) >= sizeof digits) {
+        const struct context in_seconds = {context->key, context->path, "", context->errors};
+        read_number(&in_seconds, node, form, &duration->seconds);
+        return;
+    }
+    snprintf(digits, sizeof digits, "%.*s", (int)(word - node->text), node->text);
+    struct yaml_node number = *node;
+    number.text = digits;
+    struct key in_beats = *context->key;
+    in_beats.unit = "beats";
+    const struct context of_number = {&in_beats, context->path, "", context->errors};
+    read_number(&of_number, &number, form, &duration->beats);
 }
 
 /* True for a sign and digits only. */
@@ -280,6 +302,7 @@ enum status case_value_read(const struct key *key, void *field, const struct yam
     const struct context context = {key, path, unit, errors};
     switch (key->type) {
         case REAL: read_number(&context, node, "a number", field); break;
+        case DURATION: read_duration(&context, node, field); break;
         case INTEGER: read_integer(&context, node, field); break;
         case CHOICE:
         case METHOD: read_choice(&context, node, field); break;
@@ -331,6 +354,7 @@ static void write_rows(struct text *text, const struct number_list *list) {
 void case_value_write(struct text *text, const struct key *key, const void *field) {
     switch (key->type) {
         case REAL: text_add_number(text, *(const double *)field); break;
+        case DURATION: text_add_number(text, ((const struct duration *)field)->seconds); break;
         case INTEGER: text_add(text, "%d", *(const int *)field); break;
         case CHOICE:
         case METHOD: text_add(text, "%s", case_table_word(key, *(const int *)field)); break;

@@ -7,6 +7,7 @@
  * A value is checked as a value of its key, and kept as the string that --set takes. */
 #include "case/sweep.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -91,7 +92,7 @@ static enum status read_key(const struct case_values *values, struct axis *axis,
     if (!key) return STATUS_OK;
     swept->row = key->path;
     swept->unit = key->unit;
-    swept->is_number = key->type == REAL || key->type == INTEGER;
+    swept->is_number = key->type == REAL || key->type == INTEGER || key->type == DURATION;
     swept->path = strdup(node->text);
     return swept->path ? STATUS_OK : out_of_memory();
 }
@@ -122,6 +123,7 @@ static enum status read_value(struct axis *axis, int index, int k, const struct 
     if (axis->key[k]) {
         union {
             double number[2];
+            struct duration duration;
             int integer;
             char *text;
             struct number_list list;
@@ -130,6 +132,8 @@ static enum status read_value(struct axis *axis, int index, int k, const struct 
         snprintf(path, sizeof path, "%s.values[%d] (%s)", axis->name, index, axis->key[k]->path);
         case_value_clear(axis->key[k], &field);
         const enum status status = case_value_read(axis->key[k], &field, value, path, axis->errors);
+        // beats are kept as a text
+        if (axis->key[k]->type == DURATION && !isnan(field.duration.beats)) axis->into->key[k].is_number = 0;
         case_value_free(axis->key[k], &field);
         TRY(status);
     }

@@ -132,8 +132,8 @@ static void set_fluid(struct school *school, const struct school_parameters *par
     school->gust_omega = 2 * M_PI * parameters->fluid.gust_frequency;
     set_walls(school, parameters);
     school->interval = parameters->shedding_interval;
-    school->lifetime = parameters->wake.lifetime;
-    school->decay = parameters->wake.decay;
+    school->lifetime = parameters->wake.lifetime.seconds;
+    school->decay = parameters->wake.decay.seconds;
     school->shedding = parameters->wake.shedding;
     school->kutta = parameters->wake.kutta;
     school->kutta_ramp = parameters->wake.kutta_ramp;

@@ -40,10 +40,16 @@ struct fluid_parameters {
     struct number_list walls; /* heights of walls along x: none, one, or two in ascending order, m */
 };
 
+/* A time that a case may state in beats; NaN where it does not. The seconds are set in either case. */
+struct duration {
+    double seconds;
+    double beats; /* of the fish that beats most slowly */
+};
+
 struct wake_parameters {
     double smoothing, sheet_smoothing; /* fractions of the body length */
     double taper, taper_beside;        /* fractions of the body length */
-    double lifetime, decay;            /* s */
+    struct duration lifetime, decay;
     enum shedding shedding;
     enum kutta kutta;
     double kutta_ramp; /* s */

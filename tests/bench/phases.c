@@ -206,7 +206,8 @@ static void whole_run(const char *cases, const char *name, int threads) {
     must(simulate_run(&values, &options));
     const double wall = now() - since, cpu = cpu_time() - cpu_since, interval = values.school.shedding_interval;
     const long n_events = lround(values.time.end / interval);
-    const int n_vortices = values.school.n_fish * (int)fmin(values.school.wake.lifetime / interval, (double)n_events);
+    const int n_vortices =
+        values.school.n_fish * (int)fmin(values.school.wake.lifetime.seconds / interval, (double)n_events);
     print_row(name, threads, n_vortices, n_events, interval, wall, cpu, memory());
     case_free(&values);
     remove("phases.nc");
@@ -250,7 +251,7 @@ static void school_begin(struct school_run *run, int n_fish, int threads) {
     read_case(&run->values, text, threads);
     free(text);
     must(simulate_create(&run->simulation, &run->values));
-    const long full = lround(run->values.school.wake.lifetime / run->values.school.shedding_interval);
+    const long full = lround(run->values.school.wake.lifetime.seconds / run->values.school.shedding_interval);
     while (run->simulation->state->event < full) must(simulate_step(run->simulation));
     run->megabytes = memory() - before;
 }

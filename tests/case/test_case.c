@@ -90,7 +90,8 @@ static void the_defaults_are_those_of_the_reference(void **state) {
     NEAR(s.school.wake.taper_beside, 0.07, 0, 0);
     assert_int_equal(s.school.wake.curve, BODY_LINE_SMOOTH);
     NEAR(s.school.wake.sheet_smoothing, 0.05, 0, 0);
-    NEAR(s.school.wake.lifetime, 2, 0, 0);
+    NEAR(s.school.wake.lifetime.seconds, 3, 0, 0);
+    NEAR(s.school.wake.decay.seconds, 2.25, 0, 0);
     assert_int_equal(s.school.wake.shedding, SHEDDING_SHEET);
     assert_int_equal(s.school.wake.kutta, KUTTA_EDGE);
     assert_int_equal(s.school.wake.collocation, COLLOCATION_CHEBYSHEV);
@@ -130,6 +131,32 @@ static void the_defaults_are_those_of_the_reference(void **state) {
     case_free(&s);
 }
 
+// of the fish that beats most slowly; of a driven one the beat is that of its motion
+static void lifetime_and_fade_may_be_in_beats(void **state) {
+    (void)state;
+    static const struct {
+        const char *wake, *fish;
+        double lifetime, fade;
+    } cases[] = {
+        {"", "{wave: {frequency: 4}}, {wave: {frequency: 0.5}}, {wave: {frequency: 0}}", 6, 4.5},
+        {"wake: {lifetime: 5 beats}\n", "{wave: {frequency: 2}}", 2.5, 1.875},
+        {"wake: {lifetime: 0.5 beats, fade: 0 beats}\n", "{}", 0.5, 0},
+        {"wake: {lifetime: 7, fade: 1 beat}\n", "{wave: {frequency: 0.2}}", 7, 5},
+        {"wake: {fade: 2}\n", "{}", 3, 2},
+        {"", "{wave: {frequency: 3}, motion: {driven: all, frequency: 0.5, heave: 0.1}}", 6, 4.5},
+        {"", "{wave: {frequency: 0}}", 2, 1.5},
+        {"preset: published\nwake: {lifetime: 4 beats}\n", "{wave: {frequency: 2}}", 2, 0},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[512];
+        snprintf(text, sizeof text, "format: 1\ntime: {end: 1}\n%sfish: [%s]\n", cases[i].wake, cases[i].fish);
+        struct case_values s = parse(text);
+        NEAR(s.school.wake.lifetime.seconds, cases[i].lifetime, 0, 1e-15);
+        NEAR(s.school.wake.decay.seconds, cases[i].fade, 0, 1e-15);
+        case_free(&s);
+    }
+}
+
 static void derived_defaults_follow_what_they_derive_from(void **state) {
     (void)state;
     struct case_values s = parse(
@@ -138,7 +165,7 @@ static void derived_defaults_follow_what_they_derive_from(void **state) {
         "  {control: {waypoints: [[1, 2]]}}]\n");
     NEAR(s.time.output_interval, 0.2, 0, 1e-15);
     NEAR(s.output.wake_interval, 0.2, 0, 1e-15);
-    NEAR(s.school.wake.decay, 0.3, 0, 1e-15);
+    NEAR(s.school.wake.decay.seconds, 2.25, 0, 1e-15);
     assert_string_equal(s.name, "x");
     assert_string_equal(s.school.fish[0].name, "fish1");
     assert_string_equal(s.school.fish[1].name, "fish2");
@@ -206,7 +233,8 @@ static void preset_published_sets_the_options_of_the_article(void **state) {
     NEAR(s.school.wake.kutta_ramp, 0.5, 0, 0);
     assert_int_equal(s.school.wake.shedding, SHEDDING_IMPULSIVE);
     NEAR(s.school.wake.sheet_smoothing, 0.01, 0, 0);
-    NEAR(s.school.wake.decay, 0, 0, 0);
+    NEAR(s.school.wake.lifetime.seconds, 2, 0, 0);
+    NEAR(s.school.wake.decay.seconds, 0, 0, 0);
     assert_int_equal(s.school.wake.dissipated_circulation, REMOVED_DROPPED);
     assert_int_equal(s.school.fish->drag.law, DRAG_QUADRATIC);
     assert_int_equal(s.school.fish->drag.extent, EXTENT_THICKNESS);
@@ -307,7 +335,7 @@ static void an_include_is_weaker_than_the_file_that_includes_it(void **state) {
     if (case_read(&s, "case.yaml", 0, NULL) != STATUS_OK) fail_msg("%s", status_message());
     NEAR(s.school.fluid.density, 1025, 0, 0);
     NEAR(s.school.fluid.velocity[0], 3, 0, 0);
-    NEAR(s.school.wake.lifetime, 4, 0, 0);
+    NEAR(s.school.wake.lifetime.seconds, 4, 0, 0);
     assert_int_equal(s.school.n_fish, 1);  // lists replace
     assert_int_equal(s.school.fish->nodes, 17);
     assert_string_equal(s.name, "case");
@@ -323,12 +351,12 @@ static void includes_are_relative_to_their_file_and_the_last_is_strongest(void *
     write_file("case.yaml", "include: [below/more.yaml]\nformat: 1\ntime: {end: 1}\nfish: [{}]\n");
     struct case_values s;
     if (case_read(&s, "case.yaml", 0, NULL) != STATUS_OK) fail_msg("%s", status_message());
-    NEAR(s.school.wake.lifetime, 3, 0, 0);
+    NEAR(s.school.wake.lifetime.seconds, 3, 0, 0);
     NEAR(s.school.wake.smoothing, 0.4, 0, 0);
     case_free(&s);
     static const char text[] = "include: [below/more.yaml, water.yaml]\nformat: 1\ntime: {end: 1}\nfish: [{}]\n";
     if (case_parse(&s, text, strlen(text), "memory", *state, 0, NULL)) fail_msg("%s", status_message());
-    NEAR(s.school.wake.lifetime, 4, 0, 0);
+    NEAR(s.school.wake.lifetime.seconds, 4, 0, 0);
     case_free(&s);
 }
 
@@ -530,6 +558,7 @@ int main(void) {
         cmocka_unit_test(order_3_needs_bodies_whose_stiffness_is_damped),
         cmocka_unit_test(order_5_is_for_bodies_slower_than_their_beat),
         cmocka_unit_test(the_defaults_are_those_of_the_reference),
+        cmocka_unit_test(lifetime_and_fade_may_be_in_beats),
         cmocka_unit_test(derived_defaults_follow_what_they_derive_from),
         cmocka_unit_test(every_default_of_the_table_is_a_value_of_its_key),
         cmocka_unit_test(defaults_reach_every_fish_below_its_own_keys),
