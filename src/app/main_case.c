@@ -106,6 +106,18 @@ static enum status check_members(const struct case_values *study, struct cost *c
     return STATUS_OK;
 }
 
+/* Print the warnings that a run of the case is known to have. */
+static void print_warnings(const struct simulation *simulation) {
+    char line[WARNING_BYTES];
+    for (enum warning w = 0; w < N_WARNINGS; w++) {
+        if (!warnings_is_of_case(w)) continue;
+        if (warnings_line(w, simulation->school, simulation->state, simulation->diagnostics,
+                          simulation->residual->scratch, line)) {
+            fprintf(stderr, "shoal: warning: %s\n", line);
+        }
+    }
+}
+
 enum status main_check(const struct request *request) {
     struct case_values values;
     TRY(case_read(&values, request->positional, request->n_assignments, request->assignments));
@@ -114,6 +126,7 @@ enum status main_check(const struct request *request) {
     struct cost cost = {0};
     if (status == STATUS_OK) status = check_members(&values, request->quiet ? NULL : &cost);
     if (status == STATUS_OK) main_print_notes(request, &values);
+    if (status == STATUS_OK) print_warnings(simulation);
     if (status == STATUS_OK && !request->quiet) {
         printf("%s: ok: %d fish, %d unknowns, %.6g s in %ld events", request->positional, simulation->school->n_fish,
                simulation->school->n_unknowns, values.time.end, simulation->n_events);
