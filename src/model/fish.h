@@ -99,6 +99,7 @@ struct fish {
     double *added_mass;      /* mu, kg                                            (n_edges) */
     double *displaced_mass;  /* rho_f A lbar, kg                                  (n_edges) */
     double tail_added_mass;  /* m_L, kg m-1; 0: nothing leaves at the tail */
+    int has_cusp;            /* whether the outline ends in a cusp: joukowski without a thickness of the tail */
     double linear_speed;     /* V1 of the drag law v (V1 + |v|), m s-1; 0: v |v| */
     enum skin skin;
     double friction_speed;   /* u0 of laminar friction and of a boundary layer, m s-1 */

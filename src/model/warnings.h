@@ -15,6 +15,9 @@ enum warning {
     WARNING_SHEET,
     WARNING_MODES,
     WARNING_EDGE,
+    WARNING_CUSP,
+    WARNING_TAIL,
+    WARNING_FORCE,
     N_WARNINGS
 };
 enum { WARNING_BYTES = 384 /* of a line */ };
@@ -24,6 +27,9 @@ struct warning_words {
     const char *subject, *cause;
 };
 extern const struct warning_words warnings_words[N_WARNINGS];
+
+/* Whether a warning depends on the case alone, so that it is known before a run. */
+int warnings_is_of_case(enum warning warning);
 
 /* Write the line of a warning, without a line break, and return 1; or return 0 where there is no cause for it. The
  * diagnostics are those of the state. scratch: (n_unknowns). */
