@@ -229,7 +229,8 @@ static void swimmer(const struct table *table) {
     compare_flow(table, "swimmer", "force along the course", "force along the course, rms, rho L^3/T^2", period.along,
                  1, 1.2);
     compare_flow(table, "swimmer", "circulation", "circulation of a wake vortex, L^2/T", period.circulation, 0.65, 0.8);
-    verify_value("swimmer: speed, L/T", "the prototype of this friction", 0.627, period.speed, 0.008);
+    // its factor of form was that of 0.08 L, the thickness of the outline; the edge there has 0.0785 L on its length
+    verify_value("swimmer: speed, L/T", "the prototype of this friction", 0.627, period.speed, 0.01);
     verify_value("swimmer: power into the fluid, rho L^4/T^3", "the prototype of this friction", 0.0201, period.power,
                  3e-4);
     verify_show("swimmer: largest A_0", "", period.edge);
