@@ -180,7 +180,7 @@ cases foil_anderson, foil_heave and swimmer_navier_stokes of cases/, with the de
 references are in tests/verify/data with their sources. *Error* is the ratio of what the program finds to the reference,
 *bound* the range in which the ratio has to be. Why they differ:
 
-* *Foil, thrust.* 2 to 13 % too small for St from 0.2 to 0.5: the sheet has no thickness, by which the inviscid theory of the
+* *Foil, thrust.* 3 to 13 % too small for St from 0.2 to 0.5: the sheet has no thickness, by which the inviscid theory of the
   same article (dashed) has more, and the friction of a steady boundary layer takes 3 to 6 %. At psi = 90 that theory is
   below the experiment too: there leading-edge vortices join those of the trailing edge, which no attached flow has.
 * *Foil, St = 0.1.* The thrust is the small difference of suction, pressure and friction: with all of the suction it is 1.4
@@ -190,7 +190,7 @@ references are in tests/verify/data with their sources. *Error* is the ratio of 
 * *Heave, thrust.* What is left of the suction is about the friction, and depends on the critical A_0 (0.01 in A_0 is 0.017 in
   the coefficient). The two references at Re 4000 differ by more than each of them from the program: other noses and tails,
   and other grids.
-* *Heave, lift and power.* Up to 25 % too large: the boundary layer displaces the flow at the trailing edge (round, of the
+* *Heave, lift and power.* Up to a quarter too large: the boundary layer displaces the flow at the trailing edge (round, of the
   ellipse), so that Kutta's condition holds less than fully, and the leading-edge vortex takes circulation.
 * *Swimmer, speed.* 8 % above the middle of an extrapolation that spreads by 12 %: the friction is that of a steady boundary
   layer with factors for wave and thickness (without these the swimmer is 22 % too fast), and has no history.

@@ -109,7 +109,8 @@ struct fish {
 
     /* force: pressure */
     double fluid_density;              /* kg m-3 */
-    double suction;                    /* S pi rho_f w L: of the nose, over a square of velocities, kg m-1 */
+    double full_suction;               /* pi rho_f w L: of the nose, over a square of velocities, kg m-1 */
+    double suction;                    /* that times S */
     double suction_limit;              /* A_c; 0: none */
     double nose_factor;                /* (M-1) ds_0/(pi L): qhat over the unknown at the nose, 1 */
     double *control_density;           /* density of the fluid times depth, kg m-2         (n_control) */

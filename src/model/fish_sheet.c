@@ -114,7 +114,8 @@ static enum status set_pressure(struct fish *fish, const struct fish_parameters 
     }
     fish->fluid_density = density;
     fish->nose_factor = fish->n_control * fish->sheet_weight[0] / (M_PI * fish->length);
-    fish->suction = from->suction * M_PI * per_edge[0] * fish->length;
+    fish->full_suction = M_PI * per_edge[0] * fish->length;
+    fish->suction = from->suction * fish->full_suction;
     fish->suction_limit = from->suction_limit;
     const enum status status = sheet_integrals_create(&fish->integrals, fish->n_nodes, fish->n_sheet, per_edge);
     free(per_edge);

@@ -122,7 +122,7 @@ static void suck(struct pressure *p, const double *y) {
     p->by_slip = fish->suction * law.by_bound * 2 * square * tau;
     for (int i = 0; i < 2; i++) {
         p->suction[i] = -fish->suction * law.value * p->nose.t[i];
-        p->separation[i] = -fish->suction * (full - law.value) * p->nose.t[i];
+        p->separation[i] = -fish->full_suction * full * p->nose.t[i] - p->suction[i];
     }
 }
 

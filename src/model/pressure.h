@@ -31,7 +31,7 @@ struct pressure {
     double *momentum_rate; /* dI/dt, N: of pressure_update_rate                               (2 n_nodes) */
     double *force;         /* turning and convection: the force of the pressure and dI/dt, N  (2 n_nodes) */
     double suction[2];     /* on the nose, N */
-    double separation[2];  /* what full suction has more than that, N */
+    double separation[2];  /* what the suction of attached flow has more than that, N */
     struct direction nose; /* of the body at the nose */
     double by_strength;    /* of the size of the suction: by the unknown at the nose, N s m-1, */
     double by_slip;        /* and by tau, N s m-1 */
@@ -93,9 +93,9 @@ double pressure_jump(const struct pressure *pressure, int c, const double *y, co
 void pressure_of_edge(const struct pressure *pressure, int k, const double *y, const double *yp, double force[2]);
 
 /* After pressure_update_rate: the force of the pressure and the suction on the body, N, their moments about a point, N
- * m, and their powers, W; the same of what full suction has more (separation), which acts on nothing; the sum of the
- * added momentum, N s, and its moment, N m s; the leading-edge suction parameter A_0 = qhat/tau, the tangent of the
- * incidence of a flat plate, NaN where no fluid moves past the nose. */
+ * m, and their powers, W; force and power of what the suction of attached flow has more (separation), which acts on
+ * nothing; the sum of the added momentum, N s, and its moment, N m s; A_0 = qhat/tau, the leading-edge suction
+ * parameter: the tangent of the incidence of a flat plate, NaN where no fluid moves past the nose. */
 struct pressure_forces {
     double pressure[2], suction[2], separation[2], momentum[2];
     double pressure_moment, suction_moment, momentum_moment;

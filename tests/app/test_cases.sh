@@ -74,7 +74,9 @@ PHRASES = {  # of a quantity in the line "# Expected" of a case
     "efficiency": "efficiency {}", "most:leading_edge_a0": "largest A_0 {}", "beat:thrust": "mean thrust {} N",
     "most:contact_energy": "largest contact energy {} J", "kinetic_energy": "kinetic energy {} J",
     "polarisation": "polarisation {}", "steady_drag": "drag {} N", "steady_lift": "lift {} N",
-    "steady_deflection": "deflection of the tail {} m",
+    "steady_deflection": "deflection of the tail {} m", "mean_thrust": "mean thrust over the last period {} N",
+    "mean_power": "mean power over the last period {} W",
+    "separation_share": "part of the last period with separation {}",
 }
 
 

@@ -289,10 +289,10 @@ static void suction_of_a_plate_ends_at_its_limit(void **state) {
         NEAR(of->pressure.leading_edge_a0, full->leading_edge_a0, 0, 1e-9);
         NEAR(of->leading_edge_most, a0, 0, 1e-9);
         NEAR(size_of(of->pressure.suction), part * size_of(full->suction), 0, 1e-9);
-        NEAR(size_of(of->pressure.separation), (1 - part) * size_of(full->suction), 1e-9, 1e-9);
+        NEAR(size_of(of->pressure.separation), (1 / 0.8 - part) * size_of(full->suction), 1e-9, 1e-9);
         // along the plate, and ahead, as the suction: 20 degrees to the way
-        NEAR(of->pressure.separation[0], (1 - part) * full->suction[0], 1e-9, 1e-9);
-        NEAR(of->pressure.separation[1], (1 - part) * full->suction[1], 1e-9, 1e-9);
+        NEAR(of->pressure.separation[0], (1 / 0.8 - part) * full->suction[0], 1e-9, 1e-9);
+        NEAR(of->pressure.separation[1], (1 / 0.8 - part) * full->suction[1], 1e-9, 1e-9);
         NEAR(of->pressure.separation_power, -3 * of->pressure.separation[0], 1e-9, 1e-9);
         // without a period: now
         NEAR(of->separation_share, limit[i] > 0 && a0 > limit[i], 0, 0);

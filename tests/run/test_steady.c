@@ -41,6 +41,32 @@ static void speed_and_multiplier_are_those_of_a_long_run(void **state) {
     steady_setup_close(&setup);
 }
 
+// a plate whose nose holds a part of the suction that attached flow has; slower, it would lose more of it
+static void a_plate_with_limited_suction_has_the_speed_of_a_long_run(void **state) {
+    (void)state;
+    static const char text[] = SCHOOL_SECOND
+        "time: {end: 1, shedding_interval: 0.05, output_interval: 0.05}\n"
+        "fluid: {density: 1, viscosity: 1.25e-3}\nsteady: {tolerance: 5e-5}\n"
+        "fish: [{nodes: 5, sheet_points: 17, force: pressure, pressure: {suction_limit: 0.14}, start: {speed: 5},\n"
+        "        wave: {amplitude: 0, frequency: 0}, body: {profile: uniform, thickness: 0.1, width: 1, density: "
+        "1.59},\n"
+        "        motion: {driven: all, surge: free, heave: 0.175, frequency: 1}}]\n";
+    struct steady_setup setup;
+    struct brute brute[60];
+    steady_setup_open(&setup, text);
+    school_ok(steady_search_run(&setup.problem));
+    run_long(text, 60, brute);
+    NEAR(setup.problem.map.last[0].speed, brute[59].speed, 0, 1e-4);
+    assert_in_range(setup.problem.map.n_beats, 1, 30);
+    struct simulation *const simulation = setup.simulation;
+    simulate_measure(simulation);
+    // a tenth of the suction
+    const struct pressure_forces *const forces = &simulation->diagnostics->fish[0].pressure;
+    assert_true(hypot(forces->separation[0], forces->separation[1]) >
+                0.05 * hypot(forces->suction[0], forces->suction[1]));
+    steady_setup_close(&setup);
+}
+
 // a run takes 25 to 45 beats to 1e-4
 static void circle(const char *text, double least_turn, int most_beats) {
     struct steady_setup setup;
@@ -240,6 +266,7 @@ static void a_search_that_fails_says_what_the_last_beats_have_in_common(void **s
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(speed_and_multiplier_are_those_of_a_long_run),
+        cmocka_unit_test(a_plate_with_limited_suction_has_the_speed_of_a_long_run),
         cmocka_unit_test(a_fish_that_is_steered_to_one_side_goes_in_a_circle),
         cmocka_unit_test(a_fish_that_coasts_has_the_same_speed_from_two_starts),
         cmocka_unit_test(circulation_that_is_added_changes_nothing_else),

@@ -30,7 +30,7 @@ static const char *const cases[] = {
     "fluid: {velocity: [0.1, -0.05], shear: 0.2, gust: {amplitude: 0.1, frequency: 0.7}}\n"
     "wake: {curve: smooth, shedding: sheet}\n"
     "fish:\n"
-    "  - {nodes: 7, sheet_points: 13, force: pressure}\n"
+    "  - {nodes: 7, sheet_points: 13, force: pressure, pressure: {suction_limit: 0.01}}\n"
     "  - {nodes: 6, sheet_points: 13, force: reactive, start: {position: [0, 2]}}\n"
     "  - {nodes: 5, sheet_points: 9, force: pressure, start: {position: [0, -2]},\n"
     "     motion: {driven: head, heave: 0.1, pitch: 10, frequency: 1}}\n"

@@ -194,8 +194,8 @@ static void heave(const struct table *table) {
         const char *const assignments[] = {viscosity, "fish[0].drag.form=1", "fish[0].pressure.suction_limit=0"};
         const struct period period = run_case("foil_heave.yaml", 6, 1, assignments, NULL, NULL);
         compare_flow(table, flows[i], "CT", "thrust coefficient", period.thrust / pressure, least[i], most[i]);
-        compare_flow(table, flows[i], "CP", "power coefficient", period.power / pressure / speed, 1.0, 1.16);
-        compare_flow(table, flows[i], "CL", "lift coefficient, rms", period.across / pressure, 1.1, 1.27);
+        compare_flow(table, flows[i], "CP", "power coefficient", period.power / pressure / speed, 1.0, 1.18);
+        compare_flow(table, flows[i], "CL", "lift coefficient, rms", period.across / pressure, 1.1, 1.3);
         if (i == 0) {
             verify_zero("heave at Re 1000: energy balance of the body over the work", "the limit acts", period.audit,
                         1e-3);
@@ -204,8 +204,8 @@ static void heave(const struct table *table) {
         verify_show(verify_text("%s: part of the period with separation at the nose", flows[i]),
                     verify_text("largest A_0 %.2f", period.edge), period.separation_share);
         if (i == 0) {
-            compare_flow(table, flows[i], "circulation", "of a wake vortex over U c", period.circulation / speed, 1.0,
-                         1.3);
+            compare_flow(table, flows[i], "circulation", "circulation of a wake vortex over U c",
+                         period.circulation / speed, 1.0, 1.3);
         }
         const struct period plate = run_case("foil_heave.yaml", 6, 2, assignments, NULL, NULL);
         if (i == 0) {
@@ -229,7 +229,8 @@ static void swimmer(const struct table *table) {
     compare_flow(table, "swimmer", "force along the course", "force along the course, rms, rho L^3/T^2", period.along,
                  1, 1.2);
     compare_flow(table, "swimmer", "circulation", "circulation of a wake vortex, L^2/T", period.circulation, 0.65, 0.8);
-    verify_value("swimmer: speed, L/T", "the prototype of this friction", 0.627, period.speed, 0.008);
+    // its factor of form was that of 0.08 L, the thickness of the outline; the edge there has 0.0785 L on its length
+    verify_value("swimmer: speed, L/T", "the prototype of this friction", 0.627, period.speed, 0.01);
     verify_value("swimmer: power into the fluid, rho L^4/T^3", "the prototype of this friction", 0.0201, period.power,
                  3e-4);
     verify_show("swimmer: largest A_0", "", period.edge);
