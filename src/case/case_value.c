@@ -33,7 +33,8 @@ void case_value_clear(const struct key *key, void *field) {
         case FILES:
         case DEFAULTS:
         case AXES:
-        case EXPECTATIONS: break;
+        case EXPECTATIONS:
+        case ERRORS: break;
     }
 }
 
@@ -292,7 +293,8 @@ enum status case_value_read(const struct key *key, void *field, const struct yam
         case FILES:
         case DEFAULTS:
         case AXES:
-        case EXPECTATIONS: break;
+        case EXPECTATIONS:
+        case ERRORS: break;
     }
     return STATUS_OK;
 }
@@ -343,6 +345,7 @@ void case_value_write(struct text *text, const struct key *key, const void *fiel
         case FILES:
         case DEFAULTS:
         case AXES:
-        case EXPECTATIONS: break;
+        case EXPECTATIONS:
+        case ERRORS: break;
     }
 }
