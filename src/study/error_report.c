@@ -1,7 +1,6 @@
 /* error_report.c: see error_report.h. */
 #include "study/error_report.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,8 +8,8 @@
 #include "base/text.h"
 #include "case/case_member.h"
 #include "case/sweep_members.h"
+#include "output/plain_file.h"
 #include "run/estimate.h"
-#include "study/study_folder.h"
 #include "study/study_table.h"
 
 enum { MOST_FISH = 4, LEVEL_BYTES = 160, NAME_BYTES = 80, MEANING_BYTES = 200 };
@@ -365,9 +364,10 @@ enum status error_report_print(struct error_study *study, const struct member_fi
 // ---- error.csv
 
 enum status error_report_write_csv(const struct error_study *study, const char *path) {
-    FILE *const file = study_folder_open(path, 0);
-    if (!file) return status_fail(STATUS_FILE, "%s: cannot be written: %s", path, strerror(errno));
-    fprintf(file, "fish,quantity,unit,value,key,levels,order,error,percent,verdict\n");
+    struct plain_file table;
+    TRY(plain_file_open(&table, path, TARGET_TABLE, true, 0666));
+    FILE *const file = table.stream;
+    fputs(TARGET_TABLE_MARK "\n", file);
     for (int f = 0; f < study->n_fish; f++) {
         for (int q = 0; q < study->n_asked; q++) {
             const int place = error_plan_place(study, q, f);
@@ -390,9 +390,7 @@ enum status error_report_write_csv(const struct error_study *study, const char *
             }
         }
     }
-    const int failed = ferror(file);
-    if (fclose(file) == 0 && !failed) return STATUS_OK;
-    return status_fail(STATUS_FILE, "%s: cannot be written: %s", path, strerror(errno));
+    return plain_file_close(&table, STATUS_OK);
 }
 
 // ---- study.nc
