@@ -187,6 +187,7 @@ style: all $(generated_docs)  ## check warnings, format, layers, names and the g
 	@scripts/check-layers.sh $(B)
 	@scripts/check-names.sh $(B)
 	@scripts/mutants.py --check
+	@scripts/check-docs.py
 	@for document in $(generated_docs:$(B)/%=%); do \
 	    diff -u "$$document" "$(B)/$$document" || { echo "$$document is out of date: run 'make docs'" >&2; exit 1; }; \
 	done
