@@ -259,7 +259,11 @@ enum status member_file_read(struct member_file *member, const char *path) {
     *member = (struct member_file){0};
     struct reading reading = {.member = member};
     TRY(netcdf_open(&reading.reader, path));
-    enum status status = read_attributes(&reading);
+    enum status status = STATUS_OK;
+    if (reading.reader.n_missing > 0) {
+        status = status_fail(STATUS_FILE, "%s: the end of the file is missing: was it copied completely?", path);
+    }
+    if (status == STATUS_OK) status = read_attributes(&reading);
     if (status == STATUS_OK) status = read_values(&reading);
     netcdf_close(&reading.reader);
     free(reading.time);
