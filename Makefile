@@ -192,6 +192,7 @@ style: all $(generated_docs)  ## check warnings, format, layers, names and the g
 	@scripts/check-layers.sh $(B)
 	@scripts/check-names.sh $(B)
 	@scripts/mutants.py --check
+	@scripts/check-docs.py
 	@for document in $(generated_docs:$(B)/%=%); do \
 	    diff -u "$$document" "$(B)/$$document" || { echo "$$document is out of date: run 'make docs'" >&2; exit 1; }; \
 	done
@@ -321,10 +322,11 @@ $(B)/fuzz/%: $(B)/fuzz/%.o $(if $(FUZZER),,$(B)/fuzz/driver.o) $(objects)
 	$(say) LD $@
 	$(quiet)$(CC) $(shoal_cflags) $(if $(FUZZER),-fsanitize=fuzzer) $(LDFLAGS) -o $@ $^ $(libraries)
 
-# to be preloaded: tests/faults/faults.py, memory.py
-faults = $(B)/faults.so $(B)/memory.so
+# to be preloaded: tests/faults/faults.py, memory.py, power.py
+faults = $(B)/faults.so $(B)/memory.so $(B)/power.so
 $(B)/faults.so: tests/faults/shim.c
 $(B)/memory.so: tests/faults/memory.c
+$(B)/power.so: tests/faults/power.c
 $(faults): Makefile | $(folders)
 	$(say) LD $@
 	$(quiet)$(CC) -std=c11 -Wall -Wextra -Wconversion -Wshadow $(if $(WERROR),-Werror) -O2 -shared -fPIC -o $@ $(filter %.c,$^)

@@ -151,6 +151,23 @@ expect:
 Quantities are those with orders, and QUANTITIES. Only a comparison of methods ([studies.md](studies.md)) has `nose_error`
 and `tail_error`. `shoal run` ignores `expect`.
 
+## error
+
+In place of a sweep, `error` asks for the errors of quantities: `shoal study` and `shoal error` then vary each numerical
+key alone ([studies.md](studies.md#error-bars)). `shoal run` and `shoal steady` ignore it.
+
+```yaml
+error: {of: [steady_speed, steady_cost_of_transport], within: 0.01, keys: default, confirm: true, most: 16}
+```
+
+| key | meaning |
+|---|---|
+| `of` | numbers of the last row of a result, or `steady_...` of a steady state: a name or a list |
+| `within` | refine until the errors are below this part of the values; not reached: exit code 3 |
+| `most` | refine to members of at most this many times the CPU time of the case (16) |
+| `confirm` | `false`: without a finer level of each key |
+| `keys` | `default`, a list of `nodes`, `sheet_points`, `shedding_interval`, `rtol`, `step`, `tolerance`, `merge`, `lifetime`, `smoothing`, `sheet_smoothing`, `taper`, or a map of levels: `{nodes: [13, 17, 25, 35], rtol: default}` |
+
 ## The subset of YAML
 
 Maps, lists, plain and quoted scalars, comments, and the short forms `{a: 1}` and `[1, 2]`. Refused, each with its place:

@@ -137,9 +137,12 @@ refined. Every variable over (time), (time, fish) or (time, fish, xy) of a resul
 (member), (member, fish) or (member, fish, xy); where members are steady states, so are the numbers `steady_...` of
 these. It also has the variables below; a member without rows has NaN.
 
-With a refined axis, each of the last six kinds has one variable for each of the quantities Q: `nose`, `tail`, `com`,
+With a refined axis, there are `level_value` and what follows it; each of the six kinds from `difference_Q` on has one variable for each of the quantities Q: `nose`, `tail`, `com`,
 `speed`, `mean_heading`, `shed_circulation`, `cost_of_transport`, `mean_actuation_power`; where members are steady
 states, `steady_speed` and what else [cases.md](cases.md) lists. The order of the nose is `order_nose`. A group is a set of members that differ in the refined key only.
+
+Where the case has `error`, there are `key_name` and what follows it, and `stated_Q`, `bar_Q`, `part_Q`, `key_order_Q` for
+each quantity Q that is asked for.
 
 `shoal compare -o FILE` writes the same file: its one axis sets `solver.method`, `solver.order`, `solver.rtol` and
 `solver.step`. Member 0 is the reference, member 1 shows how good that is, and of the others those with equal values are

@@ -1,7 +1,9 @@
 #!/usr/bin/python3
 """Pictures of studies: study.nc of `shoal study`, and the file of `shoal compare`, which is one. Used by plot.py.
 
-    a refined axis                  errors against resolution, with triangles of slope 1 and 2
+    the errors of a case            what each key has in them, and the values at its levels
+    a refined axis                  differences from the finest level, with the design slope and the range of orders that is
+                                    accepted; with another axis of three numbers or more values with error bars over that
     solver.method as an axis        cost against the first axis, a line per method; where there are several settings of a
                                     method the cheapest that is accurate, also as a table
     a position as the only axis     a map of the places, a number at each
@@ -83,28 +85,6 @@ def legend_above(axes, figure, n_columns):
     figure.get_layout_engine().set(rect=(0, 0, 1, 1 - 0.29 * n_rows / figure.get_figheight()))
 
 
-def slope_triangles(axes, x, lowest, sign):
-    """Triangles of slope 1 and 2 below all lines, which go from the smallest to the largest x."""
-    span = max(x) / min(x)
-    width = min(2.0, span**0.25)
-    low = lowest / width**2 / 4
-    for order, place in [(1, 0.05), (2, 0.5)]:
-        left, right = min(x) * span**place, min(x) * span**place * width
-        top = low * width**order
-        # the upright side is where the error is larger
-        upright = right if sign > 0 else left
-        axes.plot([left, right, upright, left if sign > 0 else right], [low, low, top, low], color="#666666", lw=0.8)
-        axes.annotate(
-            f"{order}",
-            (upright, np.sqrt(low * top)),
-            (4 if sign > 0 else -4, 0),
-            textcoords="offset points",
-            va="center",
-            ha="left" if sign > 0 else "right",
-            size=8,
-        )
-
-
 def case_of(study, member, refined):
     """What the axes that are not refined set in a member, as text."""
     others = [v for axis in study.axes for v in axis if v.axis != refined.axis]
@@ -112,47 +92,168 @@ def case_of(study, member, refined):
     return ", ".join(f"{v.long_name.split('.')[-1]} {text}" for v, text in zip(others, texts))
 
 
-def draw_floor(axes, bound, line):
-    """The error that the finest level may have itself: differences from it say nothing below."""
-    if bound > 0:
-        axes.axhline(bound, color=line["color"], ls=line["ls"], lw=0.5, zorder=1)
+SLACK, FAR_ABOVE = 1, 1.5  # orders that are accepted, below and above the design order: src/study/error_budget.c
+
+
+def draw_design(axes, x, size, finest, design):
+    """What differences from the finest level do by the design order, over that of the coarsest level, and the orders that
+    are accepted; size: grid spacing of each level, finest: that of the finest one, 0 where the limit is given."""
+    if not np.isfinite(design) or size.size < 2:
+        return
+    fine = np.geomspace(size[0], size[-1], 50)
+    at = np.interp(np.log(fine), np.log(size[::-1]), np.log(x[::-1]))
+    low, middle, high = (
+        (fine**p - finest**p) / (size[0] ** p - finest**p) if p > 0 else np.log(fine / finest) / np.log(size[0] / finest)
+        for p in (design - SLACK, design, design + FAR_ABOVE)
+    )
+    words = f"accepted orders, {design - SLACK:g} and more" if design > SLACK else "accepted orders, above 0"
+    axes.fill_between(np.exp(at), low, high, color="#e4e4e4", zorder=0, label=words)
+    axes.plot(np.exp(at), middle, color="#888888", lw=0.8, zorder=1, label=f"design order {design:g}")
+
+
+def quantities_of(study):
+    """What is drawn of a refinement: positions of a run; speed and costs of steady states."""
+    names = ["nose", "tail", "com", "shed_circulation"]
+    if f"error_{names[0]}" not in study.data.variables:
+        names = ["steady_speed", "steady_cost_of_transport", "steady_strouhal", "steady_drag", "steady_lift"]
+    return [name for name in names if np.isfinite(study[f"error_{name}"]).any()]
 
 
 def plot_convergence(study, refined, figure):
-    """Errors of nose, tail, centre of mass and circulation at each level, one panel per fish."""
-    level, first = study["level_value"], study["group_member"]
-    sign = -1 if refined.long_name.endswith(("nodes", "sheet_points")) else 1  # more points, less error
+    """Differences of some quantities from the finest level, over those of the coarsest one; one panel per fish."""
+    level, size, first = study["level_value"], study["level_size"], study["group_member"]
     names = list(study["fish_name"])
     all_axes = figure.subplots(1, len(names), squeeze=False, sharey=True)[0]
-    quantities = ["nose", "tail", "com", "shed_circulation"]
+    quantities = quantities_of(study)
     errors = {name: study[f"difference_{name}"] for name in quantities}
-    known = np.concatenate([e[np.isfinite(e) & (e > 0)] for e in errors.values()])
+    known = np.concatenate([np.zeros(0), *(e[np.isfinite(e) & (e > 0)] for e in errors.values())])
     if known.size == 0:
         raise FileError(f"{study.path}: no errors to draw: all levels are equal, or too few are complete")
-    # the finest level has no error but where a reference is given
+    # the finest level has no difference but where a reference is given
     is_known = np.any([np.isfinite(e).any(axis=(0, 1)) for e in errors.values()], axis=0)
     drawn = level[is_known]
     for f, axes in enumerate(all_axes):
         i = 0
         for g, member in enumerate(first):
             for name in quantities:
-                words = [study.label(name), case_of(study, member, refined)]
-                axes.loglog(drawn, errors[name][g, f, is_known], label=", ".join(filter(None, words)), **style(i))
-                if not is_known.all():
-                    draw_floor(axes, study[f"error_{name}"][g, f], style(i))
+                difference, bound = errors[name][g, f, is_known], study[f"error_{name}"][g, f]
+                if not difference[0] > 0:
+                    continue
+                flag = "flagged" if str(study.data[f"objection_{name}"][g, f]).strip("\0") else ""
+                unit = study.data.variables[f"error_{name}"].units
+                words = [study.label(name).split(" [")[0], case_of(study, member, refined)]
+                words += [f"error {bound:.1e} {unit if unit != '1' else ''}".strip(), flag]
+                axes.loglog(drawn, difference / difference[0], label=", ".join(filter(None, words)), **style(i))
                 i += 1
-        slope_triangles(axes, drawn, known.min(), sign)
+        draw_design(axes, drawn, size[is_known], 0 if is_known.all() else size[-1], study["group_design_order"][0])
         axes.set_xlabel(study.label(refined.name))
         axes.set_xticks(drawn, [f"{x:g}" for x in drawn])
         axes.minorticks_off()
         if len(names) > 1:
             axes.set_title(names[f], size=9)
         axes.grid(lw=0.3, color=GRID)
-    if is_known.all():
-        all_axes[0].set_ylabel("error")
-    else:
-        all_axes[0].set_ylabel("difference from the finest level;\nthin: bound of its own error")
-    legend_above(all_axes[0], figure, 4 if first.size == 1 else 2)
+    what = "error" if is_known.all() else "difference from the finest level"
+    all_axes[0].set_ylabel(f"{what},\nover that of the coarsest")
+    legend_above(all_axes[0], figure, 2)
+
+
+def plot_values(study, refined, parameter, figure):
+    """Values of the finest level with their errors over a parameter; a line per fish and per value of the rest."""
+    first, x = study["group_member"], study[parameter.name]
+    finest = study[refined.name] == study["level_value"][-1]
+    others = [v.name for axis in study.axes for v in axis if v.axis != refined.axis]
+    settings = [tuple(str(study[name][m]) for name in others) for m in range(x.size)]
+    steady = ["steady_speed", "steady_cost_of_transport", "steady_strouhal", "steady_drag", "steady_lift", "steady_deflection"]
+    run = ["speed", "cost_of_transport", "mean_actuation_power"]
+    known = [q for q in (steady if f"error_{steady[0]}" in study.data.variables else run)]
+    known = [q for q in known if np.isfinite(study[f"error_{q}"]).any()][:3]
+    if not known:
+        raise FileError(f"{study.path}: no errors to draw: too few levels are complete")
+    members = [next(m for m in np.flatnonzero(finest) if settings[m] == settings[g]) for g in first]
+    words = [", ".join(f"{n} {study[n][m]}" for n in others if n != parameter.name) for m in members]
+    names = list(study["fish_name"])
+    figure.set_figheight(1.2 + 1.4 * len(known))
+    stack = figure.subplots(len(known), 1, sharex=True, squeeze=False)[:, 0]
+    for axes, quantity in zip(stack, known):
+        i = 0
+        flagged = study.data[f"objection_{quantity}"][:]
+        for word in dict.fromkeys(words):
+            for f, name in enumerate(names):
+                rows = sorted((g for g in range(first.size) if words[g] == word), key=lambda g: x[members[g]])
+                at = x[[members[g] for g in rows]]
+                value = study[quantity][[members[g] for g in rows], f]
+                bar = study[f"error_{quantity}"][rows, f]
+                label = ", ".join(filter(None, [word, name if len(names) > 1 else ""]))
+                line = style(i)
+                axes.errorbar(at, value, bar, label=label or None, capsize=3, elinewidth=0.8, **line)
+                # hollow where the levels state no order, so that the bar is a largest difference
+                doubtful = [k for k, g in enumerate(rows) if str(flagged[g][f]).strip("\0")]
+                axes.plot(at[doubtful], value[doubtful], ls="", marker="o", ms=9, mfc="none", color=line["color"], mew=0.8)
+                i += 1
+        axes.set_ylabel(study.label(quantity).replace(" [", "\n["))
+        axes.grid(lw=0.3, color=GRID)
+    stack[-1].set_xscale(scale_of(x))
+    stack[-1].set_xlabel(f"{study.label(parameter.name)}   (ring: flagged, the bar is the largest difference)")
+    if i > 1:
+        legend_above(stack[0], figure, 2)
+
+
+def plot_budget(study, figure):
+    """The errors of a case. For each quantity: on the left what each key has in the sum; on the right the error at each
+    level of each key: the difference from its finest level, and on top the error of that."""
+    asked = [name[len("bar_") :] for name in study.data.variables if name.startswith("bar_")]
+    keys = [k for k in range(study["key_levels"].size) if not study["key_is_choice"][k] and study["key_levels"][k] > 1]
+    names = [str(study.data["key_name"][k]).strip("\0").split(".")[-1].split("_")[-1] for k in keys]
+    names = [{"points": "sheet points"}.get(name, name) for name in names]
+    fish = 0  # the others look alike, and are in error.csv
+    figure.set_figheight(0.6 + 2.3 * len(asked))
+    panels = figure.subplots(len(asked), 2, width_ratios=[1, 4], squeeze=False)
+    for (left, right), quantity in zip(panels, asked):
+        value, bar = study[f"stated_{quantity}"][fish], study[f"bar_{quantity}"][fish]
+        part = study[f"part_{quantity}"][:, fish]
+        if not np.isfinite(bar):
+            raise FileError(f"{study.path}: the error of {quantity} is unknown")
+        percent = 100 / abs(value)
+        bottom = 0
+        for i, k in enumerate(keys):
+            is_flagged = bool(str(study.data["key_reason"][k]).strip("\0"))
+            left.bar(0, part[k] * percent, bottom=bottom, color=COLOURS[(i + 1) % 8], width=0.6, hatch="//" if is_flagged else None,
+                     edgecolor="white", lw=0)
+            if part[k] > 0.06 * bar:
+                left.annotate(names[i], (0, (bottom + part[k] * percent / 2)), ha="center", va="center", size=7,
+                              bbox={"fc": "white", "ec": "none", "pad": 0.6, "alpha": 0.85})
+            bottom += part[k] * percent
+        left.set_xticks([])
+        left.set_xlim(-0.5, 0.5)
+        left.set_ylabel(f"error of {NAMES.get(quantity, quantity.replace('_', ' '))}\n[% of the value]")
+        ticks, floor = [], []
+        at, all_values = 0.0, study[quantity]
+        for i, k in enumerate(keys):
+            n, stated = int(study["key_levels"][k]), int(study["key_stated"][k])
+            members = study["key_member"][k, :n].astype(int)
+            values = all_values[members, fish]
+            differences = np.abs(values - values[0]) * percent
+            of_finest = max(part[k] * percent - differences[stated], 0)
+            is_flagged = bool(str(study.data["key_reason"][k]).strip("\0"))
+            for level in reversed(range(n)):
+                mark = {"edgecolor": "black", "lw": 1} if level == stated else {"edgecolor": "white", "lw": 0}
+                right.bar(at, differences[level] + of_finest, color=COLOURS[(i + 1) % 8], alpha=0.35, width=0.8,
+                          hatch="//" if is_flagged else None, **mark)
+                right.bar(at, differences[level], color=COLOURS[(i + 1) % 8], width=0.8, hatch="//" if is_flagged else None, **mark)
+                ticks.append((at, f"{study['key_value'][k, level]:.3g}"))
+                floor.append(differences[level] + of_finest)
+                at += 1
+            right.annotate(names[i], (at - n / 2 - 0.5, 1.01), xycoords=("data", "axes fraction"), ha="center", size=8)
+            at += 0.8
+        right.set_xticks([x for x, _ in ticks], [text for _, text in ticks], rotation=60, size=7)
+        floor = [x for x in floor if x > 0]
+        right.set_yscale("log")
+        right.set_ylim(max(min(floor), max(floor) * 1e-5) / 2, max(floor) * 2)
+        right.grid(axis="y", lw=0.3, color=GRID)
+    panels[-1][1].set_xlabel(
+        "levels of each key (framed: of the stated value)\n"
+        "dark: difference from the finest level; light: error of that level; hatched: flagged", size=8
+    )
 
 
 ACCURATE = 1e-4  # error of nose and tail at which methods are compared [m]
@@ -341,6 +442,8 @@ def draw(path, figure, quantity="speed"):
         raise FileError(f"{path}: {quantity} is not a quantity of the fish in it, such as speed or cost_of_transport")
     if study.is_comparison:
         return plot_comparison(study, figure)
+    if "key_name" in study.data.variables:
+        return plot_budget(study, figure)
     if not study.axes:
         raise FileError(f"{path}: a study without a sweep has nothing to draw")
     if not study.complete.any():
@@ -348,6 +451,9 @@ def draw(path, figure, quantity="speed"):
     keys = [v for axis in study.axes for v in axis]
     refined = [v for v in keys if hasattr(v, "refine")]
     if refined:
+        others = [axis[0] for axis in study.axes if axis[0].axis != refined[0].axis]
+        if len(others) == 1 and study.is_number(others[0].name) and np.unique(study[others[0].name]).size >= 3:
+            return plot_values(study, refined[0], others[0], figure)
         return plot_convergence(study, refined[0], figure)
     numbers = [v.name for v in keys if study.is_number(v.name)]
     if "solver_method" in study.data.variables and study.is_number(keys[0].name):

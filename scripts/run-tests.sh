@@ -46,8 +46,8 @@ archer=$(printf '%s\n' /usr/lib/llvm-*/lib/libarcher.so | tail -n 1)
 
 # Sums of a cmocka program: "passed failed skipped". What was announced and neither passed nor was skipped has failed.
 count_cmocka() {
-    awk '/^\[==========\] Running [0-9]+ test/ { announced += $3; running = 1 }
-         /^\[==========\] [0-9]+ test\(s\) run/ { running = 0 }
+    awk '/^\[==========\] .*Running [0-9]+ test/ { announced += $(NF - 1); running = 1 }
+         /^\[==========\] .*[0-9]+ test\(s\) run/ { running = 0 }
          running && /\[       OK \]/ { passed++ }
          running && /\[  SKIPPED \]/ { skipped++ }
          END { print passed + 0, announced - passed - skipped, skipped + 0 }' "$1"

@@ -99,6 +99,9 @@ def _find_library():
 
 
 def _load():
+    # SUNDIALS 7 of Debian loads MPI, which would catch SIGHUP and crashes in a process that only imports shoal
+    for name, value in (("UCX_HANDLE_ERRORS", "none"), ("UCX_DEBUG_SIGNO", "0")):
+        os.environ.setdefault(name, value)
     try:
         library = ctypes.CDLL(_find_library())
     except OSError as error:

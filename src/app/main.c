@@ -34,10 +34,17 @@ static const struct command commands[] = {
     {"study",
      "CASE",
      "run all members of a sweep and gather their results",
-     {'o', 'j', OPTION_LIMIT, OPTION_MEMBERS, OPTION_SLURM, OPTION_BUNDLE, OPTION_FORCE, OPTION_STRICT, OPTION_SET,
-      OPTION_THREADS, OPTION_MAX_WALL, 'q', 'h'},
+     {'o', 'j', OPTION_LIMIT, OPTION_MEMBERS, OPTION_PLAN, OPTION_SLURM, OPTION_BUNDLE, OPTION_FORCE, OPTION_STRICT,
+      OPTION_SET, OPTION_THREADS, OPTION_MAX_WALL, 'q', 'h'},
      "folder of the study (default: the name of the case with -study)",
      main_study},
+    {"error",
+     "CASE",
+     "state the errors of quantities: vary each numerical key of a case and judge its levels",
+     {'o', 'j', OPTION_OF, OPTION_WITHIN, OPTION_NO_CONFIRM, OPTION_PLAN, OPTION_LIMIT, OPTION_FORCE, OPTION_STRICT,
+      OPTION_SET, OPTION_THREADS, OPTION_MAX_WALL, 'q', 'h'},
+     "folder of the members (default: the name of the case with -error)",
+     main_error},
     {"gather",
      "FOLDER",
      "make study.nc and its table again from the files of the members",
@@ -143,10 +150,12 @@ static char *join(int argc, char **argv) {
 
 static enum status dispatch(const struct command *command, int argc, char **argv) {
     char *const command_line = join(argc, argv);
+    // one more than the command line can have: main_error adds its own
     const char **const assignments = calloc((size_t)argc + 1, sizeof *assignments);
+    const char **const of = calloc((size_t)argc + 1, sizeof *of);
     enum status status = STATUS_OK;
-    if (command_line && assignments) {
-        struct request request = {.command_line = command_line, .assignments = assignments};
+    if (command_line && assignments && of) {
+        struct request request = {.command_line = command_line, .assignments = assignments, .of = of};
         // getopt starts after the name of the command
         if (main_parse(command, argc - 1, argv + 1, &request, &status) == 0 && status == STATUS_OK) {
             status = command->run(&request);
@@ -156,6 +165,7 @@ static enum status dispatch(const struct command *command, int argc, char **argv
     }
     free(command_line);
     free(assignments);
+    free(of);
     return status;
 }
 

@@ -3,7 +3,7 @@
  *
  *     main_run.c      run, resume, demo
  *     main_steady.c   steady
- *     main_study.c    study, gather, compare
+ *     main_study.c    study, error, gather, compare
  *     main_field.c    field
  *     main_check.c    check
  *     main_case.c     show, keys, info
@@ -20,6 +20,7 @@ enum status main_resume(const struct request *request);
 enum status main_demo(const struct request *request);
 enum status main_steady(const struct request *request);
 enum status main_study(const struct request *request);
+enum status main_error(const struct request *request);
 enum status main_gather(const struct request *request);
 enum status main_compare(const struct request *request);
 enum status main_field(const struct request *request);

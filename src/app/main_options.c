@@ -28,6 +28,11 @@ static const struct option_help all_options[] = {
     {OPTION_REFERENCE, "reference-rtol", "X", "tolerance of the reference, which is ida5 (default: 1e-9)"},
     {OPTION_LIMIT, "limit", "SECONDS",
      "longest wall time of a run; one that takes longer is stopped and has failed (default: none; compare: 60)"},
+    {OPTION_OF, "of", "QUANTITY",
+     "a number of a result, or of a steady state (steady_...), whose error is wanted; any number of times"},
+    {OPTION_WITHIN, "within", "X", "refine until the errors are below this part of the values, as in 0.01"},
+    {OPTION_PLAN, "plan", NULL, "print the plan of the errors of a case and its time, and run nothing"},
+    {OPTION_NO_CONFIRM, "no-confirm", NULL, "no finer level of each key: less time, wider errors"},
     {OPTION_MEMBERS, "members", "A-B", "run only member A, or members A to B, and do not gather"},
     {OPTION_VTK, "vtk", "FOLDER", "write files of VTK, for ParaView, into this folder"},
     {OPTION_FORCE, "force", NULL, "overwrite existing results"},
@@ -149,6 +154,10 @@ static void take_option(struct request *request, int code, char *argument) {
         case OPTION_MEMBERS: request->members = argument; break;
         case OPTION_SLURM: request->slurm = 1; break;
         case OPTION_BUNDLE: request->bundle = argument; break;
+        case OPTION_OF: request->of[request->n_of++] = argument; break;
+        case OPTION_WITHIN: request->within = argument; break;
+        case OPTION_PLAN: request->plan = 1; break;
+        case OPTION_NO_CONFIRM: request->no_confirm = 1; break;
         case OPTION_FROM: request->from = argument; break;
         case OPTION_AT: request->at = argument; break;
         case OPTION_GRID: request->grid = argument; break;

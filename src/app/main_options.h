@@ -33,7 +33,11 @@ enum option_code {
     OPTION_END,
     OPTION_FROM,
     OPTION_CHECKPOINT_AT,
-    OPTION_MAX_WALL
+    OPTION_MAX_WALL,
+    OPTION_OF,
+    OPTION_WITHIN,
+    OPTION_PLAN,
+    OPTION_NO_CONFIRM
 };
 
 /* What the command line says. A string is NULL where its option is not given. */
@@ -49,6 +53,10 @@ struct request {
     const char *processes, *members;
     const char *methods, *rtols, *steps, *repeats, *reference_rtol, *limit, *bundle;
     int slurm, strict;
+    int n_of;
+    const char **of; /* of --of, names of quantities */
+    const char *within;
+    int plan, no_confirm;
     const char *from;
     const char *at, *grid, *box;
     const char *vtk;
@@ -64,8 +72,9 @@ struct command {
     enum status (*run)(const struct request *request);
 };
 
-/* Read the options of a command, argv[0] being its name, into *request, whose assignments have room for argc strings.
- * Returns -1 once the help of the command has been printed; else 0, and *status is STATUS_CASE where they are wrong. */
+/* Read the options of a command, argv[0] being its name, into *request, whose assignments and of have room for argc
+ * strings. Returns -1 once the help of the command has been printed; else 0, and *status is STATUS_CASE where they are
+ * wrong. */
 int main_parse(const struct command *command, int argc, char **argv, struct request *request, enum status *status);
 
 /* Print a command as an object of JSON: name, positional, summary, and its options with letter, name, argument and

@@ -14,6 +14,31 @@ static void on_signal(int number) {
     stop_signal = number;
 }
 
+/* Signals that ask the work to stop, and whether the program that started us ignores them. Libraries catch some before
+ * main begins (SUNDIALS 7 of Debian loads MPI, which catches SIGHUP), so an executable looks before they are loaded. */
+static struct {
+    int number, flags;
+    struct sigaction before;
+} asking[] = {
+    {.number = SIGINT, .flags = (int)SA_RESETHAND},
+    // a queue may send these more than once while the checkpoint is written
+    {.number = SIGTERM},
+    {.number = SIGHUP},
+    {.number = SIGUSR1},
+};
+enum { N_ASKING = sizeof asking / sizeof *asking };
+
+static void keep_signals(void) {
+    for (int i = 0; i < N_ASKING; i++) sigaction(asking[i].number, NULL, &asking[i].before);
+}
+#ifdef __ELF__
+__attribute__((section(".preinit_array"), used)) static void (*const first_of_all)(void) = keep_signals;
+#else
+__attribute__((constructor)) static void keep_at_start(void) {
+    keep_signals();
+}
+#endif
+
 void main_open_standard(void) {
     // standard output must fail as it would have: nothing can be written to what is open for reading
     for (int file = 0; file <= STDERR_FILENO; file++) {
@@ -25,19 +50,13 @@ void main_reset_signals(void) {
     signal(SIGCHLD, SIG_DFL);
 }
 
-// ask to stop at a signal, unless the program that started us has it ignored
-static void catch_one(int number, int flags) {
-    struct sigaction action = {.sa_handler = on_signal, .sa_flags = flags}, before;
-    sigemptyset(&action.sa_mask);
-    if (sigaction(number, NULL, &before) == 0 && before.sa_handler != SIG_IGN) sigaction(number, &action, NULL);
-}
-
 void main_catch_signals(void) {
-    catch_one(SIGINT, (int)SA_RESETHAND);
-    // a queue may send these more than once while the checkpoint is written
-    catch_one(SIGTERM, 0);
-    catch_one(SIGHUP, 0);
-    catch_one(SIGUSR1, 0);
+    for (int i = 0; i < N_ASKING; i++) {
+        struct sigaction action = {.sa_handler = on_signal, .sa_flags = asking[i].flags};
+        sigemptyset(&action.sa_mask);
+        const int is_ignored = asking[i].before.sa_handler == SIG_IGN;
+        sigaction(asking[i].number, is_ignored ? &asking[i].before : &action, NULL);
+    }
     // a full disk or a file limit is an error to report, not a death
     signal(SIGXFSZ, SIG_IGN);
     // so is a closed pipe; of progress, it is not even that

@@ -1,17 +1,21 @@
 /* main_study.c: many runs from one case. */
+#include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 
 #include "app/main_commands.h"
 #include "app/main_signals.h"
 #include "app/progress.h"
 #include "case/case.h"
+#include "case/sweep_error.h"
 #include "output/target.h"
+#include "study/error_study.h"
 #include "study/study.h"
 #include "study/study_compare.h"
 #include "study/study_gather.h"
 #include "study/study_slurm.h"
 
-// ---- study, gather
+// ---- study, error, gather
 
 /* The value of an option: an integer that is not negative. */
 static enum status read_count(const char *option, const char *text, int *count) {
@@ -41,22 +45,29 @@ static enum status read_range(const char *text, int *first, int *last) {
     return status_fail(STATUS_CASE, "--members %s: expects the number of a member, or a range as in 0-9", text);
 }
 
+static enum status fill_options(const struct request *request, const char *folder, struct progress *progress,
+                                struct study_options *options) {
+    *options = (struct study_options){.folder = folder,
+                                      .command = request->command_line,
+                                      .last = -1,
+                                      .force = request->force,
+                                      .progress = request->quiet ? NULL : progress_study,
+                                      .data = progress,
+                                      .stop = main_stop_signal()};
+    if (request->processes) TRY(read_count("-j", request->processes, &options->n_processes));
+    if (request->limit) TRY(read_number("--limit", request->limit, 0, &options->limit));
+    if (request->members) TRY(read_range(request->members, &options->first, &options->last));
+    if (request->max_wall) TRY(main_limit_wall_time(request->max_wall));
+    return STATUS_OK;
+}
+
 static enum status run_study(const struct case_values *values, const struct request *request, const char *folder) {
     struct progress progress;
-    progress_start(&progress);
-    struct study_options options = {.folder = folder,
-                                    .command = request->command_line,
-                                    .last = -1,
-                                    .force = request->force,
-                                    .progress = request->quiet ? NULL : progress_study,
-                                    .data = &progress,
-                                    .stop = main_stop_signal()};
-    if (request->processes) TRY(read_count("-j", request->processes, &options.n_processes));
-    if (request->limit) TRY(read_number("--limit", request->limit, 0, &options.limit));
-    if (request->members) TRY(read_range(request->members, &options.first, &options.last));
-    if (request->max_wall) TRY(main_limit_wall_time(request->max_wall));
-    main_catch_signals();
+    struct study_options options;
     int n_failed;
+    progress_start(&progress);
+    TRY(fill_options(request, folder, &progress, &options));
+    main_catch_signals();
     const enum status status = study_run(values, &options, &n_failed);
     progress_end(&progress);
     TRY(status);
@@ -66,19 +77,93 @@ static enum status run_study(const struct case_values *values, const struct requ
                        options.last - options.first + 1, folder);
 }
 
+/* The errors of a case: all members, some of those that it begins with, or their scripts. */
+static enum status run_errors(const struct case_values *values, const struct request *request, const char *folder,
+                              int bundle) {
+    if (!request->slurm && !request->members) {
+        struct progress progress;
+        struct study_options options;
+        progress_start(&progress);
+        TRY(fill_options(request, folder, &progress, &options));
+        main_catch_signals();
+        const enum status status =
+            study_errors(values, &options, request->plan ? 2 : !request->quiet, request->strict, stdout);
+        progress_end(&progress);
+        return status;
+    }
+    struct error_study study;
+    enum status status = error_plan_create(&study, values);
+    if (status == STATUS_OK) {
+        status = request->slurm ? study_slurm(&study.study, folder, bundle, stdout)
+                                : run_study(&study.study, request, folder);
+    }
+    error_plan_free(&study);
+    return status;
+}
+
+static enum status run_in_folder(const struct case_values *values, const struct request *request, const char *ending) {
+    char folder[512];
+    snprintf(folder, sizeof folder, "%s%s", values->name, ending);
+    const char *const place = request->output ? request->output : folder;
+    main_print_notes(request, values);
+    int bundle = 0;
+    if (request->bundle) TRY(read_count("--bundle", request->bundle, &bundle));
+    if (values->error) return run_errors(values, request, place, bundle);
+    if (request->plan) {
+        return status_fail(STATUS_CASE, "--plan: the case has no `error`; `shoal check` estimates a sweep");
+    }
+    return request->slurm ? study_slurm(values, place, bundle, stdout) : run_study(values, request, place);
+}
+
 enum status main_study(const struct request *request) {
     struct case_values values;
     TRY(case_read(&values, request->positional, request->n_assignments, request->assignments));
-    char folder[512];
-    snprintf(folder, sizeof folder, "%s-study", values.name);
-    const char *const place = request->output ? request->output : folder;
-    main_print_notes(request, &values);
-    int bundle = 0;
-    enum status status = request->bundle ? read_count("--bundle", request->bundle, &bundle) : STATUS_OK;
-    if (status == STATUS_OK) {
-        status = request->slurm ? study_slurm(&values, place, bundle, stdout) : run_study(&values, request, place);
-    }
+    const enum status status = run_in_folder(&values, request, "-study");
     case_free(&values);
+    return status;
+}
+
+/* What the command line says of errors, over what the case says, as an assignment that the caller frees. */
+static enum status assign_errors(const struct case_values *values, const struct request *request, char **assignment) {
+    struct sweep_error error = {.within = NAN, .most = SWEEP_ERROR_MOST, .confirm = 1};
+    struct text text = {0};
+    *assignment = NULL;
+    if (values->error) error = *values->error;
+    if (request->n_of > 0) {
+        error.n_of = request->n_of;
+        error.of = (char **)(uintptr_t)request->of;
+    }
+    if (error.n_of == 0) {
+        return status_fail(STATUS_CASE, "%s has no `error`: give --of QUANTITY, as in --of steady_speed",
+                           request->positional);
+    }
+    if (request->within) TRY(read_number("--within", request->within, 0, &error.within));
+    if (request->no_confirm) error.confirm = 0;
+    text_add(&text, "error=");
+    sweep_error_write(&text, &error);
+    if (text.failed) {
+        text_free(&text);
+        return status_fail(STATUS_MEMORY, "out of memory: the command line");
+    }
+    *assignment = text.text;
+    return STATUS_OK;
+}
+
+enum status main_error(const struct request *request) {
+    struct case_values values;
+    struct request with_errors = *request;
+    char *assignment;
+    TRY(case_read(&values, request->positional, request->n_assignments, request->assignments));
+    enum status status = assign_errors(&values, request, &assignment);
+    case_free(&values);
+    TRY(status);
+    with_errors.assignments[with_errors.n_assignments++] = assignment;
+    status = case_read(&values, request->positional, with_errors.n_assignments, with_errors.assignments);
+    if (status == STATUS_OK) {
+        status = run_in_folder(&values, &with_errors, "-error");
+        case_free(&values);
+    }
+    free(assignment);
     return status;
 }
 

@@ -1,5 +1,5 @@
 /* main_teller.h: what the commands that make one result share: how they get its case and its path, and what they tell
- * about it. Tested by tests/app/test_command.sh and tests/app/test_steady.sh. */
+ * about it. Tested by tests/app/test_command.sh and tests/app/test_steady_command.sh. */
 #ifndef MAIN_TELLER_H
 #define MAIN_TELLER_H
 

@@ -5,6 +5,7 @@
 
 #include "app/main_commands.h"
 #include "base/text.h"
+#include "output/netcdf.h"
 #include "output/page.h"
 #include "output/target.h"
 #include "output/vtk.h"
@@ -14,6 +15,14 @@ static void add_stem(struct text *text, const char *path) {
     const char *const slash = strrchr(path, '/'), *const name = slash ? slash + 1 : path,
                       *const dot = strrchr(name, '.');
     text_add(text, "%.*s", (int)(dot && dot > name ? (size_t)(dot - name) : strlen(name)), name);
+}
+
+/* Say which rows are not shown. */
+static void note_missing(const char *path) {
+    struct netcdf_rows rows;
+    if (netcdf_read_rows(path, &rows) != STATUS_OK || rows.n == 0 || rows.n == rows.n_counted) return;
+    fprintf(stderr, "shoal: note: %s: the last %llu of %llu rows are missing: the file was cut off\n", path,
+            (unsigned long long)(rows.n_counted - rows.n), (unsigned long long)rows.n_counted);
 }
 
 enum status main_view(const struct request *request) {
@@ -27,6 +36,7 @@ enum status main_view(const struct request *request) {
     }
     const enum status status = path.failed ? status_fail(STATUS_MEMORY, "out of memory: a file name")
                                            : page_write(request->positional, path.text, request->force);
+    if (status == STATUS_OK) note_missing(request->positional);
     if (status == STATUS_OK && !request->quiet) printf("%s\n", path.text);
     text_free(&path);
     return status;
@@ -36,6 +46,7 @@ enum status main_export(const struct request *request) {
     char *list = NULL;
     if (!request->vtk) return status_fail(STATUS_CASE, "export: to what? give --vtk FOLDER; see shoal export --help");
     TRY(vtk_export(request->positional, request->vtk, request->force, &list));
+    note_missing(request->positional);
     if (!request->quiet) printf("%s\n", list);
     free(list);
     return STATUS_OK;

@@ -14,6 +14,7 @@
 #include "case/case_times.h"
 #include "case/case_value.h"
 #include "case/sweep.h"
+#include "case/sweep_error.h"
 #include "case/sweep_expect.h"
 #include "case/yaml_write.h"
 #include "model/bending_mode.h"
@@ -342,6 +343,7 @@ static enum status fill(struct reading *reading, struct case_values *values) {
     TRY(derive_all(values, tree->source[0]->name));
     TRY(sweep_read(values, tree->root, &reading->errors));
     TRY(sweep_expect_read(values, tree->root, &reading->errors));
+    TRY(sweep_error_read(values, tree->root, &reading->errors));
     // an unknown key may be a known one misspelt, whose value would be missing here
     if (are_keys_known) case_check(values, tree, &reading->errors);
     return reading->errors.n > n_before ? STATUS_OK : derive_order(values);
@@ -428,6 +430,7 @@ void case_free(struct case_values *values) {
             case_value_free(key, case_table_field(key, values, &values->school.fish[i]));
         }
     }
+    sweep_error_free(values);
     sweep_expect_free(values);
     sweep_free(values);
     free(values->school.fish);

@@ -7,7 +7,7 @@
 #include "case/case.h"
 #include "case/sweep_members.h"
 
-/* Fill the assignments of a member, and one more that removes the sweep; returns their number, or -1 when out of
+/* Fill the assignments of a member, and one more that removes sweep or errors; returns their number, or -1 when out of
  * memory. */
 static int fill_assignments(const struct case_values *study, int member, char **assignments) {
     int n = 0;
@@ -24,7 +24,7 @@ static int fill_assignments(const struct case_values *study, int member, char **
             n++;
         }
     }
-    assignments[n] = strdup("sweep=[]");
+    assignments[n] = strdup(study->error ? "error=none" : "sweep=[]");
     return assignments[n] ? n + 1 : -1;
 }
 

@@ -55,6 +55,13 @@ static const char axes[] =
     "[\"values\"], \"properties\": {\"key\": {\"type\": \"string\"}, \"keys\": {\"type\": \"array\", \"items\": "
     "{\"type\": \"string\"}}, \"values\": {\"type\": \"array\", \"minItems\": 1}, \"refine\": {\"type\": \"boolean\"}, "
     "\"steady\": {\"type\": \"boolean\"}, \"expect\": {\"type\": \"object\"}, \"reference\": {\"type\": \"object\"}}}";
+static const char errors[] =
+    "\"type\": \"object\", \"additionalProperties\": false, \"properties\": {\"of\": {\"type\": [\"string\", "
+    "\"array\"], "
+    "\"items\": {\"type\": \"string\"}}, \"within\": {\"type\": \"number\", \"exclusiveMinimum\": 0}, \"most\": "
+    "{\"type\": "
+    "\"number\", \"exclusiveMinimum\": 0}, \"confirm\": {\"type\": \"boolean\"}, \"keys\": {\"type\": [\"string\", "
+    "\"array\", \"object\"]}}";
 static const char expectations[] = "\"type\": \"array\", \"items\": {\"type\": \"object\"}";
 
 static void print_type(FILE *stream, const struct key *key) {
@@ -91,6 +98,7 @@ static void print_type(FILE *stream, const struct key *key) {
         case DEFAULTS: fputs(defaults, stream); break;
         case AXES: fputs(axes, stream); break;
         case EXPECTATIONS: fputs(expectations, stream); break;
+        case ERRORS: fputs(errors, stream); break;
     }
 }
 

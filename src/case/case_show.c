@@ -6,6 +6,7 @@
 
 #include "case/case_table.h"
 #include "case/case_value.h"
+#include "case/sweep_error.h"
 #include "case/sweep_expect.h"
 #include "case/sweep_members.h"
 #include "case/sweep_quantity.h"
@@ -188,6 +189,11 @@ static void show_expectation(struct text *text, const struct case_values *values
 static void show_sweep(struct text *text, const struct case_values *values) {
     if (values->n_axes > 0) text_add(text, "\nsweep:\n");
     for (int i = 0; i < values->n_axes; i++) show_axis(text, values, i);
+    if (values->error) {
+        text_add(text, "\nerror: ");
+        sweep_error_write(text, values->error);
+        text_add(text, "\n");
+    }
     if (values->n_expectations > 0) text_add(text, "\nexpect:\n");
     for (int i = 0; i < values->n_expectations; i++) show_expectation(text, values, &values->expect[i]);
 }

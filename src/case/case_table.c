@@ -379,6 +379,10 @@ const struct key case_table[] = {
      .meaning = "expectations of the ends of a study's members, {of: QUANTITY, least: ..., most: ...}; `shoal study` "
                 "checks them",
      .synonyms = "expected check assert"},
+    {"error", ERRORS, 0, "{}", ANY, "",
+     .meaning = "errors of quantities, {of: [QUANTITY, ...], within: ...}; `shoal study` and `shoal error` vary each "
+                "numerical key alone and print the share of each",
+     .synonyms = "uncertainty errors accuracy error_bars"},
 };
 
 const int case_table_n = sizeof case_table / sizeof *case_table;
@@ -430,7 +434,8 @@ const char *case_table_type(const struct key *key) {
                                         [FILES] = "list of files",
                                         [DEFAULTS] = "map",
                                         [AXES] = "list of axes",
-                                        [EXPECTATIONS] = "list of expectations"};
+                                        [EXPECTATIONS] = "list of expectations",
+                                        [ERRORS] = "map"};
     return names[key->type];
 }
 

@@ -11,21 +11,22 @@
 enum { CASE_MAX_FISH = 10000 };
 
 enum key_type {
-    REAL,        /* double */
-    DURATION,    /* struct duration: a number of seconds, or '3 beats' */
-    INTEGER,     /* int */
-    CHOICE,      /* an enum: the index of the word in .words */
-    METHOD,      /* enum method: the index of the word in the table of methods (base/methods.h) */
-    STRING,      /* char *, owned */
-    PAIR,        /* double[2] */
-    NUMBERS,     /* struct number_list of numbers */
-    PAIRS,       /* struct number_list of pairs */
-    ROWS,        /* struct number_list of rows of numbers, all of the same length */
-    HEADING,     /* struct number_list of pairs (time, angle); one number is the pair (0, angle) */
-    FILES,       /* include: no field in struct case_values */
-    DEFAULTS,    /* defaults: no field in struct case_values */
-    AXES,        /* sweep: read by sweep.c */
-    EXPECTATIONS /* expect: read by sweep_expect.c */
+    REAL,         /* double */
+    DURATION,     /* struct duration: a number of seconds, or '3 beats' */
+    INTEGER,      /* int */
+    CHOICE,       /* an enum: the index of the word in .words */
+    METHOD,       /* enum method: the index of the word in the table of methods (base/methods.h) */
+    STRING,       /* char *, owned */
+    PAIR,         /* double[2] */
+    NUMBERS,      /* struct number_list of numbers */
+    PAIRS,        /* struct number_list of pairs */
+    ROWS,         /* struct number_list of rows of numbers, all of the same length */
+    HEADING,      /* struct number_list of pairs (time, angle); one number is the pair (0, angle) */
+    FILES,        /* include: no field in struct case_values */
+    DEFAULTS,     /* defaults: no field in struct case_values */
+    AXES,         /* sweep: read by sweep.c */
+    EXPECTATIONS, /* expect: read by sweep_expect.c */
+    ERRORS        /* error: read by sweep_error.c */
 };
 
 /* The range of a number, or of each number of a list; of a STRING, max is the maximum number of bytes. */

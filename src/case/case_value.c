@@ -35,7 +35,8 @@ void case_value_clear(const struct key *key, void *field) {
         case FILES:
         case DEFAULTS:
         case AXES:
-        case EXPECTATIONS: break;
+        case EXPECTATIONS:
+        case ERRORS: break;
     }
 }
 
@@ -315,7 +316,8 @@ enum status case_value_read(const struct key *key, void *field, const struct yam
         case FILES:
         case DEFAULTS:
         case AXES:
-        case EXPECTATIONS: break;
+        case EXPECTATIONS:
+        case ERRORS: break;
     }
     return STATUS_OK;
 }
@@ -367,6 +369,7 @@ void case_value_write(struct text *text, const struct key *key, const void *fiel
         case FILES:
         case DEFAULTS:
         case AXES:
-        case EXPECTATIONS: break;
+        case EXPECTATIONS:
+        case ERRORS: break;
     }
 }

@@ -1,6 +1,7 @@
 /* case_values.h: a case as plain values, in the units of the case file: angles in degrees, lengths in metres or in
  * fractions of the body length, as the meaning of the key says. Those that the model needs are in model/parameters.h,
- * the axes of a study in sweep_members.h, the expectations of its members in sweep_expect.h. */
+ * the axes of a study in sweep_members.h, its errors in sweep_error.h, the expectations of its members in
+ * sweep_expect.h. */
 #ifndef CASE_VALUES_H
 #define CASE_VALUES_H
 
@@ -43,6 +44,7 @@ struct case_steady {
 };
 
 struct sweep_axis;
+struct sweep_error;
 struct sweep_expectation;
 
 struct case_values {
@@ -55,7 +57,8 @@ struct case_values {
     struct case_output output;
     struct case_steady steady;
     int n_axes;
-    struct sweep_axis *sweep; /* (n_axes) */
+    struct sweep_axis *sweep;  /* (n_axes) */
+    struct sweep_error *error; /* whose errors are asked for; NULL: none are */
     int n_expectations;
     struct sweep_expectation *expect; /* (n_expectations) */
     char *text;                       /* the text of the case file as read (without its includes) */

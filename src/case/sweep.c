@@ -45,6 +45,7 @@ void sweep_free(struct case_values *values) {
         free(axis->value);
         free(axis->key);
         free(axis->reference);
+        free(axis->before);
     }
     free(values->sweep);
     values->sweep = NULL;

@@ -1,9 +1,17 @@
-/* sweep_error.h: the numerical keys, on which results depend and fish do not, and what is known of each before a study.
- * Tested by tests/case/test_sweep.c. */
+/* sweep_error.h: the numerical keys, on which results depend and fish do not; and what a case says of the errors of its
+ * quantities. Tested by tests/case/test_sweep.c.
+ *
+ *     error: {of: [steady_speed, steady_cost_of_transport], within: 0.01, keys: default, confirm: true, most: 16}
+ *
+ * What is done with it: study/error_study.h and doc/studies.md. */
 #ifndef SWEEP_ERROR_H
 #define SWEEP_ERROR_H
 
+#include "base/text.h"
 #include "case/case_values.h"
+#include "case/yaml_tree.h"
+
+// ---- keys
 
 enum sweep_error_kind {
     SWEEP_POINTS,   /* a number of points n: grid spacing 1/(n - 1) */
@@ -29,5 +37,33 @@ const struct sweep_error_key *sweep_error_find(const char *path);
 
 /* The design order of a key in this case; NaN: none. */
 double sweep_error_order(const struct case_values *values, const struct sweep_error_key *key);
+
+// ---- what a case says
+
+/* The levels of a key. */
+struct sweep_error_levels {
+    const struct sweep_error_key *key;
+    int n;         /* 0: those of the table */
+    double *value; /* (n) */
+};
+
+#define SWEEP_ERROR_MOST 16.0 /* the default of most */
+
+struct sweep_error {
+    int n_of;
+    char **of;     /* names of quantities of a result or of a steady state     (n_of) */
+    double within; /* refine until the error is below this part of the value; NaN: do not refine */
+    double most;   /* refine to members of at most this many times the cost of the case */
+    int confirm;   /* with a finer level of each key */
+    int n_keys;
+    struct sweep_error_levels *levels; /* of the keys that are varied; none: of all     (n_keys) */
+};
+
+/* Read `error` of a case. Fails with STATUS_MEMORY only. */
+enum status sweep_error_read(struct case_values *values, const struct yaml_node *root, struct yaml_errors *errors);
+void sweep_error_free(struct case_values *values);
+
+/* Add "{of: [steady_speed], within: 0.01}": all that is not a default. */
+void sweep_error_write(struct text *text, const struct sweep_error *error);
 
 #endif

@@ -31,7 +31,9 @@ int sweep_is_steady(const struct case_values *study) {
 int sweep_member_before(const struct case_values *study, int member) {
     int stride = 1;
     for (int a = study->n_axes - 1; a >= 0; a--) {
-        if (study->sweep[a].steady) return sweep_member_value(study, member, a) > 0 ? member - stride : -1;
+        const struct sweep_axis *const axis = &study->sweep[a];
+        const int value = sweep_member_value(study, member, a), before = axis->before ? axis->before[value] : value - 1;
+        if (axis->steady) return before >= 0 ? member - (value - before) * stride : -1;
         stride *= study->sweep[a].n_values;
     }
     return -1;

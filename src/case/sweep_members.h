@@ -25,6 +25,7 @@ struct sweep_axis {
     char **value;         /* value i of key k is value[i * n_keys + k], as --set takes it     (n_values * n_keys) */
     int refine;           /* the values are resolutions of the first key: a study of convergence */
     int steady;           /* every member is a steady state, looked for from that of the value before */
+    int *before;          /* from that of this value instead, -1: from the start of the case; NULL     (n_values) */
     double order, within; /* the expected order of convergence: order +- within; NaN: none */
     uint64_t order_of;    /* bit q: of quantity q */
     double *reference;    /* see sweep_reference; NULL: none */

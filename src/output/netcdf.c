@@ -107,6 +107,7 @@ enum status netcdf_create(struct netcdf_writer *writer, const char *path, const 
 
 enum status netcdf_continue(struct netcdf_writer *writer, const char *path) {
     writer->part.target = begin(writer, path);
+    if (writer->part.target) durable_sweep(writer->part.target);
     keep_path(writer);
     size_t buffer_bytes = BUFFER_BYTES;
     CALL(writer, nc__open(writer->part.target, NC_WRITE, &buffer_bytes, &writer->file));
@@ -114,6 +115,18 @@ enum status netcdf_continue(struct netcdf_writer *writer, const char *path) {
     if (writer->code == NC_NOERR) writer->part.descriptor = open(writer->part.target, O_RDONLY | O_CLOEXEC);
     if (writer->code == NC_NOERR && writer->part.descriptor < 0) writer->code = errno;
     return opened(writer, path);
+}
+
+enum status netcdf_patch(const char *path, const char *name, size_t n, const char *bytes) {
+    struct netcdf_writer writer;
+    TRY(netcdf_continue(&writer, path));
+    netcdf_write_bytes(&writer, NETCDF_GLOBAL, name, n, bytes);
+    // nc_close would fill the file up to the rows that its header counts
+    const int closed = nc_abort(writer.file);
+    writer.file = -1;
+    CALL(&writer, closed);
+    CALL(&writer, durable_sync(writer.part.descriptor));
+    return netcdf_finish(&writer);
 }
 
 int netcdf_define_dimension(struct netcdf_writer *writer, const char *name, size_t length) {

@@ -47,6 +47,10 @@ enum status netcdf_create(struct netcdf_writer *writer, const char *path, const 
  * STATUS_FILE or STATUS_MEMORY; netcdf_finish then does nothing. */
 enum status netcdf_continue(struct netcdf_writer *writer, const char *path);
 
+/* Replace an attribute of a file that nobody writes by one of no more bytes, and make that survive a power cut. Rows
+ * that are missing stay missing. Fails with STATUS_FILE or STATUS_MEMORY. */
+enum status netcdf_patch(const char *path, const char *name, size_t n, const char *bytes);
+
 /* Define a dimension, which grows where the length is 0, or a variable; the number it gets. */
 int netcdf_define_dimension(struct netcdf_writer *writer, const char *name, size_t length);
 int netcdf_define_variable(struct netcdf_writer *writer, const struct netcdf_variable *variable);
@@ -102,7 +106,9 @@ const char *netcdf_reason(int code);
 
 struct netcdf_reader {
     const char *path;
-    int file; /* NetCDF's number */
+    int file;         /* NetCDF's number */
+    size_t n_rows;    /* that are whole: the length of the dimension that grows */
+    size_t n_missing; /* that the header counts besides, and the file does not hold: it was cut off */
 };
 
 /* A part of a variable: for each of its dimensions the name, the first index and the number of values; ends with
@@ -112,8 +118,8 @@ struct netcdf_slice {
     size_t first, n;
 };
 
-/* Open a file of the classic formats. Refused is what is no regular file, has a damaged header, or is shorter than its
- * header says. The path must live as long as the reader. */
+/* Open a file of the classic formats. Refused is what is no regular file, has a damaged header, or lacks a value that
+ * does not grow. Rows that are not whole do not count. The path must live as long as the reader. */
 enum status netcdf_open(struct netcdf_reader *reader, const char *path);
 void netcdf_close(struct netcdf_reader *reader);
 
@@ -144,11 +150,12 @@ enum status netcdf_read_text(const struct netcdf_reader *reader, const char *nam
 struct netcdf_rows {
     uint64_t begin;         /* of all values */
     uint64_t begin_of_rows; /* of the first row */
-    uint64_t bytes;         /* of each row */
-    uint64_t n;
+    uint64_t bytes;         /* of each row; 0: the file has no rows */
+    uint64_t n;             /* rows that are whole */
+    uint64_t n_counted;     /* rows that the header counts */
 };
 
-/* Where the rows of a file are. Refused is what netcdf_open refuses. */
+/* Where the rows of a file are, and how many. Refused is what netcdf_open refuses. */
 enum status netcdf_read_rows(const char *path, struct netcdf_rows *rows);
 
 /* Remove the rows behind the first n of a file that nobody has open. The file is whole at every time in between. Fails
@@ -163,8 +170,5 @@ char *netcdf_local_path(const char *path);
 
 /* Whether there is memory for what NetCDF may need to create or open a file: it crashes where there is none. */
 bool netcdf_has_memory(void);
-
-/* Check the header of a file and that the file is as long as it says. Fails with STATUS_FILE. */
-enum status netcdf_check_header(const char *path);
 
 #endif

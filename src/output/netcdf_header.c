@@ -167,12 +167,11 @@ static void read_header(struct header *header) {
     if (header->n_growing == 1) header->row_bytes = header->last_bytes;
 }
 
-/* Whether all the values that the header promises are there. */
-static bool has_all_values(const struct header *header) {
-    if (header->end > header->size) return false;
-    if (header->n_rows == 0 || header->n_growing == 0) return true;
-    if (header->end_of_row > header->size) return false;
-    return header->n_rows - 1 <= (header->size - header->end_of_row) / header->row_bytes;
+/* The rows that are whole: the header may reach the disk before the rows that it counts. */
+static uint64_t n_whole_rows(const struct header *header) {
+    if (header->n_growing == 0 || header->end_of_row > header->size) return 0;
+    const uint64_t n = (header->size - header->end_of_row) / header->row_bytes + 1;
+    return n < header->n_rows ? n : header->n_rows;
 }
 
 /* True for "CDF" and a known version. */
@@ -201,7 +200,7 @@ static enum status examine(struct header *header, const char *path) {
         header->size = size_of(header->file);
         if (header->is_damaged) {
             status = status_fail(STATUS_FILE, "%s: cannot be read: its header is damaged", path);
-        } else if (!has_all_values(header)) {
+        } else if (header->end > header->size) {
             status = status_fail(STATUS_FILE, "%s: the end of the file is missing: was it copied completely?", path);
         }
     } else {
@@ -213,16 +212,15 @@ static enum status examine(struct header *header, const char *path) {
     return status;
 }
 
-enum status netcdf_check_header(const char *path) {
-    struct header header = {0};
-    return examine(&header, path);
-}
-
 enum status netcdf_read_rows(const char *path, struct netcdf_rows *rows) {
     struct header header = {0};
     TRY(examine(&header, path));
-    *rows = (struct netcdf_rows){header.begin, header.begin_of_rows, header.row_bytes, header.n_rows};
-    return header.n_growing > 0 ? STATUS_OK : status_fail(STATUS_FILE, "%s: has no rows", path);
+    *rows = (struct netcdf_rows){.begin = header.begin,
+                                 .begin_of_rows = header.begin_of_rows,
+                                 .bytes = header.n_growing > 0 ? header.row_bytes : 0,
+                                 .n = n_whole_rows(&header),
+                                 .n_counted = header.n_rows};
+    return STATUS_OK;
 }
 
 // write another number of rows and drop what follows the last one; errno or 0
@@ -238,7 +236,8 @@ static int cut(int descriptor, const struct netcdf_rows *rows, uint64_t n) {
 }
 
 enum status netcdf_cut_rows(const char *path, const struct netcdf_rows *rows, uint64_t n) {
-    if (rows->n == n) return STATUS_OK;
+    if (rows->bytes == 0) return status_fail(STATUS_FILE, "%s: has no rows", path);
+    if (rows->n == n && rows->n_counted == n) return STATUS_OK;
     const int descriptor = open(path, O_WRONLY | O_CLOEXEC);
     int code = descriptor < 0 ? errno : cut(descriptor, rows, n);
     if (descriptor >= 0 && close(descriptor) != 0 && code == 0) code = errno;

@@ -26,7 +26,10 @@ enum status netcdf_open(struct netcdf_reader *reader, const char *path) {
     if (stat(path, &facts) != 0) return cannot_read(path, errno);
     if (S_ISDIR(facts.st_mode)) return status_fail(STATUS_FILE, "%s is a folder: name a file that shoal wrote", path);
     if (!S_ISREG(facts.st_mode)) return status_fail(STATUS_FILE, "%s: cannot be read: not an ordinary file", path);
-    TRY(netcdf_check_header(path));
+    struct netcdf_rows rows;
+    TRY(netcdf_read_rows(path, &rows));
+    reader->n_rows = rows.n;
+    reader->n_missing = rows.n_counted - rows.n;
     char *const local = netcdf_has_memory() ? netcdf_local_path(path) : NULL;
     if (!local) return out_of_memory(path);
     const int code = nc_open(local, NC_NOWRITE, &reader->file);
@@ -78,11 +81,19 @@ enum status netcdf_read_integer(const struct netcdf_reader *reader, const char *
     return status_fail(STATUS_FILE, "%s: its attribute %s is no integer", reader->path, name);
 }
 
+/* The length of a dimension; of the one that grows the rows that are whole. */
+static int read_length(const struct netcdf_reader *reader, int number, size_t *length) {
+    int growing;
+    const int code = nc_inq_dimlen(reader->file, number, length);
+    if (code == NC_NOERR && nc_inq_unlimdim(reader->file, &growing) == NC_NOERR && growing == number)
+        *length = reader->n_rows;
+    return code;
+}
+
 enum status netcdf_read_length(const struct netcdf_reader *reader, const char *name, size_t min, size_t max,
                                size_t *length) {
     int number;
-    if (nc_inq_dimid(reader->file, name, &number) != NC_NOERR ||
-        nc_inq_dimlen(reader->file, number, length) != NC_NOERR) {
+    if (nc_inq_dimid(reader->file, name, &number) != NC_NOERR || read_length(reader, number, length) != NC_NOERR) {
         return status_fail(STATUS_FILE, "%s: it has no dimension %s", reader->path, name);
     }
     if (*length >= min && *length <= max) return STATUS_OK;
@@ -103,7 +114,8 @@ static bool has_slice(const struct netcdf_reader *reader, int n, const int *dime
     for (int d = 0; d < n; d++, slice++) {
         char name[NC_MAX_NAME + 1];
         size_t length;
-        if (!slice->dimension || nc_inq_dim(reader->file, dimensions[d], name, &length) != NC_NOERR) return false;
+        if (!slice->dimension || nc_inq_dimname(reader->file, dimensions[d], name) != NC_NOERR) return false;
+        if (read_length(reader, dimensions[d], &length) != NC_NOERR) return false;
         if (strcmp(name, slice->dimension) != 0) return false;
         if (slice->first > length || slice->n > length - slice->first) return false;
     }

@@ -61,6 +61,12 @@ static void write_fixed(struct result_file *result, const char *name, size_t len
     netcdf_write_bytes(&result->writer, NETCDF_GLOBAL, name, length, bytes);
 }
 
+/* Say of a file that nobody writes that its run goes on: one with fewer rows must never say that it is complete. */
+static enum status patch_run_status(const char *path) {
+    const char bytes[STATUS_LENGTH] = "running";
+    return netcdf_patch(path, "run_status", STATUS_LENGTH, bytes);
+}
+
 static void write_run_status(struct result_file *result, const char *run_status) {
     write_fixed(result, "run_status", STATUS_LENGTH, run_status);
 }
@@ -263,15 +269,13 @@ enum status result_file_publish(struct result_file *result, const char *run_stat
     return netcdf_publish(&result->writer, result->overwrite);
 }
 
-/* Find all variables of a file that is there, and mark it as running. */
+/* Find all variables of a file that is there. */
 static enum status find_all(struct result_file *result, const char *path) {
     TRY(netcdf_continue(&result->writer, path));
     for (int i = 0; i < result_table_n; i++) {
         if (is_written(result, &result_table[i]))
             result->number[i] = netcdf_number(&result->writer, result_table[i].name);
     }
-    write_run_status(result, "running");
-    netcdf_sync(&result->writer, true);
     const int code = result->writer.code;
     if (code == 0) return STATUS_OK;
     netcdf_finish(&result->writer);
@@ -284,6 +288,7 @@ enum status result_file_continue(struct result_file **result, const char *path, 
     struct netcdf_rows rows;
     *result = NULL;
     TRY(netcdf_read_rows(path, &rows));
+    TRY(patch_run_status(path));
     TRY(netcdf_cut_rows(path, &rows, (uint64_t)mark->n_rows));
     struct result_file *const new = allocate(school, n_events);
     if (!new) return status_fail(STATUS_MEMORY, "%s: out of memory while writing", path);
@@ -330,6 +335,8 @@ enum status result_file_close(struct result_file *result, const char *run_status
     if (!result) return STATUS_OK;
     struct netcdf_writer *const writer = &result->writer;
     const bool is_published = !writer->part.name;
+    // the rows are safe before the file says how the run has ended
+    if (is_published) netcdf_sync(writer, true);
     // what NetCDF holds after a failed write cannot be written
     if (is_published && writer->code != 0) netcdf_reopen(writer);
     write_run_status(result, run_status);

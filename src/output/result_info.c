@@ -108,8 +108,13 @@ static enum status print_status(const struct info *info) {
 }
 
 static enum status print_rows(const struct info *info) {
+    const size_t n_missing = info->reader->n_missing;
+    if (n_missing > 0) {
+        fprintf(info->stream, "  missing     %zu of %zu rows: the file was cut off\n", n_missing,
+                info->n_rows + n_missing);
+    }
     if (info->n_rows == 0) {
-        fprintf(info->stream, "  rows        none yet\n");
+        fprintf(info->stream, "  rows        %s\n", n_missing > 0 ? "none is whole" : "none yet");
         return STATUS_OK;
     }
     double first, last, interval;

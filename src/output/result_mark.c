@@ -32,7 +32,7 @@ enum status result_mark_take(const char *path, long n_rows, struct result_checks
                              struct result_mark *mark) {
     struct netcdf_rows rows;
     TRY(netcdf_read_rows(path, &rows));
-    if (n_rows < 0 || rows.n < (uint64_t)n_rows) {
+    if (rows.bytes == 0 || n_rows < 0 || rows.n < (uint64_t)n_rows) {
         return status_fail(STATUS_FILE, "%s: it has %llu rows, of %ld that belong to the checkpoint", path,
                            (unsigned long long)rows.n, n_rows);
     }
@@ -53,9 +53,10 @@ static enum status check_attributes(const char *path, const char *effective, int
     TRY(netcdf_open(&reader, path));
     enum status status = netcdf_read_string(&reader, "case_effective", &found);
     if (status == STATUS_OK) status = netcdf_read_string(&reader, "run_status", &run_status);
+    const size_t n_missing = reader.n_missing;
     netcdf_close(&reader);
     if (status == STATUS_OK) {
-        *is_complete = strcmp(run_status, "complete") == 0;
+        *is_complete = strcmp(run_status, "complete") == 0 && n_missing == 0;
         if (strcmp(found, effective) != 0) {
             status = status_fail(STATUS_FILE, "%s is the result of another case than the checkpoint", path);
         }

@@ -42,6 +42,10 @@ static enum status read_lengths(struct result_reader *reader) {
                                &reader->length[d]));
     }
     if (reader->length[TIME] > 0 && reader->length[FISH] > 0) return STATUS_OK;
+    if (reader->file.n_missing > 0) {
+        return status_fail(STATUS_FILE, "%s: none of its %zu rows is whole: was it copied completely?",
+                           reader->file.path, reader->file.n_missing);
+    }
     return status_fail(STATUS_FILE, "%s: the run has not written a row yet", reader->file.path);
 }
 

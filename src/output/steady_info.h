@@ -1,4 +1,5 @@
-/* steady_info.h: the summary of a steady state, from the file that holds it. Tested by tests/app/test_steady.sh. */
+/* steady_info.h: the summary of a steady state, from the file that holds it. Tested by
+ * tests/app/test_steady_command.sh. */
 #ifndef STEADY_INFO_H
 #define STEADY_INFO_H
 

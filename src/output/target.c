@@ -25,6 +25,7 @@ static const struct {
     [TARGET_CHECKPOINT] = {"checkpoint", SECTIONS_MAGIC, {SECTIONS_MAGIC}},
     [TARGET_PICTURE] = {"picture", "\x89PNG", {"shoal plot.py"}},
     [TARGET_SCRIPT] = {"script", "#", {TARGET_SCRIPT_MARK}},
+    [TARGET_TABLE] = {"table of errors", TARGET_TABLE_MARK, {TARGET_TABLE_MARK}},
 };
 enum { N_KINDS = sizeof kinds / sizeof *kinds };
 

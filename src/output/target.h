@@ -11,11 +11,21 @@
 
 #include "base/status.h"
 
-enum target_kind { TARGET_NETCDF, TARGET_PAGE, TARGET_VTK, TARGET_CHECKPOINT, TARGET_PICTURE, TARGET_SCRIPT };
+enum target_kind {
+    TARGET_NETCDF,
+    TARGET_PAGE,
+    TARGET_VTK,
+    TARGET_CHECKPOINT,
+    TARGET_PICTURE,
+    TARGET_SCRIPT,
+    TARGET_TABLE
+};
 
-/* First line of the files of VTK after the declaration of XML, and a line near the beginning of every script. */
+/* First line of the files of VTK after the declaration of XML, a line near the beginning of every script, and the first
+ * line of an error.csv. */
 #define TARGET_VTK_MARK "<!-- Written by shoal export. -->"
 #define TARGET_SCRIPT_MARK "# Written by shoal study --slurm."
+#define TARGET_TABLE_MARK "fish,quantity,unit,value,key,levels,order,error,percent,verdict"
 
 /* The folder of a file. */
 void target_folder(const char *path, char folder[PATH_MAX]);

@@ -1,6 +1,6 @@
 /* steady.h: from a case to the file of its steady state: the search, its multipliers, and the last beats; of a case
  * without a beat its equilibrium.
- * doc/steady.md. Tested by tests/run/test_steady.c and tests/run/test_steady.sh. */
+ * doc/steady.md. Tested by tests/run/test_steady.c and tests/app/test_steady_command.sh. */
 #ifndef STEADY_H
 #define STEADY_H
 

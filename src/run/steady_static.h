@@ -1,5 +1,5 @@
 /* steady_static.h: the equilibrium of bodies that nothing moves, in a stream: `shoal steady` of a case without a beat.
- * doc/steady.md, "Without a beat". Tested by tests/run/test_steady_static.c and tests/app/test_steady.sh. */
+ * doc/steady.md, "Without a beat". Tested by tests/run/test_steady_static.c and tests/app/test_steady_command.sh. */
 #ifndef STEADY_STATIC_H
 #define STEADY_STATIC_H
 

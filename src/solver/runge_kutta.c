@@ -105,8 +105,12 @@ static enum status set_up_arkode(struct runge_kutta *solver) {
     const double step = solver->options.step;
     const ARKodeButcherTable table = tableau_of(solver->options.method, step <= 0);
     if (!table) return status_fail(STATUS_MEMORY, "out of memory: the tableau of a Runge-Kutta method");
+    // 6.4 interpolates at the stop time, for order one with a constant: Hermite's is the mean of both ends of the step,
+    // that of Lagrange the solution at the later one
+    const int order = table->q;
     const int failed = ARKStepSetErrHandlerFn(arkode, sundials_adapter_message, &solver->failure) ||
                        ARKodeSetUserData(arkode, solver) || ARKStepSetTables(arkode, 0, 0, NULL, table) ||
+                       (order == 1 && ARKodeSetInterpolantType(arkode, ARK_INTERP_LAGRANGE)) ||
                        ARKodeSVtolerances(arkode, 0, solver->tolerances) || ARKodeSetMaxNumSteps(arkode, -1) ||
                        ARKodeSetMaxErrTestFails(arkode, 20) ||
                        ARKodeSetMinStep(arkode, step > 0 ? 0 : 1e-10 * solver->residual->school->interval) ||

@@ -58,6 +58,7 @@ typedef int SUNErrCode;
 #define ARKodeGetNumSteps ARKStepGetNumSteps
 #define ARKodeSVtolerances ARKStepSVtolerances
 #define ARKodeSetFixedStep ARKStepSetFixedStep
+#define ARKodeSetInterpolantType ARKStepSetInterpolantType
 #define ARKodeSetMaxErrTestFails ARKStepSetMaxErrTestFails
 #define ARKodeSetMaxNumSteps ARKStepSetMaxNumSteps
 #define ARKodeSetMinStep ARKStepSetMinStep

@@ -6,8 +6,8 @@
  *     difference        d_0     d_1     d_2
  *     order               p       p'                    p of f_0 f_1 f_2, p' of f_1 f_2 f_3
  *
- * A sequence is accepted if its differences have one sign and fall towards the finest level, and if p and p' agree with
- * the design order of the key. Then |f_0 - limit| <= 1.25 d_0/((h_1/h_0)^min(p, design) - 1), to which |f_0 - f_base|
+ * A sequence is accepted if its differences have one sign and fall (p, p' > 0), and if p and p' agree with the design
+ * order of the key. Then |f_0 - limit| <= 1.25 d_0/((h_1/h_0)^min(p, design) - 1), to which |f_0 - f_base|
  * is added. All sequences of a key are judged together: one that is not accepted flags all of them, and the error of a
  * flagged sequence is its largest |f_i - f_base|. */
 #ifndef ERROR_BUDGET_H
@@ -24,7 +24,7 @@ enum error_budget_verdict {
     ERROR_BUDGET_NO_ORDER,  /* the key has no design order */
     ERROR_BUDGET_FEW,       /* fewer than three levels */
     ERROR_BUDGET_TURNS,     /* differences of both signs */
-    ERROR_BUDGET_GROWS,     /* a difference is not smaller than the next coarser one */
+    ERROR_BUDGET_GROWS,     /* an order is not above 0 */
     ERROR_BUDGET_LOW,       /* an order is more than 1 below the design order */
     ERROR_BUDGET_CHANGES,   /* p and p' differ by more than 0.8, and p is not far above the design order */
     ERROR_BUDGET_UNKNOWN    /* a level is missing: the error is NaN */
@@ -65,7 +65,8 @@ int error_budget_is_flagged(enum error_budget_verdict verdict);
 const char *error_budget_words(enum error_budget_verdict verdict);
 
 /* The order p of three values, from fine to coarse: |f_2 - f_1|/|f_1 - f_0| = r^p (s^p - 1)/(r^p - 1) with r = h_1/h_0
- * and s = h_2/h_1 (Roache, Annual Review of Fluid Mechanics 29, 1997). NaN where f_0 = f_1 or f_1 = f_2 to rounding. */
+ * and s = h_2/h_1 (Roache, Annual Review of Fluid Mechanics 29, 1997). NaN where f_0 = f_1 to
+ * rounding, minus infinity where only f_1 = f_2. */
 double error_budget_order(const double *size, const double (*value)[2]);
 
 #endif

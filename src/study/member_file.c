@@ -15,8 +15,8 @@ enum { MAX_FISH = 1000000 };
 // ---- the table of quantities: first what is in the last row of a result, then what is computed
 
 static const char *const computed[] = {
-    "nose", "tail", "lateral_drift", "mean_heading", "mean_actuation_power", "nose_error", "tail_error"};
-enum { NOSE, TAIL, DRIFT, MEAN_HEADING, MEAN_POWER, NOSE_ERROR, TAIL_ERROR, N_COMPUTED };
+    "nose", "tail", "lateral_drift", "mean_heading", "mean_actuation_power", "nose_error", "tail_error", "beat_time"};
+enum { NOSE, TAIL, DRIFT, MEAN_HEADING, MEAN_POWER, NOSE_ERROR, TAIL_ERROR, BEAT_TIME, N_COMPUTED };
 
 /* True for (time), (time, fish) and (time, fish, xy). */
 static int has_end(const struct result_variable *variable) {
@@ -55,7 +55,8 @@ const struct member_file_quantity *member_file_quantity(int i) {
                                                      .of_fish = from->of_fish,
                                                      .of_xy = from->of_xy,
                                                      .is_computed = 1,
-                                                     .of_comparison = c >= NOSE_ERROR};
+                                                     .of_comparison = c == NOSE_ERROR || c == TAIL_ERROR,
+                                                     .of_steady = c == BEAT_TIME};
         }
     }
     return i < n ? &all[i] : NULL;
@@ -190,6 +191,23 @@ static enum status compute_mean_power(const struct reading *reading, size_t f, d
     return STATUS_OK;
 }
 
+/* The wall time over the beats of the search, of its multipliers and of the rows; none without a beat. */
+static enum status compute_beat_time(const struct reading *reading, double *time) {
+    static const char *const names[] = {"steady_beats", "steady_multiplier_beats"};
+    const struct netcdf_slice last[] = {{"time", reading->n_rows - 1, 1}, {NULL}};
+    double count, beats = 0, wall_time, frequency;
+    if (!netcdf_has(&reading->reader, names[0])) return STATUS_OK;
+    for (int i = 0; i < 2; i++) {
+        TRY(netcdf_read_doubles(&reading->reader, names[i], (struct netcdf_slice[]){{NULL}}, &count));
+        beats += count;
+    }
+    TRY(read_constant(reading, "frequency", 0, &frequency));
+    TRY(netcdf_read_doubles(&reading->reader, "wall_time", last, &wall_time));
+    beats += frequency > 0 ? (reading->time[reading->n_rows - 1] - reading->time[0]) * frequency : 0;
+    *time = beats > 0 ? wall_time / beats : NAN;
+    return STATUS_OK;
+}
+
 /* The quantities that are computed, of one fish. */
 static enum status compute(const struct reading *reading, int f) {
     const int first = member_file_n_quantities() - N_COMPUTED;
@@ -197,6 +215,7 @@ static enum status compute(const struct reading *reading, int f) {
     TRY(compute_ends(reading, (size_t)f, member_file_place(member, first + NOSE, f, 0),
                      member_file_place(member, first + TAIL, f, 0)));
     TRY(compute_drift(reading, (size_t)f, member_file_place(member, first + DRIFT, f, 0)));
+    if (f == 0) TRY(compute_beat_time(reading, member_file_place(member, first + BEAT_TIME, 0, 0)));
     TRY(compute_mean_heading(reading, (size_t)f, member_file_place(member, first + MEAN_HEADING, f, 0)));
     return compute_mean_power(reading, (size_t)f, member_file_place(member, first + MEAN_POWER, f, 0));
 }
@@ -240,7 +259,11 @@ enum status member_file_read(struct member_file *member, const char *path) {
     *member = (struct member_file){0};
     struct reading reading = {.member = member};
     TRY(netcdf_open(&reading.reader, path));
-    enum status status = read_attributes(&reading);
+    enum status status = STATUS_OK;
+    if (reading.reader.n_missing > 0) {
+        status = status_fail(STATUS_FILE, "%s: the end of the file is missing: was it copied completely?", path);
+    }
+    if (status == STATUS_OK) status = read_attributes(&reading);
     if (status == STATUS_OK) status = read_values(&reading);
     netcdf_close(&reading.reader);
     free(reading.time);

@@ -31,6 +31,7 @@ struct writing {
     const struct case_values *study;
     const struct member_file *member;
     const struct study_orders *orders;
+    const struct error_study *errors; /* NULL: none */
     int n_members, n_fish;
     size_t n_text; /* length of the dimension text */
     int member_dimension, fish_dimension, xy_dimension, text_dimension;
@@ -61,7 +62,7 @@ static const char *warnings_of(const struct writing *writing, int m) {
 
 /* The length of the longest string that the file has to hold. */
 static size_t longest_text(const struct writing *writing) {
-    size_t max = MIN_TEXT;
+    size_t max = writing->errors ? ERROR_STUDY_BYTES : MIN_TEXT;
     const struct case_values *const study = writing->study;
     for (int m = 0; m < writing->n_members; m++) {
         if (strlen(writing->member[m].status) > max) max = strlen(writing->member[m].status);
@@ -142,6 +143,8 @@ static void define_all(struct writing *writing) {
     }
     const int of_orders[] = {writing->fish_dimension, writing->xy_dimension, writing->text_dimension};
     study_orders_define(writer, study, writing->orders, of_orders);
+    const int of_errors[] = {writing->fish_dimension, writing->text_dimension};
+    if (writing->errors) error_report_define(writer, writing->errors, of_errors);
     netcdf_end_definitions(writer);
 }
 
@@ -197,6 +200,7 @@ static void write_all(struct writing *writing) {
         if (has_quantity(study, member_file_quantity(q))) write_quantity(writing, q);
     }
     study_orders_write(&writing->writer, study, writing->orders, writing->n_text, writing->text);
+    if (writing->errors) error_report_write(&writing->writer, writing->errors, writing->n_text, writing->text);
 }
 
 /* Write under a temporary name, and give it its own. */
@@ -211,10 +215,11 @@ static enum status write_file(struct writing *writing, const char *path, const c
 }
 
 enum status study_file_write(const char *path, const struct case_values *study, const struct member_file *member,
-                             const struct study_orders *orders, const char *command) {
+                             const struct study_orders *orders, const struct error_study *errors, const char *command) {
     struct writing writing = {.study = study,
                               .member = member,
                               .orders = orders,
+                              .errors = errors,
                               .n_members = sweep_n_members(study),
                               .n_fish = study->school.n_fish};
     writing.n_text = longest_text(&writing);
@@ -245,8 +250,11 @@ int study_file_listed(int i, struct result_listed *listed) {
         if (!quantity->is_computed || k-- > 0) continue;
         *listed = (struct result_listed){
             .name = quantity->name, .unit = quantity->unit, .type = "double", .meaning = quantity->long_name};
-        snprintf(listed->dimensions, sizeof listed->dimensions, "member, fish%s", quantity->of_xy ? ", xy" : "");
+        snprintf(listed->dimensions, sizeof listed->dimensions, "member%s%s", quantity->of_fish ? ", fish" : "",
+                 quantity->of_xy ? ", xy" : "");
         return 1;
     }
-    return study_orders_listed(k, listed);
+    int n_orders = 0;
+    for (struct result_listed other; study_orders_listed(n_orders, &other);) n_orders++;
+    return k < n_orders ? study_orders_listed(k, listed) : error_report_listed(k - n_orders, listed);
 }

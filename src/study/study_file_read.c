@@ -7,6 +7,8 @@
 #include "output/netcdf.h"
 #include "study/study_file.h"
 
+enum { MAX_MEMBERS = 100000 };
+
 /* An open study.nc. */
 struct reading {
     struct netcdf_reader reader;
@@ -72,7 +74,12 @@ static enum status read_members(struct reading *reading) {
     const size_t n_fish = (size_t)reading->study->school.n_fish;
     const struct netcdf_reader *const reader = &reading->reader;
     size_t length;
-    TRY(netcdf_read_length(reader, "member", reading->n_members, reading->n_members, &length));
+    if (reading->study->error) {
+        // as many as it took
+        TRY(netcdf_read_length(reader, "member", 1, MAX_MEMBERS, &reading->n_members));
+    } else {
+        TRY(netcdf_read_length(reader, "member", reading->n_members, reading->n_members, &length));
+    }
     TRY(netcdf_read_length(reader, "fish", n_fish, n_fish, &length));
     TRY(netcdf_read_length(reader, "text", 1, INT_MAX, &reading->n_text));
     reading->member = calloc(reading->n_members, sizeof *reading->member);
@@ -95,12 +102,15 @@ static enum status read_all(struct reading *reading, struct case_values *study) 
     return status;
 }
 
-enum status study_file_read(const char *path, struct case_values *study, struct member_file **members) {
+enum status study_file_read(const char *path, struct case_values *study, struct member_file **members, int *n_members) {
     struct reading reading = {.study = study};
     TRY(netcdf_open(&reading.reader, path));
     const enum status status = read_all(&reading, study);
     netcdf_close(&reading.reader);
-    if (status == STATUS_OK) *members = reading.member;
+    if (status == STATUS_OK) {
+        *members = reading.member;
+        *n_members = (int)reading.n_members;
+    }
     if (status == STATUS_OK || status == STATUS_MEMORY) return status;
     return status_fail(STATUS_FILE, "%s; make the study's file again with `shoal gather`", status_message());
 }

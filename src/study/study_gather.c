@@ -1,11 +1,15 @@
 /* study_gather.c: read the files, write study.nc, print. */
 #include "study/study_gather.h"
 
+#include <limits.h>
+#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "case/case.h"
 #include "case/sweep_members.h"
+#include "study/error_report.h"
 #include "study/study_comparison.h"
 #include "study/study_expect.h"
 #include "study/study_file.h"
@@ -55,7 +59,7 @@ static enum status report(const struct case_values *study, const struct member_f
     struct study_orders orders;
     enum status status = study_orders_create(&orders, study, members);
     if (status == STATUS_OK) status = print_members(study, members, stream);
-    if (status == STATUS_OK) status = study_file_write(path, study, members, &orders, command);
+    if (status == STATUS_OK) status = study_file_write(path, study, members, &orders, NULL, command);
     if (status == STATUS_OK) {
         status = print_expected(study, members, &orders, stream);
         const enum status warned = print_warnings(study, members, strict && status == STATUS_OK, stream);
@@ -81,6 +85,95 @@ enum status study_report(const struct case_values *study, const char *folder, co
     return status;
 }
 
+// ---- errors
+
+/* The members of a study in a folder up to the first one that is missing. */
+static int n_there(const char *folder) {
+    for (int m = 0;; m++) {
+        char *const path = study_folder_member(folder, m, ".nc");
+        const int exists = path && access(path, F_OK) == 0;
+        free(path);
+        if (!exists) return m;
+    }
+}
+
+/* Read and judge the members in a folder, and those that they ask for in turn, which are run first unless options is
+ * NULL. The caller frees *members. */
+static enum status follow(struct error_study *study, const char *folder, const struct study_options *options,
+                          struct member_file **members) {
+    const int most_members = options ? INT_MAX : n_there(folder);
+    for (;;) {
+        int n_failed, n_new;
+        if (options) TRY(study_run(&study->study, options, &n_failed));
+        const int n = sweep_n_members(&study->study);
+        TRY(study_folder_read_members(members, &study->study, folder));
+        enum status status = error_study_judge(study, *members);
+        if (status == STATUS_OK) status = error_study_refine(study, *members, most_members, &n_new);
+        if (status == STATUS_OK && n_new == 0) return STATUS_OK;
+        study_folder_free_members(*members, n);
+        *members = NULL;
+        TRY(status);
+    }
+}
+
+/* Print the budget and write its files, before anything that is missed ends the report. */
+static enum status report_errors(struct error_study *study, const struct member_file *members, const char *folder,
+                                 const char *command, int strict, FILE *stream) {
+    char *const path = study_folder_path(folder, "study.nc"), *const csv = study_folder_path(folder, "error.csv");
+    const struct study_orders none = {0};
+    enum status status = path && csv ? STATUS_OK : STATUS_MEMORY;
+    if (status == STATUS_OK) status = study_file_write(path, &study->study, members, &none, study, command);
+    if (status == STATUS_OK) status = error_report_write_csv(study, csv);
+    if (status == STATUS_OK) {
+        status = error_report_print(study, members, stream);
+        // levels that are coarser on purpose have warnings of their own
+        const int n = study_print_warnings(&members[study->stated], 1, stream);
+        if (status == STATUS_OK && strict && n > 0) {
+            status =
+                status_fail(STATUS_MISSED, "%d warning%s about the stated value, with --strict", n, n > 1 ? "s" : "");
+        }
+    }
+    if (status == STATUS_OK) status = test_completeness(&study->study, members, folder);
+    free(path);
+    free(csv);
+    return status;
+}
+
+static enum status follow_and_report(struct error_study *study, const char *folder, const struct study_options *options,
+                                     const char *command, int strict, FILE *stream) {
+    struct member_file *members = NULL;
+    enum status status = follow(study, folder, options, &members);
+    if (status == STATUS_OK) status = report_errors(study, members, folder, command, strict, stream);
+    study_folder_free_members(members, sweep_n_members(&study->study));
+    return status;
+}
+
+enum status study_errors(const struct case_values *values, const struct study_options *options, int plan, int strict,
+                         FILE *stream) {
+    struct error_study study;
+    enum status status = error_plan_create(&study, values);
+    if (status == STATUS_OK && plan > 0) {
+        int n_processes =
+            options->n_processes > 0 ? options->n_processes : omp_get_num_procs() / values->school.threads;
+        status = error_report_plan(&study, n_processes < 1 ? 1 : n_processes, stream);
+    }
+    if (status == STATUS_OK && plan < 2) {
+        fflush(stream);
+        status = follow_and_report(&study, options->folder, options, options->command, strict, stream);
+    }
+    error_plan_free(&study);
+    return status;
+}
+
+static enum status gather_errors(const struct case_values *values, const char *folder, const char *command, int strict,
+                                 FILE *stream) {
+    struct error_study study;
+    enum status status = error_plan_create(&study, values);
+    if (status == STATUS_OK) status = follow_and_report(&study, folder, NULL, command, strict, stream);
+    error_plan_free(&study);
+    return status;
+}
+
 enum status study_gather(const char *folder, const char *command, int strict, FILE *stream) {
     char *text;
     TRY(study_folder_find_study(folder, &text));
@@ -88,14 +181,14 @@ enum status study_gather(const char *folder, const char *command, int strict, FI
     enum status status = case_parse(&study, text, strlen(text), folder, NULL, 0, NULL);
     free(text);
     TRY(status);
-    status = study_report(&study, folder, NULL, command, strict, stream);
+    status = study.error ? gather_errors(&study, folder, command, strict, stream)
+                         : study_report(&study, folder, NULL, command, strict, stream);
     case_free(&study);
     return status;
 }
 
 /* How many members ended how, and the axes. */
-static void print_head(const struct case_values *study, const struct member_file *members, FILE *stream) {
-    const int n = sweep_n_members(study);
+static void print_head(const struct case_values *study, const struct member_file *members, int n, FILE *stream) {
     int n_complete = 0;
     for (int m = 0; m < n; m++) n_complete += strcmp(members[m].status, "complete") == 0;
     fprintf(stream, "  %-10s  %d, %d of them complete\n", "members", n, n_complete);
@@ -108,22 +201,45 @@ static void print_head(const struct case_values *study, const struct member_file
     fprintf(stream, "\n");
 }
 
+static enum status print_study(const struct case_values *study, const struct member_file *members, FILE *stream) {
+    struct study_orders orders;
+    TRY(print_members(study, members, stream));
+    enum status status = study_orders_create(&orders, study, members);
+    if (status == STATUS_OK) status = print_expected(study, members, &orders, stream);
+    study_orders_free(&orders);
+    return status;
+}
+
+static enum status print_errors(const struct case_values *values, const struct member_file *members, int n,
+                                FILE *stream) {
+    struct error_study study;
+    enum status status = error_plan_create(&study, values);
+    if (status == STATUS_OK && sweep_n_members(&study.study) > n) {
+        status = status_fail(STATUS_FILE, "the file has %d members and not %d: make it again with `shoal gather`", n,
+                             sweep_n_members(&study.study));
+    }
+    int n_new = 1;
+    while (status == STATUS_OK && n_new > 0) {
+        status = error_study_judge(&study, members);
+        if (status == STATUS_OK) status = error_study_refine(&study, members, n, &n_new);
+    }
+    if (status == STATUS_OK) status = error_report_print(&study, members, stream);
+    error_plan_free(&study);
+    return status;
+}
+
 enum status study_info(const char *path, FILE *stream) {
     struct case_values study;
     struct member_file *members;
-    TRY(study_file_read(path, &study, &members));
-    print_head(&study, members, stream);
-    struct study_orders orders;
-    enum status status = print_members(&study, members, stream);
-    if (status == STATUS_OK) {
-        status = study_orders_create(&orders, &study, members);
-        if (status == STATUS_OK) status = print_expected(&study, members, &orders, stream);
-        study_orders_free(&orders);
-    }
+    int n;
+    TRY(study_file_read(path, &study, &members, &n));
+    print_head(&study, members, n, stream);
+    const enum status status =
+        study.error ? print_errors(&study, members, n, stream) : print_study(&study, members, stream);
     // that an expectation is missed is a part of what the file holds
     if (status == STATUS_MISSED) fprintf(stream, "missed: %s\n", status_message());
-    print_warnings(&study, members, 0, stream);
-    study_folder_free_members(members, sweep_n_members(&study));
+    if (!study.error && !study_comparison_is(&study)) study_print_warnings(members, n, stream);
+    study_folder_free_members(members, n);
     case_free(&study);
     return status == STATUS_MISSED ? STATUS_OK : status;
 }

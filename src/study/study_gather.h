@@ -6,6 +6,7 @@
 
 #include "base/status.h"
 #include "case/case_values.h"
+#include "study/study.h"
 
 /* Make the file of a study, FOLDER/study.nc unless path is another one, from the files of the members in a folder, and
  * print the members (of a comparison of methods: the comparison), orders and expectations. Fails with
@@ -15,7 +16,13 @@
 enum status study_report(const struct case_values *study, const char *folder, const char *path, const char *command,
                          int strict, FILE *stream);
 
-/* The same for the study that the members in the folder belong to. */
+/* Run the study of a case with `error` (error_study.h) in its folder, with all members that its bound asks for, and
+ * report: the budget, FOLDER/study.nc and FOLDER/error.csv. plan: print the plan before; 2: and run nothing. Fails as
+ * study_run and study_report; with STATUS_MISSED also where the errors are not within the bound. */
+enum status study_errors(const struct case_values *values, const struct study_options *options, int plan, int strict,
+                         FILE *stream);
+
+/* The same as study_report for the study that the members in the folder belong to. */
 enum status study_gather(const char *folder, const char *command, int strict, FILE *stream);
 
 /* Print what a study.nc holds: axes, members and orders. Fails with STATUS_FILE or STATUS_MEMORY. */

@@ -370,7 +370,7 @@ enum orders_dimension { GROUP, LEVEL, ORDERS_FISH, ORDERS_XY, ORDERS_TEXT, N_ORD
 static const char *const dimension_names[] = {"group", "level", "fish", "xy", "text"};
 
 /* What there is once. */
-enum { LEVEL_VALUE, LEVEL_SIZE, GROUP_MEMBER, N_SINGLE };
+enum { LEVEL_VALUE, LEVEL_SIZE, GROUP_MEMBER, DESIGN_ORDER, N_SINGLE };
 static const struct single {
     const char *name, *meaning;
     enum orders_dimension dimension;
@@ -378,6 +378,7 @@ static const struct single {
     {"level_value", "value of the refined key, from coarse to fine", LEVEL},
     {"level_size", "grid spacing: the value, or 1/(n - 1) of n points", LEVEL},
     {"group_member", "first member of each group: members that differ in the refined key only", GROUP},
+    {"group_design_order", "order that the refined key has by design; NaN: none", GROUP},
 };
 
 /* What there is for each quantity: name and meaning take its name. The dimensions begin with group, fish. */
@@ -409,7 +410,7 @@ int study_orders_listed(int i, struct result_listed *listed) {
     if (i < N_SINGLE) {
         *listed = (struct result_listed){.name = singles[i].name,
                                          .type = i == GROUP_MEMBER ? "int" : "double",
-                                         .unit = i == GROUP_MEMBER ? "1" : "of the key",
+                                         .unit = singles[i].dimension == GROUP ? "1" : "of the key",
                                          .meaning = singles[i].meaning};
         snprintf(listed->dimensions, sizeof listed->dimensions, "%s", dimension_names[singles[i].dimension]);
         return 1;
@@ -465,7 +466,7 @@ void study_orders_define(struct netcdf_writer *writer, const struct case_values 
     const char *const key_unit = study->sweep[orders->axis].key[0].unit;
     for (int i = 0; i < N_SINGLE; i++) {
         define(writer, singles[i].name, i == GROUP_MEMBER ? NETCDF_INT : NETCDF_DOUBLE, 1, &all[singles[i].dimension],
-               i == GROUP_MEMBER ? "1" : key_unit, singles[i].meaning);
+               singles[i].dimension == GROUP ? "1" : key_unit, singles[i].meaning);
     }
     for (int q = 0; q < SWEEP_N_ORDERS; q++) {
         if (is_observed(study, q)) define_quantity(writer, q, all);
@@ -510,6 +511,11 @@ void study_orders_write(struct netcdf_writer *writer, const struct case_values *
     }
     netcdf_write_doubles(writer, netcdf_number(writer, singles[LEVEL_SIZE].name), NULL, NULL, orders->grid_spacing);
     netcdf_write_ints(writer, netcdf_number(writer, singles[GROUP_MEMBER].name), NULL, NULL, orders->first);
+    const double design_order = sweep_error_order(study, sweep_error_find(axis->key[0].row));
+    const int design_number = netcdf_number(writer, singles[DESIGN_ORDER].name);
+    for (int g = 0; g < orders->n_groups; g++) {
+        netcdf_write_doubles(writer, design_number, (size_t[]){(size_t)g}, (size_t[]){1}, &design_order);
+    }
     for (int g = 0; g < orders->n_groups; g++) {
         for (int q = 0; q < SWEEP_N_ORDERS; q++) {
             for (int f = 0; f < orders->n_fish && is_observed(study, q); f++) {

@@ -66,20 +66,29 @@ static enum status plan_member(const struct planning *planning, struct study_pla
     return status;
 }
 
+/* Whether a file is a member of this study: one that refines has had more members than it begins with. */
+static int is_own(const struct planning *planning, const char *path) {
+    struct member_file member;
+    if (!planning->study->error || member_file_read(&member, path) != STATUS_OK) return 0;
+    const int is_same = strcmp(member.study, planning->study->merged) == 0;
+    member_file_free(&member);
+    return is_same;
+}
+
 /* Remove results of other studies beyond the last member of this one. */
 static enum status clear_rest(const struct planning *planning) {
     for (int number = sweep_n_members(planning->study);; number++) {
         char *const path = study_folder_member(planning->folder, number, ".nc");
         if (!path) return STATUS_MEMORY;
-        const int exists = access(path, F_OK) == 0;
-        const int is_removed = exists && planning->force && target_is(path, TARGET_NETCDF) && unlink(path) == 0;
-        if (exists && !is_removed) {
+        const int exists = access(path, F_OK) == 0, is_other = exists && !is_own(planning, path);
+        const int is_removed = is_other && planning->force && target_is(path, TARGET_NETCDF) && unlink(path) == 0;
+        if (is_other && !is_removed) {
             status_fail(STATUS_FILE, "%s is a result of another study: choose another folder with -o, or remove it%s",
                         path, planning->force ? "" : " with --force");
         }
         free(path);
         if (!exists) return STATUS_OK;
-        if (!is_removed) return STATUS_FILE;
+        if (is_other && !is_removed) return STATUS_FILE;
     }
 }
 
@@ -90,13 +99,14 @@ static enum status look_at_gathered(const struct planning *planning) {
     if (!path) return STATUS_MEMORY;
     struct case_values values;
     struct member_file *members;
+    int n_members;
     const int exists = access(path, F_OK) == 0;
     enum status status = exists ? target_check(path, TARGET_NETCDF, true) : STATUS_OK;
     if (!exists || planning->force || status != STATUS_OK) {
         free(path);
         return status;
     }
-    status = study_file_read(path, &values, &members);
+    status = study_file_read(path, &values, &members, &n_members);
     if (status == STATUS_OK) {
         if (strcmp(values.merged, planning->study->merged) != 0) {
             status = status_fail(STATUS_FILE,
@@ -104,7 +114,7 @@ static enum status look_at_gathered(const struct planning *planning) {
                                  "choose another folder with -o, or replace what is there with --force",
                                  path);
         }
-        study_folder_free_members(members, sweep_n_members(&values));
+        study_folder_free_members(members, n_members);
         case_free(&values);
     } else if (status != STATUS_MEMORY) {
         status = STATUS_OK;

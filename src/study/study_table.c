@@ -7,7 +7,7 @@
 #include <string.h>
 
 enum status study_table_create(struct study_table *table, int n_rows, int n_columns) {
-    *table = (struct study_table){n_rows, n_columns, calloc((size_t)n_rows * (size_t)n_columns, STUDY_CELL_BYTES)};
+    *table = (struct study_table){n_rows, n_columns, 0, calloc((size_t)n_rows * (size_t)n_columns, STUDY_CELL_BYTES)};
     return table->cell ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: a table of %d rows", n_rows);
 }
 
@@ -43,10 +43,10 @@ static void print_row(const struct study_table *table, int row, FILE *stream) {
     for (int column = 0; column < table->n_columns; column++) {
         const char *const text = table->cell[row * table->n_columns + column];
         const int is_last = column == table->n_columns - 1;
-        n_blanks += (column > 0 ? 2 : 0) + (is_last ? 0 : width(table, column) - (int)strlen(text));
-        if (*text == '\0') continue;
-        fprintf(stream, "%*s%s", n_blanks, "", text);
-        n_blanks = 0;
+        const int rest = is_last ? 0 : width(table, column) - (int)strlen(text), is_left = column < table->n_left;
+        n_blanks += (column > 0 ? 2 : 0) + (is_left ? 0 : rest);
+        if (*text) fprintf(stream, "%*s%s", n_blanks, "", text);
+        n_blanks = (*text ? 0 : n_blanks) + (is_left ? rest : 0);
     }
     fprintf(stream, "\n");
 }

@@ -37,7 +37,7 @@ script() {
     local IFS=$'\t'
     code=died
     echo "$*" >&"${scripts[1]}"
-    read -r -t 120 code <&"${scripts[0]}"
+    read -r -t "$time_limit" code <&"${scripts[0]}"
 }
 
 # A script makes a picture: its name and arguments, the last of them the picture.

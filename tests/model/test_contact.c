@@ -448,6 +448,79 @@ static void stop_ends_the_run_at_the_time_and_with_the_names(void **state) {
     simulate_free(simulation);
 }
 
+static void stop_does_not_wait_until_bodies_touch(void **state) {
+    (void)state;
+    // they pass each other at 0.1 range, 2 mm
+    struct simulation *const simulation =
+        school_simulation("contact: {action: stop}\nfluid: {density: 0}\n" TIME STRAIGHT
+                          "fish: [{start: {position: [1.2, 0.102], speed: 5}}, {}]\n");
+    enum status status = STATUS_OK;
+    while (status == STATUS_OK && simulation->state->t < 0.5) status = simulate_step(simulation);
+    assert_int_equal(status, STATUS_CONTACT);
+    const double distance = simulation->state->closest->distance;
+    assert_true(distance > 0.0015 && distance < simulation->school->contact_range);
+    simulate_free(simulation);
+}
+
+// the distance of a point from the edge between two others
+static double distance_from_edge(const double p[2], const double a[2], const double b[2]) {
+    const double e[2] = {b[0] - a[0], b[1] - a[1]}, r[2] = {p[0] - a[0], p[1] - a[1]};
+    const double q = fmin(1, fmax(0, (r[0] * e[0] + r[1] * e[1]) / (e[0] * e[0] + e[1] * e[1])));
+    return hypot(r[0] - q * e[0], r[1] - q * e[1]);
+}
+
+static void place_of(const struct fish *fish, const double *y, int node, double place[2]) {
+    place[0] = y[fish->at.x + node];
+    place[1] = y[fish->at.y + node];
+}
+
+// doc/model.md, section 16: a quarter of phi of every end of each edge of one body above each edge of the other
+static double energy_of_pair(const struct school *school, const struct fish *a, const struct fish *b, const double *y) {
+    const double r = school->contact_range;
+    const double k = a->contact_strength * b->contact_strength / (a->contact_strength + b->contact_strength);
+    double energy = 0;
+    for (int i = 0; i < a->n_edges; i++) {
+        for (int j = 0; j < b->n_edges; j++) {
+            double p[4][2];
+            for (int end = 0; end < 2; end++) {
+                place_of(a, y, i + end, p[end]);
+                place_of(b, y, j + end, p[2 + end]);
+            }
+            for (int end = 0; end < 4; end++) {
+                const int other = end < 2 ? 2 : 0;
+                const double d =
+                    distance_from_edge(p[end], p[other], p[other + 1]) - (a->thickness[i] + b->thickness[j]) / 2;
+                if (d < r) energy += k * r * pow(1 - d / r, 3) / (d / r) / 4;
+            }
+        }
+    }
+    return energy;
+}
+
+static void the_energy_is_that_of_all_ends_above_all_edges(void **state) {
+    (void)state;
+    // random shapes, and two in line: of edges whose ends are near the first nodes may be far apart
+    static const char *const texts[] = {
+        NEAR_ANOTHER, TIME "contact: {range: 0.5}\n" STRAIGHT "fish: [{}, {start: {position: [1.4, 0.01]}}]\n",
+        TIME "contact: {range: 0.5}\n" STRAIGHT "fish: [{}, {start: {position: [2.4, 0.01], heading: 0}}]\n"};
+    for (int i = 0; i < 3; i++) {
+        struct setup setup;
+        school_build(&setup, texts[i]);
+        if (i == 0) school_stir(&setup);
+        const double *const y = setup.state->y;
+        memcpy(setup.state->closest->before, y, (size_t)setup.school->n_unknowns * sizeof *y);
+        school_ok(contact_find(setup.residual->contact, setup.state, 0, y));
+        double want = 0;
+        for (int f = 0; f < setup.school->n_fish; f++) {
+            for (int g = 0; g < f; g++)
+                want += energy_of_pair(setup.school, &setup.school->fish[g], &setup.school->fish[f], y);
+        }
+        assert_true(want > 1e-3);
+        NEAR(energy_of_school(&setup, y), want, 0, 1e-12);
+        school_clear(&setup);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(nobody_repels_what_is_farther_than_the_range),
@@ -463,6 +536,8 @@ int main(void) {
         cmocka_unit_test(every_integrator_keeps_bodies_apart),
         cmocka_unit_test(a_fixed_step_that_is_too_long_fails_and_says_so),
         cmocka_unit_test(of_256_fish_no_two_get_through_each_other),
+        cmocka_unit_test(stop_does_not_wait_until_bodies_touch),
+        cmocka_unit_test(the_energy_is_that_of_all_ends_above_all_edges),
         cmocka_unit_test(stop_ends_the_run_at_the_time_and_with_the_names),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -20,7 +20,7 @@ static void joukowski_body_has_the_mass_of_the_reference(void **state) {
     struct setup setup;
     school_build(&setup, TIME "fish: [{}]\n");
     const struct fish *fish = &setup.school->fish[0];
-    // tests/data/reference_single.json
+    // an independent program's mass of the same body
     NEAR(fish->total_mass, 57.50243756590633, 1e-10, 0);
     NEAR(sum(fish->n_nodes, fish->mass), fish->total_mass, 0, 1e-14);
     school_clear(&setup);

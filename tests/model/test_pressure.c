@@ -327,6 +327,41 @@ static void energy_balance_is_closed_where_the_limit_acts(void **state) {
     assert_true(audit[1] < 1e-3);
 }
 
+// The jump of dC/dt alone, and that of the strengths in a stream along the plate, at control point c, where the
+// circulation is g dtheta with g = 1: singular at both ends. Its cosine series is exact, and there is no kink.
+static void a_strength_that_is_singular_at_the_tail_has_no_kink(void **state) {
+    (void)state;
+    struct setup setup;
+    build_plate(&setup, 17, 33, "density: 1");
+    const struct fish *const fish = setup.school->fish;
+    struct pressure *const pressure = setup.residual->pressure[0];
+    double *const y = setup.state->y, *const yp = setup.state->yp, u[64], v[64];
+    const double speed = 3, h = pi / fish->n_control;
+    struct flow_at_body flow = {.u = u, .v = v};
+    for (int c = 0; c < fish->n_control; c++) {
+        const struct direction body = fish_direction(fish, &fish->control_tangent[c], y);
+        u[c] = speed * body.t[0];
+        v[c] = speed * body.t[1];
+    }
+    for (int j = 0; j < fish->n_sheet; j++) {
+        const int is_end = j == 0 || j == fish->n_sheet - 1;
+        y[fish->at.gamma + j] = (is_end ? 0.5 : 1) * h / fish->sheet_weight[j];
+    }
+    pressure_update(pressure, &flow, y);
+    for (int c = 0; c < fish->n_control; c++) {
+        const double theta = h * (c + 0.5);
+        // the interval around the control point is dtheta sin(theta)/2 long
+        const double length = h * sin(theta) / 2;
+        NEAR(pressure_jump(pressure, c, y, yp), speed * h / length, 0, 1e-12);
+        // C(theta) = theta
+        const double now = pressure_jump(pressure, c, y, yp);
+        for (int j = 0; j < fish->n_sheet; j++) yp[fish->at.gamma + j] = y[fish->at.gamma + j];
+        NEAR(pressure_jump(pressure, c, y, yp) - now, theta, 1e-12, 0);
+        for (int j = 0; j < fish->n_sheet; j++) yp[fish->at.gamma + j] = 0;
+    }
+    school_clear(&setup);
+}
+
 // a soft free fish that begins to beat: the audit, and momentum against forces by name
 static void energy_and_momentum_of_a_free_fish_are_accounted_for(void **state) {
     (void)state;
@@ -382,6 +417,7 @@ int main(void) {
         cmocka_unit_test(suction_law_has_a_value_at_rest),
         cmocka_unit_test(suction_of_a_plate_ends_at_its_limit),
         cmocka_unit_test(energy_balance_is_closed_where_the_limit_acts),
+        cmocka_unit_test(a_strength_that_is_singular_at_the_tail_has_no_kink),
         cmocka_unit_test(energy_and_momentum_of_a_free_fish_are_accounted_for),
         cmocka_unit_test(no_memory_leaves_nothing),
     };

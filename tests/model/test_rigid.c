@@ -166,12 +166,13 @@ static void all_vectors_of_fish_and_wake_turn_together(void **state) {
     struct setup setup;
     set_up(&setup);
     struct history *const history = &setup.state->history[1];
-    const struct wake *const wake = &setup.state->wake[1];
+    struct wake *const wake = &setup.state->wake[1];
     state_remember(history,
                    &(struct sample){.velocity = {1, 2}, .friction = {3, 4}, .force = {5, 6}, .drifted = {7, 8}});
     state_remember(history, &(struct sample){.heading = 1});
-    const double velocity[2] = {wake->tail_velocity[0], wake->tail_velocity[1]},
-                 slip[2] = {wake->slip[0], wake->slip[1]};
+    wake_set_tail(wake, (const double[]){9, 10}, (const double[]){0.6, 0.8});
+    wake->slip[0] = 11;
+    wake->slip[1] = 12;
     // a quarter turn to the left makes (a, b) into (-b, a)
     rigid_change(setup.school, setup.state, 1, &(struct rigid){.heading = M_PI / 2});
     const struct sample *const sample = state_recall(history, 1);
@@ -179,8 +180,9 @@ static void all_vectors_of_fish_and_wake_turn_together(void **state) {
     NEAR_ARRAY(2, sample->friction, ((double[]){-4, 3}), 1e-14, 0);
     NEAR_ARRAY(2, sample->force, ((double[]){-6, 5}), 1e-14, 0);
     NEAR_ARRAY(2, sample->drifted, ((double[]){-8, 7}), 1e-14, 0);
-    NEAR_ARRAY(2, wake->tail_velocity, ((double[]){-velocity[1], velocity[0]}), 1e-14, 0);
-    NEAR_ARRAY(2, wake->slip, ((double[]){-slip[1], slip[0]}), 1e-14, 0);
+    NEAR_ARRAY(2, wake->tail_velocity, ((double[]){-10, 9}), 1e-14, 0);
+    NEAR_ARRAY(2, wake->tail_tangent, ((double[]){-0.8, 0.6}), 1e-14, 0);
+    NEAR_ARRAY(2, wake->slip, ((double[]){-12, 11}), 1e-14, 0);
     NEAR(state_recall(history, 0)->heading, 1 + M_PI / 2, 1e-15, 0);
     school_clear(&setup);
 }

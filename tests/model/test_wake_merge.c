@@ -1,4 +1,5 @@
 /* test_wake_merge.c: pairs of neighbours in old wakes: what stays, and what the bodies see of it. */
+#include <stdio.h>
 #include <string.h>
 
 #include "model/free_sheet.h"
@@ -154,6 +155,56 @@ static void nothing_is_merged_near_a_body_or_where_one_will_be(void **state) {
     school_clear(&setup);
 }
 
+static void the_newest_vortices_are_never_merged(void **state) {
+    (void)state;
+    static const char *const kinds[] = {"sheet", "continuous"};
+    for (int i = 0; i < 2; i++) {
+        struct setup setup;
+        char text[256];
+        snprintf(text, sizeof text, TIME "wake: {lifetime: 16, shedding: %s, merge: 0.1}\nfish: [{}]\n", kinds[i]);
+        trail(&setup, text);
+        // the body is far from all of them, and goes away
+        double *const y = setup.state->y;
+        const struct fish *const fish = setup.school->fish;
+        for (int k = 0; k < fish->n_nodes; k++) {
+            y[fish->at.x + k] -= 100;
+            y[fish->at.vx + k] = -5;
+        }
+        merge_all(&setup);
+        const struct wake *const wake = &setup.state->wake[0];
+        // one every hundredth of a second up to 16 s; older ones are merged
+        for (int j = 0; j < 16; j++) NEAR(wake->birth[wake->n_vortex - 1 - j], 16 - 0.01 * j, 1e-12, 0);
+        assert_true(wake->n_vortex < N / 2);
+        school_clear(&setup);
+    }
+}
+
+static void a_pair_that_dies_before_a_body_comes_is_merged(void **state) {
+    (void)state;
+    // the second body is 100 away and comes near with 8 a second, in 12 s; the oldest vortices have some tenths of a
+    // second to live, the newest ones 16 s
+    struct setup setup;
+    trail(&setup, TIME
+          "wake: {lifetime: 16, shedding: continuous, merge: 0.1}\n"
+          "fish: [{}, {start: {position: [100, 0.2]}}]\n");
+    double *const y = setup.state->y;
+    const struct fish *const fish = setup.school->fish;
+    for (int k = 0; k < fish[0].n_nodes; k++) y[fish[0].at.x + k] -= 100;
+    for (int k = 0; k < fish[1].n_nodes; k++) y[fish[1].at.vx + k] = -8;
+    merge_all(&setup);
+    const struct wake *const wake = &setup.state->wake[0];
+    // a vortex at x is x - 1 seconds old, and the body is within two lengths of it after (98 - x)/8 s:
+    // it is gone by then where 17 - x < (98 - x)/8, for x above 5.4
+    int n_near = 0, n_far = 0;
+    for (int i = 0; i < wake->n_vortex; i++) {
+        n_near += wake->x[i] < 5;
+        n_far += wake->x[i] > 7;
+    }
+    assert_int_equal(n_near, 400);
+    assert_true(n_far < 500);
+    school_clear(&setup);
+}
+
 static void wakes_take_turns(void **state) {
     (void)state;
     struct setup setup;
@@ -185,6 +236,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_velocity_at_the_bodies_changes_by_less_than_the_bound),
         cmocka_unit_test(nothing_is_merged_near_a_body_or_where_one_will_be),
+        cmocka_unit_test(the_newest_vortices_are_never_merged),
+        cmocka_unit_test(a_pair_that_dies_before_a_body_comes_is_merged),
         cmocka_unit_test(wakes_take_turns),
         cmocka_unit_test(without_the_key_nothing_is_merged),
     };

@@ -92,6 +92,27 @@ static void a_soft_body_is_slower_than_its_beat(void **state) {
     expect_warnings(SCHOOL_SECOND TIME "fish: [{body: {modulus: 1e5}, wave: {amplitude: 0}}]\n", 0.1, "");
 }
 
+static void the_worst_fish_is_named(void **state) {
+    (void)state;
+    // beats of 10 and 5 events, then the other way round; the third one has enough
+    static const char *const frequencies[][2] = {{"2", "4"}, {"4", "2"}};
+    for (int i = 0; i < 2; i++) {
+        char text[512], line[WARNING_BYTES];
+        snprintf(text, sizeof text,
+                 SCHOOL_SECOND
+                 "time: {end: 1, shedding_interval: 0.05}\nfish: [{name: a, wave: {frequency: %s}}, {name: b, wave: "
+                 "{frequency: %s}, start: {position: [0, 2]}}, {name: c, start: {position: [0, 4]}}]\n",
+                 frequencies[i][0], frequencies[i][1]);
+        struct simulation *const simulation = school_simulation(text);
+        simulate_measure(simulation);
+        assert_true(warnings_line(WARNING_EVENTS, simulation->school, simulation->state, simulation->diagnostics,
+                                  simulation->residual->scratch, line));
+        assert_non_null(strstr(line, i == 0 ? "b (the worst of 2 fish)" : "a (the worst of 2 fish)"));
+        assert_non_null(strstr(line, "only 5 events"));
+        simulate_free(simulation);
+    }
+}
+
 static void few_sheet_points_for_a_short_stretch_are_told(void **state) {
     (void)state;
 #define PLATE(n) \
@@ -247,6 +268,7 @@ int main(void) {
         cmocka_unit_test(the_published_force_is_told_and_nothing_else),
         cmocka_unit_test(few_events_in_a_beat_are_told),
         cmocka_unit_test(a_soft_body_is_slower_than_its_beat),
+        cmocka_unit_test(the_worst_fish_is_named),
         cmocka_unit_test(few_sheet_points_for_a_short_stretch_are_told),
         cmocka_unit_test(an_open_energy_balance_is_told),
         cmocka_unit_test(an_open_energy_balance_is_told_within_the_first_beat),

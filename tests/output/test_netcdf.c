@@ -346,19 +346,73 @@ static void write_rows(const char *path, int format, int n_growing) {
     assert_int_equal(nc_close(file), NC_NOERR);
 }
 
-static void a_file_that_was_cut_anywhere_is_refused(void **state) {
+/* A file of five rows with so many growing variables of three bytes each, which was cut: it has its whole rows, or is
+ * refused where a value that does not grow, or a part of the header, is missing. */
+static void cut_everywhere(const char *path, int n_growing) {
+    const off_t whole = length_of_data(path), per_row = n_growing == 1 ? 3 : 4 * n_growing,
+                first = n_growing == 0 ? whole : whole - 4 * per_row - (4 * (n_growing - 1) + 3),
+                constants = n_growing == 0 ? whole : first - 2 /* that fill up */;
+    for (off_t length = whole - 1; length >= 0; length--) {
+        assert_int_equal(truncate(path, length), 0);
+        struct netcdf_reader reader;
+        const enum status status = netcdf_open(&reader, path);
+        if ((status == STATUS_OK) != (length >= constants)) fail_msg("%d growing, %ld bytes", n_growing, (long)length);
+        if (length == constants - 1) assert_message("the end of the file is missing");
+        if (status != STATUS_OK) continue;
+        size_t n_rows, want = 0;
+        for (off_t end = whole; want < 5 && end - (4 - (off_t)want) * per_row <= length; want++) continue;
+        assert_int_equal(netcdf_read_length(&reader, "rows", 0, 100, &n_rows), STATUS_OK);
+        assert_int_equal(n_rows, want);
+        assert_int_equal(reader.n_missing, 5 - want);
+        // what is missing is not read as zeros
+        double values[15];
+        const struct netcdf_slice all[] = {{"rows", 0, want}, {"three", 0, 3}, {NULL}},
+                                  more[] = {{"rows", 0, want + 1}, {"three", 0, 3}, {NULL}};
+        if (want > 0) assert_int_equal(netcdf_read_doubles(&reader, "v0", all, values), STATUS_OK);
+        if (want > 0) NEAR(values[3 * want - 1], 3, 0, 0);
+        assert_int_equal(netcdf_read_doubles(&reader, "v0", more, values), STATUS_FILE);
+        netcdf_close(&reader);
+        struct netcdf_rows rows;
+        assert_int_equal(netcdf_read_rows(path, &rows), STATUS_OK);
+        assert_true(rows.n == want && rows.n_counted == 5 && rows.begin_of_rows == (uint64_t)first);
+    }
+}
+
+static void a_file_that_was_cut_anywhere_has_its_whole_rows(void **state) {
     const struct fixture *const f = *state;
     const int formats[] = {0, NC_64BIT_OFFSET, NC_64BIT_DATA};
     for (int i = 0; i < 3; i++) {
         for (int n_growing = 0; n_growing < 3; n_growing++) {
             write_rows(f->path, formats[i], n_growing);
             assert_int_equal(try_to_open(f->path), STATUS_OK);
-            const off_t whole = length_of_data(f->path);
-            for (off_t length = whole - 1; length >= 0; length--) {
-                assert_int_equal(truncate(f->path, length), 0);
-                if (try_to_open(f->path) != STATUS_FILE) fail_msg("%d growing, %ld bytes", n_growing, (long)length);
-                if (length == whole - 1) assert_message("the end of the file is missing");
-            }
+            cut_everywhere(f->path, n_growing);
+        }
+    }
+}
+
+/* Put another number of rows into the header of a file with 64-bit sizes. */
+static void count_rows(const char *path, uint64_t n) {
+    const int file = open(path, O_WRONLY);
+    unsigned char bytes[8];
+    for (int i = 0; i < 8; i++) bytes[i] = (unsigned char)(n >> (56 - 8 * i));
+    assert_int_equal(pwrite(file, bytes, 8, 4), 8);
+    close(file);
+}
+
+static void a_header_that_counts_more_rows_than_there_are_does_not_count(void **state) {
+    const struct fixture *const f = *state;
+    const uint64_t counts[] = {6, 0x7900000000, UINT64_MAX};
+    for (int n_growing = 0; n_growing < 3; n_growing++) {
+        for (int i = 0; i < 3; i++) {
+            struct netcdf_reader reader;
+            size_t n_rows;
+            write_rows(f->path, NC_64BIT_DATA, n_growing);
+            count_rows(f->path, counts[i]);
+            if (netcdf_open(&reader, f->path) != STATUS_OK) continue;  // NetCDF does not take each of them
+            const int code = netcdf_read_length(&reader, "rows", 0, SIZE_MAX, &n_rows);
+            assert_int_equal(code, STATUS_OK);
+            assert_int_equal(n_rows, n_growing > 0 ? 5 : 0);
+            netcdf_close(&reader);
         }
     }
 }
@@ -420,7 +474,8 @@ int main(void) {
         WITH_FILE(only_what_is_expected_is_read),
         WITH_FILE(attributes_and_lengths_are_checked_too),
         WITH_FILE(what_is_no_file_is_refused),
-        WITH_FILE(a_file_that_was_cut_anywhere_is_refused),
+        WITH_FILE(a_file_that_was_cut_anywhere_has_its_whole_rows),
+        WITH_FILE(a_header_that_counts_more_rows_than_there_are_does_not_count),
         WITH_FILE(no_damage_of_a_header_does_harm),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

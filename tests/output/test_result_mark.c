@@ -64,6 +64,43 @@ static void other_rows_and_other_cases_are_refused(void **state) {
     }
 }
 
+/* After a power cut the header may count rows that have not reached the disk; or these end in the middle of one. */
+static void only_the_rows_of_a_mark_have_to_be_there(void **state) {
+    struct fixture *const f = *state;
+    struct netcdf_rows rows;
+    struct result_mark mark;
+    int is_complete;
+    for (int n_bytes = 0; n_bytes < 3; n_bytes++) {
+        struct result_checksum checksum = {0}, found = {0};
+        struct result_file *result;
+        write_file(f, 4);
+        assert_int_equal(result_mark_take(f->path, 2, &checksum, &mark), STATUS_OK);
+        assert_int_equal(netcdf_read_rows(f->path, &rows), STATUS_OK);
+        const uint64_t left[] = {0, rows.bytes / 2, rows.bytes + 1};
+        assert_int_equal(truncate(f->path, (off_t)(rows.begin_of_rows + 2 * rows.bytes + left[n_bytes])), 0);
+        assert_int_equal(netcdf_read_rows(f->path, &rows), STATUS_OK);
+        assert_int_equal(rows.n, n_bytes < 2 ? 2 : 3);
+        assert_int_equal(rows.n_counted, 4);
+        assert_int_equal(result_mark_check(f->path, &mark, EFFECTIVE, &found, &is_complete), STATUS_OK);
+        assert_false(is_complete);  // whatever the file says
+        assert_int_equal(result_file_continue(&result, f->path, &mark, &found, &f->values, f->school, 10), STATUS_OK);
+        assert_int_equal(append(f, result, 7, 1), STATUS_OK);
+        assert_int_equal(result_file_close(result, "complete"), STATUS_OK);
+        const int file = open_to_read(f);
+        assert_int_equal(length_of(file, "time"), 3);
+        NEAR(value_at(file, "time", 1, 0, 0, 0), 0.5, 0, 0);
+        NEAR(value_at(file, "time", 2, 0, 0, 0), 7, 0, 0);
+        nc_close(file);
+        // one row less than the mark counts is too little
+        unlink(f->path);
+        write_file(f, 4);
+        assert_int_equal(truncate(f->path, (off_t)(rows.begin_of_rows + 2 * rows.bytes - 1)), 0);
+        assert_int_equal(result_mark_check(f->path, &mark, EFFECTIVE, &found, &is_complete), STATUS_FILE);
+        assert_message("it has 1 rows, of 2 that belong to the checkpoint");
+        unlink(f->path);
+    }
+}
+
 static void a_file_goes_on_behind_a_mark(void **state) {
     struct fixture *const f = *state;
     struct result_checksum checksum = {0};
@@ -119,9 +156,8 @@ static void a_longer_run_begins_with_the_rows(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        WITH_FILE(a_growing_file_has_the_marks_of_a_whole_one),
-        WITH_FILE(other_rows_and_other_cases_are_refused),
-        WITH_FILE(a_file_goes_on_behind_a_mark),
+        WITH_FILE(a_growing_file_has_the_marks_of_a_whole_one), WITH_FILE(other_rows_and_other_cases_are_refused),
+        WITH_FILE(only_the_rows_of_a_mark_have_to_be_there),    WITH_FILE(a_file_goes_on_behind_a_mark),
         WITH_FILE(a_longer_run_begins_with_the_rows),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -56,6 +56,25 @@ static void times_that_no_event_has_are_refused(void **state) {
     case_free(&values);
 }
 
+static void times_may_be_rounded_but_not_wrong(void **state) {
+    (void)state;
+    // an event at 0.06 s; rounding of a time in decimals is far below a billionth of it
+    const char *const right[] = {"0.06", "0.06000000000001", "0.05999999999999"};
+    const char *const wrong[] = {"0.0600001", "0.0599999", "0.0606"};
+    struct case_values values;
+    struct checkpoints checkpoints;
+    school_settings(&values, SCHOOL);
+    for (int i = 0; i < 3; i++) {
+        school_ok(checkpoints_create(&checkpoints, &values, "/tmp/no-such-result.nc", right[i]));
+        assert_int_equal(checkpoints.n_at, 1);
+        assert_int_equal(checkpoints.at[0], 3);
+        checkpoints_free(&checkpoints);
+        assert_int_equal(checkpoints_create(&checkpoints, &values, "/tmp/no-such-result.nc", wrong[i]), STATUS_CASE);
+        checkpoints_free(&checkpoints);
+    }
+    case_free(&values);
+}
+
 static void a_run_that_is_resumed_keeps_its_places_and_writes_none_twice(void **state) {
     (void)state;
     struct case_values values;
@@ -98,6 +117,7 @@ int main(void) {
         cmocka_unit_test(a_checkpoint_is_named_after_its_result),
         cmocka_unit_test(checkpoints_are_due_at_the_interval_and_where_they_are_asked_for),
         cmocka_unit_test(times_that_no_event_has_are_refused),
+        cmocka_unit_test(times_may_be_rounded_but_not_wrong),
         cmocka_unit_test(a_run_that_is_resumed_keeps_its_places_and_writes_none_twice),
         cmocka_unit_test(the_one_before_the_newest_takes_its_name),
     };

@@ -124,6 +124,22 @@ static void the_inner_product_weighted_with_masses_is_preserved(void **state) {
     clear(&both);
 }
 
+static void momenta_are_mapped_as_velocities_are(void **state) {
+    (void)state;
+    struct configurations both;
+    set_up(&both, 0.8, 0.4);
+    const struct fish *const fish = &both.setup.school->fish[2];
+    const size_t size = 2 * (size_t)fish->n_nodes * sizeof(double);
+    assert_true(fish_has_momentum(fish));
+    for (int back = 0; back < 2; back++) {
+        memcpy(both.image + fish->at.px, both.image + fish->at.vx, size);
+        (back ? corotation_to_reference : corotation_to_current)(both.corotation, both.image);
+        assert_memory_equal(both.image + fish->at.px, both.image + fish->at.vx, size);
+        assert_true(back || fabs(both.image[fish->at.px] - both.field[fish->at.vx]) > 1e-3);
+    }
+    clear(&both);
+}
+
 static void a_rigid_motion_is_mapped_to_a_rigid_motion(void **state) {
     (void)state;
     struct configurations both;
@@ -339,6 +355,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_map_is_the_inverse_of_the_other),
         cmocka_unit_test(the_inner_product_weighted_with_masses_is_preserved),
+        cmocka_unit_test(momenta_are_mapped_as_velocities_are),
         cmocka_unit_test(a_rigid_motion_is_mapped_to_a_rigid_motion),
         cmocka_unit_test(a_node_rotates_by_the_mean_of_its_edges),
         cmocka_unit_test(where_nodes_are_prescribed_vectors_rotate_with_the_nodes),

@@ -90,6 +90,22 @@ static void all_equations_hold_at_events(void **state) {
     simulate_free(simulation);
 }
 
+static void the_rate_of_the_circulation_is_its_change_over_the_interval(void **state) {
+    (void)state;
+    struct simulation *const simulation = open_with(RODS, "method: verlet, step: 0.001");
+    school_run(simulation, 0.5);
+    const double *const y = simulation->state->y, *const yp = simulation->state->yp;
+    double before[2];
+    for (int f = 0; f < 2; f++) before[f] = y[simulation->school->fish[f].at.circulation];
+    school_ok(simulate_step(simulation));
+    for (int f = 0; f < 2; f++) {
+        const int shed = simulation->school->fish[f].at.circulation;
+        NEAR(yp[shed], (y[shed] - before[f]) / 0.02, 1e-12, 1e-12);
+        assert_true(fabs(yp[shed]) > 1e-4);
+    }
+    simulate_free(simulation);
+}
+
 static void fails(const char *solver, const char *message) {
     static const char stiff[] = TIMES "fish: [{nodes: 7, sheet_points: 13, body: {modulus: 1.0e+7, " NO_DAMPING "}}]\n";
     struct simulation *const simulation = open_with(stiff, solver);
@@ -108,6 +124,7 @@ int main(void) {
         cmocka_unit_test(steps_converge_with_the_square_of_their_length),
         cmocka_unit_test(steps_back_lead_to_the_start),
         cmocka_unit_test(all_equations_hold_at_events),
+        cmocka_unit_test(the_rate_of_the_circulation_is_its_change_over_the_interval),
         cmocka_unit_test(a_failure_tells_the_time),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

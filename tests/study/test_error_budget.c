@@ -173,7 +173,8 @@ static void orders_decide(void **state) {
         {{1, 11.4, 23}, 2, ERROR_BUDGET_ACCEPTED},    // 3.51, 1.01: far above
         {{1, 1.5, 2.25}, 1, ERROR_BUDGET_ACCEPTED},  {{1, 4, 16}, NAN, ERROR_BUDGET_NO_ORDER},
         {{0, 4, 16}, 2, ERROR_BUDGET_ACCEPTED},  // equal to rounding: converged
-        {{1, 1, 4}, 2, ERROR_BUDGET_GROWS},          {{1, -4, 16}, 2, ERROR_BUDGET_TURNS},
+        {{1, 1, 4}, 2, ERROR_BUDGET_GROWS},          {{1, 4, 3}, 2, ERROR_BUDGET_GROWS},
+        {{1, 0, 3}, 2, ERROR_BUDGET_GROWS},          {{1, -4, 16}, 2, ERROR_BUDGET_TURNS},
         {{1, 4, -16}, 2, ERROR_BUDGET_TURNS},        {{1, 4, NAN}, 2, ERROR_BUDGET_UNKNOWN},
     };
     for (size_t i = 0; i < sizeof examples / sizeof *examples; i++) {
@@ -188,6 +189,18 @@ static void orders_decide(void **state) {
             NEAR(judged.of[0].error, fabs(value[3] - value[0]), 0, 1e-12);
         }
     }
+}
+
+/* Levels of 9, 11, 17 and 24 nodes: the difference from 11 to 17 is larger than from 9 to 11, also at order 2. */
+static void uneven_levels_are_judged_by_their_spacings(void **state) {
+    (void)state;
+    const struct key key = {4, 1, {24, 17, 11, 9}, 2, NULL};
+    double value[4];
+    for (int i = 0; i < 4; i++) value[i] = 2 + 0.3 / pow(key.level[i] - 1, 2);
+    assert_true(value[2] - value[1] > value[3] - value[2]);
+    const struct judged judged = judge(&key, value, NULL, 1e-9);
+    assert_int_equal(judged.verdict, ERROR_BUDGET_ACCEPTED);
+    NEAR(judged.of[0].coarse_order, 2, 1e-9, 0);
 }
 
 static void a_missing_level_leaves_the_error_unknown(void **state) {
@@ -281,6 +294,7 @@ int main(void) {
         cmocka_unit_test(differences_that_do_not_fall_are_flagged),
         cmocka_unit_test(differences_below_the_noise_are_none),
         cmocka_unit_test(orders_decide),
+        cmocka_unit_test(uneven_levels_are_judged_by_their_spacings),
         cmocka_unit_test(a_missing_level_leaves_the_error_unknown),
         cmocka_unit_test(two_levels_give_the_difference_with_a_wide_bound),
         cmocka_unit_test(of_many_levels_the_finest_four_count),

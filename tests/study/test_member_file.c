@@ -42,6 +42,34 @@ static void quantities_of_the_table_are_those_of_the_last_row(void **state) {
     member_file_free(&member);
 }
 
+/* A member whose header counts rows that are not there, or that has no rows to count, is not finished. */
+static void a_member_that_lacks_rows_is_refused(void **state) {
+    struct fixture *const f = *state;
+    const unsigned char count[8] = {0, 0, 0, 0x79};
+    for (int has_rows = 0; has_rows < 2; has_rows++) {
+        struct member_file member;
+        if (has_rows) {
+            read_member(f, &member);
+            member_file_free(&member);
+        } else {
+            int file, number;
+            assert_int_equal(nc_create(f->path, NC_CLOBBER | NC_64BIT_DATA, &file), NC_NOERR);
+            assert_int_equal(nc_put_att_int(file, NC_GLOBAL, "shoal_schema", NC_INT, 1, (int[]){1}), NC_NOERR);
+            nc_def_dim(file, "time", NC_UNLIMITED, &number);
+            nc_def_dim(file, "fish", 2, &number);
+            nc_def_dim(file, "node", 5, &number);
+            assert_int_equal(nc_close(file), NC_NOERR);
+        }
+        FILE *const file = fopen(f->path, "r+");
+        fseek(file, 4, SEEK_SET);
+        assert_int_equal(fwrite(count, 1, 8, file), 8);
+        fclose(file);
+        assert_int_equal(member_file_read(&member, f->path), STATUS_FILE);
+        assert_message("the end of the file is missing");
+        unlink(f->path);
+    }
+}
+
 static void a_steady_state_has_its_own_values(void **state) {
     struct fixture *const f = *state;
     struct result_file *file;
@@ -207,6 +235,7 @@ static void a_body_cannot_have_more_nodes_than_there_are_places(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         WITH_FILE(quantities_of_the_table_are_those_of_the_last_row),
+        WITH_FILE(a_member_that_lacks_rows_is_refused),
         WITH_FILE(a_steady_state_has_its_own_values),
         WITH_FILE(nose_and_tail_are_the_ends_of_each_body),
         WITH_FILE(lateral_drift_is_to_the_left_of_the_first_heading),

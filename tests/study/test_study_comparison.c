@@ -136,7 +136,7 @@ static enum status compare(const struct case_values *values, const char *path, F
     TRY(study_compare(values, &options, &run, nowhere));
     struct case_values study;
     struct member_file *members;
-    TRY(study_file_read(path, &study, &members));
+    TRY(study_file_read(path, &study, &members, &(int){0}));
     const int n = sweep_n_members(&study);
     const double error = *at(&members[n - 1], "tail_error", 0, 0);
     const enum status printed = study_comparison_print(&study, members, nowhere);

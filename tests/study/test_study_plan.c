@@ -122,9 +122,18 @@ static void members_beyond_the_last_are_refused_or_removed(void **state) {
     const struct fixture *const f = *state;
     char path[96];
     snprintf(path, sizeof path, "%s/member-0003.nc", f->folder);
+    struct study_plan plan;
     write_bytes(path, 4, "else");
     assert_refused(f, &f->study, path);
-    struct study_plan plan;
+    // a file that shoal did not write stays
+    assert_int_equal(study_plan_create(&plan, &f->study, f->folder, 0, -1, 1), STATUS_FILE);
+    study_plan_free(&plan);
+    assert_int_equal(access(path, F_OK), 0);
+    size_t n;
+    char *const bytes = read_bytes(f->member[0], &n);
+    write_bytes(path, n, bytes);
+    free(bytes);
+    assert_refused(f, &f->study, path);
     assert_int_equal(study_plan_create(&plan, &f->study, f->folder, 0, -1, 1), STATUS_OK);
     study_plan_free(&plan);
     assert_int_not_equal(access(path, F_OK), 0);

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "near.h"
+#include "vortex/treecode.h"
 #include "vortex/velocity_sum.h"
 
 enum { VORTICES = 4000, TARGETS = 500 };
@@ -82,6 +83,39 @@ static void move(struct vortices *vortices, double far) {
     }
 }
 
+static void the_tree_has_a_tenth_of_the_tolerance(void **state) {
+    (void)state;
+    const double tolerance = 1e-6;
+    struct vortices all, vortices = {0};
+    struct velocity_sum *sum;
+    struct treecode *tree;
+    make(&all);
+    // of one smoothing, so that they are one set
+    assert_int_equal(vortices_append(&vortices, all.n, 0.1), STATUS_OK);
+    memcpy(vortices.x, all.x, (size_t)all.n * sizeof *all.x);
+    memcpy(vortices.y, all.y, (size_t)all.n * sizeof *all.y);
+    memcpy(vortices.circulation, all.circulation, (size_t)all.n * sizeof *all.circulation);
+    assert_int_equal(velocity_sum_create(&sum), STATUS_OK);
+    assert_int_equal(treecode_create(&tree), STATUS_OK);
+    struct result got, want, coarse;
+    struct induced targets = at(&got, 0);
+    assert_int_equal(velocity_sum_induce(sum, &vortices, tolerance, 1, &targets), STATUS_OK);
+    for (int i = 0; i < 2; i++) {
+        targets = at(i == 0 ? &want : &coarse, 0);
+        assert_int_equal(treecode_build(tree, vortices.n, vortices.x, vortices.y, vortices.circulation, 0.1,
+                                        i == 0 ? tolerance / 10 : tolerance, 1),
+                         STATUS_OK);
+        assert_int_equal(treecode_add_velocity(tree, targets.n, targets.x, targets.y, 1, targets.u, targets.v),
+                         STATUS_OK);
+    }
+    assert_memory_equal(got.value, want.value, 2 * sizeof *got.value);
+    assert_memory_not_equal(got.value, coarse.value, 2 * sizeof *got.value);
+    treecode_free(tree);
+    velocity_sum_free(sum);
+    vortices_free(&vortices);
+    vortices_free(&all);
+}
+
 static void by_plan_it_is_the_same_sum_to_the_tolerance(void **state) {
     (void)state;
     const double tolerance = 1e-6;
@@ -133,6 +167,7 @@ static void the_tree_is_for_many_vortices_and_a_tolerance(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(trees_of_every_smoothing_add_up_to_the_direct_sum),
+        cmocka_unit_test(the_tree_has_a_tenth_of_the_tolerance),
         cmocka_unit_test(by_plan_it_is_the_same_sum_to_the_tolerance),
         cmocka_unit_test(the_tree_is_for_many_vortices_and_a_tolerance),
     };

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The steady state of a case, and the equilibrium of one without a beat: what is printed and what is in its file, and what is said where there is none.
 #
-#   tests/app/test_steady.sh PROGRAM
+#   tests/app/test_steady_command.sh PROGRAM
 # shellcheck source=tests/checks.sh
 . "$(dirname "$0")/../checks.sh"
 

@@ -1,0 +1,594 @@
+/* error_plan.c: see error_plan.h. */
+#include "study/error_plan.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/text.h"
+#include "case/case_member.h"
+#include "case/case_table.h"
+#include "case/sweep_members.h"
+#include "case/sweep_quantity.h"
+#include "model/fish_school.h"
+#include "run/steady_static.h"
+
+/* Finer levels in place of coarser ones that are no valid cases. */
+enum { MOST_FINER = 2 };
+
+static enum status out_of_memory(void) {
+    return status_fail(STATUS_MEMORY, "out of memory: the errors of a study");
+}
+
+int error_plan_place(const struct error_study *study, int quantity, int fish) {
+    return quantity * study->n_fish + fish;
+}
+
+void error_plan_free(struct error_study *study) {
+    for (int k = 0; k < study->n_keys; k++) free(study->key[k].part);
+    free(study->value);
+    free(study->error);
+    free(study->together);
+    case_free(&study->study);
+    *study = (struct error_study){0};
+}
+
+// ---- columns: the keys that every member sets
+
+static struct sweep_axis *axis_of(const struct error_study *study) {
+    return &study->study.sweep[0];
+}
+
+/* The number of fish, or 1 for a key of the whole case. */
+static int n_owners(const struct case_values *values, const char *path) {
+    return case_table_is_of_fish(case_table_row(path)) ? values->school.n_fish : 1;
+}
+
+/* The value of a key; fish is ignored unless the key is of a fish. */
+static double number_of(const struct case_values *values, const char *path, int fish) {
+    const struct key *const key = case_table_row(path);
+    const void *const field =
+        case_table_field(key, (struct case_values *)(uintptr_t)values, &values->school.fish[fish]);
+    return key->type == REAL ? *(const double *)field : *(const int *)field;
+}
+
+static int are_fish_alike(const struct case_values *values, const char *path) {
+    for (int f = 1; f < n_owners(values, path); f++) {
+        if (fabs(number_of(values, path, f) - number_of(values, path, 0)) > 0) return 0;
+    }
+    return 1;
+}
+
+/* "fish[*].nodes", or "fish[2].nodes" where the fish differ. */
+static char *path_of(const struct case_values *values, const char *path, int fish) {
+    struct text text = {0};
+    if (!case_table_is_of_fish(case_table_row(path))) {
+        text_add(&text, "%s", path);
+    } else if (are_fish_alike(values, path)) {
+        text_add(&text, "fish[*]%s", path + 4);
+    } else {
+        text_add(&text, "fish[%d]%s", fish, path + 4);
+    }
+    return text.text;
+}
+
+static char *text_of(const struct key *key, double value) {
+    struct text text = {0};
+    if (key->type == CHOICE) {
+        text_add(&text, "%s", key->words[(int)value]);
+    } else {
+        text_add_number(&text, value);
+    }
+    return text.text;
+}
+
+/* Add a key to the axis, for each fish where they differ, with the value that the case has in row 0. */
+static enum status add_columns(struct error_study *study, const struct case_values *values, const char *path) {
+    struct sweep_axis *const axis = axis_of(study);
+    const struct key *const key = case_table_row(path);
+    const int n = are_fish_alike(values, path) ? 1 : n_owners(values, path);
+    struct sweep_key *const keys = realloc(axis->key, (size_t)(axis->n_keys + n) * sizeof *keys);
+    if (keys) axis->key = keys;
+    char **const row = keys ? realloc(axis->value, (size_t)(axis->n_keys + n) * sizeof *row) : NULL;
+    if (!row) return out_of_memory();
+    axis->value = row;
+    for (int f = 0; f < n; f++) {
+        row[axis->n_keys] = text_of(key, number_of(values, path, f));
+        axis->key[axis->n_keys++] = (struct sweep_key){
+            .path = path_of(values, path, f), .row = key->path, .unit = key->unit, .is_number = key->type != CHOICE};
+        if (!row[axis->n_keys - 1] || !axis->key[axis->n_keys - 1].path) return out_of_memory();
+    }
+    return STATUS_OK;
+}
+
+/* The first column of a key; -1: it is not varied. Those of other fish follow. */
+int error_plan_column(const struct error_study *study, const char *path) {
+    const struct sweep_axis *const axis = axis_of(study);
+    for (int c = 0; c < axis->n_keys; c++) {
+        if (strcmp(axis->key[c].row, path) == 0) return c;
+    }
+    return -1;
+}
+
+// ---- rows: the members
+
+/* A row of the axis that is being made. */
+struct row {
+    const struct error_study *study;
+    char **value;    /* (n_keys of the axis) */
+    int is_combined; /* several keys are refined */
+    int failed;
+};
+
+static void set(struct row *row, const char *path, int fish, double value) {
+    const int column = error_plan_column(row->study, path);
+    if (column < 0) return;
+    const int c = are_fish_alike(&row->study->study, path) ? column : column + fish;
+    // of two refined keys that set the same points the finer one counts
+    double now;
+    const int are_points = strcmp(path, "fish.sheet_points") == 0;
+    if (row->is_combined && are_points && text_number(row->value[c], &now) && now > value) return;
+    free(row->value[c]);
+    row->value[c] = text_of(case_table_row(path), value);
+    if (!row->value[c]) row->failed = 1;
+}
+
+/* The sheet points that a fish needs at the finest level of the nodes, so that one sheet serves all of them. */
+static double sheet_for(const struct error_study *study, double finest, int f) {
+    const struct case_values *const values = &study->study;
+    const double part = fmax(1, finest / number_of(values, "fish.nodes", 0));
+    const double nodes = round(part * number_of(values, "fish.nodes", f));
+    return fmax(number_of(values, "fish.sheet_points", f), 2 * nodes - 1);
+}
+
+/* The times that must fit an interval; of a steady state the end plays no part. */
+static void set_times(struct row *row, double interval) {
+    const struct case_values *const values = &row->study->study;
+    const double beat = row->study->beat;
+    if (row->study->is_steady) set(row, "time.end", 0, beat * ceil(values->time.end / beat - 1e-9));
+    set(row, "time.checkpoint_interval", 0, 0);
+    const double output = interval * fmax(1, round(values->time.output_interval / interval));
+    set(row, "time.output_interval", 0, output);
+    set(row, "output.wake_interval", 0, output * fmax(1, round(values->output.wake_interval / output)));
+    if (values->solver.step > 0) set(row, "solver.step", 0, interval / ceil(interval / values->solver.step - 1e-9));
+}
+
+static void apply(struct row *row, const struct error_plan_change *change) {
+    const struct error_study *const study = row->study;
+    const struct case_values *const values = &study->study;
+    const struct error_study_key *const key = &study->key[change->key];
+    const char *const path = key->row->path, *const companion = key->row->companion;
+    const double part = change->value / number_of(values, path, 0);
+    const int are_nodes = strcmp(path, "fish.nodes") == 0;
+    if (!are_nodes && !(fabs(part - 1) > 1e-12)) return;
+    for (int f = 0; f < n_owners(values, path); f++) {
+        const double value = f == 0 ? change->value : part * number_of(values, path, f);
+        set(row, path, f, key->row->kind == SWEEP_POINTS ? round(value) : value);
+        if (!are_nodes) continue;
+        const double finest = fmax(change->value, key->n_levels > 0 ? key->value[0] : 0);
+        set(row, "fish.sheet_points", f, sheet_for(study, finest, f));
+    }
+    if (companion) set(row, companion, 0, part * number_of(values, companion, 0));
+    if (strcmp(path, "time.shedding_interval") == 0) set_times(row, change->value);
+}
+
+/* Free a row that is not in the axis. */
+static void drop(struct row *row) {
+    for (int c = 0; row->value && c < axis_of(row->study)->n_keys; c++) free(row->value[c]);
+    free(row->value);
+}
+
+/* The row of the case with some changes. */
+static enum status make_row(const struct error_study *study, int n, const struct error_plan_change *changes,
+                            struct row *row) {
+    const struct sweep_axis *const axis = axis_of(study);
+    *row = (struct row){study, calloc((size_t)axis->n_keys, sizeof *row->value), n > 1, 0};
+    if (!row->value) return out_of_memory();
+    for (int c = 0; c < axis->n_keys; c++) {
+        row->value[c] = strdup(axis->value[c]);
+        if (!row->value[c]) row->failed = 1;
+    }
+    // only the case itself has multipliers
+    set(row, "steady.multipliers", 0, NO);
+    for (int i = 0; i < n; i++) apply(row, &changes[i]);
+    if (!row->failed) return STATUS_OK;
+    drop(row);
+    return out_of_memory();
+}
+
+/* The member with the values of a row, but for multipliers; -1: there is none. */
+static int find_row(const struct error_study *study, const struct row *row) {
+    const struct sweep_axis *const axis = axis_of(study);
+    const int ignored = error_plan_column(study, "steady.multipliers");
+    for (int m = 0; m < axis->n_values; m++) {
+        int is_same = 1;
+        for (int c = 0; c < axis->n_keys && is_same; c++) {
+            is_same = c == ignored || strcmp(axis->value[m * axis->n_keys + c], row->value[c]) == 0;
+        }
+        if (is_same) return m;
+    }
+    return -1;
+}
+
+/* Add a row to the axis, which owns its values from now on; it is looked for from a member before. */
+static enum status append(struct error_study *study, struct row *row, int before, int *member) {
+    struct sweep_axis *const axis = axis_of(study);
+    const size_t n = (size_t)axis->n_keys, n_values = (size_t)axis->n_values + 1;
+    char **const values = realloc(axis->value, n * n_values * sizeof *values);
+    if (values) axis->value = values;
+    int *const befores = values ? realloc(axis->before, n_values * sizeof *befores) : NULL;
+    if (!befores) {
+        drop(row);
+        return out_of_memory();
+    }
+    axis->before = befores;
+    memcpy(values + n * (n_values - 1), row->value, n * sizeof *values);
+    axis->before[n_values - 1] = before;
+    free(row->value);
+    *member = axis->n_values++;
+    return STATUS_OK;
+}
+
+/* The member with some changes, which is added where there is none; *is_new. */
+enum status error_plan_member(struct error_study *study, int n, const struct error_plan_change *changes, int before,
+                              int *member, int *is_new) {
+    struct row row;
+    TRY(make_row(study, n, changes, &row));
+    *member = find_row(study, &row);
+    *is_new = *member < 0;
+    if (*is_new) return append(study, &row, before, member);
+    drop(&row);
+    return STATUS_OK;
+}
+
+/* Remove the last rows of the axis. */
+void error_plan_shorten(struct error_study *study, int n_values) {
+    struct sweep_axis *const axis = axis_of(study);
+    for (; axis->n_values > n_values; axis->n_values--) {
+        for (int c = 0; c < axis->n_keys; c++) free(axis->value[(axis->n_values - 1) * axis->n_keys + c]);
+    }
+}
+
+/* Whether a level of a key is a valid case. Fails with STATUS_MEMORY. */
+static enum status test_level(struct error_study *study, int k, double value, int *is_valid) {
+    struct row row;
+    struct case_values member;
+    int number;
+    TRY(make_row(study, 1, &(struct error_plan_change){k, value}, &row));
+    TRY(append(study, &row, -1, &number));
+    const enum status status = case_member(&member, &study->study, number);
+    *is_valid = status == STATUS_OK;
+    if (status == STATUS_OK) case_free(&member);
+    error_plan_shorten(study, number);
+    return status == STATUS_MEMORY ? status : STATUS_OK;
+}
+
+// ---- levels
+
+static int is_finer(const struct sweep_error_key *row, double a, double b) {
+    return row->kind == SWEEP_POINTS || row->kind == SWEEP_DURATION ? a > b : a < b;
+}
+
+/* The grid spacing of a level. */
+double error_plan_size(const struct sweep_error_key *row, double value) {
+    return row->kind == SWEEP_POINTS ? 1 / (value - 1) : row->kind == SWEEP_DURATION ? 1 / value : value;
+}
+
+/* Put a value among the levels of a key, from fine to coarse; nothing is done where it is one. */
+void error_plan_insert(struct error_study_key *key, double value) {
+    if (key->n_levels == ERROR_STUDY_LEVELS) return;
+    int i = 0;
+    while (i < key->n_levels && is_finer(key->row, key->value[i], value)) i++;
+    if (i < key->n_levels && !(fabs(key->value[i] - value) > 1e-12 * value)) return;
+    for (int j = key->n_levels; j > i; j--) {
+        key->value[j] = key->value[j - 1];
+        key->member[j] = key->member[j - 1];
+    }
+    key->value[i] = value;
+    key->member[i] = -1;
+    key->n_levels++;
+    if (i <= key->stated && key->n_levels > 1) key->stated++;
+    if (i <= key->first_stated && key->n_levels > 1) key->first_stated++;
+}
+
+/* The next value of a key at about a factor from one, that is a valid case: points are rounded; an interval divides the
+ * beat of a steady state, or the end of a run; a step divides the interval. NaN: there is none. */
+enum status error_plan_find_level(struct error_study *study, int k, double from, double factor, double *level) {
+    const struct case_values *const values = &study->study;
+    const struct error_study_key *const key = &study->key[k];
+    const int is_interval = strcmp(key->row->path, "time.shedding_interval") == 0;
+    const int is_step = strcmp(key->row->path, "solver.step") == 0;
+    const double whole = is_step ? values->school.shedding_interval : study->is_steady ? study->beat : values->time.end;
+    const double target = is_interval || is_step ? whole / (from * factor) : from * factor;
+    *level = NAN;
+    int is_valid;
+    if (key->row->kind != SWEEP_POINTS && !is_interval && !is_step) {
+        TRY(test_level(study, k, target, &is_valid));
+        if (is_valid) *level = target;
+        return STATUS_OK;
+    }
+    // integers around the target
+    for (int j = 0; j <= target / 4; j++) {
+        for (int sign = -1; sign <= 1; sign += 2) {
+            const double n = floor(target + 0.5) + sign * j, value = is_interval || is_step ? whole / n : n;
+            const int is_same = !(fabs(value - from) > 1e-9 * from);
+            if (n < 1 || is_same || is_finer(key->row, value, from) != is_finer(key->row, from * factor, from))
+                continue;
+            TRY(test_level(study, k, value, &is_valid));
+            if (!is_valid) continue;
+            *level = value;
+            return STATUS_OK;
+        }
+        // points and steps that are refused are refused for what they are
+        if (!is_interval) return STATUS_OK;
+    }
+    return STATUS_OK;
+}
+
+/* Add a level at a factor from another one; whether there is one. */
+static enum status add_level(struct error_study *study, int k, double from, double factor, int *is_there) {
+    double level;
+    *is_there = 0;
+    if (!(factor > 0)) return STATUS_OK;
+    TRY(error_plan_find_level(study, k, from, factor, &level));
+    *is_there = !isnan(level);
+    if (*is_there) error_plan_insert(&study->key[k], level);
+    return STATUS_OK;
+}
+
+/* The levels of the table: coarser ones, and a finer one with confirm; where coarser ones are no valid cases, up to two
+ * finer ones in their place. */
+static enum status add_default_levels(struct error_study *study, int k) {
+    struct error_study_key *const key = &study->key[k];
+    const struct sweep_error_key *const row = key->row;
+    const double base = key->value[0];
+    int is_there, n_missing = 0, n_finer = row->kind == SWEEP_MODEL || study->study.error->confirm;
+    for (int i = 0; i < 2; i++) {
+        if (!(row->coarser[i] > 0)) continue;
+        TRY(add_level(study, k, base, row->coarser[i], &is_there));
+        n_missing += !is_there;
+    }
+    if (n_missing > n_finer && n_missing <= MOST_FINER) n_finer = n_missing;
+    for (int i = 0; i < n_finer; i++) TRY(add_level(study, k, key->value[0], row->finer, &is_there));
+    return STATUS_OK;
+}
+
+/* The levels that the case gives. */
+static enum status add_given_levels(struct error_study *study, int k, const struct sweep_error_levels *given) {
+    for (int i = 0; i < given->n; i++) {
+        int is_valid;
+        TRY(test_level(study, k, given->value[i], &is_valid));
+        if (!is_valid) return status_fail(STATUS_CASE, "error.keys: level %g: %s", given->value[i], status_message());
+        error_plan_insert(&study->key[k], given->value[i]);
+    }
+    return STATUS_OK;
+}
+
+// ---- which keys
+
+/* Whether a key changes anything in this case. */
+static int is_used(const struct error_study *study, const struct sweep_error_key *row) {
+    const struct case_values *const values = &study->study;
+    const double value = number_of(values, row->path, 0);
+    const int is_wake = strncmp(row->path, "wake.", 5) == 0, has_fluid = values->school.fluid.density > 0;
+    if (study->is_static) return row->kind == SWEEP_POINTS;
+    if (strcmp(row->path, "solver.rtol") == 0) return !(values->solver.step > 0);
+    if (strcmp(row->path, "solver.step") == 0) return values->solver.step > 0;
+    if (strcmp(row->path, "fish.nodes") != 0 && !has_fluid) return 0;
+    if (row->kind == SWEEP_DURATION && !study->is_steady) return value * row->coarser[0] < values->time.end;
+    return !is_wake || value > 0;
+}
+
+static enum status add_key(struct error_study *study, const struct sweep_error_key *row) {
+    struct error_study_key *const key = &study->key[study->n_keys++];
+    const double base = number_of(&study->study, row->path, 0);
+    *key = (struct error_study_key){.row = row, .n_levels = 1, .value = {base}, .member = {-1}};
+    key->part = calloc((size_t)(study->n_asked * study->n_fish) + 1, sizeof *key->part);
+    return key->part ? STATUS_OK : out_of_memory();
+}
+
+/* All keys that are varied, without levels. */
+static enum status choose_keys(struct error_study *study) {
+    const struct sweep_error *const error = study->study.error;
+    for (int i = 0; i < SWEEP_N_ERROR_KEYS; i++) {
+        const struct sweep_error_key *const row = &sweep_error_keys[i];
+        int is_wanted = error->n_keys == 0;
+        for (int k = 0; k < error->n_keys; k++) is_wanted |= error->levels[k].key == row;
+        if (is_wanted && is_used(study, row)) TRY(add_key(study, row));
+    }
+    if (study->n_keys > 0) return STATUS_OK;
+    return status_fail(STATUS_CASE, "error.keys: none of these keys changes anything in this case");
+}
+
+/* The columns of the axis: the keys, what changes with them, and what must fit. */
+static enum status add_all_columns(struct error_study *study) {
+    const struct case_values *const values = &study->study;
+    for (int k = 0; k < study->n_keys; k++) {
+        const struct sweep_error_key *const row = study->key[k].row;
+        if (error_plan_column(study, row->path) < 0) TRY(add_columns(study, values, row->path));
+        if (row->companion) TRY(add_columns(study, values, row->companion));
+        const int are_nodes = strcmp(row->path, "fish.nodes") == 0;
+        if (are_nodes && values->school.fluid.density > 0) TRY(add_columns(study, values, "fish.sheet_points"));
+        if (strcmp(row->path, "time.shedding_interval") != 0) continue;
+        if (study->is_steady) TRY(add_columns(study, values, "time.end"));
+        TRY(add_columns(study, values, "time.checkpoint_interval"));
+        TRY(add_columns(study, values, "time.output_interval"));
+        TRY(add_columns(study, values, "output.wake_interval"));
+    }
+    if (error_plan_column(study, "time.shedding_interval") >= 0 && values->solver.step > 0 &&
+        error_plan_column(study, "solver.step") < 0) {
+        TRY(add_columns(study, values, "solver.step"));
+    }
+    return study->is_steady ? add_columns(study, values, "steady.multipliers") : STATUS_OK;
+}
+
+/* What is known of a case before any level is. */
+static void object(struct error_study *study, const struct school *school) {
+    const struct case_values *const values = &study->study;
+    for (int k = 0; k < study->n_keys; k++) {
+        struct error_study_key *const key = &study->key[k];
+        for (int f = 0; f < school->n_fish && !*key->objection; f++) {
+            const struct fish *const fish = &school->fish[f];
+            if (strcmp(key->row->path, "fish.sheet_points") == 0 && fish->n_sheet < 2 * fish->n_nodes - 1) {
+                snprintf(key->objection, ERROR_STUDY_BYTES, "%.60s has fewer sheet_points than 2 nodes - 1",
+                         fish->name);
+            }
+            if (strcmp(key->row->path, "fish.nodes") != 0 || !(school->density > 0)) continue;
+            if (values->school.fish[f].body.profile == PROFILE_JOUKOWSKI) {
+                snprintf(key->objection, ERROR_STUDY_BYTES, "the tail of %.60s ends in a cusp", fish->name);
+                continue;
+            }
+            // the length over which the stiffness of the tail balances the inertia of the water
+            const double depth = fish->depth[fish->n_edges - 1], omega = 2 * M_PI * fish->frequency;
+            const double load = M_PI / 4 * school->density * depth * depth * omega * omega;
+            if (fish->n_joints < 1 || !(load > 0)) continue;
+            const double bending = pow(fish->bending_stiffness[fish->n_joints - 1] / load, 0.25);
+            if (2 * fish->edge_length <= bending) continue;
+            snprintf(key->objection, ERROR_STUDY_BYTES,
+                     "two edges of %.60s are longer than its tail bends over, %.2g m", fish->name, bending);
+        }
+    }
+}
+
+// ---- quantities
+
+/* The number of a quantity; -1: it is not known. */
+int error_plan_quantity(const char *name) {
+    for (int q = 0; member_file_quantity(q); q++) {
+        if (strcmp(member_file_quantity(q)->name, name) == 0) return q;
+    }
+    return -1;
+}
+
+static enum status choose_quantities(struct error_study *study) {
+    const struct sweep_error *const error = study->study.error;
+    for (int i = 0; i < error->n_of; i++) {
+        const int q = error_plan_quantity(error->of[i]);
+        const struct member_file_quantity *const quantity = q < 0 ? NULL : member_file_quantity(q);
+        if (!quantity || quantity->of_xy || quantity->of_comparison) {
+            return status_fail(STATUS_CASE,
+                               "error.of: '%.60s' is no number of a result or of a steady state; `shoal keys --output` "
+                               "lists them: those over (time), (time, fish), and steady_... over (fish)",
+                               error->of[i]);
+        }
+        for (int j = 0; j < i; j++) {
+            if (study->quantity[j] == q) return status_fail(STATUS_CASE, "error.of: %s is there twice", error->of[i]);
+        }
+        if (i > 0 && quantity->of_steady != study->is_steady) {
+            return status_fail(STATUS_CASE, "error.of: %s is of a run and %s of a steady state: ask for one kind",
+                               error->of[study->is_steady ? i : 0], error->of[study->is_steady ? 0 : i]);
+        }
+        if (i == ERROR_STUDY_QUANTITIES - 3) {
+            return status_fail(STATUS_CASE, "error.of: more than %d quantities", ERROR_STUDY_QUANTITIES - 3);
+        }
+        study->is_steady = quantity->of_steady;
+        study->quantity[study->n_asked++] = q;
+    }
+    // the judges
+    study->n_quantities = study->n_asked;
+    for (int s = 0; s < SWEEP_N_QUANTITIES; s++) {
+        const unsigned traits = sweep_quantities[s].traits;
+        if (!(traits & SWEEP_JUDGE) || ((traits & SWEEP_OF_STEADY) != 0) != study->is_steady) continue;
+        const int q = error_plan_quantity(sweep_quantities[s].name);
+        int is_new = 1;
+        for (int i = 0; i < study->n_quantities; i++) is_new &= study->quantity[i] != q;
+        if (is_new) study->quantity[study->n_quantities++] = q;
+    }
+    return STATUS_OK;
+}
+
+// ---- the plan
+
+/* The member of each level of a key that has none. The neighbour towards the stated value comes first, as a search
+ * begins with its result. */
+static enum status plan_levels(struct error_study *study, int k, int distance, int *n_new) {
+    struct error_study_key *const key = &study->key[k];
+    const int order[] = {key->stated - distance, key->stated + distance};
+    for (int i = 0; i < (distance > 0 ? 2 : 1); i++) {
+        const int level = order[i];
+        if (level < 0 || level >= key->n_levels || key->member[level] >= 0) continue;
+        const int before = distance == 0 ? 0 : key->member[level + (level < key->stated ? 1 : -1)];
+        int is_new;
+        TRY(error_plan_member(study, 1, &(struct error_plan_change){k, key->value[level]}, before, &key->member[level],
+                              &is_new));
+        *n_new += is_new;
+    }
+    return STATUS_OK;
+}
+
+enum status error_plan_members(struct error_study *study, int *n_new) {
+    *n_new = 0;
+    for (int distance = 0; distance < ERROR_STUDY_LEVELS; distance++) {
+        for (int k = 0; k < study->n_keys; k++) {
+            if (study->key[k].n_levels > 1) TRY(plan_levels(study, k, distance, n_new));
+        }
+    }
+    return STATUS_OK;
+}
+
+/* An axis of no keys with one value, which is the case. */
+static enum status begin_axis(struct error_study *study) {
+    struct case_values *const values = &study->study;
+    values->sweep = calloc(1, sizeof *values->sweep);
+    if (!values->sweep) return out_of_memory();
+    values->n_axes = 1;
+    struct sweep_axis *const axis = axis_of(study);
+    axis->order = axis->within = NAN;
+    axis->steady = study->is_steady;
+    axis->before = malloc(sizeof *axis->before);
+    if (!axis->before) return out_of_memory();
+    axis->before[0] = -1;
+    axis->n_values = 1;
+    return STATUS_OK;
+}
+
+static enum status choose_levels(struct error_study *study) {
+    const struct sweep_error *const error = study->study.error;
+    for (int k = 0; k < study->n_keys; k++) {
+        const struct sweep_error_levels *given = NULL;
+        for (int i = 0; i < error->n_keys; i++) {
+            if (error->levels[i].key == study->key[k].row && error->levels[i].n > 0) given = &error->levels[i];
+        }
+        TRY(given ? add_given_levels(study, k, given) : add_default_levels(study, k));
+        if (study->key[k].n_levels > 1) continue;
+        snprintf(study->key[k].objection, ERROR_STUDY_BYTES, "no other level is a valid case");
+    }
+    return STATUS_OK;
+}
+
+static enum status make_plan(struct error_study *study) {
+    int n_new;
+    TRY(choose_quantities(study));
+    study->is_static &= study->is_steady;
+    const size_t n = (size_t)(study->n_asked * study->n_fish) + 1;
+    study->value = calloc(n, sizeof *study->value);
+    study->error = calloc(n, sizeof *study->error);
+    study->together = calloc(n, sizeof *study->together);
+    if (!study->value || !study->error || !study->together) return out_of_memory();
+    TRY(choose_keys(study));
+    TRY(begin_axis(study));
+    TRY(add_all_columns(study));
+    TRY(choose_levels(study));
+    return error_plan_members(study, &n_new);
+}
+
+enum status error_plan_create(struct error_study *study, const struct case_values *values) {
+    *study = (struct error_study){0};
+    TRY(case_parse(&study->study, values->merged, strlen(values->merged), values->name, NULL, 0, NULL));
+    char *const text = strdup(values->text);
+    if (!text) return out_of_memory();
+    free(study->study.text);
+    study->study.text = text;
+    study->n_fish = values->school.n_fish;
+    struct school *school;
+    TRY(fish_school_create(&school, &study->study.school));
+    for (int f = study->n_fish - 1; f >= 0; f--) {
+        if (school->fish[f].period > 0) study->beat = school->fish[f].period;
+    }
+    study->is_static = steady_static_applies(school);
+    const enum status status = make_plan(study);
+    if (status == STATUS_OK) object(study, school);
+    fish_school_free(school);
+    return status;
+}

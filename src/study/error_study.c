@@ -1,0 +1,394 @@
+/* error_study.c: see error_study.h. */
+#include "study/error_study.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/text.h"
+#include "case/sweep_members.h"
+
+/* A search without multipliers is this many times its change in a beat away from the steady state, unless that of the
+ * case is known. */
+static const double of_residual = 10;
+
+/* A fixed step has no tolerance; rounding remains. */
+static const double rounding = 1e-12;
+
+/* Levels that are added to a key at most. */
+enum { MOST_ADDED = 3 };
+
+static enum status out_of_memory(void) {
+    return status_fail(STATUS_MEMORY, "out of memory: the errors of a study");
+}
+
+// ---- what the members say
+
+static double value_of(const struct error_study *study, const struct member_file *members, int m, int q, int f) {
+    if (m < 0 || strcmp(members[m].status, "complete") != 0) return NAN;
+    const int quantity = study->quantity[q];
+    return member_file_value(&members[m], quantity, member_file_quantity(quantity)->of_fish ? f : 0, 0);
+}
+
+static double steady_number(const struct member_file *member, const char *name) {
+    return member_file_value(member, error_plan_quantity(name), 0, 0);
+}
+
+/* The error of the values of a member that no level shows, relative: of the integrator, and of the search, whose
+ * residual has the same part in the distance from the steady state as in the case. */
+static double noise_of(const struct error_study *study, const struct member_file *members, int m) {
+    const struct sweep_axis *const axis = &study->study.sweep[0];
+    const int column = error_plan_column(study, "solver.rtol");
+    double rtol = study->study.school.rtol;
+    if (column >= 0) text_number(axis->value[m * axis->n_keys + column], &rtol);
+    if (study->study.solver.step > 0) rtol = rounding;
+    if (!study->is_steady) return rtol;
+    const double error = steady_number(&members[0], "steady_error");
+    const double part = error / steady_number(&members[0], "steady_residual");
+    return rtol + steady_number(&members[m], "steady_residual") * (isfinite(part) ? fmax(1, part) : of_residual);
+}
+
+/* CPU time of a member for as much simulated time as that of any other one, and a little, s: what takes less is
+ * not worth a thought. */
+static double cost_of(const struct error_study *study, const struct member_file *members, int m) {
+    const int is_by_beats = study->is_steady && !study->is_static;
+    const double least_beat = 1e-3, least_run = 0.1;
+    return steady_number(&members[m], is_by_beats ? "beat_time" : "wall_time") + (is_by_beats ? least_beat : least_run);
+}
+
+/* The slope of the wall time over the resolution, in logarithms, from the coarsest level to the finest. */
+static double cost_exponent_of(const struct error_study *study, const struct member_file *members,
+                               const struct error_study_key *key) {
+    const int last = key->n_levels - 1;
+    const double ratio = cost_of(study, members, key->member[0]) / cost_of(study, members, key->member[last]);
+    const double exponent =
+        log(ratio) / log(error_plan_size(key->row, key->value[last]) / error_plan_size(key->row, key->value[0]));
+    return isfinite(exponent) ? fmin(4, fmax(0, exponent)) : 1;
+}
+
+/* The rule of the sheet: doc/model.md, section 8. */
+static void object_to_interval(const struct error_study *study, const struct member_file *members,
+                               struct error_study_key *key) {
+    const struct case_values *const values = &study->study;
+    if (strcmp(key->row->path, "time.shedding_interval") != 0 || values->school.wake.shedding != SHEDDING_SHEET) return;
+    *key->objection = '\0';
+    for (int f = 0; f < study->n_fish && !*key->objection; f++) {
+        const struct fish_parameters *const fish = &values->school.fish[f];
+        const double speed = member_file_value(&members[0], error_plan_quantity("speed"), f, 0);
+        const double needed = 1 + 3.2 / sqrt(fabs(speed) * values->school.shedding_interval / fish->length);
+        const double most = 1000;  // what needs more does not swim
+        if (!(fish->sheet_points < needed) || needed > most) continue;
+        snprintf(key->objection, ERROR_STUDY_BYTES, "%.60s needs %.0f sheet_points for this interval", fish->name,
+                 ceil(needed));
+    }
+}
+
+/* All quantities of all fish at the levels of a key that are judged: at most four, with the stated one, and the finest
+ * three of a duration, whose shorter ones say nothing. */
+static enum status judge_key(struct error_study *study, const struct member_file *members,
+                             struct error_study_key *key) {
+    enum { MOST = ERROR_BUDGET_LEVELS };
+    const int n_fish = study->n_fish, n_most = study->n_quantities * n_fish;
+    int n_levels = key->row->kind == SWEEP_DURATION ? 3 : MOST;
+    if (n_levels > key->n_levels) n_levels = key->n_levels;
+    double size[MOST], (*value)[MOST][2] = calloc((size_t)n_most, sizeof *value);
+    struct error_budget_sequence *const sequence = calloc((size_t)n_most, sizeof *sequence);
+    struct error_budget_result *const result = calloc((size_t)n_most, sizeof *result);
+    int *const origin = calloc((size_t)n_most, sizeof *origin), n = 0, culprit;
+    const enum status status = value && sequence && result && origin ? STATUS_OK : out_of_memory();
+    if (status != STATUS_OK) goto end;
+
+    for (int i = 0; i < n_levels; i++) size[i] = error_plan_size(key->row, key->value[i]);
+    for (int q = 0; q < study->n_quantities; q++) {
+        for (int f = 0; f < (member_file_quantity(study->quantity[q])->of_fish ? n_fish : 1); f++) {
+            int is_known = q < study->n_asked;
+            for (int i = 0; i < n_levels; i++) {
+                value[n][i][0] = value_of(study, members, key->member[i], q, f);
+                is_known |= !isnan(value[n][i][0]);
+            }
+            // speed, cost and Strouhal number judge where there are any
+            if (!is_known) continue;
+            const double noise = noise_of(study, members, key->member[key->stated]);
+            sequence[n] = (struct error_budget_sequence){(const double(*)[2])value[n], noise};
+            origin[n++] = q * n_fish + f;
+        }
+    }
+    const struct error_budget_levels levels = {n_levels, key->stated, size, sweep_error_order(&study->study, key->row),
+                                               *key->objection ? key->objection : NULL};
+    key->verdict = error_budget_judge(&levels, n, sequence, result, &culprit);
+    *key->reason = '\0';
+    if (error_budget_is_flagged(key->verdict)) {
+        const int q = culprit < 0 ? 0 : study->quantity[origin[culprit] / n_fish];
+        const char *const fish = culprit < 0 ? "" : study->study.school.fish[origin[culprit] % n_fish].name;
+        snprintf(key->reason, ERROR_STUDY_BYTES, "%s%s%s%s%.60s%s",
+                 key->verdict == ERROR_BUDGET_OBJECTION ? key->objection : error_budget_words(key->verdict),
+                 culprit < 0 ? "" : " (", culprit < 0 ? "" : member_file_quantity(q)->name, culprit < 0 ? "" : " of ",
+                 fish, culprit < 0 ? "" : ")");
+    }
+    for (int i = 0; i < n; i++) {
+        if (origin[i] / n_fish >= study->n_asked) continue;
+        key->part[origin[i]] = (struct error_study_part){.error = result[i].error,
+                                                         .finest_error = result[i].finest_error,
+                                                         .order = result[i].order,
+                                                         .verdict = result[i].verdict};
+    }
+    key->cost_exponent = cost_exponent_of(study, members, key);
+
+end:
+    free(value);
+    free(sequence);
+    free(result);
+    free(origin);
+    return status;
+}
+
+/* Whether a key is a part of the sum. */
+static int is_error(const struct error_study_key *key) {
+    return key->row->kind != SWEEP_MODEL && key->n_levels > 1;
+}
+
+static void judge_choice(struct error_study *study, const struct member_file *members, struct error_study_key *key) {
+    key->verdict = ERROR_BUDGET_NONE;
+    for (int q = 0; q < study->n_asked; q++) {
+        for (int f = 0; f < study->n_fish; f++) {
+            struct error_study_part *const part = &key->part[error_plan_place(study, q, f)];
+            const double base = value_of(study, members, key->member[key->stated], q, f);
+            *part = (struct error_study_part){.finest_error = NAN, .order = NAN};
+            for (int i = 0; i < key->n_levels; i++) {
+                const double change = fabs(value_of(study, members, key->member[i], q, f) - base);
+                part->error = isnan(change) ? NAN : fmax(part->error, change);
+            }
+            const double noise = 3 * noise_of(study, members, key->member[key->stated]) * fabs(base);
+            part->verdict = part->error <= noise ? ERROR_BUDGET_NONE : ERROR_BUDGET_ACCEPTED;
+        }
+    }
+}
+
+/* The stated value, its error, and what keys do together that were refined together. */
+static void add_up(struct error_study *study, const struct member_file *members) {
+    int n_moved = 0;
+    for (int k = 0; k < study->n_keys; k++) n_moved += study->key[k].stated != study->key[k].first_stated;
+    for (int q = 0; q < study->n_asked; q++) {
+        for (int f = 0; f < study->n_fish; f++) {
+            const int place = error_plan_place(study, q, f);
+            double sum = 0, moved = value_of(study, members, 0, q, f);
+            for (int k = 0; k < study->n_keys; k++) {
+                const struct error_study_key *const key = &study->key[k];
+                if (!is_error(key)) continue;
+                sum += key->part[place].error;
+                moved += value_of(study, members, key->member[key->stated], q, f) -
+                         value_of(study, members, key->member[key->first_stated], q, f);
+            }
+            study->value[place] = value_of(study, members, study->stated, q, f);
+            study->together[place] = n_moved > 1 ? fabs(study->value[place] - moved) : 0;
+            study->error[place] = sum + study->together[place];
+        }
+    }
+    study->noise = noise_of(study, members, study->stated);
+    study->cost = cost_of(study, members, study->stated) / cost_of(study, members, 0);
+}
+
+/* The largest error of a quantity over its value; NaN: one is unknown. */
+static double relative_error(const struct error_study *study, const double *error) {
+    double most = 0;
+    for (int q = 0; q < study->n_asked; q++) {
+        const int of_fish = member_file_quantity(study->quantity[q])->of_fish;
+        for (int f = 0; f < (of_fish ? study->n_fish : 1); f++) {
+            const int place = error_plan_place(study, q, f);
+            const double relative = error[place] > 0 ? error[place] / fabs(study->value[place]) : error[place];
+            if (isnan(relative)) return NAN;
+            most = fmax(most, relative);
+        }
+    }
+    return most;
+}
+
+enum status error_study_judge(struct error_study *study, const struct member_file *members) {
+    for (int k = 0; k < study->n_keys; k++) {
+        struct error_study_key *const key = &study->key[k];
+        if (key->n_levels == 1) continue;
+        object_to_interval(study, members, key);
+        if (is_error(key)) {
+            TRY(judge_key(study, members, key));
+        } else {
+            judge_choice(study, members, key);
+        }
+    }
+    add_up(study, members);
+    const double within = study->study.error->within;
+    study->is_reached = isnan(within) || relative_error(study, study->error) <= within;
+    return STATUS_OK;
+}
+
+// ---- refinement
+
+/* Whether the error falls where the stated value moves to a finer level. */
+static int is_movable(const struct error_study_key *key) {
+    return !error_budget_is_flagged(key->verdict) || key->row->kind == SWEEP_DURATION;
+}
+
+/* The largest error of a key over the value of a quantity. */
+static double relative_part(const struct error_study *study, const struct error_study_key *key) {
+    double most = 0;
+    for (int place = 0; place < study->n_asked * study->n_fish; place++) {
+        const double relative = key->part[place].error / fabs(study->value[place]);
+        if (key->part[place].error > 0) most = fmax(most, relative);
+    }
+    return most;
+}
+
+/* The same with the stated value at another level: 1 finer than now, known or not. */
+static double next_part(const struct error_study *study, const struct member_file *members,
+                        const struct error_study_key *key, double next) {
+    const double design = sweep_error_order(&study->study, key->row);
+    double most = 0;
+    for (int q = 0; q < study->n_asked; q++) {
+        for (int f = 0; f < study->n_fish; f++) {
+            const int place = error_plan_place(study, q, f);
+            const struct error_study_part *const part = &key->part[place];
+            if (!(part->error > 0)) continue;
+            double error = part->finest_error;
+            if (part->verdict == ERROR_BUDGET_NONE) {
+                error = part->error;
+            } else if (key->stated == 0) {
+                const double order = fmin(design, part->order);  // fmin passes over NaN
+                error *= pow(error_plan_size(key->row, next) / error_plan_size(key->row, key->value[0]), order);
+            } else {
+                error += fabs(value_of(study, members, key->member[key->stated - 1], q, f) -
+                              value_of(study, members, key->member[0], q, f));
+            }
+            if (isnan(error)) return NAN;
+            most = fmax(most, error / fabs(study->value[place]));
+        }
+    }
+    return most;
+}
+
+enum status error_study_find_next(struct error_study *study, const struct member_file *members,
+                                  struct error_study_next *next) {
+    double most = 0;
+    *next = (struct error_study_next){.key = -1, .value = NAN, .cost = NAN, .part = NAN, .sum = NAN};
+    for (int k = 0; k < study->n_keys; k++) {
+        const struct error_study_key *const key = &study->key[k];
+        if (!is_error(key) || key->verdict == ERROR_BUDGET_NONE || !(relative_part(study, key) > most)) continue;
+        most = relative_part(study, key);
+        next->key = k;
+    }
+    if (next->key < 0) return STATUS_OK;
+    struct error_study_key *const key = &study->key[next->key];
+    const int has_room = key->n_levels < ERROR_STUDY_LEVELS && key->n_added < MOST_ADDED;
+    if (key->stated > 0 && is_movable(key)) {
+        next->value = key->value[key->stated - 1];
+        next->is_member = 1;
+        next->cost =
+            cost_of(study, members, key->member[key->stated - 1]) / cost_of(study, members, key->member[key->stated]);
+    } else if (has_room) {
+        TRY(error_plan_find_level(study, next->key, key->value[0], key->row->finer, &next->value));
+        const double ratio =
+            error_plan_size(key->row, key->value[key->stated]) / error_plan_size(key->row, next->value);
+        next->cost = pow(ratio, key->cost_exponent);
+    }
+    if (isnan(next->value)) return STATUS_OK;
+    next->part = is_movable(key) ? next_part(study, members, key, next->value) : NAN;
+    next->sum = relative_error(study, study->error) - most + next->part;
+    return STATUS_OK;
+}
+
+/* The member with all keys that were refined at their levels. */
+static enum status find_stated(struct error_study *study, int *n_new) {
+    struct error_plan_change changes[SWEEP_N_ERROR_KEYS];
+    int n = 0, is_new;
+    for (int k = 0; k < study->n_keys; k++) {
+        const struct error_study_key *const key = &study->key[k];
+        if (key->stated != key->first_stated) changes[n++] = (struct error_plan_change){k, key->value[key->stated]};
+    }
+    if (n == 0) return STATUS_OK;
+    TRY(error_plan_member(study, n, changes, study->stated, &study->stated, &is_new));
+    *n_new += is_new;
+    return STATUS_OK;
+}
+
+/* One step: to a finer level that is known, or to another one. */
+static enum status take_step(struct error_study *study, const struct error_study_next *next, int *n_new) {
+    struct error_study_key *const key = &study->key[next->key];
+    if (next->is_member) {
+        key->stated--;
+        return find_stated(study, n_new);
+    }
+    error_plan_insert(key, next->value);
+    key->n_added++;
+    // more nodes need more points of the sheet, on all levels
+    for (int i = 0; i < key->n_levels && strcmp(key->row->path, "fish.nodes") == 0; i++) key->member[i] = -1;
+    TRY(error_plan_members(study, n_new));
+    return find_stated(study, n_new);
+}
+
+enum status error_study_refine(struct error_study *study, const struct member_file *members, int most_members,
+                               int *n_new) {
+    *n_new = 0;
+    while (!study->is_reached) {
+        struct error_study_next next;
+        TRY(error_study_find_next(study, members, &next));
+        const int is_useful = next.key >= 0 && !isnan(next.value) && !isnan(relative_error(study, study->error));
+        if (!is_useful || study->cost * next.cost > study->study.error->most) return STATUS_OK;
+        const int n_before = study->study.sweep[0].n_values, stated = study->stated;
+        const struct error_study_key before = study->key[next.key];
+        TRY(take_step(study, &next, n_new));
+        if (study->study.sweep[0].n_values > most_members) {
+            error_plan_shorten(study, n_before);
+            study->stated = stated;
+            study->key[next.key] = before;
+            *n_new = 0;
+            return STATUS_OK;
+        }
+        if (*n_new > 0) return STATUS_OK;
+        TRY(error_study_judge(study, members));
+    }
+    return STATUS_OK;
+}
+
+void error_study_say_cost(const struct error_study *study, char words[ERROR_STUDY_BYTES]) {
+    const double within = study->study.error->within;
+    double part[SWEEP_N_ERROR_KEYS], ratio[SWEEP_N_ERROR_KEYS], order[SWEEP_N_ERROR_KEYS], sum = 0, fixed = 0, cost = 1;
+    const char *worst = "";
+    for (int k = 0; k < study->n_keys; k++) {
+        const struct error_study_key *const key = &study->key[k];
+        const int is_fixed = !is_error(key) || key->verdict != ERROR_BUDGET_ACCEPTED;
+        part[k] = is_error(key) ? relative_part(study, key) : 0;
+        order[k] = is_fixed ? NAN : sweep_error_order(&study->study, key->row);
+        ratio[k] = 1;
+        sum += part[k];
+        if (is_fixed && part[k] > within / 2) worst = key->row->path;
+        fixed += is_fixed ? part[k] : 0;
+    }
+    if (fixed > 0.9 * within || isnan(relative_error(study, study->error))) {
+        snprintf(words, ERROR_STUDY_BYTES, "the errors of keys that are flagged or unknown cannot be predicted%s%s",
+                 *worst ? ": " : "", worst);
+        return;
+    }
+    // the largest part first, in steps of a tenth
+    const double step = 1.1;
+    while (sum > within) {
+        int k = -1;
+        for (int i = 0; i < study->n_keys; i++) {
+            if (!isnan(order[i]) && (k < 0 || part[i] > part[k])) k = i;
+        }
+        const double fallen = part[k] * pow(step, -order[k]);
+        sum -= part[k] - fallen;
+        part[k] = fallen;
+        ratio[k] *= step;
+        cost *= pow(step, study->key[k].cost_exponent);
+    }
+    int length = 0;
+    for (int k = 0; k < study->n_keys; k++) {
+        const struct error_study_key *const key = &study->key[k];
+        if (!(ratio[k] > 1)) continue;
+        const double value = key->value[key->stated];
+        length += snprintf(words + length, (size_t)(ERROR_STUDY_BYTES - length), "%s%s %.3g", length > 0 ? ", " : "",
+                           key->row->path,
+                           key->row->kind == SWEEP_POINTS ? 1 + round((value - 1) * ratio[k]) : value / ratio[k]);
+        if (length >= ERROR_STUDY_BYTES) return;
+    }
+    snprintf(words + length, (size_t)(ERROR_STUDY_BYTES - length), ": about %.2g times the CPU time", cost);
+}

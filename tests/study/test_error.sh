@@ -1,0 +1,124 @@
+#!/usr/bin/env bash
+# Error bars by the command line: plans, budgets, refinement, and what is made again from the files of members.
+#
+#   tests/study/test_error.sh PROGRAM
+# shellcheck source=tests/checks.sh
+. "$(dirname "$0")/../checks.sh"
+
+scripts=$root/scripts
+
+# ---- an equilibrium: the lift of a foil that bends
+
+cat >foil.yaml <<'end'
+format: 1
+time: {end: 1, shedding_interval: 0.05}
+fluid: {velocity: [1, 0], density: 1, viscosity: 0}
+fish:
+  - {name: foil, force: pressure, wave: {amplitude: 0, frequency: 0}, start: {heading: 174}, motion: {driven: head},
+     nodes: 17, body: {profile: uniform, thickness: 0.05, width: 1, density: 25.465, modulus: 81487}}
+end
+run error foil.yaml --of steady_lift --plan
+check a_plan_ends_with_0 test "$code" = 0
+check it_lists_keys_and_levels grep -qE '^fish.nodes +9 11 \[17\] 24 +' out
+check it_counts_members_and_states_their_time grep -qE '^[0-9]+ members, \[the case\] among them; about .* with [0-9]+ at once' out
+check nothing_is_run test ! -e foil-error
+run error foil.yaml --of steady_lift --of steady_deflection
+check errors_end_with_0 test "$code" = 0
+check the_plan_comes_first grep -qE '^key +levels +members' out
+check a_value_has_its_error grep -qE '^steady_lift of foil: [0-9.]+ \+- [0-9.]+ N \([0-9.]+ %\)$' out
+check each_key_has_its_share grep -qE '^fish.nodes +9 11 \[17\] 24 +(flagged|[0-9.]+\*?) +[0-9.]+ +[0-9.]+ +[0-9]+ .* 4 levels' out
+check the_next_key_is_named grep -qE '<- spend here: [a-z_]+ [0-9]+, CPU x [0-9.]+' out
+check the_sum_is_the_last_row grep -qE '^sum +[0-9.]+ +[0-9.]+' out
+check an_equilibrium_needs_no_interval eval '! grep -q shedding_interval out'
+check there_is_a_table_for_other_programs grep -q '^"foil",steady_lift,N,[0-9.]*,sum,' foil-error/error.csv
+sed -n '/^steady_lift/,$p' out >table
+run gather foil-error
+check the_members_are_enough cmp out table
+run info foil-error/study.nc
+check the_file_of_the_study_is_enough cmp <(sed -n '/^steady_lift/,$p' out) table
+before=$(stat -c %y foil-error/member-0001.nc)
+run error foil.yaml --of steady_lift --of steady_deflection -q
+check finished_members_are_not_run_again test "$(stat -c %y foil-error/member-0001.nc)" = "$before"
+check quiet_prints_no_plan cmp out table
+refused another_question_is_another_study 4 'is a result of another study' error foil.yaml --of steady_lift -q
+
+# ---- within a bound
+
+run error foil.yaml --of steady_lift --within 3e-4 -o within -q
+check refinement_ends_with_0 test "$code" = 0
+check the_error_is_within_the_bound awk '/^steady_lift/ { sub(/.*\(/, ""); exit !($1 <= 0.03) }' out
+check the_stated_value_has_moved eval '! grep -qE "^fish.nodes .* \[17\] " out'
+check its_cost_is_said grep -q 'the stated value takes .* times the time of the case' out
+cp out table
+run gather within
+check gather_takes_the_same_steps cmp out table
+run info within/study.nc
+check info_takes_them_too cmp <(sed -n '/^steady_lift/,$p' out) table
+run error foil.yaml --of steady_lift --within 3e-4 -o within -q
+check the_same_command_runs_nothing cmp out table
+rm "$(ls within/member-*.nc | tail -n 1)"
+run gather within
+check steps_without_members_are_not_taken eval '! cmp -s out table && test "$(grep -c missing out)" = 0'
+refused what_is_too_dear_gives_exit_code_3 3 'the errors are not within 0.001 % of the values; ' \
+    error foil.yaml -q -o dear --set 'error={of: steady_lift, within: 1e-5, most: 1.5}'
+check the_budget_is_printed_all_the_same grep -q '^sum ' out
+check a_case_can_ask_itself eval 'grep -q "levels: 3 levels (wider bounds)" out || test -s dear/study.nc'
+run study foil.yaml -o asked -q --set 'error={of: steady_lift, confirm: false, keys: {nodes: [9, 11]}}'
+check study_states_errors_too grep -qE '^fish.nodes +9 11 \[17\] .* 3 levels \(wider bounds\)' out
+check only_the_keys_that_are_named eval '! grep -q sheet_points out'
+run show foil.yaml --set 'error={of: steady_lift, confirm: false, keys: {nodes: [9, 11]}}'
+check show_prints_it grep -qx 'error: {of: \[steady_lift\], confirm: false, keys: {nodes: \[9, 11\]}}' out
+run run foil.yaml -q --set 'error={of: steady_lift}' -o single.nc
+check a_run_is_one_run test "$code" = 0 -a -s single.nc
+
+# ---- a swimmer: its steady speed, and the state that a run ends with
+
+cat >swimmer.yaml <<'end'
+format: 1
+time: {end: 0.5, shedding_interval: 0.02}
+steady: {tolerance: 1e-4}
+fish: [{name: fish, nodes: 9, sheet_points: 17, body: {profile: uniform, modulus: 1e7, thickness: 0.1}}]
+error: {of: [steady_speed, steady_cost_of_transport], keys: [nodes, shedding_interval, rtol, smoothing]}
+end
+run study swimmer.yaml -j 2
+check a_steady_speed_has_its_error grep -qE '^steady_speed of fish: [0-9.]+ \+- [0-9.]+ m s-1 \([0-9.]+ %\)$' out
+check choices_are_listed_apart grep -qE '^choices, not in the sum: wake.smoothing \(\[0\.1\] 0\.05\) ' out
+check the_noise_is_stated grep -qE '^noise of a value, of integrator and search: ' out
+check only_the_case_has_multipliers test "$(ncdump -v steady_error swimmer-study/study.nc | sed -n '/^data/,$p' | tr -d ' \n;}' |
+    sed 's/.*=//' | tr , '\n' | grep -c '^[0-9]')" = 1
+run error swimmer.yaml --of speed --no-confirm -q
+check a_run_has_its_error grep -qE '^speed of fish: [0-9.]+ \+- [0-9.]+ m s-1' out
+check levels_are_fewer_without_confirm grep -qE '^fish.nodes +5 6 \[9\] .* 3 levels \(wider bounds\)' out
+mkdir parts
+run study swimmer.yaml --members 0-1 -o parts -q
+check a_part_of_the_members test -e parts/member-0001.nc -a ! -e parts/member-0002.nc -a ! -e parts/study.nc
+check scripts_of_slurm "$program" study swimmer.yaml --slurm -o cluster
+check they_run_all_members has cluster/array.sbatch "--array=0-$(($(ls swimmer-study/member-*.nc | wc -l) - 1))"
+
+# a member that fails leaves the sum unknown
+run study swimmer.yaml -q -o failing --set steady.beats=4
+check members_that_fail_are_reported grep -q '^member 1: failed: no steady state in 4 beats' out
+check then_the_error_is_unknown eval 'test "$code" != 0 && grep -qE "^sum +unknown" out'
+
+# ---- wrong input
+
+refused no_quantity 2 'has no `error`: give --of QUANTITY' error foil.yaml
+refused an_unknown_quantity 2 "error.of: 'lift' is no number of a result" error foil.yaml --of lift
+refused two_kinds 2 'speed is of a run and steady_lift of a steady state' error foil.yaml --of steady_lift --of speed
+refused a_bound_of_words 2 '--within few: expects a number above 0' error foil.yaml --of steady_lift --within few
+refused a_plan_of_a_sweep 2 '--plan: the case has no `error`' study foil.yaml --plan --set 'sweep=[]'
+refused a_sweep_with_errors 2 'error: takes the place of a sweep' study foil.yaml \
+    --set 'sweep=[{key: solver.rtol, values: [1e-4, 1e-5]}]' --set 'error={of: steady_lift}'
+run check swimmer.yaml
+check check_takes_it test "$code" = 0
+
+# ---- pictures
+
+if /usr/bin/python3 -c 'import netCDF4, matplotlib' 2>err; then
+    /usr/bin/python3 "$scripts/plot.py" study swimmer-study/study.nc budget.png >drawn 2>&1
+    check a_picture_of_the_budget test -s budget.png
+else
+    skip pictures 'python3-netcdf4 or python3-matplotlib is missing'
+fi
+
+finish

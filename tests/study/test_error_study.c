@@ -1,0 +1,470 @@
+/* test_error_study.c: the plan of an error study, and what it makes of members whose values are given by formulas. With
+ * members that are run: test_error.sh. */
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/text.h"
+#include "case/case_member.h"
+#include "case/sweep_members.h"
+#include "failing_malloc.h"
+#include "near.h"
+#include "study/error_report.h"
+#include "study/error_study.h"
+
+/* A fish whose tail is no cusp, and long waves: nothing flags its keys before. */
+#define UNIFORM                                                           \
+    "format: 1\nname: uniform\ntime: {end: 4, shedding_interval: 0.01}\n" \
+    "fish: [{nodes: 25, sheet_points: 49, body: {profile: uniform, modulus: 1e8}}]\n"
+
+static struct error_study open_study(const char *text, const char *error) {
+    char all[2048];
+    struct case_values values;
+    struct error_study study;
+    snprintf(all, sizeof all, "%serror: %s\n", text, error);
+    if (case_parse(&values, all, strlen(all), "test.yaml", NULL, 0, NULL) != STATUS_OK)
+        fail_msg("%s", status_message());
+    if (error_plan_create(&study, &values) != STATUS_OK) fail_msg("%s", status_message());
+    case_free(&values);
+    return study;
+}
+
+static const struct error_study_key *key_of(const struct error_study *study, const char *path) {
+    for (int k = 0; k < study->n_keys; k++) {
+        if (strcmp(study->key[k].row->path, path) == 0) return &study->key[k];
+    }
+    return NULL;
+}
+
+/* What a member sets a key of the first fish to. */
+static double setting(const struct error_study *study, int m, const char *path) {
+    const struct sweep_axis *const axis = &study->study.sweep[0];
+    double number = strcmp(path, "time.shedding_interval") == 0 ? study->study.school.shedding_interval
+                    : strcmp(path, "fish.nodes") == 0           ? study->study.school.fish[0].nodes
+                                                                : study->study.school.fish[0].sheet_points;
+    for (int c = axis->n_keys - 1; c >= 0; c--) {
+        if (strcmp(axis->key[c].row, path) == 0) text_number(axis->value[m * axis->n_keys + c], &number);
+    }
+    return number;
+}
+
+static void levels_are(const struct error_study *study, const char *path, int n, const double *levels, double stated) {
+    const struct error_study_key *const key = key_of(study, path);
+    assert_non_null(key);
+    assert_int_equal(key->n_levels, n);
+    NEAR_ARRAY(n, key->value, levels, 0, 1e-12);
+    NEAR(key->value[key->stated], stated, 0, 1e-12);
+    for (int i = 0; i < n; i++) NEAR(setting(study, key->member[i], path), levels[i], 0, 1e-12);
+}
+
+// ---- the plan
+
+static void the_keys_of_the_table_have_the_levels_of_the_table(void **state) {
+    (void)state;
+    struct error_study study = open_study(UNIFORM, "{of: steady_speed}");
+    levels_are(&study, "fish.nodes", 4, (double[]){35, 25, 17, 13}, 25);
+    levels_are(&study, "fish.sheet_points", 4, (double[]){69, 49, 35, 25}, 49);
+    levels_are(&study, "time.shedding_interval", 4, (double[]){0.005, 0.01, 0.02, 0.04}, 0.01);
+    levels_are(&study, "solver.rtol", 3, (double[]){1e-6, 1e-5, 1e-4}, 1e-5);
+    levels_are(&study, "wake.tolerance", 3, (double[]){1e-8, 1e-7, 1e-6}, 1e-7);
+    levels_are(&study, "wake.lifetime", 3, (double[]){3, 2, 4.0 / 3}, 2);
+    levels_are(&study, "wake.smoothing", 2, (double[]){0.05, 0.1}, 0.1);
+    assert_null(key_of(&study, "solver.step"));
+    assert_null(key_of(&study, "wake.merge"));
+
+    // each changes one key and what belongs to it; one sheet serves all nodes, and is a level of the sheet
+    const struct error_study_key *const nodes = key_of(&study, "fish.nodes");
+    for (int i = 0; i < 4; i++) NEAR(setting(&study, nodes->member[i], "fish.sheet_points"), 69, 0, 0);
+    assert_int_equal(nodes->member[1], key_of(&study, "fish.sheet_points")->member[0]);
+    const int shorter = key_of(&study, "wake.lifetime")->member[2];
+    NEAR(setting(&study, shorter, "wake.fade") / setting(&study, 0, "wake.fade"), 2.0 / 3, 0, 1e-12);
+    NEAR(setting(&study, key_of(&study, "solver.rtol")->member[2], "wake.tolerance"), 1e-7, 0, 1e-12);
+
+    // every member is a valid case, whose search begins with that of a neighbour; the case alone has multipliers
+    const int n = sweep_n_members(&study.study);
+    assert_int_equal(n, 19);
+    for (int m = 0; m < n; m++) {
+        struct case_values member;
+        assert_int_equal(case_member(&member, &study.study, m), STATUS_OK);
+        assert_int_equal(member.steady.multipliers, m == 0 ? YES : NO);
+        assert_int_equal(member.n_axes, 0);
+        assert_null(member.error);
+        assert_true(sweep_member_before(&study.study, m) < m);
+        case_free(&member);
+    }
+    const struct error_study_key *const interval = key_of(&study, "time.shedding_interval");
+    assert_int_equal(sweep_member_before(&study.study, 0), -1);
+    assert_int_equal(sweep_member_before(&study.study, interval->member[2]), 0);
+    assert_int_equal(sweep_member_before(&study.study, interval->member[3]), interval->member[2]);
+    error_plan_free(&study);
+}
+
+static void without_confirm_there_is_no_finer_level(void **state) {
+    (void)state;
+    struct error_study study = open_study(UNIFORM, "{of: steady_speed, confirm: false}");
+    levels_are(&study, "fish.nodes", 3, (double[]){25, 17, 13}, 25);
+    levels_are(&study, "solver.rtol", 2, (double[]){1e-5, 1e-4}, 1e-5);
+    error_plan_free(&study);
+}
+
+static void levels_that_are_no_valid_cases_are_replaced(void **state) {
+    (void)state;
+    // with the pressure a sheet needs 2 nodes - 1 points
+    struct error_study study = open_study(
+        "format: 1\ntime: {end: 4}\nfish: [{nodes: 25, sheet_points: 49, force: pressure}]\n", "{of: steady_speed}");
+    levels_are(&study, "fish.sheet_points", 3, (double[]){97, 69, 49}, 49);
+    levels_are(&study, "fish.nodes", 4, (double[]){35, 25, 17, 13}, 25);
+    error_plan_free(&study);
+    // a table has a value for each edge
+    study = open_study(
+        "format: 1\ntime: {end: 4}\nfish: [{nodes: 5, sheet_points: 11, body: {profile: table, h: [0.1, 0.1, 0.1, "
+        "0.1],\n"
+        "  w: [0.2, 0.2, 0.2, 0.2]}}]\n",
+        "{of: speed}");
+    assert_int_equal(key_of(&study, "fish.nodes")->n_levels, 1);
+    assert_non_null(strstr(key_of(&study, "fish.nodes")->objection, "no other level"));
+    error_plan_free(&study);
+}
+
+static void an_interval_divides_the_beat_or_the_run(void **state) {
+    (void)state;
+    static const char text[] = "format: 1\ntime: {end: 4, shedding_interval: 0.02, output_interval: 0.1}\nfish: [{}]\n";
+    struct error_study study = open_study(text, "{of: steady_speed, keys: [shedding_interval]}");
+    // 50 events in a beat; 12.5 are none
+    levels_are(&study, "time.shedding_interval", 4, (double[]){0.01, 0.02, 0.04, 1 / 13.0}, 0.02);
+    error_plan_free(&study);
+    study = open_study(text, "{of: speed, keys: [shedding_interval]}");
+    levels_are(&study, "time.shedding_interval", 4, (double[]){0.01, 0.02, 0.04, 0.08}, 0.02);
+    error_plan_free(&study);
+    // fixed steps divide the interval
+    study = open_study(
+        "format: 1\ntime: {end: 1, shedding_interval: 0.02}\nsolver: {method: rk4, step: 0.005}\nfish: [{}]\n",
+        "{of: speed}");
+    levels_are(&study, "solver.step", 4, (double[]){0.0025, 0.005, 0.01, 0.02}, 0.005);
+    assert_null(key_of(&study, "solver.rtol"));
+    NEAR(setting(&study, key_of(&study, "time.shedding_interval")->member[2], "solver.step"), 0.005, 0, 1e-12);
+    error_plan_free(&study);
+}
+
+static void levels_can_be_given(void **state) {
+    (void)state;
+    struct error_study study =
+        open_study(UNIFORM, "{of: steady_speed, keys: {nodes: [17, 33, 65], \"fish[*].sheet_points\": default}}");
+    assert_int_equal(study.n_keys, 2);
+    levels_are(&study, "fish.nodes", 4, (double[]){65, 33, 25, 17}, 25);
+    error_plan_free(&study);
+}
+
+static void fish_of_different_resolution_change_in_proportion(void **state) {
+    (void)state;
+    struct error_study study = open_study(
+        "format: 1\ntime: {end: 4}\nfish: [{nodes: 13, sheet_points: 33}, {nodes: 25, sheet_points: 49, start: "
+        "{position: [3, 0]}}]\n",
+        "{of: steady_speed}");
+    const struct sweep_axis *const axis = &study.study.sweep[0];
+    const struct error_study_key *const nodes = key_of(&study, "fish.nodes");
+    int c = 0;
+    while (strcmp(axis->key[c].path, "fish[1].nodes") != 0) c++;
+    NEAR(nodes->value[2], 9, 0, 0);
+    assert_string_equal(axis->value[nodes->member[2] * axis->n_keys + c], "17");
+    assert_string_equal(axis->value[nodes->member[2] * axis->n_keys + c - 1], "9");
+    error_plan_free(&study);
+}
+
+static void an_equilibrium_has_points_only(void **state) {
+    (void)state;
+    struct error_study study = open_study(
+        "format: 1\ntime: {end: 4}\nfluid: {velocity: [1, 0]}\nfish: [{nodes: 9, force: pressure, wave: {amplitude: 0, "
+        "frequency: 0}, motion: {driven: head, speed: 0}}]\n",
+        "{of: steady_lift}");
+    assert_true(study.is_static);
+    assert_int_equal(study.n_keys, 2);
+    error_plan_free(&study);
+}
+
+static void quantities_that_are_not_known_are_refused(void **state) {
+    (void)state;
+    static const struct {
+        const char *error, *message;
+    } examples[] = {
+        {"{of: lift}", "'lift' is no number of a result"},
+        {"{of: nose}", "'nose' is no number of a result"},
+        {"{of: [speed, steady_speed]}", "speed is of a run and steady_speed of a steady state"},
+        {"{of: [speed, speed]}", "speed is there twice"},
+        {"{of: steady_speed, keys: [step, merge]}", "none of these keys changes anything"},
+        {"{of: steady_speed, keys: {nodes: [2, 9]}}", "level 2"},
+    };
+    for (size_t i = 0; i < sizeof examples / sizeof *examples; i++) {
+        char text[512];
+        struct case_values values;
+        struct error_study study;
+        snprintf(text, sizeof text, UNIFORM "error: %s\n", examples[i].error);
+        assert_int_equal(case_parse(&values, text, strlen(text), "test.yaml", NULL, 0, NULL), STATUS_OK);
+        assert_int_equal(error_plan_create(&study, &values), STATUS_CASE);
+        if (!strstr(status_message(), examples[i].message)) fail_msg("%s", status_message());
+        error_plan_free(&study);
+        case_free(&values);
+    }
+}
+
+// ---- what members say
+
+/* The values of members: speed and cost with errors of second order in the nodes, of first order in the sheet and in
+ * the interval; an integrator without errors. */
+static const double speed = 1.5, cost = 0.08, nodes_error = 0.9, sheet_error = 0.02, interval_error = 0.4;
+
+static void set_value(struct member_file *member, const char *name, double value) {
+    *member_file_place(member, member_file_quantity_number(name), 0, 0) = value;
+}
+
+static struct member_file *make_members(const struct error_study *study) {
+    const int n = sweep_n_members(&study->study);
+    struct member_file *const members = calloc((size_t)n, sizeof *members);
+    assert_non_null(members);
+    for (int m = 0; m < n; m++) {
+        assert_int_equal(member_file_create_values(&members[m], 1), STATUS_OK);
+        members[m].status = strdup("complete");
+        const double nodes = setting(study, m, "fish.nodes"), sheet = setting(study, m, "fish.sheet_points"),
+                     interval = setting(study, m, "time.shedding_interval");
+        const double error = nodes_error / pow(nodes - 1, 2) + sheet_error / (sheet - 1) + interval_error * interval;
+        set_value(&members[m], "steady_speed", speed + error);
+        set_value(&members[m], "speed", speed + error);
+        set_value(&members[m], "steady_cost_of_transport", cost * (1 + 2 * error));
+        set_value(&members[m], "steady_residual", 2e-8);
+        set_value(&members[m], "steady_error", m == 0 ? 1e-7 : NAN);
+        set_value(&members[m], "beat_time", 1e-3 * nodes * nodes / interval);
+    }
+    return members;
+}
+
+static void free_members(struct member_file *members, int n) {
+    for (int m = 0; m < n; m++) member_file_free(&members[m]);
+    free(members);
+}
+
+static void the_error_is_the_sum_over_the_keys_and_covers_the_true_one(void **state) {
+    (void)state;
+    struct error_study study = open_study(UNIFORM, "{of: [steady_speed, steady_cost_of_transport]}");
+    struct member_file *const members = make_members(&study);
+    assert_int_equal(error_study_judge(&study, members), STATUS_OK);
+    assert_true(study.is_reached);
+    // with Roache's factor of 1.25 on the finest level, which is known for each key
+    const double of_nodes = nodes_error * (1.25 / (34.0 * 34) + 1 / (24.0 * 24) - 1 / (34.0 * 34));
+    const double of_sheet = sheet_error * (1.25 / 68 + 1.0 / 48 - 1.0 / 68);
+    const double of_interval = interval_error * (1.25 * 0.005 + 0.005);
+    NEAR(key_of(&study, "fish.nodes")->part[0].error, of_nodes, 0, 1e-6);
+    NEAR(key_of(&study, "fish.nodes")->part[0].order, 2, 1e-6, 0);
+    NEAR(key_of(&study, "fish.sheet_points")->part[0].error, of_sheet, 0, 1e-6);
+    NEAR(key_of(&study, "time.shedding_interval")->part[0].error, of_interval, 0, 1e-6);
+    assert_int_equal(key_of(&study, "solver.rtol")->verdict, ERROR_BUDGET_NONE);
+    NEAR(study.error[0], of_nodes + of_sheet + of_interval, 0, 1e-6);
+    NEAR(study.error[1], 2 * cost * study.error[0], 0, 1e-6);
+    assert_true(study.error[0] > study.value[0] - speed);
+    NEAR(study.value[0], setting(&study, 0, "fish.nodes") > 0 ? members[0].value[2 * study.quantity[0]] : 0, 0, 0);
+    // the search of the case is 5 times its residual away, and so are those of the others
+    NEAR(study.noise, 1e-5 + 1e-7, 0, 1e-9);
+
+    struct error_study_next next;
+    assert_int_equal(error_study_find_next(&study, members, &next), STATUS_OK);
+    assert_string_equal(study.key[next.key].row->path, "time.shedding_interval");
+    assert_true(next.is_member);
+    NEAR(next.value, 0.005, 0, 1e-12);
+    NEAR(next.cost, 2, 0, 1e-3);  // but for the millisecond that every beat counts
+    NEAR(next.part, 1.25 * interval_error * 0.005 * 2 * cost / study.value[1], 0, 1e-6);
+    free_members(members, sweep_n_members(&study.study));
+    error_plan_free(&study);
+}
+
+/* Follow a study to its end, as a run does; and again, with the members that there are then. */
+static struct member_file *follow(struct error_study *study, int *n_rounds) {
+    struct member_file *members = NULL;
+    int n_new = 1;
+    *n_rounds = 0;
+    while (n_new > 0) {
+        members = make_members(study);
+        const int n = sweep_n_members(&study->study);
+        assert_int_equal(error_study_judge(study, members), STATUS_OK);
+        assert_int_equal(error_study_refine(study, members, INT_MAX, &n_new), STATUS_OK);
+        if (n_new > 0) free_members(members, n);
+        ++*n_rounds;
+        assert_in_range(*n_rounds, 1, 30);
+    }
+    return members;
+}
+
+static void refinement_ends_where_the_error_is_within_the_bound(void **state) {
+    (void)state;
+    static const char error[] = "{of: steady_speed, within: 2e-3, most: 1e4}";
+    struct error_study study = open_study(UNIFORM, error), again = open_study(UNIFORM, error);
+    const int n_planned = sweep_n_members(&study.study);
+    int n_rounds, n_new = 1;
+    struct member_file *const members = follow(&study, &n_rounds);
+    const int n = sweep_n_members(&study.study);
+    assert_true(study.is_reached && n > n_planned && n_rounds > 1);
+    assert_true(study.error[0] <= 2e-3 * study.value[0]);
+    assert_true(study.error[0] >= study.value[0] - speed);
+    // the stated value is that of all refined keys together, whose errors add up here but for the points of the sheet
+    assert_true(setting(&study, study.stated, "time.shedding_interval") < 0.01);
+    NEAR(study.together[0], 0, 2e-4, 0);
+    assert_true(study.cost > 1);
+
+    // the same members lead to the same study
+    while (n_new > 0) {
+        assert_int_equal(error_study_judge(&again, members), STATUS_OK);
+        assert_int_equal(error_study_refine(&again, members, n, &n_new), STATUS_OK);
+    }
+    assert_int_equal(sweep_n_members(&again.study), n);
+    assert_int_equal(again.stated, study.stated);
+    NEAR(again.error[0], study.error[0], 0, 0);
+    free_members(members, n);
+    error_plan_free(&study);
+    error_plan_free(&again);
+}
+
+static void without_the_members_of_a_step_it_is_not_taken(void **state) {
+    (void)state;
+    struct error_study study = open_study(UNIFORM, "{of: steady_speed, within: 2e-3}");
+    struct member_file *const members = make_members(&study);
+    const int n = sweep_n_members(&study.study);
+    int n_new = 1;
+    while (n_new > 0) {
+        assert_int_equal(error_study_judge(&study, members), STATUS_OK);
+        assert_int_equal(error_study_refine(&study, members, n, &n_new), STATUS_OK);
+    }
+    assert_int_equal(sweep_n_members(&study.study), n);
+    assert_false(study.is_reached);
+    // the levels that are known are taken: half of the interval
+    NEAR(key_of(&study, "time.shedding_interval")->value[key_of(&study, "time.shedding_interval")->stated], 0.005, 0,
+         1e-12);
+    free_members(members, n);
+    error_plan_free(&study);
+}
+
+static void what_is_too_dear_is_not_run_and_its_cost_is_said(void **state) {
+    (void)state;
+    struct error_study study = open_study(UNIFORM, "{of: steady_speed, within: 2e-4, most: 3}");
+    int n_rounds;
+    struct member_file *const members = follow(&study, &n_rounds);
+    char words[ERROR_STUDY_BYTES];
+    assert_false(study.is_reached);
+    assert_true(study.cost <= 3);
+    error_study_say_cost(&study, words);
+    assert_non_null(strstr(words, "time.shedding_interval"));
+    assert_non_null(strstr(words, "times the CPU time"));
+    free_members(members, sweep_n_members(&study.study));
+    error_plan_free(&study);
+}
+
+static void a_member_that_failed_leaves_the_error_unknown(void **state) {
+    (void)state;
+    struct error_study study = open_study(UNIFORM, "{of: steady_speed, within: 0.5}");
+    struct member_file *const members = make_members(&study);
+    const int n = sweep_n_members(&study.study);
+    int n_new;
+    memcpy(members[key_of(&study, "fish.nodes")->member[3]].status, "no match", strlen("no match"));
+    assert_int_equal(error_study_judge(&study, members), STATUS_OK);
+    assert_int_equal(key_of(&study, "fish.nodes")->verdict, ERROR_BUDGET_UNKNOWN);
+    assert_true(isnan(study.error[0]) && !study.is_reached);
+    assert_int_equal(error_study_refine(&study, members, INT_MAX, &n_new), STATUS_OK);
+    assert_int_equal(n_new, 0);
+    free_members(members, n);
+    error_plan_free(&study);
+}
+
+static void a_cusp_an_edge_and_a_sheet_are_objected_to(void **state) {
+    (void)state;
+    struct error_study study = open_study("format: 1\ntime: {end: 4}\nfish: [{sheet_points: 21}]\n", "{of: speed}");
+    assert_non_null(strstr(key_of(&study, "fish.nodes")->objection, "cusp"));
+    assert_non_null(strstr(key_of(&study, "fish.sheet_points")->objection, "2 nodes - 1"));
+    error_plan_free(&study);
+    study = open_study(
+        "format: 1\ntime: {end: 4, shedding_interval: 1e-3}\n"
+        "fish: [{nodes: 25, sheet_points: 49, body: {profile: uniform, modulus: 5e2}}]\n",
+        "{of: steady_speed}");
+    assert_non_null(strstr(key_of(&study, "fish.nodes")->objection, "longer than its tail bends over"));
+    // 49 points are too few for steps of 1.5e-3 lengths
+    struct member_file *const members = make_members(&study);
+    assert_int_equal(error_study_judge(&study, members), STATUS_OK);
+    assert_int_equal(key_of(&study, "time.shedding_interval")->verdict, ERROR_BUDGET_OBJECTION);
+    assert_non_null(strstr(key_of(&study, "time.shedding_interval")->reason, "needs 84 sheet_points"));
+    free_members(members, sweep_n_members(&study.study));
+    error_plan_free(&study);
+}
+
+static void choices_of_the_model_are_not_in_the_sum(void **state) {
+    (void)state;
+    struct error_study study = open_study(UNIFORM, "{of: steady_speed, keys: [rtol, smoothing]}");
+    struct member_file *const members = make_members(&study);
+    set_value(&members[key_of(&study, "wake.smoothing")->member[0]], "steady_speed", 2.5);
+    assert_int_equal(error_study_judge(&study, members), STATUS_OK);
+    NEAR(key_of(&study, "wake.smoothing")->part[0].error, 2.5 - study.value[0], 0, 1e-12);
+    NEAR(study.error[0], 0, 1e-12, 0);
+    char *text = NULL;
+    size_t size;
+    FILE *const stream = open_memstream(&text, &size);
+    assert_int_equal(error_report_print(&study, members, stream), STATUS_OK);
+    fclose(stream);
+    assert_non_null(strstr(text, "choices, not in the sum: wake.smoothing ([0.1] 0.05) "));
+    free(text);
+    free_members(members, sweep_n_members(&study.study));
+    error_plan_free(&study);
+}
+
+static void every_failing_allocation_is_reported_and_leaves_nothing(void **state) {
+    (void)state;
+    static const char text[] = UNIFORM "error: {of: steady_speed, within: 2e-3, keys: [nodes, shedding_interval]}\n";
+    struct case_values values;
+    assert_int_equal(case_parse(&values, text, strlen(text), "test.yaml", NULL, 0, NULL), STATUS_OK);
+    struct error_study whole;
+    int n_rounds, n_failures = 0;
+    assert_int_equal(error_plan_create(&whole, &values), STATUS_OK);
+    struct member_file *const members = follow(&whole, &n_rounds);
+    const int n_members = sweep_n_members(&whole.study);
+    FILE *const nowhere = fopen("/dev/null", "w");
+    for (int n = 0;; n += 1 + n / 20) {
+        const int n_before = n_live;
+        struct error_study study;
+        int n_new = 1;
+        n_until_failure = n;
+        enum status status = error_plan_create(&study, &values);
+        while (status == STATUS_OK && n_new > 0) {
+            status = error_study_judge(&study, members);
+            if (status == STATUS_OK) status = error_study_refine(&study, members, n_members, &n_new);
+        }
+        if (status == STATUS_OK) status = error_report_print(&study, members, nowhere);
+        const int ran_out = n_until_failure == -1;
+        n_until_failure = -1;
+        error_plan_free(&study);
+        if (n_live != n_before) fail_msg("with allocation %d failing %d are left", n, n_live - n_before);
+        if (!ran_out) break;
+        if (status != STATUS_MEMORY) fail_msg("with allocation %d failing: %d %s", n, (int)status, status_message());
+        n_failures++;
+    }
+    assert_true(n_failures > 40);
+    fclose(nowhere);
+    free_members(members, n_members);
+    error_plan_free(&whole);
+    case_free(&values);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_keys_of_the_table_have_the_levels_of_the_table),
+        cmocka_unit_test(without_confirm_there_is_no_finer_level),
+        cmocka_unit_test(levels_that_are_no_valid_cases_are_replaced),
+        cmocka_unit_test(an_interval_divides_the_beat_or_the_run),
+        cmocka_unit_test(levels_can_be_given),
+        cmocka_unit_test(fish_of_different_resolution_change_in_proportion),
+        cmocka_unit_test(an_equilibrium_has_points_only),
+        cmocka_unit_test(quantities_that_are_not_known_are_refused),
+        cmocka_unit_test(the_error_is_the_sum_over_the_keys_and_covers_the_true_one),
+        cmocka_unit_test(refinement_ends_where_the_error_is_within_the_bound),
+        cmocka_unit_test(without_the_members_of_a_step_it_is_not_taken),
+        cmocka_unit_test(what_is_too_dear_is_not_run_and_its_cost_is_said),
+        cmocka_unit_test(a_member_that_failed_leaves_the_error_unknown),
+        cmocka_unit_test(a_cusp_an_edge_and_a_sheet_are_objected_to),
+        cmocka_unit_test(choices_of_the_model_are_not_in_the_sum),
+        cmocka_unit_test(every_failing_allocation_is_reported_and_leaves_nothing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
