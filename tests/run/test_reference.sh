@@ -51,8 +51,9 @@ for case in ["single1", "pair1", "single3", "pair3"]:
         for name, place in places(result, f).items():
             check(f"{case} fish {f} {name} [m]", place, fish[name], 1e-6)
         check(f"{case} fish {f} tail velocity [m/s]", result["v"][-1, f, n - 1], fish["tail_velocity"], 1e-4)
-        # the runs end within the decay of a vortex, which the two programs sample at different times
-        check(f"{case} fish {f} shed circulation [m2/s]", result["shed_circulation"][-1, f], fish["shed"], 3e-5)
+        # single1 and pair1 end within the decay of a vortex, which the two programs sample at different times
+        check(f"{case} fish {f} shed circulation [m2/s]", result["shed_circulation"][-1, f], fish["shed"],
+              3e-5 if case.endswith("1") else 1e-6)
         check(f"{case} fish {f} phi0", result["phi0"][-1, f], fish["phi0"], 2e-6)
         check(f"{case} fish {f} mass [kg]", np.nansum(result["node_mass"][f]), fish["mass"], 1e-9)
         strength = np.asarray(fish["sheet"])
