@@ -81,6 +81,7 @@ struct fish {
     double *bending_stiffness; /* E I, N m2                                      (n_joints) */
     double *bending_damping;   /* d_b, N m s                                    (n_joints) */
     enum damping damping;      /* of the rate of curvature less natural curvature, or of curvature alone */
+    double tail_stiffness;     /* E I of the last edge, N m2 */
     int has_clamp;             /* prescribed head: the direction of edge 0 is held by a joint at the nose: */
     double clamp_stiffness;    /* 2 E I/lbar, N m */
     double clamp_damping;      /* N m s */
@@ -99,6 +100,7 @@ struct fish {
     double *added_mass;      /* mu, kg                                            (n_edges) */
     double *displaced_mass;  /* rho_f A lbar, kg                                  (n_edges) */
     double tail_added_mass;  /* m_L, kg m-1; 0: nothing leaves at the tail */
+    int has_cusp;            /* whether the outline ends in a cusp: joukowski without a thickness of the tail */
     double linear_speed;     /* V1 of the drag law v (V1 + |v|), m s-1; 0: v |v| */
     enum skin skin;
     double friction_speed;   /* u0 of laminar friction and of a boundary layer, m s-1 */

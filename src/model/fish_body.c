@@ -63,6 +63,7 @@ static void weigh_body(struct fish *fish, const struct fish_parameters *from) {
         if (k == 0) clamp_head(fish, from, body->modulus * moment, refinement);
         moment_before = moment;
     }
+    fish->tail_stiffness = body->modulus * moment_before;
 }
 
 // Blasius' friction of both sides of an edge, over u^(3/2)
@@ -108,6 +109,7 @@ static void set_fluid_forces(struct fish *fish, const struct fish_parameters *fr
         fish->displaced_mass[k] = reactive * density * M_PI * h * w / 4 * l;
     }
     fish->force = from->force;
+    fish->has_cusp = from->body.profile == PROFILE_JOUKOWSKI && from->body.tail_thickness <= 0;
     fish->skin = drag->skin;
     set_boundary_layer(fish, drag, fluid);
     const double at_tail = wide ? fish->depth[fish->n_edges - 1] : profile_tail_thickness(from);

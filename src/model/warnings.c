@@ -17,6 +17,9 @@ struct subject {
     double size; /* see kind */
 };
 
+/* The size of what is so or not. */
+static const double always = 2;
+
 /* A kind of warning that each fish has by itself: its size, at which more than 1 warns, and its sentence. */
 struct kind {
     double (*size)(const struct subject *subject);
@@ -196,6 +199,60 @@ static void edge_say(const struct subject *subject, const char *who, char line[W
              who, 100 * now->separation_share, now->leading_edge_most, subject->fish->suction_limit);
 }
 
+// ---- the tail
+
+// whether the water bends the tail
+static int bends(const struct subject *subject) {
+    return subject->school->density > 0 && subject->fish->motion.prescribed != PRESCRIBED_ALL;
+}
+
+static double cusp_size(const struct subject *subject) {
+    return bends(subject) && subject->fish->has_cusp ? always : 0;
+}
+
+static void cusp_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
+    (void)subject;
+    snprintf(line, WARNING_BYTES,
+             "the tail of %s ends in a cusp: its results have no limit in nodes (doc/numerics.md, section 5); give "
+             "body.tail_thickness",
+             who);
+}
+
+// the length over which the beat bends a tail in the water that leaves there, m
+static double bending_length(const struct fish *fish) {
+    const double omega = 2 * 3.14159265358979323846 * fish->frequency;
+    return pow(fish->tail_stiffness / (fish->tail_added_mass * omega * omega), 0.25);
+}
+
+static double tail_size(const struct subject *subject) {
+    const struct fish *const fish = subject->fish;
+    const int beats = fish_has_wave(fish) || (fish->motion.prescribed == PRESCRIBED_HEAD && fish->motion.omega > 0);
+    if (!bends(subject) || !beats || fish->has_cusp || !(fish->tail_added_mass > 0)) return 0;
+    return 2 * fish->edge_length / bending_length(fish);
+}
+
+static void tail_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
+    const struct fish *const fish = subject->fish;
+    snprintf(line, WARNING_BYTES,
+             "the edges of %s, %.2g m, are longer than half the length over which its tail bends, %.2g m: take %.0f "
+             "nodes or more",
+             who, fish->edge_length, bending_length(fish), ceil(2 * fish->length / bending_length(fish)) + 1);
+}
+
+// ---- the published force
+
+static double force_size(const struct subject *subject) {
+    return subject->school->density > 0 && subject->fish->force == FORCE_PUBLISHED ? always : 0;
+}
+
+static void force_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
+    (void)subject;
+    snprintf(line, WARNING_BYTES,
+             "the published force on %s does not follow from an energy and can create energy: no other property of the "
+             "result is judged; compare with 'force: reactive'",
+             who);
+}
+
 // ---- all of them
 
 static const struct kind kinds[N_WARNINGS] = {
@@ -206,7 +263,15 @@ static const struct kind kinds[N_WARNINGS] = {
     [WARNING_SHEET] = {sheet_size, sheet_say},
     [WARNING_MODES] = {modes_size, modes_say},
     [WARNING_EDGE] = {edge_size, edge_say},
+    [WARNING_CUSP] = {cusp_size, cusp_say},
+    [WARNING_TAIL] = {tail_size, tail_say},
+    [WARNING_FORCE] = {force_size, force_say},
 };
+
+// a result with the published force is told that, and whether it is none at all, but not how accurate it is
+static int judges(enum warning warning, const struct fish *fish) {
+    return fish->force != FORCE_PUBLISHED || warning == WARNING_FORCE || warning == WARNING_DIVERGENCE;
+}
 
 const struct warning_words warnings_words[N_WARNINGS] = {
     [WARNING_CONTACT] = {"bodies touch, cross or come near",
@@ -231,6 +296,13 @@ const struct warning_words warnings_words[N_WARNINGS] = {
         {"separation at the nose",
          "separation_share is above 0.1, once the speed changes by less than 10 % a beat: the limit of the "
          "suction acts for more than 10 % of the last period"},
+    [WARNING_CUSP] = {"a cusp", "a Joukowski body that bends, with 'tail_thickness: 0'; `shoal check` says so too"},
+    [WARNING_TAIL] = {"few nodes at the tail",
+                      "twice the length of an edge is more than (EI/(m_L omega^2))^(1/4), with EI of the last edge and "
+                      "omega of the beat; `shoal check` says so too"},
+    [WARNING_FORCE] = {"the published force",
+                       "it can create energy; of such fish only contact, crossing and divergence are told besides; "
+                       "`shoal check` says so too"},
 };
 
 static int contact_line(const struct school *school, const struct closest *closest, char line[WARNING_BYTES]) {
@@ -267,6 +339,7 @@ int warnings_line(enum warning warning, const struct school *school, const struc
     int n = 0;
     for (int f = 0; f < school->n_fish; f++) {
         struct subject subject = {school, state, diagnostics, scratch, &school->fish[f], f, 0};
+        if (!judges(warning, subject.fish)) continue;
         subject.size = kinds[warning].size(&subject);
         if (!(subject.size > 1) || isinf(subject.size)) continue;
         n++;

@@ -15,6 +15,9 @@ enum warning {
     WARNING_SHEET,
     WARNING_MODES,
     WARNING_EDGE,
+    WARNING_CUSP,
+    WARNING_TAIL,
+    WARNING_FORCE,
     N_WARNINGS
 };
 enum { WARNING_BYTES = 384 /* of a line */ };

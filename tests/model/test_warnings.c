@@ -11,7 +11,7 @@
 // ---- which warnings a run has
 
 // those of a simulation, one character each: contact c, a body crosses itself x, divergence i, energy e, drift d,
-// events v, sheet s, modes m, leading edge l
+// events v, sheet s, modes m, leading edge l, cusp u, few nodes at the tail t, published force p
 static void expect_of(struct simulation *simulation, const char *expected) {
     simulate_measure(simulation);
     char line[WARNING_BYTES], found[N_WARNINGS + 1] = "";
@@ -21,7 +21,7 @@ static void expect_of(struct simulation *simulation, const char *expected) {
             continue;
         print_message("%s\n", line);
         assert_null(strchr(line, '\n'));
-        strncat(found, &"cxiedvsml"[w], 1);
+        strncat(found, &"cxiedvsmlutp"[w], 1);
     }
     assert_string_equal(found, expected);
 }
@@ -46,6 +46,39 @@ static void a_fish_that_gathers_speed_drifts(void **state) {
     expect_warnings(SCHOOL_SECOND TIME "fluid: {density: 0}\nfish: [{}]\n", 2.5, "");
 }
 
+static void a_tail_without_a_limit_is_told(void **state) {
+    (void)state;
+#define CUSP(keys) SCHOOL_SECOND TIME "fish: [{body: {tail_thickness: 0}, " keys "}]\n"
+    expect_warnings(CUSP("nodes: 25"), 0.1, "u");
+    // whatever the number of nodes; not where the water does not bend it
+    expect_warnings(CUSP("nodes: 61, sheet_points: 121"), 0.02, "u");
+    expect_warnings(CUSP("motion: {driven: all}"), 0.1, "");
+    expect_warnings(SCHOOL_SECOND TIME "fluid: {density: 0}\nfish: [{body: {tail_thickness: 0}}]\n", 0.1, "");
+}
+
+static void few_nodes_at_the_tail_are_told(void **state) {
+    (void)state;
+    // (EI/(m_L omega^2))^(1/4) of a uniform body, 0.1 by 0.25, 1e7 Pa, 2 Hz
+    const double pi = acos(-1), EI = 1e7 * pi * 0.25 * 1e-3 / 64, m = 1000 * pi * 0.0625 / 4, omega = 4 * pi;
+    const double length = pow(EI / (m * omega * omega), 0.25);
+    const int enough = (int)ceil(2 / length) + 1;
+    for (int n = enough - 1; n <= enough; n++) {
+        char text[256];
+        snprintf(text, sizeof text,
+                 SCHOOL_SECOND TIME
+                 "fish: [{nodes: %d, body: {profile: uniform, thickness: 0.1, modulus: 1e7}, wave: {frequency: 2}}]\n",
+                 n);
+        expect_warnings(text, 0.01, n < enough ? "t" : "");
+    }
+}
+
+static void the_published_force_is_told_and_nothing_else(void **state) {
+    (void)state;
+    // few events, an open balance, a drift, a cusp: none of it is worth a word there
+    expect_warnings("time: {end: 3, shedding_interval: 0.0625}\npreset: published\nfish: [{}]\n", 2.5, "p");
+    expect_warnings(SCHOOL_SECOND TIME "fish: [{force: published}, {start: {position: [0, 2]}}]\n", 0.1, "p");
+}
+
 static void few_events_in_a_beat_are_told(void **state) {
     (void)state;
     expect_warnings(SCHOOL_SECOND "time: {end: 3, shedding_interval: 0.0625}\nfish: [{}]\n", 0.5, "v");
@@ -54,7 +87,7 @@ static void few_events_in_a_beat_are_told(void **state) {
 
 static void a_soft_body_is_slower_than_its_beat(void **state) {
     (void)state;
-    expect_warnings(SCHOOL_SECOND TIME "fish: [{body: {modulus: 1e5}}]\n", 0.1, "m");
+    expect_warnings(SCHOOL_SECOND TIME "fish: [{nodes: 33, body: {modulus: 1e5}}]\n", 0.1, "m");
     // a passive body may be as soft as it likes
     expect_warnings(SCHOOL_SECOND TIME "fish: [{body: {modulus: 1e5}, wave: {amplitude: 0}}]\n", 0.1, "");
 }
@@ -209,6 +242,9 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_short_run_of_a_default_fish_has_none),
         cmocka_unit_test(a_fish_that_gathers_speed_drifts),
+        cmocka_unit_test(a_tail_without_a_limit_is_told),
+        cmocka_unit_test(few_nodes_at_the_tail_are_told),
+        cmocka_unit_test(the_published_force_is_told_and_nothing_else),
         cmocka_unit_test(few_events_in_a_beat_are_told),
         cmocka_unit_test(a_soft_body_is_slower_than_its_beat),
         cmocka_unit_test(few_sheet_points_for_a_short_stretch_are_told),
