@@ -11,6 +11,7 @@
 #include "case/case_notes.h"
 #include "case/case_path.h"
 #include "case/case_table.h"
+#include "case/case_times.h"
 #include "case/case_value.h"
 #include "case/sweep.h"
 #include "case/sweep_expect.h"
@@ -204,17 +205,11 @@ static void derive(double *value, double standard) {
     if (isnan(*value)) *value = standard;
 }
 
-/* The beats per second of a fish, or those of its prescribed motion; 0 where it has none. */
-static double beat_frequency(const struct fish_parameters *fish) {
-    const bool is_prescribed = (int)fish->motion.prescribed > PRESCRIBED_NONE && fish->motion.frequency > 0;
-    return is_prescribed ? fish->motion.frequency : fish->wave.frequency;
-}
-
 static enum status derive_fish(struct fish_parameters *fish, int index) {
     const double period = fish->wave.frequency > 0 ? 1 / fish->wave.frequency : 0;
     if (fish->sheet_points == 0) fish->sheet_points = fish->nodes > 17 ? 2 * fish->nodes - 1 : 33;
     derive(&fish->body.tail_thickness, fish->body.profile == PROFILE_JOUKOWSKI ? 0.04 : 0);
-    const double beat = beat_frequency(fish);
+    const double beat = case_times_beat(fish);
     derive(&fish->body.relaxation_time, beat > 0 ? 0.02 / beat : 0);
     derive(&fish->wave.ramp, period);
     const bool has_pressure = fish->force == FORCE_PRESSURE;
@@ -253,7 +248,7 @@ static char *stem(const char *path) {
 static bool are_damped(const struct school_parameters *school) {
     for (int i = 0; i < school->n_fish; i++) {
         const struct fish_parameters *const fish = &school->fish[i];
-        const double periods = fish->body.relaxation_time * beat_frequency(fish);
+        const double periods = fish->body.relaxation_time * case_times_beat(fish);
         if (!(periods > 0.001 * (1 - 1e-9))) return false;
     }
     return true;
@@ -312,6 +307,7 @@ static void derive_wake(struct school_parameters *school) {
 }
 
 static enum status derive_all(struct case_values *values, const char *origin) {
+    case_times_derive(values);
     derive(&values->time.output_interval, 10 * values->school.shedding_interval);
     derive_wake(&values->school);
     derive(&values->output.wake_interval, values->time.output_interval);

@@ -6,6 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/text.h"
+
 static const double pi = 3.14159265358979323846;
 
 /* The case, and the list that notes are added to. fish: the one being looked at. */
@@ -60,6 +62,28 @@ static void note_angles(const struct look *look) {
     }
 }
 
+/* Note a time that the default of the shedding interval has changed. */
+static void note_rounded(const struct look *look, const char *path, double time, const char *unit) {
+    bool is_default;
+    const struct yaml_node *const node = case_merge_value(look->tree, path, 0, &is_default);
+    double written;
+    if (!node || !text_number(node->text, &written) || fabs(written - time) <= 1e-9 * time) return;
+    note(
+        look, path,
+        "%.6g s is not an integer multiple of %s, taken as %.6g s; time.shedding_interval is by default a hundredth of "
+        "the fastest beat, %.6g s",
+        written, unit, time, look->values->school.shedding_interval);
+}
+
+static void note_times(const struct look *look) {
+    const struct case_time *const time = &look->values->time;
+    static const char interval[] = "time.shedding_interval";
+    note_rounded(look, "time.end", time->end, interval);
+    note_rounded(look, "time.output_interval", time->output_interval, interval);
+    note_rounded(look, "time.checkpoint_interval", time->checkpoint_interval, interval);
+    note_rounded(look, "output.wake_interval", look->values->output.wake_interval, "time.output_interval");
+}
+
 static void note_body(const struct look *look) {
     const struct fish_parameters *const fish = &look->values->school.fish[look->fish];
     const double longest = 30 /* a blue whale, m */, shortest = 1e-3 /* a larva */, softest = 1e3 /* jelly, Pa */,
@@ -95,6 +119,7 @@ static void note_wave(const struct look *look) {
 
 void case_notes(const struct case_values *values, const struct case_tree *tree, struct yaml_errors *notes) {
     struct look look = {values, tree, notes, 0};
+    note_times(&look);
     for (look.fish = 0; look.fish < values->school.n_fish; look.fish++) {
         note_body(&look);
         note_nodes(&look);

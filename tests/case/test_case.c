@@ -103,9 +103,9 @@ static void the_defaults_are_those_of_the_reference(void **state) {
     assert_int_equal(s.output.precision, PRECISION_DOUBLE);
     assert_null(s.output.file);
     const struct fish_parameters *const fish = s.school.fish;
-    assert_int_equal(fish->nodes, 17);
+    assert_int_equal(fish->nodes, 25);
     assert_int_equal(fish->reference_nodes, 7);
-    assert_int_equal(fish->sheet_points, 33);
+    assert_int_equal(fish->sheet_points, 49);
     assert_int_equal(fish->force, FORCE_REACTIVE);
     assert_int_equal(fish->body.section, SECTION_MEAN);
     assert_int_equal(fish->body.profile, PROFILE_JOUKOWSKI);
@@ -295,7 +295,7 @@ static void multiples_are_recognised_despite_rounding(void **state) {
 
 static void errors_of_all_stages_are_listed_together(void **state) {
     (void)state;
-    is_refused("format: 1\ntime: {end: 1.005}\nfish: [{length: x}, {nodes: 1}]\n",
+    is_refused("format: 1\ntime: {end: 1.005, shedding_interval: 0.01}\nfish: [{length: x}, {nodes: 1}]\n",
                "time.end: 1.005 s is not an integer");
     assert_non_null(strstr(status_message(), "fish[0].length: expects a number in m, got 'x'"));
     assert_non_null(strstr(status_message(), "fish[1].nodes: must be from 4"));
@@ -337,7 +337,7 @@ static void an_include_is_weaker_than_the_file_that_includes_it(void **state) {
     NEAR(s.school.fluid.velocity[0], 3, 0, 0);
     NEAR(s.school.wake.lifetime.seconds, 4, 0, 0);
     assert_int_equal(s.school.n_fish, 1);  // lists replace
-    assert_int_equal(s.school.fish->nodes, 17);
+    assert_int_equal(s.school.fish->nodes, 25);
     assert_string_equal(s.name, "case");
     assert_non_null(strstr(s.text, "include: [water.yaml]"));
     case_free(&s);
