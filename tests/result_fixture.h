@@ -58,7 +58,7 @@ static inline int set_up(void **state) {
                                     .state = f->state,
                                     .pressure = f->pressure,
                                     .joints = f->joints,
-                                    .natural_curvature = f->natural_curvature};
+                                    .muscle = {.curvature = f->natural_curvature}};
     f->diagnostics =
         (struct diagnostics){.fish = f->of_fish, .total_circulation = 11, .least_distance = 12, .polarisation = 13};
     f->counts = (struct integrator_counts){.steps = 21,
