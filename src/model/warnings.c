@@ -296,13 +296,12 @@ const struct warning_words warnings_words[N_WARNINGS] = {
         {"separation at the nose",
          "separation_share is above 0.1, once the speed changes by less than 10 % a beat: the limit of the "
          "suction acts for more than 10 % of the last period"},
-    [WARNING_CUSP] = {"a cusp", "a Joukowski body that bends, with 'tail_thickness: 0'; `shoal check` says so too"},
+    [WARNING_CUSP] = {"a cusp", "a Joukowski body that bends, with 'tail_thickness: 0'"},
     [WARNING_TAIL] = {"few nodes at the tail",
                       "twice the length of an edge is more than (EI/(m_L omega^2))^(1/4), with EI of the last edge and "
-                      "omega of the beat; `shoal check` says so too"},
+                      "omega of the beat"},
     [WARNING_FORCE] = {"the published force",
-                       "it can create energy; of such fish only contact, crossing and divergence are told besides; "
-                       "`shoal check` says so too"},
+                       "it can create energy; of such a fish only contact, crossing and divergence are told besides"},
 };
 
 static int contact_line(const struct school *school, const struct closest *closest, char line[WARNING_BYTES]) {
