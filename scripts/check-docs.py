@@ -4,7 +4,7 @@
     scripts/check-docs.py
 
 In doc/*.md and README.md: files and folders, links and their anchors, names in backticks with a low line or brackets
-(functions, keys, variables), tests of `make test TEST=...`, tables of `scripts/numerics.py NAME`, sections of
+(functions, keys, variables), tests of `make test TEST=...`, tables of `scripts/measure.py NAME`, sections of
 `build/verify/verify NAME`. In the comments of src, include and tests: files, and sections of documents. And no two
 tests have one name. Exit codes: 0 all is there, 1 some is not.
 """
@@ -92,9 +92,9 @@ def faults_of_document(path, words, tests, numerics, sections):
         for name in names.strip('"').split():
             if name not in tests:
                 yield f"there is no test called {name}"
-    for name in re.findall(r"scripts/numerics\.py ([a-z]\w*)", text):
+    for name in re.findall(r"scripts/measure\.py ([a-z]\w*)", text):
         if name not in numerics:
-            yield f"scripts/numerics.py has no table {name}"
+            yield f"scripts/measure.py has no table {name}"
     for name in re.findall(r"verify/verify ([a-z]\w*)", text):
         if name not in sections:
             yield f"verify has no section {name}"
@@ -115,7 +115,7 @@ def faults_of_source(path):
 
 def main():
     words, tests = code_words(), test_names()
-    numerics = set(re.findall(r"\w+", read("scripts/numerics.py")))
+    numerics = set(re.findall(r"\w+", read("scripts/measure.py")))
     sections = set(re.findall(r"\w+", "".join(read(p) for p in files("tests/verify/*.c"))))
     faults = [(path, fault) for path in files("doc/*.md", "README.md")
               for fault in faults_of_document(path, words, tests, numerics, sections)]

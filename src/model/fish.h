@@ -81,6 +81,7 @@ struct fish {
     double *bending_stiffness; /* E I, N m2                                      (n_joints) */
     double *bending_damping;   /* d_b, N m s                                    (n_joints) */
     enum damping damping;      /* of the rate of curvature less natural curvature, or of curvature alone */
+    double tail_stiffness;     /* E I of the last edge, N m2 */
     int has_clamp;             /* prescribed head: the direction of edge 0 is held by a joint at the nose: */
     double clamp_stiffness;    /* 2 E I/lbar, N m */
     double clamp_damping;      /* N m s */

@@ -63,6 +63,7 @@ static void weigh_body(struct fish *fish, const struct fish_parameters *from) {
         if (k == 0) clamp_head(fish, from, body->modulus * moment, refinement);
         moment_before = moment;
     }
+    fish->tail_stiffness = body->modulus * moment_before;
 }
 
 // Blasius' friction of both sides of an edge, over u^(3/2)

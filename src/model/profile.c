@@ -49,7 +49,8 @@ static double angle_at(const struct joukowski *foil, double s) {
 static double half_thickness(const struct joukowski *foil, double theta) {
     const double re = foil->r0 * (cos(theta) + foil->d), im = foil->r0 * sin(theta), c = foil->c;
     const double sigma = (chord_at(foil, theta) - foil->nose) / foil->length;
-    return hypot(im * (1 - c * c / (re * re + im * im)), foil->tail / 2 * sigma);
+    const double cusp = im * (1 - c * c / (re * re + im * im)), wedge = foil->tail / 2 * sigma;
+    return sqrt(cusp * cusp + wedge * wedge);
 }
 
 // minus ds/dtheta

@@ -218,11 +218,10 @@ static void cusp_say(const struct subject *subject, const char *who, char line[W
              who);
 }
 
-// the length over which the beat bends a tail in the water that leaves there, m; of a cusp it is that of no tail
+// the length over which the beat bends a tail in the water that leaves there, m
 static double bending_length(const struct fish *fish) {
     const double omega = 2 * 3.14159265358979323846 * fish->frequency;
-    const double stiffness = fish->bending_stiffness[fish->n_joints - 1];
-    return pow(stiffness / (fish->tail_added_mass * omega * omega), 0.25);
+    return pow(fish->tail_stiffness / (fish->tail_added_mass * omega * omega), 0.25);
 }
 
 static double tail_size(const struct subject *subject) {
@@ -269,10 +268,6 @@ static const struct kind kinds[N_WARNINGS] = {
     [WARNING_FORCE] = {force_size, force_say},
 };
 
-int warnings_is_of_case(enum warning warning) {
-    return warning == WARNING_CUSP || warning == WARNING_TAIL || warning == WARNING_FORCE;
-}
-
 // a result with the published force is told that, and whether it is none at all, but not how accurate it is
 static int judges(enum warning warning, const struct fish *fish) {
     return fish->force != FORCE_PUBLISHED || warning == WARNING_FORCE || warning == WARNING_DIVERGENCE;
@@ -301,14 +296,12 @@ const struct warning_words warnings_words[N_WARNINGS] = {
         {"separation at the nose",
          "separation_share is above 0.1, once the speed changes by less than 10 % a beat: the limit of the "
          "suction acts for more than 10 % of the last period"},
-    [WARNING_CUSP] = {"a cusp", "a Joukowski body that bends, with 'tail_thickness: 0'; `shoal check` says so too"},
-    [WARNING_TAIL] =
-        {"few nodes at the tail",
-         "twice the length of an edge is more than (EI/(m_L omega^2))^(1/4), with EI of the last joint and "
-         "omega of the beat; `shoal check` says so too"},
+    [WARNING_CUSP] = {"a cusp", "a Joukowski body that bends, with 'tail_thickness: 0'"},
+    [WARNING_TAIL] = {"few nodes at the tail",
+                      "twice the length of an edge is more than (EI/(m_L omega^2))^(1/4), with EI of the last edge and "
+                      "omega of the beat"},
     [WARNING_FORCE] = {"the published force",
-                       "it can create energy; of such fish only contact, crossing and divergence are told besides; "
-                       "`shoal check` says so too"},
+                       "it can create energy; of such a fish only contact, crossing and divergence are told besides"},
 };
 
 static int contact_line(const struct school *school, const struct closest *closest, char line[WARNING_BYTES]) {

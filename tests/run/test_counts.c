@@ -67,17 +67,16 @@ static void a_default_fish_costs_as_little(void **state) {
     (void)state;
     const double moduli[] = {1e4, 3e4, 1e5, 1e6, 1e8, 1e10};
     for (size_t i = 0; i < sizeof moduli / sizeof *moduli; i++) {
-        // soft tails whip the faster the longer they have swum
-        const double end = moduli[i] < 1e5 ? 8 : 4;
+        const double end = 4;
         char text[256];
         snprintf(text, sizeof text, SCHOOL_SECOND "time: {end: %g}\nfish: [{body: {modulus: %.1e}}]\n", end, moduli[i]);
         const struct cost cost = cost_per_event(text, end);
         print_cost("default fish", moduli[i], &cost);
-        assert_true(cost.steps <= 5);
-        assert_true(cost.iterations <= 13);
-        assert_true(cost.jacobians <= 1);
-        // the tail of the softest ones folds, and goes backwards through what it sheds: doc/numerics.md, section 4
-        assert_true(cost.failures <= (moduli[i] < 1e5 ? 0.2 : 0.01));
+        assert_true(cost.steps <= 2.5);
+        assert_true(cost.iterations <= 6);
+        assert_true(cost.jacobians <= 0.4);
+        // on stiff bodies some of the old Jacobians fail that would have been evaluated again for their age
+        assert_true(cost.failures <= 0.04);
     }
 }
 

@@ -18,7 +18,7 @@ changed() {
 cat >small.yaml <<'end'
 format: 1
 time: {end: 0.2, shedding_interval: 0.02}
-fish: [{}]
+fish: [{nodes: 17, body: {relaxation_time: 0.001}}]
 sweep:
   - {key: "fish[*].wave.amplitude", values: [0.2, 0.3]}
   - {keys: [solver.method, solver.max_steps], values: [[ida, 1000], [rk4, 1000], [euler, 2]]}
