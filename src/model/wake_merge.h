@@ -1,5 +1,5 @@
 /* wake_merge.h: neighbours in an old wake become one, where the bodies hardly notice it: `wake.merge`. doc/numerics.md,
- * section 14. Tested by tests/model/test_wake_merge.c.
+ * section 13. Tested by tests/model/test_wake_merge.c.
  *
  *     vortices            a     b          ->        a + b        at their centroid
  *
