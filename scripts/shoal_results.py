@@ -112,8 +112,13 @@ def kind_of(path):
 
 def sections(data, n_fish):
     """Whether the thickness of the edges is a mean over them: what fish.body.section says of each fish."""
-    words = re.findall(r"\bsection: (\w+)", getattr(data, "case_effective", ""))
-    return [word == "mean" for word in (words + ["nodes"] * n_fish)[:n_fish]]
+    if "mean_section" in data.variables:
+        return [value == 1 for value in data["mean_section"][:]]
+    # a file of an earlier version: its case has a line for each key, which begins with blanks
+    words = re.findall(r"^ +section: (\w+)", getattr(data, "case_effective", ""), re.MULTILINE)
+    if len(words) != n_fish:
+        raise FileError(f"{data.filepath()}: its case does not say the section of each fish: use the program that wrote it")
+    return [word == "mean" for word in words]
 
 
 def walls(data, inside):

@@ -76,6 +76,7 @@ struct fish {
     double *thickness;         /* thickness across the plane of motion h, m               (n_edges) */
     double *depth;             /* extent out of that plane w, m                           (n_edges) */
     double *square, *cube;     /* mean of h^2 over thickness^2, of h^3 over thickness^3   (n_edges) */
+    int has_mean_section;      /* these are means over an edge, else of the values at its nodes (fish.body.section) */
     double *axial_stiffness;   /* E A, N                                         (n_edges) */
     double *axial_damping;     /* d_s, kg s-1                                    (n_edges) */
     double *bending_stiffness; /* E I, N m2                                      (n_joints) */

@@ -19,6 +19,7 @@ static enum status allocate(struct fish *fish) {
 }
 
 static void shape_edges(struct fish *fish, const struct fish_parameters *from) {
+    fish->has_mean_section = from->body.section == SECTION_MEAN;
     for (int k = 0; k < fish->n_nodes; k++) fish->arc[k] = k * fish->edge_length;
     for (int k = 0; k < fish->n_edges; k++) {
         const struct profile_edge edge = profile_edge(from, k);

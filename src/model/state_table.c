@@ -1,6 +1,7 @@
 /* state_table.c: the table, and what loops over it. */
 #include "model/state_table.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "model/rod.h"
@@ -166,8 +167,36 @@ enum status state_table_copy(struct state *to, const struct state *from, const s
     return STATUS_OK;
 }
 
+/* Whether a value of a field may lack: the distance of one fish alone is infinite, and a sample within the first period
+ * has no speed. */
+static int may_lack(const struct state_row *row, size_t i) {
+    const size_t n_sample = sizeof(struct sample) / sizeof(double),
+                 speed = offsetof(struct sample, speed) / sizeof(double);
+    if (row->owner == STATE_CLOSEST) return row->offset == offsetof(struct closest, distance);
+    return row->owner == STATE_HISTORY && i % n_sample == speed;
+}
+
+static enum status check_finite(const struct state *state, const struct school *school) {
+    for (int i = 0; i < state_table_n; i++) {
+        const struct state_row *const row = &state_table[i];
+        if (row->type != STATE_REAL) continue;
+        for (int f = 0; f < state_table_n_owners(row, school); f++) {
+            const double *const values = state_table_values(row, state, f);
+            const size_t n = state_table_length(row, state, school, f);
+            for (size_t k = 0; k < n; k++) {
+                if (isfinite(values[k]) || may_lack(row, k)) continue;
+                return status_fail(STATUS_FILE, "its value %zu of '%s' is %g", k, row->name, values[k]);
+            }
+        }
+    }
+    return STATUS_OK;
+}
+
 enum status state_table_check(const struct state *state, const struct school *school) {
-    int is_good = state->event >= 0 && state->crossed >= -1 && state->crossed < school->n_fish;
+    TRY(check_finite(state, school));
+    int is_good = state->event >= 0 &&
+                  fabs(state->t - (double)state->event * school->interval) <= school->interval / 2 &&
+                  state->crossed >= -1 && state->crossed < school->n_fish;
     for (int i = 0; i < 2; i++) is_good &= state->closest->fish[i] >= 0 && state->closest->fish[i] < school->n_fish;
     for (int f = 0; f < school->n_fish; f++) {
         const struct history *const history = &state->history[f];

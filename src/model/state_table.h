@@ -47,7 +47,8 @@ enum status state_table_make_room(struct state *state, const struct school *scho
  * changed. Fails with STATUS_MEMORY; the state can then only be freed. */
 enum status state_table_copy(struct state *to, const struct state *from, const struct school *school);
 
-/* Fail with STATUS_FILE where a number that others rely on as an index is none that a run of the school can have. */
+/* Fail with STATUS_FILE where a number that others rely on as an index is none that a run of the school can have, where
+ * the time is not that of the event, or where a value is not finite that a run always knows. */
 enum status state_table_check(const struct state *state, const struct school *school);
 
 #endif

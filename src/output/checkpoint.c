@@ -1,6 +1,7 @@
 /* checkpoint.c: sections for what is not state, then one section for each row of the table of the state. */
 #include "output/checkpoint.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -130,6 +131,8 @@ static enum status read_all(struct checkpoint *checkpoint) {
         TRY(read_number(checkpoint, numbers[i].name, number_of(checkpoint, i), numbers[i].size));
     }
     TRY(read_number(checkpoint, "t", &checkpoint->t, sizeof checkpoint->t));
+    if (!isfinite(checkpoint->wall_time)) return unfit("wall_time");
+    if (!isfinite(checkpoint->totals.step_size)) return unfit("step_size");
     if (strchr(checkpoint->result, '/') || checkpoint->rows.n_rows < 0) return unfit("result");
     return STATUS_OK;
 }

@@ -13,7 +13,21 @@
 
 // ---- the variables
 
-enum { TIME_AT, X_AT, Y_AT, U, V, VORTICITY, BODY_X, EDGE_HEIGHT, N_NODES, FISH_NAME, WALL_Y, N_VARIABLES };
+enum {
+    TIME_AT,
+    X_AT,
+    Y_AT,
+    U,
+    V,
+    VORTICITY,
+    BODY_X,
+    EDGE_HEIGHT,
+    MEAN_SECTION,
+    N_NODES,
+    FISH_NAME,
+    WALL_Y,
+    N_VARIABLES
+};
 enum {
     TIME_AXIS,
     Y_AXIS,
@@ -53,6 +67,11 @@ static const struct variable {
      NETCDF_DOUBLE,
      "m",
      "thickness of the body in the plane of motion"},
+    {"mean_section",
+     {FISH_AXIS, NO_AXIS},
+     NETCDF_INT,
+     "1",
+     "1: edge_height is a mean over an edge; 0: the mean of the values at its nodes"},
     {"n_nodes", {FISH_AXIS, NO_AXIS}, NETCDF_INT, "1", "number of nodes"},
     {"fish_name", {FISH_AXIS, NAME_AXIS, NO_AXIS}, NETCDF_TEXT, "", "name of the fish"},
     {"wall_y", {WALL_AXIS, NO_AXIS}, NETCDF_DOUBLE, "m", "y of the walls; where there are walls only"},
@@ -211,6 +230,7 @@ static void write_body(struct netcdf_writer *writer, const struct field *field, 
         const double thickness = (int)k < fish->n_edges ? fish->thickness[k] : NAN;
         netcdf_write_doubles(writer, EDGE_HEIGHT, (const size_t[]){at, k}, (const size_t[]){1, 1}, &thickness);
     }
+    netcdf_write_ints(writer, MEAN_SECTION, (const size_t[]){at}, (const size_t[]){1}, &fish->has_mean_section);
     netcdf_write_ints(writer, N_NODES, (const size_t[]){at}, (const size_t[]){1}, &fish->n_nodes);
     for (size_t i = 0; i < field->length[NAME_AXIS]; i++) {
         const char letter = i < strlen(fish->name) ? fish->name[i] : '\0';

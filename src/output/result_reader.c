@@ -77,20 +77,52 @@ static enum status read_counts(const struct result_reader *reader, const char *n
     return status;
 }
 
-/* What fish.body.section says of each fish, in the case that the file holds. */
-static enum status read_sections(struct result_reader *reader) {
-    static const char key[] = "section: ";
+/* Whether a key of each fish has a value, by the case in a file of an earlier version: a line for each key. */
+static enum status read_key(const struct result_reader *reader, const char *key, const char *value, bool *has_value) {
     char *text;
-    reader->has_mean_section = calloc(reader->length[FISH], sizeof *reader->has_mean_section);
-    if (!reader->has_mean_section) return out_of_memory(&reader->file);
+    size_t n = 0;
     TRY(netcdf_read_string(&reader->file, "case_effective", &text));
-    const char *place = text;
-    for (size_t f = 0; f < reader->length[FISH] && (place = strstr(place, key)); f++) {
-        place += strlen(key);
-        reader->has_mean_section[f] = strncmp(place, "mean", 4) == 0;
+    for (const char *line = text; line && *line; line = strchr(line, '\n')) {
+        line += strspn(line, "\n");
+        const char *const word = line + strspn(line, " ");
+        if (word == line || strncmp(word, key, strlen(key)) != 0) continue;
+        if (n < reader->length[FISH]) has_value[n] = strncmp(word + strlen(key), value, strlen(value)) == 0;
+        n++;
     }
     free(text);
+    if (n == reader->length[FISH]) return STATUS_OK;
+    return status_fail(STATUS_FILE, "%s: its case says '%s' of %zu of its %zu fish: use the program that wrote it",
+                       reader->file.path, key, n, reader->length[FISH]);
+}
+
+/* Whether a variable of each fish has a value. */
+static enum status read_flags(const struct result_reader *reader, const char *name, int value, bool *has_value) {
+    double *values;
+    TRY(result_reader_new(reader, name, 0, &values));
+    for (size_t f = 0; f < reader->length[FISH]; f++) has_value[f] = fabs(values[f] - value) < 0.5;
+    free(values);
     return STATUS_OK;
+}
+
+/* What fish.body.section and fish.force say of each fish. */
+static enum status read_words(struct result_reader *reader) {
+    const size_t n_fish = reader->length[FISH];
+    reader->has_mean_section = calloc(n_fish, sizeof *reader->has_mean_section);
+    bool *const has_pressure = calloc(n_fish, sizeof *has_pressure);
+    enum status status = reader->has_mean_section && has_pressure ? STATUS_OK : out_of_memory(&reader->file);
+    if (status == STATUS_OK) {
+        status = netcdf_has(&reader->file, "mean_section")
+                     ? read_flags(reader, "mean_section", 1, reader->has_mean_section)
+                     : read_key(reader, "section: ", "mean", reader->has_mean_section);
+    }
+    if (status == STATUS_OK) {
+        status = netcdf_has(&reader->file, "fluid_force")
+                     ? read_flags(reader, "fluid_force", FORCE_PRESSURE, has_pressure)
+                     : read_key(reader, "force: ", "pressure", has_pressure);
+    }
+    for (size_t f = 0; status == STATUS_OK && f < n_fish; f++) reader->has_pressure |= has_pressure[f];
+    free(has_pressure);
+    return status;
 }
 
 /* The walls, of which most files have none. */
@@ -107,8 +139,10 @@ static enum status fill(struct result_reader *reader) {
     TRY(netcdf_read_string(&reader->file, "title", &reader->title));
     TRY(netcdf_read_string(&reader->file, "run_status", &reader->run_status));
     TRY(read_names(reader));
-    TRY(read_sections(reader));
-    TRY(read_counts(reader, "n_nodes", 4, reader->length[NODE], &reader->n_nodes));
+    TRY(read_words(reader));
+    // an outline needs the edges between the nodes
+    const size_t n_nodes = reader->length[NODE], n_edges = reader->length[EDGE];
+    TRY(read_counts(reader, "n_nodes", 4, n_edges < n_nodes ? n_edges + 1 : n_nodes, &reader->n_nodes));
     return read_counts(reader, "n_sheet", 1, reader->length[SHEET], &reader->n_sheet);
 }
 

@@ -57,6 +57,10 @@ const struct result_variable result_table[] = {
      .long_name = "thickness of the body in the plane of motion"},
     {"edge_width",            {FISH, EDGE},           RESULT_REAL,    "m",      ARRAY_IN_FISH(depth),
      .long_name = "depth (span) of the body, out of the plane of motion"},
+    {"mean_section",          {FISH},                 RESULT_INTEGER, "1",      IN_FISH(has_mean_section),
+     .long_name = "1: edge_height and edge_width are means over an edge; 0: means of the values at its nodes"},
+    {"fluid_force",           {FISH},                 RESULT_INTEGER, "1",      IN_FISH(force),
+     .long_name = "force of the fluid on the body: 0 reactive, 1 published, 2 pressure"},
     {"sheet_arc",             {FISH, SHEET},          RESULT_REAL,    "m",      GATHERED(result_row_sheet_arc),
      .long_name = "arc coordinate of the bound vortices, from the nose"},
     {"control_arc",           {FISH, CONTROL},        RESULT_REAL,    "m",      GATHERED(result_row_control_arc),
@@ -322,6 +326,8 @@ const struct result_variable result_table[] = {
 };
 // clang-format on
 const int result_table_n = sizeof result_table / sizeof *result_table;
+_Static_assert(FORCE_REACTIVE == 0 && FORCE_PUBLISHED == 1 && FORCE_PRESSURE == 2 && sizeof(enum force) == sizeof(int),
+               "fluid_force is written as it is");
 _Static_assert(sizeof result_table / sizeof *result_table <= RESULT_TABLE_MAX, "raise RESULT_TABLE_MAX");
 
 // ---- look-ups ----

@@ -397,18 +397,9 @@ static void find_stem(struct export *export) {
         if (strchr("<>&\"'", *c)) *c = '_';
 }
 
-/* Read where the pressure jump is known, if a fish has one: force: pressure. */
-static enum status read_control_arc(struct export *export) {
-    char *text;
-    TRY(netcdf_read_string(&export->reader.file, "case_effective", &text));
-    const bool has_pressure = strstr(text, "force: pressure") != NULL;
-    free(text);
-    return has_pressure ? result_reader_new(&export->reader, "control_arc", 0, &export->control_arc) : STATUS_OK;
-}
-
 static enum status fill(struct export *export) {
     const struct result_reader *const reader = &export->reader;
-    TRY(read_control_arc(export));
+    if (reader->has_pressure) TRY(result_reader_new(reader, "control_arc", 0, &export->control_arc));
     find_stem(export);
     TRY(result_reader_row(reader, "shedding_interval", 0, &export->school.interval));
     TRY(result_reader_row(reader, "wake_lifetime", 0, &export->school.lifetime));

@@ -161,7 +161,12 @@ static enum status take_up(struct run *run, const struct resume *resume) {
     struct state *state = NULL;
     TRY(fish_school_create(&school, &run->values->school));
     enum status status = state_create(&state, school);
-    if (status == STATUS_OK) status = checkpoint_set_state(&resume->checkpoint, state, school);
+    if (status == STATUS_OK) {
+        status = checkpoint_set_state(&resume->checkpoint, state, school);
+        if (status != STATUS_OK) {
+            status_fail(status, "the checkpoint of %s cannot be used: %s", resume->result, status_message());
+        }
+    }
     if (status != STATUS_OK) {
         state_free(state, school);
         fish_school_free(school);

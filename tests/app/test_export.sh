@@ -104,6 +104,32 @@ assert len(wakes) == 4
 end
 check vtk_reads_the_numbers_of_the_result timeout "$time_limit" /usr/bin/python3 compare.py 'a <pair>.nc'
 
+# ---- names that look like keys
+
+for name in plain 'section: nodes' 'force: pressure'; do
+    cat >named.yaml <<end
+format: 1
+time: {end: 0.1, shedding_interval: 0.02, output_interval: 0.1}
+fish: [{name: "$name", nodes: 5}, {name: other, nodes: 5, body: {section: nodes}, start: {position: [0, 1]}}]
+end
+    run run named.yaml -q -o named.nc --force
+    run export named.nc -q --vtk named --force
+    run view named.nc -q --force
+    sed 's/"name":"[^"]*"//g' named.html >"$name.html"
+    cat named/named-bodies-*.vtp >"$name.vtp"
+    check "a fish with the name $name has its outline in files of VTK" cmp plain.vtp "$name.vtp"
+    check "a fish with the name $name has its outline in the page" cmp plain.html "$name.html"
+    cat >sections.py <<'end'
+import sys
+sys.path.insert(0, sys.argv[1] + "/scripts")
+from shoal_results import Results
+assert [bool(mean) for mean in Results("named.nc").mean_section] == [True, False]
+end
+    check "a fish with the name $name has its outline in pictures" /usr/bin/python3 sections.py "$root"
+    /usr/bin/python3 -c 'import netCDF4; netCDF4.Dataset("named.nc", "a").renameVariable("mean_section", "hidden")'
+    check "and in those of an earlier version ($name)" /usr/bin/python3 sections.py "$root"
+done
+
 # ---- walls
 
 cat >channel.yaml <<'end'

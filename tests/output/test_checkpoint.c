@@ -181,6 +181,53 @@ static void what_no_run_has_written_is_refused(void **state) {
     crafted("wake.birth", NULL, 0, "its section 'wake.birth' does not fit");
 }
 
+/* A value that is not finite, in a checkpoint whose checksums fit, is refused with the name of its field. */
+static void values_that_are_not_finite_are_refused(void **state) {
+    (void)state;
+    const double wrong[] = {NAN, INFINITY};
+    int n_refused = 0;
+    for (int i = 0; i < state_table_n; i++) {
+        const struct state_row *const row = &state_table[i];
+        const struct section_reader section = sections_find(whole, n_whole, row->name);
+        if (row->type != STATE_REAL || section.left == 0) continue;
+        unsigned char *const bytes = malloc(section.left);
+        // the last value too: that of the last fish
+        const size_t places[] = {0, section.left - sizeof(double)};
+        for (int k = 0; k < 4; k++) {
+            if (strcmp(row->name, "closest.distance") == 0) continue;  // infinite where a fish is alone
+            memcpy(bytes, section.next, section.left);
+            memcpy(bytes + places[k % 2], &wrong[k / 2], sizeof(double));
+            crafted(row->name, bytes, section.left, strcmp(row->name, "t") == 0 ? "its value 0 of 't' is" : row->name);
+            n_refused++;
+        }
+        free(bytes);
+    }
+    assert_true(n_refused > 100);
+    crafted("wall_time", &wrong[0], sizeof wrong[0], "its section 'wall_time' does not fit");
+    crafted("step_size", &wrong[1], sizeof wrong[1], "its section 'step_size' does not fit");
+    crafted("t", &(double){0.62}, sizeof(double), "its state is none of this case");
+}
+
+/* What a machine of the other order of bytes would write: all numbers the other way round. */
+static void a_checkpoint_of_the_other_order_of_bytes_is_refused_by_name(void **state) {
+    (void)state;
+    unsigned char *const other = malloc(n_whole);
+    const size_t numbers[][2] = {{8, 4}, {12, 4}, {16, 8}};
+    memcpy(other, whole, n_whole);
+    for (int i = 0; i < 3; i++) {
+        for (size_t k = 0; k < numbers[i][1]; k++)
+            other[numbers[i][0] + k] = whole[numbers[i][0] + numbers[i][1] - 1 - k];
+    }
+    const uint32_t check = (uint32_t)crc32_z(crc32_z(0, NULL, 0), other, 24);
+    for (int k = 0; k < 4; k++) other[24 + k] = (unsigned char)(check >> (24 - 8 * k));
+    school_ok(durable_replace(path, previous, other, n_whole));
+    struct checkpoint read;
+    assert_int_equal(checkpoint_read(&read, path), STATUS_FILE);
+    if (!strstr(status_message(), "made on a machine with another order of bytes")) fail_msg("%s", status_message());
+    free(other);
+    school_ok(durable_replace(path, previous, whole, n_whole));
+}
+
 static void only_checkpoints_may_be_replaced(void **state) {
     (void)state;
     char other[64];
@@ -207,6 +254,8 @@ int main(void) {
         cmocka_unit_test(every_truncation_is_noticed_and_so_is_more),
         cmocka_unit_test(another_format_is_refused_by_name),
         cmocka_unit_test(what_no_run_has_written_is_refused),
+        cmocka_unit_test(values_that_are_not_finite_are_refused),
+        cmocka_unit_test(a_checkpoint_of_the_other_order_of_bytes_is_refused_by_name),
         cmocka_unit_test(only_checkpoints_may_be_replaced),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down);

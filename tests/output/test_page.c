@@ -66,6 +66,81 @@ static void the_reader_refuses_other_files(void **state) {
     cannot_be_read(f->path, "the file of a study: name that of one of its runs");
 }
 
+static void set_text(const struct fixture *f, const char *name, const char *text) {
+    int file;
+    assert_int_equal(nc_open(f->path, NC_WRITE, &file), NC_NOERR);
+    assert_int_equal(nc_redef(file), NC_NOERR);
+    assert_int_equal(nc_put_att_text(file, NC_GLOBAL, name, strlen(text), text), NC_NOERR);
+    assert_int_equal(nc_close(file), NC_NOERR);
+}
+
+/* Give a variable a name that nobody looks for. */
+static void hide_variable(const struct fixture *f, const char *name) {
+    char hidden[64];
+    int file;
+    snprintf(hidden, sizeof hidden, "no_%s", name);
+    assert_int_equal(nc_open(f->path, NC_WRITE, &file), NC_NOERR);
+    assert_int_equal(nc_redef(file), NC_NOERR);
+    assert_int_equal(nc_rename_var(file, number_of(file, name), hidden), NC_NOERR);
+    assert_int_equal(nc_close(file), NC_NOERR);
+}
+
+/* What readers need of a case is in variables; the text of a case, with names that look like keys, is not searched. */
+static void sections_and_forces_are_those_of_the_fish_whatever_their_names(void **state) {
+    struct fixture *f = *state;
+    f->school->fish[0].has_mean_section = 0;
+    f->school->fish[1].has_mean_section = 1;
+    for (enum force force = FORCE_REACTIVE; force <= FORCE_PRESSURE; force++) {
+        struct result_reader reader;
+        f->school->fish[1].force = force;
+        write_file(f, 1);
+        set_text(f, "case_effective", "  - name: section: mean\n    section: mean\n    force: pressure\n");
+        assert_int_equal(result_reader_open(&reader, f->path), STATUS_OK);
+        assert_false(reader.has_mean_section[0]);
+        assert_true(reader.has_mean_section[1]);
+        assert_int_equal(reader.has_pressure, force == FORCE_PRESSURE);
+        result_reader_close(&reader);
+        unlink(f->path);
+    }
+}
+
+static void files_without_these_variables_are_read_by_the_lines_of_their_case(void **state) {
+    struct fixture *f = *state;
+    struct result_reader reader;
+    write_file(f, 1);
+    hide_variable(f, "mean_section");
+    hide_variable(f, "fluid_force");
+    set_text(f, "case_effective",
+             "name: section: mean\nfish:\n  - name: 'section: mean, force: pressure'\n    body:\n      section: nodes  "
+             "    # m\n"
+             "    force: reactive\n  - name: b\n    body:\n      section: mean\n    force: pressure\n");
+    assert_int_equal(result_reader_open(&reader, f->path), STATUS_OK);
+    assert_false(reader.has_mean_section[0]);
+    assert_true(reader.has_mean_section[1]);
+    assert_true(reader.has_pressure);
+    result_reader_close(&reader);
+    set_text(f, "case_effective", "fish:\n  - name: a\n    body:\n      section: nodes\n");
+    cannot_be_read(f->path, "its case says 'section: ' of 1 of its 2 fish: use the program that wrote it");
+}
+
+static void an_outline_needs_its_edges(void **state) {
+    struct fixture *f = *state;
+    int file, edge, fish, number;
+    write_file(f, 1);
+    assert_int_equal(nc_open(f->path, NC_WRITE, &file), NC_NOERR);
+    assert_int_equal(nc_redef(file), NC_NOERR);
+    assert_int_equal(nc_inq_dimid(file, "edge", &number), NC_NOERR);
+    assert_int_equal(nc_rename_dim(file, number, "gone"), NC_NOERR);
+    assert_int_equal(nc_inq_varid(file, "edge_height", &number), NC_NOERR);
+    assert_int_equal(nc_rename_var(file, number, "no_height"), NC_NOERR);
+    assert_int_equal(nc_inq_dimid(file, "fish", &fish), NC_NOERR);
+    assert_int_equal(nc_def_dim(file, "edge", 5, &edge), NC_NOERR);
+    assert_int_equal(nc_def_var(file, "edge_height", NC_DOUBLE, 2, (int[]){fish, edge}, &number), NC_NOERR);
+    assert_int_equal(nc_close(file), NC_NOERR);
+    // the second fish has 7 nodes and needs 6 edges
+    cannot_be_read(f->path, "its variable n_nodes is 7 for a fish, which cannot be");
+}
+
 // ---- the page
 
 /* The path of the page of a fixture. */
@@ -129,6 +204,9 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         WITH_FILE(the_reader_gives_what_was_written),
         WITH_FILE(the_reader_refuses_other_files),
+        WITH_FILE(sections_and_forces_are_those_of_the_fish_whatever_their_names),
+        WITH_FILE(files_without_these_variables_are_read_by_the_lines_of_their_case),
+        WITH_FILE(an_outline_needs_its_edges),
         WITH_FILE(a_page_is_whole_or_not_there),
         WITH_FILE(variables_that_do_not_fit_are_refused),
     };

@@ -90,15 +90,29 @@ static void info_refuses_another_schema(void **state) {
     assert_no_info(f, "written in schema 2");
 }
 
-static void info_refuses_a_file_that_was_cut(void **state) {
+static void info_shows_the_whole_rows_of_a_file_that_was_cut(void **state) {
     struct fixture *f = *state;
+    enum status status;
+    struct netcdf_rows rows;
     write_file(f, 4);
-    // the data end with wall_time: 28 is 40 3c and six zeros
-    const off_t length = length_of_data(f->path);
-    const off_t left[] = {length - 2, length - 1000, length - 4000, length / 2, 5000, 100, 3};
+    assert_int_equal(netcdf_read_rows(f->path, &rows), STATUS_OK);
+    for (uint64_t n = 4; n-- > 0;) {
+        // half of a row, and a row but for its last byte
+        const uint64_t left[] = {rows.bytes / 2, rows.bytes - 1};
+        for (int i = 1; i >= 0; i--) {
+            char missing[64], whole[64];
+            assert_int_equal(truncate(f->path, (off_t)(rows.begin_of_rows + n * rows.bytes + left[i])), 0);
+            const char *const text = info(f->path, 0, &status);
+            assert_int_equal(status, STATUS_OK);
+            snprintf(missing, sizeof missing, "missing     %d of 4 rows: the file was cut off", (int)(4 - n));
+            snprintf(whole, sizeof whole, "rows        %d, from t = 0 s to %g s", (int)n, 0.5 * ((int)n - 1));
+            assert_non_null(strstr(text, missing));
+            assert_non_null(strstr(text, n > 0 ? whole : "rows        none is whole"));
+        }
+    }
+    const off_t left[] = {(off_t)rows.begin_of_rows - 1, 5000, 100, 3};
     for (size_t i = 0; i < sizeof left / sizeof *left; i++) {
         assert_int_equal(truncate(f->path, left[i]), 0);
-        enum status status;
         info(f->path, 0, &status);
         assert_int_equal(status, STATUS_FILE);
     }
@@ -169,7 +183,7 @@ int main(void) {
         WITH_FILE(info_prints_the_case_exactly),
         WITH_FILE(info_refuses_other_files),
         WITH_FILE(info_refuses_another_schema),
-        WITH_FILE(info_refuses_a_file_that_was_cut),
+        WITH_FILE(info_shows_the_whole_rows_of_a_file_that_was_cut),
         WITH_FILE(info_refuses_variables_that_do_not_fit),
         cmocka_unit_test(the_list_has_one_line_per_variable),
         cmocka_unit_test(version_names_every_library),

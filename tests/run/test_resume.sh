@@ -135,6 +135,27 @@ printf 'x' | dd of=run.ckpt bs=1 seek=3000 conv=notrunc status=none
 run resume run.ckpt -q
 check a_damaged_checkpoint_falls_back eval 'has err "run.ckpt: cannot be used: it is damaged behind byte" &&
     has err "; going on from run.ckpt.previous" && same run.nc reference.nc'
+cat >nan.py <<'end'
+"""nan.py CHECKPOINT SECTION: put a value that is not a number into a section, with checksums that fit."""
+import struct, sys, zlib
+
+whole = open(sys.argv[1], "rb").read()
+out, at = bytearray(whole[:28]), 28
+while at < len(whole):
+    (n,) = struct.unpack("Q", whole[at + 24 : at + 32])
+    section = bytearray(whole[at : at + 32 + n])
+    if section[:24].split(b"\0")[0].decode() == sys.argv[2]:
+        section[-8:] = struct.pack("d", float("nan"))
+    out += section + struct.pack("I", zlib.crc32(section))
+    at += 36 + n
+open(sys.argv[1], "wb").write(out)
+end
+for field in y wake.circulation balance.work closest.before; do
+    restore
+    /usr/bin/python3 nan.py run.ckpt $field
+    refused "a checkpoint with NaN in $field" 4 "the checkpoint of run.nc cannot be used: its value" resume run.ckpt -q
+    check "it says where: $field" has err "of '$field' is nan"
+done
 restore
 rm run.ckpt
 run resume run.ckpt -q
