@@ -33,7 +33,7 @@ def run(case, end):
         stdin=subprocess.DEVNULL, capture_output=True, text=True,
     )
     # a case that warns says so, but where it is cut short and its speed is not yet steady
-    announced = "warning" in open(f"{cases}/{case}.yaml").read()
+    announced = "warning" in open(f"{cases}/{case}.yaml").read().lower()
     expected = "shoal: warning: " if announced else "shoal: warning: the speed of " if shorter else None
     others = [line for line in done.stderr.splitlines() if not (expected and line.startswith(expected))]
     if done.returncode or done.stdout or others:
@@ -43,7 +43,7 @@ def run(case, end):
     check(f"{case} runs", data.run_status == "complete", data.run_status)
     # an iteration that fails with an old Jacobian is repeated with a new one: rare, and no error
     failures, n_events = int(data["convergence_failures"][-1]), data["time"][-1] / data["shedding_interval"][...]
-    check(f"{case} convergence failures", failures <= 0.01 * n_events, f"{failures} in {n_events:.0f} events")
+    check(f"{case} convergence failures", failures <= 2 + 0.01 * n_events, f"{failures} in {n_events:.0f} events")
     circulation = np.abs(data["total_circulation"][:]).max()
     check(f"{case} total circulation", circulation < 1e-10, f"{circulation:.1e}")
     return data
