@@ -1,4 +1,5 @@
-/* quadrature.h: Gauss-Legendre quadrature, and that over the steps of an integrator. Tested by tests/base/test_quadrature.c. */
+/* quadrature.h: Gauss-Legendre quadrature, and that over the steps of an integrator. Tested by
+ * tests/base/test_quadrature.c. */
 #ifndef QUADRATURE_H
 #define QUADRATURE_H
 

@@ -11,8 +11,8 @@
  * one depth along the body, or where there is no fluid. */
 int diagnostics_has_reaction(const struct school *school, const struct fish *fish);
 
-/* Add the external forces of the step that ended at t to the balance of fish f, as diagnostics_step does with powers; n:
- * how many values the integral has, times: the newest first. Where n is 0 these forces are the first ones. */
+/* Add the external forces of the step that ended at t to the balance of fish f, as diagnostics_step does with powers;
+ * n: how many values the integral has, times: the newest first. Where n is 0 these forces are the first ones. */
 void diagnostics_momentum_step(struct residual *residual, struct state *state, int f, double t, const double *y, int n,
                                const double times[3]);
 

@@ -277,7 +277,7 @@ const struct result_variable result_table[] = {
 
     // momentum: of the fluid, and what comes from outside
     {"fluid_impulse",         {TIME, FISH, XY},       RESULT_REAL,    "N s",    IN_FISH_DIAGNOSTICS(fluid_impulse),
-     .long_name = "impulse of the vortices of the fish, bound, free and lost; NaN where the depth varies along the body"},
+     .long_name = "impulse of the vortices of the fish, bound, free and lost; NaN where its depth varies"},
     {"fluid_angular_impulse", {TIME, FISH},           RESULT_REAL,    "N m s",  IN_FISH_DIAGNOSTICS(fluid_impulse[2]),
      .long_name = "angular impulse about the origin of the vortices of the fish"},
     {"lost_impulse",          {TIME, FISH, XY},       RESULT_REAL,    "N s",    IN_FISH_DIAGNOSTICS(lost_impulse),
@@ -285,8 +285,9 @@ const struct result_variable result_table[] = {
     {"lost_angular_impulse",  {TIME, FISH},           RESULT_REAL,    "N m s",  IN_FISH_DIAGNOSTICS(lost_impulse[2]),
      .long_name = "part of fluid_angular_impulse: of circulation that has faded or been removed"},
     {"external_impulse",      {TIME, FISH, XY},       RESULT_REAL,    "N s",    IN_FISH_DIAGNOSTICS(external_impulse),
-     .long_name = "impulse since the start of drag, contacts, loads, constraint, walls and stream; NaN unless force: pressure"},
-    {"external_angular_impulse",{TIME, FISH},         RESULT_REAL,    "N m s",  IN_FISH_DIAGNOSTICS(external_impulse[2]),
+     .long_name = "impulse of drag, contacts, loads, constraint, separation, walls, stream; NaN without reaction"},
+    {"external_angular_impulse",{TIME, FISH},         RESULT_REAL,    "N m s",
+     IN_FISH_DIAGNOSTICS(external_impulse[2]),
      .long_name = "angular impulse about the origin of the same forces since the start"},
 
     {"edge_resistive_force",  {TIME, FISH, EDGE, XY}, RESULT_BULK,    "N",
@@ -313,7 +314,7 @@ const struct result_variable result_table[] = {
     {"total_circulation",     {TIME},                 RESULT_REAL,    "m2 s-1", IN_DIAGNOSTICS(total_circulation),
      .long_name = "sum of all bound, free and removed circulation: zero but for rounding"},
     {"momentum_audit",        {TIME, XY},             RESULT_REAL,    "N s",    IN_DIAGNOSTICS(momentum_audit),
-     .long_name = "momentum balance of the school: change of momentum and fluid_impulse minus external_impulse; NaN unless force: pressure"},
+     .long_name = "momentum balance of the school: change of momentum and fluid_impulse, less external_impulse"},
     {"angular_momentum_audit",{TIME},                 RESULT_REAL,    "N m s",  IN_DIAGNOSTICS(momentum_audit[2]),
      .long_name = "the same for the angular momentum about the origin"},
     {"least_distance",        {TIME},                 RESULT_REAL,    "m",      IN_DIAGNOSTICS(least_distance),
