@@ -27,3 +27,10 @@ void quadrature_legendre(int n, double *node, double *weight) {
         weight[i] = 1 / ((1 - x * x) * slope * slope);
     }
 }
+
+double quadrature_newest(int n, const double t[3], const double value[3]) {
+    const double h = t[0] - t[1], slope = (value[0] - value[1]) / h;
+    double area = h * (value[0] + value[1]) / 2;
+    if (n == 3) area -= h * h * h / 6 * (slope - (value[1] - value[2]) / (t[1] - t[2])) / (t[0] - t[2]);
+    return area;
+}

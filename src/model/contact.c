@@ -283,7 +283,7 @@ struct sums {
     const double *y;
     double *value; /* a residual */
     double energy, power;
-    double force[2];
+    struct contact_forces on;
 };
 
 static void add_force(void *data, const struct touch *touch) {
@@ -349,6 +349,13 @@ void contact_jacobian(const struct contact *contact, int f, int g, const double 
     }
 }
 
+// a force on a node of the own body
+static void add_to_forces(struct sums *sums, int node, const double force[2]) {
+    const struct layout *const at = &sums->contact->school->fish[sums->f].at;
+    for (int c = 0; c < 2; c++) sums->on.force[c] += force[c];
+    sums->on.moment += sums->y[at->x + node] * force[1] - sums->y[at->y + node] * force[0];
+}
+
 static void add_sums(void *data, const struct touch *touch) {
     struct sums *const sums = data;
     sums->energy += touch->energy / 2;
@@ -358,7 +365,7 @@ static void add_sums(void *data, const struct touch *touch) {
         const double power = force[0] * sums->y[at->vx + touch->node[i]] + force[1] * sums->y[at->vy + touch->node[i]];
         const int is_own = touch->fish[i] == sums->f;
         sums->power += (is_own ? power : -power) / 2;
-        for (int c = 0; is_own && c < 2; c++) sums->force[c] += force[c];
+        if (is_own) add_to_forces(sums, touch->node[i], force);
     }
 }
 
@@ -366,7 +373,7 @@ static void add_sums(void *data, const struct touch *touch) {
 static void add_wall_sums(void *data, const struct wall_touch *touch) {
     struct sums *const sums = data;
     sums->energy += touch->energy;
-    sums->force[1] -= touch->slope * touch->inward;
+    add_to_forces(sums, touch->node, (const double[2]){0, -touch->slope * touch->inward});
 }
 
 static struct sums sums_of(const struct contact *contact, int f, const double *y) {
@@ -386,7 +393,6 @@ double contact_power(const struct contact *contact, int f, const double *y) {
     return sums_of(contact, f, y).power;
 }
 
-void contact_force(const struct contact *contact, int f, const double *y, double force[2]) {
-    const struct sums sums = sums_of(contact, f, y);
-    for (int i = 0; i < 2; i++) force[i] = sums.force[i];
+struct contact_forces contact_forces(const struct contact *contact, int f, const double *y) {
+    return sums_of(contact, f, y).on;
 }

@@ -11,6 +11,7 @@
 #include "model/diagnostics_energy.h"
 #include "model/diagnostics_forces.h"
 #include "model/diagnostics_history.h"
+#include "model/diagnostics_momentum.h"
 #include "model/fish_distance.h"
 #include "model/flow_at_bodies.h"
 #include "model/fluid_force.h"
@@ -151,6 +152,7 @@ void diagnostics_event(struct residual *residual, const struct state *state, str
         sum[0] += cos(angle_radians(diagnostics->fish[f].heading));
         sum[1] += sin(angle_radians(diagnostics->fish[f].heading));
     }
+    diagnostics_momentum(residual, state, diagnostics);
     diagnostics->least_distance = least_distance(school, state->y, diagnostics->body);
     diagnostics->polarisation = hypot(sum[0], sum[1]) / school->n_fish;
     diagnostics->total_circulation = total_circulation(residual, state);

@@ -5,9 +5,11 @@
 #include <string.h>
 
 #include "base/parallel.h"
+#include "base/quadrature.h"
 #include "model/clamp.h"
 #include "model/clearance.h"
 #include "model/diagnostics_forces.h"
+#include "model/diagnostics_momentum.h"
 #include "model/fish_prescribed.h"
 #include "model/flow_at_bodies.h"
 #include "model/flow_external.h"
@@ -151,14 +153,6 @@ static void gather_powers(const struct diagnostics_power *power, double *of) {
     of[WORK_DRIVING] = power->driving;
 }
 
-// integral over the newest interval of the quadratic through three values, or the line through two
-static double newest_area(int n, const double t[3], const double value[3]) {
-    const double h = t[0] - t[1], slope = (value[0] - value[1]) / h;
-    double area = h * (value[0] + value[1]) / 2;
-    if (n == 3) area -= h * h * h / 6 * (slope - (value[1] - value[2]) / (t[1] - t[2])) / (t[0] - t[2]);
-    return area;
-}
-
 /* The end of a step. */
 struct step {
     struct residual *residual;
@@ -178,10 +172,12 @@ static void add_works(void *data, int f) {
     gather_powers(&now, newest);
     for (int i = 0; i < N_WORKS; i++) {
         const double power[3] = {newest[i], balance->power[0][i], balance->power[1][i]};
-        if (t > times[1]) balance->work[i] += newest_area(balance->n + 1, times, power);
+        if (t > times[1]) balance->work[i] += quadrature_newest(balance->n + 1, times, power);
         balance->power[1][i] = power[1];
         balance->power[0][i] = power[0];
     }
+    const int has_area = t > times[1];
+    diagnostics_momentum_step(step->residual, step->state, f, t, step->y, has_area ? balance->n + 1 : 0, times);
     for (int i = 0; i < 2; i++) balance->t[i] = times[i];
     if (balance->n < 2) balance->n++;
 }
@@ -206,6 +202,7 @@ void diagnostics_begin(struct residual *residual, struct state *state, int f) {
     balance->n = 1;
     balance->t[0] = state->t;
     gather_powers(&now, balance->power[0]);
+    diagnostics_momentum_step(residual, state, f, state->t, state->y, 0, NULL);
 }
 
 void diagnostics_after_jump(struct residual *residual, struct state *state) {
@@ -224,6 +221,7 @@ void diagnostics_start(struct residual *residual, struct state *state) {
         state->balance[f].initial_energy = diagnostics_energy(residual, f, state->t, state->y);
         memset(state->balance[f].work, 0, sizeof state->balance[f].work);
     }
+    diagnostics_momentum_start(residual, state);
     clearance_start(residual->school, state, residual->neighbours, residual->scratch);
 }
 
@@ -232,6 +230,7 @@ void diagnostics_restart(struct residual *residual, struct state *state) {
         struct energy_balance *const balance = &state->balance[f];
         balance->initial_energy = diagnostics_energy(residual, f, state->t, state->y) - balance->work[WORK_ALL];
     }
+    diagnostics_momentum_start(residual, state);
     clearance_start(residual->school, state, residual->neighbours, residual->scratch);
     state->crossed = -1;
     self_crossing_remember(residual->school, state, residual->scratch);

@@ -2,6 +2,7 @@
 #include "model/diagnostics_forces.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "model/clamp.h"
 #include "model/control.h"
@@ -58,6 +59,7 @@ void diagnostics_forces(struct residual *residual, int f, double t, const double
     to->resistive_moment = forces.resistive_moment;
     to->friction_moment = forces.friction_moment;
     to->reactive_moment = forces.reactive_moment;
-    contact_force(residual->contact, f, y, to->contact_force);
+    const struct contact_forces contact = contact_forces(residual->contact, f, y);
+    memcpy(to->contact_force, contact.force, sizeof to->contact_force);
     find_constraint(residual, f, t, y, to);
 }

@@ -30,6 +30,9 @@ struct diagnostics_fish {
     /* on the body, N, and about the centre of mass, N m; friction: the part of the resistive force along the body */
     double resistive_force[2], friction_force[2], reactive_force[2], constraint_force[2];
     double contact_force[2]; /* of all bodies that it touches, N */
+    /* x, y, N s, and angular about the origin, N m s: of all vortices, with those that are lost; of these; of the
+     * external forces */
+    double fluid_impulse[3], lost_impulse[3], external_impulse[3];
     double resistive_moment, friction_moment, reactive_moment, constraint_moment;
     struct pressure_forces pressure; /* force: pressure, else 0 */
     double leading_edge_most;        /* the largest magnitude of A_0 over the last period; NaN with other forces */
@@ -51,6 +54,8 @@ struct diagnostics {
     struct diagnostics_fish *fish; /*                                                       (n_fish) */
     struct box *body, *wake;       /* scratch: around each body, around its free vortices   (n_fish) */
     double total_circulation;      /* m2 s-1 */
+    double momentum_audit[3];      /* balance of momentum, N s, and of angular momentum, N m s; NaN without reaction */
+    double momentum_size;          /* of the largest term of this balance, N s */
     double least_distance;         /* between two bodies, m; NaN for one fish */
     double polarisation;           /* length of the mean unit vector of the headings */
 };

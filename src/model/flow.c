@@ -116,6 +116,10 @@ static enum status flow_fill(struct flow *flow) {
                                   &flow->motion[1], &flow->motion[2], &flow->motion[3]};
     TRY(array_many_doubles(at_points, sizeof at_points / sizeof *at_points, flow->n_points, "the points of the flow"));
     TRY(make_chunks(flow));
+    if (school->walls.n > 0) {
+        TRY(array_doubles(&flow->image_u, flow->n_points, "the points of the flow"));
+        TRY(array_doubles(&flow->image_v, flow->n_points, "the points of the flow"));
+    }
     TRY(array_doubles(&flow->opposite, flow->sheet.n, "the bound vortices"));
     view_sheets(flow);
     TRY(velocity_sum_create(&flow->velocity_sum));
@@ -171,7 +175,11 @@ void flow_free(struct flow *flow) {
                            flow->by_interpolation,
                            flow->opposite,
                            flow->wake_u,
-                           flow->wake_v};
+                           flow->wake_v,
+                           flow->wake_image_u,
+                           flow->wake_image_v,
+                           flow->image_u,
+                           flow->image_v};
     for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
     vortices_free(&flow->released);
     vortices_free(&flow->convecting);

@@ -76,6 +76,8 @@ struct flow {
     struct range *body_range; /* what each fish has of the bodies                          (n_fish) */
     struct range *wake_range; /* what each fish has of the markers, or of the vortices in `released` (n_fish) */
     double *wake_u, *wake_v;  /* velocity at vortices or markers, after flow_at_wake, m s-1 */
+    /* beside walls, the part of it at markers that images cause, and after flow_images that at points (n_points) */
+    double *wake_image_u, *wake_image_v, *image_u, *image_v;
     int wake_capacity;
     struct vortices nascent;   /* one of each fish                               (n_fish) */
     struct vortices sheet;     /* the bound vortices of all fish */

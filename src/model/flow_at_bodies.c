@@ -245,3 +245,21 @@ enum status flow_velocity(struct flow *flow, const struct state *state, double t
 enum status flow_gradient(struct flow *flow, const struct state *state, double t, const double *y) {
     return sum(flow, state, t, y, 1);
 }
+
+enum status flow_images(struct flow *flow, const struct state *state) {
+    const struct school *const school = flow->school;
+    const struct induced all = {
+        .n = flow->n_points, .x = flow->x, .y = flow->y, .u = flow->image_u, .v = flow->image_v};
+    TRY(flow_place(flow, state, state->t, state->y));
+    TRY(flow_place_released(flow, state));
+    vortices_zero(&all);
+    for (int c = 0; c < flow->n_classes; c++) {
+        const struct induced at = vortices_targets(&all, flow->class[c].points);
+        const struct vortices *const sources[] = {&flow->released, &flow->nascent, &flow->class[c].sheet};
+        for (int i = 0; i < 3; i++) {
+            TRY(images_induce_many(&school->walls, flow->velocity_sum, sources[i], school->wake_tolerance,
+                                   school->threads, &at));
+        }
+    }
+    return STATUS_OK;
+}

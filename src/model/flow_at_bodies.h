@@ -19,6 +19,10 @@ enum status flow_interpolate(struct flow *flow, const struct state *state);
 /* Sum every released vortex until the next flow_interpolate. */
 void flow_sum_exactly(struct flow *flow);
 
+/* Set image_u and image_v to what all images in walls cause at the points of all bodies, at the event of the state.
+ * Fails with STATUS_MEMORY. */
+enum status flow_images(struct flow *flow, const struct state *state);
+
 /* What a body feels of the flow as it was last summed. */
 struct flow_at_body {
     const double *u, *v;    /* velocity at its points, m s-1 (flow_n_points) */

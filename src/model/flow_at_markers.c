@@ -100,6 +100,23 @@ static enum status induce_pairs(const struct flow *flow, int threads) {
     return pairwise_add_velocity(&markers, PAIRWISE_OF_PAIR, threads, flow->wake_u, flow->wake_v);
 }
 
+// the images of all at the markers of a class, which are kept besides
+static enum status induce_images(const struct flow *flow, const struct vortices *felt, int threads,
+                                 const struct induced *at) {
+    const long first = at->u - flow->wake_u;
+    struct induced images = *at;
+    images.u = flow->wake_image_u + first;
+    images.v = flow->wake_image_v + first;
+    vortices_zero(&images);
+    TRY(images_induce_many(&flow->school->walls, flow->velocity_sum, felt, flow->school->wake_tolerance, threads,
+                           &images));
+    for (int i = 0; i < at->n; i++) {
+        at->u[i] += images.u[i];
+        at->v[i] += images.v[i];
+    }
+    return STATUS_OK;
+}
+
 static enum status induce_all(const struct flow *flow, const struct induced *at) {
     const double tolerance = flow->school->wake_tolerance;
     const struct range bodies = {flow->n_markers, flow->convecting.n - flow->n_markers};
@@ -116,7 +133,7 @@ static enum status induce_all(const struct flow *flow, const struct induced *at)
         const struct range all = {0, felt.n}, none = {0, 0};
         induce_directly(flow, &felt, by_tree ? none : n_by_tree > 0 ? all : bodies, &part);
         if (by_tree) TRY(velocity_sum_induce(flow->velocity_sum, &felt, tolerance, threads, &part));
-        TRY(images_induce_many(&flow->school->walls, flow->velocity_sum, &felt, tolerance, threads, &part));
+        if (flow->school->walls.n > 0) TRY(induce_images(flow, &felt, threads, &part));
     }
     return n_by_tree > 0 || at->n == 0 ? STATUS_OK : induce_pairs(flow, threads);
 }

@@ -29,12 +29,13 @@ static void others_at_wake(const struct flow *flow, int sheets_by_tree, int imag
 static enum status reserve_at_wake(struct flow *flow, int n) {
     if (n <= flow->wake_capacity) return STATUS_OK;
     const int capacity = n + n / 2;
-    double **const both[] = {&flow->wake_u, &flow->wake_v};
+    double **const all[] = {&flow->wake_u, &flow->wake_v, &flow->wake_image_u, &flow->wake_image_v};
+    const int has_images = flow->school->walls.n > 0 && flow_has_free_sheets(flow);
     flow->wake_capacity = 0;
-    for (int i = 0; i < 2; i++) {
-        free(*both[i]);
-        *both[i] = calloc((size_t)capacity, sizeof **both[i]);
-        if (!*both[i]) return status_fail(STATUS_MEMORY, "out of memory: the velocities of %d vortices", n);
+    for (int i = 0; i < (has_images ? 4 : 2); i++) {
+        free(*all[i]);
+        *all[i] = calloc((size_t)capacity, sizeof **all[i]);
+        if (!*all[i]) return status_fail(STATUS_MEMORY, "out of memory: the velocities of %d vortices", n);
     }
     flow->wake_capacity = capacity;
     return STATUS_OK;

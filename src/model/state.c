@@ -32,10 +32,11 @@ static enum status fill(struct state *state, const struct school *school) {
     state->control = calloc(n_fish, sizeof *state->control);
     state->history = calloc(n_fish, sizeof *state->history);
     state->balance = calloc(n_fish, sizeof *state->balance);
+    state->momentum = calloc(n_fish, sizeof *state->momentum);
     state->closest = calloc(1, sizeof *state->closest);
     if (state->closest) state->closest->before = calloc(n_unknowns, sizeof *state->closest->before);
     if (!state->y || !state->yp || !state->wake || !state->control || !state->history || !state->balance ||
-        !state->closest || !state->closest->before) {
+        !state->momentum || !state->closest || !state->closest->before) {
         return status_fail(STATUS_MEMORY, "out of memory: the state of %d fish", school->n_fish);
     }
     state->closest->distance = INFINITY;
@@ -81,6 +82,7 @@ void state_free(struct state *state, const struct school *school) {
     free(state->control);
     free(state->history);
     free(state->balance);
+    free(state->momentum);
     if (state->closest) free(state->closest->before);
     free(state->closest);
     free(state);

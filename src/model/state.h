@@ -42,6 +42,17 @@ struct energy_balance {
     double *strain, *stress, *stress_before;
 };
 
+/* The balance of momentum of one fish: doc/model.md, section 13. Triples: x, y, and angular about the origin. */
+struct momentum_balance {
+    double lost[3];        /* of the circulation lost since the start: sums of G x, G y [m3 s-1], G |x|^2 [m4 s-1] */
+    double external[3];    /* impulse of the external forces since the start, N s, N m s */
+    double force[2][3];    /* these forces at the last two steps, whose times the energy balance has, N, N m */
+    double images[3];      /* those of images in walls at the last event, N, N m */
+    double first_body[3];  /* momentum of the body at the start, N s, N m s, */
+    double first_fluid[3]; /* impulse of its vortices then, */
+    double first_given[3]; /* and momentum of its prescribed nodes, with that of the fluid that moves with them */
+};
+
 /* The closest that two bodies have come to each other, at any step of the integrator or between two of them. */
 struct closest {
     double distance; /* m; 0: they have touched; INFINITY: there is one fish only */
@@ -52,16 +63,17 @@ struct closest {
 };
 
 struct state {
-    double t;                       /* time of the last event, s */
-    long event;                     /* its number, 0 at the start */
-    double *y, *yp;                 /* the unknowns and their rates                     (n_unknowns) */
-    struct wake *wake;              /* (n_fish) */
-    struct control_memory *control; /* (n_fish) */
-    struct history *history;        /* (n_fish) */
-    struct energy_balance *balance; /* (n_fish) */
-    struct closest *closest;        /* (1) */
-    long crossed;                   /* the first fish whose body has crossed itself at an event, or -1; and */
-    double crossed_t;               /* when, s */
+    double t;                          /* time of the last event, s */
+    long event;                        /* its number, 0 at the start */
+    double *y, *yp;                    /* the unknowns and their rates                     (n_unknowns) */
+    struct wake *wake;                 /* (n_fish) */
+    struct control_memory *control;    /* (n_fish) */
+    struct history *history;           /* (n_fish) */
+    struct energy_balance *balance;    /* (n_fish) */
+    struct momentum_balance *momentum; /* (n_fish) */
+    struct closest *closest;           /* (1) */
+    long crossed;                      /* the first fish whose body has crossed itself at an event, or -1; and */
+    double crossed_t;                  /* when, s */
 };
 
 /* The state before the start: bodies placed, everything else zero. Fails with STATUS_MEMORY. */

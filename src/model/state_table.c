@@ -37,6 +37,7 @@ static size_t of_strains(const struct state *state, const struct school *school,
 #define OF_CONTROL(type, field) STATE_CONTROL, type, PLACE(struct control_memory, field)
 #define OF_HISTORY(type, field) STATE_HISTORY, type, PLACE(struct history, field)
 #define OF_BALANCE(type, field) STATE_BALANCE, type, PLACE(struct energy_balance, field)
+#define OF_MOMENTUM(type, field) STATE_MOMENTUM, type, PLACE(struct momentum_balance, field)
 #define OF_CLOSEST(type, field) STATE_CLOSEST, type, PLACE(struct closest, field)
 
 const struct state_row state_table[] = {
@@ -94,6 +95,14 @@ const struct state_row state_table[] = {
     {"balance.stress", OF_BALANCE(STATE_REAL, stress), of_strains},
     {"balance.stress_before", OF_BALANCE(STATE_REAL, stress_before), of_strains},
 
+    {"momentum.lost", OF_MOMENTUM(STATE_REAL, lost), NULL},
+    {"momentum.external", OF_MOMENTUM(STATE_REAL, external), NULL},
+    {"momentum.force", OF_MOMENTUM(STATE_REAL, force), NULL},
+    {"momentum.images", OF_MOMENTUM(STATE_REAL, images), NULL},
+    {"momentum.first_body", OF_MOMENTUM(STATE_REAL, first_body), NULL},
+    {"momentum.first_fluid", OF_MOMENTUM(STATE_REAL, first_fluid), NULL},
+    {"momentum.first_given", OF_MOMENTUM(STATE_REAL, first_given), NULL},
+
     {"closest.distance", OF_CLOSEST(STATE_REAL, distance), NULL},
     {"closest.t", OF_CLOSEST(STATE_REAL, t), NULL},
     {"closest.fish", OF_CLOSEST(STATE_INTEGER, fish), NULL},
@@ -131,6 +140,7 @@ static const void *owner_of(const struct state_row *row, const struct state *sta
         case STATE_CONTROL: return &state->control[f];
         case STATE_HISTORY: return &state->history[f];
         case STATE_BALANCE: return &state->balance[f];
+        case STATE_MOMENTUM: return &state->momentum[f];
         case STATE_CLOSEST: return state->closest;
         case STATE_ITSELF: break;
     }

@@ -9,7 +9,15 @@
 #include "model/state.h"
 
 /* What a field is a part of: the state, or what the state owns of every fish, and once. */
-enum state_owner { STATE_ITSELF, STATE_WAKE, STATE_CONTROL, STATE_HISTORY, STATE_BALANCE, STATE_CLOSEST };
+enum state_owner {
+    STATE_ITSELF,
+    STATE_WAKE,
+    STATE_CONTROL,
+    STATE_HISTORY,
+    STATE_BALANCE,
+    STATE_MOMENTUM,
+    STATE_CLOSEST
+};
 
 enum state_type {
     STATE_REAL,    /* double */

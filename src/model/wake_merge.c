@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "base/parallel.h"
+#include "model/impulse.h"
 
 static const double two_pi = 6.28318530717958647692;
 
@@ -135,7 +136,10 @@ static void put(struct wake *wake, const struct merged *pair, int newer, int to)
 }
 
 // from the oldest on: what was merged and the vortex after it rest until the next time
-static void merge_wake(const struct school *school, const struct body *body, double t, struct wake *wake) {
+static void merge_wake(const struct school *school, const struct body *body, struct state *state, int f) {
+    struct wake *const wake = &state->wake[f];
+    const double t = state->t;
+    const struct impulse_moments before = impulse_of_wake(wake, school, t, 0);
     const int n = wake->n_vortex, last = n - NEWEST - 1;
     // a pair of markers lies between two others
     int from = wake->has_markers, to = from;
@@ -154,6 +158,8 @@ static void merge_wake(const struct school *school, const struct body *body, dou
     if (to == from) return;
     wake->n_vortex = to;
     wake->version++;
+    const struct impulse_moments after = impulse_of_wake(wake, school, t, 0);
+    impulse_book(&state->momentum[f], &before, &after);
 }
 
 enum status wake_merge(const struct school *school, struct state *state) {
@@ -169,7 +175,7 @@ enum status wake_merge(const struct school *school, struct state *state) {
         parallel_threads(school->threads, school->n_fish, (double)n_vortices * school->n_fish, PARALLEL_VORTICES);
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
     for (int f = 0; f < school->n_fish; f++) {
-        if ((state->event + f) % WAKE_MERGE_EVENTS == 0) merge_wake(school, body, state->t, &state->wake[f]);
+        if ((state->event + f) % WAKE_MERGE_EVENTS == 0) merge_wake(school, body, state, f);
     }
     free(body);
     return STATUS_OK;

@@ -285,6 +285,10 @@ const struct warning_words warnings_words[N_WARNINGS] = {
     [WARNING_ENERGY] = {"the energy balance is open",
                         "energy_audit is more than 1 % of the largest of the works of muscle, fluid, damping, and all "
                         "forces; within the first beat, also of the energy of the body and of one length per beat"},
+    [WARNING_MOMENTUM] =
+        {"the momentum balance is open",
+         "momentum_audit is more than 1 % of the largest of the sums over all fish: of the momentum, of "
+         "the change of the impulse of the vortices, of external_impulse; not within the first beat, or length"},
     [WARNING_DRIFT] = {"the speed changes",
                        "drift is more than 1 %: means over the last beat are not those of steady swimming"},
     [WARNING_EVENTS] = {"few events", "fewer than 20 in a beat"},
@@ -330,10 +334,26 @@ static int crossing_line(const struct school *school, const struct state *state,
     return 1;
 }
 
+// of the whole school
+static int momentum_line(const struct school *school, const struct state *state, const struct diagnostics *diagnostics,
+                         char line[WARNING_BYTES]) {
+    const double audit = hypot(diagnostics->momentum_audit[0], diagnostics->momentum_audit[1]);
+    // a beat, or a length where nothing beats
+    double period = 0;
+    for (int f = 0; f < school->n_fish; f++) period = fmax(period, 1 / fish_rate(school, &school->fish[f]));
+    if (state->t < period || !(audit > 0.01 * diagnostics->momentum_size)) return 0;
+    snprintf(line, WARNING_BYTES,
+             "the momentum balance is open by %.2g N s, of %.2g N s: a shorter time.shedding_interval and more "
+             "sheet_points close it, and so does a start without a jump of the velocity",
+             audit, diagnostics->momentum_size);
+    return 1;
+}
+
 int warnings_line(enum warning warning, const struct school *school, const struct state *state,
                   const struct diagnostics *diagnostics, double *scratch, char line[WARNING_BYTES]) {
     if (warning == WARNING_CONTACT) return contact_line(school, state->closest, line);
     if (warning == WARNING_CROSSING) return crossing_line(school, state, line);
+    if (warning == WARNING_MOMENTUM) return momentum_line(school, state, diagnostics, line);
     struct subject worst = {.size = 1};
     int n = 0;
     for (int f = 0; f < school->n_fish; f++) {

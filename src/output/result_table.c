@@ -278,6 +278,22 @@ const struct result_variable result_table[] = {
      .long_name = "moment of the added momentum about the centre of mass"},
     {"constraint_moment",     {TIME, FISH},           RESULT_REAL,    "N m",    IN_FISH_DIAGNOSTICS(constraint_moment),
      .long_name = "moment about the centre of mass of what holds a prescribed motion"},
+
+    // momentum: of the fluid, and what comes from outside
+    {"fluid_impulse",         {TIME, FISH, XY},       RESULT_REAL,    "N s",    IN_FISH_DIAGNOSTICS(fluid_impulse),
+     .long_name = "impulse of the vortices of the fish, bound, free and lost; NaN where its depth varies"},
+    {"fluid_angular_impulse", {TIME, FISH},           RESULT_REAL,    "N m s",  IN_FISH_DIAGNOSTICS(fluid_impulse[2]),
+     .long_name = "angular impulse about the origin of the vortices of the fish"},
+    {"lost_impulse",          {TIME, FISH, XY},       RESULT_REAL,    "N s",    IN_FISH_DIAGNOSTICS(lost_impulse),
+     .long_name = "part of fluid_impulse: of circulation that has faded or been removed, where that happened"},
+    {"lost_angular_impulse",  {TIME, FISH},           RESULT_REAL,    "N m s",  IN_FISH_DIAGNOSTICS(lost_impulse[2]),
+     .long_name = "part of fluid_angular_impulse: of circulation that has faded or been removed"},
+    {"external_impulse",      {TIME, FISH, XY},       RESULT_REAL,    "N s",    IN_FISH_DIAGNOSTICS(external_impulse),
+     .long_name = "impulse of drag, contacts, loads, constraint, separation, walls, stream; NaN without reaction"},
+    {"external_angular_impulse",{TIME, FISH},         RESULT_REAL,    "N m s",
+     IN_FISH_DIAGNOSTICS(external_impulse[2]),
+     .long_name = "angular impulse about the origin of the same forces since the start"},
+
     {"edge_resistive_force",  {TIME, FISH, EDGE, XY}, RESULT_BULK,    "N",
      GATHERED(result_row_edge_resistive_force), .forces = OUTPUT_FORCES_EDGES,
      .long_name = "drag on every edge; with output.forces: edges only"},
@@ -301,6 +317,10 @@ const struct result_variable result_table[] = {
     // the school and the solver
     {"total_circulation",     {TIME},                 RESULT_REAL,    "m2 s-1", IN_DIAGNOSTICS(total_circulation),
      .long_name = "sum of all bound, free and removed circulation: zero but for rounding"},
+    {"momentum_audit",        {TIME, XY},             RESULT_REAL,    "N s",    IN_DIAGNOSTICS(momentum_audit),
+     .long_name = "momentum balance of the school: change of momentum and fluid_impulse, less external_impulse"},
+    {"angular_momentum_audit",{TIME},                 RESULT_REAL,    "N m s",  IN_DIAGNOSTICS(momentum_audit[2]),
+     .long_name = "the same for the angular momentum about the origin"},
     {"least_distance",        {TIME},                 RESULT_REAL,    "m",      IN_DIAGNOSTICS(least_distance),
      .long_name = "smallest distance between two bodies"},
     {"polarisation",          {TIME},                 RESULT_REAL,    "1",      IN_DIAGNOSTICS(polarisation),

@@ -5,9 +5,11 @@
 
 #include "model/diagnostics_energy.h"
 #include "model/diagnostics_history.h"
+#include "model/diagnostics_momentum.h"
 #include "model/drag.h"
 #include "model/flow_at_bodies.h"
 #include "model/flow_at_wake.h"
+#include "model/impulse.h"
 #include "model/self_crossing.h"
 #include "model/wake_merge.h"
 
@@ -164,6 +166,7 @@ static int steer(struct state *state, struct residual *residual) {
 static enum status finish_event(struct state *state, struct residual *residual, struct initial_conditions *initial,
                                 int jumps, int *jumped) {
     TRY(take_flow(state, residual));
+    TRY(diagnostics_momentum_event(residual, state));
     diagnostics_remember(residual, state);
     self_crossing_remember(residual->school, state, residual->scratch);
     const int steered = steer(state, residual);
@@ -210,6 +213,7 @@ enum status event_next(struct state *state, struct residual *residual, struct in
     const int threads = fish_threads(school);
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < school->n_fish; f++) {
+        impulse_fade(school, state, f);
         wake_advance(&state->wake[f], school->interval);
         control_advance(&state->control[f], school->interval);
     }
@@ -225,7 +229,10 @@ enum status event_next(struct state *state, struct residual *residual, struct in
         TRY(release_nascent(state, school));
     }
 #pragma omp parallel for num_threads(threads) schedule(static)
-    for (int f = 0; f < school->n_fish; f++) wake_remove_old(&state->wake[f], school, state->t);
+    for (int f = 0; f < school->n_fish; f++) {
+        impulse_remove(school, state, f);
+        wake_remove_old(&state->wake[f], school, state->t);
+    }
     TRY(wake_merge(school, state));
     if (jumps) TRY(initial_conditions_solve(initial, state->t, state->y, state->yp));
     TRY(take_velocities(state, residual, 1));

@@ -40,11 +40,25 @@ static void four_nodes_are_those_of_the_tables(void **state) {
     }
 }
 
+static void the_newest_interval_of_a_parabola_is_exact(void **state) {
+    (void)state;
+    const double t[3] = {0.9, 0.4, 0.1};
+    double line[3], parabola[3];
+    for (int i = 0; i < 3; i++) {
+        line[i] = 2 - 3 * t[i];
+        parabola[i] = 2 - 3 * t[i] + 6 * t[i] * t[i];
+    }
+    NEAR(quadrature_newest(2, t, line), 2 * 0.5 - 1.5 * (0.81 - 0.16), 1e-15, 0);
+    NEAR(quadrature_newest(3, t, parabola), 2 * 0.5 - 1.5 * (0.81 - 0.16) + 2 * (0.729 - 0.064), 1e-15, 0);
+    NEAR(quadrature_newest(2, t, parabola), 0.25 * (parabola[0] + parabola[1]), 1e-15, 0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(polynomials_of_degree_2n_less_1_are_integrated_exactly),
         cmocka_unit_test(nodes_ascend_and_are_symmetric),
         cmocka_unit_test(four_nodes_are_those_of_the_tables),
+        cmocka_unit_test(the_newest_interval_of_a_parabola_is_exact),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -69,6 +69,7 @@ static const struct {
     {"src/model/control.h", "control_memory", "control.", STATE_CONTROL, sizeof(struct control_memory)},
     {"src/model/state.h", "history", "history.", STATE_HISTORY, sizeof(struct history)},
     {"src/model/state.h", "energy_balance", "balance.", STATE_BALANCE, sizeof(struct energy_balance)},
+    {"src/model/state.h", "momentum_balance", "momentum.", STATE_MOMENTUM, sizeof(struct momentum_balance)},
     {"src/model/state.h", "closest", "closest.", STATE_CLOSEST, sizeof(struct closest)},
 };
 enum { N_OWNERS = sizeof owners / sizeof *owners };
