@@ -12,7 +12,7 @@ cat >small.yaml <<'end'
 format: 1
 name: small
 time: {end: 0.2, shedding_interval: 0.01, output_interval: 0.02}
-fish: [{nodes: 9, sheet_points: 17}]
+fish: [{nodes: 9, sheet_points: 17, body: {tail_thickness: 0.3}}]
 end
 ended() { ((code == $1)); }
 # the attribute of a file that holds whole rows

@@ -8,6 +8,7 @@
  */
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "verify.h"
 
@@ -27,14 +28,20 @@ struct variant {
     double speed;  // at the start, m/s
 };
 
+// a free sheet acts on its fish by the pressure; a reactive fish does not feel its own wake, so only its circulation counts
+static int is_sheet(const struct variant *variant) {
+    return strcmp(variant->shedding, "sheet") == 0;
+}
+
 static void run_fish(const struct variant *variant, double interval, struct path *path) {
-    struct simulation *const simulation = verify_open(
-        VERIFY_SECOND
-        "format: 1\ntime: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
-        "wake: {shedding: %s, dissipated_circulation: %s, lifetime: 1, fade: 0.2}\n"
-        "solver: {rtol: 1e-9, order: 5}\n"
-        "fish: [{nodes: 7, sheet_points: 65, body: {modulus: 1.0e+5}, start: {speed: %g}}]\n",
-        N_TIMES * longest, interval, N_TIMES * longest, variant->shedding, variant->dissipated, variant->speed);
+    struct simulation *const simulation =
+        verify_open(VERIFY_SECOND
+                    "format: 1\ntime: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
+                    "wake: {shedding: %s, dissipated_circulation: %s, lifetime: 1, fade: 0.2}\n"
+                    "solver: {rtol: 1e-9, order: 5}\n"
+                    "fish: [{nodes: 7, sheet_points: 65, force: %s, body: {modulus: 1.0e+5}, start: {speed: %g}}]\n",
+                    N_TIMES * longest, interval, N_TIMES * longest, variant->shedding, variant->dissipated,
+                    is_sheet(variant) ? "pressure" : "reactive", variant->speed);
     const struct fish *const fish = &simulation->school->fish[0];
     const double *const y = simulation->state->y;
     const int last = fish->n_nodes - 1;
@@ -98,7 +105,8 @@ static void halve_interval(const struct variant *variant, const struct expected 
         interval[i] = ldexp(longest, -i);
         run_fish(variant, interval[i], &runs[i]);
     }
-    for (int q = 0; q < N_QUANTITIES; q++) report(variant, &expected[q], n, interval, runs, (enum quantity)q);
+    for (int q = is_sheet(variant) ? 0 : SHED; q < N_QUANTITIES; q++)
+        report(variant, &expected[q], n, interval, runs, (enum quantity)q);
 }
 
 void verify_interval(void) {
