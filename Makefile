@@ -38,7 +38,7 @@ CC = clang
 B = build-sanitize-thread
 sanitize = -fsanitize=thread
 # what lets threads work side by side; `make test SANITIZE=thread TEST="..."` for others
-TEST = parallel pairwise treecode velocity_sum images flow residual linear simulate shoal clearance shared_vector threads
+TEST = parallel pairwise treecode velocity_sum images flow residual linear simulate shoal clearance sundials_context threads
 else
 B = build-sanitize$(if $(is_clang),-clang)
 # gcc 12 warns of variables that may be unset where the sanitizer's own code hides how they are set

@@ -105,12 +105,18 @@ fi
 # the headers of SUNDIALS may include <mpi.h>, whatever is used of them
 mapfile -t mpi < <(echo; for name in mpi-c ompi-c mpich; do packaged_flags $name; done
     { mpicc -showme:compile && mpicc -showme:link; } 2>>"$log" | tr '\n' ' ' || true)
-sundials='-lsundials_ida -lsundials_kinsol -lsundials_arkode -lsundials_nvecserial'
+# those that a version or a distribution may lack: the vectors of OpenMP, and the core, which was in all others before 7
+sundials='-lsundials_ida -lsundials_kinsol -lsundials_arkode -lsundials_sunlinsolspgmr -lsundials_nvecserial'
+optional=('-lsundials_nvecopenmp -lsundials_core' -lsundials_nvecopenmp -lsundials_core '')
 program='#include <arkode/arkode_arkstep.h>
 #include <ida/ida.h>
 #include <kinsol/kinsol.h>
 #include <nvector/nvector_serial.h>
+#if __has_include(<nvector/nvector_openmp.h>)
+#include <nvector/nvector_openmp.h>
+#endif
 #include <sundials/sundials_context.h>
+#include <sunlinsol/sunlinsol_spgmr.h>
 #if SUNDIALS_VERSION_MAJOR < 6 || (SUNDIALS_VERSION_MAJOR == 6 && SUNDIALS_VERSION_MINOR < 4)
 #error "SUNDIALS is too old"
 #elif SUNDIALS_VERSION_MAJOR == 6
@@ -119,10 +125,15 @@ program='#include <arkode/arkode_arkstep.h>
 int main(void) {
     SUNContext context;
     SUNContext_Create(SUN_COMM_NULL, &context);
-    return !IDACreate(context) || !KINCreate(context) || !N_VNew_Serial(1, context) || !ARKStepCreate(0, 0, 0, 0, context);
+    N_Vector vector = N_VNew_Serial(1, context);
+#if __has_include(<nvector/nvector_openmp.h>)
+    vector = N_VNew_OpenMP(1, 1, context);
+#endif
+    return !SUNLinSol_SPGMR(vector, SUN_PREC_NONE, 1, context) || !IDACreate(context) || !KINCreate(context) ||
+           !ARKStepCreate(0, 0, 0, 0, context);
 }'
 find_library 'SUNDIALS 6.4 or later' "$(packages libsundials-dev sundials-devel sundials sundials)" SUNDIALS_DIR '' '' \
-    "$(for one in "${mpi[@]}"; do printf '%s\n' "$sundials -lsundials_core $one" "$sundials $one"; done)"
+    "$(for one in "${mpi[@]}"; do for more in "${optional[@]}"; do echo "$sundials $more $one"; done; done)"
 
 program='#include <klu.h>
 #if SUITESPARSE_MAIN_VERSION < 5
@@ -163,5 +174,6 @@ int main(void) { return zlibVersion()[0] == 0; }'
 find_library zlib "$(packages zlib1g-dev zlib-devel zlib zlib)" ZLIB_DIR '' zlib -lz
 
 ((n_missing == 0)) || exit 1
-echo "${cppflags[*]}" >"$folder/cppflags"
-echo "${libraries[*]}" >"$folder/libraries"
+# no newline: make 4.3 does not always take it off
+printf %s "${cppflags[*]}" >"$folder/cppflags"
+printf %s "${libraries[*]}" >"$folder/libraries"

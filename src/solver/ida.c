@@ -10,9 +10,9 @@
 #include "model/rod.h"
 #include "solver/algebraic_rates.h"
 #include "solver/ida_newton.h"
-#include "solver/shared_vector.h"
 #include "solver/sundials.h"
-#include "solver/sundials_adapter.h"
+#include "solver/sundials_context.h"
+#include "solver/sundials_linear.h"
 
 /* Newton's iteration has converged when its error is this fraction of the error test's unit. Velocities are outside the
  * error test: with IDA's default, 0.33, the iteration would leave noise in the accelerations of stiff bodies. Measured:
@@ -41,9 +41,9 @@ struct ida {
     /* absolute tolerance, one over it, and kind of each unknown                                  (n_unknowns) */
     double *tolerance, *weight, *kind;
 
-    SUNContext context;
+    struct sundials_context context;
     N_Vector y, yp, weights, kinds, scratch[2];
-    struct sundials_adapter_linear linear;
+    struct sundials_linear linear;
     SUNNonlinearSolver newton;
     void *ida;
     struct algebraic_rates *algebraic_rates;
@@ -106,7 +106,7 @@ static void ida_free(void *data) {
     if (!solver) return;
     if (solver->ida) IDAFree(&solver->ida);
     if (solver->newton) SUNNonlinSolFree(solver->newton);
-    sundials_adapter_linear_free(&solver->linear);
+    sundials_linear_free(&solver->linear);
     const N_Vector vectors[] = {solver->y,     solver->yp,         solver->weights,
                                 solver->kinds, solver->scratch[0], solver->scratch[1]};
     for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
@@ -117,7 +117,7 @@ static void ida_free(void *data) {
     free(solver->tolerance);
     free(solver->weight);
     free(solver->kind);
-    if (solver->context) SUNContext_Free(&solver->context);
+    sundials_context_free(&solver->context);
     free(solver);
 }
 
@@ -133,15 +133,17 @@ static enum status choose_first_step(struct ida *solver) {
 static enum status set_up_ida(struct ida *solver) {
     const struct school *school = solver->residual->school;
     void *const ida = solver->ida;
-    if (IDASetErrHandlerFn(ida, sundials_adapter_message, &solver->failure) || IDASetUserData(ida, solver) ||
+    if (IDASetErrHandlerFn(ida, sundials_context_message, &solver->failure) || IDASetUserData(ida, solver) ||
         IDAInit(ida, residual_callback, solver->state->t, solver->y, solver->yp) ||
         IDAWFtolerances(ida, weights_callback) || IDASetId(ida, solver->kinds) || IDASetSuppressAlg(ida, 1) ||
         IDASetLinearSolver(ida, solver->linear.solver, solver->linear.matrix) || IDASetJacFn(ida, jacobian_callback) ||
         IDASetNonlinearSolver(ida, solver->newton) || IDASetNonlinConvCoef(ida, newton_coefficient) ||
         IDASetMaxOrd(ida, solver->options.order) || IDASetDeltaCjLSetup(ida, cj_change) ||
         IDASetMaxErrTestFails(ida, 20) || IDASetMaxConvFails(ida, 20) || IDASetMinStep(ida, 1e-10 * school->interval)) {
+        TRY(sundials_context_check(&solver->context));
         return status_fail(STATUS_SOLVER, "IDA cannot be set up: %s", status_message());
     }
+    TRY(sundials_context_check(&solver->context));
     return choose_first_step(solver);
 }
 
@@ -162,18 +164,18 @@ static enum status fill(struct ida *solver) {
     TRY(algebraic_rates_create(&solver->algebraic_rates, school));
     algebraic_rates_begin(solver->algebraic_rates, solver->state);
     residual_mask(solver->residual, solver->jacobian);
-    TRY(sundials_adapter_context(&solver->context, n, &solver->failure));
-    TRY(shared_vector_create(&solver->y, solver->context, school, solver->state->y));
-    TRY(shared_vector_create(&solver->yp, solver->context, school, solver->state->yp));
-    TRY(shared_vector_create(&solver->weights, solver->context, school, solver->weight));
-    TRY(shared_vector_create(&solver->kinds, solver->context, school, solver->kind));
+    TRY(sundials_context_create(&solver->context, n, school->threads, &solver->failure));
+    TRY(sundials_context_vector(&solver->context, &solver->y, solver->state->y));
+    TRY(sundials_context_vector(&solver->context, &solver->yp, solver->state->yp));
+    TRY(sundials_context_vector(&solver->context, &solver->weights, solver->weight));
+    TRY(sundials_context_vector(&solver->context, &solver->kinds, solver->kind));
     for (int i = 0; i < 2; i++) {
         solver->scratch[i] = N_VClone(solver->y);
         if (!solver->scratch[i]) return status_fail(STATUS_MEMORY, "out of memory: a vector of %d unknowns", n);
     }
     const struct linear_tolerance linear = {linear_relative, linear_absolute * newton_coefficient};
-    TRY(sundials_adapter_linear_create(&solver->linear, solver->context, solver->jacobian, solver->tolerance, linear,
-                                       &solver->failure));
+    TRY(sundials_linear_create(&solver->linear, solver->context.context, solver->jacobian, solver->tolerance, linear,
+                               &solver->failure));
     const int is_sheet = school->shedding == SHEDDING_SHEET;
     const struct ida_newton_rules rules = {.max_iterations = max_iterations,
                                            .max_with_new = max_with_new,
@@ -183,8 +185,8 @@ static enum status fill(struct ida *solver) {
                                            .leading_coefficient = leading_coefficient,
                                            .update = is_sheet ? update_jacobian : NULL,
                                            .complete = couple_more};
-    TRY(ida_newton_create(&solver->newton, solver->context, solver->y, school, rules));
-    solver->ida = IDACreate(solver->context);
+    TRY(ida_newton_create(&solver->newton, solver->context.context, solver->y, school, rules));
+    solver->ida = IDACreate(solver->context.context);
     if (!solver->ida) return status_fail(STATUS_MEMORY, "out of memory: IDA");
     return set_up_ida(solver);
 }

@@ -12,7 +12,8 @@
 #include "model/residual_jacobian.h"
 #include "solver/integrator.h"
 #include "solver/sundials.h"
-#include "solver/sundials_adapter.h"
+#include "solver/sundials_context.h"
+#include "solver/sundials_linear.h"
 
 /* Rows are scaled to order one; Newton's method has converged at this norm, or when its steps no longer change the
  * unknowns. */
@@ -42,9 +43,9 @@ struct initial_conditions {
     enum status failure; /* of the last callback */
     const volatile sig_atomic_t *stop;
 
-    SUNContext context;
+    struct sundials_context context;
     N_Vector solution, solution_scales, value_scales;
-    struct sundials_adapter_linear linear;
+    struct sundials_linear linear;
     void *kinsol;
     long iterations;
 };
@@ -52,7 +53,7 @@ struct initial_conditions {
 void initial_conditions_free(struct initial_conditions *c) {
     if (!c) return;
     if (c->kinsol) KINFree(&c->kinsol);
-    sundials_adapter_linear_free(&c->linear);
+    sundials_linear_free(&c->linear);
     const N_Vector vectors[] = {c->solution, c->solution_scales, c->value_scales};
     for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
         if (vectors[i]) N_VDestroy(vectors[i]);
@@ -60,7 +61,7 @@ void initial_conditions_free(struct initial_conditions *c) {
     jacobian_free(c->jacobian);
     double *const owned[] = {c->y, c->zero, c->kind, c->scale, c->solution_scale, c->value_scale, c->value, c->start};
     for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
-    if (c->context) SUNContext_Free(&c->context);
+    sundials_context_free(&c->context);
     free(c);
 }
 
@@ -110,18 +111,19 @@ static double row_scale(const struct residual *residual, int i) {
 }
 
 static enum status set_up_kinsol(struct initial_conditions *c) {
-    c->kinsol = KINCreate(c->context);
+    c->kinsol = KINCreate(c->context.context);
     if (!c->kinsol) return status_fail(STATUS_MEMORY, "out of memory: KINSOL");
     // full Newton steps, since the equations are nearly linear, with a new Jacobian each
-    if (KINSetErrHandlerFn(c->kinsol, sundials_adapter_message, &c->failure) || KINSetUserData(c->kinsol, c) ||
+    if (KINSetErrHandlerFn(c->kinsol, sundials_context_message, &c->failure) || KINSetUserData(c->kinsol, c) ||
         KINInit(c->kinsol, algebraic_value, c->solution) ||
         KINSetLinearSolver(c->kinsol, c->linear.solver, c->linear.matrix) ||
         KINSetJacFn(c->kinsol, algebraic_jacobian) || KINSetMaxSetupCalls(c->kinsol, 1) ||
         KINSetFuncNormTol(c->kinsol, tolerance) || KINSetScaledStepTol(c->kinsol, 1e-14) ||
         KINSetNumMaxIters(c->kinsol, 50) || KINSetMaxNewtonStep(c->kinsol, 1e30)) {
+        TRY(sundials_context_check(&c->context));
         return status_fail(STATUS_SOLVER, "KINSOL cannot be set up: %s", status_message());
     }
-    return STATUS_OK;
+    return sundials_context_check(&c->context);
 }
 
 static enum status fill(struct initial_conditions *c) {
@@ -137,11 +139,11 @@ static enum status fill(struct initial_conditions *c) {
         c->kind[i] = -1;  // unknown
     }
     TRY(jacobian_create(&c->jacobian, c->residual->school));
-    TRY(sundials_adapter_context(&c->context, c->n, &c->failure));
-    TRY(sundials_adapter_vector(&c->solution, c->context, n, c->start));
-    TRY(sundials_adapter_vector(&c->solution_scales, c->context, n, c->solution_scale));
-    TRY(sundials_adapter_vector(&c->value_scales, c->context, n, c->value_scale));
-    TRY(sundials_adapter_linear_create(&c->linear, c->context, c->jacobian, c->scale, linear_tolerance, &c->failure));
+    TRY(sundials_context_create(&c->context, n, 1, &c->failure));
+    TRY(sundials_context_vector(&c->context, &c->solution, c->start));
+    TRY(sundials_context_vector(&c->context, &c->solution_scales, c->solution_scale));
+    TRY(sundials_context_vector(&c->context, &c->value_scales, c->value_scale));
+    TRY(sundials_linear_create(&c->linear, c->context.context, c->jacobian, c->scale, linear_tolerance, &c->failure));
     return set_up_kinsol(c);
 }
 

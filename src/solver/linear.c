@@ -1,4 +1,4 @@
-/* linear.c: factors for the diagonal blocks, GMRES for the couplings. */
+/* linear.c: factors for the diagonal blocks, GMRES of SUNDIALS for the couplings. */
 #include "solver/linear.h"
 
 #include <math.h>
@@ -7,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "solver/fish_factors.h"
+#include "solver/sundials_context.h"
 
 /* The relative tolerance of GMRES where bodies touch: the forces between two bodies cancel only as far as the system is
  * solved, and what is left changes the momentum of both together. */
@@ -27,11 +28,14 @@ struct block {
 struct linear {
     const struct jacobian *jacobian;
     struct linear_tolerance tolerance;
-    double *weight; /* 1/(n_unknowns scale^2)                          (n_unknowns) */
     struct block *block;
-    double *direction; /* the Krylov basis, orthonormal    (n_directions, n_unknowns) */
-    int n_directions;  /* allocated */
     long solves, iterations;
+    /* GMRES, made for the first system that needs it: solution, right-hand side, 1/(sqrt(n_unknowns) scale) */
+    struct sundials_context context;
+    N_Vector x, b, weights;
+    SUNLinearSolver gmres;
+    double *weight, *right; /* values of weights and b      (n_unknowns) */
+    enum status failure;    /* of the product */
 };
 
 static int n_unknowns(const struct linear *linear) {
@@ -48,7 +52,7 @@ enum status linear_create(struct linear **linear, const struct jacobian *jacobia
     new->weight = calloc((size_t)n_unknowns(new), sizeof *new->weight);
     new->block = calloc((size_t)jacobian->school->n_fish, sizeof *new->block);
     if (!new->weight || !new->block) goto no_memory;
-    for (int i = 0; i < n_unknowns(new); i++) new->weight[i] = 1 / (n_unknowns(new) * scale[i] * scale[i]);
+    for (int i = 0; i < n_unknowns(new); i++) new->weight[i] = 1 / (sqrt(n_unknowns(new)) * scale[i]);
     for (int f = 0; f < jacobian->school->n_fish; f++) {
         const enum status status =
             fish_factors_create(&new->block[f].factors, &jacobian->school->fish[f], jacobian->own[f]);
@@ -71,9 +75,15 @@ void linear_free(struct linear *linear) {
         fish_factors_free(block->factors);
         free(block->update);
     }
+    if (linear->gmres) SUNLinSolFree(linear->gmres);
+    const N_Vector vectors[] = {linear->x, linear->b, linear->weights};
+    for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
+        if (vectors[i]) N_VDestroy(vectors[i]);
+    }
+    sundials_context_free(&linear->context);
     free(linear->block);
     free(linear->weight);
-    free(linear->direction);
+    free(linear->right);
     free(linear);
 }
 
@@ -170,88 +180,49 @@ static void multiply_one(void *data, int f) {
     for (int i = at->x; i < at->end; i++) product[i] += of->from[i];
 }
 
-static double dot(const struct linear *linear, const double *a, const double *b) {
-    double sum = 0;
-    for (int i = 0; i < n_unknowns(linear); i++) sum += linear->weight[i] * a[i] * b[i];
-    return sum;
+static int multiply(void *data, N_Vector v, N_Vector product) {
+    struct linear *const linear = data;
+    for_each_fish(multiply_one, (struct operation){linear, N_VGetArrayPointer(v), N_VGetArrayPointer(product)});
+    return 0;
 }
 
-// allocate n directions; those that exist keep their values
-static enum status reserve(struct linear *linear, int n) {
-    if (n <= linear->n_directions) return STATUS_OK;
-    double *const more = realloc(linear->direction, (size_t)n * (size_t)n_unknowns(linear) * sizeof *more);
-    if (!more) return status_fail(STATUS_MEMORY, "out of memory: %d directions of GMRES", n);
-    linear->direction = more;
-    linear->n_directions = n;
-    return STATUS_OK;
-}
-
-// the Hessenberg matrix of GMRES by columns, kept upper triangular by Givens rotations, and its right-hand side
-struct least_squares {
-    double h[MAX_ITERATIONS][MAX_ITERATIONS + 1], cosine[MAX_ITERATIONS], sine[MAX_ITERATIONS], rhs[MAX_ITERATIONS + 1];
-};
-
-// rotate column j of the matrix; the norm of the residual is then |rhs[j + 1]|
-static void rotate(struct least_squares *ls, int j) {
-    double *const h = ls->h[j];
-    for (int i = 0; i < j; i++) {
-        const double upper = ls->cosine[i] * h[i] + ls->sine[i] * h[i + 1];
-        h[i + 1] = ls->cosine[i] * h[i + 1] - ls->sine[i] * h[i];
-        h[i] = upper;
+/* The operator of GMRES, 1 + D^-1 C, is the system with its preconditioner already; x is set for each solution. Norms
+ * and dot products are sums over all unknowns: one thread. */
+static enum status create_gmres(struct linear *linear) {
+    const int n = n_unknowns(linear);
+    linear->right = calloc((size_t)n, sizeof *linear->right);
+    if (!linear->right) return status_fail(STATUS_MEMORY, "out of memory: GMRES");
+    TRY(sundials_context_create(&linear->context, n, 1, &linear->failure));
+    TRY(sundials_context_vector(&linear->context, &linear->x, linear->right));
+    TRY(sundials_context_vector(&linear->context, &linear->b, linear->right));
+    TRY(sundials_context_vector(&linear->context, &linear->weights, linear->weight));
+    linear->gmres = SUNLinSol_SPGMR(linear->x, SUN_PREC_NONE, MAX_ITERATIONS, linear->context.context);
+    if (!linear->gmres || SUNLinSolSetATimes(linear->gmres, linear, multiply) != SUN_SUCCESS ||
+        SUNLinSolSetScalingVectors(linear->gmres, linear->weights, linear->weights) != SUN_SUCCESS ||
+        SUNLinSolInitialize(linear->gmres) != SUN_SUCCESS) {
+        return status_fail(STATUS_MEMORY, "out of memory: GMRES");
     }
-    const double length = sqrt(h[j] * h[j] + h[j + 1] * h[j + 1]);
-    ls->cosine[j] = length > 0 ? h[j] / length : 1;
-    ls->sine[j] = length > 0 ? h[j + 1] / length : 0;
-    h[j] = length;
-    ls->rhs[j + 1] = -ls->sine[j] * ls->rhs[j];
-    ls->rhs[j] = ls->cosine[j] * ls->rhs[j];
-}
-
-// x = the combination of n directions with the smallest residual
-static void combine(const struct linear *linear, const struct least_squares *ls, int n, double *x) {
-    double factor[MAX_ITERATIONS];
-    for (int j = n - 1; j >= 0; j--) {
-        factor[j] = ls->rhs[j];
-        for (int k = j + 1; k < n; k++) factor[j] -= ls->h[k][j] * factor[k];
-        factor[j] /= ls->h[j][j];
-    }
-    memset(x, 0, (size_t)n_unknowns(linear) * sizeof *x);
-    for (int j = 0; j < n; j++) {
-        const double *const direction = linear->direction + (long)j * n_unknowns(linear);
-        for (int i = 0; i < n_unknowns(linear); i++) x[i] += factor[j] * direction[i];
-    }
+    return sundials_context_check(&linear->context);
 }
 
 // solve the coupled system; x enters as the solution of the uncoupled one
 static enum status solve_coupled(struct linear *linear, double *x) {
-    const int n = n_unknowns(linear);
-    struct least_squares ls;
-    const double start = sqrt(dot(linear, x, x));
+    if (!linear->gmres) TRY(create_gmres(linear));
+    N_VSetArrayPointer(x, linear->x);
+    const double start = N_VWL2Norm(linear->x, linear->weights);
     const double limit = linear->jacobian->has_contacts
                              ? contact_relative * start
                              : fmax(linear->tolerance.relative * start, linear->tolerance.absolute);
     if (!(start > limit) || !isfinite(start)) return STATUS_OK;
-    TRY(reserve(linear, 1));
-    for (int i = 0; i < n; i++) linear->direction[i] = x[i] / start;
-    ls.rhs[0] = start;
-    int j = 0;
-    while (j < MAX_ITERATIONS && fabs(ls.rhs[j]) > limit) {
-        TRY(reserve(linear, j + 2));
-        double *const next = linear->direction + (long)(j + 1) * n;
-        for_each_fish(multiply_one, (struct operation){linear, linear->direction + (long)j * n, next});
-        for (int k = 0; k <= j; k++) {
-            const double *const direction = linear->direction + (long)k * n;
-            ls.h[j][k] = dot(linear, direction, next);
-            for (int i = 0; i < n; i++) next[i] -= ls.h[j][k] * direction[i];
-        }
-        const double length = sqrt(dot(linear, next, next));
-        ls.h[j][j + 1] = length;
-        for (int i = 0; length > 0 && i < n; i++) next[i] /= length;
-        rotate(&ls, j++);
-    }
-    linear->iterations += j;
-    combine(linear, &ls, j, x);
-    return STATUS_OK;
+
+    memcpy(linear->right, x, (size_t)n_unknowns(linear) * sizeof *x);
+    N_VConst(0, linear->x);
+    SUNLinSolSetZeroGuess(linear->gmres, SUNTRUE);
+    const int code = SUNLinSolSolve(linear->gmres, NULL, linear->x, linear->b, limit);
+    linear->iterations += SUNLinSolNumIters(linear->gmres);
+    // after too many iterations a smaller residual is what Newton's iteration judges
+    if (code == SUN_SUCCESS || code == SUNLS_RES_REDUCED) return STATUS_OK;
+    return status_fail(STATUS_RETRY, "GMRES has found no solution");
 }
 
 enum status linear_solve(struct linear *linear, const double *b, double *x) {

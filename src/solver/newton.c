@@ -5,12 +5,12 @@
 #include <stdlib.h>
 
 #include "solver/sundials.h"
-#include "solver/sundials_adapter.h"
+#include "solver/sundials_context.h"
 
 struct solver {
     const struct newton *problem;
     enum status failure; /* of the last callback */
-    SUNContext context;
+    struct sundials_context context;
     N_Vector unknowns, scales;
     SUNMatrix matrix;
     SUNLinearSolver linear;
@@ -37,30 +37,31 @@ static void release(struct solver *solver) {
     if (solver->matrix) SUNMatDestroy(solver->matrix);
     if (solver->unknowns) N_VDestroy(solver->unknowns);
     if (solver->scales) N_VDestroy(solver->scales);
-    if (solver->context) SUNContext_Free(&solver->context);
+    sundials_context_free(&solver->context);
 }
 
 static enum status set_up(struct solver *solver, double *u, double *inverse) {
     const struct newton *const problem = solver->problem;
     for (int i = 0; i < problem->n; i++) inverse[i] = 1 / problem->scale[i];
-    TRY(sundials_adapter_context(&solver->context, problem->n, &solver->failure));
-    TRY(sundials_adapter_vector(&solver->unknowns, solver->context, problem->n, u));
-    TRY(sundials_adapter_vector(&solver->scales, solver->context, problem->n, inverse));
-    solver->matrix = SUNDenseMatrix(problem->n, problem->n, solver->context);
-    solver->linear = solver->matrix ? SUNLinSol_Dense(solver->unknowns, solver->matrix, solver->context) : NULL;
-    solver->kinsol = KINCreate(solver->context);
+    TRY(sundials_context_create(&solver->context, problem->n, 1, &solver->failure));
+    TRY(sundials_context_vector(&solver->context, &solver->unknowns, u));
+    TRY(sundials_context_vector(&solver->context, &solver->scales, inverse));
+    solver->matrix = SUNDenseMatrix(problem->n, problem->n, solver->context.context);
+    solver->linear = solver->matrix ? SUNLinSol_Dense(solver->unknowns, solver->matrix, solver->context.context) : NULL;
+    solver->kinsol = KINCreate(solver->context.context);
     if (!solver->linear || !solver->kinsol) return status_fail(STATUS_MEMORY, "out of memory: KINSOL");
     // steps of rounding do not end the iteration
-    if (KINSetErrHandlerFn(solver->kinsol, sundials_adapter_message, &solver->failure) ||
+    if (KINSetErrHandlerFn(solver->kinsol, sundials_context_message, &solver->failure) ||
         KINSetUserData(solver->kinsol, solver) || KINInit(solver->kinsol, value_of, solver->unknowns) ||
         KINSetLinearSolver(solver->kinsol, solver->linear, solver->matrix) ||
         KINSetJacFn(solver->kinsol, jacobian_of) || KINSetMaxSetupCalls(solver->kinsol, problem->reuse) ||
         KINSetFuncNormTol(solver->kinsol, problem->tolerance) || KINSetScaledStepTol(solver->kinsol, 1e-14) ||
         KINSetNumMaxIters(solver->kinsol, problem->max_iterations) ||
         KINSetMaxNewtonStep(solver->kinsol, problem->max_step)) {
+        TRY(sundials_context_check(&solver->context));
         return status_fail(STATUS_SOLVER, "KINSOL cannot be set up: %s", status_message());
     }
-    return STATUS_OK;
+    return sundials_context_check(&solver->context);
 }
 
 static const char *reason(int code) {

@@ -9,7 +9,7 @@
 #include "solver/algebraic_rates.h"
 #include "solver/ode_rhs.h"
 #include "solver/sundials.h"
-#include "solver/sundials_adapter.h"
+#include "solver/sundials_context.h"
 
 struct runge_kutta {
     struct residual *residual;
@@ -29,7 +29,7 @@ struct runge_kutta {
     double *circulation; /* of each fish at the end of the last step                     (n_fish) */
     struct algebraic_rates *algebraic_rates;
 
-    SUNContext context;
+    struct sundials_context context;
     N_Vector y, tolerances;
     void *arkode;
     struct integrator_counts before; /* totals up to the last restart: that sets ARKODE's own to zero */
@@ -96,7 +96,7 @@ static void runge_kutta_free(void *data) {
     free(solver->circulation);
     algebraic_rates_free(solver->algebraic_rates);
     free(solver->tolerance);
-    if (solver->context) SUNContext_Free(&solver->context);
+    sundials_context_free(&solver->context);
     free(solver);
 }
 
@@ -108,7 +108,7 @@ static enum status set_up_arkode(struct runge_kutta *solver) {
     // 6.4 interpolates at the stop time, for order one with a constant: Hermite's is the mean of both ends of the step,
     // that of Lagrange the solution at the later one
     const int order = table->q;
-    const int failed = ARKStepSetErrHandlerFn(arkode, sundials_adapter_message, &solver->failure) ||
+    const int failed = ARKStepSetErrHandlerFn(arkode, sundials_context_message, &solver->failure) ||
                        ARKodeSetUserData(arkode, solver) || ARKStepSetTables(arkode, 0, 0, NULL, table) ||
                        (order == 1 && ARKodeSetInterpolantType(arkode, ARK_INTERP_LAGRANGE)) ||
                        ARKodeSVtolerances(arkode, 0, solver->tolerances) || ARKodeSetMaxNumSteps(arkode, -1) ||
@@ -116,6 +116,7 @@ static enum status set_up_arkode(struct runge_kutta *solver) {
                        ARKodeSetMinStep(arkode, step > 0 ? 0 : 1e-10 * solver->residual->school->interval) ||
                        (step > 0 && ARKodeSetFixedStep(arkode, step));
     ARKodeButcherTable_Free(table);
+    TRY(sundials_context_check(&solver->context));
     return failed ? status_fail(STATUS_SOLVER, "ARKODE cannot be set up: %s", status_message()) : STATUS_OK;
 }
 
@@ -144,10 +145,10 @@ static enum status fill(struct runge_kutta *solver) {
     TRY(ode_rhs_create(&solver->rhs, solver->residual));
     TRY(algebraic_rates_create(&solver->algebraic_rates, solver->residual->school));
     algebraic_rates_begin(solver->algebraic_rates, solver->state);
-    TRY(sundials_adapter_context(&solver->context, n, &solver->failure));
-    TRY(sundials_adapter_vector(&solver->y, solver->context, n, solver->state->y));
-    TRY(sundials_adapter_vector(&solver->tolerances, solver->context, n, solver->tolerance));
-    solver->arkode = ARKStepCreate(rates_callback, NULL, solver->state->t, solver->y, solver->context);
+    TRY(sundials_context_create(&solver->context, n, 1, &solver->failure));
+    TRY(sundials_context_vector(&solver->context, &solver->y, solver->state->y));
+    TRY(sundials_context_vector(&solver->context, &solver->tolerances, solver->tolerance));
+    solver->arkode = ARKStepCreate(rates_callback, NULL, solver->state->t, solver->y, solver->context.context);
     if (!solver->arkode) return status_fail(STATUS_MEMORY, "out of memory: ARKODE");
     return set_up_arkode(solver);
 }
@@ -265,6 +266,7 @@ static enum status runge_kutta_advance(void *data, double t, const volatile sig_
         solver->failure = STATUS_OK;
         const double before = reached;
         const int code = ARKodeEvolve(solver->arkode, t, solver->y, &reached, ARK_ONE_STEP);
+        TRY(sundials_context_check(&solver->context));
         if (solver->failure == STATUS_MEMORY || solver->failure == STATUS_STOPPED) return solver->failure;
         if (code < 0) return unstable(solver, reached, status_message());
         if (code == ARK_TSTOP_RETURN) reached = t;

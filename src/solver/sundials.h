@@ -11,6 +11,9 @@
 #include <ida/ida.h>
 #include <kinsol/kinsol.h>
 #include <nvector/nvector_serial.h>
+#if __has_include(<nvector/nvector_openmp.h>)
+#include <nvector/nvector_openmp.h>
+#endif
 #include <sundials/sundials_context.h>
 #include <sundials/sundials_linearsolver.h>
 #include <sundials/sundials_logger.h>
@@ -19,6 +22,7 @@
 #include <sundials/sundials_nvector.h>
 #include <sundials/sundials_types.h>
 #include <sunlinsol/sunlinsol_dense.h>
+#include <sunlinsol/sunlinsol_spgmr.h>
 #include <sunmatrix/sunmatrix_dense.h>
 
 #define SUNDIALS_AT_LEAST(major, minor) \
@@ -48,6 +52,14 @@ typedef int SUNErrCode;
 #define SUNContext_ClearErrHandlers(context) ((void)(context), SUN_SUCCESS)
 #define SUNContext_PushErrHandler(context, handler, data) ((void)(context), (void)(data), SUN_SUCCESS)
 
+#endif
+
+// built without OpenMP: vectors on one thread
+#if !__has_include(<nvector/nvector_openmp.h>)
+#define _N_VectorContent_OpenMP _N_VectorContent_Serial
+#define N_VMake_OpenMP(n, values, threads, context) N_VMake_Serial(n, values, context)
+#define N_VClone_OpenMP N_VClone_Serial
+#define N_VDestroy_OpenMP N_VDestroy_Serial
 #endif
 
 #if !SUNDIALS_AT_LEAST(7, 1)

@@ -607,9 +607,10 @@ static void allocations_that_fail_are_reported(void **state) {
         if (status == STATUS_OK) assert_true(error_of(&system) < 1e-4);
         linear_free(system.linear);
         assert_int_equal(n_live, n_before);
-        assert_true(n_failed < 100);
+        assert_true(n_failed < 200);
     }
-    assert_true(n_failed > 4);
+    // GMRES clones a vector for each iteration that it may take
+    assert_true(n_failed > 40);
     system.linear = NULL;
     clear(&system);
 }

@@ -12,7 +12,8 @@
 #include "model/flow_derivative.h"
 #include "model/residual_jacobian.h"
 #include "solver/sundials.h"
-#include "solver/sundials_adapter.h"
+#include "solver/sundials_context.h"
+#include "solver/sundials_linear.h"
 #include "verify.h"
 
 // ---- dense matrices, row after row
@@ -319,7 +320,7 @@ static void refinement(void) {
 struct correction {
     struct simulation *simulation;
     struct jacobian *jacobian;
-    struct sundials_adapter_linear linear;
+    struct sundials_linear linear;
     enum status failure;
 };
 
@@ -344,21 +345,21 @@ static int calculate(struct simulation *simulation, double *y, double *yp, doubl
     struct correction correction = {.simulation = simulation};
     const struct linear_tolerance linear_tolerance = {.relative = 1e-10};
     double *const values[4] = {y, yp, kind, tolerance};
-    SUNContext context;
+    struct sundials_context context;
     N_Vector vector[4];
-    if (sundials_adapter_context(&context, n, &correction.failure) != STATUS_OK) abort();
+    if (sundials_context_create(&context, n, 1, &correction.failure) != STATUS_OK) abort();
     for (int i = 0; i < 4; i++) {
-        if (sundials_adapter_vector(&vector[i], context, n, values[i]) != STATUS_OK) abort();
+        if (sundials_context_vector(&context, &vector[i], values[i]) != STATUS_OK) abort();
     }
     if (jacobian_create(&correction.jacobian, simulation->school) != STATUS_OK ||
-        sundials_adapter_linear_create(&correction.linear, context, correction.jacobian, tolerance, linear_tolerance,
-                                       &correction.failure) != STATUS_OK) {
+        sundials_linear_create(&correction.linear, context.context, correction.jacobian, tolerance, linear_tolerance,
+                               &correction.failure) != STATUS_OK) {
         abort();
     }
     residual_mask(simulation->residual, correction.jacobian);
-    void *ida = IDACreate(context);
+    void *ida = IDACreate(context.context);
     int code = IDAInit(ida, value_callback, simulation->state->t, vector[0], vector[1]);
-    if (code == 0) code = IDASetErrHandlerFn(ida, sundials_adapter_message, &correction.failure);
+    if (code == 0) code = IDASetErrHandlerFn(ida, sundials_context_message, &correction.failure);
     if (code == 0) code = IDASetUserData(ida, &correction);
     if (code == 0) code = IDASVtolerances(ida, 0, vector[3]);
     if (code == 0) code = IDASetId(ida, vector[2]);
@@ -367,10 +368,10 @@ static int calculate(struct simulation *simulation, double *y, double *yp, doubl
     if (code == 0) code = IDACalcIC(ida, IDA_YA_YDP_INIT, simulation->state->t + simulation->school->interval);
     if (code == 0) code = IDAGetConsistentIC(ida, vector[0], vector[1]);
     IDAFree(&ida);
-    sundials_adapter_linear_free(&correction.linear);
+    sundials_linear_free(&correction.linear);
     for (int i = 0; i < 4; i++) N_VDestroy(vector[i]);
     jacobian_free(correction.jacobian);
-    SUNContext_Free(&context);
+    sundials_context_free(&context);
     return code;
 }
 

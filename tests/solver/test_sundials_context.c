@@ -1,0 +1,189 @@
+/* test_sundials_context.c: vectors against the serial ones of SUNDIALS, bit by bit, with any number of threads; clones
+ * without memory; messages. */
+#include <math.h>
+#include <string.h>
+
+#include "base/parallel.h"
+#include "failing_malloc.h"
+#include "school.h"
+#include "solver/sundials_context.h"
+
+// enough for threads
+enum { N = PARALLEL_ELEMENTS + 77, N_VECTORS = 4, OURS = 0, SERIAL = 1 };
+
+static double values[2][N_VECTORS][N];
+
+/* The same numbers twice: in vectors of ours and in serial ones. */
+struct both {
+    struct sundials_context context;
+    enum status failure;
+    N_Vector vector[2][N_VECTORS];
+};
+
+static void fill(void) {
+    for (int k = 0; k < N_VECTORS; k++) {
+        for (int i = 0; i < N; i++) values[OURS][k][i] = values[SERIAL][k][i] = sin(1 + i + 100 * k);
+    }
+}
+
+static void create(struct both *both, int threads) {
+    both->failure = STATUS_OK;
+    school_ok(sundials_context_create(&both->context, N, threads, &both->failure));
+    for (int k = 0; k < N_VECTORS; k++) {
+        school_ok(sundials_context_vector(&both->context, &both->vector[OURS][k], values[OURS][k]));
+        both->vector[SERIAL][k] = N_VMake_Serial(N, values[SERIAL][k], both->context.context);
+    }
+}
+
+static void clear(struct both *both) {
+    for (int k = 0; k < 2 * N_VECTORS; k++) N_VDestroy(both->vector[k / N_VECTORS][k % N_VECTORS]);
+    sundials_context_free(&both->context);
+}
+
+// all operations of the solvers on single values, also where the result is an argument
+static void operate(N_Vector *v) {
+    const double factor[][2] = {{1, 1},    {1, -1},    {-1, 1},     {0.3, 1},  {1, 0.3},
+                                {-1, 0.3}, {0.3, 0.3}, {0.3, -0.3}, {0.3, 0.7}};
+    for (size_t i = 0; i < sizeof factor / sizeof *factor; i++) {
+        N_VLinearSum(factor[i][0], v[0], factor[i][1], v[1], v[2]);
+        N_VLinearSum(factor[i][0], v[2], factor[i][1], v[1], v[1]);
+        N_VLinearSum(factor[i][0], v[0], factor[i][1], v[2], v[0]);
+    }
+    double c[] = {0.7, 0.7, 0.3};
+    assert_int_equal(N_VLinearCombination(3, c, v, v[3]), 0);
+    assert_int_equal(N_VLinearCombination(2, c, v, v[2]), 0);
+    assert_int_equal(N_VScaleVectorArray(3, c, v, v), 0);
+    // each result is an argument of the next sum
+    N_Vector to[] = {v[1], v[2], v[3]};
+    assert_int_equal(N_VLinearSumVectorArray(3, 1, v, 0.3, to, to), 0);
+    N_VScale(-1, v[0], v[0]);
+    N_VScale(0.3, v[1], v[2]);
+    N_VConst(0.3, v[1]);
+}
+
+static void every_element_has_the_bits_of_the_serial_vector(void **state) {
+    (void)state;
+    for (int threads = 1; threads <= 3; threads++) {
+        struct both both;
+        fill();
+        create(&both, threads);
+        for (int k = 0; k < 2; k++) operate(both.vector[k]);
+        assert_memory_equal(values[OURS], values[SERIAL], sizeof values[SERIAL]);
+        clear(&both);
+    }
+}
+
+static void norms_have_the_bits_of_the_serial_vector(void **state) {
+    (void)state;
+    for (int threads = 1; threads <= 3; threads++) {
+        struct both both;
+        fill();
+        create(&both, threads);
+        double all[2], masked[2];
+        for (int k = 0; k < 2; k++) {
+            N_Vector *const v = both.vector[k];
+            all[k] = N_VWrmsNorm(v[0], v[1]);
+            masked[k] = N_VWrmsNormMask(v[0], v[1], v[2]);
+        }
+        NEAR(all[OURS], all[SERIAL], 0, 0);
+        NEAR(masked[OURS], masked[SERIAL], 0, 0);
+        assert_true(masked[SERIAL] > 0 && masked[SERIAL] < all[SERIAL]);
+        clear(&both);
+    }
+}
+
+static void a_clone_has_values_of_its_own(void **state) {
+    (void)state;
+    struct both both;
+    fill();
+    create(&both, 2);
+    N_Vector const clone = N_VClone(both.vector[OURS][0]), second = N_VClone(clone);
+    N_VLinearSum(0.3, both.vector[OURS][0], 0.7, both.vector[OURS][1], clone);
+    N_VScale(2, clone, second);
+    for (int i = 0; i < N; i++) {
+        NEAR(N_VGetArrayPointer(second)[i], 2 * N_VGetArrayPointer(clone)[i], 0, 0);
+        NEAR(N_VGetArrayPointer(clone)[i], 0.3 * values[SERIAL][0][i] + 0.7 * values[SERIAL][1][i], 0, 0);
+    }
+    assert_memory_equal(values[OURS], values[SERIAL], sizeof values[SERIAL]);
+    NEAR(N_VWrmsNorm(clone, second), N_VWrmsNorm(second, clone), 0, 0);
+    school_ok(sundials_context_check(&both.context));
+    N_VDestroy(second);
+    N_VDestroy(clone);
+    clear(&both);
+}
+
+// what SUNDIALS 6 does with a clone: it uses it unseen
+static void a_clone_without_memory_can_be_used_and_is_reported(void **state) {
+    (void)state;
+    for (int threads = 1; threads <= 2; threads++) {
+        struct both both;
+        fill();
+        create(&both, threads);
+        N_Vector clone[2];
+        for (int i = 0; i < 2; i++) {
+            n_until_failure = 0;
+            clone[i] = N_VClone(i == 0 ? both.vector[OURS][0] : clone[0]);
+            n_until_failure = -1;
+            assert_non_null(clone[i]);
+            assert_int_equal(N_VGetLength(clone[i]), N);
+            N_VLinearSum(1, both.vector[OURS][0], 1, clone[i], clone[i]);
+        }
+        assert_int_equal(sundials_context_check(&both.context), STATUS_MEMORY);
+        for (int i = 0; i < 2; i++) N_VDestroy(clone[i]);
+        assert_memory_equal(values[OURS], values[SERIAL], sizeof values[SERIAL]);
+        // it has not recovered
+        N_VDestroy(N_VClone(both.vector[OURS][0]));
+        assert_int_equal(sundials_context_check(&both.context), STATUS_MEMORY);
+        clear(&both);
+    }
+}
+
+static void without_memory_there_is_no_context_and_no_vector(void **state) {
+    (void)state;
+    enum status failure = STATUS_OK, status = STATUS_MEMORY;
+    struct sundials_context context;
+    for (int n_failed = 0; status != STATUS_OK; n_failed++) {
+        const int n_before = n_live;
+        n_until_failure = n_failed;
+        status = sundials_context_create(&context, N, 1, &failure);
+        n_until_failure = -1;
+        if (status == STATUS_OK) break;
+        assert_int_equal(status, STATUS_MEMORY);
+        assert_int_equal(n_live, n_before);
+        assert_true(n_failed < 10);
+    }
+    N_Vector vector;
+    n_until_failure = 0;
+    assert_int_equal(sundials_context_vector(&context, &vector, values[OURS][0]), STATUS_MEMORY);
+    n_until_failure = -1;
+    sundials_context_free(&context);
+}
+
+// a call that IDA refuses: its message is ours, unless a callback has failed before, whose message is the cause
+static void errors_of_a_package_become_messages(void **state) {
+    (void)state;
+    struct both both;
+    create(&both, 1);
+    void *ida = IDACreate(both.context.context);
+    assert_int_equal(IDASetErrHandlerFn(ida, sundials_context_message, &both.failure), SUN_SUCCESS);
+    status_fail(STATUS_CASE, "the last message");
+    assert_int_equal(IDASetMaxOrd(ida, -1), IDA_ILL_INPUT);
+    assert_non_null(strstr(status_message(), "(IDASetMaxOrd)"));
+    both.failure = status_fail(STATUS_CASE, "the cause");
+    assert_int_equal(IDASetMaxOrd(ida, -1), IDA_ILL_INPUT);
+    assert_string_equal(status_message(), "the cause");
+    IDAFree(&ida);
+    clear(&both);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_element_has_the_bits_of_the_serial_vector),
+        cmocka_unit_test(norms_have_the_bits_of_the_serial_vector),
+        cmocka_unit_test(a_clone_has_values_of_its_own),
+        cmocka_unit_test(a_clone_without_memory_can_be_used_and_is_reported),
+        cmocka_unit_test(without_memory_there_is_no_context_and_no_vector),
+        cmocka_unit_test(errors_of_a_package_become_messages),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
