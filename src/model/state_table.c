@@ -177,8 +177,8 @@ enum status state_table_copy(struct state *to, const struct state *from, const s
     return STATUS_OK;
 }
 
-/* Whether a value of a field may be absent: the distance of one fish alone is infinite, a sample within the first period
- * has no speed, and only a fish with the pressure of its sheet has a leading-edge parameter. */
+/* Whether a value of a field may be absent: the distance of one fish alone is infinite, a sample within the first
+ * period has no speed, and only a fish with the pressure of its sheet has a leading-edge parameter. */
 static int may_lack(const struct state_row *row, size_t i) {
     const size_t n_sample = sizeof(struct sample) / sizeof(double),
                  speed = offsetof(struct sample, speed) / sizeof(double),

@@ -28,7 +28,8 @@ struct variant {
     double speed;  // at the start, m/s
 };
 
-// a free sheet acts on its fish by the pressure; a reactive fish does not feel its own wake, so only its circulation counts
+// A free sheet acts on its fish by the pressure. A reactive fish does not feel its own wake, so only its circulation
+// depends on the interval.
 static int is_sheet(const struct variant *variant) {
     return strcmp(variant->shedding, "sheet") == 0;
 }
