@@ -438,7 +438,8 @@ def plot_comparison(study, figure):
 def draw(path, figure, quantity="speed"):
     """Draw what a file calls for on an empty figure; quantity: what a map is of."""
     study = Study(path)
-    if quantity not in study.data.variables or study.data.variables[quantity].dimensions[1:] != ("fish",):
+    drawn = study.data.variables.get(quantity)
+    if drawn is None or drawn.dimensions[1:] != ("fish",) or not study.is_number(quantity):
         raise FileError(f"{path}: {quantity} is not a quantity of the fish in it, such as speed or cost_of_transport")
     if study.is_comparison:
         return plot_comparison(study, figure)

@@ -31,7 +31,7 @@ class FileError(Exception):
 
 
 # What reading a damaged file ends in.
-DAMAGE = (OSError, RuntimeError, ValueError, IndexError, KeyError, AttributeError, UnicodeError, MemoryError)
+DAMAGE = (OSError, RuntimeError, ValueError, LookupError, AttributeError, TypeError, ArithmeticError, SyntaxError, MemoryError)
 
 
 class Results:

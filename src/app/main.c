@@ -6,6 +6,7 @@
 #include "app/main_commands.h"
 #include "app/main_options.h"
 #include "app/main_signals.h"
+#include "app/say.h"
 #include "base/version.h"
 
 // ---- the commands
@@ -108,7 +109,7 @@ static const char summary[] = "schools of flexible swimmers";
 static const char exit_codes[] =
     "0 success, 1 integration failed, 2 wrong usage or wrong case, 3 an expectation is not met\n"
     "or bodies met with contact.action: stop, 4 file or memory error, 75 stopped by a signal or --max-wall:\n"
-    "shoal resume continues a run.";
+    "shoal resume continues a run, a search for a steady state begins again.";
 
 static void print_help(FILE *stream) {
     fprintf(stream, "shoal: %s\n\nUsage: shoal COMMAND [OPTIONS] [FILE]\n\n", summary);
@@ -196,17 +197,18 @@ static enum status choose(int argc, char **argv) {
 // the errors of a case name their places themselves
 static void print_message(const char *message) {
     const size_t length = strlen(message);
-    fprintf(stderr, "%s%s%s", strstr(message, "error: ") ? "" : "shoal: error: ", message,
-            length > 0 && message[length - 1] == '\n' ? "" : "\n");
+    say_line(stderr, "%s%s%s", strstr(message, "error: ") ? "" : "shoal: error: ", message,
+             length > 0 && message[length - 1] == '\n' ? "" : "\n");
 }
 
 int main(int argc, char **argv) {
     main_open_standard();
     main_reset_signals();
+    main_guard_exit();
     enum status status = choose(argc, argv);
     if (status == STATUS_OK && (fflush(stdout) != 0 || ferror(stdout))) {
         status = status_fail(STATUS_FILE, "cannot write to standard output");
     }
     if (status != STATUS_OK) print_message(status_message());
-    return status_exit_code(status);
+    return main_exit(status_exit_code(status));
 }

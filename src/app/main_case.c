@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "app/main_commands.h"
+#include "app/say.h"
 #include "case/case.h"
 #include "case/case_keys.h"
 #include "case/case_schema.h"
@@ -35,7 +36,7 @@ static const struct result_kind kinds[] = {
 enum { N_LISTS = sizeof kinds / sizeof *kinds, N_KINDS = N_LISTS - 1 };
 
 void main_print_notes(const struct request *request, const struct case_values *values) {
-    if (!request->quiet && *values->notes) fprintf(stderr, "%s\n", values->notes);
+    if (!request->quiet && *values->notes) say_line(stderr, "%s\n", values->notes);
 }
 
 enum status main_show(const struct request *request) {
@@ -65,6 +66,9 @@ enum status main_info(const struct request *request) {
 }
 
 enum status main_print_info(const char *path, int case_only) {
-    if (target_is(path, TARGET_CHECKPOINT)) return checkpoint_info(path, case_only, stdout);
-    return result_kind_info(N_KINDS, kinds, path, case_only, stdout);
+    struct say_page page;
+    TRY(say_begin(&page));
+    return say_end(&page, target_is(path, TARGET_CHECKPOINT)
+                              ? checkpoint_info(path, case_only, page.stream)
+                              : result_kind_info(N_KINDS, kinds, path, case_only, page.stream));
 }

@@ -5,6 +5,7 @@
 
 #include "app/main_commands.h"
 #include "app/main_signals.h"
+#include "app/say.h"
 #include "base/parallel.h"
 #include "case/case.h"
 #include "case/case_member.h"
@@ -54,7 +55,7 @@ static void print_warnings(const struct checked *checked) {
         fprintf(stderr, "shoal: warning: ");
         if (is_study(checked)) fprintf(stderr, "member %d", checked->first_warned[w]);
         if (n > 1) fprintf(stderr, " and %d other%s", n - 1, n > 2 ? "s" : "");
-        fprintf(stderr, "%s%s\n", is_study(checked) ? ": " : "", checked->warning[w]);
+        say_line(stderr, "%s%s\n", is_study(checked) ? ": " : "", checked->warning[w]);
     }
 }
 
@@ -126,7 +127,7 @@ static enum status check(struct checked *checked) {
     if (status == STATUS_OK) status = check_start(checked, 0, values);
     // what has to be there or not for this command alone is no fault of the case
     if (status == STATUS_OK && !checked->request->quiet && target_check(path, TARGET_NETCDF, false) != STATUS_OK) {
-        fprintf(stderr, "shoal: note: %s\n", status_message());
+        say_line(stderr, "shoal: note: %s\n", status_message());
     }
     free(path);
     return status;
@@ -140,12 +141,12 @@ static void print_cost(const struct checked *checked) {
         const char *name;
     } units[] = {{86400, "days"}, {3600, "h"}, {60, "min"}, {0, "s"}};
     if (checked->n_failed > 0) {
-        printf("    %d of its members fail%s in the first events, as member %d: %s\n", checked->n_failed,
-               checked->n_failed == 1 ? "s" : "", checked->first_failed, checked->failure);
+        say_line(stdout, "    %d of its members fail%s in the first events, as member %d: %s\n", checked->n_failed,
+                 checked->n_failed == 1 ? "s" : "", checked->first_failed, checked->failure);
     }
     if (checked->n_estimated == 0) {
-        printf("    no estimate of its time: %s\n",
-               checked->n_failed > 0 ? "no member has one" : "its start takes too long");
+        say_line(stdout, "    no estimate of its time: %s\n",
+                 checked->n_failed > 0 ? "no member has one" : "its start takes too long");
         return;
     }
     const double seconds = checked->seconds * (checked->n_members - checked->n_failed) / checked->n_estimated;
@@ -160,7 +161,7 @@ static void print_cost(const struct checked *checked) {
 
 static void print_verdict(const struct checked *checked) {
     const struct case_values *const values = checked->values;
-    printf("%s: ok: %d fish, ", checked->request->positional, values->school.n_fish);
+    say_line(stdout, "%s: ok: %d fish, ", checked->request->positional, values->school.n_fish);
     if (checked->n_unknowns > 0) printf("%d unknowns, ", checked->n_unknowns);
     printf("%.6g s in %ld events", values->time.end, lround(values->time.end / values->school.shedding_interval));
     if (is_study(checked)) printf("; %d members", checked->n_members);

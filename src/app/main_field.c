@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "app/main_commands.h"
+#include "app/say.h"
 #include "base/text.h"
 #include "output/field_file.h"
 #include "output/target.h"
@@ -81,7 +82,7 @@ static enum status write_field(const struct request *request, const struct field
     TRY(read_box(request->box, row, &grid));
     TRY(read_grid(request->grid, &grid));
     TRY(field_file_write(path, request->force, request->positional, request->command_line, row, &grid));
-    if (!request->quiet) printf("%s: %d x %d points at t = %g s\n", path, grid.nx, grid.ny, row->state->t);
+    if (!request->quiet) say_line(stdout, "%s: %d x %d points at t = %g s\n", path, grid.nx, grid.ny, row->state->t);
     return STATUS_OK;
 }
 

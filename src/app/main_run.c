@@ -11,6 +11,7 @@
 #include "app/main_teller.h"
 #include "app/main_threads.h"
 #include "app/progress.h"
+#include "app/say.h"
 #include "base/parallel.h"
 #include "output/page.h"
 #include "output/target.h"
@@ -28,7 +29,7 @@ static enum status tell_begin(const struct case_values *values, const char *path
 
 static void tell_note(const char *line, void *data) {
     (void)data;
-    fprintf(stderr, "shoal: note: %s\n", line);
+    say_line(stderr, "shoal: note: %s\n", line);
 }
 
 static void tell_progress(const struct simulate_progress *now, void *data) {
@@ -64,7 +65,7 @@ static enum status run_case(const struct case_values *values, const struct reque
     enum status status = run_and_tell(values, request, path, &teller);
     const char *const result = teller.path ? teller.path : "";
     if (status == STATUS_OK && request->verbose) status = main_print_info(result, 0);
-    if (status == STATUS_OK && !request->quiet && !request->verbose) printf("%s\n", result);
+    if (status == STATUS_OK && !request->quiet && !request->verbose) say_line(stdout, "%s\n", result);
     if (status == STATUS_OK) status = main_refuse_warnings(request, &teller, result);
     free(teller.path);
     return status;
@@ -141,6 +142,7 @@ enum status main_demo(const struct request *request) {
     TRY(draw(share, "demo.nc", "demo.png"));
     TRY(page_write("demo.nc", "demo.html", request->force));
     if (!request->quiet)
-        printf("\nThe picture is demo.png, the movie demo.html (open it in a browser); the case is %s.\n", path);
+        say_line(stdout, "\nThe picture is demo.png, the movie demo.html (open it in a browser); the case is %s.\n",
+                 path);
     return STATUS_OK;
 }

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stddef.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <sys/time.h>
 #include <unistd.h>
 
@@ -25,6 +26,8 @@ static struct {
     {.number = SIGTERM},
     {.number = SIGHUP},
     {.number = SIGUSR1},
+    // the soft limit on CPU time; the hard one kills
+    {.number = SIGXCPU},
 };
 enum { N_ASKING = sizeof asking / sizeof *asking };
 
@@ -84,6 +87,26 @@ void main_limit_processor_time(double seconds) {
     const double whole = floor(seconds);
     const struct itimerval once = {.it_value = {(time_t)whole, (suseconds_t)(1e6 * (seconds - whole))}};
     setitimer(ITIMER_PROF, &once, NULL);
+}
+
+// ---- exits of libraries
+
+static volatile sig_atomic_t is_guarded;
+
+static void on_exit_of_a_library(void) {
+    if (!is_guarded) return;
+    fputs("shoal: error: a library ended the program: there is too little memory, or there are too many threads\n",
+          stderr);
+    _exit(status_exit_code(STATUS_MEMORY));
+}
+
+void main_guard_exit(void) {
+    is_guarded = atexit(on_exit_of_a_library) == 0;
+}
+
+int main_exit(int code) {
+    is_guarded = 0;
+    return code;
 }
 
 const volatile sig_atomic_t *main_stop_signal(void) {

@@ -5,6 +5,7 @@
 #include "app/main_signals.h"
 #include "app/main_teller.h"
 #include "app/main_threads.h"
+#include "app/say.h"
 #include "base/parallel.h"
 #include "output/steady_info.h"
 #include "output/steady_json.h"
@@ -36,8 +37,10 @@ static enum status find(const struct case_values *values, const struct request *
     if (request->json) {
         TRY(netcdf_print(path, steady_json, stdout));
     } else if (!request->quiet) {
-        printf("%s\n", path);
-        TRY(netcdf_print(path, steady_info, stdout));
+        struct say_page page;
+        say_line(stdout, "%s\n", path);
+        TRY(say_begin(&page));
+        TRY(say_end(&page, netcdf_print(path, steady_info, page.stream)));
     }
     return main_refuse_warnings(request, &teller, path);
 }

@@ -6,6 +6,7 @@
 #include "app/main_commands.h"
 #include "app/main_signals.h"
 #include "app/progress.h"
+#include "app/say.h"
 #include "case/case.h"
 #include "case/sweep_error.h"
 #include "output/target.h"
@@ -71,7 +72,11 @@ static enum status run_study(const struct case_values *values, const struct requ
     const enum status status = study_run(values, &options, &n_failed);
     progress_end(&progress);
     TRY(status);
-    if (options.last < 0) return study_report(values, folder, NULL, request->command_line, request->strict, stdout);
+    if (options.last < 0) {
+        struct say_page page;
+        TRY(say_begin(&page));
+        return say_end(&page, study_report(values, folder, NULL, request->command_line, request->strict, page.stream));
+    }
     if (n_failed == 0) return STATUS_OK;
     return status_fail(STATUS_SOLVER, "%d of %d members failed; %s/member-*.failed say why", n_failed,
                        options.last - options.first + 1, folder);
@@ -101,6 +106,12 @@ static enum status run_errors(const struct case_values *values, const struct req
     return status;
 }
 
+static enum status write_scripts(const struct case_values *values, const char *folder, int bundle) {
+    struct say_page page;
+    TRY(say_begin(&page));
+    return say_end(&page, study_slurm(values, folder, bundle, page.stream));
+}
+
 static enum status run_in_folder(const struct case_values *values, const struct request *request, const char *ending) {
     char folder[512];
     snprintf(folder, sizeof folder, "%s%s", values->name, ending);
@@ -112,7 +123,7 @@ static enum status run_in_folder(const struct case_values *values, const struct 
     if (request->plan) {
         return status_fail(STATUS_CASE, "--plan: the case has no `error`; `shoal check` estimates a sweep");
     }
-    return request->slurm ? study_slurm(values, place, bundle, stdout) : run_study(values, request, place);
+    return request->slurm ? write_scripts(values, place, bundle) : run_study(values, request, place);
 }
 
 enum status main_study(const struct request *request) {
@@ -168,7 +179,9 @@ enum status main_error(const struct request *request) {
 }
 
 enum status main_gather(const struct request *request) {
-    return study_gather(request->positional, request->command_line, request->strict, stdout);
+    struct say_page page;
+    TRY(say_begin(&page));
+    return say_end(&page, study_gather(request->positional, request->command_line, request->strict, page.stream));
 }
 
 // ---- compare
@@ -183,9 +196,11 @@ static enum status run_comparison(const struct case_values *values, const struct
                                       .data = &progress,
                                       .stop = main_stop_signal()};
     main_catch_signals();
-    const enum status status = study_compare(values, options, &run, stdout);
+    struct say_page page;
+    TRY(say_begin(&page));
+    const enum status status = study_compare(values, options, &run, page.stream);
     progress_end(&progress);
-    return status;
+    return say_end(&page, status);
 }
 
 enum status main_compare(const struct request *request) {

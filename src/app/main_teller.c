@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "app/main_commands.h"
+#include "app/say.h"
 #include "case/case.h"
 #include "case/sweep_members.h"
 #include "run/record.h"
@@ -14,7 +15,7 @@ void main_tell_warning(const char *line, void *data) {
     struct teller *const teller = data;
     teller->n_warnings++;
     progress_end(&teller->progress);
-    fprintf(stderr, "shoal: warning: %s\n", line);
+    say_line(stderr, "shoal: warning: %s\n", line);
 }
 
 enum status main_refuse_warnings(const struct request *request, const struct teller *teller, const char *path) {

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "app/main_commands.h"
+#include "app/say.h"
 #include "base/text.h"
 #include "output/netcdf.h"
 #include "output/page.h"
@@ -21,8 +22,8 @@ static void add_stem(struct text *text, const char *path) {
 static void note_missing(const char *path) {
     struct netcdf_rows rows;
     if (netcdf_read_rows(path, &rows) != STATUS_OK || rows.n == 0 || rows.n == rows.n_counted) return;
-    fprintf(stderr, "shoal: note: %s: the last %llu of %llu rows are missing: the file was cut off\n", path,
-            (unsigned long long)(rows.n_counted - rows.n), (unsigned long long)rows.n_counted);
+    say_line(stderr, "shoal: note: %s: the last %llu of %llu rows are missing: the file was cut off\n", path,
+             (unsigned long long)(rows.n_counted - rows.n), (unsigned long long)rows.n_counted);
 }
 
 enum status main_view(const struct request *request) {
@@ -37,7 +38,7 @@ enum status main_view(const struct request *request) {
     const enum status status = path.failed ? status_fail(STATUS_MEMORY, "out of memory: a file name")
                                            : page_write(request->positional, path.text, request->force);
     if (status == STATUS_OK) note_missing(request->positional);
-    if (status == STATUS_OK && !request->quiet) printf("%s\n", path.text);
+    if (status == STATUS_OK && !request->quiet) say_line(stdout, "%s\n", path.text);
     text_free(&path);
     return status;
 }
@@ -47,7 +48,7 @@ enum status main_export(const struct request *request) {
     if (!request->vtk) return status_fail(STATUS_CASE, "export: to what? give --vtk FOLDER; see shoal export --help");
     TRY(vtk_export(request->positional, request->vtk, request->force, &list));
     note_missing(request->positional);
-    if (!request->quiet) printf("%s\n", list);
+    if (!request->quiet) say_line(stdout, "%s\n", list);
     free(list);
     return STATUS_OK;
 }

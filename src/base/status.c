@@ -22,6 +22,10 @@ const char *status_message(void) {
     return message;
 }
 
+void status_clear(void) {
+    message[0] = '\0';
+}
+
 int status_exit_code(enum status status) {
     switch (status) {
         case STATUS_OK: return 0;

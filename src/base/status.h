@@ -24,6 +24,9 @@ enum status status_fail(enum status status, const char *format, ...) __attribute
 /* The message of the last status_fail of this thread, or "". Valid until the next status_fail of this thread. */
 const char *status_message(void);
 
+/* Forget the message, so that a later failure without one is not explained by it. */
+void status_clear(void);
+
 /* The exit code of the program for a status: 0, 1 (solver), 2 (case, usage), 3 (missed, contact), 4 (file, memory),
  * 75 (stopped by a signal). */
 int status_exit_code(enum status status);

@@ -51,6 +51,20 @@ void text_print_json(FILE *stream, const char *string) {
     fputc('"', stream);
 }
 
+void text_print_clean(FILE *stream, const char *string) {
+    for (const unsigned char *c = (const unsigned char *)string; *c; c++) {
+        // U+0080 to U+009F are control characters too
+        const bool is_second = c[0] == 0xc2 && c[1] >= 0x80 && c[1] < 0xa0;
+        const bool is_control = (*c < ' ' && *c != '\n' && *c != '\t') || *c == 0x7f;
+        if (is_second) fprintf(stream, "\\x%02x", *c++);
+        if (is_second || is_control) {
+            fprintf(stream, "\\x%02x", *c);
+        } else {
+            fputc(*c, stream);
+        }
+    }
+}
+
 void text_free(struct text *text) {
     free(text->text);
     *text = (struct text){0};

@@ -24,6 +24,9 @@ void text_add_number(struct text *text, double number);
 /* Print a string of JSON, in its quotes; null where string is NULL. */
 void text_print_json(FILE *stream, const char *string);
 
+/* Print a string; a control character, which would command a terminal, as \x1b. Line breaks and tabs stay. */
+void text_print_clean(FILE *stream, const char *string);
+
 /* Release the string and zero it. */
 void text_free(struct text *text);
 

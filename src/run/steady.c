@@ -168,12 +168,7 @@ static void warn_of_change(const struct run *run) {
 // ---- a run
 
 static enum status search(struct run *run) {
-    const enum status status = steady_search_run(&run->problem);
-    if (status == STATUS_STOPPED) {
-        return status_fail(status, "stopped %s in beat %d of the search, which cannot be resumed",
-                           simulate_stopped_by(run->options->stop), run->problem.map.n_beats + 1);
-    }
-    TRY(status);
+    TRY(steady_search_run(&run->problem));
     run->found.residual = steady_map_residual(&run->problem.map);
     run->found.error = NAN;
     run->found.stiffness = NAN;
@@ -238,6 +233,10 @@ static enum status start(struct run *run) {
     TRY(record_create_steady(&run->record, run->values, run->simulation->school, n_events, options->path,
                              options->overwrite, options->command));
     const enum status status = is_static ? find_equilibrium(run) : search(run);
+    if (status == STATUS_STOPPED && !is_static) {
+        status_fail(status, "stopped %s in beat %d of the search, which cannot be resumed: begin it again",
+                    simulate_stopped_by(options->stop), run->problem.map.n_beats + 1);
+    }
     if (status == STATUS_OK) {
         result_file_steady(run->record.file, run->simulation->school, &run->found);
         record_notes_write(run->record.file, run->simulation, options->warn, options->data);

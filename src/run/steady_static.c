@@ -177,8 +177,9 @@ static enum status solve(struct growth *growth, double part) {
     struct state *const state = simulation->state;
     const size_t bytes = (size_t)simulation->school->n_unknowns * sizeof *state->y;
     if (simulation->stop && *simulation->stop) {
-        return status_fail(STATUS_STOPPED, "stopped %s at %.3g of the stream", simulate_stopped_by(simulation->stop),
-                           part);
+        return status_fail(STATUS_STOPPED,
+                           "stopped %s at %.3g of the stream: a search cannot be resumed: begin it again",
+                           simulate_stopped_by(simulation->stop), part);
     }
     set_part(growth, part);
     enum status status = equilibrium_solve(growth->equilibrium);

@@ -217,6 +217,7 @@ static struct unknown_place worst_velocity(const struct runge_kutta *solver) {
 
 static enum status unstable(const struct runge_kutta *solver, double t, const char *why) {
     double step = 0;
+    if (*why == '\0') why = "the equations have no finite value";
     ARKodeGetLastStep(solver->arkode, &step);
     const struct unknown_place place = worst_velocity(solver);
     const struct fish *const fish = &solver->residual->school->fish[place.fish];
@@ -264,6 +265,7 @@ static enum status runge_kutta_advance(void *data, double t, const volatile sig_
         }
         if (ARKodeSetStopTime(solver->arkode, t)) return status_fail(STATUS_SOLVER, "ARKODE: %s", status_message());
         solver->failure = STATUS_OK;
+        status_clear();
         const double before = reached;
         const int code = ARKodeEvolve(solver->arkode, t, solver->y, &reached, ARK_ONE_STEP);
         TRY(sundials_context_check(&solver->context));

@@ -206,6 +206,11 @@ static enum status finish(struct study *study, struct job *job, int outcome) {
         snprintf(job->report->reason, REASON_BYTES, "killed by signal %d (%s)", WTERMSIG(outcome),
                  strsignal(WTERMSIG(outcome)));
     }
+    if (*job->report->reason == '\0') {
+        snprintf(job->report->reason, REASON_BYTES,
+                 "ended with exit code %d by a library: there is too little memory, or there are too many threads",
+                 code);
+    }
     return study_folder_set_reason(study->options->folder, job->member, job->report->reason);
 }
 

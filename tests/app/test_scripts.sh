@@ -214,6 +214,41 @@ for place in 40 1300; do
     check "bytes $place damaged: a picture or a message" test -z "$(grep Traceback err)" -a "$code" != 1
 done
 
+cat >sweep.yaml <<'end'
+format: 1
+time: {end: 0.1, shedding_interval: 0.05, output_interval: 0.05}
+fish: [{nodes: 5, sheet_points: 9}]
+sweep:
+  - {key: "fish[0].wave.amplitude", values: [0.2, 0.3]}
+  - {key: "fish[0].wave.frequency", values: [1, 2]}
+end
+"$program" study sweep.yaml -q -o sweep >/dev/null 2>&1
+cat >craft.py <<'end'
+"""craft.py FILE NAME: put text in the place of a variable."""
+import sys
+import netCDF4
+
+data, name = netCDF4.Dataset(sys.argv[1], "a"), sys.argv[2]
+old = data[name]
+words = {key: old.getncattr(key) for key in old.ncattrs() if key != "_FillValue"}
+data.renameVariable(name, "no_" + name)
+new = data.createVariable(name, "S1", old.dimensions)
+new.setncatts(words)
+new[...] = "x"
+end
+for name in speed fish0_wave_amplitude fish0_wave_frequency; do
+    cp sweep/study.nc text_study.nc
+    /usr/bin/python3 craft.py text_study.nc $name
+    script plot.py study text_study.nc text.png
+    check "a study with text as its $name: a picture or a message" test -z "$(grep Traceback err)" -a "$code" != 1
+done
+for name in speed time wake_count; do
+    cp run.nc text_run.nc
+    /usr/bin/python3 craft.py text_run.nc $name
+    script plot.py time text_run.nc text.png
+    check "a run with text as its $name: a picture or a message" test -z "$(grep Traceback err)" -a "$code" != 1
+done
+
 echo text >text.nc
 ncgen -o other.nc <<<'netcdf other { dimensions: x = 1; }'
 refuses 4 "no such file" plot.py nothing.nc

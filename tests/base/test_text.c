@@ -24,6 +24,17 @@ static void numbers_are_decimal_and_whole_strings(void **state) {
     assert_true(isinf(large));
 }
 
+static void control_characters_are_printed_as_numbers(void **state) {
+    (void)state;
+    char text[256] = "";
+    FILE *const stream = fmemopen(text, sizeof text - 1, "w");
+    text_print_clean(stream,
+                     "a\x1b[31m\a\b\r\x7f\n\tb\xc2\x9b"
+                     "1m \xc3\xa9 \xe2\x82\xac \xc2\xa0 \xff");
+    fclose(stream);
+    assert_string_equal(text, "a\\x1b[31m\\x07\\x08\\x0d\\x7f\n\tb\\xc2\\x9b1m \xc3\xa9 \xe2\x82\xac \xc2\xa0 \xff");
+}
+
 static void a_written_number_reads_back_bit_for_bit(void **state) {
     (void)state;
     static const double numbers[] = {
@@ -82,6 +93,7 @@ static void a_string_of_json_has_no_bare_quote_or_control_character(void **state
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(numbers_are_decimal_and_whole_strings),
+        cmocka_unit_test(control_characters_are_printed_as_numbers),
         cmocka_unit_test(a_written_number_reads_back_bit_for_bit),
         cmocka_unit_test(a_number_is_written_with_no_more_digits_than_needed),
         cmocka_unit_test(the_locale_does_not_matter),

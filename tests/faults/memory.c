@@ -2,10 +2,14 @@
  * of its libraries pass. The address sanitizer, which has a malloc of its own, cannot do with this one.
  *
  *     MEMORY_AT      which allocation fails, from 1; 0: none
- *     MEMORY_COUNT   a file to append the number of allocations to at the end */
+ *     MEMORY_COUNT   a file to append the number of allocations to at the end
+ *     THREAD_AT      from which on threads cannot be started, from 1; 0: all can */
 #define _GNU_SOURCE
+#include <dlfcn.h>
 #include <errno.h>
 #include <link.h>
+#include <pthread.h>
+#include <stdatomic.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -69,6 +73,16 @@ void *realloc(void *memory, size_t size) {
 
 void *aligned_alloc(size_t alignment, size_t size) {
     return FAILS ? NULL : __libc_memalign(alignment, size);
+}
+
+int pthread_create(pthread_t *thread, const pthread_attr_t *attributes, void *(*start)(void *), void *data) {
+    static atomic_long n_threads;
+    static int (*real)(pthread_t *, const pthread_attr_t *, void *(*)(void *), void *);
+    const char *const text = getenv("THREAD_AT");
+    const long at = text ? atol(text) : 0, n = ++n_threads;
+    if (at > 0 && n >= at) return EAGAIN;
+    if (!real) *(void **)&real = dlsym(RTLD_NEXT, "pthread_create");
+    return real(thread, attributes, start, data);
 }
 
 static char *copy(const char *text, size_t length) {

@@ -15,4 +15,23 @@ check a_thousand_cases timeout "$time_limit" "$targets/fuzz_case" 1000 1 seeds/c
 check a_thousand_results timeout "$time_limit" "$targets/fuzz_result" 1000 1 seeds/results/*
 check a_thousand_checkpoints timeout "$time_limit" "$targets/fuzz_checkpoint" 1000 1 seeds/checkpoints/*
 
+# scripts/fuzz.sh knows libFuzzer by its help, however long that is: always the same answer
+mkdir -p tree/scripts tree/tests/fuzz tree/build/fuzz
+cp "$root/scripts/fuzz.sh" tree/scripts
+printf '#!/bin/sh\nmkdir -p "$2"\n' >tree/tests/fuzz/seeds.sh
+for target in fuzz_case fuzz_result fuzz_checkpoint; do
+    cat >tree/build/fuzz/$target <<'end'
+#!/bin/sh
+case $1 in
+    -help=1) echo "Usage of libFuzzer:" && seq 100000 ;;
+    -*) echo "stat::number_of_executed_units: 7" ;;
+    *) sleep 1 ;;
+esac
+end
+done
+chmod +x tree/tests/fuzz/seeds.sh tree/build/fuzz/*
+: >answers
+for ((i = 0; i < 10; i++)); do tree/scripts/fuzz.sh tree/build 1 >>answers 2>&1; done
+check the_fuzzer_is_recognised_thirty_times_of_thirty test "$(grep -c ': 7 inputs in 1 s$' answers)" = 30
+
 finish

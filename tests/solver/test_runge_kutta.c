@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "school.h"
+#include "solver/ode_rhs.h"
 #include "solver/runge_kutta.h"
 
 // without drag: v|v| has a kink in its derivative, at which no method keeps an order above three
@@ -115,6 +116,31 @@ static void impulses_restart_the_explicit_method_too(void **state) {
     NEAR(tail[0], tail[1], 1e-6, 0);
 }
 
+// an evaluation that fails from some time on, and does not say why
+static double silent_from = INFINITY;
+enum status __real_ode_rhs_rates(struct ode_rhs *rhs, double t, double *y, double *yp);
+enum status __wrap_ode_rhs_rates(struct ode_rhs *rhs, double t, double *y, double *yp);
+enum status __wrap_ode_rhs_rates(struct ode_rhs *rhs, double t, double *y, double *yp) {
+    return t > silent_from ? STATUS_RETRY : __real_ode_rhs_rates(rhs, t, y, yp);
+}
+
+static void a_failure_without_a_reason_is_not_explained_by_an_old_message(void **state) {
+    (void)state;
+    static const char *const old[] = {"", "a message of something else"};
+    for (int i = 0; i < 2; i++) {
+        char text[512];
+        snprintf(text, sizeof text, soft, "rk4", 0.005, 1e-5);
+        struct simulation *const simulation = school_simulation(text);
+        school_run(simulation, 0.04);
+        status_fail(STATUS_FILE, "%s", old[i]);
+        silent_from = 0.05;
+        assert_int_equal(simulate_step(simulation), STATUS_SOLVER);
+        silent_from = INFINITY;
+        if (!strstr(status_message(), " s: the equations have no finite value; ")) fail_msg("%s", status_message());
+        simulate_free(simulation);
+    }
+}
+
 static void rate_of_an_algebraic_circulation_is_a_difference_over_the_step(void **state) {
     (void)state;
     struct simulation *const simulation = school_simulation(
@@ -133,6 +159,7 @@ int main(void) {
         cmocka_unit_test(explicit_and_implicit_solutions_agree),
         cmocka_unit_test(a_torn_body_is_no_result),
         cmocka_unit_test(an_unstable_step_ends_with_a_message_that_tells_the_time),
+        cmocka_unit_test(a_failure_without_a_reason_is_not_explained_by_an_old_message),
         cmocka_unit_test(rate_of_an_algebraic_circulation_is_a_difference_over_the_step),
         cmocka_unit_test(impulses_restart_the_explicit_method_too),
     };

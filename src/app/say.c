@@ -1,0 +1,39 @@
+/* say.c: see say.h. */
+#include "app/say.h"
+
+#include <stdarg.h>
+#include <stdlib.h>
+
+#include "base/text.h"
+
+void say_line(FILE *stream, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    const int length = vsnprintf(NULL, 0, format, arguments);
+    va_end(arguments);
+    char *const line = length < 0 ? NULL : malloc((size_t)length + 1);
+    if (!line) return;
+    va_start(arguments, format);
+    vsnprintf(line, (size_t)length + 1, format, arguments);
+    va_end(arguments);
+    text_print_clean(stream, line);
+    free(line);
+}
+
+static enum status out_of_memory(void) {
+    return status_fail(STATUS_MEMORY, "out of memory: what is to be printed");
+}
+
+enum status say_begin(struct say_page *page) {
+    *page = (struct say_page){0};
+    page->stream = open_memstream(&page->text, &page->n);
+    return page->stream ? STATUS_OK : out_of_memory();
+}
+
+enum status say_end(struct say_page *page, enum status status) {
+    const int failed = fclose(page->stream) != 0;
+    if (page->text) text_print_clean(stdout, page->text);
+    free(page->text);
+    *page = (struct say_page){0};
+    return status == STATUS_OK && failed ? out_of_memory() : status;
+}

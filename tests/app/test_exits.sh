@@ -1,0 +1,106 @@
+#!/usr/bin/env bash
+# How the program ends, and what it prints then: signals and limits, exits of libraries, names with control characters.
+#
+#   tests/app/test_exits.sh PROGRAM
+# shellcheck source=tests/checks.sh
+. "$(dirname "$0")/../checks.sh"
+
+cat >small.yaml <<'end'
+format: 1
+name: small
+time: {end: 0.1, shedding_interval: 0.02, output_interval: 0.02}
+fish: [{nodes: 7, sheet_points: 9}]
+end
+cat >steady.yaml <<'end'
+format: 1
+name: steady
+time: {end: 1, shedding_interval: 0.02}
+fish: [{nodes: 9, sheet_points: 17, wave: {frequency: 1}}]
+steady: {tolerance: 1.0e-10, beats: 5000}
+end
+ended() { ((code == $1)); }
+
+# ---- a limit on CPU time
+
+code=0
+(ulimit -St 1 && exec "$program" run small.yaml -q --set time.end=100000 --set time.output_interval=10) >out 2>err \
+    </dev/null || code=$?
+check the_soft_limit_of_CPU_time_stops_a_run ended 75
+check it_says_how_to_go_on has err "go on with 'shoal resume small.ckpt'"
+run info small.ckpt
+check there_is_a_checkpoint ended 0
+
+# ---- a search for a steady state cannot be resumed, and says so wherever it is stopped
+
+for how in '' '--set steady.tolerance=0.001' "--set solver.rtol=1e-7"; do
+    # shellcheck disable=SC2086 # options
+    env --default-signal=TERM "$program" steady steady.yaml -q -o steady.nc --force $how >out 2>err </dev/null &
+    pid=$!
+    wait_for handles "$pid" TERM
+    sleep 0.4
+    kill -TERM "$pid"
+    code=0
+    wait "$pid" || code=$?
+    pid=
+    ended 0 || check "a search that is stopped ($how)" eval \
+        'ended 75 && grep -q "stopped by a signal in beat [0-9]* of the search, which cannot be resumed: begin it again" err'
+done
+run steady --help
+check help_promises_no_resumption_of_a_search test -z "$(grep 'resume goes on' out)"
+
+# ---- a library that ends the program
+
+if grep -q __asan_init "$program"; then
+    skip a_library_that_ends_the_program "the address sanitizer has a malloc of its own"
+elif ldd "$program" | grep libomp >/dev/null; then
+    skip a_library_that_ends_the_program "the library of clang dies of a signal"
+else
+    shim=$(dirname "$program")/memory.so
+    with_threads() {  # the first thread that cannot be started, arguments
+        code=0
+        LD_PRELOAD=$shim THREAD_AT=$1 timeout "$time_limit" "$program" "${@:2}" >out 2>err </dev/null || code=$?
+    }
+    cat >many.yaml <<'end'
+format: 1
+time: {end: 0.04, shedding_interval: 0.02, output_interval: 0.02}
+fish: [{}, {start: {position: [0, 1]}}, {start: {position: [0, 2]}}, {start: {position: [0, 3]}}]
+end
+    # the program tries three threads, and then the library of OpenMP starts three
+    for at in 1 4 5; do
+        with_threads $at run many.yaml -q -o many.nc --force --threads 4
+        check "threads from $at on cannot be started: exit code 4" ended 4
+        check "it says so ($at)" eval 'grep -q "shoal: error: .*threads" err'
+    done
+    with_threads 7 run many.yaml -q -o many.nc --force --threads 4
+    check enough_threads ended 0
+    { cat many.yaml && echo 'solver: {threads: 4}' && echo 'sweep: [{key: "fish[0].wave.amplitude", values: [0.2, 0.3]}]'; } \
+        >study.yaml
+    with_threads 4 study study.yaml -q -j 1 -o study
+    check a_member_that_a_library_ends_has_a_reason eval 'ended 1 && has study/member-0000.failed "too many threads"'
+fi
+
+# ---- names with control characters
+
+odd=$'odd\e[31m\a.nc'
+clean() { ! LC_ALL=C grep -q $'[\e\a\r\x7f]' out err; }
+cp small.yaml $'case\e[31m.yaml'
+run run $'case\e[31m.yaml' -o "$odd"
+check a_path_is_printed_without_control_characters eval 'ended 0 && clean && has out "odd\\x1b[31m\\x07.nc"'
+for arguments in "info" "view" "export --vtk vtk" "field --grid 3,3" "run" "resume" "steady" "study" "check" "show" "compare"; do
+    # shellcheck disable=SC2086 # options
+    run $arguments "$odd"
+    check "$arguments prints none either" clean
+done
+run gather $'no\e[31m'
+check a_message_has_none eval 'ended 4 && clean && has err "no\x1b[31m"'
+printf 'format: 1\nname: a\e[31m\n' >raw.yaml
+run check raw.yaml
+check a_line_of_a_case_has_none eval 'ended 2 && clean'
+# what a file holds may be anybody's
+sed 's/^name: small/name: TITLES/' small.yaml >title.yaml
+run run title.yaml -q -o title.nc
+LC_ALL=C sed -i $'s/TITLES/\e[31m!/' title.nc
+run info title.nc
+check the_title_of_a_result_has_none eval 'ended 0 && clean && has out "\x1b[31m!"'
+
+finish
