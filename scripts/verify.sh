@@ -9,7 +9,7 @@
 set -euo pipefail
 export LC_ALL=C
 
-readonly sections=(theory rod force sheet wake plate school interval symmetry start energy control pressure elastic
+readonly sections=(theory rod force sheet wake plate school interval symmetry start energy momentum control pressure elastic
     coupled steady static tandem walls validation)
 readonly at_once=2
 

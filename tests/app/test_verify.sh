@@ -10,7 +10,7 @@
 verify=$(dirname "$program")/verify/verify
 cd "$root" || exit 2  # some checks run the cases of the tree
 
-for section in theory rod force sheet wake plate school interval symmetry start energy control pressure elastic \
+for section in theory rod force sheet wake plate school interval symmetry start energy momentum control pressure elastic \
     coupled steady static tandem walls validation; do
     code=0
     : >"$folder/table"
