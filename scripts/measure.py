@@ -195,7 +195,7 @@ def steady_states(bench):
         state = bench.steady(name)
         largest = max(math.hypot(*value) for value in state["steady_multiplier"])
         strouhal = state["steady_strouhal"][0]
-        yield (f"[{name}](cases/{name}.yaml)", f"{state['steady_speed'][0]:.4f}",
+        yield (name, f"{state['steady_speed'][0]:.4f}",
                f"{state['steady_cost_of_transport'][0]:.4f}", "" if strouhal is None else f"{strouhal:.3f}",
                short(state["steady_residual"]), state["steady_beats"], f"{largest:.2f}")
 
