@@ -84,7 +84,8 @@ What is not settled: the order in N of circulation. It is shown without a bound,
 last edge points as the body does half an edge ahead of the tail; that is a conjecture and not shown here. In M only
 shed circulation is checked on the default fish: the changes of nose and wake are smaller and irregular."""),
     "interval": ("Shedding interval of one fish", """\
-One soft fish (E = 1e5 Pa, N = 7, M = 65) with the defaults of the program otherwise, from rest and from 1 m/s. The run
+One soft fish (E = 1e5 Pa, N = 7, M = 65), from rest and from 1 m/s, with a force that feels the own wake: the pressure of
+the bound sheet with *sheet*, the published force with *continuous*. All else has the defaults of the program. The run
 ends at 1.5 s; vortices decay from an age of 0.8 s to 1 s, so that part of the wake is lost in it, which Kelvin's
 theorem retains or drops (`dissipated_circulation`). The interval is halved from 0.02 s to 0.000625 s. Changes and
 errors are root mean squares over the run: those of one instant change their sign now and then, so that the order
