@@ -84,7 +84,8 @@ What is not settled: the order in N of circulation. It is shown without a bound,
 last edge points as the body does half an edge ahead of the tail; that is a conjecture and not shown here. In M only
 shed circulation is checked on the default fish: the changes of nose and wake are smaller and irregular."""),
     "interval": ("Shedding interval of one fish", """\
-One soft fish (E = 1e5 Pa, N = 7, M = 65) with the defaults of the program otherwise, from rest and from 1 m/s. The run
+One soft fish (E = 1e5 Pa, N = 7, M = 65), from rest and from 1 m/s, with a force that feels the own wake: the pressure of
+the bound sheet with *sheet*, the published force with *continuous*. All else has the defaults of the program. The run
 ends at 1.5 s; vortices decay from an age of 0.8 s to 1 s, so that part of the wake is lost in it, which Kelvin's
 theorem retains or drops (`dissipated_circulation`). The interval is halved from 0.02 s to 0.000625 s. Changes and
 errors are root mean squares over the run: those of one instant change their sign now and then, so that the order
@@ -116,6 +117,11 @@ other in both directions (model.md 8), so that what a body gives to the fluid is
 of the interval, in the first beat mostly, where a fish from rest has swum less than a hundredth of a length in an
 interval. *Momentum lost* is the balance over the largest momentum of the bodies. A plate that starts at once across
 itself loses some per cent in its first interval (model.md 13) and nothing after."""),
+    "fish": ("The default fish", """\
+The numbers of a default fish have a limit in its nodes, and do not depend on what is no property of the fish: the
+smoothing of its wake, which its reactive force does not feel, or the frequency, with the modulus as its square. The cost
+of stiff bodies has a limit as well: the muscle is not braked by its own damping, and its power follows from the balance
+of momentum (doc/model.md, sections 3 and 13; doc/numerics.md, section 9)."""),
     "control": ("Control", """\
 Heading control with feedforward, and course control, on bodies from soft to stiff: the same run with the implicit and
 with an explicit method. The bound is a little more than twice what the tolerance leaves where nothing steers (law none).
@@ -208,6 +214,9 @@ references are in tests/verify/data with their sources. *Error* is the ratio of 
 # figure: title, x axis, y axis, further keys: scale (log, linear, semilog, semilogx), slopes of the triangles, joined
 # (True: the points of a series by lines)
 FIGURE = {
+    "fish_nodes": ("Default fish: steady speed", "nodes N", "speed [m/s]", {"scale": "linear"}),
+    "fish_stiffness": ("Default fish from rest: cost of the last of eight beats", "modulus [Pa]", "cost [m/s2]",
+                       {"scale": "log"}),
     "elastica": ("Elastica: tip deflection", "nodes N", "error of the deflection over L", {"slopes": [-2]}),
     "frequencies": ("Frequencies of beams", "nodes N", "relative error of beta L", {"slopes": [-2]}),
     "natural shape": ("Chain with natural curvature", "nodes N", "relative error of the chord", {"slopes": [-2]}),

@@ -6,8 +6,8 @@
 Every other run finds the result of an earlier one, with its checkpoints, and has --force. After each fault the exit
 code is 0 or 4 (killed: -9); on standard error is one message, with the path and the reason; the result is the earlier
 one, byte for byte and with its checkpoints, or it has rows that are to the bit those of an undisturbed run, the first
-one at least, and `shoal info` reads it. Where there is a checkpoint, `shoal resume` ends in the bits of the undisturbed
-run.
+one at least, and `shoal info` reads it. Where there is a checkpoint of the run, `shoal resume` ends in the bits of the
+undisturbed run; a checkpoint of the earlier result beside the new one is refused.
 Prints a line for what is wrong, and as the last one how many passed and failed.
 """
 import os, resource, shutil, subprocess, sys, tempfile
@@ -85,9 +85,15 @@ def wrong_with_resumption():
         return None
     if os.path.exists("victim.nc") and rows("victim.nc")[0] == "complete":
         return None
+    # killed after the new result has the name, before the checkpoints of the earlier one are gone: they are refused
+    is_stale = all(not os.path.exists(name) or same_bytes(name, "earlier/" + name) for name in EARLIER[1:])
     done = subprocess.run(
         [program, "resume", "victim.ckpt", "-q"], stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=300
     )
+    if is_stale:
+        if done.returncode != 4 or "another case than the checkpoint" not in done.stderr:
+            return f"resume from a checkpoint of the earlier result: exit code {done.returncode}: {done.stderr}"
+        return wrong_with_file(4)
     counts["resumed"] += 1
     return wrong_with_file(0) if done.returncode == 0 else f"resume: exit code {done.returncode}: {done.stderr}"
 

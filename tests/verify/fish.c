@@ -1,0 +1,123 @@
+/* fish.c: the section "fish": the numbers of a default fish have a limit, in its nodes, its stiffness, and everything
+ * that is no property of it. doc/model.md, sections 1, 3, 9, 13. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "run/steady_search.h"
+#include "verify.h"
+
+struct swim {
+    double speed, cost; /* m s-1, m s-2 */
+};
+
+// the steady state of a default fish with some keys; school: the other sections of its case
+static struct swim steady_swim(const char *school, const char *keys) {
+    char text[512];
+    snprintf(text, sizeof text, "format: 1\n" VERIFY_SECOND "%sfish: [{%s}]\n", school, keys);
+    struct case_values values;
+    struct steady_problem problem;
+    struct simulation *const simulation = verify_open("%s", text);
+    verify_ok(case_parse(&values, text, strlen(text), "verify", ".", 0, NULL));
+    verify_ok(steady_problem_create(&problem, &values.steady, simulation));
+    verify_ok(steady_search_run(&problem));
+    const struct steady_beat *const beat = &problem.map.last[0];
+    const struct swim swim = {beat->speed, beat->actuation / simulation->school->fish[0].total_mass / beat->speed};
+    steady_problem_free(&problem);
+    simulate_free(simulation);
+    case_free(&values);
+    return swim;
+}
+
+#define COARSE "time: {end: 1, shedding_interval: 0.02}\n"
+
+// ---- nodes
+
+static void refine(const char *modulus, const struct swim *limit, double speed_bound, double cost_bound) {
+    static const int nodes[] = {13, 17, 25, 35, 49};
+    enum { N = sizeof nodes / sizeof *nodes };
+    struct swim swim[N];
+    char keys[96];
+    for (int i = 0; i < N; i++) {
+        snprintf(keys, sizeof keys, "nodes: %d, body: {modulus: %s}", nodes[i], modulus);
+        swim[i] = steady_swim(COARSE, keys);
+        verify_point("fish_nodes", verify_text("speed [m/s], %s Pa", modulus), nodes[i], swim[i].speed);
+    }
+    const struct swim *const best = &swim[N - 1], *const standard = &swim[2];
+    verify_relative(verify_text("%s Pa, 49 nodes: speed, m/s", modulus),
+                    "extrapolated, by the first version of the model", limit->speed, best->speed, 1e-3);
+    verify_relative(verify_text("%s Pa, 49 nodes: cost, m/s2", modulus),
+                    "extrapolated, by the first version of the model", limit->cost, best->cost, 4e-3);
+    verify_relative(verify_text("%s Pa, 25 nodes: speed, m/s", modulus), "49 nodes", best->speed, standard->speed,
+                    speed_bound);
+    verify_relative(verify_text("%s Pa, 25 nodes: cost, m/s2", modulus), "49 nodes", best->cost, standard->cost,
+                    cost_bound);
+    // 13, 25, 49: edges halved
+    verify_order(verify_text("%s Pa, 13, 25, 49 nodes: speed", modulus), "flux and thickness at the tail itself",
+                 verify_order_of_values(swim[0].speed, standard->speed, best->speed), 1.8, 5);
+}
+
+// ---- what is no property of the fish
+
+static void leave_out_the_wake(void) {
+    const struct swim standard = steady_swim(COARSE, "");
+    static const double smoothing[] = {0.05, 0.4};
+    for (int i = 0; i < 2; i++) {
+        char school[96];
+        snprintf(school, sizeof school, COARSE "wake: {smoothing: %g}\n", smoothing[i]);
+        verify_relative(verify_text("wake.smoothing %g: speed, m/s", smoothing[i]), "smoothing 0.1: not felt",
+                        standard.speed, steady_swim(school, "").speed, 1e-4);
+    }
+}
+
+// the same swim at another frequency: modulus with its square
+static void scale(void) {
+    const struct swim standard = steady_swim("time: {end: 1}\n", "");
+    static const double frequency[] = {0.2, 4, 20};
+    for (int i = 0; i < 3; i++) {
+        const double f = frequency[i];
+        char keys[96];
+        snprintf(keys, sizeof keys, "wave: {frequency: %g}, body: {modulus: %.1f}", f, 1e6 * f * f);
+        const struct swim swim = steady_swim("time: {end: 1}\n", keys);
+        verify_relative(verify_text("%g Hz: lengths per beat", f), "1 Hz", standard.speed, swim.speed / f, 1e-5);
+        verify_relative(verify_text("%g Hz: cost over f^2, m", f), "1 Hz", standard.cost, swim.cost / (f * f), 1e-4);
+    }
+}
+
+// ---- stiff bodies
+
+// the cost of the last of eight beats from rest
+static double cost_from_rest(double modulus, double rtol) {
+    struct simulation *const simulation =
+        verify_open("format: 1\n" VERIFY_SECOND "time: {end: 8}\nsolver: {rtol: %g}\nfish: [{body: {modulus: %g}}]\n",
+                    rtol, modulus);
+    verify_run(simulation, 8);
+    simulate_measure(simulation);
+    const struct diagnostics_fish *const fish = &simulation->diagnostics->fish[0];
+    const double cost = fish->cost_of_transport;
+    verify_zero(verify_text("%.0e Pa, rtol %.0e: energy balance over work", modulus, rtol), "residual after 8 s",
+                fish->energy_audit / fish->actuation_work, 1e-3);
+    verify_point("fish_stiffness", "cost [m/s2]", modulus, cost);
+    simulate_free(simulation);
+    return cost;
+}
+
+static void stiffen(void) {
+    const double limit = cost_from_rest(1e9, 1e-5);
+    static const double moduli[] = {1e7, 1e8, 1e10, 1e11, 1e12};
+    for (int i = 0; i < 5; i++) {
+        verify_relative(verify_text("%.0e Pa, last of 8 beats: cost, m/s2", moduli[i]), "1e9 Pa", limit,
+                        cost_from_rest(moduli[i], 1e-5), 0.01);
+    }
+    verify_relative("1e12 Pa, rtol 2e-4: cost, m/s2", "rtol 1e-6", cost_from_rest(1e12, 1e-6),
+                    cost_from_rest(1e12, 2e-4), 5e-3);
+}
+
+void verify_fish(void) {
+    if (verify_is_fast()) return;
+    refine("1e6", &(struct swim){0.9372, 0.0730}, 2e-3, 6e-3);
+    refine("1e8", &(struct swim){0.9272, 0.0622}, 4.5e-3, 1e-2);
+    leave_out_the_wake();
+    scale();
+    stiffen();
+}
