@@ -134,11 +134,10 @@ sudden starts, and plates that swim by their heave. The settings are those of a 
 points and 300 events a period. That no run fails is tested elsewhere: 36 random schools of plates and fish in `make test`
 (TEST=pressure_cases), 500 in `make soak`."""),
     "elastic": ("Elastic plates", """\
-`force: pressure` on plates with a clamped nose in a stream, rtol 1e-5, U Dt = 0.01 L, the whole wake kept. *Flutter*: the
-plate starts at one degree to the stream; growth and frequency of the mode are fitted to the tail by Prony's method
-(units of time 3 to 8) at the theory's threshold and 2 % above it, which gives the U* at which the growth vanishes;
-`wake.taper` is 0.8 there, as the sheet is straight. The error falls with the square of the edge length, so that N and (N +
-1)/2 nodes give the limit of many.
+`force: pressure` on plates with a clamped nose in a stream, rtol 1e-5, U Dt = 0.01 L, the whole wake kept. *Flutter*: growth
+rates and frequencies are those of `shoal steady`, eigenvalues of the linearised equations; secants from the threshold of
+theory on give the U* at which the growth vanishes; `wake.taper` is 0.8 there, as the sheet is straight. The errors of N
+and (N + 1)/2 nodes show how fast they fall.
 *Heaving nose*: amplitude 0.002 L, the last of 6 or 10 periods (5 in the figures)."""),
     "steady": ("Steady states", """\
 Steady states, doc/steady.md: what `shoal steady` finds in some twelve to twenty beats against runs of two hundred, and the

@@ -174,8 +174,8 @@ const struct key case_table[] = {
                 "keeps together",
      .words = WORDS("false", "true"), .synonyms = "places school"},
     {"steady.multipliers", CHOICE, AT(steady.multipliers), "true", ANY, "",
-     .meaning = "whether Floquet multipliers are computed", .words = WORDS("false", "true"),
-     .synonyms = "floquet stability"},
+     .meaning = "whether Floquet multipliers are computed; without a beat, the modes of the bodies",
+     .words = WORDS("false", "true"), .synonyms = "floquet stability"},
 
     {"defaults", DEFAULTS, 0, "{}", ANY, "",
      .meaning = "defaults: {fish: {...}}: values for every fish that does not set the key itself",

@@ -127,3 +127,8 @@ void result_row_multiplier(const struct result_row *row, int f, double *slots) {
     (void)f;
     if (row->steady) interleave(row->steady->n_multipliers, row->steady->real, row->steady->imaginary, slots);
 }
+
+void result_row_exponent(const struct result_row *row, int f, double *slots) {
+    (void)f;
+    if (row->steady) interleave(row->steady->n_exponents, row->steady->rate, row->steady->omega, slots);
+}

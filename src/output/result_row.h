@@ -44,4 +44,7 @@ void result_row_edge_pressure_force(const struct result_row *row, int f, double 
 /* The Floquet multipliers of the school, where the row is of a steady state; f plays no part. */
 void result_row_multiplier(const struct result_row *row, int f, double *slots);
 
+/* The exponents of disturbances likewise. */
+void result_row_exponent(const struct result_row *row, int f, double *slots);
+
 #endif

@@ -30,15 +30,41 @@ static const struct quantity {
     {"steady_strouhal", "Strouhal number", "", "%.5f", false},
 };
 
+/* Growth rates of the modes of bodies without a beat. */
+static enum status print_modes(const struct netcdf_reader *reader, FILE *stream) {
+    const double still = 1e-5, two_pi = 6.283185307179586;  // rates below this, s-1, are rounding
+    size_t n, i = 0;
+    double first[2] = {0};
+    if (!netcdf_has(reader, "steady_exponent")) return STATUS_OK;
+    TRY(netcdf_read_length(reader, "multiplier", 0, INT_MAX, &n));
+    for (; i < n; i++) {
+        double value[2];
+        TRY(netcdf_read_doubles(reader, "steady_exponent",
+                                (struct netcdf_slice[]){{"multiplier", i, 1}, {"xy", 0, 2}, {NULL}}, value));
+        if (isnan(value[0])) break;
+        if (i == 0) memcpy(first, value, sizeof first);
+        fprintf(stream, "%s %+.4f s-1 at %.4g Hz", i == 0 ? "  growth of disturbances:" : ",",
+                fabs(value[0]) < still ? 0 : value[0], value[1] / two_pi);
+    }
+    if (i > 0) {
+        fprintf(stream, ": %s\n",
+                first[0] < still ? "stable"
+                : first[1] > 0   ? "unstable: flutters"
+                                 : "unstable: diverges");
+    }
+    return STATUS_OK;
+}
+
 /* Of bodies without a beat. */
 static enum status print_equilibrium(const struct netcdf_reader *reader, double residual, FILE *stream) {
     double stiffness;
     TRY(netcdf_read_doubles(reader, "steady_stiffness", (struct netcdf_slice[]){{NULL}}, &stiffness));
     fprintf(stream, "\n  equilibrium: forces are in balance to %.1e\n", residual);
-    if (isnan(stiffness)) return STATUS_OK;
-    fprintf(stream, "  static stiffness over that at rest: %.4f: %s\n", stiffness,
-            stiffness > 0 ? "does not diverge" : "diverges");
-    return STATUS_OK;
+    if (!isnan(stiffness)) {
+        fprintf(stream, "  static stiffness over that at rest: %.4f: %s\n", stiffness,
+                stiffness > 0 ? "does not diverge" : "diverges");
+    }
+    return print_modes(reader, stream);
 }
 
 static enum status print_effort(const struct netcdf_reader *reader, FILE *stream) {

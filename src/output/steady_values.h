@@ -29,7 +29,11 @@ struct steady_values {
     double error;             /* estimate of how far that is from the fixed point; NaN without multipliers */
     int n_multipliers;        /* 0: none were asked for, or there is no slow quantity */
     double *real, *imaginary; /* by falling absolute value                         (n_multipliers) */
-    struct steady_fish *fish; /* (n_fish) */
+    int n_exponents;      /* of small disturbances, of a pair one: of the multipliers, or without a beat of the modes
+                                 of the bodies */
+    double *rate, *omega; /* growth rate, s-1, and angular frequency, rad s-1, by falling rate (n_exponents) */
+    double growth, growth_frequency; /* of the first, s-1 and Hz; NaN: there is none */
+    struct steady_fish *fish;        /* (n_fish) */
 };
 
 #endif

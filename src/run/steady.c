@@ -12,6 +12,7 @@
 #include "output/target.h"
 #include "run/record.h"
 #include "run/record_notes.h"
+#include "run/steady_modes.h"
 #include "run/steady_multipliers.h"
 #include "run/steady_reason.h"
 #include "run/steady_search.h"
@@ -55,8 +56,12 @@ static enum status allocate(struct run *run) {
     run->found.fish = calloc(n_fish, sizeof *run->found.fish);
     run->found.real = calloc(n, sizeof *run->found.real);
     run->found.imaginary = calloc(n, sizeof *run->found.imaginary);
+    run->found.rate = calloc(n, sizeof *run->found.rate);
+    run->found.omega = calloc(n, sizeof *run->found.omega);
+    run->found.growth = run->found.growth_frequency = NAN;
     run->way = calloc(n, sizeof *run->way);
-    if (run->found.fish && run->found.real && run->found.imaginary && run->way) return STATUS_OK;
+    const int has_all = run->found.real && run->found.imaginary && run->found.rate && run->found.omega;
+    if (run->found.fish && has_all && run->way) return STATUS_OK;
     return status_fail(STATUS_MEMORY, "out of memory: the steady state of %zu fish", n_fish);
 }
 
@@ -173,6 +178,7 @@ static enum status search(struct run *run) {
     run->found.error = NAN;
     run->found.stiffness = NAN;
     if (run->values->steady.multipliers != NO && run->problem.n_unknowns > 0) TRY(correct(run));
+    steady_modes_of_multipliers(&run->found, run->problem.map.period);
     run->found.n_beats = run->problem.map.n_beats;
     TRY(write_beats(run));
     warn_of_change(run);
@@ -183,6 +189,7 @@ static enum status search(struct run *run) {
 static enum status find_equilibrium(struct run *run) {
     run->found.error = NAN;
     TRY(steady_static_find(run->simulation, run->options->from, &run->found));
+    if (run->values->steady.multipliers != NO) TRY(steady_modes_find(run->simulation, &run->found));
     return write_if_due(run);
 }
 
@@ -250,6 +257,8 @@ static void release(struct run *run) {
     free(run->found.fish);
     free(run->found.real);
     free(run->found.imaginary);
+    free(run->found.rate);
+    free(run->found.omega);
     free(run->way);
 }
 

@@ -1,0 +1,551 @@
+/* modes.c: see modes.h. The algebraic unknowns are eliminated once; the exponents then are roots of a small nonlinear
+ * eigenvalue problem, each followed from that without a wake to that with all of it. */
+#include "solver/modes.h"
+
+#include <complex.h>
+#define lapack_complex_double double complex
+#include <lapacke.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/ramp.h"
+#include "model/fish_prescribed.h"
+#include "model/flow_at_bodies.h"
+#include "model/jacobian.h"
+#include "model/residual_couplings.h"
+#include "model/residual_jacobian.h"
+
+/* Gauss's points of the interval. */
+enum { N_POINTS = 2 };
+static const double point[N_POINTS] = {0.21132486540518712, 0.78867513459481288};
+
+/* The wake fades over this part of its length at least: where it just ended, its end would be felt. */
+static const double window = 0.75;
+
+/* A mode turns by no more than this within an event, and decays by no more than exp(-slowest) in the life of the wake;
+ * it is found to this part of itself. */
+static const double fastest = 0.4, slowest = 6, accuracy = 1e-7;
+
+/* Modes that are followed, in steps from no wake to all of it; of the iterations and inverse iterations of a step. */
+enum { CANDIDATES = 24, STEPS = 4, ITERATIONS = 30, INNER = 2 };
+
+/* Two modes are the same where they differ by less than this part of the larger one. */
+static const double same = 1e-4;
+
+struct modes {
+    struct residual *residual;
+    struct state *state;
+    int n_all, n, n_slow, n_shed; /* unknowns of the school; without those that are given; of these the differential
+                                     ones; one circulation of each fish */
+    int *unknown;                 /* differential ones first                                    (n) */
+    double *by_value, *by_rate;   /* dF/dy and dF/dy', the algebraic unknowns eliminated: rows of the slow unknowns, and
+                                     of the circulations; columns of the slow ones      (n_slow + n_shed, n_slow) */
+    double *eliminate;            /* what makes these rows of all rows                  (n_slow + n_shed, n) */
+    double *y;                    /* the unknowns within the interval                   (n_all) */
+    double *plain, *shifted;      /* residuals of the school                            (n_all) */
+    double **label;               /* circulations of the wakes as they are, oldest first   (n_shed, n_vortex) */
+    double *shed;                 /* (n_shed) */
+};
+
+static enum status out_of_memory(const struct modes *modes) {
+    return status_fail(STATUS_MEMORY, "out of memory: the modes of %d unknowns", modes->n_all);
+}
+
+// ---- the wake
+
+/* The part of the strength of a stretch a events old that is left by the window; 1 where the wake of the case fades
+ * itself. */
+static double window_of(const struct modes *modes, int a, int n_vortex) {
+    const struct school *const school = modes->residual->school;
+    if (school->decay >= 0.99 * window * school->lifetime) return 1;
+    return 1 - ramp_step(((a + 0.5) / n_vortex - (1 - window)) / window);
+}
+
+/* Put the labels of a fish as a motion of this exponent leaves them, tau after the event: the real or the imaginary
+ * part, times a factor. */
+static void put_labels(const struct modes *modes, int f, double complex lambda, double tau, int is_imaginary,
+                       double factor) {
+    struct wake *const wake = &modes->state->wake[f];
+    const double interval = modes->residual->school->interval;
+    const double complex step = cexp(-lambda * interval);
+    double complex exact = cexp(-lambda * tau), label = exact;
+    wake->shed_before = modes->shed[f] + factor * (is_imaginary ? cimag(exact) : creal(exact));
+    for (int i = wake->n_vortex - 1, a = 0; i >= 0; i--, a++) {
+        const double complex strength = window_of(modes, a, wake->n_vortex) * (exact - exact * step);
+        const double complex value = wake->has_markers ? label : strength;
+        wake->circulation[i] = modes->label[f][i] + factor * (is_imaginary ? cimag(value) : creal(value));
+        label -= strength;
+        exact *= step;
+    }
+    wake->version++;
+}
+
+/* Where the bodies are tau after the event: all go as their first nodes do. */
+static void place(const struct modes *modes, double tau) {
+    const struct school *const school = modes->residual->school;
+    memcpy(modes->y, modes->state->y, (size_t)modes->n_all * sizeof *modes->y);
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *const fish = &school->fish[f];
+        double position[2], velocity[2], acceleration[2];
+        fish_prescribed_node(fish, 0, modes->state->t, position, velocity, acceleration);
+        for (int i = 0; i < 2 * fish->n_nodes; i++) modes->y[fish->at.x + i] += tau * velocity[i / fish->n_nodes];
+    }
+}
+
+static enum status evaluate(const struct modes *modes, double tau, double *value) {
+    const struct state *const state = modes->state;
+    place(modes, tau);
+    flow_sum_exactly(modes->residual->flow);
+    const enum status status = residual_evaluate(modes->residual, state->t + tau, modes->y, state->yp, value);
+    return status == STATUS_RETRY ? status_fail(STATUS_SOLVER, "%s", status_message()) : status;
+}
+
+static void restore_labels(const struct modes *modes) {
+    for (int f = 0; f < modes->n_shed; f++) {
+        struct wake *const wake = &modes->state->wake[f];
+        memcpy(wake->circulation, modes->label[f], (size_t)wake->n_vortex * sizeof *wake->circulation);
+        wake->shed_before = modes->shed[f];
+        wake->version++;
+    }
+}
+
+/* w_f(lambda), reduced: a mean over the interval                                    (n_slow + n_shed) */
+static enum status wake_column(const struct modes *modes, int f, double complex lambda, double complex *column) {
+    const struct school *const school = modes->residual->school;
+    // small beside a circulation of the stream, so that the forces, which are quadratic, stay linear
+    const double factor = 1e-4 * school->fish[f].length * school->fish[f].length;
+    const int rows = modes->n_slow + modes->n_shed;
+    for (int i = 0; i < rows; i++) column[i] = 0;
+    for (int p = 0; p < N_POINTS; p++) {
+        const double tau = point[p] * school->interval;
+        for (int part = 0; part < (fabs(cimag(lambda)) > 0 ? 2 : 1); part++) {
+            put_labels(modes, f, lambda, tau, part, factor);
+            TRY(evaluate(modes, tau, modes->plain));
+            put_labels(modes, f, lambda, tau, part, -factor);
+            TRY(evaluate(modes, tau, modes->shifted));
+            for (int k = 0; k < modes->n; k++) {
+                const int i = modes->unknown[k];
+                const double change = (modes->plain[i] - modes->shifted[i]) / (2 * factor * N_POINTS);
+                const double *const by = modes->eliminate + (size_t)k * (size_t)rows;
+                for (int row = 0; row < rows; row++) column[row] += by[row] * change * (part ? I : 1);
+            }
+        }
+    }
+    restore_labels(modes);
+    return STATUS_OK;
+}
+
+// ---- the linear equations
+
+static void add_own(const struct sparse *own, int n, double factor, double *matrix) {
+    for (int c = 0; c < own->n; c++) {
+        for (int64_t k = own->column_start[c]; k < own->column_start[c + 1]; k++) {
+            matrix[(size_t)own->first + (size_t)own->row_index[k] + (size_t)n * (size_t)(own->first + c)] +=
+                factor * own->value[k];
+        }
+    }
+}
+
+static void add_coupling(const struct school *school, int f, const struct jacobian_coupling *coupling, int n,
+                         double factor, double *matrix) {
+    const struct coupling_block *const rows = &coupling->rows;
+    for (int c = 0; c < rows->n_columns; c++) {
+        const int column = flow_column(&school->fish[coupling->other], c);
+        for (int r = 0; r < rows->n_rows; r++) {
+            matrix[(size_t)(school->fish[f].at.ax + r) + (size_t)n * (size_t)column] +=
+                factor * rows->value[(long)c * rows->n_rows + r];
+        }
+    }
+}
+
+/* matrix += factor (dF/dy + cj dF/dy') at a time                                      (n_all, n_all) */
+static enum status add_jacobian(const struct modes *modes, struct jacobian *jacobian, double t, double cj,
+                                double factor, double *matrix) {
+    const struct school *const school = modes->residual->school;
+    TRY(residual_jacobian(modes->residual, t, cj, modes->y, jacobian));
+    for (int f = 0; f < school->n_fish; f++) {
+        add_own(jacobian->own[f], modes->n_all, factor, matrix);
+        jacobian_mask_couplings(jacobian, f);
+        for (int i = jacobian->first[f]; i < jacobian->first[f + 1]; i++) {
+            add_coupling(school, f, &jacobian->coupling[i], modes->n_all, factor, matrix);
+        }
+    }
+    return STATUS_OK;
+}
+
+/* dF/dy and dF/dy', as means over the interval. */
+static enum status linearise(const struct modes *modes, struct jacobian *jacobian, double *by_value, double *by_rate) {
+    const size_t size = (size_t)modes->n_all * (size_t)modes->n_all;
+    for (int p = 0; p < N_POINTS; p++) {
+        const double tau = point[p] * modes->residual->school->interval, t = modes->state->t + tau;
+        TRY(evaluate(modes, tau, modes->plain));
+        TRY(add_jacobian(modes, jacobian, t, 0, 1.0 / N_POINTS, by_value));
+        TRY(add_jacobian(modes, jacobian, t, 1, 1.0 / N_POINTS, by_rate));
+    }
+    for (size_t i = 0; i < size; i++) by_rate[i] -= by_value[i];
+    return STATUS_OK;
+}
+
+/* The unknowns whose equation is no given motion, those first whose rates are in an equation. */
+static void list(struct modes *modes, const struct jacobian *jacobian, const double *by_rate) {
+    const struct school *const school = modes->residual->school;
+    const int n = modes->n_all;
+    for (int slow = 1; slow >= 0; slow--) {
+        for (int f = 0; f < school->n_fish; f++) {
+            const struct sparse *const own = jacobian->own[f];
+            for (int i = own->first; i < own->first + own->n; i++) {
+                if (sparse_is_masked(own, i)) continue;
+                double most = 0;
+                for (int row = 0; row < n; row++) {
+                    most = fmax(most, fabs(by_rate[(size_t)row + (size_t)n * (size_t)i]));
+                }
+                if ((most > 0) == slow) modes->unknown[modes->n++] = i;
+            }
+        }
+        if (slow) modes->n_slow = modes->n;
+    }
+}
+
+/* Eliminate the algebraic unknowns. Their columns of dF/dy are C = Q [R; 0]: the last columns of Q, times all equations,
+ * have none of them; and R gives a circulation that is algebraic: Gamma + z^T Q^T (the rest) = 0 with R^T z = e. */
+static enum status reduce(struct modes *modes, const double *by_value, const double *by_rate) {
+    const int n = modes->n, slow = modes->n_slow, fast = n - slow, rows = slow + modes->n_shed;
+    const size_t n_rows = (size_t)rows, n_all = (size_t)modes->n_all;
+    double *const c = calloc((size_t)n * (size_t)(fast + 1), sizeof *c), *const q =
+                                                                             calloc((size_t)n * (size_t)n, sizeof *q);
+    double *const tau = calloc((size_t)n, sizeof *tau);
+    modes->eliminate = calloc(n_rows * (size_t)n, sizeof *modes->eliminate);
+    modes->by_value = calloc(n_rows * (size_t)slow + 1, sizeof *modes->by_value);
+    modes->by_rate = calloc(n_rows * (size_t)slow + 1, sizeof *modes->by_rate);
+    enum status status =
+        c && q && tau && modes->eliminate && modes->by_value && modes->by_rate ? STATUS_OK : out_of_memory(modes);
+    if (status != STATUS_OK) goto end;
+
+    for (int j = 0; j < fast; j++) {
+        const size_t column = n_all * (size_t)modes->unknown[slow + j];
+        for (int i = 0; i < n; i++) c[i + n * j] = by_value[(size_t)modes->unknown[i] + column];
+    }
+    if (fast > 0 && LAPACKE_dgeqrf(LAPACK_COL_MAJOR, n, fast, c, n, tau) != 0) {
+        status = status_fail(STATUS_SOLVER, "the modes of the bodies cannot be told apart");
+        goto end;
+    }
+    for (int i = 0; i < n; i++) q[i + n * i] = 1;
+    if (fast > 0) LAPACKE_dormqr(LAPACK_COL_MAJOR, 'L', 'N', n, n, fast, c, n, tau, q, n);
+
+    // the last columns of Q have no algebraic unknown
+    for (int row = 0; row < slow; row++) {
+        for (int k = 0; k < n; k++) modes->eliminate[row + rows * k] = q[k + n * (fast + row)];
+    }
+    // a circulation is slow itself, or the row of R^-1 Q^T that gives it
+    for (int f = 0; f < modes->n_shed; f++) {
+        const int circulation = modes->residual->school->fish[f].at.circulation;
+        int place = 0;
+        while (place < n && modes->unknown[place] != circulation) place++;
+        if (place >= slow && place < n) {
+            // R^T z = e, then Q z
+            for (int j = 0; j < fast; j++) tau[j] = j == place - slow;
+            LAPACKE_dtrtrs(LAPACK_COL_MAJOR, 'U', 'T', 'N', fast, 1, c, n, tau, n);
+            for (int k = 0; k < n; k++) {
+                double sum = 0;
+                for (int j = 0; j < fast; j++) sum += q[k + n * j] * tau[j];
+                modes->eliminate[slow + f + rows * k] = sum;
+            }
+        }
+    }
+    for (int j = 0; j < slow; j++) {
+        const size_t column = n_all * (size_t)modes->unknown[j];
+        for (int k = 0; k < n; k++) {
+            const double value = by_value[(size_t)modes->unknown[k] + column];
+            const double rate = by_rate[(size_t)modes->unknown[k] + column];
+            const double *const by = modes->eliminate + n_rows * (size_t)k;
+            for (int row = 0; row < rows; row++) {
+                modes->by_value[row + rows * j] += by[row] * value;
+                modes->by_rate[row + rows * j] += by[row] * rate;
+            }
+        }
+    }
+    // a circulation that is slow is itself
+    for (int f = 0; f < modes->n_shed; f++) {
+        for (int j = 0; j < slow; j++) {
+            if (modes->unknown[j] == modes->residual->school->fish[f].at.circulation) {
+                modes->by_value[slow + f + rows * j] = -1;
+            }
+        }
+    }
+
+end:
+    free(c);
+    free(q);
+    free(tau);
+    return status;
+}
+
+// ---- one mode
+
+/* The matrix of the slow unknowns and the circulations at an exponent: [A + lambda E, W; B + lambda D, W + 1]. */
+static void fill_matrix(const struct modes *modes, double complex lambda, const double complex *wake,
+                        double complex *matrix) {
+    const int slow = modes->n_slow, rows = slow + modes->n_shed;
+    for (int k = 0; k < rows * slow; k++) matrix[k] = modes->by_value[k] + lambda * modes->by_rate[k];
+    memcpy(matrix + (size_t)rows * (size_t)slow, wake, (size_t)(rows * modes->n_shed) * sizeof *wake);
+    for (int f = 0; f < modes->n_shed; f++) matrix[slow + f + rows * (slow + f)] += 1;
+}
+
+/* The derivative of that by lambda, without that of the wake, times a vector. */
+static void times_rate(const struct modes *modes, const double complex *vector, double complex *product) {
+    const int slow = modes->n_slow, rows = slow + modes->n_shed;
+    for (int i = 0; i < rows; i++) product[i] = 0;
+    for (int j = 0; j < slow; j++) {
+        for (int i = 0; i < rows; i++) product[i] += modes->by_rate[i + rows * j] * vector[j];
+    }
+}
+
+/* Workspace of a mode that is followed. */
+struct following {
+    double complex *matrix;        /* (rows, rows) */
+    double complex *wake, *still;  /* w(lambda), w(0)                                   (rows, n_shed) */
+    double complex *vector, *next; /* (rows) */
+    lapack_int *pivot;             /* (rows) */
+};
+
+/* Find the exponent near lambda with this part of the wake's memory. Whether it converges, in *found. */
+static enum status solve(const struct modes *modes, struct following *at, double part, double complex *lambda,
+                         int *found) {
+    const int rows = modes->n_slow + modes->n_shed;
+    *found = 0;
+    for (int iteration = 0; iteration < ITERATIONS && !*found; iteration++) {
+        for (int f = 0; f < modes->n_shed; f++) {
+            double complex *const column = at->wake + (size_t)rows * (size_t)f, *const still = at->still +
+                                                                                               (size_t)rows * (size_t)f;
+            TRY(wake_column(modes, f, *lambda, column));
+            for (int i = 0; i < rows; i++) column[i] = part * column[i] + (1 - part) * still[i];
+        }
+        fill_matrix(modes, *lambda, at->wake, at->matrix);
+        if (LAPACKE_zgetrf(LAPACK_COL_MAJOR, rows, rows, at->matrix, rows, at->pivot) != 0) {
+            *found = 1;  // singular to rounding: it is one
+            return STATUS_OK;
+        }
+        double complex change = 0;
+        for (int inner = 0; inner < INNER; inner++) {
+            times_rate(modes, at->vector, at->next);
+            LAPACKE_zgetrs(LAPACK_COL_MAJOR, 'N', rows, 1, at->matrix, rows, at->pivot, at->next, rows);
+            double complex product = 0;
+            double square = 0;
+            for (int i = 0; i < rows; i++) {
+                product += conj(at->next[i]) * at->vector[i];
+                square += creal(conj(at->next[i]) * at->next[i]);
+            }
+            if (!(square > 0) || !isfinite(square)) return STATUS_OK;
+            change = product / square;
+            for (int i = 0; i < rows; i++) at->vector[i] = at->next[i] / sqrt(square);
+        }
+        *lambda -= change;
+        if (!isfinite(creal(*lambda)) || !isfinite(cimag(*lambda))) return STATUS_OK;
+        *found = cabs(change) <= accuracy * cabs(*lambda);
+    }
+    return STATUS_OK;
+}
+
+// ---- candidates: the modes of a wake without memory
+
+struct candidate {
+    double complex lambda;
+    double complex *vector; /* (rows) */
+};
+
+/* The exponents without a wake, whose labels follow the circulation at once: eigenvalues of -E^-1 A, the circulations
+ * eliminated. In real and imaginary, with the vectors                                 (n_slow), (n_slow, n_slow) */
+static enum status find_still(const struct modes *modes, const double complex *still, double *real, double *imaginary,
+                              double *vectors) {
+    const int slow = modes->n_slow, shed = modes->n_shed, rows = slow + shed;
+    const size_t size = (size_t)slow * (size_t)slow;
+    double *const a = calloc(2 * size, sizeof *a), *const e = a + size,
+                  *const last = calloc((size_t)(shed * (shed + 2 * slow)), sizeof *last);
+    lapack_int *const pivot = calloc((size_t)rows, sizeof *pivot);
+    enum status status = a && last && pivot ? STATUS_OK : out_of_memory(modes);
+    if (status == STATUS_OK) {
+        // circulations by the slow unknowns: -(W + 1)^-1 (B, D)
+        double *const by_value = last + shed * shed, *const by_rate = by_value + shed * slow;
+        for (int f = 0; f < shed; f++) {
+            for (int g = 0; g < shed; g++) last[g + shed * f] = creal(still[slow + g + rows * f]) + (f == g);
+            for (int j = 0; j < slow; j++) {
+                by_value[f + shed * j] = -modes->by_value[slow + f + rows * j];
+                by_rate[f + shed * j] = -modes->by_rate[slow + f + rows * j];
+            }
+        }
+        int failed = LAPACKE_dgesv(LAPACK_COL_MAJOR, shed, 2 * slow, last, shed, pivot, by_value, shed) != 0;
+        for (int j = 0; j < slow; j++) {
+            for (int i = 0; i < slow; i++) {
+                a[i + slow * j] = -modes->by_value[i + rows * j];
+                e[i + slow * j] = modes->by_rate[i + rows * j];
+                for (int f = 0; f < shed; f++) {
+                    a[i + slow * j] -= creal(still[i + rows * f]) * by_value[f + shed * j];
+                    e[i + slow * j] += creal(still[i + rows * f]) * by_rate[f + shed * j];
+                }
+            }
+        }
+        failed = failed || LAPACKE_dgesv(LAPACK_COL_MAJOR, slow, slow, e, slow, pivot, a, slow) != 0 ||
+                 LAPACKE_dgeev(LAPACK_COL_MAJOR, 'N', 'V', slow, a, slow, real, imaginary, NULL, 1, vectors, slow) != 0;
+        if (failed) status = status_fail(STATUS_SOLVER, "the modes of the bodies cannot be told apart");
+    }
+    free(a);
+    free(last);
+    free(pivot);
+    return status;
+}
+
+/* Put a candidate among the n slowest ones. column: of its vector. */
+static void insert(const struct modes *modes, double complex lambda, const double *vectors, int column,
+                   struct candidate *candidates, int *n) {
+    if (*n == CANDIDATES && cabs(candidates[CANDIDATES - 1].lambda) <= cabs(lambda)) return;
+    int i = *n < CANDIDATES ? (*n)++ : CANDIDATES - 1;
+    double complex *const vector = candidates[i].vector;
+    for (; i > 0 && cabs(candidates[i - 1].lambda) > cabs(lambda); i--) candidates[i] = candidates[i - 1];
+    candidates[i] = (struct candidate){lambda, vector};
+    const double *const real = vectors + (size_t)modes->n_slow * (size_t)column, *const imaginary =
+                                                                                     real + modes->n_slow;
+    for (int k = 0; k < modes->n_slow; k++) vector[k] = real[k] + (cimag(lambda) > 0 ? I * imaginary[k] : 0);
+    for (int f = 0; f < modes->n_shed; f++) vector[modes->n_slow + f] = 0;
+}
+
+/* Whether a mode is slow enough to be resolved by the events, and lives as long as the wake; loosely: times a factor. */
+static int is_resolved(const struct modes *modes, double complex lambda, double loosely) {
+    const double interval = modes->residual->school->interval;
+    double life = interval;
+    for (int f = 0; f < modes->n_shed; f++) life = fmax(life, modes->state->wake[f].n_vortex * interval);
+    return cimag(lambda) >= 0 && cabs(lambda) * interval <= loosely * fastest &&
+           -creal(lambda) * life <= loosely * slowest;
+}
+
+// ---- all
+
+/* Put a mode among those that are known, by falling rate; nothing is done where it is one of them. */
+static void keep(double complex lambda, int n_most, struct mode *mode, int *n) {
+    const struct mode new = {creal(lambda), cimag(lambda)};
+    for (int i = 0; i < *n; i++) {
+        const double size = same * hypot(new.rate, new.omega);
+        if (hypot(mode[i].rate - new.rate, mode[i].omega - new.omega) <= size) return;
+    }
+    if (*n == n_most && mode[n_most - 1].rate >= new.rate) return;
+    int i = *n < n_most ? (*n)++ : n_most - 1;
+    for (; i > 0 && mode[i - 1].rate < new.rate; i--) mode[i] = mode[i - 1];
+    mode[i] = new;
+}
+
+static enum status follow_all(const struct modes *modes, struct following *at, struct candidate *candidates, int n_most,
+                              struct mode *mode, int *n) {
+    const int slow = modes->n_slow, rows = slow + modes->n_shed;
+    double *const values = calloc(2 * (size_t)slow + 1, sizeof *values);
+    double *const vectors = calloc((size_t)slow * (size_t)slow + 1, sizeof *vectors);
+    enum status status = values && vectors ? STATUS_OK : out_of_memory(modes);
+    for (int f = 0; f < modes->n_shed && status == STATUS_OK; f++) {
+        status = wake_column(modes, f, 0, at->still + (size_t)rows * (size_t)f);
+    }
+    if (status == STATUS_OK) status = find_still(modes, at->still, values, values + slow, vectors);
+    int n_candidates = 0;
+    for (int j = 0; j < slow && status == STATUS_OK; j++) {
+        const double complex lambda = values[j] + I * values[slow + j];
+        if (is_resolved(modes, lambda, 3)) insert(modes, lambda, vectors, j, candidates, &n_candidates);
+    }
+    for (int c = 0; c < n_candidates && status == STATUS_OK; c++) {
+        int found = 1;
+        at->vector = candidates[c].vector;
+        for (int step = 1; step <= STEPS && found && status == STATUS_OK; step++) {
+            status = solve(modes, at, (double)step / STEPS, &candidates[c].lambda, &found);
+        }
+        if (status == STATUS_OK && found && is_resolved(modes, candidates[c].lambda, 1)) {
+            keep(candidates[c].lambda, n_most, mode, n);
+        }
+    }
+    free(values);
+    free(vectors);
+    return status;
+}
+
+static enum status find(struct modes *modes, int n_most, struct mode *mode, int *n) {
+    const int rows = modes->n_slow + modes->n_shed;
+    const size_t columns = (size_t)rows * (size_t)modes->n_shed;
+    struct following at = {.matrix = calloc((size_t)rows * (size_t)rows + 1, sizeof *at.matrix),
+                           .wake = calloc(columns + 1, sizeof *at.wake),
+                           .still = calloc(columns + 1, sizeof *at.still),
+                           .next = calloc((size_t)rows + 1, sizeof *at.next),
+                           .pivot = calloc((size_t)rows + 1, sizeof *at.pivot)};
+    struct candidate candidates[CANDIDATES] = {{0}};
+    double complex *const vectors = calloc((size_t)rows * CANDIDATES + 1, sizeof *vectors);
+    const int has_all = at.matrix && at.wake && at.still && at.next && at.pivot && vectors;
+    for (int c = 0; c < CANDIDATES && has_all; c++) candidates[c].vector = vectors + (size_t)rows * (size_t)c;
+    const enum status status = has_all ? follow_all(modes, &at, candidates, n_most, mode, n) : out_of_memory(modes);
+    free(at.matrix);
+    free(at.wake);
+    free(at.still);
+    free(at.next);
+    free(at.pivot);
+    free(vectors);
+    return status;
+}
+
+/* Keep the labels of the wakes. */
+static enum status keep_labels(struct modes *modes) {
+    const int n_fish = modes->residual->school->n_fish;
+    modes->label = calloc((size_t)n_fish, sizeof *modes->label);
+    modes->shed = calloc((size_t)n_fish, sizeof *modes->shed);
+    if (!modes->label || !modes->shed) return out_of_memory(modes);
+    modes->n_shed = n_fish;
+    for (int f = 0; f < n_fish; f++) {
+        const struct wake *const wake = &modes->state->wake[f];
+        modes->label[f] = calloc((size_t)wake->n_vortex + 1, sizeof *modes->label[f]);
+        if (!modes->label[f]) return out_of_memory(modes);
+        for (int i = 0; i < wake->n_vortex; i++) modes->label[f][i] = wake->circulation[i];
+        modes->shed[f] = wake->shed_before;
+    }
+    return STATUS_OK;
+}
+
+static enum status pose(struct modes *modes, struct jacobian **jacobian) {
+    const size_t n = (size_t)modes->n_all;
+    modes->unknown = calloc(n, sizeof *modes->unknown);
+    modes->y = calloc(n, sizeof *modes->y);
+    modes->plain = calloc(n, sizeof *modes->plain);
+    modes->shifted = calloc(n, sizeof *modes->shifted);
+    double *const by_value = calloc(n * n, sizeof *by_value), *const by_rate = calloc(n * n, sizeof *by_rate);
+    const int has_all = modes->unknown && modes->y && modes->plain && modes->shifted && by_value && by_rate;
+    enum status status = has_all ? keep_labels(modes) : out_of_memory(modes);
+    if (status == STATUS_OK) status = residual_couple(&modes->residual->couplings, modes->state->y);
+    if (status == STATUS_OK) status = jacobian_create(jacobian, modes->residual->school);
+    if (status == STATUS_OK) {
+        residual_mask(modes->residual, *jacobian);
+        status = linearise(modes, *jacobian, by_value, by_rate);
+    }
+    if (status == STATUS_OK) {
+        list(modes, *jacobian, by_rate);
+        status = reduce(modes, by_value, by_rate);
+    }
+    free(by_value);
+    free(by_rate);
+    return status;
+}
+
+enum status modes_find(struct residual *residual, struct state *state, int n_most, struct mode *mode, int *n) {
+    struct modes modes = {.residual = residual, .state = state, .n_all = residual->school->n_unknowns};
+    struct jacobian *jacobian = NULL;
+    const double reach = residual->couplings.reach;
+    *n = 0;
+    // all bodies couple, however far they are from each other
+    residual->couplings.reach = 1e6 * residual->school->fish[0].length;
+    enum status status = pose(&modes, &jacobian);
+    if (status == STATUS_OK && modes.n_slow > 0) status = find(&modes, n_most, mode, n);
+    residual->couplings.reach = reach;
+    jacobian_free(jacobian);
+    for (int f = 0; f < modes.n_shed && modes.label; f++) free(modes.label[f]);
+    free(modes.label);
+    free(modes.shed);
+    free(modes.unknown);
+    free(modes.y);
+    free(modes.plain);
+    free(modes.shifted);
+    free(modes.by_value);
+    free(modes.by_rate);
+    free(modes.eliminate);
+    return status;
+}
