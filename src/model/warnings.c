@@ -218,8 +218,7 @@ static void cusp_say(const struct subject *subject, const char *who, char line[W
              who);
 }
 
-// the length over which the beat bends a tail in the water that leaves there, m
-static double bending_length(const struct fish *fish) {
+double warnings_bending_length(const struct fish *fish) {
     const double omega = 2 * 3.14159265358979323846 * fish->frequency;
     return pow(fish->tail_stiffness / (fish->tail_added_mass * omega * omega), 0.25);
 }
@@ -228,7 +227,7 @@ static double tail_size(const struct subject *subject) {
     const struct fish *const fish = subject->fish;
     const int beats = fish_has_wave(fish) || (fish->motion.prescribed == PRESCRIBED_HEAD && fish->motion.omega > 0);
     if (!bends(subject) || !beats || fish->has_cusp || !(fish->tail_added_mass > 0)) return 0;
-    return 2 * fish->edge_length / bending_length(fish);
+    return 2 * fish->edge_length / warnings_bending_length(fish);
 }
 
 static void tail_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
@@ -236,7 +235,7 @@ static void tail_say(const struct subject *subject, const char *who, char line[W
     snprintf(line, WARNING_BYTES,
              "the edges of %s, %.2g m, are longer than half the length over which its tail bends, %.2g m: take %.0f "
              "nodes or more",
-             who, fish->edge_length, bending_length(fish), ceil(2 * fish->length / bending_length(fish)) + 1);
+             who, fish->edge_length, warnings_bending_length(fish), ceil(2 * fish->length / warnings_bending_length(fish)) + 1);
 }
 
 // ---- the published force

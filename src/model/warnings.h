@@ -32,6 +32,9 @@ extern const struct warning_words warnings_words[N_WARNINGS];
 /* Whether a warning depends on the case alone, so that it is known before a run. */
 int warnings_is_of_case(enum warning warning);
 
+/* The length over which the beat bends a tail in the water that leaves there, m; infinite where nothing does. */
+double warnings_bending_length(const struct fish *fish);
+
 /* Write the line of a warning, without a line break, and return 1; or return 0 where there is no cause for it. The
  * diagnostics are those of the state. scratch: (n_unknowns). */
 int warnings_line(enum warning warning, const struct school *school, const struct state *state,

@@ -12,6 +12,7 @@
 #include "case/sweep_members.h"
 #include "case/sweep_quantity.h"
 #include "model/fish_school.h"
+#include "model/warnings.h"
 #include "run/steady_static.h"
 
 /* Finer levels in place of coarser ones that are no valid cases. */
@@ -50,7 +51,8 @@ static double number_of(const struct case_values *values, const char *path, int 
     const struct key *const key = case_table_row(path);
     const void *const field =
         case_table_field(key, (struct case_values *)(uintptr_t)values, &values->school.fish[fish]);
-    return key->type == REAL ? *(const double *)field : *(const int *)field;
+    // a duration begins with its seconds
+    return key->type == REAL || key->type == DURATION ? *(const double *)field : *(const int *)field;
 }
 
 static int are_fish_alike(const struct case_values *values, const char *path) {
@@ -411,7 +413,7 @@ static enum status add_all_columns(struct error_study *study) {
         const int are_nodes = strcmp(row->path, "fish.nodes") == 0;
         if (are_nodes && values->school.fluid.density > 0) TRY(add_columns(study, values, "fish.sheet_points"));
         if (strcmp(row->path, "time.shedding_interval") != 0) continue;
-        if (study->is_steady) TRY(add_columns(study, values, "time.end"));
+        TRY(add_columns(study, values, "time.end"));
         TRY(add_columns(study, values, "time.checkpoint_interval"));
         TRY(add_columns(study, values, "time.output_interval"));
         TRY(add_columns(study, values, "output.wake_interval"));
@@ -435,16 +437,12 @@ static void object(struct error_study *study, const struct school *school) {
                          fish->name);
             }
             if (strcmp(key->row->path, "fish.nodes") != 0 || !(school->density > 0)) continue;
-            if (values->school.fish[f].body.profile == PROFILE_JOUKOWSKI) {
+            if (fish->has_cusp) {
                 snprintf(key->objection, ERROR_STUDY_BYTES, "the tail of %.60s ends in a cusp", fish->name);
                 continue;
             }
-            // the length over which the stiffness of the tail balances the inertia of the water
-            const double depth = fish->depth[fish->n_edges - 1], omega = 2 * M_PI * fish->frequency;
-            const double load = M_PI / 4 * school->density * depth * depth * omega * omega;
-            if (fish->n_joints < 1 || !(load > 0)) continue;
-            const double bending = pow(fish->bending_stiffness[fish->n_joints - 1] / load, 0.25);
-            if (2 * fish->edge_length <= bending) continue;
+            const double bending = warnings_bending_length(fish);
+            if (!(2 * fish->edge_length > bending)) continue;
             snprintf(key->objection, ERROR_STUDY_BYTES,
                      "two edges of %.60s are longer than its tail bends over, %.2g m", fish->name, bending);
         }
