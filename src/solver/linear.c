@@ -186,20 +186,31 @@ static int multiply(void *data, N_Vector v, N_Vector product) {
     return 0;
 }
 
+/* Whether there is memory for what GMRES allocates. Where there is not SUNDIALS frees a half of it, and crashes. */
+static int has_memory(int n) {
+    enum { VECTORS = MAX_ITERATIONS + 8, SMALL = 1 << 17 };
+    void *volatile const needed = malloc((size_t)n * VECTORS * sizeof(double) + SMALL);
+    free(needed);
+    return needed != NULL;
+}
+
 /* The operator of GMRES, 1 + D^-1 C, is the system with its preconditioner already; x is set for each solution. Norms
  * and dot products are sums over all unknowns: one thread. */
 static enum status create_gmres(struct linear *linear) {
     const int n = n_unknowns(linear);
     linear->right = calloc((size_t)n, sizeof *linear->right);
-    if (!linear->right) return status_fail(STATUS_MEMORY, "out of memory: GMRES");
+    if (!linear->right || !has_memory(n)) return status_fail(STATUS_MEMORY, "out of memory: GMRES");
     TRY(sundials_context_create(&linear->context, n, 1, &linear->failure));
     TRY(sundials_context_vector(&linear->context, &linear->x, linear->right));
     TRY(sundials_context_vector(&linear->context, &linear->b, linear->right));
     TRY(sundials_context_vector(&linear->context, &linear->weights, linear->weight));
     linear->gmres = SUNLinSol_SPGMR(linear->x, SUN_PREC_NONE, MAX_ITERATIONS, linear->context.context);
     if (!linear->gmres || SUNLinSolSetATimes(linear->gmres, linear, multiply) != SUN_SUCCESS ||
-        SUNLinSolSetScalingVectors(linear->gmres, linear->weights, linear->weights) != SUN_SUCCESS ||
-        SUNLinSolInitialize(linear->gmres) != SUN_SUCCESS) {
+        SUNLinSolSetScalingVectors(linear->gmres, linear->weights, linear->weights) != SUN_SUCCESS) {
+        return status_fail(STATUS_MEMORY, "out of memory: GMRES");
+    }
+    if (SUNLinSolInitialize(linear->gmres) != SUN_SUCCESS) {
+        linear->gmres = NULL;  // it has been freed, if badly
         return status_fail(STATUS_MEMORY, "out of memory: GMRES");
     }
     return sundials_context_check(&linear->context);

@@ -136,19 +136,23 @@ enum status study_folder_find_study(const char *folder, char **text) {
     DIR *const entries = opendir(folder);
     if (!entries) return status_fail(STATUS_FILE, "%s: cannot be read: %s", folder, strerror(errno));
     *text = NULL;
-    for (const struct dirent *entry; !*text && (entry = readdir(entries));) {
+    enum status status = STATUS_OK;
+    for (const struct dirent *entry; !*text && status != STATUS_MEMORY && (entry = readdir(entries));) {
         int number, length = 0;
         if (sscanf(entry->d_name, "member-%d.nc%n", &number, &length) != 1 || entry->d_name[length] || !length)
             continue;
         char *const path = study_folder_member(folder, number, ".nc");
         struct member_file member;
-        if (path && member_file_read(&member, path) == STATUS_OK) {
-            if (member.number >= 0) *text = strdup(member.study);
-            member_file_free(&member);
+        status = path ? member_file_read(&member, path) : STATUS_MEMORY;
+        if (status == STATUS_OK && member.number >= 0) {
+            *text = strdup(member.study);
+            if (!*text) status = status_fail(STATUS_MEMORY, "out of memory: the case of a study");
         }
+        if (path && status == STATUS_OK) member_file_free(&member);
         free(path);
     }
     closedir(entries);
+    if (status == STATUS_MEMORY) return status;
     if (*text) return STATUS_OK;
     return status_fail(STATUS_FILE, "%s: holds no member of a study that can be read", folder);
 }
