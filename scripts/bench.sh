@@ -107,6 +107,35 @@ two=$wall
 whole_run school "$cases/school.yaml" 1
 whole_run school "$cases/school.yaml" 2
 
+heading 'Two threads where a busy loop takes one of two cores: wall s'
+mapfile -t cores < <(taskset -cp $$ | sed 's/.*: //' | tr ',' '\n' | awk -F- '{ for (i = $1; i <= $NF; i++) print i }')
+beside=0
+printf '%-12s %12s %12s %12s\n' '' 'one thread' 'two threads' 'two/one'
+if ((${#cores[@]} > 1)); then
+    taskset -c "${cores[0]}" bash -c 'while :; do :; done' &
+    busy=$!
+    trap 'kill "$busy" 2>/dev/null; rm -rf "$folder"' EXIT
+    for fish in 16 64; do
+        {
+            printf '%s\n' 'format: 1' "name: school$fish" "time: {end: $((64 / fish)), shedding_interval: 0.01, output_interval: 1}" fish:
+            for ((f = 0; f < fish; f++)); do
+                printf '  - {start: {position: [%d, %d]}, wave: {phase: %d}}\n' $((3 * (f % 4))) $((f / 4)) $((f / 4 % 2 * 180))
+            done
+        } >"school$fish.yaml"
+        for threads in 1 2; do
+            read -r wall _ < <(measured taskset -c "${cores[0]},${cores[1]}" "$program" run "school$fish.yaml" -q --force \
+                --threads $threads -o run.nc)
+            ((threads > 1)) || one_thread=$wall
+        done
+        ratio=$(awk "BEGIN { printf \"%.2f\", $wall / $one_thread }")
+        printf '%-12s %12s %12s %12s\n' "$fish fish" "$one_thread" "$wall" "$ratio"
+        beside=$(printf '%s\n' "$beside" "$ratio" | sort -g | tail -1)
+    done
+    kill "$busy"
+else
+    echo 'this machine has one core'
+fi
+
 heading 'Stiffness: one fish, 2 s, published second moment, 100 events per second'
 printf '%-12s %8s %7s %7s %7s\n' 'modulus Pa' 'wall s' steps Newton Jacob.
 for modulus in 1e4 1e6 1e8 1e10; do
@@ -134,6 +163,7 @@ check_limit 'diamond: CPU time over the lower bound' "$(column diamond 1 7)" 3
 check_limit 'diamond, 2 threads: CPU time over the lower bound' "$(column diamond 2 7)" 3
 check_limit 'diamond: wall clock with 2 threads over that with 1' \
     "$(awk "BEGIN { printf \"%.2f\", $two / $one }")" 0.556
+check_limit 'beside a busy loop: wall clock with 2 threads over that with 1' "$beside" 1.1
 check_limit 'diamond: output, % of the CPU time' "$(column diamond 1 15)" 3
 check_limit 'seconds from a signal to the end' "$slowest" 10
 check_limit '256 fish: CPU time per event over that of 64' "$(awk '/^256 fish take/ { print $4 }' schools.txt)" 6

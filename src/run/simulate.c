@@ -116,6 +116,7 @@ void simulate_free(struct simulation *simulation) {
     diagnostics_free(simulation->diagnostics);
     state_free(simulation->state, simulation->school);
     fish_school_free(simulation->school);
+    parallel_choice_clear(&simulation->choice);
     free(simulation);
 }
 
@@ -131,7 +132,7 @@ static enum status refuse_contact(const struct simulation *simulation) {
                        closest->distance, school->contact_range);
 }
 
-enum status simulate_step(struct simulation *simulation) {
+static enum status step(struct simulation *simulation) {
     struct state *const state = simulation->state;
     const double next = (double)(state->event + 1) * simulation->school->interval;
     const enum status advanced = simulation->integrator->advance(simulation->solver, next, simulation->stop);
@@ -143,6 +144,14 @@ enum status simulate_step(struct simulation *simulation) {
     // a restart has no last step
     simulation->integrator->count(simulation->solver, &simulation->totals);
     return jumped ? simulation->integrator->restart(simulation->solver) : STATUS_OK;
+}
+
+enum status simulate_step(struct simulation *simulation) {
+    const int threads = simulation->school->threads;
+    parallel_choice_begin(&simulation->choice, threads);
+    const enum status status = step(simulation);
+    parallel_choice_end(&simulation->choice, threads);
+    return status;
 }
 
 void simulate_measure(struct simulation *simulation) {

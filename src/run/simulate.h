@@ -5,6 +5,7 @@
 
 #include <signal.h>
 
+#include "base/parallel_choice.h"
 #include "base/status.h"
 #include "case/case.h"
 #include "model/diagnostics.h"
@@ -23,6 +24,7 @@ struct simulation {
     const struct integrator *integrator;
     void *solver;
     struct integrator_options options;
+    struct parallel_choice choice;     /* between all threads and one, for the next step */
     struct integrator_counts totals;   /* up to the last event, with the size of the step that ended there */
     const volatile sig_atomic_t *stop; /* simulate_step stops once this is not 0; or NULL */
     long n_events;                     /* of the whole run, without the one at the start */
