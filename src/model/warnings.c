@@ -235,7 +235,8 @@ static void tail_say(const struct subject *subject, const char *who, char line[W
     snprintf(line, WARNING_BYTES,
              "the edges of %s, %.2g m, are longer than half the length over which its tail bends, %.2g m: take %.0f "
              "nodes or more",
-             who, fish->edge_length, warnings_bending_length(fish), ceil(2 * fish->length / warnings_bending_length(fish)) + 1);
+             who, fish->edge_length, warnings_bending_length(fish),
+             ceil(2 * fish->length / warnings_bending_length(fish)) + 1);
 }
 
 // ---- the published force

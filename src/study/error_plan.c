@@ -427,7 +427,6 @@ static enum status add_all_columns(struct error_study *study) {
 
 /* What is known of a case before any level is. */
 static void object(struct error_study *study, const struct school *school) {
-    const struct case_values *const values = &study->study;
     for (int k = 0; k < study->n_keys; k++) {
         struct error_study_key *const key = &study->key[k];
         for (int f = 0; f < school->n_fish && !*key->objection; f++) {
