@@ -71,7 +71,7 @@ quiet = @
 say = @printf '  %-4s %s\n'
 endif
 
-# -iquote, not -I: <netcdf.h> is the library's header and "output/netcdf.h" is ours. _XOPEN_SOURCE=700 is POSIX 2008 with M_PI.
+# -iquote, not -I: <netcdf.h> is the library's header and "result/netcdf.h" is ours. _XOPEN_SOURCE=700 is POSIX 2008 with M_PI.
 # The results must not depend on the machine: nothing that reorders sums or fuses operations belongs here.
 shoal_cppflags = -D_XOPEN_SOURCE=700 -iquote src -iquote include $(file <$(B)/cppflags) $(CPPFLAGS)
 # One set of objects serves the program and the shared library, which shares what include/shoal.h makes visible.
@@ -93,7 +93,7 @@ shared  = $(B)/$(soname)
 program = $(B)/shoal
 
 # the rooms of src/, lowest first: scripts/check-layers.sh
-rooms           = base vortex model case solver output run study app
+rooms           = base vortex fish body wake control state flow force contact school case solver result view run steady study library app
 folders         = $(addprefix $(B)/,doc verify bench fuzz $(rooms) $(rooms:%=tests/%))
 app_objects     = $(patsubst src/%.c,$(B)/%.o,$(wildcard src/app/*.c))
 library_objects = $(patsubst src/%.c,$(B)/%.o,$(wildcard $(patsubst %,src/%/*.c,$(filter-out app,$(rooms)))))
@@ -272,9 +272,9 @@ $(library): $(B)/libshoal.o
 	$(quiet)rm -f $@
 	$(quiet)$(AR) rcs $@ $^
 
-$(shared): $(library_objects) src/run/shoal.map
+$(shared): $(library_objects) src/library/shoal.map
 	$(say) LD $@
-	$(quiet)$(CC) $(shoal_cflags) $(LDFLAGS) -shared -Wl,-soname,$(soname) -Wl,--version-script=src/run/shoal.map \
+	$(quiet)$(CC) $(shoal_cflags) $(LDFLAGS) -shared -Wl,-soname,$(soname) -Wl,--version-script=src/library/shoal.map \
 	    $(complete) -o $@ $(library_objects) $(libraries)
 
 # again when the compiler or one of these variables is another one
@@ -300,8 +300,8 @@ version_cppflags = -DSHOAL_VERSION='"$(VERSION)"' -DSHOAL_COMMIT='"$(commit)"'
 $(B)/base/version.o: shoal_cppflags += $(version_cppflags)
 $(B)/base/version.o: $(B)/commit
 
-$(B)/output/page.o: src/output/page.html
-$(B)/output/page.o: shoal_cflags += -Wa,-I$(abspath src/output)
+$(B)/view/page.o: src/view/page.html
+$(B)/view/page.o: shoal_cflags += -Wa,-I$(abspath src/view)
 
 # with the sanitizers of clang this one, of long sums, takes minutes; the targets of `make fuzz` do not come here
 ifdef FUZZER

@@ -8,14 +8,14 @@
 set -euo pipefail
 
 # Lowest first. doc/architecture.md says what each is for.
-readonly rooms=(base vortex model case solver output run study app)
+readonly rooms=(base vortex fish body wake control state flow force contact school case solver result view run steady study library app)
 
 # Headers (first folder, or name without .h), the beginnings of the functions they declare, and the folders that may use
 # them. base/version asks every library for its version, and calls nothing else of it.
 readonly outside='
 sundials|ida|kinsol|arkode|nvector|sunmatrix|sunlinsol|sunnonlinsol : IDA KIN ARK ERK N_V SUN : solver
 klu|amd|colamd|btf|SuiteSparse_config|lapacke|cblas : klu_ LAPACKE_ cblas_ : solver
-netcdf : nc_ : output
+netcdf : nc_ : result
 yaml : yaml_parser_ yaml_event_ : case
 '
 

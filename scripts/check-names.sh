@@ -63,11 +63,11 @@ while read -r place; do
     complain "$place: error: longer than 120 characters"
 done < <(LC_ALL=C.UTF-8 grep -nE '^.{121,}$' "${sources[@]}" | grep -v '^src/base/methods.c:' | cut -d: -f1,2)
 
-# doc/style.md, section Words; a word in quotes is spoken of, not used
+# doc/style.md, section Vocabulary, which itself names these words; a word in quotes is spoken of, not used
 words='anew|foretell|foretold|forecast|no penetration|processor time|gave up|whole number|no room for|takes leave|stamp_'
 while read -r place; do
     complain "$place: error: a word that doc/style.md replaces by another"
-done < <(grep -noiP "(?<![\"])\\b($words)" "${sources[@]}" doc/*.md README.md CHANGES.md cases/*.yaml cases/*/*.yaml \
+done < <(grep -noiP "(?<![\"])\\b($words)" "${sources[@]}" $(ls doc/*.md | grep -vx doc/style.md) README.md CHANGES.md cases/*.yaml cases/*/*.yaml \
     scripts/*.py | cut -d: -f1,2)
 
 ((n_errors == 0)) || { echo "names: $n_errors errors" >&2; exit 1; }

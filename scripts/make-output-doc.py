@@ -8,7 +8,7 @@ import sys
 INTRODUCTION = """\
 # The result file
 
-<!-- Written by `make docs` from the tables in src/output/result_table.c and src/model/warnings.c and the words in scripts/make-output-doc.py. -->
+<!-- Written by `make docs` from the tables in src/result/result_table.c and src/school/warnings.c and the words in scripts/make-output-doc.py. -->
 
 `shoal run CASE` writes one NetCDF file, in the classic format with 64-bit sizes (CDF-5): every NetCDF library since
 4.4 reads it, and a run that is killed or fills the disk loses none of the rows written before. The file contains all

@@ -8,9 +8,9 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "model/fish_school.h"
+#include "fish/fish_school.h"
 #include "near.h"
-#include "output/result_file.h"
+#include "result/result_file.h"
 
 enum { N_FISH = 2, N_OF_FISH = sizeof(struct diagnostics_fish) / sizeof(double) };
 

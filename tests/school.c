@@ -5,11 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "model/fish_school.h"
-#include "model/flow_at_bodies.h"
-#include "model/flow_derivative.h"
-#include "model/residual_jacobian.h"
-#include "model/state_table.h"
+#include "fish/fish_school.h"
+#include "flow/flow_at_bodies.h"
+#include "flow/flow_derivative.h"
+#include "school/residual_jacobian.h"
+#include "state/state_table.h"
 
 void school_ok(enum status status) {
     if (status == STATUS_OK) return;

@@ -5,10 +5,10 @@
 
 #include "base/sparse.h"
 #include "case/case.h"
-#include "model/jacobian.h"
-#include "model/residual.h"
 #include "near.h"
 #include "run/simulate.h"
+#include "school/jacobian.h"
+#include "school/residual.h"
 
 struct setup {
     struct case_values values;

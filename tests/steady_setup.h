@@ -2,9 +2,9 @@
 #ifndef STEADY_SETUP_H
 #define STEADY_SETUP_H
 
-#include "run/steady_multipliers.h"
-#include "run/steady_search.h"
 #include "school.h"
+#include "steady/steady_multipliers.h"
+#include "steady/steady_search.h"
 
 // coarse, so that a beat takes some milliseconds: 20 events, 7 nodes, 13 points of the sheet
 #define COARSE SCHOOL_SECOND "time: {end: 1, shedding_interval: 0.05, output_interval: 0.05}\n"

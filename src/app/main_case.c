@@ -9,15 +9,15 @@
 #include "case/case_keys.h"
 #include "case/case_schema.h"
 #include "case/case_show.h"
-#include "model/warnings.h"
-#include "output/checkpoint.h"
-#include "output/field_file.h"
-#include "output/result_info.h"
-#include "output/result_kind.h"
-#include "output/result_table.h"
-#include "output/target.h"
+#include "result/checkpoint.h"
+#include "result/result_info.h"
+#include "result/result_kind.h"
+#include "result/result_table.h"
+#include "result/target.h"
+#include "school/warnings.h"
 #include "study/study_file.h"
 #include "study/study_gather.h"
+#include "view/field_file.h"
 
 /* Row i of the list of warnings about a result. */
 static int list_warning(int i, struct result_listed *listed) {

@@ -10,11 +10,11 @@
 #include "case/case.h"
 #include "case/case_member.h"
 #include "case/sweep_members.h"
-#include "model/fish_school.h"
-#include "model/warnings.h"
-#include "output/target.h"
+#include "fish/fish_school.h"
+#include "result/target.h"
 #include "run/estimate.h"
 #include "run/record.h"
+#include "school/warnings.h"
 
 /* Seconds of the processor for all of it, and of these for the estimates: simulate_start is the rest. */
 static const double time_limit = 0.4, patience = 0.25;

@@ -7,8 +7,8 @@
 #include "app/main_commands.h"
 #include "app/say.h"
 #include "base/text.h"
-#include "output/field_file.h"
-#include "output/target.h"
+#include "result/target.h"
+#include "view/field_file.h"
 
 /* Points along the longer side where no grid is given. */
 enum { STANDARD_POINTS = 400 };

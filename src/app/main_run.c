@@ -13,9 +13,9 @@
 #include "app/progress.h"
 #include "app/say.h"
 #include "base/parallel.h"
-#include "output/page.h"
-#include "output/target.h"
+#include "result/target.h"
 #include "run/simulate_run.h"
+#include "view/page.h"
 
 // ---- run
 

@@ -7,9 +7,9 @@
 #include "app/main_threads.h"
 #include "app/say.h"
 #include "base/parallel.h"
-#include "output/steady_info.h"
-#include "output/steady_json.h"
-#include "run/steady.h"
+#include "result/steady_info.h"
+#include "result/steady_json.h"
+#include "steady/steady.h"
 
 static void tell_progress(const struct steady_progress *now, void *data) {
     struct teller *const teller = data;

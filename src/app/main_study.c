@@ -9,7 +9,7 @@
 #include "app/say.h"
 #include "case/case.h"
 #include "case/sweep_error.h"
-#include "output/target.h"
+#include "result/target.h"
 #include "study/error_study.h"
 #include "study/study.h"
 #include "study/study_compare.h"

@@ -6,10 +6,10 @@
 #include "app/main_commands.h"
 #include "app/say.h"
 #include "base/text.h"
-#include "output/netcdf.h"
-#include "output/page.h"
-#include "output/target.h"
-#include "output/vtk.h"
+#include "result/netcdf.h"
+#include "result/target.h"
+#include "view/page.h"
+#include "view/vtk.h"
 
 /* Add the name of a file without its folders and its ending. */
 static void add_stem(struct text *text, const char *path) {

@@ -3,7 +3,7 @@
 #define PROGRESS_H
 
 #include "run/simulate_run.h"
-#include "run/steady.h"
+#include "steady/steady.h"
 #include "study/study.h"
 
 struct progress {

@@ -75,14 +75,12 @@ static void find_places(struct parallel_choice *choice, int threads) {
     struct parallel_places *const places = choice->places;
     if (!places) return;
     sched_getaffinity(0, sizeof places->own, &places->own);
+    cpu_set_t *const own = calloc((size_t)threads, sizeof *own);
+    if (!own) return;
 #pragma omp parallel num_threads(threads)
-    {
-        cpu_set_t own;
-        if (sched_getaffinity(0, sizeof own, &own) == 0) {
-#pragma omp critical(parallel_places)
-            CPU_OR(&places->all, &places->all, &own);
-        }
-    }
+    sched_getaffinity(0, sizeof *own, &own[omp_get_thread_num()]);
+    for (int i = 0; i < threads; i++) CPU_OR(&places->all, &places->all, &own[i]);
+    free(own);
 }
 
 // whether something else runs on the processors of this thread; a system that does not say: no

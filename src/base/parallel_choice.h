@@ -6,8 +6,8 @@
  * other choice, which it takes if these steps are faster. A trial is repeated after a pause, which grows from trial to
  * trial without a change. Results do not depend on the choice.
  *
- *     | steps, all threads          | trial, one | steps, all threads                      | trial, one | steps, one ...
- *                           pause ->                                 twice the pause ->                faster: taken */
+ *     | steps, all threads          | trial, one | steps, all threads                 | trial | one ...
+ *                           pause ->                                 twice the pause ->          faster: taken */
 #ifndef PARALLEL_CHOICE_H
 #define PARALLEL_CHOICE_H
 

@@ -1,4 +1,4 @@
-/* version.h: the version of the program and of its libraries. Tested by tests/output/test_result_file.c. */
+/* version.h: the version of the program and of its libraries. Tested by tests/result/test_result_file.c. */
 #ifndef VERSION_H
 #define VERSION_H
 

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "body/bending_mode.h"
 #include "case/case_check.h"
 #include "case/case_merge.h"
 #include "case/case_notes.h"
@@ -17,8 +18,7 @@
 #include "case/sweep_error.h"
 #include "case/sweep_expect.h"
 #include "case/yaml_write.h"
-#include "model/bending_mode.h"
-#include "model/fish_school.h"
+#include "fish/fish_school.h"
 
 /* A case being read. */
 struct reading {

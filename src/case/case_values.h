@@ -1,12 +1,12 @@
 /* case_values.h: a case as plain values, in the units of the case file: angles in degrees, lengths in metres or in
- * fractions of the body length, as the meaning of the key says. Those that the model needs are in model/parameters.h,
+ * fractions of the body length, as the meaning of the key says. Those that the model needs are in fish/parameters.h,
  * the axes of a study in sweep_members.h, its errors in sweep_error.h, the expectations of its members in
  * sweep_expect.h. */
 #ifndef CASE_VALUES_H
 #define CASE_VALUES_H
 
 #include "base/methods.h"
-#include "model/parameters.h"
+#include "fish/parameters.h"
 
 enum precision { PRECISION_DOUBLE, PRECISION_SINGLE };
 enum preset { PRESET_NONE, PRESET_PUBLISHED };

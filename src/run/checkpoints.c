@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "case/case_show.h"
-#include "output/durable.h"
+#include "result/durable.h"
 
 // ---- names
 

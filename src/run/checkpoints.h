@@ -10,7 +10,7 @@
 #include "base/status.h"
 #include "base/text.h"
 #include "case/case.h"
-#include "output/checkpoint.h"
+#include "result/checkpoint.h"
 #include "run/record.h"
 #include "run/simulate.h"
 

@@ -3,15 +3,15 @@
 
 #include <math.h>
 
-#include "model/diagnostics_energy.h"
-#include "model/diagnostics_history.h"
-#include "model/diagnostics_momentum.h"
-#include "model/drag.h"
-#include "model/flow_at_bodies.h"
-#include "model/flow_at_wake.h"
-#include "model/impulse.h"
-#include "model/self_crossing.h"
-#include "model/wake_merge.h"
+#include "contact/self_crossing.h"
+#include "flow/flow_at_bodies.h"
+#include "flow/flow_at_wake.h"
+#include "force/drag.h"
+#include "school/diagnostics_energy.h"
+#include "school/diagnostics_history.h"
+#include "school/diagnostics_momentum.h"
+#include "state/impulse.h"
+#include "state/wake_merge.h"
 
 // evaluate the equations; at an event there is no smaller step to try
 static enum status evaluate(struct residual *residual, const struct state *state) {

@@ -7,9 +7,9 @@
 #define EVENT_H
 
 #include "base/status.h"
-#include "model/residual.h"
-#include "model/state.h"
+#include "school/residual.h"
 #include "solver/initial_conditions.h"
+#include "state/state.h"
 
 /* Make the state at t = 0 consistent and do what belongs to the first event. */
 enum status event_start(struct state *state, struct residual *residual, struct initial_conditions *initial);

@@ -1,11 +1,11 @@
 /* record.h: the result file of a run while the run goes on: which events are rows of it, and how it ends. Tested by
- * tests/run/test_simulate.c and tests/run/test_shoal.c. */
+ * tests/run/test_simulate.c and tests/library/test_shoal.c. */
 #ifndef RECORD_H
 #define RECORD_H
 
 #include "base/status.h"
 #include "case/case.h"
-#include "output/result_file.h"
+#include "result/result_file.h"
 
 /* Zero it to begin; there is then no file. */
 struct record {

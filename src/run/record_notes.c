@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "model/warnings.h"
+#include "school/warnings.h"
 
 static void note_closest(struct result_file *file, const struct simulation *simulation) {
     const struct school *const school = simulation->school;

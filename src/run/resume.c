@@ -6,7 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "output/netcdf.h"
+#include "result/netcdf.h"
 #include "run/checkpoints.h"
 
 // ---- the checkpoint

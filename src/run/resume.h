@@ -5,8 +5,8 @@
 
 #include "base/status.h"
 #include "case/case.h"
-#include "output/checkpoint.h"
-#include "output/result_lock.h"
+#include "result/checkpoint.h"
+#include "result/result_lock.h"
 
 struct resume {
     struct checkpoint checkpoint;

@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <time.h>
 
-#include "model/fish_school.h"
-#include "model/flow_at_bodies.h"
-#include "output/result_table.h"
+#include "fish/fish_school.h"
+#include "flow/flow_at_bodies.h"
+#include "result/result_table.h"
 #include "run/event.h"
 #include "solver/integrator_table.h"
 

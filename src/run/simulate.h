@@ -8,11 +8,11 @@
 #include "base/parallel_choice.h"
 #include "base/status.h"
 #include "case/case.h"
-#include "model/diagnostics.h"
+#include "school/diagnostics.h"
 #include "solver/initial_conditions.h"
 #include "solver/integrator.h"
 
-struct result_row; /* output/result_table.h */
+struct result_row; /* result/result_table.h */
 
 /* A run in memory. Read its parts; only the functions below change them. */
 struct simulation {

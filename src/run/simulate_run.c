@@ -7,14 +7,14 @@
 #include <string.h>
 
 #include "base/version.h"
-#include "model/fish_school.h"
-#include "model/state_table.h"
-#include "output/target.h"
+#include "fish/fish_school.h"
+#include "result/target.h"
 #include "run/checkpoints.h"
 #include "run/record.h"
 #include "run/record_notes.h"
 #include "run/resume.h"
 #include "run/simulate.h"
+#include "state/state_table.h"
 
 // a run and its files
 struct run {

@@ -8,8 +8,8 @@
 #define ALGEBRAIC_RATES_H
 
 #include "base/status.h"
-#include "model/fish.h"
-#include "model/state.h"
+#include "fish/fish.h"
+#include "state/state.h"
 
 struct algebraic_rates;
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "base/parallel.h"
-#include "model/fish_prescribed.h"
+#include "fish/fish_prescribed.h"
 
 // two translations and a rotation
 enum { N_RIGID = 3 };

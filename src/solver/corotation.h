@@ -17,7 +17,7 @@
 #define COROTATION_H
 
 #include "base/status.h"
-#include "model/fish.h"
+#include "fish/fish.h"
 
 struct corotation;
 

@@ -7,10 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "model/fish_prescribed.h"
-#include "model/jacobian.h"
-#include "model/residual_couplings.h"
-#include "model/residual_jacobian.h"
+#include "fish/fish_prescribed.h"
+#include "school/jacobian.h"
+#include "school/residual_couplings.h"
+#include "school/residual_jacobian.h"
 #include "solver/newton.h"
 
 /* Equations are solved to this, over their scales; forces no better than the rounding of places makes those along a

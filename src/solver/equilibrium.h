@@ -5,7 +5,7 @@
 #define EQUILIBRIUM_H
 
 #include "base/status.h"
-#include "model/residual.h"
+#include "school/residual.h"
 
 struct equilibrium;
 

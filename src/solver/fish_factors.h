@@ -15,7 +15,7 @@
 
 #include "base/sparse.h"
 #include "base/status.h"
-#include "model/fish.h"
+#include "fish/fish.h"
 #include "solver/sparse_factors.h"
 
 struct fish_factors;

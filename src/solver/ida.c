@@ -5,9 +5,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "model/diagnostics_energy.h"
-#include "model/residual_jacobian.h"
-#include "model/rod.h"
+#include "body/rod.h"
+#include "school/diagnostics_energy.h"
+#include "school/residual_jacobian.h"
 #include "solver/algebraic_rates.h"
 #include "solver/ida_newton.h"
 #include "solver/sundials.h"

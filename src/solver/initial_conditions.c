@@ -8,8 +8,8 @@
 #include <string.h>
 
 #include "base/array.h"
-#include "model/flow_at_bodies.h"
-#include "model/residual_jacobian.h"
+#include "flow/flow_at_bodies.h"
+#include "school/residual_jacobian.h"
 #include "solver/integrator.h"
 #include "solver/sundials.h"
 #include "solver/sundials_context.h"

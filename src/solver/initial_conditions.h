@@ -6,7 +6,7 @@
 #include <signal.h>
 
 #include "base/status.h"
-#include "model/residual.h"
+#include "school/residual.h"
 
 struct initial_conditions;
 

@@ -6,8 +6,8 @@
 
 #include "base/methods.h"
 #include "base/status.h"
-#include "model/residual.h"
-#include "model/state.h"
+#include "school/residual.h"
+#include "state/state.h"
 
 /* Totals since the start, and the last step. */
 struct integrator_counts {

@@ -7,7 +7,7 @@
 #define LINEAR_H
 
 #include "base/status.h"
-#include "model/jacobian.h"
+#include "school/jacobian.h"
 
 struct linear;
 

@@ -10,11 +10,11 @@
 #include <string.h>
 
 #include "base/ramp.h"
-#include "model/fish_prescribed.h"
-#include "model/flow_at_bodies.h"
-#include "model/jacobian.h"
-#include "model/residual_couplings.h"
-#include "model/residual_jacobian.h"
+#include "fish/fish_prescribed.h"
+#include "flow/flow_at_bodies.h"
+#include "school/jacobian.h"
+#include "school/residual_couplings.h"
+#include "school/residual_jacobian.h"
 
 /* Gauss's points of the interval. */
 enum { N_POINTS = 2 };
@@ -207,8 +207,8 @@ static void list(struct modes *modes, const struct jacobian *jacobian, const dou
     }
 }
 
-/* Eliminate the algebraic unknowns. Their columns of dF/dy are C = Q [R; 0]: the last columns of Q, times all equations,
- * have none of them; and R gives a circulation that is algebraic: Gamma + z^T Q^T (the rest) = 0 with R^T z = e. */
+/* Eliminate the algebraic unknowns. Their columns of dF/dy are C = Q [R; 0]: the last columns of Q, times all the
+ * equations, have none of them; and R gives a circulation that is algebraic: Gamma + z^T Q^T (the rest) = 0 with R^T z = e. */
 static enum status reduce(struct modes *modes, const double *by_value, const double *by_rate) {
     const int n = modes->n, slow = modes->n_slow, fast = n - slow, rows = slow + modes->n_shed;
     const size_t n_rows = (size_t)rows, n_all = (size_t)modes->n_all;
@@ -409,7 +409,7 @@ static void insert(const struct modes *modes, double complex lambda, const doubl
     for (int f = 0; f < modes->n_shed; f++) vector[modes->n_slow + f] = 0;
 }
 
-/* Whether a mode is slow enough to be resolved by the events, and lives as long as the wake; loosely: times a factor. */
+/* Whether a mode is slow enough to be resolved by the events, and lives as long as the wake, or a factor times that. */
 static int is_resolved(const struct modes *modes, double complex lambda, double loosely) {
     const double interval = modes->residual->school->interval;
     double life = interval;

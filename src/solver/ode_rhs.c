@@ -6,11 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "model/bound_sheet.h"
-#include "model/fish_prescribed.h"
-#include "model/flow_at_bodies.h"
-#include "model/flow_derivative.h"
-#include "model/rod.h"
+#include "body/rod.h"
+#include "fish/fish_prescribed.h"
+#include "flow/flow_at_bodies.h"
+#include "flow/flow_derivative.h"
+#include "force/bound_sheet.h"
 
 struct ode_rhs {
     struct residual *residual;

@@ -13,7 +13,7 @@
 #define ODE_RHS_H
 
 #include "base/status.h"
-#include "model/residual.h"
+#include "school/residual.h"
 
 struct ode_rhs;
 

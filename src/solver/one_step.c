@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "base/array.h"
-#include "model/diagnostics_energy.h"
-#include "model/residual_jacobian.h"
+#include "school/diagnostics_energy.h"
+#include "school/residual_jacobian.h"
 #include "solver/algebraic_rates.h"
 #include "solver/linear.h"
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "model/diagnostics_energy.h"
+#include "school/diagnostics_energy.h"
 #include "solver/algebraic_rates.h"
 #include "solver/ode_rhs.h"
 #include "solver/sundials.h"

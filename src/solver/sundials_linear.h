@@ -4,7 +4,7 @@
 #define SUNDIALS_LINEAR_H
 
 #include "base/status.h"
-#include "model/jacobian.h"
+#include "school/jacobian.h"
 #include "solver/linear.h"
 #include "solver/sundials.h"
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "model/diagnostics_energy.h"
+#include "school/diagnostics_energy.h"
 #include "solver/ode_rhs.h"
 
 struct verlet {

@@ -11,9 +11,9 @@
 #include "case/case_table.h"
 #include "case/sweep_members.h"
 #include "case/sweep_quantity.h"
-#include "model/fish_school.h"
-#include "model/warnings.h"
-#include "run/steady_static.h"
+#include "fish/fish_school.h"
+#include "school/warnings.h"
+#include "steady/steady_static.h"
 
 /* Finer levels in place of coarser ones that are no valid cases. */
 enum { MOST_FINER = 2 };

@@ -8,7 +8,7 @@
 #include "base/text.h"
 #include "case/case_member.h"
 #include "case/sweep_members.h"
-#include "output/plain_file.h"
+#include "result/plain_file.h"
 #include "run/estimate.h"
 #include "study/study_table.h"
 

@@ -5,8 +5,8 @@
 
 #include <stdio.h>
 
-#include "output/netcdf.h"
-#include "output/result_kind.h"
+#include "result/netcdf.h"
+#include "result/result_kind.h"
 #include "study/error_study.h"
 
 /* Print keys and levels, the number of members, and, after a few events of each, the time that they take; n_processes

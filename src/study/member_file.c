@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "case/sweep_quantity.h"
-#include "output/netcdf.h"
-#include "output/result_table.h"
+#include "result/netcdf.h"
+#include "result/result_table.h"
 
 enum { MAX_FISH = 1000000 };
 

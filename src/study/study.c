@@ -18,11 +18,11 @@
 #include "case/case_member.h"
 #include "case/case_show.h"
 #include "case/sweep_members.h"
-#include "output/result_lock.h"
+#include "result/result_lock.h"
 #include "run/checkpoints.h"
 #include "run/resume.h"
 #include "run/simulate_run.h"
-#include "run/steady.h"
+#include "steady/steady.h"
 #include "study/study_folder.h"
 #include "study/study_plan.h"
 

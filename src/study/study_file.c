@@ -8,8 +8,8 @@
 
 #include "base/text.h"
 #include "case/sweep_members.h"
-#include "output/netcdf.h"
-#include "output/target.h"
+#include "result/netcdf.h"
+#include "result/target.h"
 #include "study/study_comparison.h"
 
 enum { MIN_TEXT = 128 /* bytes of the flag of an order */, NAME_BYTES = 256 };

@@ -5,7 +5,7 @@
 
 #include "base/status.h"
 #include "case/case.h"
-#include "output/result_kind.h"
+#include "result/result_kind.h"
 #include "study/error_report.h"
 #include "study/member_file.h"
 #include "study/study_orders.h"

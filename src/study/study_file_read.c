@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "case/sweep_members.h"
-#include "output/netcdf.h"
+#include "result/netcdf.h"
 #include "study/study_file.h"
 
 enum { MAX_MEMBERS = 100000 };

@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 #include "case/sweep_members.h"
-#include "output/durable.h"
+#include "result/durable.h"
 
 enum { REASON_BYTES = 2048 };
 

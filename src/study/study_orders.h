@@ -7,8 +7,8 @@
 
 #include "base/status.h"
 #include "case/case_values.h"
-#include "output/netcdf.h"
-#include "output/result_kind.h"
+#include "result/netcdf.h"
+#include "result/result_kind.h"
 #include "study/error_budget.h"
 #include "study/member_file.h"
 

@@ -9,7 +9,7 @@
 #include "case/case_member.h"
 #include "case/case_show.h"
 #include "case/sweep_members.h"
-#include "output/target.h"
+#include "result/target.h"
 #include "study/study_file.h"
 #include "study/study_folder.h"
 

@@ -10,7 +10,7 @@
 #include "case/case.h"
 #include "case/case_member.h"
 #include "case/sweep_members.h"
-#include "output/plain_file.h"
+#include "result/plain_file.h"
 #include "study/study_folder.h"
 
 enum { MAX_TASKS = 1000 /* Slurm's own default is 1001 */ };

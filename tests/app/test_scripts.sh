@@ -64,7 +64,7 @@ code=0
 "$program" run "$root/cases/gait.yaml" -q -o run.nc 2>err || code=$?
 check "a short run" test "$code" = 0
 
-# what a vortex still acts with, by its age, as the program has it (tests/model/test_wake.c): all, half, nothing
+# what a vortex still acts with, by its age, as the program has it (tests/wake/test_wake.c): all, half, nothing
 code=0
 PYTHONPATH=$root/scripts /usr/bin/python3 - >out 2>err <<'END' || code=$?
 from shoal_results import Results, np

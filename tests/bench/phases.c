@@ -25,11 +25,11 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "model/flow_at_bodies.h"
-#include "model/residual_jacobian.h"
-#include "output/result_file.h"
+#include "flow/flow_at_bodies.h"
+#include "result/result_file.h"
 #include "run/simulate.h"
 #include "run/simulate_run.h"
+#include "school/residual_jacobian.h"
 #include "solver/linear.h"
 #include "vortex/kernel.h"
 #include "vortex/pairwise.h"

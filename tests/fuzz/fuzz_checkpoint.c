@@ -8,12 +8,12 @@
 #include <zlib.h>
 
 #include "case/case.h"
+#include "fish/fish.h"
+#include "fish/fish_school.h"
 #include "fuzz.h"
-#include "model/fish.h"
-#include "model/fish_school.h"
-#include "model/state.h"
-#include "output/checkpoint.h"
-#include "output/sections.h"
+#include "result/checkpoint.h"
+#include "result/sections.h"
+#include "state/state.h"
 
 enum {
     SIZE_AT = 16, /* in the header of all: the bytes of the file, then the checksum (sections.h) */

@@ -6,12 +6,12 @@
 #include <unistd.h>
 
 #include "fuzz.h"
-#include "output/field_file.h"
-#include "output/result_info.h"
-#include "output/result_kind.h"
-#include "output/result_reader.h"
+#include "result/result_info.h"
+#include "result/result_kind.h"
+#include "result/result_reader.h"
 #include "study/member_file.h"
 #include "study/study_gather.h"
+#include "view/field_file.h"
 
 static char path[64];
 

@@ -2,8 +2,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "model/bound_sheet.h"
-#include "model/flow_at_bodies.h"
+#include "flow/flow_at_bodies.h"
+#include "force/bound_sheet.h"
 #include "run/event.h"
 #include "school.h"
 

@@ -1,6 +1,6 @@
 /* test_memory.c: every create fails cleanly at every one of its allocations. */
 #include "failing_malloc.h"
-#include "model/fish_school.h"
+#include "fish/fish_school.h"
 #include "school.h"
 #include "solver/ida.h"
 #include "solver/ode_rhs.h"

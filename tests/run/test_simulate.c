@@ -5,7 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "output/checkpoint.h"
+#include "result/checkpoint.h"
 #include "run/checkpoints.h"
 #include "run/simulate_run.h"
 #include "school.h"

@@ -2,9 +2,9 @@
  * itself there, for every method and every kind of memory that a run has. */
 #include <stdio.h>
 
-#include "model/fish_school.h"
-#include "model/state_table.h"
+#include "fish/fish_school.h"
 #include "school.h"
+#include "state/state_table.h"
 
 /* A short lifetime, so that vortices fade and are removed too. */
 #define TIME "time: {end: 1, shedding_interval: 0.02}\n"

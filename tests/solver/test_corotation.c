@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "model/rod.h"
+#include "body/rod.h"
 #include "school.h"
 #include "solver/corotation.h"
 

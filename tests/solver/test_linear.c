@@ -7,8 +7,8 @@
 #include <time.h>
 
 #include "failing_malloc.h"
-#include "model/residual_jacobian.h"
 #include "school.h"
+#include "school/residual_jacobian.h"
 #include "solver/linear.h"
 
 // stirred bodies may cross

@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "run/steady_search.h"
+#include "steady/steady_search.h"
 #include "verify.h"
 
 struct swim {

@@ -8,8 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "model/edge.h"
-#include "model/fish_prescribed.h"
+#include "body/edge.h"
+#include "fish/fish_prescribed.h"
 #include "verify.h"
 
 #define STILL "format: 1\nwake: {smoothing: 1.0e+6}\n"

@@ -1,5 +1,5 @@
 /* linear_theory.h: solvers of our own for the linear theory of thin foils, from which `make verify` takes references.
- * Nothing of src/model is used.
+ * Nothing of the model in src is used.
  *
  * A plate of length L and span 1 along the x axis in a stream U towards +x, its nose at x = 0; small displacements
  * y(x, t) = Re(y(x) exp(i omega t)) to the left (+y); b = L/2, k = omega b/U, x = b (1 + cos theta), so that theta = 0

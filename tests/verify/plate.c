@@ -11,8 +11,8 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "force/bound_sheet.h"
 #include "linear_theory.h"
-#include "model/bound_sheet.h"
 #include "verify.h"
 
 static const double pi = 3.14159265358979323846;

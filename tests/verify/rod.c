@@ -6,15 +6,15 @@
  * Where a chain is clamped, a joint at its nose holds the direction of edge 0 with the stiffness of half an edge, the
  * half cell of node 0: what may bend is the whole length.
  */
-#include "model/rod.h"
+#include "body/rod.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "model/diagnostics_energy.h"
-#include "model/fish_prescribed.h"
-#include "model/residual_jacobian.h"
+#include "fish/fish_prescribed.h"
+#include "school/diagnostics_energy.h"
+#include "school/residual_jacobian.h"
 #include "verify.h"
 
 enum { N_LEVELS = 4 };

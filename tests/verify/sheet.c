@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "model/bound_sheet.h"
+#include "force/bound_sheet.h"
 #include "verify.h"
 
 static const double pi = 3.14159265358979323846;

@@ -8,9 +8,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "model/flow_at_bodies.h"
-#include "model/flow_derivative.h"
-#include "model/residual_jacobian.h"
+#include "flow/flow_at_bodies.h"
+#include "flow/flow_derivative.h"
+#include "school/residual_jacobian.h"
 #include "solver/sundials.h"
 #include "solver/sundials_context.h"
 #include "solver/sundials_linear.h"

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "run/steady_multipliers.h"
-#include "run/steady_search.h"
+#include "steady/steady_multipliers.h"
+#include "steady/steady_search.h"
 #include "verify.h"
 
 // ---- one fish, against a run of two hundred beats

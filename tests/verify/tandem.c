@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "linear_theory.h"
-#include "run/steady_multipliers.h"
-#include "run/steady_search.h"
+#include "steady/steady_multipliers.h"
+#include "steady/steady_search.h"
 #include "verify.h"
 
 static const double pi = 3.14159265358979323846;

@@ -2,7 +2,7 @@
  * against the same bodies beside their own mirror images. Length L = 1 m. */
 #include <math.h>
 
-#include "model/bound_sheet.h"
+#include "force/bound_sheet.h"
 #include "verify.h"
 
 static const double pi = 3.14159265358979323846;

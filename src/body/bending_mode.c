@@ -1,0 +1,135 @@
+/* bending_mode.c: power iteration on the flexibility of a body (Stodola's method). */
+#include "body/bending_mode.h"
+
+#include <math.h>
+
+// mass of a node with that of the fluid that it accelerates sideways by itself, kg
+static double moving_mass(const struct fish *fish, int k) {
+    const double before = k > 0 ? fish->added_mass[k - 1] : 0, after = k < fish->n_edges ? fish->added_mass[k] : 0;
+    return fish->mass[k] + (before + after) / 2;
+}
+
+/* A point of a straight sheet, at s = L (1 - cos theta)/2: the node before it, and how far it is on the way to the next
+ * one. */
+struct sheet_place {
+    double sine, cosine, part;
+    int node;
+};
+static struct sheet_place sheet_place(const struct fish *fish, double theta) {
+    const double u = fish->n_edges * (1 - cos(theta)) / 2;
+    const int node = u < fish->n_edges ? (int)u : fish->n_edges - 1;
+    return (struct sheet_place){sin(theta), cos(theta), u - node, node};
+}
+
+// add the momentum of the fluid around a straight sheet whose nodes have the velocities w across it, with nothing shed:
+// the jump of its potential is L sum (2/(pi n)) (int w sin(theta) sin(n theta) dtheta) sin(n theta). term: (n_nodes)
+static void add_sheet_momentum(const struct fish *fish, const double *w, double *term, double *load) {
+    const int n_terms = fish->n_nodes, n_points = 4 * fish->n_nodes;
+    const double step = M_PI / n_points;
+    for (int n = 0; n < n_terms; n++) term[n] = 0;
+    for (int add = 0; add < 2; add++) {  // first the integrals, then what follows from them
+        for (int i = 0; i < n_points; i++) {
+            const struct sheet_place at = sheet_place(fish, (i + 0.5) * step);
+            const double here = (1 - at.part) * w[at.node] + at.part * w[at.node + 1];
+            double sine = at.sine, before = 0, jump = 0;
+            for (int n = 0; n < n_terms; n++) {
+                if (add) jump += fish->length * 2 / (M_PI * (n + 1)) * term[n] * sine;
+                if (!add) term[n] += step * here * at.sine * sine;
+                const double next = 2 * at.cosine * sine - before;
+                before = sine;
+                sine = next;
+            }
+            const double size = fish->fluid_density * fish->depth[at.node] * jump * fish->length / 2 * at.sine * step;
+            load[at.node] += (1 - at.part) * size;
+            load[at.node + 1] += at.part * size;
+        }
+    }
+}
+
+/* Power iteration: what it works with. */
+struct modes {
+    const struct fish *fish;
+    int is_held;
+    double *mode, *next, *load, *term;
+    double *rigid[2]; /* the loads of translation and rotation */
+};
+
+// the momentum of a body and its fluid whose nodes have the velocities w
+static void find_load(const struct modes *modes, const double *w, double *load) {
+    const struct fish *fish = modes->fish;
+    for (int k = 0; k < fish->n_nodes; k++) load[k] = moving_mass(fish, k) * w[k];
+    if (fish_has_momentum(fish)) add_sheet_momentum(fish, w, modes->term, load);
+}
+
+static double product(const struct fish *fish, const double *load, const double *w) {
+    double sum = 0;
+    for (int k = 0; k < fish->n_nodes; k++) sum += load[k] * w[k];
+    return sum;
+}
+
+static void find_rigid_loads(const struct modes *modes) {
+    for (int i = 0; i < 2; i++) {
+        for (int k = 0; k < modes->fish->n_nodes; k++) modes->next[k] = pow(k, i);
+        find_load(modes, modes->next, modes->rigid[i]);
+    }
+}
+
+// take away what moves a free body without bending it: its translation and its rotation
+static void remove_rigid(const struct modes *modes, double *w) {
+    const int n = modes->fish->n_nodes;
+    double m[3] = {0, 0, 0};
+    for (int k = 0; k < n; k++) {
+        m[0] += modes->rigid[0][k];
+        m[1] += modes->rigid[1][k];
+        m[2] += modes->rigid[1][k] * k;
+    }
+    const double by[2] = {product(modes->fish, modes->rigid[0], w), product(modes->fish, modes->rigid[1], w)};
+    const double det = m[0] * m[2] - m[1] * m[1];
+    const double a = (by[0] * m[2] - by[1] * m[1]) / det, b = (by[1] * m[0] - by[0] * m[1]) / det;
+    for (int k = 0; k < n; k++) w[k] -= a + b * k;
+}
+
+// the displacements w under a load on the nodes: bending moments from the loads, joint angles from the moments;
+// those of a held body come from its tail, those of a free one from either end
+static void deflect(const struct modes *modes, const double *load, double *w) {
+    const struct fish *fish = modes->fish;
+    const double l = fish->edge_length;
+    double *const angle = w + 2;  // of joint j at the node behind it, where its displacement will be
+    double shear = 0, moment = 0;
+    for (int i = 0; i < fish->n_joints; i++) {
+        const int node = modes->is_held ? fish->n_nodes - 1 - i : i,
+                  joint = modes->is_held ? fish->n_joints - 1 - i : i;
+        shear += load[node];
+        moment += shear * l;
+        angle[joint] = moment * l / fish->bending_stiffness[joint];
+    }
+    w[0] = w[1] = 0;
+    for (int k = 2; k < fish->n_nodes; k++) w[k] = 2 * w[k - 1] - w[k - 2] + l * w[k];
+}
+
+double bending_mode_frequency(const struct fish *fish, double *scratch) {
+    enum { ITERATIONS = 60 };  // each takes away 0.13 of the next mode of a uniform body
+    const int n = fish->n_nodes;
+    const struct modes modes = {.fish = fish,
+                                .is_held = fish->motion.prescribed == PRESCRIBED_HEAD,
+                                .mode = scratch,
+                                .next = scratch + n,
+                                .load = scratch + 2 * n,
+                                .term = scratch + 3 * n,
+                                .rigid = {scratch + 4 * n, scratch + 5 * n}};
+    double square = 0;  // of the angular frequency
+    find_rigid_loads(&modes);
+    for (int k = 0; k < n; k++) modes.mode[k] = (double)k * k;
+    for (int i = 0; i < ITERATIONS; i++) {
+        if (!modes.is_held) remove_rigid(&modes, modes.mode);
+        find_load(&modes, modes.mode, modes.load);
+        const double size = sqrt(product(fish, modes.load, modes.mode));
+        for (int k = 0; k < n; k++) modes.load[k] /= size;
+        deflect(&modes, modes.load, modes.next);
+        if (!modes.is_held) remove_rigid(&modes, modes.next);
+        find_load(&modes, modes.next, modes.load);
+        square = 1 / sqrt(product(fish, modes.load, modes.next));
+        for (int k = 0; k < n; k++) modes.mode[k] = modes.next[k];
+    }
+    return sqrt(square) / (2 * M_PI);
+}

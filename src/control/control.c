@@ -1,0 +1,281 @@
+/* control.c: heading, desired heading, and the law between them and phi0. */
+#include "control/control.h"
+
+#include <math.h>
+
+#include "base/angle.h"
+
+static const double pi = 3.14159265358979323846;
+
+int control_feels_moment(const struct fish *fish) {
+    return fish->control.law != CONTROL_NONE && fabs(fish->control.feedforward) > 0;
+}
+
+// from the body point at a third of the length to the nose
+static void head_vector(const struct fish *fish, const double *y, double head[2]) {
+    const double *const x = y + fish->at.x, *const z = y + fish->at.y;
+    head[0] = x[0] - fish_mean(&fish->heading_point, x);
+    head[1] = z[0] - fish_mean(&fish->heading_point, z);
+}
+
+double control_heading(const struct fish *fish, const double *y) {
+    double head[2];
+    head_vector(fish, y, head);
+    return atan2(head[1], head[0]);
+}
+
+int control_n_waypoints(const struct fish *fish, const struct control_memory *memory) {
+    return memory->has_waypoints ? memory->n_waypoints : fish->control.n_waypoints;
+}
+
+static int steers_to_waypoint(const struct fish *fish, const struct control_memory *memory) {
+    return memory->waypoint < control_n_waypoints(fish, memory);
+}
+
+// where waypoint i is; before the first one, where the fish has set out for it
+static void place_waypoint(const struct fish *fish, const struct control_memory *memory, int i, double place[2]) {
+    for (int d = 0; d < 2; d++) {
+        if (memory->has_waypoints) {
+            place[d] = i < 0 ? memory->set_out[d] : memory->waypoints[2 * i + d];
+        } else {
+            const double *const along = d == 0 ? fish->control.waypoint_x : fish->control.waypoint_y;
+            place[d] = i < 0 ? fish->start_position[d] : along[i];
+        }
+    }
+}
+
+// from the nose to the waypoint that is steered to
+static void to_waypoint(const struct fish *fish, const struct control_memory *memory, const double *y, double away[2]) {
+    place_waypoint(fish, memory, memory->waypoint, away);
+    away[0] -= y[fish->at.x];
+    away[1] -= y[fish->at.y];
+}
+
+static double heading_in_table(const struct control_law_data *control, double t) {
+    const int last = control->n_headings - 1;
+    if (t <= control->heading_time[0]) return control->heading[0];
+    for (int i = 0; i < last; i++) {
+        const double start = control->heading_time[i], end = control->heading_time[i + 1];
+        if (t < end) {
+            return control->heading[i] + (t - start) / (end - start) * (control->heading[i + 1] - control->heading[i]);
+        }
+    }
+    return control->heading[last];
+}
+
+double control_desired_heading(const struct fish *fish, const struct control_memory *memory, double t,
+                               const double *y) {
+    if (control_n_waypoints(fish, memory) == 0) {
+        return memory->has_heading ? lead_value(&memory->heading, t) : heading_in_table(&fish->control, t);
+    }
+    if (!steers_to_waypoint(fish, memory)) return memory->held_heading;
+    double away[2];
+    to_waypoint(fish, memory, y, away);
+    return atan2(away[1], away[0]);
+}
+
+// what the hyperbolic tangent of the laws is taken of
+static double law_argument(const struct fish *fish, const struct control_memory *memory, double t, double direction,
+                           double more, const double *y) {
+    return fish->control.gain * angle_wrap(direction - control_desired_heading(fish, memory, t, y)) + more;
+}
+
+double control_law(const struct fish *fish, const struct control_memory *memory, double t, double direction,
+                   double more, const double *y) {
+    return fish->control.limit * tanh(law_argument(fish, memory, t, direction, more, y));
+}
+
+// tau_f between two events
+static double moment_at(const struct control_memory *memory, double since) {
+    return memory->moment + since * memory->moment_rate;
+}
+
+// law heading, between two events
+static double heading_argument(const struct fish *fish, const struct control_memory *memory, double t, double since,
+                               const double *y) {
+    const double feedforward = fish->control.feedforward * moment_at(memory, since);
+    return law_argument(fish, memory, t, control_heading(fish, y), feedforward, y);
+}
+
+void control_residual(const struct fish *fish, const struct control_memory *memory, double t, double since,
+                      const double *y, double *residual) {
+    double value = 0;
+    switch (fish->control.law) {
+        case CONTROL_NONE: value = fish->control.bias + lead_value(&memory->bias, t); break;
+        case CONTROL_HEADING: value = fish->control.limit * tanh(heading_argument(fish, memory, t, since, y)); break;
+        case CONTROL_AVERAGED_HEADING:
+        case CONTROL_COURSE: value = memory->phi0 + since * memory->phi0_rate; break;
+    }
+    residual[fish->at.phi0] = y[fish->at.phi0] - value;
+}
+
+// how fast the table's heading changes, rad s-1
+static double table_rate(const struct control_law_data *control, double t) {
+    for (int i = 0; i + 1 < control->n_headings; i++) {
+        const double start = control->heading_time[i], end = control->heading_time[i + 1];
+        if (start <= t && t < end) return (control->heading[i + 1] - control->heading[i]) / (end - start);
+    }
+    return 0;
+}
+
+// the rate at which a vector turns
+static double turn_rate(const double vector[2], const double rate[2]) {
+    return (vector[0] * rate[1] - vector[1] * rate[0]) / (vector[0] * vector[0] + vector[1] * vector[1]);
+}
+
+static double desired_heading_rate(const struct fish *fish, const struct control_memory *memory, double t,
+                                   const double *y) {
+    if (control_n_waypoints(fish, memory) == 0) {
+        return memory->has_heading ? lead_rate(&memory->heading, t) : table_rate(&fish->control, t);
+    }
+    if (!steers_to_waypoint(fish, memory)) return 0;
+    double away[2];
+    to_waypoint(fish, memory, y, away);
+    const double rate[2] = {-y[fish->at.vx], -y[fish->at.vy]};
+    return turn_rate(away, rate);
+}
+
+double control_rate(const struct fish *fish, const struct control_memory *memory, double t, double since,
+                    const double *y) {
+    if (fish->control.law == CONTROL_NONE) return lead_rate(&memory->bias, t);
+    if (fish->control.law != CONTROL_HEADING) return memory->phi0_rate;
+    double head[2], rate[2];
+    head_vector(fish, y, head);
+    rate[0] = y[fish->at.vx] - fish_mean(&fish->heading_point, y + fish->at.vx);
+    rate[1] = y[fish->at.vy] - fish_mean(&fish->heading_point, y + fish->at.vy);
+    const double error_rate = turn_rate(head, rate) - desired_heading_rate(fish, memory, t, y);
+    const double tangent = tanh(heading_argument(fish, memory, t, since, y));
+    return fish->control.limit * (1 - tangent * tangent) *
+           (fish->control.feedforward * memory->moment_rate + fish->control.gain * error_rate);
+}
+
+void control_jacobian(const struct fish *fish, const struct control_memory *memory, double t, double since,
+                      const double *y, struct sparse *jacobian) {
+    const int row = fish->at.phi0;
+    sparse_add(jacobian, row, fish->at.phi0, 1);
+    if (fish->control.law != CONTROL_HEADING) return;
+    const double tangent = tanh(heading_argument(fish, memory, t, since, y));
+    const double slope = fish->control.limit * (1 - tangent * tangent);
+
+    // the heading turns with the head vector (hx, hy): dh = (hx dhy - hy dhx)/|h|^2
+    double head[2];
+    head_vector(fish, y, head);
+    const double square = head[0] * head[0] + head[1] * head[1], gain = slope * fish->control.gain;
+    const double by_head[2] = {-head[1] / square, head[0] / square};
+    sparse_add(jacobian, row, fish->at.x, -gain * by_head[0]);
+    sparse_add(jacobian, row, fish->at.y, -gain * by_head[1]);
+    for (int i = 0; i < fish->heading_point.n; i++) {
+        const double weight = fish->heading_point.weight[i];
+        sparse_add(jacobian, row, fish->at.x + fish->heading_point.node[i], gain * weight * by_head[0]);
+        sparse_add(jacobian, row, fish->at.y + fish->heading_point.node[i], gain * weight * by_head[1]);
+    }
+    // so does the direction to the waypoint with the nose; without one the entries are there and zero
+    double by_nose[2] = {0, 0};
+    if (steers_to_waypoint(fish, memory)) {
+        double away[2];
+        to_waypoint(fish, memory, y, away);
+        const double distance = away[0] * away[0] + away[1] * away[1];
+        by_nose[0] = away[1] / distance;
+        by_nose[1] = -away[0] / distance;
+    }
+    sparse_add(jacobian, row, fish->at.x, gain * by_nose[0]);
+    sparse_add(jacobian, row, fish->at.y, gain * by_nose[1]);
+}
+
+void control_advance(struct control_memory *memory, double interval) {
+    memory->phi0 += interval * memory->phi0_rate;
+    memory->moment += interval * memory->moment_rate;
+}
+
+// Pass the waypoints that have been reached; returns whether there are any.
+static int pass_waypoints(const struct fish *fish, struct control_memory *memory, const double *y) {
+    const struct control_law_data *control = &fish->control;
+    int passed = 0;
+    for (; steers_to_waypoint(fish, memory); memory->waypoint++, passed = 1) {
+        double away[2];
+        to_waypoint(fish, memory, y, away);
+        if (hypot(away[0], away[1]) > control->acceptance_radius) break;
+        // after the last waypoint the course of the last leg is held
+        double from[2], to[2];
+        place_waypoint(fish, memory, memory->waypoint - 1, from);
+        place_waypoint(fish, memory, memory->waypoint, to);
+        memory->held_heading = atan2(to[1] - from[1], to[0] - from[0]);
+    }
+    return passed;
+}
+
+// where phi0 of a law that decides at events goes; without a course yet it stays
+static double target_of(const struct fish *fish, const struct control_memory *memory, const struct control_view *view,
+                        const double *y) {
+    const struct control_law_data *control = &fish->control;
+    if (control->law == CONTROL_COURSE) {
+        if (!view->has_course) return memory->phi0;
+        const double damping = control->damping * fish->period * view->course_rate;
+        return control_law(fish, memory, view->t, view->course, damping, y);
+    }
+    const double feedforward = control->feedforward * moment_at(memory, view->interval);
+    return control_law(fish, memory, view->t, view->mean_heading, feedforward, y);
+}
+
+int control_event(const struct fish *fish, struct control_memory *memory, const struct control_view *view,
+                  const double *y) {
+    const int passed = pass_waypoints(fish, memory, y);
+    // the moving mean changes by a part of its distance from the newest value, linearly until the next event
+    memory->moment_rate = fish->control.filter_share * (view->moment - memory->moment) / view->interval;
+    if (fish->control.law == CONTROL_NONE) return 0;
+    if (fish->control.law == CONTROL_HEADING) return passed;
+    const double most = fish->control.rate, target = target_of(fish, memory, view, y);
+    memory->phi0_rate = fmax(-most, fmin(most, (target - memory->phi0) / view->interval));
+    return 0;
+}
+
+// ---- set from outside
+
+struct fish_gait control_gait(const struct fish *fish, const struct control_memory *memory, double t) {
+    struct fish_gait gait = fish_own_gait(fish, t);
+    const double scale = 1 + lead_value(&memory->amplitude, t);
+    gait.amplitude_rate = gait.amplitude_rate * scale + gait.amplitude * lead_rate(&memory->amplitude, t);
+    gait.amplitude *= scale;
+    gait.angle += 2 * pi * lead_integral(&memory->frequency, t);
+    gait.omega += 2 * pi * lead_value(&memory->frequency, t);
+    return gait;
+}
+
+void control_set_amplitude(const struct fish *fish, struct control_memory *memory, double t, double amplitude) {
+    lead_change(&memory->amplitude, t, fish->control.ramp, amplitude / fish->amplitude - 1);
+}
+
+void control_set_frequency(const struct fish *fish, struct control_memory *memory, double t, double frequency) {
+    lead_change(&memory->frequency, t, fish->control.ramp, frequency - fish->omega / (2 * pi));
+}
+
+void control_set_bias(const struct fish *fish, struct control_memory *memory, double t, double bias) {
+    lead_change(&memory->bias, t, fish->control.ramp, bias - fish->control.bias);
+}
+
+void control_set_heading(const struct fish *fish, struct control_memory *memory, double t, double heading) {
+    const double ramp = fish->control.ramp;
+    if (memory->has_heading) {
+        const double now = memory->heading.target;
+        lead_change(&memory->heading, t, ramp, now + angle_wrap(heading - now));
+        return;
+    }
+    const double now = heading_in_table(&fish->control, t);
+    lead_begin(&memory->heading, t, ramp, now, table_rate(&fish->control, t), now + angle_wrap(heading - now));
+    memory->has_heading = 1;
+}
+
+void control_set_waypoints(const struct fish *fish, struct control_memory *memory, int n, const double *waypoints,
+                           const double *y) {
+    memory->has_waypoints = 1;
+    memory->n_waypoints = n;
+    memory->waypoint = 0;
+    for (int i = 0; i < 2 * n; i++) memory->waypoints[i] = waypoints[i];
+    memory->set_out[0] = y[fish->at.x];
+    memory->set_out[1] = y[fish->at.y];
+}
+
+double control_largest_bias(const struct fish *fish, const struct control_memory *memory) {
+    if (fish->control.law != CONTROL_NONE) return fish->control.limit;
+    return fabs(fish->control.bias + memory->bias.target);
+}

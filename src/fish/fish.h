@@ -1,0 +1,205 @@
+/* fish.h: the constant data of the fish and of their school, and where the unknowns of each fish stand in the vector
+ * of all unknowns. doc/model.md, sections 1, 6 and 10. fish_school.h makes them. Tested by tests/fish/test_fish.c.
+ *
+ * Body: nodes 0 (nose) .. N-1 (tail), edge k from node k to k+1, joint j at node j+1.
+ *
+ *     node 0    edge 0    node 1    edge 1    node 2            node N-1
+ *        o-----------------o-----------------o--- ... ---o--------o
+ *      nose              joint 0           joint 1     joint N-3  tail
+ *
+ * Sheet: bound vortices j = 0 .. M-1 at the cosine points, control points c = 0 .. M-2 between them.
+ *
+ *        x--o--x---o---x----o----x ...  x--o--x          x vortex, o control point
+ *
+ * Unknowns: fish after fish, per fish in this order (struct layout gives the first index of each):
+ *
+ *     | x (N) y (N) | vx (N) vy (N) | px (N) py (N) | ax (N) ay (N) | gamma (M) | circulation (1) | phi0 (1) |
+ *
+ * The slices px, py exist with force: pressure only (force/pressure.h); elsewhere they are empty.
+ */
+#ifndef FISH_H
+#define FISH_H
+
+#include "base/status.h"
+#include "fish/curve.h"
+#include "fish/parameters.h"
+#include "fish/sheet_integrals.h"
+#include "vortex/images.h"
+
+/* First index of each slice in the vector of all unknowns, and one past the last. The equations have the same layout:
+ * rows x, y: dx/dt - v; vx, vy: dv/dt - a; ax, ay: law of motion; sheet: M - 1 times impermeability, then Kelvin;
+ * shed: Kutta; phi0: control law. With force: pressure vx, vy: velocity by momentum; px, py: dp/dt - a. */
+struct layout {
+    int x, y, vx, vy, px, py, ax, ay, gamma, circulation, phi0, end;
+};
+
+/* A straight rigid motion given in time: doc/model.md, section 5. Angles in rad. */
+struct motion {
+    enum prescribed prescribed;
+    enum surge surge;          /* free: the heading is along x, in which prescribed nodes move by their forces */
+    double speed;              /* m s-1 */
+    double heave;              /* m */
+    double pitch, pitch_phase; /* rad */
+    double omega, phase;       /* rad s-1, rad */
+    double pivot;              /* m from the nose */
+};
+
+/* Heading control: doc/model.md, section 11. Angles in rad. */
+struct control_law_data {
+    enum control_law law;
+    double bias, gain, damping, limit, feedforward;
+    double rate;                     /* s-1 */
+    double ramp;                     /* of a change from outside, s */
+    int n_headings;                  /* a table of desired headings, linear between its times */
+    double *heading_time;            /* s                                           (n_headings) */
+    double *heading;                 /* rad                                         (n_headings) */
+    int n_waypoints;                 /* visited in order; replace the table where there are any */
+    double *waypoint_x, *waypoint_y; /* m                                        (n_waypoints) */
+    double acceptance_radius;        /* m */
+    double torque_scale;             /* N m: what the feedforward moment is divided by */
+    double filter_share;             /* of the newest moment in its moving mean: 1 - exp(-Dt/T_f) */
+};
+
+struct fish {
+    char *name;
+    struct layout at;
+
+    int n_nodes, n_edges, n_joints, n_sheet, n_control; /* N, N-1, N-2, M, M-1 */
+    double length;                                      /* m */
+    double edge_length;                                 /* natural length of every edge, m */
+    double frequency;                                   /* of the beat, Hz; 0: none */
+    double period;                                      /* over which means are taken, s; 0: no means */
+    double total_mass;                                  /* kg */
+
+    double *arc;               /* arc coordinate of the nodes, m                          (n_nodes) */
+    double *mass;              /* kg                                                      (n_nodes) */
+    double *thickness;         /* thickness across the plane of motion h, m               (n_edges) */
+    double *depth;             /* extent out of that plane w, m                           (n_edges) */
+    double *square, *cube;     /* mean of h^2 over thickness^2, of h^3 over thickness^3   (n_edges) */
+    int has_mean_section;      /* these are means over an edge, else of the values at its nodes (fish.body.section) */
+    double *axial_stiffness;   /* E A, N                                         (n_edges) */
+    double *axial_damping;     /* d_s, kg s-1                                    (n_edges) */
+    double *bending_stiffness; /* E I, N m2                                      (n_joints) */
+    double *bending_damping;   /* d_b, N m s                                    (n_joints) */
+    enum damping damping;      /* of the rate of curvature less natural curvature, or of curvature alone */
+    double tail_stiffness;     /* E I of the last edge, N m2 */
+    int has_clamp;             /* prescribed head: the direction of edge 0 is held by a joint at the nose: */
+    double clamp_stiffness;    /* 2 E I/lbar, N m */
+    double clamp_damping;      /* N m s */
+
+    double amplitude;       /* A; 0: it cannot be changed from outside */
+    double *wave_amplitude; /* A (lbar/l_ref) (c0 + c1 sigma + c2 sigma^2)        (n_joints) */
+    double *wave_phase;     /* beta sigma + phase, rad                            (n_joints) */
+    int n_harmonics;  /* of a table that takes the place of the wave: natural turning angles over the phase, rad: */
+    double *harmonic; /* cosine and sine of each harmonic from 0 on         (n_joints, n_harmonics, 2) */
+    double omega;     /* rad s-1 */
+    double ramp;      /* s */
+
+    enum force force;
+    double *drag_tangential; /* c_t, kg m-1                                       (n_edges) */
+    double *drag_normal;     /* c_n, kg m-1                                       (n_edges) */
+    double *added_mass;      /* mu, kg                                            (n_edges) */
+    double *displaced_mass;  /* rho_f A lbar, kg                                  (n_edges) */
+    double tail_added_mass;  /* m_L, kg m-1; 0: nothing leaves at the tail */
+    int has_cusp;            /* whether the outline ends in a cusp: joukowski without a thickness of the tail */
+    double linear_speed;     /* V1 of the drag law v (V1 + |v|), m s-1; 0: v |v| */
+    enum skin skin;
+    double friction_speed;   /* u0 of laminar friction and of a boundary layer, m s-1 */
+    double *drag_turbulent;  /* c_T of a boundary layer, kg m-0.8 s-0.2           (n_edges) */
+    double *past_transition; /* (x_k/(nu Re_t))^2: 1 over the square of the speed of transition, s2 m-2   (n_edges) */
+    double form, waving;     /* K_form, K_w of a boundary layer */
+
+    /* force: pressure */
+    double fluid_density;              /* kg m-3 */
+    double full_suction;               /* pi rho_f w L: of the nose, over a square of velocities, kg m-1 */
+    double suction;                    /* that times S */
+    double suction_limit;              /* A_c; 0: none */
+    double nose_factor;                /* (M-1) ds_0/(pi L): qhat over the unknown at the nose, 1 */
+    double *control_density;           /* density of the fluid times depth, kg m-2         (n_control) */
+    double *control_interval;          /* u of the interval around a control point, 1      (n_control) */
+    struct tangent nose_tangent;       /* the direction of the body at the nose */
+    struct sheet_integrals *integrals; /* NULL with other forces */
+
+    double *sheet_weight;            /* ds_j: circulation over unknown, m           (n_sheet) */
+    struct curve *curve;             /* the line of the body; owns the stencils below */
+    struct stencil *sheet_point;     /* the bound vortices                          (n_sheet) */
+    struct stencil *sheet_slope;     /* X' there, per edge; empty: of the length of an edge   (n_sheet) */
+    struct stencil *control_point;   /* where impermeability is required            (n_control) */
+    struct tangent *control_tangent; /* the direction of the body there             (n_control) */
+    struct tangent tail_tangent;     /* and at the tail */
+    double *end_correction;          /* E_c of shedding: sheet, else 0, m-1              (n_control) */
+    struct stencil heading_point;    /* the body point at a third of the length */
+
+    double smoothing;       /* of its free vortices, delta, m */
+    double taper;           /* distance from the tail over which the own body sees it grow from 0 to delta, m */
+    double taper_beside;    /* the same for vortices beside the body, m */
+    double sheet_smoothing; /* of its bound sheet seen from elsewhere, m */
+
+    double contact_strength; /* scale of the force in contact: gives its mass one length per beat in a beat, N */
+
+    double start_position[2]; /* of the nose, m */
+    double start_heading;     /* rad */
+    double start_speed;       /* m s-1 */
+    double load_tip[2];       /* N */
+    struct motion motion;
+    struct control_law_data control;
+};
+
+/* All that does not change during a run. */
+struct school {
+    int n_fish;
+    struct fish *fish;
+    int n_unknowns;
+
+    double density;             /* of the fluid, kg m-3 */
+    double velocity[2], shear;  /* m s-1, s-1 */
+    double gust[2], gust_omega; /* m s-1 in x and y, rad s-1 */
+    struct walls walls;
+
+    double interval;        /* between two events, s */
+    double lifetime, decay; /* of a free vortex, s */
+    enum shedding shedding;
+    enum kutta kutta;
+    double kutta_ramp; /* s */
+    enum removed_circulation removed;
+    double wake_tolerance; /* estimated error of the velocity of the wakes at the bodies, lengths per beat; 0: none */
+
+    double wake_merge; /* error of the velocity at a body by what is merged in one wake, lengths per beat; 0: nothing */
+
+    enum contact_action contact; /* of bodies whose outlines are nearer than: */
+    double contact_range;        /* m */
+    double rtol;
+    double coupling_distance; /* m */
+    int threads;
+};
+
+/* The threads of a loop over all fish that computes with their unknowns: one or all. */
+int fish_threads(const struct school *school);
+
+/* sum of weight * value over the nodes of the point. */
+double fish_mean(const struct stencil *point, const double *value);
+
+/* Mean of a value of the nodes (n_nodes), weighted with their masses. */
+double fish_mass_mean(const struct fish *fish, const double *value);
+
+/* A vector along the body where its nodes are as in y: its length, its unit vector t, and the unit normal n = E3 x
+ * t. */
+struct direction {
+    double length, t[2], n[2];
+};
+struct direction fish_direction(const struct fish *fish, const struct tangent *tangent, const double *y);
+
+/* Whether the fish has the slices px, py: force: pressure. */
+int fish_has_momentum(const struct fish *fish);
+
+/* Whether the edge midpoints of the fish feel its own wake: not with force: reactive. doc/model.md, section 9. */
+int fish_feels_own_wake(const struct fish *fish);
+
+/* Whether its muscle sends a wave along the body. */
+int fish_has_wave(const struct fish *fish);
+
+/* Its beats per second, or those of its prescribed motion; where it has none, the lengths per second at which it, or
+ * the stream, goes; 1 where nothing moves. With the length it gives the scale of velocities. */
+double fish_rate(const struct school *school, const struct fish *fish);
+
+#endif

@@ -1,0 +1,92 @@
+/* fish_gait.c: the wave, and the Fourier series of the table. */
+#include "fish/fish_gait.h"
+
+#include <math.h>
+
+#include "base/angle.h"
+#include "base/array.h"
+#include "base/ramp.h"
+
+// Fourier coefficients, over the phase, of the table's curvature at a joint, as a turning angle
+static void set_harmonics(const struct fish *fish, const struct number_list *table, int joint) {
+    const double place = (joint + 1.0) / fish->n_edges * (table->n - 1), unit = fish->edge_length / fish->length;
+    const int row = place < table->n - 2 ? (int)place : table->n - 2, n = table->width;
+    const double *const low = &table->value[row * n], *const high = low + n;
+    double *const to = &fish->harmonic[2 * joint * fish->n_harmonics];
+    for (int m = 0; m < fish->n_harmonics; m++) {
+        // the mean, and the highest harmonic of an even number of values, count once
+        const double weight = (m == 0 || 2 * m == n ? 1.0 : 2.0) / n * unit;
+        for (int j = 0; j < n; j++) {
+            const double value = low[j] + (place - row) * (high[j] - low[j]), angle = 2 * M_PI * m * j / n;
+            to[2 * m] += weight * value * cos(angle);
+            if (2 * m < n) to[2 * m + 1] += weight * value * sin(angle);
+        }
+    }
+}
+
+static enum status set_table(struct fish *fish, const struct number_list *table) {
+    if (table->n == 0) return STATUS_OK;
+    fish->n_harmonics = table->width / 2 + 1;
+    TRY(array_doubles(&fish->harmonic, 2 * fish->n_joints * fish->n_harmonics, "the gait of a fish"));
+    for (int joint = 0; joint < fish->n_joints; joint++) set_harmonics(fish, table, joint);
+    return STATUS_OK;
+}
+
+static void set_wave(struct fish *fish, const struct fish_parameters *from) {
+    const struct wave_parameters *wave = &from->wave;
+    const double reference = fish->length / (from->reference_nodes - 1);
+    for (int joint = 0; joint < fish->n_joints; joint++) {
+        const double sigma = (joint + 1.0) / fish->n_edges;
+        fish->wave_amplitude[joint] = wave->amplitude * (fish->edge_length / reference) *
+                                      (wave->constant + wave->linear * sigma + wave->quadratic * sigma * sigma);
+        // a table has its own phase along the body
+        fish->wave_phase[joint] = (wave->table.n > 0 ? 0 : wave->number * sigma) + angle_radians(wave->phase);
+    }
+    fish->omega = 2 * M_PI * wave->frequency;
+    fish->ramp = wave->ramp;
+    fish->amplitude = wave->amplitude;
+}
+
+enum status fish_gait_set(struct fish *fish, const struct fish_parameters *from) {
+    TRY(array_doubles(&fish->wave_amplitude, fish->n_joints, "the wave of a fish"));
+    TRY(array_doubles(&fish->wave_phase, fish->n_joints, "the wave of a fish"));
+    set_wave(fish, from);
+    return set_table(fish, &from->wave.table);
+}
+
+struct fish_gait fish_own_gait(const struct fish *fish, double t) {
+    return (struct fish_gait){.amplitude = ramp_value(t, fish->ramp),
+                              .amplitude_rate = ramp_rate(t, fish->ramp),
+                              .angle = fish->omega * t,
+                              .omega = fish->omega};
+}
+
+struct fish_demand fish_demand(const struct fish *fish, int j, const struct fish_gait *gait) {
+    const double phase = fish->wave_phase[j] + gait->angle;
+    if (fish->n_harmonics == 0) return (struct fish_demand){.sine = sin(phase), .sine_rate = gait->omega * cos(phase)};
+    const double *const harmonic = &fish->harmonic[2 * j * fish->n_harmonics];
+    struct fish_demand demand = {.sine = 0};
+    for (int m = 0; m < fish->n_harmonics; m++) {
+        const double c = cos(m * phase), s = sin(m * phase), a = harmonic[2 * m], b = harmonic[2 * m + 1];
+        demand.angle += a * c + b * s;
+        demand.angle_rate += m * gait->omega * (b * c - a * s);
+    }
+    return demand;
+}
+
+double fish_natural_angle(const struct fish *fish, int j, const struct fish_gait *gait, double phi0) {
+    const struct fish_demand demand = fish_demand(fish, j, gait);
+    const double angle = gait->amplitude * fish->wave_amplitude[j] * (demand.sine + phi0);
+    return fish->n_harmonics == 0 ? angle : angle + gait->amplitude * demand.angle;
+}
+
+double fish_largest_turn(const struct fish *fish, double amplitude, double bias) {
+    double largest = 0;
+    for (int j = 0; j < fish->n_joints; j++) {
+        double beat = fish->n_harmonics == 0 ? fabs(fish->wave_amplitude[j]) : 0;
+        const double *const harmonic = &fish->harmonic[2 * j * fish->n_harmonics];
+        for (int m = 0; m < fish->n_harmonics; m++) beat += hypot(harmonic[2 * m], harmonic[2 * m + 1]);
+        largest = fmax(largest, fabs(amplitude) * (beat + fabs(fish->wave_amplitude[j] * bias)));
+    }
+    return largest;
+}

@@ -1,0 +1,130 @@
+/* fish_sheet.c: cosine points on a polygon or on a smooth curve. */
+#include "fish/fish_sheet.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/array.h"
+
+static enum status allocate(struct fish *fish) {
+    double **const per_control[] = {&fish->end_correction, &fish->control_density, &fish->control_interval};
+    TRY(array_doubles(&fish->sheet_weight, fish->n_sheet, "the sheet of a fish"));
+    TRY(array_many_doubles(per_control, sizeof per_control / sizeof *per_control, fish->n_control,
+                           "the sheet of a fish"));
+    fish->sheet_point = calloc((size_t)fish->n_sheet, sizeof *fish->sheet_point);
+    fish->sheet_slope = calloc((size_t)fish->n_sheet, sizeof *fish->sheet_slope);
+    fish->control_point = calloc((size_t)fish->n_control, sizeof *fish->control_point);
+    fish->control_tangent = calloc((size_t)fish->n_control, sizeof *fish->control_tangent);
+    if (!fish->sheet_point || !fish->sheet_slope || !fish->control_point || !fish->control_tangent) {
+        return status_fail(STATUS_MEMORY, "out of memory: %d points of a sheet", fish->n_sheet);
+    }
+    return STATUS_OK;
+}
+
+// sigma at j intervals of the angle from the nose
+static double cosine_place(const struct fish *fish, double j) {
+    const int last = fish->n_sheet - 1;
+    return j == last ? 1 : (1 - cos(M_PI * j / last)) / 2;
+}
+
+// sigma of a control point
+static double control_place(const struct fish *fish, int c, enum collocation collocation) {
+    if (collocation == COLLOCATION_CHEBYSHEV) return cosine_place(fish, c + 0.5);
+    return (cosine_place(fish, c) + cosine_place(fish, c + 1)) / 2;
+}
+
+static void place_sheet_on_polygon(struct fish *fish, enum collocation collocation) {
+    for (int j = 0; j < fish->n_sheet; j++) {
+        fish->sheet_point[j] = curve_polygon_point(fish->curve, cosine_place(fish, j) * fish->n_edges);
+    }
+    for (int c = 0; c < fish->n_control; c++) {
+        const struct stencil *const a = &fish->sheet_point[c], *const b = &fish->sheet_point[c + 1];
+        fish->control_point[c] = collocation == COLLOCATION_CHEBYSHEV
+                                     ? curve_polygon_point(fish->curve, cosine_place(fish, c + 0.5) * fish->n_edges)
+                                     : curve_polygon_middle(fish->curve, a, b);
+        fish->control_tangent[c] = (struct tangent){.from = *a, .to = *b};
+    }
+    fish->tail_tangent = fish->control_tangent[fish->n_control - 1];
+}
+
+static void place_sheet_on_smooth_curve(struct fish *fish, enum collocation collocation) {
+    const int last = fish->n_sheet - 1;
+    for (int j = 0; j <= last; j++) {
+        const double u = cosine_place(fish, j) * fish->n_edges;
+        fish->sheet_point[j] = curve_smooth_point(fish->curve, u);
+        if (j == 0 || j == last) continue;  // where the quadrature has no weight
+        fish->sheet_slope[j] = curve_smooth_slope(fish->curve, u);
+        fish->sheet_weight[j] = fish->length / 2 * sin(M_PI * j / last) * M_PI / last;
+    }
+    for (int c = 0; c < last; c++) {
+        const double u = control_place(fish, c, collocation) * fish->n_edges;
+        fish->control_point[c] = curve_smooth_point(fish->curve, u);
+        fish->control_tangent[c].to = curve_smooth_slope(fish->curve, u);
+    }
+    fish->tail_tangent.to = curve_smooth_slope(fish->curve, fish->n_edges);
+    fish->nose_tangent.to = curve_smooth_slope(fish->curve, 0);
+}
+
+// E_c, for a sheet whose strength at the tail is that of the wake
+static void correct_end(struct fish *fish) {
+    const int last = fish->n_sheet - 1;
+    const double h = M_PI / last, weight = fish->length / 2 * h * sin(M_PI * (last - 1) / last);
+    for (int c = 0; c < fish->n_control; c++) {
+        const double place = cosine_place(fish, c + 0.5);
+        double quadrature = 0;
+        for (int j = 1; j < last; j++) {
+            const double sigma = cosine_place(fish, j);
+            quadrature += h / 2 * sin(j * h) * sigma / (2 * M_PI * (place - sigma));
+        }
+        const double exact = (place * log(place / (1 - place)) - 1) / (2 * M_PI);
+        fish->end_correction[c] = (exact - quadrature) / weight;
+    }
+}
+
+// bound vortices and control points: doc/model.md, section 6
+static enum status place_sheet(struct fish *fish, const struct wake_parameters *wake) {
+    for (int j = 1; j < fish->n_sheet; j++) {
+        const double distance = cosine_place(fish, j) - cosine_place(fish, j - 1);
+        fish->sheet_weight[j - 1] += distance * fish->length / 2;
+        fish->sheet_weight[j] += distance * fish->length / 2;
+    }
+    const int is_smooth = wake->curve == BODY_LINE_SMOOTH;
+    TRY(curve_create(&fish->curve, fish->n_nodes, is_smooth ? 1 : 2 * fish->n_sheet,
+                     is_smooth ? 4 * fish->n_sheet + 1 : 0));
+    if (is_smooth) {
+        place_sheet_on_smooth_curve(fish, wake->collocation);
+    } else {
+        place_sheet_on_polygon(fish, wake->collocation);
+    }
+    if (wake->shedding == SHEDDING_SHEET) correct_end(fish);
+    fish->heading_point = curve_polygon_point(fish->curve, 1.0 / 3.0 * fish->n_edges);
+    return STATUS_OK;
+}
+
+// the pressure of the bound sheet: doc/model.md, section 15
+static enum status set_pressure(struct fish *fish, const struct fish_parameters *from, double density) {
+    if (fish->force != FORCE_PRESSURE) return STATUS_OK;
+    const double h = M_PI / fish->n_control;
+    double *per_edge;
+    TRY(array_doubles(&per_edge, fish->n_edges, "the pressure of a fish"));
+    for (int k = 0; k < fish->n_edges; k++) per_edge[k] = density * fish->depth[k];
+    for (int c = 0; c < fish->n_control; c++) {
+        fish->control_density[c] = per_edge[(int)(cosine_place(fish, c + 0.5) * fish->n_edges)];
+        fish->control_interval[c] = fish->n_edges / 2.0 * sin((c + 0.5) * h) * h;
+    }
+    fish->fluid_density = density;
+    fish->nose_factor = fish->n_control * fish->sheet_weight[0] / (M_PI * fish->length);
+    fish->full_suction = M_PI * per_edge[0] * fish->length;
+    fish->suction = from->suction * fish->full_suction;
+    fish->suction_limit = from->suction_limit;
+    const enum status status = sheet_integrals_create(&fish->integrals, fish->n_nodes, fish->n_sheet, per_edge);
+    free(per_edge);
+    return status;
+}
+
+enum status fish_sheet_set(struct fish *fish, const struct fish_parameters *from,
+                           const struct school_parameters *parameters) {
+    TRY(allocate(fish));
+    TRY(place_sheet(fish, &parameters->wake));
+    return set_pressure(fish, from, parameters->fluid.density);
+}

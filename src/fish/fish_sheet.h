@@ -1,0 +1,14 @@
+/* fish_sheet.h: where a fish has its bound vortices and control points, and their weights in the integrals of sheet and
+ * pressure. doc/model.md, sections 6 and 15. Tested by tests/fish/test_fish.c. */
+#ifndef FISH_SHEET_H
+#define FISH_SHEET_H
+
+#include "base/status.h"
+#include "fish/fish.h"
+
+/* Set all that the fish (its numbers of nodes and points, its length and depth are known) has per vortex and per
+ * control point. Fails with STATUS_MEMORY. */
+enum status fish_sheet_set(struct fish *fish, const struct fish_parameters *from,
+                           const struct school_parameters *parameters);
+
+#endif

@@ -1,0 +1,157 @@
+/* parameters.h: what describes a school to the model, in plain values with the units of a case file: angles in degrees,
+ * lengths in metres or in fractions of the body length, as the comments say. fish/fish turns them into the constant
+ * data of the equations. doc/cases.md explains every value under the key that sets it. */
+#ifndef PARAMETERS_H
+#define PARAMETERS_H
+
+enum shedding { SHEDDING_CONTINUOUS, SHEDDING_IMPULSIVE, SHEDDING_SHEET };
+enum kutta { KUTTA_EDGE, KUTTA_RATE };
+enum body_line { BODY_LINE_SMOOTH, BODY_LINE_POLYGON };
+enum collocation { COLLOCATION_CHEBYSHEV, COLLOCATION_MIDPOINT };
+enum removed_circulation { REMOVED_RETAINED, REMOVED_DROPPED };
+enum profile { PROFILE_JOUKOWSKI, PROFILE_UNIFORM, PROFILE_TABLE };
+enum section { SECTION_MEAN, SECTION_NODES };
+enum damping { DAMPING_STRAIN, DAMPING_CURVATURE };
+enum second_moment { SECOND_MOMENT_ELLIPSE, SECOND_MOMENT_PUBLISHED };
+enum force { FORCE_REACTIVE, FORCE_PUBLISHED, FORCE_PRESSURE };
+enum drag_law { DRAG_QUADRATIC, DRAG_LINEAR_QUADRATIC };
+enum skin { SKIN_QUADRATIC, SKIN_LAMINAR, SKIN_BOUNDARY_LAYER };
+enum extent { EXTENT_THICKNESS, EXTENT_DEPTH };
+enum prescribed { PRESCRIBED_NONE, PRESCRIBED_HEAD, PRESCRIBED_ALL };
+enum contact_action { CONTACT_REPEL, CONTACT_WARN, CONTACT_STOP };
+enum surge { SURGE_GIVEN, SURGE_FREE };
+enum control_law { CONTROL_NONE, CONTROL_HEADING, CONTROL_AVERAGED_HEADING, CONTROL_COURSE };
+
+/* A list of numbers, of pairs (then 2 n numbers, pair after pair), or of rows (width n numbers, row after row). Owned
+ * by the structure that it is in. */
+struct number_list {
+    int n;
+    double *value;
+    int width; /* of a list of rows: numbers in each */
+};
+
+struct fluid_parameters {
+    double density;           /* kg m-3 */
+    double viscosity;         /* kinematic, m2 s-1 */
+    double velocity[2];       /* m s-1 */
+    double shear;             /* s-1 */
+    double gust_amplitude;    /* m s-1 */
+    double gust_frequency;    /* Hz */
+    struct number_list walls; /* heights of walls along x: none, one, or two in ascending order, m */
+};
+
+/* A time that a case may state in beats; NaN where it does not. The seconds are set in either case. */
+struct duration {
+    double seconds;
+    double beats; /* of the fish that beats most slowly */
+};
+
+struct wake_parameters {
+    double smoothing, sheet_smoothing; /* fractions of the body length */
+    double taper, taper_beside;        /* fractions of the body length */
+    struct duration lifetime, decay;
+    enum shedding shedding;
+    enum kutta kutta;
+    double kutta_ramp; /* s */
+    enum body_line curve;
+    enum collocation collocation;
+    enum removed_circulation dissipated_circulation;
+    double tolerance; /* lengths per beat; 0: exact */
+    double merge;     /* lengths per beat; 0: never */
+};
+
+struct body_parameters {
+    enum profile profile;
+    double thickness, depth; /* fractions of the body length; the depth is the span, out of the plane of motion */
+    double tail_thickness;   /* fraction of the body length: profile joukowski only */
+    struct number_list h, w; /* m, one value per edge: profile table only */
+    enum section section;    /* of an edge: means over it, or over its two nodes */
+    double density;          /* kg m-3 */
+    double modulus;          /* Pa */
+    enum second_moment second_moment;
+    double bending_damping;    /* N m s, per joint of a body of reference_nodes: doc/model.md, section 3 */
+    double stretching_damping; /* N s m-1, per edge of such a body */
+    double relaxation_time;    /* s */
+    enum damping damping;      /* what internal damping of bending is the rate of */
+};
+
+struct wave_parameters {
+    double amplitude, constant, linear, quadratic;
+    double number, wavelength; /* rad; body lengths, NaN: number says it */
+    struct number_list
+        table;        /* rows from nose to tail of natural curvature times length, over the phase; none: empty */
+    double frequency; /* Hz */
+    double phase;     /* degree */
+    double ramp;      /* s */
+};
+
+struct drag_parameters {
+    double tangential, normal, added_mass;
+    enum skin skin;    /* law of the tangential drag */
+    double transition; /* Reynolds number of the distance from the nose; 0: turbulent from there */
+    double waving;     /* factor of laminar friction; NaN: 1.5 with a wave, else 1 */
+    double form;       /* factor of all friction; NaN: by the largest thickness */
+    enum drag_law law;
+    double linear_speed; /* lengths per beat: force reactive, law linear_quadratic */
+    enum extent extent;
+};
+
+struct motion_parameters {
+    enum prescribed prescribed;
+    enum surge surge;          /* motion along the heading */
+    double speed;              /* m s-1; of a free one at the start */
+    double heave;              /* m */
+    double pitch, pitch_phase; /* degree */
+    double frequency;          /* Hz */
+    double phase;              /* degree */
+    double pivot;              /* fraction of the body length from the nose */
+};
+
+struct control_parameters {
+    enum control_law law;
+    double bias;
+    struct number_list desired_heading; /* pairs (s, degree) */
+    struct number_list waypoints;       /* pairs (m, m) */
+    double acceptance_radius;           /* body lengths */
+    double gain, damping, limit, feedforward;
+    double filter; /* s */
+    double rate;   /* s-1 */
+    double ramp;   /* s */
+};
+
+struct fish_parameters {
+    char *name;
+    double length; /* m */
+    int nodes, reference_nodes, sheet_points;
+    struct body_parameters body;
+    struct wave_parameters wave;
+    enum force force;     /* of the fluid on the body */
+    double suction;       /* force: pressure: the part of the leading-edge suction that acts */
+    double suction_limit; /* force: pressure: the largest leading-edge parameter that a nose holds; 0: none */
+    struct drag_parameters drag;
+    double start_position[2]; /* m */
+    double start_heading;     /* degree */
+    double start_speed;       /* m s-1 */
+    double load_tip[2];       /* N */
+    struct motion_parameters motion;
+    struct control_parameters control;
+};
+
+struct contact_parameters {
+    enum contact_action action;
+    double range; /* body lengths of the longest fish */
+};
+
+struct school_parameters {
+    struct fluid_parameters fluid;
+    struct wake_parameters wake;
+    struct contact_parameters contact;
+    double shedding_interval; /* s */
+    double rtol;              /* of the integrator: doc/numerics.md */
+    double coupling_distance; /* body lengths of the longest fish */
+    int threads;
+    int n_fish;
+    struct fish_parameters *fish; /* (n_fish) */
+};
+
+#endif

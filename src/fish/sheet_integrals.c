@@ -1,0 +1,155 @@
+/* sheet_integrals.c: a cosine series through the circulations, and Gauss-Legendre quadrature in theta. */
+#include "fish/sheet_integrals.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/quadrature.h"
+#include "fish/curve.h"
+
+static const double pi = 3.14159265358979323846;
+
+/* Gauss points of a piece, which is no longer than the distance of two vortices: the highest term of the series turns
+ * by half a period there, and the error is below 1e-10 of it. */
+enum { GAUSS = 6 };
+
+/* Both series run over m = 1 .. n-1 with the factors cos(m theta_j), the last term halved: of sin(m theta)/m, of
+ * cos(m theta). Multiples of an angle follow by cos((m+1) a) = 2 cos(a) cos(m a) - cos((m-1) a), and so for sin. */
+static void sum_series(int n, int j, double theta, double *of_sines, double *of_cosines) {
+    const double step = pi * j / (n - 1), twice_step = 2 * cos(step), twice = 2 * cos(theta);
+    double factor[2] = {1, cos(step)}, cosine[2] = {1, cos(theta)}, sine[2] = {0, sin(theta)};
+    *of_sines = *of_cosines = 0;
+    for (int m = 1; m < n; m++) {
+        const double weight = (m < n - 1 ? 1 : 0.5) * factor[m % 2];
+        *of_sines += weight * sine[m % 2] / m;
+        *of_cosines += weight * cosine[m % 2];
+        const int next = (m + 1) % 2;
+        factor[next] = twice_step * factor[m % 2] - factor[next];
+        cosine[next] = twice * cosine[m % 2] - cosine[next];
+        sine[next] = twice * sine[m % 2] - sine[next];
+    }
+}
+
+double sheet_integrals_circulation(int n, int j, double theta) {
+    double of_sines, of_cosines;
+    sum_series(n, j, theta, &of_sines, &of_cosines);
+    return (theta + 2 * of_sines) / pi;
+}
+
+// G of the control point at theta
+static double strength_between(int n, int j, double theta) {
+    double of_sines, of_cosines;
+    sum_series(n, j, theta, &of_sines, &of_cosines);
+    return (1 + 2 * of_cosines) / (n - 1);
+}
+
+static void fill_control_points(struct sheet_integrals *to) {
+    for (int c = 0; c < to->n_control; c++) {
+        const double theta = pi * (c + 0.5) / to->n_control;
+        for (int j = 0; j < to->n_sheet; j++) {
+            to->strength[c * to->n_sheet + j] = strength_between(to->n_sheet, j, theta);
+            to->circulation[c * to->n_sheet + j] = sheet_integrals_circulation(to->n_sheet, j, theta);
+        }
+    }
+}
+
+// the kink of a sheet whose strength is the place: what g = sin(theta) (1 - cos(theta)) has more than its series
+static void fill_kink(struct sheet_integrals *to) {
+    const int n = to->n_sheet;
+    const double h = pi / to->n_control, scale = sin(pi - h) * (1 - cos(pi - h)) * h;
+    for (int c = 0; c < to->n_control; c++) {
+        const double theta = h * (c + 0.5), place = 1 - cos(theta);
+        double strength = sin(theta) * place * h, circulation = place * place / 2;
+        for (int j = 1; j < to->n_control; j++) {
+            const double here = sin(j * h) * (1 - cos(j * h)) * h;
+            strength -= to->strength[c * n + j] * here;
+            circulation -= to->circulation[c * n + j] * here;
+        }
+        to->kink_strength[c] = strength / scale;
+        to->kink_circulation[c] = circulation / scale;
+    }
+}
+
+// add a point theta with its weight to the integrals of all j
+static void add_point(struct sheet_integrals *to, double theta, double weight, const struct stencil *point,
+                      const struct stencil *slope) {
+    const int n = to->n_nodes;
+    for (int j = 0; j < to->n_sheet; j++) {
+        double *const matrix = to->momentum + (long)j * n * n;
+        const double value = weight * sheet_integrals_circulation(to->n_sheet, j, theta);
+        for (int k = 0; k < n; k++) {
+            const double of_node = value * point->weight[k];
+            for (int i = 0; i < n; i++) matrix[k * n + i] += of_node * slope->weight[i];
+        }
+    }
+}
+
+// one edge, in pieces of equal length in theta
+static enum status integrate_edge(struct sheet_integrals *to, int edge, double density) {
+    const int n_edges = to->n_nodes - 1;
+    const double first = acos(1 - 2.0 * edge / n_edges), last = acos(1 - 2.0 * (edge + 1) / n_edges);
+    const int needed = (int)ceil((last - first) / (pi / to->n_control)), n_pieces = needed < 2 ? 2 : needed;
+    const double piece = (last - first) / n_pieces;
+    double node[GAUSS], gauss[GAUSS];
+    quadrature_legendre(GAUSS, node, gauss);
+    struct curve *curve;
+    TRY(curve_create(&curve, to->n_nodes, 0, 2 * GAUSS * n_pieces));
+    for (int i = 0; i < GAUSS * n_pieces; i++) {
+        const double theta = first + (i / GAUSS + node[i % GAUSS]) * piece;
+        const double u = n_edges * (1 - cos(theta)) / 2;
+        const struct stencil point = curve_smooth_point(curve, u), slope = curve_smooth_slope(curve, u);
+        add_point(to, theta, density * gauss[i % GAUSS] * piece * n_edges * sin(theta) / 2, &point, &slope);
+    }
+    curve_free(curve);
+    return STATUS_OK;
+}
+
+static enum status fill(struct sheet_integrals *to, const double *density) {
+    const size_t n_nodes = (size_t)to->n_nodes, n_sheet = (size_t)to->n_sheet, n_control = (size_t)to->n_control;
+    to->momentum = calloc(n_sheet * n_nodes * n_nodes, sizeof *to->momentum);
+    to->strength = calloc(n_control * n_sheet, sizeof *to->strength);
+    to->circulation = calloc(n_control * n_sheet, sizeof *to->circulation);
+    to->kink_strength = calloc(n_control, sizeof *to->kink_strength);
+    to->kink_circulation = calloc(n_control, sizeof *to->kink_circulation);
+    if (!to->momentum || !to->strength || !to->circulation || !to->kink_strength || !to->kink_circulation) {
+        return status_fail(STATUS_MEMORY, "out of memory: the integrals over a sheet of %d vortices", to->n_sheet);
+    }
+    fill_control_points(to);
+    fill_kink(to);
+    for (int k = 0; k < to->n_nodes - 1; k++) TRY(integrate_edge(to, k, density[k]));
+    return STATUS_OK;
+}
+
+enum status sheet_integrals_create(struct sheet_integrals **integrals, int n_nodes, int n_sheet,
+                                   const double *density) {
+    *integrals = NULL;
+    struct sheet_integrals *const new = calloc(1, sizeof *new);
+    if (!new) return status_fail(STATUS_MEMORY, "out of memory: the integrals over a sheet");
+    new->n_nodes = n_nodes;
+    new->n_sheet = n_sheet;
+    new->n_control = n_sheet - 1;
+    const enum status status = fill(new, density);
+    if (status != STATUS_OK) {
+        sheet_integrals_free(new);
+        return status;
+    }
+    *integrals = new;
+    return STATUS_OK;
+}
+
+void sheet_integrals_free(struct sheet_integrals *integrals) {
+    if (!integrals) return;
+    free(integrals->momentum);
+    free(integrals->strength);
+    free(integrals->circulation);
+    free(integrals->kink_strength);
+    free(integrals->kink_circulation);
+    free(integrals);
+}
+
+double sheet_integrals_around(const struct sheet_integrals *integrals, int c, const double *circulation) {
+    const double *const weight = integrals->strength + (long)c * integrals->n_sheet;
+    double sum = 0;
+    for (int j = 0; j < integrals->n_sheet; j++) sum += weight[j] * circulation[j];
+    return sum;
+}

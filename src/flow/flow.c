@@ -1,0 +1,307 @@
+/* flow.c: points and sources, and where they are at a time. */
+#include "flow/flow.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/array.h"
+
+int flow_midpoint(const struct fish *fish, int edge) {
+    return fish->n_control + edge;
+}
+
+int flow_tail(const struct fish *fish) {
+    return fish->n_control + fish->n_edges;
+}
+
+int flow_n_points(const struct fish *fish) {
+    return flow_tail(fish) + 1;
+}
+
+static enum status make_chunks(struct flow *flow) {
+    int n = 0;
+    for (int f = 0; f < flow->school->n_fish; f++) n += parallel_n_chunks(flow->points[f].n);
+    flow->chunk = calloc((size_t)n, sizeof *flow->chunk);
+    if (!flow->chunk) return status_fail(STATUS_MEMORY, "out of memory: %d pieces of the flow", n);
+    for (int f = 0; f < flow->school->n_fish; f++) {
+        const struct range points = flow->points[f];
+        for (int i = 0; i < parallel_n_chunks(points.n); i++) {
+            const struct range part = parallel_chunk(i, points.n);
+            flow->chunk[flow->n_chunks++] = (struct chunk){f, {points.first + part.first, part.n}};
+        }
+    }
+    return STATUS_OK;
+}
+
+// fish of one length, in the order of the first of each
+static enum status find_classes(struct flow *flow) {
+    const struct school *const school = flow->school;
+    const size_t n_fish = (size_t)school->n_fish;
+    flow->class_of = calloc(n_fish, sizeof *flow->class_of);
+    flow->class = calloc(n_fish, sizeof *flow->class);
+    if (!flow->class_of || !flow->class) return status_fail(STATUS_MEMORY, "out of memory: classes of fish");
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *const fish = &school->fish[f];
+        int c = 0;
+        while (flow_has_free_sheets(flow) && c < flow->n_classes &&
+               (fabs(flow->class[c].smoothing - fish->smoothing) > 0 ||
+                fabs(flow->class[c].sheet_smoothing - fish->sheet_smoothing) > 0)) {
+            c++;
+        }
+        flow->class_of[f] = c;
+        if (c < flow->n_classes) continue;
+        flow->class[c] = (struct flow_class){.smoothing = fish->smoothing, .sheet_smoothing = fish->sheet_smoothing};
+        flow->n_classes++;
+    }
+    for (int c = 0; c < flow->n_classes; c++) {
+        struct flow_class *const class = &flow->class[c];
+        class->group = calloc(n_fish + (size_t)flow->n_classes + 1, sizeof *class->group);
+        if (!class->group) return status_fail(STATUS_MEMORY, "out of memory: classes of fish");
+        class->points.first = flow->n_points;
+        for (int f = 0; f < school->n_fish; f++) {
+            const struct fish *const fish = &school->fish[f];
+            if (flow->class_of[f] != c) continue;
+            flow->points[f] = (struct range){flow->n_points, flow_n_points(fish)};
+            if (!fish_feels_own_wake(fish)) {
+                flow->without_own[f] = (struct range){flow->n_points + flow_midpoint(fish, 0), fish->n_edges};
+            }
+            flow->n_points += flow->points[f].n;
+        }
+        class->points.n = flow->n_points - class->points.first;
+    }
+    return STATUS_OK;
+}
+
+// the bound sheets as each class feels them
+static void view_sheets(struct flow *flow) {
+    for (int c = 0; c < flow->n_classes; c++) {
+        struct flow_class *const class = &flow->class[c];
+        class->sheet = flow->sheet;
+        if (!flow_has_free_sheets(flow)) continue;
+        class->sheet = vortices_felt_by(&flow->sheet, class->sheet_smoothing, class->group);
+    }
+}
+
+double flow_sheet_smoothing(const struct flow *flow, int f, int g) {
+    const double of_other = flow->school->fish[g].sheet_smoothing;
+    if (!flow_has_free_sheets(flow)) return of_other;
+    return vortices_pair_smoothing(of_other, flow->school->fish[f].sheet_smoothing);
+}
+
+static enum status flow_fill(struct flow *flow) {
+    const struct school *school = flow->school;
+    const size_t n_fish = (size_t)school->n_fish;
+    flow->points = calloc(n_fish, sizeof *flow->points);
+    flow->without_own = calloc(n_fish, sizeof *flow->without_own);
+    flow->released_range = calloc(n_fish, sizeof *flow->released_range);
+    flow->sheet_range = calloc(n_fish, sizeof *flow->sheet_range);
+    flow->by_interpolation = calloc(n_fish, sizeof *flow->by_interpolation);
+    flow->wake_range = calloc(n_fish, sizeof *flow->wake_range);
+    flow->body_range = calloc(n_fish, sizeof *flow->body_range);
+    flow->middles = calloc(n_fish, sizeof *flow->middles);
+    flow->free_sheet = calloc(n_fish, sizeof *flow->free_sheet);
+    if (!flow->points || !flow->without_own || !flow->released_range || !flow->sheet_range || !flow->by_interpolation ||
+        !flow->wake_range || !flow->body_range || !flow->middles || !flow->free_sheet) {
+        return status_fail(STATUS_MEMORY, "out of memory: the flow around %d fish", school->n_fish);
+    }
+    TRY(find_classes(flow));
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *fish = &school->fish[f];
+        flow->sheet_range[f] = (struct range){flow->sheet.n, fish->n_sheet};
+        TRY(vortices_append(&flow->sheet, fish->n_sheet, fish->sheet_smoothing));
+        TRY(vortices_append(&flow->nascent, 1, fish->smoothing));
+    }
+    double **const at_points[] = {&flow->x,         &flow->y,         &flow->u,        &flow->v,
+                                  &flow->u_x,       &flow->u_y,       &flow->v_x,      &flow->motion[0],
+                                  &flow->motion[1], &flow->motion[2], &flow->motion[3]};
+    TRY(array_many_doubles(at_points, sizeof at_points / sizeof *at_points, flow->n_points, "the points of the flow"));
+    TRY(make_chunks(flow));
+    if (school->walls.n > 0) {
+        TRY(array_doubles(&flow->image_u, flow->n_points, "the points of the flow"));
+        TRY(array_doubles(&flow->image_v, flow->n_points, "the points of the flow"));
+    }
+    TRY(array_doubles(&flow->opposite, flow->sheet.n, "the bound vortices"));
+    view_sheets(flow);
+    TRY(velocity_sum_create(&flow->velocity_sum));
+    if (school->wake_tolerance <= 0) return STATUS_OK;
+    return wake_interpolation_create(&flow->interpolation, school, flow->points, flow->without_own);
+}
+
+enum status flow_create(struct flow **flow, const struct school *school) {
+    *flow = NULL;
+    struct flow *const new = calloc(1, sizeof *new);
+    if (!new) return status_fail(STATUS_MEMORY, "out of memory: a flow");
+    new->school = school;
+    const enum status status = flow_fill(new);
+    if (status != STATUS_OK) {
+        flow_free(new);
+        return status;
+    }
+    *flow = new;
+    return STATUS_OK;
+}
+
+void flow_free(struct flow *flow) {
+    if (!flow) return;
+    wake_interpolation_free(flow->interpolation);
+    velocity_sum_free(flow->velocity_sum);
+    for (int f = 0; f < flow->school->n_fish; f++) {
+        if (flow->middles) wake_free(&flow->middles[f]);
+        if (flow->free_sheet) free_sheet_free(&flow->free_sheet[f]);
+    }
+    for (int c = 0; flow->class && c < flow->n_classes; c++) free(flow->class[c].group);
+    void *const owned[] = {flow->points,
+                           flow->without_own,
+                           flow->class,
+                           flow->class_of,
+                           flow->body_range,
+                           flow->chunk,
+                           flow->x,
+                           flow->y,
+                           flow->u,
+                           flow->v,
+                           flow->u_x,
+                           flow->u_y,
+                           flow->v_x,
+                           flow->motion[0],
+                           flow->motion[1],
+                           flow->motion[2],
+                           flow->motion[3],
+                           flow->middles,
+                           flow->free_sheet,
+                           flow->released_range,
+                           flow->wake_range,
+                           flow->sheet_range,
+                           flow->by_interpolation,
+                           flow->opposite,
+                           flow->wake_u,
+                           flow->wake_v,
+                           flow->wake_image_u,
+                           flow->wake_image_v,
+                           flow->image_u,
+                           flow->image_v};
+    for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
+    vortices_free(&flow->released);
+    vortices_free(&flow->convecting);
+    vortices_free(&flow->nascent);
+    vortices_free(&flow->sheet);
+    free(flow);
+}
+
+void flow_from_nodes(const struct flow *flow, int f, const double *of_nodes, double *of_points) {
+    const struct fish *fish = &flow->school->fish[f];
+    double *const to = of_points + flow->points[f].first;
+    for (int c = 0; c < fish->n_control; c++) to[c] = fish_mean(&fish->control_point[c], of_nodes);
+    for (int k = 0; k < fish->n_edges; k++) to[flow_midpoint(fish, k)] = (of_nodes[k] + of_nodes[k + 1]) / 2;
+    to[flow_tail(fish)] = of_nodes[fish->n_nodes - 1];
+}
+
+static void place_sheet(struct flow *flow, int f, const double *y) {
+    const struct fish *fish = &flow->school->fish[f];
+    const int first = flow->sheet_range[f].first;
+    for (int j = 0; j < fish->n_sheet; j++) {
+        flow->sheet.x[first + j] = fish_mean(&fish->sheet_point[j], y + fish->at.x);
+        flow->sheet.y[first + j] = fish_mean(&fish->sheet_point[j], y + fish->at.y);
+        flow->sheet.circulation[first + j] = fish->sheet_weight[j] * y[fish->at.gamma + j];
+        flow->opposite[first + j] = -flow->sheet.circulation[first + j];
+    }
+}
+
+int flow_has_free_sheets(const struct flow *flow) {
+    return flow->school->shedding == SHEDDING_SHEET;
+}
+
+const struct wake *flow_seen_wakes(const struct flow *flow, const struct state *state) {
+    return flow_has_free_sheets(flow) ? flow->middles : state->wake;
+}
+
+static void place_nascent(struct flow *flow, const struct state *state, int f, const double *y) {
+    const struct fish *fish = &flow->school->fish[f];
+    const struct wake *const wake = &state->wake[f];
+    const double tail[2] = {y[fish->at.x + fish->n_nodes - 1], y[fish->at.y + fish->n_nodes - 1]};
+    const double circulation = y[fish->at.circulation] - wake->shed_before, tau = flow->t - state->t;
+    double position[2];
+    if (flow_has_free_sheets(flow)) {
+        free_sheet_nascent_point(wake, flow->school->interval, tau, tail, 0.5, position);
+        free_sheet_place_nascent(&flow->free_sheet[f], fish, wake, flow->school->interval, tau, tail, circulation);
+    } else {
+        wake_nascent(wake, tau, tail, position);
+    }
+    flow->nascent.x[f] = position[0];
+    flow->nascent.y[f] = position[1];
+    flow->nascent.circulation[f] = circulation;
+}
+
+enum status flow_place_released(struct flow *flow, const struct state *state) {
+    if (flow->has_released) return STATUS_OK;
+    TRY(wake_interpolation_released(flow->school, flow_seen_wakes(flow, state), state->t, flow->t - state->t,
+                                    &flow->released, flow->released_range));
+    flow->has_released = 1;
+    return STATUS_OK;
+}
+
+// the free sheets at the flow's time, made again where the wakes have changed
+static enum status place_free_sheets(struct flow *flow, const struct state *state, int is_new) {
+    const struct school *const school = flow->school;
+    int n_placed = 0, n_failed = 0;
+    // a stretch is made from its ends, both at the beginning and at the end of the interval
+    for (int f = 0; f < school->n_fish; f++) n_placed += is_new ? 4 * state->wake[f].n_vortex : flow->free_sheet[f].n;
+    const int threads = parallel_threads(school->threads, school->n_fish, n_placed, PARALLEL_VORTICES);
+#pragma omp parallel for num_threads(threads) schedule(dynamic)
+    for (int f = 0; f < school->n_fish; f++) {
+        enum status status = STATUS_OK;
+        if (is_new) status = free_sheet_middles(&state->wake[f], &flow->middles[f]);
+        if (is_new && status == STATUS_OK) {
+            status = free_sheet_build(&flow->free_sheet[f], &school->fish[f], school, &state->wake[f]);
+        }
+        if (status == STATUS_OK) {
+            free_sheet_place(&flow->free_sheet[f], school, &state->wake[f], &flow->middles[f], state->t,
+                             flow->t - state->t);
+        } else {
+#pragma omp atomic
+            n_failed++;
+        }
+    }
+    // a message stays with the thread that wrote it
+    return n_failed == 0 ? STATUS_OK
+                         : status_fail(STATUS_MEMORY, "out of memory: the free sheets of %d fish", n_failed);
+}
+
+// drop what was made for other wakes or another time: the released vortices move on known paths, so that at one time
+// they are the same for every y
+static enum status go_to(struct flow *flow, const struct state *state, double t) {
+    const struct school *school = flow->school;
+    const unsigned long version = state_wake_version(state, school);
+    const int is_new = !flow->has_sources || flow->version != version;
+    if (!is_new && flow->t == t) return STATUS_OK;
+    flow->has_sources = 0;
+    flow->has_released = 0;
+    flow->version = version;
+    flow->t = t;
+    if (flow_has_free_sheets(flow)) TRY(place_free_sheets(flow, state, is_new));
+    if (flow->interpolated_version != version) flow->is_interpolated = 0;
+    if (flow->is_interpolated) wake_interpolation_update(flow->interpolation, t);
+    flow->has_sources = 1;
+    return STATUS_OK;
+}
+
+enum status flow_place(struct flow *flow, const struct state *state, double t, const double *y) {
+    TRY(go_to(flow, state, t));
+    const struct school *const school = flow->school;
+    const int threads = parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_UNKNOWNS);
+#pragma omp parallel for num_threads(threads) schedule(static)
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *fish = &flow->school->fish[f];
+        flow_from_nodes(flow, f, y + fish->at.x, flow->x);
+        flow_from_nodes(flow, f, y + fish->at.y, flow->y);
+        place_sheet(flow, f, y);
+        place_nascent(flow, state, f, y);
+        const int first = flow->points[f].first;
+        flow->by_interpolation[f] =
+            flow->is_interpolated &&
+            wake_interpolation_is_valid(flow->interpolation, f, flow->x + first, flow->y + first);
+    }
+    flow->all_interpolated = 1;
+    for (int f = 0; f < school->n_fish; f++) flow->all_interpolated &= flow->by_interpolation[f];
+    return STATUS_OK;
+}

@@ -1,0 +1,269 @@
+/* flow_derivative.c: source by source, by its strength and by the nodes that it moves with. */
+#include "flow/flow_derivative.h"
+
+#include <string.h>
+
+#include "vortex/kernel.h"
+
+int flow_column(const struct fish *other, int c) {
+    const int n_places = 2 * other->n_nodes;
+    return c < n_places ? other->at.x + c : other->at.gamma + (c - n_places);
+}
+
+int flow_n_rows(const struct fish *fish) {
+    return fish->at.phi0 - fish->at.ax;
+}
+
+int flow_n_columns(const struct fish *other) {
+    return 2 * other->n_nodes + other->n_sheet + 1;
+}
+
+// the derivatives at n points from first on: column c of both components
+struct part {
+    double *u, *v;
+};
+static struct part part_of(const struct influence_block *block, int c, int first) {
+    const long at = (long)c * block->n_points + first;
+    return (struct part){block->u + at, block->v + at};
+}
+
+/* As many sources that move with the same nodes are taken together. */
+enum { MOST_TOGETHER = 8 };
+
+// add factors times the derivatives with respect to the places of n_sources points that move with the same nodes of
+// fish other; sign: of their motion in y, -1 for those that are mirrored
+static void add_motion(const struct influence_block *block, const struct fish *other, const struct stencil *point,
+                       int n_sources, int first, int n, const struct kernel_values *slope, const double *factor,
+                       double sign) {
+    for (int i = 0; i < point->n; i++) {
+        const struct part by_x = part_of(block, point->node[i], first);
+        const struct part by_y = part_of(block, other->n_nodes + point->node[i], first);
+        double weighted[MOST_TOGETHER];
+        for (int j = 0; j < n_sources; j++) weighted[j] = factor[j] * point[j].weight[i];
+        kernel_add_motion(n, n_sources, weighted, sign, slope, by_x.u, by_x.v, by_y.u, by_y.v);
+    }
+}
+
+// add the velocity per strength of one source to column c
+static void add_strength(const struct influence_block *block, int c, int first, int n, const struct kernel_values *unit,
+                         double weight) {
+    const struct part to = part_of(block, c, first);
+    for (int i = 0; i < n; i++) {
+        to.u[i] += unit->u[i] * weight;
+        to.v[i] += unit->v[i] * weight;
+    }
+}
+
+// what column a source has, and whether its place moves with the unknowns too
+struct target {
+    const struct flow *flow;
+    int f, g, with_places;
+    const struct influence_block *block;
+};
+
+// one source of the nascent vortex, or stretch, of a fish: what part of its circulation it has, and of the motion of
+// the tail
+struct nascent_source {
+    double x, y, smoothing, part, follows;
+};
+
+// a source at a range of the points of fish f
+static void derive_nascent_source(const struct target *at, struct range points, const struct nascent_source *source) {
+    const struct flow *flow = at->flow;
+    const struct fish *other = &flow->school->fish[at->g];
+    const struct stencil tail = {.n = 1, .node = (const int[]){other->n_nodes - 1}, .weight = (const double[]){1}};
+    const int here = flow->points[at->f].first, end = points.first + points.n;
+    for (int first = points.first; first < end; first += KERNEL_CHUNK) {
+        const int n = end - first < KERNEL_CHUNK ? end - first : KERNEL_CHUNK;
+        struct kernel_values unit;
+        kernel_unit(n, flow->x + here + first, flow->y + here + first, source->x, source->y, source->smoothing, &unit);
+        add_strength(at->block, at->block->n_columns - 1, first, n, &unit, source->part);
+        if (at->with_places) {
+            const double factor = -source->part * source->follows * flow->nascent.circulation[at->g];
+            add_motion(at->block, other, &tail, 1, first, n, &unit, &factor, 1);
+        }
+    }
+}
+
+// the nascent vortex or stretch of fish g at all points of fish f
+static void derive_nascent(const struct target *at) {
+    const struct flow *flow = at->flow;
+    const struct fish *other = &flow->school->fish[at->g];
+    const int n_points = flow->points[at->f].n, is_sheet = flow_has_free_sheets(flow), is_own = at->f == at->g;
+    // the own control points see the stretch point by point, all others its middle, or leave it out
+    const int n_own = is_sheet && is_own ? other->n_control : 0;
+    const int n_unfelt = is_own ? flow->without_own[at->f].n : 0, behind = other->n_control + n_unfelt;
+    const struct nascent_source whole = {flow->nascent.x[at->g], flow->nascent.y[at->g], other->smoothing, 1,
+                                         is_sheet ? 0.5 : 1};
+    if (n_unfelt == 0) {
+        derive_nascent_source(at, (struct range){n_own, n_points - n_own}, &whole);
+    } else {
+        derive_nascent_source(at, (struct range){n_own, other->n_control - n_own}, &whole);
+        derive_nascent_source(at, (struct range){behind, n_points - behind}, &whole);
+    }
+    const struct free_sheet *const sheet = is_sheet ? &flow->free_sheet[at->g] : NULL;
+    for (int i = 0; n_own > 0 && i < FREE_SHEET_PANEL; i++) {
+        const int source = sheet->n - (FREE_SHEET_PANEL + 1) + i;
+        const struct nascent_source point = {sheet->x[source], sheet->y[source], 0, free_sheet_part[i],
+                                             1 - free_sheet_xi[i]};
+        derive_nascent_source(at, (struct range){0, n_own}, &point);
+    }
+}
+
+// how many bound vortices from j on move with the same nodes
+static int together(const struct fish *fish, int j) {
+    const struct stencil *const point = &fish->sheet_point[j];
+    int n = 1;
+    while (n < MOST_TOGETHER && j + n < fish->n_sheet && point[n].node == point->node && point[n].n == point->n) n++;
+    return n;
+}
+
+// the bound vortices of fish g at a range of the points of fish f
+static void derive_sheet(const struct target *at, struct range points, double smoothing) {
+    const struct flow *flow = at->flow;
+    const struct fish *other = &flow->school->fish[at->g];
+    const int here = flow->points[at->f].first, sheet = flow->sheet_range[at->g].first;
+    const int strength = at->block->n_columns - 1 - other->n_sheet, end = points.first + points.n;
+    for (int first = points.first; first < end; first += KERNEL_CHUNK) {
+        const int n = end - first < KERNEL_CHUNK ? end - first : KERNEL_CHUNK;
+        for (int j = 0, n_together; j < other->n_sheet; j += n_together) {
+            struct kernel_values unit[MOST_TOGETHER];
+            double factor[MOST_TOGETHER];
+            n_together = together(other, j);
+            for (int i = 0; i < n_together; i++) {
+                const int source = sheet + j + i;
+                kernel_unit(n, flow->x + here + first, flow->y + here + first, flow->sheet.x[source],
+                            flow->sheet.y[source], smoothing, &unit[i]);
+                add_strength(at->block, strength + j + i, first, n, &unit[i], other->sheet_weight[j + i]);
+                factor[i] = -flow->sheet.circulation[source];
+            }
+            if (at->with_places)
+                add_motion(at->block, other, &other->sheet_point[j], n_together, first, n, unit, factor, 1);
+        }
+    }
+}
+
+// a source of fish g that everybody sees in the walls
+struct mirrored_source {
+    double x, y, smoothing;
+    int column;                  // of its strength
+    double weight, circulation;  // per unit of that unknown, and in all: m or 1, m2 s-1
+    const struct stencil *point;
+    double follows;  // the part of the motion of that point that it follows
+};
+
+// the images of a source at all points of fish f
+static void derive_images_of(const struct target *at, const struct mirrored_source *source) {
+    const struct flow *flow = at->flow;
+    const struct fish *other = &flow->school->fish[at->g];
+    const int here = flow->points[at->f].first, end = at->block->n_points;
+    for (int first = 0; first < end; first += KERNEL_CHUNK) {
+        const int n = end - first < KERNEL_CHUNK ? end - first : KERNEL_CHUNK;
+        struct images_values unit;
+        images_unit(&flow->school->walls, n, flow->x + here + first, flow->y + here + first, source->x, source->y,
+                    source->smoothing, &unit);
+        add_strength(at->block, source->column, first, n, &unit.shifted, source->weight);
+        add_strength(at->block, source->column, first, n, &unit.mirrored, source->weight);
+        if (!at->with_places) continue;
+        const double factor = -source->follows * source->circulation;
+        add_motion(at->block, other, source->point, 1, first, n, &unit.shifted, &factor, 1);
+        add_motion(at->block, other, source->point, 1, first, n, &unit.mirrored, &factor, -1);
+    }
+}
+
+static void derive_nascent_images(const struct target *at) {
+    const struct flow *flow = at->flow;
+    const struct fish *other = &flow->school->fish[at->g];
+    if (flow->school->walls.n == 0) return;
+    const struct stencil tail = {.n = 1, .node = (const int[]){other->n_nodes - 1}, .weight = (const double[]){1}};
+    const struct mirrored_source nascent = {.x = flow->nascent.x[at->g],
+                                            .y = flow->nascent.y[at->g],
+                                            .smoothing = other->smoothing,
+                                            .column = at->block->n_columns - 1,
+                                            .weight = 1,
+                                            .circulation = flow->nascent.circulation[at->g],
+                                            .point = &tail,
+                                            .follows = flow_has_free_sheets(flow) ? 0.5 : 1};
+    derive_images_of(at, &nascent);
+}
+
+static void derive_sheet_images(const struct target *at) {
+    const struct flow *flow = at->flow;
+    const struct fish *other = &flow->school->fish[at->g];
+    const int strength = at->block->n_columns - 1 - other->n_sheet;
+    for (int j = 0; flow->school->walls.n > 0 && j < other->n_sheet; j++) {
+        const int bound = flow->sheet_range[at->g].first + j;
+        const struct mirrored_source source = {.x = flow->sheet.x[bound],
+                                               .y = flow->sheet.y[bound],
+                                               .smoothing = flow_sheet_smoothing(flow, at->f, at->g),
+                                               .column = strength + j,
+                                               .weight = other->sheet_weight[j],
+                                               .circulation = flow->sheet.circulation[bound],
+                                               .point = &other->sheet_point[j],
+                                               .follows = 1};
+        derive_images_of(at, &source);
+    }
+}
+
+// all that moves with fish g, at the points of fish f that feel it
+static void derive_sources(const struct target *at) {
+    const struct flow *flow = at->flow;
+    const struct fish *fish = &flow->school->fish[at->f];
+    const size_t size = (size_t)at->block->n_points * (size_t)at->block->n_columns;
+    memset(at->block->u, 0, size * sizeof *at->block->u);
+    memset(at->block->v, 0, size * sizeof *at->block->v);
+    derive_nascent(at);
+    derive_nascent_images(at);
+    derive_sheet_images(at);
+    if (at->f == at->g) {
+        derive_sheet(at, (struct range){0, fish->n_control}, 0);
+        derive_sheet(at, (struct range){flow_tail(fish), 1}, fish->sheet_smoothing);
+    } else {
+        derive_sheet(at, (struct range){0, flow->points[at->f].n}, flow_sheet_smoothing(flow, at->f, at->g));
+    }
+}
+
+// the stencil of point p of a fish
+static struct stencil point_stencil(const struct fish *fish, int p) {
+    if (p < fish->n_control) return fish->control_point[p];
+    if (p == flow_tail(fish)) return fish->sheet_point[fish->n_sheet - 1];
+    return curve_edge_middle(fish->curve, p - fish->n_control);
+}
+
+void flow_derivative(const struct flow *flow, int f, int g, struct influence_block *block) {
+    const struct fish *fish = &flow->school->fish[f];
+    block->n_points = flow->points[f].n;
+    block->n_columns = flow_n_columns(&flow->school->fish[g]);
+    derive_sources(&(struct target){flow, f, g, 1, block});
+    if (f != g) return;
+    // the points of a fish move with its own nodes, in the field of all sources
+    for (int p = 0; p < block->n_points; p++) {
+        const int at = flow->points[f].first + p;
+        const struct stencil point = point_stencil(fish, p);
+        for (int i = 0; i < point.n; i++) {
+            const double w = point.weight[i];
+            const struct part by_x = part_of(block, point.node[i], p);
+            const struct part by_y = part_of(block, fish->n_nodes + point.node[i], p);
+            *by_x.u += w * flow->u_x[at];
+            *by_x.v += w * flow->v_x[at];
+            *by_y.u += w * flow->u_y[at];
+            *by_y.v -= w * flow->u_x[at];
+        }
+    }
+}
+
+void flow_influence(const struct flow *flow, int f, int g, struct influence_block *block) {
+    block->n_points = flow->points[f].n;
+    block->n_columns = flow->school->fish[g].n_sheet + 1;
+    derive_sources(&(struct target){flow, f, g, 0, block});
+}
+
+void flow_nascent_influence(const struct flow *flow, int f, struct influence_block *block) {
+    block->n_points = flow->points[f].n;
+    block->n_columns = 1;
+    memset(block->u, 0, (size_t)block->n_points * sizeof *block->u);
+    memset(block->v, 0, (size_t)block->n_points * sizeof *block->v);
+    const struct target at = {flow, f, f, 0, block};
+    derive_nascent(&at);
+    derive_nascent_images(&at);
+}

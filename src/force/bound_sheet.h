@@ -1,0 +1,54 @@
+/* bound_sheet.h: the equations of the bound sheet: impermeability, Kelvin, Kutta. doc/model.md, sections 6 and 7.
+ * Tested by tests/force/test_bound_sheet.c. */
+#ifndef BOUND_SHEET_H
+#define BOUND_SHEET_H
+
+#include "base/sparse.h"
+#include "fish/fish.h"
+#include "flow/flow_derivative.h"
+
+/* What holds for the circulation shed by a fish. */
+enum bound_sheet_law {
+    BOUND_SHEET_EDGE,  /* the bound vortex at the tail vanishes */
+    BOUND_SHEET_RATE,  /* dGamma/dt = chi gamma_{M-1} ubar */
+    BOUND_SHEET_FROZEN /* dGamma/dt = 0: nothing is shed between events (impulsive) */
+};
+
+/* The rows gamma: impermeability at the control points, m s-1, then Kelvin, m2 s-1. removed is the circulation that no
+ * longer counts, m2 s-1; u, v the fluid's velocity at the fish's points, m s-1 (flow_n_points). */
+void bound_sheet_residual(const struct fish *fish, double removed, const double *u, const double *v, const double *y,
+                          double *residual);
+
+/* Add the derivatives of the rows gamma: what depends on the body itself. */
+void bound_sheet_jacobian(const struct fish *fish, const double *u, const double *v, const double *y,
+                          struct sparse *jacobian);
+
+/* Add the derivatives of the rows gamma that come through the fluid's velocity. */
+void bound_sheet_flow_jacobian(const struct fish *fish, const struct influence_block *block, const double *y,
+                               struct coupling_block *rows);
+
+/* The rate at which circulation is shed by law BOUND_SHEET_RATE, m2 s-2; u, v as above, chi the ramp. */
+double bound_sheet_shedding_rate(const struct fish *fish, double chi, const double *u, const double *v,
+                                 const double *y);
+
+/* The row circulation, its derivatives, and those that come through the fluid's velocity (BOUND_SHEET_RATE only). */
+void bound_sheet_kutta_residual(const struct fish *fish, enum bound_sheet_law law, double chi, const double *u,
+                                const double *v, const double *y, const double *yp, double *residual);
+void bound_sheet_kutta_jacobian(const struct fish *fish, enum bound_sheet_law law, double chi, double cj,
+                                const double *u, const double *v, const double *y, struct sparse *jacobian);
+void bound_sheet_kutta_flow_jacobian(const struct fish *fish, double chi, const struct influence_block *block,
+                                     const double *y, struct coupling_block *rows);
+
+/* Derivative of the end correction in the row of control point c by the unknown of bound vortex j, 1. */
+double bound_sheet_end_correction(const struct fish *fish, int c, int j);
+
+/* Unit normal of the body at control point c. */
+void bound_sheet_normal(const struct fish *fish, int c, const double *y, double normal[2]);
+
+/* Circulation of bound vortex j per length of the body as it is now, m s-1. */
+double bound_sheet_strength(const struct fish *fish, int j, const double *y);
+
+/* Circulation of the bound sheet, m2 s-1. */
+double bound_sheet_circulation(const struct fish *fish, const double *y);
+
+#endif

@@ -1,0 +1,391 @@
+/* pressure.c: the added momentum and its turning, convection along the sheet, suction, and their derivatives. */
+#include "force/pressure.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "body/edge.h"
+#include "fish/fish_prescribed.h"
+#include "vortex/kernel.h"
+
+static const double pi = 3.14159265358979323846;
+
+enum status pressure_create(struct pressure **pressure, const struct fish *fish) {
+    *pressure = NULL;
+    struct pressure *const new = calloc(1, sizeof *new);
+    if (!new) goto no_memory;
+    const size_t n = (size_t)fish->n_nodes;
+    new->fish = fish;
+    new->circulation = calloc((size_t)fish->n_sheet, sizeof *new->circulation);
+    new->matrix = calloc(n * n, sizeof *new->matrix);
+    new->momentum = calloc(2 * n, sizeof *new->momentum);
+    new->momentum_rate = calloc(2 * n, sizeof *new->momentum_rate);
+    new->force = calloc(2 * n, sizeof *new->force);
+    new->share = calloc((size_t)fish->n_control * n, sizeof *new->share);
+    new->point = calloc((size_t)fish->n_control, sizeof *new->point);
+    if (!new->circulation || !new->matrix || !new->momentum || !new->momentum_rate || !new->force || !new->share ||
+        !new->point) {
+        goto no_memory;
+    }
+    for (int c = 0; c < fish->n_control; c++) {
+        for (int k = 0; k < fish->n_nodes; k++) {
+            new->share[c * fish->n_nodes + k] = fish->control_point[c].weight[k] / fish->mass[k];
+        }
+    }
+    *pressure = new;
+    return STATUS_OK;
+
+no_memory:
+    pressure_free(new);
+    return status_fail(STATUS_MEMORY, "out of memory: the pressure on fish %s", fish->name);
+}
+
+void pressure_free(struct pressure *pressure) {
+    if (!pressure) return;
+    free(pressure->circulation);
+    free(pressure->matrix);
+    free(pressure->momentum);
+    free(pressure->momentum_rate);
+    free(pressure->force);
+    free(pressure->share);
+    free(pressure->point);
+    free(pressure);
+}
+
+// R = sum over j: P_j times the circulation of vortex j, whose unknowns or their rates are given
+static void find_matrix(struct pressure *p, const double *strength) {
+    const struct fish *fish = p->fish;
+    const int n = fish->n_nodes;
+    for (int j = 0; j < fish->n_sheet; j++) p->circulation[j] = fish->sheet_weight[j] * strength[fish->at.gamma + j];
+    memset(p->matrix, 0, (size_t)n * (size_t)n * sizeof *p->matrix);
+    kernel_multiply(n * n, fish->n_sheet, fish->integrals->momentum, p->circulation, p->matrix);
+}
+
+// add E3 R x to the pairs of all nodes, x being those of y from this index on
+static void add_product(const struct pressure *p, const double *x, double *to) {
+    const int n = p->fish->n_nodes;
+    for (int k = 0; k < n; k++) {
+        const double *const row = p->matrix + (long)k * n;
+        for (int i = 0; i < n; i++) {
+            to[k] -= row[i] * x[n + i];
+            to[n + k] += row[i] * x[i];
+        }
+    }
+}
+
+// tau, the fluid's velocity past the body along it
+static double along(const struct pressure_point *point) {
+    return edge_dot(point->slip, point->body.t);
+}
+
+static void convect(struct pressure *p, const struct flow_at_body *flow, const double *y) {
+    const struct fish *fish = p->fish;
+    const int n = fish->n_nodes;
+    for (int c = 0; c < fish->n_control; c++) {
+        struct pressure_point *const point = &p->point[c];
+        const struct stencil *const at = &fish->control_point[c];
+        point->body = fish_direction(fish, &fish->control_tangent[c], y);
+        point->slip[0] = flow->u[c] - fish_mean(at, y + fish->at.vx);
+        point->slip[1] = flow->v[c] - fish_mean(at, y + fish->at.vy);
+        point->circulation = sheet_integrals_around(fish->integrals, c, p->circulation);
+        point->strength = fish->control_density[c] * point->circulation;
+        const double size = -point->strength * along(point);
+        for (int k = 0; k < n; k++) {
+            p->force[k] += at->weight[k] * size * point->body.n[0];
+            p->force[n + k] += at->weight[k] * size * point->body.n[1];
+        }
+    }
+}
+
+// f = full bound/(full^4 + bound^4)^(1/4), from the ratio of the smaller to the larger
+struct suction_law pressure_suction_law(double full, double bound) {
+    const double least = fmin(full, bound), most = fmax(full, bound);
+    const double ratio = most > 0 ? least / most : 0, fourth = ratio * ratio * ratio * ratio;
+    const double share = 1 / sqrt(sqrt(1 + fourth)), by_least = share / (1 + fourth),
+                 by_most = by_least * fourth * ratio;
+    const int is_attached = full <= bound;
+    return (struct suction_law){.value = least * share,
+                                .by_full = is_attached ? by_least : by_most,
+                                .by_bound = is_attached ? by_most : by_least};
+}
+
+// the suction on the nose, with what the limit takes from it
+static void suck(struct pressure *p, const double *y) {
+    const struct fish *fish = p->fish;
+    const double strength = fish->nose_factor * y[fish->at.gamma], full = strength * strength;
+    const double square = fish->suction_limit * fish->suction_limit, tau = along(&p->point[0]);
+    const struct suction_law law =
+        square > 0 ? pressure_suction_law(full, square * tau * tau) : (struct suction_law){full, 1, 0};
+    p->nose = fish_direction(fish, &fish->nose_tangent, y);
+    p->by_strength = fish->suction * law.by_full * 2 * strength * fish->nose_factor;
+    p->by_slip = fish->suction * law.by_bound * 2 * square * tau;
+    for (int i = 0; i < 2; i++) {
+        p->suction[i] = -fish->suction * law.value * p->nose.t[i];
+        p->separation[i] = -fish->full_suction * full * p->nose.t[i] - p->suction[i];
+    }
+}
+
+void pressure_update(struct pressure *p, const struct flow_at_body *flow, const double *y) {
+    const struct fish *fish = p->fish;
+    const size_t size = 2 * (size_t)fish->n_nodes * sizeof *p->momentum;
+    find_matrix(p, y);
+    memset(p->momentum, 0, size);
+    memset(p->force, 0, size);
+    add_product(p, y + fish->at.x, p->momentum);
+    add_product(p, y + fish->at.vx, p->force);
+    convect(p, flow, y);
+    suck(p, y);
+}
+
+double pressure_momentum_ratio(const struct fish *fish, int k) {
+    const double at_nose = fish->control_density[0], at_tail = fish->control_density[fish->n_control - 1];
+    const double per_area = pi / 4 * fmax(at_nose, at_tail);
+    return 1 + per_area * fish->length * fish->edge_length / fish->mass[k];
+}
+
+int pressure_momentum_row(const struct fish *fish, int at_start, int i, int k) {
+    const int is_given = at_start || fish_is_prescribed(fish, k, i);
+    return (is_given ? fish->at.px : fish->at.vx) + i * fish->n_nodes + k;
+}
+
+void pressure_momentum_residual(const struct pressure *p, int at_start, const double *y, double *residual) {
+    const struct fish *fish = p->fish;
+    for (int i = 0; i < 2; i++) {
+        for (int k = 0; k < fish->n_nodes; k++) {
+            const int node = i * fish->n_nodes + k;
+            residual[pressure_momentum_row(fish, at_start, i, k)] =
+                y[fish->at.px + node] - y[fish->at.vx + node] - p->momentum[node] / fish->mass[k];
+        }
+    }
+}
+
+void pressure_residual(const struct pressure *p, double *residual) {
+    const struct fish *fish = p->fish;
+    for (int i = 0; i < 2 * fish->n_nodes; i++) residual[fish->at.ax + i] -= p->force[i];
+    residual[fish->at.ax] -= p->suction[0];
+    residual[fish->at.ay] -= p->suction[1];
+}
+
+// sum over the nodes of P_kij x_i, per unknown of vortex j
+static double by_strength(const struct fish *fish, int k, int j, const double *x) {
+    const double *const row = fish->integrals->momentum + ((long)j * fish->n_nodes + k) * fish->n_nodes;
+    double sum = 0;
+    for (int i = 0; i < fish->n_nodes; i++) sum += row[i] * x[i];
+    return sum * fish->sheet_weight[j];
+}
+
+void pressure_momentum_by_strength(const struct fish *fish, int k, int j, const double *x, double momentum[2]) {
+    momentum[0] = -by_strength(fish, k, j, x + fish->n_nodes);
+    momentum[1] = by_strength(fish, k, j, x);
+}
+
+void pressure_momentum_jacobian(const struct pressure *p, int at_start, const double *y, struct sparse *jacobian) {
+    const struct fish *fish = p->fish;
+    const int n = fish->n_nodes;
+    for (int k = 0; k < n; k++) {
+        for (int i = 0; i < 2; i++) {
+            const int row = pressure_momentum_row(fish, at_start, i, k), node = i * n + k, other = (1 - i) * n;
+            const double sign = (i == 0 ? 1 : -1) / fish->mass[k];  // -E3 per mass
+            sparse_add(jacobian, row, fish->at.px + node, 1);
+            sparse_add(jacobian, row, fish->at.vx + node, -1);
+            for (int m = 0; m < n; m++) {
+                sparse_add(jacobian, row, fish->at.x + other + m, sign * p->matrix[k * n + m]);
+            }
+            for (int j = 0; j < fish->n_sheet; j++) {
+                sparse_add(jacobian, row, fish->at.gamma + j, sign * by_strength(fish, k, j, y + fish->at.x + other));
+            }
+        }
+    }
+}
+
+void pressure_jacobian(const struct pressure *p, struct sparse *jacobian) {
+    const struct fish *fish = p->fish;
+    const struct direction *const first = &p->point[0].body;
+    const int n = fish->n_nodes;
+    for (int k = 0; k < n; k++) {
+        for (int m = 0; m < n; m++) {
+            // convection: n t of every control point; turning: -E3
+            double sum[2][2] = {{0, p->matrix[k * n + m]}, {-p->matrix[k * n + m], 0}};
+            for (int c = 0; c < fish->n_control; c++) {
+                const double *const weight = fish->control_point[c].weight;
+                const struct direction *const body = &p->point[c].body;
+                const double factor = weight[k] * weight[m] * p->point[c].strength;
+                for (int i = 0; i < 2; i++) {
+                    for (int j = 0; j < 2; j++) sum[i][j] -= factor * body->n[i] * body->t[j];
+                }
+            }
+            // suction: tau
+            for (int i = 0; i < 2 && k == 0; i++) {
+                for (int j = 0; j < 2; j++) {
+                    sum[i][j] -= p->by_slip * p->nose.t[i] * first->t[j] * fish->control_point[0].weight[m];
+                }
+            }
+            for (int i = 0; i < 2; i++) {
+                for (int j = 0; j < 2; j++) {
+                    sparse_add(jacobian, fish->at.ax + i * n + k, fish->at.vx + j * n + m, sum[i][j] / fish->mass[k]);
+                }
+            }
+        }
+    }
+}
+
+// add a force at control point c to the rows ax, ay of all nodes in one column
+static void spread(const struct pressure *p, int c, double x, double y, double *column) {
+    const int n = p->fish->n_nodes;
+    const double *const share = p->share + (long)c * n;
+    for (int k = 0; k < n; k++) {
+        column[k] += share[k] * x;
+        column[n + k] += share[k] * y;
+    }
+}
+
+// convection by the places of the nodes: the line turns with X', dt = n (n.dX')/|X'|, dn = -t (n.dX')/|X'|
+static void convection_by_places(const struct pressure *p, struct coupling_block *rows) {
+    const struct fish *fish = p->fish;
+    for (int c = 0; c < fish->n_control; c++) {
+        const struct pressure_point *const point = &p->point[c];
+        const struct direction *const body = &point->body;
+        const double across = edge_dot(point->slip, body->n), tau = along(point);
+        const double *const slope = fish->control_tangent[c].to.weight;
+        double by_turn[2];
+        for (int i = 0; i < 2; i++) {
+            by_turn[i] = point->strength / body->length * (across * body->n[i] - tau * body->t[i]);
+        }
+        for (int m = 0; m < 2 * fish->n_nodes; m++) {
+            const double turn = body->n[m / fish->n_nodes] * slope[m % fish->n_nodes];
+            spread(p, c, by_turn[0] * turn, by_turn[1] * turn, rows->value + (long)m * rows->n_rows);
+        }
+    }
+}
+
+// suction by the strength at the nose, by its direction, and by the turn of tau's, at control point 0
+static void suction_jacobian(const struct pressure *p, struct coupling_block *rows) {
+    const struct fish *fish = p->fish;
+    const int n = fish->n_nodes;
+    const struct direction *const nose = &p->nose, *const first = &p->point[0].body;
+    const double *const turn = fish->nose_tangent.to.weight, *const turn_first = fish->control_tangent[0].to.weight;
+    const double size = -edge_dot(p->suction, nose->t), across = edge_dot(p->point[0].slip, first->n);
+    for (int i = 0; i < 2; i++) {
+        rows->value[2L * n * rows->n_rows + i * n] += p->by_strength * nose->t[i] / fish->mass[0];
+        const double by_turn = size * nose->n[i] / nose->length / fish->mass[0];
+        const double by_slip = p->by_slip * nose->t[i] / fish->mass[0] * across / first->length;
+        for (long m = 0; m < 2 * n; m++) {
+            rows->value[m * rows->n_rows + i * n] +=
+                by_turn * nose->n[m / n] * turn[m % n] + by_slip * first->n[m / n] * turn_first[m % n];
+        }
+    }
+}
+
+void pressure_own_jacobian(const struct pressure *p, const double *y, struct coupling_block *rows) {
+    const struct fish *fish = p->fish;
+    const int n = fish->n_nodes;
+    convection_by_places(p, rows);
+    suction_jacobian(p, rows);
+    for (int j = 0; j < fish->n_sheet; j++) {
+        double *const column = rows->value + (long)(2 * n + j) * rows->n_rows;
+        for (int c = 0; c < fish->n_control; c++) {
+            const struct pressure_point *const point = &p->point[c];
+            const double size = fish->control_density[c] * fish->integrals->strength[(long)c * fish->n_sheet + j] *
+                                fish->sheet_weight[j] * along(point);
+            spread(p, c, size * point->body.n[0], size * point->body.n[1], column);
+        }
+        for (int k = 0; k < n; k++) {
+            column[k] += by_strength(fish, k, j, y + fish->at.vy) / fish->mass[k];
+            column[n + k] -= by_strength(fish, k, j, y + fish->at.vx) / fish->mass[k];
+        }
+    }
+}
+
+void pressure_flow_jacobian(const struct pressure *p, const struct influence_block *block,
+                            struct coupling_block *rows) {
+    const struct fish *fish = p->fish;
+    const struct direction *const first = &p->point[0].body;
+    for (long m = 0; m < block->n_columns; m++) {
+        const double *const u = block->u + m * block->n_points, *const v = block->v + m * block->n_points;
+        for (int c = 0; c < fish->n_control; c++) {
+            const struct direction *const body = &p->point[c].body;
+            const double size = p->point[c].strength * (body->t[0] * u[c] + body->t[1] * v[c]);
+            spread(p, c, size * body->n[0], size * body->n[1], rows->value + m * rows->n_rows);
+        }
+        // suction: tau
+        const double by_slip = p->by_slip * (first->t[0] * u[0] + first->t[1] * v[0]) / fish->mass[0];
+        for (int i = 0; i < 2; i++) rows->value[m * rows->n_rows + i * fish->n_nodes] += by_slip * p->nose.t[i];
+    }
+}
+
+void pressure_update_rate(struct pressure *p, const double *y, const double *yp) {
+    const struct fish *fish = p->fish;
+    memset(p->momentum_rate, 0, 2 * (size_t)fish->n_nodes * sizeof *p->momentum_rate);
+    add_product(p, y + fish->at.vx, p->momentum_rate);
+    find_matrix(p, yp);
+    add_product(p, y + fish->at.x, p->momentum_rate);
+    find_matrix(p, y);
+}
+
+// how much of a kink the sheet has at the tail, from its strengths or their rates
+static double kink_of(const struct fish *fish, const double *y) {
+    const int last = fish->n_sheet - 1;
+    const double *const strength = y + fish->at.gamma;
+    return fish->sheet_weight[last - 1] * strength[last - 1] - 2 * fish->sheet_weight[last] * strength[last];
+}
+
+double pressure_jump(const struct pressure *p, int c, const double *y, const double *yp) {
+    const struct fish *fish = p->fish;
+    const double *const circulation = fish->integrals->circulation + (long)c * fish->n_sheet;
+    const struct pressure_point *const point = &p->point[c];
+    // the length of the line around the control point, in which its circulation lies
+    const double length = point->body.length * fish->control_interval[c];
+    double rate = fish->integrals->kink_circulation[c] * kink_of(fish, yp);
+    for (int j = 0; j < fish->n_sheet; j++) {
+        rate += circulation[j] * fish->sheet_weight[j] * yp[fish->at.gamma + j];
+    }
+    const double around = point->circulation + fish->integrals->kink_strength[c] * kink_of(fish, y);
+    return fish->fluid_density * (rate + around / length * along(point));
+}
+
+void pressure_of_edge(const struct pressure *p, int k, const double *y, const double *yp, double force[2]) {
+    const struct fish *fish = p->fish;
+    force[0] = force[1] = 0;
+    for (int c = 0; c < fish->n_control; c++) {
+        const double u = fish->n_edges * (1 - cos(pi * (c + 0.5) / fish->n_control)) / 2;
+        if ((int)u != k) continue;
+        const struct direction *const body = &p->point[c].body;
+        const double length = body->length * fish->control_interval[c];
+        const double size = -fish->depth[k] * pressure_jump(p, c, y, yp) * length;
+        for (int i = 0; i < 2; i++) force[i] += size * body->n[i];
+    }
+}
+
+static double moment_of(const double arm[2], const double vector[2]) {
+    return arm[0] * vector[1] - arm[1] * vector[0];
+}
+
+struct pressure_forces pressure_sum(const struct pressure *p, const double about[2], const double *y) {
+    const struct fish *fish = p->fish;
+    const int n = fish->n_nodes;
+    const double tau = along(&p->point[0]), strength = fish->nose_factor * y[fish->at.gamma];
+    struct pressure_forces sum = {.leading_edge_a0 = fabs(tau) > 0 ? strength / tau : NAN};
+    for (int k = 0; k < n; k++) {
+        const double arm[2] = {y[fish->at.x + k] - about[0], y[fish->at.y + k] - about[1]};
+        const double velocity[2] = {y[fish->at.vx + k], y[fish->at.vy + k]};
+        const double momentum[2] = {p->momentum[k], p->momentum[n + k]};
+        const double force[2] = {p->force[k] - p->momentum_rate[k], p->force[n + k] - p->momentum_rate[n + k]};
+        for (int i = 0; i < 2; i++) {
+            sum.pressure[i] += force[i];
+            sum.momentum[i] += momentum[i];
+        }
+        sum.pressure_moment += moment_of(arm, force);
+        sum.momentum_moment += moment_of(arm, momentum);
+        sum.pressure_power += edge_dot(force, velocity);
+        if (k > 0) continue;
+        sum.suction_moment = moment_of(arm, p->suction);
+        sum.suction_power = edge_dot(p->suction, velocity);
+        sum.separation_power = edge_dot(p->separation, velocity);
+    }
+    for (int i = 0; i < 2; i++) {
+        sum.suction[i] = p->suction[i];
+        sum.separation[i] = p->separation[i];
+    }
+    return sum;
+}

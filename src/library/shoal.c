@@ -1,0 +1,307 @@
+/* shoal.c: the part of include/shoal.h that opens, steps, sets and closes runs, and writes their files. */
+#include "shoal.h"
+
+#include <math.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/version.h"
+#include "case/sweep_members.h"
+#include "library/handle.h"
+#include "library/led.h"
+#include "result/target.h"
+#include "run/record_notes.h"
+
+_Static_assert((int)SHOAL_USAGE == STATUS_CASE && (int)SHOAL_FILE == STATUS_FILE &&
+                   (int)SHOAL_MEMORY == STATUS_MEMORY && (int)SHOAL_SOLVER == STATUS_SOLVER,
+               "a status goes to the caller as it is");
+
+// NetCDF keeps a list of open files that threads must not change together
+static pthread_mutex_t netcdf_lock = PTHREAD_MUTEX_INITIALIZER;
+
+// ---- checks
+
+static enum status check_assignments(int n, const char *const *assignments, const char *function) {
+    if (n < 0) return status_fail(STATUS_CASE, "%s: %d assignments: the number cannot be negative", function, n);
+    if (n > 0) TRY(handle_need(assignments, function, "assignments"));
+    for (int i = 0; i < n; i++) {
+        if (!assignments[i]) return status_fail(STATUS_CASE, "%s: assignment %d is NULL", function, i);
+    }
+    return STATUS_OK;
+}
+
+// fails where a run cannot make a step
+static enum status check_can_step(const struct shoal *run, const char *function) {
+    TRY(handle_need(run, function, "run"));
+    if (handle_has_failed(run, function)) return STATUS_SOLVER;
+    if (run->simulation->state->event < run->simulation->n_events) return STATUS_OK;
+    return status_fail(STATUS_CASE, "%s: the run is at its end, t = %g s: a longer one needs a larger time.end",
+                       function, run->simulation->state->t);
+}
+
+// ---- the life of a run
+
+// a run without a simulation
+static enum status create(struct shoal **run) {
+    *run = calloc(1, sizeof **run);
+    if (*run) (*run)->shared = calloc(1, sizeof *(*run)->shared);
+    if (*run && (*run)->shared) {
+        atomic_init(&(*run)->shared->n_users, 1);
+        (*run)->lock.descriptor = -1;
+        return STATUS_OK;
+    }
+    free(*run);
+    *run = NULL;
+    return status_fail(STATUS_MEMORY, "out of memory: a run");
+}
+
+static enum status start(struct shoal *run) {
+    const struct case_values *const values = &run->shared->values;
+    TRY(sweep_refuse(values));
+    run->result_path = record_path(values);
+    if (!run->result_path) return status_fail(STATUS_MEMORY, "out of memory: a path");
+    return simulate_create(&run->simulation, values);
+}
+
+// hand out a run that has read its case with this status
+static int finish_opening(struct shoal **run, struct shoal *new, enum status status) {
+    if (status == STATUS_OK) status = start(new);
+    if (status == STATUS_OK) {
+        *run = new;
+    } else {
+        shoal_close(new);
+    }
+    return status;
+}
+
+int shoal_open(struct shoal **run, const char *case_path, int n_assignments, const char *const *assignments) {
+    TRY(handle_need(run, __func__, "run"));
+    *run = NULL;
+    TRY(handle_need(case_path, __func__, "case_path"));
+    TRY(check_assignments(n_assignments, assignments, __func__));
+    struct shoal *new;
+    TRY(create(&new));
+    return finish_opening(run, new, case_read(&new->shared->values, case_path, n_assignments, assignments));
+}
+
+int shoal_open_text(struct shoal **run, const char *text, const char *folder, int n_assignments,
+                    const char *const *assignments) {
+    TRY(handle_need(run, __func__, "run"));
+    *run = NULL;
+    TRY(handle_need(text, __func__, "text"));
+    TRY(check_assignments(n_assignments, assignments, __func__));
+    struct shoal *new;
+    TRY(create(&new));
+    return finish_opening(
+        run, new, case_parse(&new->shared->values, text, strlen(text), "case", folder, n_assignments, assignments));
+}
+
+static int has_ended(const struct shoal *run) {
+    return run->simulation->state->event >= run->simulation->n_events;
+}
+
+// what belongs to a result file that is closed
+static void forget_record(struct shoal *run) {
+    free(run->record_path);
+    run->record_path = NULL;
+    checkpoints_free(&run->checkpoints);
+    result_lock_release(&run->lock);
+    run->lock = (struct result_lock){.descriptor = -1};
+}
+
+/* Fail with STATUS_FILE in a fork of the process that writes the result: the file is no longer this run's. */
+static enum status check_process(struct shoal *run, const char *function) {
+    if (!run->record.file || run->lock.owner == getpid()) return STATUS_OK;
+    status_fail(STATUS_FILE,
+                "%s: %s is written by process %ld, of which this one is a fork: the run goes on without it", function,
+                run->record_path, (long)run->lock.owner);
+    result_file_abandon(run->record.file);
+    run->record = (struct record){0};
+    forget_record(run);
+    return STATUS_FILE;
+}
+
+static enum status end_record(struct shoal *run) {
+    enum status status = STATUS_OK;
+    if (run->has_failed) {
+        status = status_fail(STATUS_SOLVER, "%s", run->failure);
+    } else if (!has_ended(run)) {
+        status = STATUS_STOPPED;
+    }
+    pthread_mutex_lock(&netcdf_lock);
+    if (run->simulation->residual) record_notes_write(run->record.file, run->simulation, NULL, NULL);
+    const enum status closed = record_close(&run->record, status);
+    pthread_mutex_unlock(&netcdf_lock);
+    forget_record(run);
+    // how the run ended is no failure of closing its file
+    return closed == status ? STATUS_OK : closed;
+}
+
+void shoal_close(struct shoal *run) {
+    if (!run) return;
+    if (check_process(run, __func__) == STATUS_OK && run->record.file) end_record(run);
+    for (int i = 0; i < RESULT_TABLE_MAX; i++) free(run->buffer[i]);
+    simulate_free(run->simulation);
+    if (atomic_fetch_sub(&run->shared->n_users, 1) == 1) {
+        case_free(&run->shared->values);
+        free(run->shared);
+    }
+    free(run->result_path);
+    free(run);
+}
+
+static enum status write_row(struct shoal *run) {
+    if (!record_is_due(&run->record, run->simulation->state->event)) return STATUS_OK;
+    struct result_row row = *handle_row(run);
+    return record_row(&run->record, &row);
+}
+
+static enum status write_if_due(struct shoal *run) {
+    TRY(check_process(run, "shoal_step"));
+    pthread_mutex_lock(&netcdf_lock);
+    enum status status = write_row(run);
+    if (status != STATUS_OK) status = record_close(&run->record, status);
+    pthread_mutex_unlock(&netcdf_lock);
+    if (status != STATUS_OK) forget_record(run);
+    return status;
+}
+
+// every run, with a file or without, begins its integration again where the case has a checkpoint
+static int is_checkpoint(const struct shoal *run) {
+    const struct case_values *const values = &run->shared->values;
+    const long interval = lround(values->time.checkpoint_interval / values->school.shedding_interval);
+    return interval > 0 && run->simulation->state->event % interval == 0;
+}
+
+static enum status checkpoint(struct shoal *run) {
+    TRY(check_process(run, "shoal_checkpoint"));
+    if (run->record.file) {
+        pthread_mutex_lock(&netcdf_lock);
+        const enum status status = checkpoints_write(&run->checkpoints, run->simulation, &run->record);
+        pthread_mutex_unlock(&netcdf_lock);
+        TRY(status);
+    }
+    return has_ended(run) ? STATUS_OK : handle_renew(run);
+}
+
+int shoal_step(struct shoal *run) {
+    TRY(check_can_step(run, __func__));
+    handle_forget_row(run);
+    const enum status status = simulate_step(run->simulation);
+    if (status == STATUS_OK) {
+        TRY(write_if_due(run));
+        return is_checkpoint(run) ? checkpoint(run) : STATUS_OK;
+    }
+    handle_fail(run);
+    return status == STATUS_CONTACT ? STATUS_SOLVER : status;
+}
+
+int shoal_advance(struct shoal *run, double t) {
+    TRY(handle_need(run, __func__, "run"));
+    if (!isfinite(t)) return status_fail(STATUS_CASE, "%s: the time %g is not finite", __func__, t);
+    const struct simulation *const simulation = run->simulation;
+    // a time that an event has but for rounding is that event's
+    const double events = ceil(t / simulation->school->interval * (1 - 1e-12));
+    if (events > (double)simulation->n_events) {
+        return status_fail(STATUS_CASE, "%s: t = %g s is after the end of the case, %g s", __func__, t, shoal_end(run));
+    }
+    if (events < (double)simulation->state->event) {
+        return status_fail(STATUS_CASE, "%s: t = %g s is before the last event, at %g s: shoal_restore goes back",
+                           __func__, t, simulation->state->t);
+    }
+    while ((double)simulation->state->event < events) TRY(shoal_step(run));
+    return STATUS_OK;
+}
+
+// ---- time
+
+double shoal_time(const struct shoal *run) {
+    return handle_need(run, __func__, "run") == STATUS_OK ? run->simulation->state->t : NAN;
+}
+
+double shoal_end(const struct shoal *run) {
+    if (handle_need(run, __func__, "run") != STATUS_OK) return NAN;
+    return (double)run->simulation->n_events * run->simulation->school->interval;
+}
+
+double shoal_interval(const struct shoal *run) {
+    return handle_need(run, __func__, "run") == STATUS_OK ? run->simulation->school->interval : NAN;
+}
+
+int shoal_set(struct shoal *run, int fish, const char *key, int n, const double *values) {
+    TRY(handle_check_fish(run, fish, __func__));
+    TRY(handle_need(key, __func__, "key"));
+    TRY(handle_need(values, __func__, "values"));
+    return led_set(run->simulation, fish, key, n, values);
+}
+
+// ---- files
+
+const char *shoal_result_path(const struct shoal *run) {
+    return handle_need(run, __func__, "run") == STATUS_OK ? run->result_path : NULL;
+}
+
+// an earlier result stays until the first row of this one is safe
+static enum status create_file(struct shoal *run, int overwrite) {
+    TRY(record_create(&run->record, &run->shared->values, run->simulation->school, run->simulation->n_events,
+                      run->record_path, overwrite, "libshoal"));
+    enum status status = write_row(run);
+    if (status == STATUS_OK) status = record_publish(&run->record, 0);
+    return status == STATUS_OK ? STATUS_OK : record_close(&run->record, status);
+}
+
+// the file, its lock, and the plan of its checkpoints
+static enum status start_record(struct shoal *run, const char *path, int overwrite) {
+    run->record_path = strdup(path);
+    if (!run->record_path) return status_fail(STATUS_MEMORY, "out of memory: a path");
+    TRY(target_check(path, TARGET_NETCDF, overwrite));
+    TRY(result_lock_take(&run->lock, path));
+    TRY(checkpoints_create(&run->checkpoints, &run->shared->values, path, NULL));
+    pthread_mutex_lock(&netcdf_lock);
+    const enum status status = create_file(run, overwrite);
+    pthread_mutex_unlock(&netcdf_lock);
+    if (status == STATUS_OK) checkpoints_remove(&run->checkpoints);
+    return status;
+}
+
+int shoal_write(struct shoal *run, const char *path, int overwrite) {
+    TRY(handle_need(run, __func__, "run"));
+    TRY(handle_need(path, __func__, "path"));
+    if (handle_has_failed(run, __func__)) return STATUS_SOLVER;
+    TRY(check_process(run, __func__));
+    if (run->record.file) {
+        return status_fail(STATUS_CASE, "%s: the run writes %s: end that with shoal_write_end", __func__,
+                           run->record_path);
+    }
+    const enum status status = start_record(run, path, overwrite);
+    if (status != STATUS_OK) forget_record(run);
+    return status;
+}
+
+int shoal_checkpoint(struct shoal *run) {
+    TRY(handle_need(run, __func__, "run"));
+    if (handle_has_failed(run, __func__)) return STATUS_SOLVER;
+    if (!run->record.file) {
+        return status_fail(STATUS_CASE, "%s: a checkpoint belongs to a result file: begin one with shoal_write",
+                           __func__);
+    }
+    return checkpoint(run);
+}
+
+int shoal_write_end(struct shoal *run) {
+    TRY(handle_need(run, __func__, "run"));
+    TRY(check_process(run, __func__));
+    return run->record.file ? end_record(run) : STATUS_OK;
+}
+
+// ---- the library
+
+const char *shoal_message(void) {
+    return status_message();
+}
+
+const char *shoal_version(void) {
+    return version_short();
+}

@@ -1,0 +1,65 @@
+/* durable.h: files that survive a power cut, and files that are there as a whole or not at all. Tested by
+ * tests/result/test_durable.c.
+ *
+ *     durable_begin      a new file TARGET.PROCESS-NUMBER.part, locked
+ *     write              to part.descriptor, or to a file opened by part.name
+ *     durable_publish    fsync, rename to TARGET, fsync of the folder
+ *     durable_end        removes a part that has not been published
+ *
+ * A part without a lock was left by a process that died. */
+#ifndef DURABLE_H
+#define DURABLE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/status.h"
+
+/* A file in the making. */
+struct durable_part {
+    char *target;   /* owned */
+    char *name;     /* owned; NULL: published, or never created */
+    int descriptor; /* -1: none */
+};
+
+/* Make what has been written to a file, or the names in the folder of a file, survive a power cut; errno or 0. Some
+ * file systems cannot keep names, and a folder may be closed to readers: that is no error. */
+int durable_sync(int descriptor);
+int durable_sync_folder(const char *path);
+
+/* Write all bytes; errno or 0. */
+int durable_write(int descriptor, const void *bytes, size_t n);
+
+/* Lock n bytes of a file from first on, 0: all, until this descriptor is closed, here and in forks of the process.
+ * Another descriptor is another owner, in the same process too. 0, EAGAIN: another owner has a lock there, or ENOLCK:
+ * the system or the file system has no such locks. */
+int durable_lock(int descriptor, uint64_t first, uint64_t n);
+
+/* Whether the file of a descriptor is the one at this path. */
+bool durable_has_name(int descriptor, const char *path);
+
+/* Create a part of the file at target with these permissions; errno or 0. durable_end zeroes it, also after a failure.
+ * */
+int durable_begin(struct durable_part *part, const char *target, unsigned permissions);
+
+/* Make the part survive a power cut and give it the name of its target; the descriptor stays open. overwrite: replace a
+ * file that exists, else that is EEXIST. Errno or 0. */
+int durable_publish(struct durable_part *part, bool overwrite);
+
+/* Close the part; remove it unless it has been published. */
+void durable_end(struct durable_part *part);
+
+/* Remove parts of files whose path begins like this, where the processes that made them have died. */
+void durable_sweep(const char *path);
+
+/* Give a file new bytes; the file that had the name is kept as previous, in place of an earlier one. Whatever fails,
+ * and whenever the power does, path or previous is a whole file. Fails with STATUS_FILE and a message that begins with
+ * the path, or with STATUS_MEMORY. */
+enum status durable_replace(const char *path, const char *previous, const void *bytes, size_t n);
+
+/* Read a whole regular file into memory that the caller frees. Fails with STATUS_FILE, also for what is no regular file
+ * (a pipe is not waited for), or with STATUS_MEMORY. */
+enum status durable_read(const char *path, unsigned char **bytes, size_t *n);
+
+#endif

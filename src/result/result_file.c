@@ -1,0 +1,359 @@
+/* result_file.c: writing the file of a run, variable by variable of the table. */
+#include "result/result_file.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "result/netcdf.h"
+#include "result/result_values.h"
+#include "result/target.h"
+#include "school/warnings.h"
+
+/* Bytes of attributes that are rewritten in place and must never move what follows. */
+enum { STATUS_LENGTH = 256, MAX_NOTE_LENGTH = N_WARNINGS * WARNING_BYTES };
+
+static const struct note {
+    const char *name;
+    size_t length;
+} notes[] = {
+    [RESULT_WARNINGS] = {"warnings", MAX_NOTE_LENGTH},
+    [RESULT_CLOSEST_APPROACH] = {"closest_approach", 256},
+    [RESULT_MERGED] = {"merged_vortices", 128},
+    [RESULT_CHECKPOINT_AT] = {"checkpoint_at", 1024},
+};
+enum { N_NOTES = sizeof notes / sizeof *notes };
+
+struct result_file {
+    struct netcdf_writer writer;
+    bool overwrite;                     /* when the file gets its name */
+    size_t length[RESULT_N_DIMENSIONS]; /* of the dimensions; 1 for TIME, as one row is written at a time */
+    int *number;                        /* of the variables in the file                (result_table_n) */
+    enum output_forces forces;          /* which of them it has */
+    bool is_steady;                     /* whether it has those of a steady state */
+    size_t n_rows;
+    struct result_checksum checksum; /* of the rows that were marked last */
+    double *buffer;                  /* one row, or the whole, of the largest variable */
+};
+
+// ---- the header
+
+/* True if a variable is in the file. */
+static bool is_written(const struct result_file *result, const struct result_variable *variable) {
+    if (result_table_has(variable, WALL) && result->length[WALL] == 0) return false;
+    return variable->forces <= result->forces && (result->is_steady || !variable->of_steady);
+}
+
+static enum netcdf_type type_in_file(enum result_type type, enum precision precision) {
+    switch (type) {
+        case RESULT_BULK: return precision == PRECISION_SINGLE ? NETCDF_FLOAT : NETCDF_DOUBLE;
+        case RESULT_INTEGER: return NETCDF_INT;
+        case RESULT_COUNT: return NETCDF_INT64;
+        case RESULT_TEXT: return NETCDF_TEXT;
+        default: return NETCDF_DOUBLE;
+    }
+}
+
+/* An attribute in the space that is kept for it; a longer string is cut. */
+static void write_fixed(struct result_file *result, const char *name, size_t length, const char *text) {
+    char bytes[MAX_NOTE_LENGTH] = {0};
+    snprintf(bytes, length, "%s", text);
+    netcdf_write_bytes(&result->writer, NETCDF_GLOBAL, name, length, bytes);
+}
+
+/* Say of a file that nobody writes that its run goes on: one with fewer rows must never say that it is complete. */
+static enum status patch_run_status(const char *path) {
+    const char bytes[STATUS_LENGTH] = "running";
+    return netcdf_patch(path, "run_status", STATUS_LENGTH, bytes);
+}
+
+static void write_run_status(struct result_file *result, const char *run_status) {
+    write_fixed(result, "run_status", STATUS_LENGTH, run_status);
+}
+
+void result_file_note(struct result_file *result, enum result_note note, const char *text) {
+    write_fixed(result, notes[note].name, notes[note].length, text);
+}
+
+/* The variables that name the slots of another one. */
+static const char *coordinates_of(const struct result_variable *variable) {
+    if (result_table_has(variable, NODE) && strcmp(variable->name, "node_arc") != 0) return "fish_name node_arc";
+    if (result_table_has(variable, SHEET) && strcmp(variable->name, "sheet_arc") != 0) return "fish_name sheet_arc";
+    if (result_table_has(variable, CONTROL) && strcmp(variable->name, "control_arc") != 0) {
+        return "fish_name control_arc";
+    }
+    return "fish_name";
+}
+
+static void define_variable(struct result_file *result, int i, const int *dimension_number, enum precision precision) {
+    const struct result_variable *const variable = &result_table[i];
+    const bool of_fish = result_table_has(variable, FISH), is_text = variable->type == RESULT_TEXT;
+    struct netcdf_variable to_define = {.name = variable->name,
+                                        .long_name = variable->long_name,
+                                        .units = variable->unit,
+                                        .type = type_in_file(variable->type, precision)};
+    for (const enum result_dimension *d = variable->dimension; *d != NONE; d++)
+        to_define.dimension[to_define.n_dimensions++] = dimension_number[*d];
+    to_define.has_gaps = of_fish && (to_define.type == NETCDF_DOUBLE || to_define.type == NETCDF_FLOAT);
+    result->number[i] = netcdf_define_variable(&result->writer, &to_define);
+    if (of_fish && !is_text)
+        netcdf_write_string(&result->writer, result->number[i], "coordinates", coordinates_of(variable));
+}
+
+/* The attributes; the text of the case makes a result repeatable. */
+static void write_attributes(struct result_file *result, const struct case_values *values, const char *effective) {
+    struct netcdf_writer *const writer = &result->writer;
+    netcdf_write_integer(writer, NETCDF_GLOBAL, "shoal_schema", RESULT_SCHEMA);
+    write_run_status(result, "running");
+    for (int i = 0; i < N_NOTES; i++) result_file_note(result, (enum result_note)i, "");
+    netcdf_write_string(writer, NETCDF_GLOBAL, "case_text", values->text);
+    if (values->study) {
+        netcdf_write_string(writer, NETCDF_GLOBAL, "study_case", values->study);
+        netcdf_write_integer(writer, NETCDF_GLOBAL, "study_member", values->member);
+    }
+    netcdf_write_string(writer, NETCDF_GLOBAL, "case_effective", effective);
+}
+
+static void define_all(struct result_file *result, const struct case_values *values, const char *effective) {
+    int dimension_number[RESULT_N_DIMENSIONS] = {0};
+    for (enum result_dimension d = TIME; d < RESULT_N_DIMENSIONS; d++) {
+        if ((d == MULTIPLIER && !result->is_steady) || (d != TIME && result->length[d] == 0)) continue;
+        dimension_number[d] =
+            netcdf_define_dimension(&result->writer, result_table_dimension(d), d == TIME ? 0 : result->length[d]);
+    }
+    for (int i = 0; i < result_table_n; i++) {
+        if (!is_written(result, &result_table[i])) continue;
+        define_variable(result, i, dimension_number, values->output.precision);
+    }
+    write_attributes(result, values, effective);
+    netcdf_end_definitions(&result->writer);
+}
+
+// ---- values
+
+/* Write the whole of a constant, or the next row of a variable with time. */
+static void write_variable(struct result_file *result, int i, const struct result_row *row) {
+    const struct result_variable *variable = &result_table[i];
+    result_values_fill(variable, result->length, row, result->buffer);
+    size_t start[RESULT_MAX_DIMENSIONS] = {0}, count[RESULT_MAX_DIMENSIONS];
+    for (int d = 0; variable->dimension[d] != NONE; d++) count[d] = result->length[variable->dimension[d]];
+    if (result_table_has(variable, TIME)) start[0] = result->n_rows;
+    struct netcdf_writer *const writer = &result->writer;
+    const int number = result->number[i];
+    const void *const values = result->buffer;
+    switch (variable->type) {
+        case RESULT_INTEGER: netcdf_write_ints(writer, number, start, count, values); break;
+        case RESULT_COUNT: netcdf_write_longs(writer, number, start, count, values); break;
+        case RESULT_TEXT: netcdf_write_text(writer, number, start, count, values); break;
+        default: netcdf_write_doubles(writer, number, start, count, values);
+    }
+}
+
+/* Write all constants, or all of a row. */
+static void write_variables(struct result_file *result, bool with_time, const struct result_row *row) {
+    for (int i = 0; i < result_table_n; i++) {
+        const struct result_variable *const variable = &result_table[i];
+        if (!is_written(result, variable) || result_table_has(variable, TIME) != with_time) continue;
+        write_variable(result, i, row);
+    }
+}
+
+// ---- the life of a result file
+
+static void release(struct result_file *result) {
+    if (!result) return;
+    free(result->number);
+    free(result->buffer);
+    free(result);
+}
+
+/* A result without a file yet. */
+static struct result_file *allocate(const struct school *school, long n_events) {
+    struct result_file *const result = calloc(1, sizeof *result);
+    if (!result) return NULL;
+    result_values_lengths(school, wake_most(school, n_events), result->length);
+    size_t max = 1;
+    for (int i = 0; i < result_table_n; i++) {
+        const size_t n = result_values_n(&result_table[i], result->length);
+        if (n > max) max = n;
+    }
+    result->number = calloc((size_t)result_table_n, sizeof *result->number);
+    result->buffer = calloc(max, sizeof *result->buffer);
+    if (result->number && result->buffer) return result;
+    release(result);
+    return NULL;
+}
+
+/* What a new file is made of. */
+struct origin {
+    const char *path;
+    int overwrite;
+    const struct case_values *values;
+    const char *effective, *command;
+    const struct school *school;
+    const struct result_source *source; /* rows that it begins with; NULL: none */
+    bool is_steady;
+};
+
+static enum status copy_rows(struct result_file *result, const struct result_source *source) {
+    const struct result_target target = {&result->writer, result->number, result->forces, result->length,
+                                         result->buffer};
+    TRY(result_copy_rows(source, &target));
+    result->n_rows = (size_t)source->n_rows;
+    return STATUS_OK;
+}
+
+static enum status write_new(struct result_file *result, const struct origin *origin) {
+    TRY(netcdf_create(&result->writer, origin->path, origin->values->name, origin->command));
+    define_all(result, origin->values, origin->effective);
+    write_variables(result, false, &(struct result_row){.school = origin->school});
+    netcdf_sync(&result->writer, true);
+    const int code = result->writer.code;
+    enum status status = STATUS_OK;
+    if (code != 0) {
+        status = target_failed(origin->path, code, netcdf_reason(code));
+    } else if (origin->source) {
+        status = copy_rows(result, origin->source);
+    }
+    if (status != STATUS_OK) netcdf_finish(&result->writer);
+    return status;
+}
+
+static enum status create(struct result_file **result, const struct origin *origin, long n_events) {
+    *result = NULL;
+    TRY(target_check(origin->path, TARGET_NETCDF, origin->overwrite));
+    struct result_file *const new = allocate(origin->school, n_events);
+    if (!new) return status_fail(STATUS_MEMORY, "%s: out of memory while writing", origin->path);
+    new->forces = origin->values->output.forces;
+    new->is_steady = origin->is_steady;
+    new->overwrite = origin->overwrite;
+    const enum status status = write_new(new, origin);
+    if (status == STATUS_OK) {
+        *result = new;
+    } else {
+        release(new);
+    }
+    return status;
+}
+
+enum status result_file_create(struct result_file **result, const char *path, int overwrite,
+                               const struct case_values *values, const char *effective, const char *command,
+                               const struct school *school, long n_events) {
+    const struct origin origin = {path, overwrite, values, effective, command, school, NULL, false};
+    return create(result, &origin, n_events);
+}
+
+enum status result_file_create_steady(struct result_file **result, const char *path, int overwrite,
+                                      const struct case_values *values, const char *effective, const char *command,
+                                      const struct school *school, long n_events) {
+    const struct origin origin = {path, overwrite, values, effective, command, school, NULL, true};
+    return create(result, &origin, n_events);
+}
+
+void result_file_steady(struct result_file *result, const struct school *school, const struct steady_values *steady) {
+    const struct result_row row = {.school = school, .steady = steady};
+    for (int i = 0; i < result_table_n; i++) {
+        if (result_table[i].of_steady) write_variable(result, i, &row);
+    }
+}
+
+enum status result_file_extend(struct result_file **result, const struct result_source *source,
+                               const struct case_values *values, const char *effective, const char *command,
+                               const struct school *school, long n_events) {
+    const struct origin origin = {source->path, 1, values, effective, command, school, source, false};
+    return create(result, &origin, n_events);
+}
+
+enum status result_file_publish(struct result_file *result, const char *run_status) {
+    write_run_status(result, run_status);
+    return netcdf_publish(&result->writer, result->overwrite);
+}
+
+/* Find all variables of a file that is there. */
+static enum status find_all(struct result_file *result, const char *path) {
+    TRY(netcdf_continue(&result->writer, path));
+    for (int i = 0; i < result_table_n; i++) {
+        if (is_written(result, &result_table[i]))
+            result->number[i] = netcdf_number(&result->writer, result_table[i].name);
+    }
+    const int code = result->writer.code;
+    if (code == 0) return STATUS_OK;
+    netcdf_finish(&result->writer);
+    return status_fail(STATUS_FILE, "%s: cannot be continued: %s", path, netcdf_reason(code));
+}
+
+enum status result_file_continue(struct result_file **result, const char *path, const struct result_mark *mark,
+                                 const struct result_checksum *checksum, const struct case_values *values,
+                                 const struct school *school, long n_events) {
+    struct netcdf_rows rows;
+    *result = NULL;
+    TRY(netcdf_read_rows(path, &rows));
+    TRY(patch_run_status(path));
+    TRY(netcdf_cut_rows(path, &rows, (uint64_t)mark->n_rows));
+    struct result_file *const new = allocate(school, n_events);
+    if (!new) return status_fail(STATUS_MEMORY, "%s: out of memory while writing", path);
+    new->forces = values->output.forces;
+    new->n_rows = (size_t)mark->n_rows;
+    new->checksum = *checksum;
+    const enum status status = find_all(new, path);
+    if (status == STATUS_OK) {
+        *result = new;
+    } else {
+        release(new);
+    }
+    return status;
+}
+
+enum status result_file_row(struct result_file *result, const struct result_row *row) {
+    const char *const path = result->writer.path;
+    const double t = row->state->t;
+    for (int f = 0; f < row->school->n_fish; f++)
+        if ((size_t)row->state->wake[f].n_vortex > result->length[VORTEX])
+            return status_fail(STATUS_FILE, "%s: %d vortices of %s at t = %g s, but the file has room for %zu", path,
+                               row->state->wake[f].n_vortex, row->school->fish[f].name, t, result->length[VORTEX]);
+    write_variables(result, true, row);
+    result->n_rows++;
+    netcdf_sync(&result->writer, false);
+    if (result->writer.code == 0) return STATUS_OK;
+    return status_fail(STATUS_FILE,
+                       "%s: cannot be written at t = %g s (%s): make room or choose another place with -o; the rows "
+                       "before are good",
+                       path, t, netcdf_reason(result->writer.code));
+}
+
+enum status result_file_mark(struct result_file *result, struct result_mark *mark) {
+    netcdf_sync(&result->writer, true);
+    if (result->writer.code != 0) {
+        return status_fail(STATUS_FILE, "%s: cannot be written (%s): make room or choose another place with -o",
+                           result->writer.path, netcdf_reason(result->writer.code));
+    }
+    const char *const path = result->writer.part.name ? result->writer.part.name : result->writer.path;
+    return result_mark_take(path, (long)result->n_rows, &result->checksum, mark);
+}
+
+enum status result_file_close(struct result_file *result, const char *run_status) {
+    if (!result) return STATUS_OK;
+    struct netcdf_writer *const writer = &result->writer;
+    const bool is_published = !writer->part.name;
+    // the rows are safe before the file says how the run has ended
+    if (is_published) netcdf_sync(writer, true);
+    // what NetCDF holds after a failed write cannot be written
+    if (is_published && writer->code != 0) netcdf_reopen(writer);
+    write_run_status(result, run_status);
+    netcdf_sync(writer, true);
+    enum status status = STATUS_OK;
+    if (is_published && writer->code != 0) {
+        status = status_fail(STATUS_FILE, "%s: cannot be closed (%s): its last rows may be missing", writer->path,
+                             netcdf_reason(writer->code));
+        netcdf_reopen(writer);
+        write_run_status(result, "failed: the last rows could not be written");
+    }
+    const enum status finished = netcdf_finish(writer);
+    release(result);
+    return status == STATUS_OK ? finished : status;
+}
+
+void result_file_abandon(struct result_file *result) {
+    netcdf_abandon(&result->writer);
+    release(result);
+}

@@ -1,0 +1,103 @@
+/* result_kind.c: what is the same for all files that shoal writes. */
+#include "result/result_kind.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "result/netcdf.h"
+
+// ---- the summary
+
+static enum status find_kind(const struct netcdf_reader *reader, int n_kinds, const struct result_kind *kinds,
+                             const struct result_kind **kind) {
+    const int none = -1;
+    for (int k = 0; k < n_kinds; k++) {
+        int schema;
+        TRY(netcdf_read_integer(reader, kinds[k].schema_name, none, &schema));
+        if (schema == none) continue;
+        *kind = &kinds[k];
+        if (schema == kinds[k].schema) return STATUS_OK;
+        return status_fail(STATUS_FILE,
+                           "%s: written in schema %d, but this program reads %d: use the one that wrote it",
+                           reader->path, schema, kinds[k].schema);
+    }
+    return status_fail(STATUS_FILE, "%s: a NetCDF file, but not one of shoal (it has no attribute %s)", reader->path,
+                       kinds[0].schema_name);
+}
+
+static enum status print_attribute(const struct netcdf_reader *reader, const char *format, const char *name,
+                                   FILE *stream) {
+    char *text;
+    TRY(netcdf_read_string(reader, name, &text));
+    fprintf(stream, format, text);
+    free(text);
+    return STATUS_OK;
+}
+
+static void print_size(const char *path, FILE *stream) {
+    struct stat facts;
+    if (stat(path, &facts) != 0) return;
+    const double bytes = (double)facts.st_size;
+    fprintf(stream, "  size        %.1f %s\n", bytes < 1e6 ? bytes / 1e3 : bytes / 1e6, bytes < 1e6 ? "kB" : "MB");
+}
+
+static enum status print_head(const struct netcdf_reader *reader, FILE *stream) {
+    fprintf(stream, "%s\n", reader->path);
+    TRY(print_attribute(reader, "  case        %s\n", "title", stream));
+    TRY(print_attribute(reader, "  program     %s\n", "source", stream));
+    TRY(print_attribute(reader, "  history     %s\n", "history", stream));
+    print_size(reader->path, stream);
+    return STATUS_OK;
+}
+
+enum status result_kind_info(int n_kinds, const struct result_kind *kinds, const char *path, int case_only,
+                             FILE *stream) {
+    struct netcdf_reader reader;
+    const struct result_kind *kind = NULL;
+    TRY(netcdf_open(&reader, path));
+    enum status status = find_kind(&reader, n_kinds, kinds, &kind);
+    if (status == STATUS_OK) {
+        status = case_only ? print_attribute(&reader, "%s", kind->case_name, stream) : print_head(&reader, stream);
+    }
+    netcdf_close(&reader);
+    return status == STATUS_OK && !case_only ? kind->info(path, stream) : status;
+}
+
+// ---- the list of variables
+
+static void print_text(const struct result_listed *listed, FILE *stream) {
+    fprintf(stream, "%-20s  (%s)%*s  %-6s  %s\n", listed->name, listed->dimensions,
+            22 - (int)strlen(listed->dimensions), "", listed->unit, listed->meaning);
+}
+
+static void print_json(const char *kind, const struct result_listed *listed, FILE *stream) {
+    fprintf(stream, "\n  {\"file\": \"%s\", \"name\": \"%s\", \"dimensions\": [", kind, listed->name);
+    for (const char *word = listed->dimensions; *word; word += strspn(word, ", ")) {
+        const int length = (int)strcspn(word, ",");
+        fprintf(stream, "%s\"%.*s\"", word == listed->dimensions ? "" : ", ", length, word);
+        word += length;
+    }
+    fprintf(stream, "], \"type\": \"%s\", \"unit\": \"%s\", \"meaning\": \"%s\"}", listed->type, listed->unit,
+            listed->meaning);
+}
+
+void result_kind_variables(int n_kinds, const struct result_kind *kinds, int as_json, FILE *stream) {
+    struct result_listed listed;
+    for (int k = 0; k < n_kinds; k++) {
+        const int is_file = kinds[k].schema_name != NULL;
+        if (k > 0 && !as_json)
+            fprintf(stream, is_file ? "\nIn the file of a %s:\n\n" : "\nThe %ss about a result:\n\n", kinds[k].name);
+        for (int i = 0; kinds[k].listed(i, &listed); i++) {
+            if (as_json) {
+                fputs(k == 0 && i == 0 ? "[" : ",", stream);
+                print_json(kinds[k].name, &listed, stream);
+            } else if (is_file) {
+                print_text(&listed, stream);
+            } else {
+                fprintf(stream, "%s: %s\n", listed.name, listed.meaning);
+            }
+        }
+    }
+    if (as_json) fprintf(stream, "\n]\n");
+}

@@ -1,0 +1,39 @@
+/* result_kind.h: the kinds of files that shoal writes, and what is the same for all of them: the summary that `shoal
+ * info` prints, and the list of variables that `shoal keys --output` prints. The program has one table of its kinds, in
+ * app/main_case.c. Tested by tests/result/test_result_info.c. */
+#ifndef RESULT_KIND_H
+#define RESULT_KIND_H
+
+#include <stdio.h>
+
+#include "base/status.h"
+
+/* A row of the list of variables. */
+struct result_listed {
+    const char *name, *unit, *type, *meaning;
+    char dimensions[80]; /* "time, fish" */
+};
+
+struct result_kind {
+    const char *name; /* "run": what the file is of */
+    const char
+        *schema_name;      /* the attribute that says that a file is of this kind; NULL: a list in words, of no file */
+    int schema;            /* what it is in files that this program reads */
+    const char *case_name; /* the attribute that holds the case */
+
+    /* Print what a file holds, after what is the same for all kinds. Fails with STATUS_FILE or STATUS_MEMORY. */
+    enum status (*info)(const char *path, FILE *stream);
+
+    /* Row i, from 0, of the list of its variables; 0 beyond the last. */
+    int (*listed)(int i, struct result_listed *listed);
+};
+
+/* Print a summary of a file, or the case in it alone. Fails with STATUS_FILE or STATUS_MEMORY. */
+enum status result_kind_info(int n_kinds, const struct result_kind *kinds, const char *path, int case_only,
+                             FILE *stream);
+
+/* Print the variables of all kinds: name, dimensions, unit, meaning; as aligned text, or as JSON; and the lists in
+ * words. */
+void result_kind_variables(int n_kinds, const struct result_kind *kinds, int as_json, FILE *stream);
+
+#endif

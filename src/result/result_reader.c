@@ -1,0 +1,227 @@
+/* result_reader.c: reading the file of a run by the table of its variables. */
+#include "result/result_reader.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MAX_LENGTH = 100000000 /* of a dimension */ };
+
+static enum status out_of_memory(const struct netcdf_reader *file) {
+    return status_fail(STATUS_MEMORY, "%s: out of memory while reading", file->path);
+}
+
+static const struct result_variable *find(const char *name) {
+    const struct result_variable *variable = result_table;
+    while (strcmp(variable->name, name) != 0) variable++;
+    return variable;
+}
+
+// ---- the file
+
+/* Refuse what is not the file of a run. */
+static enum status check_kind(const struct result_reader *reader) {
+    const struct netcdf_reader *const file = &reader->file;
+    int schema, study;
+    TRY(netcdf_read_integer(file, "shoal_schema", 0, &schema));
+    TRY(netcdf_read_integer(file, "shoal_study", 0, &study));
+    if (schema == RESULT_SCHEMA) return STATUS_OK;
+    if (schema != 0)
+        return status_fail(STATUS_FILE,
+                           "%s: written in schema %d, but this program reads %d: use the one that wrote it", file->path,
+                           schema, RESULT_SCHEMA);
+    if (study != 0)
+        return status_fail(STATUS_FILE, "%s: the file of a study: name that of one of its runs, as in member-0000.nc",
+                           file->path);
+    return status_fail(STATUS_FILE, "%s: a NetCDF file, but not one of shoal", file->path);
+}
+
+static enum status read_lengths(struct result_reader *reader) {
+    for (enum result_dimension d = TIME; d < MULTIPLIER; d++) {
+        TRY(netcdf_read_length(&reader->file, result_table_dimension(d), d == XY ? 2 : 0, d == XY ? 2 : MAX_LENGTH,
+                               &reader->length[d]));
+    }
+    if (reader->length[TIME] > 0 && reader->length[FISH] > 0) return STATUS_OK;
+    if (reader->file.n_missing > 0) {
+        return status_fail(STATUS_FILE, "%s: none of its %zu rows is whole: was it copied completely?",
+                           reader->file.path, reader->file.n_missing);
+    }
+    return status_fail(STATUS_FILE, "%s: the run has not written a row yet", reader->file.path);
+}
+
+static enum status read_names(struct result_reader *reader) {
+    reader->name = calloc(reader->length[FISH], sizeof *reader->name);
+    if (!reader->name) return out_of_memory(&reader->file);
+    for (size_t f = 0; f < reader->length[FISH]; f++) {
+        TRY(result_reader_name(&reader->file, f, &reader->name[f]));
+    }
+    return STATUS_OK;
+}
+
+/* The counts of a variable over the fish, each from min to max. */
+static enum status read_counts(const struct result_reader *reader, const char *name, size_t min, size_t max,
+                               int **counts) {
+    double *values;
+    TRY(result_reader_new(reader, name, 0, &values));
+    *counts = calloc(reader->length[FISH], sizeof **counts);
+    enum status status = *counts ? STATUS_OK : out_of_memory(&reader->file);
+    for (size_t f = 0; status == STATUS_OK && f < reader->length[FISH]; f++) {
+        if (values[f] >= (double)min && values[f] <= (double)max) {
+            (*counts)[f] = (int)values[f];
+        } else {
+            status = status_fail(STATUS_FILE, "%s: its variable %s is %g for a fish, which cannot be",
+                                 reader->file.path, name, values[f]);
+        }
+    }
+    free(values);
+    return status;
+}
+
+/* Whether a key of each fish has a value, by the case in a file of an earlier version: a line for each key. */
+static enum status read_key(const struct result_reader *reader, const char *key, const char *value, bool *has_value) {
+    char *text;
+    size_t n = 0;
+    TRY(netcdf_read_string(&reader->file, "case_effective", &text));
+    for (const char *line = text; line && *line; line = strchr(line, '\n')) {
+        line += strspn(line, "\n");
+        const char *const word = line + strspn(line, " ");
+        if (word == line || strncmp(word, key, strlen(key)) != 0) continue;
+        if (n < reader->length[FISH]) has_value[n] = strncmp(word + strlen(key), value, strlen(value)) == 0;
+        n++;
+    }
+    free(text);
+    if (n == reader->length[FISH]) return STATUS_OK;
+    return status_fail(STATUS_FILE, "%s: its case says '%s' of %zu of its %zu fish: use the program that wrote it",
+                       reader->file.path, key, n, reader->length[FISH]);
+}
+
+/* Whether a variable of each fish has a value. */
+static enum status read_flags(const struct result_reader *reader, const char *name, int value, bool *has_value) {
+    double *values;
+    TRY(result_reader_new(reader, name, 0, &values));
+    for (size_t f = 0; f < reader->length[FISH]; f++) has_value[f] = fabs(values[f] - value) < 0.5;
+    free(values);
+    return STATUS_OK;
+}
+
+/* What fish.body.section and fish.force say of each fish. */
+static enum status read_words(struct result_reader *reader) {
+    const size_t n_fish = reader->length[FISH];
+    reader->has_mean_section = calloc(n_fish, sizeof *reader->has_mean_section);
+    bool *const has_pressure = calloc(n_fish, sizeof *has_pressure);
+    enum status status = reader->has_mean_section && has_pressure ? STATUS_OK : out_of_memory(&reader->file);
+    if (status == STATUS_OK) {
+        status = netcdf_has(&reader->file, "mean_section")
+                     ? read_flags(reader, "mean_section", 1, reader->has_mean_section)
+                     : read_key(reader, "section: ", "mean", reader->has_mean_section);
+    }
+    if (status == STATUS_OK) {
+        status = netcdf_has(&reader->file, "fluid_force")
+                     ? read_flags(reader, "fluid_force", FORCE_PRESSURE, has_pressure)
+                     : read_key(reader, "force: ", "pressure", has_pressure);
+    }
+    for (size_t f = 0; status == STATUS_OK && f < n_fish; f++) reader->has_pressure |= has_pressure[f];
+    free(has_pressure);
+    return status;
+}
+
+/* The walls, of which most files have none. */
+static enum status read_walls(struct result_reader *reader) {
+    if (!netcdf_has(&reader->file, "wall_y")) return STATUS_OK;
+    TRY(netcdf_read_length(&reader->file, result_table_dimension(WALL), 1, 2, &reader->length[WALL]));
+    return result_reader_row(reader, "wall_y", 0, reader->wall_y);
+}
+
+static enum status fill(struct result_reader *reader) {
+    TRY(check_kind(reader));
+    TRY(read_lengths(reader));
+    TRY(read_walls(reader));
+    TRY(netcdf_read_string(&reader->file, "title", &reader->title));
+    TRY(netcdf_read_string(&reader->file, "run_status", &reader->run_status));
+    TRY(read_names(reader));
+    TRY(read_words(reader));
+    // an outline needs the edges between the nodes
+    const size_t n_nodes = reader->length[NODE], n_edges = reader->length[EDGE];
+    TRY(read_counts(reader, "n_nodes", 4, n_edges < n_nodes ? n_edges + 1 : n_nodes, &reader->n_nodes));
+    return read_counts(reader, "n_sheet", 1, reader->length[SHEET], &reader->n_sheet);
+}
+
+enum status result_reader_open(struct result_reader *reader, const char *path) {
+    *reader = (struct result_reader){.file.file = -1};
+    TRY(netcdf_open(&reader->file, path));
+    const enum status status = fill(reader);
+    if (status != STATUS_OK) result_reader_close(reader);
+    return status;
+}
+
+void result_reader_close(struct result_reader *reader) {
+    netcdf_close(&reader->file);
+    for (size_t f = 0; reader->name && f < reader->length[FISH]; f++) free(reader->name[f]);
+    free(reader->name);
+    free(reader->title);
+    free(reader->run_status);
+    free(reader->n_nodes);
+    free(reader->n_sheet);
+    free(reader->has_mean_section);
+    *reader = (struct result_reader){.file.file = -1};
+}
+
+// ---- values
+
+enum status result_reader_name(const struct netcdf_reader *file, size_t f, char **name) {
+    size_t n;
+    *name = NULL;
+    TRY(netcdf_read_length(file, "name", 1, MAX_LENGTH, &n));
+    *name = calloc(n + 1, 1);
+    if (!*name) return out_of_memory(file);
+    const struct netcdf_slice slice[] = {{"fish", f, 1}, {"name", 0, n}, {NULL}};
+    const enum status status = netcdf_read_text(file, "fish_name", slice, *name);
+    if (status == STATUS_OK) return STATUS_OK;
+    free(*name);
+    *name = NULL;
+    return status;
+}
+
+size_t result_reader_n(const struct result_reader *reader, const char *name) {
+    size_t n = 1;
+    for (const enum result_dimension *d = find(name)->dimension; *d != NONE; d++)
+        if (*d != TIME) n *= reader->length[*d];
+    return n;
+}
+
+enum status result_reader_row(const struct result_reader *reader, const char *name, size_t row, double *values) {
+    struct netcdf_slice slice[RESULT_MAX_DIMENSIONS + 1] = {0};
+    const enum result_dimension *const dimension = find(name)->dimension;
+    for (int d = 0; dimension[d] != NONE; d++) {
+        slice[d] = (struct netcdf_slice){result_table_dimension(dimension[d]), 0, reader->length[dimension[d]]};
+        if (dimension[d] != TIME) continue;
+        slice[d].first = row;
+        slice[d].n = 1;
+    }
+    return netcdf_read_doubles(&reader->file, name, slice, values);
+}
+
+enum status result_reader_new(const struct result_reader *reader, const char *name, size_t row, double **values) {
+    *values = calloc(result_reader_n(reader, name) + 1, sizeof **values);
+    if (!*values) return out_of_memory(&reader->file);
+    const enum status status = result_reader_row(reader, name, row, *values);
+    if (status == STATUS_OK) return STATUS_OK;
+    free(*values);
+    *values = NULL;
+    return status;
+}
+
+enum status result_reader_has_wake(const struct result_reader *reader, size_t row, bool *has_wake) {
+    const size_t n_fish = reader->length[FISH];
+    double *count;
+    TRY(result_reader_new(reader, "wake_count", row, &count));
+    const struct netcdf_slice slice[] = {{"time", row, 1}, {"fish", 0, n_fish}, {"vortex", 0, 1}, {NULL}};
+    double *const first = calloc(n_fish, sizeof *first);
+    const enum status status =
+        first ? netcdf_read_doubles(&reader->file, "wake_circulation", slice, first) : out_of_memory(&reader->file);
+    *has_wake = status == STATUS_OK;
+    for (size_t f = 0; *has_wake && f < n_fish; f++) *has_wake = count[f] == 0 || isfinite(first[f]);
+    free(count);
+    free(first);
+    return status;
+}

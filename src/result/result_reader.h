@@ -1,0 +1,40 @@
+/* result_reader.h: the file of a run, read row by row with every variable checked against the table. Tested by
+ * tests/view/test_page.c. */
+#ifndef RESULT_READER_H
+#define RESULT_READER_H
+
+#include "result/netcdf.h"
+#include "result/result_table.h"
+
+struct result_reader {
+    struct netcdf_reader file;
+    size_t length[RESULT_N_DIMENSIONS]; /* of the dimensions; that of TIME is the number of rows */
+    char *title, *run_status;           /* of the case, and how its run ended; owned */
+    char **name;                        /* of the fish; owned                          (FISH) */
+    int *n_nodes, *n_sheet;             /* of each fish; owned                         (FISH) */
+    bool *has_mean_section;             /* edge_height is a mean over the edge; owned  (FISH) */
+    bool has_pressure;                  /* a fish has force: pressure */
+    double wall_y[2];                   /* of the walls, m                             (length[WALL]) */
+};
+
+/* Open the file of a run that has at least one row. Fails with STATUS_FILE (also for the file of a study, and says what
+ * to do) or STATUS_MEMORY; nothing is then open. The path must live as long as the reader. */
+enum status result_reader_open(struct result_reader *reader, const char *path);
+void result_reader_close(struct result_reader *reader);
+
+/* The number of values of a variable of the table: of one row where it has rows. */
+size_t result_reader_n(const struct result_reader *reader, const char *name);
+
+/* Read a row of a variable, or all of one that has none; slots that a fish does not use are NaN. */
+enum status result_reader_row(const struct result_reader *reader, const char *name, size_t row, double *values);
+
+/* The same in an array that the caller frees. */
+enum status result_reader_new(const struct result_reader *reader, const char *name, size_t row, double **values);
+
+/* The name of fish f in the file of a run, with or without rows; the caller frees it. */
+enum status result_reader_name(const struct netcdf_reader *file, size_t f, char **name);
+
+/* Whether the wake was written in a row, or there was none to write: *has_wake. */
+enum status result_reader_has_wake(const struct result_reader *reader, size_t row, bool *has_wake);
+
+#endif

@@ -1,0 +1,421 @@
+/* result_table.c: the table of variables. */
+#include "result/result_table.h"
+
+#include <stdio.h>
+
+// ---- the table
+
+#define IN_SCHOOL(field) .owner = OF_SCHOOL, .offset = offsetof(struct school, field)
+#define IN_FISH(field) .owner = OF_FISH, .offset = offsetof(struct fish, field)
+#define ARRAY_IN_FISH(field) IN_FISH(field), .is_pointer = true
+#define IN_STATE(field) .owner = OF_STATE, .offset = offsetof(struct state, field)
+#define IN_WAKE(field) .owner = OF_WAKE, .offset = offsetof(struct wake, field)
+#define IN_DIAGNOSTICS(field) .owner = OF_DIAGNOSTICS, .offset = offsetof(struct diagnostics, field)
+#define IN_FISH_DIAGNOSTICS(field) .owner = OF_DIAGNOSTICS_FISH, .offset = offsetof(struct diagnostics_fish, field)
+#define IN_COUNTS(field) .owner = OF_COUNTS, .offset = offsetof(struct integrator_counts, field)
+#define IN_ROW(field) .owner = OF_ROW, .offset = offsetof(struct result_row, field)
+#define IN_STEADY(field) .of_steady = true, .owner = OF_STEADY, .offset = offsetof(struct steady_values, field)
+#define IN_STEADY_FISH(field) .of_steady = true, .owner = OF_STEADY_FISH, .offset = offsetof(struct steady_fish, field)
+#define GATHERED(function) .gather = function
+
+// clang-format off
+const struct result_variable result_table[] = {
+    // what does not change
+    {"fish_name",             {FISH, NAME},           RESULT_TEXT,    "",       ARRAY_IN_FISH(name),
+     .long_name = "name of the fish"},
+    {"fish",                  {FISH, NAME},           RESULT_TEXT,    "",       ARRAY_IN_FISH(name),
+     .long_name = "name of the fish: the coordinate of the dimension fish"},
+    {"xy",                    {XY, NAME},             RESULT_TEXT,    "",       .owner = OF_AXIS, .is_pointer = true,
+     .long_name = "x or y: the coordinate of the dimension xy"},
+    {"n_nodes",               {FISH},                 RESULT_INTEGER, "1",      IN_FISH(n_nodes),
+     .long_name = "number of nodes"},
+    {"n_edges",               {FISH},                 RESULT_INTEGER, "1",      IN_FISH(n_edges),
+     .long_name = "number of edges"},
+    {"n_joints",              {FISH},                 RESULT_INTEGER, "1",      IN_FISH(n_joints),
+     .long_name = "number of joints"},
+    {"n_sheet",               {FISH},                 RESULT_INTEGER, "1",      IN_FISH(n_sheet),
+     .long_name = "number of bound vortices"},
+    {"body_length",           {FISH},                 RESULT_REAL,    "m",      IN_FISH(length),
+     .long_name = "body length"},
+    {"edge_length",           {FISH},                 RESULT_REAL,    "m",      IN_FISH(edge_length),
+     .long_name = "rest length of every edge"},
+    {"body_mass",             {FISH},                 RESULT_REAL,    "kg",     IN_FISH(total_mass),
+     .long_name = "mass of the body"},
+    {"frequency",             {FISH},                 RESULT_REAL,    "Hz",     IN_FISH(frequency),
+     .long_name = "frequency of the beat that the case gives"},
+    {"bias",                  {FISH},                 RESULT_REAL,    "1",      IN_FISH(control.bias),
+     .long_name = "steering bias that the case gives, for a fish without a control law"},
+    {"wake_smoothing",        {FISH},                 RESULT_REAL,    "m",      IN_FISH(smoothing),
+     .long_name = "smoothing radius of the free vortices"},
+    {"sheet_smoothing",       {FISH},                 RESULT_REAL,    "m",      IN_FISH(sheet_smoothing),
+     .long_name = "smoothing radius of the bound vortices as other bodies and wakes see them"},
+    {"node_arc",              {FISH, NODE},           RESULT_REAL,    "m",      ARRAY_IN_FISH(arc),
+     .long_name = "arc coordinate of the nodes, from the nose"},
+    {"node_mass",             {FISH, NODE},           RESULT_REAL,    "kg",     ARRAY_IN_FISH(mass),
+     .long_name = "mass of the nodes"},
+    {"edge_height",           {FISH, EDGE},           RESULT_REAL,    "m",      ARRAY_IN_FISH(thickness),
+     .long_name = "thickness of the body in the plane of motion"},
+    {"edge_width",            {FISH, EDGE},           RESULT_REAL,    "m",      ARRAY_IN_FISH(depth),
+     .long_name = "depth (span) of the body, out of the plane of motion"},
+    {"mean_section",          {FISH},                 RESULT_INTEGER, "1",      IN_FISH(has_mean_section),
+     .long_name = "1: edge_height and edge_width are means over an edge; 0: means of the values at its nodes"},
+    {"fluid_force",           {FISH},                 RESULT_INTEGER, "1",      IN_FISH(force),
+     .long_name = "force of the fluid on the body: 0 reactive, 1 published, 2 pressure"},
+    {"sheet_arc",             {FISH, SHEET},          RESULT_REAL,    "m",      GATHERED(result_row_sheet_arc),
+     .long_name = "arc coordinate of the bound vortices, from the nose"},
+    {"control_arc",           {FISH, CONTROL},        RESULT_REAL,    "m",      GATHERED(result_row_control_arc),
+     .long_name = "arc coordinate of the control points, from the nose"},
+    {"sheet_weight",          {FISH, SHEET},          RESULT_REAL,    "m",      ARRAY_IN_FISH(sheet_weight),
+     .long_name = "natural length of body of a bound vortex: circulation over strength where nothing is stretched"},
+    {"fluid_density",         {NONE},                 RESULT_REAL,    "kg m-3", IN_SCHOOL(density),
+     .long_name = "density of the fluid"},
+    {"shedding_interval",     {NONE},                 RESULT_REAL,    "s",      IN_SCHOOL(interval),
+     .long_name = "time between the release of two vortices"},
+    {"wake_lifetime",         {NONE},                 RESULT_REAL,    "s",      IN_SCHOOL(lifetime),
+     .long_name = "age at which a free vortex is removed"},
+    {"wake_fade",             {NONE},                 RESULT_REAL,    "s",      IN_SCHOOL(decay),
+     .long_name = "time before its removal over which a free vortex decays"},
+    {"wall_y",                {WALL},                 RESULT_REAL,    "m",      IN_SCHOOL(walls.y),
+     .long_name = "y of the walls along x, the lower one first; in the files of cases with fluid.walls only"},
+
+    // a steady state: means over its last beat
+    {"steady_beats",          {NONE},                 RESULT_INTEGER, "1",      IN_STEADY(n_beats),
+     .long_name = "beats that the search for the steady state took"},
+    {"steady_multiplier_beats", {NONE},               RESULT_INTEGER, "1",      IN_STEADY(n_multiplier_beats),
+     .long_name = "beats that its multipliers took"},
+    {"steady_residual",       {NONE},                 RESULT_REAL,    "1",      IN_STEADY(residual),
+     .long_name = "change from beat to beat: of the speed in lengths per beat, or of what else is compared; without a "
+                  "beat the largest force, or velocity, that is left, over its scale"},
+    {"steady_stiffness",      {NONE},                 RESULT_REAL,    "1",      IN_STEADY(stiffness),
+     .long_name = "determinant of the static stiffness of an equilibrium without a beat, over that at rest; below 0 "
+                  "the bodies diverge"},
+    {"steady_error",          {NONE},                 RESULT_REAL,    "1",      IN_STEADY(error),
+     .long_name = "estimated distance from the steady state: the residual over that of 1 from the next multiplier, "
+                  "at least the speed that is missing, in lengths per beat"},
+    {"steady_multiplier",     {MULTIPLIER, XY},       RESULT_REAL,    "1",
+     .of_steady = true, .owner = OF_STEADY, GATHERED(result_row_multiplier),
+     .long_name = "Floquet multipliers of the slow quantities, real and imaginary parts; stable where all are below 1"},
+    {"steady_growth",         {NONE},                 RESULT_REAL,    "s-1",    IN_STEADY(growth),
+     .long_name = "growth rate of the disturbance that grows fastest or decays slowest; unstable above 0"},
+    {"steady_growth_frequency", {NONE},               RESULT_REAL,    "Hz",     IN_STEADY(growth_frequency),
+     .long_name = "its frequency; 0: it does not swing, with a beat that is its frequency beside the beat"},
+    {"steady_exponent",       {MULTIPLIER, XY},       RESULT_REAL,    "s-1",
+     .of_steady = true, .owner = OF_STEADY, GATHERED(result_row_exponent),
+     .long_name = "growth rates and angular frequencies of disturbances: logarithms of multipliers over the beat, or "
+                  "without a beat modes of the bodies with their wakes"},
+    {"steady_speed",          {FISH},                 RESULT_REAL,    "m s-1",  IN_STEADY_FISH(speed),
+     .long_name = "speed through the water"},
+    {"steady_turn",           {FISH},                 RESULT_REAL,    "degree", IN_STEADY_FISH(turn),
+     .long_name = "change of the heading in a beat"},
+    {"steady_place",          {FISH, XY},             RESULT_REAL,    "m",      IN_STEADY_FISH(place),
+     .long_name = "centre of mass ahead of that of the first fish, and to the left of it"},
+    {"steady_force",          {FISH, XY},             RESULT_REAL,    "N",      IN_STEADY_FISH(force),
+     .long_name = "force of the fluid on the body"},
+    {"steady_thrust",         {FISH},                 RESULT_REAL,    "N",      IN_STEADY_FISH(thrust),
+     .long_name = "force of the fluid along the heading"},
+    {"steady_drag",           {FISH},                 RESULT_REAL,    "N",      IN_STEADY_FISH(drag),
+     .long_name = "force of the fluid along the stream that the body meets, without a beat"},
+    {"steady_lift",           {FISH},                 RESULT_REAL,    "N",      IN_STEADY_FISH(lift),
+     .long_name = "force of the fluid to the left of that stream, without a beat"},
+    {"steady_deflection",     {FISH},                 RESULT_REAL,    "m",      IN_STEADY_FISH(deflection),
+     .long_name = "tail to the left of the heading of a body that does not bend, without a beat"},
+    {"steady_actuation_power", {FISH},                RESULT_REAL,    "W",      IN_STEADY_FISH(actuation_power),
+     .long_name = "power of the muscle"},
+    {"steady_driving_power",  {FISH},                 RESULT_REAL,    "W",      IN_STEADY_FISH(driving_power),
+     .long_name = "power of what drives a prescribed motion"},
+    {"steady_damping_power",  {FISH},                 RESULT_REAL,    "W",      IN_STEADY_FISH(damping_power),
+     .long_name = "power of the damping inside the body: negative"},
+    {"steady_fluid_power",    {FISH},                 RESULT_REAL,    "W",      IN_STEADY_FISH(fluid_power),
+     .long_name = "power that goes into the fluid"},
+    {"steady_cost_of_transport", {FISH},              RESULT_REAL,    "m s-2",  IN_STEADY_FISH(cost_of_transport),
+     .long_name = "cost of transport"},
+    {"steady_efficiency",     {FISH},                 RESULT_REAL,    "1",      IN_STEADY_FISH(efficiency),
+     .long_name = "efficiency"},
+    {"steady_strouhal",       {FISH},                 RESULT_REAL,    "1",      IN_STEADY_FISH(strouhal),
+     .long_name = "Strouhal number"},
+
+    // the bodies and the fluid
+    {"time",                  {TIME},                 RESULT_REAL,    "s",      IN_STATE(t),
+     .long_name = "time"},
+    {"x",                     {TIME, FISH, NODE, XY}, RESULT_BULK,    "m",      GATHERED(result_row_position),
+     .long_name = "position of the nodes, nose first"},
+    {"v",                     {TIME, FISH, NODE, XY}, RESULT_BULK,    "m s-1",  GATHERED(result_row_velocity),
+     .long_name = "velocity of the nodes"},
+    {"a",                     {TIME, FISH, NODE, XY}, RESULT_BULK,    "m s-2",  GATHERED(result_row_acceleration),
+     .long_name = "acceleration of the nodes"},
+    {"natural_curvature",     {TIME, FISH, JOINT},    RESULT_BULK,    "1",      GATHERED(result_row_natural_curvature),
+     .long_name = "natural curvature of the joints, 2 tan(angle/2), which the muscle prescribes"},
+    {"curvature",             {TIME, FISH, JOINT},    RESULT_BULK,    "1",      GATHERED(result_row_curvature),
+     .long_name = "curvature of the joints, 2 tan(angle/2)"},
+    {"sheet_x",               {TIME, FISH, SHEET, XY},RESULT_BULK,    "m",      GATHERED(result_row_sheet_position),
+     .long_name = "position of the bound vortices"},
+    {"sheet_strength",        {TIME, FISH, SHEET},    RESULT_BULK,    "m s-1",  GATHERED(result_row_sheet_strength),
+     .long_name = "strength of the bound vortices: circulation per length of body"},
+    {"wake_count",            {TIME, FISH},           RESULT_INTEGER, "1",      IN_WAKE(n_vortex),
+     .long_name = "number of free vortices"},
+    {"wake_x",                {TIME, FISH, VORTEX, XY},RESULT_BULK,    "m",      GATHERED(result_row_wake_position),
+     .long_name = "position of the free vortices, oldest first"},
+    {"wake_circulation",      {TIME, FISH, VORTEX},   RESULT_BULK,    "m2 s-1", GATHERED(result_row_wake_circulation),
+     .long_name = "circulation of the free vortices, without decay"},
+    {"wake_birth",            {TIME, FISH, VORTEX},   RESULT_BULK,    "s",      GATHERED(result_row_wake_birth),
+     .long_name = "time of release of the free vortices"},
+
+    // derived quantities of each fish
+    {"com",                   {TIME, FISH, XY},       RESULT_REAL,    "m",      IN_FISH_DIAGNOSTICS(com),
+     .long_name = "position of the centre of mass"},
+    {"com_velocity",          {TIME, FISH, XY},       RESULT_REAL,    "m s-1",  IN_FISH_DIAGNOSTICS(com_velocity),
+     .long_name = "velocity of the centre of mass"},
+    {"speed",                 {TIME, FISH},           RESULT_REAL,    "m s-1",  IN_FISH_DIAGNOSTICS(speed),
+     .long_name = "mean speed of the centre of mass through the water over the last period"},
+    {"ground_speed",          {TIME, FISH},           RESULT_REAL,    "m s-1",  IN_FISH_DIAGNOSTICS(ground_speed),
+     .long_name = "mean speed of the centre of mass over ground over the last period"},
+    {"drift",                 {TIME, FISH},           RESULT_REAL,    "1",      IN_FISH_DIAGNOSTICS(drift),
+     .long_name = "change of the speed from the period before the last one to the last, over the speed"},
+    {"heading",               {TIME, FISH},           RESULT_REAL,    "degree", IN_FISH_DIAGNOSTICS(heading),
+     .long_name = "heading, from the x axis towards the y axis, unwrapped"},
+    {"desired_heading",       {TIME, FISH},           RESULT_REAL,    "degree", IN_FISH_DIAGNOSTICS(desired_heading),
+     .long_name = "desired heading of the control law"},
+    {"heading_error",         {TIME, FISH},           RESULT_REAL,    "degree", IN_FISH_DIAGNOSTICS(heading_error),
+     .long_name = "direction of the way through the water over the last period, less the desired heading"},
+    {"phi0",                  {TIME, FISH},           RESULT_REAL,    "1",      IN_FISH_DIAGNOSTICS(phi0),
+     .long_name = "steering bias of the gait: positive turns right"},
+    {"wave_amplitude",        {TIME, FISH},           RESULT_REAL,    "rad",    IN_FISH_DIAGNOSTICS(wave_amplitude),
+     .long_name = "amplitude of the wave now: ramped, and as set from outside"},
+    {"wave_frequency",        {TIME, FISH},           RESULT_REAL,    "Hz",     IN_FISH_DIAGNOSTICS(wave_frequency),
+     .long_name = "frequency of the beat now: as set from outside"},
+    {"swept_vortices",        {TIME, FISH},           RESULT_REAL,    "1",      IN_FISH_DIAGNOSTICS(swept_vortices),
+     .long_name = "number of free vortices, of any fish, inside the outline of the body"},
+    {"shed_circulation",      {TIME, FISH},           RESULT_REAL,    "m2 s-1", IN_FISH_DIAGNOSTICS(shed_circulation),
+     .long_name = "total circulation shed since the start"},
+    {"shedding_rate",         {TIME, FISH},           RESULT_REAL,    "m2 s-2", IN_FISH_DIAGNOSTICS(shedding_rate),
+     .long_name = "rate at which circulation is shed"},
+    {"kinetic_energy",        {TIME, FISH},           RESULT_REAL,    "J",      IN_FISH_DIAGNOSTICS(kinetic_energy),
+     .long_name = "kinetic energy of the body"},
+    {"bending_energy",        {TIME, FISH},           RESULT_REAL,    "J",      IN_FISH_DIAGNOSTICS(bending_energy),
+     .long_name = "elastic energy of bending"},
+    {"stretching_energy",     {TIME, FISH},           RESULT_REAL,    "J",      IN_FISH_DIAGNOSTICS(stretching_energy),
+     .long_name = "elastic energy of stretching"},
+    {"contact_energy",        {TIME, FISH},           RESULT_REAL,    "J",      IN_FISH_DIAGNOSTICS(contact_energy),
+     .long_name = "potential energy of contacts, half of it with either body"},
+    {"added_mass_energy",     {TIME, FISH},           RESULT_REAL,    "J",      IN_FISH_DIAGNOSTICS(added_mass_energy),
+     .long_name = "kinetic energy of the fluid that the body accelerates"},
+    {"actuation_power",       {TIME, FISH},           RESULT_REAL,    "W",      IN_FISH_DIAGNOSTICS(actuation_power),
+     .long_name = "power of the muscle on the body"},
+    {"damping_power",         {TIME, FISH},           RESULT_REAL,    "W",      IN_FISH_DIAGNOSTICS(damping_power),
+     .long_name = "power of the internal damping"},
+    {"drag_power",            {TIME, FISH},           RESULT_REAL,    "W",      IN_FISH_DIAGNOSTICS(drag_power),
+     .long_name = "power of the drag on the body"},
+    {"friction_power",        {TIME, FISH},           RESULT_REAL,    "W",      IN_FISH_DIAGNOSTICS(friction_power),
+     .long_name = "part of drag_power: of the drag along the body"},
+    {"pressure_power",        {TIME, FISH},           RESULT_REAL,    "W",
+     IN_FISH_DIAGNOSTICS(pressure.pressure_power),
+     .long_name = "power on the body of the pressure; 0 unless force: pressure"},
+    {"suction_power",         {TIME, FISH},           RESULT_REAL,    "W",
+     IN_FISH_DIAGNOSTICS(pressure.suction_power),
+     .long_name = "power on the body of the suction at the leading edge; 0 unless force: pressure"},
+    {"separation_power",      {TIME, FISH},           RESULT_REAL,    "W",
+     IN_FISH_DIAGNOSTICS(pressure.separation_power),
+     .long_name = "power that the suction of attached flow would add to suction_power: it goes into separated flow"},
+    {"added_mass_power",      {TIME, FISH},           RESULT_REAL,    "W",      IN_FISH_DIAGNOSTICS(added_mass_power),
+     .long_name = "power on the body of the fluid that it accelerates, without what leaves at the tail"},
+    {"wake_power",            {TIME, FISH},           RESULT_REAL,    "W",      IN_FISH_DIAGNOSTICS(wake_power),
+     .long_name = "power on the body of what leaves at the tail"},
+    {"driving_power",         {TIME, FISH},           RESULT_REAL,    "W",      IN_FISH_DIAGNOSTICS(driving_power),
+     .long_name = "power of the forces that hold prescribed nodes to their motion, and of loads"},
+    {"contact_power",         {TIME, FISH},           RESULT_REAL,    "W",      IN_FISH_DIAGNOSTICS(contact_power),
+     .long_name = "power that bodies in contact give to the body and to its half of the energy of contacts"},
+    {"energy_audit",          {TIME, FISH},           RESULT_REAL,    "J",      IN_FISH_DIAGNOSTICS(energy_audit),
+     .long_name = "energy balance: change of energy minus the integral of all powers, an error of integration"},
+    {"actuation_work",        {TIME, FISH},           RESULT_REAL,    "J",      IN_FISH_DIAGNOSTICS(actuation_work),
+     .long_name = "work of the muscle on the body since the start"},
+    {"cost_of_transport",     {TIME, FISH},           RESULT_REAL,    "m s-2",  IN_FISH_DIAGNOSTICS(cost_of_transport),
+     .long_name = "mean actuation power over mass and speed, over the last period"},
+    {"cost_of_transport_fluid",{TIME, FISH},           RESULT_REAL,    "m s-2",
+     IN_FISH_DIAGNOSTICS(cost_of_transport_fluid),
+     .long_name = "part of the cost of transport that goes into the fluid"},
+    {"cost_of_transport_body",{TIME, FISH},           RESULT_REAL,    "m s-2",
+     IN_FISH_DIAGNOSTICS(cost_of_transport_body),
+     .long_name = "part of the cost of transport that is lost inside the body, by damping"},
+    {"efficiency",            {TIME, FISH},           RESULT_REAL,    "1",      IN_FISH_DIAGNOSTICS(efficiency),
+     .long_name = "friction times speed over the power that goes into the fluid, over the last period"},
+    {"mean_thrust",           {TIME, FISH},           RESULT_REAL,    "N",      IN_FISH_DIAGNOSTICS(mean_thrust),
+     .long_name = "mean of all forces of the fluid along the way, over the last period: 0 once it swims steadily"},
+    {"mean_power",            {TIME, FISH},           RESULT_REAL,    "W",      IN_FISH_DIAGNOSTICS(mean_power),
+     .long_name = "mean power that the motion takes, for thrust and for the wake, over the last period"},
+    {"thrust_efficiency",     {TIME, FISH},           RESULT_REAL,    "1",      IN_FISH_DIAGNOSTICS(thrust_efficiency),
+     .long_name = "mean_thrust times speed over mean_power: that of a body that is held"},
+    {"strouhal",              {TIME, FISH},           RESULT_REAL,    "1",      IN_FISH_DIAGNOSTICS(strouhal),
+     .long_name = "Strouhal number: frequency times peak-to-peak motion of the tail over speed"},
+
+    // forces on the body by name
+    {"resistive_force",       {TIME, FISH, XY},       RESULT_REAL,    "N",      IN_FISH_DIAGNOSTICS(resistive_force),
+     .long_name = "drag on the body"},
+    {"reactive_force",        {TIME, FISH, XY},       RESULT_REAL,    "N",      IN_FISH_DIAGNOSTICS(reactive_force),
+     .long_name = "force of the accelerated fluid, with tail flux and pressure gradient of the external flow"},
+    {"friction_force",        {TIME, FISH, XY},       RESULT_REAL,    "N",      IN_FISH_DIAGNOSTICS(friction_force),
+     .long_name = "part of resistive_force: the drag along the body"},
+    {"pressure_force",        {TIME, FISH, XY},       RESULT_REAL,    "N",      IN_FISH_DIAGNOSTICS(pressure.pressure),
+     .long_name = "force of the pressure jump across the bound sheet; 0 unless force: pressure"},
+    {"suction_force",         {TIME, FISH, XY},       RESULT_REAL,    "N",      IN_FISH_DIAGNOSTICS(pressure.suction),
+     .long_name = "suction at the leading edge; 0 unless force: pressure"},
+    {"separation_force",      {TIME, FISH, XY},       RESULT_REAL,    "N",
+     IN_FISH_DIAGNOSTICS(pressure.separation),
+     .long_name = "force that the suction of attached flow would add to suction_force"},
+    {"added_momentum",        {TIME, FISH, XY},       RESULT_REAL,    "N s",    IN_FISH_DIAGNOSTICS(pressure.momentum),
+     .long_name = "momentum of the fluid that moves with the body; 0 unless force: pressure"},
+    {"constraint_force",      {TIME, FISH, XY},       RESULT_REAL,    "N",      IN_FISH_DIAGNOSTICS(constraint_force),
+     .long_name = "force that holds prescribed nodes to their motion; 0 for a free fish"},
+    {"contact_force",         {TIME, FISH, XY},       RESULT_REAL,    "N",      IN_FISH_DIAGNOSTICS(contact_force),
+     .long_name = "force of the bodies that it touches"},
+    {"thrust",                {TIME, FISH},           RESULT_REAL,    "N",      IN_FISH_DIAGNOSTICS(thrust),
+     .long_name = "sum of the forces of the fluid along the heading"},
+    {"resistive_moment",      {TIME, FISH},           RESULT_REAL,    "N m",    IN_FISH_DIAGNOSTICS(resistive_moment),
+     .long_name = "moment of the drag about the centre of mass"},
+    {"reactive_moment",       {TIME, FISH},           RESULT_REAL,    "N m",    IN_FISH_DIAGNOSTICS(reactive_moment),
+     .long_name = "moment of the reactive force about the centre of mass"},
+    {"friction_moment",       {TIME, FISH},           RESULT_REAL,    "N m",    IN_FISH_DIAGNOSTICS(friction_moment),
+     .long_name = "part of resistive_moment: of the drag along the body"},
+    {"pressure_moment",       {TIME, FISH},           RESULT_REAL,    "N m",
+     IN_FISH_DIAGNOSTICS(pressure.pressure_moment),
+     .long_name = "moment of the pressure about the centre of mass"},
+    {"suction_moment",        {TIME, FISH},           RESULT_REAL,    "N m",
+     IN_FISH_DIAGNOSTICS(pressure.suction_moment),
+     .long_name = "moment of the suction about the centre of mass"},
+    {"added_momentum_moment", {TIME, FISH},           RESULT_REAL,    "N m s",
+     IN_FISH_DIAGNOSTICS(pressure.momentum_moment),
+     .long_name = "moment of the added momentum about the centre of mass"},
+    {"constraint_moment",     {TIME, FISH},           RESULT_REAL,    "N m",    IN_FISH_DIAGNOSTICS(constraint_moment),
+     .long_name = "moment about the centre of mass of what holds a prescribed motion"},
+
+    // momentum: of the fluid, and what comes from outside
+    {"fluid_impulse",         {TIME, FISH, XY},       RESULT_REAL,    "N s",    IN_FISH_DIAGNOSTICS(fluid_impulse),
+     .long_name = "impulse of the vortices of the fish, bound, free and lost; NaN where its depth varies"},
+    {"fluid_angular_impulse", {TIME, FISH},           RESULT_REAL,    "N m s",  IN_FISH_DIAGNOSTICS(fluid_impulse[2]),
+     .long_name = "angular impulse about the origin of the vortices of the fish"},
+    {"lost_impulse",          {TIME, FISH, XY},       RESULT_REAL,    "N s",    IN_FISH_DIAGNOSTICS(lost_impulse),
+     .long_name = "part of fluid_impulse: of circulation that has faded or been removed, where that happened"},
+    {"lost_angular_impulse",  {TIME, FISH},           RESULT_REAL,    "N m s",  IN_FISH_DIAGNOSTICS(lost_impulse[2]),
+     .long_name = "part of fluid_angular_impulse: of circulation that has faded or been removed"},
+    {"external_impulse",      {TIME, FISH, XY},       RESULT_REAL,    "N s",    IN_FISH_DIAGNOSTICS(external_impulse),
+     .long_name = "impulse of drag, contacts, loads, constraint, separation, walls, stream; NaN without reaction"},
+    {"external_angular_impulse",{TIME, FISH},         RESULT_REAL,    "N m s",
+     IN_FISH_DIAGNOSTICS(external_impulse[2]),
+     .long_name = "angular impulse about the origin of the same forces since the start"},
+
+    {"edge_resistive_force",  {TIME, FISH, EDGE, XY}, RESULT_BULK,    "N",
+     GATHERED(result_row_edge_resistive_force), .forces = OUTPUT_FORCES_EDGES,
+     .long_name = "drag on every edge; with output.forces: edges only"},
+    {"edge_reactive_force",   {TIME, FISH, EDGE, XY}, RESULT_BULK,    "N",
+     GATHERED(result_row_edge_reactive_force), .forces = OUTPUT_FORCES_EDGES,
+     .long_name = "reactive force on every edge, the last with the tail flux; with output.forces: edges only"},
+
+    {"edge_pressure_force",   {TIME, FISH, EDGE, XY}, RESULT_BULK,    "N",
+     GATHERED(result_row_edge_pressure_force), .forces = OUTPUT_FORCES_EDGES,
+     .long_name = "force of the pressure on every edge; with output.forces: edges only"},
+    {"pressure",              {TIME, FISH, CONTROL},  RESULT_BULK,    "Pa",     GATHERED(result_row_pressure),
+     .long_name = "pressure jump across the body at the control points, left less right; NaN unless force: pressure"},
+    {"leading_edge_a0",       {TIME, FISH},           RESULT_REAL,    "1",
+     IN_FISH_DIAGNOSTICS(pressure.leading_edge_a0),
+     .long_name = "leading-edge suction parameter A_0 of the flow past the nose; NaN unless force: pressure"},
+    {"leading_edge_most",     {TIME, FISH},           RESULT_REAL,    "1",      IN_FISH_DIAGNOSTICS(leading_edge_most),
+     .long_name = "largest magnitude of leading_edge_a0 over the last period"},
+    {"separation_share",      {TIME, FISH},           RESULT_REAL,    "1",      IN_FISH_DIAGNOSTICS(separation_share),
+     .long_name = "part of the last period in which |leading_edge_a0| is above pressure.suction_limit"},
+
+    // the school and the solver
+    {"total_circulation",     {TIME},                 RESULT_REAL,    "m2 s-1", IN_DIAGNOSTICS(total_circulation),
+     .long_name = "sum of all bound, free and removed circulation: zero but for rounding"},
+    {"momentum_audit",        {TIME, XY},             RESULT_REAL,    "N s",    IN_DIAGNOSTICS(momentum_audit),
+     .long_name = "momentum balance of the school: change of momentum and fluid_impulse, less external_impulse"},
+    {"angular_momentum_audit",{TIME},                 RESULT_REAL,    "N m s",  IN_DIAGNOSTICS(momentum_audit[2]),
+     .long_name = "the same for the angular momentum about the origin"},
+    {"least_distance",        {TIME},                 RESULT_REAL,    "m",      IN_DIAGNOSTICS(least_distance),
+     .long_name = "smallest distance between two bodies"},
+    {"polarisation",          {TIME},                 RESULT_REAL,    "1",      IN_DIAGNOSTICS(polarisation),
+     .long_name = "length of the mean unit vector of the headings"},
+    {"steps",                 {TIME},                 RESULT_COUNT,   "1",      IN_COUNTS(steps),
+     .long_name = "steps of the integrator since the start"},
+    {"residual_evaluations",  {TIME},                 RESULT_COUNT,   "1",      IN_COUNTS(residual_evaluations),
+     .long_name = "evaluations of the residual since the start"},
+    {"newton_iterations",     {TIME},                 RESULT_COUNT,   "1",      IN_COUNTS(newton_iterations),
+     .long_name = "Newton iterations since the start"},
+    {"jacobian_evaluations",  {TIME},                 RESULT_COUNT,   "1",      IN_COUNTS(jacobian_evaluations),
+     .long_name = "evaluations of the Jacobian since the start"},
+    {"error_test_failures",   {TIME},                 RESULT_COUNT,   "1",      IN_COUNTS(error_test_failures),
+     .long_name = "steps rejected by the error test since the start"},
+    {"convergence_failures",  {TIME},                 RESULT_COUNT,   "1",      IN_COUNTS(convergence_failures),
+     .long_name = "steps rejected because Newton iteration did not converge since the start"},
+    {"step_size",             {TIME},                 RESULT_REAL,    "s",      IN_COUNTS(step_size),
+     .long_name = "size of the last step of the integrator"},
+    {"order",                 {TIME},                 RESULT_INTEGER, "1",      IN_COUNTS(order),
+     .long_name = "order of the last step"},
+    {"wall_time",             {TIME},                 RESULT_REAL,    "s",      IN_ROW(wall_time),
+     .long_name = "wall-clock time since the start of the run"},
+};
+// clang-format on
+const int result_table_n = sizeof result_table / sizeof *result_table;
+_Static_assert(FORCE_REACTIVE == 0 && FORCE_PUBLISHED == 1 && FORCE_PRESSURE == 2 && sizeof(enum force) == sizeof(int),
+               "fluid_force is written as it is");
+_Static_assert(sizeof result_table / sizeof *result_table <= RESULT_TABLE_MAX, "raise RESULT_TABLE_MAX");
+
+// ---- look-ups ----
+
+const char *result_table_dimension(enum result_dimension dimension) {
+    static const char *const name[] = {"",        "time",   "fish", "node", "edge",       "joint", "sheet",
+                                       "control", "vortex", "xy",   "name", "multiplier", "wall"};
+    return name[dimension];
+}
+
+bool result_table_has(const struct result_variable *variable, enum result_dimension dimension) {
+    for (const enum result_dimension *d = variable->dimension; *d != NONE; d++)
+        if (*d == dimension) return true;
+    return false;
+}
+
+int result_table_length(const struct fish *fish, enum result_dimension dimension) {
+    switch (dimension) {
+        case NODE: return fish->n_nodes;
+        case EDGE: return fish->n_edges;
+        case JOINT: return fish->n_joints;
+        case SHEET: return fish->n_sheet;
+        case CONTROL: return fish->n_control;
+        default: return 1;
+    }
+}
+
+const void *result_table_owner(const struct result_row *row, enum result_owner owner, int f) {
+    static const char *const axis_name[] = {"x", "y"};
+    switch (owner) {
+        case OF_SCHOOL: return row->school;
+        case OF_FISH: return &row->school->fish[f];
+        case OF_STATE: return row->state;
+        case OF_WAKE: return &row->state->wake[f];
+        case OF_DIAGNOSTICS: return row->diagnostics;
+        case OF_DIAGNOSTICS_FISH: return &row->diagnostics->fish[f];
+        case OF_COUNTS: return row->counts;
+        case OF_AXIS: return &axis_name[f];
+        case OF_STEADY: return row->steady;
+        case OF_STEADY_FISH: return row->steady ? &row->steady->fish[f] : NULL;
+        default: return row;
+    }
+}
+
+// ---- the list of variables
+
+static const char *type_name(enum result_type type) {
+    static const char *const name[] = {"double", "double or float", "int", "int64", "char"};
+    return name[type];
+}
+
+int result_table_listed(int i, struct result_listed *listed) {
+    if (i >= result_table_n) return 0;
+    const struct result_variable *const variable = &result_table[i];
+    *listed =
+        (struct result_listed){variable->name, variable->unit, type_name(variable->type), variable->long_name, ""};
+    size_t length = 0;
+    for (const enum result_dimension *d = variable->dimension; *d != NONE; d++) {
+        length += (size_t)snprintf(listed->dimensions + length, sizeof listed->dimensions - length, "%s%s",
+                                   length > 0 ? ", " : "", result_table_dimension(*d));
+    }
+    return 1;
+}

@@ -1,0 +1,237 @@
+/* diagnostics_energy.c: term by term, then over time. */
+#include "school/diagnostics_energy.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/parallel.h"
+#include "base/quadrature.h"
+#include "body/clamp.h"
+#include "body/rod.h"
+#include "body/rod_stress.h"
+#include "contact/clearance.h"
+#include "contact/self_crossing.h"
+#include "fish/fish_prescribed.h"
+#include "flow/flow_at_bodies.h"
+#include "flow/flow_external.h"
+#include "force/fluid_force.h"
+#include "school/diagnostics_forces.h"
+#include "school/diagnostics_momentum.h"
+
+// what holds the prescribed nodes on their path, turns a clamped head, and the load at the tip
+static double driving_power(struct residual *residual, int f, double t, const double *y, double *scratch) {
+    const struct fish *fish = &residual->school->fish[f];
+    const int tail = fish->n_nodes - 1;
+    double power = fish->load_tip[0] * y[fish->at.vx + tail] + fish->load_tip[1] * y[fish->at.vy + tail];
+    if (fish->motion.prescribed == PRESCRIBED_NONE) return power;
+    power += clamp_driving_power(fish, t, y);
+    residual_reaction(residual, f, y, residual->state->yp, scratch);
+    for (int k = 0; k < fish_n_prescribed(fish); k++) {
+        const int has_surge = fish_is_prescribed(fish, k, 0);
+        power += (has_surge ? scratch[fish->at.ax + k] * y[fish->at.vx + k] : 0) +
+                 scratch[fish->at.ay + k] * y[fish->at.vy + k];
+    }
+    return power;
+}
+
+// the power of the fluid's forces as seen by one who drifts with the external flow at the centre of mass
+static double power_on_water(struct residual *residual, int f, double t, const struct fluid_power *power,
+                             const struct pressure_forces *pressure, const double *y) {
+    const struct fish *fish = &residual->school->fish[f];
+    const struct flow_at_body flow = flow_at_body(residual->flow, f);
+    const double com[2] = {fish_mass_mean(fish, y + fish->at.x), fish_mass_mean(fish, y + fish->at.y)};
+    double stream[2], on_water = power->drag + power->added_mass + power->wake;
+    on_water += pressure->pressure_power + pressure->suction_power;
+    flow_external(residual->school, t, com[1], &stream[0], &stream[1]);
+    if (!(fabs(stream[0]) + fabs(stream[1]) > 0)) return on_water;
+    const struct fluid_forces forces = fluid_force_sum(fish, &flow, com, y);
+    double force[2];
+    diagnostics_fluid_force(forces.resistive, forces.reactive, pressure, force);
+    for (int i = 0; i < 2; i++) on_water -= force[i] * stream[i];
+    return on_water;
+}
+
+// the strains of fish f, what damping takes of them, and what the muscle works against: by the places of the nodes, or,
+// with damping of the strain, as the stresses of the steps have made them
+static struct rod_strains strains_of(struct residual *residual, int f, const struct actuation *muscle,
+                                     const double *y) {
+    const struct fish *fish = &residual->school->fish[f];
+    const struct energy_balance *const balance = &residual->state->balance[f];
+    double *const scratch = residual->scratch;
+    const struct rod_strains by_places = {scratch + fish->at.x, scratch + fish->at.vx, scratch + fish->at.ax};
+    if (fish->damping == DAMPING_CURVATURE) {
+        rod_strains(fish, muscle, y, &by_places);
+        return by_places;
+    }
+    rod_stress_rates(fish, balance->strain, balance->stress, by_places.rate);
+    return (struct rod_strains){balance->strain, by_places.rate, balance->stress};
+}
+
+// those of a consistent state, from which the steps go on
+static void start_strains(struct residual *residual, struct state *state, int f) {
+    const struct fish *fish = &residual->school->fish[f];
+    struct energy_balance *const balance = &state->balance[f];
+    const struct actuation muscle = residual_muscle(residual, f, state->t, state->y);
+    const struct rod_strains strains = {balance->strain, residual->scratch + fish->at.vx, balance->stress};
+    rod_strains(fish, &muscle, state->y, &strains);
+}
+
+// take those of fish f to the end of a step at time t
+static void advance_strains(struct residual *residual, struct state *state, int f, double t, const double *y) {
+    const struct fish *fish = &residual->school->fish[f];
+    struct energy_balance *const balance = &state->balance[f];
+    const double h = t - balance->t[0], g = balance->n > 1 ? balance->t[0] - balance->t[1] : 0;
+    if (fish->damping == DAMPING_CURVATURE || h <= 0) return;
+
+    // stresses by the strains of the places, corrected by the balance of momentum
+    double *const scratch = residual->scratch, *const stress = scratch + fish->at.vx;
+    const struct rod_strains by_places = {scratch + fish->at.x, scratch + fish->at.ax, stress};
+    const struct actuation muscle = residual_muscle(residual, f, t, y);
+    rod_strains(fish, &muscle, y, &by_places);
+    residual_balance(residual, f, y, scratch);
+    rod_stress_balance(fish, scratch, y, stress);
+
+    rod_stress_creep(fish, h, g, balance->stress_before, balance->stress, stress, balance->strain);
+    const size_t size = (size_t)rod_n_strains(fish) * sizeof *stress;
+    memcpy(balance->stress_before, balance->stress, size);
+    memcpy(balance->stress, stress, size);
+}
+
+struct diagnostics_power diagnostics_power(struct residual *residual, int f, double t, const double *y) {
+    const struct fish *fish = &residual->school->fish[f];
+    const struct flow_at_body flow = flow_at_body(residual->flow, f);
+    const struct fluid_power fluid = fluid_force_power(fish, &flow, y);
+    const struct pressure_forces pressure = diagnostics_pressure(residual, f, (const double[2]){0, 0}, y);
+    const struct actuation muscle = residual_muscle(residual, f, t, y);
+    const struct rod_strains strains = strains_of(residual, f, &muscle, y);
+    const double actuation = rod_actuation_power(fish, &muscle, strains.stress);
+    const double damping = rod_damping_power(fish, strains.rate) + clamp_damping_power(fish, t, y);
+    return (struct diagnostics_power){.actuation = actuation,
+                                      .damping = damping,
+                                      .drag = fluid.drag,
+                                      .friction = fluid.friction,
+                                      .added_mass = fluid.added_mass,
+                                      .wake = fluid.wake,
+                                      .pressure = pressure.pressure_power,
+                                      .suction = pressure.suction_power,
+                                      .contact = contact_power(residual->contact, f, y),
+                                      .on_water = power_on_water(residual, f, t, &fluid, &pressure, y),
+                                      .driving = driving_power(residual, f, t, y, residual->scratch)};
+}
+
+static double kinetic_energy(const struct fish *fish, const double *y) {
+    double energy = 0;
+    for (int k = 0; k < fish->n_nodes; k++) {
+        const double vx = y[fish->at.vx + k], vy = y[fish->at.vy + k];
+        energy += fish->mass[k] * (vx * vx + vy * vy) / 2;
+    }
+    return energy;
+}
+
+struct diagnostics_energies diagnostics_energies(struct residual *residual, int f, double t, const double *y) {
+    const struct fish *fish = &residual->school->fish[f];
+    const struct actuation muscle = residual_muscle(residual, f, t, y);
+    const struct rod_strains strains = strains_of(residual, f, &muscle, y);
+    return (struct diagnostics_energies){.kinetic = kinetic_energy(fish, y),
+                                         .bending = rod_bending_energy(fish, strains.strain) + clamp_energy(fish, t, y),
+                                         .stretching = rod_stretching_energy(fish, strains.strain),
+                                         .contact = contact_energy(residual->contact, f, y)};
+}
+
+double diagnostics_energy(struct residual *residual, int f, double t, const double *y) {
+    const struct diagnostics_energies of = diagnostics_energies(residual, f, t, y);
+    return of.kinetic + of.bending + of.stretching + of.contact;
+}
+
+// the powers whose work is kept
+static void gather_powers(const struct diagnostics_power *power, double *of) {
+    of[WORK_ALL] = power->actuation + power->damping + power->drag + power->added_mass + power->wake + power->driving;
+    of[WORK_ALL] += power->pressure + power->suction + power->contact;
+    of[WORK_ACTUATION] = power->actuation;
+    of[WORK_FLUID] = power->on_water;
+    of[WORK_DAMPING] = power->damping;
+    of[WORK_DRIVING] = power->driving;
+}
+
+/* The end of a step. */
+struct step {
+    struct residual *residual;
+    struct state *state;
+    double t;
+    const double *y;
+};
+
+static void add_works(void *data, int f) {
+    const struct step *const step = data;
+    const double t = step->t;
+    struct energy_balance *const balance = &step->state->balance[f];
+    advance_strains(step->residual, step->state, f, t, step->y);
+    const struct diagnostics_power now = diagnostics_power(step->residual, f, t, step->y);
+    const double times[3] = {t, balance->t[0], balance->t[1]};
+    double newest[N_WORKS];
+    gather_powers(&now, newest);
+    for (int i = 0; i < N_WORKS; i++) {
+        const double power[3] = {newest[i], balance->power[0][i], balance->power[1][i]};
+        if (t > times[1]) balance->work[i] += quadrature_newest(balance->n + 1, times, power);
+        balance->power[1][i] = power[1];
+        balance->power[0][i] = power[0];
+    }
+    const int has_area = t > times[1];
+    diagnostics_momentum_step(step->residual, step->state, f, t, step->y, has_area ? balance->n + 1 : 0, times);
+    for (int i = 0; i < 2; i++) balance->t[i] = times[i];
+    if (balance->n < 2) balance->n++;
+}
+
+void diagnostics_step(struct residual *residual, struct state *state, double t, const double *y) {
+    const struct school *const school = residual->school;
+    parallel_for(fish_threads(school), school->n_fish, add_works, &(struct step){residual, state, t, y});
+    clearance_step(residual->school, state, t, y, residual->neighbours, residual->scratch);
+}
+
+void diagnostics_before_jump(struct residual *residual, struct state *state) {
+    const int threads = fish_threads(residual->school);
+#pragma omp parallel for num_threads(threads) schedule(static)
+    for (int f = 0; f < residual->school->n_fish; f++) {
+        state->balance[f].work[WORK_ALL] -= diagnostics_energy(residual, f, state->t, state->y);
+    }
+}
+
+void diagnostics_begin(struct residual *residual, struct state *state, int f) {
+    struct energy_balance *balance = &state->balance[f];
+    const struct diagnostics_power now = diagnostics_power(residual, f, state->t, state->y);
+    balance->n = 1;
+    balance->t[0] = state->t;
+    gather_powers(&now, balance->power[0]);
+    diagnostics_momentum_step(residual, state, f, state->t, state->y, 0, NULL);
+}
+
+void diagnostics_after_jump(struct residual *residual, struct state *state) {
+    const int threads = fish_threads(residual->school);
+#pragma omp parallel for num_threads(threads) schedule(static)
+    for (int f = 0; f < residual->school->n_fish; f++) {
+        start_strains(residual, state, f);
+        state->balance[f].work[WORK_ALL] += diagnostics_energy(residual, f, state->t, state->y);
+        diagnostics_begin(residual, state, f);
+    }
+}
+
+void diagnostics_start(struct residual *residual, struct state *state) {
+    diagnostics_after_jump(residual, state);
+    for (int f = 0; f < residual->school->n_fish; f++) {
+        state->balance[f].initial_energy = diagnostics_energy(residual, f, state->t, state->y);
+        memset(state->balance[f].work, 0, sizeof state->balance[f].work);
+    }
+    diagnostics_momentum_start(residual, state);
+    clearance_start(residual->school, state, residual->neighbours, residual->scratch);
+}
+
+void diagnostics_restart(struct residual *residual, struct state *state) {
+    for (int f = 0; f < residual->school->n_fish; f++) {
+        struct energy_balance *const balance = &state->balance[f];
+        balance->initial_energy = diagnostics_energy(residual, f, state->t, state->y) - balance->work[WORK_ALL];
+    }
+    diagnostics_momentum_start(residual, state);
+    clearance_start(residual->school, state, residual->neighbours, residual->scratch);
+    state->crossed = -1;
+    self_crossing_remember(residual->school, state, residual->scratch);
+}

@@ -1,0 +1,320 @@
+/* diagnostics_momentum.c: impulses of bodies and fluid, forces from outside, and what is left of their balance. */
+#include "school/diagnostics_momentum.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/quadrature.h"
+#include "body/clamp.h"
+#include "fish/fish_prescribed.h"
+#include "flow/flow_at_bodies.h"
+#include "flow/flow_external.h"
+#include "force/fluid_force.h"
+#include "school/diagnostics_forces.h"
+#include "state/impulse.h"
+
+int diagnostics_has_reaction(const struct school *school, const struct fish *fish) {
+    return !(school->density > 0) || (fish_has_momentum(fish) && impulse_depth(fish) > 0);
+}
+
+// ---- momentum of a body, impulse of its vortices
+
+// add a momentum, or force, at a place, and its moment about the origin
+static void add_at(double sum[3], double x, double y, double along_x, double along_y) {
+    sum[0] += along_x;
+    sum[1] += along_y;
+    sum[2] += x * along_y - y * along_x;
+}
+
+static void momentum_of_body(const struct fish *fish, const double *y, double momentum[3]) {
+    memset(momentum, 0, 3 * sizeof *momentum);
+    for (int k = 0; k < fish->n_nodes; k++) {
+        add_at(momentum, y[fish->at.x + k], y[fish->at.y + k], fish->mass[k] * y[fish->at.vx + k],
+               fish->mass[k] * y[fish->at.vy + k]);
+    }
+}
+
+// the added momentum of component i of node k
+static double added(const struct residual *residual, int f, int i, int k) {
+    const struct pressure *const pressure = residual->pressure[f];
+    return pressure ? pressure->momentum[i * residual->school->fish[f].n_nodes + k] : 0;
+}
+
+// of the prescribed components of nodes, with that of the fluid that moves with them; after pressure_update
+static void given_momentum(const struct residual *residual, int f, const double *y, double momentum[3]) {
+    const struct fish *const fish = &residual->school->fish[f];
+    memset(momentum, 0, 3 * sizeof *momentum);
+    for (int k = 0; k < fish_n_prescribed(fish); k++) {
+        double of_node[2] = {0, 0};
+        for (int i = 0; i < 2; i++) {
+            if (!fish_is_prescribed(fish, k, i)) continue;
+            of_node[i] = fish->mass[k] * y[fish->at.vx + i * fish->n_nodes + k] + added(residual, f, i, k);
+        }
+        add_at(momentum, y[fish->at.x + k], y[fish->at.y + k], of_node[0], of_node[1]);
+    }
+}
+
+static void place_of_tail(const struct fish *fish, const double *y, double tail[2]) {
+    tail[0] = y[fish->at.x + fish->n_nodes - 1];
+    tail[1] = y[fish->at.y + fish->n_nodes - 1];
+}
+
+// the nascent vortex, or stretch, of a fish
+static void add_nascent(struct impulse_moments *sum, const struct flow *flow, const struct state *state, int f,
+                        double tau, const double tail[2]) {
+    const double circulation = flow->nascent.circulation[f];
+    if (!flow_has_free_sheets(flow)) {
+        impulse_add(sum, circulation, flow->nascent.x[f], flow->nascent.y[f]);
+        return;
+    }
+    double newest[2];
+    free_sheet_nascent_point(&state->wake[f], flow->school->interval, tau, tail, 1, newest);
+    impulse_add_stretch(sum, circulation, tail, newest);
+}
+
+// the impulse of the bound sheet: with momenta the added momentum and the circulation at the tail, which together are
+// the sum over the control points; after pressure_update
+static void add_bound_impulse(const struct residual *residual, int f, const double *y, double factor,
+                              double impulse[3]) {
+    const struct flow *const flow = residual->flow;
+    const struct fish *const fish = &residual->school->fish[f];
+    const struct range bound = flow->sheet_range[f];
+    struct impulse_moments sum = {0};
+    double total = 0, of_sum[3];
+    for (int j = bound.first; j < bound.first + bound.n; j++) {
+        impulse_add(&sum, flow->sheet.circulation[j], flow->sheet.x[j], flow->sheet.y[j]);
+        total += flow->sheet.circulation[j];
+    }
+    if (residual->pressure[f]) {
+        double tail[2];
+        place_of_tail(fish, y, tail);
+        for (int k = 0; k < fish->n_nodes; k++) {
+            add_at(impulse, y[fish->at.x + k], y[fish->at.y + k], added(residual, f, 0, k), added(residual, f, 1, k));
+        }
+        sum = (struct impulse_moments){0};
+        impulse_add(&sum, total, tail[0], tail[1]);
+    }
+    impulse_of(&sum, factor, of_sum);
+    for (int i = 0; i < 3; i++) impulse[i] += of_sum[i];
+}
+
+// the impulse of all vortices of a fish at the event of the state; after pressure_update
+static void impulse_of_fluid(const struct residual *residual, const struct state *state, int f, double impulse[3]) {
+    const struct fish *const fish = &residual->school->fish[f];
+    const double factor = residual->school->density * impulse_depth(fish);
+    struct impulse_moments wake = impulse_of_wake(&state->wake[f], residual->school, state->t, 0);
+    double tail[2];
+    place_of_tail(fish, state->y, tail);
+    add_nascent(&wake, residual->flow, state, f, 0, tail);
+    impulse_of(&wake, factor, impulse);
+    add_bound_impulse(residual, f, state->y, factor, impulse);
+}
+
+// of the circulation that is lost
+static void lost_impulse(const struct school *school, const struct state *state, int f, double impulse[3]) {
+    const double *const lost = state->momentum[f].lost;
+    const double factor = school->density * impulse_depth(&school->fish[f]);
+    impulse_of(&(struct impulse_moments){.x = lost[0], .y = lost[1], .square = lost[2]}, factor, impulse);
+}
+
+// ---- forces from outside
+
+// the external flow on all vortices of a fish: its velocity is linear in the place
+static void add_stream(const struct residual *residual, int f, double t, const double *y, double force[3]) {
+    const struct school *const school = residual->school;
+    const struct flow *const flow = residual->flow;
+    const struct state *const state = residual->state;
+    const struct fish *const fish = &school->fish[f];
+    double u, v, tail[2];
+    flow_external(school, t, 0, &u, &v);
+    if (!(fabs(u) + fabs(v) + fabs(school->shear) > 0) || !residual->pressure[f]) return;
+    struct impulse_moments sum = impulse_of_wake(&state->wake[f], school, state->t, t - state->t);
+    place_of_tail(fish, y, tail);
+    add_nascent(&sum, flow, state, f, t - state->t, tail);
+    const int first = flow->points[f].first;
+    for (int c = 0; c < fish->n_control; c++) {
+        impulse_add(&sum, residual->pressure[f]->point[c].circulation, flow->x[first + c], flow->y[first + c]);
+    }
+    const double factor = school->density * impulse_depth(fish);
+    force[0] += factor * v * sum.circulation;
+    force[1] -= factor * (u * sum.circulation + school->shear * sum.y);
+    force[2] -= factor * (u * sum.x + v * sum.y + school->shear * sum.product);
+}
+
+// What holds prescribed nodes, without the rate of their momentum, the integral of which is known: given_momentum.
+static void add_constraint(struct residual *residual, int f, const double *y, double force[3]) {
+    const struct fish *const fish = &residual->school->fish[f];
+    if (fish_n_prescribed(fish) == 0) return;
+    // m a less all forces
+    double *const balance = residual->scratch;
+    residual_balance(residual, f, y, balance);
+    for (int k = 0; k < fish_n_prescribed(fish); k++) {
+        double of_node[2] = {0, 0}, momentum[2] = {0, 0};
+        for (int i = 0; i < 2; i++) {
+            const int node = i * fish->n_nodes + k;
+            if (!fish_is_prescribed(fish, k, i)) continue;
+            of_node[i] = balance[fish->at.ax + node] - fish->mass[k] * y[fish->at.ax + node];
+            momentum[i] = fish->mass[k] * y[fish->at.vx + node] + added(residual, f, i, k);
+        }
+        add_at(force, y[fish->at.x + k], y[fish->at.y + k], of_node[0], of_node[1]);
+        // the moment of the rate is the rate of the moment less this
+        force[2] -= y[fish->at.vx + k] * momentum[1] - y[fish->at.vy + k] * momentum[0];
+    }
+}
+
+// all of them but images; after pressure_update
+static void external_force(struct residual *residual, int f, double t, const double *y, double force[3]) {
+    const struct fish *const fish = &residual->school->fish[f];
+    const struct flow_at_body flow = flow_at_body(residual->flow, f);
+    const struct fluid_forces fluid = fluid_force_sum(fish, &flow, (const double[2]){0, 0}, y);
+    const struct contact_forces contact = contact_forces(residual->contact, f, y);
+    double tail[2];
+    place_of_tail(fish, y, tail);
+    for (int i = 0; i < 2; i++) force[i] = fluid.resistive[i] + contact.force[i];
+    force[2] = fluid.resistive_moment + contact.moment + clamp_moment(fish, t, y);
+    add_at(force, tail[0], tail[1], fish->load_tip[0], fish->load_tip[1]);
+    if (residual->pressure[f]) {
+        const double *const separation = residual->pressure[f]->separation;
+        add_at(force, y[fish->at.x], y[fish->at.y], -separation[0], -separation[1]);
+    }
+    add_constraint(residual, f, y, force);
+    add_stream(residual, f, t, y, force);
+}
+
+// ---- images
+
+// the force of velocities on circulations
+static void add_force_of(const double *u, const double *v, int n, const double *x, const double *y,
+                         const double *circulation, double factor, double force[3]) {
+    for (int i = 0; i < n; i++) {
+        force[0] += factor * circulation[i] * v[i];
+        force[1] -= factor * circulation[i] * u[i];
+        force[2] -= factor * circulation[i] * (x[i] * u[i] + y[i] * v[i]);
+    }
+}
+
+// of the images at the event, on the sheet and the wake of a fish
+static void force_of_images(const struct flow *flow, int f, double force[3]) {
+    const struct school *const school = flow->school;
+    const double factor = school->density * impulse_depth(&school->fish[f]);
+    const struct range body = flow->body_range[f], wake = flow->wake_range[f];
+    const struct vortices *const all = &flow->convecting;
+    const int control = flow->points[f].first;
+    memset(force, 0, 3 * sizeof *force);
+    add_force_of(flow->image_u + control, flow->image_v + control, body.n, all->x + body.first, all->y + body.first,
+                 all->circulation + body.first, factor, force);
+    add_force_of(flow->wake_image_u + wake.first, flow->wake_image_v + wake.first, wake.n, all->x + wake.first,
+                 all->y + wake.first, all->circulation + wake.first, factor, force);
+}
+
+static int any_has_reaction(const struct school *school) {
+    int any = 0;
+    for (int f = 0; f < school->n_fish; f++) any |= diagnostics_has_reaction(school, &school->fish[f]);
+    return any;
+}
+
+enum status diagnostics_momentum_event(struct residual *residual, struct state *state) {
+    const struct school *const school = residual->school;
+    struct flow *const flow = residual->flow;
+    if (school->walls.n == 0 || !(school->density > 0) || !any_has_reaction(school)) return STATUS_OK;
+    TRY(flow_images(flow, state));
+    for (int f = 0; f < school->n_fish; f++) {
+        struct momentum_balance *const momentum = &state->momentum[f];
+        if (!diagnostics_has_reaction(school, &school->fish[f])) continue;
+        double now[3];
+        force_of_images(flow, f, now);
+        for (int i = 0; i < 3; i++) {
+            if (state->event > 0) momentum->external[i] += school->interval / 2 * (momentum->images[i] + now[i]);
+            momentum->images[i] = now[i];
+        }
+    }
+    return STATUS_OK;
+}
+
+// ---- the balance
+
+void diagnostics_momentum_step(struct residual *residual, struct state *state, int f, double t, const double *y, int n,
+                               const double times[3]) {
+    struct momentum_balance *const momentum = &state->momentum[f];
+    if (!diagnostics_has_reaction(residual->school, &residual->school->fish[f])) return;
+    double newest[3];
+    external_force(residual, f, t, y, newest);
+    for (int i = 0; i < 3; i++) {
+        const double force[3] = {newest[i], momentum->force[0][i], momentum->force[1][i]};
+        if (n > 0) momentum->external[i] += quadrature_newest(n, times, force);
+        momentum->force[1][i] = force[1];
+        momentum->force[0][i] = force[0];
+    }
+}
+
+void diagnostics_momentum_start(struct residual *residual, struct state *state) {
+    for (int f = 0; f < residual->school->n_fish; f++) {
+        struct momentum_balance *const momentum = &state->momentum[f];
+        memset(momentum->lost, 0, sizeof momentum->lost);
+        memset(momentum->external, 0, sizeof momentum->external);
+        if (!diagnostics_has_reaction(residual->school, &residual->school->fish[f])) continue;
+        diagnostics_pressure(residual, f, (const double[2]){0, 0}, state->y);
+        momentum_of_body(&residual->school->fish[f], state->y, momentum->first_body);
+        impulse_of_fluid(residual, state, f, momentum->first_fluid);
+        given_momentum(residual, f, state->y, momentum->first_given);
+    }
+}
+
+static double size_of(const double vector[3]) {
+    return hypot(vector[0], vector[1]);
+}
+
+// the impulses of a fish; what it adds to the balance of the school, and to the terms of which that is to be small
+static void fill_fish(struct residual *residual, const struct state *state, int f, struct diagnostics_fish *to,
+                      double audit[3], double size[3]) {
+    const struct momentum_balance *const momentum = &state->momentum[f];
+    const struct fish *const fish = &residual->school->fish[f];
+    double body[3], fluid[3], lost[3], given[3];
+    diagnostics_pressure(residual, f, (const double[2]){0, 0}, state->y);
+    momentum_of_body(fish, state->y, body);
+    impulse_of_fluid(residual, state, f, fluid);
+    lost_impulse(residual->school, state, f, lost);
+    given_momentum(residual, f, state->y, given);
+    const int has_reaction = diagnostics_has_reaction(residual->school, fish);
+    for (int i = 0; i < 3; i++) {
+        to->fluid_impulse[i] = fluid[i] + lost[i];
+        to->lost_impulse[i] = lost[i];
+        to->external_impulse[i] = has_reaction ? momentum->external[i] + given[i] - momentum->first_given[i] : NAN;
+        fluid[i] -= momentum->first_fluid[i];
+        audit[i] += body[i] - momentum->first_body[i] + fluid[i] + lost[i] - to->external_impulse[i];
+    }
+    size[0] += size_of(body);
+    size[1] += size_of(fluid);
+    size[2] += size_of(to->external_impulse);
+}
+
+// fish of several depths push water of several depths
+static int have_one_depth(const struct school *school) {
+    const double depth = impulse_depth(&school->fish[0]);
+    for (int f = 1; f < school->n_fish; f++) {
+        if (fabs(impulse_depth(&school->fish[f]) - depth) > 1e-12 * depth) return 0;
+    }
+    return 1;
+}
+
+// what a body gets by one length per beat, for all of them
+static double usual_momentum(const struct school *school) {
+    double sum = 0;
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *const fish = &school->fish[f];
+        sum += fish->total_mass * fish->length * fish_rate(school, fish);
+    }
+    return sum;
+}
+
+void diagnostics_momentum(struct residual *residual, const struct state *state, struct diagnostics *diagnostics) {
+    const struct school *const school = residual->school;
+    double size[3] = {0};
+    memset(diagnostics->momentum_audit, 0, sizeof diagnostics->momentum_audit);
+    for (int f = 0; f < school->n_fish; f++) {
+        fill_fish(residual, state, f, &diagnostics->fish[f], diagnostics->momentum_audit, size);
+    }
+    const double rounding = 1e-6;
+    diagnostics->momentum_size = fmax(rounding * usual_momentum(school), fmax(size[0], fmax(size[1], size[2])));
+    for (int i = 0; i < 3 && school->density > 0 && !have_one_depth(school); i++) diagnostics->momentum_audit[i] = NAN;
+}

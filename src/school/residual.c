@@ -1,0 +1,291 @@
+/* residual.c: the equations in the order of doc/model.md, section 10; their derivatives: residual_jacobian.c. */
+#include "school/residual.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/array.h"
+#include "base/parallel.h"
+#include "base/ramp.h"
+#include "body/clamp.h"
+#include "body/rod.h"
+#include "fish/fish_prescribed.h"
+#include "flow/flow_at_bodies.h"
+#include "force/fluid_force.h"
+
+// blocks of any pair of fish for every thread, and all unknowns once
+static enum status allocate_scratch(struct residual *residual, int most_points, int most_columns, int most_rows) {
+    const int n_threads = residual->school->threads;
+    residual->jacobian_scratch = calloc((size_t)n_threads, sizeof *residual->jacobian_scratch);
+    if (!residual->jacobian_scratch) return status_fail(STATUS_MEMORY, "out of memory: %d threads", n_threads);
+    for (int i = 0; i < n_threads; i++) {
+        struct jacobian_scratch *const scratch = &residual->jacobian_scratch[i];
+        TRY(array_doubles(&scratch->block.u, most_points * most_columns, "a block of the Jacobian"));
+        TRY(array_doubles(&scratch->block.v, most_points * most_columns, "a block of the Jacobian"));
+        TRY(array_doubles(&scratch->rows.value, most_rows * most_columns, "a block of the Jacobian"));
+    }
+    return array_doubles(&residual->scratch, residual->school->n_unknowns, "the unknowns");
+}
+
+static enum status allocate(struct residual *residual) {
+    const struct school *school = residual->school;
+    const size_t n_fish = (size_t)school->n_fish;
+    int n_joints = 0, most_points = 0, most_columns = 0, most_rows = 0;
+    residual->joints = calloc(n_fish, sizeof *residual->joints);
+    residual->pressure = calloc(n_fish, sizeof *residual->pressure);
+    if (!residual->joints || !residual->pressure) {
+        return status_fail(STATUS_MEMORY, "out of memory: the equations of %d fish", school->n_fish);
+    }
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *fish = &school->fish[f];
+        if (fish_has_momentum(fish)) TRY(pressure_create(&residual->pressure[f], fish));
+        const int points = flow_n_points(fish), columns = flow_n_columns(fish);
+        residual->joints[f] = (struct range){n_joints, fish->n_joints};
+        n_joints += fish->n_joints;
+        if (points > most_points) most_points = points;
+        if (columns > most_columns) most_columns = columns;
+        if (flow_n_rows(fish) > most_rows) most_rows = flow_n_rows(fish);
+    }
+    TRY(allocate_scratch(residual, most_points, most_columns, most_rows));
+    struct actuation *const muscle = &residual->muscle;
+    double **const per_joint[] = {&muscle->curvature, &muscle->rate, &muscle->curvature_by_phi0, &muscle->rate_by_phi0};
+    TRY(array_many_doubles(per_joint, sizeof per_joint / sizeof *per_joint, n_joints, "the joints"));
+    TRY(neighbours_create(&residual->neighbours, school->n_fish));
+    TRY(residual_couplings_fill(&residual->couplings, school, residual->neighbours));
+    TRY(contact_create(&residual->contact, school));
+    return flow_create(&residual->flow, school);
+}
+
+enum status residual_create(struct residual **residual, const struct school *school, const struct state *state) {
+    *residual = NULL;
+    struct residual *const new = calloc(1, sizeof *new);
+    if (!new) return status_fail(STATUS_MEMORY, "out of memory: the equations");
+    new->school = school;
+    new->state = state;
+    enum status status = allocate(new);
+    if (status == STATUS_OK) status = residual_couple(&new->couplings, state->y);
+    if (status != STATUS_OK) {
+        residual_free(new);
+        return status;
+    }
+    *residual = new;
+    return STATUS_OK;
+}
+
+void residual_free(struct residual *residual) {
+    if (!residual) return;
+    flow_free(residual->flow);
+    for (int f = 0; residual->pressure && f < residual->school->n_fish; f++) pressure_free(residual->pressure[f]);
+    free(residual->pressure);
+    contact_free(residual->contact);
+    neighbours_free(residual->neighbours);
+    free(residual->joints);
+    residual_couplings_free(&residual->couplings);
+    free(residual->muscle.curvature);
+    free(residual->muscle.rate);
+    free(residual->muscle.curvature_by_phi0);
+    free(residual->muscle.rate_by_phi0);
+    free(residual->scratch);
+    for (int i = 0; residual->jacobian_scratch && i < residual->school->threads; i++) {
+        free(residual->jacobian_scratch[i].block.u);
+        free(residual->jacobian_scratch[i].block.v);
+        free(residual->jacobian_scratch[i].rows.value);
+    }
+    free(residual->jacobian_scratch);
+    free(residual);
+}
+
+enum bound_sheet_law residual_sheet_law(const struct residual *residual) {
+    const struct school *school = residual->school;
+    if (residual->shed_now == SHED_IS_GIVEN) return BOUND_SHEET_FROZEN;
+    if (residual->shed_now == SHED_IS_FAR) return BOUND_SHEET_EDGE;
+    if (school->shedding == SHEDDING_IMPULSIVE &&
+        !(residual->shed_now == SHED_BY_IMPULSE && school->kutta == KUTTA_EDGE)) {
+        return BOUND_SHEET_FROZEN;
+    }
+    return school->kutta == KUTTA_EDGE ? BOUND_SHEET_EDGE : BOUND_SHEET_RATE;
+}
+
+int residual_shed_is_algebraic(const struct residual *residual) {
+    return residual_sheet_law(residual) == BOUND_SHEET_EDGE;
+}
+
+double residual_kutta_rate(const struct residual *residual, int f, double t, const double *y) {
+    const int first = residual->flow->points[f].first;
+    return bound_sheet_shedding_rate(&residual->school->fish[f], ramp_value(t, residual->school->kutta_ramp),
+                                     residual->flow->u + first, residual->flow->v + first, y);
+}
+
+double residual_shed_rate(const struct residual *residual, int f, double t, const double *y) {
+    return residual_sheet_law(residual) == BOUND_SHEET_RATE ? residual_kutta_rate(residual, f, t, y) : 0;
+}
+
+double residual_lost(const struct residual *residual, int f, double t) {
+    const struct school *school = residual->school;
+    const struct state *state = residual->state;
+    return school->removed == REMOVED_DROPPED ? wake_lost(&state->wake[f], school, state->t, t - state->t) : 0;
+}
+
+enum status residual_contact(struct residual *residual, double t, const double *y) {
+    return contact_find(residual->contact, residual->state, t, y);
+}
+
+struct actuation residual_muscle(struct residual *residual, int f, double t, const double *y) {
+    const struct fish *fish = &residual->school->fish[f];
+    const struct state *const state = residual->state;
+    const struct actuation muscle = actuation_from(&residual->muscle, residual->joints[f].first);
+    const double phi0_rate = control_rate(fish, &state->control[f], t, t - state->t, y);
+    actuation_find(fish, control_gait(fish, &state->control[f], t), y[fish->at.phi0], phi0_rate, &muscle);
+    return muscle;
+}
+
+// the rows of a node whose motion is given: its place, velocity and acceleration are the given ones
+static void prescribe(const struct fish *fish, double t, const double *y, double *value) {
+    for (int k = 0; k < fish_n_prescribed(fish); k++) {
+        double position[2], velocity[2], acceleration[2];
+        fish_prescribed_node(fish, k, t, position, velocity, acceleration);
+        for (int i = 0; i < 2; i++) {
+            if (!fish_is_prescribed(fish, k, i)) continue;
+            const int node = i * fish->n_nodes + k;
+            value[fish->at.x + node] = y[fish->at.x + node] - position[i];
+            value[fish->at.vx + node] = y[fish->at.vx + node] - velocity[i];
+            value[fish->at.ax + node] = y[fish->at.ax + node] - acceleration[i];
+        }
+    }
+}
+
+// rows ax, ay: m a less all forces, N
+static void balance(const struct residual *residual, int f, const double *y, double *value) {
+    const struct fish *fish = &residual->school->fish[f];
+    const struct flow_at_body flow = flow_at_body(residual->flow, f);
+    for (int k = 0; k < fish->n_nodes; k++) {
+        value[fish->at.ax + k] = fish->mass[k] * y[fish->at.ax + k];
+        value[fish->at.ay + k] = fish->mass[k] * y[fish->at.ay + k];
+    }
+    const struct actuation muscle = actuation_from(&residual->muscle, residual->joints[f].first);
+    rod_residual(fish, &muscle, y, value);
+    clamp_residual(fish, residual->flow->t, y, value);
+    contact_residual(residual->contact, f, y, value);
+    fluid_force_residual(fish, &flow, y, value);
+    if (residual->pressure[f]) {
+        pressure_update(residual->pressure[f], &flow, y);
+        pressure_residual(residual->pressure[f], value);
+    }
+    value[fish->at.ax + fish->n_nodes - 1] -= fish->load_tip[0];
+    value[fish->at.ay + fish->n_nodes - 1] -= fish->load_tip[1];
+}
+
+// dx/dt = v and dv/dt = a; with momenta dp/dt = a
+static void kinematics(const struct fish *fish, const double *y, const double *yp, double *value) {
+    const int second = fish_has_momentum(fish) ? fish->at.px : fish->at.vx;
+    for (int i = 0; i < 2 * fish->n_nodes; i++) {
+        value[fish->at.x + i] = yp[fish->at.x + i] - y[fish->at.vx + i];
+        // nothing is asked of velocities that are given
+        value[fish->at.vx + i] = 0;
+        value[second + i] = yp[second + i] - y[fish->at.ax + i];
+    }
+}
+
+static int all_finite(const double *value, int first, int end) {
+    for (int i = first; i < end; i++) {
+        if (!isfinite(value[i])) return 0;
+    }
+    return 1;
+}
+
+/* An evaluation; n_failed: of the fish with values that are not finite. */
+struct evaluation {
+    struct residual *residual;
+    double t;
+    const double *y, *yp;
+    double *value;
+    int n_failed;
+};
+
+static void evaluate_fish(void *data, int f) {
+    struct evaluation *const of = data;
+    struct residual *const residual = of->residual;
+    const double t = of->t, *const y = of->y, *const yp = of->yp;
+    double *const value = of->value;
+    const struct school *school = residual->school;
+    const struct state *state = residual->state;
+    const struct fish *fish = &school->fish[f];
+    const double *const u = residual->flow->u + residual->flow->points[f].first;
+    const double *const v = residual->flow->v + residual->flow->points[f].first;
+
+    kinematics(fish, y, yp, value);
+    // the law of motion, per mass
+    residual_muscle(residual, f, t, y);
+    balance(residual, f, y, value);
+    for (int k = 0; k < fish->n_nodes; k++) {
+        value[fish->at.ax + k] /= fish->mass[k];
+        value[fish->at.ay + k] /= fish->mass[k];
+    }
+    if (residual->pressure[f]) pressure_momentum_residual(residual->pressure[f], residual->at_start, y, value);
+    prescribe(fish, t, y, value);
+    // impermeability, Kelvin, Kutta
+    bound_sheet_residual(fish, residual_lost(residual, f, t), u, v, y, value);
+    bound_sheet_kutta_residual(fish, residual_sheet_law(residual), ramp_value(t, school->kutta_ramp), u, v, y, yp,
+                               value);
+    // the control law
+    control_residual(fish, &state->control[f], t, t - state->t, y, value);
+    if (all_finite(value, fish->at.x, fish->at.end)) return;
+#pragma omp atomic
+    of->n_failed++;
+}
+
+// which of the equations has none
+static enum status not_finite(const struct school *school, double t, const double *value) {
+    int i = 0;
+    while (isfinite(value[i])) i++;
+    const struct unknown_place place = residual_place(school, i);
+    return status_fail(STATUS_RETRY, "the equation for %s[%d] of fish %s has no finite value at t = %g s", place.name,
+                       place.index, school->fish[place.fish].name, t);
+}
+
+enum status residual_evaluate(struct residual *residual, double t, const double *y, const double *yp, double *value) {
+    TRY(residual_contact(residual, t, y));
+    TRY(flow_velocity(residual->flow, residual->state, t, y));
+    const struct school *school = residual->school;
+    struct evaluation evaluation = {residual, t, y, yp, value, 0};
+    parallel_for(fish_threads(school), school->n_fish, evaluate_fish, &evaluation);
+    return evaluation.n_failed > 0 ? not_finite(school, t, value) : STATUS_OK;
+}
+
+void residual_balance(const struct residual *residual, int f, const double *y, double *value) {
+    balance(residual, f, y, value);
+}
+
+void residual_reaction(const struct residual *residual, int f, const double *y, const double *yp, double *value) {
+    const struct fish *fish = &residual->school->fish[f];
+    struct pressure *const pressure = residual->pressure[f];
+    balance(residual, f, y, value);
+    if (!pressure) return;
+    pressure_update_rate(pressure, y, yp);
+    for (int i = 0; i < 2 * fish->n_nodes; i++) value[fish->at.ax + i] += pressure->momentum_rate[i];
+}
+
+// of a node that moves by its forces: places and velocities, or momenta in their place
+static int is_differential(const struct residual *residual, const struct unknown_place *place) {
+    const int has_momentum = fish_has_momentum(&residual->school->fish[place->fish]);
+    switch (place->kind) {
+        case UNKNOWN_X:
+        case UNKNOWN_Y: return 1;
+        case UNKNOWN_VX:
+        case UNKNOWN_VY: return !has_momentum || residual->at_start;
+        case UNKNOWN_PX:
+        case UNKNOWN_PY: return !residual->at_start;
+        default: return 0;
+    }
+}
+
+void residual_kinds(const struct residual *residual, double *kind) {
+    for (int i = 0; i < residual->school->n_unknowns; i++) {
+        const struct unknown_place place = residual_place(residual->school, i);
+        const struct fish *fish = &residual->school->fish[place.fish];
+        const int is_given = fish_is_prescribed(fish, place.index, residual_component(place.kind));
+        kind[i] = 0;
+        if (!is_given && is_differential(residual, &place)) kind[i] = 1;
+        if (place.kind == UNKNOWN_CIRCULATION && !residual_shed_is_algebraic(residual)) kind[i] = 1;
+    }
+}

@@ -1,0 +1,177 @@
+/* residual_jacobian.c: the derivatives in the order of residual.c. */
+#include "school/residual_jacobian.h"
+
+#include <omp.h>
+#include <string.h>
+
+#include "base/parallel.h"
+#include "base/ramp.h"
+#include "body/clamp.h"
+#include "body/rod.h"
+#include "fish/fish_prescribed.h"
+#include "force/bound_sheet.h"
+#include "force/fluid_force.h"
+#include "force/tail_flux.h"
+
+// of circulation that is infinitely far away nothing is felt: it is the last column
+static void forget_nascent(struct influence_block *block) {
+    const long n = block->n_points, first = (block->n_columns - 1) * n;
+    memset(block->u + first, 0, (size_t)n * sizeof *block->u);
+    memset(block->v + first, 0, (size_t)n * sizeof *block->v);
+}
+
+// the equations of fish f by what moves with fish g and comes through the velocity of the fluid
+static void flow_jacobian(const struct residual *residual, int f, int g, double t, const double *y,
+                          struct influence_block *block, struct coupling_block *rows) {
+    const struct fish *fish = &residual->school->fish[f];
+    const struct flow_at_body flow = flow_at_body(residual->flow, f);
+    rows->n_rows = flow_n_rows(fish);
+    rows->n_columns = flow_n_columns(&residual->school->fish[g]);
+    memset(rows->value, 0, (size_t)rows->n_rows * (size_t)rows->n_columns * sizeof *rows->value);
+    flow_derivative(residual->flow, f, g, block);
+    if (residual->shed_now == SHED_IS_FAR) forget_nascent(block);
+    fluid_force_flow_jacobian(fish, &flow, block, y, rows);
+    if (residual->pressure[f]) pressure_flow_jacobian(residual->pressure[f], block, rows);
+    if (residual->pressure[f] && f == g) pressure_own_jacobian(residual->pressure[f], y, rows);
+    bound_sheet_flow_jacobian(fish, block, y, rows);
+    if (residual_sheet_law(residual) == BOUND_SHEET_RATE) {
+        bound_sheet_kutta_flow_jacobian(fish, ramp_value(t, residual->school->kutta_ramp), block, y, rows);
+    }
+}
+
+// add the rows of a fish by its own unknowns to its block: those entries that may differ from zero. The midpoint of an
+// edge feels the nodes of that edge and, where it feels its own wake, through the nascent vortex the tail and the
+// circulation shed; the flux at the tail the nodes of the last two edges; the pressure everything, and so does an edge
+// that has walls beside it, through the images of the body.
+static void add_own(const struct residual *residual, const struct fish *fish, const struct coupling_block *rows,
+                    struct sparse *own) {
+    const int n_nodes = fish->n_nodes, n_places = 2 * n_nodes;
+    const int rate = residual_sheet_law(residual) == BOUND_SHEET_RATE;
+    const int felt_at_tail = n_nodes - (tail_flux_exists(fish) ? 3 : 2);
+    for (int c = 0; c < rows->n_columns; c++) {
+        const double *const value = rows->value + (long)c * rows->n_rows;
+        const int column = flow_column(fish, c), node = c % n_nodes;
+        const int is_place = c < n_places, is_shed = c == rows->n_columns - 1;
+        const int is_nascent = fish_feels_own_wake(fish) && (is_shed || (is_place && node == n_nodes - 1));
+        const int all = is_nascent || fish_has_momentum(fish) || residual->school->walls.n > 0;
+        const int first = all || node == 0 ? 0 : node - 1, last = all || node >= felt_at_tail ? n_nodes - 1 : node + 1;
+        for (int k = first; (is_place || all) && k <= last; k++) {
+            sparse_add(own, fish->at.ax + k, column, value[k]);
+            sparse_add(own, fish->at.ay + k, column, value[n_nodes + k]);
+        }
+        for (int k = 0; k < fish->n_control; k++) sparse_add(own, fish->at.gamma + k, column, value[n_places + k]);
+        if (rate) sparse_add(own, fish->at.circulation, column, value[fish->at.circulation - fish->at.ax]);
+    }
+}
+
+// with momenta the rows of given ones are those of pressure_momentum_row
+static void kinematics_jacobian(const struct residual *residual, const struct fish *fish, double cj,
+                                struct sparse *own) {
+    const int has_momentum = fish_has_momentum(fish), n = fish->n_nodes;
+    const int second = has_momentum ? fish->at.px : fish->at.vx;
+    for (int i = 0; i < 2 * n; i++) {
+        sparse_add(own, fish->at.x + i, fish->at.x + i, cj);
+        sparse_add(own, fish->at.x + i, fish->at.vx + i, -1);
+        if (!has_momentum || pressure_momentum_row(fish, residual->at_start, i / n, i % n) != second + i) {
+            sparse_add(own, second + i, second + i, cj);
+            sparse_add(own, second + i, fish->at.ax + i, -1);
+        }
+        sparse_add(own, fish->at.ax + i, fish->at.ax + i, 1);
+    }
+}
+
+// the derivatives of one fish's equations, in the order of evaluate_fish
+static enum status fish_jacobian(struct residual *residual, int f, double t, double cj, const double *y,
+                                 struct jacobian_scratch *jacobian_scratch, struct jacobian *jacobian) {
+    const struct school *school = residual->school;
+    const struct fish *fish = &school->fish[f];
+    struct sparse *const own = jacobian->own[f];
+    const double *const u = residual->flow->u + residual->flow->points[f].first;
+    const double *const v = residual->flow->v + residual->flow->points[f].first;
+
+    sparse_begin(own);
+    kinematics_jacobian(residual, fish, cj, own);
+    const struct actuation muscle = residual_muscle(residual, f, t, y);
+    rod_jacobian(fish, &muscle, y, own);
+    const struct flow_at_body flow = flow_at_body(residual->flow, f);
+    clamp_jacobian(fish, t, y, own);
+    fluid_force_jacobian(fish, &flow, y, own);
+    if (residual->pressure[f]) {
+        pressure_update(residual->pressure[f], &flow, y);
+        pressure_momentum_jacobian(residual->pressure[f], residual->at_start, y, own);
+        pressure_jacobian(residual->pressure[f], own);
+    }
+    bound_sheet_jacobian(fish, u, v, y, own);
+    bound_sheet_kutta_jacobian(fish, residual_sheet_law(residual), ramp_value(t, school->kutta_ramp), cj, u, v, y, own);
+    control_jacobian(fish, &residual->state->control[f], t, t - residual->state->t, y, own);
+
+    // what comes through the velocity of the fluid: by the fish's own unknowns, and by those of the fish it couples to
+    flow_jacobian(residual, f, f, t, y, &jacobian_scratch->block, &jacobian_scratch->rows);
+    contact_jacobian(residual->contact, f, f, y, &jacobian_scratch->rows);
+    add_own(residual, fish, &jacobian_scratch->rows, own);
+    for (int i = jacobian->first[f]; i < jacobian->first[f + 1]; i++) {
+        struct jacobian_coupling *const coupling = &jacobian->coupling[i];
+        flow_jacobian(residual, f, coupling->other, t, y, &jacobian_scratch->block, &coupling->rows);
+        contact_jacobian(residual->contact, f, coupling->other, y, &coupling->rows);
+    }
+    jacobian_mask_couplings(jacobian, f);
+    return sparse_end(own);
+}
+
+enum status residual_jacobian(struct residual *residual, double t, double cj, const double *y,
+                              struct jacobian *jacobian) {
+    const struct school *school = residual->school;
+    const int threads = parallel_threads(school->threads, school->n_fish, school->n_unknowns, PARALLEL_MATRICES);
+    TRY(residual_contact(residual, t, y));
+    jacobian->has_contacts = residual_couple_contacts(&residual->couplings, residual->contact);
+    TRY(flow_gradient(residual->flow, residual->state, t, y));
+    if (jacobian->pattern != residual->couplings.pattern) {
+        TRY(jacobian_couple(jacobian, residual->couplings.coupled, residual->couplings.pattern));
+    }
+    int n_failed = 0;
+#pragma omp parallel for num_threads(threads) schedule(dynamic)
+    for (int f = 0; f < school->n_fish; f++) {
+        struct jacobian_scratch *const jacobian_scratch = &residual->jacobian_scratch[omp_get_thread_num()];
+        if (fish_jacobian(residual, f, t, cj, y, jacobian_scratch, jacobian) != STATUS_OK) {
+#pragma omp atomic
+            n_failed++;
+        }
+    }
+    // the thread that failed had the message
+    return n_failed == 0 ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: the Jacobian of %d fish", n_failed);
+}
+
+void residual_by_shed(struct residual *residual, const double *y, double *value) {
+    const struct school *school = residual->school;
+    const int threads = fish_threads(school);
+#pragma omp parallel for num_threads(threads) schedule(static)
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *fish = &school->fish[f];
+        struct jacobian_scratch *const scratch = &residual->jacobian_scratch[omp_get_thread_num()];
+        flow_nascent_influence(residual->flow, f, &scratch->block);
+        scratch->rows.n_rows = flow_n_rows(fish);
+        scratch->rows.n_columns = 1;
+        memset(scratch->rows.value, 0, (size_t)scratch->rows.n_rows * sizeof *scratch->rows.value);
+        bound_sheet_flow_jacobian(fish, &scratch->block, y, &scratch->rows);
+        const int first = fish_has_momentum(fish) ? fish->at.ax : fish->at.gamma;
+        if (residual->pressure[f]) {
+            const struct flow_at_body flow = flow_at_body(residual->flow, f);
+            fluid_force_flow_jacobian(fish, &flow, &scratch->block, y, &scratch->rows);
+            pressure_flow_jacobian(residual->pressure[f], &scratch->block, &scratch->rows);
+        }
+        memcpy(value + first, scratch->rows.value + (first - fish->at.ax),
+               (size_t)(fish->at.gamma + fish->n_control - first) * sizeof *value);
+    }
+}
+
+void residual_mask(const struct residual *residual, struct jacobian *jacobian) {
+    for (int f = 0; f < residual->school->n_fish; f++) {
+        const struct fish *fish = &residual->school->fish[f];
+        for (int row = fish->at.x; row < fish->at.end; row++) {
+            const struct unknown_place place = residual_place(residual->school, row);
+            const int moves = place.kind <= UNKNOWN_AY && place.kind != UNKNOWN_PX && place.kind != UNKNOWN_PY;
+            sparse_mask(jacobian->own[f], row,
+                        moves && fish_is_prescribed(fish, place.index, residual_component(place.kind)));
+        }
+    }
+}

@@ -1,0 +1,372 @@
+/* warnings.c: how bad a result is, each kind measured so that 1 is the limit, and what to do about it. */
+#include "school/warnings.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "body/bending_mode.h"
+
+/* What a warning of a fish is made of. */
+struct subject {
+    const struct school *school;
+    const struct state *state;
+    const struct diagnostics *diagnostics;
+    double *scratch;
+    const struct fish *fish;
+    int f;
+    double size; /* see kind */
+};
+
+/* The size of what is so or not. */
+static const double always = 2;
+
+/* A kind of warning that each fish has by itself: its size, at which more than 1 warns, and its sentence. */
+struct kind {
+    double (*size)(const struct subject *subject);
+    void (*say)(const struct subject *subject, const char *who, char line[WARNING_BYTES]);
+};
+
+// ---- energy
+
+// the largest of the works that go in or out, J
+static double work_of(const struct subject *subject) {
+    const double *const work = subject->state->balance[subject->f].work;
+    double max = 0;
+    for (int i = 0; i < N_WORKS; i++) max = fmax(max, fabs(work[i]));
+    return max;
+}
+
+static double energy_size(const struct subject *subject) {
+    const struct diagnostics_fish *const now = &subject->diagnostics->fish[subject->f];
+    const double energy = now->kinetic_energy + now->bending_energy + now->stretching_energy;
+    const double audit = fabs(now->energy_audit), rounding = 1e-12 * energy;
+    double work = work_of(subject);
+    // within the first beat there is little work: then the energy of one length per beat counts, and that of the body
+    if (subject->state->t < subject->fish->period) {
+        const double speed = subject->fish->length / subject->fish->period;
+        work = fmax(work, fmax(energy, subject->fish->total_mass * speed * speed));
+    }
+    return audit > rounding ? audit / (0.01 * work) : 0;
+}
+
+static void energy_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
+    snprintf(
+        line, WARNING_BYTES,
+        "the energy balance of %s is open by %.2g J, of %.2g J of work: a smaller solver.rtol or solver.step has to "
+        "close it, else the case asks for more than the model can give",
+        who, subject->diagnostics->fish[subject->f].energy_audit, work_of(subject));
+}
+
+// ---- divergence
+
+// the largest speed that the case gives to anything, m s-1: of beats, motions, starts, the external flow, and of loads
+// that nothing resists
+static double case_speed(const struct subject *subject) {
+    const struct school *const school = subject->school;
+    double most = 0;
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *const fish = &school->fish[f];
+        const double beat = 2 * 3.14159265358979323846 * fish->length * fish_rate(school, fish);
+        const double motion = fish->motion.omega * (fabs(fish->motion.heave) + fabs(fish->motion.pitch) * fish->length);
+        const double load = hypot(fish->load_tip[0], fish->load_tip[1]) * subject->state->t / fish->total_mass;
+        const double stream = hypot(school->velocity[0], school->velocity[1]) +
+                              hypot(school->gust[0], school->gust[1]) +
+                              fabs(school->shear * subject->diagnostics->fish[f].com[1]);
+        most = fmax(most, beat + motion + load + stream + fabs(fish->start_speed) + fabs(fish->motion.speed));
+    }
+    return most;
+}
+
+static double largest_speed(const struct subject *subject) {
+    const struct layout *const at = &subject->fish->at;
+    const double *const y = subject->state->y;
+    double most = 0;
+    for (int k = 0; k < subject->fish->n_nodes; k++) most = fmax(most, hypot(y[at->vx + k], y[at->vy + k]));
+    return most;
+}
+
+// shed now, and in the wake: of markers up to their births
+static double largest_circulation(const struct subject *subject) {
+    const struct wake *const wake = &subject->state->wake[subject->f];
+    double most = fabs(subject->state->y[subject->fish->at.circulation]);
+    for (int i = 0; i < wake->n_vortex; i++) most = fmax(most, fabs(wake->circulation[i]));
+    return most;
+}
+
+// a foil has a circulation of 3 lengths times its speed; a tail may go some times faster than the body
+static const double most_of_case = 100;
+
+static double divergence_size(const struct subject *subject) {
+    const double speed = most_of_case * case_speed(subject);
+    return fmax(largest_speed(subject), largest_circulation(subject) / subject->fish->length) / speed;
+}
+
+static void divergence_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
+    snprintf(
+        line, WARNING_BYTES,
+        "%s has diverged: its nodes reach %.2g m/s and its circulation %.2g m2/s, more than %g times what the case "
+        "gives cause for: lower solver.rtol, solver.step or time.shedding_interval, or stiffen the body",
+        who, largest_speed(subject), largest_circulation(subject), most_of_case);
+}
+
+// ---- drift of the speed
+
+static double drift_size(const struct subject *subject) {
+    if (!(subject->school->density > 0)) return 0;
+    return fabs(subject->diagnostics->fish[subject->f].drift) / 0.01;
+}
+
+static void drift_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
+    snprintf(line, WARNING_BYTES,
+             "the speed of %s changes by %.1f %% from one beat to the next: means over the last beat are not those of "
+             "steady swimming, for which time.end has to be later",
+             who, 100 * subject->diagnostics->fish[subject->f].drift);
+}
+
+// ---- resolution
+
+enum { MIN_EVENTS = 20 /* in a beat */ };
+
+static double events_size(const struct subject *subject) {
+    const double period = subject->fish->period;
+    // a little more, for a quotient that is exact but for rounding
+    return period > 0 ? (1 - 1e-9) * MIN_EVENTS * subject->school->interval / period : 0;
+}
+
+static void events_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
+    snprintf(line, WARNING_BYTES,
+             "a beat of %s has only %.3g events: a time.shedding_interval of at most %.3g s gives it %d", who,
+             subject->fish->period / subject->school->interval, subject->fish->period / MIN_EVENTS, MIN_EVENTS);
+}
+
+// What the sheet needs is M - 1 >= 3.2/sqrt(U Dt/L); 0.9 of that warns, as the errors grow slowly (0.25 % of the
+// circulation at 0.63 of it), and only a speed that is nearly steady counts: every fish that starts from rest is slow.
+static double sheet_needs(const struct subject *subject) {
+    const struct diagnostics_fish *const now = &subject->diagnostics->fish[subject->f];
+    return 3.2 / sqrt(now->speed * subject->school->interval / subject->fish->length);
+}
+
+static double sheet_size(const struct subject *subject) {
+    const struct diagnostics_fish *const now = &subject->diagnostics->fish[subject->f];
+    if (subject->school->shedding != SHEDDING_SHEET || !(now->speed > 0)) return 0;
+    // an equilibrium sheds nothing
+    if (subject->state->wake[subject->f].n_vortex == 0) return 0;
+    const double nearly = 0.1;
+    if (subject->fish->period > 0 && !(fabs(now->drift) < nearly)) return 0;
+    // what needs more does not swim
+    const double most = 1000;
+    return sheet_needs(subject) < most ? 0.9 * sheet_needs(subject) / (subject->fish->n_sheet - 1) : 0;
+}
+
+static void sheet_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
+    snprintf(
+        line, WARNING_BYTES,
+        "%s swims %.2g lengths in a shedding_interval, which is too little for %d sheet_points: take %.0f of them, "
+        "or a longer interval",
+        who, subject->diagnostics->fish[subject->f].speed * subject->school->interval / subject->fish->length,
+        subject->fish->n_sheet, ceil(sheet_needs(subject)) + 1);
+}
+
+// ---- the slowest bending mode
+
+static double modes_size(const struct subject *subject) {
+    const struct fish *const fish = subject->fish;
+    return fish_has_wave(fish) ? fish->frequency / bending_mode_frequency(fish, subject->scratch) : 0;
+}
+
+static void modes_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
+    snprintf(line, WARNING_BYTES,
+             "the slowest bending mode of %s has %.2g Hz, less than its beat of %.3g Hz: its shape is not that of the "
+             "muscle, and all of its modes count: compare with twice the nodes",
+             who, bending_mode_frequency(subject->fish, subject->scratch), subject->fish->frequency);
+}
+
+// ---- the leading edge
+
+// once the speed is nearly steady, as for the sheet: a fish that starts from rest has little speed for its strengths
+static double edge_size(const struct subject *subject) {
+    const struct diagnostics_fish *const now = &subject->diagnostics->fish[subject->f];
+    const double most = 0.1, nearly = 0.1;
+    if (subject->fish->period > 0 && !(fabs(now->drift) < nearly)) return 0;
+    return subject->fish->suction > 0 ? now->separation_share / most : 0;
+}
+
+static void edge_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
+    const struct diagnostics_fish *const now = &subject->diagnostics->fish[subject->f];
+    snprintf(line, WARNING_BYTES,
+             "the flow separates at the nose of %s for %.0f %% of the last period (A_0 up to %.2g, "
+             "pressure.suction_limit %.3g): thrust and efficiency depend on this limit, compare with 0.11 and 0.25",
+             who, 100 * now->separation_share, now->leading_edge_most, subject->fish->suction_limit);
+}
+
+// ---- the tail
+
+// whether the water bends the tail
+static int bends(const struct subject *subject) {
+    return subject->school->density > 0 && subject->fish->motion.prescribed != PRESCRIBED_ALL;
+}
+
+static double cusp_size(const struct subject *subject) {
+    return bends(subject) && subject->fish->has_cusp ? always : 0;
+}
+
+static void cusp_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
+    (void)subject;
+    snprintf(line, WARNING_BYTES,
+             "the tail of %s ends in a cusp: its results have no limit in nodes (doc/numerics.md, section 5); give "
+             "body.tail_thickness",
+             who);
+}
+
+double warnings_bending_length(const struct fish *fish) {
+    const double omega = 2 * 3.14159265358979323846 * fish->frequency;
+    return pow(fish->tail_stiffness / (fish->tail_added_mass * omega * omega), 0.25);
+}
+
+static double tail_size(const struct subject *subject) {
+    const struct fish *const fish = subject->fish;
+    const int beats = fish_has_wave(fish) || (fish->motion.prescribed == PRESCRIBED_HEAD && fish->motion.omega > 0);
+    if (!bends(subject) || !beats || fish->has_cusp || !(fish->tail_added_mass > 0)) return 0;
+    return 2 * fish->edge_length / warnings_bending_length(fish);
+}
+
+static void tail_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
+    const struct fish *const fish = subject->fish;
+    snprintf(line, WARNING_BYTES,
+             "the edges of %s, %.2g m, are longer than half the length over which its tail bends, %.2g m: take %.0f "
+             "nodes or more",
+             who, fish->edge_length, warnings_bending_length(fish),
+             ceil(2 * fish->length / warnings_bending_length(fish)) + 1);
+}
+
+// ---- the published force
+
+static double force_size(const struct subject *subject) {
+    return subject->school->density > 0 && subject->fish->force == FORCE_PUBLISHED ? always : 0;
+}
+
+static void force_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
+    (void)subject;
+    snprintf(line, WARNING_BYTES,
+             "the published force on %s does not follow from an energy and can create energy: no other property of the "
+             "result is judged; compare with 'force: reactive'",
+             who);
+}
+
+// ---- all of them
+
+static const struct kind kinds[N_WARNINGS] = {
+    [WARNING_DIVERGENCE] = {divergence_size, divergence_say},
+    [WARNING_ENERGY] = {energy_size, energy_say},
+    [WARNING_DRIFT] = {drift_size, drift_say},
+    [WARNING_EVENTS] = {events_size, events_say},
+    [WARNING_SHEET] = {sheet_size, sheet_say},
+    [WARNING_MODES] = {modes_size, modes_say},
+    [WARNING_EDGE] = {edge_size, edge_say},
+    [WARNING_CUSP] = {cusp_size, cusp_say},
+    [WARNING_TAIL] = {tail_size, tail_say},
+    [WARNING_FORCE] = {force_size, force_say},
+};
+
+// a result with the published force is told that, and whether it is none at all, but not how accurate it is
+static int judges(enum warning warning, const struct fish *fish) {
+    return fish->force != FORCE_PUBLISHED || warning == WARNING_FORCE || warning == WARNING_DIVERGENCE;
+}
+
+const struct warning_words warnings_words[N_WARNINGS] = {
+    [WARNING_CONTACT] = {"bodies touch, cross or come near",
+                         "at any step of the integrator or between two; near: below contact.range without "
+                         "'contact.action: repel'; closest_approach says who came closest, and when"},
+    [WARNING_CROSSING] = {"a body crosses itself",
+                          "its centre line or its outline, at an event; contact does not act within a body"},
+    [WARNING_DIVERGENCE] = {"a fish has diverged",
+                            "at the end its speed, or the circulation in its wake over its length, is above 100 times "
+                            "the speeds that the case gives"},
+    [WARNING_ENERGY] = {"the energy balance is open",
+                        "energy_audit is more than 1 % of the largest of the works of muscle, fluid, damping, and all "
+                        "forces; within the first beat, also of the energy of the body and of one length per beat"},
+    [WARNING_MOMENTUM] =
+        {"the momentum balance is open",
+         "momentum_audit is more than 1 % of the largest of the sums over all fish: of the momentum, of "
+         "the change of the impulse of the vortices, of external_impulse; not within the first beat, or length"},
+    [WARNING_DRIFT] = {"the speed changes",
+                       "drift is more than 1 %: means over the last beat are not those of steady swimming"},
+    [WARNING_EVENTS] = {"few events", "fewer than 20 in a beat"},
+    [WARNING_SHEET] = {"few sheet points",
+                       "'shedding: sheet' where n_sheet - 1 < 0.9 x 3.2/sqrt(U Dt/L), once the speed changes by less "
+                       "than 10 % a beat"},
+    [WARNING_MODES] = {"slow modes", "the slowest bending mode of a body in its fluid is slower than its beat"},
+    [WARNING_EDGE] =
+        {"separation at the nose",
+         "separation_share is above 0.1, once the speed changes by less than 10 % a beat: the limit of the "
+         "suction acts for more than 10 % of the last period"},
+    [WARNING_CUSP] = {"a cusp", "a Joukowski body that bends, with 'tail_thickness: 0'"},
+    [WARNING_TAIL] = {"few nodes at the tail",
+                      "twice the length of an edge is more than (EI/(m_L omega^2))^(1/4), with EI of the last edge and "
+                      "omega of the beat"},
+    [WARNING_FORCE] = {"the published force",
+                       "it can create energy; of such a fish only contact, crossing and divergence are told besides"},
+};
+
+static int contact_line(const struct school *school, const struct closest *closest, char line[WARNING_BYTES]) {
+    const int repel = school->contact == CONTACT_REPEL;
+    const char *const a = school->fish[closest->fish[0]].name, *const b = school->fish[closest->fish[1]].name;
+    if (closest->distance <= 0) {
+        snprintf(line, WARNING_BYTES,
+                 "the bodies of %.40s and %.40s touch or cross at t = %.4g s: what follows is no solution%s", a, b,
+                 closest->t, repel ? "" : "; contact.action: repel keeps them apart");
+        return 1;
+    }
+    if (repel || closest->distance >= school->contact_range) return 0;
+    snprintf(line, WARNING_BYTES,
+             "%.40s and %.40s come within %.3g m of each other at t = %.4g s, less than contact.range", a, b,
+             closest->distance, closest->t);
+    return 1;
+}
+
+static int crossing_line(const struct school *school, const struct state *state, char line[WARNING_BYTES]) {
+    if (state->crossed < 0) return 0;
+    snprintf(
+        line, WARNING_BYTES,
+        "the body of %.40s crosses itself at t = %.4g s: what follows is no solution; a stiffer body, or a smaller "
+        "wave.amplitude, does not",
+        school->fish[state->crossed].name, state->crossed_t);
+    return 1;
+}
+
+// of the whole school
+static int momentum_line(const struct school *school, const struct state *state, const struct diagnostics *diagnostics,
+                         char line[WARNING_BYTES]) {
+    const double audit = hypot(diagnostics->momentum_audit[0], diagnostics->momentum_audit[1]);
+    // a beat, or a length where nothing beats
+    double period = 0;
+    for (int f = 0; f < school->n_fish; f++) period = fmax(period, 1 / fish_rate(school, &school->fish[f]));
+    if (state->t < period || !(audit > 0.01 * diagnostics->momentum_size)) return 0;
+    snprintf(line, WARNING_BYTES,
+             "the momentum balance is open by %.2g N s, of %.2g N s: a shorter time.shedding_interval and more "
+             "sheet_points close it, and so does a start without a jump of the velocity",
+             audit, diagnostics->momentum_size);
+    return 1;
+}
+
+int warnings_line(enum warning warning, const struct school *school, const struct state *state,
+                  const struct diagnostics *diagnostics, double *scratch, char line[WARNING_BYTES]) {
+    if (warning == WARNING_CONTACT) return contact_line(school, state->closest, line);
+    if (warning == WARNING_CROSSING) return crossing_line(school, state, line);
+    if (warning == WARNING_MOMENTUM) return momentum_line(school, state, diagnostics, line);
+    struct subject worst = {.size = 1};
+    int n = 0;
+    for (int f = 0; f < school->n_fish; f++) {
+        struct subject subject = {school, state, diagnostics, scratch, &school->fish[f], f, 0};
+        if (!judges(warning, subject.fish)) continue;
+        subject.size = kinds[warning].size(&subject);
+        if (!(subject.size > 1) || isinf(subject.size)) continue;
+        n++;
+        if (subject.size > worst.size) worst = subject;
+    }
+    if (n == 0) return 0;
+    char who[96];
+    snprintf(who, sizeof who, n > 1 ? "%.40s (the worst of %d fish)" : "%.40s", worst.fish->name, n);
+    kinds[warning].say(&worst, who, line);
+    return 1;
+}

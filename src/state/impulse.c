@@ -1,0 +1,101 @@
+/* impulse.c: sums over vortices, and the part of them that is lost. */
+#include "state/impulse.h"
+
+#include <math.h>
+
+void impulse_add(struct impulse_moments *sum, double circulation, double x, double y) {
+    sum->circulation += circulation;
+    sum->x += circulation * x;
+    sum->y += circulation * y;
+    sum->square += circulation * (x * x + y * y);
+    sum->product += circulation * x * y;
+}
+
+void impulse_add_stretch(struct impulse_moments *sum, double circulation, const double one[2], const double other[2]) {
+    impulse_add(sum, circulation / 2, one[0], one[1]);
+    impulse_add(sum, circulation / 2, other[0], other[1]);
+}
+
+// add a part of the circulation of source i of a wake where it is tau after the event
+static void add_source(struct impulse_moments *sum, const struct wake *wake, int i, double part, double interval,
+                       double tau) {
+    double older[2], newer[2];
+    wake_marker(wake, i, interval, tau, older);
+    wake_marker(wake, i + wake->has_markers, interval, tau, newer);
+    impulse_add_stretch(sum, part * wake_source(wake, i), older, newer);
+}
+
+// the age of source i at the event at time t
+static double age_of(const struct wake *wake, int i, double t) {
+    return t - wake->birth[i + wake->has_markers];
+}
+
+struct impulse_moments impulse_of_wake(const struct wake *wake, const struct school *school, double t, double tau) {
+    struct impulse_moments sum = {0};
+    for (int i = 0; i < wake_n_sources(wake); i++) {
+        const double strength = wake_strength_within(school, age_of(wake, i, t), tau / school->interval);
+        add_source(&sum, wake, i, strength, school->interval, tau);
+    }
+    return sum;
+}
+
+void impulse_of(const struct impulse_moments *sum, double factor, double impulse[3]) {
+    impulse[0] = factor * sum->y;
+    impulse[1] = -factor * sum->x;
+    impulse[2] = -factor * sum->square / 2;
+}
+
+double impulse_depth(const struct fish *fish) {
+    for (int k = 1; k < fish->n_edges; k++) {
+        if (fabs(fish->depth[k] - fish->depth[0]) > 1e-12 * fish->depth[0]) return NAN;
+    }
+    return fish->depth[0];
+}
+
+// ---- losses
+
+void impulse_book(struct momentum_balance *momentum, const struct impulse_moments *before,
+                  const struct impulse_moments *after) {
+    momentum->lost[0] += before->x - after->x;
+    momentum->lost[1] += before->y - after->y;
+    momentum->lost[2] += before->square - after->square;
+}
+
+// book circulation that is lost, as it is given back at the tail where it is dropped
+static void lose(const struct school *school, struct state *state, int f, const struct impulse_moments *lost,
+                 const double tail[2]) {
+    struct impulse_moments back = {0};
+    if (school->removed == REMOVED_DROPPED) impulse_add(&back, lost->circulation, tail[0], tail[1]);
+    impulse_book(&state->momentum[f], lost, &back);
+}
+
+void impulse_fade(const struct school *school, struct state *state, int f) {
+    const struct wake *const wake = &state->wake[f];
+    const struct fish *const fish = &school->fish[f];
+    struct impulse_moments lost = {0};
+    for (int i = 0; i < wake_n_sources(wake); i++) {
+        const double age = age_of(wake, i, state->t);
+        const double part = wake_strength(school, age) - wake_strength(school, age + school->interval);
+        // sources are in the order of their ages
+        if (!(part > 0) && wake_strength(school, age + school->interval) >= 1) break;
+        add_source(&lost, wake, i, part / 2, school->interval, 0);
+        add_source(&lost, wake, i, part / 2, school->interval, school->interval);
+    }
+    // the tail at the beginning and, in y, at the end of the interval
+    const double end[2] = {state->y[fish->at.x + fish->n_nodes - 1], state->y[fish->at.y + fish->n_nodes - 1]};
+    const int newest = wake->n_vortex - 1, has_start = wake->has_markers && newest >= 0;
+    const double start[2] = {has_start ? wake->x[newest] : end[0], has_start ? wake->y[newest] : end[1]};
+    lose(school, state, f, &lost, (const double[]){(start[0] + end[0]) / 2, (start[1] + end[1]) / 2});
+}
+
+void impulse_remove(const struct school *school, struct state *state, int f) {
+    const struct wake *const wake = &state->wake[f];
+    const struct fish *const fish = &school->fish[f];
+    const int n_old = wake_n_old(wake, school, state->t);
+    struct impulse_moments lost = {0};
+    for (int i = 0; i < n_old; i++) {
+        add_source(&lost, wake, i, wake_strength(school, age_of(wake, i, state->t)), school->interval, 0);
+    }
+    const double tail[2] = {state->y[fish->at.x + fish->n_nodes - 1], state->y[fish->at.y + fish->n_nodes - 1]};
+    lose(school, state, f, &lost, tail);
+}

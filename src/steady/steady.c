@@ -1,0 +1,275 @@
+/* steady.c: see steady.h. */
+#include "steady/steady.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "result/result_lock.h"
+#include "result/target.h"
+#include "run/record.h"
+#include "run/record_notes.h"
+#include "school/diagnostics_energy.h"
+#include "steady/steady_modes.h"
+#include "steady/steady_multipliers.h"
+#include "steady/steady_reason.h"
+#include "steady/steady_search.h"
+#include "steady/steady_start.h"
+#include "steady/steady_static.h"
+
+/* Where the estimated distance of the speed from that of the fixed point, in lengths per beat, is above this multiple
+ * of the tolerance, the state is corrected, so often at most. A beat may change the speed by little for another reason
+ * than that it is steady: where one slow quantity still swings, it is at the end of a swing. The multipliers tell the
+ * way; where that is longer than this, or not half of the last one, Newton's method goes on instead. */
+static const double far_away = 10, half = 0.5, farthest = 2;
+enum { CORRECTIONS = 6 };
+
+struct run {
+    const struct case_values *values;
+    const struct steady_options *options;
+    struct simulation *simulation;
+    struct steady_problem problem;
+    double *way; /* to the fixed point, as the multipliers tell it                 (problem.n_unknowns) */
+    struct steady_values found;
+    struct record record;
+};
+
+static void tell(const struct steady_problem *problem, void *data) {
+    const struct run *const run = data;
+    if (!run->options->progress) return;
+    const struct steady_progress progress = {.n_beats = problem->map.n_beats,
+                                             .max_beats = run->values->steady.beats,
+                                             .t = run->simulation->state->t,
+                                             .residual = steady_map_residual(&problem->map),
+                                             .tolerance = run->values->steady.tolerance,
+                                             .speed = problem->map.last[0].speed,
+                                             .wall_time = simulate_wall_time(run->simulation)};
+    run->options->progress(&progress, run->options->data);
+}
+
+// ---- what is found
+
+static enum status allocate(struct run *run) {
+    const size_t n_fish = (size_t)run->simulation->school->n_fish, n = STEADY_QUANTITIES * n_fish;
+    run->found.fish = calloc(n_fish, sizeof *run->found.fish);
+    run->found.real = calloc(n, sizeof *run->found.real);
+    run->found.imaginary = calloc(n, sizeof *run->found.imaginary);
+    run->found.rate = calloc(n, sizeof *run->found.rate);
+    run->found.omega = calloc(n, sizeof *run->found.omega);
+    run->found.growth = run->found.growth_frequency = NAN;
+    run->way = calloc(n, sizeof *run->way);
+    const int has_all = run->found.real && run->found.imaginary && run->found.rate && run->found.omega;
+    if (run->found.fish && has_all && run->way) return STATUS_OK;
+    return status_fail(STATUS_MEMORY, "out of memory: the steady state of %zu fish", n_fish);
+}
+
+// of the speed that is to be found, in lengths per beat; places that a formation keeps are solved for
+static double distance(const struct run *run) {
+    const struct steady_problem *const problem = &run->problem;
+    double most = 0;
+    for (int i = 0; i < problem->n_unknowns && !problem->map.is_formation; i++) {
+        if (problem->unknown[i].quantity == STEADY_SPEED) most = fmax(most, fabs(run->way[i]));
+    }
+    return most;
+}
+
+static enum status find_multipliers(struct run *run) {
+    struct steady_values *const found = &run->found;
+    int n_beats;
+    found->residual = steady_map_residual(&run->problem.map);
+    TRY(steady_multipliers_find(&run->problem, found->real, found->imaginary, run->way, &n_beats));
+    found->n_multipliers = run->problem.n_unknowns;
+    found->n_multiplier_beats += n_beats;
+    double nearest = INFINITY;
+    for (int i = 0; i < found->n_multipliers; i++) {
+        nearest = fmin(nearest, hypot(1 - found->real[i], found->imaginary[i]));
+    }
+    found->error = fmax(found->residual / nearest, distance(run));
+    return steady_reason_check(&run->problem, nearest);
+}
+
+static enum status correct(struct run *run) {
+    double last = farthest;
+    TRY(find_multipliers(run));
+    for (int i = 0; i < CORRECTIONS; i++) {
+        const double now = distance(run);
+        if (now <= far_away * run->values->steady.tolerance) return STATUS_OK;
+        TRY(steady_search_correct(&run->problem, now <= half * last ? run->way : NULL));
+        last = now;
+        TRY(find_multipliers(run));
+    }
+    return STATUS_OK;
+}
+
+// the means over the last beat
+static void gather(struct run *run) {
+    const struct steady_map *const map = &run->problem.map;
+    const struct school *const school = run->simulation->school;
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct steady_beat *const beat = &map->last[f];
+        const struct diagnostics_fish *const last = &run->simulation->diagnostics->fish[f];
+        struct steady_fish *const found = &run->found.fish[f];
+        *found = (struct steady_fish){.speed = beat->speed,
+                                      .turn = beat->turn * 180 / M_PI,
+                                      .place = {beat->place[0], beat->place[1]},
+                                      .force = {beat->force[0], beat->force[1]},
+                                      .thrust = beat->thrust,
+                                      .drag = NAN,
+                                      .lift = NAN,
+                                      .deflection = NAN,
+                                      .actuation_power = beat->actuation,
+                                      .damping_power = beat->damping,
+                                      .driving_power = beat->driving,
+                                      .fluid_power = beat->fluid,
+                                      .cost_of_transport = last->cost_of_transport,
+                                      .efficiency = last->efficiency,
+                                      .strouhal = last->strouhal};
+    }
+}
+
+// ---- the rows
+
+static enum status write_if_due(void *data) {
+    struct run *const run = data;
+    if (!record_is_due(&run->record, run->simulation->state->event)) return STATUS_OK;
+    struct integrator_counts counts;
+    struct result_row row;
+    simulate_row(run->simulation, &counts, &row);
+    return record_row(&run->record, &row);
+}
+
+// the last beats, from the steady state on; the energy balance and the closest approach are those of the rows
+static enum status write_beats(struct run *run) {
+    struct simulation *const simulation = run->simulation;
+    const int n_beats = run->problem.map.n_beats;
+    diagnostics_restart(simulation->residual, simulation->state);
+    run->record.first = simulation->state->event;
+    run->record.n_events = run->record.first + run->values->steady.output_beats * run->problem.map.events;
+    TRY(write_if_due(run));
+    for (int i = 0; i < run->values->steady.output_beats; i++) {
+        TRY(steady_map_beat(&run->problem.map, write_if_due, run));
+    }
+    run->problem.map.n_beats = n_beats;
+    run->found.residual = fmax(run->found.residual, steady_map_residual(&run->problem.map));
+    gather(run);
+    return STATUS_OK;
+}
+
+// the integrator begins again where the rows do, with errors that a small tolerance does not allow
+static void warn_of_change(const struct run *run) {
+    const double tolerance = run->values->steady.tolerance;
+    if (!(run->found.residual > tolerance) || !run->options->warn) return;
+    char line[256];
+    snprintf(
+        line, sizeof line,
+        "the beats of the result change by %.2g from one to the next, more than steady.tolerance, %g: the state is "
+        "unstable, or these are the errors of the integrator, which begins again there: lower solver.rtol",
+        run->found.residual, tolerance);
+    run->options->warn(line, run->options->data);
+}
+
+// ---- a run
+
+static enum status search(struct run *run) {
+    TRY(steady_search_run(&run->problem));
+    run->found.residual = steady_map_residual(&run->problem.map);
+    run->found.error = NAN;
+    run->found.stiffness = NAN;
+    if (run->values->steady.multipliers != NO && run->problem.n_unknowns > 0) TRY(correct(run));
+    steady_modes_of_multipliers(&run->found, run->problem.map.period);
+    run->found.n_beats = run->problem.map.n_beats;
+    TRY(write_beats(run));
+    warn_of_change(run);
+    return STATUS_OK;
+}
+
+// of bodies without a beat: one row
+static enum status find_equilibrium(struct run *run) {
+    run->found.error = NAN;
+    TRY(steady_static_find(run->simulation, run->options->from, &run->found));
+    if (run->values->steady.multipliers != NO) TRY(steady_modes_find(run->simulation, &run->found));
+    return write_if_due(run);
+}
+
+// from the start of the case, or from that of another steady state
+static enum status create_simulation(struct run *run) {
+    if (!run->options->from) return simulate_create(&run->simulation, run->values);
+    struct case_values values = *run->values;
+    struct fish_parameters *fish;
+    TRY(steady_start_read(run->options->from, &values.school, &fish));
+    values.school.fish = fish;
+    const enum status status = simulate_create(&run->simulation, &values);
+    free(fish);
+    return status;
+}
+
+static enum status pose(struct run *run) {
+    TRY(steady_problem_create(&run->problem, &run->values->steady, run->simulation));
+    run->problem.progress = tell;
+    run->problem.data = run;
+    return STATUS_OK;
+}
+
+/* Give the file its name and close it. An earlier result stays where nothing has been found. */
+static enum status finish(struct run *run, enum status status) {
+    char reason[4096];
+    snprintf(reason, sizeof reason, "%s", status_message());
+    if (status == STATUS_OK) {
+        status = record_publish(&run->record, 1);
+    } else {
+        if (access(run->options->path, F_OK) != 0) record_publish(&run->record, 0);
+        status_fail(status, "%s", reason);
+    }
+    return record_close(&run->record, status);
+}
+
+static enum status start(struct run *run) {
+    const struct steady_options *const options = run->options;
+    TRY(target_check(options->path, TARGET_NETCDF, options->overwrite));
+    if (options->from) TRY(target_refuse_input(options->path, options->from));
+    TRY(create_simulation(run));
+    run->simulation->stop = options->stop;
+    const int is_static = steady_static_applies(run->simulation->school);
+    TRY(is_static ? steady_static_refuse(run->simulation->school) : pose(run));
+    TRY(allocate(run));
+    // room for as many vortices as there can be
+    const long n_beats = run->values->steady.beats + run->values->steady.output_beats;
+    const long n_events = is_static ? 1 : n_beats * run->problem.map.events;
+    TRY(record_create_steady(&run->record, run->values, run->simulation->school, n_events, options->path,
+                             options->overwrite, options->command));
+    const enum status status = is_static ? find_equilibrium(run) : search(run);
+    if (status == STATUS_STOPPED && !is_static) {
+        status_fail(status, "stopped %s in beat %d of the search, which cannot be resumed: begin it again",
+                    simulate_stopped_by(options->stop), run->problem.map.n_beats + 1);
+    }
+    if (status == STATUS_OK) {
+        result_file_steady(run->record.file, run->simulation->school, &run->found);
+        record_notes_write(run->record.file, run->simulation, options->warn, options->data);
+    }
+    return finish(run, status);
+}
+
+static void release(struct run *run) {
+    steady_problem_free(&run->problem);
+    simulate_free(run->simulation);
+    free(run->found.fish);
+    free(run->found.real);
+    free(run->found.imaginary);
+    free(run->found.rate);
+    free(run->found.omega);
+    free(run->way);
+}
+
+static enum status run_all(void *data) {
+    struct run *const run = data;
+    const enum status status = start(run);
+    release(run);
+    return status;
+}
+
+enum status steady_run(const struct case_values *values, const struct steady_options *options) {
+    struct run run = {.values = values, .options = options};
+    return result_lock_hold(options->path, run_all, &run);
+}

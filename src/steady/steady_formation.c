@@ -1,0 +1,252 @@
+/* steady_formation.c: see steady_formation.h. */
+#include "steady/steady_formation.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "solver/newton.h"
+#include "steady/steady_reason.h"
+
+/* A step changes the slow quantities by no more than this, in lengths, and in their other scales; Newton's method has
+ * left the places of the start where one is so far away. */
+static const double longest_step = 0.25, farthest = 1.5;
+
+/* How much is added to a quantity for the Jacobian, in its scale. */
+static const double difference = 0.01;
+
+/* Beats of an evaluation, each of which begins with the same slow quantities, so that the wake becomes that of fish
+ * which have always had them, and of a column of the Jacobian, which are the last ones of an evaluation once more. The
+ * last beat counts; it is the last where it differs from the one before by no more than this part of the change. */
+enum { BEATS = 5, COLUMN_BEATS = 2 };
+static const double settled = 0.3;
+
+/* A step at least as long tells of the Jacobian; what a shorter one tells is what the wake remembers. */
+static const double telling_step = 0.05;
+
+/* The Jacobian is made again where so many steps in a row leave more than this of the change. */
+enum { SLOW_STEPS = 2 };
+static const double least_progress = 0.7;
+
+/* What the fish do is followed over this many times as many beats as they would need for a length. */
+static const double patience = 1 / 3.0;
+
+/* All in the scales of the quantities. */
+struct formation {
+    struct steady_problem *problem;
+    double tolerance;
+    double *start;      /*                                                (n_unknowns) */
+    double *u, *change; /* of the last evaluation                         (n_unknowns) */
+    double *before;     /* the change in the beat before                  (n_unknowns) */
+    double *held;       /* for a column of the Jacobian                   (n_unknowns) */
+    double *step;       /* between the last two evaluations               (n_unknowns) */
+    double *made_at;    /* where the Jacobian was made                    (n_unknowns) */
+    double *matrix;     /* the Jacobian, which stays the problem's        (n_unknowns, n_unknowns) */
+    double last_norm;   /* of the change before the last step */
+    int has_value, has_matrix, n_slow;
+    int follows;    /* what the fish do */
+    int most_beats; /* of the whole search, until which it is tried */
+    struct state *begun, *reached;
+    struct state *late[COLUMN_BEATS]; /* before each of the last beats */
+};
+
+static double norm(int n, const double *value) {
+    double square = 0;
+    for (int i = 0; i < n; i++) square += value[i] * value[i];
+    return sqrt(square);
+}
+
+// the longest way from one to the other
+static double way(int n, const double *from, const double *to) {
+    double most = 0;
+    for (int i = 0; i < n; i++) most = fmax(most, fabs(to[i] - from[i]));
+    return most;
+}
+
+static int is_place(const struct formation *formation, int i) {
+    const enum steady_quantity quantity = formation->problem->unknown[i].quantity;
+    return quantity == STEADY_AHEAD || quantity == STEADY_ASIDE;
+}
+
+// ---- evaluations
+
+static enum status beat_from(struct formation *formation, const double *u, double *change) {
+    struct steady_problem *const problem = formation->problem;
+    TRY(steady_problem_put(problem, u));
+    TRY(steady_problem_beat(problem));
+    steady_problem_read(problem, change);
+    for (int i = 0; i < problem->n_unknowns; i++) change[i] -= u[i];
+    return STATUS_OK;
+}
+
+// beats that begin with the same values, until the wake is theirs
+static enum status settle(struct formation *formation, const double *u, double *change) {
+    const int n = formation->problem->n_unknowns;
+    for (int i = 0; i < BEATS; i++) {
+        struct state *const oldest = formation->late[0];
+        memmove(formation->late, formation->late + 1, (COLUMN_BEATS - 1) * sizeof oldest);
+        formation->late[COLUMN_BEATS - 1] = oldest;
+        TRY(steady_map_save(&formation->problem->map, &formation->late[COLUMN_BEATS - 1]));
+        TRY(beat_from(formation, u, change));
+        const double moved = way(n, formation->before, change);
+        memcpy(formation->before, change, (size_t)n * sizeof *change);
+        // the first evaluation begins with a wake of other values
+        const int fewest = formation->has_matrix ? COLUMN_BEATS : COLUMN_BEATS + 1;
+        if (i + 1 >= fewest && moved <= fmax(settled * norm(n, change), formation->tolerance)) break;
+    }
+    return STATUS_OK;
+}
+
+// Broyden: the least that the Jacobian has to change to agree with the last step
+static void learn(struct formation *formation, const double *u, const double *change) {
+    const int n = formation->problem->n_unknowns;
+    for (int i = 0; i < n; i++) formation->step[i] = u[i] - formation->u[i];
+    const double length = norm(n, formation->step);
+    if (!formation->has_value || !formation->has_matrix || length < telling_step) return;
+    for (int i = 0; i < n; i++) {
+        double missing = change[i] - formation->change[i];
+        for (int j = 0; j < n; j++) missing -= formation->matrix[i + j * n] * formation->step[j];
+        for (int j = 0; j < n; j++) {
+            formation->matrix[i + j * n] += missing / length * (formation->step[j] / length);
+        }
+    }
+}
+
+// Newton's method may lead to where the fish no longer feel each other, or onto one another, and back and forth
+static enum status check_way(const struct formation *formation, const double *u) {
+    const struct steady_problem *const problem = formation->problem;
+    double most = 0;
+    for (int i = 0; i < problem->n_unknowns; i++) {
+        if (is_place(formation, i)) most = fmax(most, fabs(u[i] - formation->start[i]));
+    }
+    if (formation->follows || (most <= farthest && problem->map.n_beats < formation->most_beats)) return STATUS_OK;
+    return status_fail(STATUS_SOLVER, "Newton's method leaves the places of the start");
+}
+
+static enum status value(void *data, const double *u, double *change) {
+    struct formation *const formation = data;
+    const size_t bytes = (size_t)formation->problem->n_unknowns * sizeof *u;
+    TRY(check_way(formation, u));
+    TRY(settle(formation, u, change));
+    learn(formation, u, change);
+    formation->has_value = 1;
+    memcpy(formation->u, u, bytes);
+    memcpy(formation->change, change, bytes);
+    return STATUS_OK;
+}
+
+// ---- the Jacobian
+
+// each place has to tell
+static enum status check_places(const struct formation *formation) {
+    const int n = formation->problem->n_unknowns;
+    for (int j = 0; j < n; j++) {
+        if (is_place(formation, j)) TRY(steady_reason_check(formation->problem, norm(n, formation->matrix + j * n)));
+    }
+    return STATUS_OK;
+}
+
+// by differences: the last beats of the evaluation once more, with something added to one quantity
+static enum status differences(struct formation *formation) {
+    struct steady_map *const map = &formation->problem->map;
+    const int n = formation->problem->n_unknowns;
+    memcpy(formation->held, formation->u, (size_t)n * sizeof *formation->held);
+    memcpy(formation->made_at, formation->u, (size_t)n * sizeof *formation->made_at);
+    TRY(steady_map_save(map, &formation->reached));
+    for (int j = 0; j < n; j++) {
+        double *const column = formation->matrix + j * n;
+        TRY(steady_map_return(map, formation->late[0]));
+        formation->held[j] += difference;
+        for (int i = 0; i < COLUMN_BEATS; i++) TRY(beat_from(formation, formation->held, column));
+        formation->held[j] = formation->u[j];
+        for (int i = 0; i < n; i++) column[i] = (column[i] - formation->change[i]) / difference;
+    }
+    formation->has_matrix = 1;
+    formation->n_slow = 0;
+    TRY(steady_map_return(map, formation->reached));
+    return check_places(formation);
+}
+
+static enum status jacobian(void *data, double *matrix) {
+    struct formation *const formation = data;
+    const int n = formation->problem->n_unknowns;
+    const double now = norm(n, formation->change);
+    formation->n_slow = now > least_progress * formation->last_norm ? formation->n_slow + 1 : 0;
+    const int is_elsewhere = way(n, formation->made_at, formation->u) > telling_step;
+    if (!formation->has_matrix || (formation->n_slow >= SLOW_STEPS && is_elsewhere)) TRY(differences(formation));
+    formation->last_norm = now;
+    memcpy(matrix, formation->matrix, (size_t)n * (size_t)n * sizeof *matrix);
+    // Euler's implicit step of du/dn = change, n: beats
+    for (int i = 0; i < n && formation->follows; i++) matrix[i + i * n] -= now / patience;
+    return STATUS_OK;
+}
+
+// ---- the search
+
+static enum status solve(struct formation *formation, double *scale, double *u) {
+    const struct steady_problem *const problem = formation->problem;
+    const int n = problem->n_unknowns;
+    for (int i = 0; i < n; i++) scale[i] = longest_step;
+    steady_problem_read(problem, u);
+    memcpy(formation->start, u, (size_t)n * sizeof *u);
+    memcpy(formation->made_at, u, (size_t)n * sizeof *u);
+    formation->has_value = 0;
+    const struct newton newton = {.n = n,
+                                  .scale = scale,
+                                  .tolerance = formation->tolerance / longest_step,
+                                  .max_step = 1,
+                                  .reuse = 1,
+                                  .max_iterations = problem->settings->beats,
+                                  .value = value,
+                                  .jacobian = jacobian,
+                                  .data = formation};
+    return newton_solve(&newton, u);
+}
+
+static enum status solve_or_follow(struct formation *formation, double *scale, double *u) {
+    struct steady_map *const map = &formation->problem->map;
+    const int most_beats = formation->problem->settings->beats;
+    formation->most_beats = (map->n_beats + most_beats) / 2;
+    TRY(steady_map_save(map, &formation->begun));
+    enum status status = solve(formation, scale, u);
+    if (status != STATUS_SOLVER || formation->last_norm <= 0) return status;
+    TRY(steady_map_return(map, formation->begun));
+    if (map->n_beats < most_beats) {
+        formation->follows = 1;
+        formation->has_matrix = 0;
+        status = solve(formation, scale, u);
+        if (status != STATUS_SOLVER) return status;
+        // what they do from the start says more than what they do where the search has gone
+        TRY(steady_map_return(map, formation->begun));
+    }
+    return map->n_beats < most_beats ? steady_reason_find(formation->problem) : status;
+}
+
+enum status steady_formation_solve(struct steady_problem *problem, double tolerance) {
+    const struct school *const school = problem->map.simulation->school;
+    const size_t n = (size_t)problem->n_unknowns;
+    double *const memory = calloc(9 * n, sizeof *memory);
+    const int is_new = !problem->jacobian;
+    if (is_new) problem->jacobian = calloc(n * n, sizeof *problem->jacobian);
+    if (!memory || !problem->jacobian) {
+        free(memory);
+        return status_fail(STATUS_MEMORY, "out of memory: a formation of %d fish", school->n_fish);
+    }
+    struct formation formation = {.problem = problem,
+                                  .tolerance = tolerance,
+                                  .start = memory,
+                                  .u = memory + n,
+                                  .change = memory + 2 * n,
+                                  .before = memory + 3 * n,
+                                  .held = memory + 4 * n,
+                                  .step = memory + 5 * n,
+                                  .made_at = memory + 6 * n,
+                                  .matrix = problem->jacobian,
+                                  .has_matrix = !is_new};
+    const enum status status = solve_or_follow(&formation, memory + 7 * n, memory + 8 * n);
+    state_free(formation.begun, school);
+    state_free(formation.reached, school);
+    for (int i = 0; i < COLUMN_BEATS; i++) state_free(formation.late[i], school);
+    free(memory);
+    return status;
+}

@@ -1,0 +1,311 @@
+/* steady_map.c: see steady_map.h. */
+#include "steady/steady_map.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "contact/clearance.h"
+#include "flow/flow_external.h"
+#include "school/diagnostics_energy.h"
+#include "school/diagnostics_forces.h"
+#include "state/state_table.h"
+
+enum steady_freedom steady_map_freedom(const struct fish *fish) {
+    if (fish->motion.prescribed == PRESCRIBED_NONE) return STEADY_SWIMS;
+    return fish->motion.surge == SURGE_FREE ? STEADY_SURGES : STEADY_HELD;
+}
+
+// ---- the beat
+
+// the beat that all fish have
+static enum status find_period(struct steady_map *map) {
+    const struct school *const school = map->simulation->school;
+    const struct fish *first = NULL;
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *const fish = &school->fish[f];
+        if (fish->period <= 0) continue;
+        if (!first) first = fish;
+        if (fabs(fish->period - first->period) <= 1e-9 * first->period) continue;
+        return status_fail(
+            STATUS_CASE, "%s beats %g times a second and %s %g times: a state that repeats itself needs one frequency",
+            first->name, 1 / first->period, fish->name, 1 / fish->period);
+    }
+    map->period = first ? first->period : 0;
+    return STATUS_OK;
+}
+
+static enum status check_events(struct steady_map *map) {
+    const struct school *const school = map->simulation->school;
+    const double events = map->period / school->interval;
+    map->events = lround(events);
+    if (map->events >= 1 && fabs(events - (double)map->events) <= 1e-6 * events) return STATUS_OK;
+    return status_fail(STATUS_CASE,
+                       "a beat of %.10g s has %.6g events, not an integer: set time.shedding_interval to %.10g, and "
+                       "time.end and time.output_interval to multiples of it",
+                       map->period, events, map->period / ceil(events));
+}
+
+static enum status check_gust(const struct steady_map *map) {
+    const struct school *const school = map->simulation->school;
+    const double gusts = school->gust_omega * map->period / (2 * M_PI);
+    if (!(fabs(school->gust[0]) + fabs(school->gust[1]) > 0)) return STATUS_OK;
+    if (fabs(gusts - nearbyint(gusts)) <= 1e-9 * gusts) return STATUS_OK;
+    return status_fail(STATUS_CASE,
+                       "a beat has %g gusts, not an integer: set fluid.gust.frequency to a multiple "
+                       "of the frequency of the beat",
+                       gusts);
+}
+
+enum status steady_map_create(struct steady_map *map, struct simulation *simulation) {
+    *map = (struct steady_map){.simulation = simulation, .steered = -1};
+    for (int f = simulation->school->n_fish - 1; f >= 0; f--) {
+        if (simulation->school->fish[f].control.law != CONTROL_NONE) map->steered = f;
+    }
+    TRY(find_period(map));
+    if (map->period <= 0) return status_fail(STATUS_CASE, "no fish beats: there is no beat to repeat");
+    TRY(check_events(map));
+    TRY(check_gust(map));
+    const size_t n_fish = (size_t)simulation->school->n_fish;
+    map->last = calloc(n_fish, sizeof *map->last);
+    map->before = calloc(n_fish, sizeof *map->before);
+    if (map->last && map->before) return STATUS_OK;
+    steady_map_free(map);
+    return status_fail(STATUS_MEMORY, "out of memory: the beats of %zu fish", n_fish);
+}
+
+void steady_map_free(struct steady_map *map) {
+    free(map->last);
+    free(map->before);
+    map->last = map->before = NULL;
+}
+
+// ---- one beat
+
+// trapezoids over the events of a beat, the ends of which count half
+static void add_event(struct steady_map *map, double share) {
+    for (int f = 0; f < map->simulation->school->n_fish; f++) {
+        const struct diagnostics_fish *const now = &map->simulation->diagnostics->fish[f];
+        struct steady_beat *const sum = &map->last[f];
+        double force[2];
+        diagnostics_fluid_force(now->resistive_force, now->reactive_force, &now->pressure, force);
+        for (int i = 0; i < 2; i++) sum->force[i] += share * force[i];
+        const double power = now->actuation_power + now->driving_power;
+        sum->thrust += share * now->thrust;
+        sum->rms_thrust += share * now->thrust * now->thrust;
+        sum->rms_power += share * power * power;
+    }
+}
+
+// what the history of the beat has; means of powers are works, which know the steps between the events
+static void finish_beat(struct steady_map *map) {
+    for (int f = 0; f < map->simulation->school->n_fish; f++) {
+        const struct history *const history = &map->simulation->state->history[f];
+        const struct sample *const new = state_recall(history, 0), *const old = state_recall(history, history->n - 1);
+        struct steady_beat *const beat = &map->last[f];
+        beat->speed = map->simulation->diagnostics->fish[f].speed;
+        beat->turn = new->heading - old->heading;
+        const struct steady_unknown place[] = {{f, STEADY_AHEAD}, {f, STEADY_ASIDE}};
+        steady_map_read(map, 2, place, beat->place);
+        beat->actuation = (new->work[WORK_ACTUATION] - old->work[WORK_ACTUATION]) / map->period;
+        beat->damping = (new->work[WORK_DAMPING] - old->work[WORK_DAMPING]) / map->period;
+        beat->driving = (new->work[WORK_DRIVING] - old->work[WORK_DRIVING]) / map->period;
+        beat->fluid = (old->work[WORK_FLUID] - new->work[WORK_FLUID]) / map->period;
+        beat->rms_thrust = sqrt(beat->rms_thrust);
+        beat->rms_power = sqrt(beat->rms_power);
+    }
+}
+
+enum status steady_map_beat(struct steady_map *map, enum status (*row)(void *data), void *data) {
+    struct steady_beat *const oldest = map->before;
+    map->before = map->last;
+    map->last = oldest;
+    memset(map->last, 0, (size_t)map->simulation->school->n_fish * sizeof *map->last);
+    const double share = 1 / (double)map->events;
+    simulate_measure(map->simulation);
+    add_event(map, share / 2);
+    for (long i = 1; i <= map->events; i++) {
+        TRY(simulate_step(map->simulation));
+        simulate_measure(map->simulation);
+        add_event(map, i < map->events ? share : share / 2);
+        if (row) TRY(row(data));
+    }
+    finish_beat(map);
+    map->n_beats++;
+    return STATUS_OK;
+}
+
+// a change over a scale; nothing changes where the scale is 0
+static double relative(double now, double before, double scale) {
+    return scale > 0 ? fabs(now - before) / scale : 0;
+}
+
+double steady_map_residual(const struct steady_map *map) {
+    const struct school *const school = map->simulation->school;
+    double residual = 0;
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct steady_beat *const now = &map->last[f], *const before = &map->before[f];
+        residual = fmax(residual, relative(now->speed, before->speed, school->fish[f].length / map->period));
+        const int circles = fabs(school->fish[f].control.bias) > 0;
+        residual = fmax(residual, relative(now->turn, before->turn, (circles ? 1 : 10) * 2 * M_PI));
+        for (int i = 0; i < 2 && map->is_formation; i++) {
+            residual = fmax(residual, relative(now->place[i], before->place[i], school->fish[f].length));
+        }
+        if (steady_map_freedom(&school->fish[f]) != STEADY_HELD) continue;
+        residual = fmax(residual, relative(now->thrust, before->thrust, now->rms_thrust));
+        residual = fmax(residual,
+                        relative(now->actuation + now->driving, before->actuation + before->driving, now->rms_power));
+    }
+    return residual;
+}
+
+// ---- the slow quantities
+
+double steady_map_scale(const struct steady_map *map, struct steady_unknown unknown) {
+    const double length = map->simulation->school->fish[unknown.fish].length;
+    switch (unknown.quantity) {
+        case STEADY_SPEED:
+        case STEADY_SLIP: return length / map->period;
+        case STEADY_TURN: return 1 / map->period;
+        case STEADY_HEADING: return 1;
+        case STEADY_SHED: return length * length / map->period;
+        default: return length;
+    }
+}
+
+// the stream at the centre of mass, along a heading and to its left
+static void stream_along(const struct steady_map *map, const struct rigid *rigid, double stream[2]) {
+    const struct simulation *const simulation = map->simulation;
+    double u, v;
+    flow_external(simulation->school, simulation->state->t, rigid->place[1], &u, &v);
+    const double c = cos(rigid->heading), s = sin(rigid->heading);
+    stream[0] = c * u + s * v;
+    stream[1] = c * v - s * u;
+}
+
+// the heading of a fish, as the first one sees it; of that one, as the law of control does
+static double heading_seen(const struct steady_map *map, int f, double heading, double first) {
+    const struct simulation *const simulation = map->simulation;
+    const struct state *const state = simulation->state;
+    const int by = map->steered;
+    if (f == 0 && by >= 0) {
+        first = control_desired_heading(&simulation->school->fish[by], &state->control[by], state->t, state->y);
+    }
+    return remainder(heading - first, 2 * M_PI);
+}
+
+void steady_map_read(const struct steady_map *map, int n, const struct steady_unknown *unknown, double *value) {
+    const struct school *const school = map->simulation->school;
+    const double *const y = map->simulation->state->y;
+    const struct rigid first = rigid_of(&school->fish[0], y);
+    for (int i = 0; i < n; i++) {
+        const struct rigid rigid = rigid_of(&school->fish[unknown[i].fish], y);
+        double stream[2], place[2];
+        stream_along(map, &rigid, stream);
+        rigid_relative_place(&first, &rigid, place);
+        switch (unknown[i].quantity) {
+            case STEADY_SPEED: value[i] = rigid.velocity[0] - stream[0]; break;
+            case STEADY_SLIP: value[i] = rigid.velocity[1] - stream[1]; break;
+            case STEADY_TURN: value[i] = rigid.turn; break;
+            case STEADY_HEADING: value[i] = heading_seen(map, unknown[i].fish, rigid.heading, first.heading); break;
+            case STEADY_AHEAD: value[i] = place[0]; break;
+            case STEADY_ASIDE: value[i] = place[1]; break;
+            case STEADY_SHED: value[i] = map->simulation->state->wake[unknown[i].fish].shed_before; break;
+        }
+    }
+}
+
+static void add_one(struct rigid *change, const struct rigid *first, enum steady_quantity quantity, double add) {
+    const double c = cos(first->heading), s = sin(first->heading);
+    switch (quantity) {
+        case STEADY_SPEED: change->velocity[0] += add; break;
+        case STEADY_SLIP: change->velocity[1] += add; break;
+        case STEADY_TURN: change->turn += add; break;
+        case STEADY_HEADING: change->heading += add; break;
+        case STEADY_AHEAD:
+            change->place[0] += c * add;
+            change->place[1] += s * add;
+            break;
+        case STEADY_ASIDE:
+            change->place[0] -= s * add;
+            change->place[1] += c * add;
+            break;
+        case STEADY_SHED: break;
+    }
+}
+
+// as if it had been shed infinitely long ago
+static void add_shed(const struct school *school, struct state *state, const struct steady_unknown *unknown,
+                     double add) {
+    if (unknown->quantity != STEADY_SHED) return;
+    state->y[school->fish[unknown->fish].at.circulation] += add;
+    wake_add_shed(&state->wake[unknown->fish], add);
+}
+
+// what turning the first fish adds to another one, so that it stays where that one sees it
+static void turn_with(struct rigid *change, const struct rigid *first, const struct rigid *other, double turn) {
+    const double c = cos(turn) - 1, s = sin(turn);
+    const double way[2] = {other->place[0] - first->place[0], other->place[1] - first->place[1]};
+    change->heading += turn;
+    change->place[0] += c * way[0] - s * way[1];
+    change->place[1] += s * way[0] + c * way[1];
+}
+
+// all but the state is made again, and the velocity of the fluid is that at the event
+static enum status renew(struct simulation *simulation) {
+    TRY(simulate_renew(simulation));
+    struct residual *const residual = simulation->residual;
+    const struct state *const state = simulation->state;
+    const enum status status = residual_evaluate(residual, state->t, state->y, state->yp, residual->scratch);
+    return status == STATUS_RETRY ? status_fail(STATUS_SOLVER, "%s", status_message()) : status;
+}
+
+// the record of the closest approach begins again
+static enum status check_overlap(struct simulation *simulation) {
+    const struct school *const school = simulation->school;
+    struct residual *const residual = simulation->residual;
+    const struct closest *const closest = simulation->state->closest;
+    clearance_start(school, simulation->state, residual->neighbours, residual->scratch);
+    if (closest->distance > 0 || school->contact == CONTACT_WARN) return STATUS_OK;
+    return status_fail(STATUS_SOLVER, "collision: the places that the search tries next put %s onto %s",
+                       school->fish[closest->fish[0]].name, school->fish[closest->fish[1]].name);
+}
+
+enum status steady_map_add(struct steady_map *map, int n, const struct steady_unknown *unknown, const double *add) {
+    struct simulation *const simulation = map->simulation;
+    struct state *const state = simulation->state;
+    const struct school *const school = simulation->school;
+    const struct rigid first = rigid_of(&school->fish[0], state->y);
+    double turn = 0;
+    diagnostics_before_jump(simulation->residual, state);
+    for (int i = 0; i < n; i++) add_shed(school, state, &unknown[i], add[i]);
+    for (int f = 0; f < school->n_fish; f++) {
+        struct rigid change = {.heading = 0};
+        for (int i = 0; i < n; i++) {
+            if (unknown[i].fish == f) add_one(&change, &first, unknown[i].quantity, add[i]);
+        }
+        if (f == 0) turn = change.heading;
+        const struct rigid other = rigid_of(&school->fish[f], state->y);
+        if (f > 0 && fabs(turn) > 0) turn_with(&change, &first, &other, turn);
+        rigid_change(school, state, f, &change);
+    }
+    TRY(check_overlap(simulation));
+    // velocities are given, as at a start: momenta follow from them
+    simulation->residual->at_start = 1;
+    const enum status status = initial_conditions_solve(simulation->consistent, state->t, state->y, state->yp);
+    simulation->residual->at_start = 0;
+    TRY(status);
+    TRY(renew(simulation));
+    diagnostics_after_jump(simulation->residual, state);
+    return STATUS_OK;
+}
+
+enum status steady_map_save(struct steady_map *map, struct state **state) {
+    if (!*state) TRY(state_create(state, map->simulation->school));
+    return state_table_copy(*state, map->simulation->state, map->simulation->school);
+}
+
+enum status steady_map_return(struct steady_map *map, const struct state *state) {
+    TRY(state_table_copy(map->simulation->state, state, map->simulation->school));
+    return renew(map->simulation);
+}

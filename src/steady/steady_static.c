@@ -1,0 +1,346 @@
+/* steady_static.c: see steady_static.h. */
+#include "steady/steady_static.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "body/edge.h"
+#include "fish/fish_gait.h"
+#include "fish/fish_prescribed.h"
+#include "flow/flow_external.h"
+#include "school/diagnostics_energy.h"
+#include "school/diagnostics_forces.h"
+#include "school/diagnostics_history.h"
+#include "school/rigid.h"
+#include "solver/equilibrium.h"
+#include "steady/steady_start.h"
+
+int steady_static_applies(const struct school *school) {
+    for (int f = 0; f < school->n_fish; f++) {
+        if (school->fish[f].period > 0) return 0;
+    }
+    return 1;
+}
+
+// ---- what can have no equilibrium
+
+static void velocity_of(const struct fish *fish, double velocity[2]) {
+    double position[2], acceleration[2];
+    fish_prescribed_node(fish, 0, 0, position, velocity, acceleration);
+}
+
+static enum status refuse_body(const struct school *school, const struct fish *fish) {
+    double velocity[2], first[2];
+    if (fish->motion.prescribed == PRESCRIBED_NONE || fish->motion.surge == SURGE_FREE) {
+        return status_fail(STATUS_CASE,
+                           "%s neither beats nor is held: nothing keeps it from going with the stream; hold it with "
+                           "motion.driven (and motion.surge: given), or let it beat",
+                           fish->name);
+    }
+    if (fish->control.law != CONTROL_NONE) {
+        return status_fail(STATUS_CASE, "%s does not beat, and has nothing to steer with: set control.law to none",
+                           fish->name);
+    }
+    if (fish->ramp > 0 && fish_largest_turn(fish, 1, 0) > 0) {
+        return status_fail(STATUS_CASE, "%s gets its natural curvature in %g s: set wave.ramp to 0", fish->name,
+                           fish->ramp);
+    }
+    velocity_of(fish, velocity);
+    velocity_of(&school->fish[0], first);
+    if (fabs(velocity[0] - first[0]) + fabs(velocity[1] - first[1]) > 0) {
+        return status_fail(STATUS_CASE, "%s and %s go at velocities of their own: give them the same motion.speed",
+                           school->fish[0].name, fish->name);
+    }
+    if (fabs(velocity[1]) > 0 && (school->walls.n > 0 || fabs(school->shear) > 0)) {
+        return status_fail(STATUS_CASE,
+                           "%s goes across %s, so that nothing stays as it is: give it start.heading 0 or "
+                           "180, or motion.speed 0",
+                           fish->name, school->walls.n > 0 ? "a channel" : "a shear");
+    }
+    return STATUS_OK;
+}
+
+enum status steady_static_refuse(const struct school *school) {
+    for (int f = 0; f < school->n_fish; f++) TRY(refuse_body(school, &school->fish[f]));
+    if (school->gust_omega > 0 && fabs(school->gust[0]) + fabs(school->gust[1]) > 0) {
+        return status_fail(STATUS_CASE,
+                           "no fish beats, and a gust does not rest: set fluid.gust.amplitude to 0, or give a "
+                           "fish the frequency of the gust");
+    }
+    if (school->removed == REMOVED_DROPPED) {
+        return status_fail(STATUS_CASE,
+                           "what is removed of a wake is forgotten, so that a body with lift sheds for ever: set "
+                           "wake.dissipated_circulation to retained");
+    }
+    return STATUS_OK;
+}
+
+// ---- the stream and the loads, which grow from nothing
+
+struct growth {
+    struct simulation *simulation;
+    struct school school; /* that of the simulation with a part of its stream and loads; only its bodies are its own */
+    struct residual *residual; /* of this school */
+    struct equilibrium *equilibrium;
+    double *last, *before; /* the last two solutions, at these parts of them            (n_unknowns) */
+    double last_part, before_part;
+    int n_solutions;
+    struct equilibrium_stiffness rest; /* without any */
+    double *kept; /* scratch                                                              (n_unknowns) */
+};
+
+/* No edge turns by more from one solution to the next: so it is the same branch. */
+static const double most_turn = 0.5; /* rad */
+
+/* Where a branch does not go on by so much of the stream, it ends. */
+static const double least_step = 1e-4;
+
+static enum status begin(struct growth *growth) {
+    const struct school *const school = growth->simulation->school;
+    struct state *const state = growth->simulation->state;
+    const size_t n_fish = (size_t)school->n_fish, n = (size_t)school->n_unknowns;
+    double **const arrays[] = {&growth->last, &growth->before, &growth->kept};
+    int has_all = 1;
+    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
+        has_all &= !!(*arrays[i] = calloc(n, sizeof **arrays[i]));
+    growth->school = *school;
+    growth->school.fish = malloc(n_fish * sizeof *school->fish);
+    if (!has_all || !growth->school.fish)
+        return status_fail(STATUS_MEMORY, "out of memory: the equilibrium of %zu bodies", n_fish);
+    memcpy(growth->school.fish, school->fish, n_fish * sizeof *school->fish);
+    TRY(residual_create(&growth->residual, &growth->school, state));
+    return equilibrium_create(&growth->equilibrium, growth->residual, state);
+}
+
+static void end(struct growth *growth) {
+    double *const owned[] = {growth->last, growth->before, growth->kept};
+    for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
+    equilibrium_free(growth->equilibrium);
+    residual_free(growth->residual);
+    free(growth->school.fish);
+}
+
+// this part of the stream of the case, and the square of this part of the loads: forces of a stream grow like that
+static void set_part(struct growth *growth, double part) {
+    const struct school *const whole = growth->simulation->school;
+    struct school *const school = &growth->school;
+    for (int i = 0; i < 2; i++) school->velocity[i] = part * whole->velocity[i];
+    school->shear = part * whole->shear;
+    for (int f = 0; f < school->n_fish; f++) {
+        school->fish[f].motion.speed = part * whole->fish[f].motion.speed;
+        for (int i = 0; i < 2; i++) school->fish[f].load_tip[i] = part * part * whole->fish[f].load_tip[i];
+    }
+}
+
+// straight, or as the natural curvature asks for; no sheets
+static void rest(const struct simulation *simulation) {
+    double *const y = simulation->state->y;
+    for (int f = 0; f < simulation->school->n_fish; f++) {
+        const struct fish *const fish = &simulation->school->fish[f];
+        const struct fish_gait gait = fish_own_gait(fish, 0);
+        double direction[2], rate;
+        fish_prescribe(fish, 1, 0, y);
+        fish_prescribed_direction(fish, 0, direction, &rate);
+        double angle = atan2(direction[1], direction[0]);
+        for (int k = 1; k < fish->n_nodes; k++) {
+            if (k > 1) angle += fish_natural_angle(fish, k - 2, &gait, fish->control.bias);
+            if (fish_is_prescribed(fish, k, 0)) continue;
+            y[edge_place(fish, 0, k)] = y[edge_place(fish, 0, k - 1)] + fish->edge_length * cos(angle);
+            y[edge_place(fish, 1, k)] = y[edge_place(fish, 1, k - 1)] + fish->edge_length * sin(angle);
+        }
+        for (int i = fish->at.gamma; i < fish->at.phi0; i++) y[i] = 0;
+    }
+}
+
+// the largest angle by which an edge has turned between two solutions
+static double largest_turn(const struct school *school, const double *from, const double *to) {
+    double most = 0;
+    for (int f = 0; f < school->n_fish; f++) {
+        for (int k = 0; k < school->fish[f].n_edges; k++) {
+            const struct edge a = edge_at(&school->fish[f], k, from), b = edge_at(&school->fish[f], k, to);
+            most = fmax(most, fabs(atan2(a.t[0] * b.t[1] - a.t[1] * b.t[0], edge_dot(a.t, b.t))));
+        }
+    }
+    return most;
+}
+
+static int is_fatal(enum status status) {
+    return status == STATUS_MEMORY || status == STATUS_STOPPED;
+}
+
+// the solution at this part of the stream, from what is in the state, near the last one; which is back in the state
+// where there is none
+static enum status solve(struct growth *growth, double part) {
+    struct simulation *const simulation = growth->simulation;
+    struct state *const state = simulation->state;
+    const size_t bytes = (size_t)simulation->school->n_unknowns * sizeof *state->y;
+    if (simulation->stop && *simulation->stop) {
+        return status_fail(STATUS_STOPPED,
+                           "stopped %s at %.3g of the stream: a search cannot be resumed: begin it again",
+                           simulate_stopped_by(simulation->stop), part);
+    }
+    set_part(growth, part);
+    enum status status = equilibrium_solve(growth->equilibrium);
+    if (status == STATUS_OK && largest_turn(simulation->school, growth->last, state->y) > most_turn) {
+        status = status_fail(STATUS_SOLVER, "it is another branch");
+    }
+    if (status != STATUS_OK) {
+        memcpy(state->y, growth->last, bytes);
+        return is_fatal(status) ? status : STATUS_SOLVER;
+    }
+    memcpy(growth->before, growth->last, bytes);
+    memcpy(growth->last, state->y, bytes);
+    // bodies that touch are known by where they were
+    memcpy(state->closest->before, state->y, bytes);
+    growth->before_part = growth->last_part;
+    growth->last_part = part;
+    growth->n_solutions++;
+    return STATUS_OK;
+}
+
+// the line through the last two solutions
+static void predict(const struct growth *growth, double part) {
+    const struct school *const school = growth->simulation->school;
+    const double step = growth->last_part - growth->before_part;
+    if (growth->n_solutions < 2 || part - growth->last_part > 2 * step) return;
+    const double q = (part - growth->last_part) / step;
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct layout *const at = &school->fish[f].at;
+        for (int i = at->x; i < at->phi0; i++) {
+            const int is_place = i < at->vx;
+            if (is_place || i >= at->gamma) {
+                growth->simulation->state->y[i] += q * (growth->last[i] - growth->before[i]);
+            }
+        }
+    }
+}
+
+// the determinant of the stiffness over that at rest; below 0 where the bodies leave the equilibrium by themselves
+static enum status find_stiffness(struct growth *growth, double *stiffness) {
+    struct equilibrium_stiffness now;
+    TRY(equilibrium_stiffness(growth->equilibrium, &now));
+    const double size = exp(now.log_determinant - growth->rest.log_determinant);
+    *stiffness = now.n_negative > 0 ? -size : size;
+    return STATUS_OK;
+}
+
+static enum status branch_ends(struct growth *growth) {
+    double stiffness;
+    char reason[512];
+    snprintf(reason, sizeof reason, "%s", status_message());
+    set_part(growth, growth->last_part);
+    TRY(find_stiffness(growth, &stiffness));
+    return status_fail(
+        STATUS_SOLVER,
+        "no equilibrium in this stream: the one that grows from rest ends at %.4g of it, where the static "
+        "stiffness is %.2g of that at rest; try a slower stream or a stiffer body, or start from another "
+        "shape with --from (%s)",
+        growth->last_part, stiffness, reason);
+}
+
+static enum status begin_at_rest(struct growth *growth) {
+    struct state *const state = growth->simulation->state;
+    const size_t bytes = (size_t)growth->simulation->school->n_unknowns * sizeof *state->y;
+    set_part(growth, 0);
+    rest(growth->simulation);
+    memcpy(growth->last, state->y, bytes);
+    const enum status status = solve(growth, 0);
+    if (status != STATUS_SOLVER) return status;
+    char reason[512];
+    snprintf(reason, sizeof reason, "%s", status_message());
+    return status_fail(status, "no equilibrium of the bodies, not even without a stream (%s)", reason);
+}
+
+// from rest on
+static enum status grow(struct growth *growth) {
+    double step = 1;
+    while (growth->last_part < 1) {
+        const double part = fmin(1, growth->last_part + step);
+        predict(growth, part);
+        const enum status status = solve(growth, part);
+        if (is_fatal(status)) return status;
+        step *= status == STATUS_OK ? 2 : 0.5;
+        if (step < least_step) return branch_ends(growth);
+    }
+    return STATUS_OK;
+}
+
+// from the shapes in a file, to the whole stream; whether that is a solution, in *found
+static enum status try_from(struct growth *growth, const char *from, int *found) {
+    struct state *const state = growth->simulation->state;
+    const size_t bytes = (size_t)growth->simulation->school->n_unknowns * sizeof *state->y;
+    memcpy(growth->kept, growth->last, bytes);
+    enum status status = steady_start_shapes(from, growth->simulation->school, state->y);
+    if (status == STATUS_OK) {
+        memcpy(growth->last, state->y, bytes);
+        status = solve(growth, 1);
+    }
+    *found = status == STATUS_OK;
+    if (!*found) memcpy(growth->last, growth->kept, bytes);
+    memcpy(state->y, growth->last, bytes);
+    return is_fatal(status) ? status : STATUS_OK;
+}
+
+static enum status find(struct growth *growth, const char *from, struct steady_values *found) {
+    int is_found = 0;
+    TRY(begin(growth));
+    TRY(begin_at_rest(growth));
+    TRY(equilibrium_stiffness(growth->equilibrium, &growth->rest));
+    if (from) TRY(try_from(growth, from, &is_found));
+    if (!is_found) TRY(grow(growth));
+    TRY(find_stiffness(growth, &found->stiffness));
+    found->residual = equilibrium_residual(growth->equilibrium);
+    return STATUS_OK;
+}
+
+// ---- what is found
+
+static void fill(const struct simulation *simulation, int f, struct steady_fish *found) {
+    const struct fish *const fish = &simulation->school->fish[f];
+    const struct diagnostics_fish *const now = &simulation->diagnostics->fish[f];
+    const double *const y = simulation->state->y;
+    const int tail = fish->n_nodes - 1;
+    double stream[2], direction[2], rate;
+    flow_external(simulation->school, simulation->state->t, now->com[1], &stream[0], &stream[1]);
+    fish_prescribed_direction(fish, simulation->state->t, direction, &rate);
+    const double way[2] = {y[fish->at.x + tail] - y[fish->at.x], y[fish->at.y + tail] - y[fish->at.y]};
+    *found = (struct steady_fish){.speed = now->speed,
+                                  .turn = NAN,
+                                  .thrust = now->thrust,
+                                  .actuation_power = NAN,
+                                  .damping_power = NAN,
+                                  .driving_power = now->driving_power,
+                                  .deflection = way[0] * direction[1] - way[1] * direction[0],
+                                  .cost_of_transport = NAN,
+                                  .efficiency = NAN,
+                                  .strouhal = NAN};
+    diagnostics_fluid_force(now->resistive_force, now->reactive_force, &now->pressure, found->force);
+    for (int i = 0; i < 2; i++) stream[i] -= now->com_velocity[i];
+    const double speed = hypot(stream[0], stream[1]);
+    found->fluid_power = edge_dot(found->force, stream);
+    found->drag = edge_dot(found->force, stream) / speed;
+    found->lift = (stream[0] * found->force[1] - stream[1] * found->force[0]) / speed;
+}
+
+enum status steady_static_find(struct simulation *simulation, const char *from, struct steady_values *found) {
+    struct growth growth = {.simulation = simulation};
+    struct state *const state = simulation->state;
+    const enum status status = find(&growth, from, found);
+    end(&growth);
+    TRY(status);
+    // the flow of the simulation itself
+    TRY(residual_evaluate(simulation->residual, state->t, state->y, state->yp, simulation->residual->scratch));
+    diagnostics_remember(simulation->residual, state);
+    diagnostics_after_jump(simulation->residual, state);
+    diagnostics_restart(simulation->residual, state);
+    simulate_measure(simulation);
+    const struct rigid first = rigid_of(&simulation->school->fish[0], state->y);
+    for (int f = 0; f < simulation->school->n_fish; f++) {
+        const struct rigid rigid = rigid_of(&simulation->school->fish[f], state->y);
+        fill(simulation, f, &found->fish[f]);
+        rigid_relative_place(&first, &rigid, found->fish[f].place);
+    }
+    return STATUS_OK;
+}

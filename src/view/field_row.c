@@ -1,0 +1,235 @@
+/* field_row.c: from the variables of a result file back to a state. */
+#include "view/field_row.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "case/case.h"
+#include "fish/fish_school.h"
+#include "force/bound_sheet.h"
+#include "result/netcdf.h"
+#include "result/result_table.h"
+
+/* A result file that is being read. */
+struct reading {
+    struct netcdf_reader file;
+    long n_rows;
+    double *time;   /* of the rows, s (n_rows) */
+    double *buffer; /* (2 of the longest dimension) */
+};
+
+// ---- the row
+
+static bool is_row(const struct reading *reading, long row) {
+    return row >= 0 && row < reading->n_rows;
+}
+
+/* Whether the wakes of a row are in the file: those of all fish or of none. */
+static enum status find_wake(const struct reading *reading, const struct school *school, long row, bool *has_wake) {
+    *has_wake = true;
+    for (int f = 0; f < school->n_fish; f++) {
+        double count, first;
+        const struct netcdf_slice of_fish[] = {{"time", (size_t)row, 1}, {"fish", (size_t)f, 1}, {NULL, 0, 0}};
+        TRY(netcdf_read_doubles(&reading->file, "wake_count", of_fish, &count));
+        if (count < 1) continue;
+        const struct netcdf_slice of_vortex[] = {
+            {"time", (size_t)row, 1}, {"fish", (size_t)f, 1}, {"vortex", 0, 1}, {NULL, 0, 0}};
+        TRY(netcdf_read_doubles(&reading->file, "wake_circulation", of_vortex, &first));
+        if (isnan(first)) *has_wake = false;
+    }
+    return STATUS_OK;
+}
+
+/* The first row with its wake from the given one on, forwards or backwards; not a row where there is none. */
+static enum status next_with_wake(const struct reading *reading, const struct school *school, long from, int step,
+                                  long *row) {
+    bool has_wake = false;
+    for (*row = from; is_row(reading, *row); *row += step) {
+        TRY(find_wake(reading, school, *row, &has_wake));
+        if (has_wake) break;
+    }
+    return STATUS_OK;
+}
+
+static enum status fail_without_wake(const struct reading *reading, const struct school *school, long row) {
+    long before, after;
+    char near[96] = "; no row has it";
+    TRY(next_with_wake(reading, school, row, -1, &before));
+    TRY(next_with_wake(reading, school, row, 1, &after));
+    const double *const time = reading->time;
+    if (is_row(reading, before) && is_row(reading, after)) {
+        snprintf(near, sizeof near, ": the nearest with it are at %g s and %g s", time[before], time[after]);
+    } else if (is_row(reading, before) || is_row(reading, after)) {
+        snprintf(near, sizeof near, ": the nearest with it is at %g s", time[is_row(reading, before) ? before : after]);
+    }
+    return status_fail(STATUS_CASE, "%s: the row at t = %g s is without its wake (output.wake_interval)%s",
+                       reading->file.path, time[row], near);
+}
+
+/* The row at time t; NaN: the last one with its wake. */
+static enum status find_row(const struct reading *reading, const struct school *school, double t, long *row) {
+    const long last = reading->n_rows - 1;
+    const double *const time = reading->time, rounding = 1e-6 * school->interval;
+    if (last < 0) return status_fail(STATUS_CASE, "%s: there is no row yet", reading->file.path);
+    if (isnan(t)) {
+        TRY(next_with_wake(reading, school, last, -1, row));
+        return is_row(reading, *row) ? STATUS_OK : fail_without_wake(reading, school, last);
+    }
+    if (!(t >= time[0] - rounding && t <= time[last] + rounding)) {
+        return status_fail(STATUS_CASE, "%s: t = %g s is outside of its rows, which go from %g s to %g s",
+                           reading->file.path, t, time[0], time[last]);
+    }
+    for (*row = 0; *row < last && time[*row] < t - rounding;) ++*row;
+    if (*row > 0 && fabs(time[*row] - t) > rounding) {
+        return status_fail(STATUS_CASE, "%s: there is no row at t = %g s: the nearest are at %g s and %g s",
+                           reading->file.path, t, time[*row - 1], time[*row]);
+    }
+    bool has_wake;
+    TRY(find_wake(reading, school, *row, &has_wake));
+    return has_wake ? STATUS_OK : fail_without_wake(reading, school, *row);
+}
+
+// ---- its values
+
+/* A variable over (time, fish, dimension[, xy]): n values of fish f, all of them finite. */
+static enum status read_values(const struct reading *reading, const char *name, long row, int f, const char *dimension,
+                               int n, bool has_xy) {
+    const struct netcdf_slice slice[] = {{"time", (size_t)row, 1},
+                                         {"fish", (size_t)f, 1},
+                                         {dimension, 0, (size_t)n},
+                                         {has_xy ? "xy" : NULL, 0, 2},
+                                         {NULL, 0, 0}};
+    if (n == 0) return STATUS_OK;
+    TRY(netcdf_read_doubles(&reading->file, name, slice, reading->buffer));
+    for (int i = 0; i < (has_xy ? 2 : 1) * n; i++) {
+        if (isfinite(reading->buffer[i])) continue;
+        return status_fail(STATUS_FILE, "%s: variable %s has a gap where fish %d has a value", reading->file.path, name,
+                           f);
+    }
+    return STATUS_OK;
+}
+
+static void separate(int n, const double *pairs, double *x, double *y) {
+    for (int i = 0; i < n; i++) {
+        x[i] = pairs[2 * i];
+        y[i] = pairs[2 * i + 1];
+    }
+}
+
+static enum status read_body(const struct reading *reading, long row, int f, const struct field_row *to) {
+    const struct fish *const fish = &to->school->fish[f];
+    double *const y = to->state->y;
+    TRY(read_values(reading, "x", row, f, "node", fish->n_nodes, true));
+    separate(fish->n_nodes, reading->buffer, y + fish->at.x, y + fish->at.y);
+    TRY(read_values(reading, "sheet_strength", row, f, "sheet", fish->n_sheet, false));
+    for (int j = 0; j < fish->n_sheet; j++) {
+        // the file has it per length of the body as it is, the unknown is per natural length
+        y[fish->at.gamma + j] = 1;
+        y[fish->at.gamma + j] = reading->buffer[j] / bound_sheet_strength(fish, j, y);
+    }
+    return STATUS_OK;
+}
+
+/* Turn circulations of vortices into labels: each marker has half of both stretches that meet there. */
+static void label_markers(struct wake *wake) {
+    double label = 0, stretch = 0;
+    for (int i = 0; i < wake->n_vortex; i++) {
+        const double both = 2 * wake->circulation[i];
+        wake->circulation[i] = label;
+        stretch = both - stretch;
+        label += stretch;
+    }
+}
+
+static enum status read_wake(const struct reading *reading, long row, int f, const struct field_row *to) {
+    struct wake *const wake = &to->state->wake[f];
+    double count;
+    const struct netcdf_slice slice[] = {{"time", (size_t)row, 1}, {"fish", (size_t)f, 1}, {NULL, 0, 0}};
+    TRY(netcdf_read_doubles(&reading->file, "wake_count", slice, &count));
+    if (!(count >= 0 && count < INT_MAX / 4)) {
+        return status_fail(STATUS_FILE, "%s: fish %d has %g vortices", reading->file.path, f, count);
+    }
+    const int n = (int)count;
+    TRY(wake_resize(wake, n));
+    TRY(read_values(reading, "wake_x", row, f, "vortex", n, true));
+    separate(n, reading->buffer, wake->x, wake->y);
+    TRY(read_values(reading, "wake_circulation", row, f, "vortex", n, false));
+    memcpy(wake->circulation, reading->buffer, (size_t)n * sizeof *wake->circulation);
+    TRY(read_values(reading, "wake_birth", row, f, "vortex", n, false));
+    memcpy(wake->birth, reading->buffer, (size_t)n * sizeof *wake->birth);
+    for (int i = 0; i < n; i++) wake->u[i] = wake->v[i] = wake->u_before[i] = wake->v_before[i] = 0;
+    if (wake->has_markers) label_markers(wake);
+    wake->version++;
+    return STATUS_OK;
+}
+
+// ---- the whole
+
+static enum status read_case(const struct reading *reading, int n_assignments, const char *const *assignments,
+                             struct field_row *row) {
+    int schema;
+    TRY(netcdf_read_integer(&reading->file, "shoal_schema", 0, &schema));
+    if (schema != RESULT_SCHEMA) {
+        return status_fail(STATUS_FILE, "%s: not the result of a run that this program can read", reading->file.path);
+    }
+    TRY(netcdf_read_string(&reading->file, "case_effective", &row->effective));
+    TRY(case_parse(&row->values, row->effective, strlen(row->effective), reading->file.path, NULL, n_assignments,
+                   assignments));
+    TRY(fish_school_create(&row->school, &row->values.school));
+    return state_create(&row->state, row->school);
+}
+
+static enum status read_row(struct reading *reading, double t, struct field_row *to) {
+    const struct school *const school = to->school;
+    size_t n_fish, n_rows, longest = 1;
+    long row = 0;
+    TRY(netcdf_read_length(&reading->file, "fish", (size_t)school->n_fish, (size_t)school->n_fish, &n_fish));
+    static const char *const dimensions[] = {"node", "sheet", "vortex"};
+    for (int i = 0; i < 3; i++) {
+        size_t length;
+        TRY(netcdf_read_length(&reading->file, dimensions[i], 1, INT_MAX, &length));
+        if (length > longest) longest = length;
+    }
+    TRY(netcdf_read_length(&reading->file, "time", 0, INT_MAX, &n_rows));
+    reading->n_rows = (long)n_rows;
+    reading->time = calloc(n_rows + 1, sizeof *reading->time);
+    reading->buffer = calloc(2 * longest, sizeof *reading->buffer);
+    if (!reading->time || !reading->buffer) {
+        return status_fail(STATUS_MEMORY, "%s: out of memory while reading", reading->file.path);
+    }
+    const struct netcdf_slice rows[] = {{"time", 0, n_rows}, {NULL, 0, 0}};
+    if (n_rows > 0) TRY(netcdf_read_doubles(&reading->file, "time", rows, reading->time));
+    TRY(find_row(reading, school, t, &row));
+    to->state->t = reading->time[row];
+    for (int f = 0; f < school->n_fish; f++) {
+        TRY(read_body(reading, row, f, to));
+        TRY(read_wake(reading, row, f, to));
+    }
+    return STATUS_OK;
+}
+
+enum status field_row_read(struct field_row *row, const char *path, double t, int n_assignments,
+                           const char *const *assignments) {
+    struct reading reading = {0};
+    *row = (struct field_row){0};
+    TRY(netcdf_open(&reading.file, path));
+    enum status status = read_case(&reading, n_assignments, assignments, row);
+    if (status == STATUS_OK) status = read_row(&reading, t, row);
+    netcdf_close(&reading.file);
+    free(reading.time);
+    free(reading.buffer);
+    if (status != STATUS_OK) field_row_free(row);
+    return status;
+}
+
+void field_row_free(struct field_row *row) {
+    if (row->state) state_free(row->state, row->school);
+    fish_school_free(row->school);
+    case_free(&row->values);
+    free(row->effective);
+    *row = (struct field_row){0};
+}

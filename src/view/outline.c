@@ -1,0 +1,131 @@
+/* outline.c: weights of the nodes at each point, and the thickness between the edges. */
+#include "view/outline.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "fish/curve.h"
+
+static const double pi = 3.14159265358979323846;
+
+/* The cubic through values with the given slopes, between knot 0 and 1. */
+static double hermite(const double *knot, const double *value, const double *slope, double at) {
+    const double length = knot[1] - knot[0], q = (at - knot[0]) / length, p = 1 - q;
+    return (1 + 2 * q) * p * p * value[0] + q * p * p * length * slope[0] + q * q * (3 - 2 * q) * value[1] -
+           q * q * p * length * slope[1];
+}
+
+/* The slope of the parabola through three points, in the middle one. */
+static double parabola_slope(const double *knot, const double *value) {
+    const double left = knot[0] - knot[-1], right = knot[1] - knot[0];
+    return ((value[0] - value[-1]) * right / left + (value[1] - value[0]) * left / right) / (left + right);
+}
+
+/* The thickness of an edge between two angles if the half thickness is their sine: a mean over the edge, or the sum of
+ * the half thicknesses at its ends. */
+static double thickness_of_sine(double from, double to, bool is_mean) {
+    if (!is_mean) return sin(from) + sin(to);
+    // along the body ds = sin(angle)/2 d angle
+    return ((to - sin(2 * to) / 2) - (from - sin(2 * from) / 2)) / (cos(from) - cos(to));
+}
+
+/* Half thickness at the points. Over the angle whose cosine runs along the body a blunt nose is as smooth as a sine:
+ * what is interpolated is the ratio to the sine, continued as in a mirror at both ends. knot, ratio and slope have room
+ * for n_nodes + 3. */
+static void interpolate_half(const struct outline *outline, const double *thickness, bool is_mean, double *knot,
+                             double *ratio, double *slope) {
+    const int n_edges = outline->n_nodes - 1, n = n_edges + 4;
+    for (int k = 0; k < n_edges; k++) {
+        const double from = acos(1 - 2.0 * k / n_edges), to = acos(1 - 2.0 * (k + 1) / n_edges);
+        knot[k + 2] = acos((cos(from) + cos(to)) / 2);
+        ratio[k + 2] = thickness[k] / thickness_of_sine(from, to, is_mean);
+    }
+    for (int k = 0; k < 2; k++) {
+        knot[1 - k] = -knot[2 + k];
+        ratio[1 - k] = ratio[2 + k];
+        knot[n - 2 + k] = 2 * pi - knot[n - 3 - k];
+        ratio[n - 2 + k] = ratio[n - 3 - k];
+    }
+    for (int k = 1; k < n - 1; k++) slope[k] = parabola_slope(knot + k, ratio + k);
+    for (int i = 0, k = 1; i < OUTLINE_POINTS; i++) {
+        const double angle = pi * i / (OUTLINE_POINTS - 1);
+        while (k < n - 3 && angle > knot[k + 1]) k++;
+        outline->half[i] = fmax(0, sin(angle) * hermite(knot + k, ratio + k, slope + k, angle));
+    }
+    outline->half[0] = outline->half[OUTLINE_POINTS - 1] = 0;
+}
+
+static enum status out_of_memory(int n_nodes) {
+    return status_fail(STATUS_MEMORY, "out of memory: the outline of a body of %d nodes", n_nodes);
+}
+
+static enum status fill_half(const struct outline *outline, const double *thickness, bool is_mean) {
+    const size_t n = (size_t)outline->n_nodes + 3;
+    double *const scratch = calloc(3 * n, sizeof *scratch);
+    if (!scratch) return out_of_memory(outline->n_nodes);
+    interpolate_half(outline, thickness, is_mean, scratch, scratch + n, scratch + 2 * n);
+    free(scratch);
+    return STATUS_OK;
+}
+
+static enum status fill_weights(const struct outline *outline) {
+    const int n = outline->n_nodes;
+    struct curve *curve;
+    TRY(curve_create(&curve, n, 0, 2 * OUTLINE_POINTS));
+    for (int i = 0; i < OUTLINE_POINTS; i++) {
+        // the last point is the last node, however the cosine is rounded
+        const double part = (1 - cos(pi * i / (OUTLINE_POINTS - 1))) / 2;
+        const double u = i < OUTLINE_POINTS - 1 ? part * (n - 1) : n - 1;
+        const struct stencil point = curve_smooth_point(curve, u), slope = curve_smooth_slope(curve, u);
+        for (int k = 0; k < n; k++) {
+            outline->weight[i * n + k] = point.weight[k];
+            outline->slope[i * n + k] = slope.weight[k];
+        }
+    }
+    curve_free(curve);
+    return STATUS_OK;
+}
+
+enum status outline_create(struct outline *outline, int n_nodes, const double *thickness, bool is_mean) {
+    *outline = (struct outline){.n_nodes = n_nodes};
+    outline->weight = calloc((size_t)n_nodes * OUTLINE_POINTS, sizeof *outline->weight);
+    outline->slope = calloc((size_t)n_nodes * OUTLINE_POINTS, sizeof *outline->slope);
+    outline->half = calloc(OUTLINE_POINTS, sizeof *outline->half);
+    enum status status = outline->weight && outline->slope && outline->half ? STATUS_OK : out_of_memory(n_nodes);
+    if (status == STATUS_OK) status = fill_weights(outline);
+    if (status == STATUS_OK) status = fill_half(outline, thickness, is_mean);
+    if (status != STATUS_OK) outline_free(outline);
+    return status;
+}
+
+void outline_free(struct outline *outline) {
+    free(outline->weight);
+    free(outline->slope);
+    free(outline->half);
+    *outline = (struct outline){0};
+}
+
+int outline_point(int i) {
+    return i < OUTLINE_POINTS ? i : OUTLINE_SIDES - i;
+}
+
+void outline_polygon(const struct outline *outline, const double *nodes, double *polygon) {
+    for (int i = 0; i < OUTLINE_POINTS; i++) {
+        double x = 0, y = 0, dx = 0, dy = 0;
+        for (int k = 0; k < outline->n_nodes; k++) {
+            const double weight = outline->weight[i * outline->n_nodes + k];
+            const double slope = outline->slope[i * outline->n_nodes + k];
+            x += weight * nodes[2 * k];
+            y += weight * nodes[2 * k + 1];
+            dx += slope * nodes[2 * k];
+            dy += slope * nodes[2 * k + 1];
+        }
+        const double length = hypot(dx, dy), half = length > 0 ? outline->half[i] / length : 0;
+        polygon[2 * i] = x - half * dy;
+        polygon[2 * i + 1] = y + half * dx;
+        if (i == 0 || i == OUTLINE_POINTS - 1) continue;
+        const int other = OUTLINE_SIDES - i;
+        polygon[2 * other] = x + half * dy;
+        polygon[2 * other + 1] = y - half * dx;
+    }
+}

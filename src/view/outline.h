@@ -1,0 +1,38 @@
+/* outline.h: the outline of a body as a polygon: the smooth curve through the nodes, which carries the bound sheet
+ * (doc/model.md, section 6), as thick as the edges are. Tested by tests/view/test_outline.c.
+ *
+ *            left side, from nose to tail
+ *      .--------------------------.
+ *     <  . . . points of the curve . >        the polygon goes along the left side and back along the right one
+ *      '--------------------------'
+ */
+#ifndef OUTLINE_H
+#define OUTLINE_H
+
+#include <stdbool.h>
+
+#include "base/status.h"
+
+enum { OUTLINE_POINTS = 48 /* of the curve, dense at nose and tail */, OUTLINE_SIDES = 2 * OUTLINE_POINTS - 2 };
+
+/* What turns the nodes of a body into its outline. */
+struct outline {
+    int n_nodes;
+    double *weight; /* points of the curve: weights of the nodes                  (OUTLINE_POINTS, n_nodes) */
+    double *slope;  /* and of the derivative along the body                       (OUTLINE_POINTS, n_nodes) */
+    double *half;   /* half thickness there, m; 0 at nose and tail                (OUTLINE_POINTS) */
+};
+
+/* For a body of n_nodes (at least four) whose edges are so thick [m] (n_nodes - 1): a mean over each edge where
+ * is_mean, else the sum of the half thicknesses at its nodes (fish.body.section). Fails with STATUS_MEMORY;
+ * outline_free zeroes it and accepts zero. */
+enum status outline_create(struct outline *outline, int n_nodes, const double *thickness, bool is_mean);
+void outline_free(struct outline *outline);
+
+/* Point i of the polygon counts from the nose along the left side: where along the curve it is. */
+int outline_point(int i);
+
+/* The polygon [m] (OUTLINE_SIDES, 2) at the positions of the nodes [m] (n_nodes, 2). */
+void outline_polygon(const struct outline *outline, const double *nodes, double *polygon);
+
+#endif

@@ -1,0 +1,496 @@
+/* page.c: the data of a run between the two halves of page.html, as JSON with its numbers in base 64.
+ *
+ * Positions are 16-bit integers within a box of their row: {left, bottom, size / 65535}. */
+#include "view/page.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/base64.h"
+#include "base/version.h"
+#include "result/plain_file.h"
+#include "result/result_reader.h"
+#include "view/outline.h"
+#include "wake/wake.h"
+
+/* src/view/page.html; the data go where it says PAGE_DATA */
+extern const char page_template[];
+__asm__(".pushsection .rodata\npage_template: .incbin \"page.html\"\n.byte 0\n.popsection");
+static const char placeholder[] = "PAGE_DATA";
+
+/* What each part of the page may take, bytes of base 64. */
+static const double body_bytes = 2.4e6, wake_bytes = 4e6, series_bytes = 0.8e6;
+
+enum { MIN_WAKES = 240 /* rows of wakes are left out down to so many before vortices are */, POSITIONS = 65535 };
+
+struct page {
+    struct result_reader reader;
+    FILE *stream;
+    size_t n_rows, n_fish, n_nodes /* of all fish */;
+    struct school school; /* what the strength of a vortex needs */
+    size_t body_stride, wake_stride, series_stride, vortex_stride;
+    size_t n_wake_rows, *wake_row; /* rows with a wake                                  (n_wake_rows) */
+};
+
+static enum status out_of_memory(const struct page *page) {
+    return status_fail(STATUS_MEMORY, "%s: out of memory: the page of a run", page->reader.file.path);
+}
+
+// ---- JSON
+
+/* A string; what HTML or JSON would take for a mark is written as a number. */
+static void write_string(FILE *stream, const char *name, const char *string) {
+    fprintf(stream, "\"%s\":\"", name);
+    for (const char *c = string; *c; c++) {
+        if (strchr("\"\\<>&", *c) || (unsigned char)*c < ' ') {
+            fprintf(stream, "\\u%04x", (unsigned)*c);
+        } else {
+            fputc(*c, stream);
+        }
+    }
+    fputc('"', stream);
+}
+
+static void write_array(FILE *stream, const char *name, size_t bytes, const void *values) {
+    fprintf(stream, "\"%s\":\"", name);
+    base64_write(stream, bytes, values);
+    fputc('"', stream);
+}
+
+// ---- positions
+
+/* The smallest square box around n positions, as {left, bottom, size / POSITIONS}. */
+static void find_box(size_t n, const double *xy, double box[3]) {
+    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    for (size_t i = 0; i < 2 * n; i++) {
+        low[i % 2] = fmin(low[i % 2], xy[i]);
+        high[i % 2] = fmax(high[i % 2], xy[i]);
+    }
+    const double size = n > 0 ? fmax(high[0] - low[0], high[1] - low[1]) : 0;
+    box[0] = n > 0 ? low[0] : 0;
+    box[1] = n > 0 ? low[1] : 0;
+    box[2] = size / POSITIONS;
+}
+
+static void place_in_box(size_t n, const double *xy, const double box[3], uint16_t *place) {
+    for (size_t i = 0; i < 2 * n; i++) {
+        const double steps = box[2] > 0 ? (xy[i] - box[i % 2]) / box[2] : 0;
+        place[i] = (uint16_t)fmin(fmax(round(steps), 0), POSITIONS);
+    }
+}
+
+// ---- how much of the run
+
+/* Find the rows with a wake, and how many vortices they have in all. */
+static enum status find_wakes(struct page *page, double *n_vortices) {
+    *n_vortices = 0;
+    page->wake_row = calloc(page->n_rows, sizeof *page->wake_row);
+    if (!page->wake_row) return out_of_memory(page);
+    for (size_t row = 0; row < page->n_rows; row++) {
+        bool has_wake;
+        double *count;
+        TRY(result_reader_has_wake(&page->reader, row, &has_wake));
+        if (!has_wake) continue;
+        TRY(result_reader_new(&page->reader, "wake_count", row, &count));
+        for (size_t f = 0; f < page->n_fish; f++) *n_vortices += count[f];
+        free(count);
+        page->wake_row[page->n_wake_rows++] = row;
+    }
+    return STATUS_OK;
+}
+
+static size_t at_least_1(double stride) {
+    return stride > 1 ? (size_t)stride : 1;
+}
+
+/* Choose which rows and vortices are left out. */
+static enum status choose(struct page *page) {
+    const double per_byte = 4.0 / 3, rows = (double)page->n_rows, fish = (double)page->n_fish;
+    const double bodies = rows * ((double)page->n_nodes * 2 * sizeof(uint16_t) + 4 * sizeof(double)) * per_byte;
+    const double series = rows * (3 * fish * sizeof(float) + sizeof(double)) * per_byte;
+    page->body_stride = at_least_1(ceil(bodies / body_bytes));
+    page->series_stride = at_least_1(ceil(series / series_bytes));
+    if (page->n_rows > 1 && (page->body_stride >= page->n_rows || page->series_stride >= page->n_rows))
+        return status_fail(STATUS_FILE, "%s: a school of %zu fish with %zu nodes is too large for a page of 8 MB",
+                           page->reader.file.path, page->n_fish, page->n_nodes);
+    double n_vortices;
+    TRY(find_wakes(page, &n_vortices));
+    const double wakes = (n_vortices * 3 * sizeof(uint16_t) +
+                          (double)page->n_wake_rows * (4 * sizeof(double) + 2 * fish * sizeof(int32_t))) *
+                         per_byte;
+    const double fraction = ceil(wakes / wake_bytes);
+    page->wake_stride = at_least_1(fmin(fraction, floor((double)page->n_wake_rows / MIN_WAKES)));
+    page->vortex_stride = at_least_1(ceil(fraction / (double)page->wake_stride));
+    return STATUS_OK;
+}
+
+/* The number of rows that every stride-th one of n is; the last is always one of them. */
+static size_t n_of(size_t n, size_t stride) {
+    return n > 0 ? (n - 1 + stride - 1) / stride + 1 : 0;
+}
+
+static size_t row_of(size_t i, size_t n, size_t stride) {
+    return i * stride < n ? i * stride : n - 1;
+}
+
+// ---- the fish
+
+static bool has_same_shape(const struct page *page, const double *thickness, size_t f, size_t g) {
+    const size_t n = page->reader.length[EDGE];
+    if (page->reader.n_nodes[f] != page->reader.n_nodes[g] ||
+        page->reader.has_mean_section[f] != page->reader.has_mean_section[g])
+        return false;
+    for (int k = 0; k < page->reader.n_nodes[f] - 1; k++)
+        if (fabs(thickness[f * n + (size_t)k] - thickness[g * n + (size_t)k]) > 0) return false;
+    return true;
+}
+
+static enum status write_shape(const struct page *page, const double *thickness, size_t f) {
+    const int n = page->reader.n_nodes[f];
+    const size_t n_weights = (size_t)n * OUTLINE_POINTS;
+    struct outline outline;
+    float *const values = calloc(2 * n_weights + OUTLINE_POINTS, sizeof *values);
+    if (!values) return out_of_memory(page);
+    const enum status status =
+        outline_create(&outline, n, thickness + f * page->reader.length[EDGE], page->reader.has_mean_section[f]);
+    if (status == STATUS_OK) {
+        for (size_t i = 0; i < n_weights; i++) {
+            values[i] = (float)outline.weight[i];
+            values[n_weights + i] = (float)outline.slope[i];
+        }
+        for (int i = 0; i < OUTLINE_POINTS; i++) values[2 * n_weights + (size_t)i] = (float)outline.half[i];
+        fprintf(page->stream, "{\"nodes\":%d,\"points\":%d,", n, OUTLINE_POINTS);
+        write_array(page->stream, "weight", n_weights * sizeof *values, values);
+        fputc(',', page->stream);
+        write_array(page->stream, "slope", n_weights * sizeof *values, values + n_weights);
+        fputc(',', page->stream);
+        write_array(page->stream, "half", OUTLINE_POINTS * sizeof *values, values + 2 * n_weights);
+        fputc('}', page->stream);
+        outline_free(&outline);
+    }
+    free(values);
+    return status;
+}
+
+/* The walls, and the side on which the fluid is, where the first fish begins. */
+static enum status write_walls(const struct page *page) {
+    const struct result_reader *const reader = &page->reader;
+    double *x;
+    TRY(result_reader_new(reader, "x", 0, &x));
+    fprintf(page->stream, "\"walls\":[");
+    for (size_t i = 0; i < reader->length[WALL]; i++) {
+        const double y = reader->wall_y[i];
+        fprintf(page->stream, "%s{\"y\":%.9g,\"inward\":%d}", i > 0 ? "," : "", y, x[1] > y ? 1 : -1);
+    }
+    fprintf(page->stream, "],\n");
+    free(x);
+    return STATUS_OK;
+}
+
+/* Write the shapes, each once, and the fish with the numbers of theirs. shape, first: (n_fish). */
+static enum status write_fish(const struct page *page, const double *thickness, const double *length, size_t *shape,
+                              size_t *first) {
+    size_t n_shapes = 0;
+    fprintf(page->stream, "\"shapes\":[");
+    for (size_t f = 0; f < page->n_fish; f++) {
+        size_t s = 0;
+        while (s < n_shapes && !has_same_shape(page, thickness, first[s], f)) s++;
+        shape[f] = s;
+        if (s < n_shapes) continue;
+        first[n_shapes++] = f;
+        if (s > 0) fputc(',', page->stream);
+        TRY(write_shape(page, thickness, f));
+    }
+    fprintf(page->stream, "],\n\"fish\":[");
+    for (size_t f = 0; f < page->n_fish; f++) {
+        fprintf(page->stream, "%s{", f > 0 ? ",\n" : "");
+        write_string(page->stream, "name", page->reader.name[f]);
+        fprintf(page->stream, ",\"length\":%.9g,\"shape\":%zu}", length[f], shape[f]);
+    }
+    fprintf(page->stream, "],\n");
+    return STATUS_OK;
+}
+
+static enum status write_all_fish(const struct page *page) {
+    double *thickness, *length = NULL;
+    size_t *const numbers = calloc(2 * page->n_fish, sizeof *numbers);
+    if (!numbers) return out_of_memory(page);
+    enum status status = result_reader_new(&page->reader, "edge_height", 0, &thickness);
+    if (status == STATUS_OK) status = result_reader_new(&page->reader, "body_length", 0, &length);
+    if (status == STATUS_OK) status = write_fish(page, thickness, length, numbers, numbers + page->n_fish);
+    free(thickness);
+    free(length);
+    free(numbers);
+    return status;
+}
+
+// ---- the rows
+
+/* Some rows of bodies or wakes being collected: the parts that both have. */
+struct rows {
+    size_t n, n_places;
+    double *time, *box; /* (n), (n, 3) */
+    uint16_t *place;    /* (n_places, 2) */
+};
+
+static enum status rows_create(const struct page *page, struct rows *rows, size_t n, size_t n_places) {
+    *rows = (struct rows){.n = n};
+    rows->time = calloc(n + 1, sizeof *rows->time);
+    rows->box = calloc(n + 1, 3 * sizeof *rows->box);
+    rows->place = calloc(n_places + 1, 2 * sizeof *rows->place);
+    return rows->time && rows->box && rows->place ? STATUS_OK : out_of_memory(page);
+}
+
+static void rows_free(struct rows *rows) {
+    free(rows->time);
+    free(rows->box);
+    free(rows->place);
+}
+
+/* Add a row at number i of n positions. */
+static enum status rows_add(const struct page *page, struct rows *rows, size_t i, size_t row, size_t n,
+                            const double *xy) {
+    TRY(result_reader_row(&page->reader, "time", row, &rows->time[i]));
+    find_box(n, xy, rows->box + 3 * i);
+    place_in_box(n, xy, rows->box + 3 * i, rows->place + 2 * rows->n_places);
+    rows->n_places += n;
+    return STATUS_OK;
+}
+
+static void rows_write(const struct page *page, const struct rows *rows) {
+    fprintf(page->stream, "\"n\":%zu,", rows->n);
+    write_array(page->stream, "time", rows->n * sizeof *rows->time, rows->time);
+    fputs(",\n", page->stream);
+    write_array(page->stream, "box", 3 * rows->n * sizeof *rows->box, rows->box);
+    fputs(",\n", page->stream);
+    write_array(page->stream, "place", 2 * rows->n_places * sizeof *rows->place, rows->place);
+}
+
+static enum status add_bodies(const struct page *page, struct rows *rows, double *x) {
+    for (size_t i = 0; i < rows->n; i++) {
+        const size_t row = row_of(i, page->n_rows, page->body_stride);
+        TRY(result_reader_row(&page->reader, "x", row, x));
+        // the nodes of all fish one after the other
+        size_t n = 0;
+        for (size_t f = 0; f < page->n_fish; f++) {
+            const size_t n_nodes = (size_t)page->reader.n_nodes[f];
+            memmove(x + 2 * n, x + 2 * f * page->reader.length[NODE], 2 * n_nodes * sizeof *x);
+            n += n_nodes;
+        }
+        TRY(rows_add(page, rows, i, row, n, x));
+    }
+    return STATUS_OK;
+}
+
+static enum status write_bodies(const struct page *page) {
+    struct rows rows;
+    const size_t n = n_of(page->n_rows, page->body_stride);
+    double *const x = calloc(result_reader_n(&page->reader, "x") + 1, sizeof *x);
+    enum status status = rows_create(page, &rows, n, n * page->n_nodes);
+    if (status == STATUS_OK && !x) status = out_of_memory(page);
+    if (status == STATUS_OK) status = add_bodies(page, &rows, x);
+    if (status == STATUS_OK) {
+        fprintf(page->stream, "\"bodies\":{");
+        rows_write(page, &rows);
+        fprintf(page->stream, "},\n");
+    }
+    rows_free(&rows);
+    free(x);
+    return status;
+}
+
+// ---- wakes
+
+/* The wakes being collected. A vortex has the number of the interval in which it was released; only every
+ * vortex_stride-th number is there, so that a vortex that is there in one row is there in the next. */
+struct wakes {
+    struct rows rows;
+    int32_t *first, *count;          /* the number of the oldest over the stride, and how many  (n, n_fish) */
+    float *strength;                 /* circulation with decay, m2 s-1                          (n_places) */
+    int16_t *integer;                /* the same in units of the largest over INT16_MAX         (n_places) */
+    double *x, *circulation, *birth; /* of a row, as in the file */
+    double *xy;                      /* those that are kept */
+};
+
+/* Keep the vortices of a fish in a row: their positions go behind the n in wakes->xy; how many. */
+static size_t keep_vortices(const struct page *page, struct wakes *wakes, size_t i, size_t f, size_t n) {
+    const size_t slots = page->reader.length[VORTEX];
+    const long stride = (long)page->vortex_stride;
+    const double t = wakes->rows.time[i];
+    size_t kept = 0;
+    for (size_t v = f * slots; v < (f + 1) * slots && isfinite(wakes->circulation[v]); v++) {
+        const long number = lround(wakes->birth[v] / page->school.interval);
+        if (number % stride != 0) continue;
+        if (kept == 0) wakes->first[i * page->n_fish + f] = (int32_t)(number / stride);
+        memcpy(wakes->xy + 2 * (n + kept), wakes->x + 2 * v, 2 * sizeof *wakes->x);
+        const double strength = wake_strength(&page->school, t - wakes->birth[v]);
+        wakes->strength[wakes->rows.n_places + n + kept] = (float)(wakes->circulation[v] * strength);
+        kept++;
+    }
+    wakes->count[i * page->n_fish + f] = (int32_t)kept;
+    return kept;
+}
+
+static enum status add_wakes(const struct page *page, struct wakes *wakes) {
+    const struct result_reader *const reader = &page->reader;
+    for (size_t i = 0; i < wakes->rows.n; i++) {
+        const size_t row = page->wake_row[row_of(i, page->n_wake_rows, page->wake_stride)];
+        TRY(result_reader_row(reader, "time", row, &wakes->rows.time[i]));
+        TRY(result_reader_row(reader, "wake_x", row, wakes->x));
+        TRY(result_reader_row(reader, "wake_circulation", row, wakes->circulation));
+        TRY(result_reader_row(reader, "wake_birth", row, wakes->birth));
+        size_t n = 0;
+        for (size_t f = 0; f < page->n_fish; f++) n += keep_vortices(page, wakes, i, f, n);
+        TRY(rows_add(page, &wakes->rows, i, row, n, wakes->xy));
+    }
+    return STATUS_OK;
+}
+
+/* Circulations as integers of 16 bits. */
+static void write_strength(const struct page *page, const struct wakes *wakes) {
+    const size_t n = wakes->rows.n_places;
+    float max = 0;
+    for (size_t i = 0; i < n; i++) max = fmaxf(max, fabsf(wakes->strength[i]));
+    const double unit = max > 0 ? max / INT16_MAX : 1;
+    for (size_t i = 0; i < n; i++) wakes->integer[i] = (int16_t)lround(wakes->strength[i] / unit);
+    fprintf(page->stream, ",\n\"unit\":%.9g,", unit);
+    write_array(page->stream, "strength", n * sizeof *wakes->integer, wakes->integer);
+}
+
+static enum status write_wakes(const struct page *page) {
+    const size_t n = n_of(page->n_wake_rows, page->wake_stride);
+    const size_t slots = page->n_fish * page->reader.length[VORTEX], most = n * slots;
+    struct wakes wakes = {.first = calloc(n * page->n_fish + 1, sizeof *wakes.first),
+                          .count = calloc(n * page->n_fish + 1, sizeof *wakes.count),
+                          .strength = calloc(most + 1, sizeof *wakes.strength),
+                          .integer = calloc(most + 1, sizeof *wakes.integer),
+                          .x = calloc(slots + 1, 2 * sizeof *wakes.x),
+                          .circulation = calloc(slots + 1, sizeof *wakes.circulation),
+                          .birth = calloc(slots + 1, sizeof *wakes.birth),
+                          .xy = calloc(slots + 1, 2 * sizeof *wakes.xy)};
+    enum status status = rows_create(page, &wakes.rows, n, most);
+    const bool has_memory = wakes.first && wakes.count && wakes.strength && wakes.integer && wakes.x &&
+                            wakes.circulation && wakes.birth && wakes.xy;
+    if (status == STATUS_OK && !has_memory) status = out_of_memory(page);
+    if (status == STATUS_OK) status = add_wakes(page, &wakes);
+    if (status == STATUS_OK) {
+        fprintf(page->stream, "\"wakes\":{\"interval\":%.9g,", page->school.interval * (double)page->vortex_stride);
+        rows_write(page, &wakes.rows);
+        fputs(",\n", page->stream);
+        write_array(page->stream, "first", n * page->n_fish * sizeof *wakes.first, wakes.first);
+        fputs(",\n", page->stream);
+        write_array(page->stream, "count", n * page->n_fish * sizeof *wakes.count, wakes.count);
+        write_strength(page, &wakes);
+        fprintf(page->stream, "},\n");
+    }
+    rows_free(&wakes.rows);
+    void *const arrays[] = {wakes.first, wakes.count,       wakes.strength, wakes.integer,
+                            wakes.x,     wakes.circulation, wakes.birth,    wakes.xy};
+    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) free(arrays[i]);
+    return status;
+}
+
+// ---- time series
+
+static enum status write_one_series(const struct page *page, const char *name, size_t n, double *row, float *values) {
+    for (size_t i = 0; i < n; i++) {
+        TRY(result_reader_row(&page->reader, name, row_of(i, page->n_rows, page->series_stride), row));
+        for (size_t f = 0; f < page->n_fish; f++) values[f * n + i] = (float)row[f];
+    }
+    fputs(",\n", page->stream);
+    write_array(page->stream, name, n * page->n_fish * sizeof *values, values);
+    return STATUS_OK;
+}
+
+static enum status write_series(const struct page *page) {
+    static const char *const names[] = {"speed", "heading", "actuation_power"};
+    const size_t n = n_of(page->n_rows, page->series_stride);
+    double *const time = calloc(n, sizeof *time), *const row = calloc(page->n_fish, sizeof *row);
+    float *const values = calloc(n * page->n_fish, sizeof *values);
+    enum status status = time && row && values ? STATUS_OK : out_of_memory(page);
+    for (size_t i = 0; i < n && status == STATUS_OK; i++)
+        status = result_reader_row(&page->reader, "time", row_of(i, page->n_rows, page->series_stride), &time[i]);
+    if (status == STATUS_OK) {
+        fprintf(page->stream, "\"series\":{\"n\":%zu,", n);
+        write_array(page->stream, "time", n * sizeof *time, time);
+    }
+    for (size_t k = 0; k < sizeof names / sizeof *names && status == STATUS_OK; k++)
+        status = write_one_series(page, names[k], n, row, values);
+    fprintf(page->stream, "}");
+    free(time);
+    free(row);
+    free(values);
+    return status;
+}
+
+// ---- the page
+
+/* What is left out, in words; "" where all is there. */
+static void write_thinned(const struct page *page) {
+    const size_t strides[] = {page->body_stride, page->wake_stride, page->vortex_stride, page->series_stride};
+    static const char *const what[] = {"bodies", "wakes", "vortices", "points of the traces"};
+    static const char *const of[] = {"rows", "rows", "vortices", "rows"};
+    char words[256] = "";
+    for (size_t i = 0; i < sizeof strides / sizeof *strides; i++) {
+        const size_t length = strlen(words);
+        if (strides[i] < 2) continue;
+        snprintf(words + length, sizeof words - length, "%s%s: one of %zu %s", length > 0 ? "; " : "", what[i],
+                 strides[i], of[i]);
+    }
+    write_string(page->stream, "thinned", words);
+}
+
+static enum status write_data(const struct page *page) {
+    FILE *const stream = page->stream;
+    const char *const slash = strrchr(page->reader.file.path, '/');
+    fputs("{", stream);
+    write_string(stream, "title", page->reader.title);
+    fputc(',', stream);
+    write_string(stream, "file", slash ? slash + 1 : page->reader.file.path);
+    fputc(',', stream);
+    write_string(stream, "status", page->reader.run_status);
+    fputc(',', stream);
+    write_string(stream, "program", version_short());
+    fprintf(stream, ",\"rows\":%zu,", page->n_rows);
+    write_thinned(page);
+    fputs(",\n", stream);
+    TRY(write_walls(page));
+    TRY(write_all_fish(page));
+    TRY(write_bodies(page));
+    TRY(write_wakes(page));
+    TRY(write_series(page));
+    fputs("}", stream);
+    return STATUS_OK;
+}
+
+static enum status fill(struct page *page) {
+    page->n_rows = page->reader.length[TIME];
+    page->n_fish = page->reader.length[FISH];
+    for (size_t f = 0; f < page->n_fish; f++) page->n_nodes += (size_t)page->reader.n_nodes[f];
+    TRY(result_reader_row(&page->reader, "shedding_interval", 0, &page->school.interval));
+    TRY(result_reader_row(&page->reader, "wake_lifetime", 0, &page->school.lifetime));
+    TRY(result_reader_row(&page->reader, "wake_fade", 0, &page->school.decay));
+    TRY(choose(page));
+    const char *const place = strstr(page_template, placeholder);
+    fwrite(page_template, 1, (size_t)(place - page_template), page->stream);
+    TRY(write_data(page));
+    fputs(place + strlen(placeholder), page->stream);
+    return STATUS_OK;
+}
+
+enum status page_write(const char *from, const char *to, bool overwrite) {
+    struct page page = {0};
+    struct plain_file file;
+    durable_sweep(to);
+    TRY(result_reader_open(&page.reader, from));
+    enum status status = plain_file_open(&file, to, TARGET_PAGE, overwrite, 0666);
+    if (status == STATUS_OK) {
+        page.stream = file.stream;
+        status = plain_file_close(&file, fill(&page));
+    }
+    free(page.wake_row);
+    result_reader_close(&page.reader);
+    return status;
+}

@@ -1,0 +1,207 @@
+/* wake.c: the queue of free vortices of one fish. */
+#include "wake/wake.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/ramp.h"
+
+enum { N_ARRAYS = 8 };
+
+static void list_arrays(struct wake *wake, double **array[N_ARRAYS]) {
+    double **const all[N_ARRAYS] = {&wake->x,        &wake->y,        &wake->u,           &wake->v,
+                                    &wake->u_before, &wake->v_before, &wake->circulation, &wake->birth};
+    memcpy(array, all, sizeof all);
+}
+
+static enum status reserve(struct wake *wake, int capacity) {
+    double **array[N_ARRAYS];
+    list_arrays(wake, array);
+    for (int i = 0; i < N_ARRAYS; i++) {
+        double *const more = realloc(*array[i], (size_t)capacity * sizeof *more);
+        if (!more) return status_fail(STATUS_MEMORY, "out of memory: a wake of %d vortices", capacity);
+        *array[i] = more;
+    }
+    wake->capacity = capacity;
+    return STATUS_OK;
+}
+
+enum status wake_create(struct wake *wake, int capacity) {
+    *wake = (struct wake){0};
+    const enum status status = reserve(wake, capacity > 0 ? capacity : 1);
+    if (status != STATUS_OK) wake_free(wake);
+    return status;
+}
+
+void wake_free(struct wake *wake) {
+    double **array[N_ARRAYS];
+    list_arrays(wake, array);
+    for (int i = 0; i < N_ARRAYS; i++) free(*array[i]);
+    *wake = (struct wake){0};
+}
+
+int wake_most(const struct school *school, long n_events) {
+    // one is released at every event but the first (impulsive: at the first too) and lives for a lifetime
+    const double in_a_lifetime = ceil(school->lifetime / school->interval * (1 - 1e-9)) + 1;
+    const double ever = (double)n_events + 1;
+    return (int)fmin(fmin(in_a_lifetime, ever), 2e9);
+}
+
+enum status wake_resize(struct wake *wake, int n) {
+    if (n > wake->capacity) TRY(reserve(wake, n + n / 2));
+    wake->n_vortex = n;
+    return STATUS_OK;
+}
+
+enum status wake_release(struct wake *wake, double x, double y, double circulation, double birth) {
+    if (wake->n_vortex == wake->capacity) TRY(reserve(wake, 2 * wake->capacity));
+    const int i = wake->n_vortex++;
+    wake->version++;
+    wake->x[i] = x;
+    wake->y[i] = y;
+    wake->u[i] = wake->v[i] = wake->u_before[i] = wake->v_before[i] = 0;
+    wake->circulation[i] = circulation;
+    wake->birth[i] = birth;
+    return STATUS_OK;
+}
+
+// without decay a vortex of continuous shedding is removed within its last interval
+static int fades_in_one_interval(const struct school *school) {
+    return school->decay <= 0 && school->shedding != SHEDDING_IMPULSIVE;
+}
+
+double wake_strength(const struct school *school, double age) {
+    const double left = school->lifetime - age;
+    if (fades_in_one_interval(school)) return fmax(0, fmin(1, left / school->interval));
+    if (school->decay <= 0) return 1;
+    // it stands for what was shed around half an interval before its release
+    return 1 - ramp_step((school->interval / 2 + school->decay - left) / school->decay);
+}
+
+// the age from which on the strength may be less than 1 within an interval
+static double age_of_decay(const struct school *school) {
+    return school->lifetime - fmax(school->decay + school->interval / 2, school->interval);
+}
+
+void wake_set_tail(struct wake *wake, const double velocity[2], const double tangent[2]) {
+    wake->version++;
+    memcpy(wake->tail_velocity, velocity, sizeof wake->tail_velocity);
+    memcpy(wake->tail_tangent, tangent, sizeof wake->tail_tangent);
+}
+
+static double along_path(double x, double u, double u_before, double tau, double interval) {
+    return x + tau * u + tau * tau / (2 * interval) * (u - u_before);
+}
+
+void wake_marker(const struct wake *wake, int i, double interval, double tau, double position[2]) {
+    position[0] = along_path(wake->x[i], wake->u[i], wake->u_before[i], tau, interval);
+    position[1] = along_path(wake->y[i], wake->v[i], wake->v_before[i], tau, interval);
+}
+
+double wake_circulation(const struct wake *wake, int i) {
+    if (!wake->has_markers) return wake->circulation[i];
+    const int older = i > 0 ? i - 1 : 0, newer = i + 1 < wake->n_vortex ? i + 1 : i;
+    return (wake->circulation[newer] - wake->circulation[older]) / 2;
+}
+
+int wake_n_sources(const struct wake *wake) {
+    return wake->has_markers && wake->n_vortex > 0 ? wake->n_vortex - 1 : wake->n_vortex;
+}
+
+double wake_source(const struct wake *wake, int i) {
+    return wake->has_markers ? wake->circulation[i + 1] - wake->circulation[i] : wake->circulation[i];
+}
+
+double wake_strength_within(const struct school *school, double age, double q) {
+    if (age + school->interval <= age_of_decay(school)) return 1;
+    const double now = wake_strength(school, age), next = wake_strength(school, age + school->interval);
+    return now + q * (next - now);
+}
+
+void wake_at(const struct wake *wake, const struct school *school, double t, double tau, double *x, double *y,
+             double *strength) {
+    const double q = tau / school->interval;
+    for (int i = 0; i < wake->n_vortex; i++) {
+        x[i] = along_path(wake->x[i], wake->u[i], wake->u_before[i], tau, school->interval);
+        y[i] = along_path(wake->y[i], wake->v[i], wake->v_before[i], tau, school->interval);
+        strength[i] = wake->circulation[i];
+    }
+    for (int i = 0; i < wake->n_vortex; i++) {
+        const double age = t - wake->birth[i];
+        if (age + school->interval <= age_of_decay(school)) break;
+        strength[i] *= wake_strength_within(school, age, q);
+    }
+}
+
+double wake_lost(const struct wake *wake, const struct school *school, double t, double tau) {
+    double lost = wake->removed;
+    for (int i = 0; i < wake_n_sources(wake); i++) {
+        const double age = t - wake->birth[i + wake->has_markers];
+        if (age + school->interval <= age_of_decay(school)) break;
+        lost += wake_source(wake, i) * (1 - wake_strength_within(school, age, tau / school->interval));
+    }
+    return lost;
+}
+
+void wake_advance(struct wake *wake, double interval) {
+    wake->version++;
+    for (int i = 0; i < wake->n_vortex; i++) {
+        wake->x[i] = along_path(wake->x[i], wake->u[i], wake->u_before[i], interval, interval);
+        wake->y[i] = along_path(wake->y[i], wake->v[i], wake->v_before[i], interval, interval);
+    }
+}
+
+int wake_n_old(const struct wake *wake, const struct school *school, double t) {
+    // ages are multiples of the interval: a part of one decides what rounding must not
+    const double rounding = school->interval * (fades_in_one_interval(school) ? 1e-6 : 0.5);
+    // a stretch is as old as its newer marker
+    const int newer = wake->has_markers;
+    int n_old = 0;
+    while (n_old + newer < wake->n_vortex && t - wake->birth[n_old + newer] > school->lifetime - rounding) {
+        n_old++;
+    }
+    return n_old;
+}
+
+void wake_remove_old(struct wake *wake, const struct school *school, double t) {
+    const int n_old = wake_n_old(wake, school, t);
+    if (n_old == 0) return;
+    for (int i = 0; i < n_old; i++) wake->removed += wake_source(wake, i);
+    wake->version++;
+    wake->n_vortex -= n_old;
+    double **array[N_ARRAYS];
+    list_arrays(wake, array);
+    for (int i = 0; i < N_ARRAYS; i++)
+        memmove(*array[i], *array[i] + n_old, (size_t)wake->n_vortex * sizeof **array[i]);
+}
+
+void wake_add_shed(struct wake *wake, double circulation) {
+    // the label of a marker is what had been shed at its birth
+    for (int i = 0; i < wake->n_vortex && wake->has_markers; i++) wake->circulation[i] += circulation;
+    wake->shed_before += circulation;
+    wake->removed += circulation;
+    wake->version++;
+}
+
+void wake_leave_behind(struct wake *wake, double shed) {
+    wake->n_vortex = 0;
+    wake->shed_before = wake->removed = shed;
+    wake->version++;
+}
+
+void wake_set_velocity(struct wake *wake, const double *u, const double *v, int n_new) {
+    const int n_old = wake->n_vortex - n_new;
+    wake->version++;
+    memcpy(wake->u_before, wake->u, (size_t)n_old * sizeof *u);
+    memcpy(wake->v_before, wake->v, (size_t)n_old * sizeof *v);
+    memcpy(wake->u_before + n_old, u + n_old, (size_t)n_new * sizeof *u);
+    memcpy(wake->v_before + n_old, v + n_old, (size_t)n_new * sizeof *v);
+    memcpy(wake->u, u, (size_t)wake->n_vortex * sizeof *u);
+    memcpy(wake->v, v, (size_t)wake->n_vortex * sizeof *v);
+}
+
+void wake_nascent(const struct wake *wake, double tau, const double tail[2], double position[2]) {
+    position[0] = tail[0] + tau * wake->slip[0] / 2;
+    position[1] = tail[1] + tau * wake->slip[1] / 2;
+}

@@ -1,0 +1,63 @@
+/* test_bending_mode.c: the slowest mode against those of uniform beams. */
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "body/bending_mode.h"
+#include "school.h"
+
+#define TIME "time: {end: 3, shedding_interval: 0.01}\n"
+
+static double slowest_mode(const char *fish) {
+    char text[512];
+    snprintf(text, sizeof text, TIME "fish: [{%s}]\n", fish);
+    struct setup setup;
+    school_build(&setup, text);
+    double *const scratch = calloc((size_t)setup.school->n_unknowns, sizeof *scratch);
+    assert_non_null(scratch);
+    const double frequency = bending_mode_frequency(&setup.school->fish[0], scratch);
+    free(scratch);
+    school_clear(&setup);
+    return frequency;
+}
+
+#define UNIFORM                                                                                                        \
+    "nodes: 81, length: 2, drag: {added_mass: 0}, body: {profile: uniform, thickness: 0.1, width: 0.2, density: 800, " \
+    "modulus: 2e6, second_moment: ellipse}"
+
+// of an elliptic section of 0.2 m by 0.4 m: the radius of gyration is a quarter of the thickness
+static double analytic(double beta_length) {
+    const double wave = sqrt(2e6 / 800.0) * 0.2 / 4;
+    return beta_length * beta_length / 4 * wave / (2 * M_PI);
+}
+
+static void slowest_mode_of_a_uniform_body_is_that_of_the_beam(void **state) {
+    (void)state;
+    // cosh b cos b = 1 and -1 (Timoshenko, Vibration problems in engineering); 81 nodes: errors of 1/N
+    NEAR(slowest_mode(UNIFORM), analytic(4.730040745), 0, 0.01);
+    NEAR(slowest_mode(UNIFORM ", motion: {driven: head}"), analytic(1.875104069), 0, 0.03);
+}
+
+static void the_accelerated_fluid_makes_modes_slower(void **state) {
+    (void)state;
+    // with added mass pi/4 rho w^2 per length on pi/4 rho_b h w: a factor sqrt(1 + 1000/800*0.4/0.2)
+    const double dry = slowest_mode(UNIFORM);
+    const double wet = slowest_mode(
+        "nodes: 81, length: 2, drag: {added_mass: 1, extent: width}, body: {profile: uniform, "
+        "thickness: 0.1, width: 0.2, density: 800, modulus: 2e6, second_moment: ellipse}");
+    NEAR(dry / wet, sqrt(1 + 1000.0 / 800 * 2), 0, 0.02);
+}
+
+static void frequency_grows_with_the_root_of_the_modulus(void **state) {
+    (void)state;
+    const double soft = slowest_mode("body: {modulus: 1e5}"), stiff = slowest_mode("body: {modulus: 9e5}");
+    NEAR(stiff / soft, 3, 0, 1e-12);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(slowest_mode_of_a_uniform_body_is_that_of_the_beam),
+        cmocka_unit_test(the_accelerated_fluid_makes_modes_slower),
+        cmocka_unit_test(frequency_grows_with_the_root_of_the_modulus),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

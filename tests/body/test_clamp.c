@@ -1,0 +1,253 @@
+/* test_clamp.c: the joint that holds a prescribed head: doc/model.md, section 2. */
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "body/clamp.h"
+#include "body/edge.h"
+#include "body/rod.h"
+#include "fish/fish_prescribed.h"
+#include "school.h"
+#include "school/residual_jacobian.h"
+
+#define TIME "time: {end: 2, shedding_interval: 0.01}\n"
+#define HEAD "motion: {driven: head, heave: 0.1, pitch: 20, pitch_phase: 70, frequency: 1.2}"
+
+static const double pi = 3.14159265358979323846;
+
+static void value_of_clamp(struct setup *setup, const double *y, const double *yp, double *value) {
+    (void)yp;
+    const struct fish *fish = setup->school->fish;
+    clamp_residual(fish, setup->t, y, value);
+    for (int i = 0; i < 2; i++) {
+        for (int node = 0; node < 2; node++) value[edge_acceleration(fish, i, node)] /= fish->mass[node];
+    }
+}
+
+static void jacobian_of_clamp(struct setup *setup, double cj, const double *y, struct sparse *jacobian) {
+    (void)cj;
+    clamp_jacobian(setup->school->fish, setup->t, y, jacobian);
+}
+
+static void jacobian_agrees_with_differences(void **state) {
+    (void)state;
+    const char *const texts[] = {TIME "fish: [{body: {section: mean}, " HEAD "}]\n",
+                                 TIME "fish: [{body: {section: mean, relaxation_time: 0.1, bending_damping: 2}, " HEAD
+                                      "}]\n"};
+    for (int i = 0; i < 2; i++) {
+        struct setup setup;
+        school_build(&setup, texts[i]);
+        school_stir(&setup);
+        school_compare(&setup, value_of_clamp, jacobian_of_clamp, texts[i]);
+        school_clear(&setup);
+    }
+}
+
+static void force_is_minus_the_gradient_of_the_energy(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{body: {section: mean, bending_damping: 0, relaxation_time: 0}, " HEAD "}]\n");
+    school_stir(&setup);
+    const struct fish *fish = setup.school->fish;
+    double *const y = setup.state->y;
+    clamp_residual(fish, setup.t, y, setup.value);
+    const double h = 1e-5;
+    for (int i = 0; i < 2 * fish->n_nodes; i++) {
+        const double here = y[i];
+        y[i] = here + h;
+        const double high = clamp_energy(fish, setup.t, y);
+        y[i] = here - h;
+        const double low = clamp_energy(fish, setup.t, y);
+        y[i] = here;
+        // what the differences cut off and round
+        NEAR(setup.value[fish->at.ax + i], (high - low) / (2 * h), 1e-5, 1e-6);
+    }
+    assert_true(clamp_energy(fish, setup.t, y) > 0.1);
+    school_clear(&setup);
+}
+
+static void powers_are_what_the_energy_and_the_nodes_do_not_take_up(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{body: {section: mean, relaxation_time: 0.01}, " HEAD "}]\n");
+    school_stir(&setup);
+    const struct fish *fish = setup.school->fish;
+    const double *const y = setup.state->y, h = 1e-5;
+    double moved[2][256], power = 0;
+    for (int side = 0; side < 2; side++) {
+        for (int i = 0; i < fish->at.end; i++) moved[side][i] = y[i];
+        for (int i = 0; i < 2 * fish->n_nodes; i++) moved[side][i] += (side == 0 ? -h : h) * y[fish->at.vx + i];
+    }
+    const double rate =
+        (clamp_energy(fish, setup.t + h, moved[1]) - clamp_energy(fish, setup.t - h, moved[0])) / (2 * h);
+    clamp_residual(fish, setup.t, y, setup.value);
+    for (int i = 0; i < 2 * fish->n_nodes; i++) power -= setup.value[fish->at.ax + i] * y[fish->at.vx + i];
+    const double damping = clamp_damping_power(fish, setup.t, y), driving = clamp_driving_power(fish, setup.t, y);
+    assert_true(damping < 0 && fabs(driving) > 1e-3);
+    NEAR(rate, -power + damping + driving, 1e-5, 1e-6);
+    school_clear(&setup);
+}
+
+static void energy_audit_of_a_clamped_fish_closes(void **state) {
+    (void)state;
+    const char *const texts[] = {
+        TIME "fish: [{body: {section: mean, modulus: 1.0e+5}, wave: {amplitude: 0}, " HEAD "}]\n",
+        TIME "fish: [{force: reactive, body: {section: mean, modulus: 1.0e+5, relaxation_time: 0.01}, " HEAD "}]\n"};
+    for (int i = 0; i < 2; i++) {
+        struct simulation *const simulation = school_simulation(texts[i]);
+        double worst = 0, most = 0;
+        while (simulation->state->t < 2) {
+            school_ok(simulate_step(simulation));
+            simulate_measure(simulation);
+            const struct diagnostics_fish *fish = &simulation->diagnostics->fish[0];
+            worst = fmax(worst, fabs(fish->energy_audit));
+            most = fmax(most, fish->kinetic_energy + fish->bending_energy);
+        }
+        print_message("audit %.1e J of %.1f J\n", worst, most);
+        // a motion that begins at once: thirty tolerances, as in test_diagnostics.c
+        assert_true(worst < 30 * 1e-5 * most);
+        simulate_free(simulation);
+    }
+}
+
+static void head_has_one_prescribed_node_and_published_sections_two(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{body: {section: mean}, " HEAD
+                              "}, {start: {position: [0, 2]}, body: {section: "
+                              "nodes}, " HEAD "}, {start: {position: [0, 4]}, body: {section: mean}}]\n");
+    const struct fish *fish = setup.school->fish;
+    const int n[] = {1, 2, 0}, has_clamp[] = {1, 0, 0};
+    for (int f = 0; f < 3; f++) {
+        assert_int_equal(fish_n_prescribed(&fish[f]), n[f]);
+        assert_int_equal(fish[f].has_clamp, has_clamp[f]);
+        NEAR(clamp_energy(&fish[f], 0.1, setup.state->y), 0, has_clamp[f] ? INFINITY : 0, 0);
+    }
+    school_clear(&setup);
+}
+
+static void clamp_is_the_joint_of_half_a_cell(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(
+        &setup, TIME
+        "fish: [{nodes: 9, body: {section: mean, profile: uniform, bending_damping: 2, relaxation_time: 0.1}, " HEAD
+        "}]\n");
+    const struct fish *fish = setup.school->fish;
+    // the joints have the modulus times the second moment
+    NEAR(fish->clamp_stiffness, 2 * fish->bending_stiffness[0] / fish->edge_length, 0, 1e-14);
+    NEAR(fish->clamp_damping, 2 * fish->bending_damping[0], 0, 1e-14);
+    school_clear(&setup);
+}
+
+static void given_direction_is_that_of_the_prescribed_nodes(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{start: {heading: 25}, " HEAD "}]\n");
+    const struct fish *fish = setup.school->fish;
+    const double h = 1e-5;
+    double a[2], b[2], direction[3][2], rate, ignored[2];
+    fish_prescribed_node(fish, 0, 0.3, a, ignored, ignored);
+    fish_prescribed_node(fish, 6, 0.3, b, ignored, ignored);
+    for (int i = 0; i < 3; i++) fish_prescribed_direction(fish, 0.3 + (i - 1) * h, direction[i], &rate);
+    fish_prescribed_direction(fish, 0.3, direction[1], &rate);
+    for (int i = 0; i < 2; i++) {
+        NEAR(b[i] - a[i], direction[1][i], 1e-14, 0);
+        const double across = i == 0 ? -direction[1][1] : direction[1][0];
+        NEAR((direction[2][i] - direction[0][i]) / (2 * h), rate * across, 1e-7, 0);
+    }
+    school_clear(&setup);
+}
+
+// solve a x = b by elimination; a is positive definite
+static void eliminate(int n, double *a, double *b) {
+    for (int p = 0; p < n; p++) {
+        for (int row = p + 1; row < n; row++) {
+            const double factor = a[row * n + p] / a[p * n + p];
+            for (int column = p; column < n; column++) a[row * n + column] -= factor * a[p * n + column];
+            b[row] -= factor * b[p];
+        }
+    }
+    for (int p = n - 1; p >= 0; p--) {
+        for (int column = p + 1; column < n; column++) b[p] -= a[p * n + column] * b[column];
+        b[p] /= a[p * n + p];
+    }
+}
+
+// beta L of the lowest mode of a uniform beam with EI/(rho A L^4) = 1 s-2, clamped at its nose: by inverse iteration
+// with the Jacobian's matrix of lateral motion, K/m
+static double lowest_mode(int nodes) {
+    char text[512];
+    snprintf(text, sizeof text,
+             TIME
+             "fluid: {density: 0}\nfish: [{nodes: %d, sheet_points: 5, start: {speed: 0}, wave: {amplitude: 0},\n"
+             "  body: {section: mean, profile: uniform, thickness: 0.001, modulus: 3.2e+10},\n"
+             "  motion: {driven: head, speed: 0}}]\n",
+             nodes);
+    struct setup setup;
+    school_build(&setup, text);
+    const struct fish *fish = setup.school->fish;
+    school_ok(residual_jacobian(setup.residual, 0, 0, setup.state->y, setup.jacobian));
+    double *const dense = school_dense_jacobian(setup.jacobian);
+    const int n = nodes - 1, all = setup.school->n_unknowns;
+    double *const matrix = calloc((size_t)(n * n), sizeof *matrix), shape[64], square = 0;
+    assert_non_null(matrix);
+    for (int i = 0; i < n; i++) shape[i] = 1;
+    for (int iteration = 0; iteration < 30; iteration++) {
+        for (int i = 0; i < n; i++) {
+            for (int j = 0; j < n; j++) matrix[i * n + j] = dense[(fish->at.ay + 1 + i) * all + fish->at.y + 1 + j];
+        }
+        eliminate(n, matrix, shape);
+        square = 1 / shape[n - 1];
+        for (int i = 0; i < n; i++) shape[i] *= square;
+    }
+    free(matrix);
+    free(dense);
+    school_clear(&setup);
+    return pow(square, 0.25);
+}
+
+static void frequency_of_a_clamped_beam_is_of_second_order_in_its_whole_length(void **state) {
+    (void)state;
+    const double exact = 1.8751040687;
+    double error[3];
+    for (int level = 0; level < 3; level++) error[level] = lowest_mode(10 * (1 << level) + 1) / exact - 1;
+    print_message("beta L of the lowest mode: %.2e %.2e %.2e\n", error[0], error[1], error[2]);
+    for (int level = 0; level < 2; level++) NEAR(log2(error[level] / error[level + 1]), 2, 0.05, 0);
+    // half of (lbar/L)^2
+    NEAR(error[2], 0, 0.5 / 1600, 0);
+}
+
+static void moment_of_a_tilt_is_that_of_half_a_cell(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(
+        &setup, TIME
+        "fish: [{body: {section: mean, profile: uniform, thickness: 0.1, modulus: 1.0e+5, bending_damping: 0.5},\n"
+        "        start: {heading: 180}, motion: {driven: head}}]\n");
+    const struct fish *fish = setup.school->fish;
+    const double stiffness = 2 * 1e5 * pi * 0.25 * 1e-3 / 64 * 6;
+    NEAR(fish->clamp_stiffness, stiffness, 0, 1e-13);
+    NEAR(fish->clamp_damping, 1, 0, 1e-13);
+    double *const y = setup.state->y;
+    for (int i = 0; i < fish->at.end; i++) y[i] = 0;
+    const double angle = 0.1;
+    y[fish->at.x + 1] = cos(angle) / 6;
+    y[fish->at.y + 1] = sin(angle) / 6;
+    NEAR(clamp_energy(fish, 0, y), stiffness / 2 * pow(2 * tan(angle / 2), 2), 0, 1e-12);
+    school_clear(&setup);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(jacobian_agrees_with_differences),
+        cmocka_unit_test(force_is_minus_the_gradient_of_the_energy),
+        cmocka_unit_test(powers_are_what_the_energy_and_the_nodes_do_not_take_up),
+        cmocka_unit_test(energy_audit_of_a_clamped_fish_closes),
+        cmocka_unit_test(head_has_one_prescribed_node_and_published_sections_two),
+        cmocka_unit_test(clamp_is_the_joint_of_half_a_cell),
+        cmocka_unit_test(given_direction_is_that_of_the_prescribed_nodes),
+        cmocka_unit_test(frequency_of_a_clamped_beam_is_of_second_order_in_its_whole_length),
+        cmocka_unit_test(moment_of_a_tilt_is_that_of_half_a_cell),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

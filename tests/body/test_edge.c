@@ -1,0 +1,56 @@
+/* test_edge.c: frame and motion of an edge: doc/model.md, section 2. */
+#include "body/edge.h"
+#include "school.h"
+
+#define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+
+static void frame_is_orthonormal_and_points_from_node_to_node(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{nodes: 5}]\n");
+    school_stir(&setup);
+    const struct fish *fish = setup.school->fish;
+    const double *const y = setup.state->y;
+    for (int k = 0; k < fish->n_edges; k++) {
+        const struct edge edge = edge_at(fish, k, y);
+        for (int i = 0; i < 2; i++) {
+            // rounding of places of the size of the body
+            NEAR(y[edge_place(fish, i, k)] + edge.length * edge.t[i], y[edge_place(fish, i, k + 1)], 1e-15, 0);
+            NEAR(edge.middle[i], (y[edge_place(fish, i, k)] + y[edge_place(fish, i, k + 1)]) / 2, 0, 0);
+            NEAR(edge.velocity[i], (y[edge_velocity(fish, i, k)] + y[edge_velocity(fish, i, k + 1)]) / 2, 0, 0);
+            NEAR(edge.acceleration[i], (y[edge_acceleration(fish, i, k)] + y[edge_acceleration(fish, i, k + 1)]) / 2, 0,
+                 0);
+        }
+        NEAR(edge_dot(edge.t, edge.t), 1, 1e-15, 0);
+        NEAR(edge_dot(edge.t, edge.n), 0, 0, 0);
+        // a quarter of a turn to the left
+        NEAR(edge.t[0] * edge.n[1] - edge.t[1] * edge.n[0], 1, 1e-15, 0);
+    }
+    school_clear(&setup);
+}
+
+static void rate_of_turn_is_that_of_a_rigid_rotation(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{nodes: 5}]\n");
+    school_stir(&setup);
+    const struct fish *fish = setup.school->fish;
+    double *const y = setup.state->y;
+    for (int k = 0; k < fish->n_nodes; k++) {
+        y[fish->at.vx + k] = 0.3 - 2 * y[fish->at.y + k];
+        y[fish->at.vy + k] = -0.1 + 2 * y[fish->at.x + k];
+    }
+    for (int k = 0; k < fish->n_edges; k++) {
+        const struct edge edge = edge_at(fish, k, y);
+        NEAR(edge_turn_rate(&edge), 2, 0, 1e-14);
+    }
+    school_clear(&setup);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(frame_is_orthonormal_and_points_from_node_to_node),
+        cmocka_unit_test(rate_of_turn_is_that_of_a_rigid_rotation),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

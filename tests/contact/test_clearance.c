@@ -1,0 +1,216 @@
+/* test_clearance.c: bodies that touch, that pass each other, and that pass through each other between two steps. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/parallel.h"
+#include "contact/clearance.h"
+#include "failing_malloc.h"
+#include "school.h"
+
+#define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+
+// two straight bodies, nose to tail from x = 0 to 1 at y = 0, and the other one where it is told; thickness 0.2 or less
+#define PAIR(x, y)                                                                                                  \
+    TIME "defaults: {fish: {wave: {amplitude: 0}, body: {profile: uniform, thickness: 0.1}}}\nfish: [{}, {start: {" \
+         "position: [" x ", " y "]}}]\n"
+
+struct pair {
+    struct setup setup;
+    double *between;
+};
+
+static struct pair place(const char *text) {
+    struct pair pair;
+    school_build(&pair.setup, text);
+    pair.between = calloc((size_t)pair.setup.school->n_unknowns, sizeof *pair.between);
+    assert_non_null(pair.between);
+    clearance_start(pair.setup.school, pair.setup.state, pair.setup.residual->neighbours, pair.between);
+    return pair;
+}
+
+static void clear(struct pair *pair) {
+    free(pair->between);
+    school_clear(&pair->setup);
+}
+
+// one step that moves fish f by dx, dy and ends at t
+static const struct closest *step(struct pair *pair, int f, double dx, double dy, double t) {
+    const struct fish *const fish = &pair->setup.school->fish[f];
+    for (int k = 0; k < fish->n_nodes; k++) {
+        pair->setup.state->y[fish->at.x + k] += dx;
+        pair->setup.state->y[fish->at.y + k] += dy;
+    }
+    clearance_step(pair->setup.school, pair->setup.state, t, pair->setup.state->y, pair->setup.residual->neighbours,
+                   pair->between);
+    return pair->setup.state->closest;
+}
+
+// many pairs at the same distance, and as many fish as threads need
+static void of_pairs_at_the_same_distance_the_first_one_counts(void **state) {
+    (void)state;
+    enum { N_FISH = 30 };
+    char text[4096] = TIME "defaults: {fish: {wave: {amplitude: 0}}}\nfish: [{}";
+    for (int f = 1; f < N_FISH; f++) {
+        snprintf(text + strlen(text), sizeof text - strlen(text), ", {start: {position: [0, %d]}}", f);
+    }
+    strcat(text, "]\n");
+    struct pair pair = place(text);
+    assert_true(pair.setup.school->n_unknowns >= PARALLEL_UNKNOWNS);
+    double *const at_start = calloc((size_t)pair.setup.school->n_unknowns, sizeof *at_start);
+    assert_non_null(at_start);
+    memcpy(at_start, pair.setup.state->y, (size_t)pair.setup.school->n_unknowns * sizeof *at_start);
+    for (int threads = 1; threads <= 3; threads++) {
+        pair.setup.school->threads = threads;
+        // all but the first two come nearer to their neighbours by halves
+        for (int f = 0; f < N_FISH; f++) {
+            const struct fish *const fish = &pair.setup.school->fish[f];
+            for (int k = 0; k < fish->n_nodes; k++) pair.setup.state->y[fish->at.y + k] = f < 2 ? 2 * f : 3 + 0.5 * f;
+        }
+        clearance_start(pair.setup.school, pair.setup.state, pair.setup.residual->neighbours, pair.between);
+        const struct closest *const closest = pair.setup.state->closest;
+        assert_int_equal(closest->fish[0], 2);
+        assert_int_equal(closest->fish[1], 3);
+        // the record is not taken by another pair at the same distance
+        step(&pair, 1, 0, 1.5, threads);
+        assert_int_equal(closest->fish[0], 2);
+        memcpy(pair.setup.state->y, at_start, (size_t)pair.setup.school->n_unknowns * sizeof *at_start);
+    }
+    // those that the residual has made room for
+    pair.setup.school->threads = 1;
+    free(at_start);
+    clear(&pair);
+}
+
+static void one_fish_is_close_to_none(void **state) {
+    (void)state;
+    struct pair pair = place(TIME "fish: [{}]\n");
+    NEAR(step(&pair, 0, 1, 0, 0.1)->distance, INFINITY, 0, 0);
+    clear(&pair);
+}
+
+static void closest_approach_is_that_of_all_steps(void **state) {
+    (void)state;
+    struct pair pair = place(PAIR("0", "0.5"));
+    NEAR(pair.setup.state->closest->distance, 0.4, 1e-14, 0);
+    NEAR(step(&pair, 1, 0, -0.2, 0.1)->distance, 0.2, 1e-14, 0);
+    const struct closest *const closest = step(&pair, 1, 0, 3, 0.2);
+    NEAR(closest->distance, 0.2, 1e-14, 0);
+    NEAR(closest->t, 0.1, 0, 0);
+    assert_int_equal(closest->fish[0], 0);
+    assert_int_equal(closest->fish[1], 1);
+    clear(&pair);
+}
+
+static void bodies_that_cross_between_two_steps_have_touched(void **state) {
+    (void)state;
+    // head on, at ten lengths a step; at both ends they are lengths apart
+    struct pair pair = place(PAIR("5", "0"));
+    const struct closest *const closest = step(&pair, 1, -10, 0, 0.5);
+    NEAR(closest->distance, 0, 0, 0);
+    // the gap is 4 lengths of the way of 10, less two halves of the thickness
+    NEAR(closest->t, 0.5 * 3.9 / 10, 1e-3, 0);
+    clear(&pair);
+    // sideways
+    pair = place(PAIR("0.5", "1"));
+    NEAR(step(&pair, 1, 0, -2, 0.5)->distance, 0, 0, 0);
+    clear(&pair);
+}
+
+static void bodies_that_pass_each_other_have_not(void **state) {
+    (void)state;
+    struct pair pair = place(PAIR("5", "0.15"));
+    const struct closest *const closest = step(&pair, 1, -10, 0, 0.5);
+    // 0.05 m beside each other when they are level; the advances see it within that distance
+    assert_true(closest->distance >= 0.05 - 1e-12 && closest->distance < 0.1);
+    clear(&pair);
+    // a school that moves as one comes no closer, however far it goes
+    pair = place(PAIR("0", "0.5"));
+    const struct fish *const other = &pair.setup.school->fish[1];
+    for (int k = 0; k < other->n_nodes; k++) pair.setup.state->y[other->at.x + k] += 100;
+    NEAR(step(&pair, 0, 100, 0, 0.5)->distance, 0.4, 1e-12, 0);
+    clear(&pair);
+}
+
+static void bodies_that_have_touched_stay_so(void **state) {
+    (void)state;
+    struct pair pair = place(PAIR("0", "0.5"));
+    NEAR(step(&pair, 1, 0, -0.5, 0.1)->distance, 0, 0, 0);
+    const struct closest *const closest = step(&pair, 1, 0, 5, 0.2);
+    NEAR(closest->distance, 0, 0, 0);
+    assert_true(closest->t <= 0.1);
+    clear(&pair);
+}
+
+// the smallest distance of all pairs on the way from the places before to those now
+static double of_all_pairs(const struct pair *pair, const double *before) {
+    const struct school *const school = pair->setup.school;
+    double least = INFINITY;
+    for (int f = 0; f < school->n_fish; f++) {
+        for (int g = 0; g < f; g++) {
+            const struct passage passage = clearance_passage(&school->fish[f], &school->fish[g], before,
+                                                             pair->setup.state->y, INFINITY, pair->between);
+            least = fmin(least, passage.least);
+        }
+    }
+    return least;
+}
+
+static void the_record_of_a_school_is_that_of_all_pairs(void **state) {
+    (void)state;
+    enum { FISH = 20, STEPS = 30 };
+    char text[2048];
+    int length = snprintf(text, sizeof text, TIME "defaults: {fish: {body: {thickness: 0.05}}}\nfish:\n");
+    for (int f = 0; f < FISH; f++) {
+        length += snprintf(text + length, sizeof text - (size_t)length, "  - {start: {position: [%d, %d]}}\n",
+                           2 * (f % 5), f / 5);
+    }
+    struct pair pair = place(text);
+    const struct school *const school = pair.setup.school;
+    const size_t size = (size_t)school->n_unknowns * sizeof(double);
+    double *const before = malloc(size), *const y = pair.setup.state->y;
+    assert_non_null(before);
+    double least = of_all_pairs(&pair, y);
+    NEAR(pair.setup.state->closest->distance, least, 0, 0);
+    int n_records = 0;
+    for (int i = 0; i < STEPS; i++) {
+        memcpy(before, y, size);
+        for (int f = 0; f < FISH; f++) {
+            const struct layout *const at = &school->fish[f].at;
+            const double dx = 0.1 * school_random(&pair.setup), dy = 0.1 * school_random(&pair.setup);
+            for (int k = 0; k < school->fish[f].n_nodes; k++) {
+                y[at->x + k] += dx;
+                y[at->y + k] += dy;
+            }
+        }
+        const double here = of_all_pairs(&pair, before);
+        n_records += here < least;
+        least = fmin(least, here);
+        // the last steps without memory for the neighbours
+        if (i == STEPS / 2) {
+            free(pair.setup.residual->neighbours->pair);
+            pair.setup.residual->neighbours->pair = NULL;
+            pair.setup.residual->neighbours->capacity = 0;
+        }
+        n_until_failure = i < STEPS / 2 ? -1 : 0;
+        clearance_step(school, pair.setup.state, i + 1, y, pair.setup.residual->neighbours, pair.between);
+        n_until_failure = -1;
+        NEAR(pair.setup.state->closest->distance, least, 0, 0);
+    }
+    assert_true(n_records > 3);
+    free(before);
+    clear(&pair);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(of_pairs_at_the_same_distance_the_first_one_counts),
+        cmocka_unit_test(one_fish_is_close_to_none),
+        cmocka_unit_test(closest_approach_is_that_of_all_steps),
+        cmocka_unit_test(bodies_that_cross_between_two_steps_have_touched),
+        cmocka_unit_test(bodies_that_pass_each_other_have_not),
+        cmocka_unit_test(bodies_that_have_touched_stay_so),
+        cmocka_unit_test(the_record_of_a_school_is_that_of_all_pairs),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,546 @@
+/* test_contact.c: forces in contact follow from an energy, and bodies that meet do not cross. Their derivatives:
+ * test_residual.c. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "contact/contact.h"
+#include "fish/fish_distance.h"
+#include "school.h"
+#include "school/diagnostics_energy.h"
+
+#define TIME "time: {end: 1, shedding_interval: 0.01, output_interval: 0.01}\n"
+
+// bodies at rest, of one thickness: two of them with the given gap
+#define STRAIGHT "defaults: {fish: {sheet_points: 9, wave: {amplitude: 0}, body: {profile: uniform, thickness: 0.1}}}\n"
+#define BESIDE(y) STRAIGHT "fish: [{}, {start: {position: [0, " y "]}}]\n"
+
+static void nobody_repels_what_is_farther_than_the_range(void **state) {
+    (void)state;
+    const struct {
+        const char *text;
+        int n;
+    } cases[] = {{TIME BESIDE("0.119"), 1},
+                 {TIME BESIDE("0.121"), 0},
+                 {TIME "contact: {range: 0.03}\n" BESIDE("0.121"), 1},
+                 {TIME "contact: {action: warn}\n" BESIDE("0.119"), 0},
+                 {TIME "contact: {action: stop}\n" BESIDE("0.119"), 0}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct setup setup;
+        school_build(&setup, cases[i].text);
+        struct contact *const contact = setup.residual->contact;
+        school_ok(contact_find(contact, setup.state, 0, setup.state->y));
+        const int *other;
+        for (int f = 0; f < 2; f++) {
+            assert_int_equal(contact_partners(contact, f, &other), cases[i].n);
+            for (int k = 0; k < cases[i].n; k++) assert_int_equal(other[k], 1 - f);
+            assert_int_equal(contact_energy(contact, f, setup.state->y) > 0, cases[i].n);
+        }
+        school_clear(&setup);
+    }
+}
+
+static double energy_of_school(struct setup *setup, const double *y) {
+    double energy = 0;
+    for (int f = 0; f < setup->school->n_fish; f++) energy += contact_energy(setup->residual->contact, f, y);
+    return energy;
+}
+
+#define NEAR_ANOTHER                                                                                                   \
+    TIME "contact: {range: 0.5}\n"                                                                                     \
+         "fish: [{sheet_points: 9}, {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.35], heading: " \
+         "190}}, {nodes: 9, sheet_points: 11, start: {position: [0.1, -0.35], heading: 170}}]\n"
+
+static void forces_are_the_gradient_of_the_energy(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, NEAR_ANOTHER);
+    school_stir(&setup);
+    double *const y = setup.state->y, h = 1e-5;
+    school_ok(contact_find(setup.residual->contact, setup.state, 0, y));
+    for (int f = 0; f < 3; f++) contact_residual(setup.residual->contact, f, y, setup.value);
+    int n = 0;
+    for (int f = 0; f < 3; f++) {
+        const struct fish *const fish = &setup.school->fish[f];
+        for (int i = 0; i < 2 * fish->n_nodes; i++) {
+            double *const place = &y[fish->at.x + i], here = *place;
+            *place = here + h;
+            const double after = energy_of_school(&setup, y);
+            *place = here - h;
+            const double gradient = (after - energy_of_school(&setup, y)) / (2 * h);
+            *place = here;
+            NEAR(setup.value[fish->at.ax + i], gradient, 1e-5, 1e-6);
+            n += fabs(gradient) > 0.1;
+        }
+    }
+    assert_true(n > 10);
+    school_clear(&setup);
+}
+
+static void forces_and_powers_of_all_add_up_to_nothing(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, NEAR_ANOTHER);
+    school_stir(&setup);
+    const double *const y = setup.state->y;
+    const struct contact *const contact = setup.residual->contact;
+    school_ok(contact_find(setup.residual->contact, setup.state, 0, y));
+    double sum[2] = {0, 0}, size = 0, power = 0, largest = 0, moment = 0;
+    for (int f = 0; f < 3; f++) {
+        const struct fish *const fish = &setup.school->fish[f];
+        double force[2];
+        const struct contact_forces on = contact_forces(contact, f, y);
+        memcpy(force, on.force, sizeof force);
+        for (int i = 0; i < 2; i++) sum[i] += force[i];
+        size = fmax(size, hypot(force[0], force[1]));
+        power += contact_power(contact, f, y);
+        largest = fmax(largest, fabs(contact_power(contact, f, y)));
+        memset(setup.value, 0, (size_t)setup.school->n_unknowns * sizeof *setup.value);
+        contact_residual(contact, f, y, setup.value);
+        for (int k = 0; k < fish->n_nodes; k++) {
+            moment +=
+                y[fish->at.x + k] * setup.value[fish->at.ay + k] - y[fish->at.y + k] * setup.value[fish->at.ax + k];
+        }
+    }
+    assert_true(size > 1 && largest > 0.1);
+    NEAR_ARRAY(2, sum, ((double[]){0, 0}), 1e-14 * size, 0);
+    NEAR(moment, 0, 1e-13 * size, 0);
+    NEAR(power, 0, 1e-13 * largest, 0);
+    school_clear(&setup);
+}
+
+static void walls_push_with_the_gradient_of_the_energy(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME
+                 "fluid: {walls: [-0.5, 0.6]}\ncontact: {range: 0.5, action: warn}\n"
+                 "fish: [{sheet_points: 9}, {nodes: 5, sheet_points: 7, length: 0.7, start: {position: "
+                 "[0.2, 0.3], heading: 190}}]\n");
+    school_stir(&setup);
+    double *const y = setup.state->y, h = 1e-5;
+    const struct contact *const contact = setup.residual->contact;
+    school_ok(contact_find(setup.residual->contact, setup.state, 0, y));
+    for (int f = 0; f < 2; f++) contact_residual(contact, f, y, setup.value);
+    int n = 0;
+    for (int f = 0; f < 2; f++) {
+        const struct fish *const fish = &setup.school->fish[f];
+        double sum[2] = {0, 0}, force[2];
+        for (int i = 0; i < 2 * fish->n_nodes; i++) {
+            double *const place = &y[fish->at.x + i], here = *place;
+            *place = here + h;
+            const double after = energy_of_school(&setup, y);
+            *place = here - h;
+            const double gradient = (after - energy_of_school(&setup, y)) / (2 * h);
+            *place = here;
+            NEAR(setup.value[fish->at.ax + i], gradient, 1e-5, 1e-6);
+            sum[i / fish->n_nodes] -= setup.value[fish->at.ax + i];
+            n += fabs(gradient) > 0.1;
+        }
+        const struct contact_forces on = contact_forces(contact, f, y);
+        memcpy(force, on.force, sizeof force);
+        NEAR_ARRAY(2, force, sum, 1e-13, 1e-13);
+        NEAR(force[0], 0, 0, 0);
+        // a wall is at rest: it gives no power
+        NEAR(contact_power(contact, f, y), 0, 0, 0);
+    }
+    assert_true(n > 5);
+    school_clear(&setup);
+}
+
+static void who_is_beyond_a_wall_asks_for_a_smaller_step(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME STRAIGHT "fluid: {walls: [-0.2]}\nfish: [{}]\n");
+    const struct fish *const fish = &setup.school->fish[0];
+    double *const y = setup.state->y;
+    // half of the body is 0.05 thick
+    const double places[] = {-0.149, -0.151, -5};
+    for (int i = 0; i < 3; i++) {
+        y[fish->at.y + 3] = places[i];
+        assert_int_equal(contact_find(setup.residual->contact, setup.state, 0.1, y), i == 0 ? STATUS_OK : STATUS_RETRY);
+        NEAR(fish_wall_distance(setup.school, fish, y), places[i] + 0.15, 1e-15, 0);
+    }
+    assert_non_null(strstr(status_message(), "touches a wall"));
+    school_clear(&setup);
+}
+
+static void what_crosses_on_its_way_asks_for_a_smaller_step(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME BESIDE("0.2"));
+    struct contact *const contact = setup.residual->contact;
+    const struct fish *const fish = &setup.school->fish[1];
+    double *const y = setup.state->y;
+    const struct {
+        double shift;
+        int status;
+    } steps[] = {{-0.09, STATUS_OK}, {-0.11, STATUS_RETRY}, {-0.2, STATUS_RETRY}, {-5, STATUS_RETRY}, {5, STATUS_OK}};
+    for (size_t i = 0; i < sizeof steps / sizeof *steps; i++) {
+        for (int k = 0; k < fish->n_nodes; k++) y[fish->at.y + k] = 0.2 + steps[i].shift;
+        assert_int_equal(contact_find(contact, setup.state, 0.1, y), steps[i].status);
+        assert_int_equal(residual_evaluate(setup.residual, 0, y, setup.state->yp, setup.value), steps[i].status);
+    }
+    school_clear(&setup);
+}
+
+// ---- runs
+
+// momentum of so many fish, kg m s-1, and its scale
+static double momentum(const struct simulation *simulation, int n_fish, double sum[2]) {
+    double scale = 0;
+    sum[0] = sum[1] = 0;
+    for (int f = 0; f < n_fish; f++) {
+        const struct fish *const fish = &simulation->school->fish[f];
+        const double *const y = simulation->state->y;
+        for (int k = 0; k < fish->n_nodes; k++) {
+            const double v[2] = {y[fish->at.vx + k], y[fish->at.vy + k]};
+            for (int i = 0; i < 2; i++) sum[i] += fish->mass[k] * v[i];
+            scale += fish->mass[k] * hypot(v[0], v[1]);
+        }
+    }
+    return scale;
+}
+
+#define VACUUM TIME "fluid: {density: 0}\nwake: {shedding: continuous, taper: 0, taper_beside: 0}\n"
+#define PASSIVE "nodes: 5, sheet_points: 5, wave: {amplitude: 0}"
+#define HEAD_ON(speed)                                                                                             \
+    VACUUM "defaults: {fish: {" PASSIVE ", start: {speed: " speed                                                  \
+           "}}}\nfish: [{start: {position: [-0.2, 0.01], heading: 0}}, {length: 0.8, start: {position: [0.2, 0], " \
+           "heading: 175}}]\n"
+
+// bodies meet, come apart, have kept momentum and energy; steps per event are those of a collision
+static void meet(const char *name, const char *text, double end, double audit_limit) {
+    struct simulation *const simulation = school_simulation(text);
+    const int n_fish = simulation->school->n_fish;
+    double before[2], after[2], first[2], energy = 0, audit = 0;
+    const double scale = momentum(simulation, n_fish, before);
+    momentum(simulation, 1, first);
+    long most = 0, steps = 0;
+    for (int f = 0; f < n_fish; f++) {
+        energy += diagnostics_energy(simulation->residual, f, 0, simulation->state->y);
+    }
+    while (simulation->state->t < end) {
+        simulate_measure(simulation);
+        for (int f = 0; f < n_fish; f++) {
+            audit = fmax(audit, fabs(simulation->diagnostics->fish[f].energy_audit));
+        }
+        school_ok(simulate_step(simulation));
+        most = simulation->totals.steps - steps > most ? simulation->totals.steps - steps : most;
+        steps = simulation->totals.steps;
+        momentum(simulation, n_fish, after);
+        // walls along x take what is across them
+        NEAR_ARRAY(simulation->school->walls.n > 0 ? 1 : 2, after, before, 1e-10 * scale, 0);
+    }
+    print_message("%s: least %.2e m, audit %.1e of %.0f J, at most %ld steps per event\n", name,
+                  simulation->state->closest->distance, audit, energy, most);
+    // without a contact the momentum of the first one would be what it was
+    momentum(simulation, 1, after);
+    assert_true(hypot(after[0] - first[0], after[1] - first[1]) > 1e-3 * scale);
+    assert_true(simulation->state->closest->distance > 0);
+    assert_true(audit < audit_limit * energy);
+    simulate_free(simulation);
+}
+
+static void bodies_that_meet_do_not_cross(void **state) {
+    (void)state;
+    meet("head on, 1 m/s", "solver: {rtol: 1.0e-6}\n" HEAD_ON("1"), 0.3, 5e-3);
+    meet("head on, 5 m/s", "solver: {rtol: 1.0e-6}\n" HEAD_ON("5"), 0.1, 5e-3);
+    meet("head on, 15 m/s", "solver: {rtol: 1.0e-6}\n" HEAD_ON("15"), 0.03, 5e-3);
+    meet("side by side",
+         VACUUM "defaults: {fish: {" PASSIVE
+                ", start: {speed: 3}}}\nfish: [{start: {heading: 170}}, {start: "
+                "{position: [0, 0.35], heading: 190}}]\n",
+         0.4, 5e-3);
+    meet("three at once",
+         "solver: {rtol: 1.0e-6}\n" VACUUM "defaults: {fish: {" PASSIVE
+         ", start: {speed: 3}}}\n"
+         "fish: [{start: {position: [0.2, 0], heading: 180}}, {start: {position: [-0.1, 0.18], heading: 300}}, "
+         "{start: {position: [-0.1, -0.2], heading: 60}}]\n",
+         0.15, 5e-3);
+    meet("nearly touching",
+         "solver: {rtol: 1.0e-6}\n" VACUUM "defaults: {fish: {" PASSIVE
+         ", body: {profile: uniform, thickness: 0.1}, start: {speed: 0.01}}}\n"
+         "fish: [{}, {start: {position: [0.3, 0.1001]}}]\n",
+         0.1, 5e-3);
+    meet("in line, free along it",
+         "solver: {rtol: 1.0e-7}\n" VACUUM "defaults: {fish: {" PASSIVE
+         ", motion: {driven: all, surge: free}, start: {speed: 3}}}\n"
+         "fish: [{start: {position: [-0.2, 0], heading: 0}}, {start: {position: [0.2, 0], heading: 180}}]\n",
+         0.3, 5e-3);
+}
+
+// Of two plates that heave and swim the one behind is faster: it pushes the other one, and does not get through.
+static void plates_that_swim_in_line_do_not_cross(void **state) {
+    (void)state;
+    struct simulation *const simulation = school_simulation(
+        SCHOOL_SECOND TIME
+        "defaults: {fish: {nodes: 5, sheet_points: 17, force: pressure, wave: {amplitude: 0, frequency: 0}, "
+        "body: {profile: uniform, thickness: 0.05, width: 1, density: 2000}, "
+        "motion: {driven: all, surge: free, heave: 0.05, frequency: 1}}}\n"
+        "fish: [{start: {speed: 1}}, {start: {position: [1.3, 0], speed: 2}}]\n");
+    double stored = 0, audit = 0;
+    const double energy = diagnostics_energy(simulation->residual, 1, 0, simulation->state->y);
+    while (simulation->state->t < 1) {
+        school_ok(simulate_step(simulation));
+        simulate_measure(simulation);
+        const struct diagnostics_fish *const of = simulation->diagnostics->fish;
+        stored = fmax(stored, of[0].contact_energy);
+        for (int f = 0; f < 2; f++) audit = fmax(audit, fabs(of[f].energy_audit));
+        for (int i = 0; i < 2; i++) NEAR(of[0].contact_force[i], -of[1].contact_force[i], 1e-9, 1e-9);
+    }
+    print_message("plates in line: gap %.2g m, audit %.1g of %.3g J\n", simulation->state->closest->distance, audit,
+                  energy);
+    assert_true(simulation->state->closest->distance > 0);
+    assert_true(stored > 0.005 * energy);
+    assert_true(audit < 5e-3 * energy);
+    assert_true(simulation->diagnostics->fish[0].com[0] < simulation->diagnostics->fish[1].com[0]);
+    simulate_free(simulation);
+}
+
+#define AT_A_WALL(height, speed)                                                                                 \
+    TIME "solver: {rtol: 1.0e-6}\nfluid: {density: 0, walls: [0]}\nwake: {shedding: continuous, taper: 0, "      \
+         "taper_beside: 0}\nfish: [{" PASSIVE ", start: {position: [0, " height "], heading: 280, speed: " speed \
+         "}}]\n"
+
+static void walls_throw_bodies_back(void **state) {
+    (void)state;
+    meet("at a wall, 1 m/s", AT_A_WALL("0.15", "1"), 0.4, 5e-3);
+    meet("at a wall, 5 m/s", AT_A_WALL("0.15", "5"), 0.1, 5e-3);
+    meet("at a wall, 15 m/s", AT_A_WALL("0.25", "15"), 0.05, 5e-3);
+    meet("two between walls",
+         "solver: {rtol: 1.0e-6}\n" TIME
+         "fluid: {density: 0, walls: [-0.42, 0.62]}\nwake: {shedding: continuous, taper: 0, taper_beside: 0}\n"
+         "defaults: {fish: {" PASSIVE
+         ", start: {speed: 4}}}\n"
+         "fish: [{start: {heading: 160}}, {start: {position: [0.1, 0.2], heading: 200}}]\n",
+         0.3, 5e-3);
+}
+
+// Two bodies with the pressure of their sheets, the one the other turned by half a turn: what they and the fluid have
+// of momentum stays nothing, and the audit has every power.
+static void bodies_under_pressure_throw_each_other_back(void **state) {
+    (void)state;
+    struct simulation *const simulation = school_simulation(
+        SCHOOL_SECOND TIME
+        "solver: {rtol: 1.0e-6}\n"
+        "defaults: {fish: {nodes: 9, sheet_points: 17, force: pressure, pressure: {suction_limit: 0},\n"
+        "                  drag: {skin: laminar}, wave: {amplitude: 0}, body: {relaxation_time: 0.02},\n"
+        "                  start: {speed: 1}}}\n"
+        "fish: [{start: {position: [-0.1, 0.01], heading: 0}}, {start: {position: [0.1, -0.01], heading: 180}}]\n");
+    double sum[2], stored = 0, audit = 0;
+    const double scale = momentum(simulation, 2, sum);
+    const double energy = 2 * diagnostics_energy(simulation->residual, 0, 0, simulation->state->y);
+    while (simulation->state->t < 0.2) {
+        school_ok(simulate_step(simulation));
+        simulate_measure(simulation);
+        const struct diagnostics_fish *const of = simulation->diagnostics->fish;
+        stored = fmax(stored, of[0].contact_energy);
+        for (int f = 0; f < 2; f++) audit = fmax(audit, fabs(of[f].energy_audit));
+        momentum(simulation, 2, sum);
+        NEAR_ARRAY(2, sum, ((double[]){0, 0}), 1e-6 * scale, 0);
+        for (int i = 0; i < 2; i++) NEAR(of[0].contact_force[i], -of[1].contact_force[i], 1e-9, 1e-12);
+    }
+    print_message("under pressure: gap %.2g m, audit %.1g of %.3g J\n", simulation->state->closest->distance, audit,
+                  energy);
+    assert_true(simulation->state->closest->distance > 0);
+    assert_true(stored > 0.005 * energy);
+    assert_true(audit < 1e-3 * energy);
+    // they have turned back, aside or into a spin
+    assert_true(simulation->diagnostics->fish[0].com_velocity[0] < 0.5);
+    simulate_free(simulation);
+}
+
+static void every_integrator_keeps_bodies_apart(void **state) {
+    (void)state;
+    static const char *const methods[] = {"method: implicit_euler, step: 1.0e-3", "method: trapezoid, step: 1.0e-3",
+                                          "method: rk4, step: 2.0e-4", "method: dormand_prince"};
+    for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
+        char text[1024];
+        snprintf(
+            text, sizeof text,
+            "solver: {%s}\n" VACUUM "defaults: {fish: {" PASSIVE
+            ", start: {speed: 0.5}}}\n"
+            "fish: [{start: {position: [-0.15, 0], heading: 0}}, {start: {position: [0.15, 0.02], heading: 180}}]\n",
+            methods[i]);
+        meet(methods[i], text, 0.3, 0.2);
+    }
+}
+
+static void a_fixed_step_that_is_too_long_fails_and_says_so(void **state) {
+    (void)state;
+    struct simulation *const simulation =
+        school_simulation("solver: {method: implicit_euler, step: 0.01}\n" HEAD_ON("15"));
+    enum status status = STATUS_OK;
+    for (int i = 0; i < 5 && status == STATUS_OK; i++) status = simulate_step(simulation);
+    assert_int_equal(status, STATUS_SOLVER);
+    assert_non_null(strstr(status_message(), "choose a smaller solver.step"));
+    assert_true(simulation->state->closest->distance > 0);
+    simulate_free(simulation);
+}
+
+enum { CROWD = 256 };
+
+// 256 fish in pairs that meet, each pair at an angle of its own
+static char *crowd(void) {
+    enum { BYTES = 40000 };
+    char *const text = malloc(BYTES);
+    assert_non_null(text);
+    size_t used = (size_t)snprintf(text, BYTES,
+                                   "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+                                   "fluid: {density: 0}\nwake: {shedding: continuous, taper: 0, taper_beside: 0}\n"
+                                   "defaults: {fish: {nodes: 4, sheet_points: 5, wave: {amplitude: 0}}}\nfish:\n");
+    for (int i = 0; i < CROWD; i++) {
+        const int pair = i / 2, column = pair % 16, row = pair / 16;
+        const double heading = 7.3 * pair + 180 * (i % 2), angle = heading * acos(-1) / 180,
+                     back = 0.075 + 0.0005 * column;
+        used += (size_t)snprintf(
+            text + used, BYTES - used, "  - {start: {position: [%.4f, %.4f], heading: %.4f, speed: 0.1}}\n",
+            3 * column - back * cos(angle) + 0.02 * sin(angle), 3 * row - back * sin(angle), heading);
+        assert_true(used < BYTES);
+    }
+    return text;
+}
+
+static void of_256_fish_no_two_get_through_each_other(void **state) {
+    (void)state;
+    char *const text = crowd();
+    struct simulation *const simulation = school_simulation(text);
+    free(text);
+    double before[2], after[2];
+    const double scale = momentum(simulation, CROWD, before);
+    while (simulation->state->t < 0.05) school_ok(simulate_step(simulation));
+    const struct contact *const contact = simulation->residual->contact;
+    const double *const y = simulation->state->y;
+    school_ok(contact_find(simulation->residual->contact, simulation->state, simulation->state->t, y));
+    // those found from the sorted boxes are those of all pairs
+    const double range = simulation->school->contact_range;
+    int n_contacts = 0;
+    for (int f = 0; f < CROWD; f++) {
+        const int *other;
+        const int n = contact_partners(contact, f, &other);
+        n_contacts += n;
+        for (int g = 0, i = 0; g < CROWD; g++) {
+            if (g == f) continue;
+            const double distance = fish_distance(&simulation->school->fish[f], &simulation->school->fish[g], y, range);
+            assert_int_equal(i < n && other[i] == g, distance < range);
+            i += i < n && other[i] == g;
+        }
+    }
+    momentum(simulation, CROWD, after);
+    print_message("256 fish: %d in contact, least %.2e m, %.1f steps per event\n", n_contacts,
+                  simulation->state->closest->distance,
+                  (double)simulation->totals.steps / (double)simulation->state->event);
+    assert_true(n_contacts > 20);
+    assert_true(simulation->state->closest->distance > 0);
+    NEAR_ARRAY(2, after, before, 1e-10 * scale, 0);
+    simulate_free(simulation);
+}
+
+static void stop_ends_the_run_at_the_time_and_with_the_names(void **state) {
+    (void)state;
+    struct simulation *const simulation = school_simulation(
+        "contact: {action: stop}\n" TIME STRAIGHT
+        "fish: [{name: quick, start: {position: [0, 0.16], speed: 1, heading: 190}}, {name: lazy}]\n");
+    enum status status = STATUS_OK;
+    for (int i = 0; i < 50 && status == STATUS_OK; i++) status = simulate_step(simulation);
+    assert_int_equal(status, STATUS_CONTACT);
+    assert_int_equal(status_exit_code(status), 3);
+    assert_non_null(strstr(status_message(), "contact of quick and lazy at t = "));
+    assert_true(simulation->state->closest->distance < 0.02);
+    simulate_free(simulation);
+}
+
+static void stop_does_not_wait_until_bodies_touch(void **state) {
+    (void)state;
+    // they pass each other at 0.1 range, 2 mm
+    struct simulation *const simulation =
+        school_simulation("contact: {action: stop}\nfluid: {density: 0}\n" TIME STRAIGHT
+                          "fish: [{start: {position: [1.2, 0.102], speed: 5}}, {}]\n");
+    enum status status = STATUS_OK;
+    while (status == STATUS_OK && simulation->state->t < 0.5) status = simulate_step(simulation);
+    assert_int_equal(status, STATUS_CONTACT);
+    const double distance = simulation->state->closest->distance;
+    assert_true(distance > 0.0015 && distance < simulation->school->contact_range);
+    simulate_free(simulation);
+}
+
+// the distance of a point from the edge between two others
+static double distance_from_edge(const double p[2], const double a[2], const double b[2]) {
+    const double e[2] = {b[0] - a[0], b[1] - a[1]}, r[2] = {p[0] - a[0], p[1] - a[1]};
+    const double q = fmin(1, fmax(0, (r[0] * e[0] + r[1] * e[1]) / (e[0] * e[0] + e[1] * e[1])));
+    return hypot(r[0] - q * e[0], r[1] - q * e[1]);
+}
+
+static void place_of(const struct fish *fish, const double *y, int node, double place[2]) {
+    place[0] = y[fish->at.x + node];
+    place[1] = y[fish->at.y + node];
+}
+
+// doc/model.md, section 16: a quarter of phi of every end of each edge of one body above each edge of the other
+static double energy_of_pair(const struct school *school, const struct fish *a, const struct fish *b, const double *y) {
+    const double r = school->contact_range;
+    const double k = a->contact_strength * b->contact_strength / (a->contact_strength + b->contact_strength);
+    double energy = 0;
+    for (int i = 0; i < a->n_edges; i++) {
+        for (int j = 0; j < b->n_edges; j++) {
+            double p[4][2];
+            for (int end = 0; end < 2; end++) {
+                place_of(a, y, i + end, p[end]);
+                place_of(b, y, j + end, p[2 + end]);
+            }
+            for (int end = 0; end < 4; end++) {
+                const int other = end < 2 ? 2 : 0;
+                const double d =
+                    distance_from_edge(p[end], p[other], p[other + 1]) - (a->thickness[i] + b->thickness[j]) / 2;
+                if (d < r) energy += k * r * pow(1 - d / r, 3) / (d / r) / 4;
+            }
+        }
+    }
+    return energy;
+}
+
+static void the_energy_is_that_of_all_ends_above_all_edges(void **state) {
+    (void)state;
+    // random shapes, and two in line: of edges whose ends are near the first nodes may be far apart
+    static const char *const texts[] = {
+        NEAR_ANOTHER, TIME "contact: {range: 0.5}\n" STRAIGHT "fish: [{}, {start: {position: [1.4, 0.01]}}]\n",
+        TIME "contact: {range: 0.5}\n" STRAIGHT "fish: [{}, {start: {position: [2.4, 0.01], heading: 0}}]\n"};
+    for (int i = 0; i < 3; i++) {
+        struct setup setup;
+        school_build(&setup, texts[i]);
+        if (i == 0) school_stir(&setup);
+        const double *const y = setup.state->y;
+        memcpy(setup.state->closest->before, y, (size_t)setup.school->n_unknowns * sizeof *y);
+        school_ok(contact_find(setup.residual->contact, setup.state, 0, y));
+        double want = 0;
+        for (int f = 0; f < setup.school->n_fish; f++) {
+            for (int g = 0; g < f; g++)
+                want += energy_of_pair(setup.school, &setup.school->fish[g], &setup.school->fish[f], y);
+        }
+        assert_true(want > 1e-3);
+        NEAR(energy_of_school(&setup, y), want, 0, 1e-12);
+        school_clear(&setup);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(nobody_repels_what_is_farther_than_the_range),
+        cmocka_unit_test(forces_are_the_gradient_of_the_energy),
+        cmocka_unit_test(forces_and_powers_of_all_add_up_to_nothing),
+        cmocka_unit_test(walls_push_with_the_gradient_of_the_energy),
+        cmocka_unit_test(who_is_beyond_a_wall_asks_for_a_smaller_step),
+        cmocka_unit_test(walls_throw_bodies_back),
+        cmocka_unit_test(what_crosses_on_its_way_asks_for_a_smaller_step),
+        cmocka_unit_test(bodies_that_meet_do_not_cross),
+        cmocka_unit_test(plates_that_swim_in_line_do_not_cross),
+        cmocka_unit_test(bodies_under_pressure_throw_each_other_back),
+        cmocka_unit_test(every_integrator_keeps_bodies_apart),
+        cmocka_unit_test(a_fixed_step_that_is_too_long_fails_and_says_so),
+        cmocka_unit_test(of_256_fish_no_two_get_through_each_other),
+        cmocka_unit_test(stop_does_not_wait_until_bodies_touch),
+        cmocka_unit_test(the_energy_is_that_of_all_ends_above_all_edges),
+        cmocka_unit_test(stop_ends_the_run_at_the_time_and_with_the_names),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,305 @@
+/* test_control.c: headings and the laws for the bias: doc/model.md, section 11. */
+#include "control/control.h"
+#include "school.h"
+
+#define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+
+static const double pi = 3.14159265358979323846;
+
+static void heading_points_from_a_third_of_the_length_to_the_nose(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{start: {heading: 130}}]\n");
+    const struct fish *fish = setup.school->fish;
+    NEAR(control_heading(fish, setup.state->y), 130 * pi / 180, 1e-14, 0);
+    // node 2 of 7 stands at a third
+    setup.state->y[fish->at.x + 2] = setup.state->y[fish->at.x];
+    setup.state->y[fish->at.y + 2] = setup.state->y[fish->at.y] + 0.3;
+    NEAR(control_heading(fish, setup.state->y), -pi / 2, 1e-14, 0);
+    school_clear(&setup);
+}
+
+static void headings_in_time_are_linear_between_their_times(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{control: {law: heading, desired_heading: [[1, 180], [2, 120], [4, 160]]}}]\n");
+    const struct fish *fish = setup.school->fish;
+    const double times[] = {0, 1, 1.5, 2, 3.5, 4, 9}, want[] = {180, 180, 150, 120, 150, 160, 160};
+    for (int i = 0; i < 7; i++) {
+        NEAR(control_desired_heading(fish, &setup.state->control[0], times[i], setup.state->y), want[i] * pi / 180,
+             1e-14, 0);
+    }
+    school_clear(&setup);
+}
+
+static void law_turns_towards_the_desired_heading_the_short_way(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{control: {law: heading, desired_heading: 170, gain: 3, limit: 0.4}}]\n");
+    const struct fish *fish = setup.school->fish;
+    const struct control_memory *memory = &setup.state->control[0];
+    // heading -175 = 185 degrees: 15 degrees too far left, so the bias is positive and turns right
+    NEAR(control_law(fish, memory, 0, -175 * pi / 180, 0, setup.state->y), 0.4 * tanh(3 * 15 * pi / 180), 1e-14, 0);
+    NEAR(control_law(fish, memory, 0, 170 * pi / 180, 0.2, setup.state->y), 0.4 * tanh(0.2), 1e-14, 0);
+    assert_true(fabs(control_law(fish, memory, 0, 0, 1e3, setup.state->y)) <= 0.4);
+    school_clear(&setup);
+}
+
+static void without_a_law_the_bias_is_the_given_one(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{control: {bias: 0.25}}]\n");
+    const struct fish *fish = setup.school->fish;
+    setup.state->y[fish->at.phi0] = 0.3;
+    control_residual(fish, &setup.state->control[0], 1, 0.01, setup.state->y, setup.value);
+    NEAR(setup.value[fish->at.phi0], 0.05, 1e-16, 0);
+    school_clear(&setup);
+}
+
+static void waypoints_are_visited_in_order_and_the_last_course_is_held(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{control: {law: heading, waypoints: [[-2, 0], [-2, 3]], arrival: 0.4}}]\n");
+    const struct fish *fish = setup.school->fish;
+    struct control_memory *memory = &setup.state->control[0];
+    double *const y = setup.state->y;
+    NEAR(fabs(control_desired_heading(fish, memory, 0, y)), pi, 1e-14, 0);
+    assert_int_equal(control_event(fish, memory, &(struct control_view){.t = 0.1, .interval = 0.02}, y), 0);
+    // 0.41 away: not yet; 0.39: on to the next, which jumps
+    y[fish->at.x] = -1.59;
+    assert_int_equal(control_event(fish, memory, &(struct control_view){.t = 0.2, .interval = 0.02}, y), 0);
+    assert_int_equal(memory->waypoint, 0);
+    y[fish->at.x] = -1.61;
+    assert_int_equal(control_event(fish, memory, &(struct control_view){.t = 0.3, .interval = 0.02}, y), 1);
+    assert_int_equal(memory->waypoint, 1);
+    NEAR(control_desired_heading(fish, memory, 0, y), atan2(3, -0.39), 1e-14, 0);
+    y[fish->at.y] = 2.95;
+    assert_int_equal(control_event(fish, memory, &(struct control_view){.t = 0.4, .interval = 0.02}, y), 1);
+    assert_int_equal(memory->waypoint, 2);
+    // from one waypoint to the other, wherever the fish is by now
+    y[fish->at.x] = 7;
+    NEAR(control_desired_heading(fish, memory, 0, y), pi / 2, 1e-14, 0);
+    assert_int_equal(control_event(fish, memory, &(struct control_view){.t = 0.5, .interval = 0.02}, y), 0);
+    school_clear(&setup);
+}
+
+static void the_course_that_is_held_is_that_of_the_last_leg(void **state) {
+    (void)state;
+    // from one waypoint to the next, and from the start where there is one waypoint only
+    const struct {
+        const char *text;
+        int waypoint; /* the last */
+        double x, y, course;
+    } examples[] = {{TIME "fish: [{control: {law: heading, waypoints: [[-2, 1], [-3, 4]]}}]\n", 1, -3, 4, atan2(3, -1)},
+                    {TIME "fish: [{start: {position: [1, 2]}, control: {law: heading, waypoints: [[-1, 5]]}}]\n", 0, -1,
+                     5, atan2(3, -2)}};
+    for (int i = 0; i < 2; i++) {
+        struct setup setup;
+        school_build(&setup, examples[i].text);
+        const struct fish *fish = setup.school->fish;
+        struct control_memory *memory = &setup.state->control[0];
+        memory->waypoint = examples[i].waypoint;
+        setup.state->y[fish->at.x] = examples[i].x;
+        setup.state->y[fish->at.y] = examples[i].y;
+        control_event(fish, memory, &(struct control_view){.t = 0.1, .interval = 0.02}, setup.state->y);
+        assert_int_equal(memory->waypoint, examples[i].waypoint + 1);
+        NEAR(memory->held_heading, examples[i].course, 1e-14, 0);
+        school_clear(&setup);
+    }
+}
+
+static void waypoints_close_together_are_passed_at_one_event(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{control: {law: heading, waypoints: [[-0.1, 0], [-0.2, 0], [-3, 0]]}}]\n");
+    const struct control_view view = {.t = 0.1, .interval = 0.02};
+    assert_int_equal(control_event(setup.school->fish, &setup.state->control[0], &view, setup.state->y), 1);
+    assert_int_equal(setup.state->control[0].waypoint, 2);
+    school_clear(&setup);
+}
+
+static void averaged_heading_moves_the_bias_with_bounded_rate(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{control: {law: averaged_heading, desired_heading: 90, rate: 2, limit: 0.5}}]\n");
+    const struct fish *fish = setup.school->fish;
+    struct control_memory *memory = &setup.state->control[0];
+    const double interval = 0.02, heading = pi, target = 0.5 * tanh(2 * pi / 2);
+    double before = 0;
+    int n_bounded = 0;
+    for (int n = 0; n < 30; n++) {
+        control_advance(memory, interval);
+        const struct control_view view = {.t = n * interval, .interval = interval, .mean_heading = heading};
+        control_event(fish, memory, &view, setup.state->y);
+        NEAR(memory->phi0, before, 1e-15, 0);
+        assert_true(fabs(memory->phi0_rate) <= 2);
+        n_bounded += memory->phi0_rate == 2;
+        before = memory->phi0 + interval * memory->phi0_rate;
+        // between two events the bias is linear in time
+        setup.state->y[fish->at.phi0] = memory->phi0 + 0.3 * interval * memory->phi0_rate;
+        control_residual(fish, memory, (n + 0.3) * interval, 0.3 * interval, setup.state->y, setup.value);
+        NEAR(setup.value[fish->at.phi0], 0, 1e-15, 0);
+    }
+    // 0.498 at 2 per second: 12 intervals in full and one in part
+    assert_int_equal(n_bounded, 12);
+    NEAR(memory->phi0, target, 1e-15, 0);
+    school_clear(&setup);
+}
+
+// what a law with feedforward 1 makes of the filtered moment alone: the fish is on its desired heading
+static double moment_seen(struct setup *setup, double since) {
+    const struct fish *fish = setup->school->fish;
+    setup->state->y[fish->at.phi0] = 0;
+    control_residual(fish, &setup->state->control[0], 0, since, setup->state->y, setup->value);
+    return atanh(-setup->value[fish->at.phi0] / fish->control.limit);
+}
+
+static void feedforward_acts_through_a_moving_mean(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{control: {law: heading, feedforward: 1, filter: 0.4}}]\n");
+    const struct fish *fish = setup.school->fish;
+    struct control_memory *memory = &setup.state->control[0];
+    const double interval = 0.02, share = 1 - exp(-interval / 0.4), tau[] = {0.3, -0.2, 0.5};
+    double before = 0;  // there is none before t = 0, which is an event
+    for (int n = 0; n < 3; n++) {
+        control_advance(memory, interval);
+        const struct control_view view = {.t = n * interval, .interval = interval, .moment = tau[n]};
+        assert_int_equal(control_event(fish, memory, &view, setup.state->y), 0);
+        const double after = before + share * (tau[n] - before);
+        NEAR(moment_seen(&setup, 0), before, 1e-14, 0);
+        NEAR(moment_seen(&setup, 0.3 * interval), before + 0.3 * (after - before), 1e-14, 0);
+        NEAR(moment_seen(&setup, interval), after, 1e-14, 0);
+        before = after;
+    }
+    // the default is one period; without time constant the mean is the newest value
+    school_clear(&setup);
+    school_build(&setup, TIME "fish: [{wave: {frequency: 2}, control: {law: heading, feedforward: 1}}]\n");
+    NEAR(setup.school->fish[0].control.filter_share, 1 - exp(-0.04), 1e-15, 0);
+    school_clear(&setup);
+    school_build(&setup, TIME "fish: [{control: {law: heading, feedforward: 1, filter: 0}}]\n");
+    NEAR(setup.school->fish[0].control.filter_share, 1, 0, 0);
+    school_clear(&setup);
+}
+
+static void averaged_heading_takes_the_newest_mean_of_the_moment(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup,
+                 TIME "fish: [{control: {law: averaged_heading, rate: 1.0e+9, feedforward: 0.7, filter: 0.4}}]\n");
+    const struct fish *fish = setup.school->fish;
+    struct control_memory *memory = &setup.state->control[0];
+    const struct control_view view = {.interval = 0.02, .moment = 0.3, .mean_heading = pi};
+    control_event(fish, memory, &view, setup.state->y);
+    const double mean = 0.3 * (1 - exp(-0.05));
+    NEAR(memory->phi0_rate, 0.5 * tanh(0.7 * mean) / 0.02, 1e-13, 0);
+    school_clear(&setup);
+}
+
+static void course_is_damped_and_waits_for_a_whole_period(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME
+                 "fish: [{wave: {frequency: 2}, control: {law: course, desired_heading: 90, gain: 0.7, damping: 1.5,\n"
+                 "        rate: 1.0e+9, limit: 0.4}}]\n");
+    const struct fish *fish = setup.school->fish;
+    struct control_memory *memory = &setup.state->control[0];
+    struct control_view view = {
+        .t = 3, .interval = 0.02, .moment = 5, .mean_heading = 9, .course = 2, .course_rate = -3};
+    assert_int_equal(control_event(fish, memory, &view, setup.state->y), 0);
+    NEAR(memory->phi0_rate, 0, 0, 0);
+    view.has_course = 1;
+    control_event(fish, memory, &view, setup.state->y);
+    // neither the moment nor the heading counts; the period is half a second
+    const double target = 0.4 * tanh(0.7 * (2 - pi / 2) + 1.5 * 0.5 * -3);
+    NEAR(memory->phi0_rate, target / 0.02, 1e-12, 1e-14);
+    control_advance(memory, 0.02);
+    NEAR(memory->phi0, target, 1e-15, 0);
+    control_residual(fish, memory, 3.03, 0.01, setup.state->y, setup.value);
+    NEAR(setup.value[fish->at.phi0], setup.state->y[fish->at.phi0] - target - 0.01 * target / 0.02, 1e-14, 0);
+    // at most rate per second
+    setup.school->fish[0].control.rate = 2;
+    control_event(fish, memory, &(struct control_view){.interval = 0.02, .has_course = 1, .course = 2}, setup.state->y);
+    NEAR(memory->phi0_rate, 2, 0, 0);
+    school_clear(&setup);
+}
+
+static void rate_is_that_of_the_bias_of_a_moving_fish(void **state) {
+    (void)state;
+    const char *const texts[] = {
+        TIME "fish: [{control: {bias: 0.2}}]\n",
+        TIME "fish: [{nodes: 8, control: {law: heading, desired_heading: 150}}]\n",
+        TIME "fish: [{control: {law: heading, desired_heading: [[0, 180], [1, 120]]}}]\n",
+        TIME "fish: [{control: {law: heading, waypoints: [[-3, 1], [-4, 5]]}}]\n",
+        TIME "fish: [{control: {law: averaged_heading}}]\n",
+    };
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        struct setup setup;
+        school_build(&setup, texts[i]);
+        school_stir(&setup);
+        const struct fish *fish = setup.school->fish;
+        const struct control_memory *memory = &setup.state->control[0];
+        const double since = setup.t - setup.state->t, h = 1e-6;
+        double *const y = setup.state->y, phi0[2];
+        const double rate = control_rate(fish, memory, setup.t, since, y);
+        for (int side = 0; side < 2; side++) {
+            // every node goes on with its velocity
+            for (int k = 0; k < 2 * fish->n_nodes; k++)
+                y[fish->at.x + k] += (side == 0 ? -h : 2 * h) * y[fish->at.vx + k];
+            y[fish->at.phi0] = 0;
+            const double step = side == 0 ? -h : h;
+            control_residual(fish, memory, setup.t + step, since + step, y, setup.value);
+            phi0[side] = -setup.value[fish->at.phi0];
+        }
+        NEAR(rate, (phi0[1] - phi0[0]) / (2 * h), 1e-8, 1e-8);
+        school_clear(&setup);
+    }
+}
+
+static void value_of_control(struct setup *setup, const double *y, const double *yp, double *value) {
+    (void)yp;
+    control_residual(setup->school->fish, &setup->state->control[0], setup->t, setup->t - setup->state->t, y, value);
+}
+
+static void jacobian_of_control(struct setup *setup, double cj, const double *y, struct sparse *jacobian) {
+    (void)cj;
+    control_jacobian(setup->school->fish, &setup->state->control[0], setup->t, setup->t - setup->state->t, y, jacobian);
+}
+
+static void derivatives_agree_with_differences(void **state) {
+    (void)state;
+    const char *const texts[] = {TIME "fish: [{control: {bias: 0.2}}]\n",
+                                 TIME "fish: [{nodes: 8, control: {law: heading, desired_heading: 150}}]\n",
+                                 TIME "fish: [{control: {law: heading, desired_heading: [[0, 180], [1, 120]]}}]\n",
+                                 TIME "fish: [{control: {law: heading, waypoints: [[-3, 1], [-4, 5]]}}]\n",
+                                 TIME "fish: [{control: {law: averaged_heading, waypoints: [[-3, 1]]}}]\n"};
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        struct setup setup;
+        school_build(&setup, texts[i]);
+        school_stir(&setup);
+        school_compare(&setup, value_of_control, jacobian_of_control, texts[i]);
+        // and when the last waypoint has been passed
+        setup.state->control[0].waypoint = setup.school->fish[0].control.n_waypoints;
+        school_compare(&setup, value_of_control, jacobian_of_control, texts[i]);
+        school_clear(&setup);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(heading_points_from_a_third_of_the_length_to_the_nose),
+        cmocka_unit_test(headings_in_time_are_linear_between_their_times),
+        cmocka_unit_test(law_turns_towards_the_desired_heading_the_short_way),
+        cmocka_unit_test(without_a_law_the_bias_is_the_given_one),
+        cmocka_unit_test(waypoints_are_visited_in_order_and_the_last_course_is_held),
+        cmocka_unit_test(the_course_that_is_held_is_that_of_the_last_leg),
+        cmocka_unit_test(waypoints_close_together_are_passed_at_one_event),
+        cmocka_unit_test(averaged_heading_moves_the_bias_with_bounded_rate),
+        cmocka_unit_test(feedforward_acts_through_a_moving_mean),
+        cmocka_unit_test(averaged_heading_takes_the_newest_mean_of_the_moment),
+        cmocka_unit_test(course_is_damped_and_waits_for_a_whole_period),
+        cmocka_unit_test(rate_is_that_of_the_bias_of_a_moving_fish),
+        cmocka_unit_test(derivatives_agree_with_differences),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

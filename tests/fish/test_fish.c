@@ -1,0 +1,313 @@
+/* test_fish.c: shape, mass, stiffness, points and start of a fish: doc/model.md, sections 1, 3, 4, 5, 6. */
+#include <stdio.h>
+#include <string.h>
+
+#include "fish/fish_school.h"
+#include "school.h"
+
+#define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+
+static const double pi = 3.14159265358979323846;
+
+static double sum(int n, const double *value) {
+    double total = 0;
+    for (int i = 0; i < n; i++) total += value[i];
+    return total;
+}
+
+static void joukowski_body_has_the_mass_of_the_reference(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{}]\n");
+    const struct fish *fish = &setup.school->fish[0];
+    // an independent program's mass of the same body
+    NEAR(fish->total_mass, 57.50243756590633, 1e-10, 0);
+    NEAR(sum(fish->n_nodes, fish->mass), fish->total_mass, 0, 1e-14);
+    school_clear(&setup);
+}
+
+static void mean_sections_give_the_mass_and_the_stiffness_of_the_foil(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{nodes: 17, body: {section: mean, density: 1000, modulus: 1}}]\n");
+    const struct fish *fish = &setup.school->fish[0];
+    // an independent program's mass of the same body
+    NEAR(fish->total_mass, 30.842513753404223, 1e-9, 0);
+    for (int k = 0; k < fish->n_edges; k++) {
+        NEAR(fish->axial_stiffness[k], pi * fish->thickness[k] * 0.25 / 4, 0, 1e-14);
+    }
+    for (int j = 0; j < fish->n_joints; j++) {
+        double moment = 0;
+        for (int k = j; k <= j + 1; k++) moment += pi * 0.25 * pow(fish->thickness[k], 3) * fish->cube[k] / 64 / 2;
+        NEAR(fish->bending_stiffness[j], moment, 0, 1e-14);
+    }
+    school_clear(&setup);
+}
+
+static void added_mass_takes_the_mean_square_of_the_thickness(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME
+                 "fish: [{body: {section: mean}}, {start: {position: [0, 2]}, body: {section: mean}, "
+                 "drag: {extent: width}}]\n");
+    const struct fish *thick = &setup.school->fish[0], *wide = &setup.school->fish[1];
+    for (int k = 0; k < thick->n_edges; k++) {
+        const double h = thick->thickness[k], l = 1.0 / 6;
+        assert_true(thick->square[k] > 1);
+        NEAR(thick->added_mass[k], pi * 1000 * 1.5 * h * h * thick->square[k] * l / 4, 0, 1e-14);
+        NEAR(thick->drag_normal[k], 1000 * 0.5 * l * h / 2, 0, 1e-14);
+        NEAR(wide->added_mass[k], pi * 1000 * 1.5 * 0.25 * 0.25 * l / 4, 0, 1e-14);
+    }
+    school_clear(&setup);
+}
+
+static void second_moments_are_the_two_formulas(void **state) {
+    (void)state;
+    const char *const texts[] = {
+        TIME "fish: [{nodes: 13, body: {profile: uniform, thickness: 0.1, modulus: 3.0e+5}}]\n", TIME
+        "fish: [{nodes: 13, body: {profile: uniform, thickness: 0.1, modulus: 3.0e+5, second_moment: published}}]\n"};
+    const double h = 0.1, w = 0.25, area = pi * h * w / 4;
+    const double moment[] = {pi * w * h * h * h / 64, 2000 * area * w * w / 12 / 6};
+    for (int i = 0; i < 2; i++) {
+        struct setup setup;
+        school_build(&setup, texts[i]);
+        const struct fish *fish = &setup.school->fish[0];
+        for (int j = 0; j < fish->n_joints; j++) NEAR(fish->bending_stiffness[j], 3e5 * moment[i], 0, 1e-14);
+        for (int k = 0; k < fish->n_edges; k++) NEAR(fish->axial_stiffness[k], 3e5 * area, 0, 1e-14);
+        NEAR(fish->total_mass, 2000 * area, 0, 1e-14);
+        school_clear(&setup);
+    }
+}
+
+static void damping_and_wave_scale_with_refinement(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME
+                 "fish: [{nodes: 13, body: {bending_damping: 0.5, stretching_damping: 2, relaxation_time: "
+                 "0.01, profile: uniform}, wave: {phase: 30, frequency: 1.5}}]\n");
+    const struct fish *fish = &setup.school->fish[0];
+    // 13 nodes: edges of half the reference length
+    const double l = 1.0 / 12;
+    for (int j = 0; j < fish->n_joints; j++) {
+        NEAR(fish->bending_damping[j], 1 + 0.01 * fish->bending_stiffness[j] / l, 0, 1e-14);
+        const double s = (j + 1) * l;
+        NEAR(fish->wave_amplitude[j], 0.4 / 2 * (s + 0.2 * s * s), 0, 1e-14);
+        NEAR(fish->wave_phase[j], -6 * s + pi / 6, 0, 1e-14);
+    }
+    for (int k = 0; k < fish->n_edges; k++)
+        NEAR(fish->axial_damping[k], 4 + 0.01 * fish->axial_stiffness[k] / l, 0, 1e-14);
+    NEAR(fish->omega, 3 * pi, 0, 1e-15);
+    NEAR(fish->ramp, 1 / 1.5, 0, 1e-15);
+    school_clear(&setup);
+}
+
+static void table_of_heights_is_taken_as_it_is(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{nodes: 4, body: {profile: table, h: [0.1, 0.2, 0.3], w: [0.3, 0.2, 0.1]}}]\n");
+    const struct fish *fish = &setup.school->fish[0];
+    const double h[] = {0.1, 0.2, 0.3}, w[] = {0.3, 0.2, 0.1};
+    NEAR_ARRAY(3, fish->thickness, h, 0, 0);
+    NEAR_ARRAY(3, fish->depth, w, 0, 0);
+    const double m = 2000 * pi / 4 / 3;
+    const double mass[] = {m * 0.015, m * (0.015 + 0.02), m * (0.02 + 0.015), m * 0.015};
+    NEAR_ARRAY(4, fish->mass, mass, 0, 1e-14);
+    school_clear(&setup);
+}
+
+static void drag_coefficients_follow_the_extent(void **state) {
+    (void)state;
+    struct setup setup;
+    for (int wide = 0; wide < 2; wide++) {
+        school_build(&setup, wide ? TIME "fish: [{body: {profile: uniform, thickness: 0.1}, drag: {extent: width}}]\n"
+                                  : TIME "fish: [{body: {profile: uniform, thickness: 0.1}}]\n");
+        const struct fish *fish = &setup.school->fish[0];
+        const double l = 1.0 / 6, h = 0.1, w = 0.25, across = wide ? w : h;
+        NEAR(fish->drag_tangential[2], 1000 * pi * 1e-3 * l * (h + w) / 8, 0, 1e-14);
+        NEAR(fish->drag_normal[2], 1000 * 0.5 * l * across / 2, 0, 1e-14);
+        NEAR(fish->added_mass[2], pi * 1000 * 1.5 * across * across * l / 4, 0, 1e-14);
+        school_clear(&setup);
+    }
+}
+
+// the arc coordinate of a point is that of its nodes
+static double arc_of(const struct fish *fish, const struct stencil *point) {
+    return fish_mean(point, fish->arc);
+}
+
+static void sheet_points_are_cosine_points_and_weights_add_up_to_the_length(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{sheet_points: 11, length: 1.2}]\n");
+    const struct fish *fish = &setup.school->fish[0];
+    NEAR(sum(11, fish->sheet_weight), 1.2, 0, 1e-14);
+    for (int j = 0; j < 11; j++) {
+        // the rounding of a body of six edges
+        NEAR(arc_of(fish, &fish->sheet_point[j]), 1.2 * (1 - cos(pi * j / 10)) / 2, 1e-15, 0);
+    }
+    // on a smooth sheet the weights are those of Gauss-Lobatto quadrature, pi/(M-1) sin(theta) L/2, up to a factor
+    NEAR(fish->sheet_weight[5] / fish->sheet_weight[3], 1 / sin(0.3 * pi), 0, 1e-13);
+    school_clear(&setup);
+}
+
+static void control_points_are_chebyshev_points_or_midpoints_of_chords(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{sheet_points: 11}]\n");
+    for (int c = 0; c < 10; c++) {
+        NEAR(arc_of(setup.school->fish, &setup.school->fish[0].control_point[c]), (1 - cos(pi * (c + 0.5) / 10)) / 2,
+             1e-15, 0);
+    }
+    school_clear(&setup);
+    school_build(&setup, TIME "wake: {collocation: midpoint}\nfish: [{sheet_points: 11}]\n");
+    const struct fish *fish = &setup.school->fish[0];
+    for (int c = 0; c < 10; c++) {
+        NEAR(arc_of(fish, &fish->control_point[c]),
+             (arc_of(fish, &fish->sheet_point[c]) + arc_of(fish, &fish->sheet_point[c + 1])) / 2, 1e-15, 0);
+        double total = 0;
+        for (int i = 0; i < fish->control_point[c].n; i++) total += fish->control_point[c].weight[i];
+        NEAR(total, 1, 1e-15, 0);
+    }
+    school_clear(&setup);
+}
+
+static void smooth_curve_has_the_same_places_and_the_weights_of_the_quadrature(void **state) {
+    (void)state;
+    struct setup smooth, polygon;
+    for (int midpoint = 0; midpoint < 2; midpoint++) {
+        char text[2][200];
+        for (int i = 0; i < 2; i++) {
+            snprintf(text[i], sizeof text[i],
+                     TIME "wake: {curve: %s, collocation: %s}\nfish: [{sheet_points: 11, length: 1.2}]\n",
+                     i == 0 ? "smooth" : "polygon", midpoint ? "midpoint" : "chebyshev");
+        }
+        school_build(&smooth, text[0]);
+        school_build(&polygon, text[1]);
+        const struct fish *a = smooth.school->fish, *b = polygon.school->fish;
+        for (int j = 0; j < 11; j++) NEAR(arc_of(a, &a->sheet_point[j]), arc_of(b, &b->sheet_point[j]), 1e-14, 0);
+        for (int c = 0; c < 10; c++) NEAR(arc_of(a, &a->control_point[c]), arc_of(b, &b->control_point[c]), 1e-14, 0);
+        for (int j = 1; j < 10; j++) NEAR(a->sheet_weight[j], 0.06 * pi * sin(0.1 * pi * j), 0, 1e-14);
+        NEAR(a->sheet_weight[0], b->sheet_weight[0], 0, 0);
+        NEAR(a->sheet_weight[10], b->sheet_weight[10], 0, 0);
+        school_clear(&smooth);
+        school_clear(&polygon);
+    }
+}
+
+static void start_is_straight_behind_the_nose_with_one_velocity(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{start: {position: [2, 3], heading: 30, speed: 0.7}}]\n");
+    const struct fish *fish = &setup.school->fish[0];
+    const double *const y = setup.state->y;
+    for (int k = 0; k < fish->n_nodes; k++) {
+        NEAR(y[fish->at.x + k], 2 - fish->arc[k] * cos(pi / 6), 1e-14, 0);
+        NEAR(y[fish->at.y + k], 3 - fish->arc[k] * sin(pi / 6), 1e-14, 0);
+        NEAR(y[fish->at.vx + k], 0.7 * cos(pi / 6), 1e-15, 0);
+        NEAR(y[fish->at.vy + k], 0.7 * sin(pi / 6), 1e-15, 0);
+    }
+    school_clear(&setup);
+}
+
+static void start_without_ramp_has_the_natural_shape(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{wave: {ramp: 0, phase: 40}, control: {bias: 0.3}}]\n");
+    const struct fish *fish = &setup.school->fish[0];
+    const double *const x = setup.state->y + fish->at.x, *const y = setup.state->y + fish->at.y;
+    double before = atan2(y[1] - y[0], x[1] - x[0]);
+    for (int j = 0; j < fish->n_joints; j++) {
+        const double angle = atan2(y[j + 2] - y[j + 1], x[j + 2] - x[j + 1]), turn = angle - before;
+        NEAR(remainder(turn, 2 * pi), fish->wave_amplitude[j] * (sin(fish->wave_phase[j]) + 0.3), 1e-14, 0);
+        before = angle;
+    }
+    school_clear(&setup);
+}
+
+static void overlapping_fish_are_refused(void **state) {
+    (void)state;
+    struct case_values values;
+    school_settings(&values, TIME "fish: [{}, {start: {position: [0.3, 0.05]}}]\n");
+    struct school *school = (struct school *)&values;
+    assert_int_equal(fish_school_create(&school, &values.school), STATUS_CASE);
+    assert_null(school);
+    assert_non_null(strstr(status_message(), "overlap"));
+    case_free(&values);
+}
+
+static void fish_that_begin_beyond_a_wall_are_refused(void **state) {
+    (void)state;
+    // half of the body is 0.05 thick; of one wall the first fish says on which side the water is
+    static const struct {
+        const char *walls, *fish;
+        int status;
+    } cases[] = {{"[-0.06]", "[{}]", STATUS_OK},
+                 {"[0.06]", "[{}]", STATUS_OK},
+                 {"[0.04]", "[{}]", STATUS_CASE},
+                 {"[-0.5]", "[{}, {start: {position: [0, -1]}}]", STATUS_CASE},
+                 {"[-0.5, 0.5]", "[{}, {start: {position: [0, 0.4]}}]", STATUS_OK},
+                 {"[-0.5, 0.5]", "[{}, {start: {position: [0, 0.46]}}]", STATUS_CASE},
+                 {"[1, 2]", "[{}]", STATUS_CASE}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[512];
+        snprintf(text, sizeof text,
+                 TIME
+                 "fluid: {walls: %s}\ndefaults: {fish: {wave: {amplitude: 0}, body: {profile: uniform, thickness: "
+                 "0.1}}}\nfish: %s\n",
+                 cases[i].walls, cases[i].fish);
+        struct case_values values;
+        school_settings(&values, text);
+        struct school *school;
+        assert_int_equal(fish_school_create(&school, &values.school), cases[i].status);
+        if (cases[i].status != STATUS_OK) assert_non_null(strstr(status_message(), "wall"));
+        fish_school_free(school);
+        case_free(&values);
+    }
+}
+
+static void unknowns_stand_fish_after_fish_in_the_documented_order(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup,
+                 TIME "fish: [{nodes: 5, sheet_points: 6}, {nodes: 4, sheet_points: 5, start: {position: [0, 2]}}]\n");
+    const struct layout *a = &setup.school->fish[0].at, *b = &setup.school->fish[1].at;
+    const int first[] = {a->x, a->y, a->vx, a->vy, a->ax, a->ay, a->gamma, a->circulation, a->phi0, a->end};
+    const int want[] = {0, 5, 10, 15, 20, 25, 30, 36, 37, 38};
+    assert_memory_equal(first, want, sizeof want);
+    assert_int_equal(b->x, 38);
+    assert_int_equal(b->end, 38 + 24 + 7);
+    assert_int_equal(setup.school->n_unknowns, b->end);
+    school_clear(&setup);
+}
+
+static void gust_blows_across_the_stream(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fluid: {velocity: [3, 4], gust: {amplitude: 0.5, frequency: 2}}\nfish: [{}]\n");
+    NEAR(setup.school->gust[0], -0.4, 1e-15, 0);
+    NEAR(setup.school->gust[1], 0.3, 1e-15, 0);
+    NEAR(setup.school->gust_omega, 4 * pi, 0, 1e-15);
+    school_clear(&setup);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(joukowski_body_has_the_mass_of_the_reference),
+        cmocka_unit_test(mean_sections_give_the_mass_and_the_stiffness_of_the_foil),
+        cmocka_unit_test(added_mass_takes_the_mean_square_of_the_thickness),
+        cmocka_unit_test(second_moments_are_the_two_formulas),
+        cmocka_unit_test(damping_and_wave_scale_with_refinement),
+        cmocka_unit_test(table_of_heights_is_taken_as_it_is),
+        cmocka_unit_test(drag_coefficients_follow_the_extent),
+        cmocka_unit_test(sheet_points_are_cosine_points_and_weights_add_up_to_the_length),
+        cmocka_unit_test(control_points_are_chebyshev_points_or_midpoints_of_chords),
+        cmocka_unit_test(smooth_curve_has_the_same_places_and_the_weights_of_the_quadrature),
+        cmocka_unit_test(start_is_straight_behind_the_nose_with_one_velocity),
+        cmocka_unit_test(start_without_ramp_has_the_natural_shape),
+        cmocka_unit_test(overlapping_fish_are_refused),
+        cmocka_unit_test(fish_that_begin_beyond_a_wall_are_refused),
+        cmocka_unit_test(unknowns_stand_fish_after_fish_in_the_documented_order),
+        cmocka_unit_test(gust_blows_across_the_stream),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,230 @@
+/* test_profile.c: the outline of a body and the section of its edges: doc/model.md, section 1. */
+#include "fish/profile.h"
+#include "school.h"
+
+static const double pi = 3.14159265358979323846;
+
+static struct fish_parameters foil(int nodes, double thickness, enum section section) {
+    return (struct fish_parameters){
+        .length = 1.3,
+        .nodes = nodes,
+        .body = {.profile = PROFILE_JOUKOWSKI, .thickness = thickness, .depth = 0.25, .section = section}};
+}
+
+static void joukowski_heights_are_those_of_the_mapped_circle(void **state) {
+    (void)state;
+    // the thickness of both ends of an edge; where theta gives s, z(theta) gives r: check by the inverse, theta of
+    // every node found from s by Newton's method here
+    const double d = 0.15, r0 = 1.3 * (1 - d) / 4, c = r0 * (1 + d), nose = 2 * r0 * (1 + d * d) / (d - 1);
+    const struct fish_parameters fish = foil(9, d, SECTION_NODES);
+    double before = 0;
+    for (int k = 1; k < 9; k++) {
+        double r = 0;
+        if (k < 8) {
+            double theta = pi * (1 - k / 8.0);
+            for (int i = 0; i < 60; i++) {
+                const double a = r0 * (cos(theta) + d), b = r0 * sin(theta), m = a * a + b * b;
+                const double x = a + c * c * a / m - (nose + 1.3 * k / 8);
+                const double by_a = 1 + c * c * (b * b - a * a) / (m * m), by_b = -2 * c * c * a * b / (m * m);
+                theta -= x / (by_a * -r0 * sin(theta) + by_b * r0 * cos(theta));
+                r = fabs(r0 * sin(theta) * (1 - c * c / m));
+            }
+        }
+        const struct profile_edge edge = profile_edge(&fish, k - 1);
+        // rounding, twice that of the arc coordinate where the outline is steep
+        NEAR(edge.h, before + r, 1e-13, 0);
+        NEAR(edge.w, 0.25 * 1.3, 1e-15, 0);
+        NEAR(edge.square, 1, 0, 0);
+        NEAR(edge.cube, 1, 0, 0);
+        before = r;
+    }
+}
+
+// the integrals of h, h^2 and h^3 over the whole foil: along the circle, by the rule of rectangles in theta
+static void whole(double d, double length, double integral[3]) {
+    const int n = 1000000;
+    const double r0 = length * (1 - d) / 4, c = r0 * (1 + d);
+    for (int p = 0; p < 3; p++) integral[p] = 0;
+    for (int i = 0; i < n; i++) {
+        double x[2], h = 0;
+        for (int side = 0; side < 2; side++) {
+            const double theta = pi * (i + side) / n, middle = pi * (i + 0.5) / n;
+            const double a = r0 * (cos(theta) + d), b = r0 * sin(theta);
+            x[side] = a + c * c * a / (a * a + b * b);
+            const double e = r0 * (cos(middle) + d), f = r0 * sin(middle);
+            h = 2 * fabs(f - c * c * f / (e * e + f * f));
+        }
+        for (int p = 0; p < 3; p++) integral[p] += (x[0] - x[1]) * pow(h, p + 1);
+    }
+}
+
+static void means_over_the_edges_add_up_to_the_foil_with_any_number_of_nodes(void **state) {
+    (void)state;
+    const double thickness[] = {0.05, 0.2, 0.6, 0.95};
+    for (int t = 0; t < 4; t++) {
+        double want[3];
+        whole(thickness[t], 1.3, want);
+        // the area within the mapped circle
+        const double d = thickness[t], r0 = 1.3 * (1 - d) / 4, ratio = (1 + d) / (1 - d);
+        const double area = pi * r0 * r0 * (ratio * ratio - 1);
+        for (int nodes = 4; nodes <= 256; nodes *= 4) {
+            const struct fish_parameters fish = foil(nodes, thickness[t], SECTION_MEAN);
+            const double l = 1.3 / (nodes - 1);
+            double got[3] = {0, 0, 0};
+            for (int k = 0; k < nodes - 1; k++) {
+                const struct profile_edge edge = profile_edge(&fish, k);
+                got[0] += l * edge.h;
+                got[1] += l * edge.h * edge.h * edge.square;
+                got[2] += l * edge.h * edge.h * edge.h * edge.cube;
+                assert_true(edge.square >= 1 && edge.cube >= edge.square);
+            }
+            NEAR(got[0], area, 0, 1e-10);
+            // what the rectangles leave of the thickest foil
+            NEAR_ARRAY(3, got, want, 0, 1e-9);
+        }
+    }
+}
+
+static void means_are_good_to_ten_figures_next_to_the_blunt_nose(void **state) {
+    (void)state;
+    // h = alpha sqrt(s) (1 + beta s + ...) there: h^2 is smooth in s, so Gauss-Legendre in s is exact for it. The
+    // thickness in s by bisection in theta, for itself
+    const struct fish_parameters fish = foil(41, 0.2, SECTION_MEAN);
+    const double d = 0.2, r0 = 1.3 * (1 - d) / 4, c = r0 * (1 + d), nose = 2 * r0 * (1 + d * d) / (d - 1);
+    const double x[] = {-0.9061798459386640, -0.5384693101056831, 0, 0.5384693101056831, 0.9061798459386640};
+    const double w[] = {0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665,
+                        0.2369268850561891};
+    double mean = 0;
+    for (int i = 0; i < 5; i++) {
+        const double s = 1.3 / 40 * (1 + x[i]) / 2;
+        double low = 0, high = pi, r = 0;
+        for (int step = 0; step < 60; step++) {
+            const double theta = (low + high) / 2, a = r0 * (cos(theta) + d), b = r0 * sin(theta);
+            r = b * (1 - c * c / (a * a + b * b));
+            if (a + c * c * a / (a * a + b * b) > nose + s) {
+                low = theta;
+            } else {
+                high = theta;
+            }
+        }
+        mean += w[i] / 2 * 4 * r * r;
+    }
+    const struct profile_edge edge = profile_edge(&fish, 0);
+    NEAR(edge.h * edge.h * edge.square, mean, 0, 1e-10);
+}
+
+static void uniform_and_table_have_one_section_along_an_edge(void **state) {
+    (void)state;
+    for (enum section section = SECTION_MEAN; section <= SECTION_NODES; section++) {
+        struct fish_parameters fish = foil(4, 0.1, section);
+        fish.body.profile = PROFILE_UNIFORM;
+        struct profile_edge edge = profile_edge(&fish, 1);
+        NEAR(edge.h, 0.13, 1e-15, 0);
+        NEAR(edge.w, 0.325, 1e-15, 0);
+        NEAR(edge.square, 1, 0, 0);
+        NEAR(profile_tail_thickness(&fish), 0.13, 1e-15, 0);
+        double h[] = {0.1, 0.2, 0.3}, w[] = {0.3, 0.2, 0.1};
+        fish.body.profile = PROFILE_TABLE;
+        fish.body.h = (struct number_list){.n = 3, .value = h};
+        fish.body.w = (struct number_list){.n = 3, .value = w};
+        edge = profile_edge(&fish, 1);
+        NEAR(edge.h, 0.2, 0, 0);
+        NEAR(edge.w, 0.2, 0, 0);
+        NEAR(edge.cube, 1, 0, 0);
+        NEAR(profile_tail_thickness(&fish), 0.3, 0, 0);
+    }
+}
+
+static void a_foil_ends_in_a_cusp_or_with_the_thickness_of_its_tail(void **state) {
+    (void)state;
+    struct fish_parameters fish = foil(4, 0.1, SECTION_MEAN);
+    NEAR(profile_tail_thickness(&fish), 0, 0, 0);
+    fish.body.tail_thickness = 0.03;
+    NEAR(profile_tail_thickness(&fish), 0.03 * 1.3, 1e-17, 0);
+}
+
+// h of a foil with a cusp, and of the same with a tail, at an arc coordinate over the length: theta by bisection
+static double thickness_at(double d, double tail, double length, double sigma) {
+    const double r0 = length * (1 - d) / 4, c = r0 * (1 + d), nose = 2 * r0 * (1 + d * d) / (d - 1);
+    double low = 0, high = pi, h = 0;
+    for (int step = 0; step < 60; step++) {
+        const double theta = (low + high) / 2, a = r0 * (cos(theta) + d), b = r0 * sin(theta);
+        h = 2 * fabs(b * (1 - c * c / (a * a + b * b)));
+        if (a + c * c * a / (a * a + b * b) > nose + sigma * length) {
+            low = theta;
+        } else {
+            high = theta;
+        }
+    }
+    return sqrt(h * h + tail * length * sigma * tail * length * sigma);
+}
+
+static void a_tail_of_some_thickness_changes_the_whole_outline_smoothly(void **state) {
+    (void)state;
+    // nodes: the outline itself
+    struct fish_parameters fish = foil(9, 0.2, SECTION_NODES);
+    fish.body.tail_thickness = 0.04;
+    for (int k = 0; k < 8; k++) {
+        const double before = k > 0 ? thickness_at(0.2, 0.04, 1.3, k / 8.0) : 0;
+        const double after = k < 7 ? thickness_at(0.2, 0.04, 1.3, (k + 1) / 8.0) : 0.04 * 1.3;
+        NEAR(profile_edge(&fish, k).h, (before + after) / 2, 1e-13, 0);
+    }
+    // mean: over the last edge h^2 of the foil behaves like (1 - sigma)^3: the rule of the trapezoids
+    // has the error of its interval squared
+    fish.body.section = SECTION_MEAN;
+    enum { N = 20000 };
+    double mean[3] = {0, 0, 0};
+    for (int i = 0; i <= N; i++) {
+        const double h = thickness_at(0.2, 0.04, 1.3, (7 + (double)i / N) / 8), weight = (i % N == 0 ? 0.5 : 1.0) / N;
+        for (int p = 0; p < 3; p++) mean[p] += weight * pow(h, p + 1);
+    }
+    const struct profile_edge edge = profile_edge(&fish, 7);
+    const double got[3] = {edge.h, edge.h * edge.h * edge.square, edge.h * edge.h * edge.h * edge.cube};
+    NEAR_ARRAY(3, got, mean, 0, 1e-9);
+}
+
+static void means_with_a_tail_are_good_to_twelve_figures_next_to_the_blunt_nose(void **state) {
+    (void)state;
+    // h^2 is smooth in s there with a tail as well: Gauss-Legendre in s, exact for degree 9
+    struct fish_parameters fish = foil(41, 0.2, SECTION_MEAN);
+    fish.body.tail_thickness = 0.04;
+    const double x[] = {-0.9061798459386640, -0.5384693101056831, 0, 0.5384693101056831, 0.9061798459386640};
+    const double w[] = {0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665,
+                        0.2369268850561891};
+    double mean = 0;
+    for (int i = 0; i < 5; i++) {
+        const double h = thickness_at(0.2, 0.04, 1.3, (1 + x[i]) / 2 / 40);
+        mean += w[i] / 2 * h * h;
+    }
+    const struct profile_edge edge = profile_edge(&fish, 0);
+    // the arc coordinates of both ends are rounded
+    NEAR(edge.h * edge.h * edge.square, mean, 0, 1e-11);
+}
+
+static void the_masses_of_the_default_body_are_those_of_its_outline(void **state) {
+    (void)state;
+    // 1000 kg/m3, length 1 m, width 0.25: with and without a tail
+    const double tail[] = {0, 0.04}, mass[] = {30.84, 31.87};
+    for (int i = 0; i < 2; i++) {
+        struct fish_parameters fish = foil(25, 0.2, SECTION_MEAN);
+        fish.length = 1;
+        fish.body.tail_thickness = tail[i];
+        double sum = 0;
+        for (int k = 0; k < 24; k++) sum += 1000 * pi / 4 * profile_edge(&fish, k).h * 0.25 / 24;
+        NEAR(sum, mass[i], 0.006, 0);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(joukowski_heights_are_those_of_the_mapped_circle),
+        cmocka_unit_test(means_over_the_edges_add_up_to_the_foil_with_any_number_of_nodes),
+        cmocka_unit_test(means_are_good_to_ten_figures_next_to_the_blunt_nose),
+        cmocka_unit_test(uniform_and_table_have_one_section_along_an_edge),
+        cmocka_unit_test(a_foil_ends_in_a_cusp_or_with_the_thickness_of_its_tail),
+        cmocka_unit_test(a_tail_of_some_thickness_changes_the_whole_outline_smoothly),
+        cmocka_unit_test(means_with_a_tail_are_good_to_twelve_figures_next_to_the_blunt_nose),
+        cmocka_unit_test(the_masses_of_the_default_body_are_those_of_its_outline),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

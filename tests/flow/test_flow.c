@@ -1,0 +1,543 @@
+/* test_flow.c: which sources every point feels, and the derivatives of what it feels: doc/model.md, sections 6 to 9. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "failing_malloc.h"
+#include "flow/flow_at_bodies.h"
+#include "flow/flow_at_wake.h"
+#include "flow/flow_derivative.h"
+#include "flow/flow_external.h"
+#include "flow/flow_field.h"
+#include "school.h"
+#include "vortex/images.h"
+#include "vortex/kernel.h"
+
+#define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+#define TWO_FISH                                         \
+    "fish:\n"                                            \
+    "  - {nodes: 5, sheet_points: 7, force: reactive}\n" \
+    "  - {nodes: 6, sheet_points: 9, length: 0.8, start: {position: [0.2, 0.5], heading: 165}}\n"
+#define TWO TIME "fluid: {velocity: [0.1, 0.2], shear: 0.3, gust: {amplitude: 0.2, frequency: 1}}\n" TWO_FISH
+
+// velocity at (x, y) from the sources of fish g: free vortices, and the bound sheet with a smoothing (< 0: left out)
+static void add_fish(const struct setup *setup, int g, double x, double y, double smoothing, double *u, double *v) {
+    const struct fish *fish = &setup->school->fish[g];
+    const struct state *state = setup->state;
+    const struct wake *wake = &state->wake[g];
+    const double tau = setup->t - state->t;
+    double px[16], py[16], strength[16];
+    wake_at(wake, setup->school, state->t, tau, px, py, strength);
+    const double tail[2] = {state->y[fish->at.x + fish->n_nodes - 1], state->y[fish->at.y + fish->n_nodes - 1]};
+    double nascent[2];
+    wake_nascent(wake, tau, tail, nascent);
+    px[wake->n_vortex] = nascent[0];
+    py[wake->n_vortex] = nascent[1];
+    strength[wake->n_vortex] = state->y[fish->at.circulation] - wake->shed_before;
+    for (int i = 0; i <= wake->n_vortex; i++) {
+        struct kernel_values unit;
+        kernel_unit(1, &x, &y, px[i], py[i], fish->smoothing, &unit);
+        *u += strength[i] * *unit.u;
+        *v += strength[i] * *unit.v;
+    }
+    for (int j = 0; j < fish->n_sheet && smoothing >= 0; j++) {
+        const double q = fish->sheet_weight[j] * state->y[fish->at.gamma + j];
+        struct kernel_values unit;
+        kernel_unit(1, &x, &y, fish_mean(&fish->sheet_point[j], state->y + fish->at.x),
+                    fish_mean(&fish->sheet_point[j], state->y + fish->at.y), smoothing, &unit);
+        *u += q * *unit.u;
+        *v += q * *unit.v;
+    }
+}
+
+static void every_point_feels_the_sources_that_the_model_says(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TWO);
+    school_stir(&setup);
+    school_flow(&setup, setup.state->y);
+    school_ok(flow_velocity(setup.residual->flow, setup.state, setup.t, setup.state->y));
+    const struct flow *flow = setup.residual->flow;
+    for (int f = 0; f < 2; f++) {
+        const struct fish *fish = &setup.school->fish[f], *other = &setup.school->fish[1 - f];
+        assert_int_equal(flow->points[f].n, fish->n_control + fish->n_edges + 1);
+        for (int p = 0; p < flow->points[f].n; p++) {
+            const int at = flow->points[f].first + p;
+            double u, v;
+            flow_external(setup.school, setup.t, flow->y[at], &u, &v);
+            const double own = p < fish->n_control ? 0 : p == flow_tail(fish) ? fish->sheet_smoothing : -1;
+            // with force: reactive the midpoints leave out the own wake
+            const int feels_own = fish->force != FORCE_REACTIVE || own >= 0;
+            if (feels_own) add_fish(&setup, f, flow->x[at], flow->y[at], own, &u, &v);
+            add_fish(&setup, 1 - f, flow->x[at], flow->y[at], other->sheet_smoothing, &u, &v);
+            // rounding of sums of 40 terms, of at most 100 next to a bound vortex
+            NEAR(flow->u[at], u, 1e-13, 1e-13);
+            NEAR(flow->v[at], v, 1e-13, 1e-13);
+        }
+        const int k = 2, middle = flow->points[f].first + flow_midpoint(fish, k);
+        NEAR(flow->x[middle], (setup.state->y[fish->at.x + k] + setup.state->y[fish->at.x + k + 1]) / 2, 1e-15, 0);
+        const int tail = flow->points[f].first + flow_tail(fish);
+        NEAR(flow->y[tail], setup.state->y[fish->at.y + fish->n_nodes - 1], 1e-15, 0);
+        double slip[2];
+        flow_slip(flow, f, setup.state->y, slip);
+        NEAR(slip[0], flow->u[tail] - setup.state->y[fish->at.vx + fish->n_nodes - 1], 0, 0);
+        NEAR(slip[1], flow->v[tail] - setup.state->y[fish->at.vy + fish->n_nodes - 1], 0, 0);
+    }
+    school_clear(&setup);
+}
+
+static void wake_vortices_feel_everything_with_smoothed_sheets(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TWO);
+    school_stir(&setup);
+    // at an event: the vortices are where the wake says
+    setup.t = setup.state->t;
+    school_flow(&setup, setup.state->y);
+    struct flow *const flow = setup.residual->flow;
+    school_ok(flow_at_wake(flow, setup.state));
+    assert_in_range(flow->released.n, 1, 32);
+    for (int f = 0; f < 2; f++) {
+        const struct wake *wake = &setup.state->wake[f];
+        const double *const u = flow->wake_u + flow->released_range[f].first, *const v = flow->wake_v +
+                                                                                         flow->released_range[f].first;
+        for (int i = 0; i < wake->n_vortex; i++) {
+            double want_u, want_v;
+            flow_external(setup.school, setup.t, wake->y[i], &want_u, &want_v);
+            for (int g = 0; g < 2; g++) {
+                add_fish(&setup, g, wake->x[i], wake->y[i], setup.school->fish[g].sheet_smoothing, &want_u, &want_v);
+            }
+            NEAR(u[i], want_u, 1e-13, 0);
+            NEAR(v[i], want_v, 1e-13, 0);
+        }
+    }
+    school_clear(&setup);
+}
+
+enum { MANY_FISH = 30, MANY_SHEET = 100, MANY_VORTICES = 70 };
+
+// a school whose sheets and wakes are so large that they are summed by the tree where the tolerance is not 0
+static void build_many(struct setup *setup, const char *fluid) {
+    char text[4096];
+    size_t used = (size_t)snprintf(
+        text, sizeof text, TIME "%sdefaults: {fish: {sheet_points: %d, force: reactive}}\nfish:\n", fluid, MANY_SHEET);
+    for (int f = 0; f < MANY_FISH; f++) {
+        used += (size_t)snprintf(text + used, sizeof text - used, "  - {start: {position: [%g, %g]}}\n",
+                                 1.4 * (f % 6) + 0.1 * (f / 6), 0.5 * (f / 6));
+        assert_true(used < sizeof text);
+    }
+    school_build(setup, text);
+    school_stir(setup);
+    setup->t = setup->state->t;
+    for (int f = 0; f < MANY_FISH; f++) {
+        const double *const nose = setup->school->fish[f].start_position;
+        struct wake *const wake = &setup->state->wake[f];
+        while (wake->n_vortex < MANY_VORTICES) {
+            school_ok(wake_release(wake, nose[0] + 1.1 + school_random(setup), nose[1] + 0.2 * school_random(setup),
+                                   0.1 * school_random(setup), setup->state->t));
+        }
+    }
+}
+
+// the largest difference of two fields of n velocities each
+static double difference(int n, const double *u, const double *v, const double *other_u, const double *other_v) {
+    double worst = 0;
+    for (int i = 0; i < n; i++) worst = fmax(worst, hypot(u[i] - other_u[i], v[i] - other_v[i]));
+    return worst;
+}
+
+static void compare_every_point(const char *fluid) {
+    struct setup setup;
+    build_many(&setup, fluid);
+    struct flow *const flow = setup.residual->flow;
+    const size_t n = (size_t)flow->n_points;
+    double *const u = malloc(2 * n * sizeof *u), *const v = u + n;
+    assert_non_null(u);
+    setup.school->wake_tolerance = 0;
+    assert_false(velocity_sum_by_tree(&flow->sheet, flow->n_points, setup.school->wake_tolerance));
+    school_ok(flow_velocity(flow, setup.state, setup.t, setup.state->y));
+    memcpy(u, flow->u, n * sizeof *u);
+    memcpy(v, flow->v, n * sizeof *v);
+    // the sheets that a point does not feel, or feels with another smoothing, are subtracted from the sum of all
+    setup.school->wake_tolerance = 1e-6;
+    assert_true(velocity_sum_by_tree(&flow->sheet, flow->n_points, setup.school->wake_tolerance));
+    school_ok(flow_velocity(flow, setup.state, setup.t, setup.state->y));
+    // a tenth of the tolerance times what the sheets would cause if nothing cancelled, some ten lengths per beat
+    const double error = difference(flow->n_points, u, v, flow->u, flow->v);
+    assert_true(error > 0 && error < 1e-6);
+    free(u);
+    school_clear(&setup);
+}
+
+static void by_tree_every_point_feels_the_same_sources(void **state) {
+    (void)state;
+    compare_every_point("");
+    compare_every_point("fluid: {walls: [-1.5]}\n");
+    compare_every_point("fluid: {walls: [-1.5, 4]}\n");
+}
+
+static void compare_wake_vortices(const char *fluid) {
+    struct setup setup;
+    build_many(&setup, fluid);
+    struct flow *const flow = setup.residual->flow;
+    const size_t n = MANY_FISH * MANY_VORTICES;
+    double *const u = malloc(2 * n * sizeof *u), *const v = u + n;
+    assert_non_null(u);
+    setup.school->wake_tolerance = 0;
+    school_ok(flow_at_wake(flow, setup.state));
+    assert_int_equal(flow->released.n, (int)n);
+    memcpy(u, flow->wake_u, n * sizeof *u);
+    memcpy(v, flow->wake_v, n * sizeof *v);
+    setup.school->wake_tolerance = 1e-6;
+    assert_true(velocity_sum_by_tree(&flow->sheet, flow->released.n, setup.school->wake_tolerance));
+    school_ok(flow_at_wake(flow, setup.state));
+    const double error = difference((int)n, u, v, flow->wake_u, flow->wake_v);
+    assert_true(error > 0 && error < 1e-6);
+    free(u);
+    school_clear(&setup);
+}
+
+static void by_tree_wake_vortices_feel_every_sheet_once(void **state) {
+    (void)state;
+    compare_wake_vortices("");
+    compare_wake_vortices("fluid: {walls: [-1.5]}\n");
+}
+
+// unknowns of a school whose bodies have moved by a distance, each point its own way
+static void move(const struct setup *setup, double far, double *y) {
+    memcpy(y, setup->state->y, (size_t)setup->school->n_unknowns * sizeof *y);
+    for (int f = 0; f < setup->school->n_fish; f++) {
+        const struct layout *const at = &setup->school->fish[f].at;
+        for (int i = at->x; i < at->vx; i++) y[i] += far * sin(0.7 * i);
+    }
+}
+
+// Between two events the tree needs no memory, because it does not sort what has moved; without memory and without a
+// plan there is the direct sum.
+static void the_tree_is_planned_at_the_event(void **state) {
+    (void)state;
+    struct setup setup;
+    build_many(&setup, "");
+    struct flow *const flow = setup.residual->flow;
+    const size_t n = (size_t)flow->n_points;
+    double *const u = malloc(4 * n * sizeof *u), *const v = u + n, *const exact_u = v + n, *const exact_v = exact_u + n;
+    double *const y = malloc((size_t)setup.school->n_unknowns * sizeof *y);
+    assert_true(u && y);
+    const double far[] = {0, 0.004, 5};
+    school_ok(flow_interpolate(flow, setup.state));
+    const double tolerance = setup.school->wake_tolerance;
+    for (int k = 0; k < 3; k++) {
+        // every sheet directly; this makes room for the released vortices too
+        move(&setup, far[k], y);
+        setup.school->wake_tolerance = 0;
+        school_ok(flow_velocity(flow, setup.state, setup.t, y));
+        setup.school->wake_tolerance = tolerance;
+        memcpy(exact_u, flow->u, n * sizeof *u);
+        memcpy(exact_v, flow->v, n * sizeof *v);
+        n_until_failure = far[k] < 1 ? 0 : -1;
+        school_ok(flow_velocity(flow, setup.state, setup.t, y));
+        n_until_failure = -1;
+        memcpy(u, flow->u, n * sizeof *u);
+        memcpy(v, flow->v, n * sizeof *v);
+        for (int threads = 2; threads < 4; threads++) {
+            setup.school->threads = threads;
+            school_ok(flow_velocity(flow, setup.state, setup.t, y));
+            assert_memory_equal(flow->u, u, n * sizeof *u);
+            assert_memory_equal(flow->v, v, n * sizeof *v);
+            setup.school->threads = 1;
+        }
+        // the same after the bodies were elsewhere
+        move(&setup, 1, y);
+        school_ok(flow_velocity(flow, setup.state, setup.t, y));
+        move(&setup, far[k], y);
+        school_ok(flow_velocity(flow, setup.state, setup.t, y));
+        assert_memory_equal(flow->u, u, n * sizeof *u);
+        const double error = difference(flow->n_points, u, v, exact_u, exact_v);
+        // see compare_every_point
+        assert_true(error > 0 && error < tolerance);
+    }
+    free(u);
+    free(y);
+    school_clear(&setup);
+}
+
+static void external_flow_is_stream_plus_shear_plus_gust(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TWO);
+    double u, v;
+    const double t = 1.0 / 12, gust = 0.2 * 0.5, stream = hypot(0.1, 0.2);
+    flow_external(setup.school, t, 2, &u, &v);
+    NEAR(u, 0.1 + 0.6 - gust * 0.2 / stream, 1e-15, 0);
+    NEAR(v, 0.2 + gust * 0.1 / stream, 1e-15, 0);
+    school_clear(&setup);
+}
+
+static void external_acceleration_is_that_of_a_particle_of_the_fluid(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TWO);
+    const double t = 0.3, h = 1e-5, y = 2;
+    double u[3], v[3], acceleration[2];
+    for (int i = 0; i < 3; i++) flow_external(setup.school, t + (i - 1) * h, y, &u[i], &v[i]);
+    flow_external_acceleration(setup.school, t, acceleration);
+    // the velocity changes with time, and as the particle moves across the shear; cut off: h^2 (2 pi)^3 0.2/6
+    NEAR(acceleration[0], (u[2] - u[0]) / (2 * h) + 0.3 * v[1], 1e-8, 0);
+    NEAR(acceleration[1], (v[2] - v[0]) / (2 * h), 1e-8, 0);
+    school_clear(&setup);
+}
+
+// the velocity at all points of fish f, u then v, when unknown i is moved by step
+static void velocity_at(struct setup *setup, int i, double step, double *velocity) {
+    struct flow *flow = setup->residual->flow;
+    const double here = setup->state->y[i];
+    setup->state->y[i] = here + step;
+    school_ok(flow_velocity(flow, setup->state, setup->t, setup->state->y));
+    setup->state->y[i] = here;
+    memcpy(velocity, flow->u, (size_t)flow->n_points * sizeof *velocity);
+    memcpy(velocity + flow->n_points, flow->v, (size_t)flow->n_points * sizeof *velocity);
+}
+
+static void compare_derivatives(const char *text) {
+    struct setup setup;
+    school_build(&setup, text);
+    school_stir(&setup);
+    struct flow *flow = setup.residual->flow;
+    struct influence_block *block = &setup.residual->jacobian_scratch[0].block;
+    double velocity[4][64];
+    assert_true(2 * flow->n_points <= 64);
+    for (int f = 0; f < 2; f++) {
+        for (int g = 0; g < 2; g++) {
+            const struct fish *other = &setup.school->fish[g];
+            school_flow(&setup, setup.state->y);
+            flow_derivative(flow, f, g, block);
+            assert_int_equal(block->n_points, flow->points[f].n);
+            assert_int_equal(block->n_columns, 2 * other->n_nodes + other->n_sheet + 1);
+            assert_int_equal(block->n_columns, flow_n_columns(other));
+            for (int c = 0; c < block->n_columns; c++) {
+                // fourth order; bound vortices are 0.01 and more from control points: (1e-4/0.01)^4/30 of the largest
+                const double h = 1e-4;
+                for (int i = 0; i < 4; i++)
+                    velocity_at(&setup, flow_column(other, c), h * (i < 2 ? i - 2 : i - 1), velocity[i]);
+                for (int p = 0; p < block->n_points; p++) {
+                    const int at[2] = {flow->points[f].first + p, flow->n_points + flow->points[f].first + p};
+                    const double got[2] = {block->u[c * block->n_points + p], block->v[c * block->n_points + p]};
+                    for (int i = 0; i < 2; i++) {
+                        const double want = (velocity[0][at[i]] - 8 * velocity[1][at[i]] + 8 * velocity[2][at[i]] -
+                                             velocity[3][at[i]]) /
+                                            (12 * h);
+                        NEAR(got[i], want, 2e-6, 1e-6);
+                    }
+                }
+            }
+        }
+    }
+    school_clear(&setup);
+}
+
+static void derivative_by_every_unknown_agrees_with_differences(void **state) {
+    (void)state;
+    compare_derivatives(TWO);
+    // with free sheets two lengths have a smoothing of the pair, and so have images
+    compare_derivatives("wake: {shedding: sheet}\n" TWO);
+    compare_derivatives(TIME "wake: {shedding: sheet}\nfluid: {walls: [-0.5]}\n" TWO_FISH);
+}
+
+// ---- walls
+
+#define BESIDE                                                                        \
+    "fish:\n"                                                                         \
+    "  - {nodes: 5, sheet_points: 7, force: reactive, start: {position: [0, 0.5]}}\n" \
+    "  - {nodes: 6, sheet_points: 9, length: 0.8, start: {position: [0.2, 1.1], heading: 165}}\n"
+#define MIRRORED                                                                       \
+    "  - {nodes: 5, sheet_points: 7, force: reactive, start: {position: [0, -0.5]}}\n" \
+    "  - {nodes: 6, sheet_points: 9, length: 0.8, start: {position: [0.2, -1.1], heading: -165}}\n"
+
+// what causes velocities: fish and wake g are fish and wake f of another setup, seen in the mirror y = 0 or as they are
+static void copy_fish(const struct setup *from, int f, struct setup *to, int g, double sign) {
+    const struct fish *const a = &from->school->fish[f], *const b = &to->school->fish[g];
+    const double *const y = from->state->y;
+    double *const z = to->state->y;
+    for (int k = 0; k < a->n_nodes; k++) {
+        z[b->at.x + k] = y[a->at.x + k];
+        z[b->at.y + k] = sign * y[a->at.y + k];
+    }
+    for (int j = 0; j <= a->n_sheet; j++) z[b->at.gamma + j] = sign * y[a->at.gamma + j];
+    const struct wake *const wake = &from->state->wake[f];
+    struct wake *const copy = &to->state->wake[g];
+    school_ok(wake_resize(copy, wake->n_vortex));
+    copy->has_markers = wake->has_markers;
+    for (int i = 0; i < wake->n_vortex; i++) {
+        copy->x[i] = wake->x[i];
+        copy->y[i] = sign * wake->y[i];
+        copy->u[i] = wake->u[i];
+        copy->v[i] = sign * wake->v[i];
+        copy->u_before[i] = wake->u_before[i];
+        copy->v_before[i] = sign * wake->v_before[i];
+        copy->circulation[i] = sign * wake->circulation[i];
+        copy->birth[i] = wake->birth[i];
+    }
+    copy->shed_before = sign * wake->shed_before;
+    for (int i = 0; i < 2; i++) {
+        const double turn = i == 0 ? 1 : sign;
+        copy->slip[i] = turn * wake->slip[i];
+        copy->tail_velocity[i] = turn * wake->tail_velocity[i];
+        copy->tail_tangent[i] = turn * wake->tail_tangent[i];
+    }
+    copy->version++;
+}
+
+static void same_velocities(const struct flow *one, const struct flow *other, int f) {
+    const int n = one->points[f].n, i = one->points[f].first, k = other->points[f].first;
+    // rounding of sums of a hundred terms, of at most 100 next to a bound vortex
+    NEAR_ARRAY(n, one->u + i, other->u + k, 1e-12, 1e-12);
+    NEAR_ARRAY(n, one->v + i, other->v + k, 1e-12, 1e-12);
+}
+
+static void same_gradients(const struct flow *one, const struct flow *other, int f) {
+    const int n = one->points[f].n, i = one->points[f].first, k = other->points[f].first;
+    NEAR_ARRAY(n, one->u_x + i, other->u_x + k, 1e-10, 1e-11);
+    NEAR_ARRAY(n, one->u_y + i, other->u_y + k, 1e-10, 1e-11);
+    NEAR_ARRAY(n, one->v_x + i, other->v_x + k, 1e-10, 1e-11);
+}
+
+static void same_wake(const struct flow *one, const struct flow *other, int f) {
+    const int n = one->wake_range[f].n, i = one->wake_range[f].first, k = other->wake_range[f].first;
+    assert_true(n > 5);
+    NEAR_ARRAY(n, one->wake_u + i, other->wake_u + k, 1e-13, 1e-12);
+    NEAR_ARRAY(n, one->wake_v + i, other->wake_v + k, 1e-13, 1e-12);
+}
+
+static void beside_a_wall_everything_feels_mirrored_fish(void **state) {
+    (void)state;
+    static const char *const wakes[] = {"wake: {shedding: continuous}\n",
+                                        "wake: {shedding: sheet, taper: 0.4, taper_beside: 0.1}\n"};
+    for (int w = 0; w < 2; w++) {
+        struct setup wall, free;
+        char text[2048];
+        snprintf(text, sizeof text, TIME "%sfluid: {velocity: [0.3, 0], walls: [0]}\n" BESIDE, wakes[w]);
+        school_build(&wall, text);
+        snprintf(text, sizeof text, TIME "%sfluid: {velocity: [0.3, 0]}\n" BESIDE MIRRORED, wakes[w]);
+        school_build(&free, text);
+        school_stir(&wall);
+        free.state->t = wall.state->t;
+        for (int f = 0; f < 2; f++) {
+            copy_fish(&wall, f, &free, f, 1);
+            copy_fish(&wall, f, &free, f + 2, -1);
+        }
+        free.t = wall.t;
+        struct flow *const one = wall.residual->flow, *const other = free.residual->flow;
+        school_ok(flow_velocity(one, wall.state, wall.t, wall.state->y));
+        school_ok(flow_velocity(other, free.state, free.t, free.state->y));
+        for (int f = 0; f < 2; f++) same_velocities(one, other, f);
+        school_flow(&wall, wall.state->y);
+        school_flow(&free, free.state->y);
+        for (int f = 0; f < 2; f++) {
+            same_velocities(one, other, f);
+            same_gradients(one, other, f);
+        }
+        school_ok(flow_at_wake(one, wall.state));
+        school_ok(flow_at_wake(other, free.state));
+        for (int f = 0; f < 2; f++) same_wake(one, other, f);
+        school_clear(&wall);
+        school_clear(&free);
+    }
+}
+
+static void the_field_does_not_go_through_walls(void **state) {
+    (void)state;
+    enum { POINTS = 50 };
+    struct setup setup;
+    school_build(&setup, TIME "fluid: {velocity: [0.3, 0], shear: 0.2, walls: [-0.4, 1.9]}\n" BESIDE);
+    school_stir(&setup);
+    double x[POINTS], y[POINTS], u[POINTS], v[POINTS], u_x[POINTS], u_y[POINTS], v_x[POINTS];
+    const struct induced at = {POINTS, x, y, u, v, u_x, u_y, v_x};
+    for (int i = 0; i < POINTS; i++) {
+        x[i] = 0.05 * i - 1;
+        y[i] = i % 2 ? -0.4 : 1.9;
+    }
+    school_ok(flow_field(setup.residual->flow, setup.state, &at));
+    double largest = 0;
+    for (int i = 0; i < POINTS; i++) {
+        NEAR(v[i], 0, 1e-12, 0);
+        NEAR(v_x[i], 0, 1e-11, 0);
+        largest = fmax(largest, fabs(u[i] - u[(i + 2) % POINTS]));
+    }
+    assert_true(largest > 0.01);
+    // beyond them there is no fluid
+    for (int i = 0; i < POINTS; i++) y[i] = i % 3 == 0 ? -0.41 : i % 3 == 1 ? 1.91 : 0.2;
+    school_ok(flow_field(setup.residual->flow, setup.state, &at));
+    for (int i = 0; i < POINTS; i++) {
+        assert_int_equal(isnan(u[i]) && isnan(v[i]) && isnan(u_x[i]) && isnan(u_y[i]) && isnan(v_x[i]), i % 3 != 2);
+    }
+    school_clear(&setup);
+}
+
+static void changed_wakes_are_placed_again(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TWO);
+    school_stir(&setup);
+    struct flow *flow = setup.residual->flow;
+    school_flow(&setup, setup.state->y);
+    const double before = flow->u[0];
+    setup.state->wake[0].circulation[3] += 1;
+    setup.state->wake[0].version++;
+    school_flow(&setup, setup.state->y);
+    assert_true(fabs(flow->u[0] - before) > 1e-4);
+    school_clear(&setup);
+}
+
+static void gradient_pass_leaves_the_velocity_as_it_is(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TWO);
+    school_stir(&setup);
+    struct flow *flow = setup.residual->flow;
+    school_flow(&setup, setup.state->y);
+    double with[64];
+    memcpy(with, flow->u, (size_t)flow->n_points * sizeof *with);
+    school_ok(flow_velocity(flow, setup.state, setup.t, setup.state->y));
+    // the loops differ in the order of a division and a product
+    NEAR_ARRAY(flow->n_points, flow->u, with, 1e-13, 1e-13);
+    school_clear(&setup);
+}
+
+static void threads_change_no_bit(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TWO);
+    school_stir(&setup);
+    struct flow *flow = setup.residual->flow;
+    double one[64];
+    school_flow(&setup, setup.state->y);
+    school_ok(flow_velocity(flow, setup.state, setup.t, setup.state->y));
+    memcpy(one, flow->u, (size_t)flow->n_points * sizeof *one);
+    for (int threads = 2; threads <= 5; threads++) {
+        setup.school->threads = threads;
+        school_ok(flow_velocity(flow, setup.state, setup.t, setup.state->y));
+        assert_memory_equal(flow->u, one, (size_t)flow->n_points * sizeof *one);
+    }
+    // those that the residual has made room for
+    setup.school->threads = 1;
+    school_clear(&setup);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_point_feels_the_sources_that_the_model_says),
+        cmocka_unit_test(wake_vortices_feel_everything_with_smoothed_sheets),
+        cmocka_unit_test(by_tree_every_point_feels_the_same_sources),
+        cmocka_unit_test(the_tree_is_planned_at_the_event),
+        cmocka_unit_test(by_tree_wake_vortices_feel_every_sheet_once),
+        cmocka_unit_test(external_flow_is_stream_plus_shear_plus_gust),
+        cmocka_unit_test(external_acceleration_is_that_of_a_particle_of_the_fluid),
+        cmocka_unit_test(derivative_by_every_unknown_agrees_with_differences),
+        cmocka_unit_test(beside_a_wall_everything_feels_mirrored_fish),
+        cmocka_unit_test(the_field_does_not_go_through_walls),
+        cmocka_unit_test(changed_wakes_are_placed_again),
+        cmocka_unit_test(gradient_pass_leaves_the_velocity_as_it_is),
+        cmocka_unit_test(threads_change_no_bit),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,372 @@
+/* test_bound_sheet.c: impermeability, Kelvin, Kutta; flat plate and circular arc in closed form: doc/model.md, sections
+ * 6,
+ * 7 and 12. */
+#include <stdio.h>
+
+#include "flow/flow_at_bodies.h"
+#include "force/bound_sheet.h"
+#include "school.h"
+#include "solver/initial_conditions.h"
+
+#define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+#define FAR "solver: {coupling_distance: 100}\n"
+
+static const double pi = 3.14159265358979323846;
+
+static void of_fish(struct setup *setup, int f, const double **u, const double **v) {
+    *u = setup->residual->flow->u + setup->residual->flow->points[f].first;
+    *v = setup->residual->flow->v + setup->residual->flow->points[f].first;
+}
+
+static const double removed = 0.3, chi = 0.6;
+static enum bound_sheet_law law; /* of the pass that is compared */
+
+static void value_of_sheet(struct setup *setup, const double *y, const double *yp, double *value) {
+    school_flow(setup, y);
+    for (int f = 0; f < setup->school->n_fish; f++) {
+        const double *u, *v;
+        of_fish(setup, f, &u, &v);
+        bound_sheet_residual(&setup->school->fish[f], removed, u, v, y, value);
+        bound_sheet_kutta_residual(&setup->school->fish[f], law, chi, u, v, y, yp, value);
+    }
+}
+
+static void jacobian_of_sheet(struct setup *setup, double cj, const double *y, struct sparse *jacobian) {
+    for (int f = 0; f < setup->school->n_fish; f++) {
+        const struct fish *fish = &setup->school->fish[f];
+        const double *u, *v;
+        of_fish(setup, f, &u, &v);
+        bound_sheet_jacobian(fish, u, v, y, jacobian);
+        bound_sheet_kutta_jacobian(fish, law, chi, cj, u, v, y, jacobian);
+        for (int g = 0; g < setup->school->n_fish; g++) {
+            struct jacobian_scratch *const through = school_influence(setup, f, g);
+            bound_sheet_flow_jacobian(fish, &through->block, y, &through->rows);
+            if (law == BOUND_SHEET_RATE) bound_sheet_kutta_flow_jacobian(fish, chi, &through->block, y, &through->rows);
+            school_add_rows(setup, f, g, jacobian);
+        }
+    }
+}
+
+static void derivatives_agree_with_differences(void **state) {
+    (void)state;
+    const char *const texts[] = {
+        TIME "fish: [{sheet_points: 9}]\n",
+        TIME "wake: {collocation: midpoint}\nfish: [{sheet_points: 21}]\n",
+        TIME "fluid: {velocity: [0.3, -0.2], shear: 0.7}\nfish: [{sheet_points: 5, nodes: 9}]\n",
+        TIME "wake: {curve: smooth}\nfish: [{sheet_points: 9}]\n",
+        TIME "wake: {shedding: sheet}\nfish: [{sheet_points: 9}]\n",
+        TIME "wake: {curve: smooth, collocation: midpoint}\nfish: [{sheet_points: 15, nodes: 4}]\n",
+        TIME FAR
+        "wake: {curve: smooth}\n"
+        "fish:\n"
+        "  - {sheet_points: 9}\n"
+        "  - {nodes: 5, sheet_points: 13, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n",
+        TIME FAR
+        "wake: {collocation: midpoint}\n"
+        "fish:\n"
+        "  - {sheet_points: 9}\n"
+        "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"
+        "  - {nodes: 9, sheet_points: 11, length: 1.2, start: {position: [0.1, -0.6], heading: 200}}\n"};
+    const enum bound_sheet_law laws[] = {BOUND_SHEET_EDGE, BOUND_SHEET_RATE, BOUND_SHEET_FROZEN};
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        for (int l = 0; l < 3; l++) {
+            struct setup setup;
+            school_build(&setup, texts[i]);
+            school_stir(&setup);
+            law = laws[l];
+            school_compare(&setup, value_of_sheet, jacobian_of_sheet, texts[i]);
+            school_clear(&setup);
+        }
+    }
+}
+
+// A plate at rest along x in the stream (cos alpha, sin alpha), its bound circulations in q (m). The free vortex at its
+// tail is so wide that it has no velocity: what is left is the closed problem of the bound sheet.
+static void solve_plate(const char *collocation, const char *kutta, int m, const char *more, double *q) {
+    char text[512];
+    snprintf(text, sizeof text,
+             TIME
+             "fluid: {velocity: [0.8, 0.6]%s}\n"
+             "wake: {collocation: %s, kutta: %s, smoothing: 1.0e+9}\n"
+             "fish: [{sheet_points: %d, start: {speed: 0}, motion: {driven: all}}]\n",
+             more, collocation, kutta, m);
+    struct setup setup;
+    school_build(&setup, text);
+    struct initial_conditions *consistent;
+    school_ok(initial_conditions_create(&consistent, setup.residual));
+    school_ok(initial_conditions_solve(consistent, 0, setup.state->y, setup.state->yp));
+    const struct fish *fish = setup.school->fish;
+    for (int j = 0; j < m; j++) q[j] = fish->sheet_weight[j] * setup.state->y[fish->at.gamma + j];
+    initial_conditions_free(consistent);
+    school_clear(&setup);
+}
+
+static void plate_without_circulation_is_exact_with_chebyshev_points(void **state) {
+    (void)state;
+    // gamma = -2 w (L/2 - s)/sqrt(s (L-s)) with w = 0.6, as circulations of Gauss-Lobatto quadrature
+    for (int m = 5; m <= 33; m += 7) {
+        double q[64], want[64];
+        solve_plate("chebyshev", "rate", m, "", q);
+        for (int j = 0; j < m; j++) {
+            want[j] = -0.6 * pi / (m - 1) * cos(pi * j / (m - 1)) * (j == 0 || j == m - 1 ? 0.5 : 1);
+        }
+        // the rounding of a linear system whose condition grows like M^2
+        NEAR_ARRAY(m, q, want, 1e-12, 0);
+    }
+}
+
+static void plate_with_kutta_condition_is_exact_with_chebyshev_points(void **state) {
+    (void)state;
+    for (int m = 5; m <= 33; m += 7) {
+        double q[64], total = 0;
+        solve_plate("chebyshev", "edge", m, "", q);
+        for (int j = 0; j < m; j++) total += q[j];
+        // Gamma = pi L U sin(alpha)
+        NEAR(total, -pi * 0.6, 0, 1e-12);
+        NEAR(q[m - 1], 0, 1e-14, 0);
+    }
+}
+
+// largest error of the strengths in the middle of the plate without circulation, relative to those of a plate
+static double error_of_midpoints(int m) {
+    static double q[300];
+    solve_plate("midpoint", "rate", m, "", q);
+    double error = 0;
+    for (int j = m / 4; j < 3 * m / 4; j++) {
+        error = fmax(error, fabs(q[j] / (-0.6 * pi / (m - 1)) - cos(pi * j / (m - 1))));
+    }
+    return error;
+}
+
+static void plate_with_midpoints_converges(void **state) {
+    (void)state;
+    const double coarse = error_of_midpoints(41), fine = error_of_midpoints(81);
+    assert_true(fine < 0.03);
+    // first order: midpoints of chords are not the points of a quadrature
+    assert_true(coarse / fine > 1.8);
+    // but the sum of the strengths with Kutta's condition is exact on any mesh: it is (L/2) w times 2 pi by Vieta's
+    // formula for the polynomial whose zeros are the control points, which are the means of their neighbours
+    for (int m = 5; m <= 33; m += 7) {
+        double q[64], total = 0;
+        solve_plate("midpoint", "edge", m, "", q);
+        for (int j = 0; j < m; j++) total += q[j];
+        NEAR(total, -pi * 0.6, 0, 1e-12);
+    }
+}
+
+// bound circulation of a plate beside a vortex of circulation 1 at (0.4, 0.3), which has a smoothing of its own
+static double circulation_beside_a_vortex(int m) {
+    char text[512];
+    snprintf(text, sizeof text,
+             TIME "wake: {smoothing: 0.2}\nfish: [{sheet_points: %d, start: {speed: 0}, motion: {driven: all}}]\n", m);
+    struct setup setup;
+    school_build(&setup, text);
+    school_ok(wake_release(&setup.state->wake[0], 0.4, 0.3, 1, 0));
+    struct initial_conditions *consistent;
+    school_ok(initial_conditions_create(&consistent, setup.residual));
+    school_ok(initial_conditions_solve(consistent, 0, setup.state->y, setup.state->yp));
+    const double circulation = bound_sheet_circulation(setup.school->fish, setup.state->y);
+    initial_conditions_free(consistent);
+    school_clear(&setup);
+    return circulation;
+}
+
+static void chebyshev_points_converge_spectrally(void **state) {
+    (void)state;
+    const double limit = circulation_beside_a_vortex(161);
+    double before = fabs(circulation_beside_a_vortex(11) - limit);
+    assert_true(before < 0.1 && before > 1e-9);
+    // ten more points are worth a factor, not a power: the error falls tenfold each time until rounding
+    for (int m = 21; m <= 51; m += 10) {
+        const double error = fabs(circulation_beside_a_vortex(m) - limit);
+        assert_true(error < before / 10 || error < 1e-12);
+        before = error;
+    }
+}
+
+/* The bound circulation, under Kutta's condition, of a body of length 1 at rest in the stream (cos 10, sin 10 degrees).
+ * place gives its nodes as functions of the arc length. What is shed has no velocity. */
+typedef void line(double s, double place[2]);
+static double circulation_of_a_bent_body(line *place, const char *curve, int n_nodes, int m) {
+    char text[512];
+    snprintf(text, sizeof text,
+             TIME
+             "fluid: {velocity: [%.17g, %.17g]}\n"
+             "wake: {curve: %s, smoothing: 1.0e+9}\n"
+             "fish: [{nodes: %d, sheet_points: %d, wave: {amplitude: 0}, start: {speed: 0}}]\n",
+             cos(pi / 18), sin(pi / 18), curve, n_nodes, m);
+    struct setup setup;
+    school_build(&setup, text);
+    const struct fish *fish = setup.school->fish;
+    for (int k = 0; k < n_nodes; k++) {
+        double at[2];
+        place((double)k / (n_nodes - 1), at);
+        setup.state->y[fish->at.x + k] = at[0];
+        setup.state->y[fish->at.y + k] = at[1];
+    }
+    struct initial_conditions *consistent;
+    school_ok(initial_conditions_create(&consistent, setup.residual));
+    school_ok(initial_conditions_solve(consistent, 0, setup.state->y, setup.state->yp));
+    const double circulation = bound_sheet_circulation(fish, setup.state->y);
+    initial_conditions_free(consistent);
+    school_clear(&setup);
+    return circulation;
+}
+
+// an arc of half opening 30 degrees that bulges up; its circulation by Joukowski's map
+static void arc(double s, double place[2]) {
+    const double angle = pi / 6 * (2 * s - 1), radius = 3 / pi;
+    place[0] = radius * (sin(angle) + 0.5);
+    place[1] = radius * (cos(angle) - cos(pi / 6));
+}
+
+static void smooth_curve_has_the_circulation_of_an_arc(void **state) {
+    (void)state;
+    const double exact = -3 / cos(pi / 12) * sin(pi / 18 + pi / 12);
+    const int n_nodes[] = {7, 11, 21, 41};
+    const double allowed[] = {1e-4, 2e-5, 2e-6, 2e-7};
+    for (int i = 0; i < 4; i++) {
+        NEAR(circulation_of_a_bent_body(arc, "smooth", n_nodes[i], 41), exact, 0, allowed[i]);
+    }
+}
+
+// a default fish in mid-beat: the curvature of its full wave, integrated by Simpson's rule
+static void beat(double s, double place[2]) {
+    enum { N = 2000 };
+    double angle = 0;
+    place[0] = place[1] = 0;
+    for (int i = 0; i < N; i++) {
+        double turn[5];
+        for (int k = 0; k < 5; k++) {
+            const double q = s * (i + k / 4.0) / N;
+            turn[k] = s / N * 6 * 0.4 * (q + 0.2 * q * q) * sin(1 - 6 * q);
+        }
+        const double half = angle + (turn[0] + 4 * turn[1] + turn[2]) / 12;
+        const double end = angle + (turn[0] + 4 * turn[1] + 2 * turn[2] + 4 * turn[3] + turn[4]) / 12;
+        place[0] += s / N * (cos(angle) + 4 * cos(half) + cos(end)) / 6;
+        place[1] += s / N * (sin(angle) + 4 * sin(half) + sin(end)) / 6;
+        angle = end;
+    }
+}
+
+static void smooth_curve_and_polygon_of_a_bent_fish_have_one_limit(void **state) {
+    (void)state;
+    const double limit = circulation_of_a_bent_body(beat, "smooth", 641, 65);
+    // about 16 N^-3.5 and 2.5 N^-1.5 on this body
+    const int n_nodes[] = {17, 33, 65};
+    double smooth[3], polygon[3];
+    for (int i = 0; i < 3; i++) {
+        smooth[i] = fabs(circulation_of_a_bent_body(beat, "smooth", n_nodes[i], 65) / limit - 1);
+        polygon[i] = fabs(circulation_of_a_bent_body(beat, "polygon", n_nodes[i], 65) / limit - 1);
+    }
+    assert_true(smooth[0] < 1e-3 && smooth[1] < 1e-4 && smooth[2] < 1e-5);
+    assert_true(log2(smooth[0] / smooth[1]) > 3 && log2(smooth[1] / smooth[2]) > 3);
+    assert_true(polygon[0] > 1e-2 && log2(polygon[1] / polygon[2]) > 1.3);
+    NEAR(circulation_of_a_bent_body(beat, "polygon", 641, 65), limit, 0, 1e-3);
+}
+
+static void strength_is_circulation_per_length_of_the_body_as_it_is(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "wake: {curve: smooth}\nfish: [{sheet_points: 9, length: 1.2, start: {heading: 30}}]\n");
+    const struct fish *fish = setup.school->fish;
+    double *const y = setup.state->y;
+    // stretched by a tenth
+    for (int i = fish->at.x; i < fish->at.vx; i++) y[i] *= 1.1;
+    const double h = pi / 8;
+    for (int j = 1; j < 8; j++) {
+        y[fish->at.gamma + j] = 0.7;
+        const double q = 0.7 * fish->sheet_weight[j];
+        NEAR(bound_sheet_strength(fish, j, y), q / (1.1 * 0.6 * h * sin(j * h)), 0, 1e-13);
+    }
+    // at the ends the quadrature has no weight
+    y[fish->at.gamma + 8] = 0.7;
+    NEAR(bound_sheet_strength(fish, 8, y), 0.7, 0, 0);
+    NEAR(fish->sheet_weight[8], 0.3 * (1 - cos(h)), 1e-15, 0);
+    school_clear(&setup);
+}
+
+static void end_correction_makes_a_sheet_that_ends_with_a_step_exact(void **state) {
+    (void)state;
+    // a plate along x at rest with the strength s/L, which is 0 at the tail itself: normal velocity by Cauchy's
+    // integral
+    for (int m = 5; m <= 33; m += 14) {
+        char text[200];
+        snprintf(text, sizeof text,
+                 TIME
+                 "wake: {curve: smooth, shedding: sheet}\nfish: [{sheet_points: %d, length: 1.2, start: {speed: 0}}]\n",
+                 m);
+        struct setup setup;
+        school_build(&setup, text);
+        const struct fish *fish = setup.school->fish;
+        double *const y = setup.state->y, with[64];
+        for (int j = 1; j < m - 1; j++) y[fish->at.gamma + j] = fish_mean(&fish->sheet_point[j], fish->arc) / 1.2;
+        school_flow(&setup, y);
+        const double *u, *v;
+        of_fish(&setup, 0, &u, &v);
+        bound_sheet_residual(fish, 0, u, v, y, setup.value);
+        for (int c = 0; c < m - 1; c++) {
+            const double sigma = fish_mean(&fish->control_point[c], fish->arc) / 1.2;
+            with[c] = (sigma * log(sigma / (1 - sigma)) - 1) / (2 * pi);
+            // the correction is in proportion to the strength next to the tail, not at it
+            const double strength = y[fish->at.gamma + m - 2];
+            setup.value[fish->at.gamma + c] +=
+                (1 / strength - 1) * bound_sheet_end_correction(fish, c, m - 2) * strength;
+        }
+        NEAR_ARRAY(m - 1, setup.value + fish->at.gamma, with, 1e-13, 0);
+        school_clear(&setup);
+    }
+}
+
+static void kelvin_counts_bound_shed_and_dissipated_circulation(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{sheet_points: 9}]\n");
+    school_stir(&setup);
+    school_flow(&setup, setup.state->y);
+    const struct fish *fish = setup.school->fish;
+    const double *u, *v;
+    of_fish(&setup, 0, &u, &v);
+    bound_sheet_residual(fish, 0.3, u, v, setup.state->y, setup.value);
+    NEAR(setup.value[fish->at.gamma + 8],
+         bound_sheet_circulation(fish, setup.state->y) + setup.state->y[fish->at.circulation] - 0.3, 1e-15, 0);
+    double sum = 0;
+    for (int j = 0; j < 9; j++) sum += fish->sheet_weight[j] * setup.state->y[fish->at.gamma + j];
+    NEAR(bound_sheet_circulation(fish, setup.state->y), sum, 1e-15, 0);
+    school_clear(&setup);
+}
+
+static void shedding_rate_is_edge_strength_times_slip(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{sheet_points: 9}]\n");
+    school_stir(&setup);
+    school_flow(&setup, setup.state->y);
+    const struct fish *fish = setup.school->fish;
+    const double *const y = setup.state->y, *u, *v;
+    of_fish(&setup, 0, &u, &v);
+    double slip[2];
+    flow_slip(setup.residual->flow, 0, y, slip);
+    // the last two bound points lie on the last edge
+    const double e[2] = {y[fish->at.x + 6] - y[fish->at.x + 5], y[fish->at.y + 6] - y[fish->at.y + 5]};
+    const double along = (slip[0] * e[0] + slip[1] * e[1]) / hypot(e[0], e[1]);
+    NEAR(bound_sheet_shedding_rate(fish, 0.6, u, v, y), 0.6 * y[fish->at.gamma + 8] * along, 0, 1e-13);
+    school_clear(&setup);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(derivatives_agree_with_differences),
+        cmocka_unit_test(plate_without_circulation_is_exact_with_chebyshev_points),
+        cmocka_unit_test(plate_with_kutta_condition_is_exact_with_chebyshev_points),
+        cmocka_unit_test(plate_with_midpoints_converges),
+        cmocka_unit_test(chebyshev_points_converge_spectrally),
+        cmocka_unit_test(smooth_curve_has_the_circulation_of_an_arc),
+        cmocka_unit_test(smooth_curve_and_polygon_of_a_bent_fish_have_one_limit),
+        cmocka_unit_test(strength_is_circulation_per_length_of_the_body_as_it_is),
+        cmocka_unit_test(end_correction_makes_a_sheet_that_ends_with_a_step_exact),
+        cmocka_unit_test(kelvin_counts_bound_shed_and_dissipated_circulation),
+        cmocka_unit_test(shedding_rate_is_edge_strength_times_slip),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,209 @@
+/* test_fluid_force.c: the forces of the fluid on the nodes: doc/model.md, section 9. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "flow/flow_at_bodies.h"
+#include "force/fluid_force.h"
+#include "school.h"
+
+#define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+#define FAR "solver: {coupling_distance: 100}\n"
+
+static void per_mass(const struct fish *fish, double *value) {
+    for (int k = 0; k < fish->n_nodes; k++) {
+        value[fish->at.ax + k] /= fish->mass[k];
+        value[fish->at.ay + k] /= fish->mass[k];
+    }
+}
+
+static void value_of_forces(struct setup *setup, const double *y, const double *yp, double *value) {
+    (void)yp;
+    school_flow(setup, y);
+    for (int f = 0; f < setup->school->n_fish; f++) {
+        const struct fish *fish = &setup->school->fish[f];
+        const struct flow_at_body flow = flow_at_body(setup->residual->flow, f);
+        fluid_force_residual(fish, &flow, y, value);
+        per_mass(fish, value);
+    }
+}
+
+static void jacobian_of_forces(struct setup *setup, double cj, const double *y, struct sparse *jacobian) {
+    (void)cj;
+    for (int f = 0; f < setup->school->n_fish; f++) {
+        const struct fish *fish = &setup->school->fish[f];
+        const struct flow_at_body flow = flow_at_body(setup->residual->flow, f);
+        fluid_force_jacobian(fish, &flow, y, jacobian);
+        for (int g = 0; g < setup->school->n_fish; g++) {
+            struct jacobian_scratch *const through = school_influence(setup, f, g);
+            fluid_force_flow_jacobian(fish, &flow, &through->block, y, &through->rows);
+            school_add_rows(setup, f, g, jacobian);
+        }
+    }
+}
+
+static void jacobian_agrees_with_differences(void **state) {
+    (void)state;
+    const char *const texts[] = {
+        TIME "fish: [{sheet_points: 9}]\n",
+        TIME "fish: [{sheet_points: 9, drag: {law: linear_quadratic, tangential: 0.3}}]\n",
+        TIME "fish: [{sheet_points: 9, drag: {extent: width, tangential: 0.3}}]\n",
+        TIME
+        "fluid: {velocity: [0.3, -0.2], shear: 0.7, gust: {amplitude: 0.4, frequency: 1.3}}\n"
+        "fish: [{sheet_points: 9, drag: {law: linear_quadratic, extent: width}}]\n",
+        TIME "fish: [{sheet_points: 9, force: reactive}]\n",
+        TIME "fish: [{sheet_points: 9, force: reactive, drag: {extent: width, normal: 0, tangential: 0}}]\n",
+        // swimming backwards: nothing leaves along a tail that leads
+        TIME "fish: [{sheet_points: 9, force: reactive, start: {speed: -2}, drag: {extent: width}}]\n",
+        TIME
+        "fluid: {velocity: [0.3, -0.2], shear: 0.7, gust: {amplitude: 0.4, frequency: 1.3}}\n"
+        "fish: [{sheet_points: 9, force: reactive, body: {section: mean}, \n"
+        "        drag: {law: linear_quadratic, linear_speed: 0.7, extent: width}}]\n",
+        TIME FAR
+        "fish:\n"
+        "  - {sheet_points: 9}\n"
+        "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170},\n"
+        "     force: reactive, drag: {law: linear_quadratic, extent: width}}\n"
+        "  - {nodes: 9, sheet_points: 11, length: 1.2, start: {position: [0.1, -0.6], heading: 200}}\n"};
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        struct setup setup;
+        school_build(&setup, texts[i]);
+        school_stir(&setup);
+        school_compare(&setup, value_of_forces, jacobian_of_forces, texts[i]);
+        school_clear(&setup);
+    }
+}
+
+// a plate along the heading 180 degrees that moves with (vx, vy) in still fluid: total force into (fx, fy)
+static void force_on_plate(const char *keys, double vx, double vy, double ay, double force[2]) {
+    char text[256];
+    snprintf(text, sizeof text, TIME "fish: [{body: {profile: uniform, thickness: 0.1}, %s}]\n", keys);
+    struct setup setup;
+    school_build(&setup, text);
+    const struct fish *fish = setup.school->fish;
+    for (int k = 0; k < fish->n_nodes; k++) {
+        setup.state->y[fish->at.vx + k] = vx;
+        setup.state->y[fish->at.vy + k] = vy;
+        setup.state->y[fish->at.ay + k] = ay;
+    }
+    const double still[64] = {0};
+    const struct flow_at_body flow = {.u = still, .v = still};
+    fluid_force_residual(fish, &flow, setup.state->y, setup.value);
+    force[0] = force[1] = 0;
+    for (int k = 0; k < fish->n_nodes; k++) {
+        force[0] -= setup.value[fish->at.ax + k];
+        force[1] -= setup.value[fish->at.ay + k];
+    }
+    school_clear(&setup);
+}
+
+static void forces_on_a_plate_are_the_formulas(void **state) {
+    (void)state;
+    // rho 1000, L 1, h 0.1, w 0.25, C_F 0.02, C_D 0.5, C_A 1.5
+    const double pi = acos(-1), ct = 1000 * pi * 0.02 * 0.35 / 8, cn = 1000 * 0.5 * 0.1 / 2,
+                 mu = pi * 1000 * 1.5 * 0.01 / 4;
+    double force[2];
+    force_on_plate("drag: {tangential: 0.02}", -2, 0, 0, force);
+    NEAR(force[0], 4 * ct, 1e-12, 1e-13);
+    NEAR(force[1], 0, 1e-12, 0);
+    force_on_plate("drag: {tangential: 0.02}", 0, 3, 0, force);
+    NEAR(force[0], 0, 1e-12, 0);
+    NEAR(force[1], -9 * cn, 0, 1e-13);
+    force_on_plate("drag: {tangential: 0.02, law: linear_quadratic}", -2, 3, 0, force);
+    NEAR(force[0], 6 * ct, 0, 1e-13);
+    NEAR(force[1], -12 * cn, 0, 1e-13);
+    force_on_plate("drag: {tangential: 0.02}", 0, 0, 5, force);
+    NEAR(force[1], -5 * mu, 0, 1e-13);
+    // the whole wetted surface; a linear speed of 0.4 lengths per beat, 1.5 beats per second
+    force_on_plate("force: reactive, drag: {tangential: 0.02, added_mass: 0}", -2, 0, 0, force);
+    NEAR(force[0], 8 * ct, 0, 1e-13);
+    force_on_plate(
+        "force: reactive, wave: {frequency: 1.5}, drag: {tangential: 0.02, added_mass: 0, "
+        "law: linear_quadratic, linear_speed: 0.4}",
+        -2, 3, 0, force);
+    NEAR(force[0], 2 * 2 * 2.6 * ct, 0, 1e-13);
+    NEAR(force[1], -3 * 3.6 * cn, 0, 1e-13);
+    force_on_plate("force: reactive, drag: {tangential: 0.02}", 0, 0, 5, force);
+    NEAR(force[1], -5 * mu, 0, 1e-13);
+}
+
+static void powers_are_those_of_the_forces(void **state) {
+    (void)state;
+    const char *const forces[] = {"published", "reactive"};
+    for (int i = 0; i < 2; i++) {
+        char text[256];
+        snprintf(text, sizeof text,
+                 TIME
+                 "fluid: {shear: 0.5, velocity: [0, 0.3]}\n"
+                 "fish: [{sheet_points: 9, force: %s, drag: {tangential: 0.3, extent: width}}]\n",
+                 forces[i]);
+        struct setup setup;
+        school_build(&setup, text);
+        school_stir(&setup);
+        school_flow(&setup, setup.state->y);
+        const struct fish *fish = setup.school->fish;
+        const struct flow_at_body flow = flow_at_body(setup.residual->flow, 0);
+        const double *const y = setup.state->y;
+        fluid_force_residual(fish, &flow, y, setup.value);
+        double power = 0;
+        for (int k = 0; k < 2 * fish->n_nodes; k++) power -= setup.value[fish->at.ax + k] * y[fish->at.vx + k];
+        const struct fluid_power got = fluid_force_power(fish, &flow, y);
+        NEAR(got.drag + got.added_mass + got.wake, power, 0, 1e-13);
+        assert_true(fabs(got.drag) > 1e-3 && fabs(got.added_mass) > 1e-3);
+        assert_true((fabs(got.wake) > 1e-3) == (i == 1));
+        school_clear(&setup);
+    }
+}
+
+static void added_mass_takes_up_no_tangential_acceleration(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{start: {speed: 0}}]\n");
+    const struct fish *fish = setup.school->fish;
+    for (int k = 0; k < fish->n_nodes; k++) setup.state->y[fish->at.ax + k] = 3;
+    const double still[64] = {0};
+    const struct flow_at_body flow = {.u = still, .v = still};
+    fluid_force_residual(fish, &flow, setup.state->y, setup.value);
+    // the normal of a body along 180 degrees is (0, 1) up to rounding
+    for (int i = fish->at.ax; i < fish->at.gamma; i++) NEAR(setup.value[i], 0, 1e-13, 0);
+    school_clear(&setup);
+}
+
+static void the_reactive_force_does_not_feel_the_own_wake(void **state) {
+    (void)state;
+    // the nose after 1 s, from rest; the smoothing of its wake changes what a body feels of it
+    const struct {
+        const char *force;
+        double smoothing;
+    } cases[] = {{"reactive", 0.05}, {"reactive", 0.1}, {"reactive", 0.4}, {"published", 0.05}, {"published", 0.4}};
+    double nose[5][2];
+    for (int i = 0; i < 5; i++) {
+        char text[256];
+        snprintf(text, sizeof text,
+                 SCHOOL_SECOND
+                 "time: {end: 1, shedding_interval: 0.02}\nwake: {smoothing: %g}\n"
+                 "fish: [{nodes: 9, sheet_points: 17, force: %s}]\n",
+                 cases[i].smoothing, cases[i].force);
+        struct simulation *const simulation = school_simulation(text);
+        school_run(simulation, 1);
+        const struct fish *const fish = simulation->school->fish;
+        nose[i][0] = simulation->state->y[fish->at.x];
+        nose[i][1] = simulation->state->y[fish->at.y];
+        simulate_free(simulation);
+    }
+    // the tolerance of a step is 1e-7 m, and Newton's iteration, which sees the sheets, ends at less of it
+    NEAR_ARRAY(2, nose[0], nose[1], 1e-7, 0);
+    NEAR_ARRAY(2, nose[2], nose[1], 1e-7, 0);
+    assert_true(hypot(nose[4][0] - nose[3][0], nose[4][1] - nose[3][1]) > 1e-4);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(jacobian_agrees_with_differences),
+        cmocka_unit_test(forces_on_a_plate_are_the_formulas),
+        cmocka_unit_test(powers_are_those_of_the_forces),
+        cmocka_unit_test(the_reactive_force_does_not_feel_the_own_wake),
+        cmocka_unit_test(added_mass_takes_up_no_tangential_acceleration),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,425 @@
+/* test_pressure.c: the added mass, impulses, and the force of the pressure: doc/model.md, section 15. The Jacobian is
+ * compared with differences in test_residual.c. */
+#include <lapacke.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "body/bending_mode.h"
+#include "failing_malloc.h"
+#include "fish/fish_school.h"
+#include "force/pressure.h"
+#include "school.h"
+#include "solver/initial_conditions.h"
+
+static const double pi = 3.14159265358979323846;
+
+enum { MAX_NODES = 33 };
+
+// a straight plate of span 1 and length 1 along x, in a fluid of density 1
+static void build_plate(struct setup *setup, int nodes, int points, const char *more) {
+    char text[1024];
+    snprintf(text, sizeof text,
+             SCHOOL_SECOND
+             "time: {end: 1, shedding_interval: 0.002}\n"
+             "fluid: {density: 1, viscosity: 0}\n"
+             "fish: [{nodes: %d, sheet_points: %d, force: pressure, wave: {amplitude: 0, frequency: 0},\n"
+             "        body: {profile: uniform, thickness: 0.1, width: 1, %s}}]\n",
+             nodes, 2 * nodes - 1, more);
+    school_settings(&setup->values, text);
+    // as the keys refuse it
+    setup->values.school.fish[0].sheet_points = points;
+    school_ok(fish_school_create(&setup->school, &setup->values.school));
+    school_ok(state_create(&setup->state, setup->school));
+    school_ok(residual_create(&setup->residual, setup->school, setup->state));
+    setup->value = NULL;
+    setup->jacobian = NULL;
+    setup->term = NULL;
+}
+
+// the added momentum across the plate of its nodes where they have these velocities across it and nothing is shed
+static void added_momentum(struct setup *setup, const double *velocity, double *momentum) {
+    const struct fish *fish = setup->school->fish;
+    for (int k = 0; k < fish->n_nodes; k++) setup->state->y[fish->at.vy + k] = velocity[k];
+    struct initial_conditions *solver;
+    setup->residual->at_start = 1;
+    setup->residual->shed_now = SHED_IS_GIVEN;
+    school_ok(initial_conditions_create(&solver, setup->residual));
+    school_ok(initial_conditions_solve(solver, 0, setup->state->y, setup->state->yp));
+    initial_conditions_free(solver);
+    for (int k = 0; k < fish->n_nodes; k++) momentum[k] = setup->residual->pressure[0]->momentum[fish->n_nodes + k];
+}
+
+// pi/4 rho L^2 of heave, pi/128 rho L^4 of a rotation about the middle. What is left is the end correction's, of order
+// M^-4: it is meant for a sheet that sheds
+static void added_mass_of_a_plate_is_that_of_potential_flow(void **state) {
+    (void)state;
+    const struct {
+        int points;
+        double heave, rotation;  // tolerances
+    } cases[] = {{33, 3e-5, 1.2e-4}, {65, 4e-6, 1.5e-5}};
+    for (int i = 0; i < 2; i++) {
+        struct setup setup;
+        build_plate(&setup, 17, cases[i].points, "density: 1");
+        double velocity[2][MAX_NODES], momentum[MAX_NODES];
+        const double want[2] = {pi / 4, pi / 128}, tolerance[2] = {cases[i].heave, cases[i].rotation};
+        for (int k = 0; k < 17; k++) {
+            velocity[0][k] = 1;
+            velocity[1][k] = k / 16.0 - 0.5;
+        }
+        for (int motion = 0; motion < 2; motion++) {
+            double mass = 0;
+            added_momentum(&setup, velocity[motion], momentum);
+            for (int k = 0; k < 17; k++) mass += momentum[k] * velocity[motion][k];
+            NEAR(mass, want[motion], 0, tolerance[motion]);
+        }
+        school_clear(&setup);
+    }
+}
+
+// the smallest eigenvalue of the symmetric part of the matrix from velocities across the plate to momenta
+static double smallest_eigenvalue(int nodes, int points) {
+    struct setup setup;
+    build_plate(&setup, nodes, points, "density: 1");
+    double matrix[MAX_NODES * MAX_NODES], symmetric[MAX_NODES * MAX_NODES], value[MAX_NODES];
+    for (int i = 0; i < nodes; i++) {
+        double velocity[MAX_NODES] = {0};
+        velocity[i] = 1;
+        added_momentum(&setup, velocity, matrix + i * nodes);
+    }
+    for (int i = 0; i < nodes; i++) {
+        for (int k = 0; k < nodes; k++) symmetric[i * nodes + k] = (matrix[i * nodes + k] + matrix[k * nodes + i]) / 2;
+    }
+    assert_int_equal(LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'N', 'U', nodes, symmetric, nodes, value), 0);
+    school_clear(&setup);
+    return value[0];
+}
+
+static void added_mass_is_positive_with_twice_as_many_vortices_as_nodes_only(void **state) {
+    (void)state;
+    NEAR(smallest_eigenvalue(17, 33), 1.6e-4, 0.1e-4, 0);
+    NEAR(smallest_eigenvalue(7, 33), 1.1e-3, 0.1e-3, 0);
+    assert_true(smallest_eigenvalue(17, 17) < -1e-4);
+}
+
+// the modes of a free plate from the matrix of its added mass, against the iteration that warns of slow ones
+static void slow_modes_have_the_added_mass_of_the_sheet(void **state) {
+    (void)state;
+    enum { N = 17 };
+    struct setup setup;
+    build_plate(&setup, N, 33, "density: 1, modulus: 1.0e+4");
+    const struct fish *fish = setup.school->fish;
+    double matrix[N * N], mass[N * N], stiffness[N * N] = {0}, value[N], scratch[6 * N];
+    for (int i = 0; i < N; i++) {
+        double velocity[N] = {0};
+        velocity[i] = 1;
+        added_momentum(&setup, velocity, matrix + i * N);
+    }
+    for (int i = 0; i < N; i++) {
+        for (int k = 0; k < N; k++) mass[i * N + k] = (matrix[i * N + k] + matrix[k * N + i]) / 2;
+        mass[i * N + i] += fish->mass[i];
+    }
+    for (int j = 0; j < fish->n_joints; j++) {
+        const double turn[3] = {1, -2, 1}, l = fish->edge_length;
+        for (int i = 0; i < 9; i++) {
+            stiffness[(j + i / 3) * N + j + i % 3] +=
+                fish->bending_stiffness[j] / (l * l * l) * turn[i / 3] * turn[i % 3];
+        }
+    }
+    assert_int_equal(LAPACKE_dsygv(LAPACK_ROW_MAJOR, 1, 'N', 'U', N, stiffness, N, mass, N, value), 0);
+    // after translation and rotation
+    NEAR(bending_mode_frequency(fish, scratch), sqrt(value[2]) / (2 * pi), 0, 0.01);
+    school_clear(&setup);
+}
+
+// a stream of 0.1 across a stiff free plate starts at once: with p kept it takes up 0.1 mu/(m + mu), mu = pi/4
+static void a_stream_that_starts_at_once_pushes_by_the_added_mass(void **state) {
+    (void)state;
+    char body[128];
+    const double mass = 0.1;
+    snprintf(body, sizeof body, "density: %.17g, modulus: 1.0e+9, relaxation_time: 0.01", mass / (pi / 4 * 0.1));
+    char text[1024];
+    snprintf(text, sizeof text,
+             SCHOOL_SECOND
+             "time: {end: 1, shedding_interval: 0.002}\n"
+             "fluid: {density: 1, viscosity: 0, velocity: [0, 0.1]}\n"
+             "fish: [{nodes: 17, force: pressure, wave: {amplitude: 0, frequency: 0},\n"
+             "        body: {profile: uniform, thickness: 0.1, width: 1, %s}}]\n",
+             body);
+    struct simulation *const simulation = school_simulation(text);
+    const struct fish *fish = simulation->school->fish;
+    double *const y = simulation->state->y;
+    // as in still fluid
+    for (int i = fish->at.px; i < fish->at.ax; i++) y[i] = 0;
+    school_ok(initial_conditions_solve(simulation->consistent, 0, y, simulation->state->yp));
+    school_ok(simulation->integrator->restart(simulation->solver));
+    school_run(simulation, 0.002);
+    double velocity = 0;
+    for (int k = 0; k < 17; k++) velocity += fish->mass[k] / fish->total_mass * y[fish->at.vy + k];
+    // the difference is the lift of what has been shed within 0.002 s
+    NEAR(velocity, 0.1 * (pi / 4) / (mass + pi / 4), 0, 1.5e-3);
+    simulate_free(simulation);
+}
+
+// the force on the nodes is that of the jump along the line, and what the reactions of a driven body have to balance
+static void force_and_reaction_are_those_of_the_jump(void **state) {
+    (void)state;
+    struct simulation *const simulation =
+        school_simulation(SCHOOL_SECOND
+                          "time: {end: 1, shedding_interval: 0.01}\n"
+                          "fluid: {density: 2, viscosity: 0}\n"
+                          "fish: [{force: pressure, wave: {amplitude: 0, frequency: 0}, start: {speed: 1}, body: "
+                          "{profile: uniform, thickness: 0.1, "
+                          "width: 0.5},\n"
+                          "        motion: {driven: all, heave: 0.05, pitch: 5, frequency: 1}}]\n");
+    school_run(simulation, 0.3);
+    simulate_measure(simulation);
+    const struct fish *fish = simulation->school->fish;
+    const struct diagnostics_fish *of = simulation->diagnostics->fish;
+    const struct pressure *pressure = simulation->residual->pressure[0];
+    double sum[2] = {0, 0}, inertia[2] = {0, 0};
+    for (int c = 0; c < fish->n_control; c++) {
+        const struct direction *body = &pressure->point[c].body;
+        const double jump = pressure_jump(pressure, c, simulation->state->y, simulation->state->yp);
+        for (int i = 0; i < 2; i++) sum[i] -= 0.5 * jump * body->length * fish->control_interval[c] * body->n[i];
+    }
+    // near the tail the jump falls to 0 like the square root of the distance, like theta, without teeth
+    const int last = fish->n_control - 1;
+    double jump[8], step = 0;
+    for (int i = 0; i < 8; i++) {
+        jump[i] = pressure_jump(pressure, last - i, simulation->state->y, simulation->state->yp);
+        if (i > 0) step += (jump[i] - jump[i - 1]) / 7;
+    }
+    NEAR(jump[0] - step / 2, 0, 2 * fabs(step), 0);
+    for (int i = 1; i < 8; i++) NEAR(jump[i] - jump[i - 1], step, 0, 0.75);
+    for (int k = 0; k < fish->n_nodes; k++) {
+        for (int i = 0; i < 2; i++) {
+            inertia[i] += fish->mass[k] * simulation->state->y[fish->at.ax + i * fish->n_nodes + k];
+        }
+    }
+    double of_edges[2] = {0, 0};
+    for (int k = 0; k < fish->n_edges; k++) {
+        double force[2];
+        pressure_of_edge(pressure, k, simulation->state->y, simulation->state->yp, force);
+        for (int i = 0; i < 2; i++) of_edges[i] += force[i];
+    }
+    for (int i = 0; i < 2; i++) {
+        NEAR(of_edges[i], sum[i], 0, 1e-12);
+        // the midpoint rule in theta, of a jump that has a kink at the tail
+        NEAR(sum[i], of->pressure.pressure[i], 1e-3 * fabs(of->pressure.pressure[1]), 0);
+        NEAR(of->constraint_force[i], inertia[i] - of->pressure.pressure[i] - of->pressure.suction[i], 1e-9, 1e-9);
+    }
+    simulate_free(simulation);
+}
+
+// ---- the limit of the suction
+
+static void suction_law_has_its_limits_its_bound_and_its_derivatives(void **state) {
+    (void)state;
+    // attached: the fourth power of the ratio is lost; separated: the bound
+    NEAR(pressure_suction_law(3e-4, 3).value, 3e-4, 0, 1e-15);
+    NEAR(pressure_suction_law(0.5, 1).value, 0.5 / pow(1 + 1.0 / 16, 0.25), 0, 1e-15);
+    NEAR(pressure_suction_law(3, 3e-4).value, 3e-4, 0, 1e-15);
+    NEAR(pressure_suction_law(2, 2).value, 2 / pow(2, 0.25), 0, 1e-15);
+    const double values[] = {1e-6, 0.02, 0.3, 0.9, 1, 1.1, 3.5, 2e4};
+    enum { N = sizeof values / sizeof *values };
+    for (int i = 0; i < N * N; i++) {
+        const double a = values[i / N], b = values[i % N], h = 1e-5;
+        const struct suction_law law = pressure_suction_law(a, b);
+        assert_true(law.value > 0 && law.value <= fmin(a, b) && law.by_full > 0 && law.by_bound > 0);
+        // of degree 1 (Euler): both derivatives make up the value
+        NEAR(law.by_full * a + law.by_bound * b, law.value, 0, 1e-14);
+        const double by_full = pressure_suction_law(a * (1 + h), b).value - pressure_suction_law(a * (1 - h), b).value;
+        const double by_bound = pressure_suction_law(a, b * (1 + h)).value - pressure_suction_law(a, b * (1 - h)).value;
+        // the second difference of a function of degree 1, and rounding
+        NEAR(law.by_full * a, by_full / (2 * h), 1e-10 * law.value, 1e-8);
+        NEAR(law.by_bound * b, by_bound / (2 * h), 1e-10 * law.value, 1e-8);
+    }
+}
+
+// at rest there is no suction, and no number that is none
+static void suction_law_has_a_value_at_rest(void **state) {
+    (void)state;
+    const double at[][2] = {{0, 0}, {0, 2}, {2, 0}, {1e-300, 1e-300}, {1e-310, 2}, {2, 1e-310}};
+    for (size_t i = 0; i < sizeof at / sizeof *at; i++) {
+        const struct suction_law law = pressure_suction_law(at[i][0], at[i][1]);
+        assert_true(law.value <= fmin(at[i][0], at[i][1]) && law.value >= 0);
+        assert_true(law.by_full >= 0 && law.by_full <= 1 && law.by_bound >= 0 && law.by_bound <= 1);
+    }
+}
+
+// a plate at an incidence in a stream, with this limit; the caller frees it
+static struct simulation *inclined_plate(double degrees, double limit) {
+    char text[512];
+    snprintf(
+        text, sizeof text,
+        SCHOOL_SECOND
+        "time: {end: 1, shedding_interval: 0.01}\n"
+        "fluid: {density: 2, viscosity: 0}\n"
+        "fish: [{force: pressure, pressure: {suction: 0.8, suction_limit: %g}, wave: {amplitude: 0, frequency: 0},\n"
+        "        start: {speed: 3}, body: {profile: uniform, thickness: 0.1, width: 0.5},\n"
+        "        motion: {driven: all, pitch: %g, pitch_phase: 90}}]\n",
+        limit, degrees);
+    struct simulation *const simulation = school_simulation(text);
+    school_run(simulation, 0.1);
+    simulate_measure(simulation);
+    return simulation;
+}
+
+static double size_of(const double force[2]) {
+    return hypot(force[0], force[1]);
+}
+
+// A_0 = qhat/tau: attached, the suction is S pi rho w L qhat^2, and the flow past the nose is that along the plate
+static void suction_of_a_plate_ends_at_its_limit(void **state) {
+    (void)state;
+    const double scale = 0.8 * pi * 2 * 0.5, along = 3 * cos(20 * pi / 180);
+    struct simulation *plate[4];
+    const double limit[4] = {0, 1000, 0.15, 0.03};
+    for (int i = 0; i < 4; i++) plate[i] = inclined_plate(20, limit[i]);
+    const struct pressure_forces *const full = &plate[0]->diagnostics->fish[0].pressure;
+    const double a0 = fabs(full->leading_edge_a0);
+    assert_true(a0 > 0.15);
+    // the flow that the wake induces along the plate: of its curvature
+    NEAR(size_of(full->suction), scale * pow(along * a0, 2), 0, 0.02);
+    NEAR(size_of(plate[1]->diagnostics->fish[0].pressure.suction), size_of(full->suction), 0, 1e-12);
+    for (int i = 0; i < 4; i++) {
+        const struct diagnostics_fish *const of = plate[i]->diagnostics->fish;
+        const double ratio = i == 0 ? 0 : pow(a0 / limit[i], 2), part = pow(1 + pow(ratio, 4), -0.25);
+        // the motion is given: no limit changes the circulation
+        NEAR(of->pressure.leading_edge_a0, full->leading_edge_a0, 0, 1e-9);
+        NEAR(of->leading_edge_most, a0, 0, 1e-9);
+        NEAR(size_of(of->pressure.suction), part * size_of(full->suction), 0, 1e-9);
+        NEAR(size_of(of->pressure.separation), (1 / 0.8 - part) * size_of(full->suction), 1e-9, 1e-9);
+        // along the plate, and ahead, as the suction: 20 degrees to the way
+        NEAR(of->pressure.separation[0], (1 / 0.8 - part) * full->suction[0], 1e-9, 1e-9);
+        NEAR(of->pressure.separation[1], (1 / 0.8 - part) * full->suction[1], 1e-9, 1e-9);
+        NEAR(of->pressure.separation_power, -3 * of->pressure.separation[0], 1e-9, 1e-9);
+        // without a period: now
+        NEAR(of->separation_share, limit[i] > 0 && a0 > limit[i], 0, 0);
+    }
+    assert_true(plate[3]->diagnostics->fish[0].pressure.separation_power > 0);
+    for (int i = 0; i < 4; i++) simulate_free(plate[i]);
+}
+
+// a free fish whose nose holds next to nothing: its energy balance is closed as without a limit
+static void energy_balance_is_closed_where_the_limit_acts(void **state) {
+    (void)state;
+    double audit[2];
+    for (int i = 0; i < 2; i++) {
+        char text[512];
+        snprintf(text, sizeof text,
+                 SCHOOL_SECOND
+                 "time: {end: 2, shedding_interval: 0.02}\n"
+                 "fish: [{nodes: 9, sheet_points: 17, force: pressure, pressure: {suction_limit: %g},\n"
+                 "        body: {modulus: 3.0e+5}, wave: {ramp: 0.3}, start: {speed: 0.5}}]\n",
+                 i == 0 ? 0 : 0.003);
+        struct simulation *const simulation = school_simulation(text);
+        school_run(simulation, 1.5);
+        simulate_measure(simulation);
+        const struct diagnostics_fish *const of = simulation->diagnostics->fish;
+        audit[i] = fabs(of->energy_audit) / of->actuation_work;
+        print_message("limit %s: audit over work %.2g, separated for %.2g of the period\n", i == 0 ? "none" : "0.003",
+                      audit[i], of->separation_share);
+        assert_true(i == 0 ? of->separation_share <= 0 : of->separation_share > 0.5);
+        simulate_free(simulation);
+    }
+    assert_true(audit[0] < 1e-3);
+    assert_true(audit[1] < 1e-3);
+}
+
+// The jump of dC/dt alone, and that of the strengths in a stream along the plate, at control point c, where the
+// circulation is g dtheta with g = 1: singular at both ends. Its cosine series is exact, and there is no kink.
+static void a_strength_that_is_singular_at_the_tail_has_no_kink(void **state) {
+    (void)state;
+    struct setup setup;
+    build_plate(&setup, 17, 33, "density: 1");
+    const struct fish *const fish = setup.school->fish;
+    struct pressure *const pressure = setup.residual->pressure[0];
+    double *const y = setup.state->y, *const yp = setup.state->yp, u[64], v[64];
+    const double speed = 3, h = pi / fish->n_control;
+    struct flow_at_body flow = {.u = u, .v = v};
+    for (int c = 0; c < fish->n_control; c++) {
+        const struct direction body = fish_direction(fish, &fish->control_tangent[c], y);
+        u[c] = speed * body.t[0];
+        v[c] = speed * body.t[1];
+    }
+    for (int j = 0; j < fish->n_sheet; j++) {
+        const int is_end = j == 0 || j == fish->n_sheet - 1;
+        y[fish->at.gamma + j] = (is_end ? 0.5 : 1) * h / fish->sheet_weight[j];
+    }
+    pressure_update(pressure, &flow, y);
+    for (int c = 0; c < fish->n_control; c++) {
+        const double theta = h * (c + 0.5);
+        // the interval around the control point is dtheta sin(theta)/2 long
+        const double length = h * sin(theta) / 2;
+        NEAR(pressure_jump(pressure, c, y, yp), speed * h / length, 0, 1e-12);
+        // C(theta) = theta
+        const double now = pressure_jump(pressure, c, y, yp);
+        for (int j = 0; j < fish->n_sheet; j++) yp[fish->at.gamma + j] = y[fish->at.gamma + j];
+        NEAR(pressure_jump(pressure, c, y, yp) - now, theta, 1e-12, 0);
+        for (int j = 0; j < fish->n_sheet; j++) yp[fish->at.gamma + j] = 0;
+    }
+    school_clear(&setup);
+}
+
+// a soft free fish that begins to beat: the audit, and momentum against forces by name
+static void energy_and_momentum_of_a_free_fish_are_accounted_for(void **state) {
+    (void)state;
+    struct simulation *const simulation =
+        school_simulation(SCHOOL_SECOND
+                          "time: {end: 1, shedding_interval: 0.02}\n"
+                          "solver: {rtol: 1.0e-6}\n"
+                          "fish: [{nodes: 9, sheet_points: 17, force: pressure, body: {modulus: 3.0e+4}, wave: {ramp: "
+                          "0.3}, start: {speed: 0.5}}]\n");
+    school_run(simulation, 0.5);
+    simulate_measure(simulation);
+    const struct fish *fish = simulation->school->fish;
+    const struct diagnostics_fish *of = simulation->diagnostics->fish;
+    double rate[2] = {0, 0};
+    for (int i = 0; i < 2; i++) {
+        for (int k = 0; k < fish->n_nodes; k++) {
+            rate[i] += fish->mass[k] * simulation->state->yp[fish->at.vx + i * fish->n_nodes + k];
+        }
+        // rates are the integrator's, which are of the order of its tolerance over a step
+        NEAR(rate[i], of->resistive_force[i] + of->pressure.pressure[i] + of->pressure.suction[i],
+             0.02 * fabs(of->pressure.pressure[1]), 0);
+    }
+    assert_true(fabs(of->energy_audit) < 1e-3 * of->actuation_work);
+    assert_true(of->actuation_work > 0.1);
+
+    simulate_free(simulation);
+}
+
+static void no_memory_leaves_nothing(void **state) {
+    (void)state;
+    struct setup setup;
+    build_plate(&setup, 5, 9, "density: 1");
+    const int before = n_live;
+    for (int n = 0; n < 8; n++) {
+        struct pressure *pressure;
+        n_until_failure = n;
+        assert_int_equal(pressure_create(&pressure, setup.school->fish), STATUS_MEMORY);
+        n_until_failure = -1;
+        assert_null(pressure);
+        assert_int_equal(n_live, before);
+    }
+    school_clear(&setup);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(added_mass_of_a_plate_is_that_of_potential_flow),
+        cmocka_unit_test(added_mass_is_positive_with_twice_as_many_vortices_as_nodes_only),
+        cmocka_unit_test(slow_modes_have_the_added_mass_of_the_sheet),
+        cmocka_unit_test(a_stream_that_starts_at_once_pushes_by_the_added_mass),
+        cmocka_unit_test(force_and_reaction_are_those_of_the_jump),
+        cmocka_unit_test(suction_law_has_its_limits_its_bound_and_its_derivatives),
+        cmocka_unit_test(suction_law_has_a_value_at_rest),
+        cmocka_unit_test(suction_of_a_plate_ends_at_its_limit),
+        cmocka_unit_test(energy_balance_is_closed_where_the_limit_acts),
+        cmocka_unit_test(a_strength_that_is_singular_at_the_tail_has_no_kink),
+        cmocka_unit_test(energy_and_momentum_of_a_free_fish_are_accounted_for),
+        cmocka_unit_test(no_memory_leaves_nothing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,175 @@
+/* test_tail_flux.c: the force of what a body leaves behind its tail: doc/model.md, section 9. */
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "body/edge.h"
+#include "force/tail_flux.h"
+#include "school.h"
+
+#define TIME "time: {end: 4, shedding_interval: 0.02}\n"
+#define WIDE "body: {width: 0.3}, drag: {extent: width, added_mass: 1}"
+
+static const double pi = 3.14159265358979323846;
+static const double mass_per_length = 1000 * 3.14159265358979323846 * 0.09 / 4;
+
+static void value_of_flux(struct setup *setup, const double *y, const double *yp, double *value) {
+    (void)yp;
+    school_flow(setup, y);
+    for (int f = 0; f < setup->school->n_fish; f++) {
+        const struct fish *fish = &setup->school->fish[f];
+        const int tail = fish->n_nodes - 1;
+        const struct flow_at_body flow = flow_at_body(setup->residual->flow, f);
+        double force[2];
+        tail_flux_force(fish, &flow, y, force);
+        for (int i = 0; i < 2; i++) value[edge_acceleration(fish, i, tail)] = -force[i] / fish->mass[tail];
+    }
+}
+
+static void jacobian_of_flux(struct setup *setup, double cj, const double *y, struct sparse *jacobian) {
+    (void)cj;
+    for (int f = 0; f < setup->school->n_fish; f++) {
+        const struct fish *fish = &setup->school->fish[f];
+        const struct flow_at_body flow = flow_at_body(setup->residual->flow, f);
+        tail_flux_jacobian(fish, &flow, y, jacobian);
+        for (int g = 0; g < setup->school->n_fish; g++) {
+            struct jacobian_scratch *const through = school_influence(setup, f, g);
+            tail_flux_flow_jacobian(fish, &flow, &through->block, y, &through->rows);
+            school_add_rows(setup, f, g, jacobian);
+        }
+    }
+}
+
+static void derivatives_agree_with_differences(void **state) {
+    (void)state;
+    const char *const texts[] = {
+        TIME "fish: [{nodes: 4, sheet_points: 9, force: reactive, " WIDE "}]\n",
+        TIME "fish: [{nodes: 6, sheet_points: 9, force: reactive, " WIDE ", start: {speed: 2}}]\n",
+        // swimming backwards: nothing leaves along a tail that leads
+        TIME "fish: [{nodes: 6, sheet_points: 9, force: reactive, " WIDE ", start: {speed: -2}}]\n",
+        TIME
+        "solver: {coupling_distance: 100}\ncontact: {action: warn}\n"
+        "fluid: {velocity: [0.3, -0.2], shear: 0.7}\n"
+        "fish: [{nodes: 6, sheet_points: 9, force: reactive, " WIDE
+        "}, {nodes: 5, sheet_points: 7, start: {position: [0.2, 0.5]}}]\n"};
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        struct setup setup;
+        school_build(&setup, texts[i]);
+        school_stir(&setup);
+        school_compare(&setup, value_of_flux, jacobian_of_flux, texts[i]);
+        school_clear(&setup);
+    }
+}
+
+static void it_takes_from_the_body_what_it_leaves_in_the_wake(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{nodes: 6, force: reactive, " WIDE "}]\n");
+    const struct fish *fish = setup.school->fish;
+    const double still[64] = {0};
+    const struct flow_at_body flow = {.u = still, .v = still};
+    double *const y = setup.state->y;
+    for (int trial = 0; trial < 20; trial++) {
+        // edges of different lengths whose angles are a parabola in their number: that at the tail, half an edge on
+        const double angle = 3 * school_random(&setup), slope = 0.3 * school_random(&setup),
+                     bend = 0.1 * school_random(&setup);
+        for (int k = 0; k < 5; k++) {
+            const double s = k - 4.5, theta = angle + slope * s + bend * s * s, l = 0.2 + 0.02 * school_random(&setup);
+            y[fish->at.x + k + 1] = y[fish->at.x + k] + l * cos(theta);
+            y[fish->at.y + k + 1] = y[fish->at.y + k] + l * sin(theta);
+        }
+        for (int i = fish->at.vx; i < fish->at.ax; i++) y[i] = 2 * school_random(&setup);
+        const double vx = y[fish->at.vx + 5], vy = y[fish->at.vy + 5];
+        const double wt = vx * cos(angle) + vy * sin(angle), wn = vy * cos(angle) - vx * sin(angle);
+        double force[2];
+        tail_flux_force(fish, &flow, y, force);
+        NEAR(force[0] * cos(angle) + force[1] * sin(angle), -mass_per_length * wn * wn / 2, 1e-12, 1e-12);
+        NEAR(force[1] * cos(angle) - force[0] * sin(angle), mass_per_length * fmin(wt, 0) * wn, 1e-12, 1e-12);
+        // never a gain, whether the tail follows or leads
+        NEAR(tail_flux_power(fish, &flow, y), -mass_per_length * wn * wn * fabs(wt) / 2, 1e-12, 1e-12);
+    }
+    school_clear(&setup);
+}
+
+static void it_has_the_velocity_of_a_linear_flow_at_the_tail(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{nodes: 6, force: reactive, " WIDE "}]\n");
+    const struct fish *fish = setup.school->fish;
+    double u[64] = {0}, v[64] = {0}, force[2], want[2];
+    // a straight body along x, nose at 0
+    for (int k = 0; k < fish->n_edges; k++) {
+        const double s = (k + 0.5) / 5;
+        u[flow_midpoint(fish, k)] = 0.7 + 0.4 * s;
+        v[flow_midpoint(fish, k)] = -0.2 + 0.9 * s;
+    }
+    const struct flow_at_body flow = {.u = u, .v = v};
+    double *const y = setup.state->y;
+    tail_flux_force(fish, &flow, y, force);
+    // a body that moves as the tail does relative to that flow, in still fluid
+    const double still[64] = {0};
+    const struct flow_at_body none = {.u = still, .v = still};
+    y[fish->at.vx + 5] -= 1.1;
+    y[fish->at.vy + 5] -= 0.7;
+    tail_flux_force(fish, &none, y, want);
+    assert_true(fabs(want[0]) > 1);
+    NEAR_ARRAY(2, force, want, 1e-12, 1e-12);
+    school_clear(&setup);
+}
+
+static void its_mass_is_that_of_the_extent_at_the_tail(void **state) {
+    (void)state;
+    const struct {
+        const char *keys;
+        double mass;
+    } cases[] = {{"force: reactive", 0},
+                 {"force: reactive, body: {tail_thickness: 0.04}", 1000 * 1.5 * 0.04 * 0.04},
+                 {"force: reactive, drag: {extent: width}", 1000 * 1.5 * 0.0625},
+                 {"force: reactive, body: {profile: uniform, thickness: 0.1}", 1000 * 1.5 * 0.01},
+                 {"force: published, drag: {extent: width}", 0}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[256];
+        snprintf(text, sizeof text, TIME "fish: [{%s}]\n", cases[i].keys);
+        struct setup setup;
+        school_build(&setup, text);
+        NEAR(setup.school->fish[0].tail_added_mass, pi / 4 * cases[i].mass, 0, 1e-14);
+        assert_int_equal(tail_flux_exists(setup.school->fish), cases[i].mass > 0);
+        school_clear(&setup);
+    }
+}
+
+static void a_stiff_body_swims_at_a_speed_of_second_order_in_its_nodes(void **state) {
+    (void)state;
+    // a uniform body, whose resolution nothing else limits, feels no wake; from rest, speed after 4 s
+    const int nodes[] = {17, 33, 65};
+    double speed[3];
+    for (int i = 0; i < 3; i++) {
+        char text[512];
+        snprintf(text, sizeof text,
+                 SCHOOL_SECOND TIME
+                 "wake: {smoothing: 1.0e+6}\n"
+                 "fish: [{nodes: %d, sheet_points: %d,\n"
+                 "        body: {profile: uniform, thickness: 0.1, modulus: 1.0e+8, damping: curvature,\n"
+                 "               relaxation_time: 0.001}}]\n",
+                 nodes[i], nodes[i] > 17 ? 2 * nodes[i] - 1 : 33);
+        struct simulation *const simulation = school_simulation(text);
+        school_run(simulation, 4);
+        simulate_measure(simulation);
+        speed[i] = simulation->diagnostics->fish[0].speed;
+        simulate_free(simulation);
+    }
+    const double order = log2((speed[1] - speed[0]) / (speed[2] - speed[1]));
+    print_message("%.5f %.5f %.5f m/s: order %.1f\n", speed[0], speed[1], speed[2], order);
+    assert_true(order > 1.8);
+    NEAR(speed[2], 0.4245, 1e-4, 0);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(derivatives_agree_with_differences),
+        cmocka_unit_test(it_takes_from_the_body_what_it_leaves_in_the_wake),
+        cmocka_unit_test(it_has_the_velocity_of_a_linear_flow_at_the_tail),
+        cmocka_unit_test(its_mass_is_that_of_the_extent_at_the_tail),
+        cmocka_unit_test(a_stiff_body_swims_at_a_speed_of_second_order_in_its_nodes),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,16 @@
+#!/usr/bin/env bash
+# test_python.sh PROGRAM: the module shoal, tests/library/test_python.py, in a folder of its own with the library of that
+# build.
+# shellcheck source=tests/checks.sh
+. "$(dirname "$0")/../checks.sh"
+
+library=$(dirname "$program")/libshoal.so.0
+
+preload=''
+if nm -D --undefined-only "$library" | grep __asan >/dev/null; then
+    # Python itself is built without sanitizers, and frees nothing at its end
+    preload="$(gcc -print-file-name=libasan.so) $(gcc -print-file-name=libubsan.so)"
+    export ASAN_OPTIONS=${ASAN_OPTIONS:-}:detect_leaks=0
+fi
+SHOAL=$program SHOAL_LIBRARY=$library MPLBACKEND=Agg LD_PRELOAD=$preload \
+    /usr/bin/python3 -W error::ResourceWarning "$root/tests/library/test_python.py" 2>&1

@@ -1,0 +1,975 @@
+/* test_shoal.c: the public interface: every function of shoal.h, and that it is the simulation underneath. */
+#include <limits.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "base/version.h"
+#include "failing_malloc.h"
+#include "result/checkpoint.h"
+#include "result/netcdf.h"
+#include "result/result_lock.h"
+#include "result/result_table.h"
+#include "school.h"
+#include "shoal.h"
+
+// two fish that differ in what a call could confuse
+static const char case_text[] =
+    "format: 1\n"
+    "name: two\n"
+    "time: {end: 0.1, shedding_interval: 0.02}\n"
+    "wake: {shedding: continuous, taper: 0, taper_beside: 0}\n"
+    "defaults: {fish: {start: {speed: 1}}}\n"
+    "fish:\n"
+    "  - {name: a, nodes: 5, sheet_points: 7}\n"
+    "  - {name: b, nodes: 7, sheet_points: 9, start: {position: [0.2, 0.7]}, wave: {phase: 60}}\n";
+
+static int write_case(void **state) {
+    static char path[] = "/tmp/test_shoal_XXXXXX";
+    const int descriptor = mkstemp(path);
+    FILE *const file = descriptor < 0 ? NULL : fdopen(descriptor, "w");
+    if (!file) return -1;
+    fputs(case_text, file);
+    *state = path;
+    return fclose(file);
+}
+
+static int remove_case(void **state) {
+    return unlink(*state);
+}
+
+static struct shoal *opened(const char *path, int n_assignments, const char *const *assignments) {
+    struct shoal *run;
+    if (shoal_open(&run, path, n_assignments, assignments) != 0) fail_msg("%s", shoal_message());
+    assert_non_null(run);
+    return run;
+}
+
+static void a_run_begins_with_the_start_of_its_case(void **state) {
+    struct shoal *const run = opened(*state, 0, NULL);
+    NEAR(shoal_time(run), 0, 0, 0);
+    NEAR(shoal_end(run), 0.1, 0, 0);
+    assert_int_equal(shoal_n_fish(run), 2);
+    assert_int_equal(shoal_n_nodes(run, 0), 5);
+    assert_int_equal(shoal_n_nodes(run, 1), 7);
+    assert_int_equal(shoal_n_vortices(run, 0), 0);
+    // the heading is 180 degrees: the body lies along +x from the nose
+    double x[7], y[7];
+    shoal_nodes(run, 1, x, y);
+    for (int k = 0; k < 7; k++) {
+        NEAR(x[k], 0.2 + k / 6.0, 1e-15, 0);
+        NEAR(y[k], 0.7, 1e-15, 0);
+    }
+    shoal_close(run);
+}
+
+static void assignments_change_the_case(void **state) {
+    const char *const assignments[] = {"time.end=0.06", "fish[0].nodes=9"};
+    struct shoal *run = opened(*state, 1, assignments);
+    NEAR(shoal_end(run), 0.06, 0, 0);
+    assert_int_equal(shoal_n_nodes(run, 0), 5);
+    shoal_close(run);
+    run = opened(*state, 2, assignments);
+    assert_int_equal(shoal_n_nodes(run, 0), 9);
+    assert_int_equal(shoal_n_nodes(run, 1), 7);
+    shoal_close(run);
+}
+
+static void a_step_goes_to_the_next_event_and_releases_a_vortex_of_each_fish(void **state) {
+    struct shoal *const run = opened(*state, 0, NULL);
+    int n_steps = 0;
+    while (shoal_time(run) < shoal_end(run)) {
+        assert_int_equal(shoal_step(run), 0);
+        n_steps++;
+        NEAR(shoal_time(run), n_steps * 0.02, 0, 0);
+        assert_int_equal(shoal_n_vortices(run, 0), n_steps);
+        assert_int_equal(shoal_n_vortices(run, 1), n_steps);
+    }
+    assert_int_equal(n_steps, 5);
+    shoal_close(run);
+}
+
+static void bodies_and_wakes_are_those_of_the_simulation(void **state) {
+    struct case_values values;
+    struct simulation *simulation;
+    school_ok(case_read(&values, *state, 0, NULL));
+    school_ok(simulate_create(&simulation, &values));
+    struct shoal *const run = opened(*state, 0, NULL);
+    for (int i = 0; i < 5; i++) {
+        school_ok(simulate_step(simulation));
+        assert_int_equal(shoal_step(run), 0);
+    }
+    for (int f = 0; f < 2; f++) {
+        const struct fish *const fish = &simulation->school->fish[f];
+        const double *const unknown = simulation->state->y;
+        const struct wake *const wake = &simulation->state->wake[f];
+        double x[7], y[7], circulation[5];
+        shoal_nodes(run, f, x, y);
+        NEAR_ARRAY(fish->n_nodes, x, unknown + fish->at.x, 0, 0);
+        NEAR_ARRAY(fish->n_nodes, y, unknown + fish->at.y, 0, 0);
+        shoal_vortices(run, f, x, y, circulation);
+        NEAR_ARRAY(5, x, wake->x, 0, 0);
+        NEAR_ARRAY(5, y, wake->y, 0, 0);
+        NEAR_ARRAY(5, circulation, wake->circulation, 0, 0);
+        // no two of them are equal, so that an order or a fish taken for another shows
+        for (int i = 0; i < 4; i++) assert_true(wake->x[i] > wake->x[i + 1] && fabs(circulation[i]) > 0);
+    }
+    shoal_close(run);
+    simulate_free(simulation);
+    case_free(&values);
+}
+
+static void two_runs_do_not_know_each_other(void **state) {
+    struct shoal *const one = opened(*state, 0, NULL), *const other = opened(*state, 0, NULL);
+    assert_int_equal(shoal_step(one), 0);
+    assert_int_equal(shoal_step(one), 0);
+    assert_int_equal(shoal_step(other), 0);
+    NEAR(shoal_time(one), 0.04, 0, 0);
+    NEAR(shoal_time(other), 0.02, 0, 0);
+    shoal_close(one);
+    assert_int_equal(shoal_step(other), 0);
+    assert_int_equal(shoal_n_vortices(other, 1), 2);
+    shoal_close(other);
+}
+
+// the message of a case that cannot be opened
+static const char *refusal(const char *path, const char *assignment) {
+    struct shoal *run = (struct shoal *)&run;  // not NULL
+    assert_true(shoal_open(&run, path, assignment ? 1 : 0, &assignment) < 0);
+    assert_null(run);
+    return shoal_message();
+}
+
+static void what_cannot_be_opened_is_refused_with_the_words_of_the_program(void **state) {
+    const char *const path = *state;
+    assert_non_null(
+        strstr(refusal("/no/such/case.yaml", NULL), "/no/such/case.yaml: error: the case file cannot be read"));
+    assert_non_null(strstr(refusal(path, "fish[0].wave.amplitud=1"), "did you mean 'amplitude'?"));
+    assert_non_null(strstr(refusal(path, "fish[1].start.position=[0.1, 0]"), "overlap"));
+    assert_non_null(strstr(refusal(path, "sweep=[{key: solver.rtol, values: [1e-4]}]"), "shoal study"));
+}
+
+static void a_run_that_fails_can_be_read_and_closed(void **state) {
+    const char *const assignments[] = {"solver.max_steps=1"};
+    struct shoal *const run = opened(*state, 1, assignments);
+    assert_true(shoal_step(run) < 0);
+    assert_non_null(strstr(shoal_message(), "solver.max_steps"));
+    double x[7], y[7];
+    shoal_nodes(run, 1, x, y);
+    assert_true(isfinite(x[6]) && isfinite(y[6]));
+    assert_true(shoal_time(run) < shoal_end(run));
+    shoal_close(run);
+}
+
+static void *fail_in_a_thread(void *message) {
+    struct shoal *run;
+    if (shoal_open(&run, "/no/such/thread.yaml", 0, NULL) != 0)
+        *(int *)message = strstr(shoal_message(), "thread") != NULL;
+    return NULL;
+}
+
+static void each_thread_has_its_own_message(void **state) {
+    (void)state;
+    refusal("/no/such/case.yaml", NULL);
+    pthread_t thread;
+    int has_message = 0;
+    assert_int_equal(pthread_create(&thread, NULL, fail_in_a_thread, &has_message), 0);
+    assert_int_equal(pthread_join(thread, NULL), 0);
+    assert_true(has_message);
+    assert_non_null(strstr(shoal_message(), "/no/such/case.yaml"));
+}
+
+enum { N_THREADS = 6, N_ROUNDS = 2 };
+
+/* What a thread does with runs of its own, and with a copy of a run that all threads copy in turn. */
+struct worker {
+    int number;
+    const char *path;
+    struct shoal *origin;
+    pthread_mutex_t *turn;
+    double nose; /* where all that comes to an end */
+    int failed;
+};
+
+static int swim_a_copy(struct worker *worker, struct shoal *run) {
+    struct shoal *copy, *other;
+    const double frequency = 1 + 0.1 * worker->number;
+    double flow[2], vorticity;
+    if (shoal_clone(&copy, run) != SHOAL_OK) return 1;
+    int failed = shoal_set(copy, 0, "wave.frequency", 1, &frequency) != SHOAL_OK;
+    failed |= shoal_advance(copy, 0.1) != SHOAL_OK || shoal_restore(copy, run) != SHOAL_OK;
+    failed |= shoal_flow(copy, 1, (double[]){1, 0.5}, flow, &vorticity) != SHOAL_OK;
+    pthread_mutex_lock(worker->turn);
+    failed |= shoal_clone(&other, worker->origin) != SHOAL_OK;
+    pthread_mutex_unlock(worker->turn);
+    failed |= shoal_restore(other, copy) == SHOAL_OK;  // not copies of one another
+    failed |= shoal_advance(other, 0.04) != SHOAL_OK;
+    shoal_close(other);
+    shoal_close(copy);
+    return failed;
+}
+
+static void *swim_in_a_thread(void *data) {
+    struct worker *const worker = data;
+    char file[64];
+    snprintf(file, sizeof file, "/tmp/test_shoal_%ld_%d.nc", (long)getpid(), worker->number);
+    for (int round = 0; round < N_ROUNDS; round++) {
+        struct shoal *run;
+        struct shoal_array x;
+        worker->failed |= shoal_open(&run, worker->path, 0, NULL) != SHOAL_OK;
+        worker->failed |= shoal_write(run, file, 1) != SHOAL_OK || shoal_advance(run, 0.04) != SHOAL_OK;
+        worker->failed |= swim_a_copy(worker, run);
+        worker->failed |= shoal_advance(run, 0.1) != SHOAL_OK || shoal_read(run, "x", &x) != SHOAL_OK;
+        if (!worker->failed) worker->nose = ((const double *)x.values)[0];
+        worker->failed |= shoal_write_end(run) != SHOAL_OK;
+        shoal_close(run);
+        worker->failed |= shoal_open(&run, "/no/such/case.yaml", 0, NULL) != SHOAL_FILE;
+    }
+    worker->failed |= unlink(file) != 0;
+    return NULL;
+}
+
+static void runs_in_many_threads_are_those_alone(void **state) {
+    pthread_mutex_t turn = PTHREAD_MUTEX_INITIALIZER;
+    struct shoal *const origin = opened(*state, 0, NULL);
+    struct worker alone = {.path = *state, .origin = origin, .turn = &turn}, worker[N_THREADS];
+    pthread_t thread[N_THREADS];
+    swim_in_a_thread(&alone);
+    assert_int_equal(alone.failed, 0);
+    for (int i = 0; i < N_THREADS; i++) {
+        worker[i] = (struct worker){.number = i, .path = *state, .origin = origin, .turn = &turn};
+        assert_int_equal(pthread_create(&thread[i], NULL, swim_in_a_thread, &worker[i]), 0);
+    }
+    for (int i = 0; i < N_THREADS; i++) {
+        assert_int_equal(pthread_join(thread[i], NULL), 0);
+        assert_int_equal(worker[i].failed, 0);
+        NEAR(worker[i].nose, alone.nose, 0, 0);
+    }
+    shoal_close(origin);
+}
+
+static void closing_nothing_is_allowed(void **state) {
+    (void)state;
+    shoal_close(NULL);
+}
+
+static void opening_without_memory_fails_and_leaves_nothing(void **state) {
+    int n_failed = 0, is_reached = 1;
+    for (int n = 0; is_reached; n++) {
+        const int n_before = n_live;
+        struct shoal *run;
+        n_until_failure = n;
+        const int code = shoal_open(&run, *state, 0, NULL);
+        is_reached = n_until_failure == -1;
+        n_until_failure = -1;
+        n_failed += code != 0;
+        assert_true(code == 0 ? run != NULL : code < 0 && !run && shoal_message()[0] != '\0');
+        shoal_close(run);
+        assert_int_equal(n_live, n_before);
+        assert_true(n < 10000);
+    }
+    print_message("%d failures\n", n_failed);
+    assert_true(n_failed > 100);
+}
+
+// ---- checked arguments
+
+static void refuses(int code, const char *words) {
+    assert_int_equal(code, SHOAL_USAGE);
+    if (!strstr(shoal_message(), words)) fail_msg("'%s' is not in: %s", words, shoal_message());
+}
+
+static void a_run_that_is_not_there_is_refused_by_every_function(void **state) {
+    (void)state;
+    double two[2] = {0, 0};
+    struct shoal_array array;
+    refuses(shoal_open(NULL, "x.yaml", 0, NULL), "run is NULL");
+    refuses(shoal_open_text(NULL, "", NULL, 0, NULL), "run is NULL");
+    refuses(shoal_step(NULL), "run is NULL");
+    refuses(shoal_advance(NULL, 0), "run is NULL");
+    refuses(shoal_read(NULL, "x", &array), "run is NULL");
+    refuses(shoal_flow(NULL, 1, two, two, NULL), "run is NULL");
+    refuses(shoal_n_fish(NULL), "run is NULL");
+    refuses(shoal_n_nodes(NULL, 0), "run is NULL");
+    refuses(shoal_n_vortices(NULL, 0), "run is NULL");
+    refuses(shoal_nodes(NULL, 0, two, two), "run is NULL");
+    refuses(shoal_vortices(NULL, 0, two, two, two), "run is NULL");
+    refuses(shoal_write(NULL, "x.nc", 0), "run is NULL");
+    refuses(shoal_write_end(NULL), "run is NULL");
+    refuses(shoal_checkpoint(NULL), "run is NULL");
+    assert_true(isnan(shoal_time(NULL)) && isnan(shoal_end(NULL)) && isnan(shoal_interval(NULL)));
+    assert_non_null(strstr(shoal_message(), "shoal_interval: run is NULL"));
+}
+
+static void a_fish_that_is_not_there_is_refused(void **state) {
+    struct shoal *const run = opened(*state, 0, NULL);
+    double x[7], y[7];
+    const int wrong[] = {-1, 2, 99, INT_MAX, INT_MIN};
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        refuses(shoal_n_nodes(run, wrong[i]), "this run has 2, numbered from 0");
+        refuses(shoal_n_vortices(run, wrong[i]), "shoal_n_vortices: there is no fish");
+        refuses(shoal_nodes(run, wrong[i], x, y), "there is no fish");
+        refuses(shoal_vortices(run, wrong[i], x, y, x), "there is no fish");
+    }
+    shoal_close(run);
+}
+
+static void arrays_that_are_not_there_are_refused(void **state) {
+    struct shoal *const run = opened(*state, 0, NULL);
+    assert_int_equal(shoal_step(run), SHOAL_OK);
+    double x[7];
+    struct shoal_array array;
+    refuses(shoal_nodes(run, 0, NULL, x), "x is NULL");
+    refuses(shoal_nodes(run, 0, x, NULL), "y is NULL");
+    refuses(shoal_vortices(run, 0, x, x, NULL), "circulation is NULL");
+    refuses(shoal_read(run, "x", NULL), "array is NULL");
+    refuses(shoal_read(run, NULL, &array), "name is NULL");
+    refuses(shoal_flow(run, 1, NULL, x, x), "points is NULL");
+    refuses(shoal_flow(run, 1, x, NULL, x), "velocity is NULL");
+    refuses(shoal_flow(run, -1, x, x, x), "-1 points");
+    refuses(shoal_flow(run, 1, (double[]){0, NAN}, x, x), "not finite");
+    refuses(shoal_write(run, NULL, 0), "path is NULL");
+    shoal_close(run);
+}
+
+static void what_a_fish_is_set_to_is_checked(void **state) {
+    struct shoal *const run = opened(*state, 0, NULL);
+    const double value = 0.2;
+    refuses(shoal_set(NULL, 0, "wave.amplitude", 1, &value), "run is NULL");
+    refuses(shoal_set(run, 2, "wave.amplitude", 1, &value), "there is no fish 2");
+    refuses(shoal_set(run, 0, NULL, 1, &value), "key is NULL");
+    refuses(shoal_set(run, 0, "wave.amplitude", 1, NULL), "values is NULL");
+    refuses(shoal_set(run, 0, "wave.amplitud", 1, &value), "'wave.amplitud' cannot be set");
+    assert_int_equal(shoal_set(run, 1, "wave.amplitude", 1, &value), SHOAL_OK);
+    assert_int_equal(shoal_advance(run, 0.1), SHOAL_OK);
+    shoal_close(run);
+}
+
+static double of_fish(struct shoal *run, const char *name, int fish) {
+    struct shoal_array array;
+    if (shoal_read(run, name, &array) != SHOAL_OK) fail_msg("%s", shoal_message());
+    return ((const double *)array.values)[fish];
+}
+
+// both go half of their way within half of control.ramp
+static void the_gait_in_force_can_be_read(void **state) {
+    const char *const more[] = {"time.end=0.6", "fish[*].wave.ramp=0.1", "fish[*].control.ramp=0.2"};
+    struct shoal *const run = opened(*state, 3, more);
+    NEAR(of_fish(run, "wave_amplitude", 0), 0, 0, 0);
+    assert_int_equal(shoal_advance(run, 0.2), SHOAL_OK);
+    NEAR(of_fish(run, "wave_amplitude", 0), 0.4, 1e-15, 0);
+    NEAR(of_fish(run, "wave_frequency", 0), 1, 1e-15, 0);
+    const double amplitude = 0.3, frequency = 1.4, bias = 0.1;
+    assert_int_equal(shoal_set(run, 0, "wave.amplitude", 1, &amplitude), SHOAL_OK);
+    assert_int_equal(shoal_set(run, 0, "wave.frequency", 1, &frequency), SHOAL_OK);
+    assert_int_equal(shoal_set(run, 0, "control.bias", 1, &bias), SHOAL_OK);
+    assert_int_equal(shoal_advance(run, 0.3), SHOAL_OK);
+    NEAR(of_fish(run, "wave_amplitude", 0), 0.35, 1e-12, 0);
+    NEAR(of_fish(run, "wave_frequency", 0), 1.2, 1e-12, 0);
+    NEAR(of_fish(run, "phi0", 0), 0.05, 1e-5, 0);  // an unknown, within the tolerance of the solver
+    assert_int_equal(shoal_advance(run, 0.4), SHOAL_OK);
+    NEAR(of_fish(run, "wave_amplitude", 0), 0.3, 1e-12, 0);
+    NEAR(of_fish(run, "wave_frequency", 0), 1.4, 1e-12, 0);
+    NEAR(of_fish(run, "wave_frequency", 1), 1, 0, 0);
+    NEAR(of_fish(run, "frequency", 0), 1, 0, 0);  // that of the case, which means over a period refer to
+    shoal_close(run);
+}
+
+static void assignments_are_checked(void **state) {
+    struct shoal *run;
+    const char *const none = NULL;
+    refuses(shoal_open(&run, *state, -1, NULL), "-1 assignments");
+    refuses(shoal_open(&run, *state, 1, NULL), "assignments is NULL");
+    refuses(shoal_open(&run, *state, 1, &none), "assignment 0 is NULL");
+    refuses(shoal_open(&run, NULL, 0, NULL), "case_path is NULL");
+    refuses(shoal_open_text(&run, NULL, NULL, 0, NULL), "text is NULL");
+    assert_null(run);
+}
+
+static void a_step_past_the_end_is_refused(void **state) {
+    struct shoal *const run = opened(*state, 0, NULL);
+    assert_int_equal(shoal_advance(run, shoal_end(run)), SHOAL_OK);
+    NEAR(shoal_time(run), 0.1, 1e-15, 0);
+    refuses(shoal_step(run), "the run is at its end, t = 0.1 s");
+    NEAR(shoal_time(run), 0.1, 1e-15, 0);
+    shoal_close(run);
+}
+
+static void a_run_advances_to_the_event_at_or_after_a_time(void **state) {
+    struct shoal *const run = opened(*state, 0, NULL);
+    NEAR(shoal_interval(run), 0.02, 0, 0);
+    assert_int_equal(shoal_advance(run, 0.03), SHOAL_OK);
+    NEAR(shoal_time(run), 0.04, 0, 0);
+    assert_int_equal(shoal_advance(run, 3 * 0.02), SHOAL_OK);  // a rounding error above 0.06
+    NEAR(shoal_time(run), 0.06, 0, 0);
+    assert_int_equal(shoal_advance(run, 0.05), SHOAL_OK);  // its event is this one
+    NEAR(shoal_time(run), 0.06, 0, 0);
+    refuses(shoal_advance(run, 0.04), "before the last event, at 0.06 s");
+    refuses(shoal_advance(run, -1), "before the last event, at 0.06 s");
+    refuses(shoal_advance(run, 0.11), "after the end of the case");
+    refuses(shoal_advance(run, NAN), "not finite");
+    NEAR(shoal_time(run), 0.06, 0, 0);
+    shoal_close(run);
+}
+
+static void a_failed_run_makes_no_step_and_says_why(void **state) {
+    const char *const assignments[] = {"solver.max_steps=1"};
+    struct shoal *const run = opened(*state, 1, assignments);
+    assert_int_equal(shoal_step(run), SHOAL_SOLVER);
+    double two[2] = {0, 0};
+    assert_int_equal(shoal_step(run), SHOAL_SOLVER);
+    assert_non_null(strstr(shoal_message(), "the run has failed before: integration failed at t = "));
+    assert_int_equal(shoal_advance(run, 0.1), SHOAL_SOLVER);
+    assert_int_equal(shoal_flow(run, 1, two, two, two), SHOAL_SOLVER);
+    assert_int_equal(shoal_write(run, "/tmp/never.nc", 0), SHOAL_SOLVER);
+    shoal_close(run);
+}
+
+// ---- a case from text
+
+static void the_text_of_a_case_is_a_case(void **state) {
+    struct shoal *const by_path = opened(*state, 0, NULL), *by_text;
+    assert_int_equal(shoal_open_text(&by_text, case_text, NULL, 0, NULL), SHOAL_OK);
+    double x[2][7], y[2][7];
+    assert_int_equal(shoal_advance(by_path, 0.04), SHOAL_OK);
+    assert_int_equal(shoal_advance(by_text, 0.04), SHOAL_OK);
+    assert_int_equal(shoal_nodes(by_path, 1, x[0], y[0]), SHOAL_OK);
+    assert_int_equal(shoal_nodes(by_text, 1, x[1], y[1]), SHOAL_OK);
+    NEAR_ARRAY(7, x[0], x[1], 0, 0);
+    NEAR_ARRAY(7, y[0], y[1], 0, 0);
+    shoal_close(by_path);
+    shoal_close(by_text);
+}
+
+static void an_error_in_a_text_has_its_line(void **state) {
+    (void)state;
+    struct shoal *run;
+    assert_int_equal(shoal_open_text(&run, "format: 1\nname: x\nfihs: []\n", NULL, 0, NULL), SHOAL_USAGE);
+    assert_null(run);
+    assert_non_null(strstr(shoal_message(), "case:3:"));
+}
+
+// ---- variables by name
+
+static const double *read_doubles(struct shoal *run, const char *name, struct shoal_array *array) {
+    if (shoal_read(run, name, array) != SHOAL_OK) fail_msg("%s", shoal_message());
+    assert_int_equal(array->type, SHOAL_DOUBLE);
+    return array->values;
+}
+
+static void a_variable_is_read_with_its_shape(void **state) {
+    struct shoal *const run = opened(*state, 0, NULL);
+    assert_int_equal(shoal_advance(run, 0.04), SHOAL_OK);
+    struct shoal_array array;
+    const double *const x = read_doubles(run, "x", &array);
+    assert_int_equal(array.n_dimensions, 3);
+    assert_int_equal(array.shape[0], 2);
+    assert_int_equal(array.shape[1], 7);
+    assert_int_equal(array.shape[2], 2);
+    assert_string_equal(array.dimension[0], "fish");
+    assert_string_equal(array.dimension[1], "node");
+    assert_string_equal(array.dimension[2], "xy");
+    assert_string_equal(array.unit, "m");
+    double node_x[7], node_y[7];
+    for (int f = 0; f < 2; f++) {
+        const int n = shoal_n_nodes(run, f);
+        assert_int_equal(shoal_nodes(run, f, node_x, node_y), SHOAL_OK);
+        for (int k = 0; k < 7; k++) {
+            const double *const node = x + (f * 7 + k) * 2;
+            if (k >= n) {
+                assert_true(isnan(node[0]) && isnan(node[1]));
+                continue;
+            }
+            NEAR(node[0], node_x[k], 0, 0);
+            NEAR(node[1], node_y[k], 0, 0);
+        }
+    }
+    NEAR(*read_doubles(run, "time", &array), 0.04, 0, 0);
+    assert_int_equal(array.n_dimensions, 0);
+    shoal_close(run);
+}
+
+static void a_wake_is_read_without_empty_slots(void **state) {
+    struct shoal *const run = opened(*state, 0, NULL);
+    struct shoal_array array;
+    read_doubles(run, "wake_x", &array);
+    assert_int_equal(array.shape[1], 0);
+    for (int n = 1; n <= 3; n++) {
+        assert_int_equal(shoal_step(run), SHOAL_OK);
+        const double *const wake = read_doubles(run, "wake_x", &array);
+        assert_int_equal(array.shape[1], n);
+        double x[3], y[3], circulation[3];
+        for (int f = 0; f < 2; f++) {
+            assert_int_equal(shoal_vortices(run, f, x, y, circulation), SHOAL_OK);
+            for (int i = 0; i < n; i++) NEAR(wake[2 * (f * n + i)], x[i], 0, 0);
+        }
+    }
+    shoal_close(run);
+}
+
+static void names_and_counts_are_read_too(void **state) {
+    struct shoal *const run = opened(*state, 0, NULL);
+    struct shoal_array array;
+    assert_int_equal(shoal_read(run, "fish_name", &array), SHOAL_OK);
+    assert_int_equal(array.type, SHOAL_CHAR);
+    assert_memory_equal(array.values, "ab", 2);
+    assert_int_equal(shoal_read(run, "n_nodes", &array), SHOAL_OK);
+    assert_int_equal(array.type, SHOAL_INT);
+    assert_int_equal(((const int *)array.values)[1], 7);
+    assert_int_equal(shoal_step(run), SHOAL_OK);
+    assert_int_equal(shoal_read(run, "steps", &array), SHOAL_OK);
+    assert_int_equal(array.type, SHOAL_LONG);
+    assert_true(*(const long *)array.values > 0);
+    shoal_close(run);
+}
+
+static void every_variable_of_the_table_can_be_read(void **state) {
+    struct shoal *const run = opened(*state, 0, NULL);
+    assert_int_equal(shoal_step(run), SHOAL_OK);
+    int n = 0;
+    for (; shoal_variable(n); n++) {
+        struct shoal_array array;
+        assert_int_equal(shoal_read(run, shoal_variable(n), &array), SHOAL_OK);
+        assert_non_null(array.values);
+    }
+    assert_int_equal(n, result_table_n);
+    assert_null(shoal_variable(-1));
+    struct shoal_array array;
+    refuses(shoal_read(run, "spede", &array), "there is no variable 'spede'");
+    assert_null(array.values);
+    shoal_close(run);
+}
+
+static void what_has_been_read_holds_until_the_next_step(void **state) {
+    struct shoal *const run = opened(*state, 0, NULL);
+    struct shoal_array array;
+    const double *const x = read_doubles(run, "x", &array), *const v = read_doubles(run, "v", &array);
+    const double before = x[0];
+    assert_ptr_equal(read_doubles(run, "x", &array), x);
+    assert_int_equal(shoal_step(run), SHOAL_OK);
+    assert_ptr_equal(read_doubles(run, "x", &array), x);
+    assert_ptr_equal(read_doubles(run, "v", &array), v);
+    assert_true(fabs(x[0] - before) > 0);
+    shoal_close(run);
+}
+
+// ---- the flow
+
+// both fish after a part of a beat that has begun at once
+static struct shoal *swum(const char *path) {
+    const char *const assignments[] = {"time.end=0.4", "fish[*].wave.ramp=0.1"};
+    struct shoal *const run = opened(path, 2, assignments);
+    assert_int_equal(shoal_advance(run, 0.4), SHOAL_OK);
+    return run;
+}
+
+static void far_from_everything_the_flow_is_the_external_one(void **state) {
+    const char *const assignments[] = {"fluid.velocity=[0.3, -0.1]", "fluid.shear=0.5"};
+    struct shoal *const run = opened(*state, 2, assignments);
+    assert_int_equal(shoal_advance(run, 0.1), SHOAL_OK);
+    const double points[] = {1e6, 2, -1e6, -4};
+    double velocity[4], vorticity[2];
+    assert_int_equal(shoal_flow(run, 2, points, velocity, vorticity), SHOAL_OK);
+    const double want[] = {0.3 + 0.5 * 2, -0.1, 0.3 - 0.5 * 4, -0.1};
+    NEAR_ARRAY(4, velocity, want, 1e-6, 0);
+    NEAR(vorticity[0], -0.5, 1e-9, 0);
+    shoal_close(run);
+}
+
+static void the_circulation_around_all_of_it_is_zero_and_around_a_wake_its_own(void **state) {
+    struct shoal *const run = swum(*state);
+    enum { N = 4000 };
+    static double points[2 * N], velocity[2 * N];
+    const double pi = acos(-1), radius = 6;
+    for (int i = 0; i < N; i++) {
+        points[2 * i] = 0.7 + radius * cos(2 * pi * i / N);
+        points[2 * i + 1] = 0.3 + radius * sin(2 * pi * i / N);
+    }
+    assert_int_equal(shoal_flow(run, N, points, velocity, NULL), SHOAL_OK);
+    double circulation = 0, size = 0;
+    for (int i = 0; i < N; i++) {
+        const double along = -velocity[2 * i] * sin(2 * pi * i / N) + velocity[2 * i + 1] * cos(2 * pi * i / N);
+        circulation += along * radius * 2 * pi / N;
+        size += fabs(along) * radius * 2 * pi / N;
+    }
+    // all circulation is bound, free or nascent: together none; the smoothing leaves (delta/radius)^2 of each
+    assert_true(size > 1e-4);
+    NEAR(circulation, 0, 3e-3 * size, 0);
+    shoal_close(run);
+}
+
+static void vorticity_is_the_curl_of_the_velocity(void **state) {
+    struct shoal *const run = swum(*state);
+    const double h = 1e-4, x = 1.1, y = 0.02;
+    const double points[] = {x, y, x + h, y, x - h, y, x, y + h, x, y - h};
+    double velocity[10], vorticity[5];
+    assert_int_equal(shoal_flow(run, 5, points, velocity, vorticity), SHOAL_OK);
+    const double curl = (velocity[3] - velocity[5]) / (2 * h) - (velocity[6] - velocity[8]) / (2 * h);
+    assert_true(fabs(vorticity[0]) > 1e-3);
+    NEAR(vorticity[0], curl, 0, 1e-4);
+    shoal_close(run);
+}
+
+static void looking_does_not_change_a_run(void **state) {
+    // the interpolated wake is what looking at the flow could disturb
+    const char *const assignments[] = {"time.end=0.4", "wake.tolerance=1e-4"};
+    struct shoal *const seen = opened(*state, 2, assignments), *const alone = opened(*state, 2, assignments);
+    double point[2] = {1.1, 0.1}, velocity[2], vorticity;
+    struct shoal_array array[2];
+    for (int step = 0; step < 20; step++) {
+        assert_int_equal(shoal_flow(seen, 1, point, velocity, &vorticity), SHOAL_OK);
+        for (int i = 0; shoal_variable(i); i++) assert_int_equal(shoal_read(seen, shoal_variable(i), array), SHOAL_OK);
+        assert_int_equal(shoal_step(seen), SHOAL_OK);
+        assert_int_equal(shoal_step(alone), SHOAL_OK);
+    }
+    const char *const names[] = {"x", "v", "a", "sheet_strength", "wake_x", "speed", "energy_audit"};
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
+        size_t n = 1;
+        const double *const one = read_doubles(seen, names[k], &array[0]);
+        const double *const other = read_doubles(alone, names[k], &array[1]);
+        for (int d = 0; d < array[0].n_dimensions; d++) n *= array[0].shape[d];
+        assert_memory_equal(one, other, n * sizeof *one);
+    }
+    shoal_close(seen);
+    shoal_close(alone);
+}
+
+// ---- result files
+
+static void a_result_file_has_the_rows_that_are_due(void **state) {
+    const char *const assignments[] = {"time.output_interval=0.04"};
+    struct shoal *const run = opened(*state, 1, assignments);
+    char path[] = "/tmp/test_shoal_result_XXXXXX";
+    const int descriptor = mkstemp(path);
+    assert_true(descriptor >= 0);
+    assert_int_equal(close(descriptor), 0);
+    assert_int_equal(shoal_write_end(run), SHOAL_OK);
+    assert_int_equal(shoal_write(run, path, 0), SHOAL_FILE);  // it exists
+    assert_int_equal(shoal_write(run, path, 1), SHOAL_OK);
+    refuses(shoal_write(run, "/tmp/other.nc", 1), "end that with shoal_write_end");
+    assert_int_equal(shoal_advance(run, 0.1), SHOAL_OK);
+    assert_int_equal(shoal_write_end(run), SHOAL_OK);
+    shoal_close(run);
+    struct netcdf_reader reader;
+    school_ok(netcdf_open(&reader, path));
+    size_t n_rows;
+    school_ok(netcdf_read_length(&reader, "time", 1, 100, &n_rows));
+    assert_int_equal(n_rows, 4);  // 0, 0.04, 0.08 and the end
+    netcdf_close(&reader);
+    assert_int_equal(unlink(path), 0);
+}
+
+static void a_checkpoint_stands_beside_the_result(void **state) {
+    struct shoal *const run = opened(*state, 0, NULL);
+    char folder[] = "/tmp/test_shoal_folder_XXXXXX", path[64];
+    assert_non_null(mkdtemp(folder));
+    snprintf(path, sizeof path, "%s/run.nc", folder);
+    refuses(shoal_checkpoint(run), "begin one with shoal_write");
+    assert_int_equal(shoal_write(run, path, 0), SHOAL_OK);
+    assert_int_equal(shoal_advance(run, 0.06), SHOAL_OK);
+    assert_int_equal(shoal_checkpoint(run), SHOAL_OK);
+    assert_int_equal(shoal_step(run), SHOAL_OK);
+    shoal_close(run);
+    snprintf(path, sizeof path, "%s/run.ckpt", folder);
+    struct checkpoint checkpoint;
+    school_ok(checkpoint_read(&checkpoint, path));
+    NEAR(checkpoint.t, 0.06, 1e-15, 0);
+    assert_string_equal(checkpoint.result, "run.nc");
+    checkpoint_free(&checkpoint);
+    assert_int_equal(unlink(path), 0);
+    snprintf(path, sizeof path, "%s/run.nc", folder);
+    assert_int_equal(unlink(path), 0);
+    // the lock is gone too
+    assert_int_equal(rmdir(folder), 0);
+}
+
+// a folder, and the path of a result in it
+static char result_folder[32], result_path[64];
+static const char *const every_event[] = {"time.output_interval=0.02"};
+
+static void make_result_folder(void) {
+    strcpy(result_folder, "/tmp/test_shoal_XXXXXX");
+    assert_non_null(mkdtemp(result_folder));
+    snprintf(result_path, sizeof result_path, "%s/run.nc", result_folder);
+}
+
+static size_t n_rows_of(const char *path) {
+    struct netcdf_reader reader;
+    size_t n_rows;
+    school_ok(netcdf_open(&reader, path));
+    school_ok(netcdf_read_length(&reader, "time", 0, 100, &n_rows));
+    netcdf_close(&reader);
+    return n_rows;
+}
+
+static void two_runs_of_one_process_do_not_write_the_same_result(void **state) {
+    struct shoal *const one = opened(*state, 1, every_event), *const other = opened(*state, 1, every_event);
+    make_result_folder();
+    assert_int_equal(shoal_write(one, result_path, 0), SHOAL_OK);
+    assert_int_equal(shoal_step(one), SHOAL_OK);
+    assert_int_equal(shoal_checkpoint(one), SHOAL_OK);
+    for (int overwrite = 0; overwrite < 2; overwrite++) {
+        assert_int_equal(shoal_write(other, result_path, overwrite), SHOAL_FILE);
+    }
+    assert_non_null(strstr(shoal_message(), "another run writes it"));
+    shoal_close(other);
+    // the lock holds for other processes too
+    const pid_t child = fork();
+    if (child == 0) {
+        struct result_lock lock;
+        _exit(result_lock_take(&lock, result_path) == STATUS_FILE ? 0 : 1);
+    }
+    int outcome;
+    assert_int_equal(waitpid(child, &outcome, 0), child);
+    assert_int_equal(outcome, 0);
+    assert_int_equal(shoal_advance(one, 0.1), SHOAL_OK);
+    shoal_close(one);
+    assert_int_equal(n_rows_of(result_path), 6);
+    assert_int_equal(unlink(result_path), 0);
+    snprintf(result_path, sizeof result_path, "%s/run.ckpt", result_folder);
+    assert_int_equal(unlink(result_path), 0);
+    assert_int_equal(rmdir(result_folder), 0);
+}
+
+/* What a fork of the process does with a run whose result the process writes; its exit code. */
+static int use_in_a_fork(struct shoal *run, int how) {
+    if (how == 0) shoal_close(run);
+    if (how == 1 && shoal_step(run) != SHOAL_FILE) return 1;
+    if (how == 2 && shoal_checkpoint(run) != SHOAL_FILE) return 2;
+    if (how == 3 && shoal_write_end(run) != SHOAL_FILE) return 3;
+    if (how == 0) return 0;
+    // from then on it is a run without a file
+    if (!strstr(shoal_message(), "of which this one is a fork")) return 4;
+    if (shoal_step(run) != SHOAL_OK || shoal_write_end(run) != SHOAL_OK) return 5;
+    shoal_close(run);
+    return 0;
+}
+
+static void a_fork_leaves_the_result_and_its_lock_alone(void **state) {
+    struct shoal *const run = opened(*state, 1, every_event);
+    make_result_folder();
+    assert_int_equal(shoal_write(run, result_path, 0), SHOAL_OK);
+    for (int how = 0; how < 4; how++) {
+        assert_int_equal(shoal_step(run), SHOAL_OK);
+        struct stat before, after;
+        assert_int_equal(stat(result_path, &before), 0);
+        const pid_t child = fork();
+        if (child == 0) exit(use_in_a_fork(run, how));
+        int outcome;
+        assert_int_equal(waitpid(child, &outcome, 0), child);
+        assert_int_equal(outcome, 0);
+        assert_int_equal(stat(result_path, &after), 0);
+        assert_memory_equal(&before.st_mtim, &after.st_mtim, sizeof before.st_mtim);
+        struct result_lock lock;
+        assert_int_equal(result_lock_take(&lock, result_path), STATUS_FILE);
+    }
+    assert_int_equal(shoal_advance(run, 0.1), SHOAL_OK);
+    shoal_close(run);
+    assert_int_equal(n_rows_of(result_path), 6);
+    assert_int_equal(unlink(result_path), 0);
+    // the lock is gone too
+    assert_int_equal(rmdir(result_folder), 0);
+}
+
+static void a_result_file_that_cannot_be_written_is_said_so(void **state) {
+    struct shoal *const run = opened(*state, 0, NULL);
+    assert_int_equal(shoal_write(run, "/no/such/folder/x.nc", 0), SHOAL_FILE);
+    assert_non_null(strstr(shoal_message(), "/no/such/folder"));
+    assert_int_equal(shoal_step(run), SHOAL_OK);
+    shoal_close(run);
+}
+
+// ---- copies
+
+// one variable of two runs, bit for bit
+static void same(struct shoal *one, struct shoal *other, const char *name) {
+    struct shoal_array a, b;
+    assert_int_equal(shoal_read(one, name, &a), SHOAL_OK);
+    assert_int_equal(shoal_read(other, name, &b), SHOAL_OK);
+    size_t n = a.type == SHOAL_CHAR ? 1 : a.type == SHOAL_INT ? sizeof(int) : sizeof(double);
+    for (int d = 0; d < a.n_dimensions; d++) {
+        assert_int_equal(a.shape[d], b.shape[d]);
+        n *= a.shape[d];
+    }
+    if (memcmp(a.values, b.values, n) != 0) fail_msg("%s differs", name);
+}
+
+static void same_in_all(struct shoal *one, struct shoal *other) {
+    for (int i = 0; shoal_variable(i); i++) {
+        if (strcmp(shoal_variable(i), "wall_time") != 0) same(one, other, shoal_variable(i));
+    }
+}
+
+static const char *const led[] = {"time.end=0.6", "fish[*].wave.ramp=0.1", "fish[1].control.law=course",
+                                  "fish[1].control.waypoints=[[-3, 1], [-6, 0]]"};
+
+static void a_copy_goes_on_with_the_bits_of_the_run(void **state) {
+    struct shoal *const run = opened(*state, 4, led), *copy;
+    assert_int_equal(shoal_advance(run, 0.2), SHOAL_OK);
+    const double amplitude = 0.3;
+    assert_int_equal(shoal_set(run, 0, "wave.amplitude", 1, &amplitude), SHOAL_OK);
+    assert_int_equal(shoal_advance(run, 0.3), SHOAL_OK);
+    assert_int_equal(shoal_clone(&copy, run), SHOAL_OK);
+    same_in_all(run, copy);
+    assert_int_equal(shoal_advance(run, 0.6), SHOAL_OK);
+    NEAR(shoal_time(copy), 0.3, 1e-15, 0);
+    assert_int_equal(shoal_advance(copy, 0.6), SHOAL_OK);
+    same_in_all(run, copy);
+    // a copy outlives the run
+    struct shoal *second;
+    shoal_close(run);
+    assert_int_equal(shoal_clone(&second, copy), SHOAL_OK);
+    same_in_all(copy, second);
+    shoal_close(copy);
+    shoal_close(second);
+}
+
+static void a_copy_shows_what_the_run_shows(void **state) {
+    struct shoal *const run = opened(*state, 4, led), *const alone = opened(*state, 4, led), *copy;
+    assert_int_equal(shoal_advance(run, 0.4), SHOAL_OK);
+    assert_int_equal(shoal_advance(alone, 0.4), SHOAL_OK);
+    assert_int_equal(shoal_clone(&copy, run), SHOAL_OK);
+    same_in_all(alone, copy);
+    same_in_all(alone, run);
+    shoal_close(run);
+    shoal_close(copy);
+    shoal_close(alone);
+}
+
+static void a_run_is_put_back_to_a_copy(void **state) {
+    struct shoal *const run = opened(*state, 4, led), *kept, *first;
+    assert_int_equal(shoal_clone(&kept, run), SHOAL_OK);
+    assert_int_equal(shoal_advance(run, 0.4), SHOAL_OK);
+    assert_int_equal(shoal_clone(&first, run), SHOAL_OK);
+    const double bias = 0.2;
+    assert_int_equal(shoal_set(run, 0, "control.bias", 1, &bias), SHOAL_OK);
+    assert_int_equal(shoal_advance(run, 0.6), SHOAL_OK);
+    assert_int_equal(shoal_restore(run, kept), SHOAL_OK);
+    NEAR(shoal_time(run), 0, 0, 0);
+    assert_int_equal(shoal_advance(run, 0.4), SHOAL_OK);
+    same_in_all(run, first);
+    shoal_close(kept);
+    shoal_close(first);
+    shoal_close(run);
+}
+
+static void a_run_that_has_failed_is_whole_when_it_is_put_back(void **state) {
+    const char *const assignments[] = {"solver.max_steps=9", "time.end=2", "fish[*].wave.ramp=0.01"};
+    struct shoal *const run = opened(*state, 3, assignments), *kept;
+    assert_int_equal(shoal_clone(&kept, run), SHOAL_OK);
+    assert_int_equal(shoal_advance(run, 2), SHOAL_SOLVER);
+    const double reached = shoal_time(run);
+    struct shoal *copy;
+    assert_int_equal(shoal_clone(&copy, run), SHOAL_SOLVER);
+    assert_null(copy);
+    assert_int_equal(shoal_restore(kept, run), SHOAL_SOLVER);
+    assert_int_equal(shoal_restore(run, kept), SHOAL_OK);
+    assert_int_equal(shoal_advance(run, 2), SHOAL_SOLVER);
+    NEAR(shoal_time(run), reached, 0, 0);
+    shoal_close(run);
+    shoal_close(kept);
+}
+
+static void only_copies_can_be_put_in_the_place_of_one_another(void **state) {
+    struct shoal *const run = opened(*state, 0, NULL), *const other = opened(*state, 0, NULL), *copy;
+    refuses(shoal_clone(NULL, run), "copy is NULL");
+    refuses(shoal_clone(&copy, NULL), "run is NULL");
+    refuses(shoal_restore(NULL, run), "run is NULL");
+    refuses(shoal_restore(run, NULL), "from is NULL");
+    refuses(shoal_restore(run, other), "not copies of one another");
+    assert_int_equal(shoal_restore(run, run), SHOAL_OK);
+    shoal_close(run);
+    shoal_close(other);
+}
+
+static void copying_without_memory_fails_and_leaves_the_run(void **state) {
+    struct shoal *const run = opened(*state, 0, NULL), *copy;
+    assert_int_equal(shoal_step(run), SHOAL_OK);
+    assert_int_equal(shoal_clone(&copy, run), SHOAL_OK);
+    shoal_close(copy);
+    int n_failed = 0, is_reached = 1;
+    for (int n = 0; is_reached; n++) {
+        const int n_before = n_live;
+        n_until_failure = n;
+        const int code = shoal_clone(&copy, run);
+        is_reached = n_until_failure == -1;
+        n_until_failure = -1;
+        n_failed += code != 0;
+        assert_true(code == 0 ? copy != NULL : code < 0 && !copy);
+        shoal_close(copy);
+        assert_int_equal(n_live, n_before);
+        n += n / 4;
+    }
+    assert_true(n_failed > 10);
+    assert_int_equal(shoal_step(run), SHOAL_OK);
+    shoal_close(run);
+}
+
+static void the_end_is_the_time_of_an_event(void **state) {
+    // 100 * 0.29 is less than 29 by a rounding error
+    const char *const assignments[] = {"time.end=29", "time.shedding_interval=0.29", "fish[*].wave.amplitude=0"};
+    struct shoal *const run = opened(*state, 3, assignments);
+    assert_int_equal(shoal_advance(run, 29), SHOAL_OK);
+    NEAR(shoal_time(run), shoal_end(run), 0, 0);
+    shoal_close(run);
+}
+
+static void the_version_is_that_of_the_program(void **state) {
+    (void)state;
+    assert_string_equal(shoal_version(), version_short());
+    assert_memory_equal(shoal_version(), "shoal ", 6);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_run_begins_with_the_start_of_its_case),
+        cmocka_unit_test(assignments_change_the_case),
+        cmocka_unit_test(a_step_goes_to_the_next_event_and_releases_a_vortex_of_each_fish),
+        cmocka_unit_test(bodies_and_wakes_are_those_of_the_simulation),
+        cmocka_unit_test(two_runs_do_not_know_each_other),
+        cmocka_unit_test(what_cannot_be_opened_is_refused_with_the_words_of_the_program),
+        cmocka_unit_test(a_run_that_fails_can_be_read_and_closed),
+        cmocka_unit_test(each_thread_has_its_own_message),
+        cmocka_unit_test(runs_in_many_threads_are_those_alone),
+        cmocka_unit_test(closing_nothing_is_allowed),
+        cmocka_unit_test(opening_without_memory_fails_and_leaves_nothing),
+        cmocka_unit_test(a_run_that_is_not_there_is_refused_by_every_function),
+        cmocka_unit_test(a_fish_that_is_not_there_is_refused),
+        cmocka_unit_test(arrays_that_are_not_there_are_refused),
+        cmocka_unit_test(what_a_fish_is_set_to_is_checked),
+        cmocka_unit_test(the_gait_in_force_can_be_read),
+        cmocka_unit_test(assignments_are_checked),
+        cmocka_unit_test(a_step_past_the_end_is_refused),
+        cmocka_unit_test(a_run_advances_to_the_event_at_or_after_a_time),
+        cmocka_unit_test(a_failed_run_makes_no_step_and_says_why),
+        cmocka_unit_test(the_text_of_a_case_is_a_case),
+        cmocka_unit_test(an_error_in_a_text_has_its_line),
+        cmocka_unit_test(a_variable_is_read_with_its_shape),
+        cmocka_unit_test(a_wake_is_read_without_empty_slots),
+        cmocka_unit_test(names_and_counts_are_read_too),
+        cmocka_unit_test(every_variable_of_the_table_can_be_read),
+        cmocka_unit_test(what_has_been_read_holds_until_the_next_step),
+        cmocka_unit_test(far_from_everything_the_flow_is_the_external_one),
+        cmocka_unit_test(the_circulation_around_all_of_it_is_zero_and_around_a_wake_its_own),
+        cmocka_unit_test(vorticity_is_the_curl_of_the_velocity),
+        cmocka_unit_test(looking_does_not_change_a_run),
+        cmocka_unit_test(a_result_file_has_the_rows_that_are_due),
+        cmocka_unit_test(a_checkpoint_stands_beside_the_result),
+        cmocka_unit_test(two_runs_of_one_process_do_not_write_the_same_result),
+        cmocka_unit_test(a_fork_leaves_the_result_and_its_lock_alone),
+        cmocka_unit_test(a_result_file_that_cannot_be_written_is_said_so),
+        cmocka_unit_test(a_copy_goes_on_with_the_bits_of_the_run),
+        cmocka_unit_test(a_copy_shows_what_the_run_shows),
+        cmocka_unit_test(a_run_is_put_back_to_a_copy),
+        cmocka_unit_test(a_run_that_has_failed_is_whole_when_it_is_put_back),
+        cmocka_unit_test(only_copies_can_be_put_in_the_place_of_one_another),
+        cmocka_unit_test(copying_without_memory_fails_and_leaves_the_run),
+        cmocka_unit_test(the_end_is_the_time_of_an_event),
+        cmocka_unit_test(the_version_is_that_of_the_program),
+    };
+    return cmocka_run_group_tests(tests, write_case, remove_case);
+}

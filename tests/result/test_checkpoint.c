@@ -1,0 +1,262 @@
+/* test_checkpoint.c: what is written is read, and whatever is not whole is refused. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include "result/checkpoint.h"
+#include "result/durable.h"
+#include "result/sections.h"
+#include "school.h"
+#include "state/state_table.h"
+
+#define SCHOOL                                                                                                \
+    "time: {end: 1, shedding_interval: 0.02}\nfish: [{name: a}, {nodes: 5, start: {position: [1, 2]}, wave: " \
+    "{frequency: "                                                                                            \
+    "2}}]\n"
+
+static char folder[] = "/tmp/test_checkpoint_XXXXXX", path[64], previous[64];
+static struct setup setup;
+static unsigned char *whole;
+static size_t n_whole;
+
+static const struct checkpoint written = {.effective = "format: 1\n",
+                                          .result = "run.nc",
+                                          .places = "0.3,1.25",
+                                          .rows = {12, 0xdeadbeef},
+                                          .totals = {1, 2, 3, 4, 5, 6, 7.5, 2},
+                                          .wall_time = 1e5};
+
+static int set_up(void **state) {
+    (void)state;
+    if (!mkdtemp(folder)) return -1;
+    snprintf(path, sizeof path, "%s/run.ckpt", folder);
+    snprintf(previous, sizeof previous, "%s/run.ckpt.previous", folder);
+    school_build(&setup, SCHOOL);
+    for (int i = 0; i < 30; i++) school_ok(wake_release(&setup.state->wake[1], i, i + 0.5, 1, 2));
+    setup.state->t = 0.6;
+    setup.state->event = 30;
+    for (int f = 0; f < 2; f++) state_remember(&setup.state->history[f], &(struct sample){.speed = NAN, .heading = f});
+    for (int i = 0; i < setup.school->n_unknowns; i++) setup.state->y[i] = 1.0 / (i + 1);
+    school_ok(checkpoint_write(path, previous, &written, setup.state, setup.school));
+    school_ok(durable_read(path, &whole, &n_whole));
+    return 0;
+}
+
+static int tear_down(void **state) {
+    (void)state;
+    free(whole);
+    school_clear(&setup);
+    unlink(path);
+    unlink(previous);
+    return rmdir(folder);
+}
+
+static void all_that_is_written_is_read(void **state) {
+    (void)state;
+    struct checkpoint read;
+    struct state *fresh;
+    school_ok(checkpoint_read(&read, path));
+    school_ok(checkpoint_check_program(&read));
+    assert_string_equal(read.effective, written.effective);
+    assert_string_equal(read.result, written.result);
+    assert_string_equal(read.places, written.places);
+    assert_int_equal(read.rows.n_rows, written.rows.n_rows);
+    assert_int_equal(read.rows.check, written.rows.check);
+    assert_memory_equal(&read.totals, &written.totals, sizeof read.totals);
+    NEAR(read.wall_time, 1e5, 0, 0);
+    NEAR(read.t, 0.6, 0, 0);
+    school_ok(state_create(&fresh, setup.school));
+    school_ok(checkpoint_set_state(&read, fresh, setup.school));
+    for (int i = 0; i < state_table_n; i++) {
+        const struct state_row *const row = &state_table[i];
+        assert_true(strlen(row->name) < SECTIONS_NAME);
+        for (int f = 0; f < state_table_n_owners(row, setup.school) && row->type != STATE_UNKEPT; f++) {
+            const size_t n = state_table_length(row, setup.state, setup.school, f);
+            assert_int_equal(state_table_length(row, fresh, setup.school, f), n);
+            if (n == 0) continue;
+            assert_memory_equal(state_table_values(row, fresh, f), state_table_values(row, setup.state, f),
+                                n * state_table_size(row));
+        }
+    }
+    state_free(fresh, setup.school);
+    checkpoint_free(&read);
+}
+
+static void every_bit_that_flips_is_noticed(void **state) {
+    (void)state;
+    school_ok(sections_check(whole, n_whole));
+    for (size_t byte = 0; byte < n_whole; byte++) {
+        // all bits of the first ones, one of the others
+        for (int bit = byte < 400 ? 0 : (int)(byte % 8); bit < (byte < 400 ? 8 : (int)(byte % 8) + 1); bit++) {
+            whole[byte] ^= (unsigned char)(1 << bit);
+            if (sections_check(whole, n_whole) != STATUS_FILE) fail_msg("bit %d of byte %zu", bit, byte);
+            whole[byte] ^= (unsigned char)(1 << bit);
+        }
+    }
+    school_ok(sections_check(whole, n_whole));
+}
+
+static void every_truncation_is_noticed_and_so_is_more(void **state) {
+    (void)state;
+    for (size_t n = 0; n < n_whole; n++) {
+        if (sections_check(whole, n) != STATUS_FILE) fail_msg("%zu of %zu bytes", n, n_whole);
+    }
+    unsigned char *const more = calloc(n_whole + 1, 1);
+    memcpy(more, whole, n_whole);
+    assert_int_equal(sections_check(more, n_whole + 1), STATUS_FILE);
+    free(more);
+}
+
+// write the bytes with another format or order of bytes, and a checksum that fits
+static void other_format(size_t at, uint32_t number, const char *reason) {
+    enum { CHECK_AT = 24 };
+    unsigned char *const bytes = malloc(n_whole);
+    memcpy(bytes, whole, n_whole);
+    memcpy(bytes + at, &number, sizeof number);
+    const uint32_t check = (uint32_t)crc32(0, bytes, CHECK_AT);
+    memcpy(bytes + CHECK_AT, &check, sizeof check);
+    assert_int_equal(sections_check(bytes, n_whole), STATUS_FILE);
+    if (!strstr(status_message(), reason)) fail_msg("%s", status_message());
+    free(bytes);
+}
+
+static void another_format_is_refused_by_name(void **state) {
+    (void)state;
+    other_format(8, 2, "it has format 2");
+    other_format(12, 0x04030201, "format");
+    assert_int_equal(sections_check((const unsigned char *)"CDF\5", 4), STATUS_FILE);
+    assert_non_null(strstr(status_message(), "it is no checkpoint of shoal"));
+}
+
+// a checkpoint of other strings and numbers, all of them with checksums that fit
+static void crafted(const char *section, const void *bytes, size_t n, const char *reason) {
+    struct sections_writer writer;
+    struct checkpoint read;
+    char name[SECTIONS_NAME];
+    sections_start(&writer);
+    for (size_t at = 28; at < n_whole;) {
+        uint64_t size;
+        memcpy(name, whole + at, sizeof name);
+        memcpy(&size, whole + at + SECTIONS_NAME, sizeof size);
+        sections_open(&writer, name);
+        if (strcmp(name, section) == 0) sections_add(&writer, bytes, n);
+        if (strcmp(name, section) != 0) sections_add(&writer, whole + at + SECTIONS_NAME + 8, size);
+        sections_close(&writer);
+        at += SECTIONS_NAME + 8 + size + 4;
+    }
+    school_ok(sections_finish(&writer));
+    school_ok(durable_replace(path, previous, writer.bytes, writer.n));
+    enum status status = checkpoint_read(&read, path);
+    if (status == STATUS_OK) {
+        struct state *fresh;
+        school_ok(state_create(&fresh, setup.school));
+        status = checkpoint_check_program(&read);
+        if (status == STATUS_OK) status = checkpoint_set_state(&read, fresh, setup.school);
+        state_free(fresh, setup.school);
+        checkpoint_free(&read);
+    }
+    assert_int_equal(status, STATUS_FILE);
+    if (!strstr(status_message(), reason)) fail_msg("%s instead of %s", status_message(), reason);
+    sections_free(&writer);
+}
+
+static void what_no_run_has_written_is_refused(void **state) {
+    (void)state;
+    const int many[] = {0, 1 << 30}, negative[] = {0, -1}, few[] = {0, 29}, large = 1 << 20;
+    crafted("program", "shoal 9", 7, "it was made by shoal 9, and this is ");
+    crafted("libraries", "SUNDIALS 1", 10, "it was made by SUNDIALS 1, and this is ");
+    crafted("result", "../run.nc", 9, "its section 'result' does not fit");
+    crafted("rows", "\xff\xff\xff\xff\xff\xff\xff\xff", 8, "its section 'result' does not fit");
+    crafted("steps", "1234567", 7, "its section 'steps' does not fit");
+    crafted("t", "", 0, "its section 't' does not fit");
+    crafted("y", "12345678", 8, "its section 'y' does not fit");
+    crafted("wake.n_vortex", many, sizeof many, "its section 'wake.n_vortex' does not fit");
+    crafted("wake.n_vortex", negative, sizeof negative, "its section 'wake.n_vortex' does not fit");
+    crafted("wake.n_vortex", few, sizeof few, "its section 'wake.x' does not fit");
+    crafted("history.last", (const int[]){large, large}, 8, "its state is none of this case");
+    crafted("balance.n", (const int[]){3, 3}, 8, "its state is none of this case");
+    // a section that is missing
+    crafted("wake.birth", NULL, 0, "its section 'wake.birth' does not fit");
+}
+
+/* A value that is not finite, in a checkpoint whose checksums fit, is refused with the name of its field. */
+static void values_that_are_not_finite_are_refused(void **state) {
+    (void)state;
+    const double wrong[] = {NAN, INFINITY};
+    int n_refused = 0;
+    for (int i = 0; i < state_table_n; i++) {
+        const struct state_row *const row = &state_table[i];
+        const struct section_reader section = sections_find(whole, n_whole, row->name);
+        if (row->type != STATE_REAL || section.left == 0) continue;
+        unsigned char *const bytes = malloc(section.left);
+        // the last value too: that of the last fish
+        const size_t places[] = {0, section.left - sizeof(double)};
+        for (int k = 0; k < 4; k++) {
+            if (strcmp(row->name, "closest.distance") == 0) continue;  // infinite where a fish is alone
+            memcpy(bytes, section.next, section.left);
+            memcpy(bytes + places[k % 2], &wrong[k / 2], sizeof(double));
+            crafted(row->name, bytes, section.left, strcmp(row->name, "t") == 0 ? "its value 0 of 't' is" : row->name);
+            n_refused++;
+        }
+        free(bytes);
+    }
+    assert_true(n_refused > 100);
+    crafted("wall_time", &wrong[0], sizeof wrong[0], "its section 'wall_time' does not fit");
+    crafted("step_size", &wrong[1], sizeof wrong[1], "its section 'step_size' does not fit");
+    crafted("t", &(double){0.62}, sizeof(double), "its state is none of this case");
+}
+
+/* What a machine of the other order of bytes would write: all numbers the other way round. */
+static void a_checkpoint_of_the_other_order_of_bytes_is_refused_by_name(void **state) {
+    (void)state;
+    unsigned char *const other = malloc(n_whole);
+    const size_t numbers[][2] = {{8, 4}, {12, 4}, {16, 8}};
+    memcpy(other, whole, n_whole);
+    for (int i = 0; i < 3; i++) {
+        for (size_t k = 0; k < numbers[i][1]; k++)
+            other[numbers[i][0] + k] = whole[numbers[i][0] + numbers[i][1] - 1 - k];
+    }
+    const uint32_t check = (uint32_t)crc32_z(crc32_z(0, NULL, 0), other, 24);
+    for (int k = 0; k < 4; k++) other[24 + k] = (unsigned char)(check >> (24 - 8 * k));
+    school_ok(durable_replace(path, previous, other, n_whole));
+    struct checkpoint read;
+    assert_int_equal(checkpoint_read(&read, path), STATUS_FILE);
+    if (!strstr(status_message(), "made on a machine with another order of bytes")) fail_msg("%s", status_message());
+    free(other);
+    school_ok(durable_replace(path, previous, whole, n_whole));
+}
+
+static void only_checkpoints_may_be_replaced(void **state) {
+    (void)state;
+    char other[64];
+    snprintf(other, sizeof other, "%s/other", folder);
+    school_ok(checkpoint_check_target(other, "run.nc"));
+    school_ok(checkpoint_check_target(path, "run.nc"));
+    assert_int_equal(checkpoint_check_target(path, "run"), STATUS_FILE);
+    if (!strstr(status_message(), "is a checkpoint of run.nc")) fail_msg("%s", status_message());
+    FILE *const file = fopen(other, "w");
+    fputs("SHOAL is not enough", file);
+    fclose(file);
+    assert_int_equal(checkpoint_check_target(other, "run.nc"), STATUS_FILE);
+    assert_int_equal(checkpoint_check_target(folder, "run.nc"), STATUS_FILE);
+    unlink(other);
+    assert_int_equal(symlink(path, other), 0);
+    assert_int_equal(checkpoint_check_target(other, "run.nc"), STATUS_FILE);
+    unlink(other);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(all_that_is_written_is_read),
+        cmocka_unit_test(every_bit_that_flips_is_noticed),
+        cmocka_unit_test(every_truncation_is_noticed_and_so_is_more),
+        cmocka_unit_test(another_format_is_refused_by_name),
+        cmocka_unit_test(what_no_run_has_written_is_refused),
+        cmocka_unit_test(values_that_are_not_finite_are_refused),
+        cmocka_unit_test(a_checkpoint_of_the_other_order_of_bytes_is_refused_by_name),
+        cmocka_unit_test(only_checkpoints_may_be_replaced),
+    };
+    return cmocka_run_group_tests(tests, set_up, tear_down);
+}

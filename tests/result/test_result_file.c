@@ -1,0 +1,483 @@
+/* test_result_file.c: writing a result: what is in it, when it can be read, and how it fails. */
+#include <signal.h>
+#include <sys/resource.h>
+
+#include "base/version.h"
+#include "result/result_table.h"
+#include "result_fixture.h"
+
+// Which of the next allocations fails, counting from 1; 0: none.
+static int failing_allocation;
+
+void *__real_calloc(size_t n, size_t size);
+void *__wrap_calloc(size_t n, size_t size);
+void *__wrap_calloc(size_t n, size_t size) {
+    if (failing_allocation > 0 && --failing_allocation == 0) return NULL;
+    return __real_calloc(n, size);
+}
+
+// ---- what is in the file ----
+
+static void format_is_cdf5(void **state) {
+    struct fixture *f = *state;
+    write_file(f, 1);
+    int file = open_to_read(f), format;
+    assert_int_equal(nc_inq_format(file, &format), NC_NOERR);
+    assert_int_equal(format, NC_FORMAT_CDF5);
+    nc_close(file);
+}
+
+static void every_variable_of_the_table_is_there_with_its_dimensions_unit_and_name(void **state) {
+    struct fixture *f = *state;
+    f->values.output.forces = OUTPUT_FORCES_EDGES;
+    f->school->walls = (struct walls){2, {-7, 8}, {1, -1}};
+    struct result_file *result;
+    assert_int_equal(result_file_create_steady(&result, f->path, 0, &f->values, EFFECTIVE, "", f->school, 10),
+                     STATUS_OK);
+    assert_int_equal(result_file_publish(result, "running"), STATUS_OK);
+    assert_int_equal(result_file_close(result, "complete"), STATUS_OK);
+    const int file = open_to_read(f);
+    for (int i = 0; i < result_table_n; i++) {
+        const struct result_variable *variable = &result_table[i];
+        const int number = number_of(file, variable->name);
+        int n, dimensions[NC_MAX_VAR_DIMS];
+        assert_int_equal(nc_inq_var(file, number, NULL, NULL, &n, dimensions, NULL), NC_NOERR);
+        for (int d = 0; d < n; d++) {
+            char name[NC_MAX_NAME + 1];
+            nc_inq_dimname(file, dimensions[d], name);
+            assert_string_equal(name, result_table_dimension(variable->dimension[d]));
+        }
+        assert_int_equal(variable->dimension[n], NONE);
+        assert_string_equal(text_of(file, number, "long_name"), variable->long_name);
+        if (variable->type != RESULT_TEXT) assert_string_equal(text_of(file, number, "units"), variable->unit);
+    }
+    nc_close(file);
+}
+
+static void dimensions_are_those_of_the_largest_fish(void **state) {
+    struct fixture *f = *state;
+    write_file(f, 3);
+    const int file = open_to_read(f);
+    assert_int_equal(length_of(file, "time"), 3);
+    assert_int_equal(length_of(file, "fish"), 2);
+    assert_int_equal(length_of(file, "node"), 7);
+    assert_int_equal(length_of(file, "edge"), 6);
+    assert_int_equal(length_of(file, "joint"), 5);
+    assert_int_equal(length_of(file, "sheet"), 7);
+    assert_int_equal(length_of(file, "vortex"), (size_t)wake_most(f->school, 10));
+    assert_int_equal(length_of(file, "name"), strlen("suédois"));
+    nc_close(file);
+}
+
+static void attributes_name_the_case_the_program_and_the_conventions(void **state) {
+    struct fixture *f = *state;
+    write_file(f, 1);
+    const int file = open_to_read(f);
+    assert_string_equal(text_of(file, NC_GLOBAL, "Conventions"), "CF-1.10");
+    assert_string_equal(text_of(file, NC_GLOBAL, "title"), "result");
+    assert_string_equal(text_of(file, NC_GLOBAL, "case_text"), CASE_TEXT);
+    assert_string_equal(text_of(file, NC_GLOBAL, "case_effective"), EFFECTIVE);
+    assert_string_equal(text_of(file, NC_GLOBAL, "run_status"), "complete");
+    assert_non_null(strstr(text_of(file, NC_GLOBAL, "history"), "shoal run case.yaml"));
+    assert_non_null(strstr(text_of(file, NC_GLOBAL, "source"), version_short()));
+    assert_string_equal(text_of(file, number_of(file, "fish_name"), "_Encoding"), "utf-8");
+    nc_close(file);
+}
+
+static void constants_are_those_of_the_fish(void **state) {
+    struct fixture *f = *state;
+    write_file(f, 0);
+    const int file = open_to_read(f);
+    char name[16] = {0};
+    assert_int_equal(nc_get_vara_text(file, number_of(file, "fish_name"), (size_t[]){1, 0}, (size_t[]){1, 8}, name), 0);
+    assert_string_equal(name, "suédois");
+    NEAR(value_at(file, "n_nodes", 0, 0, 0, 0), 5, 0, 0);
+    NEAR(value_at(file, "n_sheet", 1, 0, 0, 0), 5, 0, 0);
+    NEAR(value_at(file, "body_length", 1, 0, 0, 0), 2, 0, 0);
+    NEAR(value_at(file, "frequency", 0, 0, 0, 0), 2, 0, 0);
+    NEAR(value_at(file, "shedding_interval", 0, 0, 0, 0), 0.1, 0, 0);
+    NEAR(value_at(file, "edge_height", 1, 2, 0, 0), f->school->fish[1].thickness[2], 0, 0);
+    NEAR(value_at(file, "node_mass", 0, 4, 0, 0), f->school->fish[0].mass[4], 0, 0);
+    NEAR(value_at(file, "sheet_arc", 1, 4, 0, 0), 2, 0, 1e-15);
+    nc_close(file);
+}
+
+static void unknowns_of_each_fish_come_back(void **state) {
+    struct fixture *f = *state;
+    write_file(f, 2);
+    const int file = open_to_read(f);
+    const struct layout *at = &f->school->fish[1].at;
+    const double *y = f->state->y;
+    NEAR(value_at(file, "x", 1, 1, 3, 0), y[at->x + 3], 0, 0);
+    NEAR(value_at(file, "x", 1, 1, 3, 1), y[at->y + 3], 0, 0);
+    NEAR(value_at(file, "v", 1, 1, 6, 0), y[at->vx + 6], 0, 0);
+    NEAR(value_at(file, "v", 1, 1, 6, 1), y[at->vy + 6], 0, 0);
+    NEAR(value_at(file, "a", 1, 1, 0, 0), y[at->ax], 0, 0);
+    NEAR(value_at(file, "a", 1, 1, 0, 1), y[at->ay], 0, 0);
+    NEAR(value_at(file, "sheet_strength", 1, 1, 4, 0), y[at->gamma + 4], 0, 0);
+    NEAR(value_at(file, "natural_curvature", 1, 1, 0, 0), 4, 0, 0);  // the first one after the 3 joints of fish 0
+    nc_close(file);
+}
+
+static void sheet_starts_at_the_nose_and_ends_at_the_tail(void **state) {
+    struct fixture *f = *state;
+    write_file(f, 1);
+    const int file = open_to_read(f);
+    const struct layout *at = &f->school->fish[1].at;
+    NEAR(value_at(file, "sheet_x", 0, 1, 0, 0), f->state->y[at->x], 0, 1e-15);
+    NEAR(value_at(file, "sheet_x", 0, 1, 4, 1), f->state->y[at->y + 6], 0, 1e-15);
+    nc_close(file);
+}
+
+static void curvature_of_a_right_angle_is_two(void **state) {
+    struct fixture *f = *state;
+    const struct layout *at = &f->school->fish[0].at;
+    const double x[] = {0, 1, 1, 0, 0}, y[] = {0, 0, 1, 1, 0};
+    memcpy(f->state->y + at->x, x, sizeof x);
+    memcpy(f->state->y + at->y, y, sizeof y);
+    write_file(f, 1);
+    const int file = open_to_read(f);
+    for (size_t j = 0; j < 3; j++) NEAR(value_at(file, "curvature", 0, 0, j, 0), 2, 0, 1e-15);
+    nc_close(file);
+}
+
+static void unused_slots_hold_nan(void **state) {
+    struct fixture *f = *state;
+    write_file(f, 1);
+    const int file = open_to_read(f);
+    assert_true(isnan(value_at(file, "x", 0, 0, 5, 0)));
+    assert_true(isnan(value_at(file, "curvature", 0, 0, 3, 0)));
+    assert_true(isnan(value_at(file, "sheet_strength", 0, 1, 5, 0)));
+    assert_true(isnan(value_at(file, "node_mass", 0, 5, 0, 0)));
+    assert_true(isnan(value_at(file, "wake_x", 0, 0, 0, 0)));
+    double fill = 0;
+    assert_int_equal(nc_get_att_double(file, number_of(file, "x"), "_FillValue", &fill), NC_NOERR);
+    assert_true(isnan(fill));
+    nc_close(file);
+}
+
+static void derived_quantities_have_their_names(void **state) {
+    struct fixture *f = *state;
+    write_file(f, 2);
+    const int file = open_to_read(f);
+    NEAR(value_at(file, "time", 1, 0, 0, 0), 0.5, 0, 0);
+    NEAR(value_at(file, "com", 1, 0, 1, 0), f->of_fish[0].com[1], 0, 0);
+    NEAR(value_at(file, "com_velocity", 1, 1, 0, 0), f->of_fish[1].com_velocity[0], 0, 0);
+    NEAR(value_at(file, "speed", 1, 1, 0, 0), f->of_fish[1].speed, 0, 0);
+    NEAR(value_at(file, "heading", 1, 0, 0, 0), f->of_fish[0].heading, 0, 0);
+    NEAR(value_at(file, "energy_audit", 1, 1, 0, 0), f->of_fish[1].energy_audit, 0, 0);
+    NEAR(value_at(file, "strouhal", 1, 0, 0, 0), f->of_fish[0].strouhal, 0, 0);
+    NEAR(value_at(file, "total_circulation", 1, 0, 0, 0), 11, 0, 0);
+    NEAR(value_at(file, "least_distance", 1, 0, 0, 0), 12, 0, 0);
+    NEAR(value_at(file, "polarisation", 1, 0, 0, 0), 13, 0, 0);
+    NEAR(value_at(file, "steps", 1, 0, 0, 0), 21, 0, 0);
+    NEAR(value_at(file, "jacobian_evaluations", 1, 0, 0, 0), 24, 0, 0);
+    NEAR(value_at(file, "order", 1, 0, 0, 0), 2, 0, 0);
+    NEAR(value_at(file, "wall_time", 1, 0, 0, 0), 28, 0, 0);
+    nc_close(file);
+}
+
+static void walls_are_there_where_the_case_has_them(void **state) {
+    struct fixture *f = *state;
+    for (int n = 0; n <= 2; n++) {
+        f->school->walls = (struct walls){n, {-7, 8}, {1, -1}};
+        write_file(f, 1);
+        const int file = open_to_read(f);
+        int number;
+        assert_int_equal(nc_inq_varid(file, "wall_y", &number), n > 0 ? NC_NOERR : NC_ENOTVAR);
+        assert_int_equal(nc_inq_dimid(file, "wall", &number), n > 0 ? NC_NOERR : NC_EBADDIM);
+        if (n > 0) assert_int_equal(length_of(file, "wall"), (size_t)n);
+        for (size_t i = 0; i < (size_t)n; i++) {
+            NEAR(value_at(file, "wall_y", i, 0, 0, 0), f->school->walls.y[i], 0, 0);
+        }
+        nc_close(file);
+        unlink(f->path);
+    }
+}
+
+static void every_diagnostic_of_a_fish_has_a_variable(void **state) {
+    (void)state;
+    bool is_written[N_OF_FISH] = {false};
+    for (int i = 0; i < result_table_n; i++) {
+        if (result_table[i].owner != OF_DIAGNOSTICS_FISH) continue;
+        const size_t first = result_table[i].offset / sizeof(double),
+                     n = result_table_has(&result_table[i], XY) ? 2 : 1;
+        for (size_t k = first; k < first + n; k++) is_written[k] = true;
+    }
+    for (size_t k = 0; k < N_OF_FISH; k++) assert_true(is_written[k]);
+}
+
+static void wake_is_oldest_first_and_can_be_left_out(void **state) {
+    struct fixture *f = *state;
+    struct wake *wake = &f->state->wake[1];
+    struct result_file *result = create(f);
+    assert_int_equal(append(f, result, 0, 1), STATUS_OK);
+    assert_int_equal(wake_release(wake, 1, 2, 3, 0.1), STATUS_OK);
+    assert_int_equal(wake_release(wake, 4, 5, 6, 0.2), STATUS_OK);
+    assert_int_equal(append(f, result, 0.2, 1), STATUS_OK);
+    assert_int_equal(append(f, result, 0.3, 0), STATUS_OK);
+    assert_int_equal(result_file_close(result, "complete"), STATUS_OK);
+
+    const int file = open_to_read(f);
+    NEAR(value_at(file, "wake_count", 0, 1, 0, 0), 0, 0, 0);
+    NEAR(value_at(file, "wake_count", 1, 1, 0, 0), 2, 0, 0);
+    NEAR(value_at(file, "wake_x", 1, 1, 0, 1), 2, 0, 0);
+    NEAR(value_at(file, "wake_x", 1, 1, 1, 0), 4, 0, 0);
+    NEAR(value_at(file, "wake_circulation", 1, 1, 1, 0), 6, 0, 0);
+    NEAR(value_at(file, "wake_birth", 1, 1, 0, 0), 0.1, 0, 0);
+    assert_true(isnan(value_at(file, "wake_x", 1, 1, 2, 0)));
+    assert_true(isnan(value_at(file, "wake_x", 1, 0, 0, 0)));
+    NEAR(value_at(file, "wake_count", 2, 1, 0, 0), 2, 0, 0);
+    assert_true(isnan(value_at(file, "wake_x", 2, 1, 0, 0)));
+    assert_true(isnan(value_at(file, "wake_birth", 2, 1, 0, 0)));
+    nc_close(file);
+}
+
+static void single_precision_keeps_time_and_scalars_double(void **state) {
+    struct fixture *f = *state;
+    f->values.output.precision = PRECISION_SINGLE;
+    f->state->y[f->school->fish[0].at.x] = 0.1;
+    write_file(f, 1);
+    const int file = open_to_read(f);
+    nc_type bulk, time, speed;
+    nc_inq_vartype(file, number_of(file, "x"), &bulk);
+    nc_inq_vartype(file, number_of(file, "time"), &time);
+    nc_inq_vartype(file, number_of(file, "speed"), &speed);
+    assert_int_equal(bulk, NC_FLOAT);
+    assert_int_equal(time, NC_DOUBLE);
+    assert_int_equal(speed, NC_DOUBLE);
+    NEAR(value_at(file, "x", 0, 0, 0, 0), (double)0.1f, 0, 0);
+    assert_true(isnan(value_at(file, "x", 0, 0, 5, 0)));
+    nc_close(file);
+}
+
+static void forces_of_edges_are_there_on_request_only(void **state) {
+    struct fixture *f = *state;
+    write_file(f, 1);
+    const int file = open_to_read(f);
+    int number;
+    assert_int_equal(nc_inq_varid(file, "edge_resistive_force", &number), NC_ENOTVAR);
+    assert_int_equal(nc_inq_varid(file, "edge_reactive_force", &number), NC_ENOTVAR);
+    assert_int_equal(nc_inq_varid(file, "resistive_force", &number), NC_NOERR);
+    nc_close(file);
+}
+
+static void long_status_is_cut(void **state) {
+    struct fixture *f = *state;
+    char reason[1000];
+    memset(reason, 'x', sizeof reason);
+    memcpy(reason, "failed: ", 8);
+    reason[sizeof reason - 1] = '\0';
+    struct result_file *result = create(f);
+    assert_int_equal(result_file_close(result, reason), STATUS_OK);
+    const int file = open_to_read(f);
+    assert_memory_equal(text_of(file, NC_GLOBAL, "run_status"), reason, 255);
+    assert_int_equal(strlen(text_of(file, NC_GLOBAL, "run_status")), 255);
+    nc_close(file);
+}
+
+// ---- while it is written ----
+
+static void file_can_be_read_between_rows(void **state) {
+    struct fixture *f = *state;
+    struct result_file *result = create(f);
+    for (size_t n = 0; n < 4; n++) {
+        const int file = open_to_read(f);
+        assert_int_equal(length_of(file, "time"), n);
+        assert_string_equal(text_of(file, NC_GLOBAL, "run_status"), "running");
+        if (n > 0) {
+            NEAR(value_at(file, "time", n - 1, 0, 0, 0), (double)n - 1, 0, 0);
+            NEAR(value_at(file, "wall_time", n - 1, 0, 0, 0), 28, 0, 0);
+        }
+        nc_close(file);
+        assert_int_equal(append(f, result, (double)n, 1), STATUS_OK);
+    }
+    assert_int_equal(result_file_close(result, "stopped"), STATUS_OK);
+}
+
+static void closing_nothing_is_allowed(void **state) {
+    (void)state;
+    assert_int_equal(result_file_close(NULL, "complete"), STATUS_OK);
+}
+
+// ---- failures ----
+
+static void assert_refused(struct fixture *f, const char *path, int overwrite, const char *part) {
+    struct result_file *result;
+    assert_int_equal(result_file_create(&result, path, overwrite, &f->values, EFFECTIVE, "", f->school, 10),
+                     STATUS_FILE);
+    assert_null(result);
+    assert_message(path);
+    assert_message(part);
+}
+
+static void existing_file_stays_untouched(void **state) {
+    struct fixture *f = *state;
+    FILE *other = fopen(f->path, "w");
+    fputs("mine", other);
+    fclose(other);
+    assert_refused(f, f->path, 0, "exists and is no NetCDF file of shoal");
+    char text[8] = {0};
+    other = fopen(f->path, "r");
+    assert_int_equal(fread(text, 1, 7, other), 4);
+    fclose(other);
+    assert_string_equal(text, "mine");
+}
+
+static size_t number_of_rows(const struct fixture *f) {
+    const int file = open_to_read(f);
+    const size_t n = length_of(file, "time");
+    nc_close(file);
+    return n;
+}
+
+static void a_file_without_its_name_leaves_nothing(void **state) {
+    struct fixture *f = *state;
+    struct result_file *result;
+    write_file(f, 3);
+    assert_int_equal(result_file_create(&result, f->path, 1, &f->values, EFFECTIVE, "", f->school, 10), STATUS_OK);
+    assert_int_equal(append(f, result, 0, 1), STATUS_OK);
+    assert_int_equal(result_file_close(result, "failed: for a reason"), STATUS_OK);
+    assert_int_equal(number_of_rows(f), 3);
+}
+
+/* What another program, or a user, has made is not replaced, however the file begins. */
+static void existing_file_of_another_program_is_never_replaced(void **state) {
+    struct fixture *f = *state;
+    const char *const texts[] = {"mine", "format: 1\n", "CDF\1 of another program", "<!DOCTYPE html>"};
+    for (int i = 0; i < 4; i++) {
+        FILE *const other = fopen(f->path, "w");
+        fputs(texts[i], other);
+        fclose(other);
+        assert_refused(f, f->path, 1, "is no NetCDF file of shoal, so that no option replaces it");
+    }
+}
+
+static void existing_file_is_replaced_when_asked(void **state) {
+    struct fixture *f = *state;
+    write_file(f, 3);
+    struct result_file *result;
+    assert_int_equal(result_file_create(&result, f->path, 1, &f->values, EFFECTIVE, "", f->school, 10), STATUS_OK);
+    assert_int_equal(number_of_rows(f), 3);
+    assert_int_equal(result_file_publish(result, "running"), STATUS_OK);
+    assert_int_equal(result_file_close(result, "complete"), STATUS_OK);
+    assert_int_equal(number_of_rows(f), 0);
+}
+
+static void wrong_places_are_named(void **state) {
+    struct fixture *f = *state;
+    char missing[64];
+    snprintf(missing, sizeof missing, "%s/no/run.nc", f->folder);
+    assert_refused(f, missing, 0, "there is no folder");
+    assert_refused(f, f->folder, 1, "is a folder");
+    assert_refused(f, "/dev/null", 1, "not an ordinary file");
+    // the kernel's own files, where they are mounted: a folder in which not even root makes a file
+    if (access("/sys/kernel", F_OK) == 0) assert_refused(f, "/sys/run.nc", 0, "cannot be written to");
+    assert_refused(f, "", 0, "is empty");
+}
+
+/* Set the largest size that files may have, in bytes; returns the limit before. */
+static rlim_t limit_file_size(rlim_t size) {
+    signal(SIGXFSZ, SIG_IGN);
+    struct rlimit limit;
+    getrlimit(RLIMIT_FSIZE, &limit);
+    const rlim_t before = limit.rlim_cur;
+    limit.rlim_cur = size;
+    setrlimit(RLIMIT_FSIZE, &limit);
+    return before;
+}
+
+static void full_disk_leaves_no_file_without_a_header(void **state) {
+    struct fixture *f = *state;
+    for (rlim_t size = 0; size < 20000; size += 3000) {
+        const rlim_t before = limit_file_size(size);
+        struct result_file *result;
+        const enum status status = result_file_create(&result, f->path, 0, &f->values, EFFECTIVE, "", f->school, 10);
+        limit_file_size(before);
+        assert_int_equal(status, STATUS_FILE);
+        assert_message("File too large");
+        assert_int_not_equal(access(f->path, F_OK), 0);
+    }
+}
+
+static void full_disk_keeps_the_rows_before(void **state) {
+    struct fixture *f = *state;
+    struct result_file *result = create(f);
+    const rlim_t before = limit_file_size(100000);
+    int n_rows = 0;
+    enum status status;
+    while ((status = append(f, result, n_rows, 1)) == STATUS_OK) n_rows++;
+    assert_int_equal(status, STATUS_FILE);
+    assert_message(f->path);
+    assert_message("File too large");
+    assert_int_equal(result_file_close(result, "failed: no room"), STATUS_OK);
+    limit_file_size(before);
+
+    assert_in_range(n_rows, 5, 1000);
+    const int file = open_to_read(f);
+    assert_int_equal(length_of(file, "time"), n_rows);
+    assert_string_equal(text_of(file, NC_GLOBAL, "run_status"), "failed: no room");
+    NEAR(value_at(file, "wall_time", (size_t)n_rows - 1, 0, 0, 0), 28, 0, 0);
+    nc_close(file);
+}
+
+static void too_many_vortices_are_refused(void **state) {
+    struct fixture *f = *state;
+    struct result_file *result = create(f);
+    for (int i = 0; i <= wake_most(f->school, 10); i++)
+        assert_int_equal(wake_release(&f->state->wake[0], 0, 0, 0, 0), STATUS_OK);
+    assert_int_equal(append(f, result, 0, 1), STATUS_FILE);
+    assert_message("room for");
+    assert_int_equal(result_file_close(result, "failed"), STATUS_OK);
+}
+
+static void no_memory_leaves_no_file(void **state) {
+    struct fixture *f = *state;
+    struct result_file *result;
+    enum status status = STATUS_MEMORY;
+    for (int i = 1; status != STATUS_OK; i++) {
+        failing_allocation = i;
+        status = result_file_create(&result, f->path, 0, &f->values, EFFECTIVE, "", f->school, 10);
+        const bool has_failed = failing_allocation == 0;
+        failing_allocation = 0;
+        if (!has_failed) break;
+        assert_int_equal(status, STATUS_MEMORY);
+        assert_null(result);
+        assert_int_not_equal(access(f->path, F_OK), 0);
+    }
+    assert_int_equal(status, STATUS_OK);
+    assert_int_equal(result_file_close(result, "complete"), STATUS_OK);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        WITH_FILE(format_is_cdf5),
+        WITH_FILE(every_variable_of_the_table_is_there_with_its_dimensions_unit_and_name),
+        WITH_FILE(dimensions_are_those_of_the_largest_fish),
+        WITH_FILE(attributes_name_the_case_the_program_and_the_conventions),
+        WITH_FILE(constants_are_those_of_the_fish),
+        WITH_FILE(unknowns_of_each_fish_come_back),
+        WITH_FILE(sheet_starts_at_the_nose_and_ends_at_the_tail),
+        WITH_FILE(curvature_of_a_right_angle_is_two),
+        WITH_FILE(unused_slots_hold_nan),
+        WITH_FILE(derived_quantities_have_their_names),
+        cmocka_unit_test_setup_teardown(walls_are_there_where_the_case_has_them, set_up, tear_down),
+        cmocka_unit_test(every_diagnostic_of_a_fish_has_a_variable),
+        WITH_FILE(wake_is_oldest_first_and_can_be_left_out),
+        WITH_FILE(single_precision_keeps_time_and_scalars_double),
+        WITH_FILE(forces_of_edges_are_there_on_request_only),
+        WITH_FILE(long_status_is_cut),
+        WITH_FILE(file_can_be_read_between_rows),
+        cmocka_unit_test(closing_nothing_is_allowed),
+        WITH_FILE(existing_file_stays_untouched),
+        WITH_FILE(a_file_without_its_name_leaves_nothing),
+        WITH_FILE(existing_file_of_another_program_is_never_replaced),
+        WITH_FILE(existing_file_is_replaced_when_asked),
+        WITH_FILE(wrong_places_are_named),
+        WITH_FILE(full_disk_leaves_no_file_without_a_header),
+        WITH_FILE(full_disk_keeps_the_rows_before),
+        WITH_FILE(too_many_vortices_are_refused),
+        WITH_FILE(no_memory_leaves_no_file),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,192 @@
+/* test_result_info.c: the summary of a result, the list of its variables, and the version it names. */
+#include <sys/stat.h>
+
+#include "base/version.h"
+#include "crafted_file.h"
+#include "result/result_info.h"
+#include "result/result_kind.h"
+#include "result/result_table.h"
+#include "result_fixture.h"
+
+// ---- info ----
+
+static const struct result_kind run = {"run",       "shoal_schema",     RESULT_SCHEMA, "case_effective",
+                                       result_info, result_table_listed};
+
+/* What is printed, or "" when it fails. */
+static const char *info(const char *path, int case_only, enum status *status) {
+    static char text[8192];
+    memset(text, 0, sizeof text);
+    FILE *stream = fmemopen(text, sizeof text - 1, "w");
+    *status = result_kind_info(1, &run, path, case_only, stream);
+    fclose(stream);
+    return text;
+}
+
+static void info_sums_up(void **state) {
+    struct fixture *f = *state;
+    write_file(f, 3);
+    enum status status;
+    const char *text = info(f->path, 0, &status);
+    assert_int_equal(status, STATUS_OK);
+    const char *const parts[] = {"result",  "complete",       "3, from t = 0 s to 1 s",          "leader",
+                                 "suédois", "2.10 per event", "28.00 s   0.0357 times real time"};
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
+        if (strstr(text, parts[i]) == NULL) fail_msg("\"%s\" is not in\n%s", parts[i], text);
+    assert_null(strstr(text, "nan"));
+}
+
+static void info_of_a_file_without_rows_says_so(void **state) {
+    struct fixture *f = *state;
+    write_file(f, 0);
+    enum status status;
+    assert_non_null(strstr(info(f->path, 0, &status), "none yet"));
+    assert_int_equal(status, STATUS_OK);
+}
+
+static void info_prints_the_case_exactly(void **state) {
+    struct fixture *f = *state;
+    write_file(f, 1);
+    enum status status;
+    assert_string_equal(info(f->path, 1, &status), EFFECTIVE);
+    assert_int_equal(status, STATUS_OK);
+}
+
+static void assert_no_info(const struct fixture *f, const char *part) {
+    enum status status;
+    info(f->path, 0, &status);
+    assert_int_equal(status, STATUS_FILE);
+    assert_message(f->path);
+    assert_message(part);
+}
+
+static void info_refuses_other_files(void **state) {
+    struct fixture *f = *state;
+    assert_no_info(f, "No such file");
+    mkdir(f->path, 0700);
+    assert_no_info(f, "is a folder");
+    rmdir(f->path);
+
+    FILE *text = fopen(f->path, "w");
+    assert_no_info(f, "not a NetCDF file");  // empty
+    fputs("format: 1\n", text);
+    fclose(text);
+    assert_no_info(f, "not a NetCDF file");
+
+    int file;
+    assert_int_equal(nc_create(f->path, NC_CLOBBER, &file), NC_NOERR);
+    nc_close(file);
+    assert_no_info(f, "not one of shoal");
+}
+
+static void info_refuses_another_schema(void **state) {
+    struct fixture *f = *state;
+    write_file(f, 1);
+    int file;
+    const int schema = RESULT_SCHEMA + 1;
+    assert_int_equal(nc_open(f->path, NC_WRITE, &file), NC_NOERR);
+    assert_int_equal(nc_put_att_int(file, NC_GLOBAL, "shoal_schema", NC_INT, 1, &schema), NC_NOERR);
+    nc_close(file);
+    assert_no_info(f, "written in schema 2");
+}
+
+static void info_shows_the_whole_rows_of_a_file_that_was_cut(void **state) {
+    struct fixture *f = *state;
+    enum status status;
+    struct netcdf_rows rows;
+    write_file(f, 4);
+    assert_int_equal(netcdf_read_rows(f->path, &rows), STATUS_OK);
+    for (uint64_t n = 4; n-- > 0;) {
+        // half of a row, and a row but for its last byte
+        const uint64_t left[] = {rows.bytes / 2, rows.bytes - 1};
+        for (int i = 1; i >= 0; i--) {
+            char missing[64], whole[64];
+            assert_int_equal(truncate(f->path, (off_t)(rows.begin_of_rows + n * rows.bytes + left[i])), 0);
+            const char *const text = info(f->path, 0, &status);
+            assert_int_equal(status, STATUS_OK);
+            snprintf(missing, sizeof missing, "missing     %d of 4 rows: the file was cut off", (int)(4 - n));
+            snprintf(whole, sizeof whole, "rows        %d, from t = 0 s to %g s", (int)n, 0.5 * ((int)n - 1));
+            assert_non_null(strstr(text, missing));
+            assert_non_null(strstr(text, n > 0 ? whole : "rows        none is whole"));
+        }
+    }
+    const off_t left[] = {(off_t)rows.begin_of_rows - 1, 5000, 100, 3};
+    for (size_t i = 0; i < sizeof left / sizeof *left; i++) {
+        assert_int_equal(truncate(f->path, left[i]), 0);
+        info(f->path, 0, &status);
+        assert_int_equal(status, STATUS_FILE);
+    }
+}
+
+static void info_refuses_variables_that_do_not_fit(void **state) {
+    struct fixture *f = *state;
+    write_file(f, 3);
+    size_t n;
+    char *const bytes = read_bytes(f->path, &n), name[NC_MAX_NAME + 1];
+    int n_refused = 0;
+    for (int i = 0; name_of_variable(f->path, i, name); i++) {
+        for (enum craft how = 0; how < N_CRAFTS; how++) {
+            craft_variable(f->path, name, how);
+            enum status status;
+            info(f->path, 0, &status);
+            if (status == STATUS_FILE) {
+                assert_message(f->path);
+                n_refused++;
+            } else {
+                assert_int_equal(status, STATUS_OK);
+            }
+            write_bytes(f->path, n, bytes);
+        }
+    }
+    // 24 variables are printed
+    assert_true(n_refused >= 24 * N_CRAFTS);
+    free(bytes);
+}
+
+// ---- the list of variables and the version ----
+
+static void the_list_has_one_line_per_variable(void **state) {
+    (void)state;
+    const struct result_kind kinds[] = {run, run};
+    for (int as_json = 0; as_json < 2; as_json++) {
+        static char text[65536];
+        memset(text, 0, sizeof text);
+        FILE *stream = fmemopen(text, sizeof text - 1, "w");
+        result_kind_variables(2, kinds, as_json, stream);
+        fclose(stream);
+        int n_lines = 0;
+        for (const char *c = text; *c; c++) n_lines += *c == '\n';
+        // the text has a heading of three lines for the further file
+        assert_int_equal(n_lines, 2 * result_table_n + (as_json ? 2 : 3));
+        assert_non_null(strstr(
+            text, as_json ? "\"dimensions\": [\"time\", \"fish\", \"node\", \"xy\"]" : "(time, fish, node, xy)"));
+    }
+}
+
+static void version_names_every_library(void **state) {
+    (void)state;
+    char libraries[VERSION_LENGTH];
+    version_libraries(libraries);
+    const char *const names[] = {"SUNDIALS ", "KLU ", "SuiteSparse ", "NetCDF ", "libyaml "};
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        const char *name = strstr(libraries, names[i]);
+        assert_non_null(name);
+        assert_in_range(name[strlen(names[i])], '0', '9');
+    }
+    assert_memory_equal(version_short(), "shoal ", 6);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        WITH_FILE(info_sums_up),
+        WITH_FILE(info_of_a_file_without_rows_says_so),
+        WITH_FILE(info_prints_the_case_exactly),
+        WITH_FILE(info_refuses_other_files),
+        WITH_FILE(info_refuses_another_schema),
+        WITH_FILE(info_shows_the_whole_rows_of_a_file_that_was_cut),
+        WITH_FILE(info_refuses_variables_that_do_not_fit),
+        cmocka_unit_test(the_list_has_one_line_per_variable),
+        cmocka_unit_test(version_names_every_library),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,164 @@
+/* test_result_mark.c: rows are marked, found again, cut and continued, and no other rows pass for them. */
+#include "result/netcdf.h"
+#include "result/result_mark.h"
+#include "result_fixture.h"
+
+static void are_equal(const struct result_mark *got, const struct result_mark *want) {
+    assert_int_equal(got->n_rows, want->n_rows);
+    assert_int_equal(got->check, want->check);
+}
+
+static void a_growing_file_has_the_marks_of_a_whole_one(void **state) {
+    struct fixture *const f = *state;
+    struct result_file *const result = create(f);
+    struct result_mark mark[3], again;
+    for (int i = 0; i < 3; i++) {
+        assert_int_equal(append(f, result, 0.1 * i, 1), STATUS_OK);
+        assert_int_equal(result_file_mark(result, &mark[i]), STATUS_OK);
+        assert_int_equal(mark[i].n_rows, i + 1);
+    }
+    assert_int_equal(result_file_close(result, "stopped"), STATUS_OK);
+    for (int i = 0; i < 3; i++) {
+        struct result_checksum checksum = {0};
+        assert_int_equal(result_mark_take(f->path, i + 1, &checksum, &again), STATUS_OK);
+        are_equal(&again, &mark[i]);
+        int is_complete;
+        assert_int_equal(result_mark_check(f->path, &mark[i], EFFECTIVE, &checksum, &is_complete), STATUS_OK);
+        assert_false(is_complete);
+    }
+    assert_true(mark[0].check != mark[1].check && mark[1].check != mark[2].check);
+    struct result_checksum checksum = {0};
+    assert_int_equal(result_mark_take(f->path, 4, &checksum, &again), STATUS_FILE);
+    assert_message("it has 3 rows, of 4 that belong to the checkpoint");
+}
+
+static void other_rows_and_other_cases_are_refused(void **state) {
+    struct fixture *const f = *state;
+    struct result_checksum checksum = {0};
+    struct result_mark mark;
+    int is_complete;
+    write_file(f, 3);
+    assert_int_equal(result_mark_take(f->path, 2, &checksum, &mark), STATUS_OK);
+    assert_int_equal(result_mark_check(f->path, &mark, EFFECTIVE, &checksum, &is_complete), STATUS_OK);
+    assert_true(is_complete);
+    assert_int_equal(result_mark_check(f->path, &mark, "another", &checksum, &is_complete), STATUS_FILE);
+    assert_message("is the result of another case");
+    struct netcdf_rows rows;
+    assert_int_equal(netcdf_read_rows(f->path, &rows), STATUS_OK);
+    assert_int_equal(rows.n, 3);
+    // a byte of the last row that counts, one of the row that does not
+    const uint64_t places[] = {rows.begin_of_rows + 2 * rows.bytes - 1, rows.begin_of_rows + 2 * rows.bytes};
+    const enum status want[] = {STATUS_FILE, STATUS_OK};
+    for (int i = 0; i < 2; i++) {
+        FILE *const file = fopen(f->path, "r+");
+        fseek(file, (long)places[i], SEEK_SET);
+        const int byte = fgetc(file);
+        fseek(file, (long)places[i], SEEK_SET);
+        fputc(byte ^ 1, file);
+        fclose(file);
+        assert_int_equal(result_mark_check(f->path, &mark, EFFECTIVE, &checksum, &is_complete), want[i]);
+        FILE *const back = fopen(f->path, "r+");
+        fseek(back, (long)places[i], SEEK_SET);
+        fputc(byte, back);
+        fclose(back);
+    }
+}
+
+/* After a power cut the header may count rows that have not reached the disk; or these end in the middle of one. */
+static void only_the_rows_of_a_mark_have_to_be_there(void **state) {
+    struct fixture *const f = *state;
+    struct netcdf_rows rows;
+    struct result_mark mark;
+    int is_complete;
+    for (int n_bytes = 0; n_bytes < 3; n_bytes++) {
+        struct result_checksum checksum = {0}, found = {0};
+        struct result_file *result;
+        write_file(f, 4);
+        assert_int_equal(result_mark_take(f->path, 2, &checksum, &mark), STATUS_OK);
+        assert_int_equal(netcdf_read_rows(f->path, &rows), STATUS_OK);
+        const uint64_t left[] = {0, rows.bytes / 2, rows.bytes + 1};
+        assert_int_equal(truncate(f->path, (off_t)(rows.begin_of_rows + 2 * rows.bytes + left[n_bytes])), 0);
+        assert_int_equal(netcdf_read_rows(f->path, &rows), STATUS_OK);
+        assert_int_equal(rows.n, n_bytes < 2 ? 2 : 3);
+        assert_int_equal(rows.n_counted, 4);
+        assert_int_equal(result_mark_check(f->path, &mark, EFFECTIVE, &found, &is_complete), STATUS_OK);
+        assert_false(is_complete);  // whatever the file says
+        assert_int_equal(result_file_continue(&result, f->path, &mark, &found, &f->values, f->school, 10), STATUS_OK);
+        assert_int_equal(append(f, result, 7, 1), STATUS_OK);
+        assert_int_equal(result_file_close(result, "complete"), STATUS_OK);
+        const int file = open_to_read(f);
+        assert_int_equal(length_of(file, "time"), 3);
+        NEAR(value_at(file, "time", 1, 0, 0, 0), 0.5, 0, 0);
+        NEAR(value_at(file, "time", 2, 0, 0, 0), 7, 0, 0);
+        nc_close(file);
+        // one row less than the mark counts is too little
+        unlink(f->path);
+        write_file(f, 4);
+        assert_int_equal(truncate(f->path, (off_t)(rows.begin_of_rows + 2 * rows.bytes - 1)), 0);
+        assert_int_equal(result_mark_check(f->path, &mark, EFFECTIVE, &found, &is_complete), STATUS_FILE);
+        assert_message("it has 1 rows, of 2 that belong to the checkpoint");
+        unlink(f->path);
+    }
+}
+
+static void a_file_goes_on_behind_a_mark(void **state) {
+    struct fixture *const f = *state;
+    struct result_checksum checksum = {0};
+    struct result_mark mark;
+    struct result_file *result;
+    int is_complete;
+    write_file(f, 4);
+    assert_int_equal(result_mark_take(f->path, 2, &checksum, &mark), STATUS_OK);
+    assert_int_equal(result_file_continue(&result, f->path, &mark, &checksum, &f->values, f->school, 10), STATUS_OK);
+    struct netcdf_rows rows;
+    assert_int_equal(netcdf_read_rows(f->path, &rows), STATUS_OK);
+    assert_int_equal(rows.n, 2);
+    assert_int_equal(append(f, result, 7, 1), STATUS_OK);
+    struct result_mark whole, later;
+    assert_int_equal(result_file_mark(result, &later), STATUS_OK);
+    assert_int_equal(result_file_close(result, "complete"), STATUS_OK);
+    struct result_checksum fresh = {0};
+    assert_int_equal(result_mark_take(f->path, 3, &fresh, &whole), STATUS_OK);
+    are_equal(&whole, &later);
+    assert_int_equal(result_mark_check(f->path, &mark, EFFECTIVE, &checksum, &is_complete), STATUS_OK);
+    const int file = open_to_read(f);
+    assert_int_equal(length_of(file, "time"), 3);
+    NEAR(value_at(file, "time", 1, 0, 0, 0), 0.5, 0, 0);
+    NEAR(value_at(file, "time", 2, 0, 0, 0), 7, 0, 0);
+    nc_close(file);
+}
+
+static void a_longer_run_begins_with_the_rows(void **state) {
+    struct fixture *const f = *state;
+    struct result_file *result;
+    write_file(f, 3);
+    const int before = open_to_read(f);
+    const size_t n_vortices = length_of(before, "vortex");
+    const double bending = value_at(before, "bending_energy", 1, 1, 0, 0);
+    nc_close(before);
+    const struct result_source source = {f->path, 2, true};
+    assert_int_equal(result_file_extend(&result, &source, &f->values, EFFECTIVE, "test", f->school, 17), STATUS_OK);
+    const int still = open_to_read(f);
+    assert_int_equal(length_of(still, "time"), 3);
+    nc_close(still);
+    assert_int_equal(result_file_publish(result, "running"), STATUS_OK);
+    assert_int_equal(append(f, result, 9, 1), STATUS_OK);
+    assert_int_equal(result_file_close(result, "complete"), STATUS_OK);
+    const int file = open_to_read(f);
+    assert_int_equal(length_of(file, "time"), 3);
+    assert_true(length_of(file, "vortex") > n_vortices);
+    NEAR(value_at(file, "time", 1, 0, 0, 0), 0.5, 0, 0);
+    NEAR(value_at(file, "time", 2, 0, 0, 0), 9, 0, 0);
+    NEAR(value_at(file, "bending_energy", 1, 1, 0, 0), bending, 0, 0);
+    assert_true(isnan(value_at(file, "wake_circulation", 1, 1, 0, 0)));
+    nc_close(file);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        WITH_FILE(a_growing_file_has_the_marks_of_a_whole_one), WITH_FILE(other_rows_and_other_cases_are_refused),
+        WITH_FILE(only_the_rows_of_a_mark_have_to_be_there),    WITH_FILE(a_file_goes_on_behind_a_mark),
+        WITH_FILE(a_longer_run_begins_with_the_rows),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,166 @@
+/* test_jacobian.c: the blocks of the Jacobian: who has which, what they do to a vector, threads. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "failing_malloc.h"
+#include "flow/flow_derivative.h"
+#include "school.h"
+#include "school/jacobian.h"
+#include "school/residual_jacobian.h"
+
+#define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+
+/* Five fish: the first three close together, of different size, one of them with a driven head, two far away. */
+#define FIVE(threads)                                                                           \
+    TIME "solver: {coupling_distance: 0.6, threads: " #threads                                  \
+         "}\n"                                                                                  \
+         "fish:\n"                                                                              \
+         "  - {sheet_points: 9, control: {law: heading, desired_heading: 150}}\n"               \
+         "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5]}}\n"        \
+         "  - {sheet_points: 11, start: {position: [0.1, -0.6]},\n"                             \
+         "     motion: {driven: head, heave: 0.1, frequency: 1}}\n"                             \
+         "  - {sheet_points: 9, start: {position: [8, 0]}, control: {law: averaged_heading}}\n" \
+         "  - {nodes: 5, sheet_points: 5, start: {position: [9, 5]}}\n"
+
+static void build(struct setup *setup, const char *text) {
+    school_build(setup, text);
+    school_stir(setup);
+    school_ok(residual_jacobian(setup->residual, setup->t, 37, setup->state->y, setup->jacobian));
+}
+
+static void blocks_are_those_of_the_coupled_fish(void **state) {
+    (void)state;
+    struct setup setup;
+    build(&setup, FIVE(1));
+    const struct jacobian *jacobian = setup.jacobian;
+    int n = 0;
+    for (int f = 0; f < 5; f++) {
+        assert_int_equal(jacobian->first[f], n);
+        for (int g = 0; g < 5; g++) {
+            if (g == f || !setup.residual->couplings.coupled[5 * f + g]) continue;
+            assert_int_equal(jacobian->coupling[n].other, g);
+            assert_int_equal(jacobian->coupling[n].rows.n_rows, flow_n_rows(&setup.school->fish[f]));
+            assert_int_equal(jacobian->coupling[n++].rows.n_columns, flow_n_columns(&setup.school->fish[g]));
+        }
+    }
+    assert_int_equal(jacobian->n_couplings, n);
+    // 0 with 1 and 2
+    assert_true(setup.residual->couplings.coupled[1] && setup.residual->couplings.coupled[2]);
+    assert_int_equal(jacobian->first[4] - jacobian->first[3], 0);
+    assert_true(n >= 4 && n <= 6);
+    school_clear(&setup);
+}
+
+static void couplings_multiply_as_the_whole_matrix_without_its_diagonal_blocks(void **state) {
+    (void)state;
+    struct setup setup;
+    build(&setup, FIVE(1));
+    const int n = setup.school->n_unknowns;
+    double *const dense = school_dense_jacobian(setup.jacobian), *const vector = calloc(2 * (size_t)n, sizeof *vector);
+    assert_non_null(vector);
+    for (int i = 0; i < n; i++) vector[i] = school_random(&setup);
+    double *const product = vector + n, largest = 0;
+    for (int f = 0; f < 5; f++) {
+        const struct layout *at = &setup.school->fish[f].at;
+        jacobian_multiply_couplings(setup.jacobian, f, vector, product);
+        for (int row = at->x; row < at->end; row++) {
+            double want = 0;
+            for (int column = 0; column < n; column++) {
+                if (column < at->x || column >= at->end) want += dense[(size_t)(row * n + column)] * vector[column];
+            }
+            // no other row has entries of other fish
+            NEAR(row < at->ax ? 0 : product[row - at->ax], want, 1e-11, 1e-11);
+            largest = fmax(largest, fabs(want));
+        }
+    }
+    assert_true(largest > 1e-2);
+    free(dense);
+    free(vector);
+    school_clear(&setup);
+}
+
+static void masked_rows_have_no_couplings(void **state) {
+    (void)state;
+    struct setup setup;
+    build(&setup, FIVE(1));
+    const struct layout *at = &setup.school->fish[2].at;
+    const struct coupling_block *rows = &setup.jacobian->coupling[setup.jacobian->first[2]].rows;
+    // the head: two nodes; the third is free
+    for (int c = 0; c < rows->n_columns; c++) {
+        const double *const column = rows->value + c * rows->n_rows;
+        for (int k = 0; k < 2; k++) {
+            NEAR(column[k], 0, 0, 0);
+            NEAR(column[at->ay - at->ax + k], 0, 0, 0);
+        }
+    }
+    assert_true(fabs(rows->value[2]) > 0);
+    school_clear(&setup);
+}
+
+static void threads_change_no_bit(void **state) {
+    (void)state;
+    struct setup one, more;
+    build(&one, FIVE(1));
+    double *const want = school_dense_jacobian(one.jacobian);
+    const size_t size = (size_t)one.school->n_unknowns * (size_t)one.school->n_unknowns * sizeof *want;
+    const char *const texts[] = {FIVE(2), FIVE(3)};
+    for (int i = 0; i < 2; i++) {
+        build(&more, texts[i]);
+        // large enough for threads
+        assert_true(more.school->n_unknowns >= PARALLEL_MATRICES);
+        // recorded, then replayed
+        for (int pass = 0; pass < 2; pass++) {
+            double *const got = school_dense_jacobian(more.jacobian);
+            assert_memory_equal(got, want, size);
+            free(got);
+            school_ok(residual_jacobian(more.residual, more.t, 37, more.state->y, more.jacobian));
+        }
+        school_clear(&more);
+    }
+    free(want);
+    school_clear(&one);
+}
+
+static void allocations_that_fail_leave_something_whole(void **state) {
+    (void)state;
+    struct setup setup;
+    // one thread: the counters of the allocations are not for more; a first Jacobian, so that the flow has its room
+    build(&setup, FIVE(1));
+    // creating, coupling, and recording five blocks: each allocation fails once
+    int n_failed = 0;
+    enum status status = STATUS_MEMORY;
+    for (; status != STATUS_OK; n_failed += status != STATUS_OK) {
+        const int n_before = n_live;
+        struct jacobian *jacobian = setup.jacobian;
+        n_until_failure = n_failed;
+        status = jacobian_create(&jacobian, setup.school);
+        if (status == STATUS_OK) {
+            status = residual_jacobian(setup.residual, setup.t, 37, setup.state->y, jacobian);
+        } else {
+            assert_null(jacobian);
+        }
+        n_until_failure = -1;
+        if (status != STATUS_OK) {
+            assert_int_equal(status, STATUS_MEMORY);
+            assert_true(status_message()[0] != 0);
+            // with memory it goes on as if nothing had been
+            if (jacobian) school_ok(residual_jacobian(setup.residual, setup.t, 37, setup.state->y, jacobian));
+        }
+        jacobian_free(jacobian);
+        assert_int_equal(n_live, n_before);
+        assert_true(n_failed < 1000);
+    }
+    assert_true(n_failed > 40);
+    school_clear(&setup);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(blocks_are_those_of_the_coupled_fish),
+        cmocka_unit_test(couplings_multiply_as_the_whole_matrix_without_its_diagonal_blocks),
+        cmocka_unit_test(masked_rows_have_no_couplings),
+        cmocka_unit_test(threads_change_no_bit),
+        cmocka_unit_test(allocations_that_fail_leave_something_whole),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

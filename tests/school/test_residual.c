@@ -1,0 +1,416 @@
+/* test_residual.c: the Jacobian of the whole school against differences, for every option of the model. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "fish/fish_prescribed.h"
+#include "school.h"
+#include "school/residual_jacobian.h"
+
+#define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+// stirred bodies may cross
+#define FAR "solver: {coupling_distance: 100}\ncontact: {action: warn}\n"
+#define PRESSURE                                                                                   \
+    TIME "wake: {shedding: sheet, curve: smooth, smoothing: 0.1, taper: 0.4, taper_beside: 0.1}\n" \
+         "defaults: {fish: {drag: {skin: laminar}}}\n"
+#define FISH "fish: [{sheet_points: 9, body: {modulus: 1.0e+5}}]\n"
+
+/* Every option of doc/model.md at least once, alone or with those that it meets. */
+static const struct variant {
+    const char *name, *text;
+} variants[] = {
+    {"defaults", TIME FISH},
+    {"stiff, 21 sheet points", TIME "fish: [{body: {modulus: 1.0e+9}}]\n"},
+    {"second moment published", TIME "fish: [{sheet_points: 9, body: {second_moment: published}}]\n"},
+    {"profile uniform", TIME "fish: [{sheet_points: 9, nodes: 5, body: {profile: uniform, thickness: 0.1}}]\n"},
+    {"profile table", TIME "fish: [{sheet_points: 9, nodes: 5, body: {profile: table, h: [0.1, 0.2, 0.15, 0.05], "
+                           "w: [0.2, 0.3, 0.25, 0.1]}}]\n"},
+    {"relaxation time", TIME "fish: [{sheet_points: 9, body: {relaxation_time: 0.1, bending_damping: 2}}]\n"},
+    {"damping of the strain",
+     TIME "fish: [{sheet_points: 9, body: {damping: strain, relaxation_time: 0.1, bending_damping: 2}}]\n"},
+    {"damping of the strain, free sheet, table, course", TIME
+     "wake: {shedding: sheet, smoothing: 0.1, taper: 0.4, taper_beside: 0.1}\n"
+     "fish: [{sheet_points: 9, force: reactive, body: {damping: strain, relaxation_time: 0.1},\n"
+     "        wave: {ramp: 2, table: [[0, 1, -1, 0.4], [2, -3, 1, 1], [1, 0, -2, 5]]}, control: {law: course}}]\n"},
+    {"load at the tip", TIME "fish: [{sheet_points: 9, load: {tip: [3, -2]}}]\n"},
+    {"collocation midpoint", TIME "wake: {collocation: midpoint}\n" FISH},
+    {"smooth curve", TIME "wake: {curve: smooth}\n" FISH},
+    {"smooth curve, kutta rate, midpoint", TIME "wake: {curve: smooth, kutta: rate, collocation: midpoint}\n" FISH},
+    {"kutta rate", TIME "wake: {kutta: rate}\n" FISH},
+    {"kutta rate with ramp, midpoint", TIME "wake: {kutta: rate, kutta_ramp: 0.5, collocation: midpoint}\n" FISH},
+    {"impulsive edge", TIME "wake: {shedding: impulsive}\n" FISH},
+    {"impulsive rate", TIME "wake: {shedding: impulsive, kutta: rate}\n" FISH},
+    {"dropped, no fade", TIME "wake: {dissipated_circulation: dropped, fade: 0}\n" FISH},
+    {"preset published", TIME "preset: published\n" FISH},
+    {"linear-quadratic drag", TIME "fish: [{sheet_points: 9, drag: {law: linear_quadratic, tangential: 0.1}}]\n"},
+    {"extent width", TIME "fish: [{sheet_points: 9, drag: {extent: width, tangential: 0.1}}]\n"},
+    {"stream, shear, gust", TIME "fluid: {velocity: [0.3, -0.2], shear: 0.7, gust: {amplitude: 0.4, frequency: 1.3}}\n"
+                                 "fish: [{sheet_points: 9, control: {law: heading}}]\n"},
+    {"reactive", TIME "fish: [{sheet_points: 9, force: reactive, body: {section: mean}}]\n"},
+    {"reactive, extent width, linear-quadratic drag, stream, shear, gust",
+     TIME "fluid: {velocity: [0.3, -0.2], shear: 0.7, gust: {amplitude: 0.4, frequency: 1.3}}\n"
+          "fish: [{sheet_points: 9, force: reactive, control: {law: heading},\n"
+          "        drag: {extent: width, law: linear_quadratic, linear_speed: 0.5}}]\n"},
+    {"reactive, four nodes", TIME "fish: [{nodes: 4, sheet_points: 7, force: reactive, drag: {extent: width}}]\n"},
+    {"reactive, midpoint, kutta rate, backwards",
+     TIME "wake: {kutta: rate, collocation: midpoint}\n"
+          "fish: [{sheet_points: 9, force: reactive, drag: {extent: width}, start: {speed: -2}}]\n"},
+    {"reactive, driven head", TIME "fish: [{sheet_points: 9, force: reactive, drag: {extent: width},\n"
+                                   "        motion: {driven: head, heave: 0.1, pitch: 10, frequency: 1}}]\n"},
+    {"bias", TIME "fish: [{sheet_points: 9, control: {bias: 0.2}}]\n"},
+    {"heading", TIME "fish: [{sheet_points: 9, control: {law: heading, desired_heading: 150}}]\n"},
+    {"heading without feedforward",
+     TIME "fish: [{sheet_points: 9, control: {law: heading, desired_heading: 150, feedforward: 0}}]\n"},
+    {"headings in time",
+     TIME "fish: [{sheet_points: 9, control: {law: heading, desired_heading: [[0, 180], [1, 120]]}}]\n"},
+    {"waypoints", TIME "fish: [{sheet_points: 9, control: {law: heading, waypoints: [[-3, 1], [-4, 5]]}}]\n"},
+    {"averaged heading", TIME "fish: [{sheet_points: 9, control: {law: averaged_heading, desired_heading: 150}}]\n"},
+    {"averaged heading, waypoints",
+     TIME "fish: [{sheet_points: 9, control: {law: averaged_heading, waypoints: [[-3, 1]]}}]\n"},
+    {"driven head", TIME "fish: [{sheet_points: 9, motion: {driven: head, heave: 0.1, pitch: 10, pitch_phase: 70, "
+                         "frequency: 1, pivot: 0.2}}]\n"},
+    {"clamped head",
+     TIME "fish: [{sheet_points: 9, body: {section: mean, damping: strain, relaxation_time: 0.05}, force: reactive,\n"
+          "        motion: {driven: head, heave: 0.1, pitch: 10, pitch_phase: 70, frequency: 1, pivot: 0.2}}]\n"},
+    {"driven body", TIME "fish: [{sheet_points: 9, motion: {driven: all, heave: 0.1, pitch: 10, frequency: 1}}]\n"},
+    {"driven head, kutta rate, load",
+     TIME "wake: {kutta: rate}\n"
+          "fish: [{sheet_points: 9, load: {tip: [1, 2]}, motion: {driven: head, heave: 0.1, frequency: 1}}]\n"},
+    {"three fish",
+     TIME FAR "fluid: {velocity: [0.1, 0.05], shear: 0.2}\n"
+              "fish:\n"
+              "  - {sheet_points: 9, control: {law: heading, desired_heading: 150}}\n"
+              "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170},\n"
+              "     drag: {law: linear_quadratic, extent: width}, control: {law: averaged_heading}}\n"
+              "  - {nodes: 9, sheet_points: 11, length: 1.2, start: {position: [0.1, -0.6], heading: 200},\n"
+              "     motion: {driven: head, heave: 0.1, frequency: 1}}\n"},
+    {"three fish, reactive",
+     TIME FAR "fluid: {velocity: [0.1, 0.05], shear: 0.2}\n"
+              "defaults: {fish: {force: reactive, drag: {extent: width}}}\n"
+              "fish:\n"
+              "  - {sheet_points: 9}\n"
+              "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"
+              "  - {nodes: 9, sheet_points: 11, force: published, start: {position: [0.1, -0.6], heading: 200}}\n"},
+    {"three fish, kutta rate, midpoint, waypoints",
+     TIME FAR "wake: {kutta: rate, collocation: midpoint}\n"
+              "fish:\n"
+              "  - {sheet_points: 9, control: {law: heading, waypoints: [[-3, 1]]}}\n"
+              "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"
+              "  - {nodes: 9, sheet_points: 11, length: 1.2, start: {position: [0.1, -0.6], heading: 200},\n"
+              "     body: {second_moment: published}, control: {law: heading}}\n"},
+    {"two fish, smooth curve",
+     TIME FAR "wake: {curve: smooth}\n"
+              "fish:\n"
+              "  - {sheet_points: 9, control: {law: heading, desired_heading: 150}}\n"
+              "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"},
+    {"free sheet", TIME "wake: {shedding: sheet, smoothing: 0.1, taper: 0.4, taper_beside: 0.1}\n" FISH},
+    {"three fish with free sheets",
+     TIME FAR "wake: {shedding: sheet, taper: 0.4, taper_beside: 0.1, curve: smooth}\n"
+              "fish:\n"
+              "  - {sheet_points: 9, control: {law: heading, desired_heading: 150}}\n"
+              "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"
+              "  - {nodes: 9, sheet_points: 11, length: 1.2, start: {position: [0.1, -0.6], heading: 200}}\n"},
+    {"pressure", PRESSURE "fish: [{nodes: 5, sheet_points: 9, force: pressure}]\n"},
+    {"pressure, less suction, quadratic skin and cross-flow drag, stream, shear, gust, bias",
+     PRESSURE "fluid: {velocity: [0.3, -0.2], shear: 0.7, gust: {amplitude: 0.4, frequency: 1.3}}\n"
+              "fish: [{nodes: 5, sheet_points: 9, force: pressure, pressure: {suction: 0.4},\n"
+              "        drag: {skin: quadratic, tangential: 0.1, normal: 0.7}, control: {bias: 0.2}}]\n"},
+    {"pressure, a depth for every edge, heading",
+     PRESSURE "fish: [{nodes: 5, sheet_points: 9, force: pressure, drag: {skin: laminar, normal: 0.5},\n"
+              "        body: {profile: table, h: [0.1, 0.2, 0.15, 0.05], w: [0.2, 0.3, 0.25, 0.1]},\n"
+              "        control: {law: heading, feedforward: 0, desired_heading: 150}}]\n"},
+    {"pressure, a boundary layer with transition, waving and form",
+     PRESSURE "fluid: {viscosity: 1.0e-4, velocity: [0.3, -0.2], shear: 0.7}\n"
+              "fish: [{nodes: 5, sheet_points: 9, force: pressure, body: {modulus: 1.0e+4}, control: {bias: 0.2},\n"
+              "        drag: {skin: boundary_layer, transition: 5000, waving: 1.7, form: 100, normal: 0.5}}]\n"},
+    {"reactive, a turbulent boundary layer",
+     TIME "fish: [{sheet_points: 9, force: reactive, drag: {skin: boundary_layer, transition: 0, form: 100}}]\n"},
+    {"pressure, clamped head",
+     PRESSURE "fish: [{nodes: 5, sheet_points: 9, force: pressure, body: {section: mean, relaxation_time: 0.05},\n"
+              "        load: {tip: [3, -2]},\n"
+              "        motion: {driven: head, heave: 0.1, pitch: 10, pitch_phase: 70, frequency: 1, pivot: 0.2}}]\n"},
+    {"pressure, driven body", PRESSURE "fish: [{nodes: 5, sheet_points: 9, force: pressure,\n"
+                                       "        motion: {driven: all, heave: 0.1, pitch: 10, frequency: 1}}]\n"},
+    {"pressure, driven body that goes by its forces",
+     PRESSURE "fish: [{nodes: 5, sheet_points: 9, force: pressure,\n"
+              "        motion: {driven: all, surge: free, heave: 0.1, pitch: 10, frequency: 1}}]\n"},
+    {"four fish, one force each and a driven head", PRESSURE FAR
+     "fluid: {velocity: [0.1, 0.05], shear: 0.2}\n"
+     "fish:\n"
+     "  - {nodes: 5, sheet_points: 9, force: pressure}\n"
+     "  - {nodes: 5, sheet_points: 7, force: reactive, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"
+     "  - {nodes: 4, sheet_points: 7, force: published, start: {position: [0.1, -0.6], heading: 200}}\n"
+     "  - {nodes: 4, sheet_points: 7, force: pressure, start: {position: [0, 1.2]},\n"
+     "     motion: {driven: head, surge: free, heave: 0.1, frequency: 1}}\n"},
+    {"fish in contact that are not coupled otherwise",
+     TIME "solver: {coupling_distance: 0}\ncontact: {range: 0.9}\n"
+          "fish:\n"
+          "  - {sheet_points: 9, control: {law: heading, desired_heading: 150}}\n"
+          "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.6], heading: 190}}\n"},
+    {"three fish in contact, one of them driven",
+     TIME "solver: {coupling_distance: 100}\nfluid: {density: 0}\ncontact: {range: 0.9}\n"
+          "fish:\n"
+          "  - {sheet_points: 9}\n"
+          "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.6], heading: 190}}\n"
+          "  - {nodes: 9, sheet_points: 11, start: {position: [0.1, -0.6], heading: 170},\n"
+          "     motion: {driven: head, heave: 0.1, frequency: 1}}\n"},
+    {"a wall", TIME "fluid: {velocity: [0.3, 0], shear: 0.2, walls: [-0.5]}\n" FISH},
+    {"a wall above, in contact, free sheet",
+     TIME "fluid: {walls: [0.9]}\ncontact: {range: 0.8}\n"
+          "wake: {shedding: sheet, smoothing: 0.1, taper: 0.4, taper_beside: 0.1}\n" FISH},
+    {"a wall, kutta rate, midpoint", TIME "fluid: {walls: [-0.5]}\nwake: {kutta: rate, collocation: midpoint}\n" FISH},
+    {"two fish in a channel, free sheets, one in contact",
+     TIME FAR "fluid: {velocity: [0.3, 0], shear: 0.2, walls: [-0.6, 1.1]}\n"
+              "wake: {shedding: sheet, curve: smooth, taper: 0.4, taper_beside: 0.1}\n"
+              "fish:\n"
+              "  - {sheet_points: 9}\n"
+              "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"},
+    {"two fish in a channel, one held",
+     TIME FAR "fluid: {walls: [-0.7, 1.2]}\n"
+              "fish:\n"
+              "  - {sheet_points: 9, motion: {driven: head, heave: 0.1, frequency: 1}}\n"
+              "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"},
+    {"pressure in a channel", PRESSURE "fluid: {walls: [-0.5, 0.8]}\ncontact: {range: 0.6}\n"
+                                       "fish: [{nodes: 5, sheet_points: 9, force: pressure}]\n"},
+    {"two fish, impulsive", TIME FAR "preset: published\n"
+                                     "fish:\n"
+                                     "  - {sheet_points: 9}\n"
+                                     "  - {nodes: 5, sheet_points: 7, start: {position: [0.2, 0.5]}}\n"},
+};
+
+static void value_of_school(struct setup *setup, const double *y, const double *yp, double *value) {
+    school_ok(residual_evaluate(setup->residual, setup->t, y, yp, value));
+}
+
+static void jacobian_agrees_with_differences_for_every_option(void **state) {
+    (void)state;
+    for (size_t i = 0; i < sizeof variants / sizeof *variants; i++) {
+        struct setup setup;
+        school_build(&setup, variants[i].text);
+        school_stir(&setup);
+        school_compare(&setup, value_of_school, NULL, variants[i].name);
+        if (setup.school->shedding == SHEDDING_IMPULSIVE) {
+            setup.residual->shed_now = SHED_BY_IMPULSE;
+            school_compare(&setup, value_of_school, NULL, variants[i].name);
+        }
+        school_clear(&setup);
+    }
+}
+
+// Below, at, and above the leading-edge parameter that the bodies have; they are soft, so that the derivatives by the
+// places are those of the fluid. In a channel, with a second fish.
+static void jacobian_agrees_with_differences_where_the_suction_ends(void **state) {
+    (void)state;
+    static const char text[] = TIME FAR
+        "wake: {shedding: sheet, curve: smooth, smoothing: 0.1, taper: 0.4, taper_beside: 0.1}\n"
+        "fluid: {velocity: [0.3, 0], shear: 0.7, walls: [-1.2, 1.3]}\n"
+        "defaults: {fish: {nodes: 5, sheet_points: 9, force: pressure, body: {modulus: 1}}}\n"
+        "fish: [{}, {start: {position: [0.2, 0.5], heading: 170}}]\n";
+    const double factor[] = {0.3, 0.9, 1, 1.1, 2};
+    for (size_t i = 0; i < sizeof factor / sizeof *factor; i++) {
+        struct setup setup;
+        school_build(&setup, text);
+        school_stir(&setup);
+        value_of_school(&setup, setup.state->y, setup.state->yp, setup.value);
+        for (int f = 0; f < 2; f++) {
+            const double about[2] = {0, 0};
+            const struct pressure_forces forces = pressure_sum(setup.residual->pressure[f], about, setup.state->y);
+            setup.school->fish[f].suction_limit = factor[i] * fabs(forces.leading_edge_a0);
+        }
+        school_compare(&setup, value_of_school, NULL, "limited suction");
+        school_clear(&setup);
+    }
+}
+
+static void far_fish_are_left_out_of_the_jacobian_and_of_nothing_else(void **state) {
+    (void)state;
+    const char *const text = TIME
+        "solver: {coupling_distance: 0.6}\n"
+        "fish: [{sheet_points: 9}, {sheet_points: 9, start: {position: [0, 1]}}]\n";
+    struct setup setup;
+    school_build(&setup, text);
+    const struct layout *a = &setup.school->fish[0].at, *b = &setup.school->fish[1].at;
+    const size_t n = (size_t)setup.school->n_unknowns;
+    assert_int_equal(setup.residual->couplings.coupled[1], 0);
+    school_ok(residual_jacobian(setup.residual, 0, 1, setup.state->y, setup.jacobian));
+    double *dense = school_dense_jacobian(setup.jacobian);
+    for (int row = a->x; row < a->end; row++) {
+        for (int column = b->x; column < b->end; column++) NEAR(dense[(size_t)row * n + (size_t)column], 0, 0, 0);
+    }
+    free(dense);
+    // closer by 0.5: coupled, which is another pattern; asked again nothing has changed
+    for (int k = 0; k < 7; k++) setup.state->y[b->y + k] -= 0.5;
+    const unsigned pattern = setup.residual->couplings.pattern;
+    school_ok(residual_couple(&setup.residual->couplings, setup.state->y));
+    assert_int_equal(setup.residual->couplings.pattern, pattern + 1);
+    school_ok(residual_couple(&setup.residual->couplings, setup.state->y));
+    assert_int_equal(setup.residual->couplings.pattern, pattern + 1);
+    school_ok(residual_jacobian(setup.residual, 0, 1, setup.state->y, setup.jacobian));
+    dense = school_dense_jacobian(setup.jacobian);
+    assert_true(fabs(dense[(size_t)a->gamma * n + (size_t)b->gamma]) > 1e-4);
+    free(dense);
+    school_clear(&setup);
+}
+
+static void unknowns_have_names_kinds_and_scales(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME
+                 "fish: [{nodes: 4, sheet_points: 5},\n"
+                 "  {length: 2, nodes: 5, sheet_points: 6, start: {position: [0, 1]}, motion: {driven: head, heave: "
+                 "0.1, frequency: 1}}]\n");
+    const struct layout *a = &setup.school->fish[0].at, *b = &setup.school->fish[1].at;
+    const struct {
+        int i, fish, index;
+        const char *name;
+        double kind;
+    } want[] = {{a->x, 0, 0, "x", 1},
+                {a->vy + 3, 0, 3, "vy", 1},
+                {a->ax + 1, 0, 1, "ax", 0},
+                {a->gamma + 4, 0, 4, "gamma", 0},
+                {a->circulation, 0, 0, "circulation", 0},
+                {a->phi0, 0, 0, "phi0", 0},
+                {b->x + 1, 1, 1, "x", 0},
+                {b->y + 2, 1, 2, "y", 1},
+                {b->vx + 1, 1, 1, "vx", 0},
+                {b->vx + 2, 1, 2, "vx", 1},
+                {b->circulation, 1, 0, "circulation", 0}};
+    double kind[128];
+    assert_true(setup.school->n_unknowns <= 128);
+    residual_kinds(setup.residual, kind);
+    for (size_t k = 0; k < sizeof want / sizeof *want; k++) {
+        const struct unknown_place place = residual_place(setup.school, want[k].i);
+        assert_int_equal(place.fish, want[k].fish);
+        assert_int_equal(place.index, want[k].index);
+        assert_string_equal(place.name, want[k].name);
+        NEAR(kind[want[k].i], want[k].kind, 0, 0);
+    }
+    // a fish of twice the length and the same beat
+    NEAR(residual_scale(setup.school, b->y), 2 * residual_scale(setup.school, a->y), 0, 1e-14);
+    NEAR(residual_scale(setup.school, b->vx), 2 * residual_scale(setup.school, a->vx), 0, 1e-14);
+    NEAR(residual_scale(setup.school, b->circulation), 4 * residual_scale(setup.school, a->circulation), 0, 1e-14);
+    // velocities of methods without damping: ten times the scale of the positions in the time 1/f, f = 1 Hz
+    NEAR(residual_scale(setup.school, a->vx) * residual_undamped(setup.school, a->vx),
+         10 * residual_scale(setup.school, a->x), 0, 1e-14);
+    NEAR(residual_undamped(setup.school, a->x), 1, 0, 0);
+    school_clear(&setup);
+}
+
+static void circulation_shed_is_differential_only_with_a_rate(void **state) {
+    (void)state;
+    const struct {
+        const char *text;
+        int algebraic, algebraic_at_impulse;
+    } cases[] = {{TIME FISH, 1, 1},
+                 {TIME "wake: {kutta: rate}\n" FISH, 0, 0},
+                 {TIME "wake: {shedding: impulsive}\n" FISH, 0, 1},
+                 {TIME "wake: {shedding: impulsive, kutta: rate}\n" FISH, 0, 0}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct setup setup;
+        school_build(&setup, cases[i].text);
+        assert_int_equal(residual_shed_is_algebraic(setup.residual), cases[i].algebraic);
+        setup.residual->shed_now = SHED_BY_IMPULSE;
+        assert_int_equal(residual_shed_is_algebraic(setup.residual), cases[i].algebraic_at_impulse);
+        school_clear(&setup);
+    }
+}
+
+static void a_value_that_is_not_finite_asks_for_a_retry_and_says_where(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME FISH);
+    school_stir(&setup);
+    setup.state->y[setup.school->fish[0].at.phi0] = INFINITY;
+    assert_int_equal(residual_evaluate(setup.residual, setup.t, setup.state->y, setup.state->yp, setup.value),
+                     STATUS_RETRY);
+    assert_non_null(strstr(status_message(), "of fish fish1"));
+    school_clear(&setup);
+}
+
+static void rows_of_prescribed_nodes_vanish_on_their_motion_only(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(
+        &setup, TIME
+        "fish: [{start: {heading: 25}, motion: {driven: all, speed: 0.6, heave: 0.2, pitch: 20, pitch_phase: 70, "
+        "frequency: 1.3}}]\n");
+    school_stir(&setup);
+    const struct fish *const fish = setup.school->fish;
+    double *const y = setup.state->y;
+    fish_prescribe(fish, 1, setup.t, y);
+    for (int k = 0; k < fish->n_nodes; k++) {
+        double position[2], velocity[2], acceleration[2];
+        fish_prescribed_node(fish, k, setup.t, position, velocity, acceleration);
+        y[fish->at.ax + k] = acceleration[0];
+        y[fish->at.ay + k] = acceleration[1];
+    }
+    school_ok(residual_evaluate(setup.residual, setup.t, y, setup.state->yp, setup.value));
+    for (int i = fish->at.x; i < fish->at.gamma; i++) NEAR(setup.value[i], 0, 0, 0);
+    for (int i = fish->at.x; i < fish->at.gamma; i++) y[i] += 1e-3 * (i + 1);
+    school_ok(residual_evaluate(setup.residual, setup.t, y, setup.state->yp, setup.value));
+    for (int i = fish->at.x; i < fish->at.gamma; i++) NEAR(setup.value[i], 1e-3 * (i + 1), 1e-13, 0);
+    school_clear(&setup);
+}
+
+static void load_at_the_tip_accelerates_the_tail_only(void **state) {
+    (void)state;
+    struct setup with, without;
+    school_build(&with, TIME "fish: [{sheet_points: 9, load: {tip: [3, -2]}}]\n");
+    school_build(&without, TIME "fish: [{sheet_points: 9}]\n");
+    school_stir(&with);
+    school_stir(&without);
+    school_ok(residual_evaluate(with.residual, with.t, with.state->y, with.state->yp, with.value));
+    school_ok(residual_evaluate(without.residual, with.t, with.state->y, with.state->yp, without.value));
+    const struct fish *fish = with.school->fish;
+    without.value[fish->at.ax + 6] -= 3 / fish->mass[6];
+    without.value[fish->at.ay + 6] += 2 / fish->mass[6];
+    // rounding of accelerations of 1e5
+    NEAR_ARRAY(with.school->n_unknowns, with.value, without.value, 1e-10, 1e-14);
+    school_clear(&with);
+    school_clear(&without);
+}
+
+static int n_coupled(const struct residual *residual) {
+    int n = 0;
+    const int n_fish = residual->school->n_fish;
+    for (int i = 0; i < n_fish * n_fish; i++) n += residual->couplings.coupled[i];
+    return n;
+}
+
+static void more_fish_couple_when_asked_until_all_do(void **state) {
+    (void)state;
+    struct setup setup;
+    // gaps of 0.5, 1.5, and 3 between those that are not neighbours
+    school_build(&setup, TIME
+                 "solver: {coupling_distance: 0.1}\n"
+                 "fish: [{}, {start: {position: [1.5, 0]}}, {start: {position: [4, 0]}}]\n");
+    struct residual *const residual = setup.residual;
+    const double *const y = setup.state->y;
+    assert_int_equal(n_coupled(residual), 3);
+    assert_int_equal(residual_couple_more(&residual->couplings, y), 1);
+    assert_int_equal(n_coupled(residual), 5);
+    // it stays so
+    school_ok(residual_couple(&residual->couplings, y));
+    assert_int_equal(n_coupled(residual), 5);
+    assert_int_equal(residual_couple_more(&residual->couplings, y), 1);
+    assert_int_equal(n_coupled(residual), 7);
+    assert_int_equal(residual_couple_more(&residual->couplings, y), 1);
+    assert_int_equal(n_coupled(residual), 9);
+    assert_int_equal(residual_couple_more(&residual->couplings, y), 0);
+    assert_int_equal(n_coupled(residual), 9);
+    school_clear(&setup);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(jacobian_agrees_with_differences_for_every_option),
+        cmocka_unit_test(jacobian_agrees_with_differences_where_the_suction_ends),
+        cmocka_unit_test(far_fish_are_left_out_of_the_jacobian_and_of_nothing_else),
+        cmocka_unit_test(unknowns_have_names_kinds_and_scales),
+        cmocka_unit_test(circulation_shed_is_differential_only_with_a_rate),
+        cmocka_unit_test(a_value_that_is_not_finite_asks_for_a_retry_and_says_where),
+        cmocka_unit_test(rows_of_prescribed_nodes_vanish_on_their_motion_only),
+        cmocka_unit_test(load_at_the_tip_accelerates_the_tail_only),
+        cmocka_unit_test(more_fish_couple_when_asked_until_all_do),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,203 @@
+/* test_rigid.c: a fish as a whole: what is read is what has been added, and neither shape nor wake are harmed. */
+#include <string.h>
+
+#include "school.h"
+#include "school/rigid.h"
+
+static const char *const text =
+    "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+    "fish: [{}, {start: {position: [2, 1], heading: 70}}]\n";
+
+static void set_up(struct setup *setup) {
+    school_build(setup, text);
+    school_stir(setup);
+}
+
+// lengths of all edges
+static void lengths_of(const struct fish *fish, const double *y, double *length) {
+    for (int k = 0; k < fish->n_edges; k++) {
+        length[k] = hypot(y[fish->at.x + k + 1] - y[fish->at.x + k], y[fish->at.y + k + 1] - y[fish->at.y + k]);
+    }
+}
+
+static void a_rigid_motion_is_read_exactly(void **state) {
+    (void)state;
+    struct setup setup;
+    set_up(&setup);
+    const struct fish *const fish = &setup.school->fish[1];
+    double *const y = setup.state->y;
+    const struct rigid at = rigid_of(fish, y);
+    for (int k = 0; k < fish->n_nodes; k++) {
+        y[fish->at.vx + k] = 0.3 - 2 * (y[fish->at.y + k] - at.place[1]);
+        y[fish->at.vy + k] = 0.4 + 2 * (y[fish->at.x + k] - at.place[0]);
+    }
+    const struct rigid rigid = rigid_of(fish, y);
+    NEAR(rigid.turn, 2, 1e-13, 0);
+    NEAR(rigid.velocity[0], 0.3 * cos(at.heading) + 0.4 * sin(at.heading), 1e-14, 0);
+    NEAR(rigid.velocity[1], 0.4 * cos(at.heading) - 0.3 * sin(at.heading), 1e-14, 0);
+    school_clear(&setup);
+}
+
+static void a_place_is_seen_ahead_and_to_the_left(void **state) {
+    (void)state;
+    const struct rigid one = {.place = {1, 2}, .heading = M_PI / 2}, other = {.place = {0.7, 4}, .heading = 3};
+    double place[2];
+    rigid_relative_place(&one, &other, place);
+    NEAR(place[0], 2, 1e-15, 0);
+    NEAR(place[1], 0.3, 1e-15, 0);
+}
+
+static void what_is_added_is_read_and_other_fish_stay(void **state) {
+    (void)state;
+    struct setup setup;
+    set_up(&setup);
+    const struct fish *const other = &setup.school->fish[0], *const fish = &setup.school->fish[1];
+    double before[64], after[64], others[512];
+    memcpy(others, setup.state->y + other->at.x, (size_t)(other->at.end - other->at.x) * sizeof *others);
+    lengths_of(fish, setup.state->y, before);
+    const struct rigid old = rigid_of(fish, setup.state->y);
+    const struct rigid change = {{0.1, -0.2}, 0.3, {0.5, -0.4}, 0.7};
+    rigid_change(setup.school, setup.state, 1, &change);
+    const struct rigid new = rigid_of(fish, setup.state->y);
+    for (int i = 0; i < 2; i++) {
+        NEAR(new.place[i], old.place[i] + change.place[i], 1e-14, 0);
+        NEAR(new.velocity[i], old.velocity[i] + change.velocity[i], 1e-14, 0);
+    }
+    NEAR(remainder(new.heading - old.heading, 2 * M_PI), change.heading, 1e-14, 0);
+    NEAR(new.turn, old.turn + change.turn, 1e-13, 0);
+    lengths_of(fish, setup.state->y, after);
+    NEAR_ARRAY(fish->n_edges, after, before, 1e-14, 0);
+    assert_memory_equal(setup.state->y + other->at.x, others, (size_t)(other->at.end - other->at.x) * sizeof *others);
+    school_clear(&setup);
+}
+
+static void a_vortex_lies_where_the_faster_tail_would_have_left_it(void **state) {
+    (void)state;
+    struct setup setup;
+    set_up(&setup);
+    const struct wake *const wake = &setup.state->wake[1];
+    const struct rigid old = rigid_of(&setup.school->fish[1], setup.state->y);
+    const double x = wake->x[0], y = wake->y[0], age = setup.state->t - wake->birth[0];
+    const unsigned long version = wake->version;
+    assert_true(age > 0);
+    rigid_change(setup.school, setup.state, 1, &(struct rigid){.velocity = {0.5, 0}});
+    NEAR(wake->x[0], x - age * 0.5 * cos(old.heading), 1e-14, 0);
+    NEAR(wake->y[0], y - age * 0.5 * sin(old.heading), 1e-14, 0);
+    assert_true(wake->version != version);
+    school_clear(&setup);
+}
+
+static void means_over_the_last_period_do_not_notice_a_displacement(void **state) {
+    (void)state;
+    struct simulation *const simulation = school_simulation(text);
+    school_run(simulation, 0.5);
+    simulate_measure(simulation);
+    const double speed = simulation->diagnostics->fish[1].speed, heading = simulation->diagnostics->fish[1].heading;
+    rigid_change(simulation->school, simulation->state, 1, &(struct rigid){.place = {3, 1}, .heading = 0.2});
+    simulate_measure(simulation);
+    NEAR(simulation->diagnostics->fish[1].speed, speed, 1e-13, 0);
+    NEAR(simulation->diagnostics->fish[1].heading, heading + 0.2 * 180 / M_PI, 1e-11, 0);
+    simulate_free(simulation);
+}
+
+static void means_over_the_last_period_do_not_notice_a_turn_in_a_stream(void **state) {
+    (void)state;
+    struct simulation *const simulation = school_simulation(
+        SCHOOL_SECOND
+        "time: {end: 3, shedding_interval: 0.02, output_interval: 0.02}\nfluid: {velocity: [0.4, -0.2]}\n"
+        "fish: [{start: {speed: 0.5}}]\n");
+    school_run(simulation, 1.5);
+    simulate_measure(simulation);
+    const struct diagnostics_fish before = *simulation->diagnostics->fish;
+    rigid_change(simulation->school, simulation->state, 0, &(struct rigid){.place = {3, 1}, .heading = 0.7});
+    simulate_measure(simulation);
+    const struct diagnostics_fish *const now = simulation->diagnostics->fish;
+    // the way over ground is 0.3 to 0.5 of that through the water: a stream left as it was changes all of them
+    const double rounding = 1e-12;
+    NEAR(now->speed, before.speed, 0, rounding);
+    NEAR(now->ground_speed, before.ground_speed, 0, rounding);
+    NEAR(now->mean_thrust, before.mean_thrust, 0, rounding);
+    NEAR(now->mean_power, before.mean_power, 0, rounding);
+    NEAR(now->efficiency, before.efficiency, 0, rounding);
+    NEAR(now->thrust_efficiency, before.thrust_efficiency, 0, rounding);
+    NEAR(now->strouhal, before.strouhal, 0, rounding);
+    // the way through the water turns with the desired heading where it was
+    NEAR(now->heading_error, before.heading_error + 0.7 * 180 / M_PI, 1e-10, 0);
+    simulate_free(simulation);
+}
+
+static void the_drift_of_a_stream_goes_on_with_the_stream_that_is_there(void **state) {
+    (void)state;
+    struct simulation *const simulation = school_simulation(
+        "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\nfluid: {velocity: [0.4, 0], shear: 0.5}\n"
+        "fish: [{}]\n");
+    school_run(simulation, 0.2);
+    rigid_change(simulation->school, simulation->state, 0, &(struct rigid){.place = {0, 2}, .heading = 1});
+    const struct sample *const newest = state_recall(&simulation->state->history[0], 0);
+    NEAR(newest->stream[0], 0.4 + 0.5 * newest->com[1], 1e-14, 0);
+    NEAR(newest->stream[1], 0, 1e-14, 0);
+    simulate_free(simulation);
+}
+
+static void the_tail_of_a_fish_that_turns_faster_goes_faster(void **state) {
+    (void)state;
+    struct setup setup;
+    set_up(&setup);
+    const struct fish *const fish = &setup.school->fish[1];
+    struct wake *const wake = &setup.state->wake[1];
+    const double *const y = setup.state->y;
+    const int at[2] = {fish->at.vx + fish->n_nodes - 1, fish->at.vy + fish->n_nodes - 1};
+    double fluid[2];
+    for (int i = 0; i < 2; i++) {
+        wake->tail_velocity[i] = y[at[i]];
+        fluid[i] = wake->slip[i] + y[at[i]];
+    }
+    // without a turn of the body itself what is kept of the tail has to be what its node does
+    rigid_change(setup.school, setup.state, 1, &(struct rigid){.velocity = {0.2, 0.1}, .turn = 3});
+    for (int i = 0; i < 2; i++) {
+        NEAR(wake->tail_velocity[i], y[at[i]], 1e-14, 0);
+        NEAR(wake->slip[i], fluid[i] - y[at[i]], 1e-14, 0);
+    }
+    school_clear(&setup);
+}
+
+static void all_vectors_of_fish_and_wake_turn_together(void **state) {
+    (void)state;
+    struct setup setup;
+    set_up(&setup);
+    struct history *const history = &setup.state->history[1];
+    struct wake *const wake = &setup.state->wake[1];
+    state_remember(history,
+                   &(struct sample){.velocity = {1, 2}, .friction = {3, 4}, .force = {5, 6}, .drifted = {7, 8}});
+    state_remember(history, &(struct sample){.heading = 1});
+    wake_set_tail(wake, (const double[]){9, 10}, (const double[]){0.6, 0.8});
+    wake->slip[0] = 11;
+    wake->slip[1] = 12;
+    // a quarter turn to the left makes (a, b) into (-b, a)
+    rigid_change(setup.school, setup.state, 1, &(struct rigid){.heading = M_PI / 2});
+    const struct sample *const sample = state_recall(history, 1);
+    NEAR_ARRAY(2, sample->velocity, ((double[]){-2, 1}), 1e-14, 0);
+    NEAR_ARRAY(2, sample->friction, ((double[]){-4, 3}), 1e-14, 0);
+    NEAR_ARRAY(2, sample->force, ((double[]){-6, 5}), 1e-14, 0);
+    NEAR_ARRAY(2, sample->drifted, ((double[]){-8, 7}), 1e-14, 0);
+    NEAR_ARRAY(2, wake->tail_velocity, ((double[]){-10, 9}), 1e-14, 0);
+    NEAR_ARRAY(2, wake->tail_tangent, ((double[]){-0.8, 0.6}), 1e-14, 0);
+    NEAR_ARRAY(2, wake->slip, ((double[]){-12, 11}), 1e-14, 0);
+    NEAR(state_recall(history, 0)->heading, 1 + M_PI / 2, 1e-15, 0);
+    school_clear(&setup);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_rigid_motion_is_read_exactly),
+        cmocka_unit_test(a_place_is_seen_ahead_and_to_the_left),
+        cmocka_unit_test(what_is_added_is_read_and_other_fish_stay),
+        cmocka_unit_test(a_vortex_lies_where_the_faster_tail_would_have_left_it),
+        cmocka_unit_test(means_over_the_last_period_do_not_notice_a_displacement),
+        cmocka_unit_test(means_over_the_last_period_do_not_notice_a_turn_in_a_stream),
+        cmocka_unit_test(the_drift_of_a_stream_goes_on_with_the_stream_that_is_there),
+        cmocka_unit_test(the_tail_of_a_fish_that_turns_faster_goes_faster),
+        cmocka_unit_test(all_vectors_of_fish_and_wake_turn_together),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

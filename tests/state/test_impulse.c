@@ -1,0 +1,153 @@
+/* test_impulse.c: sums over vortices, and that what a wake loses is booked: doc/model.md, section 13. */
+#include <stdio.h>
+
+#include "school.h"
+#include "state/impulse.h"
+#include "state/wake_merge.h"
+
+#define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+
+static void impulses_are_those_of_point_vortices(void **state) {
+    (void)state;
+    struct impulse_moments sum = {0};
+    impulse_add(&sum, 2, 3, -1);
+    impulse_add_stretch(&sum, 4, (const double[]){1, 2}, (const double[]){3, 6});
+    NEAR(sum.circulation, 6, 0, 0);
+    NEAR(sum.x, 6 + 8, 0, 0);
+    NEAR(sum.y, -2 + 16, 0, 0);
+    NEAR(sum.square, 20 + 2 * 5 + 2 * 45, 0, 0);
+    NEAR(sum.product, -6 + 2 * 2 + 2 * 18, 0, 0);
+    // - rho w E3 x G, - rho w |x|^2 G/2
+    double impulse[3];
+    impulse_of(&sum, 10, impulse);
+    NEAR(impulse[0], 140, 0, 0);
+    NEAR(impulse[1], -140, 0, 0);
+    NEAR(impulse[2], -600, 0, 0);
+}
+
+static void a_depth_that_varies_is_none(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME
+                 "fish:\n"
+                 "  - {length: 2, body: {width: 0.3}}\n"
+                 "  - {nodes: 5, start: {position: [3, 3]}, body: {profile: table, h: [0.1, 0.2, 0.15, 0.05],\n"
+                 "     w: [0.2, 0.3, 0.25, 0.1]}}\n");
+    NEAR(impulse_depth(&setup.school->fish[0]), 0.6, 1e-15, 0);
+    assert_true(isnan(impulse_depth(&setup.school->fish[1])));
+    school_clear(&setup);
+}
+
+// of all that a fish has shed: what acts, and what is booked
+static void all_of(const struct setup *setup, double sum[3]) {
+    const struct impulse_moments wake = impulse_of_wake(&setup->state->wake[0], setup->school, setup->state->t, 0);
+    const double *const lost = setup->state->momentum[0].lost;
+    sum[0] = wake.x + lost[0];
+    sum[1] = wake.y + lost[1];
+    sum[2] = wake.square + lost[2];
+}
+
+// A wake at rest from its birth to its end: each event takes some of its strength, or a vortex. Returns how much is
+// lost in the end, in x.
+static double wither(const char *text) {
+    struct setup setup;
+    school_build(&setup, text);
+    school_stir(&setup);
+    struct wake *const wake = &setup.state->wake[0];
+    const double interval = setup.school->interval;
+    double before[3], now[3];
+    for (int i = 0; i < wake->n_vortex; i++) {
+        wake->u[i] = wake->v[i] = wake->u_before[i] = wake->v_before[i] = 0;
+        wake->birth[i] = setup.state->t - (wake->n_vortex - 1 - i) * interval;
+    }
+    all_of(&setup, before);
+    int n_events = 0;
+    for (; wake_n_sources(wake) > 0; n_events++) {
+        assert_true(n_events < 100);
+        impulse_fade(setup.school, setup.state, 0);
+        wake_advance(wake, interval);
+        setup.state->t += interval;
+        impulse_remove(setup.school, setup.state, 0);
+        wake_remove_old(wake, setup.school, setup.state->t);
+        all_of(&setup, now);
+        if (setup.school->removed == REMOVED_RETAINED) NEAR_ARRAY(3, now, before, 1e-14, 1e-13);
+    }
+    assert_true(n_events > 10);
+    const double lost = setup.state->momentum[0].lost[0];
+    school_clear(&setup);
+    return lost;
+}
+
+static void what_fades_or_is_removed_is_booked_where_it_is(void **state) {
+    (void)state;
+    static const char *const wakes[] = {"shedding: sheet, curve: smooth, fade: 0.2", "shedding: sheet, fade: 0",
+                                        "shedding: continuous, fade: 0.15", "shedding: continuous, fade: 0",
+                                        "shedding: impulsive, fade: 0"};
+    for (size_t w = 0; w < sizeof wakes / sizeof *wakes; w++) {
+        char text[256];
+        snprintf(text, sizeof text, TIME "wake: {lifetime: 0.3, %s}\nfish: [{}]\n", wakes[w]);
+        assert_true(fabs(wither(text)) > 1e-3);
+    }
+}
+
+// the circulation that is dropped goes back to the body, at the tail: none of it is lost, only its way there
+static void what_is_dropped_goes_to_the_tail(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "wake: {lifetime: 0.3, fade: 0.2, dissipated_circulation: dropped}\nfish: [{}]\n");
+    school_stir(&setup);
+    const struct fish *const fish = &setup.school->fish[0];
+    struct wake *const wake = &setup.state->wake[0];
+    for (int i = 0; i < wake->n_vortex; i++) {
+        wake->u[i] = wake->v[i] = wake->u_before[i] = wake->v_before[i] = 0;
+        wake->birth[i] = setup.state->t - 0.2;
+    }
+    const struct impulse_moments before = impulse_of_wake(wake, setup.school, setup.state->t, 0);
+    impulse_fade(setup.school, setup.state, 0);
+    setup.state->t += setup.school->interval;
+    const struct impulse_moments after = impulse_of_wake(wake, setup.school, setup.state->t, 0);
+    const double lost = before.circulation - after.circulation;
+    const double tail[2] = {setup.state->y[fish->at.x + fish->n_nodes - 1],
+                            setup.state->y[fish->at.y + fish->n_nodes - 1]};
+    assert_true(fabs(lost) > 1e-3);
+    const double *const booked = setup.state->momentum[0].lost;
+    NEAR(booked[0], before.x - after.x - lost * tail[0], 1e-15, 1e-13);
+    NEAR(booked[1], before.y - after.y - lost * tail[1], 1e-15, 1e-13);
+    school_clear(&setup);
+}
+
+static void what_merging_changes_is_booked(void **state) {
+    (void)state;
+    enum { N = 200 };
+    struct setup setup;
+    school_build(
+        &setup, TIME "wake: {lifetime: 8, fade: 6, merge: 0.01, shedding: sheet, curve: smooth}\nfish: [{nodes: 5}]\n");
+    school_stir(&setup);
+    struct wake *const wake = &setup.state->wake[0];
+    school_ok(wake_resize(wake, 0));
+    setup.state->t = 5;
+    for (int i = 0; i < N; i++) {
+        school_ok(wake_release(wake, 20 - 0.05 * i, 0.1 * sin(0.3 * i), 0.1 * sin(0.2 * i), 0.02 * i));
+    }
+    double before[3], after[3];
+    all_of(&setup, before);
+    for (setup.state->event = 0; setup.state->event < WAKE_MERGE_EVENTS; setup.state->event++) {
+        school_ok(wake_merge(setup.school, setup.state));
+    }
+    all_of(&setup, after);
+    assert_true(wake->n_vortex < N - 20);
+    NEAR_ARRAY(3, after, before, 1e-12, 1e-12);
+    assert_true(fabs(setup.state->momentum[0].lost[2]) > 1e-6);
+    school_clear(&setup);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(impulses_are_those_of_point_vortices),
+        cmocka_unit_test(a_depth_that_varies_is_none),
+        cmocka_unit_test(what_fades_or_is_removed_is_booked_where_it_is),
+        cmocka_unit_test(what_is_dropped_goes_to_the_tail),
+        cmocka_unit_test(what_merging_changes_is_booked),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

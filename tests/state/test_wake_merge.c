@@ -1,0 +1,245 @@
+/* test_wake_merge.c: pairs of neighbours in old wakes: what stays, and what the bodies see of it. */
+#include <stdio.h>
+#include <string.h>
+
+#include "school.h"
+#include "state/wake_merge.h"
+#include "vortex/kernel.h"
+#include "wake/free_sheet.h"
+
+#define TIME "time: {end: 1, shedding_interval: 0.01, output_interval: 0.01}\n"
+#define TWO "fish: [{}, {start: {position: [9, -3]}}]\n"
+
+enum { N = 1600 };
+
+/* A wake of 16 lengths behind the first fish, which swims to the left with the speed 1; the sign of what it sheds
+ * changes every quarter of a length. */
+static void trail(struct setup *setup, const char *text) {
+    school_build(setup, text);
+    const struct school *const school = setup->school;
+    for (int f = 0; f < school->n_fish; f++) {
+        const struct fish *const fish = &school->fish[f];
+        for (int k = 0; k < fish->n_nodes; k++) setup->state->y[fish->at.vx + k] = -1;
+    }
+    struct wake *const wake = &setup->state->wake[0];
+    double label = 0;
+    setup->state->t = 16;
+    setup->state->event = 1600;
+    for (int i = 0; i < N; i++) {
+        const double age = 0.01 * (N - 1 - i), x = 1 + age;
+        const double strength = 0.005 * sin(4 * acos(-1) * x) * (1 + 0.1 * school_random(setup));
+        label += strength;
+        school_ok(wake_release(wake, x, 0.1 * sin(6 * x), wake->has_markers ? label : strength, 16 - age));
+        wake->u[i] = 0.02 * sin(5 * x);
+        wake->v[i] = 0.02 * cos(5 * x);
+        wake->u_before[i] = 0.02 * sin(5 * x + 0.1);
+        wake->v_before[i] = 0.02 * cos(5 * x + 0.1);
+    }
+}
+
+/* The vortices of the first wake, or the middles between its markers. */
+static const struct wake *sources(const struct setup *setup, struct wake *middles) {
+    const struct wake *const wake = &setup->state->wake[0];
+    if (!wake->has_markers) return wake;
+    school_ok(free_sheet_middles(wake, middles));
+    return middles;
+}
+
+/* Circulation of a wake, its first moments now, and the rates of these with the velocities of now and before; and what
+ * the vortices are in all. */
+struct moments {
+    double circulation, first[6], size;
+};
+static struct moments moments_of(const struct setup *setup) {
+    struct wake middles = {0};
+    const struct wake *const wake = sources(setup, &middles);
+    const double *const value[6] = {wake->x, wake->y, wake->u, wake->v, wake->u_before, wake->v_before};
+    struct moments moments = {0};
+    for (int i = 0; i < wake->n_vortex; i++) {
+        moments.circulation += wake->circulation[i];
+        moments.size += fabs(wake->circulation[i]);
+        for (int k = 0; k < 6; k++) moments.first[k] += wake->circulation[i] * value[k][i];
+    }
+    wake_free(&middles);
+    return moments;
+}
+
+/* The velocity at all nodes of a fish, for two smoothings of the wake. */
+enum { VELOCITIES = 2 * 2 * 64 };
+static void velocity_at(const struct setup *setup, int f, double *velocity) {
+    struct wake middles = {0};
+    const struct wake *const wake = sources(setup, &middles);
+    const struct fish *const fish = &setup->school->fish[f];
+    const double *const y = setup->state->y;
+    const double smoothing[] = {1e-3, 0.1};
+    memset(velocity, 0, VELOCITIES * sizeof *velocity);
+    for (int s = 0; s < 2; s++) {
+        double *const u = velocity + 2 * s * fish->n_nodes;
+        kernel_add_velocity(fish->n_nodes, y + fish->at.x, y + fish->at.y, wake->n_vortex, wake->x, wake->y,
+                            wake->circulation, smoothing[s], u, u + fish->n_nodes);
+    }
+    wake_free(&middles);
+}
+
+/* Merge until nothing more is merged; returns how many are. */
+static int merge_all(struct setup *setup) {
+    struct wake *const wake = &setup->state->wake[0];
+    for (int before = -1; before != wake->n_merged; setup->state->event += WAKE_MERGE_EVENTS) {
+        before = wake->n_merged;
+        school_ok(wake_merge(setup->school, setup->state));
+    }
+    return wake->n_merged;
+}
+
+static void check_bound(const char *text) {
+    struct setup setup;
+    trail(&setup, text);
+    double before[2][VELOCITIES], after[VELOCITIES];
+    for (int f = 0; f < 2; f++) velocity_at(&setup, f, before[f]);
+    const struct moments was = moments_of(&setup);
+    const int n_merged = merge_all(&setup);
+    assert_true(n_merged > N / 4);
+    assert_int_equal(setup.state->wake[0].n_vortex, N - n_merged);
+    const struct moments is = moments_of(&setup);
+    NEAR(is.circulation, was.circulation, 1e-15 * was.size, 0);
+    // sixteen lengths, and rounding
+    NEAR_ARRAY(6, is.first, was.first, 1e-14 * was.size, 0);
+    // a beat takes a second, and a fish is one metre long
+    for (int f = 0; f < 2; f++) {
+        double largest = 0;
+        velocity_at(&setup, f, after);
+        for (int k = 0; k < VELOCITIES; k++) largest = fmax(largest, fabs(after[k] - before[f][k]));
+        print_message("%s wake.merge %g, fish %d: %d merged, the velocity changes by %.2e\n",
+                      setup.state->wake[0].has_markers ? "sheet:     " : "continuous:", setup.school->wake_merge, f,
+                      n_merged, largest);
+        assert_true(largest <= setup.school->wake_merge * n_merged / N);
+        assert_true(largest > 0);
+    }
+    school_clear(&setup);
+}
+
+static void the_velocity_at_the_bodies_changes_by_less_than_the_bound(void **state) {
+    (void)state;
+    check_bound(TIME "wake: {lifetime: 16, shedding: continuous, merge: 1.0e-4}\n" TWO);
+    check_bound(TIME "wake: {lifetime: 16, shedding: continuous, merge: 1.0e-2}\n" TWO);
+    check_bound(TIME "wake: {lifetime: 16, shedding: sheet, merge: 1.0e-4}\n" TWO);
+    check_bound(TIME "wake: {lifetime: 16, shedding: sheet, merge: 1.0e-2}\n" TWO);
+}
+
+/* How many vortices between x = low and high the wake has. */
+static int count_between(const struct wake *wake, double low, double high) {
+    int n = 0;
+    for (int i = 0; i < wake->n_vortex; i++) n += wake->x[i] > low && wake->x[i] < high;
+    return n;
+}
+
+static void nothing_is_merged_near_a_body_or_where_one_will_be(void **state) {
+    (void)state;
+    struct setup setup;
+    trail(&setup, TIME "wake: {lifetime: 16, shedding: sheet, merge: 0.1}\n" TWO);
+    struct wake *const wake = &setup.state->wake[0];
+    // the own body ends at 1, the other one lies 3 below 9 to 10
+    assert_int_equal(count_between(wake, 1, 2.999), 199);
+    const int n = merge_all(&setup);
+    assert_int_equal(count_between(wake, 1, 2.999), 199);
+    assert_true(count_between(wake, 8, 11) < 250);
+    school_clear(&setup);
+
+    // the other one goes left below the wake: most of it is passed at a distance of 1
+    trail(&setup, TIME
+          "wake: {lifetime: 16, shedding: sheet, merge: 0.1}\n"
+          "fish: [{}, {start: {position: [9, -1]}}]\n");
+    const int n_passed = merge_all(&setup);
+    assert_int_equal(count_between(&setup.state->wake[0], 3.005, 8.995), 599);
+    assert_true(n_passed < n);
+    school_clear(&setup);
+}
+
+static void the_newest_vortices_are_never_merged(void **state) {
+    (void)state;
+    static const char *const kinds[] = {"sheet", "continuous"};
+    for (int i = 0; i < 2; i++) {
+        struct setup setup;
+        char text[256];
+        snprintf(text, sizeof text, TIME "wake: {lifetime: 16, shedding: %s, merge: 0.1}\nfish: [{}]\n", kinds[i]);
+        trail(&setup, text);
+        // the body is far from all of them, and goes away
+        double *const y = setup.state->y;
+        const struct fish *const fish = setup.school->fish;
+        for (int k = 0; k < fish->n_nodes; k++) {
+            y[fish->at.x + k] -= 100;
+            y[fish->at.vx + k] = -5;
+        }
+        merge_all(&setup);
+        const struct wake *const wake = &setup.state->wake[0];
+        // one every hundredth of a second up to 16 s; older ones are merged
+        for (int j = 0; j < 16; j++) NEAR(wake->birth[wake->n_vortex - 1 - j], 16 - 0.01 * j, 1e-12, 0);
+        assert_true(wake->n_vortex < N / 2);
+        school_clear(&setup);
+    }
+}
+
+static void a_pair_that_dies_before_a_body_comes_is_merged(void **state) {
+    (void)state;
+    // the second body is 100 away and comes near with 8 a second, in 12 s; the oldest vortices have some tenths of a
+    // second to live, the newest ones 16 s
+    struct setup setup;
+    trail(&setup, TIME
+          "wake: {lifetime: 16, shedding: continuous, merge: 0.1}\n"
+          "fish: [{}, {start: {position: [100, 0.2]}}]\n");
+    double *const y = setup.state->y;
+    const struct fish *const fish = setup.school->fish;
+    for (int k = 0; k < fish[0].n_nodes; k++) y[fish[0].at.x + k] -= 100;
+    for (int k = 0; k < fish[1].n_nodes; k++) y[fish[1].at.vx + k] = -8;
+    merge_all(&setup);
+    const struct wake *const wake = &setup.state->wake[0];
+    // a vortex at x is x - 1 seconds old, and the body is within two lengths of it after (98 - x)/8 s:
+    // it is gone by then where 17 - x < (98 - x)/8, for x above 5.4
+    int n_near = 0, n_far = 0;
+    for (int i = 0; i < wake->n_vortex; i++) {
+        n_near += wake->x[i] < 5;
+        n_far += wake->x[i] > 7;
+    }
+    assert_int_equal(n_near, 400);
+    assert_true(n_far < 500);
+    school_clear(&setup);
+}
+
+static void wakes_take_turns(void **state) {
+    (void)state;
+    struct setup setup;
+    trail(&setup, TIME "wake: {lifetime: 16, merge: 0.01}\n" TWO);
+    setup.state->event = 1601;
+    school_ok(wake_merge(setup.school, setup.state));
+    assert_int_equal(setup.state->wake[0].n_merged, 0);
+    const unsigned long version = setup.state->wake[0].version;
+    setup.state->event = 1608;
+    school_ok(wake_merge(setup.school, setup.state));
+    assert_true(setup.state->wake[0].n_merged > 0);
+    assert_true(setup.state->wake[0].version > version);
+    // births stay in order
+    const struct wake *const wake = &setup.state->wake[0];
+    for (int i = 1; i < wake->n_vortex; i++) assert_true(wake->birth[i] > wake->birth[i - 1]);
+    school_clear(&setup);
+}
+
+static void without_the_key_nothing_is_merged(void **state) {
+    (void)state;
+    struct setup setup;
+    trail(&setup, TIME "wake: {lifetime: 16}\n" TWO);
+    assert_int_equal(merge_all(&setup), 0);
+    assert_int_equal(setup.state->wake[0].n_vortex, N);
+    school_clear(&setup);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_velocity_at_the_bodies_changes_by_less_than_the_bound),
+        cmocka_unit_test(nothing_is_merged_near_a_body_or_where_one_will_be),
+        cmocka_unit_test(the_newest_vortices_are_never_merged),
+        cmocka_unit_test(a_pair_that_dies_before_a_body_comes_is_merged),
+        cmocka_unit_test(wakes_take_turns),
+        cmocka_unit_test(without_the_key_nothing_is_merged),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,282 @@
+/* test_steady.c: the search for a steady state: what it finds is what a long run comes to, with how fast it comes; and
+ * what can have none is refused with the reason. doc/steady.md. */
+#include <stdio.h>
+#include <string.h>
+
+#include "force/bound_sheet.h"
+#include "steady_setup.h"
+
+// mean speed, and change of the heading, over the last of some beats of a run
+struct brute {
+    double speed, turn; /* m s-1, rad */
+};
+
+static void run_on(struct steady_map *map, int n_beats, struct brute *brute) {
+    for (int i = 0; i < n_beats; i++) {
+        school_ok(steady_map_beat(map, NULL, NULL));
+        brute[i] = (struct brute){map->last[0].speed, map->last[0].turn};
+    }
+}
+
+static void run_long(const char *text, int n_beats, struct brute *brute) {
+    struct steady_setup setup;
+    steady_setup_open(&setup, text);
+    run_on(&setup.problem.map, n_beats, brute);
+    steady_setup_close(&setup);
+}
+
+static void speed_and_multiplier_are_those_of_a_long_run(void **state) {
+    (void)state;
+    static const char text[] = COARSE "steady: {tolerance: 5e-5}\nfish: [{" FISH "}]\n";
+    struct steady_setup setup;
+    struct brute brute[50];
+    steady_setup_find(&setup, text);
+    run_long(text, 50, brute);
+    assert_true(setup.problem.map.n_beats <= 20);
+    // the bound that the search is made for
+    NEAR(setup.problem.map.last[0].speed, brute[49].speed, 0, 1e-4);
+    // over ten beats the error of the run falls by the tenth power of the largest multiplier: its own errors are 1 %
+    NEAR(setup.real[0], pow((brute[24].speed - brute[49].speed) / (brute[14].speed - brute[49].speed), 0.1), 0.01, 0);
+    NEAR(setup.imaginary[0], 0, 0, 0);
+    steady_setup_close(&setup);
+}
+
+// a plate whose nose holds a part of the suction that attached flow has; slower, it would lose more of it
+static void a_plate_with_limited_suction_has_the_speed_of_a_long_run(void **state) {
+    (void)state;
+    static const char text[] = SCHOOL_SECOND
+        "time: {end: 1, shedding_interval: 0.05, output_interval: 0.05}\n"
+        "fluid: {density: 1, viscosity: 1.25e-3}\nsteady: {tolerance: 5e-5}\n"
+        "fish: [{nodes: 5, sheet_points: 17, force: pressure, pressure: {suction_limit: 0.14}, start: {speed: 5},\n"
+        "        wave: {amplitude: 0, frequency: 0}, body: {profile: uniform, thickness: 0.1, width: 1, density: "
+        "1.59},\n"
+        "        motion: {driven: all, surge: free, heave: 0.175, frequency: 1}}]\n";
+    struct steady_setup setup;
+    struct brute brute[60];
+    steady_setup_open(&setup, text);
+    school_ok(steady_search_run(&setup.problem));
+    run_long(text, 60, brute);
+    NEAR(setup.problem.map.last[0].speed, brute[59].speed, 0, 1e-4);
+    assert_in_range(setup.problem.map.n_beats, 1, 30);
+    struct simulation *const simulation = setup.simulation;
+    simulate_measure(simulation);
+    // a tenth of the suction
+    const struct pressure_forces *const forces = &simulation->diagnostics->fish[0].pressure;
+    assert_true(hypot(forces->separation[0], forces->separation[1]) >
+                0.05 * hypot(forces->suction[0], forces->suction[1]));
+    steady_setup_close(&setup);
+}
+
+// a run takes 25 to 45 beats to 1e-4
+static void circle(const char *text, double least_turn, int most_beats) {
+    struct steady_setup setup;
+    struct brute brute[80];
+    steady_setup_open(&setup, text);
+    school_ok(steady_search_run(&setup.problem));
+    run_long(text, 80, brute);
+    const struct steady_beat *const last = setup.problem.map.last;
+    assert_true(last[0].turn < -least_turn);
+    NEAR(last[0].speed, brute[79].speed, 0, 1e-4);
+    // the radius is speed over turn
+    NEAR(last[0].turn, brute[79].turn, 0, 6e-4);
+    assert_in_range(setup.problem.map.n_beats, 1, most_beats);
+    steady_setup_multipliers(&setup);
+    assert_true(setup.real[0] < 1);
+    steady_setup_close(&setup);
+}
+
+static void a_fish_that_is_steered_to_one_side_goes_in_a_circle(void **state) {
+    (void)state;
+    circle(COARSE "steady: {tolerance: 2e-5}\nfish: [{" FISH ", start: {speed: 0.6}, control: {bias: 0.02}}]\n", 0.02,
+           22);
+    circle(COARSE "steady: {tolerance: 2e-5}\nfish: [{" FISH ", start: {speed: 0.6}, control: {bias: 0.2}}]\n", 0.2,
+           22);
+    circle(COARSE "steady: {tolerance: 2e-5}\nfish: [{" FISH ", control: {bias: 0.4}}]\n", 0.4, 30);
+    circle(COARSE "steady: {tolerance: 2e-5}\nfish: [{" FISH ", force: pressure, control: {bias: 0.2}}]\n", 0.2, 25);
+    // what is removed of the wake is forgotten: the circulation is no quantity of its own
+    circle(COARSE
+           "steady: {tolerance: 2e-5}\nwake: {dissipated_circulation: dropped}\n"
+           "fish: [{" FISH ", start: {speed: 0.6}, control: {bias: 0.2}}]\n",
+           0.2, 22);
+}
+
+// a run forgets its start by 1 % in a beat
+static void a_fish_that_coasts_has_the_same_speed_from_two_starts(void **state) {
+    (void)state;
+    double speed[2];
+    for (int i = 0; i < 2; i++) {
+        struct steady_setup setup;
+        char text[512];
+        snprintf(text, sizeof text,
+                 "include: [cases/include/article.yaml]\n# preset:\n"
+                 "time: {end: 1, shedding_interval: 0.05, output_interval: 0.05}\n"
+                 "steady: {beats: 120}\nfish: [{" FISH ", start: {speed: %d}}]\n",
+                 i);
+        steady_setup_open(&setup, text);
+        school_ok(steady_search_run(&setup.problem));
+        speed[i] = setup.problem.map.last[0].speed;
+        steady_setup_multipliers(&setup);
+        assert_true(setup.real[0] > 0.97 && setup.real[0] < 1);
+        steady_setup_close(&setup);
+    }
+    NEAR(speed[0], speed[1], 0, 3e-3);
+}
+
+static void circulation_that_is_added_changes_nothing_else(void **state) {
+    (void)state;
+    static const struct steady_unknown unknown[] = {
+        {0, STEADY_SPEED}, {0, STEADY_SLIP}, {0, STEADY_TURN}, {0, STEADY_SHED}};
+    const double add[] = {0, 0, 0, 0.1};
+    double before[4], after[4];
+    struct steady_setup setup;
+    steady_setup_open(&setup, COARSE "fish: [{" FISH ", start: {speed: 0.8}}]\n");
+    steady_setup_beats(&setup, 2);
+    const struct state *const now = setup.simulation->state;
+    const struct fish *const fish = &setup.simulation->school->fish[0];
+    const double bound = bound_sheet_circulation(fish, now->y), source = wake_source(&now->wake[0], 3);
+    steady_map_read(&setup.problem.map, 4, unknown, before);
+    school_ok(steady_map_add(&setup.problem.map, 4, unknown, add));
+    steady_map_read(&setup.problem.map, 4, unknown, after);
+    for (int i = 0; i < 4; i++) NEAR(after[i] - before[i], add[i], 1e-12, 0);
+    // Kelvin: around the body as much the other way round, less what the nascent stretch has of it
+    NEAR(bound_sheet_circulation(fish, now->y) - bound, -0.1, 0, 0.05);
+    NEAR(wake_source(&now->wake[0], 3), source, 1e-14, 0);
+    steady_setup_close(&setup);
+}
+
+static void a_law_of_control_brings_the_heading_to_where_a_run_has_it(void **state) {
+    (void)state;
+    static const char text[] = COARSE
+        "steady: {tolerance: 5e-5}\n"
+        "fish: [{" FISH ", start: {speed: 0.7, heading: 170}, control: {law: heading, desired_heading: 180}}]\n";
+    struct steady_setup setup, run;
+    struct brute brute[50];
+    steady_setup_find(&setup, text);
+    // speed, slip, turn, and the heading, which the law holds
+    assert_int_equal(setup.problem.n_unknowns, 4);
+    const struct steady_unknown heading = {0, STEADY_HEADING};
+    double found, reached;
+    steady_map_read(&setup.problem.map, 1, &heading, &found);
+    steady_setup_open(&run, text);
+    run_on(&run.problem.map, 50, brute);
+    steady_map_read(&run.problem.map, 1, &heading, &reached);
+    steady_setup_close(&run);
+    NEAR(found, reached, 1e-3, 0);
+    NEAR(setup.problem.map.last[0].speed, brute[49].speed, 0, 1e-4);
+    NEAR(setup.real[0], pow((brute[24].speed - brute[49].speed) / (brute[14].speed - brute[49].speed), 0.1), 0.01, 0);
+    steady_setup_close(&setup);
+}
+
+static void the_state_stays_where_its_multipliers_are_taken(void **state) {
+    (void)state;
+    struct steady_setup setup;
+    steady_setup_open(&setup, COARSE "fish: [{" FISH ", start: {speed: 0.8}}]\n");
+    steady_setup_beats(&setup, 3);
+    const struct simulation *const simulation = setup.simulation;
+    const size_t bytes = (size_t)simulation->school->n_unknowns * sizeof(double);
+    const int n_vortex = simulation->state->wake[0].n_vortex;
+    double before[512];
+    memcpy(before, simulation->state->y, bytes);
+    steady_setup_multipliers(&setup);
+    assert_memory_equal(simulation->state->y, before, bytes);
+    assert_int_equal(simulation->state->wake[0].n_vortex, n_vortex);
+    // of four runs, one without and three with something added, each eight beats
+    assert_int_equal(setup.n_multiplier_beats, 32);
+    assert_int_equal(setup.problem.map.n_beats, 3);
+    steady_setup_close(&setup);
+}
+
+static void a_held_fish_is_steady_when_its_forces_repeat(void **state) {
+    (void)state;
+    struct steady_setup setup;
+    steady_setup_open(&setup, COARSE
+                      "fluid: {velocity: [1, 0]}\n"
+                      "fish: [{" FISH
+                      ", wave: {amplitude: 0}, body: {modulus: 3e6},"
+                      " motion: {driven: head, heave: 0.05, frequency: 1, phase: 90, speed: 0}}]\n");
+    assert_int_equal(setup.problem.n_unknowns, 0);
+    school_ok(steady_search_run(&setup.problem));
+    const double thrust = setup.problem.map.last[0].thrust, power = setup.problem.map.last[0].driving;
+    steady_setup_beats(&setup, 10);
+    NEAR(setup.problem.map.last[0].thrust, thrust, 0, 1e-3);
+    NEAR(setup.problem.map.last[0].driving, power, 0, 1e-4);
+    steady_setup_close(&setup);
+}
+
+static void mean_powers_are_the_works_of_a_beat(void **state) {
+    (void)state;
+    static const char *const fish[] = {
+        "fish: [{" FISH ", body: {modulus: 1e8}}]\n",
+        "fluid: {velocity: [1, 0]}\n"
+        "fish: [{" FISH ", wave: {amplitude: 0}, motion: {driven: head, heave: 0.05, frequency: 1, speed: 0}}]\n"};
+    for (int i = 0; i < 2; i++) {
+        char text[512];
+        snprintf(text, sizeof text, COARSE "%s", fish[i]);
+        struct steady_setup setup;
+        steady_setup_open(&setup, text);
+        steady_setup_beats(&setup, 2);
+        const double *const work = setup.simulation->state->balance[0].work;
+        double before[N_WORKS];
+        memcpy(before, work, sizeof before);
+        steady_setup_beats(&setup, 1);
+        const struct steady_beat *const beat = &setup.problem.map.last[0];
+        const struct diagnostics_fish *const now = &setup.simulation->diagnostics->fish[0];
+        // a beat of a second
+        NEAR(beat->actuation, work[WORK_ACTUATION] - before[WORK_ACTUATION], 1e-12, 1e-6);
+        NEAR(beat->damping, work[WORK_DAMPING] - before[WORK_DAMPING], 1e-12, 1e-6);
+        NEAR(beat->driving, work[WORK_DRIVING] - before[WORK_DRIVING], 1e-12, 1e-6);
+        NEAR(beat->actuation, now->cost_of_transport * setup.simulation->school->fish[0].total_mass * now->speed, 1e-12,
+             1e-6);
+        assert_true(fabs(i == 0 ? beat->actuation : beat->driving) > 1e-3);
+        steady_setup_close(&setup);
+    }
+}
+
+static void what_can_have_no_steady_state_is_refused_with_the_reason(void **state) {
+    (void)state;
+    steady_setup_fails(COARSE "fish: [{" FISH ", wave: {frequency: 1.01}}]\n", STATUS_CASE,
+                       "set time.shedding_interval to 0.0495049505, and");
+    steady_setup_fails(COARSE "fish: [{" FISH ", wave: {frequency: 0, amplitude: 0}}]\n", STATUS_CASE, "no fish beats");
+    steady_setup_fails(COARSE "defaults: {fish: {" FISH
+                              ", motion: {driven: all}}}\n"
+                              "fish: [{}, {start: {position: [3, 0]}, motion: {heave: 0.1, frequency: 2}}]\n",
+                       STATUS_CASE, "fish1 beats 1 times a second and fish2 2 times");
+    steady_setup_fails(COARSE "fluid: {gust: {amplitude: 0.1, frequency: 1.5}}\nfish: [{" FISH "}]\n", STATUS_CASE,
+                       "1.5 gusts");
+    steady_setup_fails(COARSE "fluid: {shear: 0.1}\nfish: [{" FISH "}]\n", STATUS_CASE, "shear");
+    steady_setup_fails(COARSE "fluid: {walls: [-1]}\nfish: [{" FISH "}]\n", STATUS_CASE, "beside a wall");
+    steady_setup_fails(COARSE "fish: [{" FISH ", control: {waypoints: [[9, 0]]}}]\n", STATUS_CASE, "waypoints");
+    steady_setup_fails(COARSE "defaults: {fish: {" FISH "}}\nfish: [{}, {start: {position: [3, 0]}}]\n", STATUS_CASE,
+                       "2 of 2 fish swim at speeds of their own");
+}
+
+static void a_search_that_takes_too_long_says_how_far_it_came(void **state) {
+    (void)state;
+    steady_setup_fails(COARSE "steady: {beats: 5}\nfish: [{" FISH "}]\n", STATUS_SOLVER,
+                       "no steady state in 5 beats (steady.beats)");
+}
+
+// no search meets such a tolerance: in the end the fish swims as in a run
+static void a_search_that_fails_says_what_the_last_beats_have_in_common(void **state) {
+    (void)state;
+    steady_setup_fails(COARSE "steady: {tolerance: 1e-12, beats: 70}\nfish: [{" FISH "}]\n", STATUS_SOLVER,
+                       " % between the last 16 beats");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(speed_and_multiplier_are_those_of_a_long_run),
+        cmocka_unit_test(a_plate_with_limited_suction_has_the_speed_of_a_long_run),
+        cmocka_unit_test(a_fish_that_is_steered_to_one_side_goes_in_a_circle),
+        cmocka_unit_test(a_fish_that_coasts_has_the_same_speed_from_two_starts),
+        cmocka_unit_test(circulation_that_is_added_changes_nothing_else),
+        cmocka_unit_test(a_law_of_control_brings_the_heading_to_where_a_run_has_it),
+        cmocka_unit_test(the_state_stays_where_its_multipliers_are_taken),
+        cmocka_unit_test(a_held_fish_is_steady_when_its_forces_repeat),
+        cmocka_unit_test(mean_powers_are_the_works_of_a_beat),
+        cmocka_unit_test(what_can_have_no_steady_state_is_refused_with_the_reason),
+        cmocka_unit_test(a_search_that_takes_too_long_says_how_far_it_came),
+        cmocka_unit_test(a_search_that_fails_says_what_the_last_beats_have_in_common),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,239 @@
+/* test_steady_modes.c: growth and decay of small disturbances of bodies without a beat: as beams in vacuum, as in a
+ * run, and wherever the stream comes from. Thresholds of flutter: section "elastic" of `make verify`. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "failing_malloc.h"
+#include "school.h"
+#include "steady/steady_modes.h"
+#include "steady/steady_static.h"
+
+enum { MOST = 2 * STEADY_QUANTITIES };
+
+struct found {
+    struct simulation *simulation;
+    struct steady_values values;
+    struct steady_fish fish[2];
+    double rate[MOST], omega[MOST];
+};
+
+/* The equilibrium of a case, and its exponents. */
+static void find(struct found *found, const char *text) {
+    *found = (struct found){.simulation = school_simulation(text)};
+    found->values.fish = found->fish;
+    found->values.rate = found->rate;
+    found->values.omega = found->omega;
+    school_ok(steady_static_find(found->simulation, NULL, &found->values));
+    school_ok(steady_modes_find(found->simulation, &found->values));
+}
+
+/* The exponent whose frequency is nearest to one. */
+static int nearest(const struct found *found, double omega) {
+    int best = 0;
+    for (int i = 1; i < found->values.n_exponents; i++) {
+        if (fabs(found->omega[i] - omega) < fabs(found->omega[best] - omega)) best = i;
+    }
+    assert_true(found->values.n_exponents > 0);
+    return best;
+}
+
+/* A plate of mass 1 and bending stiffness 1/64 per length and span, clamped at its nose. */
+#define PLATE "body: {profile: uniform, thickness: 0.02, width: 1, density: 63.662, modulus: 39788, "
+#define CLAMPED "force: pressure, wave: {amplitude: 0, frequency: 0}, motion: {driven: head}, "
+
+static void without_water_they_are_those_of_a_clamped_beam(void **state) {
+    (void)state;
+    static const char text[] = SCHOOL_SECOND
+        "time: {end: 1, shedding_interval: 0.01}\nfluid: {density: 1e-9, velocity: [1, 0], viscosity: 0}\n"
+        "wake: {lifetime: 2}\n"
+        "fish: [{nodes: 33, " CLAMPED PLATE "relaxation_time: 0.02}, start: {heading: 180, speed: 0}}]\n";
+    struct found found;
+    find(&found, text);
+    // Kelvin and Voigt: lambda^2 + omega^2 (1 + tau lambda) = 0, so that the rate is -tau |lambda|^2/2
+    const double number[] = {1.875104, 4.694091}, within[] = {2e-3, 6e-3};  // of second order in the edges
+    for (int j = 0; j < 2; j++) {
+        const double omega = number[j] * number[j] / 8;
+        const int i = nearest(&found, omega);
+        NEAR(found.omega[i], omega, 0, within[j]);
+        NEAR(found.rate[i], -0.01 * (pow(found.rate[i], 2) + pow(found.omega[i], 2)), 0, 1e-5);
+    }
+    simulate_free(found.simulation);
+}
+
+#define STREAM(velocity)                         \
+    SCHOOL_SECOND                                \
+    "time: {end: 40, shedding_interval: 0.04}\n" \
+    "fluid: {density: 1, velocity: " velocity    \
+    ", viscosity: 0}\n"                          \
+    "solver: {rtol: 1e-7}\nwake: {lifetime: 12, fade: 9}\n"
+#define FLAG "nodes: 9, sheet_points: 17, " CLAMPED PLATE "relaxation_time: 0}, "
+
+/* A flag that is off by 1e-5 rad: the logarithm of the ratio of two swings of its tail, three periods apart. */
+static void a_run_grows_as_fast(void **state) {
+    (void)state;
+    struct found found;
+    find(&found, STREAM("[1, 0]") "fish: [{" FLAG "start: {heading: 180, speed: 0}}]\n");
+    assert_true(found.rate[0] > 0.1 && found.omega[0] > 0);
+    NEAR(found.values.growth, found.rate[0], 0, 0);
+    NEAR(found.values.growth_frequency, found.omega[0] / (2 * 3.14159265358979), 0, 1e-12);
+    const double rate = found.rate[0], period = 1 / found.values.growth_frequency;
+    simulate_free(found.simulation);
+
+    struct simulation *const run = school_simulation(STREAM("[1, 0]") "fish: [{" FLAG
+                                                                      "start: {heading: 179.9994, speed: "
+                                                                      "0}}]\n");
+    const struct fish *const fish = &run->school->fish[0];
+    const int tail = fish->at.y + fish->n_nodes - 1;
+    double least[2] = {INFINITY, INFINITY}, most[2] = {-INFINITY, -INFINITY};
+    const double from[] = {12, 12 + 3 * period};
+    while (run->state->t < from[1] + period) {
+        school_ok(simulate_step(run));
+        for (int i = 0; i < 2; i++) {
+            if (run->state->t < from[i] || run->state->t > from[i] + period) continue;
+            least[i] = fmin(least[i], run->state->y[tail]);
+            most[i] = fmax(most[i], run->state->y[tail]);
+        }
+    }
+    assert_true(most[1] - least[1] < 0.05);
+    // the mean over the interval leaves errors of the square of omega Dt
+    NEAR(log((most[1] - least[1]) / (most[0] - least[0])) / (3 * period), rate, 0.004, 0);
+    simulate_free(run);
+}
+
+static void they_do_not_depend_on_who_moves(void **state) {
+    (void)state;
+    struct found still, moving;
+    find(&still, STREAM("[1, 0]") "fish: [{" FLAG "start: {heading: 180, speed: 0}}]\n");
+    find(&moving, STREAM("[0, 0]") "fish: [{" FLAG "start: {heading: 180, speed: 1}}]\n");
+    assert_int_equal(still.values.n_exponents, moving.values.n_exponents);
+    for (int i = 0; i < moving.values.n_exponents; i++) {
+        NEAR(still.rate[i], moving.rate[i], 1e-6, 1e-5);
+        NEAR(still.omega[i], moving.omega[i], 1e-6, 1e-5);
+    }
+    simulate_free(still.simulation);
+    simulate_free(moving.simulation);
+}
+
+static void bodies_far_apart_have_the_modes_of_one(void **state) {
+    (void)state;
+    struct found one, two;
+    find(&one, STREAM("[1, 0]") "fish: [{" FLAG "start: {heading: 180, speed: 0}}]\n");
+    find(&two, STREAM("[1, 0]") "fish: [{" FLAG "start: {heading: 180, speed: 0}}, {" FLAG
+                                "start: {position: [0, 1000], heading: 180, speed: 0}}]\n");
+    for (int i = 0; i < one.values.n_exponents; i++) {
+        const int j = nearest(&two, one.omega[i]);
+        NEAR(two.rate[j], one.rate[i], 1e-5, 0);
+        NEAR(two.omega[j], one.omega[i], 1e-5, 0);
+    }
+    simulate_free(one.simulation);
+    // side by side they feel each other
+    struct found beside;
+    find(&beside, STREAM("[1, 0]") "fish: [{" FLAG "start: {heading: 180, speed: 0}}, {" FLAG
+                                   "start: {position: [0, 0.3], heading: 180, speed: 0}}]\n");
+    assert_true(fabs(beside.rate[0] - two.rate[0]) + fabs(beside.omega[0] - two.omega[0]) > 0.02);
+    simulate_free(beside.simulation);
+    simulate_free(two.simulation);
+}
+
+/* A flag whose clamp is downstream is a column under the load pi/4 rho U^2 of slender bodies: it buckles. */
+static void what_has_no_stiffness_left_diverges(void **state) {
+    (void)state;
+    const double pi = 3.14159265358979, critical = pi / 2 * sqrt(1 / 64.0 / (pi / 4));
+    const double part[] = {0.9, 1.1};
+    for (int i = 0; i < 2; i++) {
+        char text[1024];
+        struct found found;
+        snprintf(
+            text, sizeof text,
+            SCHOOL_SECOND
+            "time: {end: 1, shedding_interval: 0.05}\nfluid: {density: 1, velocity: [-%g, 0]}\n"
+            "wake: {lifetime: 20}\nfish: [{nodes: 9, sheet_points: 17, wave: {amplitude: 0, frequency: 0}, motion: "
+            "{driven: head}, drag: {tangential: 0}, " PLATE
+            "relaxation_time: 0.2}, start: {heading: 180, speed: 0}}]\n",
+            part[i] * critical);
+        find(&found, text);
+        int n_diverging = 0;
+        for (int k = 0; k < found.values.n_exponents; k++) n_diverging += found.rate[k] > 1e-3 && !(found.omega[k] > 0);
+        assert_int_equal(n_diverging, i);
+        assert_int_equal(found.values.stiffness < 0, i);
+        simulate_free(found.simulation);
+    }
+}
+
+static void the_simulation_stays_where_it_is(void **state) {
+    (void)state;
+    struct found found = {.simulation =
+                              school_simulation(STREAM("[1, 0]") "fish: [{" FLAG "start: {heading: 176, speed: "
+                                                                 "0}}]\n")};
+    found.values.fish = found.fish;
+    found.values.rate = found.rate;
+    found.values.omega = found.omega;
+    school_ok(steady_static_find(found.simulation, NULL, &found.values));
+    const int n = found.simulation->school->n_unknowns;
+    double *const before = malloc((size_t)n * sizeof *before);
+    assert_non_null(before);
+    memcpy(before, found.simulation->state->y, (size_t)n * sizeof *before);
+    school_ok(steady_modes_find(found.simulation, &found.values));
+    assert_memory_equal(before, found.simulation->state->y, (size_t)n * sizeof *before);
+    assert_int_equal(found.simulation->state->event, 0);
+    assert_int_equal(found.simulation->state->wake[0].n_vortex, 0);
+    free(before);
+    simulate_free(found.simulation);
+}
+
+static void multipliers_become_exponents(void **state) {
+    (void)state;
+    double real[] = {0.6, 0.6, 0.5, 0}, imaginary[] = {0.8, -0.8, 0, 0}, rate[4], omega[4];
+    struct steady_values values = {
+        .n_multipliers = 4, .real = real, .imaginary = imaginary, .rate = rate, .omega = omega};
+    steady_modes_of_multipliers(&values, 2);
+    assert_int_equal(values.n_exponents, 2);
+    NEAR(rate[0], 0, 1e-12, 0);
+    NEAR(omega[0], atan2(0.8, 0.6) / 2, 0, 1e-12);
+    NEAR(rate[1], log(0.5) / 2, 0, 1e-12);
+    NEAR(values.growth_frequency, omega[0] / (2 * 3.14159265358979), 0, 1e-12);
+}
+
+static void every_failing_allocation_is_reported_and_leaves_nothing(void **state) {
+    (void)state;
+    static const char text[] = SCHOOL_SECOND
+        "time: {end: 1, shedding_interval: 0.1}\nfluid: {density: 1, velocity: [1, 0], viscosity: 0}\n"
+        "wake: {lifetime: 1}\nfish: [{nodes: 5, sheet_points: 9, " CLAMPED PLATE
+        "relaxation_time: 0.1}, start: {heading: 180, speed: 0}}]\n";
+    int n_failures = 0;
+    for (int n = 0;; n += 1 + n / 10) {
+        const int n_before = n_live;
+        struct found found = {.simulation = school_simulation(text)};
+        found.values.fish = found.fish;
+        found.values.rate = found.rate;
+        found.values.omega = found.omega;
+        school_ok(steady_static_find(found.simulation, NULL, &found.values));
+        n_until_failure = n;
+        const enum status status = steady_modes_find(found.simulation, &found.values);
+        const int ran_out = n_until_failure == -1;
+        n_until_failure = -1;
+        simulate_free(found.simulation);
+        if (n_live != n_before) fail_msg("with allocation %d failing %d are left", n, n_live - n_before);
+        if (!ran_out) break;
+        // what is only faster with memory does without
+        if (status == STATUS_OK) continue;
+        if (status != STATUS_MEMORY && status != STATUS_SOLVER) fail_msg("allocation %d: %d", n, (int)status);
+        n_failures++;
+    }
+    assert_true(n_failures > 20);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(without_water_they_are_those_of_a_clamped_beam),
+        cmocka_unit_test(a_run_grows_as_fast),
+        cmocka_unit_test(they_do_not_depend_on_who_moves),
+        cmocka_unit_test(bodies_far_apart_have_the_modes_of_one),
+        cmocka_unit_test(what_has_no_stiffness_left_diverges),
+        cmocka_unit_test(the_simulation_stays_where_it_is),
+        cmocka_unit_test(multipliers_become_exponents),
+        cmocka_unit_test(every_failing_allocation_is_reported_and_leaves_nothing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,183 @@
+/* test_steady_static.c: the equilibrium of bodies without a beat: what it is, where a run comes to it, how far the
+ * stream can grow, and what is refused with the reason. doc/steady.md, "Without a beat". */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "fish/fish_gait.h"
+#include "school.h"
+#include "steady/steady_static.h"
+
+#define TIME "time: {end: 1, shedding_interval: 0.05, output_interval: 0.05}\n"
+#define BODY                                                          \
+    "nodes: 9, sheet_points: 17, wave: {amplitude: 0, frequency: 0}," \
+    " body: {profile: uniform, thickness: 0.02, width: 1, density: 63.66, modulus: 40000, relaxation_time: 0.2}"
+#define HEAD BODY ", motion: {driven: head, speed: 0}"
+
+struct answer {
+    struct simulation *simulation;
+    struct steady_values values;
+    struct steady_fish fish[2];
+    enum status status;
+};
+
+static void answer(struct answer *answer, const char *text) {
+    *answer = (struct answer){.simulation = school_simulation(text)};
+    answer->values.fish = answer->fish;
+    assert_true(steady_static_applies(answer->simulation->school));
+    answer->status = steady_static_refuse(answer->simulation->school);
+    if (answer->status == STATUS_OK) answer->status = steady_static_find(answer->simulation, NULL, &answer->values);
+}
+
+// places of the nodes at the end of a run, which are those of the answer
+static void is_where_a_run_ends(const struct answer *answer, const char *text, double end, double within) {
+    struct simulation *const run = school_simulation(text);
+    const struct fish *const fish = &run->school->fish[0];
+    school_run(run, end);
+    for (int i = fish->at.x; i < fish->at.vx; i++) NEAR(answer->simulation->state->y[i], run->state->y[i], within, 0);
+    simulate_free(run);
+}
+
+static void a_run_with_damping_comes_to_it(void **state) {
+    (void)state;
+    static const char pressure[] = SCHOOL_SECOND TIME
+        "fluid: {density: 1, velocity: [0.3, 0], viscosity: 0}\nwake: {lifetime: 20}\n"
+        "fish: [{" HEAD ", force: pressure, start: {heading: 170, speed: 0}}]\n";
+    // across the stream: it bends by half of its length
+    static const char across[] = SCHOOL_SECOND TIME
+        "fluid: {density: 1, velocity: [0.5, 0]}\nwake: {lifetime: 5}\n"
+        "fish: [{" HEAD
+        ", drag: {added_mass: 0},"
+        " start: {heading: 270, speed: 0}, load: {tip: [0, 0.002]}}]\n";
+    struct answer found;
+    answer(&found, pressure);
+    school_ok(found.status);
+    assert_true(found.values.residual < 1e-10);
+    assert_true(fabs(found.fish[0].deflection) > 0.02);
+    // the starting vortex has gone then; what is left dies slowly
+    is_where_a_run_ends(&found, pressure, 60, 1e-4);
+    simulate_free(found.simulation);
+    answer(&found, across);
+    school_ok(found.status);
+    assert_true(found.fish[0].deflection > 0.5);
+    is_where_a_run_ends(&found, across, 70, 1e-4);
+    simulate_free(found.simulation);
+}
+
+static void forces_are_those_along_and_across_the_stream(void **state) {
+    (void)state;
+    struct answer found;
+    answer(&found, SCHOOL_SECOND TIME
+           "fluid: {density: 1, velocity: [0, 2], viscosity: 0}\n"
+           "fish: [{" BODY
+           ", force: pressure, pressure: {suction_limit: 0}, start: {heading: 260, speed: 0},"
+           " motion: {driven: all, speed: 0}}]\n");
+    school_ok(found.status);
+    // 2 pi sin(alpha), to the left of the stream; no drag
+    NEAR(found.fish[0].lift, 3.14159265358979 * 4 * sin(0.17453292519943295), 0, 4e-3);
+    NEAR(found.fish[0].drag, 0, 1e-4, 0);
+    NEAR(found.fish[0].force[0], -found.fish[0].lift, 1e-12, 0);
+    NEAR(found.fish[0].speed, 2, 1e-12, 0);
+    NEAR(found.values.stiffness, 1, 0, 0);
+    simulate_free(found.simulation);
+}
+
+// a flag whose clamp is downstream is a column under the load pi/4 rho U^2 of slender bodies: Euler
+#define REVERSED                                    \
+    SCHOOL_SECOND TIME                              \
+        "fluid: {density: 1, velocity: [-%g, 0]}\n" \
+        "fish: [{" HEAD ", drag: {tangential: 0}, start: {heading: 180, speed: 0}}]\n"
+
+static void it_diverges_where_a_column_does(void **state) {
+    (void)state;
+    const double pi = 3.14159265358979323846, stiffness = 40000 * pi * 8e-6 / 64;
+    const double critical = pi / 2 * sqrt(stiffness / (pi / 4));
+    for (int i = 0; i < 3; i++) {
+        const double part[] = {0.5, 0.9, 1.1};
+        char text[1024];
+        snprintf(text, sizeof text, REVERSED, part[i] * critical);
+        struct answer found;
+        answer(&found, text);
+        school_ok(found.status);
+        NEAR(found.values.stiffness, cos(pi / 2 * part[i]), 0.01, 0);
+        NEAR(found.fish[0].deflection, 0, 1e-12, 0);
+        simulate_free(found.simulation);
+    }
+}
+
+static void natural_curvature_is_the_shape_at_rest(void **state) {
+    (void)state;
+    struct answer found;
+    answer(&found, SCHOOL_SECOND TIME
+           "fluid: {density: 0}\n"
+           "fish: [{nodes: 9, sheet_points: 17, wave: {amplitude: 0.3, constant: 1,"
+           " linear: 0, quadratic: 0, number: 0, frequency: 0, phase: 90},"
+           " motion: {driven: head, speed: 0}, start: {speed: 0}}]\n");
+    school_ok(found.status);
+    const struct fish *const fish = &found.simulation->school->fish[0];
+    const struct fish_gait gait = fish_own_gait(fish, 0);
+    const double *const y = found.simulation->state->y;
+    const double each = fish_natural_angle(fish, 0, &gait, 0);
+    assert_true(fabs(each) > 0.1);
+    const double last[2] = {y[fish->at.x + 8] - y[fish->at.x + 7], y[fish->at.y + 8] - y[fish->at.y + 7]};
+    // the first edge goes backwards from the nose, and seven joints turn the last one
+    NEAR(cos(atan2(last[1], last[0]) - (fish->start_heading - 3.14159265358979323846 + 7 * each)), 1, 1e-9, 0);
+    simulate_free(found.simulation);
+}
+
+static void refused(const char *text, const char *words) {
+    struct answer found;
+    answer(&found, text);
+    assert_int_equal(found.status, STATUS_CASE);
+    if (!strstr(status_message(), words)) fail_msg("\"%s\" is not in \"%s\"", words, status_message());
+    simulate_free(found.simulation);
+}
+
+static void what_can_have_no_equilibrium_is_refused_with_the_reason(void **state) {
+    (void)state;
+    refused(SCHOOL_SECOND TIME "fish: [{" BODY "}]\n", "neither beats nor is held");
+    refused(SCHOOL_SECOND TIME "fish: [{" BODY ", motion: {driven: head, surge: free}}]\n", "motion.surge: given");
+    refused(SCHOOL_SECOND TIME "fish: [{" HEAD "}, {" BODY
+                               ", start: {position: [3, 0]}, motion: {driven: head, speed: 1}}]\n",
+            "velocities of their own");
+    refused(SCHOOL_SECOND TIME "fluid: {gust: {amplitude: 0.1, frequency: 1}}\nfish: [{" HEAD "}]\n", "gust");
+    refused(SCHOOL_SECOND TIME
+            "fluid: {shear: 0.1}\n"
+            "fish: [{" BODY ", start: {heading: 90}, motion: {driven: head, speed: 1}}]\n",
+            "across a shear");
+    refused(SCHOOL_SECOND TIME "wake: {dissipated_circulation: dropped}\nfish: [{" HEAD "}]\n", "retained");
+    refused(SCHOOL_SECOND TIME
+            "fish: [{nodes: 9, sheet_points: 17, wave: {amplitude: 0.1, frequency: 0, ramp: 1},"
+            " motion: {driven: head, speed: 0}}]\n",
+            "set wave.ramp to 0");
+}
+
+static void where_there_is_none_it_says_how_far_the_stream_can_grow(void **state) {
+    (void)state;
+    // no edge carries more along it than E A = 628 N, which the load is at the root of 0.628 of the stream
+    struct answer found;
+    answer(&found, SCHOOL_SECOND TIME
+           "fluid: {density: 1, velocity: [0.01, 0]}\n"
+           "fish: [{" HEAD ", load: {tip: [-1000, 0]}, start: {speed: 0, heading: 180}}]\n");
+    assert_int_equal(found.status, STATUS_SOLVER);
+    const char *const words = strstr(status_message(), "ends at ");
+    assert_non_null(words);
+    NEAR(strtod(words + strlen("ends at "), NULL), sqrt(0.62832), 2e-3, 0);
+    // the stream and the loads of the case are constants, also where only a part of them has an equilibrium
+    const struct school *const school = found.simulation->school;
+    NEAR(school->velocity[0], 0.01, 0, 0);
+    NEAR(school->fish[0].load_tip[0], -1000, 0, 0);
+    simulate_free(found.simulation);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_run_with_damping_comes_to_it),
+        cmocka_unit_test(forces_are_those_along_and_across_the_stream),
+        cmocka_unit_test(it_diverges_where_a_column_does),
+        cmocka_unit_test(natural_curvature_is_the_shape_at_rest),
+        cmocka_unit_test(what_can_have_no_equilibrium_is_refused_with_the_reason),
+        cmocka_unit_test(where_there_is_none_it_says_how_far_the_stream_can_grow),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,356 @@
+/* test_field_file.c: the flow of a row of a result file against that of the run itself, against a sum of its own, and
+ * its file. Also tests field_row and flow_field. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "crafted_file.h"
+#include "failing_malloc.h"
+#include "flow/flow.h"
+#include "flow/flow_at_bodies.h"
+#include "flow/flow_external.h"
+#include "flow/flow_field.h"
+#include "run/simulate_run.h"
+#include "school.h"
+#include "view/field_file.h"
+
+enum { N_POINTS = 60 };
+
+static char folder[] = "/tmp/test_field.XXXXXX", path[64], field_path[64];
+
+/* Two fish whose wakes decay during the run, in an external flow with all its terms. */
+static const char *school_of(const char *shedding) {
+    static char text[1024];
+    snprintf(text, sizeof text,
+             SCHOOL_SECOND
+             "time: {end: 0.6, shedding_interval: 0.02, output_interval: 0.1}\n"
+             "output: {wake_interval: 0.3}\n"
+             "fluid: {velocity: [0.3, -0.2], shear: 0.2, gust: {amplitude: 0.1, frequency: 1}}\n"
+             "wake: {shedding: %s, lifetime: 0.4, fade: 0.2}\nsolver: {rtol: 1e-3}\n"
+             "defaults: {fish: {nodes: 5, sheet_points: 17, start: {speed: 0.5}}}\n"
+             "fish: [{name: one}, {name: another, nodes: 7, length: 0.8, start: {position: [0.2, 0.5]}}]\n",
+             shedding);
+    return text;
+}
+
+static void write_run(const char *text) {
+    struct case_values values;
+    school_settings(&values, text);
+    const struct simulate_options options = {.path = path, .overwrite = 1, .command = "test"};
+    school_ok(simulate_run(&values, &options));
+    case_free(&values);
+}
+
+/* Points near the bodies and the wakes, and the flow there. */
+struct points {
+    double x[N_POINTS], y[N_POINTS], u[N_POINTS], v[N_POINTS], u_x[N_POINTS], u_y[N_POINTS], v_x[N_POINTS];
+};
+
+static struct induced field_of(struct flow *flow, const struct state *state, struct points *points) {
+    const struct induced at = {N_POINTS,  points->x,   points->y,   points->u,
+                               points->v, points->u_x, points->u_y, points->v_x};
+    school_ok(flow_field(flow, state, &at));
+    return at;
+}
+
+static void place_points(struct points *points) {
+    for (int i = 0; i < N_POINTS; i++) {
+        points->x[i] = -0.6 + 0.03 * i;
+        points->y[i] = 0.3 + 0.5 * sin(1.7 * i);
+    }
+}
+
+// ---- the flow of a row
+
+static void the_flow_of_a_row_is_that_of_the_run(void **state) {
+    (void)state;
+    static const char *const shedding[] = {"sheet", "continuous", "impulsive"};
+    for (int s = 0; s < 3; s++) {
+        write_run(school_of(shedding[s]));
+        struct simulation *const run = school_simulation(school_of(shedding[s]));
+        school_run(run, 0.6);
+        struct field_row row;
+        struct flow *flow;
+        struct points there, here;
+        school_ok(field_row_read(&row, path, NAN, 0, NULL));
+        school_ok(flow_create(&flow, row.school));
+        NEAR(row.state->t, 0.6, 1e-12, 0);
+        assert_int_equal(row.state->wake[0].n_vortex, run->state->wake[0].n_vortex);
+        assert_true(row.state->wake[0].n_vortex > 15);
+        place_points(&there);
+        place_points(&here);
+        field_of(run->residual->flow, run->state, &there);
+        field_of(flow, row.state, &here);
+        NEAR_ARRAY(N_POINTS, here.u, there.u, 1e-12, 0);
+        NEAR_ARRAY(N_POINTS, here.v, there.v, 1e-12, 0);
+        NEAR_ARRAY(N_POINTS, here.v_x, there.v_x, 1e-10, 0);
+        flow_free(flow);
+        field_row_free(&row);
+        simulate_free(run);
+    }
+}
+
+// add what one smoothed vortex causes at a point: velocity, and the vorticity of its core
+static void add_vortex(const double at[2], double x, double y, double circulation, double smoothing, double sum[3]) {
+    const double dx = at[0] - x, dy = at[1] - y, square = dx * dx + dy * dy + smoothing * smoothing;
+    sum[0] -= circulation * dy / (2 * M_PI * square);
+    sum[1] += circulation * dx / (2 * M_PI * square);
+    sum[2] += circulation * smoothing * smoothing / (M_PI * square * square);
+}
+
+// the middles of the stretches of a free sheet, and the bound vortices
+static void add_fish(const struct fish *fish, const struct school *school, const struct state *state,
+                     const struct wake *wake, const double at[2], double sum[3]) {
+    for (int i = 0; i + 1 < wake->n_vortex; i++) {
+        const double strength = wake_strength(school, state->t - wake->birth[i + 1]);
+        add_vortex(at, (wake->x[i] + wake->x[i + 1]) / 2, (wake->y[i] + wake->y[i + 1]) / 2,
+                   strength * (wake->circulation[i + 1] - wake->circulation[i]), fish->smoothing, sum);
+    }
+    for (int j = 0; j < fish->n_sheet; j++) {
+        add_vortex(at, fish_mean(&fish->sheet_point[j], state->y + fish->at.x),
+                   fish_mean(&fish->sheet_point[j], state->y + fish->at.y),
+                   fish->sheet_weight[j] * state->y[fish->at.gamma + j], fish->sheet_smoothing, sum);
+    }
+}
+
+static void it_is_the_sum_of_all_wakes_and_sheets(void **state) {
+    (void)state;
+    struct simulation *const run = school_simulation(school_of("sheet"));
+    struct points points;
+    school_run(run, 0.6);
+    place_points(&points);
+    field_of(run->residual->flow, run->state, &points);
+    for (int i = 0; i < N_POINTS; i++) {
+        const double at[2] = {points.x[i], points.y[i]};
+        double sum[3] = {0, 0, -run->school->shear};
+        flow_external(run->school, run->state->t, at[1], &sum[0], &sum[1]);
+        for (int f = 0; f < 2; f++) {
+            add_fish(&run->school->fish[f], run->school, run->state, &run->state->wake[f], at, sum);
+        }
+        NEAR(points.u[i], sum[0], 1e-13, 0);
+        NEAR(points.v[i], sum[1], 1e-13, 0);
+        NEAR(points.v_x[i] - points.u_y[i], sum[2], 1e-11, 0);
+    }
+    simulate_free(run);
+}
+
+// the tail of a body feels all sheets and wakes as another body does
+static void at_a_tail_it_is_what_the_tail_feels(void **state) {
+    (void)state;
+    write_run(school_of("continuous"));
+    struct simulation *const run = school_simulation(school_of("continuous"));
+    school_run(run, 0.6);
+    struct flow *const live = run->residual->flow;
+    school_ok(flow_velocity(live, run->state, run->state->t, run->state->y));
+    double felt[2][2];
+    for (int f = 0; f < 2; f++) {
+        const int tail = live->points[f].first + flow_tail(&run->school->fish[f]);
+        felt[f][0] = live->u[tail];
+        felt[f][1] = live->v[tail];
+    }
+    struct field_row row;
+    struct flow *flow;
+    struct points points;
+    school_ok(field_row_read(&row, path, 0.6, 0, NULL));
+    school_ok(flow_create(&flow, row.school));
+    place_points(&points);
+    for (int f = 0; f < 2; f++) {
+        const struct fish *const fish = &row.school->fish[f];
+        points.x[f] = row.state->y[fish->at.x + fish->n_nodes - 1];
+        points.y[f] = row.state->y[fish->at.y + fish->n_nodes - 1];
+    }
+    field_of(flow, row.state, &points);
+    for (int f = 0; f < 2; f++) {
+        NEAR(points.u[f], felt[f][0], 1e-12, 0);
+        NEAR(points.v[f], felt[f][1], 1e-12, 0);
+    }
+    flow_free(flow);
+    field_row_free(&row);
+    simulate_free(run);
+}
+
+// many points and vortices: the tree and the direct sum of single points agree
+static void by_tree_it_is_the_same(void **state) {
+    (void)state;
+    enum { N = 7000 };
+    struct simulation *const run = school_simulation(school_of("continuous"));
+    school_run(run, 0.2);
+    struct wake *const wake = &run->state->wake[0];
+    for (int i = 0; i < 1200; i++) {
+        school_ok(wake_release(wake, cos(i * 0.7) - i * 1e-3, sin(i * 1.1), 1e-3 * sin(i * i), run->state->t));
+    }
+    double *const values = calloc((size_t)7 * N, sizeof *values);
+    double *const column[7] = {values,         values + N,     values + 2 * N, values + 3 * N,
+                               values + 4 * N, values + 5 * N, values + 6 * N};
+    for (int i = 0; i < N; i++) {
+        column[0][i] = 3 * sin(i * 0.37);
+        column[1][i] = 2 * cos(i * 0.91);
+    }
+    const struct induced many = {N, column[0], column[1], column[2], column[3], column[4], column[5], column[6]};
+    school_ok(flow_field(run->residual->flow, run->state, &many));
+    double worst = 0;
+    for (int i = 0; i < N; i += 100) {
+        double u, v, u_x, u_y, v_x;
+        const struct induced one = {1, &column[0][i], &column[1][i], &u, &v, &u_x, &u_y, &v_x};
+        school_ok(flow_field(run->residual->flow, run->state, &one));
+        worst = fmax(worst, hypot(u - column[2][i], v - column[3][i]));
+        NEAR(v_x - u_y, column[6][i] - column[5][i], 1e-5, 0);
+    }
+    assert_true(worst < 1e-7);
+    assert_true(worst > 0);  // it was the tree
+    free(values);
+    simulate_free(run);
+}
+
+// ---- rows that there are not
+
+static void refused(double t, enum status want, const char *part) {
+    struct field_row row;
+    const enum status status = field_row_read(&row, path, t, 0, NULL);
+    if (status != want || !strstr(status_message(), part)) {
+        fail_msg("t = %g: status %d, message: %s", t, (int)status, status_message());
+    }
+    assert_null(row.state);
+}
+
+static void other_times_are_refused(void **state) {
+    (void)state;
+    write_run(school_of("sheet"));
+    refused(0.17, STATUS_CASE, "no row at t = 0.17 s: the nearest are at 0.1 s and 0.2 s");
+    refused(0.5, STATUS_CASE, "without its wake (output.wake_interval): the nearest with it are at 0.3 s and 0.6 s");
+    refused(0.7, STATUS_CASE, "outside of its rows, which go from 0 s to 0.6 s");
+    refused(-0.1, STATUS_CASE, "outside of its rows");
+    struct field_row row;
+    school_ok(field_row_read(&row, path, 0.3, 0, NULL));
+    NEAR(row.state->t, 0.3, 1e-12, 0);
+    field_row_free(&row);
+}
+
+static void damaged_rows_are_refused(void **state) {
+    (void)state;
+    static const struct {
+        const char *name, *part;
+        double value;
+    } damage[] = {{"x", "variable x has a gap", NAN},
+                  {"sheet_strength", "variable sheet_strength has a gap", INFINITY},
+                  {"wake_count", "vortices", -3},
+                  {"wake_x", "variable wake_x has a gap", NAN},
+                  {"wake_birth", "variable wake_birth has a gap", NAN}};
+    write_run(school_of("sheet"));
+    size_t n;
+    char *const good = read_bytes(path, &n);
+    for (size_t i = 0; i < sizeof damage / sizeof *damage; i++) {
+        int file, number;
+        write_bytes(path, n, good);
+        assert_int_equal(nc_open(path, NC_WRITE, &file), NC_NOERR);
+        assert_int_equal(nc_inq_varid(file, damage[i].name, &number), NC_NOERR);
+        const size_t last[] = {6, 1, 2, 1};
+        assert_int_equal(nc_put_var1_double(file, number, last, &damage[i].value), NC_NOERR);
+        nc_close(file);
+        refused(0.6, STATUS_FILE, damage[i].part);
+    }
+    free(good);
+}
+
+// ---- the file
+
+static double value_of(int file, const char *name, size_t i, size_t j, size_t k, size_t l) {
+    int number;
+    double value;
+    assert_int_equal(nc_inq_varid(file, name, &number), NC_NOERR);
+    assert_int_equal(nc_get_var1_double(file, number, (const size_t[]){i, j, k, l}, &value), NC_NOERR);
+    return value;
+}
+
+static void the_file_has_the_field_on_its_grid(void **state) {
+    (void)state;
+    write_run(school_of("sheet"));
+    struct field_row row;
+    struct field_grid grid = {.nx = 12, .ny = 5};
+    school_ok(field_row_read(&row, path, NAN, 0, NULL));
+    field_file_box(&row, grid.low, grid.high);
+    for (int f = 0; f < 2; f++) {
+        // half a length of the longer fish around everything, but for rounding
+        const struct fish *const fish = &row.school->fish[f];
+        for (int k = 0; k < fish->n_nodes; k++) {
+            assert_true(row.state->y[fish->at.x + k] >= grid.low[0] + 0.5 - 1e-12);
+            assert_true(row.state->y[fish->at.y + k] <= grid.high[1] - 0.5 + 1e-12);
+        }
+    }
+    school_ok(field_file_write(field_path, 1, path, "test", &row, &grid));
+    int file;
+    assert_int_equal(nc_open(field_path, NC_NOWRITE, &file), NC_NOERR);
+    struct flow *flow;
+    school_ok(flow_create(&flow, row.school));
+    for (size_t j = 0; j < 5; j++) {
+        for (size_t i = 0; i < 12; i++) {
+            const double x = value_of(file, "x", i, 0, 0, 0), y = value_of(file, "y", j, 0, 0, 0);
+            double u, v, u_x, u_y, v_x;
+            NEAR(x, grid.low[0] + (grid.high[0] - grid.low[0]) * (double)i / 11, 1e-14, 0);
+            NEAR(y, grid.low[1] + (grid.high[1] - grid.low[1]) * (double)j / 4, 1e-14, 0);
+            school_ok(flow_field(flow, row.state, &(struct induced){1, &x, &y, &u, &v, &u_x, &u_y, &v_x}));
+            NEAR(value_of(file, "u", 0, j, i, 0), u, 1e-13, 0);
+            NEAR(value_of(file, "v", 0, j, i, 0), v, 1e-13, 0);
+            NEAR(value_of(file, "vorticity", 0, j, i, 0), v_x - u_y, 1e-11, 0);
+        }
+    }
+    NEAR(value_of(file, "time", 0, 0, 0, 0), 0.6, 1e-12, 0);
+    NEAR(value_of(file, "body_x", 0, 1, 6, 1), row.state->y[row.school->fish[1].at.y + 6], 0, 0);
+    assert_true(isnan(value_of(file, "body_x", 0, 0, 6, 1)));
+    NEAR(value_of(file, "edge_height", 0, 1, 0, 0), row.school->fish[0].thickness[1], 0, 0);
+    nc_close(file);
+    flow_free(flow);
+    field_row_free(&row);
+}
+
+static void every_allocation_may_fail(void **state) {
+    (void)state;
+    write_run(school_of("sheet"));
+    enum status status = STATUS_MEMORY;
+    const int before = n_live;
+    int n = 0;
+    for (; status != STATUS_OK && n < 2000; n++) {
+        struct field_row row;
+        struct field_grid grid = {2, 3, {0, 0}, {1, 1}};
+        unlink(field_path);
+        n_until_failure = n;
+        status = field_row_read(&row, path, NAN, 0, NULL);
+        if (status == STATUS_OK) {
+            status = field_file_write(field_path, 0, path, "test", &row, &grid);
+            field_row_free(&row);
+        }
+        n_until_failure = -1;
+        assert_true(status == STATUS_OK || access(field_path, F_OK) != 0);
+        assert_int_equal(n_live, before);
+    }
+    assert_true(n > 100 && n < 2000);
+}
+
+static int make_folder(void **state) {
+    (void)state;
+    assert_non_null(mkdtemp(folder));
+    snprintf(path, sizeof path, "%s/run.nc", folder);
+    snprintf(field_path, sizeof field_path, "%s/field.nc", folder);
+    return 0;
+}
+
+static int remove_folder(void **state) {
+    (void)state;
+    unlink(path);
+    unlink(field_path);
+    assert_int_equal(rmdir(folder), 0);  // nothing else is left in it
+    return 0;
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_flow_of_a_row_is_that_of_the_run),
+        cmocka_unit_test(it_is_the_sum_of_all_wakes_and_sheets),
+        cmocka_unit_test(at_a_tail_it_is_what_the_tail_feels),
+        cmocka_unit_test(by_tree_it_is_the_same),
+        cmocka_unit_test(other_times_are_refused),
+        cmocka_unit_test(damaged_rows_are_refused),
+        cmocka_unit_test(the_file_has_the_field_on_its_grid),
+        cmocka_unit_test(every_allocation_may_fail),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}

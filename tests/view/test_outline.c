@@ -1,0 +1,101 @@
+/* test_outline.c: the outline of bodies whose shape is known. */
+#include <math.h>
+#include <string.h>
+
+#include "near.h"
+#include "view/outline.h"
+
+enum { MAX_NODES = 33 };
+
+/* A straight body along x of length 1, tail at the right, with the thickness of an ellipse: the mean over each edge, or
+ * the sum of the half thicknesses at its ends. */
+static void fill_ellipse(int n_nodes, bool is_mean, double *nodes, double *thickness) {
+    enum { PARTS = 2000 };
+    const double d = 0.2;
+    for (int k = 0; k < n_nodes; k++) {
+        nodes[2 * k] = (double)k / (n_nodes - 1);
+        nodes[2 * k + 1] = 0;
+    }
+    for (int k = 0; k < n_nodes - 1; k++) {
+        const double from = nodes[2 * k], to = nodes[2 * k + 2];
+        thickness[k] = d * (sqrt(from * (1 - from)) + sqrt(to * (1 - to)));
+        if (!is_mean) continue;
+        thickness[k] = 0;
+        // midpoints in the angle, in which the integrand is smooth
+        const double first = acos(1 - 2 * from), last = acos(1 - 2 * to), step = (last - first) / PARTS;
+        for (int i = 0; i < PARTS; i++) {
+            const double angle = first + (i + 0.5) * step;
+            thickness[k] += d * sin(angle) * sin(angle) / 2 * step / (to - from);
+        }
+    }
+}
+
+static void is_an_ellipse(int n, bool is_mean, double tolerance) {
+    double nodes[2 * MAX_NODES], thickness[MAX_NODES], polygon[2 * OUTLINE_SIDES];
+    fill_ellipse(n, is_mean, nodes, thickness);
+    struct outline outline;
+    assert_int_equal(outline_create(&outline, n, thickness, is_mean), STATUS_OK);
+    outline_polygon(&outline, nodes, polygon);
+    for (int i = 0; i < OUTLINE_SIDES; i++) {
+        const double q = polygon[2 * i], side = i < OUTLINE_POINTS ? 1 : -1;
+        NEAR(polygon[2 * i + 1], side * 0.2 * sqrt(fmax(0, q * (1 - q))), tolerance, 0);
+    }
+    // on the left side, seen from tail to nose, and ends in the nodes
+    NEAR(polygon[0], 0, 1e-15, 0);
+    NEAR(polygon[2 * OUTLINE_POINTS - 2], 1, 1e-15, 0);
+    outline_free(&outline);
+}
+
+static void an_ellipse_stays_one(void **state) {
+    (void)state;
+    for (int n = 4; n <= MAX_NODES; n += 29) {
+        is_an_ellipse(n, false, 1e-12);
+        is_an_ellipse(n, true, 1e-7);  // the error of the midpoints
+    }
+}
+
+static void the_middle_line_is_the_smooth_curve(void **state) {
+    (void)state;
+    // nodes on an arc of one radian: the curve of order 4 through 17 nodes is the circle to 1e-6
+    enum { N = 17 };
+    double nodes[2 * N], thickness[N], polygon[2 * OUTLINE_SIDES];
+    for (int k = 0; k < N; k++) {
+        nodes[2 * k] = cos((double)k / (N - 1));
+        nodes[2 * k + 1] = sin((double)k / (N - 1));
+        thickness[k] = 0.1;
+    }
+    struct outline outline;
+    assert_int_equal(outline_create(&outline, N, thickness, false), STATUS_OK);
+    outline_polygon(&outline, nodes, polygon);
+    for (int i = 1; i < OUTLINE_POINTS - 1; i++) {
+        const int other = OUTLINE_SIDES - i;
+        assert_int_equal(outline_point(other), i);
+        const double left = hypot(polygon[2 * i], polygon[2 * i + 1]);
+        const double right = hypot(polygon[2 * other], polygon[2 * other + 1]);
+        NEAR((left + right) / 2, 1, 1e-5, 0);
+        NEAR(right - left, 2 * outline.half[i], 1e-9, 0);
+    }
+    outline_free(&outline);
+    assert_null(outline.weight);
+}
+
+static void a_body_in_one_point_has_an_outline(void **state) {
+    (void)state;
+    double nodes[2 * MAX_NODES], thickness[MAX_NODES], polygon[2 * OUTLINE_SIDES];
+    fill_ellipse(5, true, nodes, thickness);
+    memset(nodes, 0, sizeof nodes);
+    struct outline outline;
+    assert_int_equal(outline_create(&outline, 5, thickness, true), STATUS_OK);
+    outline_polygon(&outline, nodes, polygon);
+    for (int i = 0; i < 2 * OUTLINE_SIDES; i++) NEAR(polygon[i], 0, 0, 0);
+    outline_free(&outline);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(an_ellipse_stays_one),
+        cmocka_unit_test(the_middle_line_is_the_smooth_curve),
+        cmocka_unit_test(a_body_in_one_point_has_an_outline),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

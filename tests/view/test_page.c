@@ -1,0 +1,214 @@
+/* test_page.c: the page of a result, and the reader of results under it. What the page shows is tested by
+ * tests/app/test_view.sh. */
+#include <sys/stat.h>
+
+#include "crafted_file.h"
+#include "result/result_reader.h"
+#include "result_fixture.h"
+#include "view/page.h"
+
+// ---- the reader
+
+static void the_reader_gives_what_was_written(void **state) {
+    struct fixture *f = *state;
+    write_file(f, 3);
+    struct result_reader reader;
+    assert_int_equal(result_reader_open(&reader, f->path), STATUS_OK);
+    assert_int_equal(reader.length[TIME], 3);
+    assert_string_equal(reader.title, "result");
+    assert_string_equal(reader.run_status, "complete");
+    assert_string_equal(reader.name[0], "leader");
+    assert_string_equal(reader.name[1], "suédois");
+    assert_int_equal(reader.n_nodes[1], 7);
+    assert_int_equal(reader.n_sheet[0], 7);
+    assert_int_equal(result_reader_n(&reader, "x"), N_FISH * 7 * 2);
+    double time, *x;
+    assert_int_equal(result_reader_row(&reader, "time", 2, &time), STATUS_OK);
+    NEAR(time, 1, 0, 0);
+    assert_int_equal(result_reader_new(&reader, "x", 1, &x), STATUS_OK);
+    const struct fish *const second = &f->school->fish[1];
+    NEAR(x[2 * 7 + 1], f->state->y[second->at.y], 0, 0);
+    assert_true(isnan(x[2 * 5]));  // the leader has five nodes
+    free(x);
+    bool has_wake = false;
+    assert_int_equal(result_reader_has_wake(&reader, 0, &has_wake), STATUS_OK);
+    assert_true(has_wake);
+    result_reader_close(&reader);
+    assert_null(reader.title);
+}
+
+static void cannot_be_read(const char *path, const char *part) {
+    struct result_reader reader;
+    assert_int_equal(result_reader_open(&reader, path), STATUS_FILE);
+    assert_message(path);
+    assert_message(part);
+}
+
+/* Give the file of a fixture an attribute. */
+static void put_attribute(const struct fixture *f, const char *name, int value) {
+    int file;
+    assert_int_equal(nc_open(f->path, NC_WRITE, &file), NC_NOERR);
+    assert_int_equal(nc_redef(file), NC_NOERR);
+    assert_int_equal(nc_put_att_int(file, NC_GLOBAL, name, NC_INT, 1, &value), NC_NOERR);
+    assert_int_equal(nc_close(file), NC_NOERR);
+}
+
+static void the_reader_refuses_other_files(void **state) {
+    struct fixture *f = *state;
+    cannot_be_read(f->path, "No such file");
+    write_file(f, 0);
+    cannot_be_read(f->path, "has not written a row yet");
+    put_attribute(f, "shoal_schema", RESULT_SCHEMA + 1);
+    cannot_be_read(f->path, "use the one that wrote it");
+    put_attribute(f, "shoal_schema", 0);
+    cannot_be_read(f->path, "not one of shoal");
+    put_attribute(f, "shoal_study", 1);
+    cannot_be_read(f->path, "the file of a study: name that of one of its runs");
+}
+
+static void set_text(const struct fixture *f, const char *name, const char *text) {
+    int file;
+    assert_int_equal(nc_open(f->path, NC_WRITE, &file), NC_NOERR);
+    assert_int_equal(nc_redef(file), NC_NOERR);
+    assert_int_equal(nc_put_att_text(file, NC_GLOBAL, name, strlen(text), text), NC_NOERR);
+    assert_int_equal(nc_close(file), NC_NOERR);
+}
+
+/* Give a variable a name that nobody looks for. */
+static void hide_variable(const struct fixture *f, const char *name) {
+    char hidden[64];
+    int file;
+    snprintf(hidden, sizeof hidden, "no_%s", name);
+    assert_int_equal(nc_open(f->path, NC_WRITE, &file), NC_NOERR);
+    assert_int_equal(nc_redef(file), NC_NOERR);
+    assert_int_equal(nc_rename_var(file, number_of(file, name), hidden), NC_NOERR);
+    assert_int_equal(nc_close(file), NC_NOERR);
+}
+
+/* What readers need of a case is in variables; the text of a case, with names that look like keys, is not searched. */
+static void sections_and_forces_are_those_of_the_fish_whatever_their_names(void **state) {
+    struct fixture *f = *state;
+    f->school->fish[0].has_mean_section = 0;
+    f->school->fish[1].has_mean_section = 1;
+    for (enum force force = FORCE_REACTIVE; force <= FORCE_PRESSURE; force++) {
+        struct result_reader reader;
+        f->school->fish[1].force = force;
+        write_file(f, 1);
+        set_text(f, "case_effective", "  - name: section: mean\n    section: mean\n    force: pressure\n");
+        assert_int_equal(result_reader_open(&reader, f->path), STATUS_OK);
+        assert_false(reader.has_mean_section[0]);
+        assert_true(reader.has_mean_section[1]);
+        assert_int_equal(reader.has_pressure, force == FORCE_PRESSURE);
+        result_reader_close(&reader);
+        unlink(f->path);
+    }
+}
+
+static void files_without_these_variables_are_read_by_the_lines_of_their_case(void **state) {
+    struct fixture *f = *state;
+    struct result_reader reader;
+    write_file(f, 1);
+    hide_variable(f, "mean_section");
+    hide_variable(f, "fluid_force");
+    set_text(f, "case_effective",
+             "name: section: mean\nfish:\n  - name: 'section: mean, force: pressure'\n    body:\n      section: nodes  "
+             "    # m\n"
+             "    force: reactive\n  - name: b\n    body:\n      section: mean\n    force: pressure\n");
+    assert_int_equal(result_reader_open(&reader, f->path), STATUS_OK);
+    assert_false(reader.has_mean_section[0]);
+    assert_true(reader.has_mean_section[1]);
+    assert_true(reader.has_pressure);
+    result_reader_close(&reader);
+    set_text(f, "case_effective", "fish:\n  - name: a\n    body:\n      section: nodes\n");
+    cannot_be_read(f->path, "its case says 'section: ' of 1 of its 2 fish: use the program that wrote it");
+}
+
+static void an_outline_needs_its_edges(void **state) {
+    struct fixture *f = *state;
+    int file, edge, fish, number;
+    write_file(f, 1);
+    assert_int_equal(nc_open(f->path, NC_WRITE, &file), NC_NOERR);
+    assert_int_equal(nc_redef(file), NC_NOERR);
+    assert_int_equal(nc_inq_dimid(file, "edge", &number), NC_NOERR);
+    assert_int_equal(nc_rename_dim(file, number, "gone"), NC_NOERR);
+    assert_int_equal(nc_inq_varid(file, "edge_height", &number), NC_NOERR);
+    assert_int_equal(nc_rename_var(file, number, "no_height"), NC_NOERR);
+    assert_int_equal(nc_inq_dimid(file, "fish", &fish), NC_NOERR);
+    assert_int_equal(nc_def_dim(file, "edge", 5, &edge), NC_NOERR);
+    assert_int_equal(nc_def_var(file, "edge_height", NC_DOUBLE, 2, (int[]){fish, edge}, &number), NC_NOERR);
+    assert_int_equal(nc_close(file), NC_NOERR);
+    // the second fish has 7 nodes and needs 6 edges
+    cannot_be_read(f->path, "its variable n_nodes is 7 for a fish, which cannot be");
+}
+
+// ---- the page
+
+/* The path of the page of a fixture. */
+static const char *page_of(const struct fixture *f) {
+    static char path[64];
+    snprintf(path, sizeof path, "%s/run.html", f->folder);
+    return path;
+}
+
+static void a_page_is_whole_or_not_there(void **state) {
+    struct fixture *f = *state;
+    write_file(f, 3);
+    const char *const page = page_of(f);
+    assert_int_equal(page_write(f->path, page, false), STATUS_OK);
+    size_t n;
+    char *const bytes = read_bytes(page, &n);
+    assert_memory_equal(bytes, "<!DOCTYPE html>", 15);
+    assert_memory_equal(bytes + n - 8, "</html>\n", 8);
+    free(bytes);
+
+    assert_int_equal(page_write(f->path, page, false), STATUS_FILE);
+    assert_message("exists");
+    assert_int_equal(page_write(f->path, page, true), STATUS_OK);
+    unlink(page);
+    assert_int_equal(page_write(f->path, "/no/such/run.html", false), STATUS_FILE);
+    assert_message("no folder /no/such");
+    assert_int_equal(page_write("/no/such/run.nc", page, false), STATUS_FILE);
+    struct stat facts;
+    assert_int_not_equal(stat(page, &facts), 0);
+}
+
+static void variables_that_do_not_fit_are_refused(void **state) {
+    struct fixture *f = *state;
+    write_file(f, 3);
+    size_t n;
+    char *const bytes = read_bytes(f->path, &n), name[NC_MAX_NAME + 1];
+    const char *const page = page_of(f);
+    int n_refused = 0;
+    for (int i = 0; name_of_variable(f->path, i, name); i++) {
+        for (enum craft how = MISSING; how < N_CRAFTS; how += MORE_DIMENSIONS) {
+            craft_variable(f->path, name, how);
+            const enum status status = page_write(f->path, page, true);
+            if (status == STATUS_FILE) {
+                assert_message(f->path);
+                n_refused++;
+            } else {
+                assert_int_equal(status, STATUS_OK);
+            }
+            unlink(page);
+            write_bytes(f->path, n, bytes);
+        }
+    }
+    // 17 variables are read in three ways, three of them without a dimension that could be too long
+    assert_true(n_refused >= 17 * 3 - 3);
+    free(bytes);
+}
+
+#define WITH_FILE(test) cmocka_unit_test_setup_teardown(test, set_up, tear_down)
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        WITH_FILE(the_reader_gives_what_was_written),
+        WITH_FILE(the_reader_refuses_other_files),
+        WITH_FILE(sections_and_forces_are_those_of_the_fish_whatever_their_names),
+        WITH_FILE(files_without_these_variables_are_read_by_the_lines_of_their_case),
+        WITH_FILE(an_outline_needs_its_edges),
+        WITH_FILE(a_page_is_whole_or_not_there),
+        WITH_FILE(variables_that_do_not_fit_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,245 @@
+/* test_near_field.c: the estimated errors of the far field against true ones: doc/numerics.md, section 12. */
+#include <string.h>
+
+#include "school.h"
+#include "vortex/kernel.h"
+#include "wake/near_field.h"
+
+enum { N_VORTICES = 20 };
+
+/* One point at rest in the origin, and equal vortices that pass it, all on one path. */
+static struct {
+    struct setup setup;
+    struct near_field near_field;
+    struct near_field_bounds bounds;
+    double x[2], u[2], a[2]; /* the path of the vortices: m, m s-1, m s-2 */
+    double start, end;       /* strength of all of them together, m2 s-1 */
+    int one_by_one;          /* 0: all of them at once, where their bounds allow it */
+} scene;
+
+static int build(void **state) {
+    (void)state;
+    school_build(&scene.setup, "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\nfish: [{}]\n");
+    struct wake *const wake = &scene.setup.state->wake[0];
+    for (int i = 0; i < N_VORTICES; i++) school_ok(wake_release(wake, 0, 0, 0, 0));
+    return 0;
+}
+
+static int clear(void **state) {
+    (void)state;
+    near_field_free(&scene.near_field);
+    school_clear(&scene.setup);
+    return 0;
+}
+
+// divide the vortices, whose fish moves with the velocity (mean, 0), into near and far ones
+static void divide(double mean, double smoothing, double tolerance) {
+    struct school *const school = scene.setup.school;
+    struct wake *const wake = &scene.setup.state->wake[0];
+    double start[N_VORTICES], end[N_VORTICES];
+    school->fish[0].smoothing = smoothing;
+    school->wake_tolerance = tolerance;
+    for (int i = 0; i < N_VORTICES; i++) {
+        wake->x[i] = scene.x[0];
+        wake->y[i] = scene.x[1];
+        wake->u[i] = mean + scene.u[0];
+        wake->v[i] = scene.u[1];
+        wake->u_before[i] = wake->u[i] - school->interval * scene.a[0];
+        wake->v_before[i] = wake->v[i] - school->interval * scene.a[1];
+        start[i] = scene.start / N_VORTICES;
+        end[i] = scene.end / N_VORTICES;
+    }
+    const struct range point = {0, 1}, all = {0, N_VORTICES};
+    double zero = 0;
+    double *const motion[6] = {&zero, &zero, &mean, &zero, &zero, &zero};
+    scene.bounds = near_field_bound_wake(wake, school->interval, start, end);
+    if (scene.one_by_one) scene.bounds.strength = INFINITY;
+    const struct near_field_input input = {.school = school,
+                                           .wakes = wake,
+                                           .points = &point,
+                                           .motion = motion,
+                                           .bounds = &scene.bounds,
+                                           .wake = &all,
+                                           .strength_start = start,
+                                           .strength_end = end,
+                                           .n_released = N_VORTICES};
+    school_ok(near_field_find(&scene.near_field, &input, 0));
+}
+
+// the velocity and its gradient, u v u_x u_y v_x, at (x, y) at a part q of the interval
+static void induce(double smoothing, double q, double x, double y, double value[5]) {
+    const double tau = q * scene.setup.school->interval;
+    const double source[2] = {scene.x[0] + tau * (scene.u[0] + tau / 2 * scene.a[0]),
+                              scene.x[1] + tau * (scene.u[1] + tau / 2 * scene.a[1])};
+    const double strength = scene.start + q * (scene.end - scene.start);
+    memset(value, 0, 5 * sizeof *value);
+    kernel_add_gradient(1, &x, &y, 1, &source[0], &source[1], &strength, smoothing, &value[0], &value[1], &value[2],
+                        &value[3], &value[4]);
+}
+
+// the largest errors in the interval: of the cubic through four velocities; of the gradient, linear in time, by a drift
+// of unit length; and of the velocity that a linear field gives at a drift, over its square
+static struct near_field_error true_error(double smoothing) {
+    static const double time[4] = {0, 0.29289321881345248, 0.70710678118654752, 1};
+    const double drift = 1e-4;
+    double at_time[4][5];
+    struct near_field_error worst = {0};
+    for (int i = 0; i < 4; i++) induce(smoothing, time[i], 0, 0, at_time[i]);
+    for (int step = 0; step <= 40; step++) {
+        const double q = step / 40.0;
+        double now[5], error[5];
+        induce(smoothing, q, 0, 0, now);
+        memcpy(error, now, sizeof error);
+        for (int i = 0; i < 4; i++) {
+            double weight = 1;
+            for (int k = 0; k < 4; k++) weight *= k == i ? 1 : (q - time[k]) / (time[i] - time[k]);
+            for (int k = 0; k < 2; k++) error[k] -= weight * at_time[i][k];
+        }
+        for (int k = 2; k < 5; k++) error[k] -= (1 - q) * at_time[0][k] + q * at_time[3][k];
+        worst.error = fmax(worst.error, hypot(error[0], error[1]));
+        for (int direction = 0; direction < 24; direction++) {
+            const double c = cos(direction * acos(-1) / 12), s = sin(direction * acos(-1) / 12);
+            double there[5];
+            induce(smoothing, q, drift * c, drift * s, there);
+            const double u = there[0] - now[0] - drift * (now[2] * c + now[3] * s);
+            const double v = there[1] - now[1] - drift * (now[4] * c - now[2] * s);
+            worst.by_drift_square = fmax(worst.by_drift_square, hypot(u, v) / (drift * drift));
+            worst.by_drift = fmax(worst.by_drift, hypot(error[2] * c + error[3] * s, error[4] * c - error[2] * s));
+        }
+    }
+    return worst;
+}
+
+enum { DIRECTIONS = 16 };
+
+// a path that begins at the distance 1, with velocity and acceleration in two of the directions
+static void set_path(double speed, int direction, double acceleration, int bend) {
+    const double turn = 2 * acos(-1) / DIRECTIONS, v = direction * turn, a = bend * turn;
+    scene.x[0] = 1;
+    scene.x[1] = 0;
+    scene.u[0] = speed * cos(v);
+    scene.u[1] = speed * sin(v);
+    scene.a[0] = acceleration * cos(a);
+    scene.a[1] = acceleration * sin(a);
+}
+
+// the true errors over the bounds, which are ten estimates: the largest for all directions of velocity and acceleration
+static struct near_field_error ratios(double speed, double acceleration, double smoothing) {
+    struct near_field_error worst = {0};
+    for (int i = 0; i < DIRECTIONS * DIRECTIONS; i++) {
+        set_path(speed, i % DIRECTIONS, acceleration, i / DIRECTIONS);
+        divide(0, smoothing, 1e3);
+        assert_int_equal(scene.near_field.n_near, 0);
+        const struct near_field_error *const estimate = &scene.near_field.far, error = true_error(smoothing);
+        worst.error = fmax(worst.error, error.error / (10 * estimate->error));
+        worst.by_drift = fmax(worst.by_drift, error.by_drift / (10 * estimate->by_drift));
+        worst.by_drift_square = fmax(worst.by_drift_square, error.by_drift_square / (10 * estimate->by_drift_square));
+    }
+    return worst;
+}
+
+static void errors_are_below_ten_estimates_and_not_far_below(void **state) {
+    (void)state;
+    // A single pole reaches 1/sqrt(2) of the bound, and less because the bound lets vortices come closer in the
+    // interval than they are at its beginning. The motions: all terms matter; acceleration matters most; half of the
+    // way to the point is covered.
+    const struct {
+        double speed, acceleration, smoothing, end, least;
+    } rows[] = {{1, 1.3, 0, 1, 0.6}, {0, 50, 0, 1, 0.6},  {1, 1.3, 0, 0, 0.6}, {1, 50, 0, 0, 0.3},
+                {25, 0, 0, 1, 0.1},  {1, 1, 0.5, 1, 0.4}, {1, 1, 2, 1, 0.1}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        scene.start = 1;
+        scene.end = rows[i].end;
+        for (scene.one_by_one = 0; scene.one_by_one < 2; scene.one_by_one++) {
+            const struct near_field_error worst = ratios(rows[i].speed, rows[i].acceleration, rows[i].smoothing);
+            assert_true(worst.error < 1 && worst.error > rows[i].least);
+            assert_true(worst.by_drift < 1 && worst.by_drift > rows[i].least);
+            assert_true(worst.by_drift_square < 1 && worst.by_drift_square > rows[i].least);
+        }
+    }
+    scene.one_by_one = 0;
+}
+
+static void a_vortex_that_moves_with_the_body_is_far(void **state) {
+    (void)state;
+    scene.start = scene.end = 1;
+    // the bounds of the whole wake tell nothing: both are fast
+    set_path(0, 0, 0, 0);
+    divide(3, 0.1, 1e-12);
+    assert_int_equal(scene.near_field.n_near, 0);
+    // one is faster
+    set_path(1, 0, 0, 0);
+    divide(3, 0.1, 1e-12);
+    assert_int_equal(scene.near_field.n_near, N_VORTICES);
+}
+
+static void a_cluster_of_one_sign_can_exceed_the_tolerance(void **state) {
+    (void)state;
+    // the path of the largest error, and a strength that makes the cluster just far
+    scene.start = scene.end = 1;
+    double largest = 0;
+    int worst = 0;
+    for (int i = 0; i < DIRECTIONS * DIRECTIONS; i++) {
+        set_path(1, i % DIRECTIONS, 1, i / DIRECTIONS);
+        const double error = true_error(0).error;
+        if (error <= largest) continue;
+        largest = error;
+        worst = i;
+    }
+    set_path(1, worst % DIRECTIONS, 1, worst / DIRECTIONS);
+    divide(0, 0, 1);
+    // a quarter of the tolerance is for those that are neither far as a whole nor small one by one
+    const double tolerance = 4 * scene.near_field.far.error;
+    divide(0, 0, 1.01 * tolerance);
+    assert_int_equal(scene.near_field.n_near, 0);
+    // doc/numerics.md says so
+    NEAR(largest / tolerance, 1.65, 0.01, 0);
+    // with half of that tolerance all are near
+    divide(0, 0, tolerance / 2);
+    assert_int_equal(scene.near_field.n_near, N_VORTICES);
+}
+
+static void the_far_field_is_valid_up_to_half_of_the_tolerance(void **state) {
+    (void)state;
+    const struct { double by_drift, by_drift_square; } far[] = {{2, 0}, {0, 4}, {1, 2}};
+    for (int i = 0; i < 3; i++) {
+        struct near_field near_field = {.is_interpolated = 1, .tolerance = 2};
+        near_field.far.by_drift = far[i].by_drift;
+        near_field.far.by_drift_square = far[i].by_drift_square;
+        // each is 1 at a drift of a half
+        assert_true(near_field_is_valid(&near_field, 0));
+        assert_true(near_field_is_valid(&near_field, 0.499 * 0.499));
+        assert_false(near_field_is_valid(&near_field, 0.501 * 0.501));
+        assert_false(near_field_is_valid(&near_field, NAN));
+        near_field.is_interpolated = 0;
+        assert_false(near_field_is_valid(&near_field, 0));
+    }
+}
+
+static void near_vortices_move_on_their_paths_and_decay(void **state) {
+    (void)state;
+    scene.start = 2;
+    scene.end = 1;
+    set_path(1, 3, 1, 1);
+    divide(0, 0.1, 1e-12);
+    assert_int_equal(scene.near_field.n_near, N_VORTICES);
+    const double q = 0.3, tau = q * scene.setup.school->interval;
+    near_field_update(&scene.near_field, tau, q, -1);
+    for (int i = 0; i < N_VORTICES; i++) {
+        const struct vortices *const now = &scene.near_field.vortices;
+        NEAR(now->x[i], scene.x[0] + tau * scene.u[0] + tau * tau / 2 * scene.a[0], 1e-15, 0);
+        NEAR(now->y[i], scene.x[1] + tau * scene.u[1] + tau * tau / 2 * scene.a[1], 1e-15, 0);
+        NEAR(now->circulation[i], -(2 - q) / N_VORTICES, 1e-15, 0);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(errors_are_below_ten_estimates_and_not_far_below),
+        cmocka_unit_test(a_vortex_that_moves_with_the_body_is_far),
+        cmocka_unit_test(a_cluster_of_one_sign_can_exceed_the_tolerance),
+        cmocka_unit_test(the_far_field_is_valid_up_to_half_of_the_tolerance),
+        cmocka_unit_test(near_vortices_move_on_their_paths_and_decay),
+    };
+    return cmocka_run_group_tests(tests, build, clear);
+}

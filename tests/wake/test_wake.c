@@ -1,0 +1,201 @@
+/* test_wake.c: the queue of free vortices: doc/model.md, sections 7 and 8. */
+#include "base/ramp.h"
+#include "school.h"
+#include "wake/wake.h"
+
+#define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
+
+static void release_keeps_what_is_there_while_it_grows(void **state) {
+    (void)state;
+    struct wake wake;
+    school_ok(wake_create(&wake, 2));
+    for (int i = 0; i < 100; i++) school_ok(wake_release(&wake, i, 2 * i, 3 * i, 4 * i));
+    assert_int_equal(wake.n_vortex, 100);
+    assert_true(wake.capacity >= 100);
+    for (int i = 0; i < 100; i++) {
+        const double got[] = {wake.x[i], wake.y[i], wake.circulation[i], wake.birth[i], wake.u[i], wake.v_before[i]};
+        const double want[] = {i, 2 * i, 3 * i, 4 * i, 0, 0};
+        NEAR_ARRAY(6, got, want, 0, 0);
+    }
+    wake_free(&wake);
+    // accepts a zeroed wake
+    wake_free(&wake);
+}
+
+static void path_follows_a_velocity_that_is_linear_in_time(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "fish: [{}]\n");
+    const double interval = setup.school->interval;
+    struct wake *wake = &setup.state->wake[0];
+    school_ok(wake_release(wake, 1, 2, 0.5, 0));
+    // W(t) = 3 + 8 t and -1 + 2 t: the path 1 + 3 t + 4 t^2, 2 - t + t^2 is met from the second interval on
+    wake->u_before[0] = 3 - 8 * interval;
+    wake->v_before[0] = -1 - 2 * interval;
+    wake->u[0] = 3;
+    wake->v[0] = -1;
+    for (int i = 0; i <= 4; i++) {
+        const double tau = i * interval / 4;
+        double x, y, strength;
+        wake_at(wake, setup.school, 0, tau, &x, &y, &strength);
+        NEAR(x, 1 + 3 * tau + 4 * tau * tau, 1e-15, 0);
+        NEAR(y, 2 - tau + tau * tau, 1e-15, 0);
+        NEAR(strength, 0.5, 0, 0);
+    }
+    wake_advance(wake, interval);
+    NEAR(wake->x[0], 1 + 3 * interval + 4 * interval * interval, 1e-15, 0);
+    NEAR(wake->y[0], 2 - interval + interval * interval, 1e-15, 0);
+    school_clear(&setup);
+}
+
+// error after one turn on a circle with n intervals
+static double error_on_a_circle(int n) {
+    const double interval = 2 * acos(-1) / n;
+    struct wake wake;
+    school_ok(wake_create(&wake, 1));
+    school_ok(wake_release(&wake, 1, 0, 1, 0));
+    for (int i = 0; i < n; i++) {
+        const double u = -wake.y[0], v = wake.x[0];
+        wake_set_velocity(&wake, &u, &v, i == 0 ? 1 : 0);
+        wake_advance(&wake, interval);
+    }
+    const double error = hypot(wake.x[0] - 1, wake.y[0]);
+    wake_free(&wake);
+    return error;
+}
+
+static void paths_are_second_order_in_the_interval(void **state) {
+    (void)state;
+    const double order = log2(error_on_a_circle(200) / error_on_a_circle(400));
+    // the first interval is of first order, once: it does not show
+    NEAR(order, 2, 0.1, 0);
+}
+
+static void new_velocities_push_the_old_ones_back(void **state) {
+    (void)state;
+    struct wake wake;
+    school_ok(wake_create(&wake, 4));
+    for (int i = 0; i < 3; i++) school_ok(wake_release(&wake, i, 0, 1, 0));
+    const double u[] = {1, 2, 3}, v[] = {4, 5, 6}, more_u[] = {7, 8, 9}, more_v[] = {10, 11, 12};
+    wake_set_velocity(&wake, u, v, 3);
+    NEAR_ARRAY(3, wake.u_before, u, 0, 0);
+    // the last one is new: its velocity stands for the one before, too
+    wake_set_velocity(&wake, more_u, more_v, 1);
+    const double want_u[] = {1, 2, 9}, want_v[] = {4, 5, 12};
+    NEAR_ARRAY(3, wake.u_before, want_u, 0, 0);
+    NEAR_ARRAY(3, wake.v_before, want_v, 0, 0);
+    NEAR_ARRAY(3, wake.u, more_u, 0, 0);
+    NEAR_ARRAY(3, wake.v, more_v, 0, 0);
+    wake_free(&wake);
+}
+
+static void strength_fades_as_the_ramp_over_the_last_part_of_life(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "wake: {lifetime: 1, fade: 0.4}\nfish: [{}]\n");
+    for (int i = 0; i <= 4; i++) NEAR(wake_strength(setup.school, 0.59 + 0.1 * i), 1 - ramp_step(0.25 * i), 1e-14, 0);
+    NEAR(wake_strength(setup.school, 0.5), 1, 0, 0);
+    // inside an interval linear between its ends
+    struct wake *wake = &setup.state->wake[0];
+    school_ok(wake_release(wake, 0, 0, 2, 0));
+    double x, y, at[3];
+    for (int i = 0; i < 3; i++) wake_at(wake, setup.school, 0.8, 0.01 * i, &x, &y, &at[i]);
+    NEAR(at[0], 2 * (1 - ramp_step(0.525)), 1e-14, 0);
+    NEAR(at[2], 2 * (1 - ramp_step(0.575)), 1e-14, 0);
+    NEAR(at[1], (at[0] + at[2]) / 2, 1e-15, 0);
+    school_clear(&setup);
+}
+
+static void old_vortices_go_and_leave_their_circulation(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "wake: {lifetime: 0.1}\nfish: [{}]\n");
+    struct wake *wake = &setup.state->wake[0];
+    for (int i = 1; i <= 9; i++) school_ok(wake_release(wake, i, -i, 0.1 * i, 0.02 * i));
+    // at 0.16 those of 0.02, 0.04 and, exactly a lifetime old, 0.06 go; nothing is left of them
+    NEAR(wake_strength(setup.school, 0.1), 0, 0, 0);
+    wake_remove_old(wake, setup.school, 0.16);
+    assert_int_equal(wake->n_vortex, 6);
+    NEAR(wake->x[0], 4, 0, 0);
+    NEAR(wake->y[5], -9, 0, 0);
+    NEAR(wake->birth[0], 0.08, 1e-17, 0);
+    NEAR(wake->removed, 0.6, 1e-15, 0);
+    wake_remove_old(wake, setup.school, 0.16);
+    assert_int_equal(wake->n_vortex, 6);
+    school_clear(&setup);
+}
+
+static void without_fade_a_vortex_vanishes_within_one_interval(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "wake: {lifetime: 0.105, fade: 0}\nfish: [{}]\n");
+    struct wake *wake = &setup.state->wake[0];
+    school_ok(wake_release(wake, 0, 0, 2, 0));
+    NEAR(wake_strength(setup.school, 0.08), 1, 0, 0);
+    NEAR(wake_strength(setup.school, 0.1), 0.25, 1e-14, 0);
+    // it stays until nothing is left of it, and what it has lost counts meanwhile
+    wake_remove_old(wake, setup.school, 0.1);
+    assert_int_equal(wake->n_vortex, 1);
+    NEAR(wake_lost(wake, setup.school, 0.1, 0), 1.5, 1e-13, 0);
+    NEAR(wake_lost(wake, setup.school, 0.1, 0.01), 1.75, 1e-13, 0);
+    NEAR(wake_lost(wake, setup.school, 0.1, 0.02), 2, 1e-13, 0);
+    wake_remove_old(wake, setup.school, 0.12);
+    assert_int_equal(wake->n_vortex, 0);
+    NEAR(wake_lost(wake, setup.school, 0.12, 0), 2, 0, 0);
+    school_clear(&setup);
+}
+
+static void what_was_shed_long_ago_changes_no_vortex(void **state) {
+    (void)state;
+    // as vortices, and as markers, whose labels are what had been shed before
+    for (int has_markers = 0; has_markers <= 1; has_markers++) {
+        struct wake wake;
+        school_ok(wake_create(&wake, 3));
+        wake.has_markers = has_markers;
+        wake.shed_before = 9;
+        for (int i = 0; i < 3; i++) school_ok(wake_release(&wake, i, 0, 1 << i, i));
+        const unsigned long version = wake.version;
+        wake_add_shed(&wake, 0.5);
+        for (int i = 0; i < wake_n_sources(&wake); i++) NEAR(wake_source(&wake, i), 1 << i, 0, 0);
+        NEAR(wake.circulation[2], has_markers ? 4.5 : 4, 0, 0);
+        NEAR(wake.shed_before, 9.5, 0, 0);
+        NEAR(wake.removed, 0.5, 0, 0);
+        assert_true(wake.version > version);
+        wake_free(&wake);
+    }
+}
+
+static void most_is_enough_and_not_too_much(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME "wake: {lifetime: 0.1}\nfish: [{}]\n");
+    assert_in_range(wake_most(setup.school, 1000), 5, 7);
+    assert_in_range(wake_most(setup.school, 3), 3, 4);
+    school_clear(&setup);
+}
+
+static void nascent_vortex_is_the_centroid_of_what_was_shed(void **state) {
+    (void)state;
+    const struct wake wake = {.slip = {2, -4}};
+    const double tail[2] = {1, 1};
+    double position[2];
+    wake_nascent(&wake, 0.1, tail, position);
+    NEAR(position[0], 1.1, 1e-15, 0);
+    NEAR(position[1], 0.8, 1e-15, 0);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(release_keeps_what_is_there_while_it_grows),
+        cmocka_unit_test(path_follows_a_velocity_that_is_linear_in_time),
+        cmocka_unit_test(paths_are_second_order_in_the_interval),
+        cmocka_unit_test(new_velocities_push_the_old_ones_back),
+        cmocka_unit_test(strength_fades_as_the_ramp_over_the_last_part_of_life),
+        cmocka_unit_test(old_vortices_go_and_leave_their_circulation),
+        cmocka_unit_test(without_fade_a_vortex_vanishes_within_one_interval),
+        cmocka_unit_test(what_was_shed_long_ago_changes_no_vortex),
+        cmocka_unit_test(most_is_enough_and_not_too_much),
+        cmocka_unit_test(nascent_vortex_is_the_centroid_of_what_was_shed),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
