@@ -208,7 +208,8 @@ static void list(struct modes *modes, const struct jacobian *jacobian, const dou
 }
 
 /* Eliminate the algebraic unknowns. Their columns of dF/dy are C = Q [R; 0]: the last columns of Q, times all the
- * equations, have none of them; and R gives a circulation that is algebraic: Gamma + z^T Q^T (the rest) = 0 with R^T z = e. */
+ * equations, have none of them; and R gives a circulation that is algebraic: Gamma + z^T Q^T (the rest) = 0 with
+ * R^T z = e. */
 static enum status reduce(struct modes *modes, const double *by_value, const double *by_rate) {
     const int n = modes->n, slow = modes->n_slow, fast = n - slow, rows = slow + modes->n_shed;
     const size_t n_rows = (size_t)rows, n_all = (size_t)modes->n_all;

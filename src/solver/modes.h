@@ -22,8 +22,8 @@ struct mode {
 
 /* Find modes at an event whose unknowns are an equilibrium and whose wakes have no strength, by falling rate, at most
  * n_most of them; *n: how many. Left out are modes that swing within a few events, and those that decay so fast that
- * the wake ends before they do. residual and state are as they were afterwards, but for what is made of the wakes. Fails
- * with STATUS_MEMORY or STATUS_SOLVER. */
+ * the wake ends before they do. residual and state are restored, but for what is made of the wakes. Fails with
+ * STATUS_MEMORY or STATUS_SOLVER. */
 enum status modes_find(struct residual *residual, struct state *state, int n_most, struct mode *mode, int *n);
 
 #endif
