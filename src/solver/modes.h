@@ -1,5 +1,5 @@
 /* modes.h: the modes of small disturbances of bodies in equilibrium in a stream: flutter, divergence, damping.
- * doc/steady.md, "Without a beat". Tested by tests/solver/test_modes.c.
+ * doc/steady.md, "Without a beat". Tested by tests/steady/test_steady_modes.c.
  *
  * With y = equilibrium + Y exp(lambda t) the linearised equations are, with the wake that this motion has shed,
  *
