@@ -6,11 +6,11 @@
 #include "body/edge.h"
 #include "flow/flow_at_bodies.h"
 
-static double speed_law(const struct fish *fish, double speed) {
+static double drag_speed_law(const struct fish *fish, double speed) {
     return speed * (fabs(speed) + fish->linear_speed);
 }
 
-static double speed_law_slope(const struct fish *fish, double speed) {
+static double drag_speed_law_slope(const struct fish *fish, double speed) {
     return 2 * fabs(speed) + fish->linear_speed;
 }
 
@@ -45,7 +45,7 @@ static double skin_drag(const struct fish *fish, int k, double speed) {
         case SKIN_BOUNDARY_LAYER: return boundary_layer(fish, k, square_of(fish, speed)).resistance * speed;
         case SKIN_QUADRATIC: break;
     }
-    return fish->drag_tangential[k] * speed_law(fish, speed);
+    return fish->drag_tangential[k] * drag_speed_law(fish, speed);
 }
 
 static double skin_drag_slope(const struct fish *fish, int k, double speed) {
@@ -53,14 +53,14 @@ static double skin_drag_slope(const struct fish *fish, int k, double speed) {
         const struct boundary_layer layer = boundary_layer(fish, k, square_of(fish, speed));
         return layer.resistance + 2 * layer.by_square * speed * speed;
     }
-    if (fish->skin == SKIN_QUADRATIC) return fish->drag_tangential[k] * speed_law_slope(fish, speed);
+    if (fish->skin == SKIN_QUADRATIC) return fish->drag_tangential[k] * drag_speed_law_slope(fish, speed);
     const double size = hypot(speed, fish->friction_speed);
     return fish->drag_tangential[k] * (sqrt(size) * (1 + speed / size * (speed / size) / 2));
 }
 
 void drag_force(const struct fish *fish, int k, const struct edge *s, const double w[2], double force[2]) {
     const double along = skin_drag(fish, k, edge_dot(w, s->t));
-    const double across = fish->drag_normal[k] * speed_law(fish, edge_dot(w, s->n));
+    const double across = fish->drag_normal[k] * drag_speed_law(fish, edge_dot(w, s->n));
     for (int i = 0; i < 2; i++) force[i] = -along * s->t[i] - across * s->n[i];
 }
 
@@ -73,9 +73,9 @@ void drag_slope(const struct fish *fish, int k, const struct edge *s, const doub
                 double by_turn[2]) {
     const double wt = edge_dot(w, s->t), wn = edge_dot(w, s->n);
     const double along = skin_drag(fish, k, wt);
-    const double across = fish->drag_normal[k] * speed_law(fish, wn);
+    const double across = fish->drag_normal[k] * drag_speed_law(fish, wn);
     const double along_slope = skin_drag_slope(fish, k, wt);
-    const double across_slope = fish->drag_normal[k] * speed_law_slope(fish, wn);
+    const double across_slope = fish->drag_normal[k] * drag_speed_law_slope(fish, wn);
     for (int i = 0; i < 2; i++) {
         for (int j = 0; j < 2; j++) {
             by_velocity[i][j] = -along_slope * s->t[i] * s->t[j] - across_slope * s->n[i] * s->n[j];
