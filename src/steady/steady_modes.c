@@ -94,7 +94,11 @@ enum status steady_modes_find(struct simulation *simulation, struct steady_value
     state_free(kept, simulation->school);
     TRY(status);
     set_growth(found);
-    return simulate_renew(simulation);
+    TRY(simulate_renew(simulation));
+    const struct state *const state = simulation->state;
+    TRY(residual_evaluate(simulation->residual, state->t, state->y, state->yp, simulation->residual->scratch));
+    simulate_measure(simulation);
+    return STATUS_OK;
 }
 
 // ---- a beat

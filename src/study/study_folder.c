@@ -144,11 +144,11 @@ enum status study_folder_find_study(const char *folder, char **text) {
         char *const path = study_folder_member(folder, number, ".nc");
         struct member_file member;
         status = path ? member_file_read(&member, path) : STATUS_MEMORY;
-        if (status == STATUS_OK && member.number >= 0) {
-            *text = strdup(member.study);
-            if (!*text) status = status_fail(STATUS_MEMORY, "out of memory: the case of a study");
+        if (status == STATUS_OK) {
+            if (member.number >= 0) *text = strdup(member.study);
+            if (member.number >= 0 && !*text) status = status_fail(STATUS_MEMORY, "out of memory: the case of a study");
+            member_file_free(&member);
         }
-        if (path && status == STATUS_OK) member_file_free(&member);
         free(path);
     }
     closedir(entries);
