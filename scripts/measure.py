@@ -270,10 +270,10 @@ def order(bench):
 
 @table("from", "to [periods]", "nose [L]", "order", "tail [L]", "order")
 def interval(bench):
-    """change of the default fish from one shedding interval to the next, as root mean squares over 1.5 s"""
+    """change of a fish that feels its own wake (force: pressure) from one shedding interval to the next (a minute)"""
     sizes = (0.04, 0.02, 0.01, 0.005, 0.0025)
     runs = [bench.run(DEFAULT, "time.end=1.6", "time.output_interval=0.04", f"time.shedding_interval={size:g}",
-                      "solver.rtol=1e-8", "fish[*].sheet_points=65")["x"][:, 0] for size in sizes]
+                      "solver.rtol=1e-8", "fish[*].force=pressure", "fish[*].sheet_points=65", "fish[*].start.speed=1")["x"][:, 0] for size in sizes]
     changes = [[math.sqrt(float(np.mean(np.sum((a[:, node] - b[:, node]) ** 2, axis=1)))) for node in (0, -1)]
                for a, b in zip(runs, runs[1:])]
     for number, size in enumerate(sizes[:-1]):
@@ -380,8 +380,9 @@ def threads(bench):
 
 @table("wake.merge", "vortices at the end", "velocity of the centre of mass [m/s]", "position [m]", "CPU time over none")
 def merge(bench):
-    """error and saving of wake.merge: one fish, a wake of 16 s, 20 s from 1 m/s (a minute)"""
-    case = DEFAULT.replace("end: 8", "end: 20").replace("{name: fish}", "{name: fish, start: {speed: 1}}")
+    """error and saving of wake.merge: one fish that feels its own wake of 16 s, 20 s from 1 m/s (minutes)"""
+    case = DEFAULT.replace("end: 8", "end: 20")
+    case = case.replace("{name: fish}", "{name: fish, force: pressure, start: {speed: 1}}")
     case += "wake: {lifetime: 16}\n"
     exact, seconds = bench.run(case), bench.seconds(case)
     for limit in ("1e-5", "1e-4", "1e-3", "1e-2"):

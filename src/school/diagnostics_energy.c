@@ -18,37 +18,42 @@
 #include "school/diagnostics_forces.h"
 #include "school/diagnostics_momentum.h"
 
-// what holds the prescribed nodes on their path, turns a clamped head, and the load at the tip
-static double driving_power(struct residual *residual, int f, double t, const double *y, double *scratch) {
+// the forces that hold the prescribed nodes on their path, the moment that turns a clamped head, the load at the tip
+static double driving_power(struct residual *residual, int f, double t, const double *y, double force[2]) {
     const struct fish *fish = &residual->school->fish[f];
     const int tail = fish->n_nodes - 1;
     double power = fish->load_tip[0] * y[fish->at.vx + tail] + fish->load_tip[1] * y[fish->at.vy + tail];
+    memcpy(force, fish->load_tip, sizeof fish->load_tip);
     if (fish->motion.prescribed == PRESCRIBED_NONE) return power;
     power += clamp_driving_power(fish, t, y);
-    residual_reaction(residual, f, y, residual->state->yp, scratch);
+    double *const reaction = residual->scratch;
+    residual_reaction(residual, f, y, residual->state->yp, reaction);
     for (int k = 0; k < fish_n_prescribed(fish); k++) {
-        const int has_surge = fish_is_prescribed(fish, k, 0);
-        power += (has_surge ? scratch[fish->at.ax + k] * y[fish->at.vx + k] : 0) +
-                 scratch[fish->at.ay + k] * y[fish->at.vy + k];
+        const double fx = fish_is_prescribed(fish, k, 0) ? reaction[fish->at.ax + k] : 0,
+                     fy = reaction[fish->at.ay + k];
+        power += fx * y[fish->at.vx + k] + fy * y[fish->at.vy + k];
+        force[0] += fx;
+        force[1] += fy;
     }
     return power;
 }
 
-// the power of the fluid's forces as seen by one who drifts with the external flow at the centre of mass
-static double power_on_water(struct residual *residual, int f, double t, const struct fluid_power *power,
-                             const struct pressure_forces *pressure, const double *y) {
+// powers of the fluid's and of the driving forces in the frame of the external flow at the centre of mass
+static void see_from_water(struct residual *residual, int f, double t, const struct pressure_forces *pressure,
+                           const double driving_force[2], const double *y, struct diagnostics_power *power) {
     const struct fish *fish = &residual->school->fish[f];
     const struct flow_at_body flow = flow_at_body(residual->flow, f);
     const double com[2] = {fish_mass_mean(fish, y + fish->at.x), fish_mass_mean(fish, y + fish->at.y)};
-    double stream[2], on_water = power->drag + power->added_mass + power->wake;
-    on_water += pressure->pressure_power + pressure->suction_power;
+    double stream[2];
+    power->on_water = power->drag + power->added_mass + power->wake + power->pressure + power->suction;
+    power->driving_on_water = power->driving;
     flow_external(residual->school, t, com[1], &stream[0], &stream[1]);
-    if (!(fabs(stream[0]) + fabs(stream[1]) > 0)) return on_water;
+    if (!(fabs(stream[0]) + fabs(stream[1]) > 0)) return;
     const struct fluid_forces forces = fluid_force_sum(fish, &flow, com, y);
     double force[2];
     diagnostics_fluid_force(forces.resistive, forces.reactive, pressure, force);
-    for (int i = 0; i < 2; i++) on_water -= force[i] * stream[i];
-    return on_water;
+    for (int i = 0; i < 2; i++) power->on_water -= force[i] * stream[i];
+    for (int i = 0; i < 2; i++) power->driving_on_water -= driving_force[i] * stream[i];
 }
 
 // the strains of fish f, what damping takes of them, and what the muscle works against: by the places of the nodes, or,
@@ -106,7 +111,9 @@ struct diagnostics_power diagnostics_power(struct residual *residual, int f, dou
     const struct rod_strains strains = strains_of(residual, f, &muscle, y);
     const double actuation = rod_actuation_power(fish, &muscle, strains.stress);
     const double damping = rod_damping_power(fish, strains.rate) + clamp_damping_power(fish, t, y);
-    return (struct diagnostics_power){.actuation = actuation,
+    double driving_force[2];
+    const double driving = driving_power(residual, f, t, y, driving_force);
+    struct diagnostics_power power = {.actuation = actuation,
                                       .damping = damping,
                                       .drag = fluid.drag,
                                       .friction = fluid.friction,
@@ -115,8 +122,9 @@ struct diagnostics_power diagnostics_power(struct residual *residual, int f, dou
                                       .pressure = pressure.pressure_power,
                                       .suction = pressure.suction_power,
                                       .contact = contact_power(residual->contact, f, y),
-                                      .on_water = power_on_water(residual, f, t, &fluid, &pressure, y),
-                                      .driving = driving_power(residual, f, t, y, residual->scratch)};
+                                      .driving = driving};
+    see_from_water(residual, f, t, &pressure, driving_force, y, &power);
+    return power;
 }
 
 static double kinetic_energy(const struct fish *fish, const double *y) {
@@ -151,6 +159,7 @@ static void gather_powers(const struct diagnostics_power *power, double *of) {
     of[WORK_FLUID] = power->on_water;
     of[WORK_DAMPING] = power->damping;
     of[WORK_DRIVING] = power->driving;
+    of[WORK_DRIVING_ON_WATER] = power->driving_on_water;
 }
 
 /* The end of a step. */

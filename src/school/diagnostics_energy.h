@@ -10,8 +10,9 @@
  * evaluated. */
 struct diagnostics_power {
     double actuation, damping, drag, friction, added_mass, wake, pressure, suction, driving,
-        contact;     /* friction: of drag */
-    double on_water; /* of all forces of the fluid together, seen from the external flow at the centre of mass */
+        contact;                       /* friction: of drag */
+    double on_water, driving_on_water; /* of all forces of the fluid together, and of the driving forces, in the frame
+                                          of the external flow at the centre of mass */
 };
 struct diagnostics_power diagnostics_power(struct residual *residual, int f, double t, const double *y);
 

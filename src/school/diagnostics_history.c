@@ -149,7 +149,9 @@ static void means_over_period(const struct fish *fish, const struct history *his
     if (distance <= 0) return;
     to->heading_error = angle_degrees(angle_wrap(atan2(way[1], way[0]) - angle_radians(to->desired_heading)));
     const double momentum = fish->total_mass * to->speed;
-    to->cost_of_transport = (new->work[WORK_ACTUATION] - old->work[WORK_ACTUATION]) / duration / momentum;
+    const double muscle = new->work[WORK_ACTUATION] - old->work[WORK_ACTUATION];
+    const double drive = new->work[WORK_DRIVING_ON_WATER] - old->work[WORK_DRIVING_ON_WATER];
+    to->cost_of_transport = (muscle + drive) / duration / momentum;
     to->cost_of_transport_fluid = (old->work[WORK_FLUID] - new->work[WORK_FLUID]) / duration / momentum;
     to->cost_of_transport_body = (old->work[WORK_DAMPING] - new->work[WORK_DAMPING]) / duration / momentum;
     const double into_water = old->work[WORK_FLUID] - new->work[WORK_FLUID];

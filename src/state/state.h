@@ -8,9 +8,9 @@
 #include "fish/fish.h"
 #include "wake/wake.h"
 
-/* The works that are kept: of all powers; of the muscle; of all forces of the fluid, seen from the water; of the
- * internal damping; of what drives a prescribed motion. */
-enum work { WORK_ALL, WORK_ACTUATION, WORK_FLUID, WORK_DAMPING, WORK_DRIVING, N_WORKS };
+/* The works that are kept: of all powers; of the muscle; of all forces of the fluid, in the frame of the water; of the
+ * internal damping; of prescribed motion and loads, and the same in the frame of the water. */
+enum work { WORK_ALL, WORK_ACTUATION, WORK_FLUID, WORK_DAMPING, WORK_DRIVING, WORK_DRIVING_ON_WATER, N_WORKS };
 
 /* What one fish did at the events of the last period, for means over it: a ring of samples. */
 struct sample {
