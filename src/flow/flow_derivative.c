@@ -1,6 +1,7 @@
 /* flow_derivative.c: source by source, by its strength and by the nodes that it moves with. */
 #include "flow/flow_derivative.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "vortex/kernel.h"
@@ -44,6 +45,21 @@ static void add_motion(const struct influence_block *block, const struct fish *o
     }
 }
 
+// add a factor times the derivatives by the tail of fish other of a source that follows it along a unit vector only
+static void add_push(const struct influence_block *block, const struct fish *other, const double along[2], int first,
+                     int n, const struct kernel_values *slope, double factor, double sign) {
+    const int tail = other->n_nodes - 1;
+    const struct part by_x = part_of(block, tail, first), by_y = part_of(block, other->n_nodes + tail, first);
+    for (int i = 0; i < n; i++) {
+        const double du = factor * (along[0] * slope->u_x[i] + sign * along[1] * slope->u_y[i]);
+        const double dv = factor * (along[0] * slope->v_x[i] - sign * along[1] * slope->u_x[i]);
+        by_x.u[i] += along[0] * du;
+        by_x.v[i] += along[0] * dv;
+        by_y.u[i] += along[1] * du;
+        by_y.v[i] += along[1] * dv;
+    }
+}
+
 // add the velocity per strength of one source to column c
 static void add_strength(const struct influence_block *block, int c, int first, int n, const struct kernel_values *unit,
                          double weight) {
@@ -62,10 +78,16 @@ struct target {
 };
 
 // one source of the nascent vortex, or stretch, of a fish: what part of its circulation it has, and of the motion of
-// the tail
+// the tail; pushed: along the vector by which the tail pushes the end of the stretch
 struct nascent_source {
-    double x, y, smoothing, part, follows;
+    double x, y, smoothing, part, follows, pushed;
 };
+
+static int is_pushed(const struct flow *flow, int g) {
+    if (!flow_has_free_sheets(flow)) return 0;
+    const double *const pushed = flow->free_sheet[g].pushed;
+    return fabs(pushed[0]) + fabs(pushed[1]) > 0;
+}
 
 // a source at a range of the points of fish f
 static void derive_nascent_source(const struct target *at, struct range points, const struct nascent_source *source) {
@@ -81,6 +103,10 @@ static void derive_nascent_source(const struct target *at, struct range points, 
         if (at->with_places) {
             const double factor = -source->part * source->follows * flow->nascent.circulation[at->g];
             add_motion(at->block, other, &tail, 1, first, n, &unit, &factor, 1);
+            if (source->pushed > 0 && is_pushed(flow, at->g)) {
+                const double push = -source->part * source->pushed * flow->nascent.circulation[at->g];
+                add_push(at->block, other, flow->free_sheet[at->g].pushed, first, n, &unit, push, 1);
+            }
         }
     }
 }
@@ -94,7 +120,7 @@ static void derive_nascent(const struct target *at) {
     const int n_own = is_sheet && is_own ? other->n_control : 0;
     const int n_unfelt = is_own ? flow->without_own[at->f].n : 0, behind = other->n_control + n_unfelt;
     const struct nascent_source whole = {flow->nascent.x[at->g], flow->nascent.y[at->g], other->smoothing, 1,
-                                         is_sheet ? 0.5 : 1};
+                                         is_sheet ? 0.5 : 1,     is_sheet ? 0.5 : 0};
     if (n_unfelt == 0) {
         derive_nascent_source(at, (struct range){n_own, n_points - n_own}, &whole);
     } else {
@@ -104,8 +130,8 @@ static void derive_nascent(const struct target *at) {
     const struct free_sheet *const sheet = is_sheet ? &flow->free_sheet[at->g] : NULL;
     for (int i = 0; n_own > 0 && i < FREE_SHEET_PANEL; i++) {
         const int source = sheet->n - (FREE_SHEET_PANEL + 1) + i;
-        const struct nascent_source point = {sheet->x[source], sheet->y[source], 0, free_sheet_part[i],
-                                             1 - free_sheet_xi[i]};
+        const struct nascent_source point = {sheet->x[source],   sheet->y[source],     0,
+                                             free_sheet_part[i], 1 - free_sheet_xi[i], free_sheet_xi[i]};
         derive_nascent_source(at, (struct range){0, n_own}, &point);
     }
 }
@@ -150,6 +176,7 @@ struct mirrored_source {
     double weight, circulation;  // per unit of that unknown, and in all: m or 1, m2 s-1
     const struct stencil *point;
     double follows;  // the part of the motion of that point that it follows
+    double pushed;   // and along the vector by which the tail pushes its nascent stretch
 };
 
 // the images of a source at all points of fish f
@@ -168,6 +195,11 @@ static void derive_images_of(const struct target *at, const struct mirrored_sour
         const double factor = -source->follows * source->circulation;
         add_motion(at->block, other, source->point, 1, first, n, &unit.shifted, &factor, 1);
         add_motion(at->block, other, source->point, 1, first, n, &unit.mirrored, &factor, -1);
+        if (source->pushed > 0 && is_pushed(flow, at->g)) {
+            const double *const along = flow->free_sheet[at->g].pushed, push = -source->pushed * source->circulation;
+            add_push(at->block, other, along, first, n, &unit.shifted, push, 1);
+            add_push(at->block, other, along, first, n, &unit.mirrored, push, -1);
+        }
     }
 }
 
@@ -183,7 +215,8 @@ static void derive_nascent_images(const struct target *at) {
                                             .weight = 1,
                                             .circulation = flow->nascent.circulation[at->g],
                                             .point = &tail,
-                                            .follows = flow_has_free_sheets(flow) ? 0.5 : 1};
+                                            .follows = flow_has_free_sheets(flow) ? 0.5 : 1,
+                                            .pushed = flow_has_free_sheets(flow) ? 0.5 : 0};
     derive_images_of(at, &nascent);
 }
 

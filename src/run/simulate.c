@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <time.h>
 
+#include "fish/fish_distance.h"
 #include "fish/fish_school.h"
 #include "flow/flow_at_bodies.h"
 #include "result/result_table.h"
@@ -132,11 +133,40 @@ static enum status refuse_contact(const struct simulation *simulation) {
                        closest->distance, school->contact_range);
 }
 
+// name the two bodies, or the body and the wall, with the least gap at the end of the last step, where it is below the
+// range of contact
+static enum status tell_contact(const struct simulation *simulation, enum status status) {
+    const struct school *const school = simulation->school;
+    const double *const y = simulation->state->closest->before;
+    double least = school->contact_range;
+    int one = -1, other = -1;
+    for (int f = 0; f < school->n_fish; f++) {
+        const double from_wall = fish_wall_distance(school, &school->fish[f], y);
+        if (from_wall < least) {
+            least = from_wall;
+            one = other = f;
+        }
+        for (int g = 0; g < f; g++) {
+            const double gap = fish_distance(&school->fish[g], &school->fish[f], y, least);
+            if (gap >= least) continue;
+            least = gap;
+            one = g;
+            other = f;
+        }
+    }
+    if (one < 0) return status;
+    const char *const name = school->fish[one].name;
+    if (one == other) return status_fail(status, "%s; %s was %.3g m from a wall", status_message(), name, least);
+    return status_fail(status, "%s; %s and %s were in contact, with a gap of %.3g m", status_message(), name,
+                       school->fish[other].name, least);
+}
+
 static enum status step(struct simulation *simulation) {
     struct state *const state = simulation->state;
     const double next = (double)(state->event + 1) * simulation->school->interval;
     const enum status advanced = simulation->integrator->advance(simulation->solver, next, simulation->stop);
     TRY(refuse_contact(simulation));
+    if (advanced == STATUS_SOLVER) return tell_contact(simulation, advanced);
     TRY(advanced);
     int jumped = 0;
     initial_conditions_listen(simulation->consistent, simulation->stop);

@@ -207,22 +207,40 @@ void free_sheet_place(struct free_sheet *sheet, const struct school *school, con
     }
 }
 
+// the older end of the nascent stretch; pushed: the direction along which it follows the tail, or 0
+static void end_nascent(const struct wake *markers, double interval, double tau, const double tail[2], double end[2],
+                        double pushed[2]) {
+    const double *const t = markers->tail_tangent;
+    memcpy(end, tail, 2 * sizeof *end);
+    pushed[0] = pushed[1] = 0;
+    if (markers->n_vortex == 0) return;
+    wake_marker(markers, markers->n_vortex - 1, interval, tau, end);
+
+    // keep the end beside a tail that has overtaken the marker
+    const double along = (end[0] - tail[0]) * t[0] + (end[1] - tail[1]) * t[1];
+    for (int k = 0; k < 2 && along < 0; k++) {
+        end[k] -= along * t[k];
+        pushed[k] = t[k];
+    }
+}
+
 void free_sheet_nascent_point(const struct wake *markers, double interval, double tau, const double tail[2], double xi,
                               double point[2]) {
-    double newest[2] = {tail[0], tail[1]};
-    if (markers->n_vortex > 0) wake_marker(markers, markers->n_vortex - 1, interval, tau, newest);
-    for (int k = 0; k < 2; k++) point[k] = (1 - xi) * tail[k] + xi * newest[k];
+    double end[2], pushed[2];
+    end_nascent(markers, interval, tau, tail, end, pushed);
+    for (int k = 0; k < 2; k++) point[k] = (1 - xi) * tail[k] + xi * end[k];
 }
 
 void free_sheet_place_nascent(struct free_sheet *sheet, const struct fish *fish, const struct wake *markers,
                               double interval, double tau, const double tail[2], double circulation) {
     const int first = sheet->n - (FREE_SHEET_PANEL + 1);
+    double end[2];
+    end_nascent(markers, interval, tau, tail, end, sheet->pushed);
     for (int i = 0; i <= FREE_SHEET_PANEL; i++) {
         const int is_middle = i == FREE_SHEET_PANEL;
-        double point[2];
-        free_sheet_nascent_point(markers, interval, tau, tail, is_middle ? 0.5 : free_sheet_xi[i], point);
-        sheet->x[first + i] = point[0];
-        sheet->y[first + i] = point[1];
+        const double xi = is_middle ? 0.5 : free_sheet_xi[i];
+        sheet->x[first + i] = (1 - xi) * tail[0] + xi * end[0];
+        sheet->y[first + i] = (1 - xi) * tail[1] + xi * end[1];
         sheet->circulation[first + i] = (is_middle ? -1 : free_sheet_part[i]) * circulation;
         sheet->square[first + i] = is_middle ? fish->smoothing * fish->smoothing : 0;
     }

@@ -38,6 +38,8 @@ struct free_sheet {
     /* at one time                                                                                     (n) */
     double *x, *y, *circulation; /* m, m2 s-1 */
     double *square;              /* of the smoothing, m2 */
+    /* a tail that has overtaken the newest marker pushes the end of the nascent stretch along this unit vector; or 0 */
+    double pushed[2];
 };
 
 /* Release what it owns; accepts a zeroed one. */
@@ -61,8 +63,8 @@ enum status free_sheet_build(struct free_sheet *sheet, const struct fish *fish, 
 void free_sheet_place(struct free_sheet *sheet, const struct school *school, const struct wake *markers,
                       const struct wake *middles, double t, double tau);
 
-/* The point at xi of the way from the tail to the newest marker, tau after the event; the tail where there is no
- * marker. */
+/* The point at xi of the way from the tail to the older end of the nascent stretch, tau after the event: the newest
+ * marker, moved along the tangent to the tail's side where the tail has overtaken it; the tail without a marker. */
 void free_sheet_nascent_point(const struct wake *markers, double interval, double tau, const double tail[2], double xi,
                               double point[2]);
 

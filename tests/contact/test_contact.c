@@ -350,6 +350,42 @@ static void bodies_under_pressure_throw_each_other_back(void **state) {
     simulate_free(simulation);
 }
 
+// A body that is thrown back goes with its tail first, which overtakes the marker that it has just laid.
+static void bodies_that_are_thrown_back_go_on_tail_first(void **state) {
+    (void)state;
+#define PRESSED(fish) SCHOOL_SECOND TIME "defaults: {fish: {force: pressure, sheet_points: 33, " fish "}}\n"
+    static const char *const cases[] = {
+        // at a wall, at a right angle: the tail turns back within an interval
+        PRESSED("nodes: 9, body: {modulus: 5.394e+6}") "fluid: {walls: [-0.4974]}\n"
+        "fish: [{start: {heading: 265.83, speed: 4}, wave: {phase: 33.9}}]\n",
+        // the same with a softer body, the tail of which turns back later
+        PRESSED("nodes: 17, body: {modulus: 9.907e+5}") "fluid: {walls: [-0.6660]}\n"
+        "fish: [{start: {heading: 259.75, speed: 2}, wave: {phase: 257}}]\n",
+        // head on: one body at rest; both fast
+        PRESSED("nodes: 9, wave: {amplitude: 0}")
+        "fish: [{start: {position: [-0.15, 0.01], heading: 0, speed: 1}}, {start: {position: [0.15, 0], heading: "
+        "187}}]\n",
+        PRESSED("nodes: 9, wave: {amplitude: 0}")
+        "fish: [{start: {position: [-0.15, 0.01], heading: 0, speed: 4}}, {start: {position: [0.15, 0], heading: 178, "
+        "speed: 4}}]\n"};
+#undef PRESSED
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct simulation *const simulation = school_simulation(cases[i]);
+        double stored = 0;
+        while (simulation->state->t < 0.6) {
+            school_ok(simulate_step(simulation));
+            simulate_measure(simulation);
+            stored = fmax(stored, simulation->diagnostics->fish[0].contact_energy);
+        }
+        const double speed =
+            hypot(simulation->diagnostics->fish[0].com_velocity[0], simulation->diagnostics->fish[0].com_velocity[1]);
+        print_message("thrown back %zu: %.2g J stored, then %.2g m/s\n", i, stored, speed);
+        assert_true(stored > 0.1);
+        assert_true(speed < 4);
+        simulate_free(simulation);
+    }
+}
+
 static void every_integrator_keeps_bodies_apart(void **state) {
     (void)state;
     static const char *const methods[] = {"method: implicit_euler, step: 1.0e-3", "method: trapezoid, step: 1.0e-3",
@@ -376,6 +412,34 @@ static void a_fixed_step_that_is_too_long_fails_and_says_so(void **state) {
     assert_non_null(strstr(status_message(), "choose a smaller solver.step"));
     assert_true(simulation->state->closest->distance > 0);
     simulate_free(simulation);
+}
+
+static void a_failure_in_contact_names_both_bodies_and_the_gap(void **state) {
+    (void)state;
+    static const struct {
+        const char *text, *message;
+    } cases[] = {
+        {"solver: {max_steps: 20}\n" HEAD_ON("5"), "; fish1 and fish2 were in contact, with a gap of "},
+        {TIME "solver: {max_steps: 20}\nfluid: {density: 0, walls: [0]}\nwake: {shedding: continuous, taper: 0, "
+              "taper_beside: 0}\nfish: [{" PASSIVE ", start: {position: [0, 0.15], heading: 280, speed: 5}}]\n",
+         "; fish1 was "},
+        // apart: the message is silent about contact
+        {"solver: {max_steps: 1}\n" TIME "fish: [{}, {start: {position: [0, 1]}}]\n", NULL}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct simulation *const simulation = school_simulation(cases[i].text);
+        enum status status = STATUS_OK;
+        for (int n = 0; n < 50 && status == STATUS_OK; n++) status = simulate_step(simulation);
+        assert_int_equal(status, STATUS_SOLVER);
+        const char *const said = strstr(status_message(), cases[i].message ? cases[i].message : "contact");
+        if (cases[i].message) {
+            assert_non_null(said);
+            const double gap = strtod(said + strlen(cases[i].message), NULL);
+            assert_true(gap > 0 && gap < simulation->school->contact_range);
+        } else {
+            assert_null(said);
+        }
+        simulate_free(simulation);
+    }
 }
 
 enum { CROWD = 256 };
@@ -535,6 +599,8 @@ int main(void) {
         cmocka_unit_test(bodies_that_meet_do_not_cross),
         cmocka_unit_test(plates_that_swim_in_line_do_not_cross),
         cmocka_unit_test(bodies_under_pressure_throw_each_other_back),
+        cmocka_unit_test(bodies_that_are_thrown_back_go_on_tail_first),
+        cmocka_unit_test(a_failure_in_contact_names_both_bodies_and_the_gap),
         cmocka_unit_test(every_integrator_keeps_bodies_apart),
         cmocka_unit_test(a_fixed_step_that_is_too_long_fails_and_says_so),
         cmocka_unit_test(of_256_fish_no_two_get_through_each_other),

@@ -221,6 +221,32 @@ static void jacobian_agrees_with_differences_where_the_suction_ends(void **state
     }
 }
 
+// The newest markers lie beside the bodies, ahead of their tails; in a channel, with a second fish.
+static void jacobian_agrees_with_differences_where_a_tail_has_overtaken_its_wake(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME FAR
+                 "wake: {shedding: sheet, curve: smooth, smoothing: 0.1, taper: 0.4, taper_beside: 0.1}\n"
+                 "fluid: {walls: [-1.2, 1.3]}\n"
+                 "defaults: {fish: {nodes: 5, sheet_points: 9, force: pressure, body: {modulus: 1}}}\n"
+                 "fish: [{}, {start: {position: [0.2, 0.5], heading: 170}}]\n");
+    school_stir(&setup);
+    for (int f = 0; f < 2; f++) {
+        const struct fish *const fish = &setup.school->fish[f];
+        struct wake *const wake = &setup.state->wake[f];
+        const double *const t = wake->tail_tangent, *const y = setup.state->y;
+        wake->x[5] = y[fish->at.x + 4] - 0.2 * t[0] - 0.1 * t[1];
+        wake->y[5] = y[fish->at.y + 4] - 0.2 * t[1] + 0.1 * t[0];
+        wake->version++;
+    }
+    school_compare(&setup, value_of_school, NULL, "overtaken");
+    for (int f = 0; f < 2; f++) {
+        const double *const pushed = setup.residual->flow->free_sheet[f].pushed;
+        NEAR(hypot(pushed[0], pushed[1]), 1, 0, 1e-14);
+    }
+    school_clear(&setup);
+}
+
 static void far_fish_are_left_out_of_the_jacobian_and_of_nothing_else(void **state) {
     (void)state;
     const char *const text = TIME
@@ -404,6 +430,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(jacobian_agrees_with_differences_for_every_option),
         cmocka_unit_test(jacobian_agrees_with_differences_where_the_suction_ends),
+        cmocka_unit_test(jacobian_agrees_with_differences_where_a_tail_has_overtaken_its_wake),
         cmocka_unit_test(far_fish_are_left_out_of_the_jacobian_and_of_nothing_else),
         cmocka_unit_test(unknowns_have_names_kinds_and_scales),
         cmocka_unit_test(circulation_shed_is_differential_only_with_a_rate),

@@ -1,6 +1,9 @@
 #!/usr/bin/env bash
-# 500 random schools with the force of the pressure (tests/soak/pressure_cases.py), each for 1.5 beats.
+# Random fish with the force of the pressure (tests/soak/pressure_cases.py): 100 cases of contact, then 500 schools, each
+# for 1.5 beats.
 #
 #   tests/soak/pressure_cases.sh PROGRAM
 set -euo pipefail
-exec /usr/bin/python3 "$(dirname "$0")/pressure_cases.py" "${1:?usage: tests/soak/pressure_cases.sh PROGRAM}" 500
+program=${1:?usage: tests/soak/pressure_cases.sh PROGRAM}
+/usr/bin/python3 "$(dirname "$0")/pressure_cases.py" "$program" contact
+exec /usr/bin/python3 "$(dirname "$0")/pressure_cases.py" "$program" 500

@@ -103,6 +103,34 @@ static void the_smoothing_tapers_to_nothing_at_the_tail(void **state) {
     simulate_free(simulation);
 }
 
+static void a_tail_that_overtakes_its_newest_marker_keeps_the_nascent_stretch_beside_it(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME SHEET "fish: [{}]\n");
+    school_stir(&setup);
+    struct wake *const wake = &setup.state->wake[0];
+    const int newest = wake->n_vortex - 1;
+    const double tangent[2] = {0.6, 0.8}, across[2] = {-0.8, 0.6};
+    wake_set_tail(wake, (const double[]){0, 0}, tangent);
+    double marker[2];
+    wake_marker(wake, newest, 0.02, 0.01, marker);
+    for (int is_behind = 0; is_behind < 2; is_behind++) {
+        double tail[2];
+        for (int k = 0; k < 2; k++) tail[k] = marker[k] + (is_behind ? -0.03 : 0.03) * tangent[k] - 0.01 * across[k];
+        for (int i = 0; i <= 4; i++) {
+            const double xi = i / 4.0;
+            double point[2];
+            free_sheet_nascent_point(wake, 0.02, 0.01, tail, xi, point);
+            // beside the tail where the marker is ahead of it, else straight to the marker
+            for (int k = 0; k < 2; k++) {
+                const double along = is_behind ? 0.03 * tangent[k] : 0;
+                NEAR(point[k], tail[k] + xi * (0.01 * across[k] + along), 1e-15, 1e-14);
+            }
+        }
+    }
+    school_clear(&setup);
+}
+
 // beyond 2.36 times the longer taper nothing is left of it, in any direction; just before it there is something
 static void far_from_the_tail_the_smoothing_is_full(void **state) {
     (void)state;
@@ -146,6 +174,7 @@ int main(void) {
         cmocka_unit_test(stretches_lie_between_markers_and_markers_have_half_of_both),
         cmocka_unit_test(the_own_body_sees_the_same_circulation_as_others),
         cmocka_unit_test(the_smoothing_tapers_to_nothing_at_the_tail),
+        cmocka_unit_test(a_tail_that_overtakes_its_newest_marker_keeps_the_nascent_stretch_beside_it),
         cmocka_unit_test(far_from_the_tail_the_smoothing_is_full),
         cmocka_unit_test(total_circulation_vanishes),
     };
