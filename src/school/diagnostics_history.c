@@ -82,17 +82,31 @@ double diagnostics_mean_heading(const struct history *history) {
     return sum / (history->n - 1);
 }
 
-// extent of the tail's path through the water, across the fish's way
+// position of the tail in the water, across the fish's way
+static double tail_across(const struct history *history, int age, const double way[2], double distance) {
+    const struct sample *const sample = state_recall(history, age);
+    const double x = sample->tail[0] - sample->drifted[0], y = sample->tail[1] - sample->drifted[1];
+    return (way[0] * y - way[1] * x) / distance;
+}
+
+/* Extent of the tail's path across the way. A crest is the vertex of the parabola through three samples: of fourth
+ * order in the interval; the largest sample alone is of second order. */
 static double peak_to_peak(const struct history *history, const double way[2], double distance) {
-    double min = INFINITY, max = -INFINITY;
+    double least = INFINITY, most = -INFINITY;
     for (int age = 0; age < history->n; age++) {
-        const struct sample *sample = state_recall(history, age);
-        const double x = sample->tail[0] - sample->drifted[0], y = sample->tail[1] - sample->drifted[1];
-        const double across = (way[0] * y - way[1] * x) / distance;
-        min = fmin(min, across);
-        max = fmax(max, across);
+        const double here = tail_across(history, age, way, distance);
+        double crest = here;
+        if (age > 0 && age + 1 < history->n) {
+            const double newer = tail_across(history, age - 1, way, distance);
+            const double older = tail_across(history, age + 1, way, distance);
+            const double slope = (newer - older) / 2, bend = newer - 2 * here + older;
+            const int is_crest = (here - newer) * (here - older) >= 0 && fabs(bend) > 0;
+            if (is_crest) crest -= slope * slope / (2 * bend);
+        }
+        least = fmin(least, crest);
+        most = fmax(most, crest);
     }
-    return max - min;
+    return most - least;
 }
 
 // the change of the mean speed from the period before the last one to the last, over the last
