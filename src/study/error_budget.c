@@ -87,8 +87,12 @@ static enum error_budget_verdict judge_one(const struct error_budget_levels *lev
     if (result->order < least || result->coarse_order < least) return ERROR_BUDGET_GROWS;
     if (isnan(design)) return ERROR_BUDGET_NO_ORDER;
     if (result->order < design - slack || result->coarse_order < design - slack) return ERROR_BUDGET_LOW;
+    // the design order is used, so that an order that rises above the design order does not matter
     const int is_far_above = !(result->order <= design + far_above);
-    if (fabs(result->order - result->coarse_order) > most_change && !is_far_above) return ERROR_BUDGET_CHANGES;
+    const int is_rising = result->coarse_order >= design && result->order >= result->coarse_order;
+    if (fabs(result->order - result->coarse_order) > most_change && !is_far_above && !is_rising) {
+        return ERROR_BUDGET_CHANGES;
+    }
     return ERROR_BUDGET_ACCEPTED;
 }
 

@@ -169,6 +169,8 @@ static void orders_decide(void **state) {
         {{1, 4, 7.5}, 2, ERROR_BUDGET_LOW},           // 2, 0.91
         {{1, 4, 28}, 2, ERROR_BUDGET_CHANGES},        // 2, 2.81
         {{1, 4, 27}, 2, ERROR_BUDGET_ACCEPTED},       // 2, 2.75
+        {{1, 9, 38}, 2, ERROR_BUDGET_ACCEPTED},       // 3.17, 2.08: rises above the design order
+        {{1, 9, 35}, 2, ERROR_BUDGET_CHANGES},        // 3.17, 1.96
         {{1, 11.2, 23}, 2, ERROR_BUDGET_CHANGES},     // 3.49, 1.04
         {{1, 11.4, 23}, 2, ERROR_BUDGET_ACCEPTED},    // 3.51, 1.01: far above
         {{1, 1.5, 2.25}, 1, ERROR_BUDGET_ACCEPTED},  {{1, 4, 16}, NAN, ERROR_BUDGET_NO_ORDER},
