@@ -297,8 +297,10 @@ static double longest_period(const struct school_parameters *school) {
 static void derive_wake(struct school_parameters *school) {
     struct wake_parameters *const wake = &school->wake;
     const double period = longest_period(school);
+    if (isnan(wake->lifetime.seconds) && period > 0) derive(&wake->lifetime.beats, 3);
     derive(&wake->lifetime.seconds, wake->lifetime.beats * period);
-    derive(&wake->lifetime.seconds, period > 0 ? 3 * period : 2);
+    derive(&wake->lifetime.seconds, 2);
+    if (isnan(wake->decay.seconds) && period > 0) derive(&wake->decay.beats, 0.75 * wake->lifetime.beats);
     derive(&wake->decay.seconds, wake->decay.beats * period);
     derive(&wake->decay.seconds, 0.75 * wake->lifetime.seconds);
     const bool is_sheet = wake->shedding == SHEDDING_SHEET;

@@ -26,8 +26,8 @@ enum error_budget_verdict {
     ERROR_BUDGET_TURNS,     /* differences of both signs */
     ERROR_BUDGET_GROWS,     /* an order is not above 0 */
     ERROR_BUDGET_LOW,       /* an order is more than 1 below the design order */
-    ERROR_BUDGET_CHANGES,   /* p and p' differ by more than 0.8; p is not far above the design order, nor p > p' above it */
-    ERROR_BUDGET_UNKNOWN    /* a level is missing: the error is NaN */
+    ERROR_BUDGET_CHANGES, /* p and p' differ by more than 0.8, p is not far above the design order and does not rise */
+    ERROR_BUDGET_UNKNOWN  /* a level is missing: the error is NaN */
 };
 
 /* The levels of a key. */

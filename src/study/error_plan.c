@@ -46,11 +46,22 @@ static int n_owners(const struct case_values *values, const char *path) {
     return case_table_is_of_fish(case_table_row(path)) ? values->school.n_fish : 1;
 }
 
-/* The value of a key; fish is ignored unless the key is of a fish. */
+/* The field of a key; fish is ignored unless the key is of a fish. */
+static const void *field_of(const struct case_values *values, const char *path, int fish) {
+    return case_table_field(case_table_row(path), (struct case_values *)(uintptr_t)values, &values->school.fish[fish]);
+}
+
+/* Whether the value of a key is a duration that the case gives in beats. */
+static int is_in_beats(const struct case_values *values, const char *path) {
+    if (case_table_row(path)->type != DURATION) return 0;
+    return !isnan(((const struct duration *)field_of(values, path, 0))->beats);
+}
+
+/* The value of a key, in beats where the case gives it in beats. */
 static double number_of(const struct case_values *values, const char *path, int fish) {
     const struct key *const key = case_table_row(path);
-    const void *const field =
-        case_table_field(key, (struct case_values *)(uintptr_t)values, &values->school.fish[fish]);
+    const void *const field = field_of(values, path, fish);
+    if (is_in_beats(values, path)) return ((const struct duration *)field)->beats;
     // a duration begins with its seconds
     return key->type == REAL || key->type == DURATION ? *(const double *)field : *(const int *)field;
 }
@@ -75,12 +86,14 @@ static char *path_of(const struct case_values *values, const char *path, int fis
     return text.text;
 }
 
-static char *text_of(const struct key *key, double value) {
+/* The text of a value, in the unit of number_of. */
+static char *text_of(const struct case_values *values, const struct key *key, double value) {
     struct text text = {0};
     if (key->type == CHOICE) {
         text_add(&text, "%s", key->words[(int)value]);
     } else {
         text_add_number(&text, value);
+        text_add(&text, "%s", is_in_beats(values, key->path) ? " beats" : "");
     }
     return text.text;
 }
@@ -96,7 +109,7 @@ static enum status add_columns(struct error_study *study, const struct case_valu
     if (!row) return out_of_memory();
     axis->value = row;
     for (int f = 0; f < n; f++) {
-        row[axis->n_keys] = text_of(key, number_of(values, path, f));
+        row[axis->n_keys] = text_of(values, key, number_of(values, path, f));
         axis->key[axis->n_keys++] = (struct sweep_key){
             .path = path_of(values, path, f), .row = key->path, .unit = key->unit, .is_number = key->type != CHOICE};
         if (!row[axis->n_keys - 1] || !axis->key[axis->n_keys - 1].path) return out_of_memory();
@@ -132,7 +145,7 @@ static void set(struct row *row, const char *path, int fish, double value) {
     const int are_points = strcmp(path, "fish.sheet_points") == 0;
     if (row->is_combined && are_points && text_number(row->value[c], &now) && now > value) return;
     free(row->value[c]);
-    row->value[c] = text_of(case_table_row(path), value);
+    row->value[c] = text_of(&row->study->study, case_table_row(path), value);
     if (!row->value[c]) row->failed = 1;
 }
 
@@ -346,6 +359,8 @@ static enum status add_default_levels(struct error_study *study, int k) {
     const struct sweep_error_key *const row = key->row;
     const double base = key->value[0];
     int is_there, n_missing = 0, n_finer = row->kind == SWEEP_MODEL || study->study.error->confirm;
+    // without an order only longer durations say what a longer one does
+    if (row->kind == SWEEP_DURATION) n_finer *= 2;
     for (int i = 0; i < 2; i++) {
         if (!(row->coarser[i] > 0)) continue;
         TRY(add_level(study, k, base, row->coarser[i], &is_there));
@@ -378,14 +393,17 @@ static int is_used(const struct error_study *study, const struct sweep_error_key
     if (strcmp(row->path, "solver.rtol") == 0) return !(values->solver.step > 0);
     if (strcmp(row->path, "solver.step") == 0) return values->solver.step > 0;
     if (strcmp(row->path, "fish.nodes") != 0 && !has_fluid) return 0;
-    if (row->kind == SWEEP_DURATION && !study->is_steady) return value * row->coarser[0] < values->time.end;
+    if (row->kind == SWEEP_DURATION && !study->is_steady) {
+        return row->coarser[0] * values->school.wake.lifetime.seconds < values->time.end;
+    }
     return !is_wake || value > 0;
 }
 
 static enum status add_key(struct error_study *study, const struct sweep_error_key *row) {
     struct error_study_key *const key = &study->key[study->n_keys++];
     const double base = number_of(&study->study, row->path, 0);
-    *key = (struct error_study_key){.row = row, .n_levels = 1, .value = {base}, .member = {-1}};
+    const char *const unit = is_in_beats(&study->study, row->path) ? " beats" : "";
+    *key = (struct error_study_key){.row = row, .unit = unit, .n_levels = 1, .value = {base}, .member = {-1}};
     key->part = calloc((size_t)(study->n_asked * study->n_fish) + 1, sizeof *key->part);
     return key->part ? STATUS_OK : out_of_memory();
 }

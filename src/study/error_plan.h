@@ -27,6 +27,7 @@ struct error_study_part {
 /* A numerical key, or a choice of the model, and its levels from fine to coarse. */
 struct error_study_key {
     const struct sweep_error_key *row;
+    const char *unit;                 /* " beats" where the case gives a duration in beats, else "" */
     int n_levels, stated;             /* levels; the one of the stated value */
     double value[ERROR_STUDY_LEVELS]; /* of the first fish that has the key */
     int member[ERROR_STUDY_LEVELS];

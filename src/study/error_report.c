@@ -39,6 +39,7 @@ static void write_levels(const struct error_study_key *key, char text[LEVEL_BYTE
         length += snprintf(text + length, (size_t)(LEVEL_BYTES - length), "%s%s%.4g%s", length > 0 ? " " : "",
                            is_stated ? "[" : "", key->value[i], is_stated ? "]" : "");
     }
+    if (length < LEVEL_BYTES) snprintf(text + length, (size_t)(LEVEL_BYTES - length), "%s", key->unit);
 }
 
 // ---- the plan
@@ -161,6 +162,15 @@ static void print_value(const struct error_study *study, int q, int f, FILE *str
 
 // ---- the table
 
+/* Whether the levels of a key change no quantity that is asked for by more than the noise. */
+static int is_below_noise(const struct error_study *study, const struct error_study_key *key) {
+    for (int place = 0; place < study->n_asked * study->n_fish; place++) {
+        const int is_there = place % study->n_fish == 0 || of_fish(study, place / study->n_fish);
+        if (is_there && key->part[place].verdict != ERROR_BUDGET_NONE) return 0;
+    }
+    return 1;
+}
+
 /* "5.0*": the observed order of the first quantity that has one, and what to say of it. */
 static void write_order(const struct error_study *study, const struct error_study_key *key, int f, int *is_above,
                         char text[16]) {
@@ -169,7 +179,7 @@ static void write_order(const struct error_study *study, const struct error_stud
         snprintf(text, 16, "not varied");
     } else if (key->verdict == ERROR_BUDGET_UNKNOWN) {
         snprintf(text, 16, "unknown");
-    } else if (key->verdict == ERROR_BUDGET_NONE) {
+    } else if (is_below_noise(study, key)) {
         snprintf(text, 16, "none");
     } else if (error_budget_is_flagged(key->verdict)) {
         snprintf(text, 16, "flagged");

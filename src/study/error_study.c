@@ -35,9 +35,20 @@ static double steady_number(const struct member_file *member, const char *name) 
     return member_file_value(member, error_plan_quantity(name), 0, 0);
 }
 
-/* The error of the values of a member that no level shows, relative: of the integrator, and of the search, whose
- * residual has the same part in the distance from the steady state as in the case. */
-static double noise_of(const struct error_study *study, const struct member_file *members, int m) {
+/* The lengths of which the error of a search, in lengths per beat, is a part: the way of a beat for a speed and what is
+ * made from it, the extent of the tail's path for a Strouhal number. */
+static double lengths_of(const struct error_study *study, const struct member_file *members, int m, int q, int f) {
+    const double speed = member_file_value(&members[m], error_plan_quantity("steady_speed"), f, 0);
+    const double strouhal = member_file_value(&members[m], error_plan_quantity("steady_strouhal"), f, 0);
+    const double way = speed * study->beat / study->study.school.fish[f].length;
+    if (study->is_static || !(way > 0)) return 1;
+    const int is_tail = strcmp(member_file_quantity(study->quantity[q])->name, "steady_strouhal") == 0;
+    return fmin(1, is_tail && strouhal > 0 ? strouhal * way : way);
+}
+
+/* The relative error of a value of a member that no level shows: of the integrator, and of the search, whose residual
+ * has the same part in the distance from the steady state as in the case. */
+static double noise_of(const struct error_study *study, const struct member_file *members, int m, int q, int f) {
     const struct sweep_axis *const axis = &study->study.sweep[0];
     const int column = error_plan_column(study, "solver.rtol");
     double rtol = study->study.school.rtol;
@@ -46,7 +57,9 @@ static double noise_of(const struct error_study *study, const struct member_file
     if (!study->is_steady) return rtol;
     const double error = steady_number(&members[0], "steady_error");
     const double part = error / steady_number(&members[0], "steady_residual");
-    return rtol + steady_number(&members[m], "steady_residual") * (isfinite(part) ? fmax(1, part) : of_residual);
+    const double distance =
+        steady_number(&members[m], "steady_residual") * (isfinite(part) ? fmax(1, part) : of_residual);
+    return rtol + distance / lengths_of(study, members, m, q, f);
 }
 
 /* CPU time of a member for as much simulated time as that of any other one, and a little, s: what takes less is
@@ -109,7 +122,7 @@ static enum status judge_key(struct error_study *study, const struct member_file
             }
             // speed, cost and Strouhal number judge where there are any
             if (!is_known) continue;
-            const double noise = noise_of(study, members, key->member[key->stated]);
+            const double noise = noise_of(study, members, key->member[key->stated], q, f);
             sequence[n] = (struct error_budget_sequence){(const double(*)[2])value[n], noise};
             origin[n++] = q * n_fish + f;
         }
@@ -159,7 +172,7 @@ static void judge_choice(struct error_study *study, const struct member_file *me
                 const double change = fabs(value_of(study, members, key->member[i], q, f) - base);
                 part->error = isnan(change) ? NAN : fmax(part->error, change);
             }
-            const double noise = 3 * noise_of(study, members, key->member[key->stated]) * fabs(base);
+            const double noise = 3 * noise_of(study, members, key->member[key->stated], q, f) * fabs(base);
             part->verdict = part->error <= noise ? ERROR_BUDGET_NONE : ERROR_BUDGET_ACCEPTED;
         }
     }
@@ -185,7 +198,7 @@ static void add_up(struct error_study *study, const struct member_file *members)
             study->error[place] = sum + study->together[place];
         }
     }
-    study->noise = noise_of(study, members, study->stated);
+    study->noise = noise_of(study, members, study->stated, 0, 0);
     study->cost = cost_of(study, members, study->stated) / cost_of(study, members, 0);
 }
 
