@@ -54,11 +54,12 @@ static enum status out_of_memory(const struct modes *modes) {
 
 // ---- the wake
 
-/* The part of the strength of a stretch a events old that is left by the window; 1 where the wake of the case fades
- * itself. */
+/* The part of the strength of a stretch a events old that is left by the window; 1 where the whole wake of the case is
+ * there and fades by itself. */
 static double window_of(const struct modes *modes, int a, int n_vortex) {
     const struct school *const school = modes->residual->school;
-    if (school->decay >= 0.99 * window * school->lifetime) return 1;
+    const int has_all = (n_vortex + 2) * school->interval >= school->lifetime;
+    if (has_all && school->decay >= 0.99 * window * school->lifetime) return 1;
     return 1 - ramp_step(((a + 0.5) / n_vortex - (1 - window)) / window);
 }
 

@@ -115,6 +115,26 @@ static void they_do_not_depend_on_who_moves(void **state) {
     simulate_free(moving.simulation);
 }
 
+/* Of a long lifetime the modes see the newest part of the wake, which must fade all the same. */
+static void the_lifetime_of_a_long_wake_does_not_matter(void **state) {
+    (void)state;
+    static const char *const wake[] = {"lifetime: 12, fade: 9", "lifetime: 1000", "lifetime: 1000, fade: 100"};
+    struct found found[3];
+    for (int k = 0; k < 3; k++) {
+        char text[1024];
+        snprintf(text, sizeof text,
+                 SCHOOL_SECOND
+                 "time: {end: 1, shedding_interval: 0.04}\n"
+                 "fluid: {density: 1, velocity: [1, 0], viscosity: 0}\nwake: {%s}\n"
+                 "fish: [{" FLAG "start: {heading: 180, speed: 0}}]\n",
+                 wake[k]);
+        find(&found[k], text);
+        NEAR(found[k].rate[0], found[0].rate[0], 2e-4, 0);
+        NEAR(found[k].omega[0], found[0].omega[0], 2e-4, 0);
+    }
+    for (int k = 0; k < 3; k++) simulate_free(found[k].simulation);
+}
+
 static void bodies_far_apart_have_the_modes_of_one(void **state) {
     (void)state;
     struct found one, two;
@@ -229,6 +249,7 @@ int main(void) {
         cmocka_unit_test(without_water_they_are_those_of_a_clamped_beam),
         cmocka_unit_test(a_run_grows_as_fast),
         cmocka_unit_test(they_do_not_depend_on_who_moves),
+        cmocka_unit_test(the_lifetime_of_a_long_wake_does_not_matter),
         cmocka_unit_test(bodies_far_apart_have_the_modes_of_one),
         cmocka_unit_test(what_has_no_stiffness_left_diverges),
         cmocka_unit_test(the_simulation_stays_where_it_is),
