@@ -82,7 +82,7 @@ warnings = $(if $(is_clang),-Wno-missing-field-initializers)
 # what scripts/find-libraries.sh has found
 libraries      = $(file <$(B)/libraries) -lm
 
-# OpenMP as a part of the program, where the compiler has it so: src/app/main_threads.h. That of clang is another one.
+# OpenMP as a part of the program, where the compiler has it so: src/app/main.c. That of clang is another one.
 static_gomp = $(if $(is_clang),,$(wildcard $(shell $(CC) -print-file-name=libgomp.a)))
 
 # objects.a holds every function for the program and the tests; libshoal, which is installed, shares shoal_* only
@@ -128,7 +128,7 @@ python_modules = $(prefix)/lib/python$(if $(filter /usr,$(prefix)),3,$(python_ve
 # make again, on all cores unless told otherwise
 parallel = $(MAKE) --no-print-directory $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
-.PHONY: all demo test test-slurm tests valgrind verify numbers soak fuzz fuzz-programs mutants bench style format docs install uninstall clean deps help FORCE
+.PHONY: all demo test test-c test-platforms test-slurm tests valgrind verify numbers soak fuzz fuzz-programs mutants bench style format docs install uninstall clean deps help FORCE
 
 ## Everyday
 
@@ -142,6 +142,14 @@ test:  ## install what is missing, build, run every test
 	@scripts/install-deps.sh $(test_packages)
 	@$(parallel) tests
 	@scripts/run-tests.sh $(program) $(c_tests) $(shell_tests)
+
+test-c: deps  ## run the tests in C only (half a minute)
+	@$(parallel) tests
+	@scripts/run-tests.sh $(program) $(c_tests)
+
+test-platforms:  ## build and test on other systems in chroots, as root: Debian 12 and 13, gcc and clang, arm64 (hours)
+	@$(parallel) all
+	@scripts/platforms.sh $(if $(PLATFORMS),,--write README.md) $(PLATFORMS)
 
 test-slurm: deps  ## install Slurm where it is missing, start it, run a study on it, stop it (as root)
 	@scripts/install-deps.sh slurm-wlm munge

@@ -13,7 +13,7 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
 
-# Run a program of tests/bench with threads like those of shoal (src/app/main_threads.c).
+# Run a program of tests/bench with threads like those of shoal (src/base/parallel_choice.h).
 bench() {
     local name=$1
     shift
@@ -117,7 +117,7 @@ if ((${#cores[@]} > 1)); then
     trap 'kill "$busy" 2>/dev/null; rm -rf "$folder"' EXIT
     for fish in 16 64; do
         {
-            printf '%s\n' 'format: 1' "name: school$fish" "time: {end: $((64 / fish)), shedding_interval: 0.01, output_interval: 1}" fish:
+            printf '%s\n' 'format: 1' "name: school$fish" "time: {end: $((fish == 16 ? 4 : 2)), shedding_interval: 0.01, output_interval: 1}" fish:
             for ((f = 0; f < fish; f++)); do
                 printf '  - {start: {position: [%d, %d]}, wave: {phase: %d}}\n' $((3 * (f % 4))) $((f / 4)) $((f / 4 % 2 * 180))
             done

@@ -9,6 +9,14 @@
 #include "app/say.h"
 #include "base/version.h"
 
+// Let threads that wait for others spin for microseconds and then sleep, unless the environment says otherwise. OpenMP
+// spins for milliseconds: if threads share a core with other programs, each of the thousands of short loops of a run
+// takes that long. OpenMP reads the environment when it is loaded, without a priority, and is a part of the program
+// (Makefile: static_gomp), so this function comes first. As a shared library it keeps its own wait.
+__attribute__((constructor(101))) static void limit_spinning(void) {
+    if (!getenv("OMP_WAIT_POLICY")) setenv("GOMP_SPINCOUNT", "4000", 0);
+}
+
 // ---- the commands
 
 static const struct command commands[] = {

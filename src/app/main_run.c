@@ -9,10 +9,10 @@
 #include "app/main_commands.h"
 #include "app/main_signals.h"
 #include "app/main_teller.h"
-#include "app/main_threads.h"
 #include "app/progress.h"
 #include "app/say.h"
 #include "base/parallel.h"
+#include "base/parallel_choice.h"
 #include "result/target.h"
 #include "run/simulate_run.h"
 #include "view/page.h"
@@ -22,7 +22,7 @@
 static enum status tell_begin(const struct case_values *values, const char *path, void *data) {
     struct teller *const teller = data;
     TRY(parallel_try_threads(values->school.threads));
-    main_spread_threads(values->school.threads);
+    parallel_choice_spread(values->school.threads);
     teller->path = strdup(path);
     return teller->path ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: a file name");
 }

@@ -4,9 +4,9 @@
 #include "app/main_commands.h"
 #include "app/main_signals.h"
 #include "app/main_teller.h"
-#include "app/main_threads.h"
 #include "app/say.h"
 #include "base/parallel.h"
+#include "base/parallel_choice.h"
 #include "result/steady_info.h"
 #include "result/steady_json.h"
 #include "steady/steady.h"
@@ -27,7 +27,7 @@ static enum status find(const struct case_values *values, const struct request *
                                            .data = &teller,
                                            .stop = main_stop_signal()};
     TRY(parallel_try_threads(values->school.threads));
-    main_spread_threads(values->school.threads);
+    parallel_choice_spread(values->school.threads);
     if (request->max_wall) TRY(main_limit_wall_time(request->max_wall));
     main_catch_signals();
     progress_start(&teller.progress);

@@ -1,46 +1,48 @@
-/* parallel_choice.h: whether the steps of a run share their loops among all threads or take one. Tested by
- * tests/base/test_parallel_choice.c.
+/* parallel_choice.h: the number of threads of a run's steps, all or one, and the processors of these threads.
+ * Tested by tests/base/test_parallel_choice.c.
  *
- * Where another program uses a core, a loop that is shared waits for the thread on that core, for milliseconds: the run
- * is slower than on one thread. No rule knows what other programs do, so a run tries: a short window of steps with the
- * other choice, which it takes if these steps are faster. A trial is repeated after a pause, which grows from trial to
- * trial without a change. Results do not depend on the choice.
+ * If another program uses a core, a shared loop waits milliseconds for the thread on that core, and a run on all
+ * threads is slower than a run on one. The load by other programs is unknown, so the run measures: a short window of
+ * steps is a trial of the other choice, which is taken if its steps are faster. Trials repeat after pauses; the pause
+ * doubles after each trial without a change. Results are independent of the choice.
  *
- *     | steps, all threads          | trial, one | steps, all threads                 | trial | one ...
- *                           pause ->                                 twice the pause ->          faster: taken */
+ *     | steps, all threads | trial, one | steps, all threads                | trial, one | steps, one ...
+ *        pause 0.1 s                       pause 0.2 s                       faster: the new choice */
 #ifndef PARALLEL_CHOICE_H
 #define PARALLEL_CHOICE_H
 
 #include <stdbool.h>
 
-/* Consecutive steps: number and total time, s. */
+/* Consecutive steps. */
 struct parallel_window {
     int n_steps;
-    double time;
+    double time, processor_time; /* in total: wall clock, use of a processor by the thread that steps [s] */
 };
 
-/* All zeros: share loops. */
+/* All zeros: all threads. */
 struct parallel_choice {
     bool is_one;                           /* the choice: one thread */
-    bool is_trial;                         /* the present window tries the other choice */
-    struct parallel_window window, before; /* the present one; the last one with the choice */
-    double pause, rest;                    /* between two trials, and until the next one, s */
-
-    /* of the step that runs */
-    double start; /* s */
-    int levels;   /* nested parallel regions before the step */
-    struct parallel_places *places;
+    bool is_trial, is_retry;               /* the present window tries the other choice, for the second time */
+    int part;                              /* of the processors, where steps on one thread begin */
+    struct parallel_window window, before; /* the present window; the last window of the choice */
+    double pause, rest;                    /* between two trials, until the next trial [s] */
+    double start, processor_start;         /* clocks at the begin of the present step [s] */
+    int levels;                            /* nested parallel regions outside the steps */
 };
 
-/* Take the time of a step into account; returns whether the next step takes one thread. */
-bool parallel_choice_note(struct parallel_choice *choice, double time);
+/* Add a step, with its wall time and its use of a processor [s]; returns whether the next step takes one thread. */
+bool parallel_choice_note(struct parallel_choice *choice, double time, double processor_time);
 
-/* Begin and end a step of a run with this number of threads; both on the same thread. In between, its parallel loops
- * take one thread where that is the choice, and it may use the processors of all of them. */
+/* Begin and end a step of a run with this number of threads, both on the same thread. In between, parallel loops take
+ * the threads of the choice. */
 void parallel_choice_begin(struct parallel_choice *choice, int threads);
 void parallel_choice_end(struct parallel_choice *choice, int threads);
 
-/* Release what begin has allocated. */
-void parallel_choice_clear(struct parallel_choice *choice);
+/* Give each thread of the process its own part of the processors that the process may use: a sleeping thread is easily
+ * woken on the core of its waker, and stays there. A run on one thread is then free to use all processors; its trial is
+ * repeated on another part if it has waited for a processor. No effect if the process may use fewer processors than
+ * threads, or if the environment places threads (OMP_PROC_BIND, OMP_PLACES). Only for the program: a library leaves
+ * the threads of its caller where they are. */
+void parallel_choice_spread(int threads);
 
 #endif

@@ -117,7 +117,6 @@ void simulate_free(struct simulation *simulation) {
     diagnostics_free(simulation->diagnostics);
     state_free(simulation->state, simulation->school);
     fish_school_free(simulation->school);
-    parallel_choice_clear(&simulation->choice);
     free(simulation);
 }
 

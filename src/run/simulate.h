@@ -24,7 +24,7 @@ struct simulation {
     const struct integrator *integrator;
     void *solver;
     struct integrator_options options;
-    struct parallel_choice choice;     /* between all threads and one, for the next step */
+    struct parallel_choice choice;     /* threads of the next step */
     struct integrator_counts totals;   /* up to the last event, with the size of the step that ended there */
     const volatile sig_atomic_t *stop; /* simulate_step stops once this is not 0; or NULL */
     long n_events;                     /* of the whole run, without the one at the start */

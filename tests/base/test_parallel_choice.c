@@ -1,5 +1,7 @@
-/* test_parallel_choice.c: which choice the steps of a run take, by the times of steps with all threads and with one. */
+/* test_parallel_choice.c: the number of threads of steps, from the times of steps on one thread and on all. */
+#define _GNU_SOURCE
 #include <omp.h>
+#include <sched.h>
 
 #include "base/parallel_choice.h"
 #include "near.h"
@@ -9,7 +11,7 @@ struct machine {
     double all, one;
 };
 
-/* What a run on it came to: total time, s, and the share of the time with one thread. */
+/* Total time of a run on a machine, s, and its share of steps on one thread. */
 struct run {
     double time, share_of_one;
 };
@@ -24,7 +26,7 @@ static struct run steps(struct parallel_choice *choice, struct machine machine, 
         const double time = is_one ? machine.one : machine.all;
         run.time += time;
         run.share_of_one += is_one ? time : 0;
-        is_one = parallel_choice_note(choice, time);
+        is_one = parallel_choice_note(choice, time, time);
     }
     run.share_of_one /= run.time;
     return run;
@@ -73,6 +75,21 @@ static void equal_times_change_nothing(void **state) {
     assert_false(choice.is_one);
 }
 
+static void a_trial_that_waits_for_its_processor_is_repeated_on_another_one(void **state) {
+    (void)state;
+    struct parallel_choice choice = {.pause = 1};
+    assert_true(parallel_choice_note(&choice, 1, 1) || parallel_choice_note(&choice, 1, 1) ||
+                parallel_choice_note(&choice, 1, 1));
+    // half of the time on the processor: once more, on the next part
+    for (int i = 0; i < 3; i++) assert_true(parallel_choice_note(&choice, 1.2, 0.6));
+    assert_int_equal(choice.part, 1);
+    // not a third time
+    for (int i = 0; i < 3; i++) assert_int_equal(parallel_choice_note(&choice, 1.2, 0.6), i < 2);
+    assert_int_equal(choice.part, 1);
+    assert_false(choice.is_one);
+    assert_true(choice.rest > 0);
+}
+
 static int team(void) {
     int n = 0;
 #pragma omp parallel num_threads(2)
@@ -94,11 +111,49 @@ static void parallel_loops_take_the_threads_of_the_choice(void **state) {
         assert_int_equal(team(), all);
         choice.is_one = false;
     }
-    // a run on one thread has nothing to choose
+    // a run with one thread counts no steps
     parallel_choice_begin(&choice, 1);
     parallel_choice_end(&choice, 1);
     assert_int_equal(choice.window.n_steps, 2);
-    parallel_choice_clear(&choice);
+}
+
+static int n_processors(void) {
+    cpu_set_t set;
+    return sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : 0;
+}
+
+// one step whose end makes a choice: a window of this length is over
+static void step(struct parallel_choice *choice, double mean_time) {
+    choice->window = (struct parallel_window){.n_steps = 9, .time = 10 * mean_time, .processor_time = 10 * mean_time};
+    parallel_choice_begin(choice, 2);
+    parallel_choice_end(choice, 2);
+}
+
+static void one_thread_may_use_all_processors(void **state) {
+    (void)state;
+    const int all = n_processors();
+    if (all < 2) skip();
+    parallel_choice_spread(2);
+    const int part = n_processors();
+    assert_true(part < all);
+    struct parallel_choice choice = {.pause = 1};
+    step(&choice, 1);  // a trial of one thread begins
+    assert_true(choice.is_trial);
+    assert_int_equal(n_processors(), all);
+    step(&choice, 2);  // it was slower
+    assert_false(choice.is_one);
+    assert_int_equal(n_processors(), part);
+    choice.rest = 0;
+    step(&choice, 1);
+    step(&choice, 0.5);  // faster
+    assert_true(choice.is_one);
+    assert_int_equal(n_processors(), all);
+    choice.rest = 0;
+    step(&choice, 0.5);  // a trial of all threads
+    assert_int_equal(n_processors(), part);
+    step(&choice, 0.4);
+    assert_false(choice.is_one);
+    assert_int_equal(n_processors(), part);
 }
 
 int main(void) {
@@ -107,7 +162,9 @@ int main(void) {
         cmocka_unit_test(a_shared_core_leaves_one_thread_soon),
         cmocka_unit_test(long_steps_cost_few_trials),
         cmocka_unit_test(equal_times_change_nothing),
+        cmocka_unit_test(a_trial_that_waits_for_its_processor_is_repeated_on_another_one),
         cmocka_unit_test(parallel_loops_take_the_threads_of_the_choice),
+        cmocka_unit_test(one_thread_may_use_all_processors),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

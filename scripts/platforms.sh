@@ -1,0 +1,197 @@
+#!/usr/bin/env bash
+# Build and test shoal on other systems, each in an empty chroot of its own.
+#
+#   scripts/platforms.sh [--write FILE] [PLATFORM[:CHECK,...]]...
+#
+# PLATFORM is a name of the table below, by default each of them with its checks:
+#
+#   demo      make demo
+#   test      make test
+#   c_tests   make test-c
+#   same      demo and pair differ by at most 1e-12 m after 1 s from those of this machine's build/shoal
+#
+# Needs root and a mirror of Debian, taken from the sources of apt; skips all platforms, with a reason, where a chroot
+# cannot be made. Leaves logs in build/platforms. --write replaces the rows of these platforms in the table of FILE that
+# follows the line `make test-platforms`. KEEP=1 keeps the chroots, REUSE=1 takes those that were kept.
+# The last line printed counts the checks: "N passed, N failed, N skipped".
+set -euo pipefail
+
+# name, release, architecture, compiler, checks
+readonly platforms='
+debian12-gcc    bookworm  amd64  gcc    demo,test
+debian13-gcc    trixie    amd64  gcc    demo,test
+debian13-clang  trixie    amd64  clang  demo,test
+debian12-arm64  bookworm  arm64  gcc    demo,c_tests,same
+debian13-arm64  trixie    arm64  gcc    demo,c_tests,same'
+
+top=$(realpath "$(dirname "$0")/..")
+readonly top work=$top/build/platforms
+cd "$top"
+passed=0 failed=0
+
+skip_all() {
+    echo "platforms: $1" >&2
+    echo "$passed passed, $failed failed, 1 skipped"
+    exit 0
+}
+
+# Run a command in a chroot, in the sources, with /proc and /dev of its own; nothing that it starts outlives it.
+enter() {  # chroot, command...
+    # shellcheck disable=SC2016 # expanded by the inner shell
+    unshare --mount --pid --fork --kill-child --propagation private bash -c '
+        root=$1
+        shift
+        mount -t proc proc "$root/proc"
+        mount --rbind /dev "$root/dev"
+        exec chroot "$root" /usr/bin/env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 \
+            ${http_proxy:+http_proxy="$http_proxy"} TIME_LIMIT="$TIME_LIMIT" \
+            bash -euo pipefail -c "cd /shoal && $*"' - "$@" </dev/null
+}
+
+# Make an empty chroot: Debian with apt and make.
+make_chroot() {  # folder, release, architecture
+    rm -rf "$1"
+    mmdebstrap --quiet --variant=apt --architectures="$3" --include=make,ca-certificates "$2" "$1" "$mirror"
+    cp -L /etc/resolv.conf /etc/hosts "$1/etc/"
+    mkdir "$1/shoal"
+}
+
+# Let the kernel run programs of another architecture. The flag F opens the emulator now, for all chroots.
+emulate() {  # architecture
+    local name=/proc/sys/fs/binfmt_misc/qemu-aarch64
+    [[ $1 != "$(dpkg --print-architecture)" ]] || return 0
+    [[ $1 == arm64 ]] || return 1
+    scripts/install-deps.sh qemu-user-static || return 1
+    [[ -e $name ]] || cat /usr/lib/binfmt.d/qemu-aarch64.conf >/proc/sys/fs/binfmt_misc/register
+    [[ -e $name ]]
+}
+
+copy_sources() {  # chroot
+    if [[ -e .git ]]; then git ls-files -z; else find . -path ./build -prune -o -type f -print0; fi |
+        tar -c --null --files-from=- | tar -x -C "$1/shoal" --no-same-owner
+}
+
+# ---- the checks: each gets a chroot and a compiler
+
+check_demo() {
+    enter "$1" make CC="$2" demo
+    [[ -s $1/shoal/demo.png ]]
+}
+
+check_test() {
+    enter "$1" make CC="$2" test
+}
+
+check_c_tests() {
+    enter "$1" make CC="$2" test-c
+}
+
+check_same() {
+    local case
+    make --no-print-directory
+    enter "$1" make CC="$2"
+    for case in demo pair; do
+        build/shoal run cases/$case.yaml --set time.end=1 --force -q -o "$work/here.nc"
+        enter "$1" build/shoal run cases/$case.yaml --set time.end=1 --force -q -o /tmp/there.nc
+        /usr/bin/python3 - "$work/here.nc" "$1/tmp/there.nc" <<'PYTHON'
+import sys, netCDF4, numpy
+here, there = (netCDF4.Dataset(path) for path in sys.argv[1:])
+distance = max(numpy.abs(here[name][-1] - there[name][-1]).max() for name in "xy")
+print(f"{sys.argv[1]}: distance of the nodes {distance:.1e} m, limit 1e-12")
+sys.exit(float(here["time"][-1]) != 1 or not distance <= 1e-12)
+PYTHON
+    done
+}
+
+# ---- a platform
+
+version_of() {  # chroot, package
+    chroot "$1" dpkg-query -W -f '${Version}' "$2" | sed 's/^[0-9]*://; s/[-+].*//'
+}
+
+# The row of a platform in the table.
+row() {  # chroot, compiler, checks
+    local root=$1
+    shift
+    # shellcheck source=/dev/null
+    printf '| %s | Debian %s | %s %s | %s | %s | %s | %s |\n' "$name" "$(cat "$root/etc/debian_version")" \
+        "$1" "$(chroot "$root" "$1" -dumpfullversion 2>/dev/null || chroot "$root" "$1" -dumpversion)" \
+        "$(version_of "$root" libsundials-dev)" "$(version_of "$root" libsuitesparse-dev)" \
+        "$(version_of "$root" libnetcdf-dev)" "${2//,/, }"
+}
+
+run_platform() {  # name, release, architecture, compiler, checks
+    local name=$1 release=$2 architecture=$3 compiler=$4 checks=$5 root=$work/$1 check started all=yes
+    emulate "$architecture" || skip_all "$name: programs of $architecture cannot be run here"
+    if [[ -z ${REUSE-} || ! -d $root/shoal ]]; then
+        make_chroot "$root" "$release" "$architecture" || skip_all "$name: no chroot of $release for $architecture from $mirror"
+    fi
+    copy_sources "$root"
+    [[ $compiler != clang ]] || enter "$root" scripts/install-deps.sh clang libomp-dev
+
+    for check in ${checks//,/ }; do
+        started=$SECONDS
+        if "check_$check" "$root" "$compiler" >"$work/$name-$check.log" 2>&1; then
+            passed=$((passed + 1))
+            echo "$name $check: passed, $((SECONDS - started)) s"
+        else
+            failed=$((failed + 1)) all=no
+            tail -n 60 "$work/$name-$check.log" | sed 's/^/    /'
+            echo "$name $check: FAILED, $((SECONDS - started)) s; $work/$name-$check.log"
+        fi
+    done
+    if [[ $all == yes ]]; then row "$root" "$compiler" "$checks" >"$work/$name.row"; else : >"$work/$name.row"; fi
+    [[ -n ${KEEP-} ]] || rm -rf "$root"
+}
+
+# Put the rows into the table of a document, in order of their names.
+write_rows() {  # document, name...
+    local document=$1
+    shift
+    /usr/bin/python3 - "$document" "$work" "$@" <<'PYTHON'
+import pathlib, sys
+document, work, names = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), sys.argv[3:]
+lines = document.read_text().split("\n")
+first = lines.index("`make test-platforms`") + 4  # an empty line, heads, rule
+last = first
+while lines[last].startswith("|"):
+    last += 1
+rows = {line.split()[1]: line for line in lines[first:last]}
+for name in names:
+    rows.pop(name, None)
+    row = (work / f"{name}.row").read_text().rstrip("\n")
+    if row:
+        rows[name] = row
+lines[first:last] = [rows[name] for name in sorted(rows)]
+document.write_text("\n".join(lines))
+PYTHON
+}
+
+document=''
+if [[ ${1-} == --write ]]; then
+    document=$2
+    shift 2
+fi
+chosen=("$@")
+((${#chosen[@]} > 0)) || mapfile -t chosen < <(awk 'NF { print $1 }' <<<"$platforms")
+
+((EUID == 0)) || skip_all 'making a chroot takes root'
+command -v apt-get >/dev/null || skip_all 'this is not Debian'
+unshare --mount --pid --fork true 2>/dev/null || skip_all 'this system has no namespaces for a chroot'
+scripts/install-deps.sh mmdebstrap debian-archive-keyring || skip_all 'mmdebstrap cannot be installed'
+mirror=$(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' 'Origin: Debian' | grep -v security | head -n 1)
+[[ -n $mirror ]] || skip_all 'the sources of apt name no mirror of Debian'
+export TIME_LIMIT=${TIME_LIMIT:-3600}  # seconds for one test: an emulated processor is slow
+mkdir -p "$work"
+
+names=()
+for one in "${chosen[@]}"; do
+    read -r name release architecture compiler checks < <(grep "^${one%%:*} " <<<"$platforms") ||
+        { echo "platforms: there is no platform '${one%%:*}'" >&2; exit 2; }
+    [[ $one != *:* ]] || checks=${one#*:}
+    run_platform "$name" "$release" "$architecture" "$compiler" "$checks"
+    names+=("$name")
+done
+[[ -z $document ]] || write_rows "$document" "${names[@]}"
+echo "$passed passed, $failed failed, 0 skipped"
+((failed == 0))
