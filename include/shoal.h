@@ -13,7 +13,8 @@
  * there, or a number that is not finite is SHOAL_USAGE, and nothing has changed.
  *
  * A program may have many runs, in several threads; each run belongs to one thread at a time. A run gives the same bits
- * whatever the other ones do. Nothing prints, ends the program, or changes its locale, its signals, or its
+ * whatever the other ones do. After a fork the child may use its copies of runs that were between two calls; in the
+ * thread that forked they take one thread (OpenMP has lost the others). Nothing prints, ends the program, or changes its locale, its signals, or its
  * environment. */
 #ifndef SHOAL_H
 #define SHOAL_H
@@ -66,6 +67,13 @@ int shoal_clone(struct shoal **copy, struct shoal *run);
 /* Put a run back, or forward, to where from is: one must be a copy of the other, or of a copy. A run that has failed is
  * whole again. It must not write a result file. */
 int shoal_restore(struct shoal *run, struct shoal *from);
+
+/* Write a run at its last event, with its complete case, as a checkpoint of its own, and open a run from such a file or
+ * from a checkpoint of shoal_checkpoint or `shoal run`. Both go on with the same bits, as after shoal_clone; the opened
+ * run writes no result file and is no copy for shoal_restore. shoal_save replaces a checkpoint, but no other file.
+ * A checkpoint of another version of shoal, or of the libraries, is SHOAL_FILE. On failure *run is NULL. */
+int shoal_save(struct shoal *run, const char *path);
+int shoal_load(struct shoal **run, const char *path);
 
 /* Time of the last event, time of the last event of the case, and time between two events, s. */
 double shoal_time(const struct shoal *run);

@@ -1,8 +1,47 @@
 /* handle.c: checks of a run, its row, and the new start of its integration. */
 #include "library/handle.h"
 
+#include <omp.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+
+pthread_mutex_t handle_netcdf_lock = PTHREAD_MUTEX_INITIALIZER;
+
+// ---- forks: no other thread holds the lock at a fork, and the child does not wait for threads that it does not have
+
+static void lock_netcdf(void) {
+    pthread_mutex_lock(&handle_netcdf_lock);
+}
+
+static void unlock_netcdf(void) {
+    pthread_mutex_unlock(&handle_netcdf_lock);
+}
+
+static void begin_child(void) {
+    pthread_mutex_unlock(&handle_netcdf_lock);
+    omp_set_max_active_levels(0);
+}
+
+static void expect_forks(void) {
+    pthread_atfork(lock_netcdf, unlock_netcdf, begin_child);
+}
+
+static pthread_once_t forks_once = PTHREAD_ONCE_INIT;
+
+enum status handle_create(struct shoal **run) {
+    pthread_once(&forks_once, expect_forks);
+    *run = calloc(1, sizeof **run);
+    if (*run) (*run)->shared = calloc(1, sizeof *(*run)->shared);
+    if (*run && (*run)->shared) {
+        atomic_init(&(*run)->shared->n_users, 1);
+        (*run)->lock.descriptor = -1;
+        return STATUS_OK;
+    }
+    free(*run);
+    *run = NULL;
+    return status_fail(STATUS_MEMORY, "out of memory: a run");
+}
 
 enum status handle_need(const void *pointer, const char *function, const char *name) {
     return pointer ? STATUS_OK : status_fail(STATUS_CASE, "%s: %s is NULL", function, name);

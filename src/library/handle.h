@@ -4,6 +4,7 @@
 #ifndef HANDLE_H
 #define HANDLE_H
 
+#include <pthread.h>
 #include <stdatomic.h>
 
 #include "case/case.h"
@@ -13,6 +14,9 @@
 #include "run/record.h"
 #include "run/simulate.h"
 #include "shoal.h"
+
+/* NetCDF keeps a list of open files that threads must not change together. */
+extern pthread_mutex_t handle_netcdf_lock;
 
 /* A case, which all copies of a run share. */
 struct shared {
@@ -41,6 +45,9 @@ struct shoal {
     void *buffer[RESULT_TABLE_MAX]; /* of each variable read so far; stays where it is */
     unsigned char is_filled[RESULT_TABLE_MAX];
 };
+
+/* A run without a case and without a simulation. Fails with STATUS_MEMORY; *run is then NULL. */
+enum status handle_create(struct shoal **run);
 
 /* Fail with STATUS_CASE unless a pointer, or a fish, is there. function: the public one, for the message. */
 enum status handle_need(const void *pointer, const char *function, const char *name);

@@ -18,9 +18,6 @@ _Static_assert((int)SHOAL_USAGE == STATUS_CASE && (int)SHOAL_FILE == STATUS_FILE
                    (int)SHOAL_MEMORY == STATUS_MEMORY && (int)SHOAL_SOLVER == STATUS_SOLVER,
                "a status goes to the caller as it is");
 
-// NetCDF keeps a list of open files that threads must not change together
-static pthread_mutex_t netcdf_lock = PTHREAD_MUTEX_INITIALIZER;
-
 // ---- checks
 
 static enum status check_assignments(int n, const char *const *assignments, const char *function) {
@@ -42,20 +39,6 @@ static enum status check_can_step(const struct shoal *run, const char *function)
 }
 
 // ---- the life of a run
-
-// a run without a simulation
-static enum status create(struct shoal **run) {
-    *run = calloc(1, sizeof **run);
-    if (*run) (*run)->shared = calloc(1, sizeof *(*run)->shared);
-    if (*run && (*run)->shared) {
-        atomic_init(&(*run)->shared->n_users, 1);
-        (*run)->lock.descriptor = -1;
-        return STATUS_OK;
-    }
-    free(*run);
-    *run = NULL;
-    return status_fail(STATUS_MEMORY, "out of memory: a run");
-}
 
 static enum status start(struct shoal *run) {
     const struct case_values *const values = &run->shared->values;
@@ -82,7 +65,7 @@ int shoal_open(struct shoal **run, const char *case_path, int n_assignments, con
     TRY(handle_need(case_path, __func__, "case_path"));
     TRY(check_assignments(n_assignments, assignments, __func__));
     struct shoal *new;
-    TRY(create(&new));
+    TRY(handle_create(&new));
     return finish_opening(run, new, case_read(&new->shared->values, case_path, n_assignments, assignments));
 }
 
@@ -93,7 +76,7 @@ int shoal_open_text(struct shoal **run, const char *text, const char *folder, in
     TRY(handle_need(text, __func__, "text"));
     TRY(check_assignments(n_assignments, assignments, __func__));
     struct shoal *new;
-    TRY(create(&new));
+    TRY(handle_create(&new));
     return finish_opening(
         run, new, case_parse(&new->shared->values, text, strlen(text), "case", folder, n_assignments, assignments));
 }
@@ -130,10 +113,10 @@ static enum status end_record(struct shoal *run) {
     } else if (!has_ended(run)) {
         status = STATUS_STOPPED;
     }
-    pthread_mutex_lock(&netcdf_lock);
+    pthread_mutex_lock(&handle_netcdf_lock);
     if (run->simulation->residual) record_notes_write(run->record.file, run->simulation, NULL, NULL);
     const enum status closed = record_close(&run->record, status);
-    pthread_mutex_unlock(&netcdf_lock);
+    pthread_mutex_unlock(&handle_netcdf_lock);
     forget_record(run);
     // how the run ended is no failure of closing its file
     return closed == status ? STATUS_OK : closed;
@@ -160,10 +143,10 @@ static enum status write_row(struct shoal *run) {
 
 static enum status write_if_due(struct shoal *run) {
     TRY(check_process(run, "shoal_step"));
-    pthread_mutex_lock(&netcdf_lock);
+    pthread_mutex_lock(&handle_netcdf_lock);
     enum status status = write_row(run);
     if (status != STATUS_OK) status = record_close(&run->record, status);
-    pthread_mutex_unlock(&netcdf_lock);
+    pthread_mutex_unlock(&handle_netcdf_lock);
     if (status != STATUS_OK) forget_record(run);
     return status;
 }
@@ -178,9 +161,9 @@ static int is_checkpoint(const struct shoal *run) {
 static enum status checkpoint(struct shoal *run) {
     TRY(check_process(run, "shoal_checkpoint"));
     if (run->record.file) {
-        pthread_mutex_lock(&netcdf_lock);
+        pthread_mutex_lock(&handle_netcdf_lock);
         const enum status status = checkpoints_write(&run->checkpoints, run->simulation, &run->record);
-        pthread_mutex_unlock(&netcdf_lock);
+        pthread_mutex_unlock(&handle_netcdf_lock);
         TRY(status);
     }
     return has_ended(run) ? STATUS_OK : handle_renew(run);
@@ -259,9 +242,9 @@ static enum status start_record(struct shoal *run, const char *path, int overwri
     TRY(target_check(path, TARGET_NETCDF, overwrite));
     TRY(result_lock_take(&run->lock, path));
     TRY(checkpoints_create(&run->checkpoints, &run->shared->values, path, NULL));
-    pthread_mutex_lock(&netcdf_lock);
+    pthread_mutex_lock(&handle_netcdf_lock);
     const enum status status = create_file(run, overwrite);
-    pthread_mutex_unlock(&netcdf_lock);
+    pthread_mutex_unlock(&handle_netcdf_lock);
     if (status == STATUS_OK) checkpoints_remove(&run->checkpoints);
     return status;
 }

@@ -1,9 +1,13 @@
-/* shoal_copy.c: the part of include/shoal.h that copies runs in memory. */
+/* shoal_copy.c: the part of include/shoal.h that copies runs, in memory and as checkpoints. */
 #include <stdlib.h>
 #include <string.h>
 
+#include "case/case_show.h"
 #include "fish/fish_school.h"
 #include "library/handle.h"
+#include "result/checkpoint.h"
+#include "result/target.h"
+#include "run/record.h"
 #include "state/state_table.h"
 
 static enum status copy_simulation(struct shoal *copy, const struct shoal *run) {
@@ -68,4 +72,74 @@ int shoal_restore(struct shoal *run, struct shoal *from) {
     run->has_failed = 0;
     if (status != STATUS_OK) handle_fail(run);
     return status;
+}
+
+// ---- checkpoints without a result
+
+// the name of a result file that no run can have: `shoal resume` finds none
+static char no_result[] = "(memory)";
+
+int shoal_save(struct shoal *run, const char *path) {
+    TRY(handle_need(run, __func__, "run"));
+    TRY(handle_need(path, __func__, "path"));
+    if (handle_has_failed(run, __func__)) return STATUS_SOLVER;
+    TRY(target_check(path, TARGET_CHECKPOINT, true));
+
+    TRY(handle_renew(run));
+    char *effective;
+    TRY(case_show(&run->shared->values, &effective));
+    const struct checkpoint checkpoint = {.effective = effective,
+                                          .result = no_result,
+                                          .places = "",
+                                          .totals = run->when_reached,
+                                          .wall_time = simulate_wall_time(run->simulation)};
+    const enum status status =
+        checkpoint_write(path, NULL, &checkpoint, run->simulation->state, run->simulation->school);
+    free(effective);
+    return status;
+}
+
+static enum status load_simulation(struct shoal *run, const struct checkpoint *checkpoint) {
+    const struct case_values *const values = &run->shared->values;
+    struct school *school;
+    struct state *state;
+    TRY(fish_school_create(&school, &values->school));
+    enum status status = state_create(&state, school);
+    if (status == STATUS_OK) status = checkpoint_set_state(checkpoint, state, school);
+    if (status != STATUS_OK) {
+        state_free(state, school);
+        fish_school_free(school);
+        return status;
+    }
+    TRY(simulate_take_up(&run->simulation, values, school, state, &checkpoint->totals));
+    run->is_renewed = 1;
+    run->when_reached = checkpoint->totals;
+    return handle_evaluate(run->simulation);
+}
+
+static enum status load(struct shoal *run, const struct checkpoint *checkpoint) {
+    TRY(checkpoint_check_program(checkpoint));
+    const char *const text = checkpoint->effective;
+    TRY(case_parse(&run->shared->values, text, strlen(text), "case", NULL, 0, NULL));
+    run->result_path = record_path(&run->shared->values);
+    if (!run->result_path) return status_fail(STATUS_MEMORY, "out of memory: a path");
+    return load_simulation(run, checkpoint);
+}
+
+int shoal_load(struct shoal **run, const char *path) {
+    TRY(handle_need(run, __func__, "run"));
+    *run = NULL;
+    TRY(handle_need(path, __func__, "path"));
+    struct checkpoint checkpoint;
+    TRY(checkpoint_read(&checkpoint, path));
+    struct shoal *new;
+    enum status status = handle_create(&new);
+    if (status == STATUS_OK) status = load(new, &checkpoint);
+    checkpoint_free(&checkpoint);
+    if (status == STATUS_OK) {
+        *run = new;
+        return STATUS_OK;
+    }
+    shoal_close(new);
+    return status == STATUS_FILE ? status_fail(status, "%s: %s", path, status_message()) : status;
 }

@@ -169,7 +169,7 @@ void durable_sweep(const char *path) {
 static int replace(struct durable_part *part, const char *previous, const void *bytes, size_t n) {
     int code = durable_write(part->descriptor, bytes, n);
     if (code == 0) code = durable_sync(part->descriptor);
-    if (code == 0 && rename(part->target, previous) != 0 && errno != ENOENT) code = errno;
+    if (code == 0 && previous && rename(part->target, previous) != 0 && errno != ENOENT) code = errno;
     return code == 0 ? durable_publish(part, true) : code;
 }
 

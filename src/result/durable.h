@@ -53,9 +53,9 @@ void durable_end(struct durable_part *part);
 /* Remove parts of files whose path begins like this, where the processes that made them have died. */
 void durable_sweep(const char *path);
 
-/* Give a file new bytes; the file that had the name is kept as previous, in place of an earlier one. Whatever fails,
- * and whenever the power does, path or previous is a whole file. Fails with STATUS_FILE and a message that begins with
- * the path, or with STATUS_MEMORY. */
+/* Give a file new bytes; the file that had the name is kept as previous, in place of an earlier one, or replaced
+ * where previous is NULL. Whatever fails, and whenever the power does, path or previous is a whole file. Fails with
+ * STATUS_FILE and a message that begins with the path, or with STATUS_MEMORY. */
 enum status durable_replace(const char *path, const char *previous, const void *bytes, size_t n);
 
 /* Read a whole regular file into memory that the caller frees. Fails with STATUS_FILE, also for what is no regular file

@@ -909,6 +909,90 @@ static void copying_without_memory_fails_and_leaves_the_run(void **state) {
     shoal_close(run);
 }
 
+// ---- checkpoints of their own
+
+static char saved_path[] = "/tmp/test_shoal_saved.XXXXXX";
+
+static void make_saved_path(void) {
+    strcpy(saved_path + strlen(saved_path) - 6, "XXXXXX");
+    const int descriptor = mkstemp(saved_path);
+    assert_true(descriptor >= 0);
+    close(descriptor);
+    assert_int_equal(unlink(saved_path), 0);
+}
+
+static void a_saved_run_goes_on_with_the_bits_of_the_run(void **state) {
+    struct shoal *const run = opened(*state, sizeof led / sizeof *led, led), *loaded;
+    assert_int_equal(shoal_advance(run, 0.2), SHOAL_OK);
+    assert_int_equal(shoal_set(run, 0, "wave.amplitude", 1, (const double[]){0.2}), SHOAL_OK);
+    make_saved_path();
+    for (int again = 0; again < 2; again++) assert_int_equal(shoal_save(run, saved_path), SHOAL_OK);
+    assert_int_equal(shoal_load(&loaded, saved_path), SHOAL_OK);
+    NEAR(shoal_time(loaded), shoal_time(run), 0, 0);
+    same_in_all(run, loaded);
+    assert_int_equal(shoal_advance(run, 0.6), SHOAL_OK);
+    assert_int_equal(shoal_advance(loaded, 0.6), SHOAL_OK);
+    same_in_all(run, loaded);
+    assert_int_equal(shoal_restore(loaded, run), SHOAL_USAGE);
+    shoal_close(loaded);
+    shoal_close(run);
+    assert_int_equal(unlink(saved_path), 0);
+}
+
+static void only_a_checkpoint_is_replaced_or_loaded(void **state) {
+    struct shoal *const run = opened(*state, 0, NULL), *loaded = run;
+    assert_int_equal(shoal_save(run, *state), SHOAL_FILE);
+    assert_int_equal(shoal_save(run, "/no/such/folder/x.ckpt"), SHOAL_FILE);
+    assert_int_equal(shoal_load(&loaded, *state), SHOAL_FILE);
+    assert_null(loaded);
+    assert_int_equal(shoal_load(&loaded, "/no/such.ckpt"), SHOAL_FILE);
+    assert_int_equal(shoal_load(NULL, *state), SHOAL_USAGE);
+    assert_int_equal(shoal_load(&loaded, NULL), SHOAL_USAGE);
+    assert_int_equal(shoal_save(NULL, "x.ckpt"), SHOAL_USAGE);
+    assert_int_equal(shoal_save(run, NULL), SHOAL_USAGE);
+    assert_int_equal(shoal_step(run), SHOAL_OK);
+    shoal_close(run);
+}
+
+static void loading_without_memory_fails_and_leaves_nothing(void **state) {
+    struct shoal *const run = opened(*state, 0, NULL), *loaded;
+    make_saved_path();
+    assert_int_equal(shoal_save(run, saved_path), SHOAL_OK);
+    shoal_close(run);
+    int n_failed = 0, is_reached = 1;
+    for (int n = 0; is_reached; n++) {
+        const int n_before = n_live;
+        n_until_failure = n;
+        const int code = shoal_load(&loaded, saved_path);
+        is_reached = n_until_failure == -1;
+        n_until_failure = -1;
+        n_failed += code != 0;
+        assert_true(code == 0 ? loaded != NULL : code < 0 && !loaded);
+        shoal_close(loaded);
+        assert_int_equal(n_live, n_before);
+        n += n / 4;
+    }
+    assert_true(n_failed > 10);
+    assert_int_equal(unlink(saved_path), 0);
+}
+
+static void a_fork_of_a_run_with_threads_goes_on(void **state) {
+    // steps of the velocity sums that threads share
+    const char *const many[] = {"solver.threads=2", "fish[*].sheet_points=129", "fish[*].nodes=17"};
+    struct shoal *const run = opened(*state, 3, many);
+    assert_int_equal(shoal_advance(run, 0.04), SHOAL_OK);
+    const pid_t child = fork();
+    if (child == 0) {
+        alarm(60);
+        exit(shoal_advance(run, 0.1) == SHOAL_OK ? 0 : 1);
+    }
+    int outcome;
+    assert_int_equal(waitpid(child, &outcome, 0), child);
+    assert_int_equal(outcome, 0);
+    assert_int_equal(shoal_advance(run, 0.1), SHOAL_OK);
+    shoal_close(run);
+}
+
 static void the_end_is_the_time_of_an_event(void **state) {
     // 100 * 0.29 is less than 29 by a rounding error
     const char *const assignments[] = {"time.end=29", "time.shedding_interval=0.29", "fish[*].wave.amplitude=0"};
@@ -968,6 +1052,10 @@ int main(void) {
         cmocka_unit_test(a_run_that_has_failed_is_whole_when_it_is_put_back),
         cmocka_unit_test(only_copies_can_be_put_in_the_place_of_one_another),
         cmocka_unit_test(copying_without_memory_fails_and_leaves_the_run),
+        cmocka_unit_test(a_saved_run_goes_on_with_the_bits_of_the_run),
+        cmocka_unit_test(only_a_checkpoint_is_replaced_or_loaded),
+        cmocka_unit_test(loading_without_memory_fails_and_leaves_nothing),
+        cmocka_unit_test(a_fork_of_a_run_with_threads_goes_on),
         cmocka_unit_test(the_end_is_the_time_of_an_event),
         cmocka_unit_test(the_version_is_that_of_the_program),
     };
