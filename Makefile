@@ -237,9 +237,10 @@ install: $(program) $(library) $(shared) $(manual) $(completion)  ## install pro
 	$(quiet)install -m 644 cases/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases'
 	$(quiet)install -m 644 cases/include/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases/include'
 	$(quiet)install -m 644 cases/studies/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases/studies'
-	$(quiet)install -m 755 $(filter-out scripts/make-% scripts/verify.py scripts/measure.py scripts/mutants.py scripts/shoal.py,$(wildcard scripts/*.py)) '$(DESTDIR)$(prefix)/share/shoal/scripts'
-	$(quiet)install -d '$(DESTDIR)$(python_modules)' '$(DESTDIR)$(prefix)/share/shoal/doc/'{examples,figures}
-	$(quiet)install -m 644 scripts/shoal.py '$(DESTDIR)$(python_modules)'
+	$(quiet)install -m 755 $(filter-out scripts/make-% scripts/verify.py scripts/measure.py scripts/mutants.py,$(wildcard scripts/*.py)) '$(DESTDIR)$(prefix)/share/shoal/scripts'
+	$(quiet)install -d '$(DESTDIR)$(python_modules)/shoal' '$(DESTDIR)$(prefix)/share/shoal/doc/'{examples,figures}
+	$(quiet)rm -f '$(DESTDIR)$(python_modules)/shoal.py'
+	$(quiet)install -m 644 scripts/shoal/*.py '$(DESTDIR)$(python_modules)/shoal'
 	$(quiet)install -m 755 doc/examples/*.py '$(DESTDIR)$(prefix)/share/shoal/doc/examples'
 	$(quiet)install -m 644 doc/figures/*.png '$(DESTDIR)$(prefix)/share/shoal/doc/figures'
 	$(quiet)install -m 644 scripts/shoal.mplstyle '$(DESTDIR)$(prefix)/share/shoal/scripts'
@@ -255,7 +256,7 @@ install: $(program) $(library) $(shared) $(manual) $(completion)  ## install pro
 uninstall:  ## remove what `make install` installed
 	$(quiet)rm -f $(addprefix '$(DESTDIR)$(prefix)'/,bin/shoal include/shoal.h lib/libshoal.a lib/libshoal.so lib/$(soname) lib/libshoal.so.$(VERSION) lib/pkgconfig/shoal.pc)
 	$(quiet)rm -f $(addprefix '$(DESTDIR)$(prefix)'/share/,man/man1/shoal.1 man/man5/shoal-case.5 man/man5/shoal-output.5 bash-completion/completions/shoal)
-	$(quiet)rm -f '$(DESTDIR)$(python_modules)/shoal.py'
+	$(quiet)rm -rf '$(DESTDIR)$(python_modules)/shoal'
 	$(quiet)rm -rf '$(DESTDIR)$(prefix)/share/shoal'
 
 # ---- rules ----

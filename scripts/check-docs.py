@@ -36,7 +36,7 @@ def exists(path):
 
 def code_words():
     """Every word of the sources, and every word between quotes or colons in them: functions, fields, keys, variables."""
-    text = "".join(read(path) for path in files("src/*/*", "include/*", "scripts/*", "tests/*.[ch]", "tests/*/*", "Makefile",
+    text = "".join(read(path) for path in files("src/*/*", "include/*", "scripts/*", "scripts/shoal/*.py", "tests/*.[ch]", "tests/*/*", "Makefile",
                                                 "cases/*.yaml", "cases/*/*.yaml", "doc/examples/*") if "." in path or "Makefile" in path)
     return set(re.findall(r"\w+", text))
 

@@ -1,18 +1,23 @@
 #!/usr/bin/python3
 """test_python.py: the module shoal. Run by test_python.sh in a folder of its own; ends with the line of a shell test."""
 
+import copy
 import ctypes
 import gc
 import importlib.util
 import json
+import multiprocessing
 import os
 import pathlib
+import pickle
 import re
+import signal
 import subprocess
 import sys
 import threading
 import time
 import unittest
+import warnings
 from unittest import mock
 
 import numpy as np
@@ -41,18 +46,30 @@ class Runs(unittest.TestCase):
     def test_a_view_has_shape_names_and_unit_and_is_no_copy(self):
         run = shoal.Run(PAIR)
         run.step()
-        x = run["x"]
+        x = run.view("x")
         self.assertEqual((x.shape, x.dims, x.unit), ((2, 9, 2), ("fish", "node", "xy"), "m"))
         self.assertTrue(np.isnan(x[0, 7:]).all() and np.isfinite(x[0, :7]).all())
         self.assertFalse(x.flags.writeable or x.flags.owndata)
-        self.assertEqual(run["x"].ctypes.data, x.ctypes.data)
+        self.assertEqual(run.view("x").ctypes.data, x.ctypes.data)
         self.assertEqual(run["wake_x"].shape, (2, 2, 2))
         self.assertEqual(run["total_circulation"].shape, ())
         self.assertIsNone(x[0].dims)
 
+    def test_what_is_read_stays(self):
+        run = shoal.Run(PAIR)
+        places = []
+        while not run.at_end:
+            places.append(run["com"])
+            run.step()
+        self.assertEqual((places[0].dims, places[0].unit), (("fish", "xy"), "m"))
+        self.assertTrue(places[0].flags.writeable and places[0].flags.owndata)
+        self.assertGreater(np.abs(places[0] - places[-1]).max(), 1e-6)
+        with self.assertRaises(ValueError):
+            run.view("com")[0] = 1
+
     def test_a_view_keeps_its_run(self):
         run = shoal.Run(PAIR)
-        x = run["x"]
+        x = run.view("x")
         before = x.copy()
         run.close()
         del run
@@ -93,9 +110,6 @@ class Runs(unittest.TestCase):
             run.step()
         with self.assertRaises(TypeError):
             shoal.Run({**PAIR, "name": object()})
-        run.close()
-        with self.assertRaisesRegex(shoal.CaseError, "run is NULL"):
-            run.step()
 
     def test_arguments_are_not_cut(self):
         run = shoal.Run(PAIR)
@@ -105,7 +119,7 @@ class Runs(unittest.TestCase):
                 run.set(fish, "wave.amplitude", 0.5)
         with self.assertRaises(TypeError):
             run.set(0.5, "wave.amplitude", 0.5)
-        for wrong in (lambda: run.set(0, "wave.amplitude\0 of it", 0.5), lambda: run["speed\0s"], lambda: "speed\0" in run,
+        for wrong in (lambda: run.set(0, "wave.amplitude\0 of it", 0.5), lambda: "speed\0" in run,
                       lambda: run.write("cut.nc\0 here"), lambda: shoal.Run("cut.yaml\0 here"),
                       lambda: shoal.Run(PAIR, ["name=a\0b"]), lambda: shoal.Run(PAIR, folder=".\0")):
             try:
@@ -168,17 +182,292 @@ class Runs(unittest.TestCase):
         run = shoal.Run(PAIR)
         nothing = ctypes.PyDLL(None).Py_IsInitialized  # returns at once
         nothing.argtypes, nothing.restype = (ctypes.c_void_p,), ctypes.c_int
-        idle = mock.Mock(shoal_step=lambda pointer: nothing(pointer) - 1, shoal_read=shoal._library.shoal_read)
+        idle = mock.Mock(shoal_step=lambda pointer: nothing(pointer) - 1, shoal_read=shoal._library.library.shoal_read)
         times = []
-        with mock.patch.object(shoal, "_library", idle):
+        with mock.patch.object(shoal._library, "library", idle):
             for _ in range(20):
                 start = time.perf_counter()
                 for _ in range(100):
                     run.step()
-                    run["x"]
+                    run.view("x")
                 times.append((time.perf_counter() - start) / 100)
         print(f"overhead of a step with a view: {1e6 * min(times):.1f} us")
         self.assertLess(min(times), 30e-6)
+
+
+# Each is a way to misuse the module, in the terms of Python: what it raises, or None where it has to work. `run` is a run
+# of two fish after three events, `other` a run of another case.
+MISUSE = [
+    (None, "kept = copy.deepcopy(run); del kept; gc.collect(); run.step()"),
+    (None, "kept = copy.copy(run); run.close(); del run; gc.collect(); kept.step()"),
+    (None, "kept = copy.deepcopy([run, run]); assert kept[0] is kept[1]; run.close(); kept[0].step()"),
+    (None, "kept = pickle.loads(pickle.dumps(run)); run.close(); kept.step()"),
+    (None, "kept = pickle.loads(pickle.dumps(run['x'])); run.close(); kept.sum()"),
+    (None, "env = shoal.SwimEnv(PAIR); env.reset(); kept = copy.deepcopy(env); del env; gc.collect(); kept.step([0.1])"),
+    (None, "env = shoal.SwimEnv(PAIR); env.reset(); kept = pickle.loads(pickle.dumps(env)); kept.step([0.1]); kept.reset()"),
+    (None, "views = [run.view(name) for name in run.keys()]; run.close(); del run; gc.collect(); [v.tobytes() for v in views]"),
+    (None, "a = run.view('x')[0, 1:3]; run.step(); run.close(); del run; gc.collect(); a.sum()"),
+    (None, "[thread.start() or thread for thread in [threading.Thread(target=run.step) for _ in range(5)]]; run.close()"),
+    (None, "in_threads(lambda: run.step() if not run.at_end else None, lambda: run['wake_x'], lambda: run.clone())"),
+    (None, "in_threads(run.close, lambda: shoal.Run(PAIR).step(), lambda: pickle.dumps(shoal.Run(PAIR)))"),
+    (None, "kept = run.clone(); in_threads(lambda: run.restore(kept), lambda: kept.restore(run), lambda: kept.view('x').sum())"),
+    (None, "with multiprocessing.get_context('fork').Pool(2) as pool: assert len(pool.map(advanced, [run, run])) == 2"),
+    (None, "with multiprocessing.get_context('spawn').Pool(1) as pool: pool.map(shoal.Run.step, [run])"),
+    (None, "in_fork(run.step); run.step()"),
+    (None, "many = shoal.Run(PAIR, {'solver.threads': 2}); many.step(); in_fork(lambda: many.advance(many.end)); many.step()"),
+    (None, "run.__init__(PAIR); run.step(); gc.collect()"),
+    (None, "run.close(); run.close(); repr(run); run._repr_html_(); run.closed"),
+    ("CaseError: the run is closed", "run.close(); run.step()"),
+    ("CaseError: the run is closed", "run.close(); run['x']"),
+    ("CaseError: the run is closed", "run.close(); copy.deepcopy(run)"),
+    ("CaseError: the run is closed", "run.close(); run.restore(other)"),
+    ("CaseError: the run is closed", "run.close(); run.names"),
+    ("TypeError: .* cannot be pickled: the run is closed", "run.close(); pickle.dumps(run)"),
+    ("TypeError: .* cannot be pickled: .* failed before", "run = shoal.Run(PAIR, {'solver.max_steps': 1}); failing(run.step); pickle.dumps(run)"),
+    ("TypeError: this run cannot be restored", "shoal._run._unpickle(shoal.Run, pickle.dumps(run)[:-50])"),
+    ("CaseError: set: there is no fish 1099511627776: this run has 2, numbered from 0: a, b", "run.set(2**40, 'wave.amplitude', 0.5)"),
+    ("CaseError: set: there is no fish -1", "run.set(-1, 'wave.amplitude', 0.5)"),
+    ("TypeError: set: a fish is a number or a name", "run.set(None, 'wave.amplitude', 0.5)"),
+    ("TypeError: advance: a time, s, is one number, not str '1'", "run.advance('1')"),
+    ("CaseError: .* before the last event", "run.advance(-1)"),
+    ("CaseError: .* not finite", "run.advance(float('nan'))"),
+    ("CaseError: .* not finite|TypeError", "run.advance(10**400)"),
+    ("CaseError: .* after the end", "run.advance(1e300)"),
+    ("TypeError: .* not list", "run.advance([1, 2])"),
+    ("CaseError: step: -1 events", "run.step(-1)"),
+    ("CaseError: there is no variable .*speed.*did you mean speed", "run['speed\\0s']"),
+    ("TypeError: a variable is named by a string, not int 3", "run[3]"),
+    ("CaseError: .*zero byte", "run.set(0, 'wave.amplitude\\0', 1)"),
+    ("TypeError: set: wave.amplitude: numbers", "run.set(0, 'wave.amplitude', 'large')"),
+    ("TypeError: set: wave.amplitude: numbers", "run.set(0, 'wave.amplitude', 1j)"),
+    ("CaseError: .*0 numbers: give one", "run.set(0, 'wave.amplitude', [])"),
+    ("CaseError: .*cannot be set: only wave.amplitude, wave.frequency", "run.set(0, 'wave.phase', 1)"),
+    ("CaseError: set: control.waypoints: ", "run.set(0, 'control.waypoints', [[1, 2], [3]])"),
+    ("TypeError: set: control.waypoints: numbers", "run.set(0, 'control.waypoints', [object()])"),
+    ("CaseError: .* too many", "run.set(0, 'control.waypoints', np.zeros(2**21))"),
+    ("TypeError: a case is the path of a case file or a dict, not int 0", "shoal.Run(0)"),
+    ("TypeError: a case is the path", "shoal.Run(None)"),
+    ("TypeError: assignments are a dict", "shoal.Run(PAIR, 'time.end=2')"),
+    ("TypeError: an assignment is a string", "shoal.Run(PAIR, [1])"),
+    ("TypeError: an assignment is a string", "shoal.Run(PAIR, [None])"),
+    ("TypeError: restore: a Run, not NoneType", "run.restore(None)"),
+    ("CaseError: .*not copies", "run.restore(other)"),
+    ("CaseError: flow: points have the shape", "run.flow(1)"),
+    ("TypeError: flow: points: numbers", "run.flow('here')"),
+    ("CaseError: .*is not finite", "run.flow([np.nan, 0])"),
+    ("TypeError: path is a string or a path", "run.write(3)"),
+    ("FileError", "run.write('/no/such/folder/x.nc')"),
+    ("ValueError: .*read-only", "run.view('x')[0, 0, 0] = 1"),
+    ("TypeError: progress is a function", "run.advance(run.end, progress=3)"),
+    ("KeyError: 'told'", "run.advance(run.end, progress=lambda *_: {}['told'])"),
+    ("FileError: .*no such file|FileError", "shoal.load('/no/such.ckpt')"),
+    ("FileError: .*cannot be used", "pathlib.Path('bad.ckpt').write_text('bad'); shoal.load('bad.ckpt')"),
+]
+
+
+def advanced(run):
+    run.advance(run.end)
+    return run.time
+
+
+def failing(call):
+    try:
+        call()
+    except shoal.Error:
+        pass
+
+
+def in_threads(*calls):
+    """Each call over and over again in a thread of its own; a run that is closed meanwhile says so."""
+    def over_and_over(call):
+        for _ in range(8):
+            failing(call)
+
+    threads = [threading.Thread(target=over_and_over, args=[call]) for call in calls]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+
+
+def in_fork(call):
+    """A call in a child, which has to end."""
+    child = os.fork()
+    if child == 0:
+        signal.alarm(60)
+        call()
+        os._exit(0)
+    assert os.waitpid(child, 0)[1] == 0, "the child has not ended well"
+
+
+class Misuse(unittest.TestCase):
+    def outcome(self, code):
+        """What a piece of code raises, in a child process; its end, where that is none of Python's."""
+        reading, writing = os.pipe()
+        child = os.fork()
+        if child == 0:
+            said = "the end of the process"
+            try:
+                signal.alarm(120)
+                os.close(reading)
+                run, other = shoal.Run(PAIR), shoal.Run(PAIR, {"time.end": 0.1})
+                run.step(3)
+                exec(code, {**globals(), "run": run, "other": other})
+                said = "None"
+            except BaseException as error:
+                said = f"{type(error).__name__}: {error}"
+            finally:
+                os.write(writing, said.encode()[:4000])
+                os._exit(0)
+        os.close(writing)
+        with os.fdopen(reading, "rb") as file:
+            said = file.read().decode()
+        status = os.waitpid(child, 0)[1]
+        return f"signal {os.WTERMSIG(status)}" if os.WIFSIGNALED(status) else said
+
+    def test_no_misuse_ends_the_process(self):
+        self.assertGreater(len(MISUSE), 30)
+        for want, code in MISUSE:
+            with self.subTest(code):
+                self.assertRegex(self.outcome(code), f"^({want})")
+
+    def test_a_run_that_a_thread_steps_during_a_fork_is_refused_in_the_child(self):
+        run = shoal.Run({**PAIR, "time": {**PAIR["time"], "end": 20}})
+        thread = threading.Thread(target=lambda: run.advance(run.end))
+        thread.start()
+        time.sleep(0.05)
+        self.assertTrue(thread.is_alive())
+
+        def use():
+            try:
+                run.step()
+            except shoal.SolverError as error:
+                os._exit(0 if "when the process forked" in str(error) and repr(run) else 1)
+            os._exit(2)
+
+        in_fork(use)
+        thread.join()
+        self.assertTrue(run.at_end)
+
+
+class Words(unittest.TestCase):
+    """What a terminal and a notebook show, and progress."""
+
+    def test_a_run_says_what_it_is(self):
+        run = shoal.Run(PAIR)
+        self.assertEqual(repr(run), "<shoal.Run of 2 fish (a, b) at t = 0 of 0.2 s>")
+        self.assertRegex(shoal.__version__, r"^\d+\.\d+\.\d+$")
+        self.assertIn(shoal.__version__, shoal.version())
+        self.assertIn("com_velocity", run._ipython_key_completions_())
+        self.assertLessEqual({"Run", "check", "steady", "study", "open", "plot"}, set(dir(shoal)))
+
+    def test_every_public_name_has_types_and_a_docstring(self):
+        for name in shoal.__all__:
+            thing = getattr(shoal, name)
+            if name == "__version__":
+                continue
+            self.assertTrue(thing.__doc__, name)
+            members = [] if not isinstance(thing, type) else [member for key, member in vars(thing).items()
+                                                              if not key.startswith("_") and callable(member)]
+            for member in members:
+                self.assertTrue(member.__doc__, f"{name}: {member}")
+        for method in ("advance", "set", "flow", "clone", "view"):
+            self.assertIn("return", {**getattr(shoal.Run, method).__annotations__, "return": None})
+            self.assertTrue(getattr(shoal.Run, method).__annotations__ or method == "clone", method)
+
+    def test_a_notebook_shows_the_run_and_looking_changes_nothing(self):
+        run, alone = shoal.Run(PAIR), shoal.Run(PAIR)
+        run.step(4)
+        text = run._repr_html_()
+        self.assertEqual((text.count("<polygon"), text.count("<circle")), (2, int(run["wake_count"].sum())))
+        for one in run, alone:
+            one.advance(one.end)
+        self.assertEqual(run["x"].tobytes(), alone["x"].tobytes())
+        run = shoal.Run(PAIR)
+        run.write("shown.nc", overwrite=True)
+        run.advance(0.1)
+        self.assertIn("<iframe srcdoc=", run._repr_html_())
+        self.assertFalse(os.path.exists("shown.html"))
+
+    def test_progress_is_reported(self):
+        run, seen = shoal.Run({**PAIR, "time": {**PAIR["time"], "end": 4}}), []
+        run.advance(3.99, progress=lambda time, end: seen.append((time, end)))
+        self.assertEqual((seen[0], seen[-1][0]), ((0.0, 3.99), run.time))
+        self.assertEqual([time for time, _ in seen], sorted(time for time, _ in seen))
+        self.assertAlmostEqual(run.time, 4)
+        alone = shoal.Run({**PAIR, "time": {**PAIR["time"], "end": 4}})
+        alone.advance(4)
+        self.assertEqual(run["x"].tobytes(), alone["x"].tobytes())
+
+    def test_a_bar_is_one_line_as_wide_as_the_terminal(self):
+        code = ("import sys; sys.path.insert(0, sys.argv[1]); import shoal\n"
+                f"run = shoal.Run({PAIR!r}); run.advance(run.end, progress=True)\n")
+        said = subprocess.run([sys.executable, "-c", code, os.path.dirname(os.path.dirname(shoal.__file__))], check=True,
+                              capture_output=True, env={**os.environ, "COLUMNS": "60"}).stderr.decode()
+        self.assertEqual((said.count("\n"), said[-1]), (1, "\n"))
+        self.assertEqual({len(line) for line in said.strip("\n\r").split("\r")}, {59})
+        self.assertIn("100 % t = 0.2 of 0.2 s", said)
+
+
+class Programs(unittest.TestCase):
+    """What the program does for the module."""
+
+    def test_a_case_is_checked(self):
+        good = shoal.check(PAIR)
+        self.assertIn("2 fish", good.summary)
+        self.assertTrue(any("take 14 nodes" in text for text in good.warnings), good.warnings)
+        with self.assertRaisesRegex(shoal.CaseError, "(?s)did you mean 'amplitude'.*nodes"):
+            shoal.check({**PAIR, "fish": [{"wave": {"amplitud": 1}, "nodes": 2}]})
+        with self.assertRaisesRegex(shoal.FileError, "none.yaml"):
+            shoal.check("none.yaml")
+
+    def test_a_steady_state_has_its_stability(self):
+        case = {"name": "slow", "time": PAIR["time"], "fish": [{"name": "a", **SMALL}]}
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
+            steady = shoal.steady(case)
+        self.assertTrue(any(issubclass(one.category, shoal.CaseWarning) for one in said))
+        self.assertEqual((steady.path, steady.names), ("slow.nc", ["a"]))
+        self.assertTrue(0.7 < steady.speed[0] < 0.9, steady)
+        self.assertTrue(steady.is_stable)
+        self.assertAlmostEqual(float(steady.growth), np.log(abs(steady.multipliers[0])) * 1.0, 4)
+        with steady.open() as data:
+            self.assertEqual(float(data["steady_speed"][0]), steady.speed[0])
+        with self.assertRaisesRegex(shoal.FileError, "slow.nc"):
+            shoal.steady(case)
+        self.assertIn("cost_of_transport", dir(steady))
+        with self.assertRaisesRegex(AttributeError, "'cost' is none of .*cost_of_transport"):
+            steady.cost
+
+    def test_a_study_is_a_dataset(self):
+        case = {**PAIR, "name": "swept", "sweep": [{"key": "fish[0].wave.frequency", "values": [0.9, 1.1]}]}
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            data = shoal.study(case, processes=1)
+        np.testing.assert_array_equal(data["fish0_wave_frequency"], [0.9, 1.1])
+        self.assertEqual((data["speed"].dims, list(data["fish"].values)), (("member", "fish"), ["a", "b"]))
+        self.assertEqual(data.attrs["path"], "swept-study/study.nc")
+        with self.assertRaisesRegex(shoal.CaseError, "processes is an integer from 1"):
+            shoal.study(case, processes=0)
+
+    def test_a_result_is_a_page(self):
+        page = shoal.view(shoal.run(PAIR, path="paged.nc"))
+        self.assertEqual(page.path, "paged.html")
+        self.assertIn("iframe", page._repr_html_())
+        with self.assertRaisesRegex(shoal.FileError, "paged.html"):
+            shoal.view("paged.nc", overwrite=False)
+
+    def test_the_includes_of_a_dict_are_found(self):
+        pathlib.Path("included.yaml").write_text(json.dumps({"format": 1, **PAIR}))
+        self.assertIn("2 fish", shoal.check({"include": "included.yaml"}).summary)
+
+    def test_a_run_is_a_dataset(self):
+        run = shoal.Run(PAIR)
+        run.step(2)
+        data = run.to_xarray()
+        self.assertEqual((list(data["fish"].values), data["x"].dims), (["a", "b"], ("fish", "node", "xy")))
+        self.assertEqual(data["com"].attrs["units"], "m")
+        np.testing.assert_array_equal(data["com"], run["com"])
 
 
 class Results(unittest.TestCase):
@@ -366,7 +655,7 @@ class Environments(unittest.TestCase):
         swimmer = env.swimmer
         before, time = swimmer.to_goal(), env.run.time
         seen = env.step([0.2])[0]
-        np.testing.assert_allclose(seen, swimmer._own((before - swimmer.to_goal()) / (env.run.time - time)), rtol=1e-5)
+        np.testing.assert_allclose(seen, swimmer._own(*(before - swimmer.to_goal()) / (env.run.time - time)), rtol=1e-5)
         self.assertGreater(np.abs(seen).max(), 1e-3)
         with self.assertRaisesRegex(shoal.CaseError, "'closing' needs a goal"):
             shoal.SwimEnv(PAIR, observations=("closing",))
@@ -406,6 +695,72 @@ class Environments(unittest.TestCase):
         with self.assertRaisesRegex(shoal.CaseError, "an action is 1 numbers"):
             env.step([np.nan])
 
+    def test_actions_outside_the_box_are_refused(self):
+        env = shoal.SwimEnv(PAIR, actions={"bias": (-0.3, 0.3), "frequency": (0.8, 1.2)})
+        with self.assertRaisesRegex(shoal.CaseError, r"call reset\(\) first"):
+            env.step([0, 1])
+        env.reset()
+        before = env.run["x"].tobytes()
+        for wrong in [0.31, 1], [0, 0.7], [0, np.inf], [0, 1, 1], [], "ab":
+            with self.assertRaisesRegex((shoal.CaseError, ValueError), "bias -0.3 to 0.3|could not convert"):
+                env.step(wrong)
+        self.assertEqual((env.run.time, env.run["x"].tobytes()), (0, before))
+        env.step(env.action_space.high)
+        env.step(env.action_space.low)
+
+    def test_actions_fall_on_events(self):
+        self.assertEqual(shoal.SwimEnv(PAIR, act_every=0.06)._n_steps, 3)
+        with self.assertRaisesRegex(shoal.CaseError, "act_every: 0.05 s is no multiple .* 0.02 s: take 0.04 or 0.06 s"):
+            shoal.SwimEnv(PAIR, act_every=0.05)
+        for wrong in 0, -0.02, 0.001:
+            with self.assertRaisesRegex(shoal.CaseError, "no multiple"):
+                shoal.SwimEnv(PAIR, act_every=wrong)
+
+    def test_arguments_of_environments_are_checked(self):
+        for wrong, text in (({"fish": "c"}, "there is no fish 'c'"), ({"goal": "here"}, "a goal is"),
+                            ({"goal": ("c", (1, 1))}, "there is no fish 'c'"), ({"render_mode": "human"}, "rgb_array, html"),
+                            ({"actions": {"bias": (1, 0)}}, "lower one first"), ({"vary": {"time.end": 3}}, "bounds of time.end"),
+                            ({"actions": ("bais",)}, "did you mean 'bias'")):
+            with self.assertRaisesRegex(shoal.CaseError, text):
+                shoal.SwimEnv(PAIR, **wrong)
+
+    def test_an_environment_is_drawn(self):
+        env = shoal.SwimEnv(PAIR, render_mode="rgb_array")
+        env.reset()
+        first = env.render()
+        self.assertEqual((first.shape, first.dtype), ((324, 720, 3), np.uint8))
+        env.step([0.1])
+        self.assertTrue(np.any(env.render() != first) and first.min() < 100 < first.max())
+        self.assertIn("<polygon", shoal.SwimEnv(PAIR, render_mode="html").render())
+        self.assertIsNone(shoal.SwimEnv(PAIR).render())
+        self.assertEqual(env.metadata["render_modes"], ["rgb_array", "html"])
+
+    def test_many_environments_are_those_alone(self):
+        arguments = dict(fish="b", actions=("bias", "frequency"), act_every=0.06, observations=("velocity", "neighbours"),
+                         vary={"fish[1].start.heading": (170, 190)})
+        many, one = shoal.SwimVectorEnv(3, PAIR, threads=2, **arguments), shoal.SwimVectorEnv(3, PAIR, threads=1, **arguments)
+        alone = [shoal.SwimEnv(PAIR, **arguments) for _ in range(3)]
+        observations, infos = many.reset(seed=4)
+        one.reset(seed=4)
+        self.assertEqual((observations.shape, observations.dtype), ((3, 6), np.float32))
+        np.testing.assert_array_equal(observations, [env.reset(seed=4 + i)[0] for i, env in enumerate(alone)])
+        np.testing.assert_array_equal(infos["time"], np.zeros(3))
+        actions = np.array([[0.1, 1], [-0.1, 0.9], [0, 1.1]])
+        for _ in range(4):
+            seen, rewards, terminated, truncated, infos = many.step(actions)
+            for got, want in zip(one.step(actions)[:4], (seen, rewards, terminated, truncated)):
+                np.testing.assert_array_equal(got, want)
+            np.testing.assert_array_equal(seen, [env.step(action)[0] for env, action in zip(alone, actions)])
+        self.assertTrue(truncated.all() and rewards.dtype == float)
+        # the next step begins the next episode
+        seen, rewards, _, truncated, infos = many.step(actions)
+        self.assertEqual((rewards.tolist(), truncated.tolist(), infos["time"].tolist()), ([0] * 3, [False] * 3, [0] * 3))
+        with self.assertRaisesRegex(shoal.CaseError, "shape"):
+            many.step([0.1, 1])
+        self.assertEqual(many.action_space.shape, (3, 2))
+        many.close()
+        one.close()
+
     def test_a_school_keeps_the_rules_of_parallel_environments(self):
         env = shoal.SchoolEnv(PAIR, actions=("bias", "frequency"), act_every=0.04)
         self.assertEqual(env.possible_agents, ["a", "b"])
@@ -428,12 +783,13 @@ class Environments(unittest.TestCase):
 
     @unittest.skipIf(importlib.util.find_spec("gymnasium"), "Gymnasium is installed")
     def test_gymnasium_and_pettingzoo_are_used_where_they_are(self):
-        for package, text in (("gymnasium", "class Env: pass"), ("pettingzoo", "class ParallelEnv: pass")):
+        for package, text in (("gymnasium", "class Env: pass"), ("gymnasium/vector", "class VectorEnv: pass"),
+                              ("pettingzoo", "class ParallelEnv: pass")):
             os.makedirs(f"installed/{package}", exist_ok=True)
             pathlib.Path(f"installed/{package}/__init__.py").write_text(text)
         pathlib.Path("installed/gymnasium/spaces.py").write_text(
             "class Box:\n    def __init__(self, low, high, dtype): self.shape = low.shape\n")
-        code = (f"import sys; sys.path.insert(0, {os.path.dirname(shoal.__file__)!r})\n"
+        code = (f"import sys; sys.path.insert(0, {os.path.dirname(os.path.dirname(shoal.__file__))!r})\n"
                 "if len(sys.argv) > 1: sys.path.insert(0, sys.argv[1])\n"
                 f"import shoal; env = shoal.SwimEnv({PAIR!r}); school = shoal.SchoolEnv({PAIR!r})\n"
                 "print(env.action_space.__class__.__module__, 'gymnasium' in sys.modules, 'pettingzoo' in sys.modules)\n"
@@ -442,7 +798,7 @@ class Environments(unittest.TestCase):
                 "    print(isinstance(env, gymnasium.Env), isinstance(school, pettingzoo.ParallelEnv))\n")
         said = [subprocess.run([sys.executable, "-c", code, *more], check=True, capture_output=True, text=True).stdout
                 for more in ([], ["installed"])]
-        self.assertEqual(said, ["shoal False False\n", "gymnasium.spaces True True\nTrue True\n"])
+        self.assertEqual(said, ["shoal._environments False False\n", "gymnasium.spaces True True\nTrue True\n"])
 
 
 def example(name):

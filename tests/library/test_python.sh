@@ -12,5 +12,5 @@ if nm -D --undefined-only "$library" | grep __asan >/dev/null; then
     preload="$(gcc -print-file-name=libasan.so) $(gcc -print-file-name=libubsan.so)"
     export ASAN_OPTIONS=${ASAN_OPTIONS:-}:detect_leaks=0
 fi
-SHOAL=$program SHOAL_LIBRARY=$library MPLBACKEND=Agg LD_PRELOAD=$preload \
+SHOAL=$program SHOAL_PROGRAM=$program SHOAL_LIBRARY=$library MPLBACKEND=Agg LD_PRELOAD=$preload \
     /usr/bin/python3 -W error::ResourceWarning "$root/tests/library/test_python.py" 2>&1

@@ -1,0 +1,50 @@
+"""shoal: run cases, read results, and train swimmers from Python. doc/python.md is the guide.
+
+    import shoal
+    run = shoal.Run("case.yaml", {"fish[0].wave.frequency": 1.2})
+    run.step()
+    run["x"]                         # positions of all nodes, m: (fish, node, xy)
+    data = shoal.open(shoal.run("case.yaml"))
+
+Needs NumPy, and the library libshoal: beside the package, in build/ of the sources, or named by the environment variable
+SHOAL_LIBRARY. check, steady, study and view call the program shoal (SHOAL_PROGRAM). xarray and netCDF4 are for open,
+matplotlib is for plot, Gymnasium is used where it is installed.
+"""
+
+import re as _re
+
+from . import _library
+from ._environments import SchoolEnv, SwimEnv, SwimVectorEnv
+from ._library import CaseError, Error, FileError, SolverError, version
+from ._program import CaseWarning, Check, Page, Steady, check, steady, study, view
+from ._results import open, periods  # noqa: A004 - shoal.open, as gzip.open
+from ._run import Run, Variable, load, run, variables
+
+simulate = run
+
+__all__ = ["Run", "run", "simulate", "load", "check", "steady", "study", "open", "periods", "view", "variables", "version",
+           "Variable", "Check", "Steady", "Page", "SwimEnv", "SwimVectorEnv", "SchoolEnv", "Error", "CaseError", "FileError",
+           "SolverError", "CaseWarning", "__version__"]
+
+
+def _version():
+    try:
+        return _re.search(r"\d+(\.\w+)+", version()).group()
+    except ImportError:  # there is no library
+        return "unknown"
+
+
+__version__ = _version()
+
+
+def __getattr__(name):
+    """shoal.plot is loaded when it is used: it needs matplotlib."""
+    if name == "plot":
+        import importlib
+
+        return importlib.import_module(".plot", __name__)
+    raise AttributeError(f"module 'shoal' has no attribute {name!r}")
+
+
+def __dir__():
+    return sorted([*__all__, "plot"])

@@ -1,0 +1,594 @@
+"""Learning: the protocols of Gymnasium (SwimEnv, SwimVectorEnv) and PettingZoo (SchoolEnv)."""
+
+from __future__ import annotations
+
+import concurrent.futures
+import contextlib
+import ctypes
+import importlib
+import importlib.util
+import math
+import os
+from typing import Mapping
+
+import numpy as np
+
+from . import _library as lib
+from ._draw import picture_of, snapshot_of
+from ._library import CaseError, check, choice_of, index_of, kind, number_of, numbers_of
+from ._run import Run
+
+
+def _from(module, name, otherwise):
+    """A name of a module where that is installed."""
+    if importlib.util.find_spec(module.split(".")[0]) is None:
+        return otherwise
+    return getattr(importlib.import_module(module), name)
+
+
+class _Box:
+    """gymnasium.spaces.Box, as far as it is needed here, where Gymnasium is not installed."""
+
+    def __init__(self, low, high, dtype=np.float32):
+        self.low, self.high = np.asarray(low, dtype), np.asarray(high, dtype)
+        self.shape, self.dtype = self.low.shape, np.dtype(dtype)
+        self._random = np.random.default_rng()
+
+    def seed(self, seed=None):
+        self._random = np.random.default_rng(seed)
+        return [seed]
+
+    def sample(self):
+        return self._random.uniform(self.low, self.high).astype(self.dtype)
+
+    def contains(self, x):
+        x = np.asarray(x)
+        return x.shape == self.shape and bool(np.all(x >= self.low) and np.all(x <= self.high))
+
+    __contains__ = contains
+
+    def __repr__(self):
+        return f"Box({self.low.min(initial=0):g}, {self.high.max(initial=0):g}, {self.shape}, {self.dtype})"
+
+
+_make_box = _from("gymnasium.spaces", "Box", _Box)
+
+_KEYS = {"bias": b"control.bias", "amplitude": b"wave.amplitude", "frequency": b"wave.frequency"}
+_SENSORS = ((0.5, 0.0), (0.0, 0.3), (0.0, -0.3))
+_RENDER_MODES = ("rgb_array", "html")
+
+
+class _Swimmer:
+    """One fish of a run that is led: its actions, observations and rewards. Vectors that it observes are in its own
+    frame, forwards and to the left, in body lengths."""
+
+    def __init__(self, run, fish, actions, observations, reward, goal, course, sensors):
+        self.run, self.fish = run, fish
+        self.length, self.mass = float(run["body_length"][fish]), float(run["body_mass"][fish])
+        self.n_joints, self.n_fish = int(run["n_joints"][fish]), len(run["n_joints"])
+        self.others = [f for f in range(self.n_fish) if f != fish]
+        frequency = float(run["frequency"][fish])
+        usual = {"bias": (-0.5, 0.5), "amplitude": (0.2, 0.6), "frequency": (0.5 * frequency, 1.5 * frequency)}
+        if isinstance(actions, str) or isinstance(observations, str):
+            raise TypeError('actions and observations are tuples of names, ("bias",)')
+        for name in actions:
+            choice_of(name, list(_KEYS), "an action")
+        self.actions = {name: self._bounds(name, actions[name]) if isinstance(actions, Mapping) else usual[name]
+                        for name in actions}
+        self.observations = [choice_of(name, list(self._SEEN), "an observation") for name in observations]
+        self.reward_of, self.goal, self.course = reward, self._checked_goal(goal), number_of(course, "course, degree,")
+        self.sensors = numbers_of(sensors, "sensors").reshape(-1, 2)
+        self._earned = []
+        if not callable(reward):
+            self._earned = [(number_of(weight, f"reward: {choice_of(name, list(self._EARNED), 'a reward')}"),
+                             self._EARNED[name]) for name, weight in reward.items()]
+        for name in [*self.observations, *(() if callable(reward) else reward)]:
+            if goal is None and name in ("goal", "closing"):
+                raise CaseError(f"{name!r} needs a goal: (x, y), or (fish, (x, y)) for a place beside a fish")
+        self._parts, first = [], 0
+        for name in self.observations:
+            see, bound = self._SEEN[name]
+            self._parts.append((see, slice(first, first + self._size(name)), bound))
+            first += self._size(name)
+        self._bound = np.concatenate([np.full(part.stop - part.start, float(bound)) for _, part, bound in self._parts]
+                                     or [np.empty(0)])
+        low, high = np.array(list(self.actions.values()), np.float32).reshape(-1, 2).T
+        self._low, self._high = low.astype(float), high.astype(float)
+        self._keys = [_KEYS[name] for name in self.actions]
+        self._event = None
+
+    @staticmethod
+    def _bounds(name, bounds):
+        values = numbers_of(bounds, f"the bounds of {name}")
+        if values.shape != (2,) or not np.all(np.isfinite(values)) or not values[0] < values[1]:
+            raise CaseError(f"the bounds of {name} are two finite numbers, the lower one first, not {bounds!r}")
+        return tuple(values)
+
+    def _checked_goal(self, goal):
+        if goal is None:
+            return None
+        try:
+            first, second = goal
+            if isinstance(first, str) or np.ndim(second) == 1:
+                other, offset = index_of(first, self.run.names, "goal"), numbers_of(second, "goal")
+            else:
+                other, offset = None, numbers_of([first, second], "goal")
+            if offset.shape == (2,) and np.all(np.isfinite(offset)):
+                return other, (float(offset[0]), float(offset[1]))
+        except (TypeError, ValueError) as error:
+            if isinstance(error, CaseError):
+                raise
+        raise CaseError(f"a goal is (x, y), m, or (fish, (x, y)) for a place beside a fish, not {goal!r}")
+
+    # -- spaces
+
+    def action_space(self):
+        return _make_box(self._low.astype(np.float32), self._high.astype(np.float32), dtype=np.float32)
+
+    def observation_space(self):
+        bound = self._bound.astype(np.float32)
+        return _make_box(-bound, bound, dtype=np.float32)
+
+    def _size(self, name):
+        sizes = {"curvature": self.n_joints, "muscle": self.n_joints, "flow": self.sensors.size, "goal": 3,
+                 "neighbours": 4 * (self.n_fish - 1), "action": len(self.actions)}
+        return sizes.get(name, 2)
+
+    # -- actions
+
+    def begin(self, run):
+        self.run, self.action = run, np.zeros(len(self.actions))
+        self._mark()
+
+    def act(self, action):
+        values = np.asarray(action, float).reshape(-1)
+        if values.size != len(self.actions) or not np.all((values >= self._low) & (values <= self._high)):
+            bounds = ", ".join(f"{name} {low:g} to {high:g}" for name, low, high in zip(self.actions, self._low, self._high))
+            raise CaseError(f"an action is {len(self.actions)} numbers within the box ({bounds}), not {action!r}")
+        self.action = values
+        number = ctypes.c_double()
+        with self.run._using() as pointer:
+            for key, value in zip(self._keys, values.tolist()):
+                number.value = value
+                code = lib.library.shoal_set(pointer, self.fish, key, 1, number)
+                if code:
+                    check(code)
+        self._mark()
+
+    def _mark(self):
+        self._before = self.run.time, self._pair("com"), float(self.run.view("actuation_work")[self.fish])
+        self._goal_before = None if self.goal is None else self._to_goal()
+
+    # -- observations
+
+    def _pair(self, name):
+        """Two numbers of this fish, as floats of Python."""
+        return self.run.view(name)[self.fish].tolist()
+
+    @property
+    def com(self) -> np.ndarray:
+        """The centre of mass, m: (2,)."""
+        return np.array(self._pair("com"))
+
+    def _turn(self):
+        angle = math.radians(float(self.run.view("heading")[self.fish]))
+        self._cos, self._sin = math.cos(angle), math.sin(angle)
+
+    def _own(self, x, y):
+        c, s = self._cos, self._sin
+        return (c * x + s * y) / self.length, (c * y - s * x) / self.length
+
+    def place(self) -> np.ndarray:
+        """The place of the goal now, m: (2,)."""
+        other, (x, y) = self.goal
+        if other is not None:
+            of_fish = self.run.view("com")[other].tolist()
+            x, y = x + of_fish[0], y + of_fish[1]
+        return np.array([x, y])
+
+    def _to_goal(self):
+        other, (x, y) = self.goal
+        com = self.run.view("com")
+        if other is not None:
+            of_fish = com[other].tolist()
+            x, y = x + of_fish[0], y + of_fish[1]
+        own = com[self.fish].tolist()
+        return x - own[0], y - own[1]
+
+    def to_goal(self) -> np.ndarray:
+        """From the centre of mass to the goal, m: (2,)."""
+        return np.array(self._to_goal())
+
+    def _see_velocity(self):
+        return self._own(*self._pair("com_velocity"))
+
+    def _see_heading(self):
+        return self._cos, self._sin
+
+    def _see_goal(self):
+        x, y = self._own(*self._to_goal())
+        return x, y, math.hypot(x, y)
+
+    def _see_closing(self):
+        time = self.run.time - self._before[0]
+        if not time > 0:
+            return 0.0, 0.0
+        before, now = self._goal_before, self._to_goal()
+        return self._own((before[0] - now[0]) / time, (before[1] - now[1]) / time)
+
+    def _see_flow(self):
+        c, s = self._cos, self._sin
+        turned = self.length * self.sensors @ np.array([[c, s], [-s, c]])
+        velocity = self.run.flow(self.run.view("x")[self.fish, 0] + turned)[0]
+        return (velocity @ np.array([[c, -s], [s, c]])).ravel() / self.length
+
+    def _see_neighbours(self):
+        c, s = self._cos, self._sin
+        com, velocity = self.run.view("com"), self.run.view("com_velocity")
+        seen = np.empty((len(self.others), 4))
+        seen[:, :2] = com[self.others] - com[self.fish]
+        seen[:, 2:] = velocity[self.others] - velocity[self.fish]
+        return (seen.reshape(-1, 2) @ np.array([[c, -s], [s, c]])).ravel() / self.length
+
+    _SEEN = {  # name: (function, bound)
+        "velocity": (_see_velocity, 20),
+        "heading": (_see_heading, 1),
+        "curvature": (lambda self: self.run.view("curvature")[self.fish, : self.n_joints], 20),
+        "muscle": (lambda self: self.run.view("natural_curvature")[self.fish, : self.n_joints], 20),
+        "flow": (_see_flow, 20),
+        "goal": (_see_goal, 1000),
+        "closing": (_see_closing, 20),
+        "neighbours": (_see_neighbours, 1000),
+        "action": (lambda self: self.action, 20),
+    }
+
+    def see(self):
+        self._turn()
+        seen = np.empty(self._bound.size)
+        for see, part, _ in self._parts:
+            seen[part] = see(self)
+        np.minimum(np.maximum(seen, -self._bound, out=seen), self._bound, out=seen)
+        return seen.astype(np.float32)
+
+    # -- rewards
+
+    def _moved(self):
+        time, com, work = self._before
+        now = self._pair("com")
+        return (self.run.time - time, (now[0] - com[0], now[1] - com[1]),
+                float(self.run.view("actuation_work")[self.fish]) - work)
+
+    def _earn_speed(self):
+        time, way, _ = self._moved()
+        return math.hypot(*way) / (time * self.length) if time > 0 else 0.0
+
+    def _earn_cost(self):
+        _, way, work = self._moved()
+        return -work / (self.mass * max(math.hypot(*way), 0.01 * self.length))
+
+    def _earn_course(self):
+        _, way, _ = self._moved()
+        if self.goal is not None:
+            aim = self._to_goal()
+        else:
+            aim = math.cos(math.radians(self.course)), math.sin(math.radians(self.course))
+        angle = math.atan2(way[1], way[0]) - math.atan2(aim[1], aim[0])
+        return -abs((angle + math.pi) % (2 * math.pi) - math.pi) / math.pi
+
+    _EARNED = {
+        "speed": _earn_speed,
+        "cost_of_transport": _earn_cost,
+        "course": _earn_course,
+        "goal": lambda self: -math.hypot(*self._to_goal()) / self.length,
+    }
+
+    def earn(self):
+        if callable(self.reward_of):
+            return float(self.reward_of(self))
+        return float(sum(weight * function(self) for weight, function in self._earned))
+
+
+class _Swim:
+    """What the environments share: a run that is begun again and again, and its swimmers."""
+
+    def __init__(self, case, assignments, act_every, vary, far, render_mode):
+        if assignments is not None and not isinstance(assignments, Mapping):
+            raise TypeError(f'assignments are a dict {{"time.end": 2}}, not {kind(assignments)}')
+        if render_mode is not None:
+            choice_of(render_mode, _RENDER_MODES, "render_mode")
+        self.render_mode = render_mode
+        self._case, self._assignments = case, dict(assignments or {})
+        self._vary = {key: self._checked_range(key, bounds) for key, bounds in (vary or {}).items()}
+        self._far = None if far is None else number_of(far, "far, lengths,")
+        self._kept = None
+        self.run = Run(case, self._assignments)
+        self._n_steps = 1 if act_every is None else self._n_events(number_of(act_every, "act_every, s,"))
+        self._random = np.random.default_rng()
+
+    @staticmethod
+    def _checked_range(key, bounds):
+        """Bounds of a value that is drawn: two numbers, or two lists of numbers."""
+        values = numbers_of(bounds, f"vary: the bounds of {key}")
+        if values.ndim < 1 or len(values) != 2 or not np.all(np.isfinite(values)) or not np.all(values[0] <= values[1]):
+            raise CaseError(f"vary: the bounds of {key} are two finite numbers or lists, the lower one first, not {bounds!r}")
+        return values.tolist()
+
+    def _n_events(self, act_every):
+        interval = self.run.interval
+        events = act_every / interval
+        n = round(events)
+        if n >= 1 and abs(events - n) <= 1e-6 * n:
+            return n
+        below = max(math.floor(events), 1)
+        raise CaseError(f"act_every: {act_every:g} s is no multiple of the time between two events, {interval:g} s: take "
+                        f"{below * interval:g} or {(below + 1) * interval:g} s, or change time.shedding_interval")
+
+    def __getstate__(self):
+        # copies of a run do not survive a pickle as copies of one another: the next reset opens the case again
+        return {**self.__dict__, "_kept": None}
+
+    def _begin(self, seed, options):
+        if seed is not None:
+            self._random = np.random.default_rng(seed)
+        changes = dict((options or {}).get("assignments", {}))
+        for key, (low, high) in self._vary.items():
+            changes[key] = self._random.uniform(low, high)
+        if changes:
+            self.run = Run(self._case, {**self._assignments, **changes})
+            return
+        if self._kept is None:
+            self._kept = Run(self._case, self._assignments)
+            self.run = self._kept.clone()
+        else:
+            try:
+                self.run.restore(self._kept)
+            except CaseError:  # the last episode was of another case
+                self.run = self._kept.clone()
+
+    def _advance(self):
+        """Advance by one action, or to the end; returns whether the solver has failed. The GIL is released for all
+        events together."""
+        with self.run._using() as pointer:
+            library = lib.library
+            interval, end = library.shoal_interval(pointer), library.shoal_end(pointer)
+            event = round(library.shoal_time(pointer) / interval)
+            code = library.shoal_advance(pointer, min((event + self._n_steps) * interval, end))
+        if code == -4:
+            return True
+        check(code)
+        return False
+
+    def _is_lost(self, swimmer):
+        if self._far is None or swimmer.goal is None:
+            return False
+        return math.hypot(*swimmer._to_goal()) > self._far * swimmer.length
+
+    @property
+    def unwrapped(self):
+        return self
+
+    def render(self):
+        """Bodies and wakes now: an array (height, width, 3) of bytes with render_mode "rgb_array", a string of html with
+        "html", None without a mode."""
+        if self.render_mode == "rgb_array":
+            return picture_of(self.run)
+        return snapshot_of(self.run) if self.render_mode == "html" else None
+
+    def close(self):
+        """Release the runs."""
+        for run in (self.run, self._kept):
+            if run is not None:
+                run.close()
+        self._kept = None
+
+
+class SwimEnv(_Swim, _from("gymnasium", "Env", object)):
+    """One fish that learns, by the protocol of Gymnasium.
+
+    case, assignments: as for shoal.Run; an episode ends (is truncated) at time.end. fish: the one that learns, by number
+    or name. actions: names of bias, amplitude, frequency, or a dict with bounds {"bias": (-0.3, 0.3)}; an action outside
+    the box is refused. observations: names of velocity, heading, curvature, muscle, flow, goal, closing, neighbours,
+    action. reward: weights of speed, cost_of_transport, course, goal, or a function of the swimmer. goal: a point (x, y),
+    m, or ("leader", (1.2, 0)), a place beside a fish. course: desired course, degree. sensors: places (n, 2) for flow,
+    from the nose, in lengths. act_every: time between actions, s, a multiple of time.shedding_interval. vary: bounds of
+    assignments that are drawn at each reset, {"fish[1].start.heading": (170, 190)}. far: distance from the goal, in
+    lengths, at which an episode is over (terminated); a failed integration terminates it too. render_mode: rgb_array,
+    html or None.
+    """
+
+    metadata = {"render_modes": list(_RENDER_MODES), "render_fps": 25}
+    spec = None
+
+    def __init__(self, case, assignments=None, fish=0, actions=("bias",), observations=("velocity", "heading"),
+                 reward=None, goal=None, course=180.0, sensors=_SENSORS, act_every=None, vary=None, far=None,
+                 render_mode=None):
+        _Swim.__init__(self, case, assignments, act_every, vary, far, render_mode)
+        number = index_of(fish, self.run.names, "fish")
+        self.swimmer = _Swimmer(self.run, number, actions, observations, reward or {"speed": 1.0}, goal, course, sensors)
+        self.action_space, self.observation_space = self.swimmer.action_space(), self.swimmer.observation_space()
+        self._last = None
+
+    def reset(self, *, seed=None, options=None):
+        """Begin an episode; returns observation and info. options: {"assignments": {...}} changes the case."""
+        self._begin(seed, options)
+        self.swimmer.begin(self.run)
+        self._last = self.swimmer.see()
+        return self._last, {"time": self.run.time}
+
+    def step(self, action):
+        """Act, and advance to the next action; returns observation, reward, terminated, truncated, info."""
+        if self._last is None:
+            raise CaseError("step: call reset() first")
+        self.swimmer.act(action)
+        info, failed = {}, self._advance()
+        if failed:
+            info["failure"] = lib.message()
+        else:
+            self._last = self.swimmer.see()
+        info["time"] = self.run.time
+        reward = 0.0 if failed else self.swimmer.earn()
+        return self._last, reward, failed or self._is_lost(self.swimmer), self.run.at_end, info
+
+
+def _cores():
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+class SwimVectorEnv(_from("gymnasium.vector", "VectorEnv", object)):
+    """Several SwimEnv that step together in threads, by the protocol of Gymnasium's vector environments.
+
+    num_envs: how many. threads: how many at once (None: one per processor that this process may use). The other
+    arguments are those of SwimEnv. Observations are (num_envs, n), rewards (num_envs,). An environment whose episode is
+    over begins the next one in the following step, whose action it ignores and whose reward is 0 (autoreset mode
+    NEXT_STEP). Results do not depend on the number of threads.
+    """
+
+    def __init__(self, num_envs: int, case, assignments=None, threads: int | None = None, **arguments):
+        for name, value in (("num_envs", num_envs), ("threads", 1 if threads is None else threads)):
+            if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < 1:
+                raise CaseError(f"{name} is an integer from 1, not {value!r}")
+        self.num_envs = int(num_envs)
+        self.envs = [SwimEnv(case, assignments, **arguments) for _ in range(self.num_envs)]
+        first = self.envs[0]
+        self.single_observation_space, self.single_action_space = first.observation_space, first.action_space
+        self.observation_space, self.action_space = (
+            _make_box(np.tile(space.low, (self.num_envs, 1)), np.tile(space.high, (self.num_envs, 1)), dtype=np.float32)
+            for space in (first.observation_space, first.action_space))
+        mode = "NextStep"
+        with contextlib.suppress(ImportError, AttributeError):
+            mode = importlib.import_module("gymnasium.vector").AutoresetMode.NEXT_STEP
+        self.metadata = {**SwimEnv.metadata, "autoreset_mode": mode}
+        self.render_mode, self.spec = first.render_mode, None
+        self._threads = min(int(threads or _cores()), self.num_envs)
+        self._pool, self._owner = None, None
+        self._over = np.zeros(self.num_envs, bool)
+
+    def __getstate__(self):
+        return {**self.__dict__, "_pool": None, "_owner": None}
+
+    def _map(self, function):
+        """function(i) for all environments, in threads; a fork of the process makes threads of its own."""
+        if self._threads == 1:
+            return [function(i) for i in range(self.num_envs)]
+        if self._pool is None or self._owner != os.getpid():
+            self._pool, self._owner = concurrent.futures.ThreadPoolExecutor(self._threads), os.getpid()
+        return list(self._pool.map(function, range(self.num_envs)))
+
+    @staticmethod
+    def _gather(infos):
+        gathered = {}
+        for i, info in enumerate(infos):
+            for key, value in info.items():
+                if key not in gathered:
+                    gathered[key] = np.full(len(infos), None) if isinstance(value, str) else np.zeros(len(infos))
+                    gathered[f"_{key}"] = np.zeros(len(infos), bool)
+                gathered[key][i], gathered[f"_{key}"][i] = value, True
+        return gathered
+
+    def reset(self, *, seed=None, options=None):
+        """Begin all episodes; returns observations and infos. seed: of the first environment, the others follow; or a
+        sequence of num_envs seeds."""
+        seeds = [None if seed is None else seed + i for i in range(self.num_envs)] if np.ndim(seed) == 0 else list(seed)
+        if len(seeds) != self.num_envs:
+            raise CaseError(f"reset: {len(seeds)} seeds for {self.num_envs} environments")
+        done = self._map(lambda i: self.envs[i].reset(seed=seeds[i], options=options))
+        self._over[:] = False
+        return np.stack([one[0] for one in done]), self._gather([one[1] for one in done])
+
+    def step(self, actions):
+        """Act in all environments; returns observations, rewards, terminations, truncations, infos."""
+        actions = np.asarray(actions)
+        if actions.shape != self.action_space.shape:
+            raise CaseError(f"actions have the shape {self.action_space.shape}, not {actions.shape}")
+
+        def one(i):
+            if self._over[i]:
+                observation, info = self.envs[i].reset()
+                return observation, 0.0, False, False, info
+            return self.envs[i].step(actions[i])
+
+        observations, rewards, terminations, truncations, infos = zip(*self._map(one))
+        terminations, truncations = np.array(terminations), np.array(truncations)
+        self._over = terminations | truncations
+        return np.stack(observations), np.array(rewards), terminations, truncations, self._gather(infos)
+
+    def render(self):
+        """The pictures of all environments, a tuple."""
+        return tuple(env.render() for env in self.envs)
+
+    def close(self, **_):
+        """Release threads and runs."""
+        if self._pool is not None and self._owner == os.getpid():
+            self._pool.shutdown()
+        self._pool = None
+        for env in self.envs:
+            env.close()
+
+
+class SchoolEnv(_Swim, _from("pettingzoo", "ParallelEnv", object)):
+    """A school of fish that learn together, by the protocol of PettingZoo's parallel environments.
+
+    Arguments as for SwimEnv; fish: the names of those that learn, None: all. goal: one for all, or a dict by name.
+    """
+
+    metadata = {"render_modes": list(_RENDER_MODES), "name": "shoal_v0", "render_fps": 25}
+
+    def __init__(self, case, assignments=None, fish=None, actions=("bias",),
+                 observations=("velocity", "heading", "neighbours"), reward=None, goal=None, course=180.0,
+                 sensors=_SENSORS, act_every=None, vary=None, far=None, render_mode=None):
+        _Swim.__init__(self, case, assignments, act_every, vary, far, render_mode)
+        names = self.run.names
+        self.possible_agents = [names[index_of(one, names, "fish")] for one in ([fish] if isinstance(fish, str) else
+                                                                               names if fish is None else fish)]
+        self.agents, self._last = [], {}
+        self.swimmers = {}
+        for name in self.possible_agents:
+            own_goal = goal.get(name) if isinstance(goal, Mapping) else goal
+            self.swimmers[name] = _Swimmer(self.run, names.index(name), actions, observations, reward or {"speed": 1.0},
+                                           own_goal, course, sensors)
+        self.action_spaces = {name: swimmer.action_space() for name, swimmer in self.swimmers.items()}
+        self.observation_spaces = {name: swimmer.observation_space() for name, swimmer in self.swimmers.items()}
+
+    num_agents = property(lambda self: len(self.agents))
+    max_num_agents = property(lambda self: len(self.possible_agents))
+
+    def action_space(self, agent):
+        """The space of the actions of a fish."""
+        return self.action_spaces[choice_of(agent, self.possible_agents, "an agent")]
+
+    def observation_space(self, agent):
+        """The space of the observations of a fish."""
+        return self.observation_spaces[choice_of(agent, self.possible_agents, "an agent")]
+
+    def reset(self, seed=None, options=None):
+        """Begin an episode; returns observations and infos by name."""
+        self._begin(seed, options)
+        self.agents = list(self.possible_agents)
+        for swimmer in self.swimmers.values():
+            swimmer.begin(self.run)
+        self._last = {name: self.swimmers[name].see() for name in self.agents}
+        return dict(self._last), {name: {} for name in self.agents}
+
+    def step(self, actions):
+        """All act at once; returns observations, rewards, terminations, truncations, infos by name. The school stays
+        together: when the episode is over for one, it is for all."""
+        agents = self.agents
+        missing = [name for name in agents if name not in actions]
+        if missing:
+            raise CaseError(f"step: no action of {missing[0]}: actions are a dict with {', '.join(agents)}")
+        for name in agents:
+            self.swimmers[name].act(actions[name])
+        failed = self._advance()
+        if not failed:
+            self._last = {name: self.swimmers[name].see() for name in agents}
+        rewards = {name: 0.0 if failed else self.swimmers[name].earn() for name in agents}
+        over = failed or any(self._is_lost(self.swimmers[name]) for name in agents)
+        ended = self.run.at_end
+        infos = {name: {"failure": lib.message()} if failed else {} for name in agents}
+        if over or ended:
+            self.agents = []
+        return dict(self._last), rewards, dict.fromkeys(agents, over), dict.fromkeys(agents, ended), infos
+
+    def state(self):
+        """The observations of all fish in one array."""
+        return np.concatenate([self._last[name] for name in self.possible_agents])

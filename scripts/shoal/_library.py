@@ -1,0 +1,198 @@
+"""The library libshoal through ctypes: loading, errors, and the checks of every argument before ctypes sees it."""
+
+import ctypes
+import difflib
+import math
+import operator
+import os
+import pathlib
+
+import numpy as np
+
+
+class Error(Exception):
+    """A call of the library has failed."""
+
+
+class CaseError(Error, ValueError):
+    """A wrong case or a wrong argument."""
+
+
+class FileError(Error, OSError):
+    """A file cannot be read or written."""
+
+
+class SolverError(Error, RuntimeError):
+    """The integration has failed."""
+
+
+ERRORS = {-1: CaseError, -2: FileError, -3: MemoryError, -4: SolverError}
+
+# ---- loading
+
+
+class Array(ctypes.Structure):
+    """struct shoal_array"""
+
+    _fields_ = [
+        ("values", ctypes.c_void_p),
+        ("type", ctypes.c_int),
+        ("n_dimensions", ctypes.c_int),
+        ("shape", ctypes.c_size_t * 4),
+        ("dimension", ctypes.c_char_p * 4),
+        ("unit", ctypes.c_char_p),
+        ("long_name", ctypes.c_char_p),
+    ]
+
+
+TYPES = [np.dtype(t) for t in (ctypes.c_double, ctypes.c_int, ctypes.c_long, "S1")]  # enum shoal_type
+
+_run, _int, _double, _text = ctypes.c_void_p, ctypes.c_int, ctypes.c_double, ctypes.c_char_p
+_array = ctypes.c_void_p  # the address of doubles
+SIGNATURES = {  # name: result, arguments
+    "shoal_open": (_int, ctypes.POINTER(_run), _text, _int, ctypes.POINTER(_text)),
+    "shoal_open_text": (_int, ctypes.POINTER(_run), _text, _text, _int, ctypes.POINTER(_text)),
+    "shoal_close": (None, _run),
+    "shoal_step": (_int, _run),
+    "shoal_advance": (_int, _run, _double),
+    "shoal_set": (_int, _run, _int, _text, _int, ctypes.POINTER(_double)),
+    "shoal_clone": (_int, ctypes.POINTER(_run), _run),
+    "shoal_restore": (_int, _run, _run),
+    "shoal_save": (_int, _run, _text),
+    "shoal_load": (_int, ctypes.POINTER(_run), _text),
+    "shoal_time": (_double, _run),
+    "shoal_end": (_double, _run),
+    "shoal_interval": (_double, _run),
+    "shoal_read": (_int, _run, _text, ctypes.POINTER(Array)),
+    "shoal_variable": (_text, _int),
+    "shoal_flow": (_int, _run, _int, _array, _array, _array),
+    "shoal_n_fish": (_int, _run),
+    "shoal_write": (_int, _run, _text, _int),
+    "shoal_write_end": (_int, _run),
+    "shoal_checkpoint": (_int, _run),
+    "shoal_result_path": (_text, _run),
+    "shoal_message": (_text,),
+    "shoal_version": (_text,),
+}
+NAME = "libshoal.so.0"
+HERE = pathlib.Path(__file__).resolve().parent
+
+
+def _find():
+    """SHOAL_LIBRARY; beside the modules (a wheel); build/ of the sources; lib/ above dist-packages or site-packages."""
+    places = [os.environ.get("SHOAL_LIBRARY"), HERE / NAME, HERE.parents[1] / "build" / NAME, HERE.parents[2] / NAME,
+              HERE.parents[3] / NAME]
+    return next((str(place) for place in places if place and os.path.isfile(place)), NAME)
+
+
+class _Missing:
+    """In place of a library that cannot be loaded: results can still be read and drawn."""
+
+    def __init__(self, error):
+        self._error = error
+
+    def __getattr__(self, name):
+        raise ImportError(f"{self._error}: build it with `make`, or name it in SHOAL_LIBRARY")
+
+
+def _load():
+    # SUNDIALS 7 of Debian loads MPI, which would catch SIGHUP and crashes in a process that only imports shoal
+    for name, value in (("UCX_HANDLE_ERRORS", "none"), ("UCX_DEBUG_SIGNO", "0")):
+        os.environ.setdefault(name, value)
+    try:
+        library = ctypes.CDLL(_find())
+    except OSError as error:
+        return _Missing(error)
+    for name, (result, *arguments) in SIGNATURES.items():
+        function = getattr(library, name)
+        function.restype, function.argtypes = result, arguments
+    return library
+
+
+library = _load()
+
+
+def message() -> str:
+    """The message of the last failure in this thread."""
+    return library.shoal_message().decode(errors="replace")
+
+
+def check(code: int) -> int:
+    """Raise the exception of a negative status."""
+    if code < 0:
+        raise ERRORS.get(code, Error)(message())
+    return code
+
+
+def version() -> str:
+    """The version of the library with its commit: "shoal 0.2.0 (commit ...)"."""
+    return library.shoal_version().decode()
+
+
+# ---- arguments
+
+
+def kind(value) -> str:
+    """What a message says of a value of a wrong type."""
+    return f"{type(value).__name__} {value!r}" if len(repr(value)) < 60 else type(value).__name__
+
+
+def text_of(value, what: str) -> bytes:
+    """A string or path for the library, which would take its first zero byte for its end."""
+    if not isinstance(value, (str, bytes, os.PathLike)):
+        raise TypeError(f"{what} is a string or a path, not {kind(value)}")
+    encoded = os.fsencode(value)
+    if b"\0" in encoded:
+        raise CaseError(f"{what}: {value!r} has a zero byte in it")
+    return encoded
+
+
+def number_of(value, what: str) -> float:
+    """A finite number for the library."""
+    if isinstance(value, (str, bytes)) or np.ndim(value) != 0:
+        raise TypeError(f"{what} is one number, not {kind(value)}")
+    try:
+        number = float(value)
+    except (TypeError, OverflowError) as error:
+        raise TypeError(f"{what} is one number, not {kind(value)}") from error
+    if not math.isfinite(number):
+        raise CaseError(f"{what}: {number} is not finite")
+    return number
+
+
+def numbers_of(value, what: str) -> np.ndarray:
+    """Numbers for the library, in C order."""
+    try:
+        array = np.asarray(value)
+        if array.dtype.kind not in "fiub":
+            raise TypeError(f"{what}: numbers, not {kind(value)}")
+        return np.ascontiguousarray(array, dtype=float)
+    except ValueError as error:  # lists of different lengths
+        raise CaseError(f"{what}: {error}") from error
+
+
+def index_of(value, names: list, what: str) -> int:
+    """The number of a fish, from 0, given by number or name."""
+    known = f"this run has {len(names)}, numbered from 0: {', '.join(names)}"
+    if isinstance(value, str):
+        if value in names:
+            return names.index(value)
+        raise CaseError(f"{what}: there is no fish '{value}': {known}")
+    try:
+        number = operator.index(value)
+    except TypeError as error:
+        raise TypeError(f"{what}: a fish is a number or a name, not {kind(value)}: {known}") from error
+    if not 0 <= number < len(names):
+        raise CaseError(f"{what}: there is no fish {number}: {known}")
+    return number
+
+
+def choice_of(value, known, what: str):
+    """One of the known words; the message suggests the nearest and lists all."""
+    if isinstance(value, str) and value in known:
+        return value
+    if not isinstance(value, str):
+        raise TypeError(f"{what} is one of {', '.join(known)}, not {kind(value)}")
+    near = difflib.get_close_matches(value, known, 1)
+    hint = f"; did you mean '{near[0]}'?" if near else ""
+    raise CaseError(f"{what}: {value!r} is none of {', '.join(known)}{hint}")

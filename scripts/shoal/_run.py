@@ -1,0 +1,495 @@
+"""Runs in memory: shoal.Run."""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import difflib
+import html
+import json
+import os
+import tempfile
+import threading
+import weakref
+from typing import Callable, Iterable, Mapping, Sequence
+
+import numpy as np
+
+from . import _library as lib
+from ._library import CaseError, Error, SolverError, check, index_of, kind, number_of, numbers_of, text_of
+from ._progress import report
+
+Case = "str | os.PathLike | Mapping"
+Assignments = "Mapping[str, object] | Iterable[str] | None"
+
+# what Run.set can set
+KEYS = ("wave.amplitude", "wave.frequency", "control.bias", "control.desired_heading", "control.waypoints")
+
+# ---- cases
+
+
+def _plain(value):
+    """NumPy's numbers and arrays as JSON has them."""
+    if isinstance(value, (np.ndarray, np.generic)):
+        return value.tolist()
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    raise TypeError(f"{kind(value)} cannot stand in a case")
+
+
+def yaml_of(value) -> str:
+    """A value as a case file has it: JSON is YAML."""
+    try:
+        return json.dumps(value, default=_plain, allow_nan=False)
+    except ValueError as error:
+        raise CaseError(f"a case cannot hold {kind(value)}: {error}") from error
+
+
+def text_of_case(case: Mapping) -> str:
+    """A dict as the text of a case file."""
+    return yaml_of({"format": 1, "name": "run", **case})
+
+
+def strings_of(assignments) -> list[str]:
+    """ "key=value" of a dict; a list of such strings stays as it is."""
+    if assignments is None:
+        return []
+    if isinstance(assignments, Mapping):
+        return [f"{key}={yaml_of(value)}" for key, value in assignments.items()]
+    if isinstance(assignments, (str, bytes)) or not isinstance(assignments, Iterable):
+        raise TypeError(f'assignments are a dict {{"time.end": 2}} or a list ["time.end=2"], not {kind(assignments)}')
+    return list(assignments)
+
+
+# ---- the run of the library
+
+
+class _Handle:
+    """The run of the library and its lock. It is closed when neither a Run nor a view of its arrays needs it."""
+
+    def __init__(self, pointer: int):
+        self.pointer = pointer
+        self.lock = threading.RLock()
+        self.is_torn = False
+        _handles.add(self)
+
+    def __del__(self, close=lib.library.shoal_close if not isinstance(lib.library, lib._Missing) else None):
+        if not self.is_torn:
+            close(self.pointer)
+
+
+_handles: weakref.WeakSet[_Handle] = weakref.WeakSet()
+
+
+def _begin_child():
+    """After a fork: the other threads are gone, with the locks that they held. A run that one of them was stepping is
+    torn: its memory is somewhere between two events."""
+    for handle in list(_handles):
+        if not handle.lock.acquire(blocking=False):
+            handle.is_torn = True
+        handle.lock = threading.RLock()
+
+
+os.register_at_fork(after_in_child=_begin_child)
+
+
+class _Memory:
+    """What NumPy makes a view of; it keeps the run that owns the memory."""
+
+    def __init__(self, handle, address, shape, dtype):
+        self.handle = handle
+        self.__array_interface__ = {"data": (address, True), "shape": shape, "typestr": dtype.str, "version": 3}
+
+
+class Variable(np.ndarray):
+    """The values of a variable at one event, with dims, unit and long_name. Parts and results of arithmetic lose them."""
+
+    dims: tuple[str, ...] | None = None
+    unit: str | None = None
+    long_name: str | None = None
+
+
+def variables() -> list[str]:
+    """The names of all variables of doc/output.md."""
+    if not _variables:
+        while name := lib.library.shoal_variable(len(_variables)):
+            _variables.append(name.decode())
+    return _variables
+
+
+_variables: list[str] = []
+
+
+def _refuse_name(name):
+    if not isinstance(name, str):
+        raise TypeError(f"a variable is named by a string, not {kind(name)}: run.keys() lists the names")
+    near = difflib.get_close_matches(name, variables(), 3, 0.5)
+    hint = f"did you mean {', '.join(near)}? " if near else ""
+    raise CaseError(f"there is no variable {name!r}: {hint}run.keys() lists the names")
+
+
+class Run:
+    """A case in memory, at its last event.
+
+    case: the path of a case file, or a dict with the content of a case file. assignments: {"fish[0].nodes": 9}, changes
+    of the case. folder: where the includes of a dict are found (None: the working directory).
+
+    One thread at a time is in a run; a second one waits. copy.copy and copy.deepcopy clone; pickle carries a checkpoint.
+    After a fork the child has its own run. Errors are shoal.CaseError and others, with the message of the program.
+    """
+
+    def __init__(self, case: Case, assignments: Assignments = None, folder: str | os.PathLike | None = None):
+        strings = [text_of(text, "an assignment") for text in strings_of(assignments)]
+        array = (ctypes.c_char_p * len(strings))(*strings)
+        pointer = ctypes.c_void_p()
+        if isinstance(case, Mapping):
+            text, place = text_of(text_of_case(case), "a case"), None if folder is None else text_of(folder, "folder")
+            check(lib.library.shoal_open_text(pointer, text, place, len(strings), array))
+        elif isinstance(case, (str, bytes, os.PathLike)):
+            check(lib.library.shoal_open(pointer, text_of(case, "a case"), len(strings), array))
+        else:
+            raise TypeError(f"a case is the path of a case file or a dict, not {kind(case)}")
+        self._take(pointer.value)
+
+    def _take(self, pointer):
+        self._handle: _Handle | None = _Handle(pointer)
+        self._names: list[str] | None = None
+        self._views: dict[str, tuple] = {}
+        self.path: str | None = None  #: the result file that write() began
+
+    @contextlib.contextmanager
+    def _using(self):
+        handle = self._open()
+        with handle.lock:
+            yield self._open().pointer
+
+    def _open(self) -> _Handle:
+        handle = self._handle
+        if handle is None:
+            raise CaseError("the run is closed: open it again with shoal.Run")
+        if handle.is_torn:
+            raise SolverError("another thread was in this run when the process forked: open the run in the child, or "
+                              "fork while no thread is in it")
+        return handle
+
+    def __enter__(self) -> Run:
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    def close(self):
+        """Close the result file, if there is one, and release the run. Views of its variables stay good."""
+        if self._handle is None:
+            return
+        if not self._handle.is_torn:
+            with self._using() as pointer:
+                lib.library.shoal_write_end(pointer)
+        self._handle, self._views = None, {}
+
+    @property
+    def closed(self) -> bool:
+        """Whether the run is closed."""
+        return self._handle is None
+
+    # -- copies
+
+    def clone(self) -> Run:
+        """A copy at the last event, without the result file. Run and copy continue with the same bits, each by itself."""
+        pointer = ctypes.c_void_p()
+        with self._using() as own:
+            check(lib.library.shoal_clone(pointer, own))
+        return self._adopt(pointer.value)
+
+    @classmethod
+    def _adopt(cls, pointer):
+        run = object.__new__(cls)
+        run._take(pointer)
+        return run
+
+    def __copy__(self):
+        return self.clone()
+
+    def __deepcopy__(self, memo):
+        return self.clone()
+
+    def restore(self, other: Run):
+        """Go back, or forward, to where a copy is, or the run of which this one is a copy."""
+        if not isinstance(other, Run):
+            raise TypeError(f"restore: a Run, not {kind(other)}")
+        first, second = sorted((self._open(), other._open()), key=id)
+        with first.lock, second.lock:
+            check(lib.library.shoal_restore(self._open().pointer, other._open().pointer))
+
+    def save(self, path: str | os.PathLike):
+        """Write a checkpoint with the case and the state at the last event, from which shoal.load continues with the
+        same bits. A checkpoint at path is replaced; another file is a FileError."""
+        with self._using() as pointer:
+            check(lib.library.shoal_save(pointer, text_of(path, "path")))
+
+    def __reduce__(self):
+        try:
+            with tempfile.TemporaryDirectory() as folder:
+                path = os.path.join(folder, "run.ckpt")
+                self.save(path)
+                with open(path, "rb") as file:
+                    return _unpickle, (type(self), file.read())
+        except Error as error:
+            raise TypeError(f"this run cannot be pickled: {error}. Pickle the case and its assignments, and open the run "
+                            "there") from error
+
+    # -- time
+
+    def _time(self, function) -> float:
+        with self._using() as pointer:
+            return function(pointer)
+
+    @property
+    def time(self) -> float:
+        """Time of the last event, s."""
+        return self._time(lib.library.shoal_time)
+
+    @property
+    def end(self) -> float:
+        """Time of the last event of the case, s."""
+        return self._time(lib.library.shoal_end)
+
+    @property
+    def interval(self) -> float:
+        """Time between two events, s."""
+        return self._time(lib.library.shoal_interval)
+
+    @property
+    def at_end(self) -> bool:
+        """Whether there is no further event."""
+        with self._using() as pointer:
+            return bool(lib.library.shoal_time(pointer) >= lib.library.shoal_end(pointer))
+
+    def step(self, n: int = 1):
+        """Advance by n events, each one shedding interval later."""
+        handle = self._open()
+        if n != 1:
+            n = int(number_of(n, "step: a number of events"))
+            if n < 0:
+                raise CaseError(f"step: {n} events: the number cannot be negative")
+        with handle.lock:
+            pointer = self._open().pointer
+            code = lib.library.shoal_step(pointer) if n == 1 else 0
+            for _ in range(n if n != 1 else 0):
+                code = lib.library.shoal_step(pointer)
+                if code:
+                    break
+            if code:
+                check(code)
+
+    def advance(self, time: float, progress: Callable[[float, float], None] | bool | None = False):
+        """Advance to the first event at or after a time, s, which must not be before the last event.
+
+        progress: a function of (time, time to reach), called several times a second; True: a bar on standard error or
+        in a notebook; None: a bar where there is somebody to see it. Ctrl-C stops at an event; the run can continue.
+        """
+        target = number_of(time, "advance: a time, s,")
+        show = report(progress)
+        if show is None:
+            with self._using() as pointer:
+                check(lib.library.shoal_advance(pointer, target))
+            return
+        with show:
+            self._advance_in_parts(target, show)
+
+    def _advance_in_parts(self, target, show):
+        interval = self.interval
+        first, last = self.time, min(target, self.end)
+        while True:
+            now = self.time
+            show(now - first, last - first, now, last)
+            if now >= last - 1e-9 * interval:
+                break
+            n = show.n_events
+            with self._using() as pointer:
+                check(lib.library.shoal_advance(pointer, min(now + n * interval, last)))
+        if target > last:
+            with self._using() as pointer:
+                check(lib.library.shoal_advance(pointer, target))
+
+    # -- from outside
+
+    def set(self, fish: int | str, key: str, value: float | Sequence):
+        """Set, at the last event, a key of a fish, given by number or name: wave.amplitude, wave.frequency (Hz),
+        control.bias, control.desired_heading (degree), each one number, or control.waypoints, pairs (n, 2) in m. The
+        change is made within control.ramp."""
+        number = index_of(fish, self.names, "set")
+        if not isinstance(key, str):
+            raise TypeError(f"set: a key is one of {', '.join(KEYS)}, not {kind(key)}")
+        values = numbers_of(value, f"set: {key}")
+        if values.size > 2**20:
+            raise CaseError(f"set: {key}: {values.size} numbers are too many")
+        pointer = values.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
+        with self._using() as run:
+            check(lib.library.shoal_set(run, number, text_of(key, "set: a key"), values.size, pointer))
+
+    # -- values at the last event
+
+    @property
+    def names(self) -> list[str]:
+        """The names of the fish."""
+        if self._names is None:
+            self._names = [name.tobytes().rstrip(b"\0").decode() for name in self["fish_name"]]
+        self._open()
+        return list(self._names)
+
+    def keys(self) -> list[str]:
+        """The names of all variables: doc/output.md."""
+        return list(variables())
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return self.keys()
+
+    def __iter__(self):
+        return iter(self.keys())
+
+    def __len__(self) -> int:
+        return len(variables())
+
+    def __bool__(self) -> bool:
+        return True
+
+    def __contains__(self, name) -> bool:
+        return name in variables()
+
+    def _view(self, name, pointer) -> Variable:
+        array = lib.Array()
+        if name not in self._views and name not in variables():
+            _refuse_name(name)
+        code = lib.library.shoal_read(pointer, name.encode(), array)
+        if code:
+            check(code)
+        shape = tuple(array.shape[: array.n_dimensions])
+        known = self._views.get(name)
+        if known is None or known[0] != array.values or known[1] != shape:
+            memory = _Memory(self._handle, array.values, shape, lib.TYPES[array.type])
+            view = np.asarray(memory).view(Variable)
+            view.dims = tuple(array.dimension[d].decode() for d in range(array.n_dimensions))
+            view.unit, view.long_name = array.unit.decode(), array.long_name.decode()
+            self._views[name] = known = array.values, shape, view
+        return known[2]
+
+    def __getitem__(self, name: str) -> Variable:
+        """A copy of a variable at the last event, in C order, with dims, unit and long_name; NaN where a fish has fewer
+        nodes or vortices than the longest."""
+        if not isinstance(name, str):
+            _refuse_name(name)
+        with self._using() as pointer:
+            view = self._view(name, pointer)
+            copy = view.copy()
+        copy.dims, copy.unit, copy.long_name = view.dims, view.unit, view.long_name
+        return copy
+
+    def view(self, name: str) -> Variable:
+        """A read-only view of a variable, without copying. It shows the event at which view() was called last, and the
+        memory stays good when the run is closed. After a step call view() again."""
+        if not isinstance(name, str):
+            _refuse_name(name)
+        with self._using() as pointer:
+            return self._view(name, pointer)
+
+    def flow(self, points) -> tuple[np.ndarray, np.ndarray]:
+        """Velocity (..., 2), m s-1, and vorticity (...), s-1, of the fluid at points (..., 2), m."""
+        points = numbers_of(points, "flow: points")
+        if points.ndim == 0 or points.shape[-1] != 2:
+            raise CaseError(f"flow: points have the shape (..., 2), not {points.shape}")
+        velocity, vorticity = np.empty(points.shape), np.empty(points.shape[:-1])
+        if vorticity.size > 2**27:
+            raise CaseError(f"flow: {vorticity.size} points are too many")
+        with self._using() as pointer:
+            check(lib.library.shoal_flow(pointer, vorticity.size, points.ctypes.data, velocity.ctypes.data,
+                                         vorticity.ctypes.data))
+        return velocity, vorticity
+
+    def to_xarray(self):
+        """All variables at the last event as an xarray.Dataset with the coordinates fish, xy and time."""
+        from ._results import dataset_of
+
+        return dataset_of(self)
+
+    # -- files
+
+    def write(self, path: str | os.PathLike | None = None, overwrite: bool = False) -> str:
+        """Write a result file from now on, until the end or write_end(); returns its path. None: the path that the
+        program would choose. overwrite: replace a result that exists; else that is a FileError."""
+        encoded = None if path is None else text_of(path, "path")
+        with self._using() as pointer:
+            if encoded is None:
+                encoded = lib.library.shoal_result_path(pointer)
+            check(lib.library.shoal_write(pointer, encoded, bool(overwrite)))
+            self.path = os.fsdecode(encoded)
+        return self.path
+
+    def checkpoint(self):
+        """Write a checkpoint beside the result file, RESULT.ckpt, from which `shoal resume` continues."""
+        with self._using() as pointer:
+            check(lib.library.shoal_checkpoint(pointer))
+
+    def write_end(self):
+        """Close the result file; a run that is not at its end is marked "stopped". No-op without a file."""
+        with self._using() as pointer:
+            check(lib.library.shoal_write_end(pointer))
+
+    # -- in a terminal and in a notebook
+
+    def __repr__(self) -> str:
+        if self._handle is None:
+            return "<shoal.Run, closed>"
+        if self._handle.is_torn:
+            return "<shoal.Run, torn by a fork>"
+        names = self.names
+        shown = ", ".join(names[:4]) + (", ..." if len(names) > 4 else "")
+        return f"<shoal.Run of {len(names)} fish ({shown}) at t = {self.time:.6g} of {self.end:.6g} s>"
+
+    def _repr_html_(self) -> str:
+        """The page of its result file, of the rows so far; without one its bodies and wakes now."""
+        from ._draw import snapshot_of
+        from ._program import page_of_file
+
+        if self._handle is None or self._handle.is_torn:
+            return f"<p>{html.escape(repr(self))}</p>"
+        try:
+            return page_of_file(self.path) if self.path else snapshot_of(self)
+        except (Error, OSError):  # no program, or a file that is gone
+            return snapshot_of(self)
+
+
+def _unpickle(cls, content: bytes) -> Run:
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "run.ckpt")
+        with open(path, "wb") as file:
+            file.write(content)
+        try:
+            return _load(cls, path)
+        except lib.FileError as error:
+            raise TypeError(f"this run cannot be restored: {str(error).replace(path, 'the pickle')}") from error
+
+
+def _load(cls, path):
+    pointer = ctypes.c_void_p()
+    check(lib.library.shoal_load(pointer, text_of(path, "path")))
+    return cls._adopt(pointer.value)
+
+
+def load(path: str | os.PathLike) -> Run:
+    """A run from a checkpoint: one of Run.save, Run.checkpoint or the program. It writes no result file."""
+    return _load(Run, path)
+
+
+def run(case: Case, assignments: Assignments = None, path: str | os.PathLike | None = None, overwrite: bool = False,
+        progress: Callable[[float, float], None] | bool | None = None, folder: str | os.PathLike | None = None) -> str:
+    """Run a case to its end and return the path of its result file, the same file as of `shoal run`.
+
+    path: of the result (None: output.file of the case, or its name with .nc). overwrite: replace a result that exists,
+    as --force does; else that is a FileError. progress: as in Run.advance.
+    """
+    with Run(case, assignments, folder) as this:
+        path = this.write(path, overwrite)
+        this.advance(this.end, progress)
+        this.write_end()
+    return path
