@@ -13,9 +13,9 @@
  * there, or a number that is not finite is SHOAL_USAGE, and nothing has changed.
  *
  * A program may have many runs, in several threads; each run belongs to one thread at a time. A run gives the same bits
- * whatever the other ones do. After a fork the child may use its copies of the runs that were between two calls; the
- * thread that forked steps them with one thread, because OpenMP has lost the others. Nothing prints, ends the program, or
- * changes its locale, its signals, or its environment. */
+ * whatever the other ones do. After a fork the child may use its copies of the runs that were between two calls; there
+ * the thread that forked steps them with one thread, because OpenMP has lost the others. Nothing prints, ends the
+ * program, or changes its locale, its signals, or its environment. */
 #ifndef SHOAL_H
 #define SHOAL_H
 
