@@ -148,8 +148,8 @@ expect:
 | `ratio` | upper bound of the largest over the smallest absolute value; not met where a value is 0 or signs differ |
 | `fails` | alone or with `where`: the members fail, with these words in their messages; such failures do not make the exit code 1 |
 
-Quantities are those with orders, and QUANTITIES. Only a comparison of methods ([studies.md](studies.md)) has `nose_error`
-and `tail_error`. `shoal run` ignores `expect`.
+Quantities are those with orders, and QUANTITIES. Only a comparison of methods ([studies.md](studies.md)) has `nose_error`,
+`tail_error` and `power_error`. `shoal run` ignores `expect`.
 
 ## error
 

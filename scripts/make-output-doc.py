@@ -146,7 +146,7 @@ each quantity Q that is asked for.
 
 `shoal compare -o FILE` writes the same file: its one axis sets `solver.method`, `solver.order`, `solver.rtol` and
 `solver.step`. Member 0 is the reference, member 1 shows how good that is, and of the others those with equal values are
-repeats. Only such a study has `nose_error` and `tail_error`.
+repeats. Only such a study has `nose_error`, `tail_error` and `power_error`.
 """,
     "field": """
 ## The file of a field

@@ -40,6 +40,10 @@ const struct sweep_quantity sweep_quantities[SWEEP_N_QUANTITIES] = {
     {"wall_time", 0, 0, NULL, NULL, 0},
     {"nose_error", 1, 0, "1", "distance of the nose from that of the reference of a comparison, in body lengths", 0},
     {"tail_error", 1, 0, "1", "distance of the tail from that of the reference of a comparison, in body lengths", 0},
+    {"power_error", 1, 0, "1",
+     "relative error of the work of the muscle, or of mean_power without one, from that of the reference of a "
+     "comparison",
+     0},
     {"beat_time", 0, 0, "s", "wall time of a beat of the search for a steady state", SWEEP_OF_STEADY},
     {"steady_stiffness", 0, 0, NULL, NULL, SWEEP_OF_STEADY},
 };

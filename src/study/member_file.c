@@ -15,8 +15,9 @@ enum { MAX_FISH = 1000000 };
 // ---- the table of quantities: first what is in the last row of a result, then what is computed
 
 static const char *const computed[] = {
-    "nose", "tail", "lateral_drift", "mean_heading", "mean_actuation_power", "nose_error", "tail_error", "beat_time"};
-enum { NOSE, TAIL, DRIFT, MEAN_HEADING, MEAN_POWER, NOSE_ERROR, TAIL_ERROR, BEAT_TIME, N_COMPUTED };
+    "nose",       "tail",       "lateral_drift", "mean_heading", "mean_actuation_power",
+    "nose_error", "tail_error", "power_error",   "beat_time"};
+enum { NOSE, TAIL, DRIFT, MEAN_HEADING, MEAN_POWER, NOSE_ERROR, TAIL_ERROR, POWER_ERROR, BEAT_TIME, N_COMPUTED };
 
 /* True for (time), (time, fish) and (time, fish, xy). */
 static int has_end(const struct result_variable *variable) {
@@ -55,7 +56,7 @@ const struct member_file_quantity *member_file_quantity(int i) {
                                                      .of_fish = from->of_fish,
                                                      .of_xy = from->of_xy,
                                                      .is_computed = 1,
-                                                     .of_comparison = c == NOSE_ERROR || c == TAIL_ERROR,
+                                                     .of_comparison = c >= NOSE_ERROR && c <= POWER_ERROR,
                                                      .of_steady = c == BEAT_TIME};
         }
     }

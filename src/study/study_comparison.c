@@ -1,4 +1,4 @@
-/* study_comparison.c: errors against the reference, and the table of a comparison. */
+/* study_comparison.c: errors against the reference, the table of a comparison, and the cost at equal error. */
 #include "study/study_comparison.h"
 
 #include <math.h>
@@ -36,14 +36,28 @@ static double distance(const struct case_values *study, const struct member_file
     return hypot(x, y) / study->school.fish[f].length;
 }
 
+/* The relative error of the work of a fish's muscle; of a fish without one, of its mean power into the water. */
+static double power_error(const struct member_file *members, int m, int f) {
+    if (!is_complete(&members[m]) || !is_complete(&members[0])) return NAN;
+    static const char *const powers[] = {"actuation_work", "mean_power"};
+    for (int i = 0; i < 2; i++) {
+        const int q = member_file_quantity_number(powers[i]);
+        const double reference = member_file_value(&members[0], q, f, 0);
+        if (!(fabs(reference) > 0)) continue;
+        return fabs(member_file_value(&members[m], q, f, 0) / reference - 1);
+    }
+    return NAN;
+}
+
 void study_comparison_fill_errors(const struct case_values *study, const struct member_file *members) {
     if (!study_comparison_is(study)) return;
-    const int nose_error = member_file_quantity_number("nose_error");
-    const int tail_error = member_file_quantity_number("tail_error");
+    const int nose = member_file_quantity_number("nose_error"), tail = member_file_quantity_number("tail_error"),
+              power = member_file_quantity_number("power_error");
     for (int m = 0; m < sweep_n_members(study); m++) {
         for (int f = 0; f < members[m].n_fish; f++) {
-            *member_file_place(&members[m], nose_error, f, 0) = distance(study, members, m, "nose", f);
-            *member_file_place(&members[m], tail_error, f, 0) = distance(study, members, m, "tail", f);
+            *member_file_place(&members[m], nose, f, 0) = distance(study, members, m, "nose", f);
+            *member_file_place(&members[m], tail, f, 0) = distance(study, members, m, "tail", f);
+            *member_file_place(&members[m], power, f, 0) = power_error(members, m, f);
         }
     }
 }
@@ -83,18 +97,23 @@ static int ascending(const void *a, const void *b) {
     return (*one > *other) - (*one < *other);
 }
 
-/* The median of the wall times of the complete repeats of member m, s; NaN: none is complete. buffer: (members) */
-static double median_wall_time(const struct case_values *study, const struct member_file *members, int m,
-                               double *buffer) {
+/* Wall time of a setting, s: the median of its complete repeats, and half of their range; NaN: too few are complete. */
+struct wall_time {
+    double median, spread;
+};
+
+/* buffer: (members) */
+static struct wall_time wall_time_of(const struct case_values *study, const struct member_file *members, int m,
+                                     double *buffer) {
     const int wall_time = member_file_quantity_number("wall_time");
     int n = 0;
     for (int i = m; i < sweep_n_members(study); i++) {
         if (!are_repeats(study, i, m) || !is_complete(&members[i])) continue;
         buffer[n++] = member_file_value(&members[i], wall_time, 0, 0);
     }
-    if (n == 0) return NAN;
+    if (n == 0) return (struct wall_time){NAN, NAN};
     qsort(buffer, (size_t)n, sizeof *buffer, ascending);
-    return (buffer[(n - 1) / 2] + buffer[n / 2]) / 2;
+    return (struct wall_time){(buffer[(n - 1) / 2] + buffer[n / 2]) / 2, n > 1 ? (buffer[n - 1] - buffer[0]) / 2 : NAN};
 }
 
 // ---- the table
@@ -119,11 +138,12 @@ static const struct count {
     {"newton_iterations", "Newton"},
     {"jacobian_evaluations", "Jacobians"},
 };
-enum { N_COUNTS = sizeof counts / sizeof *counts, N_BEFORE = 6, N_COLUMNS = N_BEFORE + N_COUNTS + 2 };
+enum { N_COUNTS = sizeof counts / sizeof *counts, N_BEFORE = 8, N_COLUMNS = N_BEFORE + N_COUNTS + 2 };
 
 static void fill_head(const struct study_table *table) {
     static const char *const heads[N_BEFORE][2] = {{"method", ""},      {"rtol", ""},        {"step", "s"},
-                                                   {"nose", "lengths"}, {"tail", "lengths"}, {"wall", "s"}};
+                                                   {"nose", "lengths"}, {"tail", "lengths"}, {"power", "part"},
+                                                   {"wall", "s"},       {"+-", "s"}};
     for (int c = 0; c < N_BEFORE; c++) {
         for (int row = 0; row < 2; row++) study_table_set(table, row, c, "%s", heads[c][row]);
     }
@@ -133,7 +153,7 @@ static void fill_head(const struct study_table *table) {
 }
 
 static void fill_row(const struct study_table *table, int row, const struct case_values *study,
-                     const struct member_file *members, int m, double wall_time) {
+                     const struct member_file *members, int m, struct wall_time wall_time) {
     const struct member_file *const member = &members[m];
     char method[STUDY_CELL_BYTES];
     name_method(study, m, method);
@@ -142,14 +162,16 @@ static void fill_row(const struct study_table *table, int row, const struct case
     study_table_set(table, row, 2, "%s", has_step(study, m) ? set_to(study, m, STEP) : "-");
     study_table_number(table, row, 3, "%.1e", largest_error(study, member, "nose_error"));
     study_table_number(table, row, 4, "%.1e", largest_error(study, member, "tail_error"));
-    study_table_number(table, row, 5, "%.3f", wall_time);
+    study_table_number(table, row, 5, "%.1e", largest_error(study, member, "power_error"));
+    study_table_number(table, row, 6, "%.3f", wall_time.median);
+    study_table_number(table, row, 7, "%.3f", wall_time.spread);
     for (int c = 0; c < N_COUNTS; c++) {
         const int quantity = member_file_quantity_number(counts[c].quantity);
         study_table_number(table, row, N_BEFORE + c, "%.0f", member_file_value(member, quantity, 0, 0));
     }
     const int evaluations = member_file_quantity_number("residual_evaluations");
     study_table_number(table, row, N_COLUMNS - 2, "%.1f",
-                       1e6 * wall_time / member_file_value(member, evaluations, 0, 0));
+                       1e6 * wall_time.median / member_file_value(member, evaluations, 0, 0));
     // "failed: why": the reasons follow the table
     study_table_set(table, row, N_COLUMNS - 1, "%.*s", (int)strcspn(member->status, ":"), member->status);
 }
@@ -159,10 +181,178 @@ static void print_reference(const struct case_values *study, const struct member
     char method[STUDY_CELL_BYTES], other[STUDY_CELL_BYTES];
     name_method(study, 0, method);
     name_method(study, 1, other);
-    fprintf(stream, "Reference: %s, rtol %s; %s, rtol %s is off by %.1e (nose) and %.1e (tail) lengths.\n", method,
+    fprintf(stream, "Reference: %s, rtol %s; %s, rtol %s is off by %.1e (nose) and %.1e (tail) lengths", method,
             set_to(study, 0, RTOL), other, set_to(study, 1, RTOL), largest_error(study, &members[1], "nose_error"),
             largest_error(study, &members[1], "tail_error"));
+    const double power = largest_error(study, &members[1], "power_error");
+    if (!isnan(power)) fprintf(stream, ", and by a part of %.1e in the power", power);
+    fprintf(stream, ".\n");
 }
+
+// ---- the cost at equal error
+
+/* A setting in the plane of error and cost. */
+struct point {
+    int member;
+    double error, evaluations;
+    struct wall_time wall_time;
+};
+
+/* A cost at the common error, with its bar. */
+struct cost {
+    double value, bar;
+};
+
+/* The largest error of a member: nose, tail and power. */
+static double error_of(const struct case_values *study, const struct member_file *member) {
+    return fmax(largest_error(study, member, "nose_error"),
+                fmax(largest_error(study, member, "tail_error"), largest_error(study, member, "power_error")));
+}
+
+static int is_same_method(const struct case_values *study, int m, int other) {
+    return strcmp(set_to(study, m, METHOD), set_to(study, other, METHOD)) == 0 &&
+           strcmp(set_to(study, m, ORDER), set_to(study, other, ORDER)) == 0 &&
+           has_step(study, m) == has_step(study, other);
+}
+
+static int is_first_of_method(const struct case_values *study, int m) {
+    for (int i = STUDY_COMPARISON_N_REFERENCES; i < m; i++) {
+        if (is_same_method(study, i, m)) return 0;
+    }
+    return 1;
+}
+
+static int by_error(const void *a, const void *b) {
+    const struct point *const one = a, *const other = b;
+    return (one->error > other->error) - (one->error < other->error);
+}
+
+/* The settings of the method of member m that are complete, from the smallest error to the largest. */
+static int collect_points(const struct case_values *study, const struct member_file *members, int m, double *buffer,
+                          struct point *point) {
+    int n = 0;
+    for (int i = m; i < sweep_n_members(study); i++) {
+        if (!is_same_method(study, i, m) || first_of(study, i) != i || !is_complete(&members[i])) continue;
+        const int evaluations = member_file_quantity_number("residual_evaluations");
+        point[n] = (struct point){i, error_of(study, &members[i]), member_file_value(&members[i], evaluations, 0, 0),
+                                  wall_time_of(study, members, i, buffer)};
+        n += point[n].error > 0;
+    }
+    qsort(point, (size_t)n, sizeof *point, by_error);
+    return n;
+}
+
+/* The setting i of which the error is below a bound and that of i + 1 is not; n - 1: all are below, -1: none is. */
+static int below(int n, const struct point *point, double error) {
+    int i = n - 1;
+    while (i >= 0 && point[i].error > error) i--;
+    return i;
+}
+
+static int cheapest(int n, const struct point *point) {
+    int least = 0;
+    for (int i = 1; i < n; i++) {
+        if (point[i].evaluations <= point[least].evaluations) least = i;
+    }
+    return least;
+}
+
+/* The cost at an error, by a power law between two settings. */
+static double interpolate(const struct point *fine, const struct point *coarse, double error, double of_fine,
+                          double of_coarse) {
+    const double part = log(error / fine->error) / log(coarse->error / fine->error);
+    return of_fine * pow(of_coarse / of_fine, fmin(1, fmax(0, part)));
+}
+
+/* The same with the error of the reference, by which both errors can be wrong, and the spread of the costs. */
+static struct cost cost_at(const struct point *fine, const struct point *coarse, double error, double unsure,
+                           double of_fine, double of_coarse, double spread) {
+    const double value = interpolate(fine, coarse, error, of_fine, of_coarse);
+    const double dearer = interpolate(fine, coarse, fmax(error - unsure, fine->error), of_fine, of_coarse);
+    const double cheaper = interpolate(fine, coarse, error + unsure, of_fine, of_coarse);
+    return (struct cost){value, fmax(fabs(dearer - value), fabs(cheaper - value)) + (isnan(spread) ? 0 : spread)};
+}
+
+/* The smallest power of ten, not below ten times the error of the reference, that all methods reach. */
+static double common_error(const struct case_values *study, const struct member_file *members, double *buffer,
+                           struct point *point) {
+    double worst = 10 * error_of(study, &members[1]);
+    for (int m = STUDY_COMPARISON_N_REFERENCES; m < sweep_n_members(study); m++) {
+        const int n = is_first_of_method(study, m) ? collect_points(study, members, m, buffer, point) : 0;
+        if (n > 0) worst = fmax(worst, point[0].error);
+    }
+    return pow(10, ceil(log10(worst) - 1e-9));
+}
+
+static void name_setting(const struct case_values *study, int m, char text[STUDY_CELL_BYTES]) {
+    const int key = has_step(study, m) ? STEP : RTOL;
+    snprintf(text, STUDY_CELL_BYTES, "%s %s", key == STEP ? "step" : "rtol", set_to(study, m, key));
+}
+
+static void fill_cost(const struct study_table *table, int row, const struct case_values *study, int n,
+                      const struct point *point, double error, double unsure) {
+    char name[STUDY_CELL_BYTES], fine[STUDY_CELL_BYTES], coarse[STUDY_CELL_BYTES];
+    name_method(study, point[0].member, name);
+    study_table_set(table, row, 0, "%s", name);
+    const int i = below(n, point, error);
+    if (i < 0) {
+        name_setting(study, point[0].member, fine);
+        study_table_set(table, row, 5, "not reached: error %.1e with %s", point[0].error, fine);
+        return;
+    }
+    // where all settings are below, the cheapest one is an upper bound
+    const int is_bound = i == n - 1;
+    const struct point *const a = &point[is_bound ? cheapest(n, point) : i], *const b = is_bound ? a : a + 1;
+    name_setting(study, a->member, fine);
+    const struct cost evaluations =
+        is_bound ? (struct cost){a->evaluations, 0} : cost_at(a, b, error, unsure, a->evaluations, b->evaluations, 0);
+    const double spread = fmax(a->wall_time.spread, b->wall_time.spread);  // fmax passes over NaN
+    const struct cost wall = is_bound ? (struct cost){a->wall_time.median, a->wall_time.spread}
+                                      : cost_at(a, b, error, unsure, a->wall_time.median, b->wall_time.median, spread);
+    study_table_number(table, row, 1, "%.0f", evaluations.value);
+    study_table_number(table, row, 2, "%.0f", evaluations.bar);
+    study_table_number(table, row, 3, "%.3f", wall.value);
+    study_table_number(table, row, 4, "%.3f", wall.bar);
+    if (is_bound) {
+        study_table_set(table, row, 5, "at most: error %.1e with %s", a->error, fine);
+    } else {
+        name_setting(study, b->member, coarse);
+        study_table_set(table, row, 5, "between %s and %s", fine, coarse);
+    }
+}
+
+/* The cost of each method at one error that all of them reach, by power laws between its settings. */
+static enum status print_costs(const struct case_values *study, const struct member_file *members, FILE *stream) {
+    const int n = sweep_n_members(study);
+    struct study_table table = {0};
+    double *const buffer = calloc((size_t)n, sizeof *buffer);
+    struct point *const point = calloc((size_t)n, sizeof *point);
+    enum status status = STATUS_OK;
+    if (!buffer || !point) status = status_fail(STATUS_MEMORY, "out of memory: a comparison of %d members", n);
+    if (status == STATUS_OK) status = study_table_create(&table, 1 + n, 6);
+    if (status != STATUS_OK) goto end;
+    const double error = common_error(study, members, buffer, point), unsure = error_of(study, &members[1]);
+    const char *const heads[] = {"method", "evaluat.", "+-", "wall, s", "+-", "settings"};
+    for (int c = 0; c < 6; c++) study_table_set(&table, 0, c, "%s", heads[c]);
+    int row = 1;
+    for (int m = STUDY_COMPARISON_N_REFERENCES; m < n; m++) {
+        const int n_points = is_first_of_method(study, m) ? collect_points(study, members, m, buffer, point) : 0;
+        if (n_points > 0) fill_cost(&table, row++, study, n_points, point, error, unsure);
+    }
+    table.n_rows = row;
+    if (row > 1 && isfinite(error)) {
+        fprintf(stream, "Cost at an error of %.0e in nose, tail (lengths) and power (part), known to %.1e:\n", error,
+                unsure);
+        study_table_print(&table, stream);
+    }
+end:
+    study_table_free(&table);
+    free(buffer);
+    free(point);
+    return status;
+}
+
+// ---- printing
 
 /* Why rows are not complete. */
 static void print_reasons(const struct case_values *study, const struct member_file *members, FILE *stream) {
@@ -184,16 +374,17 @@ enum status study_comparison_print(const struct case_values *study, const struct
     double *const buffer = calloc((size_t)n, sizeof *buffer);
     if (!buffer) return status_fail(STATUS_MEMORY, "out of memory: a comparison of %d members", n);
     struct study_table table;
-    const enum status status = study_table_create(&table, 2 + n_rows, N_COLUMNS);
+    enum status status = study_table_create(&table, 2 + n_rows, N_COLUMNS);
     if (status == STATUS_OK) {
         fill_head(&table);
         for (int m = STUDY_COMPARISON_N_REFERENCES, row = 2; m < n; m++) {
             if (first_of(study, m) != m) continue;
-            fill_row(&table, row++, study, members, m, median_wall_time(study, members, m, buffer));
+            fill_row(&table, row++, study, members, m, wall_time_of(study, members, m, buffer));
         }
         print_reference(study, members, stream);
         study_table_print(&table, stream);
         study_table_free(&table);
+        status = print_costs(study, members, stream);
         print_reasons(study, members, stream);
     }
     free(buffer);

@@ -17,12 +17,14 @@ enum { STUDY_COMPARISON_N_REFERENCES = 2 };
 /* Whether a study is a comparison. */
 int study_comparison_is(const struct case_values *study);
 
-/* Set nose_error and tail_error of each member of a comparison: the distance of nose and tail, at the end, from those
- * of the reference, in body lengths. In other studies nothing happens. */
+/* Set nose_error, tail_error and power_error of each member of a comparison: the distance of nose and tail, at the end,
+ * from those of the reference, in body lengths, and the relative error of the work of the muscle. In other studies
+ * nothing happens. */
 void study_comparison_fill_errors(const struct case_values *study, const struct member_file *members);
 
-/* Print a row for each setting: the largest errors of a fish, the median of the wall times of the repeats, the counts
- * of the solver; and why members failed. Fails with STATUS_MEMORY. */
+/* Print a row for each setting: the largest errors of a fish, the median of the wall times of the repeats and half of
+ * their range, the counts of the solver; the cost of each method at one error; and why members failed. Fails with
+ * STATUS_MEMORY. */
 enum status study_comparison_print(const struct case_values *study, const struct member_file *members, FILE *stream);
 
 #endif

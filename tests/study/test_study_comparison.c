@@ -89,19 +89,57 @@ static void the_wall_time_is_the_median_of_the_repeats(void **state) {
     struct case_values study = parse(repeated);
     struct member_file *const members = members_of(&study);
     const char *text = print(&study, members);
-    assert_has(text, "\n   rk4     -  0.01        -        -  2.500 ");  // 1, 2, 3, 10
-    assert_has(text, "\n  ida2  1e-3     -        -        -  3.000 ");  // 1, 3, 20
+    assert_has(text, "\n   rk4     -  0.01        -        -      -  2.500  4.500 ");  // 1, 2, 3, 10
+    assert_has(text, "\n  ida2  1e-3     -        -        -      -  3.000  9.500 ");  // 1, 3, 20
     // what has failed has no time, and is said once
     for (int m = 2; m < N_MEMBERS; m += 2) {
         free(members[m].status);
         members[m].status = strdup("failed: too slow");
     }
     text = print(&study, members);
-    assert_has(text, "\n   rk4     -  0.01        -        -      - ");
+    assert_has(text, "\n   rk4     -  0.01        -        -      -      -      - ");
     assert_has(text, "failed\n  ida2");
     assert_has(text, "complete\nrk4, step 0.01 failed: too slow\n");
     assert_null(strstr(strstr(text, "too slow") + 1, "too slow"));
     study_folder_free_members(members, N_MEMBERS);
+    case_free(&study);
+}
+
+/* Errors of 4e-5 and 4e-3 for 1000 and 100 evaluations, and of 2e-4 and 2e-2 for 800 and 80: at 1e-3 a power law gives
+ * 200 and 357.8. A reference that is off by 1e-5 moves the first by 200 log(10)/log(100) 1e-2. */
+static void the_cost_at_equal_error_is_that_of_a_power_law(void **state) {
+    (void)state;
+    static const char text[] = CASE
+        "fish: [{}]\n"
+        "sweep: [{keys: [solver.method, solver.order, solver.rtol, solver.step],\n"
+        "    values: [[ida, 5, 1e-9, 0], [ida, 5, 1e-8, 0], [ida, 2, 1e-5, 0], [ida, 2, 1e-3, 0],\n"
+        "        [rk4, 4, 1e-5, 0.005], [rk4, 4, 1e-5, 0.01], [heun, 2, 1e-3, 0]]}]\n";
+    static const double error[] = {0, 1e-5, 4e-5, 4e-3, 2e-4, 2e-2, 1e-4},
+                        evaluations[] = {9e4, 8e4, 1000, 100, 800, 80, 70};
+    struct case_values study = parse(text);
+    enum { N = 7 };
+    struct member_file *const members = calloc(N, sizeof *members);
+    assert_non_null(members);
+    for (int m = 0; m < N; m++) {
+        members[m].status = strdup("complete");
+        assert_int_equal(member_file_create_values(&members[m], 1), STATUS_OK);
+        for (int k = 0; k < 2; k++) *at(&members[m], "tail", 0, k) = *at(&members[m], "nose", 0, k) = 3;
+        // the nose is right where the power is wrong
+        if (m % 2 == 0) *at(&members[m], "nose", 0, 0) += error[m];
+        *at(&members[m], "actuation_work", 0, 0) = 5 * (1 - (m % 2 == 0 ? 0 : error[m]));
+        *at(&members[m], "wall_time", 0, 0) = evaluations[m] / 100;
+        *at(&members[m], "residual_evaluations", 0, 0) = evaluations[m];
+    }
+    study_comparison_fill_errors(&study, members);
+    NEAR(*at(&members[3], "power_error", 0, 0), 4e-3, 0, 1e-9);
+    NEAR(*at(&members[2], "power_error", 0, 0), 0, 0, 0);
+    const char *const printed = print(&study, members);
+    assert_has(printed, "and by a part of 1.0e-05 in the power.");
+    assert_has(printed, "Cost at an error of 1e-03 in nose, tail (lengths) and power (part), known to 1.0e-05:");
+    assert_has(printed, "\n  ida2       200   1    2.000  0.010  between rtol 1e-5 and rtol 1e-3\n");
+    assert_has(printed, "\n   rk4       358   2    3.578  0.018  between step 0.005 and step 0.01\n");
+    assert_has(printed, "\n  heun        70   0    0.700      -  at most: error 1.0e-04 with rtol 1e-3\n");
+    study_folder_free_members(members, N);
     case_free(&study);
 }
 
@@ -179,6 +217,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(errors_are_distances_from_the_first_member_in_lengths),
         cmocka_unit_test(the_wall_time_is_the_median_of_the_repeats),
+        cmocka_unit_test(the_cost_at_equal_error_is_that_of_a_power_law),
         cmocka_unit_test(only_a_sweep_of_these_keys_is_a_comparison),
         cmocka_unit_test(every_failing_allocation_is_reported_and_leaves_nothing),
     };
