@@ -16,7 +16,7 @@
 enum sweep_error_kind {
     SWEEP_POINTS,   /* a number of points n: grid spacing 1/(n - 1) */
     SWEEP_SPACING,  /* the value is the grid spacing, or a tolerance */
-    SWEEP_DURATION, /* the larger the better, without an order */
+    SWEEP_DURATION, /* the larger the better: 1/duration is the grid spacing */
     SWEEP_MODEL     /* a length of the model: its effect is shown, and is no error */
 };
 

@@ -7,9 +7,9 @@
  * design order from which the change does not matter, as the design order is used then. */
 static const double slack = 1, most_change = 0.8, far_above = 1.5;
 
-/* Roache's safety factor; that of the largest difference of three levels none of which is finer than the base; the part
- * of the noise below which differences say nothing. */
-static const double safety = 1.25, without_finer = 1.5, of_noise = 3;
+/* Roache's safety factor; those of the largest difference of fewer than four levels, where the base is the finest one
+ * and where it is not; the part of the noise below which differences say nothing. */
+static const double safety = 1.25, without_finer = 1.5, with_finer = 2, of_noise = 3;
 
 /* Values that differ by less than this part of their size are equal: rounding hides the order. */
 static const double rounding = 1e-12;
@@ -129,14 +129,15 @@ enum error_budget_verdict error_budget_judge(const struct error_budget_levels *l
         *culprit = -1;
     }
 
-    const int is_wide = judged.n < ERROR_BUDGET_LEVELS && judged.base == 0;
+    // four levels span a range that is wide enough
+    const double factor = judged.n >= ERROR_BUDGET_LEVELS ? 1 : judged.base == 0 ? without_finer : with_finer;
     for (int q = 0; q < n; q++) {
         struct error_budget_result *const result = &results[q];
         if (result->verdict == ERROR_BUDGET_UNKNOWN) continue;
         if (all == ERROR_BUDGET_ACCEPTED && result->verdict == ERROR_BUDGET_ACCEPTED) {
             extrapolate(&judged, sequences[q].value, result);
-        } else if (error_budget_is_flagged(all) && is_wide && result->verdict != ERROR_BUDGET_NONE) {
-            result->error *= without_finer;
+        } else if (error_budget_is_flagged(all) && result->verdict != ERROR_BUDGET_NONE) {
+            result->error *= factor;
         }
     }
     return all;

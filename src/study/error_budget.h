@@ -9,7 +9,7 @@
  * A sequence is accepted if its differences have one sign and fall (p, p' > 0), and if p and p' agree with the design
  * order of the key. Then |f_0 - limit| <= 1.25 d_0/((h_1/h_0)^min(p, design) - 1), to which |f_0 - f_base|
  * is added. All sequences of a key are judged together: one that is not accepted flags all of them, and the error of a
- * flagged sequence is its largest |f_i - f_base|. */
+ * flagged sequence is its largest |f_i - f_base|, of fewer than four levels twice that. */
 #ifndef ERROR_BUDGET_H
 #define ERROR_BUDGET_H
 

@@ -359,7 +359,7 @@ static enum status add_default_levels(struct error_study *study, int k) {
     const struct sweep_error_key *const row = key->row;
     const double base = key->value[0];
     int is_there, n_missing = 0, n_finer = row->kind == SWEEP_MODEL || study->study.error->confirm;
-    // without an order only longer durations say what a longer one does
+    // the spacing must be halved twice before the far wake has its order
     if (row->kind == SWEEP_DURATION) n_finer *= 2;
     for (int i = 0; i < 2; i++) {
         if (!(row->coarser[i] > 0)) continue;

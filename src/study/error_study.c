@@ -98,7 +98,7 @@ static void object_to_interval(const struct error_study *study, const struct mem
 }
 
 /* All quantities of all fish at the levels of a key that are judged: at most four, with the stated one, and the finest
- * three of a duration, whose shorter ones say nothing. */
+ * three of a duration: a wake that is cut within two lengths is not yet a far one. */
 static enum status judge_key(struct error_study *study, const struct member_file *members,
                              struct error_study_key *key) {
     enum { MOST = ERROR_BUDGET_LEVELS };
@@ -238,7 +238,7 @@ enum status error_study_judge(struct error_study *study, const struct member_fil
 
 /* Whether the error falls where the stated value moves to a finer level. */
 static int is_movable(const struct error_study_key *key) {
-    return !error_budget_is_flagged(key->verdict) || key->row->kind == SWEEP_DURATION;
+    return !error_budget_is_flagged(key->verdict);
 }
 
 /* The largest error of a key over the value of a quantity. */

@@ -129,15 +129,16 @@ static void what_is_known_before_flags_whatever_the_levels_say(void **state) {
     NEAR(judged.of[SPEED].error, 0.32, 0.005, 0);
 }
 
-/* Points of the sheet with `force: pressure`: the changes grow, -0.11 % and -0.13 %; both finer levels are known, so
- * that the largest difference counts once. */
+/* Points of the sheet with `force: pressure`: the changes grow, -0.11 % and -0.13 %, towards a limit of about -0.4 %:
+ * the largest difference alone would not reach it. */
 static void differences_that_do_not_fall_are_flagged(void **state) {
     (void)state;
     const struct key key = {3, 2, {97, 69, 49}, 1, NULL};
     const double speed[] = {1.0056 * (1 - 0.0024), 1.0056 * (1 - 0.0011), 1.0056};
     const struct judged judged = judge(&key, speed, NULL, 3e-5);
     assert_int_equal(judged.verdict, ERROR_BUDGET_GROWS);
-    NEAR(judged.of[SPEED].error, 0.0024, 0.00005, 0);
+    NEAR(judged.of[SPEED].error, 2 * 0.0024, 0.0001, 0);
+    assert_true(judged.of[SPEED].error > 0.004 * 1.0056);
 }
 
 static void differences_below_the_noise_are_none(void **state) {
@@ -222,7 +223,7 @@ static void two_levels_give_the_difference_with_a_wide_bound(void **state) {
     const double speed[] = {1, 1.01};
     assert_int_equal(judge(&base, speed, NULL, 1e-5).verdict, ERROR_BUDGET_FEW);
     NEAR(judge(&base, speed, NULL, 1e-5).of[0].error, 0.015, 1e-12, 0);
-    NEAR(judge(&confirmed, speed, NULL, 1e-5).of[0].error, 0.01, 1e-12, 0);
+    NEAR(judge(&confirmed, speed, NULL, 1e-5).of[0].error, 0.02, 1e-12, 0);
 }
 
 static void of_many_levels_the_finest_four_count(void **state) {
