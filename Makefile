@@ -14,6 +14,7 @@ VERSION   = 0.1.0
 SOVERSION = 0
 
 prefix = /usr/local
+libdir = $(prefix)/lib
 ifeq ($(origin CC),default)
 CC = $(if $(shell command -v gcc),gcc,cc)
 endif
@@ -121,14 +122,15 @@ test_packages = chromium python3-vtk9 python3-jsonschema python3-yaml groff mand
 # "commit" or "commit-dirty"; of this folder's own repository, not of one that happens to lie around it
 commit := $(shell test -e .git && git describe --always --dirty --abbrev=12 --exclude='*' 2>/dev/null || echo unknown)
 
-# where Debian's python3 finds modules: /usr/local/lib/python3.11/dist-packages, /usr/lib/python3/dist-packages
-python_version = $(shell $(PYTHON) -c 'import sys; print("%d.%d" % sys.version_info[:2])')
-python_modules = $(prefix)/lib/python$(if $(filter /usr,$(prefix)),3,$(python_version))/dist-packages
+# the folder under the prefix in which $(PYTHON) looks for modules; else one for PYTHONPATH
+python_modules = $(shell $(PYTHON) -c 'import site, sys; \
+    folders = [f for f in [*sys.path, site.getusersitepackages()] if f.startswith("$(prefix)/lib") and f.endswith("-packages")]; \
+    print((folders + ["$(prefix)/lib/python%d.%d/site-packages" % sys.version_info[:2]])[0])')
 
 # make again, on all cores unless told otherwise
 parallel = $(MAKE) --no-print-directory $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
-.PHONY: all demo test test-c test-platforms test-slurm tests valgrind verify numbers soak fuzz fuzz-programs mutants bench style format docs install uninstall clean deps help FORCE
+.PHONY: all demo deb test test-c test-platforms test-slurm tests valgrind verify numbers soak fuzz fuzz-programs mutants bench style format docs install uninstall clean deps help FORCE
 
 ## Everyday
 
@@ -188,7 +190,7 @@ clean:  ## remove everything that was built
 
 help:  ## this list
 	@awk -F '  +## ' '/^## / { print "\n" substr($$0, 4) } \
-	    /^[a-z_.-]+:.*  ## / { sub(/:.*/, "", $$1); printf "  make %-10s %s\n", $$1, $$2 }' Makefile
+	    /^[a-z_.-]+:.*  ## / { sub(/:.*/, "", $$1); printf "  make %-15s %s\n", $$1, $$2 }' Makefile
 	@printf '\nVariables\n'; sed -n 's/^#   \([A-Z]\)/  \1/p' Makefile
 
 ## For developers
@@ -223,17 +225,18 @@ docs: $(generated_docs)  ## write cases.md, output.md and case.schema.json in do
 deps:  ## install the packages that are missing (nothing to do: no output)
 	@scripts/install-deps.sh
 
-## Installation: prefix=/usr/local DESTDIR=
+## Installation: prefix=/usr/local libdir=$prefix/lib DESTDIR=
 
 install: $(program) $(library) $(shared) $(manual) $(completion)  ## install program, library, header, module, cases, scripts, documents
 	$(say) INST '$(DESTDIR)$(prefix)'
-	$(quiet)install -d $(addprefix '$(DESTDIR)$(prefix)'/,bin include lib/pkgconfig share/man/man1 share/man/man5 share/bash-completion/completions $(addprefix share/shoal/,cases/include cases/studies scripts doc))
+	$(quiet)install -d $(addprefix '$(DESTDIR)$(prefix)'/,bin include share/man/man1 share/man/man5 share/bash-completion/completions $(addprefix share/shoal/,cases/include cases/studies scripts doc))
 	$(quiet)install -m 755 $(program) '$(DESTDIR)$(prefix)/bin'
 	$(quiet)install -m 644 include/shoal.h '$(DESTDIR)$(prefix)/include'
-	$(quiet)install -m 644 $(library) '$(DESTDIR)$(prefix)/lib'
-	$(quiet)install -m 755 $(shared) '$(DESTDIR)$(prefix)/lib/libshoal.so.$(VERSION)'
-	$(quiet)ln -sf libshoal.so.$(VERSION) '$(DESTDIR)$(prefix)/lib/$(soname)'
-	$(quiet)ln -sf $(soname) '$(DESTDIR)$(prefix)/lib/libshoal.so'
+	$(quiet)install -d '$(DESTDIR)$(libdir)/pkgconfig'
+	$(quiet)install -m 644 $(library) '$(DESTDIR)$(libdir)'
+	$(quiet)install -m 755 $(shared) '$(DESTDIR)$(libdir)/libshoal.so.$(VERSION)'
+	$(quiet)ln -sf libshoal.so.$(VERSION) '$(DESTDIR)$(libdir)/$(soname)'
+	$(quiet)ln -sf $(soname) '$(DESTDIR)$(libdir)/libshoal.so'
 	$(quiet)install -m 644 cases/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases'
 	$(quiet)install -m 644 cases/include/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases/include'
 	$(quiet)install -m 644 cases/studies/*.yaml '$(DESTDIR)$(prefix)/share/shoal/cases/studies'
@@ -248,16 +251,23 @@ install: $(program) $(library) $(shared) $(manual) $(completion)  ## install pro
 	$(quiet)install -m 644 $(filter %.5,$(manual)) '$(DESTDIR)$(prefix)/share/man/man5'
 	$(quiet)install -m 644 $(completion) '$(DESTDIR)$(prefix)/share/bash-completion/completions/shoal'
 	$(quiet)install -m 644 LICENSE CITATION.cff CHANGES.md doc/*.md doc/case.schema.json '$(DESTDIR)$(prefix)/share/shoal/doc'
-	$(quiet)printf '%s\n' 'prefix=$(prefix)' 'Name: shoal' 'Description: Swimming of fish and schools with their wakes' \
-	    'Version: $(VERSION)' 'Cflags: -I$${prefix}/include' 'Libs: -L$${prefix}/lib -lshoal' \
+	$(quiet)printf '%s\n' 'prefix=$(prefix)' 'libdir=$(libdir)' 'Name: shoal' 'Description: Swimming of fish and schools with their wakes' \
+	    'Version: $(VERSION)' 'Cflags: -I$${prefix}/include' 'Libs: -L$${libdir} -lshoal' \
 	    'Libs.private: $(libraries) -fopenmp' \
-	    >'$(DESTDIR)$(prefix)/lib/pkgconfig/shoal.pc'
+	    >'$(DESTDIR)$(libdir)/pkgconfig/shoal.pc'
+	@$(if $(DESTDIR),,$(PYTHON) -c 'import sys; sys.exit("$(python_modules)" not in sys.path)' || \
+	    echo "for 'import shoal': export PYTHONPATH=$(python_modules)")
 
 uninstall:  ## remove what `make install` installed
-	$(quiet)rm -f $(addprefix '$(DESTDIR)$(prefix)'/,bin/shoal include/shoal.h lib/libshoal.a lib/libshoal.so lib/$(soname) lib/libshoal.so.$(VERSION) lib/pkgconfig/shoal.pc)
+	$(quiet)rm -f $(addprefix '$(DESTDIR)$(prefix)'/,bin/shoal include/shoal.h)
+	$(quiet)rm -f $(addprefix '$(DESTDIR)$(libdir)'/,libshoal.a libshoal.so $(soname) libshoal.so.$(VERSION) pkgconfig/shoal.pc)
 	$(quiet)rm -f $(addprefix '$(DESTDIR)$(prefix)'/share/,man/man1/shoal.1 man/man5/shoal-case.5 man/man5/shoal-output.5 bash-completion/completions/shoal)
 	$(quiet)rm -rf '$(DESTDIR)$(python_modules)/shoal'
 	$(quiet)rm -rf '$(DESTDIR)$(prefix)/share/shoal'
+
+deb: deps  ## build the packages of Debian in build/deb, and let lintian check them
+	@scripts/install-deps.sh dpkg-dev debhelper dh-python lintian
+	@scripts/packaging/make-deb.sh $(B)/deb $(VERSION)
 
 # ---- rules ----
 

@@ -9,6 +9,8 @@
 #   test      make test
 #   c_tests   make test-c
 #   same      demo and pair differ by at most 1e-12 m after 1 s from those of this machine's build/shoal
+#   packages  make deb; its packages work in a second chroot (scripts/packaging/try-packages.sh)
+#   wheel     scripts/packaging/try-wheel.sh
 #
 # Needs root and a mirror of Debian, taken from the sources of apt; skips all platforms, with a reason, where a chroot
 # cannot be made. Leaves logs in build/platforms. --write replaces the rows of these platforms in the table of FILE that
@@ -18,8 +20,8 @@ set -euo pipefail
 
 # name, release, architecture, compiler, checks
 readonly platforms='
-debian12-gcc    bookworm  amd64  gcc    demo,test
-debian13-gcc    trixie    amd64  gcc    demo,test
+debian12-gcc    bookworm  amd64  gcc    demo,test,packages,wheel
+debian13-gcc    trixie    amd64  gcc    demo,test,packages,wheel
 debian13-clang  trixie    amd64  clang  demo,test
 debian12-arm64  bookworm  arm64  gcc    demo,c_tests,same
 debian13-arm64  trixie    arm64  gcc    demo,c_tests,same'
@@ -66,11 +68,6 @@ emulate() {  # architecture
     [[ -e $name ]]
 }
 
-copy_sources() {  # chroot
-    if [[ -e .git ]]; then git ls-files -z; else find . -path ./build -prune -o -type f -print0; fi |
-        tar -c --null --files-from=- | tar -x -C "$1/shoal" --no-same-owner
-}
-
 # ---- the checks: each gets a chroot and a compiler
 
 check_demo() {
@@ -103,6 +100,19 @@ PYTHON
     done
 }
 
+check_packages() {
+    local other=$1-packages
+    enter "$1" DEB_BUILD_OPTIONS=nocheck make deb  # check_test ran the tests
+    make_chroot "$other" "$release" "$architecture"
+    cp -r "$1/shoal/build/deb/"*.deb scripts/packaging/try-packages.sh "$other/shoal/"
+    enter "$other" ./try-packages.sh
+    [[ -n ${KEEP-} ]] || rm -rf "$other"
+}
+
+check_wheel() {
+    enter "$1" CC="$2" scripts/packaging/try-wheel.sh
+}
+
 # ---- a platform
 
 version_of() {  # chroot, package
@@ -121,17 +131,22 @@ row() {  # chroot, compiler, checks
 }
 
 run_platform() {  # name, release, architecture, compiler, checks
-    local name=$1 release=$2 architecture=$3 compiler=$4 checks=$5 root=$work/$1 check started all=yes
+    local name=$1 release=$2 architecture=$3 compiler=$4 checks=$5 root=$work/$1 check code started all=yes
     emulate "$architecture" || skip_all "$name: programs of $architecture cannot be run here"
     if [[ -z ${REUSE-} || ! -d $root/shoal ]]; then
         make_chroot "$root" "$release" "$architecture" || skip_all "$name: no chroot of $release for $architecture from $mirror"
     fi
-    copy_sources "$root"
+    scripts/packaging/copy-sources.sh "$root/shoal"
     [[ $compiler != clang ]] || enter "$root" scripts/install-deps.sh clang libomp-dev
 
     for check in ${checks//,/ }; do
         started=$SECONDS
-        if "check_$check" "$root" "$compiler" >"$work/$name-$check.log" 2>&1; then
+        # in a condition, bash would let a check go on after an error
+        set +e
+        (set -e; "check_$check" "$root" "$compiler") >"$work/$name-$check.log" 2>&1
+        code=$?
+        set -e
+        if ((code == 0)); then
             passed=$((passed + 1))
             echo "$name $check: passed, $((SECONDS - started)) s"
         else

@@ -56,7 +56,7 @@ static_library() {
 }
 
 module() {
-    LD_PRELOAD=$preload ASAN_OPTIONS=detect_leaks=0 PYTHONPATH=$(echo usr/lib/python3*/dist-packages) /usr/bin/python3 -c \
+    LD_PRELOAD=$preload ASAN_OPTIONS=detect_leaks=0 PYTHONPATH=$(echo usr/lib/python3*/site-packages) /usr/bin/python3 -c \
         'import shoal; run = shoal.Run("case.yaml"); run.step(); assert run["x"].shape == (2, 9, 2)'
 }
 

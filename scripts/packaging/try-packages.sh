@@ -1,0 +1,49 @@
+#!/usr/bin/env bash
+# Install the packages of this folder on an empty Debian, as root, and use each of them: build nothing but a client.
+set -euo pipefail
+shopt -s nullglob
+
+cd "$(dirname "$0")"
+packages=(./shoal_*.deb ./libshoal0_*.deb ./libshoal-dev_*.deb ./python3-shoal_*.deb ./shoal-doc_*.deb)
+((${#packages[@]} == 5))
+export DEBIAN_FRONTEND=noninteractive
+apt-get -q update
+apt-get -q -y install --no-install-recommends "${packages[@]}"
+
+# the program, its manual and its cases
+shoal --version
+shoal check /usr/share/shoal/cases/diamond.yaml
+shoal run /usr/share/shoal/cases/demo.yaml --set time.end=0.2 -q --force -o /tmp/demo.nc
+shoal info /tmp/demo.nc
+for page in man1/shoal.1 man5/shoal-case.5 man5/shoal-output.5; do [[ -s /usr/share/man/$page.gz ]]; done
+[[ -s /usr/share/doc/shoal-doc/tutorial.md ]]
+
+# the module
+cd /tmp
+python3 -c '
+import shoal
+with shoal.Run("/usr/share/shoal/cases/demo.yaml") as run:
+    run.step()
+    print("Python: nose at", run["x"][0, 0])'
+
+# the library, shared
+apt-get -q -y install --no-install-recommends gcc libc6-dev pkg-config
+cat >client.c <<'C'
+#include <shoal.h>
+#include <stdio.h>
+int main(void) {
+    struct shoal *run;
+    if (shoal_open(&run, "/usr/share/shoal/cases/demo.yaml", 0, NULL) < 0 || shoal_step(run) < 0) return 1;
+    printf("C: t = %g s\n", shoal_time(run));
+    shoal_close(run);
+}
+C
+# shellcheck disable=SC2046 # several flags
+gcc -o client client.c $(pkg-config --cflags --libs shoal)
+./client
+
+# nothing remains
+apt-get -q -y purge shoal libshoal0 libshoal-dev python3-shoal shoal-doc
+left=$(find /usr -path '*shoal*' -not -path '*/__pycache__*')
+[[ -z $left ]] || { echo "left behind: $left" >&2; exit 1; }
+echo 'the packages work'
