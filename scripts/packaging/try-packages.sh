@@ -1,14 +1,8 @@
 #!/usr/bin/env bash
-# Install the packages of this folder on an empty Debian, as root, and use each of them: build nothing but a client.
+# Use each of the installed packages on an otherwise empty Debian, as root, and remove them.
 set -euo pipefail
-shopt -s nullglob
 
-cd "$(dirname "$0")"
-packages=(./shoal_*.deb ./libshoal0_*.deb ./libshoal-dev_*.deb ./python3-shoal_*.deb ./shoal-doc_*.deb)
-((${#packages[@]} == 5))
 export DEBIAN_FRONTEND=noninteractive
-apt-get -q update
-apt-get -q -y install --no-install-recommends "${packages[@]}"
 
 # the program, its manual and its cases
 shoal --version
