@@ -116,8 +116,8 @@ manual         = $(B)/doc/shoal.1 $(B)/doc/shoal-case.5 $(B)/doc/shoal-output.5
 completion     = $(B)/doc/completion
 c_files        = $(wildcard src/*/*.[ch] include/*.h tests/*.[ch] tests/*/*.[ch])
 
-# what tests need beyond scripts/install-deps.sh: a browser, readers of VTK's files, of schemas, and of manual pages
-test_packages = chromium python3-vtk9 python3-jsonschema python3-yaml groff mandoc man-db bsdextrautils
+# what tests need beyond scripts/install-deps.sh: a browser, readers of VTK's files, of schemas, of manual pages, and pip
+test_packages = chromium python3-vtk9 python3-jsonschema python3-yaml groff mandoc man-db bsdextrautils python3-pip python3-venv python3-setuptools python3-wheel
 
 # "commit" or "commit-dirty"; of this folder's own repository, not of one that happens to lie around it
 commit := $(shell test -e .git && git describe --always --dirty --abbrev=12 --exclude='*' 2>/dev/null || echo unknown)

@@ -10,7 +10,6 @@
 #   c_tests   make test-c
 #   same      demo and pair differ by at most 1e-12 m after 1 s from those of this machine's build/shoal
 #   packages  the steps of scripts/packaging/Dockerfile, in two chroots: make deb, and a trial of its packages
-#   wheel     scripts/packaging/try-wheel.sh
 #
 # Needs root and a mirror of Debian, taken from the sources of apt; skips all platforms, with a reason, where a chroot
 # cannot be made. Leaves logs in build/platforms. --write replaces the rows of these platforms in the table of FILE that
@@ -20,8 +19,8 @@ set -euo pipefail
 
 # name, release, architecture, compiler, checks
 readonly platforms='
-debian12-gcc    bookworm  amd64  gcc    demo,test,packages,wheel
-debian13-gcc    trixie    amd64  gcc    demo,test,packages,wheel
+debian12-gcc    bookworm  amd64  gcc    demo,test,packages
+debian13-gcc    trixie    amd64  gcc    demo,test,packages
 debian13-clang  trixie    amd64  clang  demo,test
 debian12-arm64  bookworm  arm64  gcc    demo,c_tests,same
 debian13-arm64  trixie    arm64  gcc    demo,c_tests,same'
@@ -117,10 +116,6 @@ check_packages() {
     container_stage "$other" 2
     enter "$other" ./try-packages.sh
     [[ -n ${KEEP-} ]] || rm -rf "$other"
-}
-
-check_wheel() {
-    enter "$1" CC="$2" scripts/packaging/try-wheel.sh
 }
 
 # ---- a platform

@@ -1,0 +1,43 @@
+#!/usr/bin/env bash
+# test_wheel.sh PROGRAM: the wheel that pip builds without network works in a virtual environment with NumPy.
+# shellcheck source=tests/checks.sh
+. "$(dirname "$0")/../checks.sh"
+
+if [[ $program != "$root/build/shoal" ]]; then
+    skip 'wheel' 'make builds it in build/, and this is another build'
+    finish
+    exit
+fi
+export PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_NO_INDEX=1 PIP_ROOT_USER_ACTION=ignore
+unset PYTHONPATH SHOAL_LIBRARY SHOAL_PROGRAM
+
+new_environment() {
+    # NumPy is that of the system
+    /usr/bin/python3 -m venv --system-site-packages environment
+}
+
+wheel_runs() {
+    environment/bin/python - "$root/cases/demo.yaml" <<'PYTHON'
+import pathlib, sys
+import numpy, shoal
+
+here = pathlib.Path(shoal.__file__).parent
+assert here.is_relative_to(sys.prefix), here
+assert (here / "libshoal.so.0").is_file() and (here / "bin/shoal").is_file()
+with shoal.Run(sys.argv[1], {"time.end": 0.1}) as run:
+    start = numpy.array(run["x"])
+    for _ in range(3):
+        run.step()
+    assert numpy.isfinite(run["x"]).all() and not numpy.array_equal(run["x"], start)
+PYTHON
+}
+
+check 'pip builds a wheel without network' \
+    /usr/bin/python3 -m pip wheel --quiet --no-build-isolation --no-deps -w . "$root"
+check 'a virtual environment' new_environment
+check 'pip installs the wheel' environment/bin/pip install --quiet shoal-*.whl
+check 'its module runs a case with its own library' wheel_runs
+check 'pip removes it' environment/bin/pip uninstall --quiet --yes shoal
+check 'and nothing of it stays' test -z "$(find environment -path '*shoal*')"
+
+finish
