@@ -208,6 +208,19 @@ int rod_shortest_edge(const struct fish *fish, const double *y, double *ratio) {
     return shortest;
 }
 
+int rod_sharpest_joint(const struct fish *fish, const double *y, double *turn) {
+    int sharpest = 0;
+    *turn = -1;
+    for (int k = 1; k < fish->n_edges; k++) {
+        const struct edge before = edge_at(fish, k - 1, y), after = edge_at(fish, k, y);
+        const double here = fabs(atan2(edge_dot(before.n, after.t), edge_dot(before.t, after.t)));
+        if (here <= *turn) continue;
+        *turn = here;
+        sharpest = k;
+    }
+    return sharpest;
+}
+
 double rod_actuation_power(const struct fish *fish, const struct actuation *muscle, const double *stress) {
     double power = 0;
     for (int j = 0; j < fish->n_joints; j++) power -= stress[j] * muscle->rate[j];

@@ -44,6 +44,9 @@ int rod_is_torn(const struct fish *fish, const double *y);
 /* The edge that is compressed most, and its length over its natural one. */
 int rod_shortest_edge(const struct fish *fish, const double *y, double *ratio);
 
+/* The joint (an inner node, 1 .. n_nodes - 2) that turns most, and its turn, rad. */
+int rod_sharpest_joint(const struct fish *fish, const double *y, double *turn);
+
 /* Power of the muscle, which changes the natural curvature against the moments of the joints, W. */
 double rod_actuation_power(const struct fish *fish, const struct actuation *muscle, const double *stress);
 

@@ -223,7 +223,9 @@ static void place_nascent(struct flow *flow, const struct state *state, int f, c
     double position[2];
     if (flow_has_free_sheets(flow)) {
         free_sheet_nascent_point(wake, flow->school->interval, tau, tail, 0.5, position);
-        free_sheet_place_nascent(&flow->free_sheet[f], fish, wake, flow->school->interval, tau, tail, circulation);
+        const struct direction tangent = fish_direction(fish, &fish->tail_tangent, y);
+        free_sheet_place_nascent(&flow->free_sheet[f], fish, wake, flow->school->interval, tau, tail, &tangent,
+                                 circulation);
     } else {
         wake_nascent(wake, tau, tail, position);
     }

@@ -1,7 +1,6 @@
 /* flow_derivative.c: source by source, by its strength and by the nodes that it moves with. */
 #include "flow/flow_derivative.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "vortex/kernel.h"
@@ -45,18 +44,31 @@ static void add_motion(const struct influence_block *block, const struct fish *o
     }
 }
 
-// add a factor times the derivatives by the tail of fish other of a source that follows it along a unit vector only
-static void add_push(const struct influence_block *block, const struct fish *other, const double along[2], int first,
-                     int n, const struct kernel_values *slope, double factor, double sign) {
-    const int tail = other->n_nodes - 1;
-    const struct part by_x = part_of(block, tail, first), by_y = part_of(block, other->n_nodes + tail, first);
+// add a factor times the derivatives by one node of fish other of a source that moves by a vector per displacement of the
+// node along another one
+static void add_push(const struct influence_block *block, const struct fish *other, int node, const double moves[2],
+                     const double along[2], int first, int n, const struct kernel_values *slope, double factor) {
+    const struct part by_x = part_of(block, node, first), by_y = part_of(block, other->n_nodes + node, first);
     for (int i = 0; i < n; i++) {
-        const double du = factor * (along[0] * slope->u_x[i] + sign * along[1] * slope->u_y[i]);
-        const double dv = factor * (along[0] * slope->v_x[i] - sign * along[1] * slope->u_x[i]);
+        const double du = factor * (moves[0] * slope->u_x[i] + moves[1] * slope->u_y[i]);
+        const double dv = factor * (moves[0] * slope->v_x[i] - moves[1] * slope->u_x[i]);
         by_x.u[i] += along[0] * du;
         by_x.v[i] += along[0] * dv;
         by_y.u[i] += along[1] * du;
         by_y.v[i] += along[1] * dv;
+    }
+}
+
+// add the derivatives of a source that follows the end of a nascent stretch beside the tail: free_sheet.h
+static void add_overtaken(const struct influence_block *block, const struct fish *fish, const struct free_sheet *sheet,
+                          int first, int n, const struct kernel_values *slope, double factor) {
+    const struct stencil *const parts[2] = {&fish->tail_tangent.from, &fish->tail_tangent.to};
+    add_push(block, fish, fish->n_nodes - 1, sheet->tangent, sheet->tangent, first, n, slope, factor);
+    for (int part = 0; part < 2; part++) {
+        for (int i = 0; i < parts[part]->n; i++) {
+            const double weight = (part == 0 ? -1 : 1) * parts[part]->weight[i] * factor;
+            add_push(block, fish, parts[part]->node[i], sheet->by_turn, sheet->normal, first, n, slope, weight);
+        }
     }
 }
 
@@ -77,17 +89,11 @@ struct target {
     const struct influence_block *block;
 };
 
-// one source of the nascent vortex, or stretch, of a fish: what part of its circulation it has, and of the motion of
-// the tail; pushed: along the vector by which the tail pushes the end of the stretch
+// one source of the nascent vortex, or stretch, of a fish: what part of its circulation it has, of the motion of the tail
+// and of that of the older end of the stretch, where that moves with the tail
 struct nascent_source {
-    double x, y, smoothing, part, follows, pushed;
+    double x, y, smoothing, part, follows, follows_end;
 };
-
-static int is_pushed(const struct flow *flow, int g) {
-    if (!flow_has_free_sheets(flow)) return 0;
-    const double *const pushed = flow->free_sheet[g].pushed;
-    return fabs(pushed[0]) + fabs(pushed[1]) > 0;
-}
 
 // a source at a range of the points of fish f
 static void derive_nascent_source(const struct target *at, struct range points, const struct nascent_source *source) {
@@ -103,9 +109,9 @@ static void derive_nascent_source(const struct target *at, struct range points, 
         if (at->with_places) {
             const double factor = -source->part * source->follows * flow->nascent.circulation[at->g];
             add_motion(at->block, other, &tail, 1, first, n, &unit, &factor, 1);
-            if (source->pushed > 0 && is_pushed(flow, at->g)) {
-                const double push = -source->part * source->pushed * flow->nascent.circulation[at->g];
-                add_push(at->block, other, flow->free_sheet[at->g].pushed, first, n, &unit, push, 1);
+            if (source->follows_end > 0) {
+                add_overtaken(at->block, other, &flow->free_sheet[at->g], first, n, &unit,
+                              -source->part * source->follows_end * flow->nascent.circulation[at->g]);
             }
         }
     }
@@ -119,8 +125,8 @@ static void derive_nascent(const struct target *at) {
     // the own control points see the stretch point by point, all others its middle, or leave it out
     const int n_own = is_sheet && is_own ? other->n_control : 0;
     const int n_unfelt = is_own ? flow->without_own[at->f].n : 0, behind = other->n_control + n_unfelt;
-    const struct nascent_source whole = {flow->nascent.x[at->g], flow->nascent.y[at->g], other->smoothing, 1,
-                                         is_sheet ? 0.5 : 1,     is_sheet ? 0.5 : 0};
+    const struct nascent_source whole = {
+        flow->nascent.x[at->g], flow->nascent.y[at->g], other->smoothing, 1, is_sheet ? 0.5 : 1, 0};
     if (n_unfelt == 0) {
         derive_nascent_source(at, (struct range){n_own, n_points - n_own}, &whole);
     } else {
@@ -130,8 +136,9 @@ static void derive_nascent(const struct target *at) {
     const struct free_sheet *const sheet = is_sheet ? &flow->free_sheet[at->g] : NULL;
     for (int i = 0; n_own > 0 && i < FREE_SHEET_PANEL; i++) {
         const int source = sheet->n - (FREE_SHEET_PANEL + 1) + i;
-        const struct nascent_source point = {sheet->x[source],   sheet->y[source],     0,
-                                             free_sheet_part[i], 1 - free_sheet_xi[i], free_sheet_xi[i]};
+        const struct nascent_source point = {
+            sheet->x[source],   sheet->y[source],     0,
+            free_sheet_part[i], 1 - free_sheet_xi[i], sheet->is_overtaken ? free_sheet_xi[i] : 0};
         derive_nascent_source(at, (struct range){0, n_own}, &point);
     }
 }
@@ -176,7 +183,6 @@ struct mirrored_source {
     double weight, circulation;  // per unit of that unknown, and in all: m or 1, m2 s-1
     const struct stencil *point;
     double follows;  // the part of the motion of that point that it follows
-    double pushed;   // and along the vector by which the tail pushes its nascent stretch
 };
 
 // the images of a source at all points of fish f
@@ -195,11 +201,6 @@ static void derive_images_of(const struct target *at, const struct mirrored_sour
         const double factor = -source->follows * source->circulation;
         add_motion(at->block, other, source->point, 1, first, n, &unit.shifted, &factor, 1);
         add_motion(at->block, other, source->point, 1, first, n, &unit.mirrored, &factor, -1);
-        if (source->pushed > 0 && is_pushed(flow, at->g)) {
-            const double *const along = flow->free_sheet[at->g].pushed, push = -source->pushed * source->circulation;
-            add_push(at->block, other, along, first, n, &unit.shifted, push, 1);
-            add_push(at->block, other, along, first, n, &unit.mirrored, push, -1);
-        }
     }
 }
 
@@ -215,8 +216,7 @@ static void derive_nascent_images(const struct target *at) {
                                             .weight = 1,
                                             .circulation = flow->nascent.circulation[at->g],
                                             .point = &tail,
-                                            .follows = flow_has_free_sheets(flow) ? 0.5 : 1,
-                                            .pushed = flow_has_free_sheets(flow) ? 0.5 : 0};
+                                            .follows = flow_has_free_sheets(flow) ? 0.5 : 1};
     derive_images_of(at, &nascent);
 }
 

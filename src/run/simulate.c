@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <time.h>
 
+#include "body/rod.h"
 #include "fish/fish_distance.h"
 #include "fish/fish_school.h"
 #include "flow/flow_at_bodies.h"
@@ -132,6 +133,21 @@ static enum status refuse_contact(const struct simulation *simulation) {
                        closest->distance, school->contact_range);
 }
 
+// name a body that is folded at a joint at the end of the last step: the curve through its nodes does not describe it
+static enum status tell_folded(const struct simulation *simulation, enum status status) {
+    const double right_angle = 1.57079632679489662, sharp = right_angle / 2;
+    const struct school *const school = simulation->school;
+    for (int f = 0; f < school->n_fish; f++) {
+        double turn;
+        const int joint = rod_sharpest_joint(&school->fish[f], simulation->state->closest->before, &turn);
+        if (turn < sharp) continue;
+        return status_fail(
+            status, "%s; the body of %s folds: it turns by %.0f degrees at node %d: raise body.modulus, or nodes",
+            status_message(), school->fish[f].name, turn / right_angle * 90, joint);
+    }
+    return status;
+}
+
 // name the two bodies, or the body and the wall, with the least gap at the end of the last step, where it is below the
 // range of contact
 static enum status tell_contact(const struct simulation *simulation, enum status status) {
@@ -165,7 +181,7 @@ static enum status step(struct simulation *simulation) {
     const double next = (double)(state->event + 1) * simulation->school->interval;
     const enum status advanced = simulation->integrator->advance(simulation->solver, next, simulation->stop);
     TRY(refuse_contact(simulation));
-    if (advanced == STATUS_SOLVER) return tell_contact(simulation, advanced);
+    if (advanced == STATUS_SOLVER) return tell_contact(simulation, tell_folded(simulation, advanced));
     TRY(advanced);
     int jumped = 0;
     initial_conditions_listen(simulation->consistent, simulation->stop);

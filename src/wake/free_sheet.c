@@ -7,6 +7,7 @@
 
 #include "base/array.h"
 #include "base/ramp.h"
+#include "body/edge.h"
 
 /* Gauss-Legendre on [0, 1]: eta = 0.0694318, 0.3300095, 0.6699905, 0.9305682 with weights w; xi = eta^2, part = 2 eta
  * w. */
@@ -207,41 +208,48 @@ void free_sheet_place(struct free_sheet *sheet, const struct school *school, con
     }
 }
 
-// the older end of the nascent stretch; pushed: the direction along which it follows the tail, or 0
-static void end_nascent(const struct wake *markers, double interval, double tau, const double tail[2], double end[2],
-                        double pushed[2]) {
-    const double *const t = markers->tail_tangent;
-    memcpy(end, tail, 2 * sizeof *end);
-    pushed[0] = pushed[1] = 0;
-    if (markers->n_vortex == 0) return;
-    wake_marker(markers, markers->n_vortex - 1, interval, tau, end);
-
-    // keep the end beside a tail that has overtaken the marker
-    const double along = (end[0] - tail[0]) * t[0] + (end[1] - tail[1]) * t[1];
-    for (int k = 0; k < 2 && along < 0; k++) {
-        end[k] -= along * t[k];
-        pushed[k] = t[k];
-    }
-}
-
 void free_sheet_nascent_point(const struct wake *markers, double interval, double tau, const double tail[2], double xi,
                               double point[2]) {
-    double end[2], pushed[2];
-    end_nascent(markers, interval, tau, tail, end, pushed);
-    for (int k = 0; k < 2; k++) point[k] = (1 - xi) * tail[k] + xi * end[k];
+    double newest[2] = {tail[0], tail[1]};
+    if (markers->n_vortex > 0) wake_marker(markers, markers->n_vortex - 1, interval, tau, newest);
+    for (int k = 0; k < 2; k++) point[k] = (1 - xi) * tail[k] + xi * newest[k];
+}
+
+/* The older end of the nascent stretch for the own control points: the newest marker; where the tail has overtaken it,
+ * the place beside the tail, x - s t with s = (x - x_tail) . t < 0. With the tail it moves along t, and as the tangent
+ * turns, dt = n (n.dX')/|X'|, by -((r.n) t + s n)/|X'| per n.dX'. */
+static void end_nascent(struct free_sheet *sheet, const double marker[2], const double tail[2],
+                        const struct direction *tangent, double end[2]) {
+    const double r[2] = {marker[0] - tail[0], marker[1] - tail[1]};
+    const double s = fmin(0, edge_dot(r, tangent->t)), across = edge_dot(r, tangent->n);
+    sheet->is_overtaken = s < 0;
+    for (int k = 0; k < 2; k++) {
+        end[k] = marker[k] - s * tangent->t[k];
+        sheet->by_turn[k] = -(across * tangent->t[k] + s * tangent->n[k]) / tangent->length;
+        sheet->tangent[k] = tangent->t[k];
+        sheet->normal[k] = tangent->n[k];
+    }
 }
 
 void free_sheet_place_nascent(struct free_sheet *sheet, const struct fish *fish, const struct wake *markers,
-                              double interval, double tau, const double tail[2], double circulation) {
+                              double interval, double tau, const double tail[2], const struct direction *tangent,
+                              double circulation) {
     const int first = sheet->n - (FREE_SHEET_PANEL + 1);
-    double end[2];
-    end_nascent(markers, interval, tau, tail, end, sheet->pushed);
-    for (int i = 0; i <= FREE_SHEET_PANEL; i++) {
-        const int is_middle = i == FREE_SHEET_PANEL;
-        const double xi = is_middle ? 0.5 : free_sheet_xi[i];
+    double marker[2], end[2];
+    free_sheet_nascent_point(markers, interval, tau, tail, 1, marker);
+    end_nascent(sheet, marker, tail, tangent, end);
+    for (int i = 0; i < FREE_SHEET_PANEL; i++) {
+        const double xi = free_sheet_xi[i];
         sheet->x[first + i] = (1 - xi) * tail[0] + xi * end[0];
         sheet->y[first + i] = (1 - xi) * tail[1] + xi * end[1];
-        sheet->circulation[first + i] = (is_middle ? -1 : free_sheet_part[i]) * circulation;
-        sheet->square[first + i] = is_middle ? fish->smoothing * fish->smoothing : 0;
+        sheet->circulation[first + i] = free_sheet_part[i] * circulation;
+        sheet->square[first + i] = 0;
     }
+
+    // take away the middle that everybody else sees
+    const int middle = first + FREE_SHEET_PANEL;
+    sheet->x[middle] = (tail[0] + marker[0]) / 2;
+    sheet->y[middle] = (tail[1] + marker[1]) / 2;
+    sheet->circulation[middle] = -circulation;
+    sheet->square[middle] = fish->smoothing * fish->smoothing;
 }

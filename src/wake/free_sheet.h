@@ -38,8 +38,10 @@ struct free_sheet {
     /* at one time                                                                                     (n) */
     double *x, *y, *circulation; /* m, m2 s-1 */
     double *square;              /* of the smoothing, m2 */
-    /* a tail that has overtaken the newest marker pushes the end of the nascent stretch along this unit vector; or 0 */
-    double pushed[2];
+    /* whether the tail has overtaken the newest marker. The older end of the nascent stretch then is beside the tail: it
+     * moves with the tail along the tangent, and by_turn per slope of the body there along the normal, (X'.n) */
+    int is_overtaken;
+    double tangent[2], normal[2], by_turn[2];
 };
 
 /* Release what it owns; accepts a zeroed one. */
@@ -63,14 +65,17 @@ enum status free_sheet_build(struct free_sheet *sheet, const struct fish *fish, 
 void free_sheet_place(struct free_sheet *sheet, const struct school *school, const struct wake *markers,
                       const struct wake *middles, double t, double tau);
 
-/* The point at xi of the way from the tail to the older end of the nascent stretch, tau after the event: the newest
- * marker, moved along the tangent to the tail's side where the tail has overtaken it; the tail without a marker. */
+/* The point at xi of the way from the tail to the newest marker, tau after the event; the tail where there is no
+ * marker. */
 void free_sheet_nascent_point(const struct wake *markers, double interval, double tau, const double tail[2], double xi,
                               double point[2]);
 
-/* Put the nascent ones where they are then, with the tail there and this circulation of the nascent stretch. */
+/* Put the nascent ones where they are then, with the tail there, the direction of the body at the tail and this
+ * circulation of the nascent stretch. The stretch ends at the newest marker, or beside the tail where the tail has
+ * overtaken the marker. */
 void free_sheet_place_nascent(struct free_sheet *sheet, const struct fish *fish, const struct wake *markers,
-                              double interval, double tau, const double tail[2], double circulation);
+                              double interval, double tau, const double tail[2], const struct direction *tangent,
+                              double circulation);
 
 /* The smoothing that a vortex of the wake and the own body have for each other, m; from_tail: the place of the vortex
  * less that of the tail, m, tangent: the direction of the body there. And whether it is untapered to rounding,

@@ -379,6 +379,23 @@ static void the_shortest_edge_is_the_one_compressed_most(void **state) {
     school_clear(&setup);
 }
 
+static void the_sharpest_joint_is_the_one_that_turns_most(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, "time: {end: 1}\nfish: [{nodes: 7, wave: {amplitude: 0}}]\n");
+    const struct fish *const fish = setup.school->fish;
+    double *const x = &setup.state->y[fish->at.x], *const y = &setup.state->y[fish->at.y], turn;
+    // turn the body behind node 3 to the right, behind node 5 back by less
+    const double l = fish->edge_length, angle[] = {0, 0, 0, -1.1, -1.1, -0.3};
+    for (int k = 0; k < 6; k++) {
+        x[k + 1] = x[k] + l * cos(angle[k]);
+        y[k + 1] = y[k] + l * sin(angle[k]);
+    }
+    assert_int_equal(rod_sharpest_joint(fish, setup.state->y, &turn), 3);
+    NEAR(turn, 1.1, 1e-13, 0);
+    school_clear(&setup);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(derivatives_agree_with_differences),
@@ -390,6 +407,7 @@ int main(void) {
         cmocka_unit_test(energy_of_a_circular_arc_converges_to_that_of_the_continuum),
         cmocka_unit_test(polygon_of_the_natural_curvature_is_at_rest),
         cmocka_unit_test(turning_angles_keep_their_sign_in_every_direction),
+        cmocka_unit_test(the_sharpest_joint_is_the_one_that_turns_most),
         cmocka_unit_test(the_shortest_edge_is_the_one_compressed_most),
         cmocka_unit_test(a_body_is_torn_at_ten_times_the_length_of_an_edge),
         cmocka_unit_test(muscle_power_is_the_change_of_energy_at_a_fixed_shape),

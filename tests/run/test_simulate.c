@@ -359,8 +359,47 @@ static void a_result_that_cannot_be_written_is_told_before_the_start(void **stat
     case_free(&values);
 }
 
+static void a_limp_fish_swims_on(void **state) {
+    (void)state;
+    // its body is bent back and forth: the tail overtakes its markers
+    static const char *const forces[] = {"reactive", "pressure"};
+    for (int i = 0; i < 2; i++) {
+        char text[512];
+        snprintf(text, sizeof text,
+                 SCHOOL_SECOND
+                 "time: {end: 26, shedding_interval: 0.02, output_interval: 0.02}\n"
+                 "fish: [{force: %s, nodes: 17, body: {modulus: 1e4}, start: {speed: 0.3}}]\n",
+                 forces[i]);
+        struct simulation *const simulation = school_simulation(text);
+        school_run(simulation, 26);
+        simulate_measure(simulation);
+        const double speed = simulation->diagnostics->fish[0].speed;
+        assert_true(speed > 0.01 && speed < 1);
+        simulate_free(simulation);
+    }
+}
+
+static void a_failure_of_a_folded_body_says_so(void **state) {
+    (void)state;
+    static const char *const amplitudes[] = {"1.2", "0.2"};
+    for (int i = 0; i < 2; i++) {
+        char text[512];
+        snprintf(text, sizeof text,
+                 "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\nsolver: {max_steps: 1}\n"
+                 "fish: [{name: worm, nodes: 7, wave: {amplitude: %s, ramp: 0}}]\n",
+                 amplitudes[i]);
+        struct simulation *const simulation = school_simulation(text);
+        assert_int_equal(simulate_step(simulation), STATUS_SOLVER);
+        const char *const said = strstr(status_message(), "; the body of worm folds: it turns by ");
+        assert_int_equal(said != NULL, i == 0);
+        simulate_free(simulation);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_limp_fish_swims_on),
+        cmocka_unit_test(a_failure_of_a_folded_body_says_so),
         cmocka_unit_test(order_of_the_fish_does_not_matter),
         cmocka_unit_test(a_shift_of_the_start_shifts_the_run),
         cmocka_unit_test(a_turn_of_everything_turns_the_run),

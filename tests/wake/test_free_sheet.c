@@ -108,25 +108,38 @@ static void a_tail_that_overtakes_its_newest_marker_keeps_the_nascent_stretch_be
     struct setup setup;
     school_build(&setup, TIME SHEET "fish: [{}]\n");
     school_stir(&setup);
+    const struct fish *const fish = setup.school->fish;
     struct wake *const wake = &setup.state->wake[0];
-    const int newest = wake->n_vortex - 1;
-    const double tangent[2] = {0.6, 0.8}, across[2] = {-0.8, 0.6};
-    wake_set_tail(wake, (const double[]){0, 0}, tangent);
-    double marker[2];
-    wake_marker(wake, newest, 0.02, 0.01, marker);
+    double *const y = setup.state->y, marker[2];
+    wake_marker(wake, wake->n_vortex - 1, 0.02, setup.t - setup.state->t, marker);
+    const struct direction at = fish_direction(fish, &fish->tail_tangent, y);
+    const int tail = fish->n_nodes - 1;
     for (int is_behind = 0; is_behind < 2; is_behind++) {
-        double tail[2];
-        for (int k = 0; k < 2; k++) tail[k] = marker[k] + (is_behind ? -0.03 : 0.03) * tangent[k] - 0.01 * across[k];
-        for (int i = 0; i <= 4; i++) {
-            const double xi = i / 4.0;
-            double point[2];
-            free_sheet_nascent_point(wake, 0.02, 0.01, tail, xi, point);
-            // beside the tail where the marker is ahead of it, else straight to the marker
-            for (int k = 0; k < 2; k++) {
-                const double along = is_behind ? 0.03 * tangent[k] : 0;
-                NEAR(point[k], tail[k] + xi * (0.01 * across[k] + along), 1e-15, 1e-14);
-            }
+        // move the whole body
+        double shift[2], place[2];
+        for (int k = 0; k < 2; k++) {
+            place[k] = marker[k] + (is_behind ? -0.03 : 0.03) * at.t[k] - 0.01 * at.n[k];
+            shift[k] = place[k] - y[(k == 0 ? fish->at.x : fish->at.y) + tail];
         }
+        for (int m = 0; m < fish->n_nodes; m++) {
+            y[fish->at.x + m] += shift[0];
+            y[fish->at.y + m] += shift[1];
+        }
+        school_flow(&setup, y);
+        const struct free_sheet *const sheet = setup.residual->flow->free_sheet;
+        const int first = sheet->n - (FREE_SHEET_PANEL + 1);
+        assert_int_equal(sheet->is_overtaken, !is_behind);
+        for (int i = 0; i < FREE_SHEET_PANEL; i++) {
+            // beside the tail where the marker is ahead of it, else straight to the marker
+            const double along = is_behind ? 0.03 : 0, xi = free_sheet_xi[i];
+            NEAR(sheet->x[first + i], place[0] + xi * (0.01 * at.n[0] + along * at.t[0]), 1e-15, 1e-14);
+            NEAR(sheet->y[first + i], place[1] + xi * (0.01 * at.n[1] + along * at.t[1]), 1e-15, 1e-14);
+        }
+        // everybody else sees the middle between tail and marker, which is taken away here
+        NEAR(sheet->x[first + FREE_SHEET_PANEL], (place[0] + marker[0]) / 2, 1e-15, 1e-14);
+        NEAR(sheet->y[first + FREE_SHEET_PANEL], (place[1] + marker[1]) / 2, 1e-15, 1e-14);
+        NEAR(sheet->circulation[first + FREE_SHEET_PANEL], -setup.residual->flow->nascent.circulation[0], 0, 0);
+        NEAR(setup.residual->flow->nascent.x[0], (place[0] + marker[0]) / 2, 1e-15, 1e-14);
     }
     school_clear(&setup);
 }
