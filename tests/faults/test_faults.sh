@@ -63,6 +63,10 @@ else
     check "a sample of failing allocations of all commands: exit code 0, or 4 and one message" \
         grep -q '^[1-9][0-9]* passed, 0 failed, 0 skipped$' <(echo "$sample" | tee sample.out | tail -n 1)
     ((n_failed == 0)) || cat sample.out
+    sample=$(/usr/bin/python3 "$root/tests/faults/limits.py" "$program" 9000)
+    check "every command with too little memory: what it would replace is still there" \
+        grep -q '^[1-9][0-9]* passed, 0 failed, 0 skipped$' <(echo "$sample" | tee sample.out | tail -n 1)
+    ((n_failed == 0)) || cat sample.out
     limited() {  # kilobytes, arguments
         code=0
         (ulimit -v "$1" && exec timeout "$time_limit" "$program" "${@:2}") >out 2>err </dev/null || code=$?
