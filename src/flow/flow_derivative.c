@@ -44,8 +44,8 @@ static void add_motion(const struct influence_block *block, const struct fish *o
     }
 }
 
-// add a factor times the derivatives by one node of fish other of a source that moves by a vector per displacement of the
-// node along another one
+// add a factor times the derivatives by one node of fish other of a source that moves by one vector per displacement of
+// the node along another one
 static void add_push(const struct influence_block *block, const struct fish *other, int node, const double moves[2],
                      const double along[2], int first, int n, const struct kernel_values *slope, double factor) {
     const struct part by_x = part_of(block, node, first), by_y = part_of(block, other->n_nodes + node, first);
@@ -89,8 +89,8 @@ struct target {
     const struct influence_block *block;
 };
 
-// one source of the nascent vortex, or stretch, of a fish: what part of its circulation it has, of the motion of the tail
-// and of that of the older end of the stretch, where that moves with the tail
+// one source of the nascent vortex, or stretch, of a fish: the part of its circulation, and the parts of the motion of
+// the tail and, where the older end of the stretch moves with the tail, of that end
 struct nascent_source {
     double x, y, smoothing, part, follows, follows_end;
 };

@@ -38,8 +38,8 @@ struct free_sheet {
     /* at one time                                                                                     (n) */
     double *x, *y, *circulation; /* m, m2 s-1 */
     double *square;              /* of the smoothing, m2 */
-    /* whether the tail has overtaken the newest marker. The older end of the nascent stretch then is beside the tail: it
-     * moves with the tail along the tangent, and by_turn per slope of the body there along the normal, (X'.n) */
+    /* whether the tail has overtaken the newest marker. The older end of the nascent stretch is beside the tail then:
+     * it moves with the tail along the tangent, and by_turn per slope of the body there along the normal, (X'.n) */
     int is_overtaken;
     double tangent[2], normal[2], by_turn[2];
 };
