@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import ctypes
 import difflib
 import html
@@ -128,6 +127,27 @@ def _refuse_name(name):
     raise CaseError(f"there is no variable {name!r}: {hint}run.keys() lists the names")
 
 
+class _Using:
+    """The pointer of a run, with its lock, in a with statement."""
+
+    __slots__ = ("run", "lock")
+
+    def __init__(self, run):
+        self.run = run
+
+    def __enter__(self):
+        self.lock = self.run._open().lock
+        self.lock.acquire()
+        try:
+            return self.run._open().pointer  # it may have been closed meanwhile
+        except BaseException:
+            self.lock.release()
+            raise
+
+    def __exit__(self, *_):
+        self.lock.release()
+
+
 class Run:
     """A case in memory, at its last event.
 
@@ -157,11 +177,8 @@ class Run:
         self._views: dict[str, tuple] = {}
         self.path: str | None = None  #: the result file that write() began
 
-    @contextlib.contextmanager
-    def _using(self):
-        handle = self._open()
-        with handle.lock:
-            yield self._open().pointer
+    def _using(self) -> _Using:
+        return _Using(self)
 
     def _open(self) -> _Handle:
         handle = self._handle
