@@ -121,6 +121,9 @@ const struct key case_table[] = {
          "error allowed in the velocity at a body by neighbours in one wake that are merged far from all bodies, in "
          "body lengths per beat; 0: none are merged",
      .synonyms = "coarsen thin"},
+    {"wake.spare_vortices", INTEGER, AT(school.wake.spare), "0", FROM_TO(0, 1000000), "",
+     .meaning = "vortices of each wake that a program may add to those that its fish sheds: doc/python.md, section 2",
+     .synonyms = "extra_vortices added_vortices"},
 
     {"contact.action", CHOICE, AT(school.contact.action), "repel", ANY, "",
      .meaning = "what happens where the outlines of two bodies are nearer than contact.range; repel: they repel each "

@@ -58,6 +58,7 @@ struct wake_parameters {
     enum removed_circulation dissipated_circulation;
     double tolerance; /* lengths per beat; 0: exact */
     double merge;     /* lengths per beat; 0: never */
+    int spare;        /* vortices of each wake that may be added from outside */
 };
 
 struct body_parameters {

@@ -148,6 +148,29 @@ class Runs(unittest.TestCase):
         with self.assertRaisesRegex(shoal.CaseError, "cannot be set"):
             run.set(0, "wave.phase", 1)
 
+    def test_bodies_and_wakes_are_changed(self):
+        case = {**PAIR, "wake": {"spare_vortices": 4}}
+        run, alone = shoal.Run(case), shoal.Run(case)
+        for one in run, alone:
+            one.step(3)
+        position, velocity = run.state("b")
+        self.assertEqual((position.shape, velocity.shape), ((9, 2), (9, 2)))
+        np.testing.assert_array_equal(position, run["x"][1])
+        run.set_state("b", velocity=velocity + [0.5, 0])
+        np.testing.assert_allclose(run["com_velocity"][1], alone["com_velocity"][1] + [0.5, 0], atol=1e-12)
+        run.set_state(1, position=position + [0, 0.1])
+        np.testing.assert_allclose(run.state(1)[0], position + [0, 0.1])
+        run.add_vortex(-1, 0.2, 0.05)
+        self.assertEqual(run["wake_count"].tolist(), [alone["wake_count"][0] + 3, alone["wake_count"][1] + 1])
+        self.assertLess(abs(run["total_circulation"]), 1e-10)
+        run.advance(run.end)
+        with self.assertRaisesRegex(shoal.CaseError, "wake.spare_vortices: 4, of which 3 are used"):
+            run.add_vortex(0, 0, 1)
+        with self.assertRaisesRegex(shoal.CaseError, r"position of b has the shape \(9, 2\), not \(7, 2\)"):
+            run.set_state("b", position=np.zeros((7, 2)))
+        with self.assertRaisesRegex(shoal.CaseError, "edge 0 of b would be 0 m long"):
+            run.set_state("b", position=np.zeros((9, 2)))
+
     def test_a_copy_has_the_bits_of_the_run(self):
         run = shoal.Run(PAIR)
         run.advance(0.1)
