@@ -105,13 +105,13 @@ with brackets need quotes.
 ```yaml
 sweep:
   - {key: "fish[*].body.modulus", values: [1e4, 1e6, 1e8]}
-  - {key: "wake.kutta", values: [edge, rate]}
+  - {key: "sheet.kutta", values: [edge, rate]}
   - {keys: ["fish[*].nodes", "fish[*].sheet_points"], values: [[7, 21], [13, 41]]}
 ```
 
 The members are numbered from 0, the last axis fastest. With `keys` several keys change together. An axis whose first
 key is numerical (`nodes`, `sheet_points`, `time.shedding_interval`, `solver.rtol`, `solver.step`, `wake.tolerance`,
-`wake.merge`, `wake.lifetime`), or a length of the model (`wake.smoothing`, `wake.sheet_smoothing`, `wake.taper`), may
+`wake.merge`, `wake.lifetime`), or a length of the model (`wake.smoothing`, `sheet.smoothing`, `wake.taper`), may
 have `refine: true`: the study then prints observed orders of convergence, and the error of the finest level
 ([studies.md](studies.md)). Such an axis can also have
 
@@ -181,7 +181,8 @@ SECTIONS = {
     "": "Top level",
     "time": "Simulated time and its intervals",
     "fluid": "The fluid and its background flow",
-    "wake": "The vortex sheets, bound and free",
+    "wake": "The free vortex sheets",
+    "sheet": "The bound vortex sheets",
     "contact": "Bodies that come near each other",
     "solver": "The integrator",
     "output": "The result file",
@@ -190,7 +191,8 @@ SECTIONS = {
     "fish.body": "Shape and material",
     "fish.wave": "The wave of natural curvature of the muscle",
     "fish.pressure": "The pressure of the bound sheet",
-    "fish.drag": "Resistive forces and added mass",
+    "fish.drag": "Resistive forces",
+    "fish.added_mass": "Added mass of the reactive force",
     "fish.start": "Initial position and velocity",
     "fish.load": "External load",
     "fish.motion": "Prescribed motion",

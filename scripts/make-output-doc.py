@@ -63,7 +63,7 @@ The wake: `wake_count` says how many free vortices a fish has; they are in the f
 moves up when an older one is removed, so a slot is not a vortex; `wake_birth` tells them apart. With
 `output.wake_interval` longer than `time.output_interval` the rows between hold NaN in `wake_x`, `wake_circulation` and
 `wake_birth`; `wake_count` is always right. `wake_circulation` is what was shed; what acts on the flow decays over the
-last `wake_fade` seconds of `wake_lifetime` (doc/model.md, section 8). The vortex that grows at the tail has no slot
+last `wake_decay` seconds of `wake_lifetime` (doc/model.md, section 8). The vortex that grows at the tail has no slot
 until it is released.
 
 `output.precision: single` stores the variables marked "double or float" as float, which halves the file; time and

@@ -40,7 +40,7 @@ ARTICLE = f"""\
 format: 1
 include: [{CASES}/include/article.yaml]
 time: {{end: 2, shedding_interval: 0.01, output_interval: 2}}
-wake: {{lifetime: 2, fade: 0.2}}
+wake: {{lifetime: 2, decay: 0.2}}
 fish:
   - {{name: fish}}
 """
@@ -230,7 +230,7 @@ def events(bench):
     """cost of an event with and without a jump of the state"""
     for shedding in ("continuous", "impulsive"):
         for kutta in ("edge", "rate"):
-            run = bench.run(ARTICLE, f"wake.shedding={shedding}", f"wake.kutta={kutta}")
+            run = bench.run(ARTICLE, f"wake.shedding={shedding}", f"sheet.kutta={kutta}")
             yield shedding, kutta, *per_event(run)
 
 
@@ -250,7 +250,7 @@ def tolerance(bench):
     work = reference["actuation_work"][-1, 0]
     for rtol in (1e-3, 1e-4, 1e-5, 1e-6, 1e-7):
         run = bench.run(DEFAULT, "time.end=3", f"solver.rtol={rtol:g}")
-        balance = abs(run["energy_audit"][-1, 0] / work)
+        balance = abs(run["energy_balance"][-1, 0] / work)
         yield (power(rtol), short(error_of(run, reference)), short(abs(run["actuation_work"][-1, 0] / work - 1)),
                short(balance), *per_event(run))
 
@@ -264,7 +264,7 @@ def order(bench):
                           "solver.max_steps=100000", "wake.tolerance=1e-9")
         for highest in range(2, 6):
             run = bench.run(DEFAULT, *keys, f"solver.order={highest}")
-            balance = abs(run["energy_audit"][-1, 0] / run["actuation_work"][-1, 0])
+            balance = abs(run["energy_balance"][-1, 0] / run["actuation_work"][-1, 0])
             yield power(modulus), highest, short(error_of(run, right, 3)), short(balance), *per_event(run)
 
 

@@ -4,7 +4,7 @@
     plot.py [swim] RUN.nc [PICTURE]    bodies, wakes and the paths of the fish, at the end or at --times 1 2 3
     plot.py gait   RUN.nc [PICTURE]    the shapes that the muscle asks for, over the last beat
     plot.py study  STUDY.nc [PICTURE]  what a study or a comparison of methods calls for: orders, costs, maps
-    plot.py time   RUN.nc [PICTURE]    speed, heading, power and forces over time; with --audit the energy balance too;
+    plot.py time   RUN.nc [PICTURE]    speed, heading, power and forces over time; with --balance the energy balance too;
                                        --each speed: a panel per fish
     plot.py forces RUN.nc [PICTURE]    forces and powers by name over time, one column per fish
     plot.py pressure RUN.nc [PICTURE]  the jump of the pressure along the bodies over the last beat (force: pressure)
@@ -353,8 +353,8 @@ def plot_time(results, options):
     of, drawn = chosen(results, options), last_beats(results, options.beats)
     time, labels = results.time[drawn], [results.names[fish] for fish in of]
     rows = [("speed", "speed [m/s]"), ("heading", "heading [degree]"), ("actuation_power", "muscle power [W]")]
-    if options.audit:
-        rows.append(("energy_audit", "energy balance [J]"))
+    if options.balance:
+        rows.append(("energy_balance", "energy balance [J]"))
     rows.append((None, "force ahead [N]"))
     figure, stack = pyplot.subplots(
         len(rows), 1, sharex=True, layout="constrained", figsize=(WIDTH, 0.5 + 1.5 * len(rows))
@@ -397,7 +397,7 @@ POWERS = {
     "suction_power": (0, (3, 1, 1, 1)),
     "wake_power": (0, (5, 1, 1, 1, 1, 1)),
     "damping_power": (0, (1, 2)),
-    "driving_power": "-.",
+    "constraint_power": "-.",
 }
 
 
@@ -551,7 +551,7 @@ def parse(arguments):
     )
     for kind in ("gait", "time", "forces", "pressure"):
         options[kind].add_argument("--fish", nargs="+", metavar="NAME", help="only these fish (default: all)")
-    options["time"].add_argument("--audit", action="store_true", help="add the energy balance")
+    options["time"].add_argument("--balance", action="store_true", help="add the energy balance")
     if arguments and arguments[0] not in (*PICTURES, "-h", "--help"):
         arguments = [implied_kind(arguments), *arguments]
     if not arguments or arguments[0] not in PICTURES:

@@ -12,14 +12,14 @@ class Field:
 
     def __init__(self, path):
         data = open_dataset(path, "shoal_field")
-        for name in ("time", "x", "y", "u", "v", "vorticity", "body_x", "edge_height", "n_nodes"):
+        for name in ("time", "x", "y", "u", "v", "vorticity", "body_x", "edge_thickness", "n_nodes"):
             if name not in data.variables:
                 raise FileError(f"{path}: there is no variable {name} in it")
         self.x, self.y = (np.ma.filled(data[name][:], np.nan) for name in ("x", "y"))
         self.u, self.v, self.vorticity = (np.ma.filled(data[name][0], np.nan) for name in ("u", "v", "vorticity"))
         self.time = float(data["time"][0])
         self.walls = walls(data, data["body_x"][0, 0, 0, 1])
-        nodes, thickness = (np.ma.filled(data[name][:], np.nan) for name in ("body_x", "edge_height"))
+        nodes, thickness = (np.ma.filled(data[name][:], np.nan) for name in ("body_x", "edge_thickness"))
         counts = np.asarray(data["n_nodes"][:], dtype=int)
         means = sections(data, counts.size)
         self.outlines = [outline(nodes[0, f, :n], thickness[f, : n - 1], means[f]) for f, n in enumerate(counts)]

@@ -49,7 +49,7 @@ class Results:
         self.n_fish = self.data.dimensions["fish"].size
         self.names = list(self["fish_name"])
         self.n_nodes = self["n_nodes"].astype(int)
-        self.thickness = self["edge_height"]
+        self.thickness = self["edge_thickness"]
         self.mean_section = sections(self.data, self.n_fish)
         self.walls = walls(self.data, self.read("x", 0)[0, 0, 1])
         self.title = getattr(self.data, "title", "")
@@ -87,7 +87,7 @@ class Results:
 
     def remaining(self, age):
         """The part of its circulation that a vortex of some age still has: doc/model.md, section 8."""
-        lifetime, decay = float(self["wake_lifetime"]), float(self["wake_fade"])
+        lifetime, decay = float(self["wake_lifetime"]), float(self["wake_decay"])
         if decay == 0:  # it keeps all of it up to its last interval
             return np.ones_like(age)
         return 1 - ramp_step((age + float(self["shedding_interval"]) / 2 - (lifetime - decay)) / decay)

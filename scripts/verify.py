@@ -87,7 +87,7 @@ shed circulation is checked on the default fish: the changes of nose and wake ar
 One soft fish (E = 1e5 Pa, N = 7, M = 65), from rest and from 1 m/s, with a force that feels the own wake: the pressure of
 the bound sheet with *sheet*, the published force with *continuous*. All else has the defaults of the program. The run
 ends at 1.5 s; vortices decay from an age of 0.8 s to 1 s, so that part of the wake is lost in it, which Kelvin's
-theorem retains or drops (`dissipated_circulation`). The interval is halved from 0.02 s to 0.000625 s. Changes and
+theorem retains or drops (`removed_circulation`). The interval is halved from 0.02 s to 0.000625 s. Changes and
 errors are root mean squares over the run: those of one instant change their sign now and then, so that the order
 observed at a single time is anything from 0.7 to 1.9. The order is the slope of the changes over the interval, and the
 size of the error at the usual 0.01 s stands beside it.
@@ -99,8 +99,8 @@ circulation are larger. With 65 points intervals below 0.0025 s are finer than t
 that the last orders are those of this discrete sheet."""),
     "symmetry": ("Symmetries", """\
 What must not change the motion: the same school shifted, turned, mirrored, seen from a moving frame, listed in another
-order, on two threads, written at other times, with companions too far away to matter. Rows without an edition are
-those of the first edition of the model; *second edition* has the free sheet and the reactive force of the defaults.
+order, on two threads, written at other times, with companions too far away to matter. Rows without a name are
+those of the article's model; *default model* has the free sheet and the reactive force of the defaults.
 Where the integrator takes the same steps the results agree to round-off; otherwise to its tolerance. A muscle that
 starts smoothly makes its first error estimates round-off, so that after a change of view the first steps differ; with
 a muscle that starts at once they are the same."""),
@@ -264,7 +264,7 @@ FIGURE = {
                              "change when halved [m, m2/s]", {"slopes": [2]}),
     "school_interval_impulsive_rate": ("School, impulsive shedding, kutta rate", "shedding interval Dt [s]",
                                        "change when halved [m, m2/s]", {"slopes": [1]}),
-    "school_interval_fading": ("School, vortices that fade", "shedding interval Dt [s]", "change when halved [m, m2/s]",
+    "school_interval_fading": ("School, decaying vortices", "shedding interval Dt [s]", "change when halved [m, m2/s]",
                                {"slopes": [2]}),
     "school_nodes": ("One fish: nodes of the body", "edge length, 1/(N - 1)", "change when halved [m, m2/s]",
                      {"slopes": [2, 1.5]}),

@@ -20,7 +20,7 @@ static const char swept[] =
     "sweep:\n"
     "  - {key: 'fish[*].body.modulus', values: [1e4, 1e6, 1.0e+8]}\n"
     "  - {key: 'fish[1].start.position', values: [[0, 1], [0, 2]]}\n"
-    "  - {key: wake.kutta, values: [edge, rate]}\n";
+    "  - {key: sheet.kutta, values: [edge, rate]}\n";
 
 static const char zipped[] =
     "time: {end: 1, shedding_interval: 0.1}\nformat: 1\nfish: [{}, {}]\n"

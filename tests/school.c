@@ -21,7 +21,7 @@ void school_settings(struct case_values *values, const char *text) {
     char whole[32768];
     // a preset is weaker than an include
     const char *const include =
-        strstr(text, "preset:") || strstr(text, SCHOOL_SECOND) ? "" : "include: [tests/data/first_edition.yaml]\n";
+        strstr(text, "preset:") || strstr(text, SCHOOL_DEFAULTS) ? "" : "include: [tests/data/small.yaml]\n";
     const int length = snprintf(whole, sizeof whole, "format: 1\nname: test\n%s%s", include, text);
     assert_in_range(length, 0, sizeof whole - 1);
     school_ok(case_parse(values, whole, (size_t)length, "test", ".", 0, NULL));
@@ -82,7 +82,7 @@ static void stir_wake(struct setup *setup, const struct fish *fish, struct wake 
     const double back[2] = {-cos(fish->start_heading), -sin(fish->start_heading)};
     for (int i = 0; i < 6; i++) {
         const double along = fish->length * (1.6 - 0.1 * i), across = 0.2 * fish->length * school_random(setup);
-        // the oldest one is fading
+        // the oldest one is decaying
         const double age = i == 0 ? setup->school->lifetime - setup->school->decay / 2 : 0.5 * setup->school->lifetime;
         school_ok(wake_release(wake, fish->start_position[0] + along * back[0] - across * back[1],
                                fish->start_position[1] + along * back[1] + across * back[0], 0.1 * school_random(setup),

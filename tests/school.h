@@ -22,11 +22,11 @@ struct setup {
     uint64_t seed;             /* of the random numbers */
 };
 
-/* A text with this line has the defaults of the second edition of the model. */
-#define SCHOOL_SECOND "# second edition\n"
+/* A text with this line has the defaults of the program. */
+#define SCHOOL_DEFAULTS "# defaults\n"
 
-/* "format: 1", a name and, without SCHOOL_SECOND or a preset, the defaults of the first edition (a small fish:
- * tests/data/first_edition.yaml) go before the text. Fails the test with the message where there is one. */
+/* "format: 1", a name and, without SCHOOL_DEFAULTS or a preset, the defaults of the article's model (a small fish:
+ * tests/data/small.yaml) go before the text. Fails the test with the message where there is one. */
 void school_settings(struct case_values *values, const char *text);
 void school_build(struct setup *setup, const char *text);
 void school_clear(struct setup *setup);

@@ -11,7 +11,7 @@ RED, BLUE, BODY, EDGE = "#b2182b", "#4393c3", "#d9d9d9", "#222222"
 
 def _bodies(run):
     """The outline of each body as a polygon (2 n, 2), m, from its nodes and the thickness of its edges."""
-    x, thickness, counts = run.view("x"), run.view("edge_height"), run.view("n_nodes")
+    x, thickness, counts = run.view("x"), run.view("edge_thickness"), run.view("n_nodes")
     for nodes, of_edge, n in zip(x, thickness, counts):
         nodes, of_edge = np.array(nodes[:n]), np.array(of_edge[: n - 1])
         half = np.concatenate([[0], (of_edge[1:] + of_edge[:-1]) / 4, [0]])[:, None]

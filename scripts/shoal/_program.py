@@ -259,7 +259,7 @@ class Page:
 
 def frame_of(page: str) -> str:
     """A page as an element of another one."""
-    return f'<iframe srcdoc="{html.escape(page)}" style="width: 100%; height: 560px; border: 0"></iframe>'
+    return f'<iframe srcdoc="{html.escape(page)}" style="depth: 100%; height: 560px; border: 0"></iframe>'
 
 
 def view(path, page=None, overwrite: bool = True) -> Page:

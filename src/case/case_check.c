@@ -130,14 +130,14 @@ static void check_verlet(const struct check *check) {
         complain(check, "solver.method",
                  "verlet is for rods without fluid: set fluid.density to 0, or choose another method");
     }
-    if (check->fish == 0 && school->wake.kutta == KUTTA_RATE) {
-        complain(check, "solver.method", "verlet integrates no circulation: set wake.kutta to edge");
+    if (check->fish == 0 && school->sheet.kutta == KUTTA_RATE) {
+        complain(check, "solver.method", "verlet integrates no circulation: set sheet.kutta to edge");
     }
     if (body->bending_damping > 0) complain(check, "fish.body.bending_damping", damps);
     if (body->stretching_damping > 0) complain(check, "fish.body.stretching_damping", damps);
     if (body->relaxation_time > 0) complain(check, "fish.body.relaxation_time", damps);
     if (school->fish[check->fish].motion.prescribed != PRESCRIBED_NONE) {
-        complain(check, "fish.motion.driven", "solver.method verlet is for free rods: choose another method");
+        complain(check, "fish.motion.prescribed", "solver.method verlet is for free rods: choose another method");
     }
     if (school->fish[check->fish].control.law != CONTROL_NONE) {
         complain(check, "fish.control.law",
@@ -148,14 +148,14 @@ static void check_verlet(const struct check *check) {
 static void check_wake(const struct check *check) {
     const struct wake_parameters *const wake = &check->values->school.wake;
     const double interval = check->values->school.shedding_interval;
-    const double lifetime = wake->lifetime.seconds, fade = wake->decay.seconds;
+    const double lifetime = wake->lifetime.seconds, decay = wake->decay.seconds;
     static const char no_beat[] = "is in beats, but no fish beats: use a number of seconds";
     if (wake->lifetime.beats > 0 && !(lifetime > 0)) {
         complain(check, "wake.lifetime", no_beat);
         return;
     }
-    if (wake->decay.beats > 0 && !(fade > 0)) complain(check, "wake.fade", no_beat);
-    if (fade > lifetime) complain(check, "wake.fade", "%g s is longer than wake.lifetime, %g s", fade, lifetime);
+    if (wake->decay.beats > 0 && !(decay > 0)) complain(check, "wake.decay", no_beat);
+    if (decay > lifetime) complain(check, "wake.decay", "%g s is longer than wake.lifetime, %g s", decay, lifetime);
     if (lifetime < interval) {
         complain(check, "wake.lifetime", "%g s is less than time.shedding_interval, %g s", lifetime, interval);
     }
@@ -169,14 +169,15 @@ static void check_wake(const struct check *check) {
 /* Keys that the way of shedding does not use, and combinations that have no meaning. */
 static void check_shedding(const struct check *check) {
     const struct wake_parameters *const wake = &check->values->school.wake;
+    const struct sheet_parameters *const sheet = &check->values->school.sheet;
     if (wake->shedding == SHEDDING_SHEET) {
-        if (wake->kutta == KUTTA_RATE) {
-            complain(check, "wake.kutta",
+        if (sheet->kutta == KUTTA_RATE) {
+            complain(check, "sheet.kutta",
                      "a free sheet begins with the strength that vanishes at the edge: use 'edge', or another "
                      "wake.shedding");
         }
-        if (wake->collocation == COLLOCATION_MIDPOINT) {
-            complain(check, "wake.collocation",
+        if (sheet->collocation == COLLOCATION_MIDPOINT) {
+            complain(check, "sheet.collocation",
                      "the end correction of a free sheet is that of chebyshev points: use 'chebyshev', or another "
                      "wake.shedding");
         }
@@ -339,7 +340,7 @@ static bool is_idle(double amplitude, double frequency, double phase) {
 
 static void check_motion(const struct check *check) {
     const struct motion_parameters *const motion = &check->values->school.fish[check->fish].motion;
-    static const char not_prescribed[] = "has no effect while motion.driven is none; set it to head or all";
+    static const char not_prescribed[] = "has no effect while motion.prescribed is none; set it to head or all";
     static const char constant[] = "has no effect while motion.frequency is 0";
     if (motion->prescribed == PRESCRIBED_NONE) {
         if (fabs(motion->heave) > 0) complain(check, "fish.motion.heave", not_prescribed);
@@ -402,14 +403,15 @@ static void check_pressure(const struct check *check) {
         return;
     }
     if (wake->shedding != SHEDDING_SHEET) complain(check, force, "pressure needs 'wake.shedding: sheet'");
-    if (wake->curve != BODY_LINE_SMOOTH) complain(check, force, "pressure needs 'wake.curve: smooth'");
+    if (check->values->school.sheet.curve != BODY_LINE_SMOOTH)
+        complain(check, force, "pressure needs 'sheet.curve: smooth'");
     if (fish->nodes > 0 && fish->sheet_points < 2 * fish->nodes - 1) {
         complain(check, "fish.sheet_points",
                  "with 'force: pressure' the added mass of %d nodes needs at least %d points, not %d", fish->nodes,
                  2 * fish->nodes - 1, fish->sheet_points);
     }
-    if (is_given(check, "fish.drag.added_mass")) {
-        complain(check, "fish.drag.added_mass", "has no effect with 'force: pressure': remove it");
+    if (is_given(check, "fish.added_mass.coefficient")) {
+        complain(check, "fish.added_mass.coefficient", "has no effect with 'force: pressure': remove it");
     }
     if (has_moment(&fish->control)) {
         complain(check, "fish.control.feedforward",
@@ -454,8 +456,8 @@ static void check_law_keys(const struct check *check) {
     if (!has_moment(control) && fabs(control->filter - period) > 0) {
         complain(check, "fish.control.filter", "has no effect without feedforward: remove it");
     }
-    if (control->waypoints.n == 0 && is_given(check, "fish.control.arrival")) {
-        complain(check, "fish.control.arrival", "has no effect without control.waypoints: remove it");
+    if (control->waypoints.n == 0 && is_given(check, "fish.control.acceptance_radius")) {
+        complain(check, "fish.control.acceptance_radius", "has no effect without control.waypoints: remove it");
     }
     const struct number_list *const heading = &control->desired_heading;
     if (heading->n == 0) return;
@@ -523,8 +525,8 @@ void case_check(const struct case_values *values, const struct case_tree *tree, 
         check_name(&check);
         check_digits(&check);
         check_verlet(&check);
-        check_edge_list(&check, "fish.body.h", &fish->body.h);
-        check_edge_list(&check, "fish.body.w", &fish->body.w);
+        check_edge_list(&check, "fish.body.thickness_table", &fish->body.thickness_table);
+        check_edge_list(&check, "fish.body.depth_table", &fish->body.depth_table);
         check_tail(&check);
         check_wave_form(&check);
         check_turn(&check);

@@ -161,8 +161,21 @@ static bool add_missing(struct text *hint, const char *word) {
     return false;
 }
 
+/* Add the present path of a key that had another one in former versions; false if the word is no such key. */
+static bool add_renamed(struct text *hint, const char *section, const char *word) {
+    const size_t length = strlen(section);
+    for (int i = 0; i < case_table_n; i++) {
+        const char *const former = case_table[i].former, *const path = case_table[i].path;
+        if (!former || strncmp(former, section, length) != 0) continue;
+        if (strcmp(former + length + (length > 0 && former[length] == '.'), word) != 0) continue;
+        text_add(hint, "; it is called '%s' now", is_in_fish(path) ? path + strlen("fish.") : path);
+        return true;
+    }
+    return false;
+}
+
 void case_suggest(struct text *hint, const char *section, const char *word, const char *owner) {
-    if (add_missing(hint, word)) return;
+    if (add_renamed(hint, section, word) || add_missing(hint, word)) return;
     struct candidate best = {{0}, {0}, INT_MAX, INT_MAX};
     for (int i = 0; i < case_table_n; i++) {
         const char *const path = case_table[i].path;

@@ -16,9 +16,9 @@ const struct sweep_error_key sweep_error_keys[SWEEP_N_ERROR_KEYS] = {
     {"solver.step", NULL, SWEEP_SPACING, {2, 4}, 0.5, 1},  // of the first order: see sweep_error_order
     {"wake.tolerance", NULL, SWEEP_SPACING, {10, 0}, 0.1, 1},
     {"wake.merge", NULL, SWEEP_SPACING, {10, 0}, 0.1, 1},
-    {"wake.lifetime", "wake.fade", SWEEP_DURATION, {1 / 2.0, 0}, 2, 1},
+    {"wake.lifetime", "wake.decay", SWEEP_DURATION, {1 / 2.0, 0}, 2, 1},
     {"wake.smoothing", NULL, SWEEP_MODEL, {0, 0}, 0.5, 1},
-    {"wake.sheet_smoothing", NULL, SWEEP_MODEL, {0, 0}, 0.5, 1},
+    {"sheet.smoothing", NULL, SWEEP_MODEL, {0, 0}, 0.5, 1},
     {"wake.taper", "wake.taper_beside", SWEEP_MODEL, {0, 0}, 0.5, 1},
 };
 

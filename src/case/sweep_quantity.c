@@ -32,7 +32,7 @@ const struct sweep_quantity sweep_quantities[SWEEP_N_QUANTITIES] = {
     {"mean_thrust", 1, 0, NULL, NULL, 0},
     {"mean_power", 1, 0, NULL, NULL, 0},
     {"thrust_efficiency", 1, 0, NULL, NULL, 0},
-    {"energy_audit", 1, 0, NULL, NULL, 0},
+    {"energy_balance", 1, 0, NULL, NULL, 0},
     {"steps", 0, 0, NULL, NULL, 0},
     {"newton_iterations", 0, 0, NULL, NULL, 0},
     {"residual_evaluations", 0, 0, NULL, NULL, 0},

@@ -97,7 +97,7 @@ static void set_boundary_layer(struct fish *fish, const struct drag_parameters *
 static void set_fluid_forces(struct fish *fish, const struct fish_parameters *from,
                              const struct fluid_parameters *fluid) {
     const struct drag_parameters *drag = &from->drag;
-    const int wide = drag->extent == EXTENT_DEPTH, published = from->force == FORCE_PUBLISHED;
+    const int wide = from->added_mass.extent == EXTENT_DEPTH, published = from->force == FORCE_PUBLISHED;
     const double density = fluid->density, reactive = from->force == FORCE_PRESSURE ? 0 : 1;
     for (int k = 0; k < fish->n_edges; k++) {
         const double h = fish->thickness[k], w = fish->depth[k], l = fish->edge_length;
@@ -106,7 +106,8 @@ static void set_fluid_forces(struct fish *fish, const struct fish_parameters *fr
                                        ? density * M_PI * drag->tangential * l * (h + w) / (published ? 8 : 4)
                                        : laminar_friction(fish, k, fluid);
         fish->drag_normal[k] = density * drag->normal * l * across / 2;
-        fish->added_mass[k] = reactive * M_PI * density * drag->added_mass * across * across * l / 4 * square;
+        fish->added_mass[k] =
+            reactive * M_PI * density * from->added_mass.coefficient * across * across * l / 4 * square;
         fish->displaced_mass[k] = reactive * density * M_PI * h * w / 4 * l;
     }
     fish->force = from->force;
@@ -114,7 +115,8 @@ static void set_fluid_forces(struct fish *fish, const struct fish_parameters *fr
     fish->skin = drag->skin;
     set_boundary_layer(fish, drag, fluid);
     const double at_tail = wide ? fish->depth[fish->n_edges - 1] : profile_tail_thickness(from);
-    fish->tail_added_mass = published ? 0 : reactive * M_PI * density * drag->added_mass * at_tail * at_tail / 4;
+    fish->tail_added_mass =
+        published ? 0 : reactive * M_PI * density * from->added_mass.coefficient * at_tail * at_tail / 4;
     // the published law has 1 m s-1
     const double linear_speed = published ? 1 : drag->linear_speed * fish->length * from->wave.frequency;
     fish->linear_speed = drag->law == DRAG_LINEAR_QUADRATIC ? linear_speed : 0;

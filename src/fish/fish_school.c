@@ -81,7 +81,7 @@ static enum status fish_fill(struct fish *fish, const struct school_parameters *
     fish->length = from->length;
     fish->edge_length = fish->length / fish->n_edges;
     fish->smoothing = parameters->wake.smoothing * fish->length;
-    fish->sheet_smoothing = parameters->wake.sheet_smoothing * fish->length;
+    fish->sheet_smoothing = parameters->sheet.smoothing * fish->length;
     fish->taper = parameters->wake.taper * fish->length;
     fish->taper_beside = parameters->wake.taper_beside * fish->length;
     TRY(fish_body_set(fish, from, &parameters->fluid));
@@ -135,12 +135,11 @@ static void set_fluid(struct school *school, const struct school_parameters *par
     school->lifetime = parameters->wake.lifetime.seconds;
     school->decay = parameters->wake.decay.seconds;
     school->shedding = parameters->wake.shedding;
-    school->kutta = parameters->wake.kutta;
-    school->kutta_ramp = parameters->wake.kutta_ramp;
-    school->removed = parameters->wake.dissipated_circulation;
+    school->kutta = parameters->sheet.kutta;
+    school->kutta_ramp = parameters->sheet.kutta_ramp;
+    school->removed = parameters->wake.removed_circulation;
     school->wake_tolerance = parameters->wake.tolerance;
     school->wake_merge = parameters->wake.merge;
-    school->wake_spare = parameters->wake.spare;
     school->contact = parameters->contact.action;
     school->rtol = parameters->rtol;
     school->threads = parameters->threads;

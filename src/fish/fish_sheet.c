@@ -82,21 +82,21 @@ static void correct_end(struct fish *fish) {
 }
 
 // bound vortices and control points: doc/model.md, section 6
-static enum status place_sheet(struct fish *fish, const struct wake_parameters *wake) {
+static enum status place_sheet(struct fish *fish, const struct sheet_parameters *sheet, enum shedding shedding) {
     for (int j = 1; j < fish->n_sheet; j++) {
         const double distance = cosine_place(fish, j) - cosine_place(fish, j - 1);
         fish->sheet_weight[j - 1] += distance * fish->length / 2;
         fish->sheet_weight[j] += distance * fish->length / 2;
     }
-    const int is_smooth = wake->curve == BODY_LINE_SMOOTH;
+    const int is_smooth = sheet->curve == BODY_LINE_SMOOTH;
     TRY(curve_create(&fish->curve, fish->n_nodes, is_smooth ? 1 : 2 * fish->n_sheet,
                      is_smooth ? 4 * fish->n_sheet + 1 : 0));
     if (is_smooth) {
-        place_sheet_on_smooth_curve(fish, wake->collocation);
+        place_sheet_on_smooth_curve(fish, sheet->collocation);
     } else {
-        place_sheet_on_polygon(fish, wake->collocation);
+        place_sheet_on_polygon(fish, sheet->collocation);
     }
-    if (wake->shedding == SHEDDING_SHEET) correct_end(fish);
+    if (shedding == SHEDDING_SHEET) correct_end(fish);
     fish->heading_point = curve_polygon_point(fish->curve, 1.0 / 3.0 * fish->n_edges);
     return STATUS_OK;
 }
@@ -125,6 +125,6 @@ static enum status set_pressure(struct fish *fish, const struct fish_parameters 
 enum status fish_sheet_set(struct fish *fish, const struct fish_parameters *from,
                            const struct school_parameters *parameters) {
     TRY(allocate(fish));
-    TRY(place_sheet(fish, &parameters->wake));
+    TRY(place_sheet(fish, &parameters->sheet, parameters->wake.shedding));
     return set_pressure(fish, from, parameters->fluid.density);
 }

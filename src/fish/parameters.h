@@ -47,28 +47,31 @@ struct duration {
 };
 
 struct wake_parameters {
-    double smoothing, sheet_smoothing; /* fractions of the body length */
-    double taper, taper_beside;        /* fractions of the body length */
+    double smoothing;           /* fraction of the body length */
+    double taper, taper_beside; /* fractions of the body length */
     struct duration lifetime, decay;
     enum shedding shedding;
-    enum kutta kutta;
-    double kutta_ramp; /* s */
-    enum body_line curve;
-    enum collocation collocation;
-    enum removed_circulation dissipated_circulation;
+    enum removed_circulation removed_circulation;
     double tolerance; /* lengths per beat; 0: exact */
     double merge;     /* lengths per beat; 0: never */
-    int spare;        /* vortices of each wake that may be added from outside */
+};
+
+struct sheet_parameters {
+    double smoothing; /* fraction of the body length */
+    enum body_line curve;
+    enum collocation collocation;
+    enum kutta kutta;
+    double kutta_ramp; /* s */
 };
 
 struct body_parameters {
     enum profile profile;
     double thickness, depth; /* fractions of the body length; the depth is the span, out of the plane of motion */
     double tail_thickness;   /* fraction of the body length: profile joukowski only */
-    struct number_list h, w; /* m, one value per edge: profile table only */
-    enum section section;    /* of an edge: means over it, or over its two nodes */
-    double density;          /* kg m-3 */
-    double modulus;          /* Pa */
+    struct number_list thickness_table, depth_table; /* m, one value per edge: profile table only */
+    enum section section;                            /* of an edge: means over it, or over its two nodes */
+    double density;                                  /* kg m-3 */
+    double modulus;                                  /* Pa */
     enum second_moment second_moment;
     double bending_damping;    /* N m s, per joint of a body of reference_nodes: doc/model.md, section 3 */
     double stretching_damping; /* N s m-1, per edge of such a body */
@@ -87,14 +90,18 @@ struct wave_parameters {
 };
 
 struct drag_parameters {
-    double tangential, normal, added_mass;
+    double tangential, normal;
     enum skin skin;    /* law of the tangential drag */
     double transition; /* Reynolds number of the distance from the nose; 0: turbulent from there */
     double waving;     /* factor of laminar friction; NaN: 1.5 with a wave, else 1 */
     double form;       /* factor of all friction; NaN: by the largest thickness */
     enum drag_law law;
     double linear_speed; /* lengths per beat: force reactive, law linear_quadratic */
-    enum extent extent;
+};
+
+struct added_mass_parameters {
+    double coefficient;
+    enum extent extent; /* of the body in added mass and normal drag */
 };
 
 struct motion_parameters {
@@ -130,6 +137,7 @@ struct fish_parameters {
     double suction;       /* force: pressure: the part of the leading-edge suction that acts */
     double suction_limit; /* force: pressure: the largest leading-edge parameter that a nose holds; 0: none */
     struct drag_parameters drag;
+    struct added_mass_parameters added_mass;
     double start_position[2]; /* m */
     double start_heading;     /* degree */
     double start_speed;       /* m s-1 */
@@ -146,6 +154,7 @@ struct contact_parameters {
 struct school_parameters {
     struct fluid_parameters fluid;
     struct wake_parameters wake;
+    struct sheet_parameters sheet;
     struct contact_parameters contact;
     double shedding_interval; /* s */
     double rtol;              /* of the integrator: doc/numerics.md */

@@ -116,8 +116,8 @@ struct profile_edge profile_edge(const struct fish_parameters *fish, int k) {
             edge.w = body->depth * fish->length;
             break;
         case PROFILE_TABLE:
-            edge.h = body->h.value[k];
-            edge.w = body->w.value[k];
+            edge.h = body->thickness_table.value[k];
+            edge.w = body->depth_table.value[k];
             break;
     }
     return edge;

@@ -55,7 +55,7 @@ static const struct column {
     {"shed", "m2 s-1", "shed_circulation", "%.3e", true},
     {"energy", "J", "kinetic_energy", "%.4g", true},
     {"work", "J", "actuation_work", "%.4g", true},
-    {"audit", "J", "energy_audit", "%.1e", true},
+    {"balance", "J", "energy_balance", "%.1e", true},
 };
 enum { N_COLUMNS = sizeof columns / sizeof *columns, N_CONSTANT_COLUMNS = 3 };
 
@@ -139,15 +139,15 @@ static enum status print_lines(const struct info *info, const char *name, const 
 
 static enum status print_school(const struct info *info) {
     const size_t last = info->n_rows - 1;
-    double circulation, distance, polarisation, audit[2];
+    double circulation, distance, polarisation, balance[2];
     TRY(of_school(info, last, "total_circulation", &circulation));
     TRY(of_school(info, last, "least_distance", &distance));
     TRY(of_school(info, last, "polarisation", &polarisation));
     fprintf(info->stream, "\n  total circulation     %11.1e m2 s-1\n", circulation);
     // files of earlier versions have no balance
     const struct netcdf_slice row[] = {{"time", last, 1}, {"xy", 0, 2}, {NULL}};
-    if (netcdf_read_doubles(info->reader, "momentum_audit", row, audit) == STATUS_OK && !isnan(audit[0]))
-        fprintf(info->stream, "  momentum balance      %11.1e N s\n", hypot(audit[0], audit[1]));
+    if (netcdf_read_doubles(info->reader, "momentum_balance", row, balance) == STATUS_OK && !isnan(balance[0]))
+        fprintf(info->stream, "  momentum balance      %11.1e N s\n", hypot(balance[0], balance[1]));
     if (info->n_fish > 1)
         fprintf(info->stream, "  least distance        %11.4f m\n  polarisation          %11.4f\n", distance,
                 polarisation);

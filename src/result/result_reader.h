@@ -12,7 +12,7 @@ struct result_reader {
     char *title, *run_status;           /* of the case, and how its run ended; owned */
     char **name;                        /* of the fish; owned                          (FISH) */
     int *n_nodes, *n_sheet;             /* of each fish; owned                         (FISH) */
-    bool *has_mean_section;             /* edge_height is a mean over the edge; owned  (FISH) */
+    bool *has_mean_section;             /* edge_thickness is a mean over the edge; owned  (FISH) */
     bool has_pressure;                  /* a fish has force: pressure */
     double wall_y[2];                   /* of the walls, m                             (length[WALL]) */
 };

@@ -22,7 +22,7 @@ static const struct quantity {
     {"steady_lift", "lift", "N", "%.5g", false},
     {"steady_deflection", "deflection", "m", "%.5f", false},
     {"steady_actuation_power", "power of the muscle", "W", "%.5g", false},
-    {"steady_driving_power", "driving power", "W", "%.5g", false},
+    {"steady_constraint_power", "driving power", "W", "%.5g", false},
     {"steady_damping_power", "power of damping", "W", "%.5g", false},
     {"steady_fluid_power", "power to the fluid", "W", "%.5g", false},
     {"steady_cost_of_transport", "cost of transport", "m s-2", "%.5f", false},

@@ -14,9 +14,9 @@ struct steady_fish {
     double thrust;     /* of the fluid on it, along its heading, N */
     double drag, lift; /* along the stream that it meets, and to the left of that, N; without a beat only, */
     double deflection; /* and of its tail, to the left of the heading of a stiff body, m; else NaN */
-    double actuation_power, damping_power, driving_power; /* W */
-    double fluid_power;                                   /* that goes into the fluid, W */
-    double cost_of_transport;                             /* m s-2 */
+    double actuation_power, damping_power, constraint_power; /* W */
+    double fluid_power;                                      /* that goes into the fluid, W */
+    double cost_of_transport;                                /* m s-2 */
     double efficiency, strouhal;
 };
 

@@ -101,11 +101,11 @@ static void diagnostics_one(struct residual *residual, const struct state *state
     to->friction_power = power.friction;
     to->added_mass_power = power.added_mass;
     to->wake_power = power.wake;
-    to->driving_power = power.driving;
+    to->constraint_power = power.driving;
     to->contact_power = power.contact;
     const struct energy_balance *balance = &state->balance[f];
-    to->energy_audit = to->kinetic_energy + to->bending_energy + to->stretching_energy + to->contact_energy -
-                       balance->initial_energy - balance->work[WORK_ALL];
+    to->energy_balance = to->kinetic_energy + to->bending_energy + to->stretching_energy + to->contact_energy -
+                         balance->initial_energy - balance->work[WORK_ALL];
     to->actuation_work = balance->work[WORK_ACTUATION];
 }
 

@@ -19,7 +19,7 @@
 #include "school/diagnostics_momentum.h"
 
 // the forces that hold the prescribed nodes on their path, the moment that turns a clamped head, the load at the tip
-static double driving_power(struct residual *residual, int f, double t, const double *y, double force[2]) {
+static double constraint_power(struct residual *residual, int f, double t, const double *y, double force[2]) {
     const struct fish *fish = &residual->school->fish[f];
     const int tail = fish->n_nodes - 1;
     double power = fish->load_tip[0] * y[fish->at.vx + tail] + fish->load_tip[1] * y[fish->at.vy + tail];
@@ -112,7 +112,7 @@ struct diagnostics_power diagnostics_power(struct residual *residual, int f, dou
     const double actuation = rod_actuation_power(fish, &muscle, strains.stress);
     const double damping = rod_damping_power(fish, strains.rate) + clamp_damping_power(fish, t, y);
     double driving_force[2];
-    const double driving = driving_power(residual, f, t, y, driving_force);
+    const double driving = constraint_power(residual, f, t, y, driving_force);
     struct diagnostics_power power = {.actuation = actuation,
                                       .damping = damping,
                                       .drag = fluid.drag,

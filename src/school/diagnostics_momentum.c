@@ -266,7 +266,7 @@ static double size_of(const double vector[3]) {
 
 // the impulses of a fish; what it adds to the balance of the school, and to the terms of which that is to be small
 static void fill_fish(struct residual *residual, const struct state *state, int f, struct diagnostics_fish *to,
-                      double audit[3], double size[3]) {
+                      double balance[3], double size[3]) {
     const struct momentum_balance *const momentum = &state->momentum[f];
     const struct fish *const fish = &residual->school->fish[f];
     double body[3], fluid[3], lost[3], given[3];
@@ -281,7 +281,7 @@ static void fill_fish(struct residual *residual, const struct state *state, int 
         to->lost_impulse[i] = lost[i];
         to->external_impulse[i] = has_reaction ? momentum->external[i] + given[i] - momentum->first_given[i] : NAN;
         fluid[i] -= momentum->first_fluid[i];
-        audit[i] += body[i] - momentum->first_body[i] + fluid[i] + lost[i] - to->external_impulse[i];
+        balance[i] += body[i] - momentum->first_body[i] + fluid[i] + lost[i] - to->external_impulse[i];
     }
     size[0] += size_of(body);
     size[1] += size_of(fluid);
@@ -310,11 +310,12 @@ static double usual_momentum(const struct school *school) {
 void diagnostics_momentum(struct residual *residual, const struct state *state, struct diagnostics *diagnostics) {
     const struct school *const school = residual->school;
     double size[3] = {0};
-    memset(diagnostics->momentum_audit, 0, sizeof diagnostics->momentum_audit);
+    memset(diagnostics->momentum_balance, 0, sizeof diagnostics->momentum_balance);
     for (int f = 0; f < school->n_fish; f++) {
-        fill_fish(residual, state, f, &diagnostics->fish[f], diagnostics->momentum_audit, size);
+        fill_fish(residual, state, f, &diagnostics->fish[f], diagnostics->momentum_balance, size);
     }
     const double rounding = 1e-6;
     diagnostics->momentum_size = fmax(rounding * usual_momentum(school), fmax(size[0], fmax(size[1], size[2])));
-    for (int i = 0; i < 3 && school->density > 0 && !have_one_depth(school); i++) diagnostics->momentum_audit[i] = NAN;
+    for (int i = 0; i < 3 && school->density > 0 && !have_one_depth(school); i++)
+        diagnostics->momentum_balance[i] = NAN;
 }

@@ -22,10 +22,10 @@ struct diagnostics_fish {
     double kinetic_energy, bending_energy, stretching_energy; /* J */
     double contact_energy;                                    /* half of what its contacts store, J */
     double added_mass_energy;                                 /* of the fluid that the body accelerates, J */
-    double actuation_power, damping_power, drag_power, added_mass_power, wake_power, driving_power; /* W */
+    double actuation_power, damping_power, drag_power, added_mass_power, wake_power, constraint_power; /* W */
     double friction_power; /* of the part of the drag along the body, W */
     double contact_power;  /* what it is given for its half of the contacts, W */
-    double energy_audit;   /* J */
+    double energy_balance; /* J */
     double actuation_work; /* put in by the muscle since the start, J */
     /* on the body, N, and about the centre of mass, N m; friction: the part of the resistive force along the body */
     double resistive_force[2], friction_force[2], reactive_force[2], constraint_force[2];
@@ -54,7 +54,7 @@ struct diagnostics {
     struct diagnostics_fish *fish; /*                                                       (n_fish) */
     struct box *body, *wake;       /* scratch: around each body, around its free vortices   (n_fish) */
     double total_circulation;      /* m2 s-1 */
-    double momentum_audit[3];      /* balance of momentum, N s, and of angular momentum, N m s; NaN without reaction */
+    double momentum_balance[3];    /* balance of momentum, N s, and of angular momentum, N m s; NaN without reaction */
     double momentum_size;          /* of the largest term of this balance, N s */
     double least_distance;         /* between two bodies, m; NaN for one fish */
     double polarisation;           /* length of the mean unit vector of the headings */

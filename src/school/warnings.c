@@ -39,14 +39,14 @@ static double work_of(const struct subject *subject) {
 static double energy_size(const struct subject *subject) {
     const struct diagnostics_fish *const now = &subject->diagnostics->fish[subject->f];
     const double energy = now->kinetic_energy + now->bending_energy + now->stretching_energy;
-    const double audit = fabs(now->energy_audit), rounding = 1e-12 * energy;
+    const double balance = fabs(now->energy_balance), rounding = 1e-12 * energy;
     double work = work_of(subject);
     // within the first beat there is little work: then the energy of one length per beat counts, and that of the body
     if (subject->state->t < subject->fish->period) {
         const double speed = subject->fish->length / subject->fish->period;
         work = fmax(work, fmax(energy, subject->fish->total_mass * speed * speed));
     }
-    return audit > rounding ? audit / (0.01 * work) : 0;
+    return balance > rounding ? balance / (0.01 * work) : 0;
 }
 
 static void energy_say(const struct subject *subject, const char *who, char line[WARNING_BYTES]) {
@@ -54,7 +54,7 @@ static void energy_say(const struct subject *subject, const char *who, char line
         line, WARNING_BYTES,
         "the energy balance of %s is open by %.2g J, of %.2g J of work: a smaller solver.rtol or solver.step has to "
         "close it, else the case asks for more than the model can give",
-        who, subject->diagnostics->fish[subject->f].energy_audit, work_of(subject));
+        who, subject->diagnostics->fish[subject->f].energy_balance, work_of(subject));
 }
 
 // ---- divergence
@@ -282,12 +282,13 @@ const struct warning_words warnings_words[N_WARNINGS] = {
     [WARNING_DIVERGENCE] = {"a fish has diverged",
                             "at the end its speed, or the circulation in its wake over its length, is above 100 times "
                             "the speeds that the case gives"},
-    [WARNING_ENERGY] = {"the energy balance is open",
-                        "energy_audit is more than 1 % of the largest of the works of muscle, fluid, damping, and all "
-                        "forces; within the first beat, also of the energy of the body and of one length per beat"},
+    [WARNING_ENERGY] =
+        {"the energy balance is open",
+         "energy_balance is more than 1 % of the largest of the works of muscle, fluid, damping, and all "
+         "forces; within the first beat, also of the energy of the body and of one length per beat"},
     [WARNING_MOMENTUM] =
         {"the momentum balance is open",
-         "momentum_audit is more than 1 % of the largest of the sums over all fish: of the momentum, of "
+         "momentum_balance is more than 1 % of the largest of the sums over all fish: of the momentum, of "
          "the change of the impulse of the vortices, of external_impulse; not within the first beat, or length"},
     [WARNING_DRIFT] = {"the speed changes",
                        "drift is more than 1 %: means over the last beat are not those of steady swimming"},
@@ -337,15 +338,15 @@ static int crossing_line(const struct school *school, const struct state *state,
 // of the whole school
 static int momentum_line(const struct school *school, const struct state *state, const struct diagnostics *diagnostics,
                          char line[WARNING_BYTES]) {
-    const double audit = hypot(diagnostics->momentum_audit[0], diagnostics->momentum_audit[1]);
+    const double balance = hypot(diagnostics->momentum_balance[0], diagnostics->momentum_balance[1]);
     // a beat, or a length where nothing beats
     double period = 0;
     for (int f = 0; f < school->n_fish; f++) period = fmax(period, 1 / fish_rate(school, &school->fish[f]));
-    if (state->t < period || !(audit > 0.01 * diagnostics->momentum_size)) return 0;
+    if (state->t < period || !(balance > 0.01 * diagnostics->momentum_size)) return 0;
     snprintf(line, WARNING_BYTES,
              "the momentum balance is open by %.2g N s, of %.2g N s: a shorter time.shedding_interval and more "
              "sheet_points close it, and so does a start without a jump of the velocity",
-             audit, diagnostics->momentum_size);
+             balance, diagnostics->momentum_size);
     return 1;
 }
 

@@ -9,8 +9,8 @@
 
 struct equilibrium;
 
-/* The equilibrium of all bodies of a residual, each with the velocity of its first node, which is driven; from now on
- * the state has no wake. Both must outlive it. Fails with STATUS_MEMORY; equilibrium_free accepts NULL, and leaves the
+/* The equilibrium of all bodies of a residual, each with the prescribed velocity of its first node; the state has no
+ * wake from now on. Both must outlive it. Fails with STATUS_MEMORY; equilibrium_free accepts NULL, and leaves the
  * residual as that of a run. */
 enum status equilibrium_create(struct equilibrium **equilibrium, struct residual *residual, struct state *state);
 void equilibrium_free(struct equilibrium *equilibrium);

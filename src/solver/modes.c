@@ -20,7 +20,7 @@
 enum { N_POINTS = 2 };
 static const double point[N_POINTS] = {0.21132486540518712, 0.78867513459481288};
 
-/* The wake fades over this part of its length at least: where it just ended, its end would be felt. */
+/* The wake decays over this part of its length at least: where it just ended, its end would be felt. */
 static const double window = 0.75;
 
 /* A mode turns by no more than this within an event, and decays by no more than exp(-slowest) in the life of the wake;

@@ -1,4 +1,4 @@
-/* impulse.h: the impulse of vortices, and what of it the wakes lose where vortices fade, are removed or merged.
+/* impulse.h: the impulse of vortices, and what of it the wakes lose where vortices decay, are removed or merged.
  * doc/model.md, section 13. Tested by tests/state/test_impulse.c.
  *
  * In the plane a vortex of circulation G at x has the impulse -rho w E3 x G and the angular impulse -rho w |x|^2 G/2
@@ -30,7 +30,7 @@ double impulse_depth(const struct fish *fish);
 
 /* Book what the wake of fish f loses from the event of the state until the next one, before it moves; and what the old
  * vortices still have, before they are removed at the event of the state. Where the circulation lost is given back to
- * the body (wake.dissipated_circulation: dropped), it goes to the tail. */
+ * the body (wake.removed_circulation: dropped), it goes to the tail. */
 void impulse_fade(const struct school *school, struct state *state, int f);
 void impulse_remove(const struct school *school, struct state *state, int f);
 

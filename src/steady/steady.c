@@ -121,7 +121,7 @@ static void gather(struct run *run) {
                                       .deflection = NAN,
                                       .actuation_power = beat->actuation,
                                       .damping_power = beat->damping,
-                                      .driving_power = beat->driving,
+                                      .constraint_power = beat->driving,
                                       .fluid_power = beat->fluid,
                                       .cost_of_transport = last->cost_of_transport,
                                       .efficiency = last->efficiency,

@@ -90,7 +90,7 @@ static void add_event(struct steady_map *map, double share) {
         double force[2];
         diagnostics_fluid_force(now->resistive_force, now->reactive_force, &now->pressure, force);
         for (int i = 0; i < 2; i++) sum->force[i] += share * force[i];
-        const double power = now->actuation_power + now->driving_power;
+        const double power = now->actuation_power + now->constraint_power;
         sum->thrust += share * now->thrust;
         sum->rms_thrust += share * now->thrust * now->thrust;
         sum->rms_power += share * power * power;

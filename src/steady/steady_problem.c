@@ -56,13 +56,13 @@ static enum status refuse_fish(const struct school *school, const struct fish *f
     if (freedom != STEADY_HELD && fabs(school->shear) > 0) {
         return status_fail(STATUS_CASE,
                            "%s swims through a shear, in which the stream depends on its place: hold it with "
-                           "motion.driven, or set fluid.shear to 0",
+                           "motion.prescribed, or set fluid.shear to 0",
                            fish->name);
     }
     if (freedom == STEADY_SWIMS && school->walls.n > 0) {
         return status_fail(STATUS_CASE,
                            "%s swims freely beside a wall, and nothing holds its distance from it: hold it with "
-                           "motion.driven (surge: free leaves it its speed), or remove fluid.walls",
+                           "motion.prescribed (surge: free leaves it its speed), or remove fluid.walls",
                            fish->name);
     }
     if (fish->control.n_waypoints > 0 || fish->control.n_headings > 1) {
@@ -82,7 +82,7 @@ static enum status refuse(const struct steady_problem *problem) {
     if (n_free == 0 || school->n_fish == 1 || problem->map.is_formation) return STATUS_OK;
     return status_fail(STATUS_CASE,
                        "%d of %d fish swim at speeds of their own and do not keep their places: look for places that "
-                       "they keep with steady.formation: true, or hold them all with motion.driven",
+                       "they keep with steady.formation: true, or hold them all with motion.prescribed",
                        n_free, school->n_fish);
 }
 

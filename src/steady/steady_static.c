@@ -36,7 +36,7 @@ static enum status refuse_body(const struct school *school, const struct fish *f
     if (fish->motion.prescribed == PRESCRIBED_NONE || fish->motion.surge == SURGE_FREE) {
         return status_fail(STATUS_CASE,
                            "%s neither beats nor is held: nothing keeps it from going with the stream; hold it with "
-                           "motion.driven (and motion.surge: given), or let it beat",
+                           "motion.prescribed (and motion.surge: given), or let it beat",
                            fish->name);
     }
     if (fish->control.law != CONTROL_NONE) {
@@ -72,7 +72,7 @@ enum status steady_static_refuse(const struct school *school) {
     if (school->removed == REMOVED_DROPPED) {
         return status_fail(STATUS_CASE,
                            "what is removed of a wake is forgotten, so that a body with lift sheds for ever: set "
-                           "wake.dissipated_circulation to retained");
+                           "wake.removed_circulation to retained");
     }
     return STATUS_OK;
 }
@@ -311,7 +311,7 @@ static void fill(const struct simulation *simulation, int f, struct steady_fish 
                                   .thrust = now->thrust,
                                   .actuation_power = NAN,
                                   .damping_power = NAN,
-                                  .driving_power = now->driving_power,
+                                  .constraint_power = now->constraint_power,
                                   .deflection = way[0] * direction[1] - way[1] * direction[0],
                                   .cost_of_transport = NAN,
                                   .efficiency = NAN,

@@ -19,7 +19,7 @@ static const struct shown {
     {"strouhal", "Strouhal", "%.4f"},
     {"lateral_drift", "drift", "%.5f"},
     {"shed_circulation", "shed", "%.5f"},
-    {"energy_audit", "audit", "%.1e"},
+    {"energy_balance", "balance", "%.1e"},
     {"steps", "steps", "%.0f"},
     {"residual_evaluations", "evaluations", "%.0f"},
     {"wall_time", "wall", "%.2f"},

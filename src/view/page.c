@@ -217,7 +217,7 @@ static enum status write_all_fish(const struct page *page) {
     double *thickness, *length = NULL;
     size_t *const numbers = calloc(2 * page->n_fish, sizeof *numbers);
     if (!numbers) return out_of_memory(page);
-    enum status status = result_reader_new(&page->reader, "edge_height", 0, &thickness);
+    enum status status = result_reader_new(&page->reader, "edge_thickness", 0, &thickness);
     if (status == STATUS_OK) status = result_reader_new(&page->reader, "body_length", 0, &length);
     if (status == STATUS_OK) status = write_fish(page, thickness, length, numbers, numbers + page->n_fish);
     free(thickness);
@@ -471,7 +471,7 @@ static enum status fill(struct page *page) {
     for (size_t f = 0; f < page->n_fish; f++) page->n_nodes += (size_t)page->reader.n_nodes[f];
     TRY(result_reader_row(&page->reader, "shedding_interval", 0, &page->school.interval));
     TRY(result_reader_row(&page->reader, "wake_lifetime", 0, &page->school.lifetime));
-    TRY(result_reader_row(&page->reader, "wake_fade", 0, &page->school.decay));
+    TRY(result_reader_row(&page->reader, "wake_decay", 0, &page->school.decay));
     TRY(choose(page));
     const char *const place = strstr(page_template, placeholder);
     fwrite(page_template, 1, (size_t)(place - page_template), page->stream);

@@ -403,12 +403,12 @@ static enum status fill(struct export *export) {
     find_stem(export);
     TRY(result_reader_row(reader, "shedding_interval", 0, &export->school.interval));
     TRY(result_reader_row(reader, "wake_lifetime", 0, &export->school.lifetime));
-    TRY(result_reader_row(reader, "wake_fade", 0, &export->school.decay));
+    TRY(result_reader_row(reader, "wake_decay", 0, &export->school.decay));
     TRY(result_reader_new(reader, "sheet_arc", 0, &export->sheet_arc));
     export->outline = calloc(reader->length[FISH], sizeof *export->outline);
     double *thickness;
     if (!export->outline) return out_of_memory(export);
-    TRY(result_reader_new(reader, "edge_height", 0, &thickness));
+    TRY(result_reader_new(reader, "edge_thickness", 0, &thickness));
     enum status status = STATUS_OK;
     for (size_t f = 0; f < reader->length[FISH] && status == STATUS_OK; f++) {
         export->n_points += (size_t)reader->n_sheet[f] + OUTLINE_SIDES;

@@ -54,7 +54,7 @@ before_the_first_step() {
     check "few events in a beat: a warning" has err "shoal: warning: a beat of fish has only 3.33 events"
     run check "$demo" --set 'fish[0].body.modulus=1e5'
     check "slow bending modes" has err "shoal: warning: the slowest bending mode of fish has"
-    run check "$demo" --set 'fish[0].wave.frequency=0' --set 'fish[0].motion.driven=all' --set 'fish[0].motion.speed=1' \
+    run check "$demo" --set 'fish[0].wave.frequency=0' --set 'fish[0].motion.prescribed=all' --set 'fish[0].motion.speed=1' \
         --set 'fish[0].sheet_points=21'
     check "few sheet points for a given speed" has err "shoal: warning: fish swims"
     printf '%s\n' 'format: 1' 'time: {end: 1}' 'contact: {action: warn}' \

@@ -162,7 +162,7 @@ failures() {
 
 warnings() {
     printf '%s\n' 'format: 1' 'name: crossing' 'time: {end: 1, shedding_interval: 0.05}' 'fluid: {density: 0}' \
-        'defaults: {fish: {wave: {amplitude: 0}, motion: {driven: all, speed: 15}}}' \
+        'defaults: {fish: {wave: {amplitude: 0}, motion: {prescribed: all, speed: 15}}}' \
         'fish:' '  - {name: a}' '  - {name: b, start: {position: [-6, 0], heading: 0}}' >crossing.yaml
     run run crossing.yaml
     check "bodies that cross: exit 0" ended 0

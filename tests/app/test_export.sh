@@ -8,7 +8,7 @@
 cat >pair.yaml <<'end'
 format: 1
 time: {end: 0.6, shedding_interval: 0.02, output_interval: 0.1}
-wake: {lifetime: 0.4, fade: 0.04}
+wake: {lifetime: 0.4, decay: 0.04}
 output: {wake_interval: 0.2}
 defaults: {fish: {wave: {ramp: 0.2}}}
 fish: [{nodes: 9}, {force: pressure, length: 0.7, nodes: 7, sheet_points: 21, start: {position: [1.4, 0.4]}}]

@@ -96,7 +96,7 @@ cat >wrong.yaml <<'end'
 format: 1
 time: {end: -1}
 fluid: {densty: 1000}
-wake: {kutta: none}
+sheet: {kutta: none}
 fish: [{nodes: 3.5, wave: {frequency: fast}, start: {position: [1]}}]
 end
 validate wrong.yaml >/dev/null

@@ -69,8 +69,8 @@ code=0
 PYTHONPATH=$root/scripts /usr/bin/python3 - >out 2>err <<'END' || code=$?
 from shoal_results import Results, np
 run = Results("run.nc")
-lifetime, fade, interval = (float(run[name]) for name in ("wake_lifetime", "wake_fade", "shedding_interval"))
-ages = lifetime - interval / 2 - fade * np.array([1.1, 1, 0.5, 0])
+lifetime, decay, interval = (float(run[name]) for name in ("wake_lifetime", "wake_decay", "shedding_interval"))
+ages = lifetime - interval / 2 - decay * np.array([1.1, 1, 0.5, 0])
 assert np.allclose(run.remaining(ages), [1, 1, 0.5, 0], atol=1e-12), run.remaining(ages)
 END
 check "a vortex decays as in the program" test "$code" = 0
@@ -81,7 +81,7 @@ check "plot.py as a command" grep -qx run.png out
 check "animate.py as a command" grep -qx "animate.py: nothing.nc: no such file" err
 draws plot.py swim run.nc --limits -1 2 -3 3 --times 1 2 -- swim.png
 draws plot.py gait run.nc gait.svg
-draws plot.py time run.nc --audit time.pdf
+draws plot.py time run.nc --balance time.pdf
 draws plot.py run.nc default.png
 draws plot.py forces run.nc --beats 1 forces.png
 "$program" field run.nc --grid 60,40 -q
@@ -107,7 +107,7 @@ draws animate.py run.nc --fps 10 --dpi 40 --follow movie.gif
 # ---- several fish, far from their start, of 7 nodes
 
 { printf 'format: 1\ntime: {end: 1, shedding_interval: 0.05, output_interval: 0.1}\nfluid: {density: 0}\n'
-  printf 'defaults: {fish: {nodes: 7, motion: {driven: all, speed: 30}}}\nfish:\n'
+  printf 'defaults: {fish: {nodes: 7, motion: {prescribed: all, speed: 30}}}\nfish:\n'
   for i in 0 1 2 3 4 5 6; do echo "  - {name: number $i, start: {position: [0, $i]}}"; done; } >seven.yaml
 "$program" run seven.yaml -q -o seven.nc
 draws plot.py time seven.nc many.png
@@ -134,7 +134,7 @@ options = argparse.Namespace(times=None, limits=None, follow=None)
 assert plot.plot_swim(results, options).axes[0].get_xlabel().endswith("[lengths]"), "a long way is followed"
 options.follow = False
 assert plot.plot_swim(results, options).axes[0].get_xlabel() == "x [m]", "unless told otherwise"
-over_time = argparse.Namespace(audit=False, fish=None, each=None, beats=0)
+over_time = argparse.Namespace(balance=False, fish=None, each=None, beats=0)
 assert plot.plot_time(results, over_time).axes[0].lines[7].get_color() == "black", "a mean of many"
 over_time.fish = ["number 2", "number 5"]
 lines = plot.plot_time(results, over_time).axes[0].lines

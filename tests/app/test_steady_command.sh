@@ -42,7 +42,7 @@ demand("the muscle pays for damping and fluid", abs(powers[0] + powers[1] - powe
 demand("cost of transport", np.isclose(data["steady_cost_of_transport"][0], powers[0] / data["body_mass"][0]
                                        / data["steady_speed"][0], rtol=1e-6))
 demand("three multipliers of six slots", np.isfinite(data["steady_multiplier"][:, 0]).sum() == 3)
-demand("the energy balance is that of the rows", abs(data["energy_audit"][-1, 0]) < 1e-3 * powers[0])
+demand("the energy balance is that of the rows", abs(data["energy_balance"][-1, 0]) < 1e-3 * powers[0])
 demand("an ordinary run has none of this", "steady_speed" not in netCDF4.Dataset("run.nc").variables)
 sys.exit("; ".join(problems) or 0)
 end
@@ -140,8 +140,8 @@ time: {end: 1, shedding_interval: 0.02}
 fluid: {density: 1, velocity: [1, 0], viscosity: 0}
 fish:
   - {name: plate, force: pressure, wave: {amplitude: 0, frequency: 0},
-     body: {profile: uniform, thickness: 0.05, width: 1, density: 25, modulus: 8e4},
-     start: {heading: 174, speed: 0}, motion: {driven: head}}
+     body: {profile: uniform, thickness: 0.05, depth: 1, density: 25, modulus: 8e4},
+     start: {heading: 174, speed: 0}, motion: {prescribed: head}}
 end
 run steady plate.yaml
 check an_equilibrium_is_found test "$code" = 0 -a ! -s err
@@ -183,7 +183,7 @@ lift.append(float(netCDF4.Dataset("grow-study/study.nc")["steady_lift"][1, 0]))
 sys.exit(0 if max(lift) / min(lift) - 1 < 1e-8 else str(lift))'
 check plot_draws_what_the_stream_does /usr/bin/python3 "$root/scripts/plot.py" study grow-study/study.nc grow.png
 refused nothing_holds_it 2 'neither beats nor is held' steady plate.yaml -q -o none.nc \
-    --set fish[0].motion.driven=none
+    --set fish[0].motion.prescribed=none
 refused a_load_that_crushes_it 1 'the one that grows from rest ends at 0' steady plate.yaml -q -o crushed.nc \
     --set 'fish[0].load.tip=[-1e4, 0]'
 run info crushed.nc
@@ -197,7 +197,7 @@ time: {end: 1, shedding_interval: 0.05, output_interval: 0.1}
 contact: {action: warn}
 steady: {tolerance: 1e-2}
 fluid: {velocity: [1, 0]}
-defaults: {fish: {nodes: 7, sheet_points: 17, wave: {amplitude: 0}, motion: {driven: all, speed: 0, heave: 0.05, frequency: 1}}}
+defaults: {fish: {nodes: 7, sheet_points: 17, wave: {amplitude: 0}, motion: {prescribed: all, speed: 0, heave: 0.05, frequency: 1}}}
 fish: [{name: upper, start: {position: [0, 0.16]}}, {name: lower, start: {position: [0, -0.16]}, motion: {phase: 180}}]
 end
 run steady touch.yaml -q --strict

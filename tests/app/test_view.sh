@@ -13,7 +13,7 @@ cat >pair.yaml <<'end'
 format: 1
 name: two <fish> & "one" page
 time: {end: 1.5, shedding_interval: 0.02, output_interval: 0.1}
-wake: {lifetime: 0.8, fade: 0.08}
+wake: {lifetime: 0.8, decay: 0.08}
 output: {wake_interval: 0.2}
 defaults: {fish: {nodes: 9, wave: {ramp: 0.5}}}
 fish:

@@ -20,8 +20,9 @@ static double slowest_mode(const char *fish) {
     return frequency;
 }
 
-#define UNIFORM                                                                                                        \
-    "nodes: 81, length: 2, drag: {added_mass: 0}, body: {profile: uniform, thickness: 0.1, width: 0.2, density: 800, " \
+#define UNIFORM                                                                                                 \
+    "nodes: 81, length: 2, added_mass: {coefficient: 0}, body: {profile: uniform, thickness: 0.1, depth: 0.2, " \
+    "density: 800, "                                                                                            \
     "modulus: 2e6, second_moment: ellipse}"
 
 // of an elliptic section of 0.2 m by 0.4 m: the radius of gyration is a quarter of the thickness
@@ -34,7 +35,7 @@ static void slowest_mode_of_a_uniform_body_is_that_of_the_beam(void **state) {
     (void)state;
     // cosh b cos b = 1 and -1 (Timoshenko, Vibration problems in engineering); 81 nodes: errors of 1/N
     NEAR(slowest_mode(UNIFORM), analytic(4.730040745), 0, 0.01);
-    NEAR(slowest_mode(UNIFORM ", motion: {driven: head}"), analytic(1.875104069), 0, 0.03);
+    NEAR(slowest_mode(UNIFORM ", motion: {prescribed: head}"), analytic(1.875104069), 0, 0.03);
 }
 
 static void the_accelerated_fluid_makes_modes_slower(void **state) {
@@ -42,8 +43,8 @@ static void the_accelerated_fluid_makes_modes_slower(void **state) {
     // with added mass pi/4 rho w^2 per length on pi/4 rho_b h w: a factor sqrt(1 + 1000/800*0.4/0.2)
     const double dry = slowest_mode(UNIFORM);
     const double wet = slowest_mode(
-        "nodes: 81, length: 2, drag: {added_mass: 1, extent: width}, body: {profile: uniform, "
-        "thickness: 0.1, width: 0.2, density: 800, modulus: 2e6, second_moment: ellipse}");
+        "nodes: 81, length: 2, added_mass: {coefficient: 1, extent: depth}, body: {profile: uniform, "
+        "thickness: 0.1, depth: 0.2, density: 800, modulus: 2e6, second_moment: ellipse}");
     NEAR(dry / wet, sqrt(1 + 1000.0 / 800 * 2), 0, 0.02);
 }
 

@@ -10,7 +10,7 @@
 #include "school/residual_jacobian.h"
 
 #define TIME "time: {end: 2, shedding_interval: 0.01}\n"
-#define HEAD "motion: {driven: head, heave: 0.1, pitch: 20, pitch_phase: 70, frequency: 1.2}"
+#define HEAD "motion: {prescribed: head, heave: 0.1, pitch: 20, pitch_phase: 70, frequency: 1.2}"
 
 static const double pi = 3.14159265358979323846;
 
@@ -99,10 +99,10 @@ static void energy_audit_of_a_clamped_fish_closes(void **state) {
             school_ok(simulate_step(simulation));
             simulate_measure(simulation);
             const struct diagnostics_fish *fish = &simulation->diagnostics->fish[0];
-            worst = fmax(worst, fabs(fish->energy_audit));
+            worst = fmax(worst, fabs(fish->energy_balance));
             most = fmax(most, fish->kinetic_energy + fish->bending_energy);
         }
-        print_message("audit %.1e J of %.1f J\n", worst, most);
+        print_message("imbalance %.1e J of %.1f J\n", worst, most);
         // a motion that begins at once: thirty tolerances, as in test_diagnostics.c
         assert_true(worst < 30 * 1e-5 * most);
         simulate_free(simulation);
@@ -181,7 +181,7 @@ static double lowest_mode(int nodes) {
              TIME
              "fluid: {density: 0}\nfish: [{nodes: %d, sheet_points: 5, start: {speed: 0}, wave: {amplitude: 0},\n"
              "  body: {section: mean, profile: uniform, thickness: 0.001, modulus: 3.2e+10},\n"
-             "  motion: {driven: head, speed: 0}}]\n",
+             "  motion: {prescribed: head, speed: 0}}]\n",
              nodes);
     struct setup setup;
     school_build(&setup, text);
@@ -223,7 +223,7 @@ static void moment_of_a_tilt_is_that_of_half_a_cell(void **state) {
     school_build(
         &setup, TIME
         "fish: [{body: {section: mean, profile: uniform, thickness: 0.1, modulus: 1.0e+5, bending_damping: 0.5},\n"
-        "        start: {heading: 180}, motion: {driven: head}}]\n");
+        "        start: {heading: 180}, motion: {prescribed: head}}]\n");
     const struct fish *fish = setup.school->fish;
     const double stiffness = 2 * 1e5 * pi * 0.25 * 1e-3 / 64 * 6;
     NEAR(fish->clamp_stiffness, stiffness, 0, 1e-13);

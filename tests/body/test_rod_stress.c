@@ -75,9 +75,9 @@ static void stresses_ahead_of_prescribed_nodes_stay(void **state) {
     const struct {
         const char *motion;
         int first_joint, first_edge;
-    } cases[] = {{"driven: none", 0, 0},
-                 {"driven: head, heave: 0.1, frequency: 1", 0, 1},
-                 {"driven: all, heave: 0.1, frequency: 1", 5, 6}};
+    } cases[] = {{"prescribed: none", 0, 0},
+                 {"prescribed: head, heave: 0.1, frequency: 1", 0, 1},
+                 {"prescribed: all, heave: 0.1, frequency: 1", 5, 6}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char text[256];
         snprintf(text, sizeof text, TIME "fish: [{nodes: 7, motion: {%s}}]\n", cases[i].motion);
@@ -186,7 +186,7 @@ static void without_an_older_stress_the_step_is_linear(void **state) {
 static struct simulation *fish_from_rest(const char *modulus, const char *rtol) {
     char text[256];
     snprintf(text, sizeof text,
-             SCHOOL_SECOND TIME
+             SCHOOL_DEFAULTS TIME
              "solver: {rtol: %s}\nfish: [{nodes: 13, sheet_points: 33, body: {modulus: %s, relaxation_time: 0.02}}]\n",
              rtol, modulus);
     struct simulation *const simulation = school_simulation(text);
@@ -222,7 +222,7 @@ static void powers_and_energies_of_a_stiff_body_have_a_limit(void **state) {
     NEAR(100 * got->damping_power, want->damping_power, 0, 0.05);
     NEAR(100 * got->cost_of_transport_body, want->cost_of_transport_body, 0, 0.05);
     // the energies and works belong together
-    assert_true(fabs(got->energy_audit) < 1e-3 * got->actuation_work);
+    assert_true(fabs(got->energy_balance) < 1e-3 * got->actuation_work);
     simulate_free(fine);
     simulate_free(stiff);
 }

@@ -3,13 +3,14 @@
 #
 #   tests/case/test_bad.sh PROGRAM
 #
-# tests/bad/x.yaml is checked against tests/bad/x.expected, all of standard error; the exit code is 2. Other
-# files are made here. To write the expected messages again (then read the difference!): WRITE=1 tests/case/test_bad.sh PROGRAM
+# tests/case/bad_cases.txt holds the cases with their messages: all of standard error; the exit code is 2. Other files are
+# made here. To write the messages again (then read the difference!): WRITE=1 tests/case/test_bad.sh PROGRAM
 # shellcheck source=tests/checks.sh
 . "$(dirname "$0")/../checks.sh"
 
-bad=$root/tests/bad
-cd "$bad" || exit 2
+table=$root/tests/case/bad_cases.txt
+mkdir "$folder/bad"
+cd "$folder/bad" || exit 2
 
 # Run `check` with the arguments; sets $code, and leaves $folder/out and $folder/err.
 run() {
@@ -42,22 +43,25 @@ expect() {
     fi
 }
 
-# ---- the files of tests/bad
+# ---- the table
 
-for case in *.yaml; do
-    name=${case%.yaml}
-    run "$case"
-    [[ -z ${WRITE-} ]] || cp "$folder/err" "$name.expected"
+# Every case goes into a file, its message into another one, without the empty line before the next case.
+awk '/^==== / { name = $2; file = name ".yaml"; print name >"names"; next }
+     name != "" && /^----$/ { file = name ".expected"; next }
+     file ~ /expected$/ && $0 == "" { next }
+     name != "" { print >file }' "$table"
+[[ -z ${WRITE-} ]] || sed '/^==== /,$d' "$table" >written
+while read -r name; do
+    run "$name.yaml"
+    [[ -z ${WRITE-} ]] || { echo "==== $name"; cat "$name.yaml"; echo ----; cat "$folder/err"; echo; } >>written
     ended_with "$name" 2 || continue
     if diff "$name.expected" "$folder/err" >"$folder/difference"; then
         pass "$name"
     else
         fail "$name" "$(<"$folder/difference")"
     fi
-done
-for expected in *.expected; do
-    [[ -e ${expected%.expected}.yaml ]] || fail "$expected" 'there is no such case'
-done
+done <names
+[[ -z ${WRITE-} ]] || sed '$d' written >"$table"
 
 # ---- files that are made here
 
@@ -174,7 +178,7 @@ set_fails set_bad_yaml "needs ',' between its values and ']' at its end" 'fish[0
 set_fails set_only_a_comment "expects a value after the '='" 'name=# eel'
 set_fails set_unknown_key_in_map "fish[0].wave.amplitud: unknown key; did you mean 'amplitude'?" 'fish[0].wave={amplitud: 1}'
 set_fails set_include '--set include=[a.yaml]: error: include: is allowed in case files only' 'include=[a.yaml]'
-set_fails set_inconsistent '--set wake.fade=4: error: wake.fade: 4 s is longer than wake.lifetime, 3 s' wake.fade=4
+set_fails set_inconsistent '--set wake.decay=4: error: wake.decay: 4 s is longer than wake.lifetime, 3 s' wake.decay=4
 set_fails set_twice_the_last_counts 'time.end: expects a number in s, got '"'b'" time.end=1 time.end=b
 set_fails set_section_to_a_value "--set wake=3: error: wake: expects keys below it, got '3'" wake=3
 expect set_and_bad_file 2 "time.ned: unknown key" crlf.yaml --set nmae=3
@@ -195,5 +199,4 @@ else
     fi
 fi
 
-cd "$bad" || exit 2
 finish

@@ -88,14 +88,14 @@ static void the_defaults_are_those_of_the_reference(void **state) {
     NEAR(s.school.wake.smoothing, 0.1, 0, 0);
     NEAR(s.school.wake.taper, 0.6, 0, 0);
     NEAR(s.school.wake.taper_beside, 0.07, 0, 0);
-    assert_int_equal(s.school.wake.curve, BODY_LINE_SMOOTH);
-    NEAR(s.school.wake.sheet_smoothing, 0.05, 0, 0);
+    assert_int_equal(s.school.sheet.curve, BODY_LINE_SMOOTH);
+    NEAR(s.school.sheet.smoothing, 0.05, 0, 0);
     NEAR(s.school.wake.lifetime.seconds, 3, 0, 0);
     NEAR(s.school.wake.decay.seconds, 2.25, 0, 0);
     assert_int_equal(s.school.wake.shedding, SHEDDING_SHEET);
-    assert_int_equal(s.school.wake.kutta, KUTTA_EDGE);
-    assert_int_equal(s.school.wake.collocation, COLLOCATION_CHEBYSHEV);
-    assert_int_equal(s.school.wake.dissipated_circulation, REMOVED_RETAINED);
+    assert_int_equal(s.school.sheet.kutta, KUTTA_EDGE);
+    assert_int_equal(s.school.sheet.collocation, COLLOCATION_CHEBYSHEV);
+    assert_int_equal(s.school.wake.removed_circulation, REMOVED_RETAINED);
     assert_int_equal(s.solver.method, METHOD_IDA);
     NEAR(s.school.rtol, 1e-5, 0, 0);
     assert_int_equal(s.solver.order, 3);
@@ -119,8 +119,8 @@ static void the_defaults_are_those_of_the_reference(void **state) {
     NEAR(fish->wave.number, -6, 0, 0);
     NEAR(fish->drag.tangential, 4e-3, 0, 0);
     NEAR(fish->drag.normal, 1, 0, 0);
-    NEAR(fish->drag.added_mass, 1, 0, 0);
-    assert_int_equal(fish->drag.extent, EXTENT_DEPTH);
+    NEAR(fish->added_mass.coefficient, 1, 0, 0);
+    assert_int_equal(fish->added_mass.extent, EXTENT_DEPTH);
     assert_int_equal(fish->drag.law, DRAG_QUADRATIC);
     NEAR(fish->start_heading, 180, 0, 0);
     NEAR(fish->start_speed, 0, 0, 0);
@@ -131,19 +131,19 @@ static void the_defaults_are_those_of_the_reference(void **state) {
     case_free(&s);
 }
 
-// of the fish that beats most slowly; of a driven one the beat is that of its motion
+// of the fish that beats most slowly; of a prescribed one the beat is that of its motion
 static void lifetime_and_fade_may_be_in_beats(void **state) {
     (void)state;
     static const struct {
         const char *wake, *fish;
-        double lifetime, fade;
+        double lifetime, decay;
     } cases[] = {
         {"", "{wave: {frequency: 4}}, {wave: {frequency: 0.5}}, {wave: {frequency: 0}}", 6, 4.5},
         {"wake: {lifetime: 5 beats}\n", "{wave: {frequency: 2}}", 2.5, 1.875},
-        {"wake: {lifetime: 0.5 beats, fade: 0 beats}\n", "{}", 0.5, 0},
-        {"wake: {lifetime: 7, fade: 1 beat}\n", "{wave: {frequency: 0.2}}", 7, 5},
-        {"wake: {fade: 2}\n", "{}", 3, 2},
-        {"", "{wave: {frequency: 3}, motion: {driven: all, frequency: 0.5, heave: 0.1}}", 6, 4.5},
+        {"wake: {lifetime: 0.5 beats, decay: 0 beats}\n", "{}", 0.5, 0},
+        {"wake: {lifetime: 7, decay: 1 beat}\n", "{wave: {frequency: 0.2}}", 7, 5},
+        {"wake: {decay: 2}\n", "{}", 3, 2},
+        {"", "{wave: {frequency: 3}, motion: {prescribed: all, frequency: 0.5, heave: 0.1}}", 6, 4.5},
         {"", "{wave: {frequency: 0}}", 2, 1.5},
         {"preset: published\nwake: {lifetime: 4 beats}\n", "{wave: {frequency: 2}}", 2, 0},
     };
@@ -152,7 +152,7 @@ static void lifetime_and_fade_may_be_in_beats(void **state) {
         snprintf(text, sizeof text, "format: 1\ntime: {end: 1}\n%sfish: [%s]\n", cases[i].wake, cases[i].fish);
         struct case_values s = parse(text);
         NEAR(s.school.wake.lifetime.seconds, cases[i].lifetime, 0, 1e-15);
-        NEAR(s.school.wake.decay.seconds, cases[i].fade, 0, 1e-15);
+        NEAR(s.school.wake.decay.seconds, cases[i].decay, 0, 1e-15);
         case_free(&s);
     }
 }
@@ -228,26 +228,26 @@ static void preset_published_sets_the_options_of_the_article(void **state) {
     assert_int_equal(s.school.fish->body.second_moment, SECOND_MOMENT_PUBLISHED);
     assert_int_equal(s.school.fish->body.section, SECTION_NODES);
     NEAR(s.school.fish->wave.ramp, 0, 0, 0);
-    assert_int_equal(s.school.wake.collocation, COLLOCATION_MIDPOINT);
-    assert_int_equal(s.school.wake.kutta, KUTTA_RATE);
-    NEAR(s.school.wake.kutta_ramp, 0.5, 0, 0);
+    assert_int_equal(s.school.sheet.collocation, COLLOCATION_MIDPOINT);
+    assert_int_equal(s.school.sheet.kutta, KUTTA_RATE);
+    NEAR(s.school.sheet.kutta_ramp, 0.5, 0, 0);
     assert_int_equal(s.school.wake.shedding, SHEDDING_IMPULSIVE);
-    NEAR(s.school.wake.sheet_smoothing, 0.01, 0, 0);
+    NEAR(s.school.sheet.smoothing, 0.01, 0, 0);
     NEAR(s.school.wake.lifetime.seconds, 2, 0, 0);
     NEAR(s.school.wake.decay.seconds, 0, 0, 0);
-    assert_int_equal(s.school.wake.dissipated_circulation, REMOVED_DROPPED);
+    assert_int_equal(s.school.wake.removed_circulation, REMOVED_DROPPED);
     assert_int_equal(s.school.fish->drag.law, DRAG_QUADRATIC);
-    assert_int_equal(s.school.fish->drag.extent, EXTENT_THICKNESS);
+    assert_int_equal(s.school.fish->added_mass.extent, EXTENT_THICKNESS);
     case_free(&s);
 }
 
 static void keys_in_the_case_override_the_preset(void **state) {
     (void)state;
     struct case_values s = parse(
-        "format: 1\npreset: published\ntime: {end: 1}\nwake: {kutta: edge}\n"
+        "format: 1\npreset: published\ntime: {end: 1}\nsheet: {kutta: edge}\n"
         "defaults: {fish: {wave: {ramp: 2}}}\nfish: [{body: {second_moment: ellipse}}]\n");
-    assert_int_equal(s.school.wake.kutta, KUTTA_EDGE);
-    assert_int_equal(s.school.wake.collocation, COLLOCATION_MIDPOINT);
+    assert_int_equal(s.school.sheet.kutta, KUTTA_EDGE);
+    assert_int_equal(s.school.sheet.collocation, COLLOCATION_MIDPOINT);
     NEAR(s.school.fish->wave.ramp, 2, 0, 0);
     assert_int_equal(s.school.fish->body.second_moment, SECOND_MOMENT_ELLIPSE);
     case_free(&s);
@@ -261,7 +261,7 @@ static void every_type_of_value_is_read(void **state) {
         "format: 1\nname: no\ntime: {end: 2.0E0}\nfluid: {velocity: [-1, .5], gust: {amplitude: 1, frequency: 2}}\n"
         "fish:\n"
         "  - nodes: 5\n"
-        "    body: {profile: table, h: [0.1, 0.2, 0.2, 0.1], w: [1, 2, 3, 4]}\n"
+        "    body: {profile: table, thickness_table: [0.1, 0.2, 0.2, 0.1], depth_table: [1, 2, 3, 4]}\n"
         "    control: {law: heading, desired_heading: [[0, 180], [5, 135]]}\n"
         "  - {name: 'a: b', control: {law: heading, desired_heading: -90}}\n"
         "  - {control: {waypoints: [[1, 2], [3, 4], [5, 6]]}}\n");
@@ -269,8 +269,8 @@ static void every_type_of_value_is_read(void **state) {
     NEAR(s.time.end, 2, 0, 0);
     NEAR_ARRAY(2, s.school.fluid.velocity, ((const double[]){-1, 0.5}), 0, 0);
     NEAR(s.school.fluid.gust_frequency, 2, 0, 0);
-    assert_int_equal(s.school.fish[0].body.h.n, 4);
-    NEAR_ARRAY(4, s.school.fish[0].body.w.value, ((const double[]){1, 2, 3, 4}), 0, 0);
+    assert_int_equal(s.school.fish[0].body.thickness_table.n, 4);
+    NEAR_ARRAY(4, s.school.fish[0].body.depth_table.value, ((const double[]){1, 2, 3, 4}), 0, 0);
     assert_int_equal(s.school.fish[0].control.desired_heading.n, 2);
     NEAR_ARRAY(4, s.school.fish[0].control.desired_heading.value, ((const double[]){0, 180, 5, 135}), 0, 0);
     assert_int_equal(s.school.fish[2].control.waypoints.n, 3);
@@ -406,10 +406,10 @@ static void a_star_assigns_to_every_fish(void **state) {
 
 static void assignments_reach_defaults_preset_and_sections(void **state) {
     (void)state;
-    struct case_values s = parse_with(minimal, "defaults.fish.nodes=9", "preset=published", "wake={kutta: edge}");
+    struct case_values s = parse_with(minimal, "defaults.fish.nodes=9", "preset=published", "sheet={kutta: edge}");
     assert_int_equal(s.school.fish->nodes, 9);
     assert_int_equal(s.school.wake.shedding, SHEDDING_IMPULSIVE);
-    assert_int_equal(s.school.wake.kutta, KUTTA_EDGE);
+    assert_int_equal(s.school.sheet.kutta, KUTTA_EDGE);
     case_free(&s);
     s = parse_with(minimal, "fish=[{name: a}, {name: 'b = c'}]", "fish[1].length=2", "name=x=y");
     assert_int_equal(s.school.n_fish, 2);
@@ -433,7 +433,8 @@ static void a_case_shown_reads_back_bit_for_bit(void **state) {
         "output: {file: 'a b.nc', precision: single}\nwake: {lifetime: 0.1e1, smoothing: 0.30000000000000004}\n"
         "defaults: {fish: {length: 0.1, start: {position: [-0.0, 1e-320]}}}\n"
         "fish:\n"
-        "  - {nodes: 4, body: {profile: table, h: [0.1, 0.2, 0.3], w: [1e-7, 1e7, 12345.678901234567]}}\n"
+        "  - {nodes: 4, body: {profile: table, thickness_table: [0.1, 0.2, 0.3], depth_table: [1e-7, 1e7, "
+        "12345.678901234567]}}\n"
         "  - {name: '#2', control: {law: averaged_heading, desired_heading: [[0, 1], [0.1, 2]], filter: 3}}\n"
         "  - {control: {waypoints: [[1, 2]], damping: 0.3}}\n",
         // without the preset, whose feedforward is 1; one fish for each law, some with their own frequency
@@ -496,12 +497,12 @@ static void every_failing_allocation_is_reported_and_leaves_nothing(void **state
     write_file("water.yaml", "fluid: {density: 1025}\n");
     write_file("case.yaml",
                "include: [water.yaml]\nformat: 1\ntime: {end: 1}\ndefaults: {fish: {name: a}}\n"
-               "fish:\n  - {nodes: 4, body: {profile: table, h: [1, 2, 3], w: [1, 2, 3]}}\n"
+               "fish:\n  - {nodes: 4, body: {profile: table, thickness_table: [1, 2, 3], depth_table: [1, 2, 3]}}\n"
                "  - {name: b, control: {law: heading, desired_heading: 3}}\n"
                "sweep: [{keys: ['fish[*].nodes', solver.order], values: [[4, 1], [4, 2]]},\n"
                "  {key: solver.rtol, values: [0.1, 1e-3, 1e-4], refine: true, reference: {speed: 1}}]\n"
                "expect: [{of: speed, where: [solver.order=1], least: 0}, {fails: a}]\n");
-    static const char *const assignments[] = {"fish[*].length=2", "wake.fade=0.1"};
+    static const char *const assignments[] = {"fish[*].length=2", "wake.decay=0.1"};
     const int n_before = n_live;
     int n_failures = 0;
     for (;; n_failures++) {
@@ -529,7 +530,7 @@ static void every_failing_allocation_is_reported_and_leaves_nothing(void **state
 
 static void without_memory_errors_are_still_memory_errors(void **state) {
     (void)state;
-    static const char text[] = "format: 2\ntiem: {end: 3}\nwake: {kutta: no, fade: x}\nfish: [{nodes: 1}]\n";
+    static const char text[] = "format: 2\ntiem: {end: 3}\nwake: {kutta: no, decay: x}\nfish: [{nodes: 1}]\n";
     const int n_before = n_live;
     for (int i = 0;; i++) {
         struct case_values s;

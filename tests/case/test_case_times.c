@@ -27,8 +27,8 @@ static void the_fastest_beat_has_a_hundred_events(void **state) {
     interval_is("time: {end: 1}\nfish: [{wave: {frequency: 2}}, {wave: {frequency: 5}, start: {position: [0, 2]}}]\n",
                 0.002);
     // the frequency of a prescribed motion, where there is one
-    interval_is("time: {end: 1}\nfish: [{motion: {driven: head, heave: 0.1, frequency: 0.5}}]\n", 0.02);
-    interval_is("time: {end: 1}\nfish: [{motion: {driven: all}, wave: {frequency: 2}}]\n", 0.005);
+    interval_is("time: {end: 1}\nfish: [{motion: {prescribed: head, heave: 0.1, frequency: 0.5}}]\n", 0.02);
+    interval_is("time: {end: 1}\nfish: [{motion: {prescribed: all}, wave: {frequency: 2}}]\n", 0.005);
     interval_is("time: {end: 1}\nfish: [{wave: {frequency: 0}}]\n", 0.01);
     // given, or of the article
     interval_is("time: {end: 1, shedding_interval: 0.05}\nfish: [{wave: {frequency: 4}}]\n", 0.05);

@@ -26,7 +26,8 @@ static void an_angle_in_radians_is_noted(void **state) {
               "in radians, write 180");
     notes_are("fish[0].start.heading=-1.571", "write -90");
     notes_are("fish[0].wave.phase=0.7854", "write 45");
-    notes_are("fish[0].motion={driven: head, pitch: 0.5236, frequency: 1}", "fish[0].motion.pitch: 0.5236 is taken");
+    notes_are("fish[0].motion={prescribed: head, pitch: 0.5236, frequency: 1}",
+              "fish[0].motion.pitch: 0.5236 is taken");
     notes_are("fish[0].motion.pitch_phase=1.5708", "write 90");
     notes_are("fish[0].motion.phase=6.2832", "write 360");
     notes_are("fish[0].control={law: course, desired_heading: [[0, 180], [1, 2.3562]]}", "write 135");
@@ -46,7 +47,7 @@ static void few_nodes_under_pressure_are_noted(void **state) {
     notes_are("fish[0]={nodes: 17, force: pressure}", "");
     notes_are("fish[0]={nodes: 9, force: reactive}", "");
     // a rigid plate has no shape to resolve
-    notes_are("fish[0]={nodes: 9, force: pressure, motion: {driven: all}}", "");
+    notes_are("fish[0]={nodes: 9, force: pressure, motion: {prescribed: all}}", "");
 }
 
 static void a_wave_that_travels_forwards_is_noted(void **state) {

@@ -50,7 +50,7 @@ static void members_are_numbered_with_the_last_axis_fastest(void **state) {
 
 static void the_merged_text_is_the_complete_study(void **state) {
     (void)state;
-    struct case_values study = parse_with(zipped, "fish[0].length=2", "wake.fade=0.1", NULL);
+    struct case_values study = parse_with(zipped, "fish[0].length=2", "wake.decay=0.1", NULL);
     struct case_values again;
     assert_int_equal(case_parse(&again, study.merged, strlen(study.merged), "other.yaml", NULL, 0, NULL), STATUS_OK);
     are_equal(&study, &again);

@@ -212,7 +212,7 @@ static double momentum(const struct simulation *simulation, int n_fish, double s
 static void meet(const char *name, const char *text, double end, double audit_limit) {
     struct simulation *const simulation = school_simulation(text);
     const int n_fish = simulation->school->n_fish;
-    double before[2], after[2], first[2], energy = 0, audit = 0;
+    double before[2], after[2], first[2], energy = 0, imbalance = 0;
     const double scale = momentum(simulation, n_fish, before);
     momentum(simulation, 1, first);
     long most = 0, steps = 0;
@@ -222,7 +222,7 @@ static void meet(const char *name, const char *text, double end, double audit_li
     while (simulation->state->t < end) {
         simulate_measure(simulation);
         for (int f = 0; f < n_fish; f++) {
-            audit = fmax(audit, fabs(simulation->diagnostics->fish[f].energy_audit));
+            imbalance = fmax(imbalance, fabs(simulation->diagnostics->fish[f].energy_balance));
         }
         school_ok(simulate_step(simulation));
         most = simulation->totals.steps - steps > most ? simulation->totals.steps - steps : most;
@@ -231,13 +231,13 @@ static void meet(const char *name, const char *text, double end, double audit_li
         // walls along x take what is across them
         NEAR_ARRAY(simulation->school->walls.n > 0 ? 1 : 2, after, before, 1e-10 * scale, 0);
     }
-    print_message("%s: least %.2e m, audit %.1e of %.0f J, at most %ld steps per event\n", name,
-                  simulation->state->closest->distance, audit, energy, most);
+    print_message("%s: least %.2e m, imbalance %.1e of %.0f J, at most %ld steps per event\n", name,
+                  simulation->state->closest->distance, imbalance, energy, most);
     // without a contact the momentum of the first one would be what it was
     momentum(simulation, 1, after);
     assert_true(hypot(after[0] - first[0], after[1] - first[1]) > 1e-3 * scale);
     assert_true(simulation->state->closest->distance > 0);
-    assert_true(audit < audit_limit * energy);
+    assert_true(imbalance < audit_limit * energy);
     simulate_free(simulation);
 }
 
@@ -264,7 +264,7 @@ static void bodies_that_meet_do_not_cross(void **state) {
          0.1, 5e-3);
     meet("in line, free along it",
          "solver: {rtol: 1.0e-7}\n" VACUUM "defaults: {fish: {" PASSIVE
-         ", motion: {driven: all, surge: free}, start: {speed: 3}}}\n"
+         ", motion: {prescribed: all, surge: free}, start: {speed: 3}}}\n"
          "fish: [{start: {position: [-0.2, 0], heading: 0}}, {start: {position: [0.2, 0], heading: 180}}]\n",
          0.3, 5e-3);
 }
@@ -273,26 +273,26 @@ static void bodies_that_meet_do_not_cross(void **state) {
 static void plates_that_swim_in_line_do_not_cross(void **state) {
     (void)state;
     struct simulation *const simulation = school_simulation(
-        SCHOOL_SECOND TIME
+        SCHOOL_DEFAULTS TIME
         "defaults: {fish: {nodes: 5, sheet_points: 17, force: pressure, wave: {amplitude: 0, frequency: 0}, "
-        "body: {profile: uniform, thickness: 0.05, width: 1, density: 2000}, "
-        "motion: {driven: all, surge: free, heave: 0.05, frequency: 1}}}\n"
+        "body: {profile: uniform, thickness: 0.05, depth: 1, density: 2000}, "
+        "motion: {prescribed: all, surge: free, heave: 0.05, frequency: 1}}}\n"
         "fish: [{start: {speed: 1}}, {start: {position: [1.3, 0], speed: 2}}]\n");
-    double stored = 0, audit = 0;
+    double stored = 0, imbalance = 0;
     const double energy = diagnostics_energy(simulation->residual, 1, 0, simulation->state->y);
     while (simulation->state->t < 1) {
         school_ok(simulate_step(simulation));
         simulate_measure(simulation);
         const struct diagnostics_fish *const of = simulation->diagnostics->fish;
         stored = fmax(stored, of[0].contact_energy);
-        for (int f = 0; f < 2; f++) audit = fmax(audit, fabs(of[f].energy_audit));
+        for (int f = 0; f < 2; f++) imbalance = fmax(imbalance, fabs(of[f].energy_balance));
         for (int i = 0; i < 2; i++) NEAR(of[0].contact_force[i], -of[1].contact_force[i], 1e-9, 1e-9);
     }
-    print_message("plates in line: gap %.2g m, audit %.1g of %.3g J\n", simulation->state->closest->distance, audit,
-                  energy);
+    print_message("plates in line: gap %.2g m, imbalance %.1g of %.3g J\n", simulation->state->closest->distance,
+                  imbalance, energy);
     assert_true(simulation->state->closest->distance > 0);
     assert_true(stored > 0.005 * energy);
-    assert_true(audit < 5e-3 * energy);
+    assert_true(imbalance < 5e-3 * energy);
     assert_true(simulation->diagnostics->fish[0].com[0] < simulation->diagnostics->fish[1].com[0]);
     simulate_free(simulation);
 }
@@ -317,17 +317,17 @@ static void walls_throw_bodies_back(void **state) {
 }
 
 // Two bodies with the pressure of their sheets, the one the other turned by half a turn: what they and the fluid have
-// of momentum stays nothing, and the audit has every power.
+// of momentum stays nothing, and the energy balance has every power.
 static void bodies_under_pressure_throw_each_other_back(void **state) {
     (void)state;
     struct simulation *const simulation = school_simulation(
-        SCHOOL_SECOND TIME
+        SCHOOL_DEFAULTS TIME
         "solver: {rtol: 1.0e-6}\n"
         "defaults: {fish: {nodes: 9, sheet_points: 17, force: pressure, pressure: {suction_limit: 0},\n"
         "                  drag: {skin: laminar}, wave: {amplitude: 0}, body: {relaxation_time: 0.02},\n"
         "                  start: {speed: 1}}}\n"
         "fish: [{start: {position: [-0.1, 0.01], heading: 0}}, {start: {position: [0.1, -0.01], heading: 180}}]\n");
-    double sum[2], stored = 0, audit = 0;
+    double sum[2], stored = 0, imbalance = 0;
     const double scale = momentum(simulation, 2, sum);
     const double energy = 2 * diagnostics_energy(simulation->residual, 0, 0, simulation->state->y);
     while (simulation->state->t < 0.2) {
@@ -335,16 +335,16 @@ static void bodies_under_pressure_throw_each_other_back(void **state) {
         simulate_measure(simulation);
         const struct diagnostics_fish *const of = simulation->diagnostics->fish;
         stored = fmax(stored, of[0].contact_energy);
-        for (int f = 0; f < 2; f++) audit = fmax(audit, fabs(of[f].energy_audit));
+        for (int f = 0; f < 2; f++) imbalance = fmax(imbalance, fabs(of[f].energy_balance));
         momentum(simulation, 2, sum);
         NEAR_ARRAY(2, sum, ((double[]){0, 0}), 1e-6 * scale, 0);
         for (int i = 0; i < 2; i++) NEAR(of[0].contact_force[i], -of[1].contact_force[i], 1e-9, 1e-12);
     }
-    print_message("under pressure: gap %.2g m, audit %.1g of %.3g J\n", simulation->state->closest->distance, audit,
-                  energy);
+    print_message("under pressure: gap %.2g m, imbalance %.1g of %.3g J\n", simulation->state->closest->distance,
+                  imbalance, energy);
     assert_true(simulation->state->closest->distance > 0);
     assert_true(stored > 0.005 * energy);
-    assert_true(audit < 1e-3 * energy);
+    assert_true(imbalance < 1e-3 * energy);
     // they have turned back, aside or into a spin
     assert_true(simulation->diagnostics->fish[0].com_velocity[0] < 0.5);
     simulate_free(simulation);
@@ -353,7 +353,7 @@ static void bodies_under_pressure_throw_each_other_back(void **state) {
 // A body that is thrown back goes with its tail first, which overtakes the marker that it has just laid.
 static void bodies_that_are_thrown_back_go_on_tail_first(void **state) {
     (void)state;
-#define PRESSED(fish) SCHOOL_SECOND TIME "defaults: {fish: {force: pressure, sheet_points: 33, " fish "}}\n"
+#define PRESSED(fish) SCHOOL_DEFAULTS TIME "defaults: {fish: {force: pressure, sheet_points: 33, " fish "}}\n"
     static const char *const cases[] = {
         // at a wall, at a right angle: the tail turns back within an interval
         PRESSED("nodes: 9, body: {modulus: 5.394e+6}") "fluid: {walls: [-0.4974]}\n"

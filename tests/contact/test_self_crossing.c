@@ -10,7 +10,7 @@
 // A body of 41 nodes, 1 m long, of uniform thickness.
 static void build(struct setup *setup, double thickness) {
     char text[256];
-    snprintf(text, sizeof text, SCHOOL_SECOND TIME "fish: [{nodes: 41, body: {profile: uniform, thickness: %g}}]\n",
+    snprintf(text, sizeof text, SCHOOL_DEFAULTS TIME "fish: [{nodes: 41, body: {profile: uniform, thickness: %g}}]\n",
              thickness);
     school_build(setup, text);
 }
@@ -100,7 +100,7 @@ static void a_run_remembers_the_first_fish_and_when(void **state) {
     (void)state;
     // the second body is limp, and nothing but its muscle bends it: it curls up
     struct simulation *const simulation = school_simulation(
-        SCHOOL_SECOND TIME
+        SCHOOL_DEFAULTS TIME
         "fluid: {density: 0}\nfish: [{}, {start: {position: [0, 3]}, wave: {amplitude: 0.4, constant: 3, linear: 0,"
         " quadratic: 0, number: 0, ramp: 1}, body: {modulus: 1e5}}]\n");
     const struct state *const now = simulation->state;

@@ -59,7 +59,8 @@ static void without_a_law_the_bias_is_the_given_one(void **state) {
 static void waypoints_are_visited_in_order_and_the_last_course_is_held(void **state) {
     (void)state;
     struct setup setup;
-    school_build(&setup, TIME "fish: [{control: {law: heading, waypoints: [[-2, 0], [-2, 3]], arrival: 0.4}}]\n");
+    school_build(&setup,
+                 TIME "fish: [{control: {law: heading, waypoints: [[-2, 0], [-2, 3]], acceptance_radius: 0.4}}]\n");
     const struct fish *fish = setup.school->fish;
     struct control_memory *memory = &setup.state->control[0];
     double *const y = setup.state->y;

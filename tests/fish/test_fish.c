@@ -49,7 +49,7 @@ static void added_mass_takes_the_mean_square_of_the_thickness(void **state) {
     struct setup setup;
     school_build(&setup, TIME
                  "fish: [{body: {section: mean}}, {start: {position: [0, 2]}, body: {section: mean}, "
-                 "drag: {extent: width}}]\n");
+                 "added_mass: {extent: depth}}]\n");
     const struct fish *thick = &setup.school->fish[0], *wide = &setup.school->fish[1];
     for (int k = 0; k < thick->n_edges; k++) {
         const double h = thick->thickness[k], l = 1.0 / 6;
@@ -104,7 +104,9 @@ static void damping_and_wave_scale_with_refinement(void **state) {
 static void table_of_heights_is_taken_as_it_is(void **state) {
     (void)state;
     struct setup setup;
-    school_build(&setup, TIME "fish: [{nodes: 4, body: {profile: table, h: [0.1, 0.2, 0.3], w: [0.3, 0.2, 0.1]}}]\n");
+    school_build(
+        &setup, TIME
+        "fish: [{nodes: 4, body: {profile: table, thickness_table: [0.1, 0.2, 0.3], depth_table: [0.3, 0.2, 0.1]}}]\n");
     const struct fish *fish = &setup.school->fish[0];
     const double h[] = {0.1, 0.2, 0.3}, w[] = {0.3, 0.2, 0.1};
     NEAR_ARRAY(3, fish->thickness, h, 0, 0);
@@ -119,7 +121,8 @@ static void drag_coefficients_follow_the_extent(void **state) {
     (void)state;
     struct setup setup;
     for (int wide = 0; wide < 2; wide++) {
-        school_build(&setup, wide ? TIME "fish: [{body: {profile: uniform, thickness: 0.1}, drag: {extent: width}}]\n"
+        school_build(&setup, wide ? TIME
+                                 "fish: [{body: {profile: uniform, thickness: 0.1}, added_mass: {extent: depth}}]\n"
                                   : TIME "fish: [{body: {profile: uniform, thickness: 0.1}}]\n");
         const struct fish *fish = &setup.school->fish[0];
         const double l = 1.0 / 6, h = 0.1, w = 0.25, across = wide ? w : h;
@@ -159,7 +162,7 @@ static void control_points_are_chebyshev_points_or_midpoints_of_chords(void **st
              1e-15, 0);
     }
     school_clear(&setup);
-    school_build(&setup, TIME "wake: {collocation: midpoint}\nfish: [{sheet_points: 11}]\n");
+    school_build(&setup, TIME "sheet: {collocation: midpoint}\nfish: [{sheet_points: 11}]\n");
     const struct fish *fish = &setup.school->fish[0];
     for (int c = 0; c < 10; c++) {
         NEAR(arc_of(fish, &fish->control_point[c]),
@@ -178,7 +181,7 @@ static void smooth_curve_has_the_same_places_and_the_weights_of_the_quadrature(v
         char text[2][200];
         for (int i = 0; i < 2; i++) {
             snprintf(text[i], sizeof text[i],
-                     TIME "wake: {curve: %s, collocation: %s}\nfish: [{sheet_points: 11, length: 1.2}]\n",
+                     TIME "sheet: {curve: %s, collocation: %s}\nfish: [{sheet_points: 11, length: 1.2}]\n",
                      i == 0 ? "smooth" : "polygon", midpoint ? "midpoint" : "chebyshev");
         }
         school_build(&smooth, text[0]);

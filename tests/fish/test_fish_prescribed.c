@@ -10,7 +10,7 @@ static void prescribed_velocity_and_acceleration_are_derivatives(void **state) {
     (void)state;
     struct setup setup;
     school_build(&setup, TIME
-                 "fish: [{start: {heading: 20}, motion: {driven: all, speed: 0.6, heave: 0.2, pitch: 25, "
+                 "fish: [{start: {heading: 20}, motion: {prescribed: all, speed: 0.6, heave: 0.2, pitch: 25, "
                  "pitch_phase: 70, frequency: 1.3, phase: 15, pivot: 0.3}}]\n");
     const struct fish *fish = &setup.school->fish[0];
     const double h = 1e-4;
@@ -29,9 +29,10 @@ static void prescribed_velocity_and_acceleration_are_derivatives(void **state) {
 static void prescribed_body_is_straight_and_turns_about_its_pivot(void **state) {
     (void)state;
     struct setup setup;
-    school_build(&setup, TIME
-                 "fish: [{nodes: 5, start: {heading: 180, speed: 2, position: [1, 1]}, motion: {driven: all, heave: "
-                 "0.2, pitch: 25, frequency: 1, pivot: 0.25}}]\n");
+    school_build(
+        &setup, TIME
+        "fish: [{nodes: 5, start: {heading: 180, speed: 2, position: [1, 1]}, motion: {prescribed: all, heave: "
+        "0.2, pitch: 25, frequency: 1, pivot: 0.25}}]\n");
     const struct fish *fish = &setup.school->fish[0];
     // a quarter period on: heave and pitch are largest; left of the heading 180 degrees is downwards
     double p[2], v[2], a[2], q[2];
@@ -51,7 +52,7 @@ static void pitch_is_its_phase_before_heave(void **state) {
     (void)state;
     struct setup setup;
     school_build(&setup, TIME
-                 "fish: [{start: {heading: 0}, motion: {driven: all, heave: 0.2, pitch: 25, pitch_phase: 90, "
+                 "fish: [{start: {heading: 0}, motion: {prescribed: all, heave: 0.2, pitch: 25, pitch_phase: 90, "
                  "frequency: 1}}]\n");
     const struct fish *fish = setup.school->fish;
     // pitch is largest, to the left, while heave begins: a quarter period later heave is largest and pitch is over

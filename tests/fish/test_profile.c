@@ -125,8 +125,8 @@ static void uniform_and_table_have_one_section_along_an_edge(void **state) {
         NEAR(profile_tail_thickness(&fish), 0.13, 1e-15, 0);
         double h[] = {0.1, 0.2, 0.3}, w[] = {0.3, 0.2, 0.1};
         fish.body.profile = PROFILE_TABLE;
-        fish.body.h = (struct number_list){.n = 3, .value = h};
-        fish.body.w = (struct number_list){.n = 3, .value = w};
+        fish.body.thickness_table = (struct number_list){.n = 3, .value = h};
+        fish.body.depth_table = (struct number_list){.n = 3, .value = w};
         edge = profile_edge(&fish, 1);
         NEAR(edge.h, 0.2, 0, 0);
         NEAR(edge.w, 0.2, 0, 0);

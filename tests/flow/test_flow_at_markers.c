@@ -13,7 +13,7 @@
 #include "vortex/kernel.h"
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
-#define SHEET "wake: {shedding: sheet, curve: smooth, smoothing: 0.1, taper: 0.4, taper_beside: 0.1}\n"
+#define SHEET "wake: {shedding: sheet, smoothing: 0.1, taper: 0.4, taper_beside: 0.1}\nsheet: {curve: smooth}\n"
 
 /* Two lengths, not one after the other; bodies that act from their control points, and near each other. */
 #define SCHOOL                                                          \

@@ -51,18 +51,18 @@ static void derivatives_agree_with_differences(void **state) {
     (void)state;
     const char *const texts[] = {
         TIME "fish: [{sheet_points: 9}]\n",
-        TIME "wake: {collocation: midpoint}\nfish: [{sheet_points: 21}]\n",
+        TIME "sheet: {collocation: midpoint}\nfish: [{sheet_points: 21}]\n",
         TIME "fluid: {velocity: [0.3, -0.2], shear: 0.7}\nfish: [{sheet_points: 5, nodes: 9}]\n",
-        TIME "wake: {curve: smooth}\nfish: [{sheet_points: 9}]\n",
+        TIME "sheet: {curve: smooth}\nfish: [{sheet_points: 9}]\n",
         TIME "wake: {shedding: sheet}\nfish: [{sheet_points: 9}]\n",
-        TIME "wake: {curve: smooth, collocation: midpoint}\nfish: [{sheet_points: 15, nodes: 4}]\n",
+        TIME "sheet: {curve: smooth, collocation: midpoint}\nfish: [{sheet_points: 15, nodes: 4}]\n",
         TIME FAR
-        "wake: {curve: smooth}\n"
+        "sheet: {curve: smooth}\n"
         "fish:\n"
         "  - {sheet_points: 9}\n"
         "  - {nodes: 5, sheet_points: 13, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n",
         TIME FAR
-        "wake: {collocation: midpoint}\n"
+        "sheet: {collocation: midpoint}\n"
         "fish:\n"
         "  - {sheet_points: 9}\n"
         "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"
@@ -87,8 +87,8 @@ static void solve_plate(const char *collocation, const char *kutta, int m, const
     snprintf(text, sizeof text,
              TIME
              "fluid: {velocity: [0.8, 0.6]%s}\n"
-             "wake: {collocation: %s, kutta: %s, smoothing: 1.0e+9}\n"
-             "fish: [{sheet_points: %d, start: {speed: 0}, motion: {driven: all}}]\n",
+             "wake: {smoothing: 1.0e+9}\nsheet: {collocation: %s, kutta: %s}\n"
+             "fish: [{sheet_points: %d, start: {speed: 0}, motion: {prescribed: all}}]\n",
              more, collocation, kutta, m);
     struct setup setup;
     school_build(&setup, text);
@@ -158,7 +158,8 @@ static void plate_with_midpoints_converges(void **state) {
 static double circulation_beside_a_vortex(int m) {
     char text[512];
     snprintf(text, sizeof text,
-             TIME "wake: {smoothing: 0.2}\nfish: [{sheet_points: %d, start: {speed: 0}, motion: {driven: all}}]\n", m);
+             TIME "wake: {smoothing: 0.2}\nfish: [{sheet_points: %d, start: {speed: 0}, motion: {prescribed: all}}]\n",
+             m);
     struct setup setup;
     school_build(&setup, text);
     school_ok(wake_release(&setup.state->wake[0], 0.4, 0.3, 1, 0));
@@ -192,7 +193,7 @@ static double circulation_of_a_bent_body(line *place, const char *curve, int n_n
     snprintf(text, sizeof text,
              TIME
              "fluid: {velocity: [%.17g, %.17g]}\n"
-             "wake: {curve: %s, smoothing: 1.0e+9}\n"
+             "wake: {smoothing: 1.0e+9}\nsheet: {curve: %s}\n"
              "fish: [{nodes: %d, sheet_points: %d, wave: {amplitude: 0}, start: {speed: 0}}]\n",
              cos(pi / 18), sin(pi / 18), curve, n_nodes, m);
     struct setup setup;
@@ -268,7 +269,7 @@ static void smooth_curve_and_polygon_of_a_bent_fish_have_one_limit(void **state)
 static void strength_is_circulation_per_length_of_the_body_as_it_is(void **state) {
     (void)state;
     struct setup setup;
-    school_build(&setup, TIME "wake: {curve: smooth}\nfish: [{sheet_points: 9, length: 1.2, start: {heading: 30}}]\n");
+    school_build(&setup, TIME "sheet: {curve: smooth}\nfish: [{sheet_points: 9, length: 1.2, start: {heading: 30}}]\n");
     const struct fish *fish = setup.school->fish;
     double *const y = setup.state->y;
     // stretched by a tenth
@@ -294,7 +295,8 @@ static void end_correction_makes_a_sheet_that_ends_with_a_step_exact(void **stat
         char text[200];
         snprintf(text, sizeof text,
                  TIME
-                 "wake: {curve: smooth, shedding: sheet}\nfish: [{sheet_points: %d, length: 1.2, start: {speed: 0}}]\n",
+                 "wake: {shedding: sheet}\nsheet: {curve: smooth}\nfish: [{sheet_points: %d, length: 1.2, start: "
+                 "{speed: 0}}]\n",
                  m);
         struct setup setup;
         school_build(&setup, text);

@@ -55,7 +55,7 @@ static void slope_of_the_force_agrees_with_differences(void **state) {
 #define PLATE(nodes, more)                                           \
     TIME "fluid: {viscosity: 1.0e-6, density: 3}\n"                  \
          "fish: [{length: 2, nodes: " nodes                          \
-         ", body: {profile: uniform, thickness: 0.1, width: 0.4},\n" \
+         ", body: {profile: uniform, thickness: 0.1, depth: 0.4},\n" \
          "        wave: {frequency: 0}, start: {speed: 0.5}, drag: {skin: boundary_layer, normal: 0" more "}}]\n"
 #define BARE ", form: 1, waving: 1"
 
@@ -135,13 +135,13 @@ static void a_body_with_a_wave_has_the_factor_of_waving(void **state) {
                  {"wave: {amplitude: 0, table: [[1, -1], [2, -2]]}", 1.5},
                  {"wave: {amplitude: 0}", 1},
                  {"wave: {frequency: 0}", 1},
-                 {"motion: {driven: all, heave: 0.1, frequency: 1}", 1},
-                 {"motion: {driven: head, heave: 0.1, frequency: 1}", 1.5},
-                 {"wave: {amplitude: 0}, motion: {driven: head, heave: 0.1, frequency: 1}", 1},
+                 {"motion: {prescribed: all, heave: 0.1, frequency: 1}", 1},
+                 {"motion: {prescribed: head, heave: 0.1, frequency: 1}", 1.5},
+                 {"wave: {amplitude: 0}, motion: {prescribed: head, heave: 0.1, frequency: 1}", 1},
                  {"drag: {waving: 1.2}", 1.2}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char text[512];
-        snprintf(text, sizeof text, SCHOOL_SECOND TIME "defaults: {fish: {force: pressure}}\nfish: [{%s}]\n",
+        snprintf(text, sizeof text, SCHOOL_DEFAULTS TIME "defaults: {fish: {force: pressure}}\nfish: [{%s}]\n",
                  cases[i].fish);
         struct setup setup;
         school_build(&setup, text);
@@ -189,7 +189,7 @@ static void laminar_friction_of_a_plate_is_that_of_its_boundary_layer(void **sta
     struct setup setup;
     school_build(&setup, TIME
                  "fluid: {viscosity: 0.002, density: 3}\n"
-                 "fish: [{length: 2, body: {width: 0.4}, wave: {frequency: 0}, start: {speed: 0.5},\n"
+                 "fish: [{length: 2, body: {depth: 0.4}, wave: {frequency: 0}, start: {speed: 0.5},\n"
                  "        drag: {skin: laminar, normal: 0}}]\n");
     const struct fish *fish = setup.school->fish;
     const struct edge edge = {.t = {1, 0}, .n = {0, 1}};

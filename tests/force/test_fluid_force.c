@@ -47,23 +47,24 @@ static void jacobian_agrees_with_differences(void **state) {
     const char *const texts[] = {
         TIME "fish: [{sheet_points: 9}]\n",
         TIME "fish: [{sheet_points: 9, drag: {law: linear_quadratic, tangential: 0.3}}]\n",
-        TIME "fish: [{sheet_points: 9, drag: {extent: width, tangential: 0.3}}]\n",
+        TIME "fish: [{sheet_points: 9, drag: {tangential: 0.3}, added_mass: {extent: depth}}]\n",
         TIME
         "fluid: {velocity: [0.3, -0.2], shear: 0.7, gust: {amplitude: 0.4, frequency: 1.3}}\n"
-        "fish: [{sheet_points: 9, drag: {law: linear_quadratic, extent: width}}]\n",
+        "fish: [{sheet_points: 9, drag: {law: linear_quadratic}, added_mass: {extent: depth}}]\n",
         TIME "fish: [{sheet_points: 9, force: reactive}]\n",
-        TIME "fish: [{sheet_points: 9, force: reactive, drag: {extent: width, normal: 0, tangential: 0}}]\n",
+        TIME
+        "fish: [{sheet_points: 9, force: reactive, drag: {normal: 0, tangential: 0}, added_mass: {extent: depth}}]\n",
         // swimming backwards: nothing leaves along a tail that leads
-        TIME "fish: [{sheet_points: 9, force: reactive, start: {speed: -2}, drag: {extent: width}}]\n",
+        TIME "fish: [{sheet_points: 9, force: reactive, start: {speed: -2}, added_mass: {extent: depth}}]\n",
         TIME
         "fluid: {velocity: [0.3, -0.2], shear: 0.7, gust: {amplitude: 0.4, frequency: 1.3}}\n"
         "fish: [{sheet_points: 9, force: reactive, body: {section: mean}, \n"
-        "        drag: {law: linear_quadratic, linear_speed: 0.7, extent: width}}]\n",
+        "        drag: {law: linear_quadratic, linear_speed: 0.7}, added_mass: {extent: depth}}]\n",
         TIME FAR
         "fish:\n"
         "  - {sheet_points: 9}\n"
         "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170},\n"
-        "     force: reactive, drag: {law: linear_quadratic, extent: width}}\n"
+        "     force: reactive, drag: {law: linear_quadratic}, added_mass: {extent: depth}}\n"
         "  - {nodes: 9, sheet_points: 11, length: 1.2, start: {position: [0.1, -0.6], heading: 200}}\n"};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         struct setup setup;
@@ -115,11 +116,11 @@ static void forces_on_a_plate_are_the_formulas(void **state) {
     force_on_plate("drag: {tangential: 0.02}", 0, 0, 5, force);
     NEAR(force[1], -5 * mu, 0, 1e-13);
     // the whole wetted surface; a linear speed of 0.4 lengths per beat, 1.5 beats per second
-    force_on_plate("force: reactive, drag: {tangential: 0.02, added_mass: 0}", -2, 0, 0, force);
+    force_on_plate("force: reactive, drag: {tangential: 0.02}, added_mass: {coefficient: 0}", -2, 0, 0, force);
     NEAR(force[0], 8 * ct, 0, 1e-13);
     force_on_plate(
-        "force: reactive, wave: {frequency: 1.5}, drag: {tangential: 0.02, added_mass: 0, "
-        "law: linear_quadratic, linear_speed: 0.4}",
+        "force: reactive, wave: {frequency: 1.5}, drag: {tangential: 0.02, "
+        "law: linear_quadratic, linear_speed: 0.4}, added_mass: {coefficient: 0}",
         -2, 3, 0, force);
     NEAR(force[0], 2 * 2 * 2.6 * ct, 0, 1e-13);
     NEAR(force[1], -3 * 3.6 * cn, 0, 1e-13);
@@ -135,7 +136,7 @@ static void powers_are_those_of_the_forces(void **state) {
         snprintf(text, sizeof text,
                  TIME
                  "fluid: {shear: 0.5, velocity: [0, 0.3]}\n"
-                 "fish: [{sheet_points: 9, force: %s, drag: {tangential: 0.3, extent: width}}]\n",
+                 "fish: [{sheet_points: 9, force: %s, drag: {tangential: 0.3}, added_mass: {extent: depth}}]\n",
                  forces[i]);
         struct setup setup;
         school_build(&setup, text);
@@ -180,7 +181,7 @@ static void the_reactive_force_does_not_feel_the_own_wake(void **state) {
     for (int i = 0; i < 5; i++) {
         char text[256];
         snprintf(text, sizeof text,
-                 SCHOOL_SECOND
+                 SCHOOL_DEFAULTS
                  "time: {end: 1, shedding_interval: 0.02}\nwake: {smoothing: %g}\n"
                  "fish: [{nodes: 9, sheet_points: 17, force: %s}]\n",
                  cases[i].smoothing, cases[i].force);

@@ -19,11 +19,11 @@ enum { MAX_NODES = 33 };
 static void build_plate(struct setup *setup, int nodes, int points, const char *more) {
     char text[1024];
     snprintf(text, sizeof text,
-             SCHOOL_SECOND
+             SCHOOL_DEFAULTS
              "time: {end: 1, shedding_interval: 0.002}\n"
              "fluid: {density: 1, viscosity: 0}\n"
              "fish: [{nodes: %d, sheet_points: %d, force: pressure, wave: {amplitude: 0, frequency: 0},\n"
-             "        body: {profile: uniform, thickness: 0.1, width: 1, %s}}]\n",
+             "        body: {profile: uniform, thickness: 0.1, depth: 1, %s}}]\n",
              nodes, 2 * nodes - 1, more);
     school_settings(&setup->values, text);
     // as the keys refuse it
@@ -139,11 +139,11 @@ static void a_stream_that_starts_at_once_pushes_by_the_added_mass(void **state) 
     snprintf(body, sizeof body, "density: %.17g, modulus: 1.0e+9, relaxation_time: 0.01", mass / (pi / 4 * 0.1));
     char text[1024];
     snprintf(text, sizeof text,
-             SCHOOL_SECOND
+             SCHOOL_DEFAULTS
              "time: {end: 1, shedding_interval: 0.002}\n"
              "fluid: {density: 1, viscosity: 0, velocity: [0, 0.1]}\n"
              "fish: [{nodes: 17, force: pressure, wave: {amplitude: 0, frequency: 0},\n"
-             "        body: {profile: uniform, thickness: 0.1, width: 1, %s}}]\n",
+             "        body: {profile: uniform, thickness: 0.1, depth: 1, %s}}]\n",
              body);
     struct simulation *const simulation = school_simulation(text);
     const struct fish *fish = simulation->school->fish;
@@ -160,17 +160,17 @@ static void a_stream_that_starts_at_once_pushes_by_the_added_mass(void **state) 
     simulate_free(simulation);
 }
 
-// the force on the nodes is that of the jump along the line, and what the reactions of a driven body have to balance
+// the force on the nodes is that of the jump along the line, and the reactions of a prescribed body balance it
 static void force_and_reaction_are_those_of_the_jump(void **state) {
     (void)state;
     struct simulation *const simulation =
-        school_simulation(SCHOOL_SECOND
+        school_simulation(SCHOOL_DEFAULTS
                           "time: {end: 1, shedding_interval: 0.01}\n"
                           "fluid: {density: 2, viscosity: 0}\n"
                           "fish: [{force: pressure, wave: {amplitude: 0, frequency: 0}, start: {speed: 1}, body: "
                           "{profile: uniform, thickness: 0.1, "
-                          "width: 0.5},\n"
-                          "        motion: {driven: all, heave: 0.05, pitch: 5, frequency: 1}}]\n");
+                          "depth: 0.5},\n"
+                          "        motion: {prescribed: all, heave: 0.05, pitch: 5, frequency: 1}}]\n");
     school_run(simulation, 0.3);
     simulate_measure(simulation);
     const struct fish *fish = simulation->school->fish;
@@ -252,12 +252,12 @@ static struct simulation *inclined_plate(double degrees, double limit) {
     char text[512];
     snprintf(
         text, sizeof text,
-        SCHOOL_SECOND
+        SCHOOL_DEFAULTS
         "time: {end: 1, shedding_interval: 0.01}\n"
         "fluid: {density: 2, viscosity: 0}\n"
         "fish: [{force: pressure, pressure: {suction: 0.8, suction_limit: %g}, wave: {amplitude: 0, frequency: 0},\n"
-        "        start: {speed: 3}, body: {profile: uniform, thickness: 0.1, width: 0.5},\n"
-        "        motion: {driven: all, pitch: %g, pitch_phase: 90}}]\n",
+        "        start: {speed: 3}, body: {profile: uniform, thickness: 0.1, depth: 0.5},\n"
+        "        motion: {prescribed: all, pitch: %g, pitch_phase: 90}}]\n",
         limit, degrees);
     struct simulation *const simulation = school_simulation(text);
     school_run(simulation, 0.1);
@@ -304,11 +304,11 @@ static void suction_of_a_plate_ends_at_its_limit(void **state) {
 // a free fish whose nose holds next to nothing: its energy balance is closed as without a limit
 static void energy_balance_is_closed_where_the_limit_acts(void **state) {
     (void)state;
-    double audit[2];
+    double imbalance[2];
     for (int i = 0; i < 2; i++) {
         char text[512];
         snprintf(text, sizeof text,
-                 SCHOOL_SECOND
+                 SCHOOL_DEFAULTS
                  "time: {end: 2, shedding_interval: 0.02}\n"
                  "fish: [{nodes: 9, sheet_points: 17, force: pressure, pressure: {suction_limit: %g},\n"
                  "        body: {modulus: 3.0e+5}, wave: {ramp: 0.3}, start: {speed: 0.5}}]\n",
@@ -317,14 +317,14 @@ static void energy_balance_is_closed_where_the_limit_acts(void **state) {
         school_run(simulation, 1.5);
         simulate_measure(simulation);
         const struct diagnostics_fish *const of = simulation->diagnostics->fish;
-        audit[i] = fabs(of->energy_audit) / of->actuation_work;
-        print_message("limit %s: audit over work %.2g, separated for %.2g of the period\n", i == 0 ? "none" : "0.003",
-                      audit[i], of->separation_share);
+        imbalance[i] = fabs(of->energy_balance) / of->actuation_work;
+        print_message("limit %s: imbalance over work %.2g, separated for %.2g of the period\n",
+                      i == 0 ? "none" : "0.003", imbalance[i], of->separation_share);
         assert_true(i == 0 ? of->separation_share <= 0 : of->separation_share > 0.5);
         simulate_free(simulation);
     }
-    assert_true(audit[0] < 1e-3);
-    assert_true(audit[1] < 1e-3);
+    assert_true(imbalance[0] < 1e-3);
+    assert_true(imbalance[1] < 1e-3);
 }
 
 // The jump of dC/dt alone, and that of the strengths in a stream along the plate, at control point c, where the
@@ -362,11 +362,11 @@ static void a_strength_that_is_singular_at_the_tail_has_no_kink(void **state) {
     school_clear(&setup);
 }
 
-// a soft free fish that begins to beat: the audit, and momentum against forces by name
+// a soft free fish that begins to beat: the energy balance, and momentum against forces by name
 static void energy_and_momentum_of_a_free_fish_are_accounted_for(void **state) {
     (void)state;
     struct simulation *const simulation =
-        school_simulation(SCHOOL_SECOND
+        school_simulation(SCHOOL_DEFAULTS
                           "time: {end: 1, shedding_interval: 0.02}\n"
                           "solver: {rtol: 1.0e-6}\n"
                           "fish: [{nodes: 9, sheet_points: 17, force: pressure, body: {modulus: 3.0e+4}, wave: {ramp: "
@@ -384,7 +384,7 @@ static void energy_and_momentum_of_a_free_fish_are_accounted_for(void **state) {
         NEAR(rate[i], of->resistive_force[i] + of->pressure.pressure[i] + of->pressure.suction[i],
              0.02 * fabs(of->pressure.pressure[1]), 0);
     }
-    assert_true(fabs(of->energy_audit) < 1e-3 * of->actuation_work);
+    assert_true(fabs(of->energy_balance) < 1e-3 * of->actuation_work);
     assert_true(of->actuation_work > 0.1);
 
     simulate_free(simulation);

@@ -55,7 +55,7 @@ static void go_on(const double *state, const double *acceleration, double tau, d
 static void force_follows_from_lagrange_s_equations_of_the_kinetic_energy(void **state) {
     (void)state;
     struct setup setup;
-    school_build(&setup, TIME "fish: [{nodes: 4, sheet_points: 5, force: reactive, drag: {extent: width}}]\n");
+    school_build(&setup, TIME "fish: [{nodes: 4, sheet_points: 5, force: reactive, added_mass: {extent: depth}}]\n");
     const struct fish *fish = setup.school->fish;
     const double still[2] = {0, 0};
     for (int trial = 0; trial < 5; trial++) {
@@ -89,7 +89,7 @@ static void force_follows_from_lagrange_s_equations_of_the_kinetic_energy(void *
 static void a_stream_that_accelerates_acts_as_a_body_that_does_not_and_pushes_what_it_surrounds(void **state) {
     (void)state;
     struct setup setup;
-    school_build(&setup, TIME "fish: [{force: reactive, drag: {extent: width}}]\n");
+    school_build(&setup, TIME "fish: [{force: reactive, added_mass: {extent: depth}}]\n");
     school_stir(&setup);
     const struct fish *fish = setup.school->fish;
     const double u[2] = {0.4, -0.3}, b[2] = {1.1, 0.7}, still[2] = {0, 0};
@@ -115,8 +115,9 @@ static void forces_on_plate(const char *motion, double t, double force[7][2]) {
     char text[512];
     snprintf(text, sizeof text,
              TIME
-             "fish: [{force: reactive, body: {profile: uniform, thickness: 0.1, width: 0.3},\n"
-             "        drag: {extent: width, added_mass: 1, " NO_DRAG "}, motion: {driven: all, %s}}]\n",
+             "fish: [{force: reactive, body: {profile: uniform, thickness: 0.1, depth: 0.3},\n"
+             "        drag: {" NO_DRAG
+             "}, added_mass: {extent: depth, coefficient: 1}, motion: {prescribed: all, %s}}]\n",
              motion);
     struct setup setup;
     school_build(&setup, text);
@@ -236,8 +237,8 @@ static void energy_of_body_and_fluid_is_the_work_of_the_muscle(void **state) {
         assert_true(fish->added_mass_energy > 0.01);
         // a method of order 2 whose steps go as rtol^(1/3)
         assert_true(worst[i] < pow(rtol[i], 2.0 / 3.0) * whole_energy(fish));
-        // what the audit of the body alone finds is the same
-        assert_true(fabs(fish->energy_audit) < 2 * worst[i]);
+        // what the energy balance of the body alone finds is the same
+        assert_true(fabs(fish->energy_balance) < 2 * worst[i]);
         simulate_free(simulation);
     }
     assert_true(worst[0] / worst[1] > 10);
@@ -252,10 +253,10 @@ static void no_fish_gains_energy_from_still_fluid(void **state) {
         char text[512];
         snprintf(text, sizeof text,
                  TIME STILL "fish: [{force: reactive, start: {speed: 0}, drag: {" NO_DRAG
-                            ", extent: %s},\n"
+                            "}, added_mass: {extent: %s},\n"
                             "  body: {modulus: 1.0e+5, relaxation_time: 0.001, " NO_DAMPING
                             "}, wave: {amplitude: %g, number: %g, frequency: %g, quadratic: %g}}]\n",
-                 i % 2 == 0 ? "width" : "thickness", amplitude, number, frequency, quadratic);
+                 i % 2 == 0 ? "depth" : "thickness", amplitude, number, frequency, quadratic);
         struct simulation *const simulation = school_simulation(text);
         double gained = 0, fastest = 0;
         while (simulation->state->t < 10) {

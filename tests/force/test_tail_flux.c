@@ -7,7 +7,7 @@
 #include "school.h"
 
 #define TIME "time: {end: 4, shedding_interval: 0.02}\n"
-#define WIDE "body: {width: 0.3}, drag: {extent: width, added_mass: 1}"
+#define WIDE "body: {depth: 0.3}, added_mass: {extent: depth, coefficient: 1}"
 
 static const double pi = 3.14159265358979323846;
 static const double mass_per_length = 1000 * 3.14159265358979323846 * 0.09 / 4;
@@ -123,9 +123,9 @@ static void its_mass_is_that_of_the_extent_at_the_tail(void **state) {
         double mass;
     } cases[] = {{"force: reactive", 0},
                  {"force: reactive, body: {tail_thickness: 0.04}", 1000 * 1.5 * 0.04 * 0.04},
-                 {"force: reactive, drag: {extent: width}", 1000 * 1.5 * 0.0625},
+                 {"force: reactive, added_mass: {extent: depth}", 1000 * 1.5 * 0.0625},
                  {"force: reactive, body: {profile: uniform, thickness: 0.1}", 1000 * 1.5 * 0.01},
-                 {"force: published, drag: {extent: width}", 0}};
+                 {"force: published, added_mass: {extent: depth}", 0}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char text[256];
         snprintf(text, sizeof text, TIME "fish: [{%s}]\n", cases[i].keys);
@@ -145,7 +145,7 @@ static void a_stiff_body_swims_at_a_speed_of_second_order_in_its_nodes(void **st
     for (int i = 0; i < 3; i++) {
         char text[512];
         snprintf(text, sizeof text,
-                 SCHOOL_SECOND TIME
+                 SCHOOL_DEFAULTS TIME
                  "wake: {smoothing: 1.0e+6}\n"
                  "fish: [{nodes: %d, sheet_points: %d,\n"
                  "        body: {profile: uniform, thickness: 0.1, modulus: 1.0e+8, damping: curvature,\n"

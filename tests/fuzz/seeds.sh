@@ -8,9 +8,11 @@ program=$(realpath "$1")
 tests=$(realpath "$(dirname "$0")/..")
 mkdir -p "$2/cases" "$2/results" "$2/checkpoints"
 cd "$2"
-for file in "$tests"/../cases/*.yaml "$tests"/../cases/studies/*.yaml "$tests"/bad/*.yaml; do
+for file in "$tests"/../cases/*.yaml "$tests"/../cases/studies/*.yaml; do
     cp "$file" "cases/$(basename "$(dirname "$file")")-$(basename "$file")"
 done
+# bad cases, without their messages
+awk '/^==== / { file = "cases/bad-" $2 ".yaml"; next } /^----$/ { file = "" } file { print >file }' "$tests/case/bad_cases.txt"
 cat >small.yaml <<'end'
 format: 1
 name: small

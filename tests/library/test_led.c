@@ -109,7 +109,7 @@ static void a_desired_heading_is_taken_up_the_short_way(void **state) {
 static void waypoints_are_taken_up(void **state) {
     (void)state;
     struct simulation *const simulation =
-        school_simulation(TIME "fish: [{control: {law: course, waypoints: [[-9, 0]], arrival: 0.3}}]\n");
+        school_simulation(TIME "fish: [{control: {law: course, waypoints: [[-9, 0]], acceptance_radius: 0.3}}]\n");
     school_run(simulation, 0.1);
     const struct fish *const fish = simulation->school->fish;
     const double *const y = simulation->state->y;

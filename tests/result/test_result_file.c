@@ -96,7 +96,7 @@ static void constants_are_those_of_the_fish(void **state) {
     NEAR(value_at(file, "body_length", 1, 0, 0, 0), 2, 0, 0);
     NEAR(value_at(file, "frequency", 0, 0, 0, 0), 2, 0, 0);
     NEAR(value_at(file, "shedding_interval", 0, 0, 0, 0), 0.1, 0, 0);
-    NEAR(value_at(file, "edge_height", 1, 2, 0, 0), f->school->fish[1].thickness[2], 0, 0);
+    NEAR(value_at(file, "edge_thickness", 1, 2, 0, 0), f->school->fish[1].thickness[2], 0, 0);
     NEAR(value_at(file, "node_mass", 0, 4, 0, 0), f->school->fish[0].mass[4], 0, 0);
     NEAR(value_at(file, "sheet_arc", 1, 4, 0, 0), 2, 0, 1e-15);
     nc_close(file);
@@ -165,7 +165,7 @@ static void derived_quantities_have_their_names(void **state) {
     NEAR(value_at(file, "com_velocity", 1, 1, 0, 0), f->of_fish[1].com_velocity[0], 0, 0);
     NEAR(value_at(file, "speed", 1, 1, 0, 0), f->of_fish[1].speed, 0, 0);
     NEAR(value_at(file, "heading", 1, 0, 0, 0), f->of_fish[0].heading, 0, 0);
-    NEAR(value_at(file, "energy_audit", 1, 1, 0, 0), f->of_fish[1].energy_audit, 0, 0);
+    NEAR(value_at(file, "energy_balance", 1, 1, 0, 0), f->of_fish[1].energy_balance, 0, 0);
     NEAR(value_at(file, "strouhal", 1, 0, 0, 0), f->of_fish[0].strouhal, 0, 0);
     NEAR(value_at(file, "total_circulation", 1, 0, 0, 0), 11, 0, 0);
     NEAR(value_at(file, "least_distance", 1, 0, 0, 0), 12, 0, 0);

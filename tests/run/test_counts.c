@@ -27,8 +27,8 @@ static void print_cost(const char *name, double modulus, const struct cost *cost
                   modulus, cost->steps, cost->iterations, cost->jacobians, cost->failures);
 }
 
-// one fish of the first edition at the default tolerances, from rest of its wave
-static struct cost cost_of_first_edition(int nodes, int sheet_points, const char *second_moment, double modulus) {
+// one fish of the article's model at the default tolerances, from rest of its wave
+static struct cost cost_of_article(int nodes, int sheet_points, const char *second_moment, double modulus) {
     char text[512], name[64];
     snprintf(text, sizeof text,
              "time: {end: 2, shedding_interval: 0.01}\n"
@@ -45,7 +45,7 @@ static void stiffness_costs_nothing(void **state) {
     (void)state;
     const double moduli[] = {1e4, 1e6, 1e8, 1e10};
     for (size_t i = 0; i < sizeof moduli / sizeof *moduli; i++) {
-        const struct cost cost = cost_of_first_edition(7, 21, "published", moduli[i]);
+        const struct cost cost = cost_of_article(7, 21, "published", moduli[i]);
         assert_true(cost.steps <= 5);
         assert_true(cost.iterations <= 13);
         assert_true(cost.jacobians <= 1);
@@ -56,7 +56,7 @@ static void a_fine_body_costs_few_steps(void **state) {
     (void)state;
     const char *const moments[] = {"ellipse", "published"};
     for (int i = 0; i < 2; i++) {
-        const struct cost cost = cost_of_first_edition(41, 65, moments[i], 1e7);
+        const struct cost cost = cost_of_article(41, 65, moments[i], 1e7);
         assert_true(cost.steps <= 6);
         assert_true(cost.iterations <= 16);
         assert_true(cost.jacobians <= 1);
@@ -69,7 +69,8 @@ static void a_default_fish_costs_as_little(void **state) {
     for (size_t i = 0; i < sizeof moduli / sizeof *moduli; i++) {
         const double end = 4;
         char text[256];
-        snprintf(text, sizeof text, SCHOOL_SECOND "time: {end: %g}\nfish: [{body: {modulus: %.1e}}]\n", end, moduli[i]);
+        snprintf(text, sizeof text, SCHOOL_DEFAULTS "time: {end: %g}\nfish: [{body: {modulus: %.1e}}]\n", end,
+                 moduli[i]);
         const struct cost cost = cost_per_event(text, end);
         print_cost("default fish", moduli[i], &cost);
         assert_true(cost.steps <= 2.5);
@@ -83,7 +84,7 @@ static void a_default_fish_costs_as_little(void **state) {
 static void two_fish_beside_each_other_cost_as_little(void **state) {
     (void)state;
     const struct cost cost =
-        cost_per_event(SCHOOL_SECOND "time: {end: 2}\nfish: [{}, {start: {position: [0, 0.3]}}]\n", 2);
+        cost_per_event(SCHOOL_DEFAULTS "time: {end: 2}\nfish: [{}, {start: {position: [0, 0.3]}}]\n", 2);
     print_cost("two default fish", 1e6, &cost);
     assert_true(cost.steps <= 5);
     assert_true(cost.iterations <= 13);
@@ -96,7 +97,8 @@ static void two_fish_beside_each_other_cost_as_little(void **state) {
 static void a_dense_school_couples_what_it_needs(void **state) {
     (void)state;
     char text[1024];
-    int length = snprintf(text, sizeof text, SCHOOL_SECOND "time: {end: 0.5}\nsolver: {coupling_distance: 0}\nfish:\n");
+    int length =
+        snprintf(text, sizeof text, SCHOOL_DEFAULTS "time: {end: 0.5}\nsolver: {coupling_distance: 0}\nfish:\n");
     for (int f = 0; f < 9; f++) {
         length += snprintf(text + length, sizeof text - (size_t)length, "  - {start: {position: [%g, %g]}}\n",
                            1.3 * (f % 3), 0.4 * (f / 3));
@@ -117,11 +119,11 @@ static void a_light_or_stiff_body_under_pressure_costs_as_little(void **state) {
     for (int i = 0; i < 4; i++) {
         char text[512];
         snprintf(text, sizeof text,
-                 SCHOOL_SECOND
+                 SCHOOL_DEFAULTS
                  "time: {end: 1, shedding_interval: 0.01}\nfluid: {density: 1, viscosity: 1.0e-4}\n"
                  "fish: [{force: pressure, drag: {skin: laminar}, start: {speed: 0.65},\n"
                  "        wave: {amplitude: 0.83, constant: 0.2, linear: 0.8, quadratic: 0, number: -6.28, ramp: 1},\n"
-                 "        body: {profile: uniform, thickness: 0.17888544, width: 1, relaxation_time: 0,\n"
+                 "        body: {profile: uniform, thickness: 0.17888544, depth: 1, relaxation_time: 0,\n"
                  "               density: %g, modulus: %g}}]\n",
                  densities[i % 2], moduli[i / 2]);
         const struct cost cost = cost_per_event(text, 1);

@@ -23,7 +23,8 @@ static void events_are_at_exact_multiples_of_the_interval(void **state) {
 
 static void an_event_without_finite_velocities_is_final(void **state) {
     (void)state;
-    const char *const texts[] = {TIME "fish: [{}]\n", TIME "wake: {shedding: impulsive, kutta: rate}\nfish: [{}]\n"};
+    const char *const texts[] = {TIME "fish: [{}]\n",
+                                 TIME "wake: {shedding: impulsive}\nsheet: {kutta: rate}\nfish: [{}]\n"};
     for (int i = 0; i < 2; i++) {
         struct simulation *const simulation = school_simulation(texts[i]);
         struct state *const s = simulation->state;
@@ -96,11 +97,11 @@ static void fields_are_continuous(const char *wake) {
 static void fields_are_continuous_across_a_continuous_event(void **state) {
     (void)state;
     fields_are_continuous("lifetime: 0.2");
-    fields_are_continuous("lifetime: 0.2, dissipated_circulation: dropped");
+    fields_are_continuous("lifetime: 0.2, removed_circulation: dropped");
     // a decay shorter than an interval, none, and a lifetime that is no multiple of the interval
-    fields_are_continuous("lifetime: 0.2003, fade: 0.0004");
-    fields_are_continuous("lifetime: 0.2, fade: 0");
-    fields_are_continuous("lifetime: 0.213, fade: 0, dissipated_circulation: dropped");
+    fields_are_continuous("lifetime: 0.2003, decay: 0.0004");
+    fields_are_continuous("lifetime: 0.2, decay: 0");
+    fields_are_continuous("lifetime: 0.213, decay: 0, removed_circulation: dropped");
 }
 
 static void wake_holds_one_lifetime(void **state) {
@@ -144,7 +145,7 @@ static void impulses_conserve_circulation_and_meet_kutta(void **state) {
 static void impulses_by_rate_are_the_rate_times_the_interval(void **state) {
     (void)state;
     struct simulation *const simulation =
-        school_simulation(TIME "wake: {shedding: impulsive, kutta: rate}\nfish: [{sheet_points: 11}]\n");
+        school_simulation(TIME "wake: {shedding: impulsive}\nsheet: {kutta: rate}\nfish: [{sheet_points: 11}]\n");
     const struct fish *fish = simulation->school->fish;
     struct state *const s = simulation->state;
     for (int n = 1; n <= 10; n++) {
@@ -166,7 +167,8 @@ static void impulses_by_rate_are_the_rate_times_the_interval(void **state) {
 static void waypoints_advance_during_a_run(void **state) {
     (void)state;
     struct simulation *const simulation = school_simulation(
-        TIME "fish: [{control: {law: heading, waypoints: [[-0.6, 0], [-0.8, 0.3], [-2, 2]], arrival: 0.25}}]\n");
+        TIME
+        "fish: [{control: {law: heading, waypoints: [[-0.6, 0], [-0.8, 0.3], [-2, 2]], acceptance_radius: 0.25}}]\n");
     int before = 0;
     for (int n = 1; n <= 40; n++) {
         school_ok(simulate_step(simulation));
@@ -232,7 +234,7 @@ static void feedforward_does_not_depend_on_the_integrator(void **state) {
 static void a_fish_reaches_its_waypoints(void **state) {
     (void)state;
     struct simulation *const simulation = school_simulation(
-        SCHOOL_SECOND
+        SCHOOL_DEFAULTS
         "time: {end: 30, shedding_interval: 0.02}\nfish: [{control: {waypoints: [[-4, 1], [-8, -1], [-12, 0]]}}]\n");
     const struct state *s = simulation->state;
     assert_int_equal(simulation->school->fish[0].control.law, CONTROL_COURSE);

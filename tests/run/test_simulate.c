@@ -366,7 +366,7 @@ static void a_limp_fish_swims_on(void **state) {
     for (int i = 0; i < 2; i++) {
         char text[512];
         snprintf(text, sizeof text,
-                 SCHOOL_SECOND
+                 SCHOOL_DEFAULTS
                  "time: {end: 26, shedding_interval: 0.02, output_interval: 0.02}\n"
                  "fish: [{force: %s, nodes: 17, body: {modulus: 1e4}, start: {speed: 0.3}}]\n",
                  forces[i]);

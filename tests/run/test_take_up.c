@@ -6,7 +6,7 @@
 #include "school.h"
 #include "state/state_table.h"
 
-/* A short lifetime, so that vortices fade and are removed too. */
+/* A short lifetime, so that vortices decay and are removed too. */
 #define TIME "time: {end: 1, shedding_interval: 0.02}\n"
 #define BOTH "fish: [{name: a}, {name: b, nodes: 6, sheet_points: 15, length: 0.8, start: {position: [0.2, 0.5]}}]\n"
 #define STEERED(law)                                                             \
@@ -28,10 +28,10 @@ static const char *const cases[] = {
     TIME "solver: {method: trapezoid, step: 0.001}\nwake: {lifetime: 0.1}\n" BOTH,
     // shedding
     TIME "wake: {shedding: impulsive, lifetime: 0.1}\n" BOTH,
-    TIME "wake: {shedding: impulsive, kutta: rate}\n" BOTH,
+    TIME "wake: {shedding: impulsive}\nsheet: {kutta: rate}\n" BOTH,
     TIME "wake: {shedding: sheet, lifetime: 0.1}\n" BOTH,
     TIME "wake: {shedding: sheet}\nsolver: {method: dormand_prince}\n" BOTH,
-    TIME "wake: {kutta: rate, fade: 0.05, lifetime: 0.1, dissipated_circulation: dropped}\n" BOTH,
+    TIME "wake: {decay: 0.05, lifetime: 0.1, removed_circulation: dropped}\nsheet: {kutta: rate}\n" BOTH,
     TIME "preset: published\n" BOTH,
     // sums of the wake, coupling that changes, threads
     TIME "wake: {tolerance: 0}\n" BOTH,
@@ -45,7 +45,7 @@ static const char *const cases[] = {
     TIME "fish: [{control: {law: heading, waypoints: [[-0.1, 0], [-3, 1]]}, wave: {frequency: 20}}]\n",
     TIME
     "fluid: {velocity: [0.1, 0], shear: 0.3, gust: {amplitude: 0.2, frequency: 3}}\n"
-    "fish: [{motion: {driven: head, heave: 0.1, frequency: 2}, force: reactive, load: {tip: [0.1, 0]}}]\n",
+    "fish: [{motion: {prescribed: head, heave: 0.1, frequency: 2}, force: reactive, load: {tip: [0.1, 0]}}]\n",
 };
 enum { N_CASES = sizeof cases / sizeof *cases, N_BEFORE = 8, N_AFTER = 6 };
 

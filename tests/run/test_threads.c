@@ -51,12 +51,12 @@ static void compare_threads(const char *settings, const char *force, int n_event
 
 static void threads_change_no_bit_of_a_school_in_contact(void **state) {
     (void)state;
-    compare_threads(SCHOOL_SECOND, "pressure", 2);
+    compare_threads(SCHOOL_DEFAULTS, "pressure", 2);
 }
 
 static void threads_change_no_bit_where_vortices_are_shed_at_once(void **state) {
     (void)state;
-    compare_threads(SCHOOL_SECOND "wake: {shedding: impulsive}\n", "published", 2);
+    compare_threads(SCHOOL_DEFAULTS "wake: {shedding: impulsive}\n", "published", 2);
 }
 
 int main(void) {

@@ -1,4 +1,4 @@
-/* test_measure.c: what a user reads off a state, and the audits: doc/model.md, section 13. */
+/* test_measure.c: what a user reads off a state, and the balances: doc/model.md, section 13. */
 #include <stdio.h>
 
 #include "school.h"
@@ -16,7 +16,7 @@ struct audit_result {
     double worst, put_in;
 };
 
-// the largest gap of the energy audit at any event up to t, and all energy that was there or was put in
+// the largest gap of the energy balance at any event up to t, and all energy that was there or was put in
 static struct audit_result audit_of(const char *text, double t) {
     struct simulation *const simulation = school_simulation(text);
     struct audit_result result = {0, 0};
@@ -26,7 +26,7 @@ static struct audit_result audit_of(const char *text, double t) {
         school_ok(simulate_step(simulation));
         simulate_measure(simulation);
         const struct diagnostics_fish *fish = &simulation->diagnostics->fish[0];
-        result.worst = fmax(result.worst, fabs(fish->energy_audit));
+        result.worst = fmax(result.worst, fabs(fish->energy_balance));
         result.put_in = fmax(result.put_in, initial + fabs(fish->actuation_work));
     }
     simulate_free(simulation);
@@ -41,9 +41,9 @@ static void energy_audit_closes_within_ten_times_the_tolerance(void **state) {
         char text[256];
         snprintf(text, sizeof text, TIME "solver: {rtol: 1.0e-5}\nfish: [{body: {modulus: %.1e}}]\n", moduli[i]);
         const struct audit_result balance = audit_of(text, 2);
-        print_message("E %.0e, rtol 1e-5: audit %.2e J of %.1f J\n", moduli[i], balance.worst, balance.put_in);
+        print_message("E %.0e, rtol 1e-5: balance %.2e J of %.1f J\n", moduli[i], balance.worst, balance.put_in);
         assert_true(balance.worst <= 10 * 1e-5 * balance.put_in);
-        // the muscle did work: the audit is not of nothing
+        // the muscle did work: the energy balance is not of nothing
         assert_true(balance.put_in > 30);
     }
 }
@@ -57,7 +57,7 @@ static void energy_audit_falls_with_the_tolerance(void **state) {
         snprintf(text, sizeof text, TIME "solver: {rtol: %s}\nfish: [{}]\n", i == 0 ? "1.0e-5" : "1.0e-7");
         worst[i] = audit_of(text, 2).worst;
     }
-    print_message("audit %.2e J at 1e-5, %.2e J at 1e-7\n", worst[0], worst[1]);
+    print_message("balance %.2e J at 1e-5, %.2e J at 1e-7\n", worst[0], worst[1]);
     assert_true(worst[0] / worst[1] > 10);
 }
 
@@ -65,7 +65,7 @@ static void powers_are_integrated_with_third_order(void **state) {
     (void)state;
     // with BDF of order 5 what the quadrature leaves shows: 1e-6 J measured; the trapezoidal rule leaves 3e-5 J
     const struct audit_result balance = audit_of(TIME "solver: {rtol: 1.0e-7, order: 5}\nfish: [{}]\n", 2);
-    print_message("audit %.2e J at 1e-7 and order 5\n", balance.worst);
+    print_message("balance %.2e J at 1e-7 and order 5\n", balance.worst);
     assert_true(balance.worst < 4e-6);
 }
 
@@ -73,13 +73,13 @@ static void energy_audit_closes_with_every_kind_of_power(void **state) {
     (void)state;
     const char *const texts[] = {
         // a bias that jumps at waypoints
-        TIME "fish: [{control: {law: heading, waypoints: [[-0.6, 0.1], [-3, 2]], arrival: 0.1}}]\n",
-        // driven nodes and a load
+        TIME "fish: [{control: {law: heading, waypoints: [[-0.6, 0.1], [-3, 2]], acceptance_radius: 0.1}}]\n",
+        // prescribed nodes and a load
         TIME
         "fish: [{body: {modulus: 1.0e+5}, load: {tip: [2, 3]}, wave: {amplitude: 0},\n"
-        "  motion: {driven: head, heave: 0.1, pitch: 10, frequency: 1}}]\n",
+        "  motion: {prescribed: head, heave: 0.1, pitch: 10, frequency: 1}}]\n",
         // vortices that vanish at once; impulses
-        TIME "wake: {fade: 0, lifetime: 0.5}\nfish: [{body: {modulus: 1.0e+5}}]\n",
+        TIME "wake: {decay: 0, lifetime: 0.5}\nfish: [{body: {modulus: 1.0e+5}}]\n",
         TIME "wake: {shedding: impulsive}\nfish: [{body: {modulus: 1.0e+5}}]\n",
         // a bias whose rate jumps at every event; one that an explicit method moves
         TIME "fish: [{control: {law: averaged_heading, desired_heading: 150}}]\n",
@@ -89,7 +89,7 @@ static void energy_audit_closes_with_every_kind_of_power(void **state) {
         TIME "fluid: {velocity: [0.3, 0.1], shear: 0.2}\nfish: [{body: {relaxation_time: 0.01}, wave: {ramp: 0.5}}]\n"};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         const struct audit_result balance = audit_of(texts[i], 2);
-        print_message("audit %.2e J of %.1f J: %s", balance.worst, balance.put_in, texts[i] + sizeof TIME - 1);
+        print_message("balance %.2e J of %.1f J: %s", balance.worst, balance.put_in, texts[i] + sizeof TIME - 1);
         // order 1 at restarts, a load and a motion that begin at once: thirty tolerances
         assert_true(balance.worst <= 30 * 1e-5 * balance.put_in);
     }
@@ -102,12 +102,12 @@ static void a_bias_that_moves_across_impulses_keeps_the_balance(void **state) {
                                                  "wake: {shedding: impulsive}\nsolver: {rtol: 1.0e-6}\n"
                                                  "fish: [{control: {law: averaged_heading, desired_heading: 150}}]\n",
                                                  2);
-    print_message("audit %.2e J of %.1f J\n", balance.worst, balance.put_in);
+    print_message("balance %.2e J of %.1f J\n", balance.worst, balance.put_in);
     assert_true(balance.worst <= 30 * 1e-6 * balance.put_in);
     // a muscle that starts at once makes the body ring, which a small tolerance only resolves; the fault was 300 J
     const struct audit_result published =
         audit_of(TIME "preset: published\nfish: [{control: {law: averaged_heading, desired_heading: 150}}]\n", 0.5);
-    print_message("audit %.2e J of %.1f J\n", published.worst, published.put_in);
+    print_message("balance %.2e J of %.1f J\n", published.worst, published.put_in);
     assert_true(published.worst <= 0.01 * published.put_in);
 }
 
@@ -121,7 +121,7 @@ static void after_a_jump_the_balance_goes_on_from_the_powers_of_then(void **stat
         const struct diagnostics_fish *const fish = &simulation->diagnostics->fish[0];
         const struct energy_balance *const balance = &simulation->state->balance[0];
         const double total = fish->actuation_power + fish->damping_power + fish->drag_power + fish->added_mass_power +
-                             fish->wake_power + fish->driving_power + fish->contact_power;
+                             fish->wake_power + fish->constraint_power + fish->contact_power;
         // every impulse is a jump
         assert_int_equal(balance->n, 1);
         NEAR(balance->t[0], simulation->state->t, 0, 0);
@@ -135,11 +135,11 @@ static void total_circulation_vanishes_at_every_event(void **state) {
     (void)state;
     const char *const texts[] = {
         TIME "wake: {lifetime: 0.3}\nfish: [{}, {start: {position: [0.3, 0.7]}, nodes: 9, sheet_points: 13}]\n",
-        TIME "wake: {lifetime: 0.3, kutta: rate, collocation: midpoint}\nfish: [{}]\n",
-        TIME "wake: {lifetime: 0.3, shedding: impulsive, fade: 0}\nfish: [{}]\n",
-        TIME "preset: published\nwake: {lifetime: 0.3, dissipated_circulation: retained}\nfish: [{}]\n",
+        TIME "wake: {lifetime: 0.3}\nsheet: {kutta: rate, collocation: midpoint}\nfish: [{}]\n",
+        TIME "wake: {lifetime: 0.3, shedding: impulsive, decay: 0}\nfish: [{}]\n",
+        TIME "preset: published\nwake: {lifetime: 0.3, removed_circulation: retained}\nfish: [{}]\n",
         // dropped: what vanishes counts neither before nor after
-        TIME "wake: {lifetime: 0.3, dissipated_circulation: dropped}\nfish: [{}]\n",
+        TIME "wake: {lifetime: 0.3, removed_circulation: dropped}\nfish: [{}]\n",
         TIME "preset: published\nwake: {lifetime: 0.3}\nfish: [{}]\n"};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         struct simulation *const simulation = school_simulation(texts[i]);
@@ -242,7 +242,7 @@ static void speed_and_strouhal_number_are_those_of_a_driven_plate(void **state) 
     (void)state;
     // askew, so that both coordinates of the tail count
     struct simulation *const simulation = school_simulation(
-        TIME "fish: [{start: {heading: 60}, motion: {driven: all, speed: 1.5, heave: 0.1, frequency: 2}}]\n");
+        TIME "fish: [{start: {heading: 60}, motion: {prescribed: all, speed: 1.5, heave: 0.1, frequency: 2}}]\n");
     school_run(simulation, 1);
     simulate_measure(simulation);
     const struct diagnostics_fish *fish = &simulation->diagnostics->fish[0];
@@ -295,7 +295,7 @@ static void stream_at_the_fish_is_integrated_by_trapezoids(void **state) {
     struct simulation *const simulation = school_simulation(
         TIME
         "fluid: {velocity: [0.2, 0], shear: 0.5, gust: {amplitude: 0.3, frequency: 0.4}}\n"
-        "fish: [{start: {position: [0, 2], speed: 0}, motion: {driven: all, heave: 0, frequency: 2}}]\n");
+        "fish: [{start: {position: [0, 2], speed: 0}, motion: {prescribed: all, heave: 0, frequency: 2}}]\n");
     school_run(simulation, 1);
     simulate_measure(simulation);
     const struct diagnostics_fish *fish = &simulation->diagnostics->fish[0];
@@ -331,22 +331,22 @@ static void drift_is_the_change_of_the_speed_in_a_period(void **state) {
 static void cost_of_transport_is_what_fluid_and_damping_take(void **state) {
     (void)state;
     // a muscle; a plate that is heaved and finds its speed; a plate that is pitched and towed; one that is loaded
-    const char *const fish[] = {"{force: reactive, drag: {extent: width}, body: {modulus: 1.0e+5}}",
+    const char *const fish[] = {"{force: reactive, added_mass: {extent: depth}, body: {modulus: 1.0e+5}}",
                                 "{force: pressure, wave: {amplitude: 0}, body: {profile: uniform},\n"
-                                "  motion: {driven: all, surge: free, heave: 0.05, frequency: 1}}",
+                                "  motion: {prescribed: all, surge: free, heave: 0.05, frequency: 1}}",
                                 "{force: pressure, wave: {amplitude: 0}, body: {modulus: 1.0e+5},\n"
-                                "  motion: {driven: head, speed: 0.8, pitch: 10, frequency: 1}}",
+                                "  motion: {prescribed: head, speed: 0.8, pitch: 10, frequency: 1}}",
                                 "{force: reactive, load: {tip: [0.5, 0]}}"};
     for (size_t i = 0; i < sizeof fish / sizeof *fish; i++) {
         char text[512];
-        snprintf(text, sizeof text, SCHOOL_SECOND TIME "solver: {rtol: 1.0e-6}\nfish: [%s]\n", fish[i]);
+        snprintf(text, sizeof text, SCHOOL_DEFAULTS TIME "solver: {rtol: 1.0e-6}\nfish: [%s]\n", fish[i]);
         struct simulation *const simulation = school_simulation(text);
         double energy[2], audit[2];
         for (int k = 0; k < 2; k++) {
             school_run(simulation, 1 + k);
             simulate_measure(simulation);
             energy[k] = total_energy(&simulation->diagnostics->fish[0]);
-            audit[k] = simulation->diagnostics->fish[0].energy_audit;
+            audit[k] = simulation->diagnostics->fish[0].energy_balance;
         }
         const struct diagnostics_fish *of = &simulation->diagnostics->fish[0];
         const double scale = simulation->school->fish[0].total_mass * of->speed;
@@ -365,10 +365,10 @@ static void cost_of_transport_of_a_towed_plate_is_the_same_in_a_stream(void **st
     for (int i = 0; i < 2; i++) {
         char text[512];
         snprintf(text, sizeof text,
-                 SCHOOL_SECOND TIME
+                 SCHOOL_DEFAULTS TIME
                  "fluid: {velocity: [%d, 0]}\n"
                  "fish: [{force: pressure, wave: {amplitude: 0}, body: {profile: uniform},\n"
-                 "  motion: {driven: all, speed: %d, heave: 0.05, frequency: 1}}]\n",
+                 "  motion: {prescribed: all, speed: %d, heave: 0.05, frequency: 1}}]\n",
                  i, 1 - i);
         struct simulation *const simulation = school_simulation(text);
         school_run(simulation, 1);
@@ -384,11 +384,11 @@ static void thrust_and_power_of_a_held_plate_are_means_over_the_last_period(void
     (void)state;
     enum { N = 50 };
     struct simulation *const simulation = school_simulation(
-        SCHOOL_SECOND
+        SCHOOL_DEFAULTS
         "time: {end: 2, shedding_interval: 0.02}\n"
         "fluid: {density: 2, viscosity: 1.0e-5}\n"
         "fish: [{force: pressure, wave: {amplitude: 0}, start: {speed: 1}, body: {profile: uniform},\n"
-        "        motion: {driven: all, heave: 0.05, frequency: 1}}]\n");
+        "        motion: {prescribed: all, heave: 0.05, frequency: 1}}]\n");
     const struct diagnostics_fish *of = simulation->diagnostics->fish;
     double thrust = 0, power = 0, edge = 0;
     for (int i = 0; i <= N; i++) {
@@ -416,10 +416,11 @@ static void forces_by_name_make_up_momentum_and_angular_momentum(void **state) {
     const char *const texts[] = {
         TIME
         "fluid: {velocity: [0.3, 0.1], shear: 0.4, gust: {amplitude: 0.3, frequency: 1}}\n"
-        "fish: [{force: reactive, drag: {extent: width}}, {start: {position: [0.2, 0.6]}}]\n",
+        "fish: [{force: reactive, added_mass: {extent: depth}}, {start: {position: [0.2, 0.6]}}]\n",
         TIME
-        "fish: [{body: {section: mean, modulus: 1.0e+5}, wave: {amplitude: 0}, motion: {driven: head, heave: 0.1,\n"
-        "        pitch: 10, frequency: 1}}, {start: {position: [0, 1]}, motion: {driven: all, pitch: 20, frequency: "
+        "fish: [{body: {section: mean, modulus: 1.0e+5}, wave: {amplitude: 0}, motion: {prescribed: head, heave: 0.1,\n"
+        "        pitch: 10, frequency: 1}}, {start: {position: [0, 1]}, motion: {prescribed: all, pitch: 20, "
+        "frequency: "
         "2}}]\n"};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         struct simulation *const simulation = school_simulation(texts[i]);
@@ -481,12 +482,13 @@ static void vortices_inside_an_outline_are_counted(void **state) {
 
 static void a_body_that_sweeps_over_a_wake_loses_no_circulation(void **state) {
     (void)state;
-    // a driven plate goes right through the wake of another one
+    // a prescribed plate goes right through the wake of another one
     struct simulation *const simulation = school_simulation(
         "time: {end: 1, shedding_interval: 0.02}\nwake: {shedding: sheet}\n"
         "defaults: {fish: {wave: {amplitude: 0}, body: {profile: uniform, thickness: 0.1}}}\n"
-        "fish: [{motion: {driven: all, speed: 2, heave: 0.1, frequency: 2}}, {start: {position: [0.5, -1.2], heading: "
-        "90}, motion: {driven: all, speed: 3}}]\n");
+        "fish: [{motion: {prescribed: all, speed: 2, heave: 0.1, frequency: 2}}, {start: {position: [0.5, -1.2], "
+        "heading: "
+        "90}, motion: {prescribed: all, speed: 3}}]\n");
     double most = 0;
     while (simulation->state->t < 0.6) {
         school_ok(simulate_step(simulation));

@@ -9,7 +9,7 @@
 #define TIME "time: {end: 2, shedding_interval: 0.02, output_interval: 0.02}\n"
 #define FISH                                                                                                       \
     "force: pressure, nodes: 9, sheet_points: 33, wave: {ramp: 0.5}, drag: {skin: laminar}, start: {speed: 0.5}, " \
-    "body: {width: 1}"
+    "body: {depth: 1}"
 
 /* The balance after some time, over the largest of its terms; the largest of the angular one. */
 struct balance {
@@ -24,10 +24,10 @@ static struct balance run(const char *text, double end) {
         school_ok(simulate_step(simulation));
         simulate_measure(simulation);
         const struct diagnostics *const now = simulation->diagnostics;
-        worst.momentum = fmax(worst.momentum, hypot(now->momentum_audit[0], now->momentum_audit[1]));
-        worst.angular = fmax(worst.angular, fabs(now->momentum_audit[2]));
+        worst.momentum = fmax(worst.momentum, hypot(now->momentum_balance[0], now->momentum_balance[1]));
+        worst.angular = fmax(worst.angular, fabs(now->momentum_balance[2]));
         size = fmax(size, now->momentum_size);
-        assert_true(now->momentum_audit[0] <= size);
+        assert_true(now->momentum_balance[0] <= size);
     }
     worst.momentum /= size;
     worst.angular /= size;
@@ -41,32 +41,32 @@ static void the_balance_is_closed_with_every_external_force(void **state) {
     static const struct {
         const char *name, *text;
     } cases[] = {
-        {"one fish", "wake: {lifetime: 0.8, fade: 0.6}\nfish: [{" FISH "}]\n"},
-        {"no fade", "wake: {lifetime: 0.5, fade: 0}\nfish: [{" FISH "}]\n"},
-        {"dropped", "wake: {lifetime: 0.5, dissipated_circulation: dropped}\nfish: [{" FISH "}]\n"},
+        {"one fish", "wake: {lifetime: 0.8, decay: 0.6}\nfish: [{" FISH "}]\n"},
+        {"no decay", "wake: {lifetime: 0.5, decay: 0}\nfish: [{" FISH "}]\n"},
+        {"dropped", "wake: {lifetime: 0.5, removed_circulation: dropped}\nfish: [{" FISH "}]\n"},
         {"shear and gust",
          "fluid: {velocity: [0.2, 0], shear: 0.3, gust: {amplitude: 0.1, frequency: 1}}\n"
-         "wake: {lifetime: 0.8, fade: 0.6}\nfish: [{" FISH "}]\n"},
-        {"a wall", "fluid: {walls: [-0.3]}\nwake: {lifetime: 0.8, fade: 0.6}\nfish: [{" FISH "}]\n"},
+         "wake: {lifetime: 0.8, decay: 0.6}\nfish: [{" FISH "}]\n"},
+        {"a wall", "fluid: {walls: [-0.3]}\nwake: {lifetime: 0.8, decay: 0.6}\nfish: [{" FISH "}]\n"},
         {"a channel, two lengths",
-         "fluid: {walls: [-0.4, 0.8]}\nwake: {lifetime: 0.8, fade: 0.6}\n"
+         "fluid: {walls: [-0.4, 0.8]}\nwake: {lifetime: 0.8, decay: 0.6}\n"
          "fish: [{" FISH "}, {force: pressure, nodes: 9, sheet_points: 33, length: 0.5, "
          "drag: {skin: laminar}, start: {position: [0.5, 0.4], speed: 0.5}, "
-         "body: {width: 2}}]\n"},
+         "body: {depth: 2}}]\n"},
         {"a load at the tail", "fish: [{" FISH ", load: {tip: [2, -1]}}]\n"},
-        {"a driven head",
+        {"a prescribed head",
          "fish: [{force: pressure, nodes: 9, sheet_points: 33, wave: {amplitude: 0}, "
-         "body: {width: 1, modulus: 1.0e+5}, drag: {skin: laminar}, start: {speed: 1}, "
-         "motion: {driven: head, heave: 0.02, pitch: 3, frequency: 1, phase: 90}}]\n"},
+         "body: {depth: 1, modulus: 1.0e+5}, drag: {skin: laminar}, start: {speed: 1}, "
+         "motion: {prescribed: head, heave: 0.02, pitch: 3, frequency: 1, phase: 90}}]\n"},
         {"a plate that surges",
          "fish: [{force: pressure, nodes: 9, sheet_points: 33, wave: {amplitude: 0}, "
-         "body: {width: 1, profile: uniform, thickness: 0.1}, drag: {skin: laminar}, "
+         "body: {depth: 1, profile: uniform, thickness: 0.1}, drag: {skin: laminar}, "
          "start: {speed: 1}, "
-         "motion: {driven: all, surge: free, heave: 0.02, frequency: 1, phase: 90}}]\n"},
+         "motion: {prescribed: all, surge: free, heave: 0.02, frequency: 1, phase: 90}}]\n"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char text[1024];
-        snprintf(text, sizeof text, SCHOOL_SECOND TIME "%s", cases[i].text);
+        snprintf(text, sizeof text, SCHOOL_DEFAULTS TIME "%s", cases[i].text);
         const struct balance worst = run(text, 1.5);
         print_message("%s: %.2g, angular %.2g\n", cases[i].name, worst.momentum, worst.angular);
         assert_true(worst.momentum < 5e-3);
@@ -77,7 +77,7 @@ static void the_balance_is_closed_with_every_external_force(void **state) {
 // bodies that meet in no fluid, one of them with a load: rounding, and the error of the integral of the load
 static void without_a_fluid_it_is_closed_too(void **state) {
     (void)state;
-    const struct balance worst = run(SCHOOL_SECOND TIME
+    const struct balance worst = run(SCHOOL_DEFAULTS TIME
                                      "fluid: {density: 0}\nsolver: {rtol: 1.0e-7}\n"
                                      "defaults: {fish: {nodes: 9, wave: {amplitude: 0}, start: {speed: 1}}}\n"
                                      "fish: [{load: {tip: [3, 5]}, start: {position: [-0.1, 0.05], heading: 0}},\n"
@@ -91,20 +91,20 @@ static void forces_without_a_reaction_have_no_balance(void **state) {
     (void)state;
     static const struct {
         const char *text;
-        int has_impulse, has_external, has_audit;
+        int has_impulse, has_external, has_balance;
     } cases[] = {
         {"fish: [{nodes: 9, start: {speed: 1}}]\n", 1, 0, 0},
         {"preset: published\nfish: [{}]\n", 1, 0, 0},
-        {"fish: [{force: pressure, nodes: 5, body: {profile: table, h: [0.1, 0.2, 0.15, 0.05], "
-         "w: [0.2, 0.3, 0.25, 0.1]}}]\n",
+        {"fish: [{force: pressure, nodes: 5, body: {profile: table, thickness_table: [0.1, 0.2, 0.15, 0.05], "
+         "depth_table: [0.2, 0.3, 0.25, 0.1]}}]\n",
          0, 0, 0},
         // a fish of one depth beside one of another
         {"fish: [{" FISH "}, {force: pressure, start: {position: [0, 1]}}]\n", 1, 1, 0},
-        {"fish: [{" FISH "}, {force: pressure, start: {position: [0, 1]}, body: {width: 1}}]\n", 1, 1, 1},
+        {"fish: [{" FISH "}, {force: pressure, start: {position: [0, 1]}, body: {depth: 1}}]\n", 1, 1, 1},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char text[1024];
-        snprintf(text, sizeof text, SCHOOL_SECOND TIME "%s", cases[i].text);
+        snprintf(text, sizeof text, SCHOOL_DEFAULTS TIME "%s", cases[i].text);
         struct simulation *const simulation = school_simulation(text);
         for (int n = 0; n < 3; n++) school_ok(simulate_step(simulation));
         simulate_measure(simulation);
@@ -112,59 +112,59 @@ static void forces_without_a_reaction_have_no_balance(void **state) {
         assert_int_equal(!isnan(of->fluid_impulse[0]), cases[i].has_impulse);
         assert_int_equal(!isnan(of->lost_impulse[2]), cases[i].has_impulse);
         assert_int_equal(!isnan(of->external_impulse[1]), cases[i].has_external);
-        assert_int_equal(!isnan(simulation->diagnostics->momentum_audit[0]), cases[i].has_audit);
+        assert_int_equal(!isnan(simulation->diagnostics->momentum_balance[0]), cases[i].has_balance);
         simulate_free(simulation);
     }
 }
 
 // the same swim elsewhere, and in a stream
-static void fill(const char *fluid, const char *start, struct diagnostics_fish *of, double audit[3]) {
+static void fill(const char *fluid, const char *start, struct diagnostics_fish *of, double imbalance[3]) {
     char text[1024];
     snprintf(text, sizeof text,
-             SCHOOL_SECOND TIME
-             "solver: {rtol: 1.0e-8}\n%swake: {lifetime: 0.5, fade: 0.3}\n"
+             SCHOOL_DEFAULTS TIME
+             "solver: {rtol: 1.0e-8}\n%swake: {lifetime: 0.5, decay: 0.3}\n"
              "fish: [{force: pressure, nodes: 9, sheet_points: 33, wave: {ramp: 0.5}, drag: {skin: laminar}, %s}]\n",
              fluid, start);
     struct simulation *const simulation = school_simulation(text);
     school_run(simulation, 1.2);
     simulate_measure(simulation);
     *of = *simulation->diagnostics->fish;
-    for (int i = 0; i < 3; i++) audit[i] = simulation->diagnostics->momentum_audit[i];
+    for (int i = 0; i < 3; i++) imbalance[i] = simulation->diagnostics->momentum_balance[i];
     simulate_free(simulation);
 }
 
 static void impulses_do_not_depend_on_the_origin(void **state) {
     (void)state;
     struct diagnostics_fish here, there;
-    double audit[2][3];
-    fill("", "start: {speed: 0.5}", &here, audit[0]);
-    fill("", "start: {speed: 0.5, position: [1000, -500]}", &there, audit[1]);
+    double imbalance[2][3];
+    fill("", "start: {speed: 0.5}", &here, imbalance[0]);
+    fill("", "start: {speed: 0.5, position: [1000, -500]}", &there, imbalance[1]);
     // what is lost alone depends on it
     assert_true(fabs(here.lost_impulse[1] - there.lost_impulse[1]) > 1);
     NEAR_ARRAY(2, there.fluid_impulse, here.fluid_impulse, 1e-6, 1e-6);
     NEAR_ARRAY(2, there.external_impulse, here.external_impulse, 1e-6, 1e-6);
-    NEAR_ARRAY(2, audit[1], audit[0], 1e-6, 0);
+    NEAR_ARRAY(2, imbalance[1], imbalance[0], 1e-6, 0);
     // the angular one is that about the other origin: L = L0 + x0 x P of bodies and fluid together, 0 for the balance
-    NEAR(audit[1][2], audit[0][2] + 1000 * audit[0][1] + 500 * audit[0][0], 1e-3, 0);
+    NEAR(imbalance[1][2], imbalance[0][2] + 1000 * imbalance[0][1] + 500 * imbalance[0][0], 1e-3, 0);
 }
 
 static void a_stream_changes_no_balance(void **state) {
     (void)state;
     struct diagnostics_fish still, moving;
-    double audit[2][3];
-    fill("", "start: {speed: 0.5}", &still, audit[0]);
+    double imbalance[2][3];
+    fill("", "start: {speed: 0.5}", &still, imbalance[0]);
     // heading 180 degrees: over ground it goes back
-    fill("fluid: {velocity: [0.9, 0]}\n", "start: {speed: -0.4}", &moving, audit[1]);
+    fill("fluid: {velocity: [0.9, 0]}\n", "start: {speed: -0.4}", &moving, imbalance[1]);
     assert_true(fabs(moving.external_impulse[1] - still.external_impulse[1]) > 0.1);
     // the error of the integral of what the stream does to the rest of the circulation
-    NEAR_ARRAY(2, audit[1], audit[0], 2e-5, 0);
-    assert_true(hypot(audit[0][0], audit[0][1]) > 1e-4);
+    NEAR_ARRAY(2, imbalance[1], imbalance[0], 2e-5, 0);
+    assert_true(hypot(imbalance[0][0], imbalance[0][1]) > 1e-4);
 }
 
 static void a_restart_begins_the_balance_again(void **state) {
     (void)state;
     struct simulation *const simulation =
-        school_simulation(SCHOOL_SECOND TIME "wake: {lifetime: 0.1}\nfish: [{" FISH "}]\n");
+        school_simulation(SCHOOL_DEFAULTS TIME "wake: {lifetime: 0.1}\nfish: [{" FISH "}]\n");
     school_run(simulation, 0.3);
     simulate_measure(simulation);
     assert_true(fabs(simulation->diagnostics->fish->lost_impulse[1]) > 0);
@@ -174,7 +174,7 @@ static void a_restart_begins_the_balance_again(void **state) {
     for (int i = 0; i < 3; i++) {
         NEAR(simulation->diagnostics->fish->lost_impulse[i], 0, 0, 0);
         NEAR(simulation->diagnostics->fish->external_impulse[i], 0, 0, 0);
-        NEAR(simulation->diagnostics->momentum_audit[i], 0, 0, 0);
+        NEAR(simulation->diagnostics->momentum_balance[i], 0, 0, 0);
     }
     simulate_free(simulation);
 }

@@ -10,7 +10,7 @@
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 
-/* Five fish: the first three close together, of different size, one of them with a driven head, two far away. */
+/* Five fish: the first three close together, of different size, one of them with a prescribed head, two far away. */
 #define FIVE(threads)                                                                           \
     TIME "solver: {coupling_distance: 0.6, threads: " #threads                                  \
          "}\n"                                                                                  \
@@ -18,7 +18,7 @@
          "  - {sheet_points: 9, control: {law: heading, desired_heading: 150}}\n"               \
          "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5]}}\n"        \
          "  - {sheet_points: 11, start: {position: [0.1, -0.6]},\n"                             \
-         "     motion: {driven: head, heave: 0.1, frequency: 1}}\n"                             \
+         "     motion: {prescribed: head, heave: 0.1, frequency: 1}}\n"                         \
          "  - {sheet_points: 9, start: {position: [8, 0]}, control: {law: averaged_heading}}\n" \
          "  - {nodes: 5, sheet_points: 5, start: {position: [9, 5]}}\n"
 

@@ -9,8 +9,8 @@
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 // stirred bodies may cross
 #define FAR "solver: {coupling_distance: 100}\ncontact: {action: warn}\n"
-#define PRESSURE                                                                                   \
-    TIME "wake: {shedding: sheet, curve: smooth, smoothing: 0.1, taper: 0.4, taper_beside: 0.1}\n" \
+#define PRESSURE                                                                                            \
+    TIME "wake: {shedding: sheet, smoothing: 0.1, taper: 0.4, taper_beside: 0.1}\nsheet: {curve: smooth}\n" \
          "defaults: {fish: {drag: {skin: laminar}}}\n"
 #define FISH "fish: [{sheet_points: 9, body: {modulus: 1.0e+5}}]\n"
 
@@ -22,8 +22,9 @@ static const struct variant {
     {"stiff, 21 sheet points", TIME "fish: [{body: {modulus: 1.0e+9}}]\n"},
     {"second moment published", TIME "fish: [{sheet_points: 9, body: {second_moment: published}}]\n"},
     {"profile uniform", TIME "fish: [{sheet_points: 9, nodes: 5, body: {profile: uniform, thickness: 0.1}}]\n"},
-    {"profile table", TIME "fish: [{sheet_points: 9, nodes: 5, body: {profile: table, h: [0.1, 0.2, 0.15, 0.05], "
-                           "w: [0.2, 0.3, 0.25, 0.1]}}]\n"},
+    {"profile table",
+     TIME "fish: [{sheet_points: 9, nodes: 5, body: {profile: table, thickness_table: [0.1, 0.2, 0.15, 0.05], "
+          "depth_table: [0.2, 0.3, 0.25, 0.1]}}]\n"},
     {"relaxation time", TIME "fish: [{sheet_points: 9, body: {relaxation_time: 0.1, bending_damping: 2}}]\n"},
     {"damping of the strain",
      TIME "fish: [{sheet_points: 9, body: {damping: strain, relaxation_time: 0.1, bending_damping: 2}}]\n"},
@@ -32,30 +33,31 @@ static const struct variant {
      "fish: [{sheet_points: 9, force: reactive, body: {damping: strain, relaxation_time: 0.1},\n"
      "        wave: {ramp: 2, table: [[0, 1, -1, 0.4], [2, -3, 1, 1], [1, 0, -2, 5]]}, control: {law: course}}]\n"},
     {"load at the tip", TIME "fish: [{sheet_points: 9, load: {tip: [3, -2]}}]\n"},
-    {"collocation midpoint", TIME "wake: {collocation: midpoint}\n" FISH},
-    {"smooth curve", TIME "wake: {curve: smooth}\n" FISH},
-    {"smooth curve, kutta rate, midpoint", TIME "wake: {curve: smooth, kutta: rate, collocation: midpoint}\n" FISH},
-    {"kutta rate", TIME "wake: {kutta: rate}\n" FISH},
-    {"kutta rate with ramp, midpoint", TIME "wake: {kutta: rate, kutta_ramp: 0.5, collocation: midpoint}\n" FISH},
+    {"collocation midpoint", TIME "sheet: {collocation: midpoint}\n" FISH},
+    {"smooth curve", TIME "sheet: {curve: smooth}\n" FISH},
+    {"smooth curve, kutta rate, midpoint", TIME "sheet: {curve: smooth, kutta: rate, collocation: midpoint}\n" FISH},
+    {"kutta rate", TIME "sheet: {kutta: rate}\n" FISH},
+    {"kutta rate with ramp, midpoint", TIME "sheet: {kutta: rate, kutta_ramp: 0.5, collocation: midpoint}\n" FISH},
     {"impulsive edge", TIME "wake: {shedding: impulsive}\n" FISH},
-    {"impulsive rate", TIME "wake: {shedding: impulsive, kutta: rate}\n" FISH},
-    {"dropped, no fade", TIME "wake: {dissipated_circulation: dropped, fade: 0}\n" FISH},
+    {"impulsive rate", TIME "wake: {shedding: impulsive}\nsheet: {kutta: rate}\n" FISH},
+    {"dropped, no decay", TIME "wake: {removed_circulation: dropped, decay: 0}\n" FISH},
     {"preset published", TIME "preset: published\n" FISH},
     {"linear-quadratic drag", TIME "fish: [{sheet_points: 9, drag: {law: linear_quadratic, tangential: 0.1}}]\n"},
-    {"extent width", TIME "fish: [{sheet_points: 9, drag: {extent: width, tangential: 0.1}}]\n"},
+    {"extent depth", TIME "fish: [{sheet_points: 9, drag: {tangential: 0.1}, added_mass: {extent: depth}}]\n"},
     {"stream, shear, gust", TIME "fluid: {velocity: [0.3, -0.2], shear: 0.7, gust: {amplitude: 0.4, frequency: 1.3}}\n"
                                  "fish: [{sheet_points: 9, control: {law: heading}}]\n"},
     {"reactive", TIME "fish: [{sheet_points: 9, force: reactive, body: {section: mean}}]\n"},
-    {"reactive, extent width, linear-quadratic drag, stream, shear, gust",
+    {"reactive, extent depth, linear-quadratic drag, stream, shear, gust",
      TIME "fluid: {velocity: [0.3, -0.2], shear: 0.7, gust: {amplitude: 0.4, frequency: 1.3}}\n"
           "fish: [{sheet_points: 9, force: reactive, control: {law: heading},\n"
-          "        drag: {extent: width, law: linear_quadratic, linear_speed: 0.5}}]\n"},
-    {"reactive, four nodes", TIME "fish: [{nodes: 4, sheet_points: 7, force: reactive, drag: {extent: width}}]\n"},
+          "        drag: {law: linear_quadratic, linear_speed: 0.5}, added_mass: {extent: depth}}]\n"},
+    {"reactive, four nodes",
+     TIME "fish: [{nodes: 4, sheet_points: 7, force: reactive, added_mass: {extent: depth}}]\n"},
     {"reactive, midpoint, kutta rate, backwards",
-     TIME "wake: {kutta: rate, collocation: midpoint}\n"
-          "fish: [{sheet_points: 9, force: reactive, drag: {extent: width}, start: {speed: -2}}]\n"},
-    {"reactive, driven head", TIME "fish: [{sheet_points: 9, force: reactive, drag: {extent: width},\n"
-                                   "        motion: {driven: head, heave: 0.1, pitch: 10, frequency: 1}}]\n"},
+     TIME "sheet: {kutta: rate, collocation: midpoint}\n"
+          "fish: [{sheet_points: 9, force: reactive, added_mass: {extent: depth}, start: {speed: -2}}]\n"},
+    {"reactive, prescribed head", TIME "fish: [{sheet_points: 9, force: reactive, added_mass: {extent: depth},\n"
+                                       "        motion: {prescribed: head, heave: 0.1, pitch: 10, frequency: 1}}]\n"},
     {"bias", TIME "fish: [{sheet_points: 9, control: {bias: 0.2}}]\n"},
     {"heading", TIME "fish: [{sheet_points: 9, control: {law: heading, desired_heading: 150}}]\n"},
     {"heading without feedforward",
@@ -66,45 +68,47 @@ static const struct variant {
     {"averaged heading", TIME "fish: [{sheet_points: 9, control: {law: averaged_heading, desired_heading: 150}}]\n"},
     {"averaged heading, waypoints",
      TIME "fish: [{sheet_points: 9, control: {law: averaged_heading, waypoints: [[-3, 1]]}}]\n"},
-    {"driven head", TIME "fish: [{sheet_points: 9, motion: {driven: head, heave: 0.1, pitch: 10, pitch_phase: 70, "
-                         "frequency: 1, pivot: 0.2}}]\n"},
+    {"prescribed head",
+     TIME "fish: [{sheet_points: 9, motion: {prescribed: head, heave: 0.1, pitch: 10, pitch_phase: 70, "
+          "frequency: 1, pivot: 0.2}}]\n"},
     {"clamped head",
      TIME "fish: [{sheet_points: 9, body: {section: mean, damping: strain, relaxation_time: 0.05}, force: reactive,\n"
-          "        motion: {driven: head, heave: 0.1, pitch: 10, pitch_phase: 70, frequency: 1, pivot: 0.2}}]\n"},
-    {"driven body", TIME "fish: [{sheet_points: 9, motion: {driven: all, heave: 0.1, pitch: 10, frequency: 1}}]\n"},
-    {"driven head, kutta rate, load",
-     TIME "wake: {kutta: rate}\n"
-          "fish: [{sheet_points: 9, load: {tip: [1, 2]}, motion: {driven: head, heave: 0.1, frequency: 1}}]\n"},
+          "        motion: {prescribed: head, heave: 0.1, pitch: 10, pitch_phase: 70, frequency: 1, pivot: 0.2}}]\n"},
+    {"prescribed body",
+     TIME "fish: [{sheet_points: 9, motion: {prescribed: all, heave: 0.1, pitch: 10, frequency: 1}}]\n"},
+    {"prescribed head, kutta rate, load",
+     TIME "sheet: {kutta: rate}\n"
+          "fish: [{sheet_points: 9, load: {tip: [1, 2]}, motion: {prescribed: head, heave: 0.1, frequency: 1}}]\n"},
     {"three fish",
      TIME FAR "fluid: {velocity: [0.1, 0.05], shear: 0.2}\n"
               "fish:\n"
               "  - {sheet_points: 9, control: {law: heading, desired_heading: 150}}\n"
               "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170},\n"
-              "     drag: {law: linear_quadratic, extent: width}, control: {law: averaged_heading}}\n"
+              "     drag: {law: linear_quadratic}, added_mass: {extent: depth}, control: {law: averaged_heading}}\n"
               "  - {nodes: 9, sheet_points: 11, length: 1.2, start: {position: [0.1, -0.6], heading: 200},\n"
-              "     motion: {driven: head, heave: 0.1, frequency: 1}}\n"},
+              "     motion: {prescribed: head, heave: 0.1, frequency: 1}}\n"},
     {"three fish, reactive",
      TIME FAR "fluid: {velocity: [0.1, 0.05], shear: 0.2}\n"
-              "defaults: {fish: {force: reactive, drag: {extent: width}}}\n"
+              "defaults: {fish: {force: reactive, added_mass: {extent: depth}}}\n"
               "fish:\n"
               "  - {sheet_points: 9}\n"
               "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"
               "  - {nodes: 9, sheet_points: 11, force: published, start: {position: [0.1, -0.6], heading: 200}}\n"},
     {"three fish, kutta rate, midpoint, waypoints",
-     TIME FAR "wake: {kutta: rate, collocation: midpoint}\n"
+     TIME FAR "sheet: {kutta: rate, collocation: midpoint}\n"
               "fish:\n"
               "  - {sheet_points: 9, control: {law: heading, waypoints: [[-3, 1]]}}\n"
               "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"
               "  - {nodes: 9, sheet_points: 11, length: 1.2, start: {position: [0.1, -0.6], heading: 200},\n"
               "     body: {second_moment: published}, control: {law: heading}}\n"},
     {"two fish, smooth curve",
-     TIME FAR "wake: {curve: smooth}\n"
+     TIME FAR "sheet: {curve: smooth}\n"
               "fish:\n"
               "  - {sheet_points: 9, control: {law: heading, desired_heading: 150}}\n"
               "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"},
     {"free sheet", TIME "wake: {shedding: sheet, smoothing: 0.1, taper: 0.4, taper_beside: 0.1}\n" FISH},
     {"three fish with free sheets",
-     TIME FAR "wake: {shedding: sheet, taper: 0.4, taper_beside: 0.1, curve: smooth}\n"
+     TIME FAR "wake: {shedding: sheet, taper: 0.4, taper_beside: 0.1}\nsheet: {curve: smooth}\n"
               "fish:\n"
               "  - {sheet_points: 9, control: {law: heading, desired_heading: 150}}\n"
               "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"
@@ -114,60 +118,61 @@ static const struct variant {
      PRESSURE "fluid: {velocity: [0.3, -0.2], shear: 0.7, gust: {amplitude: 0.4, frequency: 1.3}}\n"
               "fish: [{nodes: 5, sheet_points: 9, force: pressure, pressure: {suction: 0.4},\n"
               "        drag: {skin: quadratic, tangential: 0.1, normal: 0.7}, control: {bias: 0.2}}]\n"},
-    {"pressure, a depth for every edge, heading",
-     PRESSURE "fish: [{nodes: 5, sheet_points: 9, force: pressure, drag: {skin: laminar, normal: 0.5},\n"
-              "        body: {profile: table, h: [0.1, 0.2, 0.15, 0.05], w: [0.2, 0.3, 0.25, 0.1]},\n"
-              "        control: {law: heading, feedforward: 0, desired_heading: 150}}]\n"},
+    {"pressure, a depth for every edge, heading", PRESSURE
+     "fish: [{nodes: 5, sheet_points: 9, force: pressure, drag: {skin: laminar, normal: 0.5},\n"
+     "        body: {profile: table, thickness_table: [0.1, 0.2, 0.15, 0.05], depth_table: [0.2, 0.3, 0.25, 0.1]},\n"
+     "        control: {law: heading, feedforward: 0, desired_heading: 150}}]\n"},
     {"pressure, a boundary layer with transition, waving and form",
      PRESSURE "fluid: {viscosity: 1.0e-4, velocity: [0.3, -0.2], shear: 0.7}\n"
               "fish: [{nodes: 5, sheet_points: 9, force: pressure, body: {modulus: 1.0e+4}, control: {bias: 0.2},\n"
               "        drag: {skin: boundary_layer, transition: 5000, waving: 1.7, form: 100, normal: 0.5}}]\n"},
     {"reactive, a turbulent boundary layer",
      TIME "fish: [{sheet_points: 9, force: reactive, drag: {skin: boundary_layer, transition: 0, form: 100}}]\n"},
-    {"pressure, clamped head",
-     PRESSURE "fish: [{nodes: 5, sheet_points: 9, force: pressure, body: {section: mean, relaxation_time: 0.05},\n"
-              "        load: {tip: [3, -2]},\n"
-              "        motion: {driven: head, heave: 0.1, pitch: 10, pitch_phase: 70, frequency: 1, pivot: 0.2}}]\n"},
-    {"pressure, driven body", PRESSURE "fish: [{nodes: 5, sheet_points: 9, force: pressure,\n"
-                                       "        motion: {driven: all, heave: 0.1, pitch: 10, frequency: 1}}]\n"},
-    {"pressure, driven body that goes by its forces",
+    {"pressure, clamped head", PRESSURE
+     "fish: [{nodes: 5, sheet_points: 9, force: pressure, body: {section: mean, relaxation_time: 0.05},\n"
+     "        load: {tip: [3, -2]},\n"
+     "        motion: {prescribed: head, heave: 0.1, pitch: 10, pitch_phase: 70, frequency: 1, pivot: 0.2}}]\n"},
+    {"pressure, prescribed body",
      PRESSURE "fish: [{nodes: 5, sheet_points: 9, force: pressure,\n"
-              "        motion: {driven: all, surge: free, heave: 0.1, pitch: 10, frequency: 1}}]\n"},
-    {"four fish, one force each and a driven head", PRESSURE FAR
+              "        motion: {prescribed: all, heave: 0.1, pitch: 10, frequency: 1}}]\n"},
+    {"pressure, prescribed body that goes by its forces",
+     PRESSURE "fish: [{nodes: 5, sheet_points: 9, force: pressure,\n"
+              "        motion: {prescribed: all, surge: free, heave: 0.1, pitch: 10, frequency: 1}}]\n"},
+    {"four fish, one force each and a prescribed head", PRESSURE FAR
      "fluid: {velocity: [0.1, 0.05], shear: 0.2}\n"
      "fish:\n"
      "  - {nodes: 5, sheet_points: 9, force: pressure}\n"
      "  - {nodes: 5, sheet_points: 7, force: reactive, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"
      "  - {nodes: 4, sheet_points: 7, force: published, start: {position: [0.1, -0.6], heading: 200}}\n"
      "  - {nodes: 4, sheet_points: 7, force: pressure, start: {position: [0, 1.2]},\n"
-     "     motion: {driven: head, surge: free, heave: 0.1, frequency: 1}}\n"},
+     "     motion: {prescribed: head, surge: free, heave: 0.1, frequency: 1}}\n"},
     {"fish in contact that are not coupled otherwise",
      TIME "solver: {coupling_distance: 0}\ncontact: {range: 0.9}\n"
           "fish:\n"
           "  - {sheet_points: 9, control: {law: heading, desired_heading: 150}}\n"
           "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.6], heading: 190}}\n"},
-    {"three fish in contact, one of them driven",
+    {"three fish in contact, one of them prescribed",
      TIME "solver: {coupling_distance: 100}\nfluid: {density: 0}\ncontact: {range: 0.9}\n"
           "fish:\n"
           "  - {sheet_points: 9}\n"
           "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.6], heading: 190}}\n"
           "  - {nodes: 9, sheet_points: 11, start: {position: [0.1, -0.6], heading: 170},\n"
-          "     motion: {driven: head, heave: 0.1, frequency: 1}}\n"},
+          "     motion: {prescribed: head, heave: 0.1, frequency: 1}}\n"},
     {"a wall", TIME "fluid: {velocity: [0.3, 0], shear: 0.2, walls: [-0.5]}\n" FISH},
     {"a wall above, in contact, free sheet",
      TIME "fluid: {walls: [0.9]}\ncontact: {range: 0.8}\n"
           "wake: {shedding: sheet, smoothing: 0.1, taper: 0.4, taper_beside: 0.1}\n" FISH},
-    {"a wall, kutta rate, midpoint", TIME "fluid: {walls: [-0.5]}\nwake: {kutta: rate, collocation: midpoint}\n" FISH},
+    {"a wall, kutta rate, midpoint", TIME "fluid: {walls: [-0.5]}\nsheet: {kutta: rate, collocation: midpoint}\n" FISH},
     {"two fish in a channel, free sheets, one in contact",
      TIME FAR "fluid: {velocity: [0.3, 0], shear: 0.2, walls: [-0.6, 1.1]}\n"
-              "wake: {shedding: sheet, curve: smooth, taper: 0.4, taper_beside: 0.1}\n"
+              "wake: {shedding: sheet, taper: 0.4, taper_beside: 0.1}\nsheet: {curve: smooth}\n"
               "fish:\n"
               "  - {sheet_points: 9}\n"
               "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"},
     {"two fish in a channel, one held",
      TIME FAR "fluid: {walls: [-0.7, 1.2]}\n"
               "fish:\n"
-              "  - {sheet_points: 9, motion: {driven: head, heave: 0.1, frequency: 1}}\n"
+              "  - {sheet_points: 9, motion: {prescribed: head, heave: 0.1, frequency: 1}}\n"
               "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"},
     {"pressure in a channel", PRESSURE "fluid: {walls: [-0.5, 0.8]}\ncontact: {range: 0.6}\n"
                                        "fish: [{nodes: 5, sheet_points: 9, force: pressure}]\n"},
@@ -201,7 +206,7 @@ static void jacobian_agrees_with_differences_for_every_option(void **state) {
 static void jacobian_agrees_with_differences_where_the_suction_ends(void **state) {
     (void)state;
     static const char text[] = TIME FAR
-        "wake: {shedding: sheet, curve: smooth, smoothing: 0.1, taper: 0.4, taper_beside: 0.1}\n"
+        "wake: {shedding: sheet, smoothing: 0.1, taper: 0.4, taper_beside: 0.1}\nsheet: {curve: smooth}\n"
         "fluid: {velocity: [0.3, 0], shear: 0.7, walls: [-1.2, 1.3]}\n"
         "defaults: {fish: {nodes: 5, sheet_points: 9, force: pressure, body: {modulus: 1}}}\n"
         "fish: [{}, {start: {position: [0.2, 0.5], heading: 170}}]\n";
@@ -226,7 +231,7 @@ static void jacobian_agrees_with_differences_where_a_tail_has_overtaken_its_wake
     (void)state;
     struct setup setup;
     school_build(&setup, TIME FAR
-                 "wake: {shedding: sheet, curve: smooth, smoothing: 0.1, taper: 0.4, taper_beside: 0.1}\n"
+                 "wake: {shedding: sheet, smoothing: 0.1, taper: 0.4, taper_beside: 0.1}\nsheet: {curve: smooth}\n"
                  "fluid: {walls: [-1.2, 1.3]}\n"
                  "defaults: {fish: {nodes: 5, sheet_points: 9, force: pressure, body: {modulus: 1}}}\n"
                  "fish: [{}, {start: {position: [0.2, 0.5], heading: 170}}]\n");
@@ -277,10 +282,11 @@ static void far_fish_are_left_out_of_the_jacobian_and_of_nothing_else(void **sta
 static void unknowns_have_names_kinds_and_scales(void **state) {
     (void)state;
     struct setup setup;
-    school_build(&setup, TIME
-                 "fish: [{nodes: 4, sheet_points: 5},\n"
-                 "  {length: 2, nodes: 5, sheet_points: 6, start: {position: [0, 1]}, motion: {driven: head, heave: "
-                 "0.1, frequency: 1}}]\n");
+    school_build(
+        &setup, TIME
+        "fish: [{nodes: 4, sheet_points: 5},\n"
+        "  {length: 2, nodes: 5, sheet_points: 6, start: {position: [0, 1]}, motion: {prescribed: head, heave: "
+        "0.1, frequency: 1}}]\n");
     const struct layout *a = &setup.school->fish[0].at, *b = &setup.school->fish[1].at;
     const struct {
         int i, fish, index;
@@ -324,9 +330,9 @@ static void circulation_shed_is_differential_only_with_a_rate(void **state) {
         const char *text;
         int algebraic, algebraic_at_impulse;
     } cases[] = {{TIME FISH, 1, 1},
-                 {TIME "wake: {kutta: rate}\n" FISH, 0, 0},
+                 {TIME "sheet: {kutta: rate}\n" FISH, 0, 0},
                  {TIME "wake: {shedding: impulsive}\n" FISH, 0, 1},
-                 {TIME "wake: {shedding: impulsive, kutta: rate}\n" FISH, 0, 0}};
+                 {TIME "wake: {shedding: impulsive}\nsheet: {kutta: rate}\n" FISH, 0, 0}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct setup setup;
         school_build(&setup, cases[i].text);
@@ -354,7 +360,7 @@ static void rows_of_prescribed_nodes_vanish_on_their_motion_only(void **state) {
     struct setup setup;
     school_build(
         &setup, TIME
-        "fish: [{start: {heading: 25}, motion: {driven: all, speed: 0.6, heave: 0.2, pitch: 20, pitch_phase: 70, "
+        "fish: [{start: {heading: 25}, motion: {prescribed: all, speed: 0.6, heave: 0.2, pitch: 20, pitch_phase: 70, "
         "frequency: 1.3}}]\n");
     school_stir(&setup);
     const struct fish *const fish = setup.school->fish;

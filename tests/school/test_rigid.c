@@ -103,7 +103,7 @@ static void means_over_the_last_period_do_not_notice_a_displacement(void **state
 static void means_over_the_last_period_do_not_notice_a_turn_in_a_stream(void **state) {
     (void)state;
     struct simulation *const simulation = school_simulation(
-        SCHOOL_SECOND
+        SCHOOL_DEFAULTS
         "time: {end: 3, shedding_interval: 0.02, output_interval: 0.02}\nfluid: {velocity: [0.4, -0.2]}\n"
         "fish: [{start: {speed: 0.5}}]\n");
     school_run(simulation, 1.5);

@@ -36,24 +36,24 @@ static void expect_warnings(const char *text, double t, const char *expected) {
 
 static void a_short_run_of_a_default_fish_has_none(void **state) {
     (void)state;
-    expect_warnings(SCHOOL_SECOND TIME "fish: [{}]\n", 1, "");
+    expect_warnings(SCHOOL_DEFAULTS TIME "fish: [{}]\n", 1, "");
 }
 
 static void a_fish_that_gathers_speed_drifts(void **state) {
     (void)state;
-    expect_warnings(SCHOOL_SECOND TIME "fish: [{}]\n", 2.5, "d");
+    expect_warnings(SCHOOL_DEFAULTS TIME "fish: [{}]\n", 2.5, "d");
     // without a fluid nothing swims, and no mean speed is asked for
-    expect_warnings(SCHOOL_SECOND TIME "fluid: {density: 0}\nfish: [{}]\n", 2.5, "");
+    expect_warnings(SCHOOL_DEFAULTS TIME "fluid: {density: 0}\nfish: [{}]\n", 2.5, "");
 }
 
 static void a_tail_without_a_limit_is_told(void **state) {
     (void)state;
-#define CUSP(keys) SCHOOL_SECOND TIME "fish: [{body: {tail_thickness: 0}, " keys "}]\n"
+#define CUSP(keys) SCHOOL_DEFAULTS TIME "fish: [{body: {tail_thickness: 0}, " keys "}]\n"
     expect_warnings(CUSP("nodes: 25"), 0.1, "u");
     // whatever the number of nodes; not where the water does not bend it
     expect_warnings(CUSP("nodes: 61, sheet_points: 121"), 0.02, "u");
-    expect_warnings(CUSP("motion: {driven: all}"), 0.1, "");
-    expect_warnings(SCHOOL_SECOND TIME "fluid: {density: 0}\nfish: [{body: {tail_thickness: 0}}]\n", 0.1, "");
+    expect_warnings(CUSP("motion: {prescribed: all}"), 0.1, "");
+    expect_warnings(SCHOOL_DEFAULTS TIME "fluid: {density: 0}\nfish: [{body: {tail_thickness: 0}}]\n", 0.1, "");
 }
 
 static void few_nodes_at_the_tail_are_told(void **state) {
@@ -65,7 +65,7 @@ static void few_nodes_at_the_tail_are_told(void **state) {
     for (int n = enough - 1; n <= enough; n++) {
         char text[256];
         snprintf(text, sizeof text,
-                 SCHOOL_SECOND TIME
+                 SCHOOL_DEFAULTS TIME
                  "fish: [{nodes: %d, body: {profile: uniform, thickness: 0.1, modulus: 1e7}, wave: {frequency: 2}}]\n",
                  n);
         expect_warnings(text, 0.01, n < enough ? "t" : "");
@@ -76,20 +76,20 @@ static void the_published_force_is_told_and_nothing_else(void **state) {
     (void)state;
     // few events, an open balance, a drift, a cusp: none of it is worth a word there
     expect_warnings("time: {end: 3, shedding_interval: 0.0625}\npreset: published\nfish: [{}]\n", 2.5, "p");
-    expect_warnings(SCHOOL_SECOND TIME "fish: [{force: published}, {start: {position: [0, 2]}}]\n", 0.1, "p");
+    expect_warnings(SCHOOL_DEFAULTS TIME "fish: [{force: published}, {start: {position: [0, 2]}}]\n", 0.1, "p");
 }
 
 static void few_events_in_a_beat_are_told(void **state) {
     (void)state;
-    expect_warnings(SCHOOL_SECOND "time: {end: 3, shedding_interval: 0.0625}\nfish: [{}]\n", 0.5, "v");
-    expect_warnings(SCHOOL_SECOND "time: {end: 3, shedding_interval: 0.05}\nfish: [{}]\n", 0.5, "");
+    expect_warnings(SCHOOL_DEFAULTS "time: {end: 3, shedding_interval: 0.0625}\nfish: [{}]\n", 0.5, "v");
+    expect_warnings(SCHOOL_DEFAULTS "time: {end: 3, shedding_interval: 0.05}\nfish: [{}]\n", 0.5, "");
 }
 
 static void a_soft_body_is_slower_than_its_beat(void **state) {
     (void)state;
-    expect_warnings(SCHOOL_SECOND TIME "fish: [{nodes: 33, body: {modulus: 1e5}}]\n", 0.1, "m");
+    expect_warnings(SCHOOL_DEFAULTS TIME "fish: [{nodes: 33, body: {modulus: 1e5}}]\n", 0.1, "m");
     // a passive body may be as soft as it likes
-    expect_warnings(SCHOOL_SECOND TIME "fish: [{body: {modulus: 1e5}, wave: {amplitude: 0}}]\n", 0.1, "");
+    expect_warnings(SCHOOL_DEFAULTS TIME "fish: [{body: {modulus: 1e5}, wave: {amplitude: 0}}]\n", 0.1, "");
 }
 
 static void the_worst_fish_is_named(void **state) {
@@ -99,7 +99,7 @@ static void the_worst_fish_is_named(void **state) {
     for (int i = 0; i < 2; i++) {
         char text[512], line[WARNING_BYTES];
         snprintf(text, sizeof text,
-                 SCHOOL_SECOND
+                 SCHOOL_DEFAULTS
                  "time: {end: 1, shedding_interval: 0.05}\nfish: [{name: a, wave: {frequency: %s}}, {name: b, wave: "
                  "{frequency: %s}, start: {position: [0, 2]}}, {name: c, start: {position: [0, 4]}}]\n",
                  frequencies[i][0], frequencies[i][1]);
@@ -116,28 +116,29 @@ static void the_worst_fish_is_named(void **state) {
 static void few_sheet_points_for_a_short_stretch_are_told(void **state) {
     (void)state;
 #define PLATE(n) \
-    SCHOOL_SECOND TIME "fish: [{sheet_points: " n ", wave: {frequency: 0}, motion: {driven: all, speed: 1}}]\n"
+    SCHOOL_DEFAULTS TIME "fish: [{sheet_points: " n ", wave: {frequency: 0}, motion: {prescribed: all, speed: 1}}]\n"
     expect_warnings(PLATE("31"), 0.1, "");
     expect_warnings(PLATE("21"), 0.1, "s");
     // only a free sheet begins with the stretch of an interval
-    expect_warnings(SCHOOL_SECOND TIME
-                    "wake: {shedding: continuous}\nfish: [{sheet_points: 21, wave: {frequency: 0}, motion: {driven: "
-                    "all, speed: 1}}]\n",
-                    0.1, "");
+    expect_warnings(
+        SCHOOL_DEFAULTS TIME
+        "wake: {shedding: continuous}\nfish: [{sheet_points: 21, wave: {frequency: 0}, motion: {prescribed: "
+        "all, speed: 1}}]\n",
+        0.1, "");
 }
 
 static void an_open_energy_balance_is_told(void **state) {
     (void)state;
     // a plate that pitches once in two events: its power is not seen
-    expect_warnings(SCHOOL_SECOND
+    expect_warnings(SCHOOL_DEFAULTS
                     "time: {end: 10, shedding_interval: 0.5, output_interval: 0.5}\nfish: [{wave: "
-                    "{amplitude: 0}, motion: {driven: all, speed: 1, pitch: 10, frequency: 1}}]\n",
+                    "{amplitude: 0}, motion: {prescribed: all, speed: 1, pitch: 10, frequency: 1}}]\n",
                     10, "ev");
 }
 
 static void an_open_energy_balance_is_told_within_the_first_beat(void **state) {
     (void)state;
-    struct simulation *const simulation = school_simulation(SCHOOL_SECOND TIME "fish: [{start: {speed: 1}}]\n");
+    struct simulation *const simulation = school_simulation(SCHOOL_DEFAULTS TIME "fish: [{start: {speed: 1}}]\n");
     school_run(simulation, 0.5);
     const struct fish *const fish = simulation->school->fish;
     // of a fish at 1 m/s, one length per beat, the energy of one length per beat is m, that of the body m/2
@@ -154,11 +155,11 @@ static void an_open_energy_balance_is_told_within_the_first_beat(void **state) {
 static void an_open_momentum_balance_is_told(void **state) {
     (void)state;
 #define HEAVE(phase)                                                                        \
-    SCHOOL_SECOND                                                                           \
+    SCHOOL_DEFAULTS                                                                         \
     "time: {end: 3, shedding_interval: 0.01}\n"                                             \
     "fish: [{force: pressure, nodes: 9, sheet_points: 33, wave: {amplitude: 0}, "           \
     "body: {profile: uniform, thickness: 0.05}, drag: {skin: laminar}, start: {speed: 1}, " \
-    "motion: {driven: all, heave: 0.1, frequency: 2, phase: " phase "}}]\n"
+    "motion: {prescribed: all, heave: 0.1, frequency: 2, phase: " phase "}}]\n"
     expect_warnings(HEAVE("0"), 0.4, "");
     expect_warnings(HEAVE("0"), 0.6, "o");
     expect_warnings(HEAVE("90"), 0.6, "");
@@ -167,7 +168,7 @@ static void an_open_momentum_balance_is_told(void **state) {
 static void a_run_that_diverges_in_its_first_beat_says_so(void **state) {
     (void)state;
     struct simulation *const simulation =
-        school_simulation(SCHOOL_SECOND TIME "fish: [{}, {start: {position: [0, 2]}}]\n");
+        school_simulation(SCHOOL_DEFAULTS TIME "fish: [{}, {start: {position: [0, 2]}}]\n");
     school_run(simulation, 0.1);
     const struct layout *const at = &simulation->school->fish[1].at;
     const double limit = 100 * 2 * 3.14159265358979;  // a hundred times the circular speed of a length per beat
@@ -196,15 +197,15 @@ static void a_run_that_diverges_in_its_first_beat_says_so(void **state) {
 static void speeds_that_the_case_gives_are_no_divergence(void **state) {
     (void)state;
     // a beat of 1 Hz alone would be exceeded a hundred times at 628 m/s, or m2/s
-#define REST SCHOOL_SECOND TIME "fluid: {density: 0%s}\nfish: [{wave: {amplitude: 0}, %s}]\n"
+#define REST SCHOOL_DEFAULTS TIME "fluid: {density: 0%s}\nfish: [{wave: {amplitude: 0}, %s}]\n"
     static const struct {
         const char *fluid, *fish;
-    } fast[] = {{", velocity: [0, 1e3]", "motion: {driven: all, speed: 0}"},
-                {", shear: 1e3", "start: {position: [0, 1], heading: 90}, motion: {driven: all, speed: 0}"},
-                {", gust: {amplitude: 1e3, frequency: 1}", "motion: {driven: all, speed: 0}"},
+    } fast[] = {{", velocity: [0, 1e3]", "motion: {prescribed: all, speed: 0}"},
+                {", shear: 1e3", "start: {position: [0, 1], heading: 90}, motion: {prescribed: all, speed: 0}"},
+                {", gust: {amplitude: 1e3, frequency: 1}", "motion: {prescribed: all, speed: 0}"},
                 {"", "start: {speed: 1e3}"},
-                {"", "motion: {driven: all, heave: 200, frequency: 1}"},
-                {"", "motion: {driven: all, speed: 1e3}"},
+                {"", "motion: {prescribed: all, heave: 200, frequency: 1}"},
+                {"", "motion: {prescribed: all, speed: 1e3}"},
                 {"", "load: {tip: [5e5, 0]}, body: {modulus: 1e12}"}};
     double least = INFINITY;
     for (size_t i = 0; i < sizeof fast / sizeof *fast; i++) {
@@ -227,8 +228,8 @@ static void speeds_that_the_case_gives_are_no_divergence(void **state) {
 
 static void a_body_that_crosses_itself_is_told_without_a_fluid_too(void **state) {
     (void)state;
-    expect_warnings(SCHOOL_SECOND TIME "fluid: {density: 0}\nfish: [{}]\n", 0.9, "");
-    expect_warnings(SCHOOL_SECOND TIME
+    expect_warnings(SCHOOL_DEFAULTS TIME "fluid: {density: 0}\nfish: [{}]\n", 0.9, "");
+    expect_warnings(SCHOOL_DEFAULTS TIME
                     "fluid: {density: 0}\nfish: [{wave: {amplitude: 0.4, constant: 3, linear: 0, quadratic: 0,"
                     " number: 0, ramp: 1}}]\n",
                     0.9, "x");
@@ -236,10 +237,10 @@ static void a_body_that_crosses_itself_is_told_without_a_fluid_too(void **state)
 
 static void separation_at_the_nose_is_told(void **state) {
     (void)state;
-#define INCLINED(degrees, more)                                                            \
-    SCHOOL_SECOND TIME "fish: [{force: pressure" more                                      \
-                       ", wave: {amplitude: 0, frequency: 0}, start: {speed: 1}, motion: " \
-                       "{driven: all, pitch: " degrees ", pitch_phase: 90}}]\n"
+#define INCLINED(degrees, more)                                                              \
+    SCHOOL_DEFAULTS TIME "fish: [{force: pressure" more                                      \
+                         ", wave: {amplitude: 0, frequency: 0}, start: {speed: 1}, motion: " \
+                         "{prescribed: all, pitch: " degrees ", pitch_phase: 90}}]\n"
     // A_0 is about half of tan(alpha) after a tenth of a length
     expect_warnings(INCLINED("15", ""), 0.1, "");
     expect_warnings(INCLINED("30", ""), 0.1, "l");
@@ -254,12 +255,12 @@ static void bodies_that_pass_through_each_other_are_told(void **state) {
     // between two rows, and between two steps: without a fluid a prescribed motion needs few
     expect_warnings(
         "time: {end: 3, shedding_interval: 0.05}\nfluid: {density: 0}\ndefaults: {fish: {wave: {amplitude: 0}, motion: "
-        "{driven: all, "
+        "{prescribed: all, "
         "speed: 15}}}\nfish: [{name: a}, {name: b, start: {position: [-6, 0], heading: 0}}]\n",
         1, "c");
     expect_warnings(
         "time: {end: 3, shedding_interval: 0.05}\nfluid: {density: 0}\ndefaults: {fish: {wave: {amplitude: 0}, motion: "
-        "{driven: all, "
+        "{prescribed: all, "
         "speed: 15}}}\nfish: [{name: a}, {name: b, start: {position: [-6, 1], heading: 0}}]\n",
         1, "");
     // bodies that could yield, and that the case lets pass: near each other, and through each other

@@ -40,7 +40,7 @@ def draw_fish(draw, number, length, rate, density):
     thickness, mass = draw.uniform(0.02, 0.2), 10 ** draw.uniform(-2, 1)
     stiffness = 10 ** draw.uniform(math.log10(0.05), 6)
     force = draw.choice(["pressure", "pressure", "pressure", "reactive"])
-    driven = draw.choice(["none", "none", "head", "all"])
+    prescribed = draw.choice(["none", "none", "head", "all"])
     start = [draw.uniform(-0.2, 0.2) * length, number * 0.5 * length]
     heading, start_speed = draw.uniform(170, 190), draw.choice([0, 0.5, 1]) * speed
     profile, width = draw.choice(["joukowski", "uniform"]), draw.choice([0.2, 1])
@@ -48,18 +48,18 @@ def draw_fish(draw, number, length, rate, density):
     if force == "reactive" or mass > math.pi / 4:
         # without pressure, or heavier than the fluid that it moves, a limp one folds over itself: its slowest mode, 3.6
         # sqrt(EI/(m L^4)) or, with a held head, 0.56 of that root, is not below its beat
-        stiffness = max(stiffness, mass * (3.2 if driven == "head" else 0.08))
+        stiffness = max(stiffness, mass * (3.2 if prescribed == "head" else 0.08))
     modulus = bending_modulus(stiffness, density, speed, length, thickness)
     keys = [f"name: f{number}", f"length: {length}", f"nodes: {nodes}", f"sheet_points: {points}", f"force: {force}",
             f"start: {{position: [{start[0]:.4f}, {start[1]:.4f}], heading: {heading:.3f}, speed: {start_speed}}}",
-            f"body: {{profile: {profile}, thickness: {thickness:.4f}, width: {width}, density: "
+            f"body: {{profile: {profile}, thickness: {thickness:.4f}, depth: {width}, density: "
             f"{mass * density / (math.pi / 4 * thickness):.6g}, modulus: {modulus:.6g}, relaxation_time: {relaxation}}}"]
-    if driven == "none":
+    if prescribed == "none":
         keys.append(f"wave: {{frequency: {rate}, amplitude: {draw.uniform(0.1, 0.6):.3f}, "
                     f"number: {draw.uniform(-8, -4):.3f}, ramp: {draw.choice([0.3, 1]) / rate}}}")
     else:
         keys += ["wave: {amplitude: 0, frequency: 0}",
-                 f"motion: {{driven: {driven}, heave: {draw.uniform(0, 0.2) * length:.4f}, "
+                 f"motion: {{prescribed: {prescribed}, heave: {draw.uniform(0, 0.2) * length:.4f}, "
                  f"pitch: {draw.uniform(0, 20):.3f}, frequency: {rate}, speed: {draw.choice([0.3, 1]) * speed}}}"]
     if force == "pressure" and draw.random() < 0.3:
         keys.append("drag: {normal: 1}")
@@ -149,7 +149,7 @@ def fault_of(path, length, rate):
         data.set_auto_mask(False)
         events = round(float(data["time"][-1]) / float(data["shedding_interval"][...]))
         counts = [data[name][-1] / events for name in ("steps", "newton_iterations", "jacobian_evaluations")]
-        for name in ("com", "kinetic_energy", "shed_circulation", "energy_audit"):
+        for name in ("com", "kinetic_energy", "shed_circulation", "energy_balance"):
             if not np.isfinite(data[name][...]).all():
                 return f"{name} is not finite", counts
         circulation = np.abs(data["total_circulation"][...]).max() / (length**2 * rate)

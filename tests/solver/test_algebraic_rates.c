@@ -4,7 +4,7 @@
 
 static const char text[] =
     "time: {end: 1}\n"
-    "wake: {shedding: sheet, curve: smooth}\n"
+    "wake: {shedding: sheet}\nsheet: {curve: smooth}\n"
     "fish: [{nodes: 5, sheet_points: 9, force: pressure}, {nodes: 5, sheet_points: 9, start: {position: [0, 2]}}]\n";
 
 static double parabola(int i, double t) {

@@ -9,13 +9,13 @@
 #define STREAM TIME "fluid: {density: 1, velocity: [1, 0.2], viscosity: 0}\n"
 #define PLATE                                                                          \
     "nodes: 7, sheet_points: 13, force: pressure, wave: {amplitude: 0, frequency: 0}," \
-    " body: {profile: uniform, thickness: 0.05, width: 1, density: 20, modulus: 1e5}," \
-    " start: {heading: 170, speed: 0}, motion: {driven: head, speed: 0}"
+    " body: {profile: uniform, thickness: 0.05, depth: 1, density: 20, modulus: 1e5}," \
+    " start: {heading: 170, speed: 0}, motion: {prescribed: head, speed: 0}"
 
 // two plates, one behind the other, so that the couplings are in it
-static const char pair[] = SCHOOL_SECOND STREAM "defaults: {fish: {" PLATE
-                                                "}}\n"
-                                                "fish: [{}, {start: {position: [1.2, 0.1]}}]\n";
+static const char pair[] = SCHOOL_DEFAULTS STREAM "defaults: {fish: {" PLATE
+                                                  "}}\n"
+                                                  "fish: [{}, {start: {position: [1.2, 0.1]}}]\n";
 
 struct rig {
     struct simulation *simulation;
@@ -68,8 +68,8 @@ static void the_equations_of_a_run_hold_at_rest(void **state) {
 
 static void bodies_that_go_on_together_are_at_rest_in_their_frame(void **state) {
     (void)state;
-    struct rig held = rig_of(SCHOOL_SECOND STREAM "fish: [{" PLATE "}]\n");
-    struct rig goes = rig_of(SCHOOL_SECOND TIME
+    struct rig held = rig_of(SCHOOL_DEFAULTS STREAM "fish: [{" PLATE "}]\n");
+    struct rig goes = rig_of(SCHOOL_DEFAULTS TIME
                              "fluid: {density: 1, velocity: [1.5, 0.2], viscosity: 0}\n"
                              "fish: [{" PLATE "}]\n");
     // the frame goes at half a metre per second along x, where the heading of the second is
@@ -126,7 +126,7 @@ static int differences(const struct rig *rig, double matrix[MOST][MOST]) {
     double *const y = simulation->state->y, value[2][256];
     int n = 0, unknown[MOST], row[MOST];
     for (int i = 1; i < 2 * fish->n_nodes; i++) {
-        if (i == fish->n_nodes) continue;  // the nose is driven
+        if (i == fish->n_nodes) continue;  // the nose is prescribed
         unknown[n] = at->x + i;
         row[n++] = at->ax + i;
     }
@@ -147,13 +147,13 @@ static int differences(const struct rig *rig, double matrix[MOST][MOST]) {
 
 static void the_stiffness_is_that_of_differences_with_sheets_that_follow(void **state) {
     (void)state;
-    struct rig rig = rig_of(SCHOOL_SECOND TIME
+    struct rig rig = rig_of(SCHOOL_DEFAULTS TIME
                             "fluid: {density: 1, velocity: [1, 0.2], viscosity: 0}\n"
                             "fish: [{nodes: 4, sheet_points: 9, force: pressure,"
                             " wave: {amplitude: 0, frequency: 0},"
-                            " body: {profile: uniform, thickness: 0.05, width: 1,"
+                            " body: {profile: uniform, thickness: 0.05, depth: 1,"
                             " density: 20, modulus: 1e5},"
-                            " start: {heading: 170, speed: 0}, motion: {driven: head, speed: 0}}]\n");
+                            " start: {heading: 170, speed: 0}, motion: {prescribed: head, speed: 0}}]\n");
     struct equilibrium_stiffness stiffness;
     double matrix[MOST][MOST];
     school_ok(equilibrium_solve(rig.equilibrium));
@@ -168,10 +168,10 @@ static void the_stiffness_is_that_of_differences_with_sheets_that_follow(void **
 
 static void nothing_bends_where_the_whole_motion_is_given(void **state) {
     (void)state;
-    struct rig rig = rig_of(SCHOOL_SECOND STREAM
+    struct rig rig = rig_of(SCHOOL_DEFAULTS STREAM
                             "fish: [{nodes: 7, sheet_points: 13, force: pressure,"
                             " wave: {amplitude: 0, frequency: 0}, start: {heading: 170, speed: 0},"
-                            " motion: {driven: all, speed: 0}}]\n");
+                            " motion: {prescribed: all, speed: 0}}]\n");
     struct equilibrium_stiffness stiffness;
     school_ok(equilibrium_solve(rig.equilibrium));
     school_ok(equilibrium_stiffness(rig.equilibrium, &stiffness));

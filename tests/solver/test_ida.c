@@ -18,8 +18,8 @@ static struct integrator_counts counts_of(const struct simulation *simulation) {
 static void a_body_with_prescribed_nodes_follows_the_given_motion(void **state) {
     (void)state;
     const char *const texts[] = {
-        TIME "fish: [{motion: {driven: head, heave: 0.1, pitch: 10, pitch_phase: 70, frequency: 1, pivot: 0.2}}]\n",
-        TIME "fish: [{motion: {driven: all, heave: 0.1, pitch: 10, frequency: 1}}]\n"};
+        TIME "fish: [{motion: {prescribed: head, heave: 0.1, pitch: 10, pitch_phase: 70, frequency: 1, pivot: 0.2}}]\n",
+        TIME "fish: [{motion: {prescribed: all, heave: 0.1, pitch: 10, frequency: 1}}]\n"};
     for (int i = 0; i < 2; i++) {
         struct simulation *const simulation = school_simulation(texts[i]);
         const struct fish *fish = simulation->school->fish;
@@ -182,9 +182,9 @@ static void kinds_of_unknowns_are_the_same_in_all_intervals(void **state) {
     (void)state;
     // IDA and the one-step methods look them up once
     const char *const texts[] = {TIME "fish: [{}]\n", TIME "wake: {shedding: impulsive}\nfish: [{}]\n",
-                                 TIME "wake: {kutta: rate}\nfish: [{}]\n",
-                                 TIME "wake: {kutta: rate, shedding: impulsive}\nfish: [{}]\n",
-                                 TIME "fish: [{motion: {driven: head, heave: 0.1, frequency: 1}}]\n"};
+                                 TIME "sheet: {kutta: rate}\nfish: [{}]\n",
+                                 TIME "wake: {shedding: impulsive}\nsheet: {kutta: rate}\nfish: [{}]\n",
+                                 TIME "fish: [{motion: {prescribed: head, heave: 0.1, frequency: 1}}]\n"};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         struct simulation *const simulation = school_simulation(texts[i]);
         double first[65], now[65];

@@ -12,27 +12,28 @@
 
 static const char *const texts[] = {
     TIME FISH,
-    TIME "wake: {kutta: rate}\n" FISH,
-    TIME "wake: {kutta: rate, kutta_ramp: 0.5, collocation: midpoint}\n" FISH,
-    TIME "wake: {collocation: midpoint, dissipated_circulation: dropped, fade: 0}\n" FISH,
+    TIME "sheet: {kutta: rate}\n" FISH,
+    TIME "sheet: {kutta: rate, kutta_ramp: 0.5, collocation: midpoint}\n" FISH,
+    TIME "wake: {removed_circulation: dropped, decay: 0}\nsheet: {collocation: midpoint}\n" FISH,
     TIME "wake: {shedding: impulsive}\n" FISH,
-    TIME "wake: {curve: smooth}\n" FISH,
+    TIME "sheet: {curve: smooth}\n" FISH,
     TIME "preset: published\n" FISH,
     TIME
     "fluid: {velocity: [0.3, -0.2], shear: 0.7, gust: {amplitude: 0.4, frequency: 1.3}}\n"
-    "fish: [{control: {law: heading, desired_heading: 150}, drag: {law: linear_quadratic, extent: width}}]\n",
+    "fish: [{control: {law: heading, desired_heading: 150}, drag: {law: linear_quadratic}, added_mass: {extent: "
+    "depth}}]\n",
     TIME "fish: [{control: {law: averaged_heading, waypoints: [[-3, 1]]}, wave: {ramp: 0}}]\n",
-    TIME "fish: [{motion: {driven: head, heave: 0.1, pitch: 10, frequency: 1}, load: {tip: [1, 2]}}]\n",
-    TIME "fish: [{motion: {driven: all, heave: 0.1, pitch: 10, frequency: 1}}]\n",
+    TIME "fish: [{motion: {prescribed: head, heave: 0.1, pitch: 10, frequency: 1}, load: {tip: [1, 2]}}]\n",
+    TIME "fish: [{motion: {prescribed: all, heave: 0.1, pitch: 10, frequency: 1}}]\n",
     TIME "fluid: {density: 0}\n" FISH,
     TIME "fish: [{body: {modulus: 1.0e+10}}]\n",
     TIME
-    "wake: {curve: smooth, shedding: sheet}\n"
+    "wake: {shedding: sheet}\nsheet: {curve: smooth}\n"
     "fish:\n"
     "  - {nodes: 7, sheet_points: 13, force: pressure}\n"
     "  - {nodes: 6, sheet_points: 13, force: reactive, start: {position: [0, 0.7]}}\n"
     "  - {nodes: 5, sheet_points: 9, force: pressure, start: {position: [0, -0.7]},\n"
-    "     motion: {driven: head, heave: 0.1, pitch: 10, frequency: 1}}\n",
+    "     motion: {prescribed: head, heave: 0.1, pitch: 10, frequency: 1}}\n",
     TIME
     "fish: [{}, {nodes: 5, length: 0.7, start: {position: [0.2, 0.5]}}, {nodes: 9, start: {position: [0, -0.6]}}]\n"};
 
@@ -108,7 +109,7 @@ static void all_equations_hold_again_from_any_state(void **state) {
 static void differential_unknowns_stay_as_they_are(void **state) {
     (void)state;
     struct setup setup;
-    school_build(&setup, TIME "wake: {kutta: rate}\n" FISH);
+    school_build(&setup, TIME "sheet: {kutta: rate}\n" FISH);
     school_stir(&setup);
     double *const kind = calloc((size_t)setup.school->n_unknowns, sizeof *kind);
     double *const before = calloc((size_t)setup.school->n_unknowns, sizeof *before);
@@ -133,14 +134,14 @@ static void differential_unknowns_stay_as_they_are(void **state) {
     free(before);
 }
 
-// places and velocities at the start, later places and momenta; the driven node has its motion at all times
+// places and velocities at the start, later places and momenta; the prescribed node has its motion at all times
 static void momenta_follow_at_the_start_and_velocities_later(void **state) {
     (void)state;
     struct setup setup;
-    school_build(
-        &setup, TIME
-        "wake: {curve: smooth, shedding: sheet}\n"
-        "fish: [{nodes: 7, sheet_points: 13, force: pressure, motion: {driven: head, heave: 0.1, frequency: 1}}]\n");
+    school_build(&setup, TIME
+                 "wake: {shedding: sheet}\nsheet: {curve: smooth}\n"
+                 "fish: [{nodes: 7, sheet_points: 13, force: pressure, motion: {prescribed: head, heave: 0.1, "
+                 "frequency: 1}}]\n");
     school_stir(&setup);
     const struct layout *at = &setup.school->fish[0].at;
     double *const y = setup.state->y, before[128];
@@ -172,10 +173,10 @@ static void stiffness_takes_no_iterations_where_momenta_are_kept(void **state) {
     for (int i = 0; i < 3; i++) {
         char text[512];
         snprintf(text, sizeof text,
-                 SCHOOL_SECOND
+                 SCHOOL_DEFAULTS
                  "time: {end: 1, shedding_interval: 0.01}\n"
                  "fish: [{force: pressure, body: {modulus: %s}, wave: {ramp: 0}, start: {speed: 1},\n"
-                 "        motion: {driven: head}}]\n",
+                 "        motion: {prescribed: head}}]\n",
                  moduli[i]);
         struct simulation *const simulation = school_simulation(text);
         assert_in_range(initial_conditions_iterations(simulation->consistent), 1, 2);

@@ -21,22 +21,22 @@
          "  - {sheet_points: 9, control: {law: heading, desired_heading: 150}}\n"                  \
          "  - {nodes: 5, sheet_points: 7, length: 0.7, start: {position: [0.2, 0.35]}}\n"          \
          "  - {sheet_points: 11, start: {position: [0.1, -0.4]},\n"                                \
-         "     motion: {driven: head, heave: 0.1, frequency: 1}}\n"                                \
+         "     motion: {prescribed: head, heave: 0.1, frequency: 1}}\n"                            \
          "  - {sheet_points: 9, start: {position: [1.35, 0]}, control: {law: averaged_heading}}\n" \
          "  - {nodes: 5, sheet_points: 9, start: {position: [1.4, 0.4]}}\n"                        \
          "  - {nodes: 5, sheet_points: 9, start: {position: [1.35, -0.4]}}\n"                      \
          "  - {nodes: 5, sheet_points: 5, start: {position: [9, 5]}}\n"
 
 /* Sheets of many points, with and without momenta and prescribed heads; the last one has few. */
-#define SHEETS                                                                                                \
-    "wake: {shedding: sheet, taper: 0.4, taper_beside: 0.1, curve: smooth}\n" TIME                            \
-    "solver: {coupling_distance: 0.6}\n"                                                                      \
-    "defaults: {fish: {nodes: 6, sheet_points: 100}}\n"                                                       \
-    "fish:\n"                                                                                                 \
-    "  - {control: {law: heading, desired_heading: 150}}\n"                                                   \
-    "  - {force: pressure, length: 0.7, start: {position: [0.2, 0.35]}}\n"                                    \
-    "  - {motion: {driven: head, heave: 0.1, frequency: 1}, start: {position: [0.1, -0.4]}}\n"                \
-    "  - {force: pressure, start: {position: [1.35, 0]}, motion: {driven: head, heave: 0.1, frequency: 1}}\n" \
+#define SHEETS                                                                                                    \
+    "wake: {shedding: sheet, taper: 0.4, taper_beside: 0.1}\nsheet: {curve: smooth}\n" TIME                       \
+    "solver: {coupling_distance: 0.6}\n"                                                                          \
+    "defaults: {fish: {nodes: 6, sheet_points: 100}}\n"                                                           \
+    "fish:\n"                                                                                                     \
+    "  - {control: {law: heading, desired_heading: 150}}\n"                                                       \
+    "  - {force: pressure, length: 0.7, start: {position: [0.2, 0.35]}}\n"                                        \
+    "  - {motion: {prescribed: head, heave: 0.1, frequency: 1}, start: {position: [0.1, -0.4]}}\n"                \
+    "  - {force: pressure, start: {position: [1.35, 0]}, motion: {prescribed: head, heave: 0.1, frequency: 1}}\n" \
     "  - {sheet_points: 9, start: {position: [1.4, 0.4]}}\n"
 
 // matrices that LAPACK has factorised
@@ -326,14 +326,14 @@ static double replace(struct system *system, const double *by_shed) {
 static void the_column_of_the_circulation_shed_can_be_updated(void **state) {
     (void)state;
     static const char *const texts[] = {
-        SHEETS, "wake: {shedding: sheet, taper: 0.4, taper_beside: 0.1, curve: smooth}\n" SCHOOL,
-        "wake: {shedding: sheet, taper: 0.4, taper_beside: 0.1, curve: smooth}\n"
+        SHEETS, "wake: {shedding: sheet, taper: 0.4, taper_beside: 0.1}\nsheet: {curve: smooth}\n" SCHOOL,
+        "wake: {shedding: sheet, taper: 0.4, taper_beside: 0.1}\nsheet: {curve: smooth}\n"
         "defaults: {fish: {nodes: 5, sheet_points: 9, force: pressure}}\n" TIME
         "solver: {coupling_distance: 0.6}\n"
         "fish:\n"
         "  - {start: {position: [0, 0]}}\n"
         "  - {start: {position: [0.2, 0.35]}, length: 0.7}\n"
-        "  - {start: {position: [0.1, -0.4]}, motion: {driven: head, heave: 0.1, frequency: 1}}\n"
+        "  - {start: {position: [0.1, -0.4]}, motion: {prescribed: head, heave: 0.1, frequency: 1}}\n"
         "  - {start: {position: [1.35, 0]}, force: reactive}\n"};
     for (int variant = 0; variant < 6; variant++) {
         const int coupled = variant % 2;

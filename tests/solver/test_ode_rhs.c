@@ -11,7 +11,7 @@ static const char *const cases[] = {
     "fish: [{nodes: 7, sheet_points: 13, control: {law: heading, desired_heading: 150}}]\n",
     "time: {end: 1, shedding_interval: 0.02}\n"
     "fluid: {velocity: [0.1, -0.05], shear: 0.2, gust: {amplitude: 0.1, frequency: 0.7}}\n"
-    "wake: {kutta: rate, collocation: midpoint}\n"
+    "sheet: {kutta: rate, collocation: midpoint}\n"
     "fish:\n"
     "  - {nodes: 7, sheet_points: 13, control: {law: heading, desired_heading: 150}}\n"
     "  - {nodes: 9, length: 0.8, sheet_points: 11, start: {position: [0.2, 1.6]}, drag: {law: linear_quadratic}}\n"
@@ -19,25 +19,25 @@ static const char *const cases[] = {
     "time: {end: 1, shedding_interval: 0.02}\n"
     "fluid: {velocity: [-1, 0]}\n"
     "fish: [{nodes: 8, sheet_points: 15, wave: {amplitude: 0}, load: {tip: [1, 2]},\n"
-    "        motion: {driven: head, heave: 0.1, pitch: 10, frequency: 1, speed: 0}}]\n",
+    "        motion: {prescribed: head, heave: 0.1, pitch: 10, frequency: 1, speed: 0}}]\n",
     "time: {end: 1, shedding_interval: 0.02}\n"
-    "wake: {shedding: impulsive, dissipated_circulation: dropped}\n"
+    "wake: {shedding: impulsive, removed_circulation: dropped}\n"
     "fish: [{nodes: 7, sheet_points: 13}, {nodes: 7, sheet_points: 13, start: {position: [0, 1.6]}}]\n",
     "time: {end: 1, shedding_interval: 0.02}\n"
-    "wake: {curve: smooth, shedding: sheet}\n"
+    "wake: {shedding: sheet}\nsheet: {curve: smooth}\n"
     "fish: [{nodes: 7, sheet_points: 13}, {nodes: 9, sheet_points: 17, start: {position: [0, 1.6]}}]\n",
     "time: {end: 1, shedding_interval: 0.02}\n"
     "fluid: {velocity: [0.1, -0.05], shear: 0.2, gust: {amplitude: 0.1, frequency: 0.7}}\n"
-    "wake: {curve: smooth, shedding: sheet}\n"
+    "wake: {shedding: sheet}\nsheet: {curve: smooth}\n"
     "fish:\n"
     "  - {nodes: 7, sheet_points: 13, force: pressure, pressure: {suction_limit: 0.01}}\n"
     "  - {nodes: 6, sheet_points: 13, force: reactive, start: {position: [0, 2]}}\n"
     "  - {nodes: 5, sheet_points: 9, force: pressure, start: {position: [0, -2]},\n"
-    "     motion: {driven: head, heave: 0.1, pitch: 10, frequency: 1}}\n"
+    "     motion: {prescribed: head, heave: 0.1, pitch: 10, frequency: 1}}\n"
     "  - {nodes: 5, sheet_points: 9, force: pressure, start: {position: [0, -4]},\n"
-    "     motion: {driven: all, surge: free, heave: 0.1, pitch: 10, frequency: 1}}\n"
+    "     motion: {prescribed: all, surge: free, heave: 0.1, pitch: 10, frequency: 1}}\n"
     "  - {nodes: 5, sheet_points: 9, force: published, start: {position: [0, -6]},\n"
-    "     motion: {driven: head, surge: free, heave: 0.1, pitch: 10, frequency: 1}}\n",
+    "     motion: {prescribed: head, surge: free, heave: 0.1, pitch: 10, frequency: 1}}\n",
 };
 
 static void all_equations_hold_for_the_computed_unknowns(void **state) {

@@ -17,8 +17,8 @@ static const char *const cases[] = {
     "time: {end: 0.4, shedding_interval: 0.02}\n"
     "fluid: {velocity: [-1, 0]}\n"
     "fish: [{nodes: 8, sheet_points: 15, wave: {amplitude: 0}, start: {speed: 0},\n"
-    "        motion: {driven: head, heave: 0.1, pitch: 10, frequency: 1, speed: 0}}]\n",
-    "time: {end: 0.4, shedding_interval: 0.02}\nwake: {kutta: rate}\n" FISH,
+    "        motion: {prescribed: head, heave: 0.1, pitch: 10, frequency: 1, speed: 0}}]\n",
+    "time: {end: 0.4, shedding_interval: 0.02}\nsheet: {kutta: rate}\n" FISH,
     "time: {end: 0.4, shedding_interval: 0.02}\nwake: {shedding: impulsive}\n" FISH,
 };
 
@@ -89,7 +89,7 @@ static void soft_rods_of_many_nodes_converge_whatever_the_step(void **state) {
                  "time: {end: 1, shedding_interval: 0.0125, output_interval: 0.0125}\nfluid: {density: 0}\n"
                  "solver: {method: trapezoid, step: %.8f}\n"
                  "fish: [{nodes: %d, sheet_points: 5, body: {modulus: 1.0e+5}, wave: {amplitude: 0},\n"
-                 "        start: {speed: 0}, motion: {driven: head, heave: 0.05, frequency: 1, speed: 0}}]\n",
+                 "        start: {speed: 0}, motion: {prescribed: head, heave: 0.05, frequency: 1, speed: 0}}]\n",
                  steps[i % 3], nodes[i / 3]);
         struct simulation *const simulation = school_simulation(text);
         school_run(simulation, 0.1);

@@ -23,34 +23,34 @@ static struct simulation *open_with(const char *text, const char *solver) {
     return school_simulation(whole);
 }
 
-// y of the tails of both rods at the end, and the largest of the energy audits over the energy put in
-static void ends_of(const char *solver, double tail[2], double *audit) {
+// y of the tails of both rods at the end, and the largest of the energy balances over the energy put in
+static void ends_of(const char *solver, double tail[2], double *imbalance) {
     struct simulation *const simulation = open_with(RODS, solver);
     school_run(simulation, 1);
     simulate_measure(simulation);
-    *audit = 0;
+    *imbalance = 0;
     for (int f = 0; f < 2; f++) {
         const struct fish *const fish = &simulation->school->fish[f];
         const struct diagnostics_fish *const of = &simulation->diagnostics->fish[f];
         tail[f] = simulation->state->y[fish->at.y + fish->n_nodes - 1];
-        *audit = fmax(*audit, fabs(of->energy_audit / of->actuation_work));
+        *imbalance = fmax(*imbalance, fabs(of->energy_balance / of->actuation_work));
     }
     simulate_free(simulation);
 }
 
 static void steps_converge_with_the_square_of_their_length(void **state) {
     (void)state;
-    double exact[2], coarse[2], fine[2], audit[3];
-    ends_of("method: rk4, step: 0.001", exact, &audit[0]);
-    ends_of("method: verlet, step: 0.001", coarse, &audit[1]);
-    ends_of("method: verlet, step: 0.0005", fine, &audit[2]);
+    double exact[2], coarse[2], fine[2], imbalance[3];
+    ends_of("method: rk4, step: 0.001", exact, &imbalance[0]);
+    ends_of("method: verlet, step: 0.001", coarse, &imbalance[1]);
+    ends_of("method: verlet, step: 0.0005", fine, &imbalance[2]);
     for (int f = 0; f < 2; f++) {
         const double order = log2(fabs((coarse[f] - exact[f]) / (fine[f] - exact[f])));
         print_message("rod %d: errors %.2e %.2e, order %.2f\n", f, coarse[f] - exact[f], fine[f] - exact[f], order);
         NEAR(order, 2, 0.1, 0);
     }
-    print_message("energy: %.1e %.1e\n", audit[1], audit[2]);
-    NEAR(log2(audit[1] / audit[2]), 2, 0.3, 0);
+    print_message("energy: %.1e %.1e\n", imbalance[1], imbalance[2]);
+    NEAR(log2(imbalance[1] / imbalance[2]), 2, 0.3, 0);
 }
 
 static void steps_back_lead_to_the_start(void **state) {

@@ -28,11 +28,12 @@ static void impulses_are_those_of_point_vortices(void **state) {
 static void a_depth_that_varies_is_none(void **state) {
     (void)state;
     struct setup setup;
-    school_build(&setup, TIME
-                 "fish:\n"
-                 "  - {length: 2, body: {width: 0.3}}\n"
-                 "  - {nodes: 5, start: {position: [3, 3]}, body: {profile: table, h: [0.1, 0.2, 0.15, 0.05],\n"
-                 "     w: [0.2, 0.3, 0.25, 0.1]}}\n");
+    school_build(
+        &setup, TIME
+        "fish:\n"
+        "  - {length: 2, body: {depth: 0.3}}\n"
+        "  - {nodes: 5, start: {position: [3, 3]}, body: {profile: table, thickness_table: [0.1, 0.2, 0.15, 0.05],\n"
+        "     depth_table: [0.2, 0.3, 0.25, 0.1]}}\n");
     NEAR(impulse_depth(&setup.school->fish[0]), 0.6, 1e-15, 0);
     assert_true(isnan(impulse_depth(&setup.school->fish[1])));
     school_clear(&setup);
@@ -80,9 +81,9 @@ static double wither(const char *text) {
 
 static void what_fades_or_is_removed_is_booked_where_it_is(void **state) {
     (void)state;
-    static const char *const wakes[] = {"shedding: sheet, curve: smooth, fade: 0.2", "shedding: sheet, fade: 0",
-                                        "shedding: continuous, fade: 0.15", "shedding: continuous, fade: 0",
-                                        "shedding: impulsive, fade: 0"};
+    static const char *const wakes[] = {"shedding: sheet, decay: 0.2}\nsheet: {curve: smooth",
+                                        "shedding: sheet, decay: 0", "shedding: continuous, decay: 0.15",
+                                        "shedding: continuous, decay: 0", "shedding: impulsive, decay: 0"};
     for (size_t w = 0; w < sizeof wakes / sizeof *wakes; w++) {
         char text[256];
         snprintf(text, sizeof text, TIME "wake: {lifetime: 0.3, %s}\nfish: [{}]\n", wakes[w]);
@@ -94,7 +95,7 @@ static void what_fades_or_is_removed_is_booked_where_it_is(void **state) {
 static void what_is_dropped_goes_to_the_tail(void **state) {
     (void)state;
     struct setup setup;
-    school_build(&setup, TIME "wake: {lifetime: 0.3, fade: 0.2, dissipated_circulation: dropped}\nfish: [{}]\n");
+    school_build(&setup, TIME "wake: {lifetime: 0.3, decay: 0.2, removed_circulation: dropped}\nfish: [{}]\n");
     school_stir(&setup);
     const struct fish *const fish = &setup.school->fish[0];
     struct wake *const wake = &setup.state->wake[0];
@@ -121,7 +122,8 @@ static void what_merging_changes_is_booked(void **state) {
     enum { N = 200 };
     struct setup setup;
     school_build(
-        &setup, TIME "wake: {lifetime: 8, fade: 6, merge: 0.01, shedding: sheet, curve: smooth}\nfish: [{nodes: 5}]\n");
+        &setup, TIME
+        "wake: {lifetime: 8, decay: 6, merge: 0.01, shedding: sheet}\nsheet: {curve: smooth}\nfish: [{nodes: 5}]\n");
     school_stir(&setup);
     struct wake *const wake = &setup.state->wake[0];
     school_ok(wake_resize(wake, 0));

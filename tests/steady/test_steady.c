@@ -44,13 +44,13 @@ static void speed_and_multiplier_are_those_of_a_long_run(void **state) {
 // a plate whose nose holds a part of the suction that attached flow has; slower, it would lose more of it
 static void a_plate_with_limited_suction_has_the_speed_of_a_long_run(void **state) {
     (void)state;
-    static const char text[] = SCHOOL_SECOND
+    static const char text[] = SCHOOL_DEFAULTS
         "time: {end: 1, shedding_interval: 0.05, output_interval: 0.05}\n"
         "fluid: {density: 1, viscosity: 1.25e-3}\nsteady: {tolerance: 5e-5}\n"
         "fish: [{nodes: 5, sheet_points: 17, force: pressure, pressure: {suction_limit: 0.14}, start: {speed: 5},\n"
-        "        wave: {amplitude: 0, frequency: 0}, body: {profile: uniform, thickness: 0.1, width: 1, density: "
+        "        wave: {amplitude: 0, frequency: 0}, body: {profile: uniform, thickness: 0.1, depth: 1, density: "
         "1.59},\n"
-        "        motion: {driven: all, surge: free, heave: 0.175, frequency: 1}}]\n";
+        "        motion: {prescribed: all, surge: free, heave: 0.175, frequency: 1}}]\n";
     struct steady_setup setup;
     struct brute brute[60];
     steady_setup_open(&setup, text);
@@ -95,7 +95,7 @@ static void a_fish_that_is_steered_to_one_side_goes_in_a_circle(void **state) {
     circle(COARSE "steady: {tolerance: 2e-5}\nfish: [{" FISH ", force: pressure, control: {bias: 0.2}}]\n", 0.2, 25);
     // what is removed of the wake is forgotten: the circulation is no quantity of its own
     circle(COARSE
-           "steady: {tolerance: 2e-5}\nwake: {dissipated_circulation: dropped}\n"
+           "steady: {tolerance: 2e-5}\nwake: {removed_circulation: dropped}\n"
            "fish: [{" FISH ", start: {speed: 0.6}, control: {bias: 0.2}}]\n",
            0.2, 22);
 }
@@ -193,7 +193,7 @@ static void a_held_fish_is_steady_when_its_forces_repeat(void **state) {
                       "fluid: {velocity: [1, 0]}\n"
                       "fish: [{" FISH
                       ", wave: {amplitude: 0}, body: {modulus: 3e6},"
-                      " motion: {driven: head, heave: 0.05, frequency: 1, phase: 90, speed: 0}}]\n");
+                      " motion: {prescribed: head, heave: 0.05, frequency: 1, phase: 90, speed: 0}}]\n");
     assert_int_equal(setup.problem.n_unknowns, 0);
     school_ok(steady_search_run(&setup.problem));
     const double thrust = setup.problem.map.last[0].thrust, power = setup.problem.map.last[0].driving;
@@ -208,7 +208,7 @@ static void mean_powers_are_the_works_of_a_beat(void **state) {
     static const char *const fish[] = {
         "fish: [{" FISH ", body: {modulus: 1e8}}]\n",
         "fluid: {velocity: [1, 0]}\n"
-        "fish: [{" FISH ", wave: {amplitude: 0}, motion: {driven: head, heave: 0.05, frequency: 1, speed: 0}}]\n"};
+        "fish: [{" FISH ", wave: {amplitude: 0}, motion: {prescribed: head, heave: 0.05, frequency: 1, speed: 0}}]\n"};
     for (int i = 0; i < 2; i++) {
         char text[512];
         snprintf(text, sizeof text, COARSE "%s", fish[i]);
@@ -239,7 +239,7 @@ static void what_can_have_no_steady_state_is_refused_with_the_reason(void **stat
                        "set time.shedding_interval to 0.0495049505, and");
     steady_setup_fails(COARSE "fish: [{" FISH ", wave: {frequency: 0, amplitude: 0}}]\n", STATUS_CASE, "no fish beats");
     steady_setup_fails(COARSE "defaults: {fish: {" FISH
-                              ", motion: {driven: all}}}\n"
+                              ", motion: {prescribed: all}}}\n"
                               "fish: [{}, {start: {position: [3, 0]}, motion: {heave: 0.1, frequency: 2}}]\n",
                        STATUS_CASE, "fish1 beats 1 times a second and fish2 2 times");
     steady_setup_fails(COARSE "fluid: {gust: {amplitude: 0.1, frequency: 1.5}}\nfish: [{" FISH "}]\n", STATUS_CASE,

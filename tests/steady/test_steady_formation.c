@@ -2,14 +2,14 @@
 #include "steady_setup.h"
 
 // two plates that heave, from a start of the follower
-#define PLATES                                                                                               \
-    SCHOOL_SECOND                                                                                            \
-    "time: {end: 1, shedding_interval: 0.05, output_interval: 0.05}\n"                                       \
-    "fluid: {density: 1, viscosity: 2e-3}\nwake: {lifetime: 3, smoothing: 0.2}\n"                            \
-    "steady: {formation: true, tolerance: 3e-3}\n"                                                           \
-    "defaults: {fish: {nodes: 5, sheet_points: 13, force: pressure, start: {speed: 4.1},\n"                  \
-    "  wave: {amplitude: 0, frequency: 0}, motion: {driven: all, surge: free, heave: 0.15, frequency: 1},\n" \
-    "  body: {profile: uniform, thickness: 0.05, width: 1, density: 20}}}\n"
+#define PLATES                                                                                                   \
+    SCHOOL_DEFAULTS                                                                                              \
+    "time: {end: 1, shedding_interval: 0.05, output_interval: 0.05}\n"                                           \
+    "fluid: {density: 1, viscosity: 2e-3}\nwake: {lifetime: 3, smoothing: 0.2}\n"                                \
+    "steady: {formation: true, tolerance: 3e-3}\n"                                                               \
+    "defaults: {fish: {nodes: 5, sheet_points: 13, force: pressure, start: {speed: 4.1},\n"                      \
+    "  wave: {amplitude: 0, frequency: 0}, motion: {prescribed: all, surge: free, heave: 0.15, frequency: 1},\n" \
+    "  body: {profile: uniform, thickness: 0.05, depth: 1, density: 20}}}\n"
 
 // from tail to nose, in wavelengths of the way that they go in a beat
 static double spacing(const struct steady_setup *setup) {
@@ -126,9 +126,9 @@ static void from_between_two_places_it_goes_where_the_fish_would(void **state) {
     (void)state;
     struct steady_setup setup;
     // the thrust is largest near there: Newton's method alone goes to the side until they do not feel each other
-    steady_setup_open(&setup, SCHOOL_SECOND
+    steady_setup_open(&setup, SCHOOL_DEFAULTS
                       "time: {end: 1, shedding_interval: 0.025, output_interval: 0.025}\n"
-                      "steady: {formation: true, tolerance: 3e-4}\nwake: {lifetime: 2, fade: 0.2}\n"
+                      "steady: {formation: true, tolerance: 3e-4}\nwake: {lifetime: 2, decay: 0.2}\n"
                       "defaults: {fish: {nodes: 13, sheet_points: 25, start: {speed: 0.75},\n"
                       "  control: {law: heading, desired_heading: 180}}}\n"
                       "fish: [{}, {start: {position: [1.75, 0.1]}}]\n");
@@ -152,7 +152,7 @@ static void where_no_formation_is_found_the_reason_is_what_the_fish_do(void **st
     // the search has gone somewhere else and back when it gives up, before its beats are at an end
     steady_setup_fails(COARSE
                        "steady: {formation: true, tolerance: 1e-3}\n"
-                       "wake: {lifetime: 2, fade: 0.2}\ndefaults: {fish: {" FISH
+                       "wake: {lifetime: 2, decay: 0.2}\ndefaults: {fish: {" FISH
                        ", start: {speed: 0.75}, control: {law: heading, desired_heading: 180}}}\n"
                        "fish: [{name: a}, {name: b, start: {position: [1, 0.3]}}]\n",
                        STATUS_SOLVER, "beats near the start: collision: let go, a and b come within");

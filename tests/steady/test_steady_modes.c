@@ -39,12 +39,12 @@ static int nearest(const struct found *found, double omega) {
 }
 
 /* A plate of mass 1 and bending stiffness 1/64 per length and span, clamped at its nose. */
-#define PLATE "body: {profile: uniform, thickness: 0.02, width: 1, density: 63.662, modulus: 39788, "
-#define CLAMPED "force: pressure, wave: {amplitude: 0, frequency: 0}, motion: {driven: head}, "
+#define PLATE "body: {profile: uniform, thickness: 0.02, depth: 1, density: 63.662, modulus: 39788, "
+#define CLAMPED "force: pressure, wave: {amplitude: 0, frequency: 0}, motion: {prescribed: head}, "
 
 static void without_water_they_are_those_of_a_clamped_beam(void **state) {
     (void)state;
-    static const char text[] = SCHOOL_SECOND
+    static const char text[] = SCHOOL_DEFAULTS
         "time: {end: 1, shedding_interval: 0.01}\nfluid: {density: 1e-9, velocity: [1, 0], viscosity: 0}\n"
         "wake: {lifetime: 2}\n"
         "fish: [{nodes: 33, " CLAMPED PLATE "relaxation_time: 0.02}, start: {heading: 180, speed: 0}}]\n";
@@ -62,11 +62,11 @@ static void without_water_they_are_those_of_a_clamped_beam(void **state) {
 }
 
 #define STREAM(velocity)                         \
-    SCHOOL_SECOND                                \
+    SCHOOL_DEFAULTS                              \
     "time: {end: 40, shedding_interval: 0.04}\n" \
     "fluid: {density: 1, velocity: " velocity    \
     ", viscosity: 0}\n"                          \
-    "solver: {rtol: 1e-7}\nwake: {lifetime: 12, fade: 9}\n"
+    "solver: {rtol: 1e-7}\nwake: {lifetime: 12, decay: 9}\n"
 #define FLAG "nodes: 9, sheet_points: 17, " CLAMPED PLATE "relaxation_time: 0}, "
 
 /* A flag that is off by 1e-5 rad: the logarithm of the ratio of two swings of its tail, three periods apart. */
@@ -118,12 +118,12 @@ static void they_do_not_depend_on_who_moves(void **state) {
 /* Of a long lifetime the modes see the newest part of the wake, which must fade all the same. */
 static void the_lifetime_of_a_long_wake_does_not_matter(void **state) {
     (void)state;
-    static const char *const wake[] = {"lifetime: 12, fade: 9", "lifetime: 1000", "lifetime: 1000, fade: 100"};
+    static const char *const wake[] = {"lifetime: 12, decay: 9", "lifetime: 1000", "lifetime: 1000, decay: 100"};
     struct found found[3];
     for (int k = 0; k < 3; k++) {
         char text[1024];
         snprintf(text, sizeof text,
-                 SCHOOL_SECOND
+                 SCHOOL_DEFAULTS
                  "time: {end: 1, shedding_interval: 0.04}\n"
                  "fluid: {density: 1, velocity: [1, 0], viscosity: 0}\nwake: {%s}\n"
                  "fish: [{" FLAG "start: {heading: 180, speed: 0}}]\n",
@@ -166,10 +166,10 @@ static void what_has_no_stiffness_left_diverges(void **state) {
         struct found found;
         snprintf(
             text, sizeof text,
-            SCHOOL_SECOND
+            SCHOOL_DEFAULTS
             "time: {end: 1, shedding_interval: 0.05}\nfluid: {density: 1, velocity: [-%g, 0]}\n"
             "wake: {lifetime: 20}\nfish: [{nodes: 9, sheet_points: 17, wave: {amplitude: 0, frequency: 0}, motion: "
-            "{driven: head}, drag: {tangential: 0}, " PLATE
+            "{prescribed: head}, drag: {tangential: 0}, " PLATE
             "relaxation_time: 0.2}, start: {heading: 180, speed: 0}}]\n",
             part[i] * critical);
         find(&found, text);
@@ -217,7 +217,7 @@ static void multipliers_become_exponents(void **state) {
 
 static void every_failing_allocation_is_reported_and_leaves_nothing(void **state) {
     (void)state;
-    static const char text[] = SCHOOL_SECOND
+    static const char text[] = SCHOOL_DEFAULTS
         "time: {end: 1, shedding_interval: 0.1}\nfluid: {density: 1, velocity: [1, 0], viscosity: 0}\n"
         "wake: {lifetime: 1}\nfish: [{nodes: 5, sheet_points: 9, " CLAMPED PLATE
         "relaxation_time: 0.1}, start: {heading: 180, speed: 0}}]\n";

@@ -11,8 +11,8 @@
 #define TIME "time: {end: 1, shedding_interval: 0.05, output_interval: 0.05}\n"
 #define BODY                                                          \
     "nodes: 9, sheet_points: 17, wave: {amplitude: 0, frequency: 0}," \
-    " body: {profile: uniform, thickness: 0.02, width: 1, density: 63.66, modulus: 40000, relaxation_time: 0.2}"
-#define HEAD BODY ", motion: {driven: head, speed: 0}"
+    " body: {profile: uniform, thickness: 0.02, depth: 1, density: 63.66, modulus: 40000, relaxation_time: 0.2}"
+#define HEAD BODY ", motion: {prescribed: head, speed: 0}"
 
 struct answer {
     struct simulation *simulation;
@@ -40,14 +40,14 @@ static void is_where_a_run_ends(const struct answer *answer, const char *text, d
 
 static void a_run_with_damping_comes_to_it(void **state) {
     (void)state;
-    static const char pressure[] = SCHOOL_SECOND TIME
+    static const char pressure[] = SCHOOL_DEFAULTS TIME
         "fluid: {density: 1, velocity: [0.3, 0], viscosity: 0}\nwake: {lifetime: 20}\n"
         "fish: [{" HEAD ", force: pressure, start: {heading: 170, speed: 0}}]\n";
     // across the stream: it bends by half of its length
-    static const char across[] = SCHOOL_SECOND TIME
+    static const char across[] = SCHOOL_DEFAULTS TIME
         "fluid: {density: 1, velocity: [0.5, 0]}\nwake: {lifetime: 5}\n"
         "fish: [{" HEAD
-        ", drag: {added_mass: 0},"
+        ", added_mass: {coefficient: 0},"
         " start: {heading: 270, speed: 0}, load: {tip: [0, 0.002]}}]\n";
     struct answer found;
     answer(&found, pressure);
@@ -67,11 +67,11 @@ static void a_run_with_damping_comes_to_it(void **state) {
 static void forces_are_those_along_and_across_the_stream(void **state) {
     (void)state;
     struct answer found;
-    answer(&found, SCHOOL_SECOND TIME
+    answer(&found, SCHOOL_DEFAULTS TIME
            "fluid: {density: 1, velocity: [0, 2], viscosity: 0}\n"
            "fish: [{" BODY
            ", force: pressure, pressure: {suction_limit: 0}, start: {heading: 260, speed: 0},"
-           " motion: {driven: all, speed: 0}}]\n");
+           " motion: {prescribed: all, speed: 0}}]\n");
     school_ok(found.status);
     // 2 pi sin(alpha), to the left of the stream; no drag
     NEAR(found.fish[0].lift, 3.14159265358979 * 4 * sin(0.17453292519943295), 0, 4e-3);
@@ -84,7 +84,7 @@ static void forces_are_those_along_and_across_the_stream(void **state) {
 
 // a flag whose clamp is downstream is a column under the load pi/4 rho U^2 of slender bodies: Euler
 #define REVERSED                                    \
-    SCHOOL_SECOND TIME                              \
+    SCHOOL_DEFAULTS TIME                            \
         "fluid: {density: 1, velocity: [-%g, 0]}\n" \
         "fish: [{" HEAD ", drag: {tangential: 0}, start: {heading: 180, speed: 0}}]\n"
 
@@ -108,11 +108,11 @@ static void it_diverges_where_a_column_does(void **state) {
 static void natural_curvature_is_the_shape_at_rest(void **state) {
     (void)state;
     struct answer found;
-    answer(&found, SCHOOL_SECOND TIME
+    answer(&found, SCHOOL_DEFAULTS TIME
            "fluid: {density: 0}\n"
            "fish: [{nodes: 9, sheet_points: 17, wave: {amplitude: 0.3, constant: 1,"
            " linear: 0, quadratic: 0, number: 0, frequency: 0, phase: 90},"
-           " motion: {driven: head, speed: 0}, start: {speed: 0}}]\n");
+           " motion: {prescribed: head, speed: 0}, start: {speed: 0}}]\n");
     school_ok(found.status);
     const struct fish *const fish = &found.simulation->school->fish[0];
     const struct fish_gait gait = fish_own_gait(fish, 0);
@@ -135,20 +135,21 @@ static void refused(const char *text, const char *words) {
 
 static void what_can_have_no_equilibrium_is_refused_with_the_reason(void **state) {
     (void)state;
-    refused(SCHOOL_SECOND TIME "fish: [{" BODY "}]\n", "neither beats nor is held");
-    refused(SCHOOL_SECOND TIME "fish: [{" BODY ", motion: {driven: head, surge: free}}]\n", "motion.surge: given");
-    refused(SCHOOL_SECOND TIME "fish: [{" HEAD "}, {" BODY
-                               ", start: {position: [3, 0]}, motion: {driven: head, speed: 1}}]\n",
+    refused(SCHOOL_DEFAULTS TIME "fish: [{" BODY "}]\n", "neither beats nor is held");
+    refused(SCHOOL_DEFAULTS TIME "fish: [{" BODY ", motion: {prescribed: head, surge: free}}]\n",
+            "motion.surge: given");
+    refused(SCHOOL_DEFAULTS TIME "fish: [{" HEAD "}, {" BODY
+                                 ", start: {position: [3, 0]}, motion: {prescribed: head, speed: 1}}]\n",
             "velocities of their own");
-    refused(SCHOOL_SECOND TIME "fluid: {gust: {amplitude: 0.1, frequency: 1}}\nfish: [{" HEAD "}]\n", "gust");
-    refused(SCHOOL_SECOND TIME
+    refused(SCHOOL_DEFAULTS TIME "fluid: {gust: {amplitude: 0.1, frequency: 1}}\nfish: [{" HEAD "}]\n", "gust");
+    refused(SCHOOL_DEFAULTS TIME
             "fluid: {shear: 0.1}\n"
-            "fish: [{" BODY ", start: {heading: 90}, motion: {driven: head, speed: 1}}]\n",
+            "fish: [{" BODY ", start: {heading: 90}, motion: {prescribed: head, speed: 1}}]\n",
             "across a shear");
-    refused(SCHOOL_SECOND TIME "wake: {dissipated_circulation: dropped}\nfish: [{" HEAD "}]\n", "retained");
-    refused(SCHOOL_SECOND TIME
+    refused(SCHOOL_DEFAULTS TIME "wake: {removed_circulation: dropped}\nfish: [{" HEAD "}]\n", "retained");
+    refused(SCHOOL_DEFAULTS TIME
             "fish: [{nodes: 9, sheet_points: 17, wave: {amplitude: 0.1, frequency: 0, ramp: 1},"
-            " motion: {driven: head, speed: 0}}]\n",
+            " motion: {prescribed: head, speed: 0}}]\n",
             "set wave.ramp to 0");
 }
 
@@ -156,7 +157,7 @@ static void where_there_is_none_it_says_how_far_the_stream_can_grow(void **state
     (void)state;
     // no edge carries more along it than E A = 628 N, which the load is at the root of 0.628 of the stream
     struct answer found;
-    answer(&found, SCHOOL_SECOND TIME
+    answer(&found, SCHOOL_DEFAULTS TIME
            "fluid: {density: 1, velocity: [0.01, 0]}\n"
            "fish: [{" HEAD ", load: {tip: [-1000, 0]}, start: {speed: 0, heading: 180}}]\n");
     assert_int_equal(found.status, STATUS_SOLVER);

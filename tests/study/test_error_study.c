@@ -77,7 +77,7 @@ static void the_keys_of_the_table_have_the_levels_of_the_table(void **state) {
     for (int i = 0; i < 4; i++) NEAR(setting(&study, nodes->member[i], "fish.sheet_points"), 69, 0, 0);
     assert_int_equal(nodes->member[1], key_of(&study, "fish.sheet_points")->member[0]);
     const int shorter = key_of(&study, "wake.lifetime")->member[3];
-    NEAR(setting(&study, shorter, "wake.fade") / setting(&study, 0, "wake.fade"), 0.5, 0, 1e-12);
+    NEAR(setting(&study, shorter, "wake.decay") / setting(&study, 0, "wake.decay"), 0.5, 0, 1e-12);
     NEAR(setting(&study, key_of(&study, "solver.rtol")->member[2], "wake.tolerance"), 1e-7, 0, 1e-12);
 
     // every member is a valid case, whose search begins with that of a neighbour; the case alone has multipliers
@@ -117,9 +117,10 @@ static void levels_that_are_no_valid_cases_are_replaced(void **state) {
     error_plan_free(&study);
     // a table has a value for each edge
     study = open_study(
-        "format: 1\ntime: {end: 4}\nfish: [{nodes: 5, sheet_points: 11, body: {profile: table, h: [0.1, 0.1, 0.1, "
+        "format: 1\ntime: {end: 4}\nfish: [{nodes: 5, sheet_points: 11, body: {profile: table, thickness_table: [0.1, "
+        "0.1, 0.1, "
         "0.1],\n"
-        "  w: [0.2, 0.2, 0.2, 0.2]}}]\n",
+        "  depth_table: [0.2, 0.2, 0.2, 0.2]}}]\n",
         "{of: speed}");
     assert_int_equal(key_of(&study, "fish.nodes")->n_levels, 1);
     assert_non_null(strstr(key_of(&study, "fish.nodes")->objection, "no other level"));
@@ -153,8 +154,8 @@ static void a_duration_keeps_the_unit_of_the_case(void **state) {
         double level[4];
     } examples[] = {
         {"", " beats", "12 beats", "9 beats", {12, 6, 3, 1.5}},
-        {"wake: {lifetime: 4 beats, fade: 1}\n", " beats", "16 beats", "4", {16, 8, 4, 2}},
-        {"wake: {lifetime: 1.5, fade: 1 beat}\n", "", "6", "4 beats", {6, 3, 1.5, 0.75}},
+        {"wake: {lifetime: 4 beats, decay: 1}\n", " beats", "16 beats", "4", {16, 8, 4, 2}},
+        {"wake: {lifetime: 1.5, decay: 1 beat}\n", "", "6", "4 beats", {6, 3, 1.5, 0.75}},
     };
     for (size_t i = 0; i < sizeof examples / sizeof *examples; i++) {
         char text[256];
@@ -166,7 +167,7 @@ static void a_duration_keeps_the_unit_of_the_case(void **state) {
         const struct sweep_axis *const axis = &study.study.sweep[0];
         char **const row = axis->value + key->member[0] * axis->n_keys;
         assert_string_equal(row[error_plan_column(&study, "wake.lifetime")], examples[i].longest);
-        assert_string_equal(row[error_plan_column(&study, "wake.fade")], examples[i].fade);
+        assert_string_equal(row[error_plan_column(&study, "wake.decay")], examples[i].fade);
         struct case_values member;
         assert_int_equal(case_member(&member, &study.study, key->member[0]), STATUS_OK);
         NEAR(member.school.wake.lifetime.seconds, i == 0 ? 6 : i == 1 ? 8 : 6, 0, 1e-12);
@@ -209,7 +210,7 @@ static void an_equilibrium_has_points_only(void **state) {
     (void)state;
     struct error_study study = open_study(
         "format: 1\ntime: {end: 4}\nfluid: {velocity: [1, 0]}\nfish: [{nodes: 9, force: pressure, wave: {amplitude: 0, "
-        "frequency: 0}, motion: {driven: head, speed: 0}}]\n",
+        "frequency: 0}, motion: {prescribed: head, speed: 0}}]\n",
         "{of: steady_lift}");
     assert_true(study.is_static);
     assert_int_equal(study.n_keys, 2);

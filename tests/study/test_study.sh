@@ -260,7 +260,7 @@ if /usr/bin/python3 -c 'import netCDF4, matplotlib' 2>err; then
 format: 1
 time: {end: 3, shedding_interval: 0.05}
 defaults: {fish: {nodes: 5, sheet_points: 11}}
-fish: [{motion: {driven: head}}]
+fish: [{motion: {prescribed: head}}]
 sweep: [{key: "fish[*].start.speed", values: [0.5, 1]}]
 end
     cat >panels.py <<'end'
@@ -276,11 +276,11 @@ end
     run study held.yaml -q -o held
     check a_picture_of_a_held_fish draws held/study.nc
     check it_shows_what_holding_takes panels held/study.nc mean_thrust mean_power thrust_efficiency
-    run study held.yaml -q -o free --set 'fish[0].motion.driven=none'
+    run study held.yaml -q -o free --set 'fish[0].motion.prescribed=none'
     check a_free_fish_that_starts_at_a_speed_is_not_held panels free/study.nc speed cost_of_transport strouhal
     run study held.yaml -q -o heaving --set 'fish[0].wave={amplitude: 0, frequency: 0}' --set \
-        'fish[0].motion={driven: head, surge: free, heave: 0.1, frequency: 1}'
-    check where_no_muscle_works_its_cost_says_nothing panels heaving/study.nc speed efficiency strouhal
+        'fish[0].motion={prescribed: head, surge: free, heave: 0.1, frequency: 1}'
+    check a_heaving_fish_has_the_cost_of_its_heave panels heaving/study.nc speed cost_of_transport strouhal
     # two of three levels need more steps than they may take
     run study refined.yaml -o lonely -q --set time.end=0.04 --set time.shedding_interval=0.02 --set solver.method=rk4 \
         --set solver.max_steps=3 --set 'sweep=[{key: solver.step, values: [0.01, 0.005, 0.0025], refine: true}]'

@@ -72,7 +72,7 @@ static void stiff_bodies(void) {
 static void waypoints(void) {
     if (verify_is_fast()) return;
     struct simulation *const simulation =
-        verify_open(VERIFY_SECOND
+        verify_open(VERIFY_DEFAULTS
                     "format: 1\ntime: {end: 40, shedding_interval: 0.02}\n"
                     "fish: [{control: {waypoints: [[-4, 1], [-8, -1], [-12, 0]]}}]\n");
     const struct state *const state = simulation->state;
@@ -87,7 +87,7 @@ static void waypoints(void) {
 static void course_in_a_wake(void) {
     if (verify_is_fast()) return;
     struct simulation *const simulation =
-        verify_open(VERIFY_SECOND
+        verify_open(VERIFY_DEFAULTS
                     "format: 1\ntime: {end: 20, shedding_interval: 0.02}\n"
                     "fish: [{control: {law: course}}, {start: {position: [2, 0.3]}, control: {law: course}}]\n");
     double most = 0;

@@ -27,7 +27,7 @@ static double relative_balance(struct simulation *simulation) {
     simulate_measure(simulation);
     for (int f = 0; f < simulation->school->n_fish; f++) {
         const struct diagnostics_fish *const fish = &simulation->diagnostics->fish[f];
-        most = fmax(most, fabs(fish->energy_audit / fish->actuation_work));
+        most = fmax(most, fabs(fish->energy_balance / fish->actuation_work));
     }
     return most;
 }
@@ -117,7 +117,7 @@ static double body_energy(const struct diagnostics_fish *fish) {
 static struct beat last_beat(double speed, int n_beats) {
     enum { PER_BEAT = 50 };
     struct simulation *const simulation =
-        verify_open(VERIFY_SECOND
+        verify_open(VERIFY_DEFAULTS
                     "format: 1\ntime: {end: %d, shedding_interval: 0.02, output_interval: 0.02}\n"
                     "fish: [{nodes: 7, sheet_points: 33, start: {speed: %g}}]\n",
                     n_beats, speed);

@@ -14,7 +14,7 @@ struct swim {
 // the steady state of a default fish with some keys; school: the other sections of its case
 static struct swim steady_swim(const char *school, const char *keys) {
     char text[512];
-    snprintf(text, sizeof text, "format: 1\n" VERIFY_SECOND "%sfish: [{%s}]\n", school, keys);
+    snprintf(text, sizeof text, "format: 1\n" VERIFY_DEFAULTS "%sfish: [{%s}]\n", school, keys);
     struct case_values values;
     struct steady_problem problem;
     struct simulation *const simulation = verify_open("%s", text);
@@ -89,14 +89,14 @@ static void scale(void) {
 // the cost of the last of eight beats from rest
 static double cost_from_rest(double modulus, double rtol) {
     struct simulation *const simulation =
-        verify_open("format: 1\n" VERIFY_SECOND "time: {end: 8}\nsolver: {rtol: %g}\nfish: [{body: {modulus: %g}}]\n",
+        verify_open("format: 1\n" VERIFY_DEFAULTS "time: {end: 8}\nsolver: {rtol: %g}\nfish: [{body: {modulus: %g}}]\n",
                     rtol, modulus);
     verify_run(simulation, 8);
     simulate_measure(simulation);
     const struct diagnostics_fish *const fish = &simulation->diagnostics->fish[0];
     const double cost = fish->cost_of_transport;
     verify_zero(verify_text("%.0e Pa, rtol %.0e: energy balance over work", modulus, rtol), "residual after 8 s",
-                fish->energy_audit / fish->actuation_work, 1e-3);
+                fish->energy_balance / fish->actuation_work, 1e-3);
     verify_point("fish_stiffness", "cost [m/s2]", modulus, cost);
     simulate_free(simulation);
     return cost;

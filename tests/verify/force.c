@@ -13,11 +13,10 @@
 #include "verify.h"
 
 #define STILL "format: 1\nwake: {smoothing: 1.0e+6}\n"
-#define IDEAL                                                                                                        \
-    "force: reactive, sheet_points: 5, start: {speed: 0}, body: {section: mean, density: 1000, modulus: %g, "        \
-    "bending_damping: 0, stretching_damping: 0, relaxation_time: %g}, drag: {tangential: 0, normal: 0, added_mass: " \
-    "1, "                                                                                                            \
-    "extent: %s}"
+#define IDEAL                                                                                                 \
+    "force: reactive, sheet_points: 5, start: {speed: 0}, body: {section: mean, density: 1000, modulus: %g, " \
+    "bending_damping: 0, stretching_damping: 0, relaxation_time: %g}, drag: {tangential: 0, normal: 0}, "     \
+    "added_mass: {coefficient: 1, extent: %s}"
 
 static const struct diagnostics_fish *measured(struct simulation *simulation) {
     simulate_measure(simulation);
@@ -37,20 +36,20 @@ static double random_number(uint64_t *seed) {
 }
 
 // what the fluid has given to a fish with a random gait, at most, over the work of its muscle: without damping all that
-// is in the body and did not come from the muscle, less what the audit says of the integration
+// is in the body and did not come from the muscle, less what the energy balance says of the integration
 static double most_gained(uint64_t *seed, int flux, double end, double *speed) {
     const double amplitude = 0.4 + 0.2 * random_number(seed), number = 8 * random_number(seed);
     const double frequency = 1 + 0.5 * random_number(seed), quadratic = random_number(seed);
     struct simulation *const simulation =
         verify_open(STILL "time: {end: %g, shedding_interval: 0.25}\nsolver: {rtol: 1.0e-4}\nfish: [{" IDEAL
                           ", wave: {amplitude: %g, number: %g, frequency: %g, quadratic: %g}}]\n",
-                    end, 1e5, 0.0, flux ? "width" : "thickness", amplitude, number, frequency, quadratic);
+                    end, 1e5, 0.0, flux ? "depth" : "thickness", amplitude, number, frequency, quadratic);
     const double before = body_energy(measured(simulation));
     double most = 0;
     for (double t = 0.25; t < end + 0.1; t += 0.25) {
         verify_run(simulation, t);
         const struct diagnostics_fish *const fish = measured(simulation);
-        most = fmax(most, body_energy(fish) - before - fish->actuation_work - fish->energy_audit);
+        most = fmax(most, body_energy(fish) - before - fish->actuation_work - fish->energy_balance);
         *speed = fmax(*speed, fish->speed);
     }
     most /= fabs(measured(simulation)->actuation_work);
@@ -155,9 +154,9 @@ static const double added_mass = 1000 * M_PI * 0.0625 / 4; /* per length: width 
     STILL                                                                                                   \
     "time: {end: 1, shedding_interval: 1}\nfish: [{force: reactive, sheet_points: 5, nodes: 11, "           \
     "body: {profile: uniform, section: mean, thickness: 0.1}, wave: {amplitude: 0}, drag: {tangential: 0, " \
-    "normal: 0, added_mass: 1, extent: width}, motion: {driven: all, %s}}]\n"
+    "normal: 0}, added_mass: {coefficient: 1, extent: depth}, motion: {prescribed: all, %s}}]\n"
 
-// force on the plate at time t and its moment about the nose, from the balance of its driven nodes
+// force on the plate at time t and its moment about the nose, from the balance of its prescribed nodes
 static void force_on_plate(const char *motion, double t, double force[2], double *moment) {
     struct simulation *const simulation = verify_open(PLATE, motion);
     const struct fish *const fish = simulation->school->fish;

@@ -1,4 +1,4 @@
-/* interval.c: the section "interval": the order in the shedding interval of the second edition of the model: one soft
+/* interval.c: the section "interval": the order in the shedding interval of the default model: one soft
  * fish, from rest and from a moving start, whose oldest wake decays during the run.
  *
  * Runs are compared with finer ones, with the same sheet points, as root mean squares over the run: at one instant the
@@ -24,7 +24,7 @@ struct path {
 
 // one fish, and what is varied; force: one that feels the own wake
 struct variant {
-    const char *shedding, *force, *dissipated;
+    const char *shedding, *force, *removed;
     double speed;  // at the start, m/s
 };
 
@@ -36,13 +36,13 @@ static int is_sheet(const struct variant *variant) {
 
 static void run_fish(const struct variant *variant, double interval, struct path *path) {
     struct simulation *const simulation =
-        verify_open(VERIFY_SECOND
+        verify_open(VERIFY_DEFAULTS
                     "format: 1\ntime: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
-                    "wake: {shedding: %s, dissipated_circulation: %s, lifetime: 1, fade: 0.2}\n"
+                    "wake: {shedding: %s, removed_circulation: %s, lifetime: 1, decay: 0.2}\n"
                     "solver: {rtol: 1e-9, order: 5}\n"
                     "fish: [{nodes: 7, sheet_points: 65, force: %s, body: {modulus: 1.0e+5}, start: {speed: %g}}]\n",
-                    N_TIMES * longest, interval, N_TIMES * longest, variant->shedding, variant->dissipated,
-                    variant->force, variant->speed);
+                    N_TIMES * longest, interval, N_TIMES * longest, variant->shedding, variant->removed, variant->force,
+                    variant->speed);
     const struct fish *const fish = &simulation->school->fish[0];
     const double *const y = simulation->state->y;
     const int last = fish->n_nodes - 1;
@@ -79,12 +79,12 @@ static void report(const struct variant *variant, const struct expected *expecte
                    const struct path *runs, enum quantity quantity) {
     double change[MOST_RUNS];
     char name[80], what[120], series[80];
-    snprintf(name, sizeof name, "%s, %s, %s: %s", variant->shedding, variant->dissipated,
+    snprintf(name, sizeof name, "%s, %s, %s: %s", variant->shedding, variant->removed,
              variant->speed > 0 ? "moving" : "from rest", quantity_name[quantity]);
     snprintf(series, sizeof series, "%s: %s", variant->speed > 0 ? "moving" : "from rest", quantity_name[quantity]);
     for (int i = 0; i + 1 < n; i++) {
         change[i] = difference(&runs[i], &runs[i + 1], quantity);
-        verify_point(verify_text("interval, %s, %s", variant->shedding, variant->dissipated), series, interval[i],
+        verify_point(verify_text("interval, %s, %s", variant->shedding, variant->removed), series, interval[i],
                      change[i]);
     }
     snprintf(what, sizeof what, "order in Dt, %s", name);
@@ -122,11 +122,11 @@ void verify_interval(void) {
     static const struct expected sheet[2][N_QUANTITIES] = {
         {[NOSE] = {1.4, 2.2, from_rest}, [TAIL] = {1.4, 2.2, from_rest}, [SHED] = {1.2, 2.2, from_rest}},
         {[NOSE] = {1.3, 2.2, moving}, [TAIL] = {1.1, 2.2, moving}, [SHED] = {1.3, 2.2, moving}}};
-    static const char *const dissipated[] = {"retained", "dropped"};
+    static const char *const removed[] = {"retained", "dropped"};
     for (int is_moving = verify_is_fast(); is_moving < 2; is_moving++) {
         for (int d = 0; d < (verify_is_fast() ? 1 : 2); d++) {
-            const struct variant free_sheet = {"sheet", "pressure", dissipated[d], is_moving};
-            const struct variant one = {"continuous", "published", dissipated[d], is_moving};
+            const struct variant free_sheet = {"sheet", "pressure", removed[d], is_moving};
+            const struct variant one = {"continuous", "published", removed[d], is_moving};
             halve_interval(&free_sheet, sheet[is_moving]);
             halve_interval(&one, continuous);
         }

@@ -286,7 +286,7 @@ static void sample_modes(double length, struct linear_theory_shape *modes) {
     }
 }
 
-// ---- the driven plate
+// ---- the prescribed plate
 
 // mode j: (stiffness beta^4/L^4 - omega^2 mass) L q_j - sum_i int [p]_i psi_j q_i = the same of the heave, to the right
 void linear_theory_driven(const struct linear_theory_plate *plate, const struct linear_theory_body *body,

@@ -7,14 +7,14 @@
 #include "verify.h"
 
 #define PLAIN                                                                                             \
-    "force: pressure, nodes: 17, drag: {skin: laminar}, pressure: {suction_limit: 0}, body: {width: %g, " \
+    "force: pressure, nodes: 17, drag: {skin: laminar}, pressure: {suction_limit: 0}, body: {depth: %g, " \
     "tail_thickness: 0, damping: curvature, relaxation_time: 0.001}"
 
 /* A run: its fish, and what differs from the usual one. */
 struct run {
     const char *fish;
     double end, interval, viscosity; /* s, s, m2 s-1 */
-    int n_sheet, fades;              /* fades: a lifetime of 2 s, three quarters of it fading */
+    int n_sheet, decays;             /* decays: a lifetime of 2 s, three quarters of it decaying */
     const char *fluid;               /* further keys of the fluid */
 };
 
@@ -26,16 +26,16 @@ struct found {
 };
 
 static struct simulation *open_run(const struct run *run) {
-    return verify_open(VERIFY_SECOND
+    return verify_open(VERIFY_DEFAULTS
                        "format: 1\n"
                        "time: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
                        "solver: {rtol: 1.0e-6}\n"
                        "fluid: {viscosity: %g%s}\n"
-                       "wake: {lifetime: %g, fade: %g}\n"
+                       "wake: {lifetime: %g, decay: %g}\n"
                        "defaults: {fish: {sheet_points: %d}}\n"
                        "fish: [%s]\n",
                        run->end, run->interval, run->interval, run->viscosity, run->fluid ? run->fluid : "",
-                       run->fades ? 2.0 : 1000.0, run->fades ? 1.5 : 100.0, run->n_sheet, run->fish);
+                       run->decays ? 2.0 : 1000.0, run->decays ? 1.5 : 100.0, run->n_sheet, run->fish);
 }
 
 static double momentum_of(const struct simulation *simulation) {
@@ -55,16 +55,16 @@ static struct found find(const struct run *run) {
     for (int n = 1; n <= lround(run->end / run->interval); n++) {
         verify_run(simulation, n * run->interval);
         simulate_measure(simulation);
-        const double *const audit = simulation->diagnostics->momentum_audit;
-        largest = fmax(largest, hypot(audit[0], audit[1]));
-        found.angular = fmax(found.angular, fabs(audit[2]));
-        found.angular_at_end = fabs(audit[2]);
+        const double *const imbalance = simulation->diagnostics->momentum_balance;
+        largest = fmax(largest, hypot(imbalance[0], imbalance[1]));
+        found.angular = fmax(found.angular, fabs(imbalance[2]));
+        found.angular_at_end = fabs(imbalance[2]);
         found.size = fmax(found.size, simulation->diagnostics->momentum_size);
         momentum = fmax(momentum, momentum_of(simulation));
         for (int i = 0; i < 2; i++) {
-            if (n == lround(1 / run->interval)) at_beat[i] = audit[i];
-            found.balance[i] = audit[i];
-            found.since_beat[i] = audit[i] - at_beat[i];
+            if (n == lround(1 / run->interval)) at_beat[i] = imbalance[i];
+            found.balance[i] = imbalance[i];
+            found.since_beat[i] = imbalance[i] - at_beat[i];
             found.force[i] = found.since_beat[i] / (run->end - 1);
         }
     }
@@ -160,18 +160,18 @@ static void refined(void) {
 
 #define PLATE(phase)                                                                                              \
     "{force: pressure, nodes: 17, wave: {amplitude: 0, frequency: 0}, start: {speed: 1}, drag: {skin: laminar}, " \
-    "pressure: {suction_limit: 0}, body: {profile: uniform, thickness: 0.05, width: 1}, "                         \
-    "motion: {driven: all, heave: 0.1, frequency: 1, phase: " phase "}}"
+    "pressure: {suction_limit: 0}, body: {profile: uniform, thickness: 0.05, depth: 1}, "                         \
+    "motion: {prescribed: all, heave: 0.1, frequency: 1, phase: " phase "}}"
 
 static void balances(void) {
     const struct run one = {fish(MOVES, 1, 0, 0), 6, 0.01, 1e-6, 33, 1, NULL};
     const struct found of_one = find(&one);
-    verify_zero("friction and fading, one fish: balance over its largest term", conservation, of_one.part, 1e-3);
-    verify_zero("friction and fading, one fish: angular, N m s", conservation, of_one.angular, 0.06);
+    verify_zero("friction and decaying, one fish: balance over its largest term", conservation, of_one.part, 1e-3);
+    verify_zero("friction and decaying, one fish: angular, N m s", conservation, of_one.angular, 0.06);
     const struct run pair = {fish(FOLLOWS, 1, 1, 1.3), 5, 0.01, 1e-6, 33, 1, NULL};
-    verify_zero("friction and fading, tandem: balance over its largest term", conservation, find(&pair).part, 1e-3);
+    verify_zero("friction and decaying, tandem: balance over its largest term", conservation, find(&pair).part, 1e-3);
     const struct run plate = {PLATE("90"), 5, 0.01, 1e-6, 33, 1, NULL};
-    verify_zero("friction and fading, plate held in heave: balance over its largest term", conservation,
+    verify_zero("friction and decaying, plate held in heave: balance over its largest term", conservation,
                 find(&plate).part, 1e-3);
     const struct run sudden = {PLATE("0"), 5, 0.01, 1e-6, 33, 1, NULL};
     const struct found jump = find(&sudden);

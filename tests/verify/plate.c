@@ -34,24 +34,24 @@ static struct resolution point_vortices(double interval) {
 /* What a case gets that says nothing, at U Dt = 0.01 L. */
 static const struct resolution defaults = {0.01, 0.1, 0.05, 33, "edge", "chebyshev", "sheet"};
 
-/* One nascent vortex, smoothed also next to the edge: the default of the first edition of the model. */
+/* One nascent vortex, smoothed also next to the edge: the default of the article's model. */
 static const struct resolution smoothed = {0.01, 0.2, 0.05, 21, "edge", "chebyshev", "continuous"};
 
-/* A straight driven plate; motion: further keys of it. */
+/* A straight prescribed plate; motion: further keys of it. */
 static struct simulation *open_plate(const struct resolution *with, double end, const double velocity[2],
                                      const char *motion) {
-    return verify_open(VERIFY_SECOND
+    return verify_open(VERIFY_DEFAULTS
                        "format: 1\n"
                        "time: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
                        "fluid: {velocity: [%.17g, %.17g]}\n"
-                       "wake: {smoothing: %.17g, sheet_smoothing: %.17g, lifetime: 1000, kutta: %s, collocation: %s, "
-                       "shedding: %s}\n"
+                       "wake: {smoothing: %.17g, lifetime: 1000, shedding: %s}\n"
+                       "sheet: {smoothing: %.17g, kutta: %s, collocation: %s}\n"
                        "solver: {rtol: 1e-6}\n"
                        "fish:\n"
                        "  - {nodes: 4, sheet_points: %d, wave: {amplitude: 0}, start: {heading: 180, speed: 0},\n"
-                       "     motion: {driven: all, %s}}\n",
-                       end, with->interval, with->interval, velocity[0], velocity[1], with->smoothing,
-                       with->sheet_smoothing, with->kutta, with->collocation, with->shedding, with->n_sheet, motion);
+                       "     motion: {prescribed: all, %s}}\n",
+                       end, with->interval, with->interval, velocity[0], velocity[1], with->smoothing, with->shedding,
+                       with->sheet_smoothing, with->kutta, with->collocation, with->n_sheet, motion);
 }
 
 static double bound_circulation(const struct simulation *simulation) {

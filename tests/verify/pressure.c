@@ -20,7 +20,7 @@ struct plate {
 };
 
 static struct simulation *open_plate(const struct plate *plate) {
-    return verify_open(VERIFY_SECOND
+    return verify_open(VERIFY_DEFAULTS
                        "format: 1\n"
                        "time: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
                        "fluid: {density: 1, viscosity: 0}\n"
@@ -29,8 +29,8 @@ static struct simulation *open_plate(const struct plate *plate) {
                        "  - {nodes: %d, sheet_points: %d, " VERIFY_ATTACHED
                        ", wave: {amplitude: 0, frequency: 0},\n"
                        "     start: {speed: 1},\n"
-                       "     body: {profile: uniform, thickness: 0.02, width: 1, density: 1},\n"
-                       "     motion: {driven: all, %s}}\n",
+                       "     body: {profile: uniform, thickness: 0.02, depth: 1, density: 1},\n"
+                       "     motion: {prescribed: all, %s}}\n",
                        plate->end, plate->interval, plate->interval, plate->smoothing,
                        plate->is_uniform ? ", taper: 0, taper_beside: 0" : "", plate->nodes, plate->n_sheet,
                        plate->motion);
@@ -240,13 +240,13 @@ static void steady(void) {
 
 // A heaving plate of length 2 with friction 0.04 U^(3/2). Its mass is 1.5: theory has a uniform speed, and that of a
 // lighter body oscillates with its thrust (mass 0.5: -0.18 %). The wake decays over several periods, for the end of a
-// short one moves with the phase of the heave: 2 beats and a fade of 0.2 make it 5 % too fast.
+// short one moves with the phase of the heave: 2 beats and a decay of 0.2 make it 5 % too fast.
 static void self_propelled(double amplitude, const char *wake, int per_period, int n_periods, double bound) {
     const struct linear_theory_plate plate = {2, 1, 1, 2 * pi};
     const double speed = linear_theory_heaving_speed(&plate, amplitude, 0.04), k = 2 * pi / speed;
     const double complex c = linear_theory_theodorsen(k);
     struct simulation *const simulation =
-        verify_open(VERIFY_SECOND
+        verify_open(VERIFY_DEFAULTS
                     "format: 1\n"
                     "time: {end: %d, shedding_interval: %.17g, output_interval: %.17g}\n"
                     "fluid: {density: 1, viscosity: %.17g}\n"
@@ -254,8 +254,8 @@ static void self_propelled(double amplitude, const char *wake, int per_period, i
                     "fish:\n"
                     "  - {length: 2, nodes: 17, sheet_points: 33, " VERIFY_ATTACHED
                     ", wave: {amplitude: 0, frequency: 0}, start: {speed: %.17g},\n"
-                    "     body: {profile: uniform, thickness: 0.1, width: 0.5, density: 4.8, modulus: 1.0e+5},\n"
-                    "     motion: {driven: all, surge: free, heave: %g, frequency: 1}}\n",
+                    "     body: {profile: uniform, thickness: 0.1, depth: 0.5, density: 4.8, modulus: 1.0e+5},\n"
+                    "     motion: {prescribed: all, surge: free, heave: %g, frequency: 1}}\n",
                     n_periods, 1.0 / per_period, 1.0 / per_period, pow(0.04 / 1.328, 2) / 2, wake, speed, amplitude);
     verify_run(simulation, n_periods);
     simulate_measure(simulation);
@@ -274,8 +274,8 @@ void verify_pressure(void) {
     pitch();
     wagner();
     steady();
-    self_propelled(0.1, "lifetime: 8, fade: 6, ", 100, 24, 0.0011);
-    self_propelled(0.2, "lifetime: 4, fade: 3, ", 200, 16, 0.001);
+    self_propelled(0.1, "lifetime: 8, decay: 6, ", 100, 24, 0.0011);
+    self_propelled(0.2, "lifetime: 4, decay: 3, ", 200, 16, 0.001);
     self_propelled(0.1, "", 100, 24, 0.003);
     without_taper();
     refined();

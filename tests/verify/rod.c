@@ -27,7 +27,7 @@ static const double thin = 1e-3;  // m: at the largest load the strain is 1e-6: 
 #define ROD                                                                                                           \
     "fluid: {density: 0}\nwake: {lifetime: 100, shedding: continuous, taper: 0, taper_beside: 0}\nfish:\n  - nodes: " \
     "%d\n    sheet_points: 5\n"                                                                                       \
-    "    drag: {tangential: 0, normal: 0, added_mass: 0}\n    start: {speed: 0}\n"                                    \
+    "    drag: {tangential: 0, normal: 0}\n    added_mass: {coefficient: 0}\n    start: {speed: 0}\n"                 \
     "    body: {profile: uniform, section: %s, thickness: %g, density: 2000, modulus: %.17g,\n"                       \
     "           bending_damping: 0, stretching_damping: 0, relaxation_time: %g}\n"
 #define PASSIVE "    wave: {amplitude: 0, frequency: 0}\n"
@@ -49,7 +49,7 @@ static double deflection(int nodes, double load) {
     // 12 s 1e-13 of the motion is left
     struct simulation *const simulation =
         verify_open("format: 1\ntime: {end: 12, shedding_interval: 0.25}\nsolver: {rtol: 1.0e-6}\n" ROD PASSIVE
-                    "    motion: {driven: head, speed: 0}\n    load: {tip: [0, %.17g]}\n",
+                    "    motion: {prescribed: head, speed: 0}\n    load: {tip: [0, %.17g]}\n",
                     nodes, "mean", thin, modulus_of(thin), 0.4, load * stiffness);
     verify_run(simulation, 12);
     const struct fish *const fish = simulation->school->fish;
@@ -148,7 +148,7 @@ static double *lateral_matrix(struct simulation *simulation, int *n) {
 // beta L of the first three modes that are not rigid
 static void wave_numbers(int nodes, const char *section, int clamped, double beta[3]) {
     struct simulation *const simulation = verify_open(
-        "format: 1\ntime: {end: 1, shedding_interval: 0.25}\n" ROD PASSIVE "    motion: {driven: %s, speed: 0}\n",
+        "format: 1\ntime: {end: 1, shedding_interval: 0.25}\n" ROD PASSIVE "    motion: {prescribed: %s, speed: 0}\n",
         nodes, section, thin, modulus_of(thin), 0.0, clamped ? "head" : "none");
     int n;
     double *const matrix = lateral_matrix(simulation, &n);

@@ -75,8 +75,8 @@ static struct ends ends_of(const struct simulation *simulation, double shed_at) 
 
 // how a run differs from the usual one
 struct variant {
-    double interval;   // between two events, s
-    const char *wake;  // further keys of wake
+    double interval;     // between two events, s
+    const char *sheets;  // lines of the keys wake and sheet
     double rtol;
     int order;
     double softness;      // divides the modulus of every fish
@@ -84,7 +84,7 @@ struct variant {
 };
 
 static const struct variant usual = {.interval = 0.02,
-                                     .wake = "lifetime: 4",
+                                     .sheets = "wake: {lifetime: 4}\n",
                                      .rtol = 1e-10,
                                      .order = 5,
                                      .softness = 1,
@@ -95,7 +95,7 @@ static const struct variant usual = {.interval = 0.02,
 static struct simulation *open_school(const struct variant *variant) {
     return verify_open(
         "format: 1\nname: school\ntime: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
-        "wake: {%s}\nsolver: {rtol: %.17g, order: %d}\n"
+        "%ssolver: {rtol: %.17g, order: %d}\n"
         "defaults: {fish: {control: {law: heading}}}\n"
         "fish:\n"
         "  - {name: leader, body: {modulus: %.17g}}\n"
@@ -104,7 +104,7 @@ static struct simulation *open_school(const struct variant *variant) {
         "     start: {position: [0.3, 0.5], heading: 170, speed: 0.9}}\n"
         "  - {name: behind, length: 0.9, sheet_points: 17, body: {modulus: %.17g}, wave: {phase: 200},\n"
         "     start: {position: [1.3, 0.15]}}\n",
-        variant->end, variant->interval, variant->end, variant->wake, variant->rtol, variant->order,
+        variant->end, variant->interval, variant->end, variant->sheets, variant->rtol, variant->order,
         1e6 / variant->softness, 3e5 / variant->softness, 2e6 / variant->softness);
 }
 
@@ -117,11 +117,11 @@ static struct ends run_school(const struct variant *variant) {
 }
 
 // one fish of the usual kind, with further keys of the fish
-static struct ends run_fish(double rtol, int order, const char *wake, const char *keys) {
+static struct ends run_fish(double rtol, int order, const char *sheets, const char *keys) {
     struct simulation *simulation = verify_open(
         "format: 1\nname: fish\ntime: {end: %.17g, shedding_interval: 0.02, output_interval: %.17g}\n"
-        "wake: {lifetime: 4%s}\nsolver: {rtol: %.17g, order: %d}\nfish:\n  - {name: fish%s}\n",
-        end_time, end_time, wake, rtol, order, keys);
+        "wake: {lifetime: 4}\n%ssolver: {rtol: %.17g, order: %d}\nfish:\n  - {name: fish%s}\n",
+        end_time, end_time, sheets, rtol, order, keys);
     verify_run(simulation, end_time);
     const struct ends ends = ends_of(simulation, label);
     simulate_free(simulation);
@@ -170,27 +170,28 @@ static void check_interval(void) {
     // an impulse stands for what follows it during one interval, and appears where that begins
     struct variant impulsive = usual;
     impulsive.rtol = 1e-8;
-    impulsive.wake = "lifetime: 4, shedding: impulsive";
+    impulsive.sheets = "wake: {lifetime: 4, shedding: impulsive}\n";
     halve_interval("impulsive", "an impulse is shed half an interval off: first order", "school_interval_impulsive",
                    &impulsive, fast ? 3 : 5, fast ? 0.005 : 0.0025, 0.9, 1.1);
     if (fast) return;
 
     // its errors are small and change sign near Dt = 0.01: only below does the order show
     struct variant rate = usual;
-    rate.wake = "lifetime: 4, kutta: rate";
+    rate.sheets = "wake: {lifetime: 4}\nsheet: {kutta: rate}\n";
     halve_interval("kutta rate", "as above; errors change sign near Dt = 0.01, so that finer steps are taken",
                    "school_interval_rate", &rate, 5, 0.000625, 1.8, 2.2);
-    impulsive.wake = "lifetime: 4, shedding: impulsive, kutta: rate";
+    impulsive.sheets = "wake: {lifetime: 4, shedding: impulsive}\nsheet: {kutta: rate}\n";
     halve_interval("impulsive rate", "as for impulsive", "school_interval_impulsive_rate", &impulsive, 5, 0.0025, 0.9,
                    1.1);
 
     // vortices that fade out and are removed during the run
-    static const char fades[] = "the strength of a vortex is that of what was shed half an interval before its release";
-    struct variant fading = usual;
-    fading.wake = "lifetime: 0.64, fade: 0.32";
-    fading.end = 1.28;
-    fading.shed_at = 1;
-    halve_interval("fading wake", fades, "school_interval_fading", &fading, 5, 0.0025, 1.8, 2.2);
+    static const char decays[] =
+        "the strength of a vortex is that of what was shed half an interval before its release";
+    struct variant decaying = usual;
+    decaying.sheets = "wake: {lifetime: 0.64, decay: 0.32}\n";
+    decaying.end = 1.28;
+    decaying.shed_at = 1;
+    halve_interval("decaying wake", decays, "school_interval_fading", &decaying, 5, 0.0025, 1.8, 2.2);
 }
 
 // ---- the body ----
@@ -220,7 +221,7 @@ static double profile_integral(double s) {
 
 // keys of a body whose edges have the mean height of the profile over the edge, so that its mass does not depend on N
 static void mean_heights(int n_nodes, char *keys, size_t size) {
-    int used = snprintf(keys, size, ", nodes: %d, body: {profile: table, h: [", n_nodes);
+    int used = snprintf(keys, size, ", nodes: %d, body: {profile: table, thickness_table: [", n_nodes);
     double before = 0;
     for (int k = 1; k < n_nodes; k++) {
         const double now = profile_integral((double)k / (n_nodes - 1));
@@ -228,7 +229,7 @@ static void mean_heights(int n_nodes, char *keys, size_t size) {
                          2 * (now - before) * (n_nodes - 1));
         before = now;
     }
-    used += snprintf(keys + used, size - (size_t)used, "], w: [0.25");
+    used += snprintf(keys + used, size - (size_t)used, "], depth_table: [0.25");
     for (int k = 2; k < n_nodes; k++) used += snprintf(keys + used, size - (size_t)used, ", 0.25");
     snprintf(keys + used, size - (size_t)used, "]}");
 }
@@ -294,14 +295,14 @@ static void check_nodes(void) {
 // ---- the points of the sheet ----
 
 // the changes of shed circulation under refinement of the sheet, as points of the figure; returns how many
-static int refine_sheet(const char *series, const char *wake, const char *keys, int n_runs, double *spacing,
+static int refine_sheet(const char *series, const char *sheets, const char *keys, int n_runs, double *spacing,
                         double *change) {
     struct ends runs[MOST_RUNS];
     for (int i = 0; i < n_runs; i++) {
         char all[512];
         const int n_spaces = 8 << i;
         snprintf(all, sizeof all, ", sheet_points: %d%s", n_spaces + 1, keys);
-        runs[i] = run_fish(1e-9, 5, wake, all);
+        runs[i] = run_fish(1e-9, 5, sheets, all);
         spacing[i] = 1.0 / n_spaces;
     }
     for (int i = 0; i + 1 < n_runs; i++) {
@@ -314,9 +315,10 @@ static int refine_sheet(const char *series, const char *wake, const char *keys, 
 static void check_sheet_points(void) {
     const int fast = verify_is_fast();
     double spacing[MOST_RUNS], change[MOST_RUNS];
-    int n = refine_sheet("straight plate", "",
-                         ", motion: {driven: all, heave: 0.05, pitch: 5, pitch_phase: 90, frequency: 1, pivot: 0.25}",
-                         4, spacing, change);
+    int n =
+        refine_sheet("straight plate", "",
+                     ", motion: {prescribed: all, heave: 0.05, pitch: 5, pitch_phase: 90, frequency: 1, pivot: 0.25}",
+                     4, spacing, change);
     verify_zero("straight plate: shed circulation, M = 33 against 65",
                 "spectral: down to where Newton's iteration stops, 0.01 rtol = 1e-11; M = 9 is off by 1e-6",
                 change[n - 1], 1e-10);
@@ -327,7 +329,7 @@ static void check_sheet_points(void) {
                  verify_slope(n, spacing, change), 1.7, 2.3);
     verify_show("default fish: shed circulation, M = 33 against 65", "in m2/s, of about 0.5; see the figure",
                 change[2]);
-    n = refine_sheet("default fish, midpoint", ", collocation: midpoint", "", 5, spacing, change);
+    n = refine_sheet("default fish, midpoint", "sheet: {collocation: midpoint}\n", "", 5, spacing, change);
     verify_order("order in M, midpoint collocation: shed circulation", "first order: doc/model.md 7, section sheet",
                  verify_slope(n, spacing, change), 0.7, 1.3);
 }
@@ -429,10 +431,10 @@ static void check_explicit(void) {
     static const char *const kutta[] = {"edge", "rate"};
     for (int k = 0; k < (fast ? 1 : 2); k++) {
         // bodies that are soft enough for an explicit method
-        char wake[64];
-        snprintf(wake, sizeof wake, "lifetime: 4, kutta: %s", kutta[k]);
+        char sheets[64];
+        snprintf(sheets, sizeof sheets, "wake: {lifetime: 4}\nsheet: {kutta: %s}\n", kutta[k]);
         struct variant soft = usual;
-        soft.wake = wake;
+        soft.sheets = sheets;
         soft.softness = 100;
         soft.rtol = 1e-12;
         if (fast) soft.end = 0.4;

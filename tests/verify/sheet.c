@@ -124,17 +124,17 @@ static void probe_solve(struct probe *probe, enum closure closure) {
 }
 
 /* A body with n_nodes nodes and n points of its sheet; kutta: rate sheds nothing at the start. */
-static struct probe probe_open(const struct scheme *scheme, int n, int n_nodes, const char *driven) {
+static struct probe probe_open(const struct scheme *scheme, int n, int n_nodes, const char *prescribed) {
     struct probe probe = {.n = n};
     probe.simulation = verify_open(
         "format: 1\n"
         "time: {end: 1, shedding_interval: 0.1, output_interval: 1}\n"
         "fluid: {velocity: [%.17g, %.17g]}\n"
-        "wake: {kutta: rate, curve: %s, collocation: %s}\n"
+        "sheet: {kutta: rate, curve: %s, collocation: %s}\n"
         "fish:\n"
         "  - {nodes: %d, sheet_points: %d, wave: {amplitude: 0}, start: {heading: 180, speed: 0},\n"
-        "     motion: {driven: %s, speed: 0}}\n",
-        cos(incidence), sin(incidence), scheme->curve, scheme->collocation, n_nodes, n, driven);
+        "     motion: {prescribed: %s, speed: 0}}\n",
+        cos(incidence), sin(incidence), scheme->curve, scheme->collocation, n_nodes, n, prescribed);
     probe.fish = &probe.simulation->school->fish[0];
     probe.matrix = numbers(n * n);
     probe.inverse = numbers(n * n);

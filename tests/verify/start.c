@@ -182,25 +182,28 @@ static const struct option {
     {2, {"shedding: continuous", "shedding: impulsive"}},
     {2, {"second_moment: ellipse", "second_moment: published"}},
     {3,
-     {"profile: joukowski", "profile: uniform", "profile: table, h: [0.1, 0.2, 0.15, 0.05], w: [0.2, 0.3, 0.25, 0.1]"}},
+     {"profile: joukowski", "profile: uniform",
+      "profile: table, thickness_table: [0.1, 0.2, 0.15, 0.05], depth_table: [0.2, 0.3, 0.25, 0.1]"}},
     {2, {"law: quadratic", "law: linear_quadratic"}},
-    {2, {"extent: thickness", "extent: width"}},
+    {2, {"extent: thickness", "extent: depth"}},
     {3, {"law: none", "law: heading, desired_heading: 150", "law: averaged_heading, desired_heading: 150"}},
-    {3, {"driven: none", "driven: head, heave: 0.1, frequency: 1", "driven: all, heave: 0.1, pitch: 10, frequency: 1"}},
+    {3,
+     {"prescribed: none", "prescribed: head, heave: 0.1, frequency: 1",
+      "prescribed: all, heave: 0.1, pitch: 10, frequency: 1"}},
 };
 enum { N_OPTIONS = sizeof options / sizeof *options };
 
-// what the second edition of the model adds
+// options of the default model
 static const struct option second[] = {
-    {3,
-     {"shedding: sheet", "shedding: continuous, collocation: chebyshev",
-      "shedding: continuous, collocation: midpoint"}},
+    {3, {"shedding: sheet", "shedding: continuous", "shedding: continuous"}},  // the third with midpoints
     {2, {"curve: smooth", "curve: polygon"}},
     {2, {"section: mean", "section: nodes"}},
     {2, {"force: reactive", "force: published"}},
-    {2, {"extent: thickness", "extent: width"}},
+    {2, {"extent: thickness", "extent: depth"}},
     {3, {"law: none", "law: heading, desired_heading: 150", "law: course, desired_heading: 150"}},
-    {3, {"driven: none", "driven: head, heave: 0.1, frequency: 1", "driven: all, heave: 0.1, pitch: 10, frequency: 1"}},
+    {3,
+     {"prescribed: none", "prescribed: head, heave: 0.1, frequency: 1",
+      "prescribed: all, heave: 0.1, pitch: 10, frequency: 1"}},
 };
 enum { N_SECOND = sizeof second / sizeof *second };
 
@@ -218,21 +221,22 @@ static struct simulation *open_choice(const int *choice) {
     return verify_open(
         "format: 1\ntime: {end: 1, shedding_interval: 0.01}\n"
         "fluid: {velocity: [0.3, -0.2], shear: 0.2, gust: {amplitude: 0.1, frequency: 1}}\n"
-        "wake: {%s, %s, %s}\nfish:\n  - nodes: 5\n    sheet_points: 9\n    wave: {ramp: 0}\n"
-        "    body: {%s, %s}\n    drag: {%s, %s}\n    control: {%s}\n    motion: {%s}\n",
+        "sheet: {%s, %s}\nwake: {%s}\nfish:\n  - nodes: 5\n    sheet_points: 9\n    wave: {ramp: 0}\n"
+        "    body: {%s, %s}\n    drag: {%s}\n    added_mass: {%s}\n    control: {%s}\n    motion: {%s}\n",
         word[0], word[1], word[2], word[3], word[4], word[5], word[6], word[7], word[8]);
 }
 
 static struct simulation *open_second(const int *choice) {
     const char *word[N_SECOND];
     for (int i = 0; i < N_SECOND; i++) word[i] = second[i].words[choice[i]];
-    return verify_open(VERIFY_SECOND
-                       "format: 1\ntime: {end: 1, shedding_interval: 0.01}\n"
-                       "fluid: {velocity: [0.3, -0.2], shear: 0.2, gust: {amplitude: 0.1, frequency: 1}}\n"
-                       "wake: {%s, %s}\nfish:\n  - nodes: 5\n    sheet_points: 9\n    wave: {ramp: 0}\n"
-                       "    body: {%s}\n    %s\n    drag: {%s}\n    control: {%s}\n    motion: {%s}\n"
-                       "    start: {speed: 1}\n",
-                       word[0], word[1], word[2], word[3], word[4], word[5], word[6]);
+    return verify_open(
+        VERIFY_DEFAULTS
+        "format: 1\ntime: {end: 1, shedding_interval: 0.01}\n"
+        "fluid: {velocity: [0.3, -0.2], shear: 0.2, gust: {amplitude: 0.1, frequency: 1}}\n"
+        "wake: {%s}\nsheet: {%s, collocation: %s}\nfish:\n  - nodes: 5\n    sheet_points: 9\n    wave: {ramp: 0}\n"
+        "    body: {%s}\n    %s\n    added_mass: {%s}\n    control: {%s}\n    motion: {%s}\n"
+        "    start: {speed: 1}\n",
+        word[0], word[1], choice[0] == 2 ? "midpoint" : "chebyshev", word[2], word[3], word[4], word[5], word[6]);
 }
 
 // the state after simulate_create; frees the simulation
@@ -278,16 +282,17 @@ static void all_options(void) {
     // and fish so near to each other that the Jacobian couples them
     for (int number = 0; number < 8; number++) {
         choose(number, 3, options, choice);
-        examine(verify_open("format: 1\ntime: {end: 1, shedding_interval: 0.01}\nwake: {%s, %s, %s}\n"
+        examine(verify_open("format: 1\ntime: {end: 1, shedding_interval: 0.01}\nsheet: {%s, %s}\nwake: {%s}\n"
                             "defaults: {fish: {nodes: 5, sheet_points: 9, wave: {ramp: 0}, control: {law: heading}}}\n"
                             "fish:\n  - start: {position: [0, 0]}\n  - start: {position: [0.2, 0.3]}\n",
                             options[0].words[choice[0]], options[1].words[choice[1]], options[2].words[choice[2]]),
                 &worst);
     }
     static const char source[] =
-        "product of collocation, kutta, shedding, second_moment, profile, drag law, extent, control law, driven; of "
+        "product of collocation, kutta, shedding, second_moment, profile, drag law, extent, control law, prescribed; "
+        "of "
         "the "
-        "second edition shedding, curve, collocation, section, force, extent, control law, driven; two fish";
+        "default model shedding, curve, collocation, section, force, extent, control law, prescribed; two fish";
     verify_show("combinations of options", source, worst.n);
     // nonsingular, and so far from singular that the solution keeps twelve of sixteen digits
     verify_zero("largest condition number, rows and columns equilibrated", source, 1 / worst.condition, 1e4);
@@ -302,7 +307,7 @@ static void refinement(void) {
     static const char *const rules[2] = {"chebyshev", "midpoint"};
     for (int i = 0; i < 8; i++) {
         struct simulation *const simulation = verify_open(
-            "format: 1\ntime: {end: 1, shedding_interval: 0.01}\nwake: {collocation: %s}\n"
+            "format: 1\ntime: {end: 1, shedding_interval: 0.01}\nsheet: {collocation: %s}\n"
             "fish:\n  - {nodes: %d, sheet_points: %d, control: {law: heading}}\n",
             rules[i / 4], (points[i % 4] + 1) / 2, points[i % 4]);
         const double condition = 1 / condition_of(simulation);
@@ -383,7 +388,7 @@ static double disagreement(struct simulation *simulation) {
     double *const kind = work + 2 * n, *const tolerance = work + 3 * n;
     residual_kinds(simulation->residual, kind);
     for (int i = 0; i < n; i++) {
-        // nodes need their places, those of a driven head too
+        // nodes need their places, those of a prescribed head too
         const int given = kind[i] > 0 || residual_place(simulation->school, i).kind < UNKNOWN_AX;
         y[i] = given ? simulation->state->y[i] : 0;
         tolerance[i] = 1e-12 * residual_scale(simulation->residual->school, i);
@@ -403,21 +408,21 @@ static double disagreement(struct simulation *simulation) {
 
 static void second_opinion(void) {
     static const struct {
-        const char *name, *wake, *fish, *edition;
+        const char *name, *keys, *fish, *defaults;
     } cases[] = {
-        {"defaults", "", "", VERIFY_SECOND},
-        {"first edition", "", "", ""},
-        {"kutta: rate", "kutta: rate", "", ""},
-        {"impulsive, between events", "shedding: impulsive", "", ""},
-        {"driven head", "", "motion: {driven: head, heave: 0.1, frequency: 1}", ""},
-        {"driven head, second edition", "", "motion: {driven: head, heave: 0.1, frequency: 1}", VERIFY_SECOND},
+        {"defaults", "", "", VERIFY_DEFAULTS},
+        {"article's model", "", "", ""},
+        {"kutta: rate", "sheet: {kutta: rate}\n", "", ""},
+        {"impulsive, between events", "wake: {shedding: impulsive}\n", "", ""},
+        {"prescribed head", "", "motion: {prescribed: head, heave: 0.1, frequency: 1}", ""},
+        {"prescribed head, default model", "", "motion: {prescribed: head, heave: 0.1, frequency: 1}", VERIFY_DEFAULTS},
         {"law: heading", "", "control: {law: heading, desired_heading: 150}", ""},
         {"law: averaged_heading", "", "control: {law: averaged_heading, desired_heading: 150}", ""},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        struct simulation *const simulation = verify_open(
-            "%sformat: 1\ntime: {end: 1, shedding_interval: 0.01}\nwake: {%s}\nfish:\n  - {%s%swave: {ramp: 0}}\n",
-            cases[i].edition, cases[i].wake, cases[i].fish, cases[i].fish[0] ? ", " : "");
+        struct simulation *const simulation =
+            verify_open("%sformat: 1\ntime: {end: 1, shedding_interval: 0.01}\n%sfish:\n  - {%s%swave: {ramp: 0}}\n",
+                        cases[i].defaults, cases[i].keys, cases[i].fish, cases[i].fish[0] ? ", " : "");
         char name[80];
         snprintf(name, sizeof name, "IDACalcIC less KINSOL over scale, %s", cases[i].name);
         verify_zero(name, "SUNDIALS' own consistent start, from zero", disagreement(simulation), 1e-10);

@@ -15,27 +15,27 @@ struct body {
     int n_nodes;
     double speed, angle; /* of the stream; of its nose to the stream, degrees */
     double thickness, stiffness;
-    const char *driven, *more; /* further keys of the fish */
-    double end;                /* of a run, s */
+    const char *prescribed, *more; /* further keys of the fish */
+    double end;                    /* of a run, s */
 };
 
 static const char pressure[] = VERIFY_ATTACHED, slender[] = "drag: {tangential: 0}",
-                  drag_alone[] = "drag: {tangential: 0, added_mass: 0}";
+                  drag_alone[] = "drag: {tangential: 0}, added_mass: {coefficient: 0}";
 
 static struct simulation *open_body(const struct body *body) {
-    return verify_open(VERIFY_SECOND
+    return verify_open(VERIFY_DEFAULTS
                        "format: 1\n"
                        "time: {end: %.17g, shedding_interval: 0.04}\n"
                        "fluid: {density: 1, velocity: [%.17g, 0]%s}\n"
                        "wake: {lifetime: %.17g}\n"
                        "fish:\n"
                        "  - {nodes: %d, sheet_points: %d, wave: {amplitude: 0, frequency: 0}, %s,\n"
-                       "     body: {profile: uniform, thickness: %.17g, width: 1, density: 20, modulus: %.17g,\n"
+                       "     body: {profile: uniform, thickness: %.17g, depth: 1, density: 20, modulus: %.17g,\n"
                        "            relaxation_time: 0.2},\n"
-                       "     start: {heading: %.17g, speed: 0}, motion: {driven: %s, speed: 0}}\n",
+                       "     start: {heading: %.17g, speed: 0}, motion: {prescribed: %s, speed: 0}}\n",
                        fmax(body->end, 1), body->speed, body->more == pressure ? ", viscosity: 0" : "",
                        fmax(body->end / 3, 1), body->n_nodes, 2 * body->n_nodes - 1, body->more, body->thickness,
-                       body->stiffness / (pi / 64 * pow(body->thickness, 3)), 180 - body->angle, body->driven);
+                       body->stiffness / (pi / 64 * pow(body->thickness, 3)), 180 - body->angle, body->prescribed);
 }
 
 // what `shoal steady` finds for it

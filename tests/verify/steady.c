@@ -101,18 +101,18 @@ static void compare(const struct swimmer *swimmer) {
 #define TIME "format: 1\ntime: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 
 static const struct swimmer swimmers[] = {
-    {"default fish", VERIFY_SECOND TIME "fish: [{}]\n", 20, 30},
-    {"stiff fish", VERIFY_SECOND TIME "fish: [{body: {modulus: 1e7}}]\n", 20, 30},
+    {"default fish", VERIFY_DEFAULTS TIME "fish: [{}]\n", 20, 30},
+    {"stiff fish", VERIFY_DEFAULTS TIME "fish: [{body: {modulus: 1e7}}]\n", 20, 30},
     {"fish with pressure",
-     VERIFY_SECOND TIME "wake: {lifetime: 8}\n"
-                        "fish: [{force: pressure, start: {speed: 0.5}, body: {width: 1}}]\n",
+     VERIFY_DEFAULTS TIME "wake: {lifetime: 8}\n"
+                          "fish: [{force: pressure, start: {speed: 0.5}, body: {depth: 1}}]\n",
      20, 30},
     {"heaving plate",
-     VERIFY_SECOND TIME "solver: {rtol: 1e-6}\n"
-                        "fluid: {density: 1, viscosity: 4.536e-4}\nwake: {lifetime: 8, smoothing: 0.1}\n"
-                        "fish: [{length: 2, force: pressure, start: {speed: 4}, wave: {amplitude: 0, frequency: 0},\n"
-                        "  body: {profile: uniform, thickness: 0.1, width: 0.5, density: 1.5915, modulus: 1e5},\n"
-                        "  motion: {driven: all, surge: free, heave: 0.1, frequency: 1}}]\n",
+     VERIFY_DEFAULTS TIME "solver: {rtol: 1e-6}\n"
+                          "fluid: {density: 1, viscosity: 4.536e-4}\nwake: {lifetime: 8, smoothing: 0.1}\n"
+                          "fish: [{length: 2, force: pressure, start: {speed: 4}, wave: {amplitude: 0, frequency: 0},\n"
+                          "  body: {profile: uniform, thickness: 0.1, depth: 0.5, density: 1.5915, modulus: 1e5},\n"
+                          "  motion: {prescribed: all, surge: free, heave: 0.1, frequency: 1}}]\n",
      20, 30},
 };
 
@@ -169,15 +169,15 @@ static void circle(const char *name, const char *text) {
 }
 
 static void circles(void) {
-    circle("fish in a wide circle", VERIFY_SECOND TIME "fish: [{start: {speed: 0.6}, control: {bias: 0.03}}]\n");
-    circle("fish in a circle", VERIFY_SECOND TIME "fish: [{start: {speed: 0.6}, control: {bias: 0.1}}]\n");
-    circle("fish in a narrow circle", VERIFY_SECOND TIME "fish: [{start: {speed: 0.6}, control: {bias: 0.4}}]\n");
-    circle("fish with pressure in a circle", VERIFY_SECOND TIME "fish: [{force: pressure, control: {bias: 0.2}}]\n");
+    circle("fish in a wide circle", VERIFY_DEFAULTS TIME "fish: [{start: {speed: 0.6}, control: {bias: 0.03}}]\n");
+    circle("fish in a circle", VERIFY_DEFAULTS TIME "fish: [{start: {speed: 0.6}, control: {bias: 0.1}}]\n");
+    circle("fish in a narrow circle", VERIFY_DEFAULTS TIME "fish: [{start: {speed: 0.6}, control: {bias: 0.4}}]\n");
+    circle("fish with pressure in a circle", VERIFY_DEFAULTS TIME "fish: [{force: pressure, control: {bias: 0.2}}]\n");
 }
 
 /* cases/formation.yaml */
 #define PAIR                                           \
-    VERIFY_SECOND TIME                                 \
+    VERIFY_DEFAULTS TIME                               \
         "steady: {formation: true, tolerance: 3e-4}\n" \
         "defaults: {fish: {start: {speed: 0.8}, control: {law: heading, desired_heading: 180}}}\n"
 

@@ -27,7 +27,7 @@ static const struct pair of_fang = {2, 0.2, 2, 0.04, 13.25, 0.2, 6, 0, 0};
 static void text_of(const struct pair *pair, int n_fish, const char *keys, size_t size, char *text) {
     const double thickness = 0.05, area = pi / 4 * thickness * pair->length * pair->length;
     const int length = snprintf(text, size,
-                                VERIFY_SECOND
+                                VERIFY_DEFAULTS
                                 "format: 1\n"
                                 "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
                                 "fluid: {density: 1, viscosity: %.17g}\n"
@@ -36,8 +36,8 @@ static void text_of(const struct pair *pair, int n_fish, const char *keys, size_
                                 "defaults: {fish: {length: %g, nodes: 5, " VERIFY_ATTACHED
                                 ", start: {speed: %.17g},\n"
                                 "  wave: {amplitude: 0, frequency: 0},\n"
-                                "  body: {profile: uniform, thickness: %g, width: 1, density: %.17g},\n"
-                                "  motion: {driven: all, heave: %g, frequency: 1, %s}}}\n"
+                                "  body: {profile: uniform, thickness: %g, depth: 1, density: %.17g},\n"
+                                "  motion: {prescribed: all, heave: %g, frequency: 1, %s}}}\n"
                                 "fish: [{}",
                                 pow(pair->friction / 1.328, 2) / pair->length, pair->lifetime,
                                 pair->smoothing / pair->length, n_fish > 1 ? "true" : "false", pair->length,

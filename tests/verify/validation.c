@@ -42,7 +42,7 @@ struct period {
     double across, along;          /* force of the fluid across the way, and along it less its mean: rms, N */
     double circulation;            /* the largest less the least circulation that was shed, m2 s-1 */
     double separation_share, edge; /* part with separation at the nose; largest A_0 */
-    double audit;                  /* the energy balance over the work of all periods */
+    double imbalance;              /* the energy balance over the work of all periods */
 };
 
 /* Run a case of cases/ for so many periods, with further assignments, and look at the last of them. At every period the
@@ -80,7 +80,7 @@ static struct period run_case(const char *name, int n_periods, int n_assignments
     period.circulation = most - least;
     period.separation_share = of->separation_share;
     period.edge = of->leading_edge_most;
-    period.audit = of->energy_audit / (n_periods * of->mean_power);
+    period.imbalance = of->energy_balance / (n_periods * of->mean_power);
     simulate_free(simulation);
     return period;
 }
@@ -197,8 +197,8 @@ static void heave(const struct table *table) {
         compare_flow(table, flows[i], "CP", "power coefficient", period.power / pressure / speed, 1.0, 1.18);
         compare_flow(table, flows[i], "CL", "lift coefficient, rms", period.across / pressure, 1.1, 1.3);
         if (i == 0) {
-            verify_zero("heave at Re 1000: energy balance of the body over the work", "the limit acts", period.audit,
-                        1e-3);
+            verify_zero("heave at Re 1000: energy balance of the body over the work", "the limit acts",
+                        period.imbalance, 1e-3);
         }
         if (i == 2) continue;
         verify_show(verify_text("%s: part of the period with separation at the nose", flows[i]),

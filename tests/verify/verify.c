@@ -138,7 +138,7 @@ void verify_ok(enum status status) {
 }
 
 struct simulation *verify_open(const char *format, ...) {
-    static const char include[] = "include: [tests/data/first_edition.yaml]\n";
+    static const char include[] = "include: [tests/data/small.yaml]\n";
     char text[16384] = "";
     va_list arguments;
     va_start(arguments, format);
@@ -146,7 +146,7 @@ struct simulation *verify_open(const char *format, ...) {
     va_end(arguments);
     // a preset is weaker than an include, and a case of cases/ includes what it needs
     const int is_case = strstr(text, "include:") != NULL;
-    if (!strstr(text, VERIFY_SECOND) && !strstr(text, "preset:") && !is_case) {
+    if (!strstr(text, VERIFY_DEFAULTS) && !strstr(text, "preset:") && !is_case) {
         memmove(text + strlen(include), text, (size_t)length + 1);
         memcpy(text, include, strlen(include));
         length += (int)strlen(include);

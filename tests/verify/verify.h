@@ -68,15 +68,15 @@ double verify_slope(int n, const double *x, const double *y);
 /* A text (printf format) that lives until the next one is made. */
 const char *verify_text(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
-/* A text with this line has the defaults of the second edition of the model. */
-#define VERIFY_SECOND "# second edition\n"
+/* A text with this line has the defaults of the program. */
+#define VERIFY_DEFAULTS "# defaults\n"
 
 /* The keys of a fish with the pressure of attached flow, as linear theory has it: all of the suction, and the friction
  * of a laminar boundary layer on a plate. */
 #define VERIFY_ATTACHED "force: pressure, pressure: {suction_limit: 0}, drag: {skin: laminar}"
 
-/* Open a case given as text (printf format), with at most 16 kB, and without VERIFY_SECOND or a preset with the
- * defaults of the first edition (tests/data/first_edition.yaml); the section ends with the message where that fails. */
+/* Open a case given as text (printf format), with at most 16 kB, and without VERIFY_DEFAULTS or a preset with the
+ * defaults of the article's model (tests/data/small.yaml); the section ends with the message where that fails. */
 struct simulation *verify_open(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 /* Open a case of cases/, with n assignments "path=value". */

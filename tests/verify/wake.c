@@ -18,7 +18,7 @@ static struct simulation *still_water(double interval) {
         "format: 1\n"
         "time: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
         "wake: {smoothing: %.17g, lifetime: 1000}\n"
-        "defaults: {fish: {nodes: 4, sheet_points: 5, wave: {amplitude: 0}, motion: {driven: all, speed: 0}}}\n"
+        "defaults: {fish: {nodes: 4, sheet_points: 5, wave: {amplitude: 0}, motion: {prescribed: all, speed: 0}}}\n"
         "fish:\n"
         "  - start: {position: [1000, 0], speed: 0}\n"
         "  - start: {position: [2000, 0], speed: 0}\n",
@@ -169,7 +169,7 @@ static void removed_vortices(void) {
     wake_remove_old(wake, simulation->school, simulation->school->lifetime + 5);
     const int removed = 1000 - wake->n_vortex;
     verify_value("a thousand vortices, half grown old: number removed", "ages beyond the lifetime", 501, removed, 0);
-    verify_zero("the same: change of circulation with what dissipated, m2/s", "constant",
+    verify_zero("the same: change of circulation with what removed, m2/s", "constant",
                 invariants(wake).circulation + wake->removed - sum, 1e-10);
     simulate_free(simulation);
 }

@@ -19,13 +19,13 @@ static const struct {
 static double circulation_between(double distance) {
     const double degree = 0.5, angle = degree * pi / 180;
     struct simulation *const simulation = verify_open(
-        VERIFY_SECOND
+        VERIFY_DEFAULTS
         "format: 1\n"
         "time: {end: %.17g, shedding_interval: 0.04, output_interval: 0.04}\n"
         "fluid: {velocity: [1, 0], walls: [%.17g, %.17g]}\n"
         "wake: {lifetime: %.17g}\n"
         "fish: [{nodes: 4, wave: {amplitude: 0}, start: {heading: %.17g, position: [%.17g, %.17g]},\n"
-        "        motion: {driven: all, speed: 0}}]\n",
+        "        motion: {prescribed: all, speed: 0}}]\n",
         12 * distance, -distance / 2, distance / 2, 6 * distance, 180 - degree, -0.5 * cos(angle), 0.5 * sin(angle));
     // a vortex at the distance x counts like exp(-pi x/H); the circulation comes near its end like exp(-0.7 U t/H)
     verify_run(simulation, 12 * distance);
@@ -45,7 +45,7 @@ static void check_plate(void) {
 // ---- mirrored fish
 
 static struct simulation *open_fish(const char *force, double rtol, const char *fluid, const char *other) {
-    return verify_open(VERIFY_SECOND
+    return verify_open(VERIFY_DEFAULTS
                        "format: 1\n"
                        "time: {end: 1, output_interval: 0.1}\n"
                        "wake: {tolerance: 0}\n"
@@ -92,18 +92,18 @@ static void check_mirror(const char *force, double bound) {
 // a fish that swims against the wall of a channel and along it
 static void check_energy(const char *force) {
     struct simulation *const simulation =
-        verify_open(VERIFY_SECOND
+        verify_open(VERIFY_DEFAULTS
                     "format: 1\n"
                     "time: {end: 3, shedding_interval: 0.02, output_interval: 0.02}\n"
                     "fluid: {walls: [0, 2]}\n"
                     "fish: [{force: %s, start: {position: [0, 0.6], heading: 215, speed: 0.8}}]\n",
                     force);
-    double audit = 0, energy = 0, circulation = 0, contact = 0;
+    double imbalance = 0, energy = 0, circulation = 0, contact = 0;
     for (int i = 1; i <= 150; i++) {
         verify_run(simulation, 0.02 * i);
         simulate_measure(simulation);
         const struct diagnostics_fish *const fish = &simulation->diagnostics->fish[0];
-        audit = fmax(audit, fabs(fish->energy_audit));
+        imbalance = fmax(imbalance, fabs(fish->energy_balance));
         energy = fmax(energy, fish->kinetic_energy);
         contact = fmax(contact, fish->contact_energy);
         circulation = fmax(circulation, fabs(simulation->diagnostics->total_circulation));
@@ -111,7 +111,7 @@ static void check_energy(const char *force) {
     verify_show(verify_text("%s: a fish swims against a wall and along it: largest contact_energy, J", force), "",
                 contact);
     verify_zero(verify_text("%s: its energy balance over its largest kinetic energy, rtol 1e-5", force), "conservation",
-                audit / energy, 2e-3);
+                imbalance / energy, 2e-3);
     verify_zero(verify_text("%s: its total circulation, m2/s", force), "Kelvin", circulation, 1e-12);
     simulate_free(simulation);
 }

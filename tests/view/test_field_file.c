@@ -21,11 +21,11 @@ static char folder[] = "/tmp/test_field.XXXXXX", path[64], field_path[64];
 static const char *school_of(const char *shedding) {
     static char text[1024];
     snprintf(text, sizeof text,
-             SCHOOL_SECOND
+             SCHOOL_DEFAULTS
              "time: {end: 0.6, shedding_interval: 0.02, output_interval: 0.1}\n"
              "output: {wake_interval: 0.3}\n"
              "fluid: {velocity: [0.3, -0.2], shear: 0.2, gust: {amplitude: 0.1, frequency: 1}}\n"
-             "wake: {shedding: %s, lifetime: 0.4, fade: 0.2}\nsolver: {rtol: 1e-3}\n"
+             "wake: {shedding: %s, lifetime: 0.4, decay: 0.2}\nsolver: {rtol: 1e-3}\n"
              "defaults: {fish: {nodes: 5, sheet_points: 17, start: {speed: 0.5}}}\n"
              "fish: [{name: one}, {name: another, nodes: 7, length: 0.8, start: {position: [0.2, 0.5]}}]\n",
              shedding);
@@ -296,7 +296,7 @@ static void the_file_has_the_field_on_its_grid(void **state) {
     NEAR(value_of(file, "time", 0, 0, 0, 0), 0.6, 1e-12, 0);
     NEAR(value_of(file, "body_x", 0, 1, 6, 1), row.state->y[row.school->fish[1].at.y + 6], 0, 0);
     assert_true(isnan(value_of(file, "body_x", 0, 0, 6, 1)));
-    NEAR(value_of(file, "edge_height", 0, 1, 0, 0), row.school->fish[0].thickness[1], 0, 0);
+    NEAR(value_of(file, "edge_thickness", 0, 1, 0, 0), row.school->fish[0].thickness[1], 0, 0);
     nc_close(file);
     flow_free(flow);
     field_row_free(&row);

@@ -131,11 +131,11 @@ static void an_outline_needs_its_edges(void **state) {
     assert_int_equal(nc_redef(file), NC_NOERR);
     assert_int_equal(nc_inq_dimid(file, "edge", &number), NC_NOERR);
     assert_int_equal(nc_rename_dim(file, number, "gone"), NC_NOERR);
-    assert_int_equal(nc_inq_varid(file, "edge_height", &number), NC_NOERR);
+    assert_int_equal(nc_inq_varid(file, "edge_thickness", &number), NC_NOERR);
     assert_int_equal(nc_rename_var(file, number, "no_height"), NC_NOERR);
     assert_int_equal(nc_inq_dimid(file, "fish", &fish), NC_NOERR);
     assert_int_equal(nc_def_dim(file, "edge", 5, &edge), NC_NOERR);
-    assert_int_equal(nc_def_var(file, "edge_height", NC_DOUBLE, 2, (int[]){fish, edge}, &number), NC_NOERR);
+    assert_int_equal(nc_def_var(file, "edge_thickness", NC_DOUBLE, 2, (int[]){fish, edge}, &number), NC_NOERR);
     assert_int_equal(nc_close(file), NC_NOERR);
     // the second fish has 7 nodes and needs 6 edges
     cannot_be_read(f->path, "its variable n_nodes is 7 for a fish, which cannot be");

@@ -92,7 +92,7 @@ static void new_velocities_push_the_old_ones_back(void **state) {
 static void strength_fades_as_the_ramp_over_the_last_part_of_life(void **state) {
     (void)state;
     struct setup setup;
-    school_build(&setup, TIME "wake: {lifetime: 1, fade: 0.4}\nfish: [{}]\n");
+    school_build(&setup, TIME "wake: {lifetime: 1, decay: 0.4}\nfish: [{}]\n");
     for (int i = 0; i <= 4; i++) NEAR(wake_strength(setup.school, 0.59 + 0.1 * i), 1 - ramp_step(0.25 * i), 1e-14, 0);
     NEAR(wake_strength(setup.school, 0.5), 1, 0, 0);
     // inside an interval linear between its ends
@@ -128,7 +128,7 @@ static void old_vortices_go_and_leave_their_circulation(void **state) {
 static void without_fade_a_vortex_vanishes_within_one_interval(void **state) {
     (void)state;
     struct setup setup;
-    school_build(&setup, TIME "wake: {lifetime: 0.105, fade: 0}\nfish: [{}]\n");
+    school_build(&setup, TIME "wake: {lifetime: 0.105, decay: 0}\nfish: [{}]\n");
     struct wake *wake = &setup.state->wake[0];
     school_ok(wake_release(wake, 0, 0, 2, 0));
     NEAR(wake_strength(setup.school, 0.08), 1, 0, 0);
