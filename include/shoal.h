@@ -86,6 +86,23 @@ double shoal_interval(const struct shoal *run);
  * again. Means over a period stay those of the period of the case. */
 int shoal_set(struct shoal *run, int fish, const char *key, int n, const double *values);
 
+/* Positions, m, and velocities, m s-1, of the nodes of a fish, nose to tail: (n_nodes, 2). Either may be NULL. */
+int shoal_state(struct shoal *run, int fish, double *position, double *velocity);
+
+/* Set them at the last event; NULL: as they are. Bound sheets, forces and the velocities of vortices follow, and the
+ * integration begins again. Nodes with a prescribed motion keep it. Balances count what this changes as work and
+ * impulse from outside; where positions are given, means over a period and the closest approach begin again, and with
+ * wake.shedding: sheet the wake continues at the new tail, for which wake.spare_vortices needs 1. Edges must be from
+ * half to twice as long as at rest, bodies must not overlap. On failure nothing has changed. */
+int shoal_set_state(struct shoal *run, int fish, const double *position, const double *velocity);
+
+/* Add a free vortex at (x, y), m, of this circulation, m2 s-1, at the last event. It belongs to the wake of a fish: it
+ * moves, fades and is removed like the vortices that this fish sheds now. Its opposite is infinitely far away. The
+ * momenta of bodies and of the fluid that moves with them stay, so that the momentum balance holds with the impulse of
+ * the vortex as the only one from outside (lost_impulse, with the other sign). wake.spare_vortices needs 3 for it with
+ * wake.shedding: sheet, else 1. On failure nothing has changed. */
+int shoal_add_vortex(struct shoal *run, int fish, double x, double y, double circulation);
+
 /* ---- what a run is at its last event ---- */
 
 enum shoal_type { SHOAL_DOUBLE, SHOAL_INT, SHOAL_LONG, SHOAL_CHAR };

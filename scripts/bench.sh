@@ -8,7 +8,8 @@ set -euo pipefail
 
 build=$(realpath "${1:?usage: scripts/bench.sh BUILD}")
 program=$build/shoal
-cases=$(realpath "$(dirname "$0")/../cases")
+root=$(realpath "$(dirname "$0")/..")
+cases=$root/cases
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
@@ -156,6 +157,9 @@ stopped_run 'in a start of seconds, 600 nodes and points a fish' "$cases/pair.ya
     --set 'fish[0].sheet_points=600' --set 'fish[1].nodes=600' --set 'fish[1].sheet_points=600'
 slowest=$(printf '%s\n' $slowest "$seconds" | sort -g | tail -1)
 
+heading 'Learning from Python (tests/bench/actions.py)'
+/usr/bin/python3 "$root/tests/bench/actions.py" "$build/bench/actions" "$build/libshoal.so.0" | tee actions.txt
+
 heading 'Limits'
 printf '%-58s %10s %10s\n' '' here limit
 check_limit 'single_free: CPU time over the lower bound' "$(column single_free 1 7)" 5
@@ -165,6 +169,9 @@ check_limit 'diamond: wall clock with 2 threads over that with 1' \
     "$(awk "BEGIN { printf \"%.2f\", $two / $one }")" 0.556
 check_limit 'beside a busy loop: wall clock with 2 threads over that with 1' "$beside" 1.1
 check_limit 'diamond: output, % of the CPU time' "$(column diamond 1 15)" 3
+check_limit 'an action in Python: CPU time over that in C' "$(sed -n 's/.* ratio //p' actions.txt | head -1)" 1.2
+check_limit 'environments: 1 thread over 2, actions a second' \
+    "$(sed -n 's/.*with two (ratio \([0-9.]*\)).*/\1/p' actions.txt | awk '{ printf "%.2f", 1 / $1 }')" 0.556
 check_limit 'seconds from a signal to the end' "$slowest" 10
 check_limit '256 fish: CPU time per event over that of 64' "$(awk '/^256 fish take/ { print $4 }' schools.txt)" 6
 check_limit '64 to 1024 fish: power of the CPU time per event' "$(awk '/^(256|1024) fish take/ { growth += $NF / 2 }

@@ -58,12 +58,30 @@ _SENSORS = ((0.5, 0.0), (0.0, 0.3), (0.0, -0.3))
 _RENDER_MODES = ("rgb_array", "html")
 
 
+class _Event:
+    """The variables of a run at its last event, each read once."""
+
+    def __init__(self, run):
+        self.begin(run)
+
+    def begin(self, run):
+        """The run is at another event, or another one."""
+        self.run, self.time, self._values = run, run.time, {}
+
+    def __call__(self, name):
+        values = self._values.get(name)
+        if values is None:
+            values = self._values[name] = np.asarray(self.run.view(name))
+        return values
+
+
 class _Swimmer:
     """One fish of a run that is led: its actions, observations and rewards. Vectors that it observes are in its own
     frame, forwards and to the left, in body lengths."""
 
-    def __init__(self, run, fish, actions, observations, reward, goal, course, sensors):
-        self.run, self.fish = run, fish
+    def __init__(self, event, fish, actions, observations, reward, goal, course, sensors):
+        self.event, self.fish = event, fish
+        run = event.run
         self.length, self.mass = float(run["body_length"][fish]), float(run["body_mass"][fish])
         self.n_joints, self.n_fish = int(run["n_joints"][fish]), len(run["n_joints"])
         self.others = [f for f in range(self.n_fish) if f != fish]
@@ -95,7 +113,7 @@ class _Swimmer:
         low, high = np.array(list(self.actions.values()), np.float32).reshape(-1, 2).T
         self._low, self._high = low.astype(float), high.astype(float)
         self._keys = [_KEYS[name] for name in self.actions]
-        self._event = None
+        self._box = list(zip(self._low.tolist(), self._high.tolist()))
 
     @staticmethod
     def _bounds(name, bounds):
@@ -136,19 +154,25 @@ class _Swimmer:
 
     # -- actions
 
-    def begin(self, run):
-        self.run, self.action = run, np.zeros(len(self.actions))
+    @property
+    def run(self) -> Run:
+        """The run in which the fish swims."""
+        return self.event.run
+
+    def begin(self):
+        self.action = np.zeros(len(self.actions))
         self._mark()
 
     def act(self, action):
         values = np.asarray(action, float).reshape(-1)
-        if values.size != len(self.actions) or not np.all((values >= self._low) & (values <= self._high)):
+        numbers = values.tolist()
+        if len(numbers) != len(self._box) or not all(low <= x <= high for x, (low, high) in zip(numbers, self._box)):
             bounds = ", ".join(f"{name} {low:g} to {high:g}" for name, low, high in zip(self.actions, self._low, self._high))
             raise CaseError(f"an action is {len(self.actions)} numbers within the box ({bounds}), not {action!r}")
         self.action = values
         number = ctypes.c_double()
         with self.run._using() as pointer:
-            for key, value in zip(self._keys, values.tolist()):
+            for key, value in zip(self._keys, numbers):
                 number.value = value
                 code = lib.library.shoal_set(pointer, self.fish, key, 1, number)
                 if code:
@@ -156,14 +180,14 @@ class _Swimmer:
         self._mark()
 
     def _mark(self):
-        self._before = self.run.time, self._pair("com"), float(self.run.view("actuation_work")[self.fish])
+        self._before = self.event.time, self._pair("com"), float(self.event("actuation_work")[self.fish])
         self._goal_before = None if self.goal is None else self._to_goal()
 
     # -- observations
 
     def _pair(self, name):
         """Two numbers of this fish, as floats of Python."""
-        return self.run.view(name)[self.fish].tolist()
+        return self.event(name)[self.fish].tolist()
 
     @property
     def com(self) -> np.ndarray:
@@ -171,7 +195,7 @@ class _Swimmer:
         return np.array(self._pair("com"))
 
     def _turn(self):
-        angle = math.radians(float(self.run.view("heading")[self.fish]))
+        angle = math.radians(float(self.event("heading")[self.fish]))
         self._cos, self._sin = math.cos(angle), math.sin(angle)
 
     def _own(self, x, y):
@@ -182,13 +206,13 @@ class _Swimmer:
         """The place of the goal now, m: (2,)."""
         other, (x, y) = self.goal
         if other is not None:
-            of_fish = self.run.view("com")[other].tolist()
+            of_fish = self.event("com")[other].tolist()
             x, y = x + of_fish[0], y + of_fish[1]
         return np.array([x, y])
 
     def _to_goal(self):
         other, (x, y) = self.goal
-        com = self.run.view("com")
+        com = self.event("com")
         if other is not None:
             of_fish = com[other].tolist()
             x, y = x + of_fish[0], y + of_fish[1]
@@ -210,7 +234,7 @@ class _Swimmer:
         return x, y, math.hypot(x, y)
 
     def _see_closing(self):
-        time = self.run.time - self._before[0]
+        time = self.event.time - self._before[0]
         if not time > 0:
             return 0.0, 0.0
         before, now = self._goal_before, self._to_goal()
@@ -219,12 +243,12 @@ class _Swimmer:
     def _see_flow(self):
         c, s = self._cos, self._sin
         turned = self.length * self.sensors @ np.array([[c, s], [-s, c]])
-        velocity = self.run.flow(self.run.view("x")[self.fish, 0] + turned)[0]
+        velocity = self.run.flow(self.event("x")[self.fish, 0] + turned)[0]
         return (velocity @ np.array([[c, -s], [s, c]])).ravel() / self.length
 
     def _see_neighbours(self):
         c, s = self._cos, self._sin
-        com, velocity = self.run.view("com"), self.run.view("com_velocity")
+        com, velocity = self.event("com"), self.event("com_velocity")
         seen = np.empty((len(self.others), 4))
         seen[:, :2] = com[self.others] - com[self.fish]
         seen[:, 2:] = velocity[self.others] - velocity[self.fish]
@@ -233,8 +257,8 @@ class _Swimmer:
     _SEEN = {  # name: (function, bound)
         "velocity": (_see_velocity, 20),
         "heading": (_see_heading, 1),
-        "curvature": (lambda self: self.run.view("curvature")[self.fish, : self.n_joints], 20),
-        "muscle": (lambda self: self.run.view("natural_curvature")[self.fish, : self.n_joints], 20),
+        "curvature": (lambda self: self.event("curvature")[self.fish, : self.n_joints], 20),
+        "muscle": (lambda self: self.event("natural_curvature")[self.fish, : self.n_joints], 20),
         "flow": (_see_flow, 20),
         "goal": (_see_goal, 1000),
         "closing": (_see_closing, 20),
@@ -255,8 +279,8 @@ class _Swimmer:
     def _moved(self):
         time, com, work = self._before
         now = self._pair("com")
-        return (self.run.time - time, (now[0] - com[0], now[1] - com[1]),
-                float(self.run.view("actuation_work")[self.fish]) - work)
+        return (self.event.time - time, (now[0] - com[0], now[1] - com[1]),
+                float(self.event("actuation_work")[self.fish]) - work)
 
     def _earn_speed(self):
         time, way, _ = self._moved()
@@ -302,6 +326,7 @@ class _Swim:
         self._far = None if far is None else number_of(far, "far, lengths,")
         self._kept = None
         self.run = Run(case, self._assignments)
+        self.event = _Event(self.run)
         self._n_steps = 1 if act_every is None else self._n_events(number_of(act_every, "act_every, s,"))
         self._random = np.random.default_rng()
 
@@ -328,6 +353,12 @@ class _Swim:
         return {**self.__dict__, "_kept": None}
 
     def _begin(self, seed, options):
+        """Begin an episode."""
+        self._choose_run(seed, options)
+        self.event.begin(self.run)
+        self._interval, self._end = self.run.interval, self.run.end
+
+    def _choose_run(self, seed, options):
         if seed is not None:
             self._random = np.random.default_rng(seed)
         changes = dict((options or {}).get("assignments", {}))
@@ -348,15 +379,18 @@ class _Swim:
     def _advance(self):
         """Advance by one action, or to the end; returns whether the solver has failed. The GIL is released for all
         events together."""
+        interval, end = self._interval, self._end
+        event = round(self.event.time / interval)
         with self.run._using() as pointer:
-            library = lib.library
-            interval, end = library.shoal_interval(pointer), library.shoal_end(pointer)
-            event = round(library.shoal_time(pointer) / interval)
-            code = library.shoal_advance(pointer, min((event + self._n_steps) * interval, end))
+            code = lib.library.shoal_advance(pointer, min((event + self._n_steps) * interval, end))
+        self.event.begin(self.run)
         if code == -4:
             return True
         check(code)
         return False
+
+    def _ended(self):
+        return self.event.time >= self._end
 
     def _is_lost(self, swimmer):
         if self._far is None or swimmer.goal is None:
@@ -404,16 +438,16 @@ class SwimEnv(_Swim, _from("gymnasium", "Env", object)):
                  render_mode=None):
         _Swim.__init__(self, case, assignments, act_every, vary, far, render_mode)
         number = index_of(fish, self.run.names, "fish")
-        self.swimmer = _Swimmer(self.run, number, actions, observations, reward or {"speed": 1.0}, goal, course, sensors)
+        self.swimmer = _Swimmer(self.event, number, actions, observations, reward or {"speed": 1.0}, goal, course, sensors)
         self.action_space, self.observation_space = self.swimmer.action_space(), self.swimmer.observation_space()
         self._last = None
 
     def reset(self, *, seed=None, options=None):
         """Begin an episode; returns observation and info. options: {"assignments": {...}} changes the case."""
         self._begin(seed, options)
-        self.swimmer.begin(self.run)
+        self.swimmer.begin()
         self._last = self.swimmer.see()
-        return self._last, {"time": self.run.time}
+        return self._last, {"time": self.event.time}
 
     def step(self, action):
         """Act, and advance to the next action; returns observation, reward, terminated, truncated, info."""
@@ -425,9 +459,9 @@ class SwimEnv(_Swim, _from("gymnasium", "Env", object)):
             info["failure"] = lib.message()
         else:
             self._last = self.swimmer.see()
-        info["time"] = self.run.time
+        info["time"] = self.event.time
         reward = 0.0 if failed else self.swimmer.earn()
-        return self._last, reward, failed or self._is_lost(self.swimmer), self.run.at_end, info
+        return self._last, reward, failed or self._is_lost(self.swimmer), self._ended(), info
 
 
 def _cores():
@@ -544,7 +578,7 @@ class SchoolEnv(_Swim, _from("pettingzoo", "ParallelEnv", object)):
         self.swimmers = {}
         for name in self.possible_agents:
             own_goal = goal.get(name) if isinstance(goal, Mapping) else goal
-            self.swimmers[name] = _Swimmer(self.run, names.index(name), actions, observations, reward or {"speed": 1.0},
+            self.swimmers[name] = _Swimmer(self.event, names.index(name), actions, observations, reward or {"speed": 1.0},
                                            own_goal, course, sensors)
         self.action_spaces = {name: swimmer.action_space() for name, swimmer in self.swimmers.items()}
         self.observation_spaces = {name: swimmer.observation_space() for name, swimmer in self.swimmers.items()}
@@ -565,7 +599,7 @@ class SchoolEnv(_Swim, _from("pettingzoo", "ParallelEnv", object)):
         self._begin(seed, options)
         self.agents = list(self.possible_agents)
         for swimmer in self.swimmers.values():
-            swimmer.begin(self.run)
+            swimmer.begin()
         self._last = {name: self.swimmers[name].see() for name in self.agents}
         return dict(self._last), {name: {} for name in self.agents}
 
@@ -583,7 +617,7 @@ class SchoolEnv(_Swim, _from("pettingzoo", "ParallelEnv", object)):
             self._last = {name: self.swimmers[name].see() for name in agents}
         rewards = {name: 0.0 if failed else self.swimmers[name].earn() for name in agents}
         over = failed or any(self._is_lost(self.swimmers[name]) for name in agents)
-        ended = self.run.at_end
+        ended = self._ended()
         infos = {name: {"failure": lib.message()} if failed else {} for name in agents}
         if over or ended:
             self.agents = []

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import ctypes
 import difflib
 import html
@@ -128,6 +127,27 @@ def _refuse_name(name):
     raise CaseError(f"there is no variable {name!r}: {hint}run.keys() lists the names")
 
 
+class _Using:
+    """The pointer of a run, with its lock, in a with statement."""
+
+    __slots__ = ("run", "lock")
+
+    def __init__(self, run):
+        self.run = run
+
+    def __enter__(self):
+        self.lock = self.run._open().lock
+        self.lock.acquire()
+        try:
+            return self.run._open().pointer  # it may have been closed meanwhile
+        except BaseException:
+            self.lock.release()
+            raise
+
+    def __exit__(self, *_):
+        self.lock.release()
+
+
 class Run:
     """A case in memory, at its last event.
 
@@ -157,11 +177,8 @@ class Run:
         self._views: dict[str, tuple] = {}
         self.path: str | None = None  #: the result file that write() began
 
-    @contextlib.contextmanager
-    def _using(self):
-        handle = self._open()
-        with handle.lock:
-            yield self._open().pointer
+    def _using(self) -> _Using:
+        return _Using(self)
 
     def _open(self) -> _Handle:
         handle = self._handle
@@ -327,6 +344,47 @@ class Run:
         pointer = values.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
         with self._using() as run:
             check(lib.library.shoal_set(run, number, text_of(key, "set: a key"), values.size, pointer))
+
+    def state(self, fish: int | str = 0) -> tuple[np.ndarray, np.ndarray]:
+        """Positions (nodes, 2), m, and velocities (nodes, 2), m s-1, of the nodes of a fish, nose to tail."""
+        number = index_of(fish, self.names, "state")
+        with self._using() as pointer:
+            n = check(lib.library.shoal_n_nodes(pointer, number))
+            position, velocity = np.empty((n, 2)), np.empty((n, 2))
+            check(lib.library.shoal_state(pointer, number, position.ctypes.data, velocity.ctypes.data))
+        return position, velocity
+
+    def set_state(self, fish: int | str = 0, position=None, velocity=None):
+        """Set positions (nodes, 2), m, and velocities (nodes, 2), m s-1, of the nodes of a fish; None: as they are.
+
+        Bound sheets and forces follow; energy and momentum that this gives to the body count as work and impulse from
+        outside. A fish that is moved continues its wake at the new tail, for which wake.spare_vortices of the case has to
+        be 1 or more (with wake.shedding: sheet).
+        """
+        number = index_of(fish, self.names, "set_state")
+        with self._using() as pointer:
+            n = check(lib.library.shoal_n_nodes(pointer, number))
+            addresses, kept = [], []
+            for what, value in (("position", position), ("velocity", velocity)):
+                array = None if value is None else numbers_of(value, f"set_state: {what}")
+                if array is not None and array.shape != (n, 2):
+                    raise CaseError(f"set_state: {what} of {self.names[number]} has the shape ({n}, 2), not {array.shape}")
+                kept.append(array)
+                addresses.append(None if array is None else array.ctypes.data)
+            check(lib.library.shoal_set_state(pointer, number, *addresses))
+
+    def add_vortex(self, x: float, y: float, circulation: float, fish: int | str = 0):
+        """Add a free vortex at (x, y), m, of a circulation, m2 s-1, counter-clockwise where it is positive.
+
+        It belongs to the wake of a fish: it moves, fades and is removed like the vortices that this fish sheds now. Its
+        opposite is infinitely far away. wake.spare_vortices of the case has to have room: 3 for each with
+        wake.shedding: sheet, else 1.
+        """
+        number = index_of(fish, self.names, "add_vortex")
+        values = [number_of(value, f"add_vortex: {name}") for name, value in
+                  (("x", x), ("y", y), ("circulation", circulation))]
+        with self._using() as pointer:
+            check(lib.library.shoal_add_vortex(pointer, number, *values))
 
     # -- values at the last event
 

@@ -104,6 +104,9 @@ const struct key case_table[] = {
          "error allowed in the velocity at a body by neighbours in one wake that are merged far from all bodies, in "
          "body lengths per beat; 0: none are merged",
      .synonyms = "coarsen thin"},
+    {"wake.spare_vortices", INTEGER, AT(school.wake.spare), "0", FROM_TO(0, 1000000), "",
+     .meaning = "vortices of each wake that a program may add to those that its fish sheds: doc/python.md, section 2",
+     .synonyms = "extra_vortices added_vortices"},
 
     {"sheet.smoothing", REAL, AT(school.sheet.smoothing), "0.05", ABOVE(0), "",
      .meaning = "smoothing radius of a bound vortex for the velocity that it induces at the wake and at other fish, in "

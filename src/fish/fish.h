@@ -165,6 +165,7 @@ struct school {
     double wake_tolerance; /* estimated error of the velocity of the wakes at the bodies, lengths per beat; 0: none */
 
     double wake_merge; /* error of the velocity at a body by what is merged in one wake, lengths per beat; 0: nothing */
+    int wake_spare;    /* vortices of each wake that may be added from outside: wake_add_vortex, wake_break */
 
     enum contact_action contact; /* of bodies whose outlines are nearer than: */
     double contact_range;        /* m */

@@ -140,6 +140,7 @@ static void set_fluid(struct school *school, const struct school_parameters *par
     school->removed = parameters->wake.removed_circulation;
     school->wake_tolerance = parameters->wake.tolerance;
     school->wake_merge = parameters->wake.merge;
+    school->wake_spare = parameters->wake.spare;
     school->contact = parameters->contact.action;
     school->rtol = parameters->rtol;
     school->threads = parameters->threads;

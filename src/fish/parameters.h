@@ -54,6 +54,7 @@ struct wake_parameters {
     enum removed_circulation removed_circulation;
     double tolerance; /* lengths per beat; 0: exact */
     double merge;     /* lengths per beat; 0: never */
+    int spare;        /* vortices of each wake that may be added from outside */
 };
 
 struct sheet_parameters {

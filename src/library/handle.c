@@ -85,7 +85,8 @@ enum status handle_evaluate(const struct simulation *simulation) {
 enum status handle_renew(struct shoal *run) {
     if (run->is_renewed) return STATUS_OK;
     run->has_row = 0;
-    run->simulation->integrator->count(run->simulation->solver, &run->when_reached);
+    // there is none after a renewal without memory
+    if (run->simulation->solver) run->simulation->integrator->count(run->simulation->solver, &run->when_reached);
     enum status status = simulate_renew(run->simulation);
     if (status == STATUS_OK) status = handle_evaluate(run->simulation);
     if (status == STATUS_OK) {

@@ -1,6 +1,6 @@
 /* handle.h: a run of the public interface: what it holds, and what all of its functions check and do. The functions of
- * include/shoal.h are in shoal.c (the life of a run, its files), shoal_copy.c and shoal_read.c. Tested by
- * tests/library/test_shoal.c. */
+ * include/shoal.h are in shoal.c (the life of a run, its files), shoal_change.c, shoal_copy.c and shoal_read.c. Tested
+ * by tests/library/test_shoal.c. */
 #ifndef HANDLE_H
 #define HANDLE_H
 

@@ -99,7 +99,10 @@ static void start_marker(const struct fish *fish, struct state *state, int f, do
     wake_set_tail(wake, velocity, tail.t);
 }
 
-// the velocities of all free vortices from the state as it is now; n_new: the vortices of each fish that have none yet
+enum { ALL = -1 };
+
+// the velocities of all free vortices from the state as it is now; n_new: the vortices of each fish that have none yet,
+// or ALL
 static enum status take_velocities(struct state *state, struct residual *residual, int n_new) {
     const struct school *school = residual->school;
     struct flow *const flow = residual->flow;
@@ -112,7 +115,8 @@ static enum status take_velocities(struct state *state, struct residual *residua
             start_marker(&school->fish[f], state, f, &flow->wake_u[newest], &flow->wake_v[newest]);
         }
         if (state->wake[f].n_vortex > 0) {
-            wake_set_velocity(&state->wake[f], flow->wake_u + first, flow->wake_v + first, n_new);
+            const int n = n_new == ALL ? state->wake[f].n_vortex : n_new;
+            wake_set_velocity(&state->wake[f], flow->wake_u + first, flow->wake_v + first, n);
         }
     }
     return STATUS_OK;
@@ -237,4 +241,15 @@ enum status event_next(struct state *state, struct residual *residual, struct in
     if (jumps) TRY(initial_conditions_solve(initial, state->t, state->y, state->yp));
     TRY(take_velocities(state, residual, 1));
     return finish_event(state, residual, initial, jumps, jumped);
+}
+
+enum status event_change(struct state *state, struct residual *residual, struct initial_conditions *initial,
+                         int velocities_are_given) {
+    residual->at_start = velocities_are_given;
+    const enum status status = initial_conditions_solve(initial, state->t, state->y, state->yp);
+    residual->at_start = 0;
+    TRY(status);
+    TRY(take_velocities(state, residual, ALL));
+    TRY(take_flow(state, residual));
+    return residual_couple(&residual->couplings, state->y);
 }

@@ -18,4 +18,11 @@ enum status event_start(struct state *state, struct residual *residual, struct i
  * longer continuous there: the integrator has to restart. Fails with STATUS_MEMORY or STATUS_SOLVER. */
 enum status event_next(struct state *state, struct residual *residual, struct initial_conditions *initial, int *jumped);
 
+/* Bodies or wakes have been changed from outside at the event of the state: make the unknowns consistent, as at an
+ * event with a jump, and find the velocities of all vortices again; they move on their first interval with these
+ * alone. velocities_are_given: momenta follow from the velocities of the bodies, as at the start; else velocities
+ * follow from the momenta. The integrator has to restart. Fails with STATUS_MEMORY or STATUS_SOLVER. */
+enum status event_change(struct state *state, struct residual *residual, struct initial_conditions *initial,
+                         int velocities_are_given);
+
 #endif

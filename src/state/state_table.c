@@ -61,6 +61,7 @@ const struct state_row state_table[] = {
     {"wake.tail_velocity", OF_WAKE(STATE_REAL, tail_velocity), NULL},
     {"wake.tail_tangent", OF_WAKE(STATE_REAL, tail_tangent), NULL},
     {"wake.n_merged", OF_WAKE(STATE_INTEGER, n_merged), NULL},
+    {"wake.n_added", OF_WAKE(STATE_INTEGER, n_added), NULL},
     {"wake.removed", OF_WAKE(STATE_REAL, removed), NULL},
     {"wake.shed_before", OF_WAKE(STATE_REAL, shed_before), NULL},
     {"wake.slip", OF_WAKE(STATE_REAL, slip), NULL},

@@ -45,7 +45,7 @@ int wake_most(const struct school *school, long n_events) {
     // one is released at every event but the first (impulsive: at the first too) and lives for a lifetime
     const double in_a_lifetime = ceil(school->lifetime / school->interval * (1 - 1e-9)) + 1;
     const double ever = (double)n_events + 1;
-    return (int)fmin(fmin(in_a_lifetime, ever), 2e9);
+    return (int)fmin(fmin(in_a_lifetime, ever) + school->wake_spare, 2e9);
 }
 
 enum status wake_resize(struct wake *wake, int n) {
@@ -182,6 +182,64 @@ void wake_add_shed(struct wake *wake, double circulation) {
     wake->shed_before += circulation;
     wake->removed += circulation;
     wake->version++;
+}
+
+// ---- from outside
+
+// room for n vortices from outside
+static enum status wake_make_spare(struct wake *wake, const struct school *school, int n) {
+    if (wake->n_added + n > school->wake_spare) {
+        return status_fail(
+            STATUS_CASE,
+            "wake.spare_vortices: %d, of which %d are used: this takes %d more; set it to the number that "
+            "the program adds to one wake",
+            school->wake_spare, wake->n_added, n);
+    }
+    if (wake->n_vortex + n > wake->capacity) TRY(reserve(wake, 2 * (wake->n_vortex + n)));
+    wake->n_added += n;
+    wake->version++;
+    return STATUS_OK;
+}
+
+enum status wake_add_vortex(struct wake *wake, const struct school *school, double t, double x, double y,
+                            double circulation) {
+    enum { BEHIND = 5, N_MARKERS = 3 }; /* markers at the tail that stay together: their stretches are seen as points */
+    if (school->removed == REMOVED_DROPPED) {
+        return status_fail(
+            STATUS_CASE,
+            "wake.dissipated_circulation: dropped: the circulation of a vortex that is added would go to "
+            "the body when it is removed: choose 'retained'");
+    }
+    TRY(wake_make_spare(wake, school, wake->has_markers ? N_MARKERS : 1));
+    wake->removed -= circulation;
+    if (!wake->has_markers || wake->n_vortex == 0) return wake_release(wake, x, y, circulation, t);
+
+    // make a gap of three behind marker i
+    const int i = wake->n_vortex > BEHIND ? wake->n_vortex - 1 - BEHIND : 0;
+    double **array[N_ARRAYS];
+    list_arrays(wake, array);
+    for (int k = 0; k < N_ARRAYS; k++) {
+        double *const values = *array[k];
+        memmove(values + i + 1 + N_MARKERS, values + i + 1, (size_t)(wake->n_vortex - 1 - i) * sizeof *values);
+        for (int m = 1; m <= N_MARKERS; m++) values[i + m] = values[i];
+    }
+    wake->n_vortex += N_MARKERS;
+
+    // both ends of the stretch are the vortex; the labels up to its older end fall by its circulation
+    for (int m = 1; m <= 2; m++) {
+        wake->x[i + m] = x;
+        wake->y[i + m] = y;
+    }
+    for (int k = 0; k <= i + 1; k++) wake->circulation[k] -= circulation;
+    return STATUS_OK;
+}
+
+enum status wake_break(struct wake *wake, const struct school *school, double t, const double tail[2]) {
+    const int newest = wake->n_vortex - 1;
+    if (!wake->has_markers || newest < 0) return STATUS_OK;
+    if (!(hypot(tail[0] - wake->x[newest], tail[1] - wake->y[newest]) > 0)) return STATUS_OK;
+    TRY(wake_make_spare(wake, school, 1));
+    return wake_release(wake, tail[0], tail[1], wake->circulation[newest], t);
 }
 
 void wake_leave_behind(struct wake *wake, double shed) {

@@ -26,6 +26,7 @@ struct wake {
     double *birth;                            /* time of release, s                                (n_vortex) */
     int has_markers;                          /* the queue holds markers of a sheet: free_sheet.h */
     int n_merged;                             /* how many have become one with a neighbour so far: wake_merge.h */
+    int n_added;                              /* how many have been added from outside so far: at most wake_spare */
     double tail_velocity[2], tail_tangent[2]; /* at the last event, m s-1 and 1; with markers only */
     double removed;                           /* circulation of all vortices removed so far, m2 s-1 */
     double shed_before;                       /* circulation shed up to the last event, m2 s-1 */
@@ -80,6 +81,22 @@ void wake_remove_old(struct wake *wake, const struct school *school, double t);
 
 /* So much more circulation has been shed, m2 s-1, all of it infinitely long ago: no vortex changes. */
 void wake_add_shed(struct wake *wake, double circulation);
+
+/* Add a vortex from outside at the time t of an event. Its opposite is infinitely far away: the circulation of the body
+ * does not change. It ages from t on with the vortices of the fish; in a queue of markers it is a stretch of length 0
+ * behind the newest ones (so it is as old as these) with stretches without circulation before and behind it, three
+ * markers in all:
+ *
+ *     before:  ... i ---- i+1 ... n        after:  ... i - - - A=B - - - i' ---- i+1 ... n     i' where i is
+ *
+ * Fails with STATUS_CASE where wake.spare_vortices has no room, or where circulation that is removed goes to the body
+ * (wake.dissipated_circulation: dropped), and with STATUS_MEMORY; the wake is then unchanged. */
+enum status wake_add_vortex(struct wake *wake, const struct school *school, double t, double x, double y,
+                            double circulation);
+
+/* A tail has been moved from outside: a queue of markers continues there, after a stretch without circulation. Fails as
+ * wake_add_vortex. */
+enum status wake_break(struct wake *wake, const struct school *school, double t, const double tail[2]);
 
 /* There are no vortices any more: all the circulation that has been shed, m2 s-1, is infinitely far away. */
 void wake_leave_behind(struct wake *wake, double shed);

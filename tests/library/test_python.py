@@ -148,6 +148,29 @@ class Runs(unittest.TestCase):
         with self.assertRaisesRegex(shoal.CaseError, "cannot be set"):
             run.set(0, "wave.phase", 1)
 
+    def test_bodies_and_wakes_are_changed(self):
+        case = {**PAIR, "wake": {"spare_vortices": 4}}
+        run, alone = shoal.Run(case), shoal.Run(case)
+        for one in run, alone:
+            one.step(3)
+        position, velocity = run.state("b")
+        self.assertEqual((position.shape, velocity.shape), ((9, 2), (9, 2)))
+        np.testing.assert_array_equal(position, run["x"][1])
+        run.set_state("b", velocity=velocity + [0.5, 0])
+        np.testing.assert_allclose(run["com_velocity"][1], alone["com_velocity"][1] + [0.5, 0], atol=1e-12)
+        run.set_state(1, position=position + [0, 0.1])
+        np.testing.assert_allclose(run.state(1)[0], position + [0, 0.1])
+        run.add_vortex(-1, 0.2, 0.05)
+        self.assertEqual(run["wake_count"].tolist(), [alone["wake_count"][0] + 3, alone["wake_count"][1] + 1])
+        self.assertLess(abs(run["total_circulation"]), 1e-10)
+        run.advance(run.end)
+        with self.assertRaisesRegex(shoal.CaseError, "wake.spare_vortices: 4, of which 3 are used"):
+            run.add_vortex(0, 0, 1)
+        with self.assertRaisesRegex(shoal.CaseError, r"position of b has the shape \(9, 2\), not \(7, 2\)"):
+            run.set_state("b", position=np.zeros((7, 2)))
+        with self.assertRaisesRegex(shoal.CaseError, "edge 0 of b would be 0 m long"):
+            run.set_state("b", position=np.zeros((9, 2)))
+
     def test_a_copy_has_the_bits_of_the_run(self):
         run = shoal.Run(PAIR)
         run.advance(0.1)
@@ -694,6 +717,33 @@ class Environments(unittest.TestCase):
             env.step([0.1, 0.2])
         with self.assertRaisesRegex(shoal.CaseError, "an action is 1 numbers"):
             env.step([np.nan])
+
+    @unittest.skipIf(os.environ.get("LD_PRELOAD"), "with sanitizers times say nothing")
+    def test_an_action_costs_at_most_20_percent_more_than_its_events_in_the_library(self):
+        case = {"time": {"end": 1, "shedding_interval": 0.02}, "fish": [{}, {"start": {"position": [1.5, 0.3]}}]}
+        env = shoal.SwimEnv(case, fish=1, goal=(0, (1.5, 0.3)), reward={"speed": 1, "cost_of_transport": 0.01},
+                            observations=("velocity", "heading", "goal", "closing", "curvature"))
+        library, array, bias = shoal._library.library, shoal._library.Array(), ctypes.c_double()
+        times = {True: [], False: []}
+        for _ in range(4):
+            for in_python in True, False:
+                env.reset()
+                pointer, n, truncated = env.run._handle.pointer, 0, False
+                start = time.process_time()
+                while not truncated:
+                    bias.value = 0.2 * np.sin(0.1 * n)
+                    n += 1
+                    if in_python:
+                        truncated = env.step([bias.value])[3]
+                        continue
+                    library.shoal_set(pointer, 1, b"control.bias", 1, bias)
+                    truncated = library.shoal_step(pointer) < 0 or n == 50
+                    for name in b"com", b"com_velocity", b"heading", b"curvature", b"actuation_work":
+                        library.shoal_read(pointer, name, array)
+                times[in_python].append(time.process_time() - start)
+        ratio = min(times[True]) / min(times[False])
+        print(f"an action in Python over its events in the library: {ratio:.3f}")
+        self.assertLess(ratio, 1.2)
 
     def test_actions_outside_the_box_are_refused(self):
         env = shoal.SwimEnv(PAIR, actions={"bias": (-0.3, 0.3), "frequency": (0.8, 1.2)})

@@ -909,6 +909,227 @@ static void copying_without_memory_fails_and_leaves_the_run(void **state) {
     shoal_close(run);
 }
 
+// ---- changes from outside
+
+static double one_of(struct shoal *run, const char *name, size_t i) {
+    struct shoal_array array;
+    if (shoal_read(run, name, &array) != SHOAL_OK) fail_msg("%s", shoal_message());
+    return ((const double *)array.values)[i];
+}
+
+// two fish whose momentum balances, with the wake of the default; the last two may be replaced
+static const char *const changed[] = {"time.end=0.6",        "fish[*].wave.ramp=0.1",  "fish[*].nodes=9",
+                                      "wake.taper=0.6",      "wake.taper_beside=0.07", "fish[*].sheet_points=31",
+                                      "wake.shedding=sheet", "wake.spare_vortices=6",  "fish[*].force=pressure"};
+enum { N_CHANGED = sizeof changed / sizeof *changed };
+
+static struct shoal *opened_to_change(void **state, double t) {
+    struct shoal *const run = opened(*state, N_CHANGED, changed);
+    assert_int_equal(shoal_advance(run, t), SHOAL_OK);
+    return run;
+}
+
+static void a_body_is_where_it_was_put_with_its_velocity(void **state) {
+    struct shoal *const run = opened_to_change(state, 0.2);
+    double x[18], v[18], x_now[18], v_now[18], audit[3];
+    const int n_before = shoal_n_vortices(run, 0);
+    assert_int_equal(shoal_state(run, 0, x, v), SHOAL_OK);
+    for (size_t i = 0; i < 3; i++)
+        audit[i] = i < 2 ? one_of(run, "momentum_balance", i) : one_of(run, "energy_balance", 0);
+    for (int k = 0; k < 9; k++) {
+        x[2 * k] += 0.1;
+        x[2 * k + 1] -= 0.2;
+        v[2 * k] -= 0.3;
+    }
+    const double com = one_of(run, "com", 0), velocity = one_of(run, "com_velocity", 0);
+    assert_int_equal(shoal_set_state(run, 0, x, v), SHOAL_OK);
+    assert_int_equal(shoal_state(run, 0, x_now, v_now), SHOAL_OK);
+    for (int i = 0; i < 18; i++) {
+        NEAR(x_now[i], x[i], 0, 0);
+        NEAR(v_now[i], v[i], 0, 0);
+    }
+    NEAR(one_of(run, "com", 0), com + 0.1, 1e-12, 0);
+    NEAR(one_of(run, "com_velocity", 0), velocity - 0.3, 1e-12, 0);
+    // the wake stays, and goes on at the new tail
+    assert_int_equal(shoal_n_vortices(run, 0), n_before + 1);
+    double wake_x[64], wake_y[64], circulation[64];
+    assert_int_equal(shoal_vortices(run, 0, wake_x, wake_y, circulation), SHOAL_OK);
+    NEAR(wake_x[n_before], x[16], 0, 0);
+    // all circulation still adds up to 0, and no balance has moved
+    NEAR(one_of(run, "total_circulation", 0), 0, 1e-10, 0);
+    for (size_t i = 0; i < 2; i++) NEAR(one_of(run, "momentum_balance", i), audit[i], 1e-9, 0);
+    NEAR(one_of(run, "energy_balance", 0), audit[2], 1e-9, 0);
+    assert_int_equal(shoal_advance(run, 0.3), SHOAL_OK);
+    NEAR(one_of(run, "total_circulation", 0), 0, 1e-10, 0);
+    assert_true(fabs(one_of(run, "energy_balance", 0) - audit[2]) < 1e-3 * fabs(one_of(run, "kinetic_energy", 0)));
+    shoal_close(run);
+}
+
+static void a_state_that_is_set_to_itself_stays(void **state) {
+    struct shoal *const run = opened_to_change(state, 0.2), *copy;
+    double x[18], v[18];
+    assert_int_equal(shoal_clone(&copy, run), SHOAL_OK);
+    assert_int_equal(shoal_state(run, 1, x, v), SHOAL_OK);
+    assert_int_equal(shoal_set_state(run, 1, NULL, NULL), SHOAL_OK);
+    same_in_all(run, copy);
+    assert_int_equal(shoal_set_state(run, 1, x, v), SHOAL_OK);
+    assert_int_equal(shoal_n_vortices(run, 1), shoal_n_vortices(copy, 1));
+    assert_int_equal(shoal_advance(run, 0.4), SHOAL_OK);
+    assert_int_equal(shoal_advance(copy, 0.4), SHOAL_OK);
+    // vortices begin a first interval again: an error of the second order in the interval, once
+    for (size_t i = 0; i < 4; i++) NEAR(one_of(run, "com", i), one_of(copy, "com", i), 5e-5, 0);
+    shoal_close(copy);
+    shoal_close(run);
+}
+
+static void a_state_that_no_body_can_have_is_refused(void **state) {
+    struct shoal *const run = opened_to_change(state, 0.1), *copy;
+    double x[18], v[18], wrong[18];
+    assert_int_equal(shoal_clone(&copy, run), SHOAL_OK);
+    assert_int_equal(shoal_state(run, 0, x, v), SHOAL_OK);
+    memcpy(wrong, x, sizeof wrong);
+    wrong[3] = NAN;
+    assert_int_equal(shoal_set_state(run, 0, wrong, NULL), SHOAL_USAGE);
+    assert_non_null(strstr(shoal_message(), "the position of node 1, nan, is not finite"));
+    assert_int_equal(shoal_set_state(run, 0, NULL, wrong), SHOAL_USAGE);
+    memcpy(wrong, x, sizeof wrong);
+    wrong[16] += 1;
+    assert_int_equal(shoal_set_state(run, 0, wrong, NULL), SHOAL_USAGE);
+    assert_non_null(strstr(shoal_message(), "edge 7 of a would be"));
+    for (int i = 0; i < 4; i++) wrong[14 + i] = x[14 + i];
+    wrong[16] = x[12];
+    wrong[17] = x[13];
+    assert_int_equal(shoal_set_state(run, 0, wrong, NULL), SHOAL_USAGE);
+    assert_non_null(strstr(shoal_message(), "joint 6 of a would turn by"));
+    // onto the other fish
+    double other[18];
+    assert_int_equal(shoal_state(run, 1, other, NULL), SHOAL_OK);
+    assert_int_equal(shoal_set_state(run, 0, other, NULL), SHOAL_USAGE);
+    assert_non_null(strstr(shoal_message(), "would overlap"));
+    assert_int_equal(shoal_set_state(run, 2, x, v), SHOAL_USAGE);
+    assert_int_equal(shoal_set_state(NULL, 0, x, v), SHOAL_USAGE);
+    assert_int_equal(shoal_state(NULL, 0, x, v), SHOAL_USAGE);
+    same_in_all(run, copy);
+    assert_int_equal(shoal_advance(run, 0.2), SHOAL_OK);
+    assert_int_equal(shoal_advance(copy, 0.2), SHOAL_OK);
+    same_in_all(run, copy);
+    shoal_close(copy);
+    shoal_close(run);
+}
+
+static void a_vortex_from_outside_keeps_momentum_and_circulation(void **state) {
+    // without pressure there is no momentum balance
+    static const char *const shedding[] = {"wake.shedding=sheet", "wake.shedding=continuous",
+                                           "wake.shedding=impulsive"};
+    for (int i = 0; i < 3; i++) {
+        const char *assignments[N_CHANGED];
+        memcpy(assignments, changed, sizeof assignments);
+        if (i > 0) {
+            assignments[3] = "wake.taper=0";
+            assignments[4] = "wake.taper_beside=0";
+            assignments[6] = shedding[i];
+            assignments[8] = "fish[*].force=reactive";
+        }
+        struct shoal *const run = opened(*state, N_CHANGED, assignments);
+        assert_int_equal(shoal_advance(run, 0.3), SHOAL_OK);
+        const int n_before = shoal_n_vortices(run, 0);
+        const double x = -1, y = 0.4, circulation = 0.05, r = 0.4;
+        double before[3], lost[2], flow[4], far[4];
+        const double points[4] = {x + r, y, x - r, y};
+        for (size_t k = 0; k < 3; k++)
+            before[k] = k < 2 ? one_of(run, "momentum_balance", k) : one_of(run, "energy_balance", 0);
+        for (size_t k = 0; k < 2; k++) lost[k] = one_of(run, "lost_impulse", k);
+        struct shoal *copy;
+        assert_int_equal(shoal_clone(&copy, run), SHOAL_OK);
+        assert_int_equal(shoal_flow(run, 2, points, far, NULL), SHOAL_OK);
+        assert_int_equal(shoal_add_vortex(run, 0, x, y, circulation), SHOAL_OK);
+        assert_int_equal(shoal_n_vortices(run, 0), n_before + (i == 0 ? 3 : 1));
+        assert_int_equal(shoal_flow(run, 2, points, flow, NULL), SHOAL_OK);
+        // on both sides it moves the fluid by its circulation, but for its smoothing and the answer of the bodies
+        NEAR(flow[1] - flow[3] - far[1] + far[3], circulation / (M_PI * r), 0, 0.2);
+        NEAR(one_of(run, "total_circulation", 0), 0, 1e-10, 0);
+        for (size_t k = 0; k < 2 && i == 0; k++) NEAR(one_of(run, "momentum_balance", k), before[k], 1e-7, 0);
+        NEAR(one_of(run, "energy_balance", 0), before[2], 1e-8, 0);
+        // rho w (y, -x) G, of the depth 0.2 of the default
+        const double impulse = lost[0] - one_of(run, "lost_impulse", 0);
+        NEAR(impulse / (lost[1] - one_of(run, "lost_impulse", 1)), -y / x, 0, 1e-9);
+        // from then on the balance errs as without the vortex
+        assert_int_equal(shoal_advance(run, 0.5), SHOAL_OK);
+        assert_int_equal(shoal_advance(copy, 0.5), SHOAL_OK);
+        NEAR(one_of(run, "total_circulation", 0), 0, 1e-10, 0);
+        for (size_t k = 0; k < 2 && i == 0; k++) {
+            NEAR(one_of(run, "momentum_balance", k), one_of(copy, "momentum_balance", k), 5e-3 * fabs(impulse), 0);
+        }
+        shoal_close(copy);
+        shoal_close(run);
+    }
+}
+
+static void a_changed_run_is_copied_and_saved_like_any_other(void **state) {
+    struct shoal *const run = opened_to_change(state, 0.2), *copy, *loaded;
+    double x[18];
+    assert_int_equal(shoal_add_vortex(run, 1, -1, 0, 0.02), SHOAL_OK);
+    assert_int_equal(shoal_state(run, 0, x, NULL), SHOAL_OK);
+    for (int k = 0; k < 9; k++) x[2 * k] -= 0.01;
+    assert_int_equal(shoal_set_state(run, 0, x, NULL), SHOAL_OK);
+    make_result_folder();
+    assert_int_equal(shoal_write(run, result_path, 0), SHOAL_OK);
+    assert_int_equal(shoal_clone(&copy, run), SHOAL_OK);
+    char path[80];
+    snprintf(path, sizeof path, "%s/saved.ckpt", result_folder);
+    assert_int_equal(shoal_save(run, path), SHOAL_OK);
+    assert_int_equal(shoal_load(&loaded, path), SHOAL_OK);
+    same_in_all(run, loaded);
+    struct shoal *const all[] = {run, copy, loaded};
+    for (int i = 0; i < 3; i++) assert_int_equal(shoal_advance(all[i], 0.6), SHOAL_OK);
+    same_in_all(run, copy);
+    same_in_all(run, loaded);
+    // with room in the file up to the end
+    assert_true(n_rows_of(result_path) > 2);
+    for (int i = 0; i < 3; i++) shoal_close(all[i]);
+    assert_int_equal(unlink(path), 0);
+    assert_int_equal(unlink(result_path), 0);
+    assert_int_equal(rmdir(result_folder), 0);
+}
+
+static void a_vortex_without_room_is_refused(void **state) {
+    struct shoal *const run = opened_to_change(state, 0.1);
+    assert_int_equal(shoal_add_vortex(run, 2, 0, 0, 1), SHOAL_USAGE);
+    assert_int_equal(shoal_add_vortex(NULL, 0, 0, 0, 1), SHOAL_USAGE);
+    assert_int_equal(shoal_add_vortex(run, 0, NAN, 0, 1), SHOAL_USAGE);
+    for (int i = 0; i < 2; i++) assert_int_equal(shoal_add_vortex(run, 0, -1, i, 0.01), SHOAL_OK);
+    const int n = shoal_n_vortices(run, 0);
+    assert_int_equal(shoal_add_vortex(run, 0, -1, 2, 0.01), SHOAL_USAGE);
+    assert_non_null(strstr(shoal_message(), "wake.spare_vortices: 6, of which 6 are used"));
+    assert_int_equal(shoal_n_vortices(run, 0), n);
+    assert_int_equal(shoal_step(run), SHOAL_OK);
+    shoal_close(run);
+    const char *const dropped[] = {"wake.spare_vortices=6", "wake.removed_circulation=dropped"};
+    struct shoal *const other = opened(*state, 2, dropped);
+    assert_int_equal(shoal_add_vortex(other, 0, -1, 2, 0.01), SHOAL_USAGE);
+    assert_non_null(strstr(shoal_message(), "choose 'retained'"));
+    shoal_close(other);
+}
+
+static void changing_without_memory_leaves_the_run(void **state) {
+    struct shoal *const run = opened_to_change(state, 0.1), *copy;
+    assert_int_equal(shoal_clone(&copy, run), SHOAL_OK);
+    shoal_close(copy);
+    int n_failed = 0, is_reached = 1;
+    for (int n = 0; is_reached; n++) {
+        const int n_vortices = shoal_n_vortices(run, 0);
+        n_until_failure = n;
+        const int code = shoal_add_vortex(run, 0, -1, 1, 0.01);
+        is_reached = n_until_failure == -1;
+        n_until_failure = -1;
+        n_failed += code != 0;
+        if (code != 0) assert_int_equal(shoal_n_vortices(run, 0), n_vortices);
+        n += n / 4;
+    }
+    assert_true(n_failed > 10);
+    shoal_close(run);
+}
+
 // ---- checkpoints of their own
 
 static char saved_path[] = "/tmp/test_shoal_saved.XXXXXX";
@@ -1052,6 +1273,13 @@ int main(void) {
         cmocka_unit_test(a_run_that_has_failed_is_whole_when_it_is_put_back),
         cmocka_unit_test(only_copies_can_be_put_in_the_place_of_one_another),
         cmocka_unit_test(copying_without_memory_fails_and_leaves_the_run),
+        cmocka_unit_test(a_body_is_where_it_was_put_with_its_velocity),
+        cmocka_unit_test(a_state_that_is_set_to_itself_stays),
+        cmocka_unit_test(a_state_that_no_body_can_have_is_refused),
+        cmocka_unit_test(a_vortex_from_outside_keeps_momentum_and_circulation),
+        cmocka_unit_test(a_changed_run_is_copied_and_saved_like_any_other),
+        cmocka_unit_test(a_vortex_without_room_is_refused),
+        cmocka_unit_test(changing_without_memory_leaves_the_run),
         cmocka_unit_test(a_saved_run_goes_on_with_the_bits_of_the_run),
         cmocka_unit_test(only_a_checkpoint_is_replaced_or_loaded),
         cmocka_unit_test(loading_without_memory_fails_and_leaves_nothing),
