@@ -130,7 +130,7 @@ python_modules = $(shell $(PYTHON) -c 'import site, sys; \
 # make again, on all cores unless told otherwise
 parallel = $(MAKE) --no-print-directory $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc))
 
-.PHONY: all demo deb test test-c test-platforms test-slurm tests valgrind verify numbers soak fuzz fuzz-programs mutants bench style format docs install uninstall clean deps help FORCE
+.PHONY: all demo deb check test test-c test-platforms test-slurm tests valgrind verify numbers soak fuzz fuzz-programs mutants bench style format docs install uninstall clean deps help FORCE
 
 ## Everyday
 
@@ -144,6 +144,8 @@ test:  ## install what is missing, build, run every test
 	@scripts/install-deps.sh $(test_packages)
 	@$(parallel) tests
 	@scripts/run-tests.sh $(program) $(c_tests) $(shell_tests)
+
+check: style test-c  ## what to run before a commit: style, and the tests in C
 
 test-c: deps  ## run the tests in C only (half a minute)
 	@$(parallel) tests
