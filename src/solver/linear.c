@@ -195,7 +195,10 @@ static int has_memory(int n) {
 }
 
 /* The operator of GMRES, 1 + D^-1 C, is the system with its preconditioner already; x is set for each solution. Norms
- * and dot products are sums over all unknowns: one thread. */
+ * and dot products are sums over all unknowns: one thread.
+ *
+ * SUNLinSol_SPGMR costs a run of 16 close fish 2.4 % more instructions than a GMRES without the vectors of SUNDIALS
+ * (callgrind); for 64 and 256 fish the difference is within the noise. */
 static enum status create_gmres(struct linear *linear) {
     const int n = n_unknowns(linear);
     linear->right = calloc((size_t)n, sizeof *linear->right);
