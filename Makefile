@@ -268,7 +268,7 @@ uninstall:  ## remove what `make install` installed
 	$(quiet)rm -rf '$(DESTDIR)$(prefix)/share/shoal'
 
 deb: deps  ## build the packages of Debian in build/deb, and let lintian check them
-	@scripts/install-deps.sh dpkg-dev debhelper dh-python lintian
+	@scripts/install-deps.sh build-essential debhelper dh-python lintian
 	@scripts/packaging/make-deb.sh $(B)/deb $(VERSION)
 
 # ---- rules ----

@@ -1,5 +1,6 @@
-/* memory.c: allocations of a program that fail on demand, to be preloaded (LD_PRELOAD): tests/faults/memory.py. Those
- * of its libraries pass. The address sanitizer, which has a malloc of its own, cannot do with this one.
+/* memory.c: allocations and threads of a program that fail on demand, to be preloaded (LD_PRELOAD):
+ * tests/faults/memory.py. Those of its libraries pass. The address sanitizer, which has a malloc of its own, cannot do
+ * with this one.
  *
  *     MEMORY_AT      which allocation fails, from 1; 0: none
  *     MEMORY_COUNT   a file to append the number of allocations to at the end
@@ -50,10 +51,13 @@ __attribute__((destructor)) static void report(void) {
     fclose(file);
 }
 
+static int is_program(const void *caller) {
+    return (uintptr_t)caller >= program_start && (uintptr_t)caller < program_end;
+}
+
 // whether an allocation for this caller fails
 static int fails(const void *caller) {
-    const uintptr_t at = (uintptr_t)caller;
-    if (at < program_start || at >= program_end || ++count != failing) return 0;
+    if (!is_program(caller) || ++count != failing) return 0;
     errno = ENOMEM;
     return 1;
 }
@@ -79,8 +83,8 @@ int pthread_create(pthread_t *thread, const pthread_attr_t *attributes, void *(*
     static atomic_long n_threads;
     static int (*real)(pthread_t *, const pthread_attr_t *, void *(*)(void *), void *);
     const char *const text = getenv("THREAD_AT");
-    const long at = text ? atol(text) : 0, n = ++n_threads;
-    if (at > 0 && n >= at) return EAGAIN;
+    const long at = text ? atol(text) : 0;
+    if (at > 0 && is_program(__builtin_return_address(0)) && ++n_threads >= at) return EAGAIN;
     if (!real) *(void **)&real = dlsym(RTLD_NEXT, "pthread_create");
     return real(thread, attributes, start, data);
 }
