@@ -141,6 +141,7 @@ run_platform() {  # name, release, architecture, compiler, checks
     if [[ -z ${REUSE-} || ! -d $root/shoal ]]; then
         make_chroot "$root" "$release" "$architecture" || skip_all "$name: no chroot of $release for $architecture from $mirror"
     fi
+    find "$root/shoal" -mindepth 1 -maxdepth 1 ! -name build -exec rm -rf {} +
     scripts/packaging/copy-sources.sh "$root/shoal"
     # demo shows that make installs the packages; without it a mirror that fails is no fault of shoal
     [[ $checks == demo* ]] || enter "$root" timeout 1800 scripts/install-deps.sh ||

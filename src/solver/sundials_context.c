@@ -1,7 +1,7 @@
 /* sundials_context.c: vectors of SUNDIALS, serial ones or those of OpenMP, with norms and clones of our own.
  *
- * A school of 64 fish takes 3.53 s of CPU on two threads with the vectors of OpenMP, and 3.55 s with vectors of our own;
- * a school of 256 fish 3.43 s and 3.44 s. */
+ * A school of 64 fish takes 3.53 s of CPU on two threads with the vectors of OpenMP, and 3.55 s with vectors of our
+ * own; a school of 256 fish 3.43 s and 3.44 s. */
 #include "solver/sundials_context.h"
 
 #include <math.h>
