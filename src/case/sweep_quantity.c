@@ -14,7 +14,7 @@ const struct sweep_quantity sweep_quantities[SWEEP_N_QUANTITIES] = {
     {"mean_heading", 1, 0, "degree", "mean of the heading over the last period", 0},
     {"shed_circulation", 1, 0, NULL, NULL, 0},
     {"cost_of_transport", 1, 0, NULL, NULL, SWEEP_JUDGE},
-    {"mean_actuation_power", 1, 0, "W", "mean power of muscle, prescribed motion and loads over the last period", 0},
+    {"mean_actuation_power", 1, 0, NULL, NULL, 0},
     {"steady_speed", 1, 0, NULL, NULL, SWEEP_OF_STEADY | SWEEP_JUDGE},
     {"steady_turn", 1, 0, NULL, NULL, SWEEP_OF_STEADY},
     {"steady_thrust", 1, 0, NULL, NULL, SWEEP_OF_STEADY},

@@ -151,7 +151,7 @@ static void means_over_period(const struct fish *fish, const struct history *his
     to->speed = hypot(to->com_velocity[0] - new->stream[0], to->com_velocity[1] - new->stream[1]);
     to->drift = to->heading_error = to->strouhal = NAN;
     to->cost_of_transport = to->cost_of_transport_fluid = to->cost_of_transport_body = to->efficiency = NAN;
-    to->mean_thrust = to->mean_power = to->thrust_efficiency = NAN;
+    to->mean_thrust = to->mean_power = to->thrust_efficiency = to->mean_actuation_power = NAN;
     if (history->n < 2) return;
     const double duration = (history->n - 1) * interval;
     double way[2];
@@ -160,12 +160,12 @@ static void means_over_period(const struct fish *fish, const struct history *his
     to->ground_speed = hypot(new->com[0] - old->com[0], new->com[1] - old->com[1]) / duration;
     to->speed = distance / duration;
     to->drift = drift_of(history);
+    to->mean_actuation_power = (new->work[WORK_ACTUATION] - old->work[WORK_ACTUATION]) / duration;
     if (distance <= 0) return;
     to->heading_error = angle_degrees(angle_wrap(atan2(way[1], way[0]) - angle_radians(to->desired_heading)));
     const double momentum = fish->total_mass * to->speed;
-    const double muscle = new->work[WORK_ACTUATION] - old->work[WORK_ACTUATION];
-    const double drive = new->work[WORK_DRIVING_ON_WATER] - old->work[WORK_DRIVING_ON_WATER];
-    to->cost_of_transport = (muscle + drive) / duration / momentum;
+    const double drive = (new->work[WORK_DRIVING_ON_WATER] - old->work[WORK_DRIVING_ON_WATER]) / duration;
+    to->cost_of_transport = (to->mean_actuation_power + drive) / momentum;
     to->cost_of_transport_fluid = (old->work[WORK_FLUID] - new->work[WORK_FLUID]) / duration / momentum;
     to->cost_of_transport_body = (old->work[WORK_DAMPING] - new->work[WORK_DAMPING]) / duration / momentum;
     const double into_water = old->work[WORK_FLUID] - new->work[WORK_FLUID];

@@ -38,10 +38,11 @@ struct diagnostics_fish {
     double leading_edge_most;        /* the largest magnitude of A_0 over the last period; NaN with other forces */
     double separation_share;         /* part of the last period in which A_0 is above its limit */
     double thrust;                   /* forces of the fluid along the heading, N */
-    double mean_thrust;       /* all forces of the fluid along the way, N, over the last period: 0 when it swims */
-    double mean_power;        /* that the motion takes for thrust and wake, W, over the last period */
-    double thrust_efficiency; /* mean thrust times speed over that power */
-    double cost_of_transport; /* mean power of muscle, prescribed motion and loads over mass and speed, m s-2: */
+    double mean_thrust;          /* all forces of the fluid along the way, N, over the last period: 0 when it swims */
+    double mean_power;           /* that the motion takes for thrust and wake, W, over the last period */
+    double thrust_efficiency;    /* mean thrust times speed over that power */
+    double mean_actuation_power; /* of the muscle, W, over the last period */
+    double cost_of_transport;    /* mean power of muscle, prescribed motion and loads over mass and speed, m s-2: */
     double cost_of_transport_fluid; /* the part that goes into the fluid, */
     double cost_of_transport_body;  /* and the part that damping takes */
     double efficiency;              /* friction times speed over the power that goes into the fluid, over a period */

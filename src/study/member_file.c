@@ -14,10 +14,9 @@ enum { MAX_FISH = 1000000 };
 
 // ---- the table of quantities: first what is in the last row of a result, then what is computed
 
-static const char *const computed[] = {
-    "nose",       "tail",       "lateral_drift", "mean_heading", "mean_actuation_power",
-    "nose_error", "tail_error", "power_error",   "beat_time"};
-enum { NOSE, TAIL, DRIFT, MEAN_HEADING, MEAN_POWER, NOSE_ERROR, TAIL_ERROR, POWER_ERROR, BEAT_TIME, N_COMPUTED };
+static const char *const computed[] = {"nose",       "tail",       "lateral_drift", "mean_heading",
+                                       "nose_error", "tail_error", "power_error",   "beat_time"};
+enum { NOSE, TAIL, DRIFT, MEAN_HEADING, NOSE_ERROR, TAIL_ERROR, POWER_ERROR, BEAT_TIME, N_COMPUTED };
 
 /* True for (time), (time, fish) and (time, fish, xy). */
 static int has_end(const struct result_variable *variable) {
@@ -182,16 +181,6 @@ static enum status compute_mean_heading(const struct reading *reading, size_t f,
     return STATUS_OK;
 }
 
-/* The cost of transport is that power over mass and speed. */
-static enum status compute_mean_power(const struct reading *reading, size_t f, double *power) {
-    double cost, mass, speed;
-    TRY(read_number(reading, "cost_of_transport", reading->n_rows - 1, f, &cost));
-    TRY(read_constant(reading, "body_mass", f, &mass));
-    TRY(read_number(reading, "speed", reading->n_rows - 1, f, &speed));
-    *power = cost * mass * speed;
-    return STATUS_OK;
-}
-
 /* The wall time over the beats of the search, of its multipliers and of the rows; none without a beat. */
 static enum status compute_beat_time(const struct reading *reading, double *time) {
     static const char *const names[] = {"steady_beats", "steady_multiplier_beats"};
@@ -217,8 +206,7 @@ static enum status compute(const struct reading *reading, int f) {
                      member_file_place(member, first + TAIL, f, 0)));
     TRY(compute_drift(reading, (size_t)f, member_file_place(member, first + DRIFT, f, 0)));
     if (f == 0) TRY(compute_beat_time(reading, member_file_place(member, first + BEAT_TIME, 0, 0)));
-    TRY(compute_mean_heading(reading, (size_t)f, member_file_place(member, first + MEAN_HEADING, f, 0)));
-    return compute_mean_power(reading, (size_t)f, member_file_place(member, first + MEAN_POWER, f, 0));
+    return compute_mean_heading(reading, (size_t)f, member_file_place(member, first + MEAN_HEADING, f, 0));
 }
 
 static enum status read_attributes(struct reading *reading) {

@@ -350,6 +350,8 @@ static void cost_of_transport_is_what_fluid_and_damping_take(void **state) {
         }
         const struct diagnostics_fish *of = &simulation->diagnostics->fish[0];
         const double scale = simulation->school->fish[0].total_mass * of->speed;
+        NEAR(of->mean_actuation_power, i == 0 || i == 3 ? of->cost_of_transport * scale : 0, 1e-12,
+             i == 3 ? 0.05 : 1e-9);
         // the rest of the supplied work is in the body
         const double kept = of->cost_of_transport - of->cost_of_transport_fluid - of->cost_of_transport_body;
         NEAR(kept * scale, energy[1] - energy[0] - (audit[1] - audit[0]), 1e-9, 1e-9);

@@ -131,17 +131,6 @@ static void mean_heading_is_that_of_trapezoids_over_the_last_period(void **state
     member_file_free(&member);
 }
 
-static void mean_power_is_the_cost_of_transport_times_mass_and_speed(void **state) {
-    struct fixture *const f = *state;
-    struct member_file member;
-    read_member(f, &member);
-    for (int fish = 0; fish < N_FISH; fish++) {
-        NEAR(value(&member, "mean_actuation_power", fish, 0),
-             f->of_fish[fish].cost_of_transport * f->school->fish[fish].total_mass * f->of_fish[fish].speed, 0, 1e-14);
-    }
-    member_file_free(&member);
-}
-
 static void a_member_without_rows_has_no_values(void **state) {
     struct fixture *const f = *state;
     write_file(f, 0);
@@ -174,8 +163,7 @@ static void a_member_that_was_cut_is_refused(void **state) {
 
 /* Whether a member cannot be read without this variable. */
 static bool is_needed(const char *name) {
-    static const char *const needed[] = {
-        "time", "x", "n_nodes", "heading", "com", "frequency", "cost_of_transport", "body_mass", "speed"};
+    static const char *const needed[] = {"time", "x", "n_nodes", "heading", "com", "frequency"};
     for (size_t i = 0; i < sizeof needed / sizeof *needed; i++)
         if (strcmp(needed[i], name) == 0) return true;
     return false;
@@ -240,7 +228,6 @@ int main(void) {
         WITH_FILE(nose_and_tail_are_the_ends_of_each_body),
         WITH_FILE(lateral_drift_is_to_the_left_of_the_first_heading),
         WITH_FILE(mean_heading_is_that_of_trapezoids_over_the_last_period),
-        WITH_FILE(mean_power_is_the_cost_of_transport_times_mass_and_speed),
         WITH_FILE(a_member_without_rows_has_no_values),
         WITH_FILE(a_member_that_was_cut_is_refused),
         WITH_FILE(a_variable_that_does_not_fit_is_refused),
