@@ -1,10 +1,11 @@
 /* interval.c: the section "interval": the order in the shedding interval of the default model: one soft
  * fish, from rest and from a moving start, whose oldest wake decays during the run.
  *
- * Runs are compared with finer ones, with the same sheet points, as root mean squares over the run: at one instant the
- * error of one point of a fish that beats may be near a change of its sign, and orders from there are anything between
- * 0.7 and 1.9. Errors are larger where the fish starts from rest: its first wake is shed next to a tail that hardly
- * leaves it.
+ * Runs are compared with finer ones as root mean squares over the run: at one instant the error of one point of a fish
+ * that beats may be near a change of its sign, and orders from there are anything between 0.7 and 1.9. A free sheet is
+ * refined together with the bound sheet, M - 1 with the inverse root of the interval (doc/numerics.md 5): with the same
+ * sheet points, intervals below U Dt/L = (3.2/(M - 1))^2 change nothing. Errors are larger where the fish starts from
+ * rest: its first wake is shed next to a tail that hardly leaves it.
  */
 #include <math.h>
 #include <stdio.h>
@@ -14,7 +15,7 @@
 
 enum quantity { NOSE, TAIL, SHED, N_QUANTITIES };
 static const char *const quantity_name[N_QUANTITIES] = {"nose", "tail", "shed circulation"};
-enum { MOST_RUNS = 6, N_TIMES = 75 };
+enum { MOST_RUNS = 5, N_TIMES = 75 };
 static const double longest = 0.02;  // interval, s; runs are compared at its multiples
 
 // a run: places in m, circulation in m2/s
@@ -35,14 +36,15 @@ static int is_sheet(const struct variant *variant) {
 }
 
 static void run_fish(const struct variant *variant, double interval, struct path *path) {
+    const int n_sheet = is_sheet(variant) ? 1 + (int)lround(32 * sqrt(longest / interval)) : 65;
     struct simulation *const simulation =
         verify_open(VERIFY_DEFAULTS
                     "format: 1\ntime: {end: %.17g, shedding_interval: %.17g, output_interval: %.17g}\n"
                     "wake: {shedding: %s, removed_circulation: %s, lifetime: 1, decay: 0.2}\n"
                     "solver: {rtol: 1e-9, order: 5}\n"
-                    "fish: [{nodes: 7, sheet_points: 65, force: %s, body: {modulus: 1.0e+5}, start: {speed: %g}}]\n",
-                    N_TIMES * longest, interval, N_TIMES * longest, variant->shedding, variant->removed, variant->force,
-                    variant->speed);
+                    "fish: [{nodes: 7, sheet_points: %d, force: %s, body: {modulus: 1.0e+5}, start: {speed: %g}}]\n",
+                    N_TIMES * longest, interval, N_TIMES * longest, variant->shedding, variant->removed, n_sheet,
+                    variant->force, variant->speed);
     const struct fish *const fish = &simulation->school->fish[0];
     const double *const y = simulation->state->y;
     const int last = fish->n_nodes - 1;
@@ -93,7 +95,7 @@ static void report(const struct variant *variant, const struct expected *expecte
     snprintf(what, sizeof what, "%s, the two finest changes: order", name);
     verify_show(what, "", verify_order_of_errors(change[n - 3], change[n - 2]));
     snprintf(what, sizeof what, "%s, error at Dt = 0.01 s", name);
-    verify_show(what, quantity == SHED ? "m2/s, against Dt = 0.000625 s" : "m, against Dt = 0.000625 s",
+    verify_show(what, quantity == SHED ? "m2/s, against Dt = 0.00125 s" : "m, against Dt = 0.00125 s",
                 difference(&runs[1], &runs[n - 1], quantity));
 }
 
@@ -114,20 +116,15 @@ void verify_interval(void) {
     static const char second[] = "doc/model.md 7, 8: every part of the scheme is of second order";
     static const struct expected continuous[N_QUANTITIES] = {
         [NOSE] = {1.8, 2.2, second}, [TAIL] = {1.8, 2.2, second}, [SHED] = {1.8, 2.2, second}};
-    static const char moving[] =
-        "between 1 and 2; what limits it is measured in doc/numerics.md 5: tail and nose differ by the scatter of "
-        "halvings";
-    static const char from_rest[] =
-        "between 1 and 2: next to the edge a stretch stands for fluid of very different ages";
-    static const struct expected sheet[2][N_QUANTITIES] = {
-        {[NOSE] = {1.4, 2.2, from_rest}, [TAIL] = {1.4, 2.2, from_rest}, [SHED] = {1.2, 2.2, from_rest}},
-        {[NOSE] = {1.3, 2.2, moving}, [TAIL] = {1.1, 2.2, moving}, [SHED] = {1.3, 2.2, moving}}};
+    static const char first[] = "the spacing of the bound sheet, which is refined as the root of Dt: first order";
+    static const struct expected sheet[N_QUANTITIES] = {
+        [NOSE] = {0.9, 2.2, first}, [TAIL] = {0.9, 2.2, first}, [SHED] = {0.9, 2.2, first}};
     static const char *const removed[] = {"retained", "dropped"};
     for (int is_moving = verify_is_fast(); is_moving < 2; is_moving++) {
         for (int d = 0; d < (verify_is_fast() ? 1 : 2); d++) {
             const struct variant free_sheet = {"sheet", "pressure", removed[d], is_moving};
             const struct variant one = {"continuous", "published", removed[d], is_moving};
-            halve_interval(&free_sheet, sheet[is_moving]);
+            halve_interval(&free_sheet, sheet);
             halve_interval(&one, continuous);
         }
     }

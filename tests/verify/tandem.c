@@ -19,11 +19,12 @@ struct pair {
     double lead;                                 /* by which the second one is ahead, of a beat */
 };
 
-static const struct pair light = {1, 0.15, 0.785, 0.0594, 3.8, 0.2, 6, 0, 0};
+static const struct pair light = {1, 0.15, 0.785, 0.0594, 3.8, 0.2, 10, 0, 0};
 /* the plates that the program of Fang et al. starts with, in half lengths there */
-static const struct pair of_fang = {2, 0.2, 2, 0.04, 13.25, 0.2, 6, 0, 0};
+static const struct pair of_fang = {2, 0.2, 2, 0.04, 13.25, 0.2, 10, 0, 0};
 
-/* keys holds what is further to be said of the motion of both */
+/* keys holds what is further to be said of the motion of both. The wake decays from 4 s on: the follower at place 3
+ * meets vortices 3 beats old, at their full strength. */
 static void text_of(const struct pair *pair, int n_fish, const char *keys, size_t size, char *text) {
     const double thickness = 0.05, area = pi / 4 * thickness * pair->length * pair->length;
     const int length = snprintf(text, size,
@@ -31,7 +32,7 @@ static void text_of(const struct pair *pair, int n_fish, const char *keys, size_
                                 "format: 1\n"
                                 "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
                                 "fluid: {density: 1, viscosity: %.17g}\n"
-                                "wake: {lifetime: %g, smoothing: %g}\n"
+                                "wake: {lifetime: %g, decay: 6, smoothing: %g}\n"
                                 "steady: {formation: %s, tolerance: 1e-3}\n"
                                 "defaults: {fish: {length: %g, nodes: 5, " VERIFY_ATTACHED
                                 ", start: {speed: %.17g},\n"
@@ -228,8 +229,8 @@ static void small_amplitudes(double speed) {
 
 static void published_plates(void) {
     const struct found lone = find(&of_fang, 1, 0);
-    verify_relative("plates of Fang et al.: speed of one, half lengths a beat", "in their program, parameter.m", 13.25,
-                    lone.speed, 0.0025);
+    verify_relative("plates of Fang et al.: speed of one, half lengths a beat", "in their program, a start value",
+                    13.25, lone.speed, 0.003);
     for (int number = 1; number <= 2; number++) {
         struct pair pair = of_fang;
         pair.gap = 1.1 * number * pair.speed;
