@@ -12,6 +12,7 @@ machine, and ratios of seconds come from the same table.
 """
 
 import argparse
+import csv
 import json
 import math
 import os
@@ -78,6 +79,7 @@ class Bench:
 
     def __init__(self, program, verbose):
         self.program, self.verbose = program, verbose
+        self.errors = []  # tables of `shoal error`, which two tables show
         self.folder = tempfile.mkdtemp(prefix="shoal-measure-")
 
     def call(self, *arguments, may_fail=False):
@@ -225,6 +227,44 @@ def nodes(bench):
         yield row
 
 
+def error_rows(bench, are_choices):
+    """Keys with their levels and errors, in per cent, of speed and cost of the default fish with both forces."""
+    if not bench.errors:
+        for force in ("reactive", "pressure"):
+            text, folder = DEFAULT.replace("{name: fish}", f"{{name: fish, force: {force}}}"), f"error-{force}"
+            bench.call("error", bench.case(text), "--of", "steady_speed", "--of", "steady_cost_of_transport", "-q",
+                       "--force", "-o", folder)
+            with open(os.path.join(bench.folder, folder, "error.csv"), encoding="utf-8", newline="") as file:
+                bench.errors.append(list(csv.DictReader(file)))
+    rows = {}
+    for number, table_of_force in enumerate(bench.errors):
+        for line in table_of_force:
+            row = rows.setdefault(line["key"], {"levels": [], "cells": {}, "is_choice": "choice" in line["verdict"]})
+            if line["levels"] not in row["levels"]:
+                row["levels"].append(line["levels"])
+            is_estimate = line["verdict"] in ("", "accepted") or "noise" in line["verdict"] or row["is_choice"]
+            row["cells"][number, line["quantity"]] = f"{float(line['percent']):.2f}{'' if is_estimate else ' *'}"
+    for key, row in sorted(rows.items(), key=lambda item: item[0] == "sum"):
+        if row["is_choice"] == are_choices:
+            yield key, "; ".join(row["levels"]), *(row["cells"].get((number, f"steady_{quantity}"), "")
+                                                   for number in range(2) for quantity in ("speed", "cost_of_transport"))
+
+
+ERRORS = ["levels", "speed, reactive [%]", "cost [%]", "speed, pressure [%]", "cost [%]"]
+
+
+@table("key", *ERRORS)
+def errors(bench):
+    """errors of the defaults: speed and cost of the default fish with both forces, by `shoal error` (minutes)"""
+    yield from error_rows(bench, False)
+
+
+@table("key", *ERRORS)
+def choices(bench):
+    """change of the same numbers where lengths of the model are halved"""
+    yield from error_rows(bench, True)
+
+
 @table("shedding", "kutta", *COUNTS)
 def events(bench):
     """cost of an event with and without a jump of the state"""
@@ -272,8 +312,11 @@ def order(bench):
 def interval(bench):
     """change of a fish that feels its own wake (force: pressure) from one shedding interval to the next (a minute)"""
     sizes = (0.04, 0.02, 0.01, 0.005, 0.0025)
-    runs = [bench.run(DEFAULT, "time.end=1.6", "time.output_interval=0.04", f"time.shedding_interval={size:g}",
-                      "solver.rtol=1e-8", "fish[*].force=pressure", "fish[*].sheet_points=65", "fish[*].start.speed=1")["x"][:, 0] for size in sizes]
+    points = [1 + round(32 * math.sqrt(sizes[0] / size)) for size in sizes]
+    keys = ("time.end=1.6", "time.output_interval=0.04", "solver.rtol=1e-8", "fish[*].force=pressure", "fish[*].nodes=17",
+            "fish[*].start.speed=1")
+    runs = [bench.run(DEFAULT, *keys, f"time.shedding_interval={size:g}", f"fish[*].sheet_points={n}")["x"][:, 0]
+            for size, n in zip(sizes, points)]
     changes = [[math.sqrt(float(np.mean(np.sum((a[:, node] - b[:, node]) ** 2, axis=1)))) for node in (0, -1)]
                for a, b in zip(runs, runs[1:])]
     for number, size in enumerate(sizes[:-1]):
@@ -378,6 +421,15 @@ def threads(bench):
         yield n, "yes" if bits == reference else "NO"
 
 
+@table("case", "simulated [s]", "events", "CPU time [s]")
+def cost(bench):
+    """CPU seconds of default runs and of the article's diamond, one thread, the smallest of three (minutes)"""
+    for name, text, end in (("one fish", DEFAULT, 8), ("16 fish", lattice(16, (1.5, 1.5), 6), 6),
+                            ("diamond", "diamond", 6)):
+        keys = f"time.end={end}", "solver.threads=1"
+        yield name, end, n_events(bench.run(text, *keys)), f"{bench.seconds(text, *keys):.2f}"
+
+
 @table("wake.merge", "vortices at the end", "velocity of the centre of mass [m/s]", "position [m]", "CPU time over none")
 def merge(bench):
     """error and saving of wake.merge: one fish that feels its own wake of 16 s, 20 s from 1 m/s (minutes)"""
@@ -428,23 +480,27 @@ def write(bench, path):
     """Replace every table of a document that stands below its command."""
     with open(path, encoding="utf-8") as file:
         lines = file.read().split("\n")
-    out, name = [], None
-    for line in lines:
-        found = COMMAND.match(line)
-        if found:
-            name = found[1]
-            if name not in TABLES:
-                sys.exit(f"measure.py: {path}: there is no table {name}")
-        if name and line.startswith("|"):
-            if out[-1].startswith("|"):
-                continue  # a line of the table that was replaced
-            print(f"{path}: {name}", file=sys.stderr)
-            heads, rows = TABLES[name]
-            out += markdown(list(heads), [list(row) for row in rows(bench)]).rstrip("\n").split("\n")
+    out, at = [], 0
+    while at < len(lines):
+        found = COMMAND.match(lines[at])
+        if not found:
+            out.append(lines[at])
+            at += 1
             continue
-        if name and out and out[-1].startswith("|"):
-            name = None
-        out.append(line)
+        name = found[1]
+        if name not in TABLES:
+            sys.exit(f"measure.py: {path}: there is no table {name}")
+
+        # the paragraph of the command, then the new table in the place of the old one, if there is one
+        while at < len(lines) and lines[at]:
+            out.append(lines[at])
+            at += 1
+        while at + 1 < len(lines) and (lines[at].startswith("|") or lines[at + 1].startswith("|")):
+            at += 1
+        print(f"{path}: {name}", file=sys.stderr)
+        heads, rows = TABLES[name]
+        out += ["", *markdown(list(heads), [list(row) for row in rows(bench)]).rstrip("\n").split("\n"), ""]
+        at += 1
     with open(path, "w", encoding="utf-8") as file:
         file.write("\n".join(out))
 
