@@ -26,6 +26,13 @@ static void a_message_can_be_put_into_the_next_one(void **state) {
     assert_string_equal(status_message(), "a.yaml: no such key");
 }
 
+static void clear_leaves_no_message(void **state) {
+    (void)state;
+    status_fail(STATUS_CASE, "old");
+    status_clear();
+    assert_string_equal(status_message(), "");
+}
+
 static void a_long_message_is_cut(void **state) {
     (void)state;
     static char text[100000];
@@ -104,6 +111,7 @@ int main(void) {
         cmocka_unit_test(message_is_empty_at_first),
         cmocka_unit_test(fail_keeps_the_message_and_returns_the_status),
         cmocka_unit_test(a_message_can_be_put_into_the_next_one),
+        cmocka_unit_test(clear_leaves_no_message),
         cmocka_unit_test(a_long_message_is_cut),
         cmocka_unit_test(each_thread_has_its_own_message),
         cmocka_unit_test(try_leaves_at_the_first_failure_and_evaluates_once),

@@ -1,4 +1,6 @@
 /* test_actuation.c: the wave of natural curvature: doc/model.md, section 4. */
+#include <stdio.h>
+
 #include "base/ramp.h"
 #include "body/actuation.h"
 #include "fish/fish_gait.h"
@@ -98,6 +100,33 @@ static void a_table_of_a_wave_is_that_wave(void **state) {
     for (int i = 0; i < 2; i++) school_clear(&setup[i]);
 }
 
+// the turn of a joint at all phases of a beat, under the bias that bends it most, comes near to the largest one
+static void no_joint_turns_by_more_than_the_largest_turn(void **state) {
+    (void)state;
+    static const char *const waves[] = {"amplitude: 0.3, ramp: 0",
+                                        "amplitude: 0.3, ramp: 0, table: [[0, 0.6, 0, -0.6], [0, 3, 0, -3]]"};
+    for (int i = 0; i < 2; i++) {
+        char text[256];
+        snprintf(text, sizeof text, TIME "fish: [{nodes: 9, wave: {%s}}]\n", waves[i]);
+        struct setup setup;
+        school_build(&setup, text);
+        const struct fish *const fish = setup.school->fish;
+        const double largest = fish_largest_turn(fish, 1.5, 0.4);
+        double most = 0;
+        for (int n = 0; n < 1000; n++) {
+            const struct fish_gait gait = {.amplitude = 1.5, .angle = 6.28318530717958647692 * n / 1000};
+            for (int sign = -1; sign <= 1; sign += 2) {
+                for (int j = 0; j < fish->n_joints; j++) {
+                    most = fmax(most, fabs(fish_natural_angle(fish, j, &gait, sign * 0.4)));
+                }
+            }
+        }
+        NEAR(most, largest, 0, 1e-3);
+        assert_true(most <= largest * (1 + 1e-12));
+        school_clear(&setup);
+    }
+}
+
 static void a_table_is_met_at_its_places_and_phases(void **state) {
     (void)state;
     // odd and even numbers of phases; rows at quarters of the length, where the joints 1, 2, 3 of five nodes are
@@ -177,6 +206,7 @@ int main(void) {
         cmocka_unit_test(derivatives_agree_with_differences),
         cmocka_unit_test(a_wavelength_is_another_word_for_the_number),
         cmocka_unit_test(a_table_of_a_wave_is_that_wave),
+        cmocka_unit_test(no_joint_turns_by_more_than_the_largest_turn),
         cmocka_unit_test(a_table_is_met_at_its_places_and_phases),
         cmocka_unit_test(wave_travels_from_head_to_tail),
         cmocka_unit_test(ramp_starts_from_a_straight_body_and_no_ramp_does_not),

@@ -317,6 +317,26 @@ static void turns_of_a_fine_body_are_those_of_its_reference(void **state) {
     case_free(&values);
 }
 
+static void a_suggestion_differs_by_a_third_of_the_word_at_most(void **state) {
+    (void)state;
+    static const struct {
+        const char *text, *suggested;
+    } cases[] = {
+        {"format: 1\ntime: {ent: 1}\nfish: [{}]\n", "did you mean 'end'?"},
+        {"format: 1\ntime: {ond: 1}\nfish: [{}]\n", "did you mean 'end'?"},
+        {"format: 1\ntime: {eno: 1}\nfish: [{}]\n", "did you mean 'end'?"},
+        {"format: 1\ntime: {xnx: 1}\nfish: [{}]\n", NULL},
+        {"format: 1\ntime: {end: 1, sheddinx_intexval: 1}\nfish: [{}]\n", "did you mean 'shedding_interval'?"},
+        {"format: 1\ntime: {end: 1, shxddinx_intxrvxl: 1}\nfish: [{}]\n", NULL},
+        {"format: 1\ntime: {end: 1}\nfluid: {densxxy: 1}\nfish: [{}]\n", "did you mean 'density'?"},
+        {"format: 1\ntime: {end: 1}\nfluid: {dexxxty: 1}\nfish: [{}]\n", NULL},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        is_refused(cases[i].text, cases[i].suggested ? cases[i].suggested : "unknown key");
+        if (!cases[i].suggested) assert_null(strstr(status_message(), "did you mean"));
+    }
+}
+
 static void a_misspelt_key_brings_no_second_error(void **state) {
     (void)state;
     is_refused("format: 1\ntime: {end: 1.005, shedding_intervall: 0.005}\nfish: [{}]\n",
@@ -570,6 +590,7 @@ int main(void) {
         cmocka_unit_test(multiples_are_recognised_despite_rounding),
         cmocka_unit_test(errors_of_all_stages_are_listed_together),
         cmocka_unit_test(turns_of_a_fine_body_are_those_of_its_reference),
+        cmocka_unit_test(a_suggestion_differs_by_a_third_of_the_word_at_most),
         cmocka_unit_test(a_misspelt_key_brings_no_second_error),
         cmocka_unit_test_setup_teardown(an_include_is_weaker_than_the_file_that_includes_it, make_folder,
                                         remove_folder),

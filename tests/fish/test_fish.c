@@ -293,6 +293,30 @@ static void gust_blows_across_the_stream(void **state) {
     school_clear(&setup);
 }
 
+static void a_wave_has_an_amplitude_a_frequency_and_a_free_body(void **state) {
+    (void)state;
+    static const struct {
+        const char *fish;
+        int has_wave;
+    } cases[] = {{"", 1},
+                 {"wave: {amplitude: 0}", 0},
+                 {"wave: {frequency: 0}", 0},
+                 {"wave: {amplitude: 0, table: [[0, 1, -1], [0, 2, -2]]}", 1},
+                 {"motion: {driven: head, heave: 0.1, frequency: 1}", 1},
+                 {"motion: {driven: all, heave: 0.1, frequency: 1}", 0}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[256];
+        snprintf(text, sizeof text, "time: {end: 1, shedding_interval: 0.02}\nfish: [{%s}]\n", cases[i].fish);
+        struct setup setup;
+        school_build(&setup, text);
+        const struct fish *const fish = setup.school->fish;
+        assert_int_equal(fish_has_wave(fish), cases[i].has_wave);
+        // the friction of a body on which a wave travels
+        NEAR(fish->waving, cases[i].has_wave ? 1.5 : 1, 0, 0);
+        school_clear(&setup);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(joukowski_body_has_the_mass_of_the_reference),
@@ -311,6 +335,7 @@ int main(void) {
         cmocka_unit_test(fish_that_begin_beyond_a_wall_are_refused),
         cmocka_unit_test(unknowns_stand_fish_after_fish_in_the_documented_order),
         cmocka_unit_test(gust_blows_across_the_stream),
+        cmocka_unit_test(a_wave_has_an_amplitude_a_frequency_and_a_free_body),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -473,6 +473,33 @@ static void the_field_does_not_go_through_walls(void **state) {
     school_clear(&setup);
 }
 
+// many points at once: the tree sums the wakes, but not the few bound vortices
+static void the_field_at_many_points_is_that_at_few(void **state) {
+    (void)state;
+    enum { POINTS = 6000, VORTICES = 1200, FEW = 60 };
+    struct setup setup;
+    school_build(&setup, TWO);
+    school_stir(&setup);
+    for (int i = 0; i < VORTICES; i++) {
+        school_ok(wake_release(&setup.state->wake[0], 2 + school_random(&setup), school_random(&setup),
+                               0.01 * school_random(&setup), setup.state->t));
+    }
+    static double x[POINTS], y[POINTS], many[5][POINTS], few[5][POINTS];
+    for (int i = 0; i < POINTS; i++) {
+        x[i] = 3 * school_random(&setup);
+        y[i] = 2 * school_random(&setup);
+    }
+    const struct induced all = {POINTS, x, y, many[0], many[1], many[2], many[3], many[4]};
+    school_ok(flow_field(setup.residual->flow, setup.state, &all));
+    for (int i = 0; i < POINTS; i += FEW) {
+        const struct induced some = {FEW, x + i, y + i, few[0] + i, few[1] + i, few[2] + i, few[3] + i, few[4] + i};
+        school_ok(flow_field(setup.residual->flow, setup.state, &some));
+    }
+    for (int k = 0; k < 2; k++) NEAR_ARRAY(POINTS, many[k], few[k], 1e-5, 0);
+    for (int k = 2; k < 5; k++) NEAR_ARRAY(POINTS, many[k], few[k], 1e-3, 0);
+    school_clear(&setup);
+}
+
 static void changed_wakes_are_placed_again(void **state) {
     (void)state;
     struct setup setup;
@@ -535,6 +562,7 @@ int main(void) {
         cmocka_unit_test(derivative_by_every_unknown_agrees_with_differences),
         cmocka_unit_test(beside_a_wall_everything_feels_mirrored_fish),
         cmocka_unit_test(the_field_does_not_go_through_walls),
+        cmocka_unit_test(the_field_at_many_points_is_that_at_few),
         cmocka_unit_test(changed_wakes_are_placed_again),
         cmocka_unit_test(gradient_pass_leaves_the_velocity_as_it_is),
         cmocka_unit_test(threads_change_no_bit),

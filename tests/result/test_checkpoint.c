@@ -5,6 +5,7 @@
 #include <unistd.h>
 #include <zlib.h>
 
+#include "base/version.h"
 #include "result/checkpoint.h"
 #include "result/durable.h"
 #include "result/sections.h"
@@ -62,6 +63,9 @@ static void all_that_is_written_is_read(void **state) {
     assert_string_equal(read.effective, written.effective);
     assert_string_equal(read.result, written.result);
     assert_string_equal(read.places, written.places);
+    char processor[VERSION_LENGTH];
+    version_processor(processor);
+    assert_string_equal(read.processor, processor);
     assert_int_equal(read.rows.n_rows, written.rows.n_rows);
     assert_int_equal(read.rows.check, written.rows.check);
     assert_memory_equal(&read.totals, &written.totals, sizeof read.totals);
