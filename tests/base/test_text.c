@@ -1,7 +1,9 @@
 /* test_text.c: numbers as strings and back. */
 #include <locale.h>
+#include <string.h>
 
 #include "base/text.h"
+#include "failing_malloc.h"
 #include "near.h"
 
 static void numbers_are_decimal_and_whole_strings(void **state) {
@@ -60,6 +62,24 @@ static void a_number_is_written_with_no_more_digits_than_needed(void **state) {
     text_free(&text);
 }
 
+static void a_text_that_lacks_memory_says_so_and_stays_as_it_was(void **state) {
+    (void)state;
+    struct text text = {0};
+    text_add(&text, "%s", "one");
+    char more[200];
+    memset(more, 'x', sizeof more);
+    more[199] = '\0';
+    n_until_failure = 0;
+    text_add(&text, "%s", more);
+    n_until_failure = -1;
+    assert_true(text.failed);
+    assert_string_equal(text.text, "one");
+    // what follows a gap is left out
+    text_add(&text, " two");
+    assert_string_equal(text.text, "one");
+    text_free(&text);
+}
+
 static void the_locale_does_not_matter(void **state) {
     (void)state;
     static const char *const with_comma[] = {"de_DE.UTF-8", "de_DE.utf8", "de_DE", "fr_FR.UTF-8", "nl_NL.UTF-8"};
@@ -96,6 +116,7 @@ int main(void) {
         cmocka_unit_test(control_characters_are_printed_as_numbers),
         cmocka_unit_test(a_written_number_reads_back_bit_for_bit),
         cmocka_unit_test(a_number_is_written_with_no_more_digits_than_needed),
+        cmocka_unit_test(a_text_that_lacks_memory_says_so_and_stays_as_it_was),
         cmocka_unit_test(the_locale_does_not_matter),
         cmocka_unit_test(a_string_of_json_has_no_bare_quote_or_control_character),
     };

@@ -1,5 +1,8 @@
 /* test_result_file.c: writing a result: what is in it, when it can be read, and how it fails. */
+#include <klu.h>
 #include <signal.h>
+#include <stdio.h>
+#include <string.h>
 #include <sys/resource.h>
 
 #include "base/version.h"
@@ -52,6 +55,34 @@ static void every_variable_of_the_table_is_there_with_its_dimensions_unit_and_na
         if (variable->type != RESULT_TEXT) assert_string_equal(text_of(file, number, "units"), variable->unit);
     }
     nc_close(file);
+}
+
+static void the_list_has_every_variable_with_its_dimensions(void **state) {
+    (void)state;
+    struct result_listed listed;
+    int n = 0;
+    for (; result_table_listed(n, &listed); n++) {
+        assert_string_equal(listed.name, result_table[n].name);
+        char want[128] = "";
+        for (const enum result_dimension *d = result_table[n].dimension; *d != NONE; d++) {
+            if (*want) strcat(want, ", ");
+            strcat(want, result_table_dimension(*d));
+        }
+        assert_string_equal(listed.dimensions, want);
+    }
+    assert_int_equal(n, result_table_n);
+}
+
+static void versions_of_the_libraries_are_those_loaded(void **state) {
+    (void)state;
+    char text[VERSION_LENGTH];
+    version_libraries(text);
+    int suitesparse[3], found[3];
+    SuiteSparse_version(suitesparse);
+    const char *const of = strstr(text, "(SuiteSparse ");
+    assert_non_null(of);
+    assert_int_equal(sscanf(of, "(SuiteSparse %d.%d.%d)", &found[0], &found[1], &found[2]), 3);
+    for (int i = 0; i < 3; i++) assert_int_equal(found[i], suitesparse[i]);
 }
 
 static void dimensions_are_those_of_the_largest_fish(void **state) {
@@ -453,6 +484,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         WITH_FILE(format_is_cdf5),
         WITH_FILE(every_variable_of_the_table_is_there_with_its_dimensions_unit_and_name),
+        cmocka_unit_test(the_list_has_every_variable_with_its_dimensions),
+        cmocka_unit_test(versions_of_the_libraries_are_those_loaded),
         WITH_FILE(dimensions_are_those_of_the_largest_fish),
         WITH_FILE(attributes_name_the_case_the_program_and_the_conventions),
         WITH_FILE(constants_are_those_of_the_fish),

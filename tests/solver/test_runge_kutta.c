@@ -43,6 +43,25 @@ static void fixed_steps_converge_with_the_order_of_the_method(void **state) {
 }
 
 // every method is exact where all rates are constant; a solution that lags behind its time would show
+static void one_evaluation_serves_the_end_of_a_step_and_the_start_of_the_next(void **state) {
+    (void)state;
+    static const struct {
+        const char *method;
+        int stages;
+    } methods[] = {{"euler", 1}, {"heun", 2}, {"rk4", 4}};
+    for (size_t i = 0; i < sizeof methods / sizeof *methods; i++) {
+        char text[512];
+        snprintf(text, sizeof text, soft, methods[i].method, 1e-3, 1e-6);
+        struct simulation *const simulation = school_simulation(text);
+        school_run(simulation, 0.4);
+        // at each of the 20 events the wake gets a new vortex, so that the evaluation is done again
+        const struct integrator_counts *const counts = &simulation->totals;
+        assert_int_equal(counts->steps, 400);
+        assert_in_range(counts->residual_evaluations, 400 * methods[i].stages, 400 * methods[i].stages + 25);
+        simulate_free(simulation);
+    }
+}
+
 static void a_body_without_forces_coasts_as_far_as_its_speed_says(void **state) {
     (void)state;
     static const char *const methods[] = {"euler", "heun", "rk4", "dormand_prince"};
@@ -155,6 +174,7 @@ static void rate_of_an_algebraic_circulation_is_a_difference_over_the_step(void 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(fixed_steps_converge_with_the_order_of_the_method),
+        cmocka_unit_test(one_evaluation_serves_the_end_of_a_step_and_the_start_of_the_next),
         cmocka_unit_test(a_body_without_forces_coasts_as_far_as_its_speed_says),
         cmocka_unit_test(explicit_and_implicit_solutions_agree),
         cmocka_unit_test(a_torn_body_is_no_result),
