@@ -302,8 +302,8 @@ static void a_wave_has_an_amplitude_a_frequency_and_a_free_body(void **state) {
                  {"wave: {amplitude: 0}", 0},
                  {"wave: {frequency: 0}", 0},
                  {"wave: {amplitude: 0, table: [[0, 1, -1], [0, 2, -2]]}", 1},
-                 {"motion: {driven: head, heave: 0.1, frequency: 1}", 1},
-                 {"motion: {driven: all, heave: 0.1, frequency: 1}", 0}};
+                 {"motion: {prescribed: head, heave: 0.1, frequency: 1}", 1},
+                 {"motion: {prescribed: all, heave: 0.1, frequency: 1}", 0}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char text[256];
         snprintf(text, sizeof text, "time: {end: 1, shedding_interval: 0.02}\nfish: [{%s}]\n", cases[i].fish);

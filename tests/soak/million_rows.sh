@@ -11,7 +11,7 @@ name: long
 time: {end: 10000, shedding_interval: 0.01, output_interval: 0.01, checkpoint_interval: 2500}
 output: {wake_interval: 10000}
 fluid: {density: 0}
-wake: {lifetime: 0.02, fade: 0}
+wake: {lifetime: 0.02, decay: 0}
 fish: [{nodes: 4, sheet_points: 5, body: {tail_thickness: 0.4}}]
 end
 run run long.yaml -q
