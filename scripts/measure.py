@@ -23,6 +23,7 @@ import subprocess
 import sys
 import tempfile
 
+import netCDF4
 from shoal_results import Results, np
 
 HERE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
@@ -200,6 +201,149 @@ def steady_states(bench):
         yield (name, f"{state['steady_speed'][0]:.4f}",
                f"{state['steady_cost_of_transport'][0]:.4f}", "" if strouhal is None else f"{strouhal:.3f}",
                short(state["steady_residual"]), state["steady_beats"], f"{largest:.2f}")
+
+
+def with_bar(value, bar):
+    """0.9364 +- 0.0019"""
+    decimals = max(0, 1 - math.floor(math.log10(bar))) if bar > 0 else 4
+    return f"{value:.{decimals}f} ± {bar:.{decimals}f}"
+
+
+def strings(variable):
+    """The strings of a variable over (n, text)."""
+    return [text.strip("\0 ") for text in netCDF4.chartostring(np.asarray(variable[:], dtype="S1"))]
+
+
+def open_study(path):
+    """A study.nc as netCDF4 has it, with texts as arrays of letters."""
+    study = netCDF4.Dataset(path)
+    study.set_auto_mask(False)
+    study.set_auto_chartostring(False)
+    return study
+
+
+@table("case", "fish", "speed [m/s]", "cost [m/s2]", "largest share")
+def error_bars(bench):
+    """speed and cost of transport with error bars (some minutes)"""
+    for name, fish, of in (("swim", 0, "steady_"), ("fish_pressure", 0, "steady_"), ("school", 0, ""), ("school", 3, "")):
+        quantities = [f"{of}speed", f"{of}cost_of_transport"]
+        folder = os.path.join(bench.folder, f"{name}-error")
+        if not os.path.exists(folder):
+            bench.call("error", bench.case(name), "--of", quantities[0], "--of", quantities[1], "-q", "-o", folder)
+        study = open_study(os.path.join(folder, "study.nc"))
+        keys, is_choice = strings(study["key_name"]), study["key_is_choice"][:] > 0
+        cells, shares = [], np.zeros(len(keys))
+        for quantity in quantities:
+            value, bar = float(study[f"stated_{quantity}"][fish]), float(study[f"bar_{quantity}"][fish])
+            cells.append(with_bar(value, bar))
+            shares = np.fmax(shares, np.where(is_choice, 0, study[f"part_{quantity}"][:, fish] / bar))
+        yield name, strings(study["fish_name"])[fish], *cells, f"`{keys[np.argmax(shares)]}`"
+
+
+# ---- are true errors below the bars? ----
+
+# Quantities of cases that were not used to choose the rule; those of runs include the judges of an error study.
+STEADY = ["steady_speed", "steady_cost_of_transport", "steady_strouhal", "steady_efficiency"]
+RUN = ["speed", "cost_of_transport", "lateral_drift", "mean_heading"]
+HEAVE = ["mean_thrust", "mean_power", "thrust_efficiency", "shed_circulation"]
+STILL = "wave: {amplitude: 0, frequency: 0}"
+ONE = "[{name: fish}]"
+OTHERS = "[sheet_points, shedding_interval, rtol, tolerance, lifetime]"
+
+
+def coverage_cases():
+    """Kind, quantities, keys that are varied, and text of each case; nodes with a sheet that serves all of their levels."""
+
+    def text(nodes, sheet, body, fish=ONE, end=4, more=""):
+        return (f"format: 1\ntime: {{end: {end:g}, shedding_interval: 0.02, output_interval: 0.1}}\n{more}"
+                f"defaults: {{fish: {{nodes: {nodes}, sheet_points: {sheet}, {body}}}}}\nfish: {fish}\n")
+
+    for body in ("body: {profile: uniform, modulus: 1e6}", "body: {modulus: 1e7}", "wave: {frequency: 2}",
+                 "wave: {amplitude: 1.5}, body: {modulus: 3e6}", "body: {tail_thickness: 0.1, modulus: 5e5}",
+                 "wave: {frequency: 0.5}", "body: {profile: uniform, modulus: 1e8}"):
+        yield "reactive fish", STEADY, "[nodes]", text(25, 69, body)
+    for body in ("body: {profile: uniform, modulus: 1e6}", "body: {modulus: 1e7}", "body: {}",
+                 "wave: {frequency: 2}, body: {width: 0.5, modulus: 5e6}"):
+        yield "fish with pressure", STEADY, "[nodes]", text(13, 69, f"force: pressure, {body}")
+        yield "fish with pressure", STEADY, OTHERS, text(13, 33, f"force: pressure, {body}")
+    stream = "fluid: {density: 1, velocity: [1, 0], viscosity: 0}\n"
+    for heading, modulus in ((170, 2e5), (160, 4e5), (176, 8e5), (172, 1.5e5), (165, 6e5), (178, 1.2e5), (150, 1e6), (174, 3e5)):
+        body = (f"force: pressure, start: {{heading: {heading}, speed: 0}}, {STILL}, motion: {{driven: head}}, "
+                f"body: {{profile: uniform, thickness: 0.05, width: 1, density: 25.465, modulus: {modulus:g}}}")
+        yield "foil", ["steady_lift", "steady_deflection"], "[nodes]", text(13, 69, body, more=stream)
+        yield "foil", ["steady_lift", "steady_deflection"], "[sheet_points]", text(13, 33, body, more=stream)
+    body = (f"force: pressure, start: {{speed: 1}}, {STILL}, motion: {{driven: head, heave: 0.05, frequency: 0.5}}, "
+            "body: {profile: uniform, thickness: 0.05, width: 1, density: 25.465, modulus: 814873, relaxation_time: 0.001}")
+    for nodes, sheet, keys in ((13, 69, "[nodes]"), (13, 33, OTHERS)):
+        yield ("foil", ["steady_thrust", "steady_fluid_power"], keys,
+               text(nodes, sheet, body, more="fluid: {density: 1, viscosity: 0}\n"))
+    for heave, frequency in ((0.175, 1), (0.05, 2)):
+        body = (f"force: pressure, start: {{speed: 1.25}}, {STILL}, body: {{profile: uniform, thickness: 0.12, width: 1}}, "
+                f"motion: {{driven: all, heave: {heave}, frequency: {frequency}}}")
+        yield "foil", HEAVE, OTHERS, text(13, 33, body, end=3 / frequency, more="fluid: {density: 1, viscosity: 1.25e-3}\n")
+    for place, phase, body in (("[0, 0.5]", 90, "body: {}"), ("[1.4, 0.2]", 0, "body: {modulus: 1e7}")):
+        fish = ("[{name: right, start: {position: [0, 0], speed: 0.8}}, "
+                f"{{name: left, start: {{position: {place}, speed: 0.8}}, wave: {{phase: {phase}}}}}]")
+        yield "two fish", RUN, "[nodes]", text(25, 69, body, fish, 3)
+        yield "two fish", RUN, OTHERS, text(25, 49, body, fish, 3)
+    for force, nodes, sheet in (("reactive", 25, 49), ("pressure", 13, 33)):
+        body = f"force: {force}, start: {{speed: 0.8}}, control: {{bias: 0.3}}"
+        yield "turn", RUN, "[nodes]", text(nodes, 69, body, end=3)
+        yield "turn", RUN, OTHERS, text(nodes, sheet, body, end=3)
+
+
+def finer(key, finest):
+    """Assignments of a level twice as fine as the finest one."""
+    if key.startswith("fish."):
+        return [f"fish[*].{key[5:]}={2 * round(finest) - 1}"]
+    if key != "wake.lifetime":
+        return [f"{key}={finest / (2 if key == 'time.shedding_interval' else 10):.17g}"]
+    return [f"wake.lifetime={2 * finest:.17g} beats", f"wake.fade={1.5 * finest:.17g} beats"]
+
+
+def coverage_of(bench, number, of, keys, text):
+    """Bars and true errors, both over the value, and whether the key is flagged: of each key, quantity and fish."""
+    path = bench.case(text)
+    plain = os.path.join(bench.folder, f"plain-{number}.yaml")
+    shutil.copy(path, plain)
+    path = bench.case(f"{text}error: {{of: [{', '.join(of)}], keys: {keys}}}\n")
+    folder = os.path.join(bench.folder, f"coverage-{number}")
+    bench.call("study", path, "-q", "-o", folder)
+    study = open_study(os.path.join(folder, "study.nc"))
+    reasons = strings(study["key_reason"])
+    for k, key in enumerate(strings(study["key_name"])):
+        if study["key_levels"][k] < 2:
+            continue
+        is_steady = of[0].startswith("steady_")
+        sets = finer(key, float(study["key_value"][k, 0])) + ["steady.multipliers=false"] * is_steady
+        true = os.path.join(bench.folder, "true.nc")
+        bench.call("steady" if is_steady else "run", plain, "-q", "--force", "-o", true,
+                   *[word for one in sets for word in ("--set", one)])
+        result = open_study(true)
+        base = int(study["key_member"][k, study["key_stated"][k]])
+        # a study computes some quantities, which a result does not state
+        for quantity in [name for name in of if name in result.variables]:
+            values = study[quantity][base]
+            for f, value in enumerate(np.atleast_1d(values)):
+                last = result[quantity][:] if is_steady else result[quantity][-1]
+                yield (float(study[f"part_{quantity}"][k, f]) / abs(value),
+                       abs(float(np.atleast_1d(last)[f]) - value) / abs(value), reasons[k] != "")
+
+
+@table("cases", "sequences", "covered", "of them flagged", "covered", "bar over error, median", "below 1e-4, not counted")
+def error_coverage(bench):
+    """how many true errors are within their bars, on cases that were not used to choose the rule (15 minutes)"""
+    kinds = {}
+    for number, (kind, *case) in enumerate(coverage_cases()):
+        kinds.setdefault(kind, []).extend(coverage_of(bench, number, *case))
+    kinds["all"] = [one for kind in kinds.values() for one in kind]
+    for kind, found in kinds.items():
+        counted = [one for one in found if max(one[:2]) > 1e-4]
+        flagged = [one for one in counted if one[2]]
+        ratios = [bar / error for bar, error, _ in counted if error > 0]
+        covered = sum(error <= bar for bar, error, _ in counted)
+        yield (kind, len(counted), f"{covered} ({100 * covered / len(counted):.0f} %)", len(flagged),
+               sum(error <= bar for bar, error, _ in flagged), f"{np.median(ratios):.1f}", len(found) - len(counted))
 
 
 @table("modulus [Pa]", "speed [m/s]", "cost [m/s2]", "steps", "Newton iterations", "Jacobians")
