@@ -248,7 +248,7 @@ install: $(program) $(library) $(shared) $(manual) $(completion)  ## install pro
 	$(quiet)install -m 644 scripts/shoal/*.py '$(DESTDIR)$(python_modules)/shoal'
 	$(quiet)install -m 755 doc/examples/*.py '$(DESTDIR)$(prefix)/share/shoal/doc/examples'
 	$(quiet)install -m 644 doc/figures/*.png '$(DESTDIR)$(prefix)/share/shoal/doc/figures'
-	$(quiet)install -m 644 scripts/shoal.mplstyle '$(DESTDIR)$(prefix)/share/shoal/scripts'
+	$(quiet)ln -sfn '$(patsubst $(prefix)/%,../../../%,$(python_modules))/shoal' '$(DESTDIR)$(prefix)/share/shoal/scripts/shoal'
 	$(quiet)install -m 644 $(filter %.1,$(manual)) '$(DESTDIR)$(prefix)/share/man/man1'
 	$(quiet)install -m 644 $(filter %.5,$(manual)) '$(DESTDIR)$(prefix)/share/man/man5'
 	$(quiet)install -m 644 $(completion) '$(DESTDIR)$(prefix)/share/bash-completion/completions/shoal'

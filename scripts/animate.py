@@ -11,9 +11,10 @@ import os
 import shutil
 import sys
 
-from plot import Snapshot, add_legend, check_folder, limits, pyplot, swim_handles
-from plot_style import STYLE, matplotlib
-from shoal_results import DAMAGE, EXIT_FILE, EXIT_USAGE, FileError, Results, np, stop
+from plot import EXIT_FILE, EXIT_USAGE, check_folder, matplotlib, stop
+from shoal import FileError
+from shoal._files import DAMAGE, Results, np
+from shoal.plot import STYLE, Snapshot, add_legend, limits, pyplot, swim_handles
 
 from matplotlib import animation
 

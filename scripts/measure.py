@@ -24,7 +24,7 @@ import sys
 import tempfile
 
 import netCDF4
-from shoal_results import Results, np
+from shoal._files import Results, np
 
 HERE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 CASES = os.path.join(HERE, "cases")

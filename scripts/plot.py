@@ -13,512 +13,44 @@
 """
 
 import argparse
-import math
 import os
 import sys
 
-import plot_field as plot_field_module
-import plot_school as plot_school_module
-import plot_study as plot_study_module
-from plot_style import BLUE, BODY, BODY_EDGE, DASHES, GRID, LINES, PATH, PHASES, RED, STYLE, WIDTH, Wall, matplotlib
-from shoal_results import DAMAGE, EXIT_FILE, EXIT_USAGE, FileError, Results, kind_of, np, stop
+EXIT_USAGE, EXIT_FILE = 2, 4  # as the program itself: doc/cases.md
 
-from matplotlib import pyplot
-from matplotlib.collections import PolyCollection
-from matplotlib.lines import Line2D
 
-NAMED = 30  # the names of more fish than these would hide the fish
-MANY = 6  # more fish than these are drawn in grey, with their mean
+def stop(message, code):
+    """End with one message on stderr."""
+    print(f"{os.path.basename(sys.argv[0])}: {message}", file=sys.stderr)
+    sys.exit(code)
 
 
-class UsageError(Exception):
-    """An option does not fit the file; the text says why."""
+try:
+    import matplotlib
 
+    matplotlib.use("Agg")
+    from shoal import CaseError, FileError, plot
+    from shoal._files import DAMAGE, kind_of
+except ImportError as missing:
+    stop(missing, EXIT_FILE)
 
-class Snapshot:
-    """Bodies, wakes and paths of one row, drawn on axes; show() moves everything to another row.
-
-    With a unit [m] lengths are drawn relative to it, from the middle of the school.
-    """
-
-    def __init__(self, axes, results, dot=9.0, unit=None):
-        self.results, self.dot, self.unit = results, dot, unit
-        self.strongest = strongest_vortex(results)
-        self.com = results["com"]
-        self.wake = axes.scatter([], [], linewidths=0, zorder=2)
-        self.paths = [axes.plot([], [], color=PATH, lw=0.8, dashes=(5, 3), zorder=1)[0] for _ in results.names]
-        self.bodies = PolyCollection([], facecolors=BODY, edgecolors=BODY_EDGE, linewidths=0.7, zorder=3)
-        axes.add_collection(self.bodies)
-        self.walls = [Wall(axes, *wall) for wall in results.walls]
-        self.clock = axes.annotate("", (1, 1), (-5, -5), "axes fraction", "offset points", ha="right", va="top")
-        self.labels = [axes.text(0, 0, name, size=7, ha="center", va="bottom", zorder=4) for name in names(results)]
-        axes.set_aspect("equal")
-        axes.set_xlabel("x [m]" if unit is None else "x from the middle [lengths]")
-        axes.set_ylabel("y [m]" if unit is None else "y [lengths]")
-
-    def place(self, points, row):
-        """Positions as they are drawn in a row."""
-        return points if self.unit is None else (points - self.com[row].mean(axis=0)) / self.unit
-
-    def show(self, row):
-        """Draw the state of a row."""
-        outlines = [self.place(self.results.outline(row, f), row) for f in range(self.results.n_fish)]
-        self.bodies.set_verts(outlines)
-        for wall, (y, _) in zip(self.walls, self.results.walls):
-            wall.move(self.place(np.array([[0, y]]), row)[0, 1])
-        for label, outline in zip(self.labels, outlines):
-            label.set_position((outline[:, 0].mean(), outline[:, 1].max() + 0.03 * np.ptp(outline, axis=0).max()))
-        for f, path in enumerate(self.paths):
-            path.set_data(*self.place(self.com[: row + 1, f], row).T)
-        position, circulation = self.results.wake(row)
-        position = self.place(position, row)
-        share = np.minimum(np.abs(circulation) / self.strongest, 1)
-        self.wake.set_offsets(position)
-        self.wake.set_sizes(self.dot * (0.15 + 0.85 * share))
-        self.wake.set_facecolors(wake_colours(circulation, share))
-        self.clock.set_text(f"$t$ = {self.results.time[row]:.2f} s")
-
-
-def names(results):
-    """The names of the fish as a picture needs them: none where there is one fish only, or too many to read."""
-    return results.names if 1 < results.n_fish <= NAMED else [""] * results.n_fish
-
-
-def strongest_vortex(results):
-    """What the size of a dot is relative to: all but the strongest hundredth of the vortices are weaker."""
-    circulation = np.abs(results["wake_circulation"])
-    circulation = circulation[np.isfinite(circulation)]
-    return max(np.quantile(circulation, 0.99) if circulation.size else 0.0, 1e-300)
-
-
-def wake_colours(circulation, share):
-    """Red for counter-clockwise and blue for clockwise vortices; weak ones are lighter."""
-    colours = np.empty((circulation.size, 4))
-    colours[:] = matplotlib.colors.to_rgba(BLUE)
-    colours[circulation > 0] = matplotlib.colors.to_rgba(RED)
-    colours[:, 3] = 0.25 + 0.75 * share
-    return colours
-
-
-def limits(results, rows, with_paths=True, margin=0.4):
-    """The window that holds bodies and wakes of some rows, the paths up to them, and walls: x0, x1, y0, y1."""
-    points = [results.wake(row)[0] for row in rows]
-    points += [results.outline(row, f) for row in rows for f in range(results.n_fish)]
-    if with_paths:
-        points.append(results["com"][: max(rows) + 1].reshape(-1, 2))
-    points = np.concatenate(points)
-    margin *= float(np.nanmax(results["body_length"]))
-    (x0, y0), (x1, y1) = np.nanmin(points, axis=0), np.nanmax(points, axis=0)
-    heights = [y0, y1, *(y for y, _ in results.walls)]
-    return x0 - margin, x1 + margin, min(heights) - margin, max(heights) + margin
-
-
-def add_legend(axes, handles):
-    """What colours and lines mean, in one row above a panel; returns the legend."""
-    legend = axes.legend(
-        handles=handles, loc="lower left", bbox_to_anchor=(0, 1), ncol=len(handles), borderpad=0, columnspacing=1.5
-    )
-    legend.set_in_layout(False)  # it may be wider than its panel
-    return legend
-
-
-def swim_handles():
-    """What is drawn in a snapshot, for its legend."""
-    dot = {"ls": "", "marker": "o", "ms": 4, "mew": 0}
-    return [
-        Line2D([], [], color=RED, label="counter-clockwise vortex", **dot),
-        Line2D([], [], color=BLUE, label="clockwise vortex", **dot),
-        Line2D([], [], color=PATH, lw=0.8, dashes=(5, 3), label="path of the centre of mass"),
-    ]
-
-
-def panel_grid(n, window):
-    """Panels for n pictures of one window: rows, columns, and the height of one in inches."""
-    shape = (window[3] - window[2]) / (window[1] - window[0])
-    n_columns = 1 if shape < 0.4 else min(n, 2 if shape < 1.2 else 3)
-    return math.ceil(n / n_columns), n_columns, min((WIDTH - 0.6) / n_columns * shape, 8)
-
-
-def panels(n, n_rows, n_columns, height):
-    """A figure with n panels that share their axes."""
-    figure, grid = pyplot.subplots(
-        n_rows,
-        n_columns,
-        sharex=True,
-        sharey=True,
-        squeeze=False,
-        layout="compressed",
-        figsize=(WIDTH, n_rows * (height + 0.1) + 0.5),
-    )
-    for axes in grid.flat[n:]:
-        axes.set_visible(False)
-    for axes in grid.flat[max(n - n_columns, 0) : n]:  # the lowest of their columns
-        axes.tick_params(labelbottom=True)
-    return figure, list(grid.flat[:n])
-
-
-def label_panels(all_axes, n_columns, x, y):
-    """The labels of panels that share their axes: x below the lowest of each column, y left of the middle row."""
-    for axes in all_axes[-n_columns:]:
-        axes.set_xlabel(x)
-    n_rows = math.ceil(len(all_axes) / n_columns)
-    all_axes[(n_rows - 1) // 2 * n_columns].set_ylabel(y)
-
-
-def place_clock(snapshot, row, window):
-    """Move the time to the corner of the window that is furthest from bodies and wake."""
-    results = snapshot.results
-    drawn = np.concatenate([results.wake(row)[0], *(results.outline(row, f) for f in range(results.n_fish))])
-    drawn = snapshot.place(drawn, row)
-    x0, x1, y0, y1 = window
-    corners = {("right", "top"): (x1, y1), ("left", "top"): (x0, y1), ("right", "bottom"): (x1, y0)}
-    corners["left", "bottom"] = x0, y0
-    free = {corner: np.min(np.hypot(*(drawn - at).T)) for corner, at in corners.items()}
-    wanted = 0.2 * (x1 - x0)  # the first corner that is free enough, else the freest
-    horizontal, vertical = next((c for c in corners if free[c] > wanted), max(free, key=free.get))
-    snapshot.clock.set(ha=horizontal, va=vertical)
-    snapshot.clock.xy = (float(horizontal == "right"), float(vertical == "top"))
-    snapshot.clock.set_position((-5 if horizontal == "right" else 5, -5 if vertical == "top" else 5))
-
-
-def following_limits(results, rows):
-    """The window around the middle of the school that holds all bodies and the wakes near them, in metres from there."""
-    half = np.zeros(2)
-    for row in rows:
-        bodies = np.concatenate([results.outline(row, f) for f in range(results.n_fish)])
-        half = np.maximum(half, np.abs(bodies - results["com"][row].mean(axis=0)).max(axis=0))
-    half += 1.5 * float(np.nanmax(results["body_length"])) * np.array([1, 0.5])
-    return -half[0], half[0], -half[1], half[1]
-
-
-def wants_following(results, rows, window):
-    """True if the fish would be tiny in the window: it is far wider or higher than the school."""
-    close = following_limits(results, rows)
-    return window[1] - window[0] > 2.5 * (close[1] - close[0]) or window[3] - window[2] > 2.5 * (close[3] - close[2])
-
-
-def rows_at(results, times):
-    """The rows with a wake nearest to some times, which must be within the run; the last one without times."""
-    first, last = results.time[0], results.time[-1]
-    outside = [t for t in times or [] if not first - 1e-9 <= t <= last + 1e-9]
-    if outside:
-        raise UsageError(f"--times {outside[0]:g}: the run covers {first:g} to {last:g} s")
-    with_wake = results.rows_with_wake()
-    return [results.nearest(t, with_wake) for t in times or [last]]
-
-
-def plot_swim(results, options):
-    """Bodies, wakes and paths: one panel per time."""
-    rows = rows_at(results, options.times)
-    window, unit = options.limits or limits(results, rows), None
-    if options.follow or (options.follow is None and not options.limits and wants_following(results, rows, window)):
-        unit = float(np.nanmax(results["body_length"]))
-        window = np.array(following_limits(results, rows)) / unit
-    figure, all_axes = panels(len(rows), *panel_grid(len(rows), window))
-    for axes, row in zip(all_axes, rows):
-        snapshot = Snapshot(axes, results, unit=unit)
-        snapshot.show(row)
-        place_clock(snapshot, row, window)
-        axes.axis(window)
-        axes.label_outer()
-    add_legend(all_axes[0], swim_handles())
-    return figure
-
-
-def reference_shape(natural_curvature):
-    """Midline of length 1 with the natural curvature of the joints, the nose at 0, swimming towards -x."""
-    turning = 2 * np.arctan(natural_curvature / 2)
-    angle = np.concatenate([[0], np.cumsum(turning)])
-    edges = np.column_stack([np.cos(angle), np.sin(angle)]) / angle.size
-    return np.concatenate([[[0, 0]], np.cumsum(edges, axis=0)])
-
-
-def beat_rows(results, fish, n):
-    """About n rows that share the last beat of a fish out evenly."""
-    frequency = results["frequency"][fish]
-    if not frequency > 0:
-        raise FileError(f"{results.path}: {results.names[fish]} does not beat (wave.frequency is 0)")
-    rows = np.flatnonzero(results.time > results.time[-1] - (1 - 1e-6) / frequency)
-    if rows.size < 6:
-        raise FileError(f"{results.path}: {rows.size} rows per beat are too few: make time.output_interval smaller")
-    return rows[:: max(1, round(rows.size / n))]
-
-
-def chosen(results, options, most=None):
-    """The fish that --fish names, all without it; most: more than these are too many for one picture."""
-    unknown = [name for name in options.fish or [] if name not in results.names]
-    if unknown:
-        raise UsageError(f"--fish {unknown[0]}: there is {', '.join(results.names)}")
-    fish = [results.names.index(name) for name in options.fish or results.names]
-    if most and len(fish) > most:
-        raise UsageError(f"{len(fish)} fish are too many for this picture: choose up to {most} with --fish")
-    return fish
-
-
-def plot_gait(results, options):
-    """The reference shapes of each fish over its last beat, one panel per fish."""
-    of = chosen(results, options)
-    n_columns = min(len(of), 3)
-    figure, all_axes = panels(len(of), math.ceil(len(of) / n_columns), n_columns, 4.5 / n_columns)
-    for fish, axes in zip(of, all_axes):
-        rows = beat_rows(results, fish, options.shapes)
-        for row in rows:
-            curvature = results.read("natural_curvature", row)[fish, : results.n_nodes[fish] - 2]
-            phase = (results.time[row] - results.time[rows[0]]) * results["frequency"][fish]
-            axes.plot(*reference_shape(curvature).T, color=PHASES(phase), lw=1, marker="o", ms=1.8)
-        axes.set_title(results.names[fish], size=9)
-        axes.set_aspect("equal")
-    label_panels(all_axes, n_columns, "x / body length", "y / body length")
-    scale = matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(0, 1), PHASES)
-    figure.colorbar(scale, ax=all_axes, label="time / period", aspect=15, pad=0.02)
-    return figure
-
-
-# The forces on a body and their lines; what a prescribed motion takes is drawn where there is one.
-FORCES = {
-    "resistive_force": ":",
-    "reactive_force": "--",
-    "pressure_force": (0, (5, 1)),
-    "suction_force": (0, (3, 1, 1, 1)),
-    "constraint_force": "-.",
-}
-
-
-def last_beats(results, n):
-    """The rows of the last n beats of the slowest fish; all where n is 0, or where nothing beats."""
-    frequency = results["frequency"]
-    beating = frequency[frequency > 0]
-    if n == 0 or beating.size == 0:
-        return np.arange(results.time.size)
-    return np.flatnonzero(results.time >= results.time[-1] - (n + 1e-6) / beating.min())
-
-
-def present(results, names, rows, fish):
-    """Those of the named variables that are in the file and not zero all the time, for some rows of one fish."""
-    values = {name: results[name][rows, fish] for name in names if name in results.data.variables}
-    return {name: value for name, value in values.items() if np.any(np.nan_to_num(value))}
-
-
-def draw_forces(axes, results, fish, rows):
-    """The forces on a fish by name along its heading, their sum without the constraint (thrust) as full line."""
-    time, angle = results.time[rows], np.radians(results["heading"][rows, fish])
-    lines = {"thrust": axes.plot(time, results["thrust"][rows, fish], color="black", lw=1)[0]}
-    for name, force in present(results, FORCES, rows, fish).items():
-        along = np.cos(angle) * force[:, 0] + np.sin(angle) * force[:, 1]
-        lines[name] = axes.plot(time, along, color="black", lw=0.7, ls=FORCES[name])[0]
-    for name, line in lines.items():
-        line.set_label(name.removesuffix("_force"))
-    return list(lines.values())
-
-
-def draw_lines(axes, time, values, labels):
-    """A line per fish: of its own colour and dashes; of many fish all in grey, and their mean."""
-    if len(labels) > MANY:
-        axes.plot(time, values, color="#aaaaaa", lw=0.5)
-        axes.plot(time, np.nanmean(values, axis=1), color="black", lw=1.4)
-        return [
-            Line2D([], [], color="#aaaaaa", lw=0.5, label=f"each of {len(labels)} fish"),
-            Line2D([], [], color="black", lw=1.4, label="their mean"),
-        ]
-    return [
-        axes.plot(time, one, color=LINES[f], ls=DASHES[f], lw=1, label=labels[f])[0] for f, one in enumerate(values.T)
-    ]
-
-
-def plot_each(results, options):
-    """One variable over time, a panel per fish: its line in black before those of the others in grey."""
-    of, values, drawn = chosen(results, options), results[options.each], last_beats(results, options.beats)
-    if values.shape != (results.time.size, results.n_fish):
-        raise UsageError(f"--each {options.each}: not one number per fish and time, such as speed or heading")
-    time, values = results.time[drawn], values[drawn]
-    n_columns = min(len(of), 4)
-    n_rows = math.ceil(len(of) / n_columns)
-    figure, all_axes = panels(len(of), n_rows, n_columns, 1.4 if n_rows > 1 else 2.5)
-    for fish, axes in zip(of, all_axes):
-        axes.plot(time, values[:, [f for f in of if f != fish]], color="#bbbbbb", lw=0.5)
-        axes.plot(time, values[:, fish], color="black", lw=1.1)
-        axes.set_title(results.names[fish], size=9)
-        axes.grid(lw=0.3, color=GRID)
-        axes.margins(x=0)
-    unit = getattr(results.data.variables[options.each], "units", "1")
-    what = options.each.replace("_", " ") + (f" [{unit}]" if unit != "1" else "")
-    label_panels(all_axes, n_columns, "time [s]", what)
-    return figure
-
-
-def plot_time(results, options):
-    """Speed, heading, power and forces over time in stacked panels, one line per fish."""
-    if options.each:
-        return plot_each(results, options)
-    of, drawn = chosen(results, options), last_beats(results, options.beats)
-    time, labels = results.time[drawn], [results.names[fish] for fish in of]
-    rows = [("speed", "speed [m/s]"), ("heading", "heading [degree]"), ("actuation_power", "muscle power [W]")]
-    if options.balance:
-        rows.append(("energy_balance", "energy balance [J]"))
-    rows.append((None, "force ahead [N]"))
-    figure, stack = pyplot.subplots(
-        len(rows), 1, sharex=True, layout="constrained", figsize=(WIDTH, 0.5 + 1.5 * len(rows))
-    )
-    figure.get_layout_engine().set(h_pad=0.1)  # room for a legend above a panel
-    forces = []
-    for axes, (variable, label) in zip(stack, rows):
-        if variable:
-            fish = draw_lines(axes, time, results[variable][drawn][:, of], labels)
-        elif len(of) == 1:
-            forces = draw_forces(axes, results, of[0], drawn)
-        else:
-            draw_lines(axes, time, results["thrust"][drawn][:, of], labels)
-            label = "thrust [N]"
-        axes.set_ylabel(label)
-        axes.grid(lw=0.3, color=GRID)
-        axes.margins(x=0)
-    desired = results["desired_heading"][drawn][:, of]
-    one = np.allclose(desired, desired[:, :1], atol=1e-6, equal_nan=True)  # for all: drawn once
-    for values in desired[:, :1].T if one else desired.T:
-        stack[1].plot(time, values, color="#888888", lw=0.8, zorder=1)
-    stack[-1].set_xlabel("time [s]")
-    figure.align_ylabels(stack)
-    asked = Line2D([], [], color="#888888", lw=0.8, label="desired heading")
-    add_legend(stack[0], [*(fish if len(of) > 1 else []), asked])
-    if forces:
-        add_legend(stack[-1], forces)
-    return figure
-
-
-# The axis of the pressure leaves out what is nearer to the nose, in body lengths: there the jump has no bound.
-NEAR_NOSE = 0.03
-
-# The powers on a body and their lines.
-POWERS = {
-    "actuation_power": "-",
-    "drag_power": ":",
-    "added_mass_power": "--",
-    "pressure_power": (0, (5, 1)),
-    "suction_power": (0, (3, 1, 1, 1)),
-    "wake_power": (0, (5, 1, 1, 1, 1, 1)),
-    "damping_power": (0, (1, 2)),
-    "constraint_power": "-.",
-}
-
-
-def plot_forces(results, options):
-    """Forces ahead and to the left, and powers, by name over the last beats, one column per fish."""
-    of = chosen(results, options, most=4)
-    rows = last_beats(results, options.beats)
-    time = results.time[rows]
-    labels = ["force ahead [N]", "force to the left [N]", "power [W]"]
-    figure, grid = pyplot.subplots(
-        3, len(of), squeeze=False, sharex=True, sharey="row", layout="constrained", figsize=(WIDTH, 6)
-    )
-    figure.get_layout_engine().set(h_pad=0.13)  # room for a legend above a panel
-    lines = {}  # the same line for the same name in all columns
-    colour = {name: LINES[i % len(LINES)] for table in (FORCES, POWERS) for i, name in enumerate(table)}
-    for fish, column in zip(of, grid.T):
-        angle = np.radians(results["heading"][rows, fish])
-        axis = [(np.cos(angle), np.sin(angle)), (-np.sin(angle), np.cos(angle))]
-        for axes, (x, y) in zip(column, axis):
-            for name, force in present(results, FORCES, rows, fish).items():
-                along = x * force[:, 0] + y * force[:, 1]
-                lines[name] = axes.plot(time, along, color=colour[name], lw=0.9, ls=FORCES[name])[0]
-        for name, power in present(results, POWERS, rows, fish).items():
-            lines[name] = column[2].plot(time, power, color=colour[name], lw=0.9, ls=POWERS[name])[0]
-        column[0].set_title(names(results)[fish], size=9, pad=18)  # above the legend
-        column[2].set_xlabel("time [s]")
-    for axes, label in zip(grid[:, 0], labels):
-        axes.set_ylabel(label)
-    for axes in grid.flat:
-        axes.grid(lw=0.3, color=GRID)
-        axes.margins(x=0)
-    figure.align_ylabels(grid[:, 0])
-    for row, table in ((0, FORCES), (2, POWERS)):
-        handles = [lines[name] for name in table if name in lines]
-        for handle, name in zip(handles, (name for name in table if name in lines)):
-            handle.set_label(name.removesuffix("_force").removesuffix("_power").replace("_", " "))
-        if handles:
-            add_legend(grid[row, 0], handles)
-    return figure
-
-
-def plot_pressure(results, options):
-    """The jump of the pressure along each body at some times of its last beat, one panel per fish."""
-    of = chosen(results, options)
-    n_columns = min(len(of), 2)
-    figure, all_axes = panels(len(of), math.ceil(len(of) / n_columns), n_columns, 6 / (n_columns + 1))
-    jump, arc = results["pressure"], results["control_arc"]
-    if not np.isfinite(jump).any():
-        raise FileError(f"{results.path}: no fish has force: pressure")
-    drawn = []
-    for fish, axes in zip(of, all_axes):
-        rows = beat_rows(results, fish, options.shapes)
-        along = arc[fish] / results["body_length"][fish]
-        for row in rows:
-            phase = (results.time[row] - results.time[rows[0]]) * results["frequency"][fish]
-            axes.plot(along, jump[row, fish], color=PHASES(phase), lw=0.9)
-        drawn.append(np.abs(jump[rows, fish][:, along > NEAR_NOSE]))
-        axes.set_title(names(results)[fish], size=9)
-        axes.set_xlim(0, 1)
-        axes.grid(lw=0.3, color=GRID)
-    label_panels(all_axes, n_columns, "distance from the nose / body length", "pressure, left less right [Pa]")
-    most = 1.1 * max(np.nanmax(values) for values in drawn)
-    all_axes[0].set_ylim(-most, most)
-    scale = matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(0, 1), PHASES)
-    figure.colorbar(scale, ax=all_axes, label="time / period", aspect=20, pad=0.02)
-    return figure
-
-
-def plot_field(path, options):
-    """Vorticity or speed on the grid of a field, streamlines and bodies."""
-    figure = pyplot.figure(figsize=(WIDTH, 4.2), layout="constrained")
-    plot_field_module.draw(path, figure, options.speed, not options.no_streamlines)
-    return figure
-
-
-def plot_school(results, options):
-    """Polarisation, nearest neighbours and contacts of a school over time."""
-    if results.n_fish < 2:
-        raise FileError(f"{options.results}: one fish is no school")
-    figure = pyplot.figure(figsize=(WIDTH, 6), layout="constrained")
-    plot_school_module.draw(results, figure)
-    return figure
-
-
-def plot_study(path, options):
-    """Errors, costs or maps of a study.nc, or of a comparison of methods."""
-    figure = pyplot.figure(figsize=(WIDTH, 3.4), layout="constrained")
-    plot_study_module.draw(path, figure, options.of)
-    return figure
-
-
-# What the first word of the command line may be: the function, and a line of help.
+# What the first word of the command line may be, with a line of help.
 PICTURES = {
-    "swim": (plot_swim, "bodies, wakes and paths (the default)"),
-    "gait": (plot_gait, "the shapes that the muscle asks for, over one beat"),
-    "time": (plot_time, "speed, heading, power and forces over time"),
-    "forces": (plot_forces, "forces and powers by name over time"),
-    "pressure": (plot_pressure, "the jump of the pressure along the bodies over one beat"),
-    "school": (plot_school, "polarisation, nearest neighbours and contacts over time"),
-    "field": (plot_field, "the flow on a grid, from a file of shoal field"),
-    "study": (plot_study, "a study or a comparison of methods"),
+    "swim": "bodies, wakes and paths (the default)",
+    "gait": "the shapes that the muscle asks for, over one beat",
+    "time": "speed, heading, power and forces over time",
+    "forces": "forces and powers by name over time",
+    "pressure": "the jump of the pressure along the bodies over one beat",
+    "school": "polarisation, nearest neighbours and contacts over time",
+    "field": "the flow on a grid, from a file of shoal field",
+    "study": "a study or a comparison of methods",
 }
-OWN_FILES = ("field", "study")  # kinds of pictures that are not of the result of a run
-
-
-KIND_OF_FILE = {"run": "swim", "study": "study", "field": "field"}  # what is drawn where nothing is said
 
 
 def implied_kind(arguments):
     """The kind of picture that the file among the arguments calls for."""
     files = [word for word in arguments if os.path.isfile(word)]
-    return KIND_OF_FILE.get(kind_of(files[0]) if files else None, "swim")
-
-
-def check_kind(options):
-    """Raise FileError where the file is of another kind than the picture, and say which picture there is of it."""
-    kind = kind_of(options.results)
-    wanted = options.kind if options.kind in OWN_FILES else "run"
-    if kind and kind != wanted:
-        hint = f"plot.py {KIND_OF_FILE[kind]} {options.results}"
-        raise FileError(f"{options.results}: the file of a {kind}, not of a {wanted}: use {hint}")
+    return plot.KIND_OF_FILE.get(kind_of(files[0]) if files else None, "swim")
 
 
 def parse(arguments):
@@ -526,7 +58,7 @@ def parse(arguments):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     kinds = parser.add_subparsers(dest="kind", metavar="KIND", required=True)
     options = {}
-    for kind, (_, words) in PICTURES.items():
+    for kind, words in PICTURES.items():
         options[kind] = kinds.add_parser(kind, help=words)
         options[kind].add_argument("results", metavar="RUN.nc")
         options[kind].add_argument("picture", metavar="PICTURE", nargs="?", help="default: RUN.png in this folder")
@@ -584,14 +116,12 @@ def main(arguments):
     options = parse(arguments)
     picture = options.picture or os.path.splitext(os.path.basename(options.results))[0] + ".png"
     check_folder(picture)
-    with matplotlib.rc_context(STYLE):
+    with matplotlib.rc_context(plot.STYLE):
         try:
-            check_kind(options)
-            source = options.results if options.kind in OWN_FILES else Results(options.results)
-            figure = PICTURES[options.kind][0](source, options)
+            figure = plot.figure_of(options.kind, options.results, options)
         except FileError as error:
             stop(error, EXIT_FILE)
-        except UsageError as error:
+        except CaseError as error:
             stop(error, EXIT_USAGE)
         except DAMAGE as error:
             stop(f"{options.results}: cannot be drawn, it may be damaged ({type(error).__name__}: {error})", EXIT_FILE)

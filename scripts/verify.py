@@ -21,7 +21,10 @@ import re
 import shutil
 import sys
 
-from plot_style import LINES, STYLE
+import matplotlib
+
+matplotlib.use("Agg")
+from shoal._plot_style import LINES, STYLE
 
 from matplotlib import pyplot
 from PIL import Image

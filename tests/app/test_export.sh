@@ -122,7 +122,7 @@ end
     cat >sections.py <<'end'
 import sys
 sys.path.insert(0, sys.argv[1] + "/scripts")
-from shoal_results import Results
+from shoal._files import Results
 assert [bool(mean) for mean in Results("named.nc").mean_section] == [True, False]
 end
     check "a fish with the name $name has its outline in pictures" /usr/bin/python3 sections.py "$root"

@@ -67,7 +67,7 @@ check "a short run" test "$code" = 0
 # what a vortex still acts with, by its age, as the program has it (tests/wake/test_wake.c): all, half, nothing
 code=0
 PYTHONPATH=$root/scripts /usr/bin/python3 - >out 2>err <<'END' || code=$?
-from shoal_results import Results, np
+from shoal._files import Results, np
 run = Results("run.nc")
 lifetime, decay, interval = (float(run[name]) for name in ("wake_lifetime", "wake_decay", "shedding_interval"))
 ages = lifetime - interval / 2 - decay * np.array([1.1, 1, 0.5, 0])
@@ -127,7 +127,7 @@ cat >look.py <<'end'
 import argparse, sys
 import numpy as np
 sys.path.insert(0, sys.argv[1])
-import plot, plot_style, shoal_results
+from shoal import _files as shoal_results, _plot_style as plot_style, plot
 
 results = shoal_results.Results("seven.nc")
 options = argparse.Namespace(times=None, limits=None, follow=None)
@@ -135,6 +135,8 @@ assert plot.plot_swim(results, options).axes[0].get_xlabel().endswith("[lengths]
 options.follow = False
 assert plot.plot_swim(results, options).axes[0].get_xlabel() == "x [m]", "unless told otherwise"
 over_time = argparse.Namespace(balance=False, fish=None, each=None, beats=0)
+heading = plot.time("seven.nc")[1]
+assert any("constant" in text.get_text() for text in heading.texts), "rounding is not drawn as if it were a course"
 assert plot.plot_time(results, over_time).axes[0].lines[7].get_color() == "black", "a mean of many"
 over_time.fish = ["number 2", "number 5"]
 lines = plot.plot_time(results, over_time).axes[0].lines

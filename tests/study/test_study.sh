@@ -267,7 +267,7 @@ end
 """The quantities that the picture of a study has, by where its scripts are, its file and their names."""
 import sys
 sys.path.insert(0, sys.argv[1])
-from plot_study import Study, panels_of
+from shoal._plot_study import Study, panels_of
 study = Study(sys.argv[2])
 found = panels_of(study, study.axes[0][0])
 sys.exit(0 if found == sys.argv[3:] else str(found))

@@ -1,24 +1,32 @@
-#!/usr/bin/python3
-"""The look of all pictures: shoal.mplstyle, and the colours and lines that tell things apart. Used by the scripts that draw.
+"""The look of all pictures, and the colours and lines that tell things apart. Used by shoal.plot and the scripts that draw.
 
 Colours can be told apart by the colour-blind and, with marks and dashes, in grey.
 """
 
-import os
-
-from shoal_results import EXIT_FILE, np, stop
-
 try:
     import matplotlib
+    import numpy as np
     from matplotlib import ticker
 except ImportError as missing:
-    stop(f"{missing}: apt install python3-matplotlib, and run this with /usr/bin/python3", EXIT_FILE)
+    raise ImportError(f"{missing}: apt install python3-matplotlib, and run this with /usr/bin/python3") from missing
 
-matplotlib.use("Agg")
-
-STYLE = matplotlib.rc_params_from_file(
-    os.path.join(os.path.dirname(os.path.abspath(__file__)), "shoal.mplstyle"), use_default_template=False
-)
+# of all pictures
+STYLE = {
+    "font.size": 9,
+    "axes.linewidth": 0.6,
+    "axes.labelsize": 9,
+    "xtick.direction": "in",
+    "ytick.direction": "in",
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "legend.frameon": False,
+    "legend.fontsize": 8,
+    "svg.fonttype": "none",
+    "pdf.fonttype": 42,
+    "savefig.dpi": 200,
+    "savefig.bbox": "tight",
+    "savefig.pad_inches": 0.05,
+}
 WIDTH = 7.0  # of a picture, inches: two columns of a journal
 
 # The ends of the red-blue scale of ColorBrewer: dark and light in grey.

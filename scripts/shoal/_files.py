@@ -1,33 +1,20 @@
-#!/usr/bin/python3
-"""Read a result file of shoal: bodies, wakes and time series as numpy arrays. Used by plot.py and animate.py.
+"""Read a result file of shoal: bodies, wakes and time series as numpy arrays. Used by shoal.plot and the scripts.
 
-    from shoal_results import Results
+    from shoal._files import Results
     results = Results("demo.nc")
     results.time, results["speed"], results.outline(row=-1, fish=0)
 """
 
 import os
 import re
-import sys
 
-EXIT_USAGE, EXIT_FILE = 2, 4  # as the program itself: doc/cases.md
-
-
-def stop(message, code):
-    """End with one message on stderr."""
-    print(f"{os.path.basename(sys.argv[0])}: {message}", file=sys.stderr)
-    sys.exit(code)
-
+from ._library import FileError
 
 try:
     import netCDF4
     import numpy as np
 except ImportError as missing:
-    stop(f"{missing}: apt install python3-netcdf4 python3-matplotlib, and run this with /usr/bin/python3", EXIT_FILE)
-
-
-class FileError(Exception):
-    """A file cannot be read or is not a result of shoal; the text says which and why."""
+    raise ImportError(f"{missing}: apt install python3-netcdf4 python3-matplotlib, and run this with /usr/bin/python3") from missing
 
 
 # What reading a damaged file ends in.

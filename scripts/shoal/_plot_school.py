@@ -1,8 +1,7 @@
-#!/usr/bin/python3
-"""Draw polarisation, distances to the nearest neighbour and contacts of a school over time. Used by plot.py."""
+"""Draw polarisation, distances to the nearest neighbour and contacts of a school over time. Used by shoal.plot."""
 
-from plot_style import GRID, matplotlib
-from shoal_results import np
+from ._plot_style import GRID, matplotlib
+from ._files import np
 
 
 def nearest(places):

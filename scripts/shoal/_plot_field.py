@@ -1,8 +1,7 @@
-#!/usr/bin/python3
-"""Draw the file of `shoal field` on a figure: vorticity or speed, streamlines, bodies. Used by plot.py."""
+"""Draw the file of `shoal field` on a figure: vorticity or speed, streamlines, bodies. Used by shoal.plot."""
 
-from plot_style import BODY, BODY_EDGE, Wall, matplotlib
-from shoal_results import FileError, np, open_dataset, outline, sections, walls
+from ._plot_style import BODY, BODY_EDGE, Wall, matplotlib
+from ._files import FileError, np, open_dataset, outline, sections, walls
 
 SPECIAL = 0.995  # share of the points below the end of the scale: bound sheets are much stronger than wakes
 

@@ -1,5 +1,4 @@
-#!/usr/bin/python3
-"""Pictures of studies: study.nc of `shoal study`, and the file of `shoal compare`, which is one. Used by plot.py.
+"""Pictures of studies: study.nc of `shoal study`, and the file of `shoal compare`, which is one. Used by shoal.plot.
 
     the errors of a case            what each key has in them, and the values at its levels
     a refined axis                  differences from the finest level, with the design slope and the range of orders that is
@@ -16,8 +15,8 @@
 
 import ast
 
-from plot_style import DASHES, GRID, MARKS, few_ticks, scale_of
-from shoal_results import FileError, netCDF4, np
+from ._plot_style import DASHES, GRID, MARKS, few_ticks, scale_of
+from ._files import FileError, netCDF4, np
 
 COLOURS = ["#000000", "#0072b2", "#d55e00", "#009e73", "#aa4499", "#b06000", "#3366aa", "#666666"]  # all dark
 NAMES = {
