@@ -193,8 +193,8 @@ def table(*heads):
 
 @table("case", "speed [m/s]", "cost [m/s2]", "Strouhal", "residual per beat", "beats", "decay per beat")
 def steady_states(bench):
-    """cruising speed, cost and stability of the cases of cases/ (a minute)"""
-    for name in ("swim", "fish_pressure", "heaving_plate", "tandem_plates", "diamond_plates", "foil_flexible"):
+    """cruising speed, cost and stability of the cases of cases/ (minutes)"""
+    for name in ("swim", "fish_pressure", "heaving_plate", "tandem_plates", "diamond_plates"):
         state = bench.steady(name)
         largest = max(math.hypot(*value) for value in state["steady_multiplier"])
         strouhal = state["steady_strouhal"][0]
