@@ -1,0 +1,245 @@
+/* ring.c: one square root and one division per pair. */
+#include "vortex/ring.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "vortex/kernel.h"
+
+static const double inverse_two_pi = 0.159154943091895335769;
+
+/* A source at a target: keeps 0/0 away from the spanwise part, and changes no bit at distances that matter. */
+static const double no_square = 1e-150;
+
+enum { N_ARRAYS = 8, BLOCK = 16 };
+
+static void list_arrays(struct rings *rings, double **array[N_ARRAYS]) {
+    double **const all[N_ARRAYS] = {&rings->x,  &rings->y,    &rings->q,   &rings->dx,
+                                    &rings->dy, &rings->half, &rings->leg, &rings->square};
+    memcpy(array, all, sizeof all);
+}
+
+void ring_free(struct rings *rings) {
+    double **array[N_ARRAYS];
+    list_arrays(rings, array);
+    for (int i = 0; i < N_ARRAYS; i++) free(*array[i]);
+    *rings = (struct rings){0};
+}
+
+enum status ring_append(struct rings *rings, int n) {
+    double **array[N_ARRAYS];
+    list_arrays(rings, array);
+    const int needed = rings->n + n;
+    if (needed > rings->capacity) {
+        const int capacity = needed + needed / 2;
+        for (int i = 0; i < N_ARRAYS; i++) {
+            double *const more = realloc(*array[i], (size_t)capacity * sizeof *more);
+            if (!more) return status_fail(STATUS_MEMORY, "out of memory: %d vortex rings", needed);
+            *array[i] = more;
+        }
+        rings->capacity = capacity;
+    }
+    for (int i = 0; i < N_ARRAYS && n > 0; i++) memset(*array[i] + rings->n, 0, (size_t)n * sizeof **array[i]);
+    rings->n = needed;
+    return STATUS_OK;
+}
+
+struct ring_targets ring_targets_part(const struct ring_targets *all, struct range which) {
+    struct ring_targets part = *all;
+    const double **const given[] = {&part.x, &part.y, &part.half, &part.leg, &part.square};
+    double **const sums[] = {&part.u,   &part.v,   &part.leg_u, &part.leg_v, &part.div,  &part.u_x,
+                             &part.u_y, &part.v_x, &part.div_x, &part.div_y, &part.edge, &part.edge_gradient};
+    part.n = which.n;
+    for (size_t i = 0; i < sizeof given / sizeof *given; i++) {
+        if (*given[i]) *given[i] += which.first;
+    }
+    for (size_t i = 0; i < sizeof sums / sizeof *sums; i++) {
+        if (*sums[i]) *sums[i] += which.first;
+    }
+    return part;
+}
+
+/* Targets of a block, and the sums at them. */
+struct block {
+    double x[BLOCK], y[BLOCK], half[BLOCK], square[BLOCK];
+    double u[BLOCK], v[BLOCK], leg_u[BLOCK], leg_v[BLOCK], div[BLOCK];
+    double u_x[BLOCK], u_y[BLOCK], v_x[BLOCK], div_x[BLOCK], div_y[BLOCK];
+    double edge[2][BLOCK], edge_gradient[4][BLOCK];
+};
+
+/* The sources of a sum, with the factors of the pair. */
+struct block_sources {
+    int n;
+    const double *x, *y, *q, *dx, *dy, *half, *leg, *square;
+    double span, factor, add;
+};
+
+static KERNEL_WIDE(void, block_velocity, (struct block * at, const struct block_sources *from), (at, from)) {
+    const double scale = from->span * inverse_two_pi;
+    for (int n = 0; n < from->n; n++) {
+        const double x = from->x[n], y = from->y[n], q = from->q[n] * scale, dx = from->dx[n] * scale;
+        const double dy = from->dy[n] * scale, half = from->factor * from->half[n] + from->leg[n];
+        const double square = from->square[n] + from->add;
+        for (int i = 0; i < BLOCK; i++) {
+            const double rx = at->x[i] - x, ry = at->y[i] - y, r2 = rx * rx + ry * ry;
+            const double r = r2 + (at->square[i] + square), t = r2 + (at->half[i] + half), root = sqrt(t);
+            const double inverse = 1 / (r * t * root), f = q * (inverse * t), g = inverse * r;
+            at->u[i] -= f * ry;
+            at->v[i] += f * rx;
+            at->leg_u[i] -= g * dy;
+            at->leg_v[i] += g * dx;
+            at->div[i] += g * g * root * (rx * dy - ry * dx);
+        }
+    }
+}
+
+static KERNEL_WIDE(void, block_gradient, (struct block * at, const struct block_sources *from), (at, from)) {
+    const double scale = from->span * inverse_two_pi;
+    for (int n = 0; n < from->n; n++) {
+        const double x = from->x[n], y = from->y[n], q = from->q[n] * scale, dx = from->dx[n] * scale;
+        const double dy = from->dy[n] * scale, half = from->factor * from->half[n] + from->leg[n];
+        const double square = from->square[n] + from->add;
+        for (int i = 0; i < BLOCK; i++) {
+            const double rx = at->x[i] - x, ry = at->y[i] - y, r2 = rx * rx + ry * ry;
+            const double r = r2 + (at->square[i] + square), t = r2 + (at->half[i] + half), root = sqrt(t);
+            const double inverse = 1 / (r * t * root), f = q * (inverse * t), g = inverse * r;
+            // 1/T^(5/2), and the slopes of f and g over r
+            const double fifth = g * g * root, by_f = -f * (2 * inverse * t * root + g * root), by_g = -3 * fifth;
+            const double across = ry * dx - rx * dy, h = by_g, k = 15 * fifth * g * root;
+            at->u[i] -= f * ry;
+            at->v[i] += f * rx;
+            at->leg_u[i] -= g * dy;
+            at->leg_v[i] += g * dx;
+            at->div[i] += h / 3 * across;
+            at->u_x[i] -= (ry * by_f + dy * by_g) * rx;
+            at->u_y[i] -= (ry * by_f + dy * by_g) * ry + f;
+            at->v_x[i] += (rx * by_f + dx * by_g) * rx + f;
+            at->div_x[i] += k * across * rx - h * dy;
+            at->div_y[i] += k * across * ry + h * dx;
+        }
+    }
+}
+
+static KERNEL_WIDE(void, block_edge, (struct block * at, const struct block_sources *from), (at, from)) {
+    const double scale = from->span * inverse_two_pi;
+    for (int n = 0; n < from->n; n++) {
+        const double x = from->x[n], y = from->y[n], dx = from->dx[n] * scale, dy = from->dy[n] * scale;
+        const double half = from->factor * from->half[n] + from->leg[n];
+        for (int i = 0; i < BLOCK; i++) {
+            const double rx = at->x[i] - x, ry = at->y[i] - y, t = rx * rx + ry * ry + (at->half[i] + half);
+            const double factor = -1.5 / (t * t * sqrt(t)), slope = -5 * factor / t;
+            at->edge[0][i] += factor * dx;
+            at->edge[1][i] += factor * dy;
+            at->edge_gradient[0][i] += slope * rx * dx;
+            at->edge_gradient[1][i] += slope * ry * dx;
+            at->edge_gradient[2][i] += slope * rx * dy;
+            at->edge_gradient[3][i] += slope * ry * dy;
+        }
+    }
+}
+
+static void fill_block(struct block *block, const struct ring_pair *pair, const struct ring_targets *at, int first,
+                       int n) {
+    memset(block, 0, sizeof *block);
+    for (int i = 0; i < BLOCK; i++) {
+        const int p = first + (i < n ? i : n - 1);
+        block->x[i] = at->x[p];
+        block->y[i] = at->y[p];
+        block->half[i] = (at->half ? pair->factor * at->half[p] : 0) + (at->leg ? at->leg[p] : 0);
+        block->square[i] = (at->square ? at->square[p] : 0) + no_square;
+    }
+}
+
+static void add_block(const struct block *block, const struct ring_targets *at, int first, int n) {
+    for (int i = 0; i < n; i++) {
+        const int p = first + i;
+        at->u[p] += block->u[i] + block->leg_u[i];
+        at->v[p] += block->v[i] + block->leg_v[i];
+        if (at->leg_u) at->leg_u[p] += block->leg_u[i];
+        if (at->leg_v) at->leg_v[p] += block->leg_v[i];
+        if (at->div) at->div[p] += 3 * block->div[i];
+        if (!at->u_x) continue;
+        at->u_x[p] += block->u_x[i];
+        at->u_y[p] += block->u_y[i];
+        at->v_x[p] += block->v_x[i];
+        if (at->div_x) at->div_x[p] += block->div_x[i];
+        if (at->div_y) at->div_y[p] += block->div_y[i];
+    }
+    for (int k = 0; k < 2 && at->edge; k++) {
+        for (int i = 0; i < n; i++) at->edge[k * at->edge_stride + first + i] += block->edge[k][i];
+    }
+    for (int k = 0; k < 4 && at->edge_gradient; k++) {
+        for (int i = 0; i < n; i++) at->edge_gradient[k * at->edge_stride + first + i] += block->edge_gradient[k][i];
+    }
+}
+
+void ring_induce(const struct ring_pair *pair, const struct rings *rings, struct range which,
+                 const struct ring_targets *at) {
+    if (which.n <= 0) return;
+    const struct block_sources from = {.n = which.n,
+                                       .x = rings->x + which.first,
+                                       .y = rings->y + which.first,
+                                       .q = rings->q + which.first,
+                                       .dx = rings->dx + which.first,
+                                       .dy = rings->dy + which.first,
+                                       .half = rings->half + which.first,
+                                       .leg = rings->leg + which.first,
+                                       .square = rings->square + which.first,
+                                       .span = pair->span,
+                                       .factor = pair->factor,
+                                       .add = pair->square};
+    for (int first = 0; first < at->n; first += BLOCK) {
+        const int n = at->n - first < BLOCK ? at->n - first : BLOCK;
+        struct block block;
+        fill_block(&block, pair, at, first, n);
+        if (at->u_x) {
+            block_gradient(&block, &from);
+        } else {
+            block_velocity(&block, &from);
+        }
+        if (at->edge) block_edge(&block, &from);
+        add_block(&block, at, first, n);
+    }
+}
+
+enum status ring_mirror(const struct rings *rings, double shift, struct rings *image) {
+    image->n = 0;
+    TRY(ring_append(image, rings->n));
+    for (int i = 0; i < rings->n; i++) {
+        image->x[i] = rings->x[i];
+        image->y[i] = shift - rings->y[i];
+        image->q[i] = -rings->q[i];
+        image->dx[i] = -rings->dx[i];
+        image->dy[i] = rings->dy[i];
+        image->half[i] = rings->half[i];
+        image->leg[i] = rings->leg[i];
+        image->square[i] = rings->square[i];
+    }
+    return STATUS_OK;
+}
+
+void ring_unit(const struct ring_pair *pair, const struct ring_source *source, int n, const double *x, const double *y,
+               const double *half, struct ring_values *values) {
+    const double scale = pair->span * inverse_two_pi, add = source->square + pair->square + no_square;
+    for (int i = 0; i < n; i++) {
+        const double rx = x[i] - source->x, ry = y[i] - source->y, r2 = rx * rx + ry * ry;
+        const double r = r2 + add, t = r2 + pair->factor * (source->half + half[i]) + source->leg, root = sqrt(t);
+        const double f = scale / (r * root), g = scale / (t * root), h = -3 * g / t, k = -5 * h / t;
+        const double by_f = -f * (2 / r + 1 / t) * source->q, across = ry * source->dx - rx * source->dy;
+        values->unit_u[i] = -f * ry;
+        values->unit_v[i] = f * rx;
+        values->leg[i] = g;
+        values->div_by_dx[i] = h * ry;
+        values->div_by_dy[i] = -h * rx;
+        values->edge[i] = h / 2;
+        values->u_x[i] = -(ry * by_f + source->dy * h) * rx;
+        values->u_y[i] = -(ry * by_f + source->dy * h) * ry - f * source->q;
+        values->v_x[i] = (rx * by_f + source->dx * h) * rx + f * source->q;
+        values->v_y[i] = (rx * by_f + source->dx * h) * ry;
+        values->div_x[i] = k * across * rx - h * source->dy;
+        values->div_y[i] = k * across * ry + h * source->dx;
+        values->edge_x[i] = k / 2 * rx;
+        values->edge_y[i] = k / 2 * ry;
+    }
+}

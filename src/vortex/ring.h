@@ -1,0 +1,86 @@
+/* ring.h: the velocity that the vortex rings of a strip of finite depth induce in its middle plane, and its divergence
+ * there. doc/model.md, section 18. Tested by tests/vortex/test_ring.c.
+ *
+ * A source has a spanwise part of circulation q and two legs, which run along the line d = C dx. With r from the source
+ * to the target, B = (b_t^2 + b_n^2)/2 of the half spans, s of the legs and e the smoothing of the spanwise part:
+ *
+ *     R = r^2 + e^2      T = r^2 + B + s_t + s_n
+ *     u     = b ( q E3 r/(2 pi R sqrt(T)) + E3 d/(2 pi T^(3/2)) )
+ *     div u = -(3 b/(2 pi)) r.(E3 d)/T^(5/2)                        the spanwise part has no divergence
+ *     a     = -(3 b/(4 pi)) d/T^(5/2)                               of the edge force of a body whose depth varies
+ *
+ * b^2/2 of a place is its `half`; where a strip is seen from outside, b is twice as large, and `half` four times.
+ *
+ * Every target sums over the sources in their order with operations that are rounded as written: the same bits on all
+ * processors. */
+#ifndef RING_H
+#define RING_H
+
+#include "base/parallel.h"
+#include "base/status.h"
+
+/* All arrays (n), owned. */
+struct rings {
+    int n, capacity;
+    double *x, *y;   /* m */
+    double *q;       /* m2 s-1 */
+    double *dx, *dy; /* C dx, m3 s-1 */
+    double *half;    /* b^2/2 with b a quarter of the depth, m2 */
+    double *leg;     /* s, m2 */
+    double *square;  /* what the source has of e^2, m2 */
+};
+
+void ring_free(struct rings *rings);
+
+/* Append n sources, all values 0. Fails with STATUS_MEMORY; nothing is changed then. */
+enum status ring_append(struct rings *rings, int n);
+
+/* Targets; all arrays (n). Values are added to those that are not NULL: u and v always, and either none, or all but the
+ * edge, of the gradient. v_y = div - u_x. */
+struct ring_targets {
+    int n;
+    const double *x, *y;               /* m */
+    const double *half, *leg, *square; /* as of sources; NULL: 0 */
+    double *u, *v;                     /* m s-1 */
+    double *leg_u, *leg_v;             /* the part of the legs, m s-1 */
+    double *div;                       /* s-1 */
+    double *u_x, *u_y, *v_x;           /* s-1 */
+    double *div_x, *div_y;             /* m-1 s-1 */
+    double *edge;                      /* a in x and y, each an array of edge_stride numbers, m-1 s-1 */
+    double *edge_gradient;             /* da_x/dx, da_x/dy, da_y/dx, da_y/dy, likewise, m-2 s-1 */
+    int edge_stride;
+};
+struct ring_targets ring_targets_part(const struct ring_targets *all, struct range which);
+
+/* What holds for all pairs of a sum: b in front of the kernel, m; the factor of both `half`: 1 in the own strip, 4 seen
+ * from outside; what is added to e^2, m2. */
+struct ring_pair {
+    double span, factor, square;
+};
+
+/* Add what a range of sources induces at the targets. A source at a target has no spanwise part there. */
+void ring_induce(const struct ring_pair *pair, const struct rings *rings, struct range which,
+                 const struct ring_targets *at);
+
+/* The mirror image of the rings in a wall: place (x, sign y + shift) with sign -1, circulation and legs reversed.
+ * *image is made again. Fails with STATUS_MEMORY. */
+enum status ring_mirror(const struct rings *rings, double shift, struct rings *image);
+
+/* One source for a Jacobian at n targets of one chunk. */
+enum { RING_CHUNK = 64 };
+struct ring_source {
+    double x, y, q, dx, dy, half, leg, square;
+};
+struct ring_values {
+    double unit_u[RING_CHUNK], unit_v[RING_CHUNK]; /* of the spanwise part, per q */
+    double leg[RING_CHUNK];                        /* g: legs d cause the velocity g E3 d */
+    double div_by_dx[RING_CHUNK], div_by_dy[RING_CHUNK];
+    double edge[RING_CHUNK]; /* legs d cause a = edge d */
+    /* by the place of the target, with q and d of the source */
+    double u_x[RING_CHUNK], u_y[RING_CHUNK], v_x[RING_CHUNK], v_y[RING_CHUNK], div_x[RING_CHUNK], div_y[RING_CHUNK];
+    double edge_x[RING_CHUNK], edge_y[RING_CHUNK]; /* of the factor of d in a */
+};
+void ring_unit(const struct ring_pair *pair, const struct ring_source *source, int n, const double *x, const double *y,
+               const double *half, struct ring_values *values);
+
+#endif

@@ -1,0 +1,207 @@
+/* test_ring.c: the kernel of a strip of finite depth against its formulas, limits and differences. */
+#include <math.h>
+
+#include "failing_malloc.h"
+#include "near.h"
+#include "vortex/ring.h"
+
+static const double two_pi = 6.28318530717958647692;
+
+// one source, and what it causes at a point
+struct sum {
+    double u, v, leg_u, leg_v, div, u_x, u_y, v_x, div_x, div_y, edge[2], edge_gradient[4];
+};
+static struct sum induce(const struct ring_pair *pair, const struct ring_source *source, double x, double y,
+                         double half, double leg, double square) {
+    struct rings rings = {0};
+    assert_int_equal(ring_append(&rings, 1), STATUS_OK);
+    rings.x[0] = source->x;
+    rings.y[0] = source->y;
+    rings.q[0] = source->q;
+    rings.dx[0] = source->dx;
+    rings.dy[0] = source->dy;
+    rings.half[0] = source->half;
+    rings.leg[0] = source->leg;
+    rings.square[0] = source->square;
+    struct sum sum = {0}, plain = {0};
+    struct ring_targets at = {.n = 1,
+                              .x = &x,
+                              .y = &y,
+                              .half = &half,
+                              .leg = &leg,
+                              .square = &square,
+                              .u = &plain.u,
+                              .v = &plain.v,
+                              .div = &plain.div};
+    ring_induce(pair, &rings, (struct range){0, 1}, &at);
+    at.u = &sum.u;
+    at.v = &sum.v;
+    at.leg_u = &sum.leg_u;
+    at.leg_v = &sum.leg_v;
+    at.div = &sum.div;
+    at.u_x = &sum.u_x;
+    at.u_y = &sum.u_y;
+    at.v_x = &sum.v_x;
+    at.div_x = &sum.div_x;
+    at.div_y = &sum.div_y;
+    at.edge = sum.edge;
+    at.edge_gradient = sum.edge_gradient;
+    at.edge_stride = 1;
+    ring_induce(pair, &rings, (struct range){0, 1}, &at);
+    ring_free(&rings);
+    NEAR(plain.u, sum.u, 0, 1e-14);
+    NEAR(plain.v, sum.v, 0, 1e-14);
+    NEAR(plain.div, sum.div, 0, 1e-14);
+    return sum;
+}
+
+static const struct ring_source source = {
+    .x = 0.3, .y = -0.2, .q = 1, .dx = 0.02, .dy = 0.03, .half = 0.0625 * 0.0625 / 2, .leg = 0.001, .square = 0.0015};
+static const struct ring_pair own = {.span = 0.0625, .factor = 1, .square = 0.0005};
+
+// numbers of an independent program (NumPy)
+static void velocity_and_divergence_are_those_of_the_formulas(void **state) {
+    (void)state;
+    const struct sum sum = induce(&own, &source, 0.4, -0.15, 0.0625 * 0.0625 / 2, 0.002, 0.0005);
+    NEAR(sum.u, -0.34840178, 5e-9, 0);
+    NEAR(sum.v, 0.54962393, 5e-9, 0);
+    NEAR(sum.div, 1.13762033, 5e-9, 0);
+    // a = h/2 d and div = h r.(E3 d)
+    const double h = sum.div / (0.05 * 0.02 - 0.1 * 0.03);
+    NEAR(sum.edge[0], h / 2 * 0.02, 0, 1e-13);
+    NEAR(sum.edge[1], h / 2 * 0.03, 0, 1e-13);
+}
+
+static void a_deep_strip_is_that_of_two_dimensions(void **state) {
+    (void)state;
+    const double b = 1e5;
+    const struct ring_pair pair = {.span = b, .factor = 1};
+    struct ring_source deep = source;
+    deep.half = b * b / 2;
+    deep.leg = deep.square = 0;
+    const struct sum sum = induce(&pair, &deep, 0.4, -0.15, b * b / 2, 0, 0);
+    const double r2 = 0.1 * 0.1 + 0.05 * 0.05;
+    // short by r^2/(2 b^2)
+    NEAR(sum.u, -0.05 / (two_pi * r2), 0, 1e-11);
+    NEAR(sum.v, 0.1 / (two_pi * r2), 0, 1e-11);
+    NEAR(sum.div, 0, 1e-15, 0);
+}
+
+// seen from outside, from afar, a ring is a dipole whose moment is its circulation, depth and length
+static void far_away_a_closed_ring_is_a_dipole_of_its_area(void **state) {
+    (void)state;
+    const double w = 0.25, length = 0.01, far = 30;
+    const struct ring_pair outside = {.span = w / 2, .factor = 4};
+    // spanwise parts 1 and -1 at both ends of a leg along x, w deep
+    struct ring_source part[3] = {{.x = 0, .q = 1}, {.x = length, .q = -1}, {.x = length / 2, .dx = length}};
+    double u = 0, v = 0;
+    for (int i = 0; i < 3; i++) {
+        part[i].half = w * w / 32;
+        const struct sum sum = induce(&outside, &part[i], 0.6 * far, 0.8 * far, w * w / 32, 0, 0);
+        u += sum.u;
+        v += sum.v;
+    }
+    // in the middle plane (z = 0) the field of a dipole normal to the wall that the ring spans: m along y
+    const double m = w * length, n[2] = {0.6, 0.8}, r3 = far * far * far;
+    NEAR(u, m / (2 * two_pi * r3) * 3 * n[1] * n[0], 1e-3 * m / (2 * two_pi * r3), 0);
+    NEAR(v, m / (2 * two_pi * r3) * (3 * n[1] * n[1] - 1), 1e-3 * m / (2 * two_pi * r3), 0);
+}
+
+static void gradients_agree_with_differences(void **state) {
+    (void)state;
+    const double half = 0.003, leg = 0.002, square = 0.0004, step = 1e-6;
+    const struct sum at = induce(&own, &source, 0.37, -0.11, half, leg, square);
+    struct ring_values unit;
+    struct ring_source with_target = source;
+    with_target.leg += leg;
+    with_target.square += square;
+    const double x = 0.37, y = -0.11;
+    ring_unit(&own, &with_target, 1, &x, &y, &half, &unit);
+    for (int i = 0; i < 2; i++) {
+        const double dx = i == 0 ? step : 0, dy = i == 1 ? step : 0;
+        const struct sum more = induce(&own, &source, x + dx, y + dy, half, leg, square);
+        const struct sum less = induce(&own, &source, x - dx, y - dy, half, leg, square);
+        const double by[] = {(more.u - less.u) / (2 * step), (more.v - less.v) / (2 * step),
+                             (more.div - less.div) / (2 * step)};
+        const double got[2][3] = {{at.u_x, at.v_x, at.div_x}, {at.u_y, at.div - at.u_x, at.div_y}};
+        const double of_unit[2][3] = {{*unit.u_x, *unit.v_x, *unit.div_x}, {*unit.u_y, *unit.v_y, *unit.div_y}};
+        for (int k = 0; k < 3; k++) {
+            NEAR(got[i][k], by[k], 1e-7, 1e-7);
+            NEAR(of_unit[i][k], by[k], 1e-7, 1e-7);
+        }
+        for (int k = 0; k < 2; k++) {
+            NEAR(at.edge_gradient[2 * k + i], (more.edge[k] - less.edge[k]) / (2 * step), 1e-7, 1e-7);
+        }
+        NEAR((i == 0 ? *unit.edge_x : *unit.edge_y) * source.dx, at.edge_gradient[i], 0, 1e-12);
+    }
+    // linear in circulation and legs
+    NEAR(*unit.unit_u * source.q - *unit.leg * source.dy, at.u, 0, 1e-13);
+    NEAR(*unit.unit_v * source.q + *unit.leg * source.dx, at.v, 0, 1e-13);
+    NEAR(-*unit.leg * source.dy, at.leg_u, 0, 1e-13);
+    NEAR(*unit.leg * source.dx, at.leg_v, 0, 1e-13);
+    NEAR(*unit.div_by_dx * source.dx + *unit.div_by_dy * source.dy, at.div, 0, 1e-12);
+    NEAR(*unit.edge * source.dy, at.edge[1], 0, 1e-13);
+}
+
+static void a_source_has_no_spanwise_part_at_its_own_place(void **state) {
+    (void)state;
+    struct ring_source at_target = source;
+    at_target.square = 0;
+    const struct ring_pair exact = {.span = 0.0625, .factor = 1};
+    const struct sum sum = induce(&exact, &at_target, source.x, source.y, 0.002, 0, 0);
+    NEAR(sum.u, sum.leg_u, 0, 0);
+    NEAR(sum.v, sum.leg_v, 0, 0);
+    NEAR(sum.div, 0, 0, 0);
+}
+
+// the wall is half way between a source and its image, and no fluid goes through
+static void a_ring_and_its_image_cause_no_flow_through_the_wall(void **state) {
+    (void)state;
+    struct rings rings = {0}, image = {0};
+    assert_int_equal(ring_append(&rings, 1), STATUS_OK);
+    rings.x[0] = 0.1;
+    rings.y[0] = 0.4;
+    rings.q[0] = 0.7;
+    rings.dx[0] = 0.2;
+    rings.dy[0] = -0.3;
+    rings.half[0] = 0.002;
+    assert_int_equal(ring_mirror(&rings, -0.5, &image), STATUS_OK);
+    enum { N = 20 };
+    double x[N], y[N], u[N] = {0}, v[N] = {0};
+    for (int i = 0; i < N; i++) {
+        x[i] = -1 + 0.1 * i;
+        y[i] = -0.25;
+    }
+    const struct ring_targets at = {.n = N, .x = x, .y = y, .u = u, .v = v};
+    ring_induce(&own, &rings, (struct range){0, 1}, &at);
+    ring_induce(&own, &image, (struct range){0, 1}, &at);
+    for (int i = 0; i < N; i++) NEAR(v[i], 0, 1e-17, 0);
+    ring_free(&rings);
+    ring_free(&image);
+}
+
+static void a_lack_of_memory_is_reported(void **state) {
+    (void)state;
+    struct rings rings = {0};
+    assert_int_equal(ring_append(&rings, 2), STATUS_OK);
+    rings.x[1] = 3;
+    n_until_failure = 0;
+    assert_int_equal(ring_append(&rings, 100), STATUS_MEMORY);
+    n_until_failure = -1;
+    assert_int_equal(rings.n, 2);
+    NEAR(rings.x[1], 3, 0, 0);
+    ring_free(&rings);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(velocity_and_divergence_are_those_of_the_formulas),
+        cmocka_unit_test(a_deep_strip_is_that_of_two_dimensions),
+        cmocka_unit_test(far_away_a_closed_ring_is_a_dipole_of_its_area),
+        cmocka_unit_test(gradients_agree_with_differences),
+        cmocka_unit_test(a_source_has_no_spanwise_part_at_its_own_place),
+        cmocka_unit_test(a_ring_and_its_image_cause_no_flow_through_the_wall),
+        cmocka_unit_test(a_lack_of_memory_is_reported),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
