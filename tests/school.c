@@ -92,6 +92,10 @@ static void stir_wake(struct setup *setup, const struct fish *fish, struct wake 
         wake->u_before[i] = school_random(setup);
         wake->v_before[i] = school_random(setup);
     }
+    for (int i = 0; i < 6 && setup->school->finite; i++) {
+        wake->rate[i] = school_random(setup);
+        wake->rate_before[i] = school_random(setup);
+    }
     if (wake->has_markers) {
         // the newest one not far from the tail
         const double tail = fish->length * (1 + 0.05);

@@ -19,6 +19,7 @@
 #include "case/sweep_expect.h"
 #include "case/yaml_write.h"
 #include "fish/fish_school.h"
+#include "fish/fish_sheet.h"
 
 /* A case being read. */
 struct reading {
@@ -208,7 +209,10 @@ static void derive(double *value, double standard) {
 
 static enum status derive_fish(struct fish_parameters *fish, int index) {
     const double period = fish->wave.frequency > 0 ? 1 / fish->wave.frequency : 0;
-    if (fish->sheet_points == 0) fish->sheet_points = fish->nodes > 17 ? 2 * fish->nodes - 1 : 33;
+    if (fish->sheet_points == 0) {
+        const int usual = fish->nodes > 17 ? 2 * fish->nodes - 1 : 33, of_depth = fish_sheet_least(fish);
+        fish->sheet_points = usual > of_depth ? usual : of_depth;
+    }
     derive(&fish->body.tail_thickness, fish->body.profile == PROFILE_JOUKOWSKI ? 0.04 : 0);
     const double beat = case_times_beat(fish);
     derive(&fish->body.relaxation_time, beat > 0 ? 0.02 / beat : 0);

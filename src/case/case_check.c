@@ -10,6 +10,7 @@
 #include "base/text.h"
 #include "case/case_table.h"
 #include "case/sweep_members.h"
+#include "fish/fish_sheet.h"
 
 static const double max_events = 1e9, max_vortices = 1e7 /* of one fish */;
 
@@ -388,12 +389,39 @@ static void check_drag(const struct check *check) {
     }
 }
 
+/* What sheets of finite span need. */
+static void check_span(const struct check *check) {
+    const struct school_parameters *const school = &check->values->school;
+    const struct fish_parameters *const fish = &school->fish[check->fish];
+    static const char path[] = "fish.pressure.span";
+    for (int f = 0; f < check->fish; f++) {
+        if (school->fish[f].force != FORCE_PRESSURE || school->fish[f].span == fish->span) continue;
+        complain(check, path, "fish[%d] has another: sheets of finite and of infinite span cannot meet", f);
+        return;
+    }
+    if (fish->span != SPAN_FINITE) return;
+    if (school->wake.removed_circulation == REMOVED_DROPPED) {
+        complain(check, path, "vortex rings stay closed where they decay: use 'wake.removed_circulation: retained'");
+    }
+    if (school->fluid.walls.n > 1) {
+        complain(check, path, "finite is for one wall at most: use 'infinite', or remove one of fluid.walls");
+    }
+    const int least = fish_sheet_least(fish);
+    if (fish->sheet_points < least) {
+        complain(check, "fish.sheet_points", "a span of %.3g lengths needs at least %d points (1 + 5 L/w), not %d",
+                 5.0 / (least - 1), least, fish->sheet_points);
+    }
+}
+
 /* What the pressure of the bound sheet needs, and what it takes the place of. */
 static void check_pressure(const struct check *check) {
     const struct fish_parameters *const fish = &check->values->school.fish[check->fish];
     const struct wake_parameters *const wake = &check->values->school.wake;
     static const char force[] = "fish.force";
     if (fish->force != FORCE_PRESSURE) {
+        if (fish->span == SPAN_FINITE) {
+            complain(check, "fish.pressure.span", "is for 'force: pressure' only: remove it");
+        }
         if (is_given(check, "fish.pressure.suction")) {
             complain(check, "fish.pressure.suction", "is for 'force: pressure' only: remove it");
         }
@@ -413,6 +441,7 @@ static void check_pressure(const struct check *check) {
     if (is_given(check, "fish.added_mass.coefficient")) {
         complain(check, "fish.added_mass.coefficient", "has no effect with 'force: pressure': remove it");
     }
+    check_span(check);
     if (has_moment(&fish->control)) {
         complain(check, "fish.control.feedforward",
                  "is the moment of the drag, which is not that of the pressure: use 0");

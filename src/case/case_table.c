@@ -195,7 +195,7 @@ const struct key case_table[] = {
      .meaning = "number of nodes for which wave.amplitude and the damping coefficients are given"},
     {"fish.sheet_points", INTEGER, IN_FISH(sheet_points), NULL, FROM_TO(5, MAX_NODES), "",
      .meaning = "number of vortices of the bound sheet", .synonyms = "vortices panels bound_vortices",
-     .published = "21", .derived = "2 nodes - 1, at least 33"},
+     .published = "21", .derived = "2 nodes - 1, at least 33; with pressure.span finite at least 1 + 5 L/w"},
 
     {"fish.body.profile", CHOICE, IN_FISH(body.profile), "joukowski", ANY, "",
      .meaning = "thickness along the body: a Joukowski foil, uniform, or the lists h and w",
@@ -266,6 +266,11 @@ const struct key case_table[] = {
          "force of the fluid besides drag; reactive: from its kinetic energy, with what is left in the fluid at the "
          "tail; published: added mass across each edge; pressure: the pressure jump across the bound sheet",
      .words = WORDS("reactive", "published", "pressure"), .published = "published"},
+    {"fish.pressure.span", CHOICE, IN_FISH(span), "infinite", ANY, "",
+     .meaning =
+         "force pressure: span of the sheets of body and wake; finite: the depth of the body, the sheets are vortex "
+         "rings; infinite: two-dimensional flow, in which the depth is only a factor of the forces",
+     .words = WORDS("finite", "infinite")},
     {"fish.pressure.suction", REAL, IN_FISH(suction), "1", FROM_TO(0, 1), "",
      .meaning = "force pressure: the part of the suction at the leading edge that acts on the body"},
     {"fish.pressure.suction_limit", REAL, IN_FISH(suction_limit), "0.18", FROM(0), "",

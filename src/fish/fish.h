@@ -118,7 +118,14 @@ struct fish {
     double *control_density;           /* density of the fluid times depth, kg m-2         (n_control) */
     double *control_interval;          /* u of the interval around a control point, 1      (n_control) */
     struct tangent nose_tangent;       /* the direction of the body at the nose */
-    struct sheet_integrals *integrals; /* NULL with other forces */
+    struct sheet_integrals *integrals; /* NULL with other forces, unless there are rings */
+
+    /* rings: section 18 */
+    double strip_depth;       /* w_L, of the last edge, m; 0: the sheets are of infinite span */
+    int depth_varies;         /* along the body */
+    double *sheet_half;       /* b^2/2 at the bound vortices, b = w/4, m2                  (n_sheet) */
+    double *point_half;       /* and at the points that feel the fluid (flow.h), m2   (n_control + n_edges + 1) */
+    double *control_widening; /* b db/du at control points, m2                             (n_control) */
 
     double *sheet_weight;            /* ds_j: circulation over unknown, m           (n_sheet) */
     struct curve *curve;             /* the line of the body; owns the stencils below */
@@ -162,6 +169,7 @@ struct school {
     enum kutta kutta;
     double kutta_ramp; /* s */
     enum removed_circulation removed;
+    int finite;            /* whether the sheets are vortex rings: some fish has force: pressure with span: finite */
     double wake_tolerance; /* estimated error of the velocity of the wakes at the bodies, lengths per beat; 0: none */
 
     double wake_merge; /* error of the velocity at a body by what is merged in one wake, lengths per beat; 0: nothing */

@@ -138,6 +138,7 @@ static void set_fluid(struct school *school, const struct school_parameters *par
     school->kutta = parameters->sheet.kutta;
     school->kutta_ramp = parameters->sheet.kutta_ramp;
     school->removed = parameters->wake.removed_circulation;
+    for (int f = 0; f < parameters->n_fish; f++) school->finite |= fish_is_strip(&parameters->fish[f]);
     school->wake_tolerance = parameters->wake.tolerance;
     school->wake_merge = parameters->wake.merge;
     school->wake_spare = parameters->wake.spare;
@@ -242,6 +243,9 @@ void fish_school_free(struct school *school) {
                                fish->end_correction,
                                fish->control_density,
                                fish->control_interval,
+                               fish->sheet_half,
+                               fish->point_half,
+                               fish->control_widening,
                                fish->control.heading_time,
                                fish->control.heading,
                                fish->control.waypoint_x,

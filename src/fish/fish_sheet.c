@@ -101,20 +101,66 @@ static enum status place_sheet(struct fish *fish, const struct sheet_parameters 
     return STATUS_OK;
 }
 
+// w and dw/du at u: monotone cubics between the middles of edges with no slope at both ends, constant beyond
+static void depth_at(const struct fish *fish, double u, double *depth, double *slope) {
+    const double *const w = fish->depth, from = fmin(fmax(u - 0.5, 0), fish->n_edges - 1);
+    const int k = (int)fmin(from, fish->n_edges - 2);
+    double tangent[2] = {0, 0};
+    for (int end = 0; end < 2; end++) {
+        const int i = k + end;
+        if (i == 0 || i == fish->n_edges - 1) continue;
+        const double before = w[i] - w[i - 1], after = w[i + 1] - w[i];
+        if (before * after > 0) tangent[end] = 2 * before * after / (before + after);
+    }
+    const double q = from - k, rise = w[k + 1] - w[k];
+    const double c2 = 3 * rise - 2 * tangent[0] - tangent[1], c3 = tangent[0] + tangent[1] - 2 * rise;
+    *depth = w[k] + q * (tangent[0] + q * (c2 + q * c3));
+    *slope = u <= 0.5 || u >= fish->n_edges - 0.5 ? 0 : tangent[0] + q * (2 * c2 + 3 * q * c3);
+}
+
+static double half_at(const struct fish *fish, double u) {
+    double depth, slope;
+    depth_at(fish, u, &depth, &slope);
+    return depth * depth / 32;
+}
+
+// the strip that the sheets of the body are: doc/model.md, section 18
+static enum status set_strip(struct fish *fish) {
+    const int n_points = fish->n_control + fish->n_edges + 1;
+    TRY(array_doubles(&fish->sheet_half, fish->n_sheet, "the sheet of a fish"));
+    TRY(array_doubles(&fish->point_half, n_points, "the sheet of a fish"));
+    TRY(array_doubles(&fish->control_widening, fish->n_control, "the sheet of a fish"));
+    fish->strip_depth = fish->depth[fish->n_edges - 1];
+    for (int k = 0; k < fish->n_edges; k++) fish->depth_varies |= fabs(fish->depth[k] - fish->strip_depth) > 0;
+    for (int j = 0; j < fish->n_sheet; j++) fish->sheet_half[j] = half_at(fish, cosine_place(fish, j) * fish->n_edges);
+    for (int c = 0; c < fish->n_control; c++) {
+        double depth, slope;
+        depth_at(fish, cosine_place(fish, c + 0.5) * fish->n_edges, &depth, &slope);
+        fish->point_half[c] = depth * depth / 32;
+        fish->control_widening[c] = depth * slope / 16;
+    }
+    for (int k = 0; k < fish->n_edges; k++) fish->point_half[fish->n_control + k] = half_at(fish, k + 0.5);
+    fish->point_half[n_points - 1] = half_at(fish, fish->n_edges);
+    return STATUS_OK;
+}
+
 // the pressure of the bound sheet: doc/model.md, section 15
-static enum status set_pressure(struct fish *fish, const struct fish_parameters *from, double density) {
-    if (fish->force != FORCE_PRESSURE) return STATUS_OK;
+static enum status set_pressure(struct fish *fish, const struct fish_parameters *from, double density, int is_strip) {
+    if (fish->force != FORCE_PRESSURE && !is_strip) return STATUS_OK;
     const double h = M_PI / fish->n_control;
     double *per_edge;
+    if (is_strip) TRY(set_strip(fish));
     TRY(array_doubles(&per_edge, fish->n_edges, "the pressure of a fish"));
-    for (int k = 0; k < fish->n_edges; k++) per_edge[k] = density * fish->depth[k];
+    for (int k = 0; k < fish->n_edges; k++) per_edge[k] = density * (is_strip ? fish->strip_depth : fish->depth[k]);
     for (int c = 0; c < fish->n_control; c++) {
         fish->control_density[c] = per_edge[(int)(cosine_place(fish, c + 0.5) * fish->n_edges)];
         fish->control_interval[c] = fish->n_edges / 2.0 * sin((c + 0.5) * h) * h;
     }
     fish->fluid_density = density;
     fish->nose_factor = fish->n_control * fish->sheet_weight[0] / (M_PI * fish->length);
-    fish->full_suction = M_PI * per_edge[0] * fish->length;
+    // of a strip the unknowns are circulations times w(s)/w_L
+    if (is_strip) fish->nose_factor *= fish->strip_depth / fish->depth[0];
+    fish->full_suction = M_PI * (density * fish->depth[0]) * fish->length;
     fish->suction = from->suction * fish->full_suction;
     fish->suction_limit = from->suction_limit;
     const enum status status = sheet_integrals_create(&fish->integrals, fish->n_nodes, fish->n_sheet, per_edge);
@@ -126,5 +172,21 @@ enum status fish_sheet_set(struct fish *fish, const struct fish_parameters *from
                            const struct school_parameters *parameters) {
     TRY(allocate(fish));
     TRY(place_sheet(fish, &parameters->sheet, parameters->wake.shedding));
-    return set_pressure(fish, from, parameters->fluid.density);
+    int is_strip = 0;
+    for (int f = 0; f < parameters->n_fish; f++) is_strip |= fish_is_strip(&parameters->fish[f]);
+    return set_pressure(fish, from, parameters->fluid.density, is_strip);
+}
+
+int fish_is_strip(const struct fish_parameters *from) {
+    return from->force == FORCE_PRESSURE && from->span == SPAN_FINITE;
+}
+
+int fish_sheet_least(const struct fish_parameters *from) {
+    if (!fish_is_strip(from)) return 0;
+    double depth = from->body.depth * from->length;
+    for (int k = 0; from->body.profile == PROFILE_TABLE && k < from->body.depth_table.n; k++) {
+        depth = k == 0 ? from->body.depth_table.value[0] : fmin(depth, from->body.depth_table.value[k]);
+    }
+    const double least = ceil(1 + 5 * from->length / depth * (1 - 1e-9));
+    return least < 1e6 ? (int)least : 1000000;
 }

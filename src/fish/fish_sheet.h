@@ -1,5 +1,5 @@
 /* fish_sheet.h: where a fish has its bound vortices and control points, and their weights in the integrals of sheet and
- * pressure. doc/model.md, sections 6 and 15. Tested by tests/fish/test_fish.c. */
+ * pressure. doc/model.md, sections 6, 15 and 18. Tested by tests/fish/test_fish.c. */
 #ifndef FISH_SHEET_H
 #define FISH_SHEET_H
 
@@ -10,5 +10,11 @@
  * control point. Fails with STATUS_MEMORY. */
 enum status fish_sheet_set(struct fish *fish, const struct fish_parameters *from,
                            const struct school_parameters *parameters);
+
+/* Whether the sheets of the fish are to be vortex rings: force pressure with span: finite. */
+int fish_is_strip(const struct fish_parameters *from);
+
+/* The least number of sheet points that resolves the smallest depth of a strip: 1 + 5 L/w; 0 for other sheets. */
+int fish_sheet_least(const struct fish_parameters *from);
 
 #endif

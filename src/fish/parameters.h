@@ -13,6 +13,7 @@ enum profile { PROFILE_JOUKOWSKI, PROFILE_UNIFORM, PROFILE_TABLE };
 enum section { SECTION_MEAN, SECTION_NODES };
 enum damping { DAMPING_STRAIN, DAMPING_CURVATURE };
 enum second_moment { SECOND_MOMENT_ELLIPSE, SECOND_MOMENT_PUBLISHED };
+enum span { SPAN_FINITE, SPAN_INFINITE };
 enum force { FORCE_REACTIVE, FORCE_PUBLISHED, FORCE_PRESSURE };
 enum drag_law { DRAG_QUADRATIC, DRAG_LINEAR_QUADRATIC };
 enum skin { SKIN_QUADRATIC, SKIN_LAMINAR, SKIN_BOUNDARY_LAYER };
@@ -135,6 +136,7 @@ struct fish_parameters {
     struct body_parameters body;
     struct wave_parameters wave;
     enum force force;     /* of the fluid on the body */
+    enum span span;       /* force: pressure: of the strip that the sheets are */
     double suction;       /* force: pressure: the part of the leading-edge suction that acts */
     double suction_limit; /* force: pressure: the largest leading-edge parameter that a nose holds; 0: none */
     struct drag_parameters drag;

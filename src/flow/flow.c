@@ -123,6 +123,7 @@ static enum status flow_fill(struct flow *flow) {
     TRY(array_doubles(&flow->opposite, flow->sheet.n, "the bound vortices"));
     view_sheets(flow);
     TRY(velocity_sum_create(&flow->velocity_sum));
+    if (school->finite) return ring_sources_create(&flow->rings, school, flow->n_points);
     if (school->wake_tolerance <= 0) return STATUS_OK;
     return wake_interpolation_create(&flow->interpolation, school, flow->points, flow->without_own);
 }
@@ -144,6 +145,7 @@ enum status flow_create(struct flow **flow, const struct school *school) {
 void flow_free(struct flow *flow) {
     if (!flow) return;
     wake_interpolation_free(flow->interpolation);
+    ring_sources_free(flow->rings, flow->school->n_fish);
     velocity_sum_free(flow->velocity_sum);
     for (int f = 0; f < flow->school->n_fish; f++) {
         if (flow->middles) wake_free(&flow->middles[f]);
@@ -221,6 +223,7 @@ static void place_nascent(struct flow *flow, const struct state *state, int f, c
     const double tail[2] = {y[fish->at.x + fish->n_nodes - 1], y[fish->at.y + fish->n_nodes - 1]};
     const double circulation = y[fish->at.circulation] - wake->shed_before, tau = flow->t - state->t;
     double position[2];
+    if (flow->rings) return;
     if (flow_has_free_sheets(flow)) {
         free_sheet_nascent_point(wake, flow->school->interval, tau, tail, 0.5, position);
         const struct direction tangent = fish_direction(fish, &fish->tail_tangent, y);
@@ -280,10 +283,26 @@ static enum status go_to(struct flow *flow, const struct state *state, double t)
     flow->has_released = 0;
     flow->version = version;
     flow->t = t;
-    if (flow_has_free_sheets(flow)) TRY(place_free_sheets(flow, state, is_new));
+    if (flow->rings) {
+        TRY(ring_sources_place_wakes(flow->rings, school, state, t - state->t, is_new));
+    } else if (flow_has_free_sheets(flow)) {
+        TRY(place_free_sheets(flow, state, is_new));
+    }
     if (flow->interpolated_version != version) flow->is_interpolated = 0;
     if (flow->is_interpolated) wake_interpolation_update(flow->interpolation, t);
     flow->has_sources = 1;
+    return STATUS_OK;
+}
+
+static enum status place_rings(struct flow *flow, const struct state *state, const double *y) {
+    for (int f = 0; f < flow->school->n_fish; f++) {
+        const int point = flow->points[f].first, sheet = flow->sheet_range[f].first;
+        const struct ring_body body = {.point = {flow->x + point, flow->y + point},
+                                       .sheet = {flow->sheet.x + sheet, flow->sheet.y + sheet},
+                                       .circulation = flow->sheet.circulation + sheet};
+        TRY(ring_sources_place(flow->rings, flow->school, state, f, flow->t - state->t, y, &body,
+                               &flow->nascent.circulation[f]));
+    }
     return STATUS_OK;
 }
 
@@ -305,5 +324,5 @@ enum status flow_place(struct flow *flow, const struct state *state, double t, c
     }
     flow->all_interpolated = 1;
     for (int f = 0; f < school->n_fish; f++) flow->all_interpolated &= flow->by_interpolation[f];
-    return STATUS_OK;
+    return flow->rings ? place_rings(flow, state, y) : STATUS_OK;
 }

@@ -21,6 +21,7 @@
 
 #include "base/status.h"
 #include "fish/fish.h"
+#include "flow/ring_sources.h"
 #include "state/state.h"
 #include "vortex/velocity_sum.h"
 #include "vortex/vortices.h"
@@ -84,6 +85,7 @@ struct flow {
     struct range *sheet_range; /* of each fish                                   (n_fish) */
     double *opposite;          /* circulations of the bound vortices with the other sign (sheet.n) */
 
+    struct flow_rings *rings;                 /* of a school with `finite`: ring_sources.h; else NULL */
     struct velocity_sum *velocity_sum;        /* where wakes or sheets are summed by the tree */
     struct wake_interpolation *interpolation; /* of the released vortices; NULL: they are never interpolated */
     int is_interpolated;                      /* whether it was built, for the wakes of this version: */
@@ -91,6 +93,15 @@ struct flow {
     unsigned char *by_interpolation; /* whether it serves the fish where it is now        (n_fish) */
     int all_interpolated;            /* whether it serves all of them */
     double *motion[4];               /* velocity and acceleration of the points           (n_points) */
+};
+
+/* Derivative of the velocity at the points of fish f with respect to the unknowns of fish g, column by column:
+ * columns are x (N_g), y (N_g), sheet (M_g), shed (1) of fish g. */
+struct influence_block {
+    int n_points, n_columns;
+    double *u, *v; /* (n_columns, n_points) */
+    double *div;   /* with rings: of div u; else, or where nobody needs it, NULL (n_columns, n_points) */
+    double *edge;  /* where a depth varies: of a; else NULL                   (2, n_columns, n_points) */
 };
 
 /* Fails with STATUS_MEMORY. flow_free accepts NULL. */

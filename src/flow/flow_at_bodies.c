@@ -4,11 +4,17 @@
 #include <stddef.h>
 
 #include "flow/flow_external.h"
+#include "flow/flow_rings.h"
 #include "vortex/kernel.h"
 
 struct flow_at_body flow_at_body(const struct flow *flow, int f) {
     const int first = flow->points[f].first;
     struct flow_at_body at = {.u = flow->u + first, .v = flow->v + first};
+    if (flow->rings) {
+        at.div = flow->rings->div + first;
+        at.edge = flow->rings->edge + first;
+        at.edge_stride = flow->n_points;
+    }
     flow_external_acceleration(flow->school, flow->t, at.acceleration);
     return at;
 }
@@ -173,6 +179,10 @@ static void evaluate_chunk(const struct flow *flow, const struct chunk *chunk, c
         at.v[p] += v;
     }
     for (int p = 0; at.u_x && p < at.n; p++) at.u_y[p] += school->shear;
+    if (flow->rings) {
+        flow_rings_at_chunk(flow, chunk, at.u_x != NULL);
+        return;
+    }
     induce_wakes(flow, chunk, &at);
     induce_sheets(flow, chunk, all);
     if (flow_has_free_sheets(flow)) induce_free_sheet(flow, chunk, all);
@@ -209,6 +219,7 @@ static enum status sum_many(struct flow *flow, int threads, const struct induced
 
 // interactions of an evaluation that depend on the unknowns
 static double work_of(const struct flow *flow) {
+    if (flow->rings) return flow_rings_work(flow);
     const int n_sources = flow->sheet.n + flow->nascent.n + (flow->has_released ? flow->released.n : 0);
     double work = (double)flow->n_points * n_sources;
     for (int f = 0; flow_has_free_sheets(flow) && f < flow->school->n_fish; f++) {
@@ -222,7 +233,8 @@ static void evaluate(struct flow *flow, int with_gradient) {
     const struct induced all = targets(flow, with_gradient);
     const int threads = parallel_threads(flow->school->threads, flow->n_chunks, work_of(flow), PARALLEL_INTERACTIONS);
     vortices_zero(&all);
-    if (sum_many(flow, threads, &all) != STATUS_OK) {
+    if (flow->rings) flow_rings_zero(flow, with_gradient);
+    if (!flow->rings && sum_many(flow, threads, &all) != STATUS_OK) {
         // without memory for a tree there is still the direct sum
         for (int c = 0; c < flow->n_classes; c++) flow->class[c].sheet_by_tree = flow->class[c].images_by_many = 0;
         vortices_zero(&all);
@@ -233,7 +245,7 @@ static void evaluate(struct flow *flow, int with_gradient) {
 
 static enum status sum(struct flow *flow, const struct state *state, double t, const double *y, int with_gradient) {
     TRY(flow_place(flow, state, t, y));
-    if (!flow->all_interpolated) TRY(flow_place_released(flow, state));
+    if (!flow->all_interpolated && !flow->rings) TRY(flow_place_released(flow, state));
     evaluate(flow, with_gradient);
     return STATUS_OK;
 }
@@ -251,6 +263,10 @@ enum status flow_images(struct flow *flow, const struct state *state) {
     const struct induced all = {
         .n = flow->n_points, .x = flow->x, .y = flow->y, .u = flow->image_u, .v = flow->image_v};
     TRY(flow_place(flow, state, state->t, state->y));
+    if (flow->rings) {
+        flow_rings_images(flow);
+        return STATUS_OK;
+    }
     TRY(flow_place_released(flow, state));
     vortices_zero(&all);
     for (int c = 0; c < flow->n_classes; c++) {

@@ -25,7 +25,10 @@ enum status flow_images(struct flow *flow, const struct state *state);
 
 /* What a body feels of the flow as it was last summed. */
 struct flow_at_body {
-    const double *u, *v;    /* velocity at its points, m s-1 (flow_n_points) */
+    const double *u, *v; /* velocity at its points, m s-1 (flow_n_points) */
+    const double *div;   /* its divergence in the plane, s-1 (flow_n_points); NULL without rings */
+    const double *edge;  /* a of the edge force: x, then y edge_stride later, m-1 s-1; NULL without rings */
+    int edge_stride;
     double acceleration[2]; /* of the external flow, m s-2 */
 };
 struct flow_at_body flow_at_body(const struct flow *flow, int f);

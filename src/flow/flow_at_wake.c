@@ -6,6 +6,7 @@
 
 #include "flow/flow_at_markers.h"
 #include "flow/flow_external.h"
+#include "flow/flow_rings.h"
 #include "vortex/pairwise.h"
 
 // the external flow, the nascent vortices and what is not summed of the sheets at the free vortices
@@ -74,6 +75,12 @@ static enum status flow_at_vortices(struct flow *flow) {
 
 enum status flow_at_wake(struct flow *flow, const struct state *state) {
     TRY(flow_place(flow, state, state->t, state->y));
+    if (flow->rings) {
+        int n = 0;
+        for (int f = 0; f < flow->school->n_fish; f++) n += state->wake[f].n_vortex;
+        TRY(reserve_at_wake(flow, n));
+        return flow_rings_at_markers(flow, state);
+    }
     if (flow_has_free_sheets(flow)) {
         TRY(flow_at_markers_place(flow, state));
         TRY(reserve_at_wake(flow, flow->n_markers));

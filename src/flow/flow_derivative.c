@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "flow/flow_ring_derivative.h"
 #include "vortex/kernel.h"
 
 int flow_column(const struct fish *other, int c) {
@@ -238,13 +239,23 @@ static void derive_sheet_images(const struct target *at) {
     }
 }
 
+static void clear(const struct influence_block *block) {
+    const size_t size = (size_t)block->n_points * (size_t)block->n_columns * sizeof *block->u;
+    memset(block->u, 0, size);
+    memset(block->v, 0, size);
+    if (block->div) memset(block->div, 0, size);
+    if (block->edge) memset(block->edge, 0, 2 * size);
+}
+
 // all that moves with fish g, at the points of fish f that feel it
 static void derive_sources(const struct target *at) {
     const struct flow *flow = at->flow;
     const struct fish *fish = &flow->school->fish[at->f];
-    const size_t size = (size_t)at->block->n_points * (size_t)at->block->n_columns;
-    memset(at->block->u, 0, size * sizeof *at->block->u);
-    memset(at->block->v, 0, size * sizeof *at->block->v);
+    clear(at->block);
+    if (flow->rings) {
+        flow_ring_derivative(flow, at->f, at->g, at->with_places, 0, at->block);
+        return;
+    }
     derive_nascent(at);
     derive_nascent_images(at);
     derive_sheet_images(at);
@@ -270,6 +281,10 @@ void flow_derivative(const struct flow *flow, int f, int g, struct influence_blo
     derive_sources(&(struct target){flow, f, g, 1, block});
     if (f != g) return;
     // the points of a fish move with its own nodes, in the field of all sources
+    if (flow->rings) {
+        flow_ring_motion(flow, f, block);
+        return;
+    }
     for (int p = 0; p < block->n_points; p++) {
         const int at = flow->points[f].first + p;
         const struct stencil point = point_stencil(fish, p);
@@ -294,8 +309,11 @@ void flow_influence(const struct flow *flow, int f, int g, struct influence_bloc
 void flow_nascent_influence(const struct flow *flow, int f, struct influence_block *block) {
     block->n_points = flow->points[f].n;
     block->n_columns = 1;
-    memset(block->u, 0, (size_t)block->n_points * sizeof *block->u);
-    memset(block->v, 0, (size_t)block->n_points * sizeof *block->v);
+    clear(block);
+    if (flow->rings) {
+        flow_ring_derivative(flow, f, f, 0, 1, block);
+        return;
+    }
     const struct target at = {flow, f, f, 0, block};
     derive_nascent(&at);
     derive_nascent_images(&at);

@@ -5,13 +5,6 @@
 
 #include "flow/flow.h"
 
-/* Derivative of the velocity at the points of fish f with respect to the unknowns of fish g, column by column:
- * columns are x (N_g), y (N_g), sheet (M_g), shed (1) of fish g. */
-struct influence_block {
-    int n_points, n_columns;
-    double *u, *v; /* (n_columns, n_points) */
-};
-
 /* Derivative of the equations of fish f that feel the fluid with respect to the same unknowns of fish g, column by
  * column: row r is the equation at.ax + r of fish f, so rows are ax, ay, gamma, circulation. */
 struct coupling_block {

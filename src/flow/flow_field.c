@@ -5,6 +5,7 @@
 #include <stddef.h>
 
 #include "flow/flow_external.h"
+#include "flow/flow_rings.h"
 
 // the external flow, the nascent vortices and what is not summed by the tree, as another body would see them, at some
 // points
@@ -31,8 +32,22 @@ static void leave_out_solid(const struct flow *flow, const struct induced *at) {
 enum status flow_field(struct flow *flow, const struct state *state, const struct induced *all) {
     static const double tolerance = 1e-6;
     TRY(flow_place(flow, state, state->t, state->y));
-    TRY(flow_place_released(flow, state));
     vortices_zero(all);
+    if (flow->rings) {
+        const int n_parts = parallel_n_chunks(all->n);
+#pragma omp parallel for num_threads(flow->school->threads) schedule(static)
+        for (int chunk = 0; chunk < n_parts; chunk++) {
+            const struct induced at = vortices_targets(all, parallel_chunk(chunk, all->n));
+            for (int i = 0; i < at.n; i++) {
+                flow_external(flow->school, flow->t, at.y[i], &at.u[i], &at.v[i]);
+                at.u_y[i] = flow->school->shear;
+            }
+            flow_rings_at(flow, &at);
+        }
+        leave_out_solid(flow, all);
+        return STATUS_OK;
+    }
+    TRY(flow_place_released(flow, state));
     const struct vortices *const many[2] = {&flow->released, &flow->sheet};
     const int n_chunks = parallel_n_chunks(all->n);
     const int threads = parallel_threads(flow->school->threads, n_chunks, (double)all->n * (many[0]->n + many[1]->n),

@@ -98,6 +98,33 @@ static void convect(struct pressure *p, const struct flow_at_body *flow, const d
     }
 }
 
+// the circulation between the nose and control point c, of a sheet with these circulations
+static double circulation_before(const struct fish *fish, int c, const double *circulation) {
+    const double *const weight = fish->integrals->circulation + (long)c * fish->n_sheet;
+    double sum = 0;
+    for (int j = 0; j < fish->n_sheet; j++) sum += weight[j] * circulation[j];
+    return sum;
+}
+
+// with rings: the spanwise flow, and the force along the side edges (model.md, section 18)
+static void spread_out(struct pressure *p, const struct flow_at_body *flow) {
+    const struct fish *fish = p->fish;
+    const int n = fish->n_nodes;
+    for (int c = 0; flow->div && c < fish->n_control; c++) {
+        struct pressure_point *const point = &p->point[c];
+        const double *const weight = fish->control_point[c].weight;
+        const double length = point->body.length * fish->control_interval[c];
+        const double widening = fish->control_widening[c] * fish->control_interval[c];
+        point->before = fish->control_density[c] * circulation_before(fish, c, p->circulation);
+        point->divergence = flow->div[c];
+        for (int i = 0; i < 2; i++) {
+            point->edge[i] = widening * flow->edge[i * flow->edge_stride + c];
+            const double force = point->before * (point->edge[i] - point->divergence * length * point->body.n[i]);
+            for (int k = 0; k < n; k++) p->force[i * n + k] += weight[k] * force;
+        }
+    }
+}
+
 // f = full bound/(full^4 + bound^4)^(1/4), from the ratio of the smaller to the larger
 struct suction_law pressure_suction_law(double full, double bound) {
     const double least = fmin(full, bound), most = fmax(full, bound);
@@ -135,6 +162,7 @@ void pressure_update(struct pressure *p, const struct flow_at_body *flow, const 
     add_product(p, y + fish->at.x, p->momentum);
     add_product(p, y + fish->at.vx, p->force);
     convect(p, flow, y);
+    spread_out(p, flow);
     suck(p, y);
 }
 
@@ -259,6 +287,21 @@ static void convection_by_places(const struct pressure *p, struct coupling_block
     }
 }
 
+// the spanwise flow by the places of the nodes: E3 dx_c is linear in them
+static void spreading_by_places(const struct pressure *p, struct coupling_block *rows) {
+    const struct fish *fish = p->fish;
+    const int n = fish->n_nodes;
+    for (int c = 0; fish->strip_depth > 0 && c < fish->n_control; c++) {
+        const struct pressure_point *const point = &p->point[c];
+        const double *const slope = fish->control_tangent[c].to.weight;
+        const double size = point->before * point->divergence * fish->control_interval[c];
+        for (int m = 0; m < n; m++) {
+            spread(p, c, 0, size * slope[m], rows->value + (long)m * rows->n_rows);
+            spread(p, c, -size * slope[m], 0, rows->value + (long)(n + m) * rows->n_rows);
+        }
+    }
+}
+
 // suction by the strength at the nose, by its direction, and by the turn of tau's, at control point 0
 static void suction_jacobian(const struct pressure *p, struct coupling_block *rows) {
     const struct fish *fish = p->fish;
@@ -281,6 +324,7 @@ void pressure_own_jacobian(const struct pressure *p, const double *y, struct cou
     const struct fish *fish = p->fish;
     const int n = fish->n_nodes;
     convection_by_places(p, rows);
+    spreading_by_places(p, rows);
     suction_jacobian(p, rows);
     for (int j = 0; j < fish->n_sheet; j++) {
         double *const column = rows->value + (long)(2 * n + j) * rows->n_rows;
@@ -289,11 +333,36 @@ void pressure_own_jacobian(const struct pressure *p, const double *y, struct cou
             const double size = fish->control_density[c] * fish->integrals->strength[(long)c * fish->n_sheet + j] *
                                 fish->sheet_weight[j] * along(point);
             spread(p, c, size * point->body.n[0], size * point->body.n[1], column);
+            if (!(fish->strip_depth > 0)) continue;
+            const double before = fish->control_density[c] * fish->sheet_weight[j] *
+                                  fish->integrals->circulation[(long)c * fish->n_sheet + j];
+            const double across = before * point->divergence * point->body.length * fish->control_interval[c];
+            spread(p, c, across * point->body.n[0] - before * point->edge[0],
+                   across * point->body.n[1] - before * point->edge[1], column);
         }
         for (int k = 0; k < n; k++) {
             column[k] += by_strength(fish, k, j, y + fish->at.vy) / fish->mass[k];
             column[n + k] -= by_strength(fish, k, j, y + fish->at.vx) / fish->mass[k];
         }
+    }
+}
+
+// the spanwise flow and the force along the side edges by column m of the flow
+static void spreading_by_flow(const struct pressure *p, const struct influence_block *block, long m, double *column) {
+    const struct fish *fish = p->fish;
+    const double *const div = block->div + m * block->n_points;
+    const double *const edge = block->edge ? block->edge + m * block->n_points : NULL;
+    const long other = (long)block->n_columns * block->n_points;
+    for (int c = 0; c < fish->n_control; c++) {
+        const struct pressure_point *const point = &p->point[c];
+        const double across = point->before * div[c] * point->body.length * fish->control_interval[c];
+        double force[2] = {across * point->body.n[0], across * point->body.n[1]};
+        if (fish->depth_varies && edge) {
+            const double widening = point->before * fish->control_widening[c] * fish->control_interval[c];
+            force[0] -= widening * edge[c];
+            force[1] -= widening * edge[other + c];
+        }
+        spread(p, c, force[0], force[1], column);
     }
 }
 
@@ -308,6 +377,7 @@ void pressure_flow_jacobian(const struct pressure *p, const struct influence_blo
             const double size = p->point[c].strength * (body->t[0] * u[c] + body->t[1] * v[c]);
             spread(p, c, size * body->n[0], size * body->n[1], rows->value + m * rows->n_rows);
         }
+        if (block->div) spreading_by_flow(p, block, m, rows->value + m * rows->n_rows);
         // suction: tau
         const double by_slip = p->by_slip * (first->t[0] * u[0] + first->t[1] * v[0]) / fish->mass[0];
         for (int i = 0; i < 2; i++) rows->value[m * rows->n_rows + i * fish->n_nodes] += by_slip * p->nose.t[i];
@@ -330,6 +400,11 @@ static double kink_of(const struct fish *fish, const double *y) {
     return fish->sheet_weight[last - 1] * strength[last - 1] - 2 * fish->sheet_weight[last] * strength[last];
 }
 
+// the depth of a strip at control point c
+static double depth_of(const struct fish *fish, int c) {
+    return 4 * sqrt(2 * fish->point_half[c]);
+}
+
 double pressure_jump(const struct pressure *p, int c, const double *y, const double *yp) {
     const struct fish *fish = p->fish;
     const double *const circulation = fish->integrals->circulation + (long)c * fish->n_sheet;
@@ -341,7 +416,11 @@ double pressure_jump(const struct pressure *p, int c, const double *y, const dou
         rate += circulation[j] * fish->sheet_weight[j] * yp[fish->at.gamma + j];
     }
     const double around = point->circulation + fish->integrals->kink_strength[c] * kink_of(fish, y);
-    return fish->fluid_density * (rate + around / length * along(point));
+    const double jump = rate + around / length * along(point);
+    if (!(fish->strip_depth > 0)) return fish->fluid_density * jump;
+    const double before =
+        point->before / fish->control_density[c] + fish->integrals->kink_circulation[c] * kink_of(fish, y);
+    return fish->fluid_density * fish->strip_depth / depth_of(fish, c) * (jump + before * point->divergence);
 }
 
 void pressure_of_edge(const struct pressure *p, int k, const double *y, const double *yp, double force[2]) {
@@ -352,7 +431,8 @@ void pressure_of_edge(const struct pressure *p, int k, const double *y, const do
         if ((int)u != k) continue;
         const struct direction *const body = &p->point[c].body;
         const double length = body->length * fish->control_interval[c];
-        const double size = -fish->depth[k] * pressure_jump(p, c, y, yp) * length;
+        const double depth = fish->strip_depth > 0 ? depth_of(fish, c) : fish->depth[k];
+        const double size = -depth * pressure_jump(p, c, y, yp) * length;
         for (int i = 0; i < 2; i++) force[i] += size * body->n[i];
     }
 }

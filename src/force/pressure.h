@@ -16,10 +16,12 @@
 #include "flow/flow_derivative.h"
 
 /* A control point: the circulation of the interval around it, m2 s-1; that times density and depth, kg s-1; the
- * velocity of the fluid relative to the body, m s-1; the line of the body. */
+ * velocity of the fluid relative to the body, m s-1; the line of the body. With rings: density times depth times the
+ * circulation before it, kg s-1; div u, s-1; a of the edge force times b db/du du, m2 s-1. */
 struct pressure_point {
     double circulation, strength, slip[2];
     struct direction body;
+    double before, divergence, edge[2];
 };
 
 /* Of one fish, as last updated. All pairs: x of all nodes, then y. */

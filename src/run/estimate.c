@@ -62,6 +62,7 @@ static enum status make_up_wake(const struct school *school, struct state *state
         wake->x[i] = x[last] + behind * along[0] - beside * along[1];
         wake->y[i] = y[last] + behind * along[1] + beside * along[0];
         wake->u[i] = wake->v[i] = wake->u_before[i] = wake->v_before[i] = 0;
+        wake->rate[i] = wake->rate_before[i] = 0;
         wake->circulation[i] = 0.01 * fish->length * fish->length * rate * cos(phase);
         wake->birth[i] = state->t - age;
     }

@@ -2,10 +2,12 @@
 #include "run/event.h"
 
 #include <math.h>
+#include <stddef.h>
 
 #include "contact/self_crossing.h"
 #include "flow/flow_at_bodies.h"
 #include "flow/flow_at_wake.h"
+#include "flow/flow_rings.h"
 #include "force/drag.h"
 #include "school/diagnostics_energy.h"
 #include "school/diagnostics_history.h"
@@ -116,7 +118,8 @@ static enum status take_velocities(struct state *state, struct residual *residua
         }
         if (state->wake[f].n_vortex > 0) {
             const int n = n_new == ALL ? state->wake[f].n_vortex : n_new;
-            wake_set_velocity(&state->wake[f], flow->wake_u + first, flow->wake_v + first, n);
+            const double *const rate = flow->rings ? flow->rings->wake_rate + first : NULL;
+            wake_set_velocity(&state->wake[f], flow->wake_u + first, flow->wake_v + first, rate, n);
         }
     }
     return STATUS_OK;

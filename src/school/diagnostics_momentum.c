@@ -9,6 +9,7 @@
 #include "fish/fish_prescribed.h"
 #include "flow/flow_at_bodies.h"
 #include "flow/flow_external.h"
+#include "flow/flow_rings.h"
 #include "force/fluid_force.h"
 #include "school/diagnostics_forces.h"
 #include "state/impulse.h"
@@ -193,10 +194,29 @@ static void add_force_of(const double *u, const double *v, int n, const double *
     }
 }
 
+// of velocities, and what their divergence does to legs
+static void add_force_on_rings(const double *u, const double *v, const double *div, const struct rings *rings,
+                               double factor, double force[3]) {
+    add_force_of(u, v, rings->n, rings->x, rings->y, rings->q, factor, force);
+    for (int i = 0; i < rings->n; i++) {
+        add_at(force, rings->x[i], rings->y[i], factor * div[i] * rings->dy[i], -factor * div[i] * rings->dx[i]);
+    }
+}
+
 // of the images at the event, on the sheet and the wake of a fish
 static void force_of_images(const struct flow *flow, int f, double force[3]) {
     const struct school *const school = flow->school;
     const double factor = school->density * impulse_depth(&school->fish[f]);
+    if (flow->rings) {
+        const struct fish_rings *const rings = &flow->rings->fish[f];
+        const int point = flow->points[f].first, marker = flow->wake_range[f].first;
+        memset(force, 0, 3 * sizeof *force);
+        add_force_on_rings(flow->image_u + point, flow->image_v + point, flow->rings->image_div + point, &rings->body,
+                           factor, force);
+        add_force_on_rings(flow->wake_image_u + marker, flow->wake_image_v + marker,
+                           flow->rings->wake_image_div + marker, &rings->markers, factor, force);
+        return;
+    }
     const struct range body = flow->body_range[f], wake = flow->wake_range[f];
     const struct vortices *const all = &flow->convecting;
     const int control = flow->points[f].first;
@@ -213,9 +233,25 @@ static int any_has_reaction(const struct school *school) {
     return any;
 }
 
+// book what legs of different lengths s take from the momentum of a fish, by trapezoids
+static void book_legs(const struct flow *flow, struct state *state, int f) {
+    struct momentum_balance *const momentum = &state->momentum[f];
+    double rate[3];
+    flow_rings_leg_rate(flow, f, rate);
+    // as sums of circulation times y, -x and -|x|^2/2
+    const double now[3] = {-rate[1], rate[0], -2 * rate[2]};
+    for (int i = 0; i < 3; i++) {
+        if (state->event > 0) momentum->lost[i] += flow->school->interval / 2 * (momentum->legs[i] + now[i]);
+        momentum->legs[i] = now[i];
+    }
+}
+
 enum status diagnostics_momentum_event(struct residual *residual, struct state *state) {
     const struct school *const school = residual->school;
     struct flow *const flow = residual->flow;
+    for (int f = 0; f < school->n_fish && flow->rings; f++) {
+        if (diagnostics_has_reaction(school, &school->fish[f])) book_legs(flow, state, f);
+    }
     if (school->walls.n == 0 || !(school->density > 0) || !any_has_reaction(school)) return STATUS_OK;
     TRY(flow_images(flow, state));
     for (int f = 0; f < school->n_fish; f++) {
@@ -290,6 +326,7 @@ static void fill_fish(struct residual *residual, const struct state *state, int 
 
 // fish of several depths push water of several depths
 static int have_one_depth(const struct school *school) {
+    if (school->finite) return 1;  // what rings of two depths do to each other is equal and opposite
     const double depth = impulse_depth(&school->fish[0]);
     for (int f = 1; f < school->n_fish; f++) {
         if (fabs(impulse_depth(&school->fish[f]) - depth) > 1e-12 * depth) return 0;

@@ -16,12 +16,19 @@
 // blocks of any pair of fish for every thread, and all unknowns once
 static enum status allocate_scratch(struct residual *residual, int most_points, int most_columns, int most_rows) {
     const int n_threads = residual->school->threads;
+    int has_edges = 0;
+    for (int f = 0; f < residual->school->n_fish; f++) has_edges |= residual->school->fish[f].depth_varies;
     residual->jacobian_scratch = calloc((size_t)n_threads, sizeof *residual->jacobian_scratch);
     if (!residual->jacobian_scratch) return status_fail(STATUS_MEMORY, "out of memory: %d threads", n_threads);
     for (int i = 0; i < n_threads; i++) {
         struct jacobian_scratch *const scratch = &residual->jacobian_scratch[i];
         TRY(array_doubles(&scratch->block.u, most_points * most_columns, "a block of the Jacobian"));
         TRY(array_doubles(&scratch->block.v, most_points * most_columns, "a block of the Jacobian"));
+        if (residual->school->finite) {
+            TRY(array_doubles(&scratch->block.div, most_points * most_columns, "a block of the Jacobian"));
+            if (has_edges)
+                TRY(array_doubles(&scratch->block.edge, 2 * most_points * most_columns, "a block of the Jacobian"));
+        }
         TRY(array_doubles(&scratch->rows.value, most_rows * most_columns, "a block of the Jacobian"));
     }
     return array_doubles(&residual->scratch, residual->school->n_unknowns, "the unknowns");
@@ -89,6 +96,8 @@ void residual_free(struct residual *residual) {
     for (int i = 0; residual->jacobian_scratch && i < residual->school->threads; i++) {
         free(residual->jacobian_scratch[i].block.u);
         free(residual->jacobian_scratch[i].block.v);
+        free(residual->jacobian_scratch[i].block.div);
+        free(residual->jacobian_scratch[i].block.edge);
         free(residual->jacobian_scratch[i].rows.value);
     }
     free(residual->jacobian_scratch);

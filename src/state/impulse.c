@@ -30,8 +30,32 @@ static double age_of(const struct wake *wake, int i, double t) {
     return t - wake->birth[i + wake->has_markers];
 }
 
+// add the stretches of a free sheet of rings tau after the event at time t: with the labels that its markers count
+// with, or the part of them that decays within the interval
+static void add_rings(struct impulse_moments *sum, const struct wake *wake, const struct school *school, double t,
+                      double tau, int decaying, double factor) {
+    const double interval = school->interval;
+    double older[2] = {0}, before = 0;
+    for (int i = 0; i < wake->n_vortex; i++) {
+        const double age = t - wake->birth[i];
+        const double part = decaying ? wake_strength(school, age) - wake_strength(school, age + interval)
+                                     : wake_strength_within(school, age, tau / interval);
+        const double label = factor * part * wake_label(wake, i, interval, tau);
+        double newer[2];
+        wake_marker(wake, i, interval, tau, newer);
+        if (i > 0) impulse_add_stretch(sum, label - before, older, newer);
+        before = label;
+        older[0] = newer[0];
+        older[1] = newer[1];
+    }
+}
+
 struct impulse_moments impulse_of_wake(const struct wake *wake, const struct school *school, double t, double tau) {
     struct impulse_moments sum = {0};
+    if (school->finite) {
+        add_rings(&sum, wake, school, t, tau, 0, 1);
+        return sum;
+    }
     for (int i = 0; i < wake_n_sources(wake); i++) {
         const double strength = wake_strength_within(school, age_of(wake, i, t), tau / school->interval);
         add_source(&sum, wake, i, strength, school->interval, tau);
@@ -46,6 +70,8 @@ void impulse_of(const struct impulse_moments *sum, double factor, double impulse
 }
 
 double impulse_depth(const struct fish *fish) {
+    // the unknowns of a strip are circulations times w(s)/w_L
+    if (fish->strip_depth > 0) return fish->strip_depth;
     for (int k = 1; k < fish->n_edges; k++) {
         if (fabs(fish->depth[k] - fish->depth[0]) > 1e-12 * fish->depth[0]) return NAN;
     }
@@ -73,7 +99,11 @@ void impulse_fade(const struct school *school, struct state *state, int f) {
     const struct wake *const wake = &state->wake[f];
     const struct fish *const fish = &school->fish[f];
     struct impulse_moments lost = {0};
-    for (int i = 0; i < wake_n_sources(wake); i++) {
+    if (school->finite) {
+        add_rings(&lost, wake, school, state->t, 0, 1, 0.5);
+        add_rings(&lost, wake, school, state->t, school->interval, 1, 0.5);
+    }
+    for (int i = 0; i < wake_n_sources(wake) && !school->finite; i++) {
         const double age = age_of(wake, i, state->t);
         const double part = wake_strength(school, age) - wake_strength(school, age + school->interval);
         // sources are in the order of their ages
@@ -91,7 +121,8 @@ void impulse_fade(const struct school *school, struct state *state, int f) {
 void impulse_remove(const struct school *school, struct state *state, int f) {
     const struct wake *const wake = &state->wake[f];
     const struct fish *const fish = &school->fish[f];
-    const int n_old = wake_n_old(wake, school, state->t);
+    // labels of rings that old have decayed, at both ends of a stretch
+    const int n_old = school->finite ? 0 : wake_n_old(wake, school, state->t);
     struct impulse_moments lost = {0};
     for (int i = 0; i < n_old; i++) {
         add_source(&lost, wake, i, wake_strength(school, age_of(wake, i, state->t)), school->interval, 0);

@@ -48,6 +48,7 @@ struct momentum_balance {
     double external[3];    /* impulse of the external forces since the start, N s, N m s */
     double force[2][3];    /* these forces at the last two steps, whose times the energy balance has, N, N m */
     double images[3];      /* those of images in walls at the last event, N, N m */
+    double legs[3];        /* what the lengths s of legs cost per time at the last event, as lost, per s */
     double first_body[3];  /* momentum of the body at the start, N s, N m s, */
     double first_fluid[3]; /* impulse of its vortices then, */
     double first_given[3]; /* and momentum of its prescribed nodes, with that of the fluid that moves with them */

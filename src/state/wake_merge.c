@@ -27,6 +27,7 @@ struct body {
 struct merged {
     double x[2], u[2], u_before[2];
     double circulation;   /* or label */
+    double rate[2];       /* of the label, now and before */
     double second_moment; /* sum |Gamma| d^2, of before and after, m4 s-1 */
     double span;          /* largest d, m */
 };
@@ -106,6 +107,8 @@ static struct merged merge_markers(const struct wake *wake, const int at[4]) {
     struct merged pair =
         mean_of(wake, 4, at, (const double[]){-half / sum, (g[0] + g[1]) / sum, (g[1] + g[2]) / sum, -half / sum});
     pair.circulation = wake->circulation[at[1]] + half;
+    pair.rate[0] = (wake->rate[at[1]] + wake->rate[at[2]]) / 2;
+    pair.rate[1] = (wake->rate_before[at[1]] + wake->rate_before[at[2]]) / 2;
     for (int k = 0; k < 3; k++) {
         add_source(&pair, g[k], (wake->x[at[k]] + wake->x[at[k + 1]]) / 2, (wake->y[at[k]] + wake->y[at[k + 1]]) / 2);
     }
@@ -118,8 +121,8 @@ static struct merged merge_markers(const struct wake *wake, const int at[4]) {
 
 // put vortex `from` of a wake to place `to`
 static void move(struct wake *wake, int from, int to) {
-    double *const values[] = {wake->x,        wake->y,        wake->u,           wake->v,
-                              wake->u_before, wake->v_before, wake->circulation, wake->birth};
+    double *const values[] = {wake->x,        wake->y,           wake->u,     wake->v,    wake->u_before,
+                              wake->v_before, wake->circulation, wake->birth, wake->rate, wake->rate_before};
     for (size_t k = 0; k < sizeof values / sizeof *values; k++) values[k][to] = values[k][from];
 }
 
@@ -132,6 +135,8 @@ static void put(struct wake *wake, const struct merged *pair, int newer, int to)
     wake->u_before[to] = pair->u_before[0];
     wake->v_before[to] = pair->u_before[1];
     wake->circulation[to] = pair->circulation;
+    wake->rate[to] = pair->rate[0];
+    wake->rate_before[to] = pair->rate[1];
     wake->birth[to] = wake->birth[newer];
 }
 

@@ -69,6 +69,12 @@ enum status steady_static_refuse(const struct school *school) {
                            "no fish beats, and a gust does not rest: set fluid.gust.amplitude to 0, or give a "
                            "fish the frequency of the gust");
     }
+    if (school->finite) {
+        return status_fail(
+            STATUS_CASE,
+            "a steady wake of finite span has legs without an end, and the equilibrium has none: run the "
+            "case in time, or set pressure.span to infinite");
+    }
     if (school->removed == REMOVED_DROPPED) {
         return status_fail(STATUS_CASE,
                            "what is removed of a wake is forgotten, so that a body with lift sheds for ever: set "

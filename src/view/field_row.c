@@ -161,8 +161,14 @@ static enum status read_wake(const struct reading *reading, long row, int f, con
     memcpy(wake->circulation, reading->buffer, (size_t)n * sizeof *wake->circulation);
     TRY(read_values(reading, "wake_birth", row, f, "vortex", n, false));
     memcpy(wake->birth, reading->buffer, (size_t)n * sizeof *wake->birth);
-    for (int i = 0; i < n; i++) wake->u[i] = wake->v[i] = wake->u_before[i] = wake->v_before[i] = 0;
+    for (int i = 0; i < n; i++) {
+        wake->u[i] = wake->v[i] = wake->u_before[i] = wake->v_before[i] = wake->rate[i] = wake->rate_before[i] = 0;
+    }
     if (wake->has_markers) label_markers(wake);
+    // the newest label is all that has been shed: legs of rings have whole labels
+    const double newest =
+        to->school->finite && n > 0 ? to->state->y[to->school->fish[f].at.circulation] - wake->circulation[n - 1] : 0;
+    for (int i = 0; i < n; i++) wake->circulation[i] += newest;
     wake->version++;
     return STATUS_OK;
 }

@@ -16,11 +16,7 @@ const double free_sheet_xi[FREE_SHEET_PANEL] = {0.004820780989426014, 0.10890625
 const double free_sheet_part[FREE_SHEET_PANEL] = {0.024152203412833233, 0.215214082271785, 0.4369310725907612,
                                                   0.32370264172462043};
 
-enum {
-    GRADED = 1,  // stretches with graded points, the newest ones
-    PAIRED = 4   // stretches up to this one have two points, older ones their middle
-};
-static const double pair_xi[2] = {0.21132486540518712, 0.78867513459481288};  // Gauss-Legendre
+const double free_sheet_pair_xi[2] = {0.21132486540518712, 0.78867513459481288};  // Gauss-Legendre
 
 void free_sheet_free(struct free_sheet *sheet) {
     double *const owned[] = {sheet->xi, sheet->part, sheet->smoothing[0], sheet->smoothing[1],
@@ -168,19 +164,20 @@ enum status free_sheet_build(struct free_sheet *sheet, const struct fish *fish, 
     sheet->n = 0;
     const double interval = school->interval;
     struct ends at[2] = {{.stretch = -2}, {.stretch = -2}};
-    for (int i = n_stretches - PAIRED - 1; i >= 0; i--) {
+    for (int i = n_stretches - FREE_SHEET_PAIRED - 1; i >= 0; i--) {
         for (int end = 0; end < 2; end++) find_ends(&at[end], markers, i, interval, end * interval);
         if (is_far_behind(fish, markers, interval, at)) continue;
         add(sheet, fish, markers, interval, at, 0.5, 1);
         if (is_untapered(sheet, fish, sheet->n - 1)) sheet->n--;
     }
     sheet->n_tapered = sheet->n;
-    for (int age = 1; age <= PAIRED && age <= n_stretches; age++) {
+    for (int age = 1; age <= FREE_SHEET_PAIRED && age <= n_stretches; age++) {
         for (int end = 0; end < 2; end++) find_ends(&at[end], markers, n_stretches - age, interval, end * interval);
-        for (int k = 0; age <= GRADED && k < FREE_SHEET_PANEL; k++) {
+        for (int k = 0; age <= FREE_SHEET_GRADED && k < FREE_SHEET_PANEL; k++) {
             add(sheet, fish, markers, interval, at, free_sheet_xi[k], free_sheet_part[k]);
         }
-        for (int k = 0; age > GRADED && k < 2; k++) add(sheet, fish, markers, interval, at, pair_xi[k], 0.5);
+        for (int k = 0; age > FREE_SHEET_GRADED && k < 2; k++)
+            add(sheet, fish, markers, interval, at, free_sheet_pair_xi[k], 0.5);
         add(sheet, fish, markers, interval, at, 0.5, -1);
     }
     sheet->n += FREE_SHEET_PANEL + 1;

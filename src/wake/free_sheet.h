@@ -24,6 +24,11 @@
 enum { FREE_SHEET_PANEL = 4 };
 extern const double free_sheet_xi[FREE_SHEET_PANEL], free_sheet_part[FREE_SHEET_PANEL];
 
+/* Stretches with such points, the newest ones; stretches up to an age, of which the own body sees two points with half
+ * of the circulation each, at these parts of the way; of older ones it sees the middle. */
+enum { FREE_SHEET_GRADED = 1, FREE_SHEET_PAIRED = 4 };
+extern const double free_sheet_pair_xi[2];
+
 /* What the own control points see in place of what everybody sees: to be added to the middles of all stretches. First
  * the middles of old stretches, with their tapered smoothing in place of that of the wake; then points in place of the
  * middles of the newest stretches. The last FREE_SHEET_PANEL + 1 are the nascent stretch in place of its middle; the

@@ -7,11 +7,11 @@
 
 #include "base/ramp.h"
 
-enum { N_ARRAYS = 8 };
+enum { N_ARRAYS = 10 };
 
 static void list_arrays(struct wake *wake, double **array[N_ARRAYS]) {
-    double **const all[N_ARRAYS] = {&wake->x,        &wake->y,        &wake->u,           &wake->v,
-                                    &wake->u_before, &wake->v_before, &wake->circulation, &wake->birth};
+    double **const all[N_ARRAYS] = {&wake->x,        &wake->y,           &wake->u,     &wake->v,    &wake->u_before,
+                                    &wake->v_before, &wake->circulation, &wake->birth, &wake->rate, &wake->rate_before};
     memcpy(array, all, sizeof all);
 }
 
@@ -62,6 +62,7 @@ enum status wake_release(struct wake *wake, double x, double y, double circulati
     wake->y[i] = y;
     wake->u[i] = wake->v[i] = wake->u_before[i] = wake->v_before[i] = 0;
     wake->circulation[i] = circulation;
+    wake->rate[i] = wake->rate_before[i] = 0;
     wake->birth[i] = birth;
     return STATUS_OK;
 }
@@ -99,6 +100,10 @@ void wake_marker(const struct wake *wake, int i, double interval, double tau, do
     position[1] = along_path(wake->y[i], wake->v[i], wake->v_before[i], tau, interval);
 }
 
+double wake_label(const struct wake *wake, int i, double interval, double tau) {
+    return along_path(wake->circulation[i], wake->rate[i], wake->rate_before[i], tau, interval);
+}
+
 double wake_circulation(const struct wake *wake, int i) {
     if (!wake->has_markers) return wake->circulation[i];
     const int older = i > 0 ? i - 1 : 0, newer = i + 1 < wake->n_vortex ? i + 1 : i;
@@ -117,6 +122,11 @@ double wake_strength_within(const struct school *school, double age, double q) {
     if (age + school->interval <= age_of_decay(school)) return 1;
     const double now = wake_strength(school, age), next = wake_strength(school, age + school->interval);
     return now + q * (next - now);
+}
+
+double wake_ring(const struct wake *wake, const struct school *school, int i, double t, double tau) {
+    const double strength = wake_strength_within(school, t - wake->birth[i], tau / school->interval);
+    return strength * wake_label(wake, i, school->interval, tau);
 }
 
 void wake_at(const struct wake *wake, const struct school *school, double t, double tau, double *x, double *y,
@@ -149,6 +159,10 @@ void wake_advance(struct wake *wake, double interval) {
     for (int i = 0; i < wake->n_vortex; i++) {
         wake->x[i] = along_path(wake->x[i], wake->u[i], wake->u_before[i], interval, interval);
         wake->y[i] = along_path(wake->y[i], wake->v[i], wake->v_before[i], interval, interval);
+        const double label = wake_label(wake, i, interval, interval);
+        // the oldest label is all that has been removed
+        if (i == 0 && wake->has_markers) wake->removed += label - wake->circulation[i];
+        wake->circulation[i] = label;
     }
 }
 
@@ -210,6 +224,10 @@ enum status wake_add_vortex(struct wake *wake, const struct school *school, doub
             "wake.dissipated_circulation: dropped: the circulation of a vortex that is added would go to "
             "the body when it is removed: choose 'retained'");
     }
+    if (school->finite) {
+        return status_fail(STATUS_CASE,
+                           "pressure.span: finite: a vortex alone is no ring: choose 'infinite' to add vortices");
+    }
     TRY(wake_make_spare(wake, school, wake->has_markers ? N_MARKERS : 1));
     wake->removed -= circulation;
     if (!wake->has_markers || wake->n_vortex == 0) return wake_release(wake, x, y, circulation, t);
@@ -248,15 +266,17 @@ void wake_leave_behind(struct wake *wake, double shed) {
     wake->version++;
 }
 
-void wake_set_velocity(struct wake *wake, const double *u, const double *v, int n_new) {
+void wake_set_velocity(struct wake *wake, const double *u, const double *v, const double *rate, int n_new) {
     const int n_old = wake->n_vortex - n_new;
+    const double *const from[] = {u, v, rate};
+    double *const now[] = {wake->u, wake->v, wake->rate};
+    double *const before[] = {wake->u_before, wake->v_before, wake->rate_before};
     wake->version++;
-    memcpy(wake->u_before, wake->u, (size_t)n_old * sizeof *u);
-    memcpy(wake->v_before, wake->v, (size_t)n_old * sizeof *v);
-    memcpy(wake->u_before + n_old, u + n_old, (size_t)n_new * sizeof *u);
-    memcpy(wake->v_before + n_old, v + n_old, (size_t)n_new * sizeof *v);
-    memcpy(wake->u, u, (size_t)wake->n_vortex * sizeof *u);
-    memcpy(wake->v, v, (size_t)wake->n_vortex * sizeof *v);
+    for (int i = 0; i < (rate ? 3 : 2); i++) {
+        memcpy(before[i], now[i], (size_t)n_old * sizeof *u);
+        memcpy(before[i] + n_old, from[i] + n_old, (size_t)n_new * sizeof *u);
+        memcpy(now[i], from[i], (size_t)wake->n_vortex * sizeof *u);
+    }
 }
 
 void wake_nascent(const struct wake *wake, double tau, const double tail[2], double position[2]) {

@@ -23,6 +23,7 @@ struct wake {
     double *u, *v;                            /* velocity W at the last event, m s-1               (n_vortex) */
     double *u_before, *v_before;              /* and at the event before; W on the first interval  (n_vortex) */
     double *circulation;                      /* m2 s-1, constant once released; of a marker: its label (n_vortex) */
+    double *rate, *rate_before;               /* of labels, as u and u_before, m2 s-2; 0 without depth (n_vortex) */
     double *birth;                            /* time of release, s                                (n_vortex) */
     int has_markers;                          /* the queue holds markers of a sheet: free_sheet.h */
     int n_merged;                             /* how many have become one with a neighbour so far: wake_merge.h */
@@ -65,6 +66,11 @@ enum status wake_resize(struct wake *wake, int n);
 /* Where vortex or marker i is at the time tau after the last event. */
 void wake_marker(const struct wake *wake, int i, double interval, double tau, double position[2]);
 
+/* The label of marker i at the time tau after the last event, which was at time t; and the part of it that has not
+ * decayed, m2 s-1. */
+double wake_label(const struct wake *wake, int i, double interval, double tau);
+double wake_ring(const struct wake *wake, const struct school *school, int i, double t, double tau);
+
 /* The circulation that vortex i stands for: its own, or half of both stretches that meet in a marker. */
 double wake_circulation(const struct wake *wake, int i);
 
@@ -101,9 +107,9 @@ enum status wake_break(struct wake *wake, const struct school *school, double t,
 /* There are no vortices any more: all the circulation that has been shed, m2 s-1, is infinitely far away. */
 void wake_leave_behind(struct wake *wake, double shed);
 
-/* Take new velocities; one of the n_new newest vortices, which had none before, moves on its first interval with them
- * alone. */
-void wake_set_velocity(struct wake *wake, const double *u, const double *v, int n_new);
+/* Take new velocities, and rates of labels (NULL: 0); one of the n_new newest vortices, which had none before, moves on
+ * its first interval with them alone. */
+void wake_set_velocity(struct wake *wake, const double *u, const double *v, const double *rate, int n_new);
 
 /* The part of its circulation that a vortex of this age counts with in velocity sums. */
 double wake_strength(const struct school *school, double age);

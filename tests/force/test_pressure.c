@@ -101,6 +101,84 @@ static void added_mass_is_positive_with_twice_as_many_vortices_as_nodes_only(voi
     assert_true(smallest_eigenvalue(17, 17) < -1e-4);
 }
 
+// Of two dimensions, by an independent program (NumPy); a slender plate has w/L of it, a deep one all. At 65 points.
+static void added_mass_of_a_plate_of_finite_span_lies_between_slender_and_deep(void **state) {
+    (void)state;
+    static const struct {
+        double depth, part;
+    } cases[] = {{0.1, 0.0958}, {0.25, 0.2238}, {0.5, 0.3983}, {1, 0.6292},
+                 {2, 0.8344},   {4, 0.9454},    {6, 0.9740},   {20, 0.9975}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct setup setup;
+        char text[1024];
+        snprintf(text, sizeof text,
+                 SCHOOL_DEFAULTS
+                 "time: {end: 1, shedding_interval: 0.002}\n"
+                 "fluid: {density: 1, viscosity: 0}\n"
+                 "fish: [{nodes: 17, sheet_points: 65, force: pressure, pressure: {span: finite},\n"
+                 "        wave: {amplitude: 0, frequency: 0},\n"
+                 "        body: {profile: uniform, thickness: 0.1, depth: %g}}]\n",
+                 cases[i].depth);
+        school_build(&setup, text);
+        double velocity[17], momentum[17], mass = 0, moment = 0, lift = 0;
+        for (int k = 0; k < 17; k++) velocity[k] = 1;
+        added_momentum(&setup, velocity, momentum);
+        for (int k = 0; k < 17; k++) mass += momentum[k];
+        for (int k = 0; k < 17; k++) moment += momentum[k] * (k / 16.0 - 0.5);
+        // the last digit, and where the points are hardly nearer to each other than the sheet is deep half a per cent
+        NEAR(mass / (pi / 4 * cases[i].depth), cases[i].part, cases[i].depth < 0.2 ? 6e-4 : 6e-5, 0);
+        // symmetric: heave causes no moment, and rotation as little lift
+        for (int k = 0; k < 17; k++) velocity[k] = k / 16.0 - 0.5;
+        added_momentum(&setup, velocity, momentum);
+        for (int k = 0; k < 17; k++) lift += momentum[k];
+        NEAR(moment, lift, 2e-5 * mass, 0);
+        school_clear(&setup);
+    }
+}
+
+// A smooth bend of a body whose depth varies: the matrix from velocities to momenta is symmetric but for a term that
+// the model leaves out (2.5 per cent, doc/model.md, section 18), and positive; of one depth it is symmetric.
+static void added_mass_of_finite_span_is_symmetric_and_positive(void **state) {
+    (void)state;
+    enum { N = 9 };
+    static const struct {
+        const char *depth;
+        double asymmetry;
+    } cases[] = {{"profile: uniform, thickness: 0.1, depth: 0.25", 2e-4},
+                 {"profile: table, thickness_table: [0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1], "
+                  "depth_table: [0.12, 0.2, 0.24, 0.24, 0.2, 0.16, 0.18, 0.22]",
+                  3e-2}};
+    for (int i = 0; i < 2; i++) {
+        struct setup setup;
+        char text[1024];
+        snprintf(text, sizeof text,
+                 SCHOOL_DEFAULTS
+                 "time: {end: 1, shedding_interval: 0.002}\n"
+                 "fluid: {density: 1, viscosity: 0}\n"
+                 "fish: [{nodes: 9, sheet_points: 65, force: pressure, pressure: {span: finite},\n"
+                 "        wave: {amplitude: 0, frequency: 0}, body: {%s}}]\n",
+                 cases[i].depth);
+        school_build(&setup, text);
+        double matrix[N * N], largest = 0, asymmetry = 0, value[N];
+        for (int k = 0; k < N; k++) {
+            double velocity[N] = {0};
+            velocity[k] = 1;
+            added_momentum(&setup, velocity, matrix + k * N);
+        }
+        for (int k = 0; k < N * N; k++) {
+            largest = fmax(largest, fabs(matrix[k]));
+            asymmetry = fmax(asymmetry, fabs(matrix[k] - matrix[k % N * N + k / N]));
+        }
+        assert_true(asymmetry < cases[i].asymmetry * largest);
+        for (int k = 0; k < N * N; k++) {
+            if (k % N >= k / N) matrix[k] = (matrix[k] + matrix[k % N * N + k / N]) / 2;
+        }
+        assert_int_equal(LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'N', 'U', N, matrix, N, value), 0);
+        assert_true(value[0] > 1e-4 * largest);
+        school_clear(&setup);
+    }
+}
+
 // the modes of a free plate from the matrix of its added mass, against the iteration that warns of slow ones
 static void slow_modes_have_the_added_mass_of_the_sheet(void **state) {
     (void)state;
@@ -410,6 +488,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(added_mass_of_a_plate_is_that_of_potential_flow),
         cmocka_unit_test(added_mass_is_positive_with_twice_as_many_vortices_as_nodes_only),
+        cmocka_unit_test(added_mass_of_a_plate_of_finite_span_lies_between_slender_and_deep),
+        cmocka_unit_test(added_mass_of_finite_span_is_symmetric_and_positive),
         cmocka_unit_test(slow_modes_have_the_added_mass_of_the_sheet),
         cmocka_unit_test(a_stream_that_starts_at_once_pushes_by_the_added_mass),
         cmocka_unit_test(force_and_reaction_are_those_of_the_jump),

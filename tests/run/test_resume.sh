@@ -77,6 +77,7 @@ stopped() {  # name, signals, arguments of run...
 stopped sheet 'TERM HUP' small.yaml
 stopped two_threads USR1 small.yaml --threads 2 --set output.precision=single
 stopped impulsive INT small.yaml --set wake.shedding=impulsive --set time.shedding_interval=0.02
+stopped finite_span TERM small.yaml --set 'fish[*].force=pressure' --set 'fish[*].pressure.span=finite' --set wake.merge=0.1
 stopped pressure TERM small.yaml --set 'fish[*].force=pressure' --set 'fish[*].pressure.suction_limit=0.01'
 stopped merged TERM small.yaml --set 'fish[*].start.speed=3' --set wake.merge=0.1 --set time.end=1.6
 check "merged: how many are told" test "$("$program" info run.nc | sed -n 's/^ *merged vortices *\([0-9]*\) have.*/\1/p')" -gt 20

@@ -1,5 +1,6 @@
 /* test_threads.c: runs with several threads have the bits of those with one: all of the state, and the totals. */
 #include <stdio.h>
+#include <string.h>
 
 #include "base/parallel.h"
 #include "school.h"
@@ -7,13 +8,15 @@
 /* Pairs of fish that meet head on between two walls; every third fish has another force, some steer. Enough unknowns
  * for loops over fish to be shared. */
 enum { N_PAIRS = 9 };
-#define MEETING                                                            \
-    "time: {end: 1, shedding_interval: 0.01}\nfluid: {walls: [-0.3, 4]}\n" \
+#define MEETING                                                           \
+    "time: {end: 1, shedding_interval: 0.01}\nfluid: {walls: [-0.3%s]}\n" \
     "contact: {range: 0.05}\ndefaults: {fish: {nodes: 7, sheet_points: 15, start: {speed: 0.5}}}\n"
 
 static void meeting_text(size_t size, char *text, const char *settings, const char *force, int threads) {
+    // rings have one wall at most
+    const char *const wall = strstr(force, "finite") ? "" : ", 4";
     static const char *const law[] = {"none", "heading", "course, desired_heading: 170"};
-    size_t used = (size_t)snprintf(text, size, "%s" MEETING "solver: {threads: %d}\nfish:\n", settings, threads);
+    size_t used = (size_t)snprintf(text, size, "%s" MEETING "solver: {threads: %d}\nfish:\n", settings, wall, threads);
     for (int f = 0; f < 2 * N_PAIRS; f++) {
         const int right = f % 2;
         used += (size_t)snprintf(text + used, size - used,
@@ -54,6 +57,11 @@ static void threads_change_no_bit_of_a_school_in_contact(void **state) {
     compare_threads(SCHOOL_DEFAULTS, "pressure", 2);
 }
 
+static void threads_change_no_bit_of_sheets_of_finite_span(void **state) {
+    (void)state;
+    compare_threads(SCHOOL_DEFAULTS, "pressure, sheet_points: 21, pressure: {span: finite}", 2);
+}
+
 static void threads_change_no_bit_where_vortices_are_shed_at_once(void **state) {
     (void)state;
     compare_threads(SCHOOL_DEFAULTS "wake: {shedding: impulsive}\n", "published", 2);
@@ -62,6 +70,7 @@ static void threads_change_no_bit_where_vortices_are_shed_at_once(void **state) 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(threads_change_no_bit_of_a_school_in_contact),
+        cmocka_unit_test(threads_change_no_bit_of_sheets_of_finite_span),
         cmocka_unit_test(threads_change_no_bit_where_vortices_are_shed_at_once),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

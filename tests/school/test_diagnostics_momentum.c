@@ -11,6 +11,10 @@
     "force: pressure, nodes: 9, sheet_points: 33, wave: {ramp: 0.5}, drag: {skin: laminar}, start: {speed: 0.5}, " \
     "body: {depth: 1}"
 
+#define STRIP                                                                                                      \
+    "force: pressure, nodes: 9, sheet_points: 33, wave: {ramp: 0.5}, drag: {skin: laminar}, start: {speed: 0.5}, " \
+    "pressure: {span: finite}, body: {depth: 0.25}"
+
 /* The balance after some time, over the largest of its terms; the largest of the angular one. */
 struct balance {
     double momentum, angular;
@@ -62,6 +66,25 @@ static void the_balance_is_closed_with_every_external_force(void **state) {
          "fish: [{force: pressure, nodes: 9, sheet_points: 33, wave: {amplitude: 0}, "
          "body: {depth: 1, profile: uniform, thickness: 0.1}, drag: {skin: laminar}, "
          "start: {speed: 1}, "
+         "motion: {prescribed: all, surge: free, heave: 0.02, frequency: 1, phase: 90}}]\n"},
+        {"finite span", "wake: {lifetime: 0.8, decay: 0.6}\nfish: [{" STRIP "}]\n"},
+        {"finite span, no fade", "wake: {lifetime: 0.5, decay: 0}\nfish: [{" STRIP "}]\n"},
+        {"finite span, merged", "wake: {lifetime: 10, merge: 0.1}\nfish: [{" STRIP "}]\n"},
+        {"finite span, shear and gust",
+         "fluid: {velocity: [0.2, 0], shear: 0.3, gust: {amplitude: 0.1, frequency: 1}}\n"
+         "wake: {lifetime: 0.8, decay: 0.6}\nfish: [{" STRIP "}]\n"},
+        {"finite span, a wall, two lengths and depths",
+         "fluid: {walls: [-0.3]}\nwake: {lifetime: 0.8, decay: 0.6}\n"
+         "fish: [{" STRIP "}, {force: pressure, pressure: {span: finite}, nodes: 9, sheet_points: 33, length: 0.5, "
+         "drag: {skin: laminar}, start: {position: [0.5, 0.4], speed: 0.5}, body: {depth: 0.4}}]\n"},
+        {"finite span, a depth for every edge",
+         "fish: [{force: pressure, pressure: {span: finite}, nodes: 9, sheet_points: 65, wave: {ramp: 0.5}, "
+         "drag: {skin: laminar}, start: {speed: 0.5}, body: {profile: table, "
+         "thickness_table: [0.05, 0.1, 0.1, 0.1, 0.08, 0.06, 0.04, 0.02], "
+         "depth_table: [0.12, 0.2, 0.24, 0.24, 0.2, 0.16, 0.18, 0.22]}}]\n"},
+        {"finite span, a plate that surges",
+         "fish: [{force: pressure, pressure: {span: finite}, nodes: 9, sheet_points: 33, wave: {amplitude: 0}, "
+         "body: {depth: 0.25, profile: uniform, thickness: 0.1}, drag: {skin: laminar}, start: {speed: 1}, "
          "motion: {prescribed: all, surge: free, heave: 0.02, frequency: 1, phase: 90}}]\n"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {

@@ -146,6 +146,28 @@ static const struct variant {
      "  - {nodes: 4, sheet_points: 7, force: published, start: {position: [0.1, -0.6], heading: 200}}\n"
      "  - {nodes: 4, sheet_points: 7, force: pressure, start: {position: [0, 1.2]},\n"
      "     motion: {prescribed: head, surge: free, heave: 0.1, frequency: 1}}\n"},
+    {"pressure of finite span",
+     PRESSURE "fish: [{nodes: 5, sheet_points: 21, force: pressure, pressure: {span: finite},\n"
+              "        body: {profile: uniform, thickness: 0.1}}]\n"},
+    {"pressure of finite span, a depth for every edge, stream, shear, wall", PRESSURE
+     "fluid: {velocity: [0.3, 0], shear: 0.7, walls: [-0.7]}\n"
+     "fish: [{nodes: 5, sheet_points: 14, force: pressure, pressure: {span: finite},\n"
+     "        drag: {skin: laminar, normal: 0.5},\n"
+     "        body: {profile: table, thickness_table: [0.1, 0.2, 0.15, 0.05], depth_table: [0.5, 0.7, 0.6, 0.4]}}]\n"},
+    {"four fish of finite span, one force each, two depths", PRESSURE FAR
+     "fluid: {velocity: [0.1, 0.05], shear: 0.2}\n"
+     "fish:\n"
+     "  - {nodes: 5, sheet_points: 21, force: pressure, pressure: {span: finite}}\n"
+     "  - {nodes: 5, sheet_points: 15, force: reactive, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"
+     "  - {nodes: 4, sheet_points: 7, force: published, start: {position: [0.1, -0.6], heading: 200}}\n"
+     "  - {nodes: 4, sheet_points: 11, force: pressure, pressure: {span: finite}, start: {position: [0, 1.2]},\n"
+     "     body: {depth: 0.5}, motion: {prescribed: head, surge: free, heave: 0.1, frequency: 1}}\n"},
+    {"two fish of finite span beside a wall, driven",
+     TIME FAR "fluid: {walls: [1.5]}\nwake: {shedding: sheet}\nsheet: {curve: smooth}\n"
+              "defaults: {fish: {force: pressure, pressure: {span: finite}, drag: {skin: laminar}}}\n"
+              "fish:\n"
+              "  - {nodes: 5, sheet_points: 21, motion: {prescribed: all, heave: 0.1, pitch: 10, frequency: 1}}\n"
+              "  - {nodes: 5, sheet_points: 21, length: 0.7, start: {position: [0.2, 0.5], heading: 170}}\n"},
     {"fish in contact that are not coupled otherwise",
      TIME "solver: {coupling_distance: 0}\ncontact: {range: 0.9}\n"
           "fish:\n"

@@ -35,7 +35,7 @@ static void step(struct simulation *simulation) {
     struct wake *const wake = &state->wake[0];
     struct flow *const flow = simulation->residual->flow;
     if (flow_at_wake(flow, state) != STATUS_OK) abort();
-    wake_set_velocity(wake, flow->wake_u, flow->wake_v, state->event == 0 ? wake->n_vortex : 0);
+    wake_set_velocity(wake, flow->wake_u, flow->wake_v, NULL, state->event == 0 ? wake->n_vortex : 0);
     wake_advance(wake, simulation->school->interval);
     state->event++;
     state->t = (double)state->event * simulation->school->interval;

@@ -56,7 +56,7 @@ static double error_on_a_circle(int n) {
     school_ok(wake_release(&wake, 1, 0, 1, 0));
     for (int i = 0; i < n; i++) {
         const double u = -wake.y[0], v = wake.x[0];
-        wake_set_velocity(&wake, &u, &v, i == 0 ? 1 : 0);
+        wake_set_velocity(&wake, &u, &v, NULL, i == 0 ? 1 : 0);
         wake_advance(&wake, interval);
     }
     const double error = hypot(wake.x[0] - 1, wake.y[0]);
@@ -77,10 +77,10 @@ static void new_velocities_push_the_old_ones_back(void **state) {
     school_ok(wake_create(&wake, 4));
     for (int i = 0; i < 3; i++) school_ok(wake_release(&wake, i, 0, 1, 0));
     const double u[] = {1, 2, 3}, v[] = {4, 5, 6}, more_u[] = {7, 8, 9}, more_v[] = {10, 11, 12};
-    wake_set_velocity(&wake, u, v, 3);
+    wake_set_velocity(&wake, u, v, NULL, 3);
     NEAR_ARRAY(3, wake.u_before, u, 0, 0);
     // the last one is new: its velocity stands for the one before, too
-    wake_set_velocity(&wake, more_u, more_v, 1);
+    wake_set_velocity(&wake, more_u, more_v, NULL, 1);
     const double want_u[] = {1, 2, 9}, want_v[] = {4, 5, 12};
     NEAR_ARRAY(3, wake.u_before, want_u, 0, 0);
     NEAR_ARRAY(3, wake.v_before, want_v, 0, 0);

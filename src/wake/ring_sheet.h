@@ -1,0 +1,52 @@
+/* ring_sheet.h: the wake of a body of finite depth: a free sheet of vortex rings between markers. doc/model.md, section
+ * 18. Tested by tests/flow/test_flow_rings.c. */
+#ifndef RING_SHEET_H
+#define RING_SHEET_H
+
+#include "base/status.h"
+#include "fish/fish.h"
+#include "vortex/ring.h"
+#include "wake/wake.h"
+
+/* Points of all stretches, oldest first, then those of the
+ * nascent one. */
+struct ring_sheet {
+    int n_released, n_nascent, capacity;
+    /* fixed for an interval; source i lies at xi of the way from the newer to the older end of its stretch
+     * (n_released) */
+    int *stretch;
+    double *xi, *part;
+    double *smoothing[2], *leg[2]; /* delta(d) and s at both ends of the interval, m, m2 */
+    struct rings rings;            /* at one time */
+};
+void ring_sheet_free(struct ring_sheet *sheet);
+
+/* How a sheet is divided: as the own control points see it, or one point, its middle, for every stretch. */
+enum ring_view { RING_GRADED, RING_MIDDLES };
+
+/* Choose the points for the interval that begins now. Fails with STATUS_MEMORY. */
+enum status ring_sheet_build(struct ring_sheet *sheet, enum ring_view view, const struct fish *fish,
+                             const struct school *school, const struct wake *markers);
+
+/* Put the released points where they are tau after the event at time t. */
+void ring_sheet_place(struct ring_sheet *sheet, const struct fish *fish, const struct school *school,
+                      const struct wake *markers, double t, double tau);
+
+/* Put the nascent ones where they are then, with the tail there; shed: all circulation that the fish has shed, m2 s-1.
+ * Returns the circulation of the nascent stretch. */
+double ring_sheet_place_nascent(struct ring_sheet *sheet, const struct fish *fish, const struct school *school,
+                                const struct wake *markers, double t, double tau, const double tail[2], double shed);
+
+/* The nascent points: the part of the way from the tail to the newest marker, and of the stretch. */
+double ring_sheet_xi(const struct ring_sheet *sheet, int i);
+double ring_sheet_part(const struct ring_sheet *sheet, int i);
+
+/* The markers as they count among themselves at the event at time t, appended to rings; nascent: the circulation of the
+ * nascent stretch. Fails with STATUS_MEMORY. */
+enum status ring_sheet_markers(struct rings *rings, const struct fish *fish, const struct school *school,
+                               const struct wake *markers, double t, double nascent);
+
+/* s of a point of the wake at this distance from the own tail, m2. */
+double ring_sheet_leg(const struct fish *fish, const double from_tail[2]);
+
+#endif

@@ -1,0 +1,227 @@
+/* test_flow_rings.c: sheets of finite span: what points and markers feel, ring by ring: doc/model.md, section 18. */
+#include "flow/flow_at_bodies.h"
+#include "flow/flow_at_wake.h"
+#include "flow/flow_field.h"
+#include "flow/flow_rings.h"
+#include "school.h"
+
+#define TWO                                                                                      \
+    SCHOOL_DEFAULTS                                                                              \
+    "time: {end: 1, shedding_interval: 0.02}\nfluid: {walls: [-0.9]}\ncontact: {action: warn}\n" \
+    "fish:\n"                                                                                    \
+    "  - {nodes: 5, sheet_points: 21, force: pressure, pressure: {span: finite}}\n"              \
+    "  - {nodes: 6, sheet_points: 23, force: reactive, length: 0.8, body: {depth: 0.4},\n"       \
+    "     start: {position: [0.2, 0.6], heading: 165}}\n"
+
+static const double two_pi = 6.28318530717958647692;
+
+/* A ring seen from somewhere. */
+struct felt {
+    double u, v, div;
+};
+static void add_ring(struct felt *felt, const double at[2], const double from[2], double q, const double d[2],
+                     double span, double half, double leg, double square) {
+    const double r[2] = {at[0] - from[0], at[1] - from[1]}, r2 = r[0] * r[0] + r[1] * r[1];
+    const double t = r2 + half + leg, f = r2 + square > 0 ? span * q / (two_pi * (r2 + square) * sqrt(t)) : 0;
+    const double g = span / (two_pi * pow(t, 1.5));
+    felt->u += -f * r[1] - g * d[1];
+    felt->v += f * r[0] + g * d[0];
+    felt->div += -3 * span / (two_pi * pow(t, 2.5)) * (-r[0] * d[1] + r[1] * d[0]);
+}
+
+// what a point with the half span b feels of the ends of a stretch with these labels, as one point at its middle
+static void add_middle(struct felt *felt, const double at[2], const double newer[2], const double older[2], double gn,
+                       double go, const struct fish *fish, double factor, double b2, double leg, double mirror) {
+    double from[2], d[2], q = gn - go;
+    for (int i = 0; i < 2; i++) {
+        from[i] = (newer[i] + older[i]) / 2;
+        d[i] = -(gn + go) / 2 * (older[i] - newer[i]);
+    }
+    if (mirror < 0) {
+        from[1] = mirror - from[1];
+        q = -q;
+        d[0] = -d[0];
+    }
+    const double w = fish->strip_depth, span = factor * w / 4;
+    add_ring(felt, at, from, q, d, span, factor * factor * (b2 + w * w / 16) / 2, leg,
+             fish->smoothing * fish->smoothing);
+}
+
+// all stretches of fish g, each by its middle, at a point
+static void add_wake(struct felt *felt, const struct setup *setup, int g, const double at[2], double factor, double b2,
+                     double mirror) {
+    const struct fish *const fish = &setup->school->fish[g];
+    const struct wake *const wake = &setup->state->wake[g];
+    const double tau = setup->t - setup->state->t, interval = setup->school->interval, q = tau / interval;
+    const double *const y = setup->state->y;
+    const double tail[2] = {y[fish->at.x + fish->n_nodes - 1], y[fish->at.y + fish->n_nodes - 1]};
+    const int n = wake->n_vortex;
+    double older[2], newer[2];
+    for (int i = 0; i < n; i++) {
+        const int is_last = i == n - 1;
+        wake_marker(wake, i, interval, tau, older);
+        double ends[2][2], leg = 0;
+        for (int end = 0; end < 2 && !is_last; end++) {
+            double a[2], b[2], from_tail[2];
+            wake_marker(wake, i, interval, end * interval, a);
+            wake_marker(wake, i + 1, interval, end * interval, b);
+            from_tail[0] = (a[0] + b[0]) / 2 - wake->x[n - 1] - end * interval * wake->tail_velocity[0];
+            from_tail[1] = (a[1] + b[1]) / 2 - wake->y[n - 1] - end * interval * wake->tail_velocity[1];
+            const double w = fish->strip_depth, ratio = hypot(from_tail[0], from_tail[1]) / (3 * w);
+            ends[end][0] = w * w / 8 * (1 - exp(-pow(ratio, 4)));
+        }
+        if (!is_last) leg = (1 - q) * ends[0][0] + q * ends[1][0];
+        const double go = wake_ring(wake, setup->school, i, setup->state->t, tau);
+        const double gn =
+            is_last ? y[fish->at.circulation] : wake_ring(wake, setup->school, i + 1, setup->state->t, tau);
+        if (!is_last) wake_marker(wake, i + 1, interval, tau, newer);
+        add_middle(felt, at, is_last ? tail : newer, older, gn, go, fish, factor, b2, leg, mirror);
+    }
+}
+
+// the control points of fish g at a point
+static void add_body(struct felt *felt, const struct setup *setup, int f, int g, const double at[2], double b2,
+                     double mirror) {
+    const struct fish *const fish = &setup->school->fish[g];
+    const double *const y = setup->state->y, e = fish->sheet_smoothing, other = setup->school->fish[f].sheet_smoothing;
+    for (int c = 0; c < fish->n_control; c++) {
+        double around = 0, before = 0;
+        for (int j = 0; j < fish->n_sheet; j++) {
+            const double q = fish->sheet_weight[j] * y[fish->at.gamma + j];
+            around += fish->integrals->strength[c * fish->n_sheet + j] * q;
+            before += fish->integrals->circulation[c * fish->n_sheet + j] * q;
+        }
+        const double du = fish->control_interval[c] * before;
+        double from[2] = {fish_mean(&fish->control_point[c], y + fish->at.x),
+                          fish_mean(&fish->control_point[c], y + fish->at.y)};
+        double d[2] = {du * fish_mean(&fish->control_tangent[c].to, y + fish->at.x),
+                       du * fish_mean(&fish->control_tangent[c].to, y + fish->at.y)};
+        if (mirror < 0) {
+            from[1] = mirror - from[1];
+            around = -around;
+            d[0] = -d[0];
+        }
+        const double w = fish->strip_depth;
+        add_ring(felt, at, from, around, d, w / 2, 2 * (b2 + w * w / 16), 0, (e * e + other * other) / 2);
+    }
+}
+
+static void points_of_others_feel_bodies_wakes_and_images_with_twice_the_span(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TWO);
+    school_stir(&setup);
+    school_ok(flow_velocity(setup.residual->flow, setup.state, setup.t, setup.state->y));
+    const struct flow *const flow = setup.residual->flow;
+    for (int f = 0; f < 2; f++) {
+        const struct fish *const fish = &setup.school->fish[f];
+        for (int k = 0; k < fish->n_edges; k++) {
+            const int p = flow->points[f].first + fish->n_control + k;
+            const double at[2] = {flow->x[p], flow->y[p]}, b = fish->depth[k] / 4, wall = 2 * -0.9;
+            struct felt felt = {0};
+            add_body(&felt, &setup, f, 1 - f, at, b * b, 0);
+            add_wake(&felt, &setup, 1 - f, at, 2, b * b, 0);
+            for (int g = 0; g < 2; g++) {
+                add_body(&felt, &setup, f, g, at, b * b, wall);
+                add_wake(&felt, &setup, g, at, 2, b * b, wall);
+            }
+            // the own wake with its own span, unless the force has it already
+            if (fish->force == FORCE_PRESSURE) add_wake(&felt, &setup, f, at, 1, b * b, 0);
+            NEAR(flow->u[p], felt.u, 1e-12, 1e-11);
+            NEAR(flow->v[p], felt.v, 1e-12, 1e-11);
+            NEAR(flow->rings->div[p], felt.div, 1e-10, 1e-10);
+        }
+    }
+    school_clear(&setup);
+}
+
+// the graded points of the newest stretches and the tapered smoothing change little where the wake is far from the body
+static void control_points_feel_their_own_body_and_wake_with_the_span_of_the_strip(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, SCHOOL_DEFAULTS
+                 "time: {end: 1, shedding_interval: 0.02}\n"
+                 "fish: [{nodes: 5, sheet_points: 21, force: pressure, pressure: {span: finite}}]\n");
+    school_stir(&setup);
+    const struct fish *const fish = setup.school->fish;
+    double *const y = setup.state->y;
+    struct wake *const wake = setup.state->wake;
+    for (int i = 0; i < wake->n_vortex; i++) wake->x[i] += 50;
+    wake->version++;
+    y[fish->at.circulation] = wake_ring(wake, setup.school, wake->n_vortex - 1, setup.state->t, 0.008);
+    school_ok(flow_velocity(setup.residual->flow, setup.state, setup.t, y));
+    const struct flow *const flow = setup.residual->flow;
+    for (int p = 0; p < fish->n_control; p++) {
+        struct felt felt = {0};
+        const double at[2] = {flow->x[p], flow->y[p]}, w = fish->strip_depth, none[2] = {0, 0};
+        for (int j = 0; j < fish->n_sheet; j++) {
+            const double from[2] = {flow->sheet.x[j], flow->sheet.y[j]};
+            add_ring(&felt, at, from, flow->sheet.circulation[j], none, w / 4, w * w / 16, 0, 0);
+        }
+        for (int c = 0; c < fish->n_control; c++) {
+            double before = 0;
+            for (int j = 0; j < fish->n_sheet; j++) {
+                before += fish->integrals->circulation[c * fish->n_sheet + j] * flow->sheet.circulation[j];
+            }
+            const double du = fish->control_interval[c] * before, from[2] = {flow->x[c], flow->y[c]};
+            const double d[2] = {du * fish_mean(&fish->control_tangent[c].to, y + fish->at.x),
+                                 du * fish_mean(&fish->control_tangent[c].to, y + fish->at.y)};
+            add_ring(&felt, at, from, 0, d, w / 4, w * w / 16, 0, 0);
+        }
+        // the leg of the nascent stretch reaches from the tail to markers at a distance of 50
+        struct felt nascent = {0};
+        const double tail[2] = {y[fish->at.x + 4], y[fish->at.y + 4]};
+        double newest[2];
+        wake_marker(wake, wake->n_vortex - 1, setup.school->interval, 0.008, newest);
+        for (int k = 0; k < 4; k++) {
+            const double xi = free_sheet_xi[k], part = free_sheet_part[k], label = y[fish->at.circulation];
+            const double from[2] = {(1 - xi) * tail[0] + xi * newest[0], (1 - xi) * tail[1] + xi * newest[1]};
+            const double d[2] = {-label * part * (newest[0] - tail[0]), -label * part * (newest[1] - tail[1])};
+            add_ring(&nascent, at, from, 0, d, w / 4, w * w / 16, 0, 0);
+        }
+        // of the released wake, at 50 lengths, there is a dipole
+        NEAR(flow->u[p], felt.u + nascent.u, 1e-6, 1e-12);
+        NEAR(flow->v[p], felt.v + nascent.v, 1e-6, 1e-12);
+        NEAR(flow->rings->div[p], felt.div + nascent.div, 1e-6, 1e-11);
+    }
+    school_clear(&setup);
+}
+
+// no fluid goes through the wall, and labels change with the divergence that markers feel
+static void markers_are_stretched_and_a_wall_lets_nothing_through(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TWO);
+    school_stir(&setup);
+    setup.t = setup.state->t;
+    school_flow(&setup, setup.state->y);
+    struct flow *const flow = setup.residual->flow;
+    school_ok(flow_at_wake(flow, setup.state));
+    int n = 0;
+    for (int f = 0; f < 2; f++) {
+        const struct wake *const wake = &setup.state->wake[f];
+        for (int i = 0; i < wake->n_vortex; i++, n++) {
+            assert_true(fabs(flow->rings->wake_div[n]) > 0 && fabs(flow->rings->wake_image_div[n]) > 0);
+            NEAR(flow->rings->wake_rate[n], -wake->circulation[i] * flow->rings->wake_div[n], 0, 1e-15);
+        }
+    }
+    enum { N = 9 };
+    double x[N], y[N], u[N], v[N], u_x[N], u_y[N], v_x[N];
+    for (int i = 0; i < N; i++) {
+        x[i] = -1 + 0.4 * i;
+        y[i] = -0.9;
+    }
+    const struct induced at = {N, x, y, u, v, u_x, u_y, v_x};
+    school_ok(flow_field(flow, setup.state, &at));
+    for (int i = 0; i < N; i++) NEAR(v[i], 0, 1e-15, 0);
+    school_clear(&setup);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(points_of_others_feel_bodies_wakes_and_images_with_twice_the_span),
+        cmocka_unit_test(control_points_feel_their_own_body_and_wake_with_the_span_of_the_strip),
+        cmocka_unit_test(markers_are_stretched_and_a_wall_lets_nothing_through),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
