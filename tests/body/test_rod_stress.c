@@ -70,6 +70,31 @@ static void the_balance_finds_the_stresses_that_the_accelerations_say(void **sta
     school_clear(&setup);
 }
 
+// a body that is bent by up to 0.3 rad at a joint, on which nothing but its rod acts
+static void the_balance_of_a_bent_body_has_the_stresses_of_its_law(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME
+                 "fluid: {density: 0}\nfish: [{nodes: 9, wave: {amplitude: 0},\n"
+                 "  body: {modulus: 1.0e+5, damping: strain, relaxation_time: 0.02, bending_damping: 0.1}}]\n");
+    school_stir(&setup);
+    const struct fish *fish = setup.school->fish;
+    double *const y = setup.state->y, want[STRAINS], got[STRAINS] = {0};
+    memset(y + fish->at.ax, 0, 2 * (size_t)fish->n_nodes * sizeof *y);
+    memset(setup.value, 0, (size_t)setup.school->n_unknowns * sizeof *setup.value);
+    // mass times the acceleration that the rod gives
+    residue_of(fish, y, setup.value);
+    for (int i = 0; i < 2 * fish->n_nodes; i++) setup.value[fish->at.ax + i] = -setup.value[fish->at.ax + i];
+    stresses(fish, y, want);
+    rod_stress_balance(fish, setup.value, y, got);
+    double size[2] = {0, 0};
+    for (int i = 0; i < rod_n_strains(fish); i++) {
+        size[i >= fish->n_joints] = fmax(size[i >= fish->n_joints], fabs(want[i]));
+    }
+    for (int i = 0; i < rod_n_strains(fish); i++) NEAR(got[i], want[i], 1e-9 * size[i >= fish->n_joints], 0);
+    school_clear(&setup);
+}
+
 static void stresses_ahead_of_prescribed_nodes_stay(void **state) {
     (void)state;
     const struct {
@@ -230,6 +255,7 @@ static void powers_and_energies_of_a_stiff_body_have_a_limit(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_balance_finds_the_stresses_that_the_accelerations_say),
+        cmocka_unit_test(the_balance_of_a_bent_body_has_the_stresses_of_its_law),
         cmocka_unit_test(stresses_ahead_of_prescribed_nodes_stay),
         cmocka_unit_test(strains_creep_as_the_law_of_the_material_says),
         cmocka_unit_test(without_an_older_stress_the_step_is_linear),

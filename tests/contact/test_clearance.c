@@ -117,6 +117,35 @@ static void bodies_that_cross_between_two_steps_have_touched(void **state) {
     clear(&pair);
 }
 
+// a body that turns about its nose at rest, through the nose of the other one
+static void a_body_that_sweeps_over_another_has_touched_it(void **state) {
+    (void)state;
+    for (int sweeper = 0; sweeper < 2; sweeper++) {
+        struct setup setup;
+        school_build(&setup, PAIR("0", "3"));
+        double *const between = calloc((size_t)setup.school->n_unknowns, sizeof *between), *const y = setup.state->y;
+        for (int end = 0; end < 2; end++) {
+            for (int f = 0; f < 2; f++) {
+                const struct fish *const fish = &setup.school->fish[f];
+                for (int k = 0; k < fish->n_nodes; k++) {
+                    const double arc = fish->arc[k], aside = f == sweeper ? 0.7 * arc : 0;
+                    y[fish->at.x + k] = f == sweeper ? -0.5 + 0.7 * arc : arc;
+                    y[fish->at.y + k] = end == 0 ? aside : -aside;
+                }
+            }
+            if (end == 0) {
+                clearance_start(setup.school, setup.state, setup.residual->neighbours, between);
+                assert_true(setup.state->closest->distance > 0.2);
+            }
+        }
+        clearance_step(setup.school, setup.state, 1, y, setup.residual->neighbours, between);
+        NEAR(setup.state->closest->distance, 0, 0, 0);
+        assert_true(setup.state->closest->t > 0.2 && setup.state->closest->t < 0.5);
+        free(between);
+        school_clear(&setup);
+    }
+}
+
 static void bodies_that_pass_each_other_have_not(void **state) {
     (void)state;
     struct pair pair = place(PAIR("5", "0.15"));
@@ -208,6 +237,7 @@ int main(void) {
         cmocka_unit_test(one_fish_is_close_to_none),
         cmocka_unit_test(closest_approach_is_that_of_all_steps),
         cmocka_unit_test(bodies_that_cross_between_two_steps_have_touched),
+        cmocka_unit_test(a_body_that_sweeps_over_another_has_touched_it),
         cmocka_unit_test(bodies_that_pass_each_other_have_not),
         cmocka_unit_test(bodies_that_have_touched_stay_so),
         cmocka_unit_test(the_record_of_a_school_is_that_of_all_pairs),

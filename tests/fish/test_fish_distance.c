@@ -108,10 +108,28 @@ static void distance_of_bent_bodies_is_the_least_of_their_points(void **state) {
     school_clear(&setup);
 }
 
+static void distance_from_a_wall_counts_the_thicker_edge_of_a_node(void **state) {
+    (void)state;
+    struct setup setup;
+    school_build(&setup, TIME
+                 "fluid: {walls: [-1]}\nfish: [{nodes: 5, wave: {amplitude: 0}, body: {profile: table, "
+                 "thickness_table: [0.1, 0.2, 0.05, 0.3], depth_table: [0.2, 0.2, 0.2, 0.2]}}]\n");
+    const struct fish *const fish = setup.school->fish;
+    double *const y = setup.state->y;
+    const double thickest[] = {0.1, 0.2, 0.2, 0.3, 0.3};
+    for (int k = 0; k < 5; k++) {
+        y[fish->at.y + k] -= 0.5;
+        NEAR(fish_wall_distance(setup.school, fish, y), 0.5 - thickest[k] / 2, 1e-14, 0);
+        y[fish->at.y + k] += 0.5;
+    }
+    school_clear(&setup);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(distance_is_that_of_the_outlines),
         cmocka_unit_test(distance_of_bent_bodies_is_the_least_of_their_points),
+        cmocka_unit_test(distance_from_a_wall_counts_the_thicker_edge_of_a_node),
         cmocka_unit_test(bodies_in_boxes_apart_are_not_compared_edge_by_edge),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
