@@ -62,6 +62,11 @@ static void the_balance_is_closed_with_every_external_force(void **state) {
          "fish: [{force: pressure, nodes: 9, sheet_points: 33, wave: {amplitude: 0}, "
          "body: {depth: 1, modulus: 1.0e+5}, drag: {skin: laminar}, start: {speed: 1}, "
          "motion: {prescribed: head, heave: 0.02, pitch: 3, frequency: 1, phase: 90}}]\n"},
+        {"merged vortices",
+         "wake: {lifetime: 3, merge: 1e-2}\n"
+         "fish: [{force: pressure, nodes: 9, sheet_points: 33, wave: {amplitude: 0}, "
+         "body: {depth: 1, profile: uniform, thickness: 0.1}, drag: {skin: laminar}, "
+         "start: {speed: 4}, motion: {prescribed: all, heave: 0.02, frequency: 1, phase: 90}}]\n"},
         {"a plate that surges",
          "fish: [{force: pressure, nodes: 9, sheet_points: 33, wave: {amplitude: 0}, "
          "body: {depth: 1, profile: uniform, thickness: 0.1}, drag: {skin: laminar}, "
