@@ -6,6 +6,13 @@
 #include "run/estimate.h"
 #include "school.h"
 
+/* The sanitizers change the cost of a loop by its memory, so that the parts of a run no longer add up. */
+#ifdef __SANITIZE_ADDRESS__
+#define NEEDS_TRUE_COSTS() skip()
+#else
+#define NEEDS_TRUE_COSTS() (void)0
+#endif
+
 #define FISH "fish: [{nodes: 5, sheet_points: 9}, {nodes: 5, sheet_points: 9, start: {position: [0, 3]}}]\n"
 
 static double processor_time(void) {
@@ -24,6 +31,7 @@ static struct estimate estimate_of(const char *text, double patience) {
 
 static void a_run_that_is_done_whole_takes_what_it_took(void **state) {
     (void)state;
+    NEEDS_TRUE_COSTS();
     const double start = processor_time();
     const struct estimate estimate =
         estimate_of("time: {end: 2, shedding_interval: 0.02, output_interval: 0.02}\n" FISH, 1e6);
@@ -51,6 +59,7 @@ static void a_wake_that_grows_costs_more_than_its_first_events(void **state) {
 
 static void a_long_wake_is_extrapolated_from_a_short_one(void **state) {
     (void)state;
+    NEEDS_TRUE_COSTS();
     // 200,000 vortices, of which whole events cost seconds; and a direct sum, which grows with the square of the number
     static const char *const texts[] = {
         "time: {end: 4000, shedding_interval: 0.02}\nwake: {lifetime: 4000}\nfish: [{nodes: 5, sheet_points: 9}]\n",
@@ -63,7 +72,8 @@ static void a_long_wake_is_extrapolated_from_a_short_one(void **state) {
         const struct estimate slow = estimate_of(texts[i], 1);
         print_message("%.3g s and %.3g MB after %.2g s, %.3g s and %.3g MB\n", quick.seconds, 1e-6 * quick.bytes, spent,
                       slow.seconds, 1e-6 * slow.bytes);
-        assert_true(spent < 0.5);
+        // far from the seconds of whole events: the time itself is that of the machine
+        assert_true(spent < 0.1 * slow.seconds);
         NEAR(log(quick.seconds / slow.seconds), 0, log(2), 0);
         NEAR(log(quick.bytes / slow.bytes), 0, log(1.5), 0);
     }
