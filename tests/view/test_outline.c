@@ -54,6 +54,30 @@ static void an_ellipse_stays_one(void **state) {
     }
 }
 
+// the half thickness over the angle is a sine times a slope that is even about nose and tail, as in a mirror
+static void an_egg_stays_one(void **state) {
+    (void)state;
+    double nodes[2 * MAX_NODES], thickness[MAX_NODES], half[MAX_NODES], polygon[2 * OUTLINE_SIDES];
+    for (int k = 0; k < MAX_NODES; k++) {
+        const double q = (double)k / (MAX_NODES - 1), angle = acos(1 - 2 * q);
+        nodes[2 * k] = q;
+        nodes[2 * k + 1] = 0;
+        half[k] = 0.1 * sin(angle) * (1 + 0.4 * cos(angle));
+        if (k > 0) thickness[k - 1] = half[k - 1] + half[k];
+    }
+    struct outline outline;
+    assert_int_equal(outline_create(&outline, MAX_NODES, thickness, false), STATUS_OK);
+    outline_polygon(&outline, nodes, polygon);
+    double worst = 0;
+    for (int i = 0; i < OUTLINE_POINTS; i++) {
+        const double angle = acos(1 - 2 * polygon[2 * i]);
+        worst = fmax(worst, fabs(polygon[2 * i + 1] - 0.1 * sin(angle) * (1 + 0.4 * cos(angle))));
+    }
+    print_message("egg: error %.1e\n", worst);
+    assert_true(worst < 5e-4);
+    outline_free(&outline);
+}
+
 static void the_middle_line_is_the_smooth_curve(void **state) {
     (void)state;
     // nodes on an arc of one radian: the curve of order 4 through 17 nodes is the circle to 1e-6
@@ -94,6 +118,7 @@ static void a_body_in_one_point_has_an_outline(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_ellipse_stays_one),
+        cmocka_unit_test(an_egg_stays_one),
         cmocka_unit_test(the_middle_line_is_the_smooth_curve),
         cmocka_unit_test(a_body_in_one_point_has_an_outline),
     };
