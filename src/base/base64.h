@@ -5,7 +5,8 @@
 #include <stddef.h>
 #include <stdio.h>
 
-/* Write n bytes to a stream in base 64 (RFC 4648, with padding). Failures are those of the stream: ferror tells. */
+/* Write n bytes to a stream in base 64 (RFC 4648, with padding). A failure sets the error indicator of the stream
+ * (ferror). */
 void base64_write(FILE *stream, size_t n, const void *bytes);
 
 #endif

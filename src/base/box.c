@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-// fmin and fmax are calls, and boxes are made often
+// fmin and fmax are function calls, too slow here
 static double smaller(double a, double b) {
     return b < a ? b : a;
 }
@@ -20,6 +20,7 @@ struct box box_around(int n, const double *x, const double *y) {
         box.high[0] = larger(box.high[0], x[i]);
         box.high[1] = larger(box.high[1], y[i]);
     }
+
     return box;
 }
 

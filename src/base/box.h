@@ -1,8 +1,8 @@
-/* box.h: rectangles with their sides along the axes. Tested by tests/base/test_box.c. */
+/* box.h: rectangles with sides along the axes. Tested by tests/base/test_box.c. */
 #ifndef BOX_H
 #define BOX_H
 
-/* m; that of no points has low INFINITY and high -INFINITY. */
+/* Corners, m; the box of no points has low INFINITY and high -INFINITY. */
 struct box {
     double low[2], high[2];
 };
@@ -10,14 +10,14 @@ struct box {
 /* The box around n points. */
 struct box box_around(int n, const double *x, const double *y);
 
-/* The box around both. */
+/* The box around two boxes. */
 struct box box_union(struct box a, struct box b);
 
 /* The box with a margin on every side, m. */
 struct box box_widen(struct box box, double margin);
 
-/* The gap between two boxes along x or along y, the wider one, m: at most 0 where they touch or overlap. No point of
- * one is nearer to a point of the other. */
+/* The larger of the gaps between two boxes along x and along y, m: at most 0 for boxes that touch or overlap. Lower
+ * bound of the distance between points of both boxes. */
 double box_gap(const struct box *a, const struct box *b);
 
 #endif

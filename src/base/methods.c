@@ -13,7 +13,7 @@ static const struct butcher_tableau euler = {
     NULL,
 };
 
-// the second stage is there for the embedded method, which is Heun's
+// the second stage serves the embedded method of Heun
 static const struct butcher_tableau euler_heun = {
     2, 1, 2,
     (const double[]){0, 1},

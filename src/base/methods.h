@@ -1,5 +1,5 @@
 /* methods.h: the integration methods: the words of solver.method, what each method can do, and the coefficients of the
- * Runge-Kutta methods. Who reads a case, integrates, or lists the methods looks here. Tested by
+ * Runge-Kutta methods. Used by the reader of cases, the integrators and the list of methods. Tested by
  * tests/base/test_methods.c. */
 #ifndef METHODS_H
 #define METHODS_H
@@ -19,7 +19,7 @@ enum method {
 };
 
 /* The Butcher tableau of an explicit Runge-Kutta method. The embedded method, of another order, gives the error of a
- * step; it is NULL, and its order 0, in a tableau for fixed steps only.
+ * step; a tableau for fixed steps only has embedded NULL and embedded_order 0.
  *
  *     c | a
  *     --+---------
@@ -29,19 +29,19 @@ enum method {
 struct butcher_tableau {
     int n_stages, order, embedded_order;
     const double *c;        /* (n_stages) */
-    const double *a;        /* row after row, zero from the diagonal on    (n_stages * n_stages) */
+    const double *a;        /* row-major, zero from the diagonal on    (n_stages * n_stages) */
     const double *b;        /* (n_stages) */
     const double *embedded; /* (n_stages) */
 };
 
-/* One method. A Runge-Kutta method has a tableau for each kind of steps that it takes. */
+/* One method. A Runge-Kutta method has a tableau for fixed steps, for adaptive steps, or both. */
 struct method_properties {
     const char *word; /* of solver.method */
-    int order;        /* of ida the highest: solver.order lowers it */
+    int order;        /* highest order of ida; reduced by solver.order */
     bool is_implicit;
     bool has_fixed_steps, has_adaptive_steps; /* with solver.step above 0; with 0 */
     const struct butcher_tableau *fixed, *adaptive;
-    const char *help; /* what it is, in a few words */
+    const char *help; /* short description */
 };
 
 /* In the order of enum method, and then the rows without a name. */

@@ -29,7 +29,7 @@ void parallel_for(int threads, int n, parallel_body *body, void *data) {
     for (int i = 0; i < n; i++) body(data, i);
 }
 
-// a thread that lives until all of them do
+// a thread that waits until all threads have started
 static void *hold(void *lock) {
     pthread_mutex_lock(lock);
     pthread_mutex_unlock(lock);
@@ -42,15 +42,18 @@ enum status parallel_try_threads(int threads) {
     pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
     pthread_mutex_lock(&lock);
     int n = 0, code = 0;
+
     while (n < threads - 1 && code == 0) {
         code = pthread_create(&started[n], NULL, hold, &lock);
         n += code == 0;
     }
+
     pthread_mutex_unlock(&lock);
     for (int i = 0; i < n; i++) pthread_join(started[i], NULL);
     free(started);
     if (code == 0) return STATUS_OK;
+
     return status_fail(STATUS_MEMORY,
-                       "%d of %d threads can be started (%s): choose fewer with --threads, or give them memory", n + 1,
+                       "%d of %d threads can be started (%s): reduce --threads or raise the memory limit", n + 1,
                        threads, strerror(code));
 }

@@ -1,5 +1,5 @@
 /* parallel_choice.c: trials of the number of threads, and the processors of the threads. */
-// for sets of processors, which only Linux has
+// for sets of processors, available on Linux only
 #define _GNU_SOURCE
 #include "base/parallel_choice.h"
 
@@ -14,9 +14,9 @@
 static const double window_time = 0.02;
 enum { WINDOW_STEPS = 3 };
 
-/* The first and the longest pause [s]; the shortest pause in units of its trial, because one thread on an idle machine
- * takes up to `threads` times as long; the ratio of times below which the choice changes; the share of a trial without
- * a processor above which the trial moves to other processors. */
+/* The first and the longest pause [s]; the shortest pause in units of the trial time, because one thread on an idle
+ * machine takes up to `threads` times as long; the ratio of times below which the choice changes; the share of a trial
+ * without a processor above which the trial moves to other processors. */
 static const double first_pause = 0.1, last_pause = 5, pause_of_trials = 30, worth = 0.95, waiting = 0.2;
 
 static double mean_time(const struct parallel_window *window) {
@@ -24,13 +24,13 @@ static double mean_time(const struct parallel_window *window) {
 }
 
 // the pause after a trial
-static void begin_pause(struct parallel_choice *choice, bool is_change) {
+static void pause_begin(struct parallel_choice *choice, bool is_change) {
     choice->pause = is_change ? first_pause : fmin(2 * choice->pause, last_pause);
     choice->rest = fmax(choice->pause, pause_of_trials * choice->window.time);
 }
 
-// Whether a trial of one thread has waited for its processor, and another part of the processors is worth a second try.
-static bool is_retried(const struct parallel_choice *choice) {
+// Whether a trial of one thread waited for a processor, so that another part of the processors deserves a second trial.
+static bool trial_is_repeated(const struct parallel_choice *choice) {
     const struct parallel_window *const window = &choice->window;
     return !choice->is_one && !choice->is_retry && window->time - window->processor_time > waiting * window->time;
 }
@@ -41,15 +41,16 @@ bool parallel_choice_note(struct parallel_choice *choice, double time, double pr
     window->time += time;
     window->processor_time += processor_time;
     choice->rest -= time;
+
     if (window->n_steps >= WINDOW_STEPS && window->time >= window_time) {
         if (choice->is_trial) {
             const bool is_faster = mean_time(window) < worth * mean_time(&choice->before);
-            choice->is_retry = !is_faster && is_retried(choice);
+            choice->is_retry = !is_faster && trial_is_repeated(choice);
             if (choice->is_retry) {
                 choice->part++;
             } else {
                 if (is_faster) choice->is_one = !choice->is_one;
-                begin_pause(choice, is_faster);
+                pause_begin(choice, is_faster);
                 choice->is_trial = false;
             }
         } else {
@@ -57,8 +58,10 @@ bool parallel_choice_note(struct parallel_choice *choice, double time, double pr
             if (choice->pause <= 0) choice->pause = choice->rest = first_pause;
             choice->is_trial = choice->rest <= 0;
         }
+
         *window = (struct parallel_window){0};
     }
+
     return choice->is_one != choice->is_trial;
 }
 
@@ -77,11 +80,13 @@ static cpu_set_t part_of_processors(int k) {
     cpu_set_t part;
     CPU_ZERO(&part);
     int i = 0;
+
     for (size_t cpu = 0; cpu < CPU_SETSIZE; cpu++) {
         if (!CPU_ISSET(cpu, &all_processors)) continue;
         if ((long)i * n_parts / count == k) CPU_SET(cpu, &part);
         i++;
     }
+
     return part;
 }
 

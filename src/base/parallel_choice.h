@@ -3,8 +3,8 @@
  *
  * If another program uses a core, a shared loop waits milliseconds for the thread on that core, and a run on all
  * threads is slower than a run on one. The load by other programs is unknown, so the run measures: a short window of
- * steps is a trial of the other choice, which is taken if its steps are faster. Trials repeat after pauses; the pause
- * doubles after each trial without a change. Results are independent of the choice.
+ * steps is a trial of the other choice, and the faster choice is taken. Trials repeat after pauses; the pause doubles
+ * after each trial without a change. Results are independent of the choice.
  *
  *     | steps, all threads | trial, one | steps, all threads                | trial, one | steps, one ...
  *        pause 0.1 s                       pause 0.2 s                       faster: the new choice */
@@ -16,7 +16,7 @@
 /* Consecutive steps. */
 struct parallel_window {
     int n_steps;
-    double time, processor_time; /* in total: wall clock, use of a processor by the thread that steps [s] */
+    double time, processor_time; /* in total: wall clock time, CPU time of the stepping thread [s] */
 };
 
 /* All zeros: all threads. */
@@ -30,7 +30,7 @@ struct parallel_choice {
     int levels;                            /* nested parallel regions outside the steps */
 };
 
-/* Add a step, with its wall time and its use of a processor [s]; returns whether the next step takes one thread. */
+/* Add a step with wall time and CPU time [s]; returns whether the next step takes one thread. */
 bool parallel_choice_note(struct parallel_choice *choice, double time, double processor_time);
 
 /* Begin and end a step of a run with this number of threads, both on the same thread. In between, parallel loops take
@@ -38,11 +38,11 @@ bool parallel_choice_note(struct parallel_choice *choice, double time, double pr
 void parallel_choice_begin(struct parallel_choice *choice, int threads);
 void parallel_choice_end(struct parallel_choice *choice, int threads);
 
-/* Give each thread of the process its own part of the processors that the process may use: a sleeping thread is easily
- * woken on the core of its waker, and stays there. A run on one thread is then free to use all processors; its trial is
- * repeated on another part if it has waited for a processor. No effect if the process may use fewer processors than
- * threads, or if the environment places threads (OMP_PROC_BIND, OMP_PLACES). Only for the program: a library leaves
- * the threads of its caller where they are. */
+/* Bind each thread of the process to a separate part of the available processors: the scheduler often wakes a sleeping
+ * thread on the core of the waking thread and keeps the thread there. A run on one thread may use all processors; a
+ * trial of one thread that waited for a processor is repeated on another part. No effect if the process has fewer
+ * processors than threads, or if the environment places threads (OMP_PROC_BIND, OMP_PLACES). Only for the program: the
+ * library does not move the threads of a caller. */
 void parallel_choice_spread(int threads);
 
 #endif

@@ -1,11 +1,11 @@
-/* quadrature.c: the zeros of Legendre's polynomials by Newton's method. */
+/* quadrature.c: the zeros of Legendre polynomials by Newton's method. */
 #include "base/quadrature.h"
 
 #include <math.h>
 
 static const double pi = 3.14159265358979323846;
 
-// P_n and its derivative at x, by the recurrence (i + 1) P_(i+1) = (2 i + 1) x P_i - i P_(i-1)
+// P_n and derivative of P_n at x, by the recurrence (i + 1) P_(i+1) = (2 i + 1) x P_i - i P_(i-1)
 static double legendre(int n, double x, double *slope) {
     double before = 1, value = x;
     for (int i = 1; i < n; i++) {
@@ -13,13 +13,14 @@ static double legendre(int n, double x, double *slope) {
         before = value;
         value = next;
     }
+
     *slope = n * (x * value - before) / (x * x - 1);
     return value;
 }
 
 void quadrature_legendre(int n, double *node, double *weight) {
     for (int i = 0; i < n; i++) {
-        // Tricomi's estimate is good to three figures at least: five iterations reach rounding
+        // Tricomi's estimate has at least three correct digits: five iterations converge to rounding
         double x = -cos(pi * (i + 0.75) / (n + 0.5)), slope = 1;
         for (int iteration = 0; iteration < 5; iteration++) x -= legendre(n, x, &slope) / slope;
         legendre(n, x, &slope);

@@ -1,4 +1,4 @@
-/* quadrature.h: Gauss-Legendre quadrature, and that over the steps of an integrator. Tested by
+/* quadrature.h: Gauss-Legendre quadrature, and quadrature over the steps of an integrator. Tested by
  * tests/base/test_quadrature.c. */
 #ifndef QUADRATURE_H
 #define QUADRATURE_H

@@ -1,4 +1,4 @@
-/* ramp.c: the smooth step and the ramps made of it. */
+/* ramp.c: the smooth step, and ramps in time. */
 #include "base/ramp.h"
 
 double ramp_step(double q) {

@@ -1,4 +1,4 @@
-/* ramp.h: a smooth step and the ramps made of it. doc/model.md, section 4. Tested by tests/base/test_ramp.c. */
+/* ramp.h: a smooth step, and ramps in time. doc/model.md, section 4. Tested by tests/base/test_ramp.c. */
 #ifndef RAMP_H
 #define RAMP_H
 
@@ -8,7 +8,7 @@ double ramp_step(double q);
 /* dS/dq. */
 double ramp_step_rate(double q);
 
-/* S(t / duration); 1 at all times where the duration is 0. */
+/* S(t / duration); 1 at all times if the duration is 0. */
 double ramp_value(double t, double duration);
 
 /* The derivative of ramp_value with respect to t. */

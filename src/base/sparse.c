@@ -14,10 +14,12 @@ enum status sparse_create(struct sparse **matrix, int first, int n) {
     new->masked = calloc((size_t)n, sizeof *new->masked);
     new->column_start = calloc((size_t)n + 1, sizeof *new->column_start);
     new->value = calloc(1, sizeof *new->value);
+
     if (!new->masked || !new->column_start || !new->value) {
         sparse_free(new);
         return status_fail(STATUS_MEMORY, "out of memory: a sparse matrix of order %d", n);
     }
+
     *matrix = new;
     return STATUS_OK;
 }
@@ -54,11 +56,13 @@ static int grow(struct sparse *matrix) {
     if (row) matrix->entry_row = row;
     int *column = realloc(matrix->entry_column, (size_t)capacity * sizeof *column);
     if (column) matrix->entry_column = column;
+
     // while recording, the array of slots holds the values
     int64_t *slot = realloc(matrix->slot, (size_t)capacity * sizeof *slot);
     if (slot) matrix->slot = slot;
     if (!row || !column || !slot) return 0;
     matrix->capacity = capacity;
+
     return 1;
 }
 
@@ -68,6 +72,7 @@ void sparse_record(struct sparse *matrix, int row, int column, double value) {
         matrix->out_of_memory = 1;
         return;
     }
+
     const int64_t i = matrix->n_entries++;
     matrix->entry_row[i] = row;
     matrix->entry_column[i] = column;
@@ -82,6 +87,7 @@ void sparse_begin(struct sparse *matrix) {
     } else {
         memset(matrix->value, 0, (size_t)(matrix->n_nonzeros + 1) * sizeof *matrix->value);
     }
+
     // the first entries of every pass are the ones of the masked rows
     matrix->n_masked = 0;
     for (int row = matrix->first; row < matrix->first + matrix->n; row++) {
@@ -95,8 +101,9 @@ static int is_kept(const struct sparse *matrix, int64_t entry) {
     return entry < matrix->n_masked || !sparse_is_masked(matrix, matrix->entry_row[entry]);
 }
 
-// the indices of the entries of unmasked rows, sorted by column, then row, by two counting sorts; returns their number
-static int64_t sort_entries(const struct sparse *matrix, int64_t *order, int64_t *by_row, int64_t *count) {
+// sort the indices of the entries of unmasked rows by column, then row, by two counting sorts; returns the number of
+// entries
+static int64_t entries_sort(const struct sparse *matrix, int64_t *order, int64_t *by_row, int64_t *count) {
     const int64_t n = matrix->n;
     int64_t n_sorted = 0;
     memset(count, 0, (size_t)(n + 1) * sizeof *count);
@@ -104,20 +111,23 @@ static int64_t sort_entries(const struct sparse *matrix, int64_t *order, int64_t
     for (int64_t r = 0; r < n; r++) count[r + 1] += count[r];
     for (int64_t i = 0; i < matrix->n_entries; i++) by_row[count[matrix->entry_row[i] - matrix->first]++] = i;
     memset(count, 0, (size_t)(n + 1) * sizeof *count);
+
     for (int64_t i = 0; i < matrix->n_entries; i++) {
         if (is_kept(matrix, i)) count[matrix->entry_column[i] - matrix->first + 1]++;
     }
+
     for (int64_t c = 0; c < n; c++) count[c + 1] += count[c];
     for (int64_t i = 0; i < matrix->n_entries; i++) {
         if (!is_kept(matrix, by_row[i])) continue;
         order[count[matrix->entry_column[by_row[i]] - matrix->first]++] = by_row[i];
         n_sorted++;
     }
+
     return n_sorted;
 }
 
-// give every distinct entry its place in the compressed columns, and every recorded addition its slot
-static enum status compile(struct sparse *matrix) {
+// assign a position in the compressed columns to every distinct entry, and a slot to every recorded addition
+static enum status record_compile(struct sparse *matrix) {
     const size_t n_entries = (size_t)matrix->n_entries + 1;
     int64_t *order = malloc(n_entries * sizeof *order), *by_row = malloc(n_entries * sizeof *by_row);
     int64_t *count = malloc(((size_t)matrix->n + 1) * sizeof *count);
@@ -131,7 +141,7 @@ static enum status compile(struct sparse *matrix) {
         status = status_fail(STATUS_MEMORY, "out of memory: %lld entries of a Jacobian", (long long)matrix->n_entries);
         goto done;
     }
-    const int64_t n_sorted = sort_entries(matrix, order, by_row, count);
+    const int64_t n_sorted = entries_sort(matrix, order, by_row, count);
     if (matrix->n_entries > 0) memcpy(recorded, matrix->slot, (size_t)matrix->n_entries * sizeof *recorded);
     free(matrix->row_index);
     free(matrix->value);
@@ -154,7 +164,7 @@ static enum status compile(struct sparse *matrix) {
     }
     for (int c = 0; c < matrix->n; c++) matrix->column_start[c + 1] += matrix->column_start[c];
     matrix->n_nonzeros = n_nonzeros;
-    // add in the recorded order, as a replay does, so that both have the same bits
+    // add in recorded order, as in a replay: recording and replay give the same bits
     for (int64_t i = 0; i < matrix->n_entries; i++) {
         if (matrix->slot[i] < 0) matrix->slot[i] = n_nonzeros;
         value[matrix->slot[i]] += recorded[i];
@@ -175,5 +185,5 @@ enum status sparse_end(struct sparse *matrix) {
         return STATUS_OK;
     }
     if (matrix->out_of_memory) return status_fail(STATUS_MEMORY, "out of memory: recording a Jacobian");
-    return compile(matrix);
+    return record_compile(matrix);
 }

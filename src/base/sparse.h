@@ -2,8 +2,8 @@
  * tests/base/test_sparse.c.
  *
  * The first pass after sparse_forget records the row and column of every addition; sparse_end builds the compressed
- * columns from the record. Later passes replay it: the i-th addition goes straight to its slot. So the order of the
- * additions must not depend on values; without NDEBUG, every addition of a replay is compared with the record.
+ * columns from the record. Later passes replay the record: the i-th addition goes directly to the recorded slot. The
+ * order of additions must not depend on values; without NDEBUG, every addition of a replay is compared with the record.
  *
  *     sparse_begin -> sparse_add, sparse_add, ... -> sparse_end -> column_start, row_index, value
  */
@@ -44,14 +44,14 @@ void sparse_free(struct sparse *matrix);
 /* Forget the pattern: the next pass records a new one. */
 void sparse_forget(struct sparse *matrix);
 
-/* A masked row is that of the identity: additions to it are ignored. After a change the next pass records. */
+/* A masked row is a row of the identity: additions to it are ignored. After a change the next pass records. */
 void sparse_mask(struct sparse *matrix, int row, int masked);
 int sparse_is_masked(const struct sparse *matrix, int row);
 
 /* Start a pass: all values become zero, except the ones of masked rows. */
 void sparse_begin(struct sparse *matrix);
 
-/* Add to one entry; sparse_record does so while recording. */
+/* Add a value to one entry; while recording, by sparse_record. */
 void sparse_record(struct sparse *matrix, int row, int column, double value);
 static inline void sparse_add(struct sparse *matrix, int row, int column, double value) {
     if (matrix->recording) {

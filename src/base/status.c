@@ -4,7 +4,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-// aligned as what follows it in the program: mold 1.10 can lay out a program that does not start where it is not
+// alignment of the next thread-local block: without this alignment mold 1.10 may produce a program that does not start
 static _Thread_local _Alignas(64) char message[65536];
 
 enum status status_fail(enum status status, const char *format, ...) {
@@ -15,6 +15,7 @@ enum status status_fail(enum status status, const char *format, ...) {
     vsnprintf(new_message, sizeof new_message, format, arguments);
     va_end(arguments);
     snprintf(message, sizeof message, "%s", new_message);
+
     return status;
 }
 
@@ -38,5 +39,6 @@ int status_exit_code(enum status status) {
         case STATUS_MEMORY: return 4;
         case STATUS_STOPPED: return 75;
     }
+
     return 1;
 }

@@ -1,8 +1,8 @@
-/* status.h: how errors are passed on. Tested by tests/base/test_status.c.
+/* status.h: error codes and messages. Tested by tests/base/test_status.c.
  *
  * Zero is success; positive means "retry with a smaller step"; negative is final. These are the signs that the
- * callbacks of SUNDIALS use, so a status passes through them unchanged. The place that knows the cause calls
- * status_fail with a sentence that a user can act on; everything above it uses TRY; only main prints. */
+ * callbacks of SUNDIALS use, so a status passes through a callback unchanged. The function that knows the cause calls
+ * status_fail with a sentence on which a user can act; callers use TRY; only main prints. */
 #ifndef STATUS_H
 #define STATUS_H
 
@@ -15,16 +15,16 @@ enum status {
     STATUS_SOLVER = -4,  /* the integration failed */
     STATUS_STOPPED = -5, /* a signal asked the run to stop */
     STATUS_MISSED = -6,  /* an expectation of the case is not met */
-    STATUS_CONTACT = -7  /* two bodies came together, and the case asks to stop then */
+    STATUS_CONTACT = -7  /* two bodies came together, and the case stops at contact */
 };
 
-/* Keep the message (printf format; long ones are cut) for this thread and return the status. */
+/* Store the message (printf format, truncated if too long) for this thread and return the status. */
 enum status status_fail(enum status status, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* The message of the last status_fail of this thread, or "". Valid until the next status_fail of this thread. */
 const char *status_message(void);
 
-/* Forget the message, so that a later failure without one is not explained by it. */
+/* Clear the message, so that a later failure without a message does not show an old message. */
 void status_clear(void);
 
 /* The exit code of the program for a status: 0, 1 (solver), 2 (case, usage), 3 (missed, contact), 4 (file, memory),

@@ -1,4 +1,4 @@
-/* text.c: strings that grow, and numbers without a locale. */
+/* text.c: growing strings, and numbers without a locale. */
 #include "base/text.h"
 
 #include <locale.h>
@@ -8,15 +8,17 @@
 #include <string.h>
 
 /* Reserve more bytes and a zero. */
-static bool grow(struct text *text, size_t more) {
+static bool text_reserve(struct text *text, size_t more) {
     if (text->failed) return false;
     if (text->length + more < text->capacity) return true;
     const size_t capacity = 2 * (text->length + more) + 64;
     char *const grown = realloc(text->text, capacity);
+
     if (!grown) {
         text->failed = true;
         return false;
     }
+
     text->text = grown;
     text->capacity = capacity;
     return true;
@@ -27,7 +29,7 @@ void text_add(struct text *text, const char *format, ...) {
     va_start(arguments, format);
     const int length = vsnprintf(NULL, 0, format, arguments);
     va_end(arguments);
-    if (length < 0 || !grow(text, (size_t)length)) return;
+    if (length < 0 || !text_reserve(text, (size_t)length)) return;
     va_start(arguments, format);
     vsnprintf(text->text + text->length, (size_t)length + 1, format, arguments);
     va_end(arguments);
@@ -39,6 +41,7 @@ void text_print_json(FILE *stream, const char *string) {
         fputs("null", stream);
         return;
     }
+
     fputc('"', stream);
     for (; *string; string++) {
         if ((unsigned char)*string < ' ') {
@@ -48,6 +51,7 @@ void text_print_json(FILE *stream, const char *string) {
             fputc(*string, stream);
         }
     }
+
     fputc('"', stream);
 }
 
@@ -57,6 +61,7 @@ void text_print_clean(FILE *stream, const char *string) {
         const bool is_second = c[0] == 0xc2 && c[1] >= 0x80 && c[1] < 0xa0;
         const bool is_control = (*c < ' ' && *c != '\n' && *c != '\t') || *c == 0x7f;
         if (is_second) fprintf(stream, "\\x%02x", *c++);
+
         if (is_second || is_control) {
             fprintf(stream, "\\x%02x", *c);
         } else {
@@ -85,10 +90,12 @@ void text_add_number(struct text *text, double number) {
     locale_t c_locale;
     const locale_t before = use_c_locale(&c_locale);
     char digits[40];
+
     for (int precision = 15; precision <= 17; precision++) {
         snprintf(digits, sizeof digits, "%.*g", precision, number);
         if (strtod(digits, NULL) == number) break;
     }
+
     restore_locale(before, c_locale);
     text_add(text, "%s", digits);
 }
@@ -100,25 +107,27 @@ static int skip_digits(const char **text) {
     return n;
 }
 
-/* True for a sign, digits with at most one point, and an exponent, of which sign and exponent are optional. */
-static bool is_number(const char *text) {
+/* True for an optional sign, digits with at most one point, and an optional exponent. */
+static bool text_is_number(const char *text) {
     if (*text == '+' || *text == '-') text++;
     int n = skip_digits(&text);
     if (*text == '.') {
         text++;
         n += skip_digits(&text);
     }
+
     if (n == 0) return false;
     if (*text == 'e' || *text == 'E') {
         text++;
         if (*text == '+' || *text == '-') text++;
         if (skip_digits(&text) == 0) return false;
     }
+
     return *text == '\0';
 }
 
 bool text_number(const char *text, double *number) {
-    if (!is_number(text)) return false;
+    if (!text_is_number(text)) return false;
     locale_t c_locale;
     const locale_t before = use_c_locale(&c_locale);
     *number = strtod(text, NULL);

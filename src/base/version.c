@@ -33,7 +33,7 @@ void version_libraries(char text[VERSION_LENGTH]) {
     lapack_int lapack[3];
     LAPACKE_ilaver(&lapack[0], &lapack[1], &lapack[2]);
 
-    // "4.9.0 of Aug  7 2022 23:41:41 $": the number is enough
+    // "4.9.0 of Aug  7 2022 23:41:41 $": print the number only
     const char *netcdf = nc_inq_libvers();
     const int netcdf_length = (int)strcspn(netcdf, " ");
 

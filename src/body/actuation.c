@@ -1,5 +1,5 @@
 /* actuation.c: phibar = a(t) A (lbar/l_ref) (c0 + c1 sigma + c2 sigma^2) (sin(beta sigma + omega t + phase) + phi0), or
- * a table in the place of the sine. */
+ * a table instead of the sine. */
 #include "body/actuation.h"
 
 #include <math.h>

@@ -1,16 +1,16 @@
-/* clamp.c: a joint of the rod whose one edge is given. */
+/* clamp.c: a joint of the rod with one given edge direction. */
 #include "body/clamp.h"
 
 #include "body/edge.h"
 #include "fish/fish_prescribed.h"
 
-// where the clamp is: edge 0, its angle with the given direction, and how fast that changes
+// state of the clamp: edge 0, the angle with the given direction, and the rate of the angle
 struct clamp {
     struct edge edge;
     struct bend bend;
     double angle_rate, given_rate; /* of the angle, and of the given direction, rad s-1 */
-    double moment;                 /* that takes the angle back, N m */
-    double by_angle, by_rate;      /* its derivatives */
+    double moment;                 /* restoring moment, N m */
+    double by_angle, by_rate;      /* derivatives of the moment */
 };
 
 static struct clamp clamp_at(const struct fish *fish, double t, const double *y) {
@@ -24,6 +24,7 @@ static struct clamp clamp_at(const struct fish *fish, double t, const double *y)
     clamp.moment = k * curvature * slope + d * slope * slope * clamp.angle_rate;
     clamp.by_angle = k * (slope * slope + curvature * second) + 2 * d * slope * second * clamp.angle_rate;
     clamp.by_rate = d * slope * slope;
+
     return clamp;
 }
 
@@ -42,12 +43,14 @@ void clamp_jacobian(const struct fish *fish, double t, const double *y, struct s
     const struct clamp clamp = clamp_at(fish, t, y);
     const struct edge *edge = &clamp.edge;
     const double l = edge->length, along = edge_dot(edge->rate, edge->t), across = edge_dot(edge->rate, edge->n);
+
     for (int row = 0; row < 4; row++) {
         const int node = row / 2, i = row % 2;
         for (int column = 0; column < 4; column++) {
             const int other = column / 2, j = column % 2;
             const double sign = (node == other ? 1 : -1) / (l * l * fish->mass[node]);
-            // the angle's gradient is n/l, its second derivative -(n t + t n)/l^2
+
+            // the gradient of the angle is n/l, the second derivative -(n t + t n)/l^2
             const double second = -(edge->n[i] * edge->t[j] + edge->t[i] * edge->n[j]);
             const double rate_by_place = -(along * edge->n[j] + across * edge->t[j]) / l;
             const double by_place = clamp.by_angle * edge->n[i] * edge->n[j] +

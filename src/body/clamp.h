@@ -1,27 +1,28 @@
-/* clamp.h: the joint at the nose of a body with a prescribed head, which holds the direction of edge 0. doc/model.md,
+/* clamp.h: the joint at the nose that holds the direction of edge 0 of a body with a prescribed head. doc/model.md,
  * section 2. Tested by tests/body/test_clamp.c.
  *
  *     given direction         edge 0
  *     - - - - - - - -  node 0 -------- node 1
  *                     angle phi_c
  *
- * All functions do nothing, or return 0, where a fish has no clamp. */
+ * For a fish without a clamp all functions do nothing or return 0. */
 #ifndef CLAMP_H
 #define CLAMP_H
 
 #include "base/sparse.h"
 #include "fish/fish.h"
 
-/* Take the forces of the clamp on the nodes 0 and 1 at time t off the rows ax, ay of the residual [N]. */
+/* Subtract the forces of the clamp on the nodes 0 and 1 at time t from the rows ax, ay of the residual [N]. */
 void clamp_residual(const struct fish *fish, double t, const double *y, double *residual);
 
-/* Add the derivatives of clamp_residual, each row divided by its node's mass. */
+/* Add the derivatives of clamp_residual, each row divided by the node mass. */
 void clamp_jacobian(const struct fish *fish, double t, const double *y, struct sparse *jacobian);
 
 /* Elastic energy, J. */
 double clamp_energy(const struct fish *fish, double t, const double *y);
 
-/* Powers, W: of its damping, never positive; and of the moment that turns the given direction, on the body. */
+/* Powers, W: of the damping of the clamp, never positive; and of the moment that turns the given direction, on the
+ * body. */
 double clamp_damping_power(const struct fish *fish, double t, const double *y);
 double clamp_driving_power(const struct fish *fish, double t, const double *y);
 

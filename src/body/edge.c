@@ -1,4 +1,4 @@
-/* edge.c: from the unknowns of two nodes to the edge between them. */
+/* edge.c: from the unknowns of two nodes to the edge between these nodes. */
 #include "body/edge.h"
 
 #include <math.h>
@@ -8,15 +8,18 @@ struct edge edge_at(const struct fish *fish, int k, const double *y) {
     const double *const vx = y + fish->at.vx + k, *const vy = y + fish->at.vy + k;
     const double *const ax = y + fish->at.ax + k, *const ay = y + fish->at.ay + k;
     const double e[2] = {x[1] - x[0], z[1] - z[0]};
+
     struct edge edge = {.length = sqrt(e[0] * e[0] + e[1] * e[1]),
                         .middle = {(x[0] + x[1]) / 2, (z[0] + z[1]) / 2},
                         .velocity = {(vx[0] + vx[1]) / 2, (vy[0] + vy[1]) / 2},
                         .acceleration = {(ax[0] + ax[1]) / 2, (ay[0] + ay[1]) / 2},
                         .rate = {vx[1] - vx[0], vy[1] - vy[0]}};
+
     edge.t[0] = e[0] / edge.length;
     edge.t[1] = e[1] / edge.length;
     edge.n[0] = -edge.t[1];
     edge.n[1] = edge.t[0];
+
     return edge;
 }
 

@@ -1,4 +1,4 @@
-/* edge.h: the frame of an edge of a body and how the edge moves. doc/model.md, sections 2 and 9. Tested by
+/* edge.h: frame and motion of an edge of a body. doc/model.md, sections 2 and 9. Tested by
  * tests/body/test_edge.c. */
 #ifndef EDGE_H
 #define EDGE_H
@@ -8,8 +8,8 @@
 /* From node k to node k+1. */
 struct edge {
     double length, t[2], n[2];                      /* m; unit tangent and normal, n = E3 x t */
-    double middle[2], velocity[2], acceleration[2]; /* of its midpoint: m, m s-1, m s-2 */
-    double rate[2];                                 /* velocity of node k+1 less that of node k, m s-1 */
+    double middle[2], velocity[2], acceleration[2]; /* of the midpoint: m, m s-1, m s-2 */
+    double rate[2];                                 /* velocity of node k+1 minus velocity of node k, m s-1 */
 };
 
 /* Edge k of a fish for the unknowns y. */
@@ -20,8 +20,8 @@ double edge_turn_rate(const struct edge *edge);
 
 double edge_dot(const double a[2], const double b[2]);
 
-/* The angle between two unit vectors, from before to after, and the measure of curvature that the body's joints have:
- * kappa = 2 tan(angle/2), with its first and second derivative by the angle. */
+/* The curvature kappa = 2 tan(angle/2) of a joint between the unit vectors before and after, with first and second
+ * derivative by the angle from before to after. */
 struct bend {
     double curvature, slope, second;
 };

@@ -1,11 +1,11 @@
-/* rod.c: every joint and every edge by itself: its local geometry, then energy, force, derivative. */
+/* rod.c: for every joint and every edge: local geometry, then energy, force and derivative. */
 #include "body/rod.h"
 
 #include <math.h>
 
 #include "body/edge.h"
 
-// a joint: turning angle, its gradient and rate, the curvature and its derivatives with respect to the angle
+// a joint: gradient and rate of the turning angle, curvature and derivatives of the curvature by the angle
 enum { N_LOCAL = 6 };  // coordinates of the joint's three nodes: x, y of each in turn
 struct joint {
     struct edge before, after;
@@ -18,21 +18,24 @@ static struct joint joint_at(const struct fish *fish, int j, const double *y) {
     struct joint joint = {.before = edge_at(fish, j, y), .after = edge_at(fish, j + 1, y)};
     const struct edge *a = &joint.before, *b = &joint.after;
     joint.bend = edge_bend(a->t, b->t);
+
     for (int i = 0; i < 2; i++) {
         joint.gradient[i] = a->n[i] / a->length;
         joint.gradient[4 + i] = b->n[i] / b->length;
         joint.gradient[2 + i] = -joint.gradient[i] - joint.gradient[4 + i];
     }
+
     joint.angle_rate = edge_turn_rate(b) - edge_turn_rate(a);
     return joint;
 }
 
-// the second derivative of the turning angle: that of an edge's direction is -(n t + t n)/l^2
+// second derivative of the turning angle; the second derivative of an edge direction is -(n t + t n)/l^2
 static void joint_hessian(const struct joint *joint, double hessian[N_LOCAL][N_LOCAL]) {
     const struct edge *const edges[2] = {&joint->before, &joint->after};
     for (int i = 0; i < N_LOCAL; i++) {
         for (int k = 0; k < N_LOCAL; k++) hessian[i][k] = 0;
     }
+
     for (int side = 0; side < 2; side++) {
         const struct edge *edge = edges[side];
         const double sign = side == 0 ? 1 : -1;
@@ -54,7 +57,7 @@ static double elastic_moment(const struct fish *fish, int j, double curvature, d
     return fish->bending_stiffness[j] * (curvature - natural_curvature) / fish->edge_length;
 }
 
-// the part of the rate of curvature that is not damped: that of the natural curvature, where the strain is damped
+// the undamped part of the rate of curvature: the rate of natural curvature if damping acts on the strain
 static double undamped_rate(const struct fish *fish, const struct actuation *muscle, int j) {
     return fish->damping == DAMPING_STRAIN ? muscle->rate[j] : 0;
 }
@@ -73,10 +76,12 @@ void rod_residual(const struct fish *fish, const struct actuation *muscle, const
             d * joint.bend.slope * joint.bend.slope * joint.angle_rate - d * joint.bend.slope * undamped;
         for (int i = 0; i < N_LOCAL; i++) force[i % 2][j + i / 2] += (elastic + damping) * joint.gradient[i];
     }
+
     for (int k = 0; k < fish->n_edges; k++) {
         const struct edge edge = edge_at(fish, k, y);
         const double elastic = fish->axial_stiffness[k] * (edge.length / fish->edge_length - 1);
         const double damping = fish->axial_damping[k] * edge_dot(edge.t, edge.rate);
+
         for (int i = 0; i < 2; i++) {
             force[i][k] -= (elastic + damping) * edge.t[i];
             force[i][k + 1] += (elastic + damping) * edge.t[i];
@@ -94,14 +99,17 @@ static void joint_jacobian(const struct fish *fish, int j, const struct actuatio
     const double undamped = undamped_rate(fish, muscle, j);
     const double first = moment * joint.bend.slope + d * joint.bend.slope * joint.bend.slope * joint.angle_rate -
                          d * joint.bend.slope * undamped;
+
     const double second = stiffness * joint.bend.slope * joint.bend.slope + moment * joint.bend.second +
                           2 * d * joint.bend.slope * joint.bend.second * joint.angle_rate -
                           d * joint.bend.second * undamped;
+
     const double rate = d * joint.bend.slope * joint.bend.slope;
     const double undamped_by_phi0 = fish->damping == DAMPING_STRAIN ? muscle->rate_by_phi0[j] : 0;
     const double by_phi0 =
         -(stiffness * joint.bend.slope * muscle->curvature_by_phi0[j] + d * joint.bend.slope * undamped_by_phi0);
-    // derivative of the angle's rate with respect to positions: hessian times velocity
+
+    // derivative of the angle rate by positions: hessian times velocity
     for (int i = 0; i < N_LOCAL; i++) {
         turned[i] = 0;
         for (int k = 0; k < N_LOCAL; k++) {
@@ -109,6 +117,7 @@ static void joint_jacobian(const struct fish *fish, int j, const struct actuatio
             turned[i] += hessian[i][k] * y[velocity];
         }
     }
+
     for (int i = 0; i < N_LOCAL; i++) {
         const int node = j + i / 2, row = (i % 2 == 0 ? fish->at.ax : fish->at.ay) + node;
         const double *b = joint.gradient;
@@ -119,6 +128,7 @@ static void joint_jacobian(const struct fish *fish, int j, const struct actuatio
             sparse_add(jacobian, row, (k % 2 == 0 ? fish->at.vx : fish->at.vy) + other,
                        rate * b[i] * b[k] / fish->mass[node]);
         }
+
         sparse_add(jacobian, row, fish->at.phi0, by_phi0 * b[i] / fish->mass[node]);
     }
 }
@@ -129,6 +139,7 @@ static void edge_jacobian(const struct fish *fish, int k, const double *y, struc
     const double tension =
         fish->axial_stiffness[k] * (edge.length / fish->edge_length - 1) + fish->axial_damping[k] * stretch_rate;
     const double stiffness = fish->axial_stiffness[k] / fish->edge_length;
+
     for (int i = 0; i < 4; i++) {
         const int node = k + i / 2, row = (i % 2 == 0 ? fish->at.ax : fish->at.ay) + node;
         for (int m = 0; m < 4; m++) {
@@ -159,9 +170,10 @@ void rod_strains(const struct fish *fish, const struct actuation *muscle, const 
         to->strain[j] = joint.bend.curvature - muscle->curvature[j];
         to->rate[j] = joint.bend.slope * joint.angle_rate - undamped_rate(fish, muscle, j);
         to->stress[j] = elastic_moment(fish, j, joint.bend.curvature, muscle->curvature[j]);
-        // what damps the curvature alone lies beside the muscle, not in its path
+        // curvature damping acts in parallel to the muscle, strain damping in series
         if (fish->damping == DAMPING_STRAIN) to->stress[j] += fish->bending_damping[j] * to->rate[j];
     }
+
     for (int k = 0; k < fish->n_edges; k++) {
         const struct edge edge = edge_at(fish, k, y);
         const int i = fish->n_joints + k;
@@ -205,6 +217,7 @@ int rod_shortest_edge(const struct fish *fish, const double *y, double *ratio) {
         *ratio = here;
         shortest = k;
     }
+
     return shortest;
 }
 
@@ -218,6 +231,7 @@ int rod_sharpest_joint(const struct fish *fish, const double *y, double *turn) {
         *turn = here;
         sharpest = k;
     }
+
     return sharpest;
 }
 
@@ -234,5 +248,6 @@ double rod_damping_power(const struct fish *fish, const double *rate) {
         const double of_edge = rate[fish->n_joints + k];
         power -= fish->axial_damping[k] * of_edge * of_edge;
     }
+
     return power;
 }

@@ -1,4 +1,4 @@
-/* rod_stress.c: running sums from the tail; joint by joint and edge by edge, an exponential. */
+/* rod_stress.c: running sums from the tail; an exponential integrator for every joint and edge. */
 #include "body/rod_stress.h"
 
 #include <math.h>
@@ -11,7 +11,7 @@ void rod_stress_balance(const struct fish *fish, const double *residue, const do
     double force[2] = {0, 0}, couple = 0;
     struct edge edge = edge_at(fish, fish->n_edges - 1, y);
     for (int k = fish->n_edges - 1; k + 1 >= fish_n_prescribed(fish); k--) {
-        // of all nodes behind node k: the sum, and the moment about node k
+        // sum over all nodes behind node k, and moment about node k
         for (int i = 0; i < 2; i++) force[i] += residue[edge_acceleration(fish, i, k + 1)];
         couple += edge.length * edge_dot(edge.n, force);
         tension[k] -= edge_dot(edge.t, force);
@@ -41,13 +41,16 @@ static void exponential_integrals(double r, double phi[3]) {
         phi[2] = (0.5 - phi[1]) / r;
         return;
     }
-    // the series of the last one, sum over i of (-r)^i/(i + 3)!, and back
+
+    // the series of phi[2], sum over i of (-r)^i/(i + 3)!, then phi[1] and phi[0] by recursion
     double term = 1.0 / 6;
     phi[2] = 0;
+
     for (int i = 0; i < 12; i++) {
         phi[2] += term;
         term *= -r / (i + 4);
     }
+
     phi[1] = 0.5 - r * phi[2];
     phi[0] = 1 - r * phi[1];
 }
@@ -60,6 +63,7 @@ void rod_stress_creep(const struct fish *fish, double h, double g, const double 
             strain[i] = now[i] / material.stiffness;
             continue;
         }
+
         // the stress at the part q of the step is before + linear q + square q (q - 1)
         const double linear = now[i] - before[i];
         const double square = g > 0 ? (linear - (before[i] - oldest[i]) * h / g) * h / (h + g) : 0;
@@ -76,7 +80,7 @@ void rod_stress_rates(const struct fish *fish, const double *strain, const doubl
         const struct material material = material_of(fish, i);
         const double damped = stress[i] - material.stiffness * strain[i];
         rate[i] = material.damping > 0 ? damped / material.damping : 0;
-        // of an edge in m s-1
+        // the rate of an edge is in m s-1
         if (i >= fish->n_joints) rate[i] *= fish->edge_length;
     }
 }

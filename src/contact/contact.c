@@ -1,4 +1,4 @@
-/* contact.c: who is near whom, and the potential between the edges of two bodies with its derivatives. */
+/* contact.c: pairs in contact, and the potential between the edges of two bodies with derivatives. */
 #include "contact/contact.h"
 
 #include <math.h>
@@ -12,15 +12,15 @@
 
 struct contact {
     const struct school *school;
-    struct neighbours *neighbours; /* NULL: nobody repels anybody */
+    struct neighbours *neighbours; /* NULL: no repulsion between bodies */
     int *first;                    /* the partners of each fish in other                       (n_fish + 1) */
     int *other;
-    unsigned char *is_near; /* whether the overlaps of neighbours->other are partners, or may be */
-    int capacity;           /* of these two */
+    unsigned char *is_near; /* whether the overlaps of neighbours->other are (possible) partners */
+    int capacity;           /* of other and is_near */
     double *between;        /* scratch                                                   (n_unknowns) */
 };
 
-static enum status allocate(struct contact *contact) {
+static enum status contact_allocate(struct contact *contact) {
     const struct school *school = contact->school;
     contact->first = calloc((size_t)school->n_fish + 1, sizeof *contact->first);
     contact->between = calloc((size_t)school->n_unknowns, sizeof *contact->between);
@@ -34,11 +34,13 @@ enum status contact_create(struct contact **contact, const struct school *school
     struct contact *const new = calloc(1, sizeof *new);
     if (!new) return status_fail(STATUS_MEMORY, "out of memory: contacts");
     new->school = school;
-    const enum status status = allocate(new);
+    const enum status status = contact_allocate(new);
+
     if (status != STATUS_OK) {
         contact_free(new);
         return status;
     }
+
     *contact = new;
     return STATUS_OK;
 }
@@ -53,33 +55,36 @@ void contact_free(struct contact *contact) {
     free(contact);
 }
 
-// ---- who is near whom
+// ---- pairs in contact
 
-// whether all of a body is where it is told to be
+// whether the motion of the whole body is prescribed
 static int is_given(const struct fish *fish) {
     return fish_is_prescribed(fish, fish->n_nodes - 1, 0);
 }
 
-// whether fish f and g are in contact in y; they must not touch on the way there
-static enum status compare(const struct contact *contact, const struct state *state, double t, const double *y, int f,
-                           int g, unsigned char *is_near) {
+// whether fish f and g are in contact at y; fails if the bodies touch on the way to y
+static enum status pair_compare(const struct contact *contact, const struct state *state, double t, const double *y,
+                                int f, int g, unsigned char *is_near) {
     const struct fish *const a = &contact->school->fish[f], *const b = &contact->school->fish[g];
     const double range = contact->school->contact_range;
     *is_near = 0;
-    // nothing keeps apart what is moved by force
+
+    // repulsion cannot separate two prescribed bodies
     if (is_given(a) && is_given(b)) return STATUS_OK;
     const struct passage passage = clearance_passage(a, b, state->closest->before, y, range, contact->between);
     *is_near = passage.now < range;
     if (passage.least > 0) return STATUS_OK;
+
     return status_fail(STATUS_RETRY, "the bodies of %s and %s touch or cross before t = %.10g s", a->name, b->name, t);
 }
 
-// who may be in contact of those whose boxes overlap
-static void find_near(const struct contact *contact, const struct state *state, const double *y) {
+// possible partners among the fish with overlapping boxes
+static void partners_find(const struct contact *contact, const struct state *state, const double *y) {
     const struct neighbours *const neighbours = contact->neighbours;
     const struct school *const school = contact->school;
     const double *const before = state->closest->before, range = school->contact_range;
     const int threads = fish_threads(school);
+
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 4)
     for (int f = 0; f < school->n_fish; f++) {
         for (int i = neighbours->first[f]; i < neighbours->first[f + 1]; i++) {
@@ -91,15 +96,15 @@ static void find_near(const struct contact *contact, const struct state *state, 
     }
 }
 
-// what is known of fish g and f where g < f
-static unsigned char seen_before(const struct contact *contact, int f, int g) {
+// the result for the pair (g, f), g < f, found before
+static unsigned char pair_is_near(const struct contact *contact, int f, int g) {
     const struct neighbours *const neighbours = contact->neighbours;
     int i = neighbours->first[g];
     while (neighbours->other[i] != f) i++;
     return contact->is_near[i];
 }
 
-static enum status reserve(struct contact *contact, int capacity) {
+static enum status partners_reserve(struct contact *contact, int capacity) {
     if (capacity <= contact->capacity) return STATUS_OK;
     int *const other = realloc(contact->other, (size_t)capacity * sizeof *other);
     if (other) contact->other = other;
@@ -107,11 +112,12 @@ static enum status reserve(struct contact *contact, int capacity) {
     if (is_near) contact->is_near = is_near;
     if (!other || !is_near) return status_fail(STATUS_MEMORY, "out of memory: contacts");
     contact->capacity = capacity;
+
     return STATUS_OK;
 }
 
-// nodes go straight, so a body that is between the walls at both ends of a step has been there all the way
-static enum status compare_with_walls(const struct contact *contact, double t, const double *y) {
+// node paths are straight: a body between the walls at both ends of a step is between the walls during the step
+static enum status walls_compare(const struct contact *contact, double t, const double *y) {
     const struct school *const school = contact->school;
     for (int f = 0; school->walls.n > 0 && f < school->n_fish; f++) {
         if (fish_wall_distance(school, &school->fish[f], y) > 0) continue;
@@ -122,27 +128,31 @@ static enum status compare_with_walls(const struct contact *contact, double t, c
 
 enum status contact_find(struct contact *contact, const struct state *state, double t, const double *y) {
     struct neighbours *const neighbours = contact->neighbours;
-    TRY(compare_with_walls(contact, t, y));
+    TRY(walls_compare(contact, t, y));
     if (!neighbours) return STATUS_OK;
     const int n_fish = contact->school->n_fish, threads = fish_threads(contact->school);
+
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < n_fish; f++) {
         neighbours->box[f] =
             clearance_box(&contact->school->fish[f], contact->school->contact_range, state->closest->before, y);
     }
+
     TRY(neighbours_find(neighbours));
-    TRY(reserve(contact, neighbours->capacity));
-    find_near(contact, state, y);
+    TRY(partners_reserve(contact, neighbours->capacity));
+    partners_find(contact, state, y);
     int n = 0;
+
     for (int f = 0; f < n_fish; f++) {
         contact->first[f] = n;
         for (int i = neighbours->first[f]; i < neighbours->first[f + 1]; i++) {
             const int g = neighbours->other[i];
-            if (g < f) contact->is_near[i] = seen_before(contact, f, g);
-            if (g > f && contact->is_near[i]) TRY(compare(contact, state, t, y, f, g, &contact->is_near[i]));
+            if (g < f) contact->is_near[i] = pair_is_near(contact, f, g);
+            if (g > f && contact->is_near[i]) TRY(pair_compare(contact, state, t, y, f, g, &contact->is_near[i]));
             if (contact->is_near[i]) contact->other[n++] = g;
         }
     }
+
     contact->first[n_fish] = n;
     return STATUS_OK;
 }
@@ -154,8 +164,8 @@ int contact_partners(const struct contact *contact, int f, const int **other) {
 
 // ---- one point above one edge
 
-/* Node 0 is the point, nodes 1 and 2 are the ends of the edge. The distance changes with their places by gradient and
- * bend, its first and second derivatives. */
+/* Node 0 is the point, nodes 1 and 2 are the ends of the edge. gradient and bend: first and second derivatives of the
+ * distance by the node positions. */
 struct touch {
     int fish[3], node[3];
     double energy, slope, curvature; /* of the potential by the distance, J, N, N m-1 */
@@ -164,7 +174,7 @@ struct touch {
 };
 
 // energy of a gap below the range and its derivatives: strength range (1 - s)^3/s with s = gap/range
-static void potential(double gap, double range, double strength, struct touch *touch) {
+static void gap_potential(double gap, double range, double strength, struct touch *touch) {
     const double s = gap / range;
     touch->energy = strength * range * (1 - s) * (1 - s) * (1 - s) / s;
     touch->slope = strength * (3 - 2 * s - 1 / (s * s));
@@ -172,17 +182,21 @@ static void potential(double gap, double range, double strength, struct touch *t
 }
 
 // the derivatives of the distance from the edge e to the point at r from its first end, at the fraction q of the edge
-static void differentiate(const double r[2], const double e[2], double q, double distance, struct touch *touch) {
+static void distance_derivatives(const double r[2], const double e[2], double q, double distance, struct touch *touch) {
     const double square = e[0] * e[0] + e[1] * e[1];
     const double n[2] = {(r[0] - q * e[0]) / distance, (r[1] - q * e[1]) / distance}, t[2] = {-n[1], n[0]};
     const double part[3] = {1, q - 1, -q};
-    // beside the edge the normal turns with it, and the nearest point slides; at an end the normal turns with the point
+
+    // beside the edge the normal turns with the edge, and the nearest point slides; at an end the normal turns with the
+    // point
     const int beside = q > 0 && q < 1;
     const double turn[3] = {0, -1, 1};
-    const double length = (e[0] * t[0] + e[1] * t[1]);  // with a sign: that of the direction t
+    const double length = (e[0] * t[0] + e[1] * t[1]);  // signed: positive along t
+
     for (int i = 0; i < 3; i++) {
         for (int c = 0; c < 2; c++) touch->gradient[2 * i + c] = part[i] * n[c];
     }
+
     for (int i = 0; i < 6; i++) {
         for (int j = 0; j < 6; j++) {
             const double a = part[i / 2], b = part[j / 2], u = turn[i / 2], v = turn[j / 2];
@@ -194,7 +208,7 @@ static void differentiate(const double r[2], const double e[2], double q, double
     }
 }
 
-// what is done with each touch of two bodies
+// function called for each touch of two bodies
 typedef void visit(void *data, const struct touch *touch);
 
 struct pair {
@@ -204,8 +218,8 @@ struct pair {
     const double *y;
 };
 
-// the end of edge i of one body above edge j of the other
-static void find_touch(const struct pair *pair, int one, int node, int i, int j, visit *visitor, void *data) {
+// visit the end of edge i of one body above edge j of the other, if the gap is below the range
+static void touch_visit(const struct pair *pair, int one, int node, int i, int j, visit *visitor, void *data) {
     const struct fish *const fish = pair->fish[one], *const other = pair->fish[1 - one];
     const double *const y = pair->y;
     const double a[2] = {y[other->at.x + j], y[other->at.y + j]};
@@ -218,34 +232,38 @@ static void find_touch(const struct pair *pair, int one, int node, int i, int j,
     if (gap >= pair->range) return;
     struct touch touch = {.fish = {pair->number[one], pair->number[1 - one], pair->number[1 - one]},
                           .node = {node, j, j + 1}};
-    potential(gap, pair->range, pair->strength / 4, &touch);
-    differentiate(r, e, q, distance, &touch);
+    gap_potential(gap, pair->range, pair->strength / 4, &touch);
+    distance_derivatives(r, e, q, distance, &touch);
     visitor(data, &touch);
 }
 
-// every touch of two bodies, always in the same order
+// visit every touch of two bodies, in a fixed order
 static void each_touch(const struct contact *contact, int f, int g, const double *y, visit *visitor, void *data) {
     const int number[2] = {f < g ? f : g, f < g ? g : f};
     const struct fish *const a = &contact->school->fish[number[0]], *const b = &contact->school->fish[number[1]];
     const double both = a->contact_strength + b->contact_strength;
+
     const struct pair pair = {{a, b},
                               {number[0], number[1]},
                               contact->school->contact_range,
                               a->contact_strength * b->contact_strength / both,
                               y};
+
     for (int i = 0; i < a->n_edges; i++) {
         const double p[2] = {y[a->at.x + i], y[a->at.y + i]};
         const double length = fabs(y[a->at.x + i + 1] - p[0]) + fabs(y[a->at.y + i + 1] - p[1]);
         for (int j = 0; j < b->n_edges; j++) {
             const double r[2] = {y[b->at.x + j], y[b->at.y + j]};
             const double other = fabs(y[b->at.x + j + 1] - r[0]) + fabs(y[b->at.y + j + 1] - r[1]);
-            // no point of an edge is further from its first node than it is long
+
+            // every point of an edge is within the edge length of the first node
             const double reach = length + other + (a->thickness[i] + b->thickness[j]) / 2 + pair.range;
             const double dx = r[0] - p[0], dy = r[1] - p[1];
             if (dx * dx + dy * dy > reach * reach) continue;
+
             for (int end = 0; end < 2; end++) {
-                find_touch(&pair, 0, i + end, i, j, visitor, data);
-                find_touch(&pair, 1, j + end, j, i, visitor, data);
+                touch_visit(&pair, 0, i + end, i, j, visitor, data);
+                touch_visit(&pair, 1, j + end, j, i, visitor, data);
             }
         }
     }
@@ -269,14 +287,14 @@ static void each_wall_touch(const struct contact *contact, int f, const double *
         const double gap = inward * (y[fish->at.y + node] - school->walls.y[wall]) - fish->thickness[edge] / 2;
         if (gap >= school->contact_range) continue;
         struct touch touch;
-        potential(gap, school->contact_range, fish->contact_strength / 2, &touch);
+        gap_potential(gap, school->contact_range, fish->contact_strength / 2, &touch);
         visitor(data, &(struct wall_touch){node, touch.energy, touch.slope, touch.curvature, inward});
     }
 }
 
 // ---- the terms
 
-// of one fish
+// sums over the contacts of one fish
 struct sums {
     const struct contact *contact;
     int f;
@@ -286,7 +304,7 @@ struct sums {
     struct contact_forces on;
 };
 
-static void add_force(void *data, const struct touch *touch) {
+static void force_add(void *data, const struct touch *touch) {
     struct sums *const sums = data;
     const struct layout *const at = &sums->contact->school->fish[sums->f].at;
     for (int i = 0; i < 3; i++) {
@@ -296,7 +314,7 @@ static void add_force(void *data, const struct touch *touch) {
     }
 }
 
-static void add_wall_force(void *data, const struct wall_touch *touch) {
+static void wall_force_add(void *data, const struct wall_touch *touch) {
     struct sums *const sums = data;
     const struct layout *const at = &sums->contact->school->fish[sums->f].at;
     sums->value[at->ay + touch->node] += touch->slope * touch->inward;
@@ -304,9 +322,9 @@ static void add_wall_force(void *data, const struct wall_touch *touch) {
 
 void contact_residual(const struct contact *contact, int f, const double *y, double *value) {
     struct sums sums = {.contact = contact, .f = f, .value = value};
-    each_wall_touch(contact, f, y, add_wall_force, &sums);
+    each_wall_touch(contact, f, y, wall_force_add, &sums);
     for (int i = contact->first[f]; i < contact->first[f + 1]; i++) {
-        each_touch(contact, f, contact->other[i], y, add_force, &sums);
+        each_touch(contact, f, contact->other[i], y, force_add, &sums);
     }
 }
 
@@ -316,10 +334,11 @@ struct block {
     struct coupling_block *rows;
 };
 
-static void add_derivative(void *data, const struct touch *touch) {
+static void derivative_add(void *data, const struct touch *touch) {
     const struct block *const block = data;
     const struct fish *const fish = &block->contact->school->fish[block->f];
     const struct fish *const other = &block->contact->school->fish[block->g];
+
     for (int i = 0; i < 6; i++) {
         if (touch->fish[i / 2] != block->f) continue;
         const int node = touch->node[i / 2], row = i % 2 * fish->n_nodes + node;
@@ -333,7 +352,7 @@ static void add_derivative(void *data, const struct touch *touch) {
     }
 }
 
-static void add_wall_derivative(void *data, const struct wall_touch *touch) {
+static void wall_derivative_add(void *data, const struct wall_touch *touch) {
     const struct block *const block = data;
     const struct fish *const fish = &block->contact->school->fish[block->f];
     const int place = fish->n_nodes + touch->node;
@@ -342,21 +361,21 @@ static void add_wall_derivative(void *data, const struct wall_touch *touch) {
 
 void contact_jacobian(const struct contact *contact, int f, int g, const double *y, struct coupling_block *rows) {
     struct block block = {contact, f, g, rows};
-    if (f == g) each_wall_touch(contact, f, y, add_wall_derivative, &block);
+    if (f == g) each_wall_touch(contact, f, y, wall_derivative_add, &block);
     for (int i = contact->first[f]; i < contact->first[f + 1]; i++) {
         const int other = contact->other[i];
-        if (f == g || other == g) each_touch(contact, f, other, y, add_derivative, &block);
+        if (f == g || other == g) each_touch(contact, f, other, y, derivative_add, &block);
     }
 }
 
-// a force on a node of the own body
+// add a force on a node of fish f
 static void add_to_forces(struct sums *sums, int node, const double force[2]) {
     const struct layout *const at = &sums->contact->school->fish[sums->f].at;
     for (int c = 0; c < 2; c++) sums->on.force[c] += force[c];
     sums->on.moment += sums->y[at->x + node] * force[1] - sums->y[at->y + node] * force[0];
 }
 
-static void add_sums(void *data, const struct touch *touch) {
+static void sums_add(void *data, const struct touch *touch) {
     struct sums *const sums = data;
     sums->energy += touch->energy / 2;
     for (int i = 0; i < 3; i++) {
@@ -369,8 +388,8 @@ static void add_sums(void *data, const struct touch *touch) {
     }
 }
 
-// a wall does not move: what it takes from the body is its energy, all of which counts as the body's
-static void add_wall_sums(void *data, const struct wall_touch *touch) {
+// a wall is at rest and exchanges no power; the body holds the full energy of the contact
+static void wall_sums_add(void *data, const struct wall_touch *touch) {
     struct sums *const sums = data;
     sums->energy += touch->energy;
     add_to_forces(sums, touch->node, (const double[2]){0, -touch->slope * touch->inward});
@@ -378,9 +397,9 @@ static void add_wall_sums(void *data, const struct wall_touch *touch) {
 
 static struct sums sums_of(const struct contact *contact, int f, const double *y) {
     struct sums sums = {.contact = contact, .f = f, .y = y};
-    each_wall_touch(contact, f, y, add_wall_sums, &sums);
+    each_wall_touch(contact, f, y, wall_sums_add, &sums);
     for (int i = contact->first[f]; i < contact->first[f + 1]; i++) {
-        each_touch(contact, f, contact->other[i], y, add_sums, &sums);
+        each_touch(contact, f, contact->other[i], y, sums_add, &sums);
     }
     return sums;
 }

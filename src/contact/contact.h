@@ -1,11 +1,11 @@
-/* contact.h: bodies repel each other, and walls repel them, where their outlines come nearer than a range.
- * doc/model.md, section 16. Tested by tests/contact/test_contact.c.
+/* contact.h: repulsion between bodies, and between bodies and walls, at gaps below contact.range. doc/model.md,
+ * section 16. Tested by tests/contact/test_contact.c.
  *
- * Every edge of a body is a straight strip of its own thickness (fish_distance). The potential of two edges is the mean
- * of four: each end of either edge above the other edge.
+ * Every edge of a body is a straight strip of constant thickness (fish_distance). The potential of two edges is the
+ * mean of four point-edge potentials: each end of either edge above the other edge.
  *
- *          edge i of fish f     a ============= b          of point p above edge j: the distance to its nearest point,
- *                                     | gap                less half of both thicknesses
+ *          edge i of fish f     a ============= b          of point p above edge j: the distance to the nearest point,
+ *                                     | gap                minus half of both thicknesses
  *                                     p ============= .
  *                                       edge j of fish g
  */
@@ -22,24 +22,26 @@ struct contact;
 enum status contact_create(struct contact **contact, const struct school *school);
 void contact_free(struct contact *contact);
 
-/* Find the bodies in contact at the places in y; none where contact.action is not repel. Fails with STATUS_RETRY where
- * two bodies (except prescribed ones) touch or cross there, or on the straight way there from where the last step of
- * the integrator ended, or where a body touches a wall, and with STATUS_MEMORY. */
+/* Find the bodies in contact at the positions in y; none unless contact.action is repel. Fails with STATUS_RETRY if two
+ * bodies (not both prescribed) touch or cross at y, or on the straight paths to y from the end of the last step of the
+ * integrator, or if a body touches a wall. Fails with STATUS_MEMORY. */
 enum status contact_find(struct contact *contact, const struct state *state, double t, const double *y);
 
-/* The fish in contact with fish f when last found: their number, and *other, in ascending order. */
+/* The partners of fish f, in contact at the last contact_find: return the number, and set *other to the fish numbers in
+ * ascending order. */
 int contact_partners(const struct contact *contact, int f, const int **other);
 
-/* Take the forces of all partners of fish f, and of the walls, off its rows ax, ay of value, N. */
+/* Subtract the forces of all partners, and of the walls, on fish f from the rows ax, ay of fish f in value, N. */
 void contact_residual(const struct contact *contact, int f, const double *y, double *value);
 
-/* Add to rows the derivatives of these, over the masses, by the places of fish g: f itself or a partner. */
+/* Add the derivatives of contact_residual by the positions of fish g, divided by the node masses, to rows; g is f or a
+ * partner of f. */
 void contact_jacobian(const struct contact *contact, int f, int g, const double *y, struct coupling_block *rows);
 
-/* Half the energy of the contacts of fish f with others, and all of that with walls, J: the sum over all fish is the
- * potential. And what fish f is
- * given for it, W: for each partner half of what that pays less half of what f pays. Over all fish the powers add up to
- * nothing. */
+/* contact_energy: half the energy of the contacts of fish f with partners, plus the full energy of the contacts with
+ * walls, J; the sum over all fish is the potential. contact_power: power that fish f receives for this share of the
+ * energy, W: half of the sum over partners of the power of the contact force on f minus the power on the partner; the
+ * powers of all fish add up to 0. */
 double contact_energy(const struct contact *contact, int f, const double *y);
 double contact_power(const struct contact *contact, int f, const double *y);
 

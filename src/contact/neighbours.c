@@ -35,8 +35,8 @@ void neighbours_free(struct neighbours *neighbours) {
     free(neighbours);
 }
 
-// by low x; from one time to the next hardly anything changes places
-static void sort(struct neighbours *neighbours) {
+// insertion sort by low x: the order hardly changes between two calls
+static void order_sort(struct neighbours *neighbours) {
     int *const order = neighbours->order;
     for (int i = 1; i < neighbours->n; i++) {
         const int moving = order[i];
@@ -47,8 +47,8 @@ static void sort(struct neighbours *neighbours) {
     }
 }
 
-// room for one more pair
-static int reserve(struct neighbours *neighbours, int n) {
+// reserve memory for one more pair
+static int pairs_reserve(struct neighbours *neighbours, int n) {
     if (n + 2 <= neighbours->capacity) return 1;
     const int capacity = neighbours->capacity > 0 ? 2 * neighbours->capacity : 64;
     int *const pair = realloc(neighbours->pair, (size_t)capacity * sizeof *pair);
@@ -57,11 +57,12 @@ static int reserve(struct neighbours *neighbours, int n) {
     if (other) neighbours->other = other;
     if (!pair || !other) return 0;
     neighbours->capacity = capacity;
+
     return 1;
 }
 
-// the pairs that overlap, in the order of the sweep: returns their number times two, or -1 where there is no memory
-static int sweep(struct neighbours *neighbours) {
+// store the overlapping pairs in sweep order; returns twice the number of pairs, or -1 if out of memory
+static int pairs_sweep(struct neighbours *neighbours) {
     int n = 0;
     for (int i = 0; i < neighbours->n; i++) {
         const int here = neighbours->order[i];
@@ -71,16 +72,17 @@ static int sweep(struct neighbours *neighbours) {
             const struct box *const b = &neighbours->box[there];
             if (b->low[0] > a->high[0]) break;
             if (b->low[1] > a->high[1] || b->high[1] < a->low[1]) continue;
-            if (!reserve(neighbours, n)) return -1;
+            if (!pairs_reserve(neighbours, n)) return -1;
             neighbours->pair[n++] = here;
             neighbours->pair[n++] = there;
         }
     }
+
     return n;
 }
 
-// put a number into a list of n in ascending order
-static void insert(int *list, int n, int number) {
+// insert a number into an ascending list of n numbers
+static void ascending_insert(int *list, int n, int number) {
     for (; n > 0 && list[n - 1] > number; n--) list[n] = list[n - 1];
     list[n] = number;
 }
@@ -88,17 +90,19 @@ static void insert(int *list, int n, int number) {
 enum status neighbours_find(struct neighbours *neighbours) {
     int *const first = neighbours->first;
     memset(first, 0, ((size_t)neighbours->n + 1) * sizeof *first);
-    sort(neighbours);
-    const int n = sweep(neighbours);
+    order_sort(neighbours);
+    const int n = pairs_sweep(neighbours);
     if (n < 0) return status_fail(STATUS_MEMORY, "out of memory: the neighbours of %d bodies", neighbours->n);
     for (int i = 0; i < n; i++) first[neighbours->pair[i] + 1]++;
     for (int i = 0; i < neighbours->n; i++) first[i + 1] += first[i];
     int *const filled = neighbours->filled;
     memset(filled, 0, (size_t)neighbours->n * sizeof *filled);
+
     for (int i = 0; i < n; i += 2) {
         const int a = neighbours->pair[i], b = neighbours->pair[i + 1];
-        insert(neighbours->other + first[a], filled[a]++, b);
-        insert(neighbours->other + first[b], filled[b]++, a);
+        ascending_insert(neighbours->other + first[a], filled[a]++, b);
+        ascending_insert(neighbours->other + first[b], filled[b]++, a);
     }
+
     return STATUS_OK;
 }

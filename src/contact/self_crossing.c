@@ -1,4 +1,4 @@
-/* self_crossing.c: bends by joints; beyond half a turn, all pairs of segments of the line and of the outline. */
+/* self_crossing.c: fold test at every joint; beyond half a turn, all pairs of segments of line and outline. */
 #include "contact/self_crossing.h"
 
 #include <math.h>
@@ -7,19 +7,19 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* n points (x, y), joined by segments; a closed one has a segment from the last point to the first. */
+/* n points (x, y), joined by segments; a closed line has a segment from the last point to the first. */
 struct line {
     int n, is_closed;
     const double *point; /* (n, 2) */
 };
 
-// twice the area of the triangle of three points, above 0 where they turn to the left
-static double area(const double *a, const double *b, const double *c) {
+// twice the signed area of a triangle, positive for a left turn
+static double triangle_area(const double *a, const double *b, const double *c) {
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
 
 static int segments_cross(const double *a, const double *b, const double *c, const double *d) {
-    return area(a, b, c) * area(a, b, d) < 0 && area(c, d, a) * area(c, d, b) < 0;
+    return triangle_area(a, b, c) * triangle_area(a, b, d) < 0 && triangle_area(c, d, a) * triangle_area(c, d, b) < 0;
 }
 
 // whether two segments that share no point cross
@@ -33,11 +33,12 @@ static int line_crosses(const struct line *line) {
             if (segments_cross(a, b, line->point + 2 * j, line->point + 2 * ((j + 1) % line->n))) return 1;
         }
     }
+
     return 0;
 }
 
-// Whether the inner side of a joint has turned over; *turn is the angle between the two edges. Of a bend with the
-// curvature 2 tan(turn/2) per length the inner side has no length at the radius of half the thickness.
+// Whether the inner side of a joint is folded; *turn is the angle between the two edges. The inner side has length 0 if
+// the radius of curvature, length/(2 tan(turn/2)), is half the thickness.
 static int joint_is_folded(const struct fish *fish, int joint, const struct edge *before, const struct edge *after,
                            double *turn) {
     *turn = atan2(before->t[0] * after->t[1] - before->t[1] * after->t[0], edge_dot(before->t, after->t));
@@ -45,24 +46,27 @@ static int joint_is_folded(const struct fish *fish, int joint, const struct edge
     return 2 * half * fabs(tan(*turn / 2)) > (before->length + after->length) / 2;
 }
 
-// the centre line, and beyond it the outline: along the left side to the tail, back along the right one
-static int long_way(const struct fish *fish, const double *y, double *scratch) {
+// test the centre line, then the outline: along the left side to the tail, back along the right side
+static int all_segments_cross(const struct fish *fish, const double *y, double *scratch) {
     const int n = fish->n_nodes;
     for (int k = 0; k < n; k++) {
         scratch[2 * k] = y[edge_place(fish, 0, k)];
         scratch[2 * k + 1] = y[edge_place(fish, 1, k)];
     }
+
     if (line_crosses(&(struct line){n, 0, scratch})) return 1;
     for (int k = 1; k < n - 1; k++) {
         const struct edge before = edge_at(fish, k - 1, y), after = edge_at(fish, k, y);
         const double normal[2] = {before.n[0] + after.n[0], before.n[1] + after.n[1]};
         const double length = hypot(normal[0], normal[1]), half = (fish->thickness[k - 1] + fish->thickness[k]) / 4;
+
         for (int i = 0; i < 2 && length > 0; i++) {
             const double side = half * normal[i] / length;
             scratch[2 * (2 * n - 2 - k) + i] = scratch[2 * k + i] - side;
             scratch[2 * k + i] += side;
         }
     }
+
     return line_crosses(&(struct line){2 * n - 2, 1, scratch});
 }
 
@@ -78,8 +82,9 @@ int self_crossing(const struct fish *fish, const double *y, double *scratch) {
         high = fmax(high, angle);
         before = after;
     }
-    // a line whose directions lie within half a turn goes on along the middle one, and so do the sides of its bends
-    return high - low >= pi && long_way(fish, y, scratch);
+
+    // a line with all directions within half a turn advances along the mean direction and cannot cross; so do the sides
+    return high - low >= pi && all_segments_cross(fish, y, scratch);
 }
 
 void self_crossing_remember(const struct school *school, struct state *state, double *scratch) {

@@ -1,5 +1,5 @@
-/* self_crossing.h: whether a body crosses itself, which no body can. A body does not repel itself (doc/model.md,
- * section 16), so a limp one may cross itself. Tested by tests/contact/test_self_crossing.c.
+/* self_crossing.h: test for a body that crosses itself, which is unphysical. A body does not repel itself
+ * (doc/model.md, section 16), so a limp body may cross itself. Tested by tests/contact/test_self_crossing.c.
  *
  *     crossed line          crossed outline        folded: the radius of a bend is less than half the thickness
  *        ___                   .-----.
@@ -12,12 +12,12 @@
 
 #include "state/state.h"
 
-/* Whether the centre line or the outline of a fish crosses itself. The outline goes along both sides of the nodes at
- * half the thickness and ends in a point at nose and tail. The cost is linear in n_nodes unless the body turns by more
- * than half a turn. scratch: (4 n_nodes). */
+/* Whether the centre line or the outline of a fish crosses itself. The outline follows both sides of the nodes at half
+ * the thickness and ends in a point at nose and tail. The cost is linear in n_nodes unless the body turns by more than
+ * half a turn. scratch: (4 n_nodes). */
 int self_crossing(const struct fish *fish, const double *y, double *scratch);
 
-/* Remember the first crossing of any body: in state->crossed, at state->t. scratch: (n_unknowns). */
+/* Record the first crossing of any body in state->crossed and state->crossed_t. scratch: (n_unknowns). */
 void self_crossing_remember(const struct school *school, struct state *state, double *scratch);
 
 #endif

@@ -1,4 +1,4 @@
-/* control.c: heading, desired heading, and the law between them and phi0. */
+/* control.c: heading, desired heading, and the laws for phi0. */
 #include "control/control.h"
 
 #include <math.h>
@@ -32,8 +32,8 @@ static int steers_to_waypoint(const struct fish *fish, const struct control_memo
     return memory->waypoint < control_n_waypoints(fish, memory);
 }
 
-// where waypoint i is; before the first one, where the fish has set out for it
-static void place_waypoint(const struct fish *fish, const struct control_memory *memory, int i, double place[2]) {
+// position of waypoint i; i < 0: start of the leg to the first waypoint
+static void waypoint_place(const struct fish *fish, const struct control_memory *memory, int i, double place[2]) {
     for (int d = 0; d < 2; d++) {
         if (memory->has_waypoints) {
             place[d] = i < 0 ? memory->set_out[d] : memory->waypoints[2 * i + d];
@@ -44,14 +44,15 @@ static void place_waypoint(const struct fish *fish, const struct control_memory 
     }
 }
 
-// from the nose to the waypoint that is steered to
-static void to_waypoint(const struct fish *fish, const struct control_memory *memory, const double *y, double away[2]) {
-    place_waypoint(fish, memory, memory->waypoint, away);
+// vector from the nose to the next waypoint
+static void waypoint_vector(const struct fish *fish, const struct control_memory *memory, const double *y,
+                            double away[2]) {
+    waypoint_place(fish, memory, memory->waypoint, away);
     away[0] -= y[fish->at.x];
     away[1] -= y[fish->at.y];
 }
 
-static double heading_in_table(const struct control_law_data *control, double t) {
+static double table_heading(const struct control_law_data *control, double t) {
     const int last = control->n_headings - 1;
     if (t <= control->heading_time[0]) return control->heading[0];
     for (int i = 0; i < last; i++) {
@@ -60,21 +61,24 @@ static double heading_in_table(const struct control_law_data *control, double t)
             return control->heading[i] + (t - start) / (end - start) * (control->heading[i + 1] - control->heading[i]);
         }
     }
+
     return control->heading[last];
 }
 
 double control_desired_heading(const struct fish *fish, const struct control_memory *memory, double t,
                                const double *y) {
     if (control_n_waypoints(fish, memory) == 0) {
-        return memory->has_heading ? lead_value(&memory->heading, t) : heading_in_table(&fish->control, t);
+        return memory->has_heading ? lead_value(&memory->heading, t) : table_heading(&fish->control, t);
     }
+
     if (!steers_to_waypoint(fish, memory)) return memory->held_heading;
     double away[2];
-    to_waypoint(fish, memory, y, away);
+    waypoint_vector(fish, memory, y, away);
+
     return atan2(away[1], away[0]);
 }
 
-// what the hyperbolic tangent of the laws is taken of
+// argument of the hyperbolic tangent of the laws
 static double law_argument(const struct fish *fish, const struct control_memory *memory, double t, double direction,
                            double more, const double *y) {
     return fish->control.gain * angle_wrap(direction - control_desired_heading(fish, memory, t, y)) + more;
@@ -106,10 +110,11 @@ void control_residual(const struct fish *fish, const struct control_memory *memo
         case CONTROL_AVERAGED_HEADING:
         case CONTROL_COURSE: value = memory->phi0 + since * memory->phi0_rate; break;
     }
+
     residual[fish->at.phi0] = y[fish->at.phi0] - value;
 }
 
-// how fast the table's heading changes, rad s-1
+// rate of the heading in the table, rad s-1
 static double table_rate(const struct control_law_data *control, double t) {
     for (int i = 0; i + 1 < control->n_headings; i++) {
         const double start = control->heading_time[i], end = control->heading_time[i + 1];
@@ -118,7 +123,7 @@ static double table_rate(const struct control_law_data *control, double t) {
     return 0;
 }
 
-// the rate at which a vector turns
+// angular rate of a vector
 static double turn_rate(const double vector[2], const double rate[2]) {
     return (vector[0] * rate[1] - vector[1] * rate[0]) / (vector[0] * vector[0] + vector[1] * vector[1]);
 }
@@ -128,10 +133,12 @@ static double desired_heading_rate(const struct fish *fish, const struct control
     if (control_n_waypoints(fish, memory) == 0) {
         return memory->has_heading ? lead_rate(&memory->heading, t) : table_rate(&fish->control, t);
     }
+
     if (!steers_to_waypoint(fish, memory)) return 0;
     double away[2];
-    to_waypoint(fish, memory, y, away);
+    waypoint_vector(fish, memory, y, away);
     const double rate[2] = {-y[fish->at.vx], -y[fish->at.vy]};
+
     return turn_rate(away, rate);
 }
 
@@ -145,6 +152,7 @@ double control_rate(const struct fish *fish, const struct control_memory *memory
     rate[1] = y[fish->at.vy] - fish_mean(&fish->heading_point, y + fish->at.vy);
     const double error_rate = turn_rate(head, rate) - desired_heading_rate(fish, memory, t, y);
     const double tangent = tanh(heading_argument(fish, memory, t, since, y));
+
     return fish->control.limit * (1 - tangent * tangent) *
            (fish->control.feedforward * memory->moment_rate + fish->control.gain * error_rate);
 }
@@ -169,11 +177,11 @@ void control_jacobian(const struct fish *fish, const struct control_memory *memo
         sparse_add(jacobian, row, fish->at.x + fish->heading_point.node[i], gain * weight * by_head[0]);
         sparse_add(jacobian, row, fish->at.y + fish->heading_point.node[i], gain * weight * by_head[1]);
     }
-    // so does the direction to the waypoint with the nose; without one the entries are there and zero
+    // the direction to the waypoint turns with the nose; without a waypoint the entries are 0, for a constant pattern
     double by_nose[2] = {0, 0};
     if (steers_to_waypoint(fish, memory)) {
         double away[2];
-        to_waypoint(fish, memory, y, away);
+        waypoint_vector(fish, memory, y, away);
         const double distance = away[0] * away[0] + away[1] * away[1];
         by_nose[0] = away[1] / distance;
         by_nose[1] = -away[0] / distance;
@@ -187,49 +195,53 @@ void control_advance(struct control_memory *memory, double interval) {
     memory->moment += interval * memory->moment_rate;
 }
 
-// Pass the waypoints that have been reached; returns whether there are any.
-static int pass_waypoints(const struct fish *fish, struct control_memory *memory, const double *y) {
+// Pass the waypoints within the acceptance radius; returns whether a waypoint was passed.
+static int waypoints_pass(const struct fish *fish, struct control_memory *memory, const double *y) {
     const struct control_law_data *control = &fish->control;
     int passed = 0;
     for (; steers_to_waypoint(fish, memory); memory->waypoint++, passed = 1) {
         double away[2];
-        to_waypoint(fish, memory, y, away);
+        waypoint_vector(fish, memory, y, away);
         if (hypot(away[0], away[1]) > control->acceptance_radius) break;
+
         // after the last waypoint the course of the last leg is held
         double from[2], to[2];
-        place_waypoint(fish, memory, memory->waypoint - 1, from);
-        place_waypoint(fish, memory, memory->waypoint, to);
+        waypoint_place(fish, memory, memory->waypoint - 1, from);
+        waypoint_place(fish, memory, memory->waypoint, to);
         memory->held_heading = atan2(to[1] - from[1], to[0] - from[0]);
     }
+
     return passed;
 }
 
-// where phi0 of a law that decides at events goes; without a course yet it stays
-static double target_of(const struct fish *fish, const struct control_memory *memory, const struct control_view *view,
-                        const double *y) {
+// target of phi0 of an event-based law; phi0 is constant as long as there is no course
+static double event_target(const struct fish *fish, const struct control_memory *memory,
+                           const struct control_view *view, const double *y) {
     const struct control_law_data *control = &fish->control;
     if (control->law == CONTROL_COURSE) {
         if (!view->has_course) return memory->phi0;
         const double damping = control->damping * fish->period * view->course_rate;
         return control_law(fish, memory, view->t, view->course, damping, y);
     }
+
     const double feedforward = control->feedforward * moment_at(memory, view->interval);
     return control_law(fish, memory, view->t, view->mean_heading, feedforward, y);
 }
 
 int control_event(const struct fish *fish, struct control_memory *memory, const struct control_view *view,
                   const double *y) {
-    const int passed = pass_waypoints(fish, memory, y);
-    // the moving mean changes by a part of its distance from the newest value, linearly until the next event
+    const int passed = waypoints_pass(fish, memory, y);
+    // the moving mean approaches the newest value by filter_share of the difference, linearly until the next event
     memory->moment_rate = fish->control.filter_share * (view->moment - memory->moment) / view->interval;
     if (fish->control.law == CONTROL_NONE) return 0;
     if (fish->control.law == CONTROL_HEADING) return passed;
-    const double most = fish->control.rate, target = target_of(fish, memory, view, y);
+    const double most = fish->control.rate, target = event_target(fish, memory, view, y);
     memory->phi0_rate = fmax(-most, fmin(most, (target - memory->phi0) / view->interval));
+
     return 0;
 }
 
-// ---- set from outside
+// ---- values set from outside
 
 struct fish_gait control_gait(const struct fish *fish, const struct control_memory *memory, double t) {
     struct fish_gait gait = fish_own_gait(fish, t);
@@ -238,6 +250,7 @@ struct fish_gait control_gait(const struct fish *fish, const struct control_memo
     gait.amplitude *= scale;
     gait.angle += 2 * pi * lead_integral(&memory->frequency, t);
     gait.omega += 2 * pi * lead_value(&memory->frequency, t);
+
     return gait;
 }
 
@@ -260,7 +273,8 @@ void control_set_heading(const struct fish *fish, struct control_memory *memory,
         lead_change(&memory->heading, t, ramp, now + angle_wrap(heading - now));
         return;
     }
-    const double now = heading_in_table(&fish->control, t);
+
+    const double now = table_heading(&fish->control, t);
     lead_begin(&memory->heading, t, ramp, now, table_rate(&fish->control, t), now + angle_wrap(heading - now));
     memory->has_heading = 1;
 }

@@ -4,7 +4,7 @@
 #include <assert.h>
 #include <stdlib.h>
 
-enum { MOST_OF_POLYGON = 4 }; /* nodes of a stencil on the polygon */
+enum { MOST_OF_POLYGON = 4 }; /* nodes per stencil on the polygon */
 
 struct curve {
     int n_nodes, n_lists;
@@ -76,6 +76,7 @@ struct stencil curve_polygon_middle(struct curve *curve, const struct stencil *a
     int *const node = curve->list + MOST_OF_POLYGON * curve->n_lists++;
     double *const weight = new_weights(curve, MOST_OF_POLYGON);
     int n = 0;
+
     for (int part = 0; part < 2; part++) {
         for (int i = 0; i < parts[part]->n; i++) {
             int at = 0;
@@ -84,6 +85,7 @@ struct stencil curve_polygon_middle(struct curve *curve, const struct stencil *a
             weight[at] += parts[part]->weight[i] / 2;
         }
     }
+
     return (struct stencil){.n = n, .node = node, .weight = weight};
 }
 
@@ -106,6 +108,7 @@ static void smooth_weights(const struct curve *curve, double u, double *b) {
         b[k] = node >= 0 ? k == node : curve->barycentric[k] / (u - k);
         sum += b[k];
     }
+
     for (int k = 0; k < curve->n_nodes; k++) b[k] /= sum;
 }
 
@@ -116,7 +119,7 @@ struct stencil curve_smooth_point(struct curve *curve, double u) {
 }
 
 /* b_k'(u) = b_k (sum over i of b_i/(u - i) - 1/(u - k)), on node m (c_k/c_m)/(m - k). The weight of the nearest node is
- * minus the sum of the others, which holds exactly and does not cancel. */
+ * minus the sum of all other weights: exact, without cancellation. */
 struct stencil curve_smooth_slope(struct curve *curve, double u) {
     const int n = curve->n_nodes, node = node_at(curve, u);
     const int nearest = u < n - 1 ? (int)(u + 0.5) : n - 1;
@@ -124,12 +127,14 @@ struct stencil curve_smooth_slope(struct curve *curve, double u) {
     smooth_weights(curve, u, slope);
     double mean = 0, sum = 0;
     for (int i = 0; node < 0 && i < n; i++) mean += slope[i] / (u - i);
+
     for (int k = 0; k < n; k++) {
         if (k == nearest) continue;
         slope[k] =
             node >= 0 ? curve->barycentric[k] / curve->barycentric[node] / (node - k) : slope[k] * (mean - 1 / (u - k));
         sum += slope[k];
     }
+
     slope[nearest] = -sum;
     return (struct stencil){.n = n, .node = curve->every, .weight = slope};
 }

@@ -1,4 +1,4 @@
-/* fish.c: what is read off the constants of a fish. */
+/* fish.c: quantities derived from the constants of a fish. */
 #include "fish/fish.h"
 
 #include <math.h>
@@ -30,6 +30,7 @@ struct direction fish_direction(const struct fish *fish, const struct tangent *t
     direction.t[1] = e[1] / direction.length;
     direction.n[0] = -direction.t[1];
     direction.n[1] = direction.t[0];
+
     return direction;
 }
 

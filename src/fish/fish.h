@@ -1,5 +1,5 @@
-/* fish.h: the constant data of the fish and of their school, and where the unknowns of each fish stand in the vector
- * of all unknowns. doc/model.md, sections 1, 6 and 10. fish_school.h makes them. Tested by tests/fish/test_fish.c.
+/* fish.h: the constant data of fish and school, and the layout of the unknowns of each fish in the vector of all
+ * unknowns. doc/model.md, sections 1, 6 and 10. Built by fish_school.h. Tested by tests/fish/test_fish.c.
  *
  * Body: nodes 0 (nose) .. N-1 (tail), edge k from node k to k+1, joint j at node j+1.
  *
@@ -7,7 +7,7 @@
  *        o-----------------o-----------------o--- ... ---o--------o
  *      nose              joint 0           joint 1     joint N-3  tail
  *
- * Sheet: bound vortices j = 0 .. M-1 at the cosine points, control points c = 0 .. M-2 between them.
+ * Sheet: bound vortices j = 0 .. M-1 at the cosine points, control points c = 0 .. M-2 between the vortices.
  *
  *        x--o--x---o---x----o----x ...  x--o--x          x vortex, o control point
  *
@@ -15,7 +15,7 @@
  *
  *     | x (N) y (N) | vx (N) vy (N) | px (N) py (N) | ax (N) ay (N) | gamma (M) | circulation (1) | phi0 (1) |
  *
- * The slices px, py exist with force: pressure only (force/pressure.h); elsewhere they are empty.
+ * The slices px, py exist with force: pressure only (force/pressure.h); otherwise px, py are empty.
  */
 #ifndef FISH_H
 #define FISH_H
@@ -36,7 +36,7 @@ struct layout {
 /* A straight rigid motion given in time: doc/model.md, section 5. Angles in rad. */
 struct motion {
     enum prescribed prescribed;
-    enum surge surge;          /* free: the heading is along x, in which prescribed nodes move by their forces */
+    enum surge surge;          /* free: the heading is along x, and prescribed nodes move in x by the forces */
     double speed;              /* m s-1 */
     double heave;              /* m */
     double pitch, pitch_phase; /* rad */
@@ -50,14 +50,14 @@ struct control_law_data {
     double bias, gain, damping, limit, feedforward;
     double rate;                     /* s-1 */
     double ramp;                     /* of a change from outside, s */
-    int n_headings;                  /* a table of desired headings, linear between its times */
+    int n_headings;                  /* table of desired headings, linear in time */
     double *heading_time;            /* s                                           (n_headings) */
     double *heading;                 /* rad                                         (n_headings) */
-    int n_waypoints;                 /* visited in order; replace the table where there are any */
+    int n_waypoints;                 /* visited in order; n_waypoints > 0 replaces the table */
     double *waypoint_x, *waypoint_y; /* m                                        (n_waypoints) */
     double acceptance_radius;        /* m */
-    double torque_scale;             /* N m: what the feedforward moment is divided by */
-    double filter_share;             /* of the newest moment in its moving mean: 1 - exp(-Dt/T_f) */
+    double torque_scale;             /* N m: unit of the feedforward moment */
+    double filter_share;             /* weight of the newest moment in the moving mean: 1 - exp(-Dt/T_f) */
 };
 
 struct fish {
@@ -68,7 +68,7 @@ struct fish {
     double length;                                      /* m */
     double edge_length;                                 /* natural length of every edge, m */
     double frequency;                                   /* of the beat, Hz; 0: none */
-    double period;                                      /* over which means are taken, s; 0: no means */
+    double period;                                      /* averaging period, s; 0: no means */
     double total_mass;                                  /* kg */
 
     double *arc;               /* arc coordinate of the nodes, m                          (n_nodes) */
@@ -76,43 +76,43 @@ struct fish {
     double *thickness;         /* thickness across the plane of motion h, m               (n_edges) */
     double *depth;             /* extent out of that plane w, m                           (n_edges) */
     double *square, *cube;     /* mean of h^2 over thickness^2, of h^3 over thickness^3   (n_edges) */
-    int has_mean_section;      /* these are means over an edge, else of the values at its nodes (fish.body.section) */
+    int has_mean_section;      /* means over an edge, otherwise means of both nodes (fish.body.section) */
     double *axial_stiffness;   /* E A, N                                         (n_edges) */
     double *axial_damping;     /* d_s, kg s-1                                    (n_edges) */
     double *bending_stiffness; /* E I, N m2                                      (n_joints) */
     double *bending_damping;   /* d_b, N m s                                    (n_joints) */
-    enum damping damping;      /* of the rate of curvature less natural curvature, or of curvature alone */
+    enum damping damping;      /* of the rate of curvature minus natural curvature, or of curvature alone */
     double tail_stiffness;     /* E I of the last edge, N m2 */
-    int has_clamp;             /* prescribed head: the direction of edge 0 is held by a joint at the nose: */
+    int has_clamp;             /* prescribed head: a joint at the nose holds the direction of edge 0 */
     double clamp_stiffness;    /* 2 E I/lbar, N m */
     double clamp_damping;      /* N m s */
 
-    double amplitude;       /* A; 0: it cannot be changed from outside */
+    double amplitude;       /* A; 0: no change from outside */
     double *wave_amplitude; /* A (lbar/l_ref) (c0 + c1 sigma + c2 sigma^2)        (n_joints) */
     double *wave_phase;     /* beta sigma + phase, rad                            (n_joints) */
-    int n_harmonics;  /* of a table that takes the place of the wave: natural turning angles over the phase, rad: */
-    double *harmonic; /* cosine and sine of each harmonic from 0 on         (n_joints, n_harmonics, 2) */
-    double omega;     /* rad s-1 */
-    double ramp;      /* s */
+    int n_harmonics;        /* of a table instead of the wave: natural turning angles over the phase, rad */
+    double *harmonic;       /* cosine and sine of each harmonic from 0 on         (n_joints, n_harmonics, 2) */
+    double omega;           /* rad s-1 */
+    double ramp;            /* s */
 
     enum force force;
     double *drag_tangential; /* c_t, kg m-1                                       (n_edges) */
     double *drag_normal;     /* c_n, kg m-1                                       (n_edges) */
     double *added_mass;      /* mu, kg                                            (n_edges) */
     double *displaced_mass;  /* rho_f A lbar, kg                                  (n_edges) */
-    double tail_added_mass;  /* m_L, kg m-1; 0: nothing leaves at the tail */
-    int has_cusp;            /* whether the outline ends in a cusp: joukowski without a thickness of the tail */
+    double tail_added_mass;  /* m_L, kg m-1; 0: no momentum shed at the tail */
+    int has_cusp;            /* whether the outline ends in a cusp: joukowski with tail thickness 0 */
     double linear_speed;     /* V1 of the drag law v (V1 + |v|), m s-1; 0: v |v| */
     enum skin skin;
     double friction_speed;   /* u0 of laminar friction and of a boundary layer, m s-1 */
     double *drag_turbulent;  /* c_T of a boundary layer, kg m-0.8 s-0.2           (n_edges) */
-    double *past_transition; /* (x_k/(nu Re_t))^2: 1 over the square of the speed of transition, s2 m-2   (n_edges) */
+    double *past_transition; /* (x_k/(nu Re_t))^2: 1/(transition speed)^2, s2 m-2                         (n_edges) */
     double form, waving;     /* K_form, K_w of a boundary layer */
 
     /* force: pressure */
     double fluid_density;              /* kg m-3 */
-    double full_suction;               /* pi rho_f w L: of the nose, over a square of velocities, kg m-1 */
-    double suction;                    /* that times S */
+    double full_suction;               /* pi rho_f w L: of the nose, over velocity squared, kg m-1 */
+    double suction;                    /* full_suction S, kg m-1 */
     double suction_limit;              /* A_c; 0: none */
     double nose_factor;                /* (M-1) ds_0/(pi L): qhat over the unknown at the nose, 1 */
     double *control_density;           /* density of the fluid times depth, kg m-2         (n_control) */
@@ -128,21 +128,22 @@ struct fish {
     double *control_widening; /* b db/du at control points, m2                             (n_control) */
 
     double *sheet_weight;            /* ds_j: circulation over unknown, m           (n_sheet) */
-    struct curve *curve;             /* the line of the body; owns the stencils below */
+    struct curve *curve;             /* line of the body; owns the stencils below     */
     struct stencil *sheet_point;     /* the bound vortices                          (n_sheet) */
-    struct stencil *sheet_slope;     /* X' there, per edge; empty: of the length of an edge   (n_sheet) */
-    struct stencil *control_point;   /* where impermeability is required            (n_control) */
-    struct tangent *control_tangent; /* the direction of the body there             (n_control) */
-    struct tangent tail_tangent;     /* and at the tail */
+    struct stencil *sheet_slope;     /* X' at the vortices, per edge; empty: length of an edge   (n_sheet) */
+    struct stencil *control_point;   /* positions of the impermeability condition            (n_control) */
+    struct tangent *control_tangent; /* direction of the body at the control points             (n_control) */
+    struct tangent tail_tangent;     /* direction of the body at the tail */
     double *end_correction;          /* E_c of shedding: sheet, else 0, m-1              (n_control) */
     struct stencil heading_point;    /* the body point at a third of the length */
 
-    double smoothing;       /* of its free vortices, delta, m */
-    double taper;           /* distance from the tail over which the own body sees it grow from 0 to delta, m */
-    double taper_beside;    /* the same for vortices beside the body, m */
-    double sheet_smoothing; /* of its bound sheet seen from elsewhere, m */
+    double smoothing;    /* delta of the free vortices, m */
+    double taper;        /* distance from the tail over which the smoothing for the own body grows from 0 to delta, m */
+    double taper_beside; /* the same for vortices beside the body, m */
+    double sheet_smoothing; /* of the bound sheet, for other bodies and wakes, m */
 
-    double contact_strength; /* scale of the force in contact: gives its mass one length per beat in a beat, N */
+    double
+        contact_strength; /* scale of the contact force: accelerates the body by one length per beat within a beat, N */
 
     double start_position[2]; /* of the nose, m */
     double start_heading;     /* rad */
@@ -152,7 +153,7 @@ struct fish {
     struct control_law_data control;
 };
 
-/* All that does not change during a run. */
+/* Constants of a run. */
 struct school {
     int n_fish;
     struct fish *fish;
@@ -172,27 +173,26 @@ struct school {
     int finite;            /* whether the sheets are vortex rings: some fish has force: pressure with span: finite */
     double wake_tolerance; /* estimated error of the velocity of the wakes at the bodies, lengths per beat; 0: none */
 
-    double wake_merge; /* error of the velocity at a body by what is merged in one wake, lengths per beat; 0: nothing */
+    double wake_merge; /* velocity error at a body by merging in one wake, lengths per beat; 0: no merging */
     int wake_spare;    /* vortices of each wake that may be added from outside: wake_add_vortex, wake_break */
 
-    enum contact_action contact; /* of bodies whose outlines are nearer than: */
+    enum contact_action contact; /* of bodies with a gap below contact_range */
     double contact_range;        /* m */
     double rtol;
     double coupling_distance; /* m */
     int threads;
 };
 
-/* The threads of a loop over all fish that computes with their unknowns: one or all. */
+/* The number of threads of a loop over the unknowns of all fish: one or all. */
 int fish_threads(const struct school *school);
 
 /* sum of weight * value over the nodes of the point. */
 double fish_mean(const struct stencil *point, const double *value);
 
-/* Mean of a value of the nodes (n_nodes), weighted with their masses. */
+/* Mass-weighted mean of a value of the nodes (n_nodes). */
 double fish_mass_mean(const struct fish *fish, const double *value);
 
-/* A vector along the body where its nodes are as in y: its length, its unit vector t, and the unit normal n = E3 x
- * t. */
+/* A vector along the body at the node positions in y: length, unit vector t, and unit normal n = E3 x t. */
 struct direction {
     double length, t[2], n[2];
 };
@@ -201,14 +201,15 @@ struct direction fish_direction(const struct fish *fish, const struct tangent *t
 /* Whether the fish has the slices px, py: force: pressure. */
 int fish_has_momentum(const struct fish *fish);
 
-/* Whether the edge midpoints of the fish feel its own wake: not with force: reactive. doc/model.md, section 9. */
+/* Whether the velocity of the own wake acts at the edge midpoints of the fish: not with force: reactive. doc/model.md,
+ * section 9. */
 int fish_feels_own_wake(const struct fish *fish);
 
-/* Whether its muscle sends a wave along the body. */
+/* Whether the muscle drives the body with a wave. */
 int fish_has_wave(const struct fish *fish);
 
-/* Its beats per second, or those of its prescribed motion; where it has none, the lengths per second at which it, or
- * the stream, goes; 1 where nothing moves. With the length it gives the scale of velocities. */
+/* The beat frequency, or the frequency of the prescribed motion; without a frequency, the speed of the fish or of the
+ * stream in lengths per second; 1 without motion. Rate times length is the velocity scale. */
 double fish_rate(const struct school *school, const struct fish *fish);
 
 #endif

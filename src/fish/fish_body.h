@@ -6,8 +6,8 @@
 #include "base/status.h"
 #include "fish/fish.h"
 
-/* Set all that the fish (its numbers of nodes, length, edge_length are known) has per node, edge and joint, but for its
- * gait. Fails with STATUS_MEMORY. */
+/* Set all data per node, edge and joint except the gait. Numbers of nodes, length and edge_length of the fish are set.
+ * Fails with STATUS_MEMORY. */
 enum status fish_body_set(struct fish *fish, const struct fish_parameters *from, const struct fluid_parameters *fluid);
 
 #endif

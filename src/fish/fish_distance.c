@@ -1,4 +1,4 @@
-/* fish_distance.c: of points and segments. */
+/* fish_distance.c: distances of points and segments. */
 #include "fish/fish_distance.h"
 
 #include <math.h>
@@ -21,16 +21,18 @@ double fish_point_distance(const struct fish *fish, const double *y, const doubl
         const double b[2] = {y[fish->at.x + k + 1], y[fish->at.y + k + 1]};
         min = fmin(min, point_to_segment(p, a, b) - fish->thickness[k] / 2);
     }
+
     return min;
 }
 
 double fish_wall_distance(const struct school *school, const struct fish *fish, const double *y) {
     double min = INFINITY;
     for (int k = 0; k < fish->n_nodes; k++) {
-        // the thicker one of the edges that meet at the node
+        // the thicker edge at the node
         const double before = k > 0 ? fish->thickness[k - 1] : 0, after = k < fish->n_edges ? fish->thickness[k] : 0;
         min = fmin(min, images_distance(&school->walls, y[fish->at.y + k]) - fmax(before, after) / 2);
     }
+
     return min;
 }
 
@@ -54,6 +56,7 @@ double fish_distance(const struct fish *a, const struct fish *b, const double *y
     // the boxes around the bodies exclude most pairs of a school
     const struct box box = box_around(a->n_nodes, y + a->at.x, y + a->at.y),
                      other = box_around(b->n_nodes, y + b->at.x, y + b->at.y);
+
     if (box_gap(&box, &other) - max_half_thickness(a) - max_half_thickness(b) > limit) return INFINITY;
     double min = INFINITY;
     for (int i = 0; i < a->n_edges; i++) {
@@ -62,12 +65,14 @@ double fish_distance(const struct fish *a, const struct fish *b, const double *y
         for (int j = 0; j < b->n_edges; j++) {
             const double r[2] = {y[b->at.x + j], y[b->at.y + j]}, s[2] = {y[b->at.x + j + 1], y[b->at.y + j + 1]};
             const double thickness = (a->thickness[i] + b->thickness[j]) / 2;
-            // no point of an edge is further from its first node than it is long
+
+            // every point of an edge is within the edge length of the first node
             const double reach = min + thickness + length + fabs(s[0] - r[0]) + fabs(s[1] - r[1]);
             const double dx = r[0] - p[0], dy = r[1] - p[1];
             if (dx * dx + dy * dy > reach * reach) continue;
             min = fmin(min, segment_to_segment(p, q, r, s) - thickness);
         }
     }
+
     return fmax(0, min);
 }

@@ -8,13 +8,14 @@
 #include "base/ramp.h"
 
 // Fourier coefficients, over the phase, of the table's curvature at a joint, as a turning angle
-static void set_harmonics(const struct fish *fish, const struct number_list *table, int joint) {
+static void harmonics_set(const struct fish *fish, const struct number_list *table, int joint) {
     const double place = (joint + 1.0) / fish->n_edges * (table->n - 1), unit = fish->edge_length / fish->length;
     const int row = place < table->n - 2 ? (int)place : table->n - 2, n = table->width;
     const double *const low = &table->value[row * n], *const high = low + n;
     double *const to = &fish->harmonic[2 * joint * fish->n_harmonics];
+
     for (int m = 0; m < fish->n_harmonics; m++) {
-        // the mean, and the highest harmonic of an even number of values, count once
+        // weight 1 for the mean, and for the highest harmonic of an even number of values
         const double weight = (m == 0 || 2 * m == n ? 1.0 : 2.0) / n * unit;
         for (int j = 0; j < n; j++) {
             const double value = low[j] + (place - row) * (high[j] - low[j]), angle = 2 * M_PI * m * j / n;
@@ -28,7 +29,7 @@ static enum status set_table(struct fish *fish, const struct number_list *table)
     if (table->n == 0) return STATUS_OK;
     fish->n_harmonics = table->width / 2 + 1;
     TRY(array_doubles(&fish->harmonic, 2 * fish->n_joints * fish->n_harmonics, "the gait of a fish"));
-    for (int joint = 0; joint < fish->n_joints; joint++) set_harmonics(fish, table, joint);
+    for (int joint = 0; joint < fish->n_joints; joint++) harmonics_set(fish, table, joint);
     return STATUS_OK;
 }
 
@@ -39,9 +40,10 @@ static void set_wave(struct fish *fish, const struct fish_parameters *from) {
         const double sigma = (joint + 1.0) / fish->n_edges;
         fish->wave_amplitude[joint] = wave->amplitude * (fish->edge_length / reference) *
                                       (wave->constant + wave->linear * sigma + wave->quadratic * sigma * sigma);
-        // a table has its own phase along the body
+        // a table contains the phase along the body
         fish->wave_phase[joint] = (wave->table.n > 0 ? 0 : wave->number * sigma) + angle_radians(wave->phase);
     }
+
     fish->omega = 2 * M_PI * wave->frequency;
     fish->ramp = wave->ramp;
     fish->amplitude = wave->amplitude;
@@ -66,11 +68,13 @@ struct fish_demand fish_demand(const struct fish *fish, int j, const struct fish
     if (fish->n_harmonics == 0) return (struct fish_demand){.sine = sin(phase), .sine_rate = gait->omega * cos(phase)};
     const double *const harmonic = &fish->harmonic[2 * j * fish->n_harmonics];
     struct fish_demand demand = {.sine = 0};
+
     for (int m = 0; m < fish->n_harmonics; m++) {
         const double c = cos(m * phase), s = sin(m * phase), a = harmonic[2 * m], b = harmonic[2 * m + 1];
         demand.angle += a * c + b * s;
         demand.angle_rate += m * gait->omega * (b * c - a * s);
     }
+
     return demand;
 }
 
@@ -88,5 +92,6 @@ double fish_largest_turn(const struct fish *fish, double amplitude, double bias)
         for (int m = 0; m < fish->n_harmonics; m++) beat += hypot(harmonic[2 * m], harmonic[2 * m + 1]);
         largest = fmax(largest, fabs(amplitude) * (beat + fabs(fish->wave_amplitude[j] * bias)));
     }
+
     return largest;
 }

@@ -1,4 +1,4 @@
-/* fish_gait.h: what the muscles of a fish ask of its joints: a travelling wave, or a table of curvatures over the
+/* fish_gait.h: natural turning angles of the joints of a fish: a travelling wave, or a table of curvatures over the
  * phase. doc/model.md, section 4. Tested by tests/body/test_actuation.c. */
 #ifndef FISH_GAIT_H
 #define FISH_GAIT_H
@@ -6,22 +6,22 @@
 #include "base/status.h"
 #include "fish/fish.h"
 
-/* Set the wave or the table of the fish (n_joints, edge_length, length are known) from its parameters. Fails with
+/* Set the wave or the table of the fish from the parameters. n_joints, edge_length and length are set. Fails with
  * STATUS_MEMORY. */
 enum status fish_gait_set(struct fish *fish, const struct fish_parameters *from);
 
-/* Where in its gait a fish is: its amplitude over that of the case, which begins with a ramp, and the rate of that,
- * s-1; the angle of its beat, rad, and the rate of that, rad s-1. */
+/* State of the gait: amplitude relative to the amplitude of the case, with the initial ramp, and rate, s-1; phase angle
+ * of the beat, rad, and angular frequency, rad s-1. */
 struct fish_gait {
     double amplitude, amplitude_rate;
     double angle, omega;
 };
 
-/* The gait of the case at time t; control_gait (control/control.h) has what has been set since. */
+/* The gait of the case at time t; control_gait (control/control.h) adds values set from outside. */
 struct fish_gait fish_own_gait(const struct fish *fish, double t);
 
-/* What the muscle asks of joint j at full amplitude and without steering bias: the sine of the wave, or an angle of the
- * table, rad; and their rates. */
+/* Gait of joint j at full amplitude without bias: the sine of the wave, or the angle of the table, rad; and rates, s-1
+ * and rad s-1. */
 struct fish_demand {
     double sine, sine_rate;
     double angle, angle_rate;
@@ -31,8 +31,8 @@ struct fish_demand fish_demand(const struct fish *fish, int j, const struct fish
 /* The natural turning angle of joint j for the bias phi0, rad. */
 double fish_natural_angle(const struct fish *fish, int j, const struct fish_gait *gait, double phi0);
 
-/* The largest natural turning angle, in absolute value, of any joint at this amplitude over that of the case and a bias
- * up to this one, rad. */
+/* The largest absolute natural turning angle of any joint, rad; amplitude: relative to the case; bias: largest absolute
+ * value. */
 double fish_largest_turn(const struct fish *fish, double amplitude, double bias);
 
 #endif

@@ -1,4 +1,4 @@
-/* fish_prescribed.c: sines of time, and their derivatives. */
+/* fish_prescribed.c: sines in time, with derivatives. */
 #include "fish/fish_prescribed.h"
 
 #include <math.h>
@@ -16,7 +16,7 @@ int fish_is_prescribed(const struct fish *fish, int k, int i) {
     return k < fish_n_prescribed(fish) && (i == 1 || fish->motion.surge == SURGE_GIVEN);
 }
 
-// angle of the heading of the prescribed motion, its rate and the rate of that
+// heading angle of the prescribed motion, with first and second derivative
 static void prescribed_heading(const struct fish *fish, double t, double heading[3]) {
     const struct motion *motion = &fish->motion;
     const double omega = motion->omega, angle = omega * t + motion->phase, pitch_angle = angle + motion->pitch_phase;
@@ -46,6 +46,7 @@ void fish_prescribed_node(const struct fish *fish, int k, double t, double posit
     const double rate = heading[1], rate_change = heading[2];
     const double along[2] = {cos(heading[0]), sin(heading[0])}, across[2] = {-along[1], along[0]};
     const double arm = motion->pivot - fish->arc[k];
+
     for (int i = 0; i < 2; i++) {
         position[i] =
             fish->start_position[i] + (motion->speed * t - motion->pivot) * ahead[i] + heave * left[i] + arm * along[i];

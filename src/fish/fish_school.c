@@ -1,4 +1,4 @@
-/* fish_school.c: fluid, fish, the order of the unknowns; nobody overlaps at the start. */
+/* fish_school.c: fluid, fish, the order of the unknowns; check for overlaps at the start. */
 #include "fish/fish_school.h"
 
 #include <math.h>
@@ -20,6 +20,7 @@ static void set_motion(struct fish *fish, const struct fish_parameters *from) {
     fish->start_speed = from->start_speed;
     fish->load_tip[0] = from->load_tip[0];
     fish->load_tip[1] = from->load_tip[1];
+
     fish->motion = (struct motion){.prescribed = from->motion.prescribed,
                                    .surge = from->motion.surge,
                                    .speed = from->motion.speed,
@@ -29,6 +30,7 @@ static void set_motion(struct fish *fish, const struct fish_parameters *from) {
                                    .omega = 2 * M_PI * from->motion.frequency,
                                    .phase = angle_radians(from->motion.phase),
                                    .pivot = from->motion.pivot * from->length};
+
     const int given = fish->motion.prescribed != PRESCRIBED_NONE && from->motion.frequency > 0;
     fish->frequency = given ? from->motion.frequency : from->wave.frequency;
     fish->period = fish->frequency > 0 ? 1 / fish->frequency : 0;
@@ -51,21 +53,26 @@ static enum status set_control(struct fish *fish, const struct fish_parameters *
     to->n_headings = control->desired_heading.n;
     TRY(array_doubles(&to->heading_time, to->n_headings, "the desired headings"));
     TRY(array_doubles(&to->heading, to->n_headings, "the desired headings"));
+
     for (int i = 0; i < to->n_headings; i++) {
         to->heading_time[i] = control->desired_heading.value[2 * i];
         to->heading[i] = angle_radians(control->desired_heading.value[2 * i + 1]);
     }
+
     to->n_waypoints = control->waypoints.n;
     TRY(array_doubles(&to->waypoint_x, to->n_waypoints, "the waypoints"));
     TRY(array_doubles(&to->waypoint_y, to->n_waypoints, "the waypoints"));
+
     for (int i = 0; i < to->n_waypoints; i++) {
         to->waypoint_x[i] = control->waypoints.value[2 * i];
         to->waypoint_y[i] = control->waypoints.value[2 * i + 1];
     }
+
     // rho_f w L^2 (L f)^2
     const double beat_speed = fish->length * from->wave.frequency;
     to->torque_scale = parameters->fluid.density * from->body.depth * fish->length * fish->length * fish->length *
                        beat_speed * beat_speed;
+
     return STATUS_OK;
 }
 
@@ -88,6 +95,7 @@ static enum status fish_fill(struct fish *fish, const struct school_parameters *
     TRY(fish_gait_set(fish, from));
     TRY(fish_sheet_set(fish, from, parameters));
     set_motion(fish, from);
+
     return set_control(fish, from, parameters);
 }
 
@@ -104,17 +112,19 @@ static struct layout layout_after(int first, int n_nodes, int n_momenta, int n_s
     at.circulation = at.gamma + n_sheet;
     at.phi0 = at.circulation + 1;
     at.end = at.phi0 + 1;
+
     return at;
 }
 
-// of one wall the fluid is where the first nose begins
-static void set_walls(struct school *school, const struct school_parameters *parameters) {
+// a single wall bounds the fluid on the side of the first nose at the start
+static void walls_set(struct school *school, const struct school_parameters *parameters) {
     const struct number_list *const walls = &parameters->fluid.walls;
     school->walls.n = walls->n;
     for (int i = 0; i < walls->n; i++) {
         school->walls.y[i] = walls->value[i];
         school->walls.inward[i] = i == 0 ? 1 : -1;
     }
+
     if (walls->n == 1 && parameters->fish[0].start_position[1] < walls->value[0]) school->walls.inward[0] = -1;
 }
 
@@ -123,14 +133,15 @@ static void set_fluid(struct school *school, const struct school_parameters *par
     school->velocity[0] = parameters->fluid.velocity[0];
     school->velocity[1] = parameters->fluid.velocity[1];
     school->shear = parameters->fluid.shear;
-    // the gust blows to the left of the stream, along y where there is none
+
+    // the gust blows to the left of the stream, along y without a stream
     const double stream = hypot(school->velocity[0], school->velocity[1]);
     const double along[2] = {stream > 0 ? school->velocity[0] / stream : 1,
                              stream > 0 ? school->velocity[1] / stream : 0};
     school->gust[0] = -parameters->fluid.gust_amplitude * along[1];
     school->gust[1] = parameters->fluid.gust_amplitude * along[0];
     school->gust_omega = 2 * M_PI * parameters->fluid.gust_frequency;
-    set_walls(school, parameters);
+    walls_set(school, parameters);
     school->interval = parameters->shedding_interval;
     school->lifetime = parameters->wake.lifetime.seconds;
     school->decay = parameters->wake.decay.seconds;
@@ -155,6 +166,7 @@ static enum status refuse_overlap(const struct school *school) {
     double *y;
     TRY(array_doubles(&y, school->n_unknowns, "the unknowns"));
     enum status status = STATUS_OK;
+
     for (int f = 0; f < school->n_fish && status == STATUS_OK; f++) {
         fish_start(&school->fish[f], y);
         if (fish_wall_distance(school, &school->fish[f], y) <= 0) {
@@ -163,6 +175,7 @@ static enum status refuse_overlap(const struct school *school) {
                                  "start.position or fluid.walls",
                                  f, school->fish[f].name);
         }
+
         for (int g = 0; g < f && status == STATUS_OK; g++) {
             if (fish_distance(&school->fish[f], &school->fish[g], y, 0) <= 0) {
                 status = status_fail(STATUS_CASE,
@@ -172,6 +185,7 @@ static enum status refuse_overlap(const struct school *school) {
             }
         }
     }
+
     free(y);
     return status;
 }
@@ -250,10 +264,12 @@ void fish_school_free(struct school *school) {
                                fish->control.heading,
                                fish->control.waypoint_x,
                                fish->control.waypoint_y};
+
         for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
         curve_free(fish->curve);
         sheet_integrals_free(fish->integrals);
     }
+
     free(school->fish);
     free(school);
 }

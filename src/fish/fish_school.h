@@ -1,15 +1,15 @@
-/* fish_school.h: from the checked parameters of a school to its constants. Tested by tests/fish/test_fish.c. */
+/* fish_school.h: from the checked parameters of a school to the constants. Tested by tests/fish/test_fish.c. */
 #ifndef FISH_SCHOOL_H
 #define FISH_SCHOOL_H
 
 #include "base/status.h"
 #include "fish/fish.h"
 
-/* Build the school of checked parameters. Fails with STATUS_MEMORY, or STATUS_CASE where fish overlap, or are not
- * between the walls, at the start. */
+/* Build a school from checked parameters. Fails with STATUS_MEMORY, or with STATUS_CASE if fish overlap or are not
+ * between the walls at the start. */
 enum status fish_school_create(struct school **school, const struct school_parameters *parameters);
 
-/* Release the school and all that it owns. Accepts NULL. */
+/* Release the school with all data. Accepts NULL. */
 void fish_school_free(struct school *school);
 
 #endif

@@ -1,13 +1,13 @@
-/* fish_sheet.h: where a fish has its bound vortices and control points, and their weights in the integrals of sheet and
- * pressure. doc/model.md, sections 6, 15 and 18. Tested by tests/fish/test_fish.c. */
+/* fish_sheet.h: positions of bound vortices and control points, and weights in the integrals of sheet and pressure.
+ * doc/model.md, sections 6, 15 and 18. Tested by tests/fish/test_fish.c. */
 #ifndef FISH_SHEET_H
 #define FISH_SHEET_H
 
 #include "base/status.h"
 #include "fish/fish.h"
 
-/* Set all that the fish (its numbers of nodes and points, its length and depth are known) has per vortex and per
- * control point. Fails with STATUS_MEMORY. */
+/* Set all data per vortex and per control point. Numbers of nodes and points, length and depth of the fish are set.
+ * Fails with STATUS_MEMORY. */
 enum status fish_sheet_set(struct fish *fish, const struct fish_parameters *from,
                            const struct school_parameters *parameters);
 

@@ -1,5 +1,5 @@
-/* fish_start.h: how a fish begins: its natural shape, or the straight one of a prescribed motion, and one velocity.
- * doc/model.md, sections 4 and 5. Tested by tests/fish/test_fish.c. */
+/* fish_start.h: the initial state of a fish: natural shape, or straight shape of a prescribed motion, and a uniform
+ * velocity. doc/model.md, sections 4 and 5. Tested by tests/fish/test_fish.c. */
 #ifndef FISH_START_H
 #define FISH_START_H
 

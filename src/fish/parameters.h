@@ -1,6 +1,6 @@
-/* parameters.h: what describes a school to the model, in plain values with the units of a case file: angles in degrees,
- * lengths in metres or in fractions of the body length, as the comments say. fish/fish turns them into the constant
- * data of the equations. doc/cases.md explains every value under the key that sets it. */
+/* parameters.h: the parameters of a school, in the units of a case file: angles in degrees, lengths in metres or in
+ * fractions of the body length, see the comments. fish_school.h converts the parameters to the constants of the
+ * equations. doc/cases.md explains every value under the key of the value. */
 #ifndef PARAMETERS_H
 #define PARAMETERS_H
 
@@ -24,11 +24,11 @@ enum surge { SURGE_GIVEN, SURGE_FREE };
 enum control_law { CONTROL_NONE, CONTROL_HEADING, CONTROL_AVERAGED_HEADING, CONTROL_COURSE };
 
 /* A list of numbers, of pairs (then 2 n numbers, pair after pair), or of rows (width n numbers, row after row). Owned
- * by the structure that it is in. */
+ * by the enclosing structure. */
 struct number_list {
     int n;
     double *value;
-    int width; /* of a list of rows: numbers in each */
+    int width; /* of a list of rows: numbers per row */
 };
 
 struct fluid_parameters {
@@ -41,10 +41,10 @@ struct fluid_parameters {
     struct number_list walls; /* heights of walls along x: none, one, or two in ascending order, m */
 };
 
-/* A time that a case may state in beats; NaN where it does not. The seconds are set in either case. */
+/* A time, in seconds or in beats in the case; seconds are always set, beats is NaN for a time in seconds. */
 struct duration {
     double seconds;
-    double beats; /* of the fish that beats most slowly */
+    double beats; /* of the slowest beat in the school */
 };
 
 struct wake_parameters {
@@ -71,19 +71,19 @@ struct body_parameters {
     double thickness, depth; /* fractions of the body length; the depth is the span, out of the plane of motion */
     double tail_thickness;   /* fraction of the body length: profile joukowski only */
     struct number_list thickness_table, depth_table; /* m, one value per edge: profile table only */
-    enum section section;                            /* of an edge: means over it, or over its two nodes */
+    enum section section;                            /* of an edge: mean over the edge, or mean of both nodes */
     double density;                                  /* kg m-3 */
     double modulus;                                  /* Pa */
     enum second_moment second_moment;
     double bending_damping;    /* N m s, per joint of a body of reference_nodes: doc/model.md, section 3 */
-    double stretching_damping; /* N s m-1, per edge of such a body */
+    double stretching_damping; /* N s m-1, per edge of a body of reference_nodes */
     double relaxation_time;    /* s */
-    enum damping damping;      /* what internal damping of bending is the rate of */
+    enum damping damping;      /* quantity whose rate the internal damping of bending acts on */
 };
 
 struct wave_parameters {
     double amplitude, constant, linear, quadratic;
-    double number, wavelength; /* rad; body lengths, NaN: number says it */
+    double number, wavelength; /* rad; body lengths, NaN: use number */
     struct number_list
         table;        /* rows from nose to tail of natural curvature times length, over the phase; none: empty */
     double frequency; /* Hz */
@@ -94,7 +94,7 @@ struct wave_parameters {
 struct drag_parameters {
     double tangential, normal;
     enum skin skin;    /* law of the tangential drag */
-    double transition; /* Reynolds number of the distance from the nose; 0: turbulent from there */
+    double transition; /* Reynolds number of the distance from the nose; 0: turbulent from the nose on */
     double waving;     /* factor of laminar friction; NaN: 1.5 with a wave, else 1 */
     double form;       /* factor of all friction; NaN: by the largest thickness */
     enum drag_law law;
@@ -109,7 +109,7 @@ struct added_mass_parameters {
 struct motion_parameters {
     enum prescribed prescribed;
     enum surge surge;          /* motion along the heading */
-    double speed;              /* m s-1; of a free one at the start */
+    double speed;              /* m s-1; surge free: at the start */
     double heave;              /* m */
     double pitch, pitch_phase; /* degree */
     double frequency;          /* Hz */
@@ -136,9 +136,9 @@ struct fish_parameters {
     struct body_parameters body;
     struct wave_parameters wave;
     enum force force;     /* of the fluid on the body */
-    enum span span;       /* force: pressure: of the strip that the sheets are */
-    double suction;       /* force: pressure: the part of the leading-edge suction that acts */
-    double suction_limit; /* force: pressure: the largest leading-edge parameter that a nose holds; 0: none */
+    enum span span;       /* force: pressure: span model of the sheet strip */
+    double suction;       /* force: pressure: fraction of the leading-edge suction */
+    double suction_limit; /* force: pressure: largest leading-edge parameter with attached flow; 0: no limit */
     struct drag_parameters drag;
     struct added_mass_parameters added_mass;
     double start_position[2]; /* m */

@@ -9,16 +9,17 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* Gauss points of a piece, which is no longer than the distance of two vortices: the highest term of the series turns
- * by half a period there, and the error is below 1e-10 of it. */
+/* Gauss points per piece. A piece is at most the distance of two vortices: half a period of the highest term of the
+ * series, and the error is below 1e-10 of this term. */
 enum { GAUSS = 6 };
 
 /* Both series run over m = 1 .. n-1 with the factors cos(m theta_j), the last term halved: of sin(m theta)/m, of
  * cos(m theta). Multiples of an angle follow by cos((m+1) a) = 2 cos(a) cos(m a) - cos((m-1) a), and so for sin. */
-static void sum_series(int n, int j, double theta, double *of_sines, double *of_cosines) {
+static void series_sum(int n, int j, double theta, double *of_sines, double *of_cosines) {
     const double step = pi * j / (n - 1), twice_step = 2 * cos(step), twice = 2 * cos(theta);
     double factor[2] = {1, cos(step)}, cosine[2] = {1, cos(theta)}, sine[2] = {0, sin(theta)};
     *of_sines = *of_cosines = 0;
+
     for (int m = 1; m < n; m++) {
         const double weight = (m < n - 1 ? 1 : 0.5) * factor[m % 2];
         *of_sines += weight * sine[m % 2] / m;
@@ -32,14 +33,14 @@ static void sum_series(int n, int j, double theta, double *of_sines, double *of_
 
 double sheet_integrals_circulation(int n, int j, double theta) {
     double of_sines, of_cosines;
-    sum_series(n, j, theta, &of_sines, &of_cosines);
+    series_sum(n, j, theta, &of_sines, &of_cosines);
     return (theta + 2 * of_sines) / pi;
 }
 
 // G of the control point at theta
 static double strength_between(int n, int j, double theta) {
     double of_sines, of_cosines;
-    sum_series(n, j, theta, &of_sines, &of_cosines);
+    series_sum(n, j, theta, &of_sines, &of_cosines);
     return (1 + 2 * of_cosines) / (n - 1);
 }
 
@@ -53,8 +54,8 @@ static void fill_control_points(struct sheet_integrals *to) {
     }
 }
 
-// the kink of a sheet whose strength is the place: what g = sin(theta) (1 - cos(theta)) has more than its series
-static void fill_kink(struct sheet_integrals *to) {
+// the kink for a vortex strength equal to the position: g = sin(theta) (1 - cos(theta)) minus the series of g
+static void kink_fill(struct sheet_integrals *to) {
     const int n = to->n_sheet;
     const double h = pi / to->n_control, scale = sin(pi - h) * (1 - cos(pi - h)) * h;
     for (int c = 0; c < to->n_control; c++) {
@@ -65,14 +66,15 @@ static void fill_kink(struct sheet_integrals *to) {
             strength -= to->strength[c * n + j] * here;
             circulation -= to->circulation[c * n + j] * here;
         }
+
         to->kink_strength[c] = strength / scale;
         to->kink_circulation[c] = circulation / scale;
     }
 }
 
 // add a point theta with its weight to the integrals of all j
-static void add_point(struct sheet_integrals *to, double theta, double weight, const struct stencil *point,
-                      const struct stencil *slope) {
+static void integrals_add_point(struct sheet_integrals *to, double theta, double weight, const struct stencil *point,
+                                const struct stencil *slope) {
     const int n = to->n_nodes;
     for (int j = 0; j < to->n_sheet; j++) {
         double *const matrix = to->momentum + (long)j * n * n;
@@ -85,7 +87,7 @@ static void add_point(struct sheet_integrals *to, double theta, double weight, c
 }
 
 // one edge, in pieces of equal length in theta
-static enum status integrate_edge(struct sheet_integrals *to, int edge, double density) {
+static enum status edge_integrate(struct sheet_integrals *to, int edge, double density) {
     const int n_edges = to->n_nodes - 1;
     const double first = acos(1 - 2.0 * edge / n_edges), last = acos(1 - 2.0 * (edge + 1) / n_edges);
     const int needed = (int)ceil((last - first) / (pi / to->n_control)), n_pieces = needed < 2 ? 2 : needed;
@@ -94,12 +96,14 @@ static enum status integrate_edge(struct sheet_integrals *to, int edge, double d
     quadrature_legendre(GAUSS, node, gauss);
     struct curve *curve;
     TRY(curve_create(&curve, to->n_nodes, 0, 2 * GAUSS * n_pieces));
+
     for (int i = 0; i < GAUSS * n_pieces; i++) {
         const double theta = first + (i / GAUSS + node[i % GAUSS]) * piece;
         const double u = n_edges * (1 - cos(theta)) / 2;
         const struct stencil point = curve_smooth_point(curve, u), slope = curve_smooth_slope(curve, u);
-        add_point(to, theta, density * gauss[i % GAUSS] * piece * n_edges * sin(theta) / 2, &point, &slope);
+        integrals_add_point(to, theta, density * gauss[i % GAUSS] * piece * n_edges * sin(theta) / 2, &point, &slope);
     }
+
     curve_free(curve);
     return STATUS_OK;
 }
@@ -111,12 +115,15 @@ static enum status fill(struct sheet_integrals *to, const double *density) {
     to->circulation = calloc(n_control * n_sheet, sizeof *to->circulation);
     to->kink_strength = calloc(n_control, sizeof *to->kink_strength);
     to->kink_circulation = calloc(n_control, sizeof *to->kink_circulation);
+
     if (!to->momentum || !to->strength || !to->circulation || !to->kink_strength || !to->kink_circulation) {
         return status_fail(STATUS_MEMORY, "out of memory: the integrals over a sheet of %d vortices", to->n_sheet);
     }
+
     fill_control_points(to);
-    fill_kink(to);
-    for (int k = 0; k < to->n_nodes - 1; k++) TRY(integrate_edge(to, k, density[k]));
+    kink_fill(to);
+    for (int k = 0; k < to->n_nodes - 1; k++) TRY(edge_integrate(to, k, density[k]));
+
     return STATUS_OK;
 }
 
@@ -129,10 +136,12 @@ enum status sheet_integrals_create(struct sheet_integrals **integrals, int n_nod
     new->n_sheet = n_sheet;
     new->n_control = n_sheet - 1;
     const enum status status = fill(new, density);
+
     if (status != STATUS_OK) {
         sheet_integrals_free(new);
         return status;
     }
+
     *integrals = new;
     return STATUS_OK;
 }

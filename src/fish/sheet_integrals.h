@@ -1,8 +1,8 @@
-/* sheet_integrals.h: integrals over the bound sheet of what is linear in its circulations: doc/model.md, section 15.
+/* sheet_integrals.h: integrals over the bound sheet that are linear in the circulations: doc/model.md, section 15.
  * Tested by tests/fish/test_sheet_integrals.c.
  *
- * Between nose and tail, 0 <= theta <= pi, the sheet is the cosine series through its vortices: the one with
- * circulation 1 at j alone has the circulation C_j(theta) between the nose and theta. */
+ * Between nose and tail, 0 <= theta <= pi, the sheet is the cosine series through the vortices: C_j(theta) is the
+ * circulation between nose and theta of the series with circulation 1 at vortex j and 0 at all other vortices. */
 #ifndef SHEET_INTEGRALS_H
 #define SHEET_INTEGRALS_H
 
@@ -14,17 +14,18 @@ struct sheet_integrals {
                                                                                       (n_sheet, n_nodes, n_nodes) */
     double *strength;    /* G: circulation of the interval around a control point, 1        (n_control, n_sheet) */
     double *circulation; /* C_j at the control points, 1                                  (n_control, n_sheet) */
-    /* What both sums lack at the control points where the strength at the tail is finite, per q_M-2 - 2 q_M-1: g then
-     * has a kink there, which the series cannot follow                                               (n_control) */
+    /* Corrections of both sums at the control points for a finite strength at the tail, per q_M-2 - 2 q_M-1: g then has
+     * a kink at the tail, beyond the cosine series                                               (n_control) */
     double *kink_strength, *kink_circulation;
 };
 
-/* Those on the smooth curve; density: of the fluid times the depth of every edge, kg m-2 (n_nodes - 1). Fails with
+/* Integrals on the smooth curve; density: fluid density times depth of every edge, kg m-2 (n_nodes - 1). Fails with
  * STATUS_MEMORY. sheet_integrals_free accepts NULL. */
 enum status sheet_integrals_create(struct sheet_integrals **integrals, int n_nodes, int n_sheet, const double *density);
 void sheet_integrals_free(struct sheet_integrals *integrals);
 
-/* Q_c: the circulation of the interval around control point c, of a sheet with these circulations (n_sheet), m2 s-1. */
+/* Q_c: the circulation of the interval around control point c, of a sheet with the given circulations (n_sheet), m2
+ * s-1. */
 double sheet_integrals_around(const struct sheet_integrals *integrals, int c, const double *circulation);
 
 /* C_j(theta) of a sheet of n vortices. */

@@ -1,5 +1,5 @@
-/* expansions_boxes.c: from expansions to expansions, of eight boxes or pairs of boxes at a time, one in each lane of a
- * vector. Declared in expansions.h. */
+/* expansions_boxes.c: M2M, M2L and L2L for eight boxes or pairs of boxes at a time, one per vector lane. Declared in
+ * expansions.h. */
 #include <math.h>
 #include <string.h>
 
@@ -37,7 +37,7 @@ static const double inverse_factorial[DEGREES] = {
 
 // ---- expansions of several boxes, one in each lane ----
 
-// put n coefficients into one lane; setting the lane of a vector by its index would rewrite the whole vector
+// put n coefficients into one lane; memcpy, because an indexed assignment rewrites the whole vector
 INLINE void lane_read(lanes *re, lanes *im, int lane, const double *from, int n) {
     const size_t offset = (size_t)lane * sizeof(double);
     for (int i = 0; i < n; i++) {
@@ -46,11 +46,12 @@ INLINE void lane_read(lanes *re, lanes *im, int lane, const double *from, int n)
     }
 }
 
-// put an expansion into one lane, with 0 for degrees that it lacks
+// put an expansion into one lane; degrees above the expansion are 0
 INLINE void block_read(struct block *block, struct expansion_order order, int lane, const struct expansion *expansion) {
     static const double zero[2 * DEPTH];
     const struct expansion_order own = expansion->order;
     const double *from = expansion->value;
+
     for (int k = 0; k <= order.harmonic; k++) {
         const int n = depth(order, k), all = k <= own.harmonic ? depth(own, k) : 0, end = n < all ? n : all;
         lane_read(block->re[k], block->im[k], lane, from, end);
@@ -59,7 +60,7 @@ INLINE void block_read(struct block *block, struct expansion_order order, int la
     }
 }
 
-// add the coefficients of one lane to an expansion that has at min the degrees of order
+// add the coefficients of one lane to an expansion of at least the degrees of order
 INLINE void block_add(const struct expansion *expansion, struct expansion_order order, const struct block *block,
                       int lane) {
     double *to = expansion->value;
@@ -73,12 +74,13 @@ INLINE void block_add(const struct expansion *expansion, struct expansion_order 
     }
 }
 
-// multiply coefficient (m, n) by g^m g'^n, and divide it by m! n! where asked for
+// multiply coefficient (m, n) by g^m g'^n; divide: also by 1/(m! n!)
 INLINE void block_scale(struct block *block, struct expansion_order order, const lanes *re, const lanes *im,
                         int divide) {
     const lanes square = *re * *re + *im * *im;
     lanes power_re = {0}, power_im = {0};
     power_re += 1;
+
     for (int k = 0; k <= order.harmonic; k++) {
         lanes a = power_re, b = power_im;
         for (int n = 0; n < depth(order, k); n++) {
@@ -89,15 +91,16 @@ INLINE void block_scale(struct block *block, struct expansion_order order, const
             a *= square;
             b *= square;
         }
+
         const lanes next = power_re * *re - power_im * *im;
         power_im = power_re * *im + power_im * *re;
         power_re = next;
     }
 }
 
-// ---- M2M and L2L: from the centre of a box to that of another ----
+// ---- M2M and L2L: shift of the centre of an expansion ----
 
-// all terms (m, n) up to the mixed degree, of which a block holds half
+// all terms (m, n) up to the mixed degree; a block holds the half m >= n
 struct square {
     lanes re[MIXED][MIXED], im[MIXED][MIXED];  // [n][m]
 };
@@ -122,8 +125,8 @@ INLINE void add_product(lanes *re, lanes *im, const lanes *other_re, const lanes
     *im += *d_re * b + *d_im * a;
 }
 
-// Multipole coefficients about a centre moved by d: M_m = sum_i binomial(m, i) d^(m-i) M_i, as repeated sums. Degrees
-// are stride apart.
+// Multipole coefficients about a centre moved by d: M_m = sum_i binomial(m, i) d^(m-i) M_i, as repeated sums. stride:
+// from one degree to the next.
 INLINE void multipole_shift(lanes *re, lanes *im, int stride, int degree, const lanes *d_re, const lanes *d_im) {
     for (int s = degree - 1; s >= 0; s--) {
         for (int i = s; i < degree; i++) {
@@ -133,7 +136,7 @@ INLINE void multipole_shift(lanes *re, lanes *im, int stride, int degree, const 
     }
 }
 
-// Local coefficients about a centre moved by d, those up to last: L_a = sum_i binomial(i, a) d^(i-a) L_i.
+// Local coefficients a <= last about a centre moved by d: L_a = sum_i binomial(i, a) d^(i-a) L_i.
 INLINE void local_shift(lanes *re, lanes *im, int stride, int degree, int last, const lanes *d_re, const lanes *d_im) {
     for (int s = 0; s < degree && s <= last; s++) {
         for (int i = degree - 1; i >= s; i--) {
@@ -152,6 +155,7 @@ KERNEL_WIDE(void, expansions_m2m,
     struct block block;
     block_clear(&block, order);
     lanes d_re = {0}, d_im = {0}, scale = {0}, zero = {0};
+
     for (int i = 0; i < 2 * n_parents; i++) {
         const int child = 2 * parent + 1 + i;
         if (multipole[parent + i / 2].order.harmonic < 0) continue;
@@ -161,17 +165,21 @@ KERNEL_WIDE(void, expansions_m2m,
         d_im[i] = (to->y - from->y) / to->radius;
         scale[i] = from->radius / to->radius;
     }
+
     block_scale(&block, order, &scale, &zero, 0);
     struct square square;
     square_read(&square, &block, order.mixed);
     const lanes back = -d_im;
-    // by d' in z', for every m; then by d in z, for every n
+
+    // shift by d' in z', for every m; then by d in z, for every n
     for (int m = 0; m <= order.mixed; m++) {
         multipole_shift(&square.re[0][m], &square.im[0][m], MIXED, order.mixed - m, &d_re, &back);
     }
+
     for (int n = 1; 2 * n <= order.mixed; n++) {
         multipole_shift(square.re[n], square.im[n], 1, order.mixed - n, &d_re, &d_im);
     }
+
     multipole_shift(block.re[0], block.im[0], DEPTH, order.harmonic, &d_re, &d_im);
     for (int n = 1; 2 * n <= order.mixed; n++) {
         for (int m = n; m + n <= order.mixed; m++) {
@@ -179,10 +187,12 @@ KERNEL_WIDE(void, expansions_m2m,
             block.im[m - n][n] = square.im[n][m];
         }
     }
+
     for (int i = 0; i < n_parents; i++) {
         const struct expansion_order own = multipole[parent + i].order;
         if (own.harmonic < 0) continue;
         double *to = multipole[parent + i].value;
+
         for (int k = 0; k <= own.harmonic; k++) {
             for (int n = 0; n < depth(own, k); n++) {
                 *to++ = block.re[k][n][2 * i] + block.re[k][n][2 * i + 1];
@@ -201,6 +211,7 @@ KERNEL_WIDE(void, expansions_l2l,
     struct block block;
     block_clear(&block, order);
     lanes d_re = {0}, d_im = {0}, scale = {0}, zero = {0};
+
     for (int i = 0; i < 2 * n_parents; i++) {
         if (local[parent + i / 2].order.harmonic < 0) continue;
         block_read(&block, order, i, &local[parent + i / 2]);
@@ -209,23 +220,28 @@ KERNEL_WIDE(void, expansions_l2l,
         d_im[i] = (to->y - from->y) / from->radius;
         scale[i] = to->radius / from->radius;
     }
+
     struct square square;
     square_read(&square, &block, order.mixed);
     const lanes back = -d_im;
-    // by d in z, for every b; then by d' in z', for every a, as far as a >= b
+
+    // shift by d in z, for every b; then by d' in z', for every a >= b
     local_shift(block.re[0], block.im[0], DEPTH, order.harmonic, order.harmonic, &d_re, &d_im);
     for (int b = 1; b <= order.mixed; b++) {
         local_shift(square.re[b], square.im[b], 1, order.mixed - b, order.mixed, &d_re, &d_im);
     }
+
     for (int a = 1; a <= order.mixed; a++) {
         square.re[0][a] = block.re[a][0];
         square.im[0][a] = block.im[a][0];
         local_shift(&square.re[0][a], &square.im[0][a], MIXED, order.mixed - a, a, &d_re, &back);
+
         for (int b = 0; b <= a && a + b <= order.mixed; b++) {
             block.re[a - b][b] = square.re[b][a];
             block.im[a - b][b] = square.im[b][a];
         }
     }
+
     block_scale(&block, order, &scale, &zero, 0);
     for (int i = 0; i < 2 * n_parents; i++) {
         const struct expansion_order from = local[parent + i / 2].order;
@@ -240,18 +256,21 @@ struct derivatives {
     lanes d[DEGREES][DEPTH];
 };
 
-// With H_kl the same for 1/(1 + 2 c Re z + z z'): H_kl = -(c (k H_(k-1)l + l H_k(l-1)) + k l H_(k-1)(l-1)), from the
-// product with the denominator, and D_kl = c H_(k-1)l + l H_(k-1)(l-1), from dPhi/dz = (c + z')/(1 + 2 c Re z + z z').
-INLINE void differentiate(struct derivatives *out, struct expansion_order order, const lanes *c) {
+// H_kl is the same derivative of 1/(1 + 2 c Re z + z z'). The product with the denominator gives H_kl = -(c (k H_(k-1)l
+// + l H_k(l-1)) + k l H_(k-1)(l-1)), and D_kl = c H_(k-1)l + l H_(k-1)(l-1), from dPhi/dz = (c + z')/(1 + 2 c Re z + z
+// z').
+INLINE void phi_derivatives(struct derivatives *out, struct expansion_order order, const lanes *c) {
     lanes h[MIXED][MIXED];  // [l][k], k >= l
     lanes harmonic = {0};
     harmonic += 1;
     out->d[0][0] = (lanes){0};
+
     for (int k = 1; k <= order.harmonic; k++) {
         out->d[k][0] = *c * harmonic;
         if (k <= MIXED) h[0][k - 1] = harmonic;
         harmonic *= *c * -(double)k;
     }
+
     for (int l = 1; 2 * l <= order.mixed; l++) {
         for (int k = l; k + l <= order.mixed; k++) {
             const lanes left = k > l ? h[l][k - 1] : h[l - 1][k];
@@ -267,6 +286,7 @@ INLINE void correlate(int n, const lanes *d_re, const lanes *d_im, const lanes *
 #pragma GCC unroll 16
     for (int i = 0; i < n; i++) {
         lanes re = sum_re[i], im = sum_im[i];
+
 #pragma GCC unroll 16
         for (int j = 0; i + j < n; j++) {
             re += d_re[i + j] * m_re[j];
@@ -277,32 +297,39 @@ INLINE void correlate(int n, const lanes *d_re, const lanes *d_im, const lanes *
     }
 }
 
-// All local coefficients with a - b = alpha: the sum over all multipole coefficients. Those with m - n = mu and their
-// conjugates are multiplied by D with k - l = alpha + mu and alpha - mu, and in each only the sum b + n matters.
+// All local coefficients with a - b = alpha: the sum over all multipole coefficients. The coefficients with m - n = mu
+// are multiplied by D with k - l = alpha + mu, the conjugate coefficients by D with k - l = alpha - mu. Each factor D
+// depends on b + n only.
 INLINE void m2l_sums(const struct derivatives *derivatives, const struct block *multipole, struct expansion_order order,
                      int alpha, struct block *result) {
     lanes *const re = result->re[alpha], *const im = result->im[alpha];
     for (int b = 0; b < depth(order, alpha); b++) re[b] = im[b] = (lanes){0};
+
     // harmonic terms above the mixed degree
     const int rest = order.mixed - alpha;
     for (int mu = rest < 0 ? 0 : rest + 1; mu <= order.harmonic - alpha; mu++) {
         correlate(1, derivatives->d[alpha + mu], derivatives->d[alpha + mu], multipole->re[mu], multipole->im[mu], re,
                   im);
     }
+
     if (rest >= 0)
         correlate(rest / 2 + 1, derivatives->d[alpha], derivatives->d[alpha], multipole->re[0], multipole->im[0], re,
                   im);
+
     for (int mu = 1; mu <= rest; mu++) {
         const int n = (rest - mu) / 2 + 1, min = alpha < mu ? alpha : mu;
         const lanes *const d = derivatives->d[alpha + mu], *const other = derivatives->d[alpha + mu - 2 * min] + min;
         lanes d_re[DEPTH], d_im[DEPTH];
+
         for (int i = 0; i < n; i++) {
             d_re[i] = d[i] + other[i];
             d_im[i] = d[i] - other[i];
         }
+
         const lanes *const from_re = multipole->re[mu], *const from_im = multipole->im[mu];
-        // sums of known length have no loops
+        // the compiler unrolls sums of constant length
         _Static_assert(DEPTH == 8, "n is at most 7");
+
         switch (n) {
             case 1: correlate(1, d_re, d_im, from_re, from_im, re, im); break;
             case 2: correlate(2, d_re, d_im, from_re, from_im, re, im); break;
@@ -315,13 +342,14 @@ INLINE void m2l_sums(const struct derivatives *derivatives, const struct block *
     }
 }
 
-// n <= LANES pairs
+// M2L of n <= LANES pairs
 INLINE void m2l(const struct tree_boxes *targets, const struct tree_boxes *sources, double smoothing, int n,
                 const struct expansions_pair *pair, const struct expansion *multipole, const struct expansion *local) {
     struct expansion_order order = pair[0].order;
     for (int i = 1; i < n; i++) order = expansion_order_max(order, pair[i].order);
     struct block block;
     lanes c = {0}, source_re = {0}, source_im = {0}, target_re = {0}, target_im = {0};
+
     for (int i = 0; i < n; i++) {
         const struct tree_box *const to = &targets->box[pair[i].target], *const from = &sources->box[pair[i].source];
         block_read(&block, order, i, &multipole[pair[i].source]);
@@ -335,11 +363,12 @@ INLINE void m2l(const struct tree_boxes *targets, const struct tree_boxes *sourc
         target_re[i] = turn_re * to->radius / scale;
         target_im[i] = turn_im * to->radius / scale;
     }
+
     const struct expansion none = {.order = {-1, 0}};
     for (int i = n; i < LANES; i++) block_read(&block, order, i, &none);
     block_scale(&block, order, &source_re, &source_im, 1);
     struct derivatives derivatives;
-    differentiate(&derivatives, order, &c);
+    phi_derivatives(&derivatives, order, &c);
     struct block result;
     for (int alpha = 0; alpha <= order.harmonic; alpha++) m2l_sums(&derivatives, &block, order, alpha, &result);
     block_scale(&result, order, &target_re, &target_im, 1);

@@ -1,5 +1,5 @@
-/* expansions_lanes.h: the coefficients of eight expansions, one in each lane of a vector. Part of
- * expansions_boxes.c and expansions_points.c; the functions are compiled into each variant of those that call them. */
+/* expansions_lanes.h: the coefficients of eight expansions, one per vector lane. Part of expansions_boxes.c and
+ * expansions_points.c; the functions are inlined into every vector variant of a caller. */
 #ifndef EXPANSIONS_LANES_H
 #define EXPANSIONS_LANES_H
 
@@ -20,7 +20,7 @@ INLINE int depth(struct expansion_order order, int k) {
     return order.mixed - k >= 2 ? (order.mixed - k) / 2 + 1 : 1;
 }
 
-/* Coefficient (m, n) of each lane at [m - n][n]; those above the degrees in use are not touched. */
+/* Coefficient (m, n) of each lane at [m - n][n]; coefficients above the degrees in use are not touched. */
 struct block {
     lanes re[DEGREES][DEPTH], im[DEGREES][DEPTH];
 };

@@ -1,10 +1,10 @@
-/* image_rows.h: walls along x, and the velocity that an endless row of images of a vortex in a channel induces. Part of
- * images.h and far_images.h, which say what they are for. With X = sqrt(x^2 + e^2), S = pi X/H, Y = pi y/H and
- * D = cosh S - cos Y,
+/* image_rows.h: walls along x, and the velocity that an infinite row of images of a vortex in a channel induces. Part
+ * of images.h and far_images.h. With X = sqrt(x^2 + e^2), S = pi X/H, Y = pi y/H and D = cosh S - cos Y,
  *
  *     sum_k K_e(x, y + 2kH) = (-sin Y, (x/X) sinh S) / (4 H D),
  *
- * for e = 0 the (Gamma/4H) coth of complex potentials. Nothing is truncated: on the walls the normal velocity is 0. */
+ * for e = 0 the (Gamma/4H) coth of complex potentials. The infinite sum is exact: on the walls the normal velocity is
+ * 0. */
 #ifndef IMAGE_ROWS_H
 #define IMAGE_ROWS_H
 
@@ -21,7 +21,7 @@ static inline double image_rows_width(const struct walls *walls) {
     return walls->y[1] - walls->y[0];
 }
 
-/* A height above the lower wall, in half angles: a = pi (y - h)/(2H). */
+/* Sine and cosine of the half angle a = pi (y - h)/(2H) of a height y above the lower wall y = h. */
 struct image_height {
     double sine, cosine;
 };
@@ -32,14 +32,14 @@ static inline struct image_height image_height_of(const struct walls *walls, dou
     return (struct image_height){sin(a), cos(a)};
 }
 
-/* What two places have in common for both rows of images. */
+/* Terms of a source and a target that both rows of images share. */
 struct image_column {
     double ratio, decay;   /* x/X, e^2/X^3: 1, m-1 */
     double rate, strength; /* pi/H, m-1, and 1/(4H) */
     double t, gap;         /* exp(-S), 1 - exp(-S) */
 };
 
-/* Of places x apart in x; rate: pi/H; square: e^2. */
+/* Source and target at a distance x along the channel; rate: pi/H; square: e^2. */
 static inline struct image_column image_column_of(double rate, double x, double square) {
     static const double pi = 3.14159265358979323846;
     const double length = sqrt(x * x + square), s = rate * length;
@@ -51,13 +51,13 @@ static inline struct image_column image_column_of(double rate, double x, double 
                                  .gap = -expm1(-s)};
 }
 
-/* A velocity and, where asked for, its gradient. */
+/* A velocity and, if requested, the velocity gradient. */
 struct image_velocity {
     double u, v, u_x, u_y, v_x;
 };
 
-/* The velocity that a row of unit vortices causes, whose half angle to the target has this sine and cosine. With both
- * parts of the fraction times 2t: 2t D = (1 - t)^2 + 4t sin^2(Y/2), 2t sinh S = 1 - t^2. */
+/* The velocity of a row of unit vortices, from the sine and cosine of the half angle between row and target. Numerator
+ * and denominator are multiplied by 2t: 2t D = (1 - t)^2 + 4t sin^2(Y/2), 2t sinh S = 1 - t^2. */
 static inline struct image_velocity image_row_of(const struct image_column *c, double sine, double cosine,
                                                  int with_gradient) {
     const double t = c->t, gap = c->gap, square = sine * sine, both = sine * cosine;
@@ -74,7 +74,7 @@ static inline struct image_velocity image_row_of(const struct image_column *c, d
     return row;
 }
 
-/* What one unit vortex causes. */
+/* The velocity of one unit vortex. */
 static inline struct image_velocity image_direct_of(double x, double y, double square, int with_gradient) {
     static const double pi = 3.14159265358979323846;
     const double inverse = 1 / (x * x + y * y + square), g = inverse / (2 * pi), twice = 2 * g * inverse;
@@ -86,7 +86,7 @@ static inline struct image_velocity image_direct_of(double x, double y, double s
     return direct;
 }
 
-/* The row of a source less itself, and the row of its mirror image; r: from the source to the target. */
+/* The row of a source without the source, and the row of the mirror image; r: from the source to the target. */
 struct image_rows {
     struct image_velocity shifted, mirrored;
 };

@@ -1,4 +1,4 @@
-/* images.c: for one wall, the vortices at mirrored targets; for a channel, the closed sums over all images. */
+/* images.c: one wall: the vortices at mirrored targets; a channel: the closed sums over all images. */
 #include "vortex/images.h"
 
 #include <math.h>
@@ -31,8 +31,8 @@ struct sources {
 
 // ---- one wall: the field of the vortices, mirrored
 
-// add what is induced at n mirrored targets to those from first on
-static void add_reflected(int n, const struct kernel_values *value, const struct induced *at, int first) {
+// add the velocity at n mirrored targets to the targets from first on
+static void reflected_add(int n, const struct kernel_values *value, const struct induced *at, int first) {
     for (int i = 0; i < n; i++) {
         at->u[first + i] += value->u[i];
         at->v[first + i] -= value->v[i];
@@ -43,9 +43,9 @@ static void add_reflected(int n, const struct kernel_values *value, const struct
     }
 }
 
-// what the sources induce at n targets, which is 0 before
-static void induce_directly(const struct sources *s, int n, const double *x, const double *y, int with_gradient,
-                            struct kernel_values *to) {
+// set the velocity of the sources at n targets
+static void sources_induce_directly(const struct sources *s, int n, const double *x, const double *y, int with_gradient,
+                                    struct kernel_values *to) {
     memset(to, 0, sizeof *to);
     if (with_gradient) {
         kernel_add_gradient(n, x, y, s->n, s->x, s->y, s->circulation, s->smoothing, to->u, to->v, to->u_x, to->u_y,
@@ -55,20 +55,20 @@ static void induce_directly(const struct sources *s, int n, const double *x, con
     }
 }
 
-static void induce_by_wall(double wall, const struct sources *sources, const struct induced *at) {
+static void wall_induce(double wall, const struct sources *sources, const struct induced *at) {
     double y[KERNEL_CHUNK];
     struct kernel_values there;
     for (int first = 0; first < at->n; first += KERNEL_CHUNK) {
         const int n = at->n - first < KERNEL_CHUNK ? at->n - first : KERNEL_CHUNK;
         for (int i = 0; i < n; i++) y[i] = 2 * wall - at->y[first + i];
-        induce_directly(sources, n, at->x + first, y, at->u_x != NULL, &there);
-        add_reflected(n, &there, at, first);
+        sources_induce_directly(sources, n, at->x + first, y, at->u_x != NULL, &there);
+        reflected_add(n, &there, at, first);
     }
 }
 
 // ---- a channel: the sum over all images in closed form
 
-static inline void add_rows(const struct image_rows *rows, double circulation, const struct induced *at, int i) {
+static inline void image_rows_add(const struct image_rows *rows, double circulation, const struct induced *at, int i) {
     const struct image_velocity *const a = &rows->shifted, *const b = &rows->mirrored;
     at->u[i] += circulation * (a->u - b->u);
     at->v[i] += circulation * (a->v - b->v);
@@ -78,13 +78,13 @@ static inline void add_rows(const struct image_rows *rows, double circulation, c
     at->v_x[i] += circulation * (a->v_x - b->v_x);
 }
 
-static double rate_of(const struct walls *walls) {
+static double channel_rate(const struct walls *walls) {
     return pi / image_rows_width(walls);
 }
 
-static void induce_in_channel(const struct walls *walls, const struct sources *s, const struct induced *at) {
+static void channel_induce(const struct walls *walls, const struct sources *s, const struct induced *at) {
     struct image_height target[KERNEL_CHUNK];
-    const double rate = rate_of(walls), square = s->smoothing * s->smoothing;
+    const double rate = channel_rate(walls), square = s->smoothing * s->smoothing;
     for (int first = 0; first < at->n; first += KERNEL_CHUNK) {
         const int end = at->n - first < KERNEL_CHUNK ? at->n : first + KERNEL_CHUNK;
         for (int i = first; i < end; i++) target[i - first] = image_height_of(walls, at->y[i]);
@@ -95,17 +95,17 @@ static void induce_in_channel(const struct walls *walls, const struct sources *s
                 const struct image_column column = image_column_of(rate, r[0], square);
                 const struct image_rows rows =
                     image_rows_of(&column, r, &target[i - first], &source, square, at->u_x != NULL);
-                add_rows(&rows, s->circulation[j], at, i);
+                image_rows_add(&rows, s->circulation[j], at, i);
             }
         }
     }
 }
 
-// ---- both
+// ---- one wall or a channel
 
-static void induce(const struct walls *walls, const struct sources *sources, const struct induced *at) {
-    if (walls->n == 1) induce_by_wall(walls->y[0], sources, at);
-    if (walls->n == 2) induce_in_channel(walls, sources, at);
+static void sources_induce(const struct walls *walls, const struct sources *sources, const struct induced *at) {
+    if (walls->n == 1) wall_induce(walls->y[0], sources, at);
+    if (walls->n == 2) channel_induce(walls, sources, at);
 }
 
 void images_induce(const struct walls *walls, const struct vortices *vortices, struct range which,
@@ -118,11 +118,12 @@ void images_induce(const struct walls *walls, const struct vortices *vortices, s
                                         .y = vortices->y + of.first,
                                         .circulation = vortices->circulation + of.first,
                                         .smoothing = vortices->group[g].smoothing};
-        induce(walls, &sources, at);
+
+        sources_induce(walls, &sources, at);
     }
 }
 
-// ---- many
+// ---- all vortices at many targets
 
 static void induce_all_directly(const struct walls *walls, const struct vortices *vortices, int threads,
                                 const struct induced *at) {
@@ -134,12 +135,13 @@ static void induce_all_directly(const struct walls *walls, const struct vortices
     }
 }
 
-// what all vortices induce at the mirrored targets, by the tree; memory: (6 or 3 n, 0 but for places)
+// add the velocity of all vortices at the mirrored targets, by the tree
 static enum status induce_by_tree(double wall, struct velocity_sum *sum, const struct vortices *vortices,
                                   double tolerance, int threads, const struct induced *at) {
     const size_t n = (size_t)at->n;
     double *const memory = calloc(6 * n, sizeof *memory);
     if (!memory) return status_fail(STATUS_MEMORY, "out of memory: images at %d points", at->n);
+
     const struct induced there = {.n = at->n,
                                   .x = at->x,
                                   .y = memory,
@@ -148,6 +150,7 @@ static enum status induce_by_tree(double wall, struct velocity_sum *sum, const s
                                   .u_x = at->u_x ? memory + 3 * n : NULL,
                                   .u_y = memory + 4 * n,
                                   .v_x = memory + 5 * n};
+
     for (size_t i = 0; i < n; i++) memory[i] = 2 * wall - at->y[i];
     const enum status status = velocity_sum_induce(sum, vortices, tolerance, threads, &there);
     for (size_t i = 0; status == STATUS_OK && i < n; i++) {
@@ -158,6 +161,7 @@ static enum status induce_by_tree(double wall, struct velocity_sum *sum, const s
         at->u_y[i] -= there.u_y[i];
         at->v_x[i] -= there.v_x[i];
     }
+
     free(memory);
     return status;
 }
@@ -186,6 +190,7 @@ enum status images_induce_many(const struct walls *walls, struct velocity_sum *s
         induce_all_directly(walls, vortices, threads, at);
         return STATUS_OK;
     }
+
     TRY(far_images_induce(velocity_sum_far_images(sum), walls, vortices, tolerance, threads, at));
     for (int i = 0; i < 2; i++) TRY(induce_many_by_wall(walls->y[i], sum, vortices, tolerance, threads, at));
     return STATUS_OK;
@@ -193,7 +198,7 @@ enum status images_induce_many(const struct walls *walls, struct velocity_sum *s
 
 // ---- one source
 
-static void put(const struct image_velocity *from, double sign, int i, struct kernel_values *to) {
+static void image_values_put(const struct image_velocity *from, double sign, int i, struct kernel_values *to) {
     to->u[i] = sign * from->u;
     to->v[i] = sign * from->v;
     to->u_x[i] = sign * from->u_x;
@@ -209,17 +214,20 @@ void images_unit(const struct walls *walls, int n, const double *x, const double
         struct kernel_values *const to = &values->mirrored;
         kernel_unit(n, x, y, source_x, 2 * walls->y[0] - source_y, smoothing, to);
         for (int i = 0; i < n; i++)
-            put(&(struct image_velocity){to->u[i], to->v[i], to->u_x[i], to->u_y[i], to->v_x[i]}, -1, i, to);
+            image_values_put(&(struct image_velocity){to->u[i], to->v[i], to->u_x[i], to->u_y[i], to->v_x[i]}, -1, i,
+                             to);
+
         return;
     }
-    const double rate = rate_of(walls);
+
+    const double rate = channel_rate(walls);
     const struct image_height source = image_height_of(walls, source_y);
     for (int i = 0; i < n; i++) {
         const struct image_height target = image_height_of(walls, y[i]);
         const double r[2] = {x[i] - source_x, y[i] - source_y};
         const struct image_column column = image_column_of(rate, r[0], smoothing * smoothing);
         const struct image_rows rows = image_rows_of(&column, r, &target, &source, smoothing * smoothing, 1);
-        put(&rows.shifted, 1, i, &values->shifted);
-        put(&rows.mirrored, -1, i, &values->mirrored);
+        image_values_put(&rows.shifted, 1, i, &values->shifted);
+        image_values_put(&rows.mirrored, -1, i, &values->mirrored);
     }
 }

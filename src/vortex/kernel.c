@@ -1,4 +1,4 @@
-/* kernel.c: the same loops for all sets of vector instructions, and the choice between them. */
+/* kernel.c: the loops for every vector instruction set, and the selection at run time. */
 #include "vortex/kernel.h"
 
 #include <stddef.h>
@@ -9,12 +9,12 @@
 #include <arm_neon.h>
 #endif
 
-enum { BLOCK = 8 }; /* targets that are treated alike; a multiple of the width of every variant */
+enum { BLOCK = 8 }; /* a multiple of the vector width of every variant */
 
 static const double inverse_two_pi = 0.159154943091895335769;
 
-/* A source induces no velocity at its own place: a small number, whose square is not zero, avoids 0/0. At distances
- * that matter it changes no bit. */
+/* A source induces no velocity at the position of the source: a tiny addend in the denominator, with a nonzero square,
+ * avoids 0/0. The addend changes no bit at relevant distances. */
 static const double no_square = 1e-150;
 
 static inline double sum_of_block(const double *value) {
@@ -48,7 +48,7 @@ static inline double sum_of_block(const double *value) {
 
 #endif
 
-// any processor: vectors of two numbers, products that are not fused
+// any processor: vectors of two doubles, products without fusion
 typedef double two __attribute__((vector_size(2 * sizeof(double))));
 #define VARIANT(name) name##_baseline
 #define VARIANT_NAME "baseline"
@@ -57,7 +57,7 @@ typedef double two __attribute__((vector_size(2 * sizeof(double))));
 #define FUSED(a, b, c) ((a) * (b) + (c))
 #include "vortex/kernel_loops.h"
 
-// ---- the choice of a variant
+// ---- selection of a variant
 
 const struct kernel_variant *kernel_variant(int i) {
     const struct kernel_variant *found[3];
@@ -72,12 +72,12 @@ const struct kernel_variant *kernel_variant(int i) {
     return i < n ? found[i] : NULL;
 }
 
-static double square_of(double smoothing) {
+static double smoothing_square(double smoothing) {
     return smoothing * smoothing + no_square;
 }
 
-/* What is added to targets: to[0], to[1]: the velocity; where with_gradient: to[2] .. to[4]: u_x, u_y, v_x. The
- * sources are those of one sum, or changes where there are any. */
+/* A sum at targets: to[0], to[1]: velocity; with_gradient: to[2] .. to[4]: u_x, u_y, v_x. The sources are changes, or
+ * `sources` if changes is NULL. */
 struct addition {
     const struct kernel_sources *sources;
     const struct kernel_changes *changes;
@@ -85,7 +85,8 @@ struct addition {
 };
 
 // n: a multiple of BLOCK
-static void add_to_blocks(const struct addition *what, int n, const double *x, const double *y, double *const to[5]) {
+static void targets_add_blocks(const struct addition *what, int n, const double *x, const double *y,
+                               double *const to[5]) {
     const struct kernel_variant *const variant = kernel_variant(0);
     if (what->changes && what->with_gradient) {
         variant->gradient_change(n, x, y, what->changes, to[0], to[1], to[2], to[3], to[4]);
@@ -98,57 +99,59 @@ static void add_to_blocks(const struct addition *what, int n, const double *x, c
     }
 }
 
-// The targets after the last whole 16 are copied into 8 or 16, which the last of them fills up.
-static void add_to_rest(const struct addition *what, int n, const double *x, const double *y, double *const to[5]) {
+// The targets after the last full block of 16 are copied into a block of 8 or 16, padded with the last target.
+static void targets_add_rest(const struct addition *what, int n, const double *x, const double *y,
+                             double *const to[5]) {
     double rest_x[2 * BLOCK], rest_y[2 * BLOCK], sum[5][2 * BLOCK];
     const int n_filled = n <= BLOCK ? BLOCK : 2 * BLOCK, n_sums = what->with_gradient ? 5 : 2;
     for (int i = 0; i < n_filled; i++) {
         rest_x[i] = x[i < n ? i : n - 1];
         rest_y[i] = y[i < n ? i : n - 1];
     }
+
     memset(sum, 0, (size_t)n_sums * sizeof *sum);
-    add_to_blocks(what, n_filled, rest_x, rest_y, (double *const[5]){sum[0], sum[1], sum[2], sum[3], sum[4]});
+    targets_add_blocks(what, n_filled, rest_x, rest_y, (double *const[5]){sum[0], sum[1], sum[2], sum[3], sum[4]});
     for (int k = 0; k < n_sums; k++) {
         for (int i = 0; i < n; i++) to[k][i] += sum[k][i];
     }
 }
 
-static void add(const struct addition *what, int n, const double *x, const double *y, double *const to[5]) {
+static void targets_add(const struct addition *what, int n, const double *x, const double *y, double *const to[5]) {
     const int whole = n - n % (2 * BLOCK), n_sums = what->with_gradient ? 5 : 2;
-    add_to_blocks(what, whole, x, y, to);
+    targets_add_blocks(what, whole, x, y, to);
     if (whole == n) return;
     double *rest[5] = {NULL};
     for (int k = 0; k < n_sums; k++) rest[k] = to[k] + whole;
-    add_to_rest(what, n - whole, x + whole, y + whole, rest);
+    targets_add_rest(what, n - whole, x + whole, y + whole, rest);
 }
 
 void kernel_add_velocity(int n_targets, const double *x, const double *y, int n_sources, const double *source_x,
                          const double *source_y, const double *circulation, double smoothing, double *u, double *v) {
-    const struct kernel_sources sources = {n_sources, source_x, source_y, circulation, square_of(smoothing)};
-    add(&(struct addition){.sources = &sources}, n_targets, x, y, (double *const[5]){u, v});
+    const struct kernel_sources sources = {n_sources, source_x, source_y, circulation, smoothing_square(smoothing)};
+    targets_add(&(struct addition){.sources = &sources}, n_targets, x, y, (double *const[5]){u, v});
 }
 
 void kernel_add_gradient(int n_targets, const double *x, const double *y, int n_sources, const double *source_x,
                          const double *source_y, const double *circulation, double smoothing, double *u, double *v,
                          double *u_x, double *u_y, double *v_x) {
-    const struct kernel_sources sources = {n_sources, source_x, source_y, circulation, square_of(smoothing)};
-    add(&(struct addition){.sources = &sources, .with_gradient = 1}, n_targets, x, y,
-        (double *const[5]){u, v, u_x, u_y, v_x});
+    const struct kernel_sources sources = {n_sources, source_x, source_y, circulation, smoothing_square(smoothing)};
+    targets_add(&(struct addition){.sources = &sources, .with_gradient = 1}, n_targets, x, y,
+                (double *const[5]){u, v, u_x, u_y, v_x});
 }
 
 void kernel_add_velocity_change(int n_targets, const double *x, const double *y, const struct kernel_changes *changes,
                                 double *u, double *v) {
-    add(&(struct addition){.changes = changes}, n_targets, x, y, (double *const[5]){u, v});
+    targets_add(&(struct addition){.changes = changes}, n_targets, x, y, (double *const[5]){u, v});
 }
 
 void kernel_add_gradient_change(int n_targets, const double *x, const double *y, const struct kernel_changes *changes,
                                 double *u, double *v, double *u_x, double *u_y, double *v_x) {
-    add(&(struct addition){.changes = changes, .with_gradient = 1}, n_targets, x, y,
-        (double *const[5]){u, v, u_x, u_y, v_x});
+    targets_add(&(struct addition){.changes = changes, .with_gradient = 1}, n_targets, x, y,
+                (double *const[5]){u, v, u_x, u_y, v_x});
 }
 
 void kernel_add_pairwise(const struct kernel_tile *a, const struct kernel_tile *b, double smoothing) {
-    kernel_variant(0)->pairwise(a, b, square_of(smoothing));
+    kernel_variant(0)->pairwise(a, b, smoothing_square(smoothing));
 }
 
 KERNEL_WIDE(void, kernel_add_velocity_each,
@@ -187,7 +190,7 @@ KERNEL_WIDE(void, kernel_add_gradient_each,
     }
 }
 
-// 1/d_to - 1/d_from = (from - to)/(d_to d_from): no digits are lost where both are nearly the same
+// 1/d_to - 1/d_from = (from - to)/(d_to d_from): no cancellation if `from` and `to` are nearly equal
 KERNEL_WIDE(void, kernel_add_velocity_change_at,
             (int n_targets, const double *restrict x, const double *restrict y, const double *restrict square,
              int n_sources, const double *restrict source_x, const double *restrict source_y,
@@ -208,7 +211,7 @@ KERNEL_WIDE(void, kernel_unit,
             (int n, const double *x, const double *y, double source_x, double source_y, double smoothing,
              struct kernel_values *values),
             (n, x, y, source_x, source_y, smoothing, values)) {
-    const double square = square_of(smoothing);
+    const double square = smoothing_square(smoothing);
     for (int i = 0; i < n; i++) {
         const double rx = x[i] - source_x, ry = y[i] - source_y;
         const double inverse = 1 / (rx * rx + ry * ry + square);
@@ -227,11 +230,12 @@ KERNEL_WIDE(void, kernel_add_motion,
              double *restrict u_by_x, double *restrict v_by_x, double *restrict u_by_y, double *restrict v_by_y),
             (n, n_sources, factor, sign, values, u_by_x, v_by_x, u_by_y, v_by_y)) {
     int j = 0;
-    // four sources at a time, so that a sum is read and written once for them
+    // four sources at a time: each sum is read and written once per four sources
     for (; j + 4 <= n_sources; j += 4) {
         const struct kernel_values *const a = values + j, *const b = a + 1, *const c = a + 2, *const d = a + 3;
         const double f[4] = {factor[j], factor[j + 1], factor[j + 2], factor[j + 3]};
         const double g[4] = {sign * f[0], sign * f[1], sign * f[2], sign * f[3]};
+
         for (int i = 0; i < n; i++) {
             u_by_x[i] = u_by_x[i] + f[0] * a->u_x[i] + f[1] * b->u_x[i] + f[2] * c->u_x[i] + f[3] * d->u_x[i];
             v_by_x[i] = v_by_x[i] + f[0] * a->v_x[i] + f[1] * b->v_x[i] + f[2] * c->v_x[i] + f[3] * d->v_x[i];
@@ -239,6 +243,7 @@ KERNEL_WIDE(void, kernel_add_motion,
             v_by_y[i] = v_by_y[i] - g[0] * a->u_x[i] - g[1] * b->u_x[i] - g[2] * c->u_x[i] - g[3] * d->u_x[i];
         }
     }
+
     for (; j < n_sources; j++) {
         const double f = factor[j], g = sign * factor[j];
         for (int i = 0; i < n; i++) {
@@ -255,7 +260,7 @@ KERNEL_WIDE(void, kernel_multiply,
              double *restrict product),
             (n_rows, n_columns, matrix, vector, product)) {
     int c = 0;
-    // four columns at a time, so that a product is read and written once for them
+    // four columns at a time: each product is read and written once per four columns
     for (; c + 4 <= n_columns; c += 4) {
         const double *const column = matrix + (long)c * n_rows;
         const double f0 = vector[c], f1 = vector[c + 1], f2 = vector[c + 2], f3 = vector[c + 3];
@@ -264,6 +269,7 @@ KERNEL_WIDE(void, kernel_multiply,
                          f3 * column[3 * n_rows + r];
         }
     }
+
     for (; c < n_columns; c++) {
         const double *const column = matrix + (long)c * n_rows;
         for (int r = 0; r < n_rows; r++) product[r] += vector[c] * column[r];

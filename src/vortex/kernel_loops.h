@@ -1,12 +1,12 @@
-/* kernel_loops.h: the loops over targets and sources. kernel.c includes this text once for every width of vectors, with
+/* kernel_loops.h: the loops over targets and sources. kernel.c includes this text once for every vector width, with
  *
  *     VARIANT(name)   the name of a function of this variant
- *     TARGET          the instructions that its functions may use
+ *     TARGET          the instruction set of the functions
  *     lanes           a vector of doubles
  *     FUSED(a, b, c)  a * b + c of vectors, with one rounding
  *
- * BLOCK targets are one vector, or several. All operations on one target are the same, and in the same order, for every
- * width. */
+ * BLOCK targets are one or more vectors. The operations on one target, and the order of operations, are the same for
+ * every width. */
 
 enum { VARIANT(width) = sizeof(lanes) / sizeof(double) };
 
@@ -80,8 +80,8 @@ static TARGET void VARIANT(velocity)(int n, const double *x, const double *y, co
     }
 }
 
-// With d = r^2 + e^2, g = circulation/d and h = g/d the sums are g r, h r_x r_y, h r_x^2, g and h; the gradient is
-// made of them at the end: u_x = 2 h r_x r_y, v_x = g - 2 h r_x^2, u_y = 2 h r_y^2 - g = v_x - 2 h e^2.
+// With d = r^2 + e^2, g = circulation/d and h = g/d the sums are g r, h r_x r_y, h r_x^2, g and h. The gradient follows
+// at the end: u_x = 2 h r_x r_y, v_x = g - 2 h r_x^2, u_y = 2 h r_y^2 - g = v_x - 2 h e^2.
 static TARGET void VARIANT(gradient)(int n, const double *x, const double *y, const struct kernel_sources *sources,
                                      double *u, double *v, double *u_x, double *u_y, double *v_x) {
     const lanes square = VARIANT(all)(sources->square);
@@ -155,8 +155,8 @@ static TARGET void VARIANT(gradient_change)(int n, const double *x, const double
     }
 }
 
-// Vortices i and i + BLOCK of a are kept in vectors while those of b are taken one at a time. The velocities at the
-// latter are summed over all blocks of a in BLOCK lanes each, and over the lanes at the end.
+// Vortices i and i + BLOCK of a stay in vectors; the vortices of b are processed one at a time. The velocity at a
+// vortex of b is summed over all blocks of a in BLOCK lanes, and over the lanes at the end.
 static TARGET void VARIANT(pairwise)(const struct kernel_tile *a, const struct kernel_tile *b, double square_value) {
     double sum_u[KERNEL_TILE * BLOCK] __attribute__((aligned(64)));
     double sum_v[KERNEL_TILE * BLOCK] __attribute__((aligned(64)));

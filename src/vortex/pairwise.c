@@ -1,4 +1,4 @@
-/* pairwise.c: the vortices sorted into tiles, the pairs of tiles in shares. */
+/* pairwise.c: vortices sorted into tiles, pairs of tiles distributed to shares. */
 #include "vortex/pairwise.h"
 
 #include <stdint.h>
@@ -8,9 +8,9 @@
 #include "vortex/kernel.h"
 
 enum {
-    ALIGNMENT = 64,  /* bytes: the widest vector, and a line of the cache */
-    BLOCK = 16,      /* a tile is a multiple of so many vortices (kernel.h) */
-    MIN_SHARES = 16, /* more threads than shares are idle, but each share costs a sum over all vortices */
+    ALIGNMENT = 64,  /* bytes: the widest vector, and a cache line */
+    BLOCK = 16,      /* vortices; the size of a tile is a multiple (kernel.h) */
+    MIN_SHARES = 16, /* threads beyond the number of shares are idle; each share costs a sum over all vortices */
     MAX_SHARES = 64
 };
 
@@ -21,12 +21,12 @@ struct tile {
 };
 
 struct sorted {
-    int n_vortices, n_sorted; /* without and with those of strength 0 that fill up tiles */
+    int n_vortices, n_sorted; /* without and with the padding vortices of circulation 0 */
     int n_tiles, n_shares;
     int *index;                  /* of each vortex among the sorted ones                (n_vortices) */
     struct tile *tile;           /*                                                     (n_tiles) */
     double *x, *y, *circulation; /*                                                     (n_sorted) */
-    double *u, *v;               /* the sum of each share at the tiles that it has      (n_shares, n_sorted) */
+    double *u, *v;               /* the sum of each share at the tiles of the share      (n_shares, n_sorted) */
     unsigned char *has;          /* whether a share has a tile                          (n_shares, n_tiles) */
     void *memory;                /* holds x to v */
 };
@@ -40,28 +40,31 @@ static int n_shares(int n_tiles) {
     return n_pairs(n_tiles) < n ? (int)n_pairs(n_tiles) : n;
 }
 
-static int rounded_up(int n) {
+static int round_up_to_block(int n) {
     return (n + BLOCK - 1) / BLOCK * BLOCK;
 }
 
-// the index of every vortex, and the tiles: groups of one smoothing are consecutive
-static void sort(struct sorted *sorted, int n_groups, const struct vortex_group *group) {
+// set the index of every vortex, and the tiles: groups of one smoothing are consecutive
+static void tiles_sort(struct sorted *sorted, int n_groups, const struct vortex_group *group) {
     for (int k = 0; k < n_groups; k++) {
         int first_of_smoothing = 0;
         while (group[first_of_smoothing].smoothing != group[k].smoothing) first_of_smoothing++;
         if (first_of_smoothing < k) continue;
         int n = sorted->n_sorted, vortex = 0;
+
         for (int l = 0; l < n_groups; l++) {
             const int same = group[l].smoothing == group[k].smoothing;
             for (int i = 0; same && i < group[l].at.n; i++) sorted->index[vortex + i] = n++;
             vortex += group[l].at.n;
         }
-        const int end = sorted->n_sorted + rounded_up(n - sorted->n_sorted);
+
+        const int end = sorted->n_sorted + round_up_to_block(n - sorted->n_sorted);
         for (int first = sorted->n_sorted; first < end; first += KERNEL_TILE) {
             const int rest = end - first;
             sorted->tile[sorted->n_tiles++] =
                 (struct tile){first, rest < KERNEL_TILE ? rest : KERNEL_TILE, group[k].smoothing};
         }
+
         sorted->n_sorted = end;
     }
 }
@@ -78,9 +81,9 @@ static enum status sorted_fill(struct sorted *sorted, const struct vortices *vor
     sorted->index = malloc((size_t)(n + 1) * sizeof *sorted->index);
     sorted->tile = malloc((size_t)(n / KERNEL_TILE + vortices->n_groups + 1) * sizeof *sorted->tile);
     if (!sorted->index || !sorted->tile) goto no_memory;
-    sort(sorted, vortices->n_groups, vortices->group);
+    tiles_sort(sorted, vortices->n_groups, vortices->group);
     sorted->n_shares = n_shares(sorted->n_tiles);
-    // the length is a multiple of BLOCK: after an aligned array the next is aligned
+    // the array length is a multiple of BLOCK, so every array is aligned
     const size_t n_sorted = (size_t)sorted->n_sorted, n_sums = n_sorted * (size_t)sorted->n_shares;
     sorted->memory = malloc((3 * n_sorted + 2 * n_sums) * sizeof(double) + ALIGNMENT);
     sorted->has = calloc((size_t)sorted->n_shares * (size_t)sorted->n_tiles + 1, sizeof *sorted->has);
@@ -100,12 +103,12 @@ static enum status sorted_fill(struct sorted *sorted, const struct vortices *vor
     return STATUS_OK;
 
 no_memory:
-    return status_fail(STATUS_MEMORY, "out of memory: the velocities of %d vortices at one another", n);
+    return status_fail(STATUS_MEMORY, "out of memory: pairwise velocities of %d vortices", n);
 }
 
-// add what the vortices of tiles a and b induce at each other to the sum of a share
-static void add_pair(const struct sorted *sorted, enum pairwise_smoothing smoothing, const struct tile *a,
-                     const struct tile *b, double *u, double *v) {
+// add the mutually induced velocities of tiles a and b to the sum of a share
+static void tile_pair_add(const struct sorted *sorted, enum pairwise_smoothing smoothing, const struct tile *a,
+                          const struct tile *b, double *u, double *v) {
     const double *const x = sorted->x, *const y = sorted->y, *const g = sorted->circulation;
     const int i = a->first, j = b->first;
     if (a != b && (a->smoothing == b->smoothing || smoothing == PAIRWISE_OF_PAIR)) {
@@ -114,13 +117,14 @@ static void add_pair(const struct sorted *sorted, enum pairwise_smoothing smooth
         kernel_add_pairwise(&at_a, &at_b, vortices_pair_smoothing(a->smoothing, b->smoothing));
         return;
     }
+
     kernel_add_velocity(a->n, x + i, y + i, b->n, x + j, y + j, g + j, b->smoothing, u + i, v + i);
     if (a == b) return;
     kernel_add_velocity(b->n, x + j, y + j, a->n, x + i, y + i, g + i, a->smoothing, u + j, v + j);
 }
 
-// the sums of a share at a tile begin with 0
-static void begin_tile(const struct sorted *sorted, int share, int tile, double *u, double *v) {
+// zero the sums of a share at the first use of a tile
+static void tile_begin(const struct sorted *sorted, int share, int tile, double *u, double *v) {
     unsigned char *const has = &sorted->has[(size_t)share * (size_t)sorted->n_tiles + (size_t)tile];
     if (*has) return;
     *has = 1;
@@ -128,28 +132,30 @@ static void begin_tile(const struct sorted *sorted, int share, int tile, double 
     memset(v + sorted->tile[tile].first, 0, (size_t)sorted->tile[tile].n * sizeof *v);
 }
 
-static void sum_share(const struct sorted *sorted, enum pairwise_smoothing smoothing, int share) {
+static void share_sum(const struct sorted *sorted, enum pairwise_smoothing smoothing, int share) {
     const int n_tiles = sorted->n_tiles;
     const long begin = n_pairs(n_tiles) * share / sorted->n_shares;
     const long end = n_pairs(n_tiles) * (share + 1) / sorted->n_shares;
     double *const u = sorted->u + (size_t)share * (size_t)sorted->n_sorted;
     double *const v = sorted->v + (size_t)share * (size_t)sorted->n_sorted;
     long pair = 0;
+
     for (int a = 0; a < n_tiles; a++) {
         for (int b = a; b < n_tiles; b++, pair++) {
             if (pair < begin || pair >= end) continue;
-            begin_tile(sorted, share, a, u, v);
-            begin_tile(sorted, share, b, u, v);
-            add_pair(sorted, smoothing, &sorted->tile[a], &sorted->tile[b], u, v);
+            tile_begin(sorted, share, a, u, v);
+            tile_begin(sorted, share, b, u, v);
+            tile_pair_add(sorted, smoothing, &sorted->tile[a], &sorted->tile[b], u, v);
         }
     }
 }
 
-// add the sums of all shares at one tile, in their order, into the velocities of its vortices, in the first share
-static void add_shares(const struct sorted *sorted, int tile) {
+// add the sums of all shares at one tile, in order, to the sums of the first share
+static void tile_add_shares(const struct sorted *sorted, int tile) {
     const size_t n_sorted = (size_t)sorted->n_sorted, n_tiles = (size_t)sorted->n_tiles;
     double *const u = sorted->u + sorted->tile[tile].first, *const v = sorted->v + sorted->tile[tile].first;
-    begin_tile(sorted, 0, tile, sorted->u, sorted->v);
+    tile_begin(sorted, 0, tile, sorted->u, sorted->v);
+
     for (size_t share = 1; share < (size_t)sorted->n_shares; share++) {
         if (!sorted->has[share * n_tiles + (size_t)tile]) continue;
         for (size_t i = 0; i < (size_t)sorted->tile[tile].n; i++) {
@@ -167,15 +173,17 @@ enum status pairwise_add_velocity(const struct vortices *vortices, enum pairwise
 #pragma omp parallel num_threads(threads)
         {
 #pragma omp for schedule(dynamic)
-            for (int share = 0; share < sorted.n_shares; share++) sum_share(&sorted, smoothing, share);
+            for (int share = 0; share < sorted.n_shares; share++) share_sum(&sorted, smoothing, share);
+
 #pragma omp for nowait
-            for (int tile = 0; tile < sorted.n_tiles; tile++) add_shares(&sorted, tile);
+            for (int tile = 0; tile < sorted.n_tiles; tile++) tile_add_shares(&sorted, tile);
         }
         for (int i = 0; i < sorted.n_vortices; i++) {
             u[i] += sorted.u[sorted.index[i]];
             v[i] += sorted.v[sorted.index[i]];
         }
     }
+
     sorted_free(&sorted);
     return status;
 }

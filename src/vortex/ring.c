@@ -31,6 +31,7 @@ enum status ring_append(struct rings *rings, int n) {
     double **array[N_ARRAYS];
     list_arrays(rings, array);
     const int needed = rings->n + n;
+
     if (needed > rings->capacity) {
         const int capacity = needed + needed / 2;
         for (int i = 0; i < N_ARRAYS; i++) {
@@ -38,8 +39,10 @@ enum status ring_append(struct rings *rings, int n) {
             if (!more) return status_fail(STATUS_MEMORY, "out of memory: %d vortex rings", needed);
             *array[i] = more;
         }
+
         rings->capacity = capacity;
     }
+
     for (int i = 0; i < N_ARRAYS && n > 0; i++) memset(*array[i] + rings->n, 0, (size_t)n * sizeof **array[i]);
     rings->n = needed;
     return STATUS_OK;
@@ -51,12 +54,15 @@ struct ring_targets ring_targets_part(const struct ring_targets *all, struct ran
     double **const sums[] = {&part.u,   &part.v,   &part.leg_u, &part.leg_v, &part.div,  &part.u_x,
                              &part.u_y, &part.v_x, &part.div_x, &part.div_y, &part.edge, &part.edge_gradient};
     part.n = which.n;
+
     for (size_t i = 0; i < sizeof given / sizeof *given; i++) {
         if (*given[i]) *given[i] += which.first;
     }
+
     for (size_t i = 0; i < sizeof sums / sizeof *sums; i++) {
         if (*sums[i]) *sums[i] += which.first;
     }
+
     return part;
 }
 
@@ -81,6 +87,7 @@ static KERNEL_WIDE(void, block_velocity, (struct block * at, const struct block_
         const double x = from->x[n], y = from->y[n], q = from->q[n] * scale, dx = from->dx[n] * scale;
         const double dy = from->dy[n] * scale, half = from->factor * from->half[n] + from->leg[n];
         const double square = from->square[n] + from->add;
+
         for (int i = 0; i < BLOCK; i++) {
             const double rx = at->x[i] - x, ry = at->y[i] - y, r2 = rx * rx + ry * ry;
             const double r = r2 + (at->square[i] + square), t = r2 + (at->half[i] + half), root = sqrt(t);
@@ -100,10 +107,12 @@ static KERNEL_WIDE(void, block_gradient, (struct block * at, const struct block_
         const double x = from->x[n], y = from->y[n], q = from->q[n] * scale, dx = from->dx[n] * scale;
         const double dy = from->dy[n] * scale, half = from->factor * from->half[n] + from->leg[n];
         const double square = from->square[n] + from->add;
+
         for (int i = 0; i < BLOCK; i++) {
             const double rx = at->x[i] - x, ry = at->y[i] - y, r2 = rx * rx + ry * ry;
             const double r = r2 + (at->square[i] + square), t = r2 + (at->half[i] + half), root = sqrt(t);
             const double inverse = 1 / (r * t * root), f = q * (inverse * t), g = inverse * r;
+
             // 1/T^(5/2), and the slopes of f and g over r
             const double fifth = g * g * root, by_f = -f * (2 * inverse * t * root + g * root), by_g = -3 * fifth;
             const double across = ry * dx - rx * dy, h = by_g, k = 15 * fifth * g * root;
@@ -166,9 +175,11 @@ static void add_block(const struct block *block, const struct ring_targets *at, 
         if (at->div_x) at->div_x[p] += block->div_x[i];
         if (at->div_y) at->div_y[p] += block->div_y[i];
     }
+
     for (int k = 0; k < 2 && at->edge; k++) {
         for (int i = 0; i < n; i++) at->edge[k * at->edge_stride + first + i] += block->edge[k][i];
     }
+
     for (int k = 0; k < 4 && at->edge_gradient; k++) {
         for (int i = 0; i < n; i++) at->edge_gradient[k * at->edge_stride + first + i] += block->edge_gradient[k][i];
     }
@@ -189,15 +200,18 @@ void ring_induce(const struct ring_pair *pair, const struct rings *rings, struct
                                        .span = pair->span,
                                        .factor = pair->factor,
                                        .add = pair->square};
+
     for (int first = 0; first < at->n; first += BLOCK) {
         const int n = at->n - first < BLOCK ? at->n - first : BLOCK;
         struct block block;
         fill_block(&block, pair, at, first, n);
+
         if (at->u_x) {
             block_gradient(&block, &from);
         } else {
             block_velocity(&block, &from);
         }
+
         if (at->edge) block_edge(&block, &from);
         add_block(&block, at, first, n);
     }
@@ -216,6 +230,7 @@ enum status ring_mirror(const struct rings *rings, double shift, struct rings *i
         image->leg[i] = rings->leg[i];
         image->square[i] = rings->square[i];
     }
+
     return STATUS_OK;
 }
 

@@ -1,4 +1,4 @@
-/* tree_boxes.c: boxes are halved across their longer side, at the median; their points may move. */
+/* tree_boxes.c: boxes are halved across the longer side, at the median; points may move. */
 #include "vortex/tree_boxes.h"
 
 #include <math.h>
@@ -13,7 +13,7 @@ struct tree_point {
     int index;
 };
 
-static enum status resize(void *memory, size_t n, size_t size) {
+static enum status tree_resize(void *memory, size_t n, size_t size) {
     void **const pointer = memory;
     void *const more = realloc(*pointer, n * size);
     if (!more) return status_fail(STATUS_MEMORY, "out of memory: a tree of %zu points", n);
@@ -21,27 +21,30 @@ static enum status resize(void *memory, size_t n, size_t size) {
     return STATUS_OK;
 }
 
-static enum status reserve(struct tree_boxes *boxes, int n, int n_boxes) {
+static enum status boxes_reserve(struct tree_boxes *boxes, int n, int n_boxes) {
     if (n > boxes->capacity) {
         const size_t capacity = (size_t)n + (size_t)n / 2;
         boxes->capacity = 0;
-        TRY(resize(&boxes->index, capacity, sizeof *boxes->index));
-        TRY(resize(&boxes->x, capacity, sizeof *boxes->x));
-        TRY(resize(&boxes->y, capacity, sizeof *boxes->y));
-        TRY(resize(&boxes->weight, capacity, sizeof *boxes->weight));
-        TRY(resize(&boxes->work, capacity, sizeof *boxes->work));
+        TRY(tree_resize(&boxes->index, capacity, sizeof *boxes->index));
+        TRY(tree_resize(&boxes->x, capacity, sizeof *boxes->x));
+        TRY(tree_resize(&boxes->y, capacity, sizeof *boxes->y));
+        TRY(tree_resize(&boxes->weight, capacity, sizeof *boxes->weight));
+        TRY(tree_resize(&boxes->work, capacity, sizeof *boxes->work));
         boxes->capacity = (int)capacity;
     }
+
     if (n_boxes > boxes->box_capacity) {
         boxes->box_capacity = 0;
-        TRY(resize(&boxes->box, (size_t)n_boxes, sizeof *boxes->box));
+        TRY(tree_resize(&boxes->box, (size_t)n_boxes, sizeof *boxes->box));
         boxes->box_capacity = n_boxes;
     }
+
     return STATUS_OK;
 }
 
-// Reorder the points so that along one axis those before the middle are not greater, and those after it not less.
-static void halve(struct tree_point *point, int n, int middle, int axis) {
+// Reorder the points around the middle (quickselect): along one axis, points before the middle are not greater, points
+// after the middle not less.
+static void points_halve(struct tree_point *point, int n, int middle, int axis) {
     int low = 0, high = n - 1;
     while (low < high) {
         const double pivot = point[low + (high - low) / 2].at[axis];
@@ -54,6 +57,7 @@ static void halve(struct tree_point *point, int n, int middle, int axis) {
             point[i++] = point[j];
             point[j--] = other;
         }
+
         if (middle <= j) {
             high = j;
         } else if (middle >= i) {
@@ -65,7 +69,7 @@ static void halve(struct tree_point *point, int n, int middle, int axis) {
 }
 
 // the circle around the smallest rectangle of the points; returns the axis along which the rectangle is longer
-static int enclose(struct tree_box *box, const struct tree_point *point) {
+static int box_enclose(struct tree_box *box, const struct tree_point *point) {
     double low[2] = {point->at[0], point->at[1]}, high[2] = {point->at[0], point->at[1]};
     for (int i = 1; i < box->n; i++) {
         for (int axis = 0; axis < 2; axis++) {
@@ -74,31 +78,34 @@ static int enclose(struct tree_box *box, const struct tree_point *point) {
             high[axis] = at > high[axis] ? at : high[axis];
         }
     }
+
     box->x = low[0] + (high[0] - low[0]) / 2;
     box->y = low[1] + (high[1] - low[1]) / 2;
     double square = 0;
+
     for (int i = 0; i < box->n; i++) {
         const double rx = point[i].at[0] - box->x, ry = point[i].at[1] - box->y;
         const double distance = rx * rx + ry * ry;
         square = distance > square ? distance : square;
     }
+
     // expansions divide by the radius even if all points coincide
     box->radius = fmax(sqrt(square), 1e-100);
     return high[1] - low[1] > high[0] - low[0];
 }
 
-// Find the circle around box i, and halve it unless it is a leaf; its points are all that this changes.
-static void divide(struct tree_boxes *boxes, int i, int is_leaf) {
+// Find the circle around box i, and halve the box unless is_leaf. Only the points and the halves of box i change.
+static void box_divide(struct tree_boxes *boxes, int i, int is_leaf) {
     struct tree_box *const box = &boxes->box[i];
     struct tree_point *const point = boxes->work + box->first;
-    const int axis = enclose(box, point), middle = box->n / 2;
+    const int axis = box_enclose(box, point), middle = box->n / 2;
     if (is_leaf) return;
-    halve(point, box->n, middle, axis);
+    points_halve(point, box->n, middle, axis);
     boxes->box[2 * i + 1] = (struct tree_box){.first = box->first, .n = middle};
     boxes->box[2 * i + 2] = (struct tree_box){.first = box->first + middle, .n = box->n - middle};
 }
 
-// the number of times that n points are halved
+// number of halvings of n points
 static int depth_for(int n, int leaf) {
     int depth = 0;
     while ((n + (1 << depth) - 1) >> depth > leaf) depth++;
@@ -111,19 +118,23 @@ enum status tree_boxes_fill(struct tree_boxes *boxes, int n, const double *x, co
     if (n == 0) return STATUS_OK;
     const int depth = depth_for(n, leaf);
     const int n_boxes = tree_boxes_level(depth + 1);
-    TRY(reserve(boxes, n, n_boxes));
+    TRY(boxes_reserve(boxes, n, n_boxes));
     struct tree_point *const point = boxes->work;
     const int sharing = parallel_threads(threads, n, n, PARALLEL_SORTED);
+
 #pragma omp parallel for num_threads(sharing) schedule(static)
     for (int i = 0; i < n; i++) {
         point[i] = (struct tree_point){.at = {x[i], y[i]}, .weight = weight ? weight[i] : 0, .index = i};
     }
+
     boxes->box[0] = (struct tree_box){.first = 0, .n = n};
     for (int level = 0; level <= depth; level++) {
         const int first = tree_boxes_level(level), end = tree_boxes_level(level + 1);
+
 #pragma omp parallel for num_threads(parallel_threads(threads, end - first, n, PARALLEL_SORTED)) schedule(static)
-        for (int i = first; i < end; i++) divide(boxes, i, level == depth);
+        for (int i = first; i < end; i++) box_divide(boxes, i, level == depth);
     }
+
 #pragma omp parallel for num_threads(sharing) schedule(static)
     for (int i = 0; i < n; i++) {
         boxes->x[i] = point[i].at[0];
@@ -131,9 +142,11 @@ enum status tree_boxes_fill(struct tree_boxes *boxes, int n, const double *x, co
         boxes->weight[i] = point[i].weight;
         boxes->index[i] = point[i].index;
     }
+
     boxes->n = n;
     boxes->depth = depth;
     boxes->n_boxes = n_boxes;
+
     return STATUS_OK;
 }
 
@@ -148,7 +161,7 @@ int tree_boxes_hold(const struct tree_boxes *boxes, int n, const double *x, cons
 enum status tree_boxes_copy(struct tree_boxes *boxes, const struct tree_boxes *from, const double *weight) {
     const size_t n = (size_t)from->n;
     boxes->n = boxes->n_boxes = boxes->depth = 0;
-    TRY(reserve(boxes, from->n, from->n_boxes));
+    TRY(boxes_reserve(boxes, from->n, from->n_boxes));
     memcpy(boxes->box, from->box, (size_t)from->n_boxes * sizeof *boxes->box);
     memcpy(boxes->index, from->index, n * sizeof *boxes->index);
     memcpy(boxes->x, from->x, n * sizeof *boxes->x);
@@ -157,6 +170,7 @@ enum status tree_boxes_copy(struct tree_boxes *boxes, const struct tree_boxes *f
     boxes->n = from->n;
     boxes->depth = from->depth;
     boxes->n_boxes = from->n_boxes;
+
     return STATUS_OK;
 }
 
@@ -168,24 +182,27 @@ static KERNEL_WIDE(void, find_extremes, (int n, const double *value, double *low
     double least[LANES], most[LANES];
     for (int k = 0; k < LANES; k++) least[k] = most[k] = value[0];
     int i = 0;
+
     for (; i + LANES <= n; i += LANES) {
         for (int k = 0; k < LANES; k++) {
             least[k] = value[i + k] < least[k] ? value[i + k] : least[k];
             most[k] = value[i + k] > most[k] ? value[i + k] : most[k];
         }
     }
+
     *low = *high = value[0];
     for (int k = 0; k < LANES; k++) {
         *low = least[k] < *low ? least[k] : *low;
         *high = most[k] > *high ? most[k] : *high;
     }
+
     for (; i < n; i++) {
         *low = value[i] < *low ? value[i] : *low;
         *high = value[i] > *high ? value[i] : *high;
     }
 }
 
-// the largest square of a distance of n points from a centre
+// the largest squared distance of n points from a centre
 static KERNEL_WIDE(double, find_farthest, (int n, const double *x, const double *y, double centre_x, double centre_y),
                    (n, x, y, centre_x, centre_y)) {
     double most[LANES] = {0}, all = 0;
@@ -197,16 +214,18 @@ static KERNEL_WIDE(double, find_farthest, (int n, const double *x, const double 
             most[k] = square > most[k] ? square : most[k];
         }
     }
+
     for (int k = 0; k < LANES; k++) all = most[k] > all ? most[k] : all;
     for (; i < n; i++) {
         const double rx = x[i] - centre_x, ry = y[i] - centre_y;
         all = rx * rx + ry * ry > all ? rx * rx + ry * ry : all;
     }
+
     return all;
 }
 
-// the circle that enclose finds
-static void enclose_again(const struct tree_boxes *boxes, struct tree_box *box) {
+// the same circle as box_enclose, from the sorted points
+static void box_enclose_again(const struct tree_boxes *boxes, struct tree_box *box) {
     const double *const x = boxes->x + box->first, *const y = boxes->y + box->first;
     double low[2], high[2];
     find_extremes(box->n, x, &low[0], &high[0]);
@@ -226,9 +245,10 @@ void tree_boxes_move(struct tree_boxes *boxes, const double *x, const double *y,
         boxes->y[i] = y[from];
         boxes->weight[i] = weight ? weight[from] : 0;
     }
-    // the largest ones first, which take the longest
+
+    // the largest boxes first: the largest boxes take the longest
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 4)
-    for (int i = 0; i < boxes->n_boxes; i++) enclose_again(boxes, &boxes->box[i]);
+    for (int i = 0; i < boxes->n_boxes; i++) box_enclose_again(boxes, &boxes->box[i]);
 }
 
 void tree_boxes_clear(struct tree_boxes *boxes) {

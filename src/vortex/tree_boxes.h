@@ -1,4 +1,4 @@
-/* tree_boxes.h: points sorted into nested boxes, each of two halves with equally many points. Part of treecode.h.
+/* tree_boxes.h: points sorted into nested boxes; each box is halved at the median point. Part of treecode.h.
  * Tested by tests/vortex/test_tree_boxes.c.
  *
  * Boxes are numbered from the largest down; 1 and 2 are the halves of 0, box i has the halves 2 i + 1 and 2 i + 2:
@@ -20,7 +20,7 @@ struct tree_box {
 };
 
 struct tree_boxes {
-    int n, depth, n_boxes;   /* n_boxes = 2^(depth + 1) - 1; 0 where n = 0 */
+    int n, depth, n_boxes;   /* n_boxes = 2^(depth + 1) - 1; 0 if n = 0 */
     struct tree_box *box;    /*                                          (n_boxes) */
     int *index;              /* of each sorted point in the caller's arrays    (n) */
     double *x, *y, *weight;  /* sorted                                         (n) */
@@ -34,22 +34,22 @@ static inline int tree_boxes_level(int level) {
 }
 
 /* Sort n points with weights (NULL: all 0) into boxes; leaves hold at most leaf points. The memory is kept for the next
- * call. The same boxes for any number of threads. Fails with STATUS_MEMORY; boxes is then empty. */
+ * call. The boxes do not depend on the number of threads. Fails with STATUS_MEMORY; boxes is then empty. */
 enum status tree_boxes_fill(struct tree_boxes *boxes, int n, const double *x, const double *y, const double *weight,
                             int leaf, int threads);
 
 /* Whether boxes holds exactly these points in this order, in leaves of this size. */
 int tree_boxes_hold(const struct tree_boxes *boxes, int n, const double *x, const double *y, int leaf);
 
-/* What tree_boxes_fill would make of the points of other boxes with these weights. Fails with STATUS_MEMORY; boxes is
+/* Same result as tree_boxes_fill for the points of other boxes with new weights. Fails with STATUS_MEMORY; boxes is
  * then empty. */
 enum status tree_boxes_copy(struct tree_boxes *boxes, const struct tree_boxes *from, const double *weight);
 
-/* Move the points, in the order in which they were given; each stays in its boxes, and the circles around these follow:
- * those of points that have not moved are the same. */
+/* Move the points; x, y and weight in the order of tree_boxes_fill. Every point stays in the same boxes, and the
+ * circles are computed again. If no point moves, the circles are unchanged. */
 void tree_boxes_move(struct tree_boxes *boxes, const double *x, const double *y, const double *weight, int threads);
 
-/* Release what boxes holds, not boxes itself. */
+/* Release the arrays of boxes, not boxes itself. */
 void tree_boxes_clear(struct tree_boxes *boxes);
 
 #endif

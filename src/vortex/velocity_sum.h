@@ -1,5 +1,5 @@
-/* velocity_sum.h: the velocity that many vortices induce at many points, summed by the tree where that is faster than
- * the direct sum and a tolerance allows it. doc/performance.md, section "Fast multipole sums". Tested by
+/* velocity_sum.h: the velocity of many vortices at many points, summed by the tree if the tree is faster than the
+ * direct sum and the tolerance is above 0. doc/performance.md, section "Fast multipole sums". Tested by
  * tests/vortex/test_velocity_sum.c. */
 #ifndef VELOCITY_SUM_H
 #define VELOCITY_SUM_H
@@ -14,31 +14,31 @@ struct velocity_sum; /* workspace, kept for the next sum */
 enum status velocity_sum_create(struct velocity_sum **sum);
 void velocity_sum_free(struct velocity_sum *sum);
 
-/* The workspace of images in a channel, which images.h needs; it belongs to the sum. */
+/* The workspace of images.h for images in a channel, owned by the sum. */
 struct far_images *velocity_sum_far_images(struct velocity_sum *sum);
 
-/* Whether the tree is faster for so many vortices and targets, and the tolerance is not 0. */
+/* Whether the tree is faster for these numbers of vortices and targets, and the tolerance is above 0. */
 int velocity_sum_by_tree(const struct vortices *vortices, int n_targets, double tolerance);
 
-/* Add to the targets what all vortices induce, by the tree. The error of the velocity at a target is at most a tenth of
- * the tolerance, times the velocity that the vortices would induce there if nothing cancelled, sum |Gamma| / (2 pi
- * sqrt(r^2 + e^2)), which is up to some ten lengths per beat in a school. The same bits for any number of threads.
- * Fails with STATUS_MEMORY. */
+/* Add the velocity of all vortices to the targets, by the tree. The error of the velocity at a target is at most
+ * tolerance/10 times the velocity without cancellation, sum |Gamma| / (2 pi sqrt(r^2 + e^2)); in a school this sum is
+ * up to some ten body lengths per beat. The bits do not depend on the number of threads. Fails with STATUS_MEMORY. */
 enum status velocity_sum_induce(struct velocity_sum *sum, const struct vortices *vortices, double tolerance,
                                 int threads, const struct induced *at);
 
-/* The same for n arrays of vortices by one tree, which costs less than one after the other. The errors add up. */
+/* The same for n arrays of vortices in one tree, cheaper than separate sums. The errors add up. */
 enum status velocity_sum_induce_all(struct velocity_sum *sum, int n, const struct vortices *const *vortices,
                                     double tolerance, int threads, const struct induced *at);
 
-/* Plan sums for vortices and targets that will move a little, with gradients where at->u_x is not NULL: they are sorted
- * for where they are now; the velocities are not touched. Fails with STATUS_MEMORY: there is no plan then. */
+/* Plan sums for small displacements of vortices and targets, with gradients if at->u_x is not NULL: sort vortices and
+ * targets at the present positions. The velocities are not touched. Fails with STATUS_MEMORY; there is then no plan. */
 enum status velocity_sum_plan(struct velocity_sum *sum, const struct vortices *vortices, double tolerance, int threads,
                               const struct induced *at);
 
-/* velocity_sum_induce without sorting, where nothing has moved too far for the last plan (treecode.h), which was for as
- * many vortices in the same groups, as many targets, and this tolerance; else velocity_sum_induce itself. Where
- * at->u_x is not NULL, the plan was one with gradients. It depends on the plan, and not on what was summed since. */
+/* velocity_sum_induce by the last plan, without sorting; if the plan no longer fits the positions (treecode.h),
+ * velocity_sum_induce is called. Requires a plan for the same groups and numbers of vortices, the same number of
+ * targets and the same tolerance, with gradients if at->u_x is not NULL. The result depends on the plan, not on later
+ * sums. */
 enum status velocity_sum_by_plan(struct velocity_sum *sum, const struct vortices *vortices, double tolerance,
                                  int threads, const struct induced *at);
 

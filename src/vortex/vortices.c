@@ -20,7 +20,7 @@ void vortices_clear(struct vortices *vortices) {
     vortices->n_groups = 0;
 }
 
-static enum status grow(double **values, int n, int capacity) {
+static enum status values_grow(double **values, int n, int capacity) {
     // whole cache lines
     enum { LINE = 64 };
     const size_t bytes = ((size_t)capacity * sizeof **values + LINE - 1) / LINE * LINE;
@@ -29,6 +29,7 @@ static enum status grow(double **values, int n, int capacity) {
     if (n > 0) memcpy(more, *values, (size_t)n * sizeof *more);
     free(*values);
     *values = more;
+
     return STATUS_OK;
 }
 
@@ -36,11 +37,12 @@ enum status vortices_append(struct vortices *vortices, int n, double smoothing) 
     const int all = vortices->n + n;
     if (all > vortices->capacity) {
         const int capacity = all + all / 2;
-        TRY(grow(&vortices->x, vortices->n, capacity));
-        TRY(grow(&vortices->y, vortices->n, capacity));
-        TRY(grow(&vortices->circulation, vortices->n, capacity));
+        TRY(values_grow(&vortices->x, vortices->n, capacity));
+        TRY(values_grow(&vortices->y, vortices->n, capacity));
+        TRY(values_grow(&vortices->circulation, vortices->n, capacity));
         vortices->capacity = capacity;
     }
+
     if (n == 0) return STATUS_OK;
     if (vortices->n_groups > 0 && vortices->group[vortices->n_groups - 1].smoothing == smoothing) {
         vortices->group[vortices->n_groups - 1].at.n += n;
@@ -54,12 +56,13 @@ enum status vortices_append(struct vortices *vortices, int n, double smoothing) 
         }
         vortices->group[vortices->n_groups++] = (struct vortex_group){{vortices->n, n}, smoothing};
     }
+
     vortices->n = all;
     return STATUS_OK;
 }
 
 double vortices_pair_smoothing(double one, double other) {
-    // one smoothing is kept to the bit
+    // equal smoothings are returned to the bit
     return fabs(one - other) > 0 ? sqrt((one * one + other * other) / 2) : one;
 }
 
@@ -69,6 +72,7 @@ struct vortices vortices_felt_by(const struct vortices *from, double smoothing, 
         group[g] = from->group[g];
         group[g].smoothing = vortices_pair_smoothing(from->group[g].smoothing, smoothing);
     }
+
     felt.group = group;
     return felt;
 }
@@ -81,6 +85,7 @@ struct induced vortices_targets(const struct induced *all, struct range which) {
         part.u_y = all->u_y + i;
         part.v_x = all->v_x + i;
     }
+
     return part;
 }
 
@@ -97,6 +102,7 @@ void vortices_induce(const struct vortices *vortices, struct range which, const 
         if (of.n <= 0) continue;
         const double *const x = vortices->x + of.first, *const y = vortices->y + of.first;
         const double *const circulation = vortices->circulation + of.first, smoothing = vortices->group[g].smoothing;
+
         if (at->u_x) {
             kernel_add_gradient(at->n, at->x, at->y, of.n, x, y, circulation, smoothing, at->u, at->v, at->u_x, at->u_y,
                                 at->v_x);
@@ -111,10 +117,12 @@ void vortices_induce_without(const struct vortices *vortices, struct range left_
     const struct range all = {0, vortices->n};
     const int first = where.first > 0 ? where.first : 0, where_end = where.first + where.n;
     const int end = where_end < at->n ? where_end : at->n;
+
     if (first >= end || left_out.n == 0) {
         vortices_induce(vortices, all, at);
         return;
     }
+
     const struct induced before = vortices_targets(at, (struct range){0, first});
     const struct induced there = vortices_targets(at, (struct range){first, end - first});
     const struct induced behind = vortices_targets(at, (struct range){end, at->n - end});

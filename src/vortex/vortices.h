@@ -1,4 +1,4 @@
-/* vortices.h: point vortices in groups of one smoothing each, and the velocity that they induce. doc/model.md, first
+/* vortices.h: point vortices in groups of one smoothing each, and the induced velocity. doc/model.md, first
  * paragraph. Tested by tests/vortex/test_vortices.c. */
 #ifndef VORTICES_H
 #define VORTICES_H
@@ -11,7 +11,7 @@ struct vortex_group {
     double smoothing; /* m */
 };
 
-/* Groups follow one another without a gap; neighbours of one smoothing are one group. */
+/* Groups are contiguous; adjacent vortices of one smoothing are one group. */
 struct vortices {
     int n, capacity;
     double *x, *y;       /* m, aligned to cache lines                              (n) */
@@ -20,12 +20,12 @@ struct vortices {
     struct vortex_group *group; /* (n_groups) */
 };
 
-/* The smoothing of a pair of vortices, or sheets, with a smoothing each: the root of the mean of the squares, m. It is
- * the same in both directions, so that the two velocities conserve the impulse of the pair. */
+/* The smoothing of a pair of vortices or sheets: the root mean square of both smoothings, m. The pair smoothing is the
+ * same in both directions, so the two velocities conserve the impulse of the pair. */
 double vortices_pair_smoothing(double one, double other);
 
-/* Points at which a velocity, and its gradient where u_x is not NULL, are induced and added; all arrays (n).
- * u_x = du/dx = -dv/dy, u_y = du/dy, v_x = dv/dx. */
+/* Targets of an induced velocity, and of the velocity gradient if u_x is not NULL; induced values are added. All arrays
+ * (n). u_x = du/dx = -dv/dy, u_y = du/dy, v_x = dv/dx. */
 struct induced {
     int n;
     const double *x, *y;     /* m */
@@ -33,27 +33,27 @@ struct induced {
     double *u_x, *u_y, *v_x; /* s-1 */
 };
 
-/* Those of group g that are in a range; n <= 0: none. */
+/* The vortices of group g inside a range; n <= 0: none. */
 struct range vortices_of_group(const struct vortices *vortices, int g, struct range which);
 
-/* Release what the vortices own. Accepts a zeroed struct, as all functions here do. */
+/* Release the arrays of the vortices. All functions here accept a zeroed struct. */
 void vortices_free(struct vortices *vortices);
 
 /* Remove all vortices; the memory is kept. */
 void vortices_clear(struct vortices *vortices);
 
-/* Append n vortices whose values are not set. Fails with STATUS_MEMORY; nothing is changed then. */
+/* Append n vortices without setting values. On STATUS_MEMORY nothing is changed. */
 enum status vortices_append(struct vortices *vortices, int n, double smoothing);
 
-/* Add what the vortices of a range induce at the targets, group after group. */
+/* Add the velocity of a range of vortices to the targets, group after group. */
 void vortices_induce(const struct vortices *vortices, struct range which, const struct induced *at);
 
-/* The same of all vortices but, at the targets in a range, those left out. */
+/* The same for all vortices; at the targets in range `where`, without the vortices in range left_out. */
 void vortices_induce_without(const struct vortices *vortices, struct range left_out, struct range where,
                              const struct induced *at);
 
-/* The same vortices as vortices of another smoothing feel them: *from with these groups, one for each of its groups, in
- * which every smoothing is that of the pair. It owns nothing. */
+/* The vortices of *from with pair smoothings, for targets of another smoothing: group (from->n_groups) receives the
+ * groups with the smoothing of each pair. The result owns nothing. */
 struct vortices vortices_felt_by(const struct vortices *from, double smoothing, struct vortex_group *group);
 
 /* A range of the targets. */

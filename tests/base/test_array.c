@@ -1,4 +1,4 @@
-/* test_array.c: arrays of zeros, and what is left without memory. */
+/* test_array.c: arrays of zeros, and the state after a failed allocation. */
 #include <stdlib.h>
 
 #include "base/array.h"

@@ -2,7 +2,7 @@
 #include "base/methods.h"
 #include "near.h"
 
-// up to this order the conditions below are all that there are
+// the conditions below are complete up to this order
 enum { CHECKED_ORDER = 3 };
 
 static double rounding(const struct butcher_tableau *t) {
@@ -27,7 +27,7 @@ static void check_order(const struct butcher_tableau *t, const double *b, int or
     NEAR(nested, 1.0 / 6, atol, 0);
 }
 
-// the weights are a quadrature formula: that of order q integrates c^(q - 1)
+// the weights are a quadrature formula: a formula of order q integrates c^(q - 1)
 static void check_quadrature(const struct butcher_tableau *t, const double *b, int order) {
     double sum = 0;
     for (int i = 0; i < t->n_stages; i++) sum += b[i] * pow(t->c[i], order - 1);

@@ -1,4 +1,4 @@
-/* test_parallel.c: chunks cover an array; threads are for loops that are long enough. */
+/* test_parallel.c: chunks cover an array; only long loops use several threads. */
 #include "base/parallel.h"
 #include "near.h"
 
@@ -23,7 +23,7 @@ static void short_loops_are_not_worth_threads(void **state) {
     assert_int_equal(parallel_threads(4, 10, 100, 100), 4);
     assert_int_equal(parallel_threads(4, 10, 99, 100), 1);
     assert_int_equal(parallel_threads(1, 10, 100, 100), 1);
-    // one iteration belongs to one thread, however long it takes
+    // one iteration belongs to one thread, for any amount of work
     assert_int_equal(parallel_threads(4, 1, 1e9, 100), 1);
 }
 

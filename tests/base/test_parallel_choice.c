@@ -80,7 +80,7 @@ static void a_trial_that_waits_for_its_processor_is_repeated_on_another_one(void
     struct parallel_choice choice = {.pause = 1};
     assert_true(parallel_choice_note(&choice, 1, 1) || parallel_choice_note(&choice, 1, 1) ||
                 parallel_choice_note(&choice, 1, 1));
-    // half of the time on the processor: once more, on the next part
+    // half of the time on the processor: repeat on the next part
     for (int i = 0; i < 3; i++) assert_true(parallel_choice_note(&choice, 1.2, 0.6));
     assert_int_equal(choice.part, 1);
     // not a third time
@@ -122,7 +122,7 @@ static int n_processors(void) {
     return sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : 0;
 }
 
-// one step whose end makes a choice: a window of this length is over
+// one step that ends a window of this length and makes a choice
 static void step(struct parallel_choice *choice, double mean_time) {
     choice->window = (struct parallel_window){.n_steps = 9, .time = 10 * mean_time, .processor_time = 10 * mean_time};
     parallel_choice_begin(choice, 2);
@@ -140,7 +140,7 @@ static void one_thread_may_use_all_processors(void **state) {
     step(&choice, 1);  // a trial of one thread begins
     assert_true(choice.is_trial);
     assert_int_equal(n_processors(), all);
-    step(&choice, 2);  // it was slower
+    step(&choice, 2);  // slower
     assert_false(choice.is_one);
     assert_int_equal(n_processors(), part);
     choice.rest = 0;

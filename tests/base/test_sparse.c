@@ -31,7 +31,7 @@ static void first_pass_and_replays_give_the_same_columns(void **state) {
         assert_memory_equal(matrix->column_start, start, sizeof start);
         assert_memory_equal(matrix->row_index, row, sizeof row);
         NEAR_ARRAY(5, matrix->value, value, 0, 0);
-        // one pattern, whatever the values
+        // one pattern for all values
         assert_int_equal(matrix->version, version + 1);
     }
     sparse_free(matrix);
@@ -122,7 +122,7 @@ static void many_random_additions_equal_a_dense_sum(void **state) {
         }
         school_ok(sparse_end(matrix));
         double *const dense = school_dense(matrix);
-        // the additions to one entry keep their order: not even a bit differs
+        // the additions to one entry keep the order: every bit is equal
         NEAR_ARRAY(N * N, dense, want, 0, 0);
         free(dense);
     }

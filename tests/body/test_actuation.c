@@ -11,7 +11,7 @@
     "fish: [{wave: {frequency: 1.2, phase: 35, amplitude: 0.5, constant: 0.1, linear: 0.8, quadratic: 0.4, number: " \
     "-5}}]\n"
 
-/* What the muscle of the first fish asks at a time. */
+/* Natural curvature of the first fish at a time. */
 enum { JOINTS = 300 };
 struct asked {
     double curvature[JOINTS], rate[JOINTS], by_phi0[JOINTS], rate_by_phi0[JOINTS];
@@ -83,7 +83,7 @@ static void a_wavelength_is_another_word_for_the_number(void **state) {
 static void a_table_of_a_wave_is_that_wave(void **state) {
     (void)state;
     struct setup setup[2];
-    // 0.5 (0.2 + 0.8 q) sin(2 pi t + phase), the same at all places: linear in q as the table is; six lengths of l_ref
+    // 0.5 (0.2 + 0.8 q) sin(2 pi t + phase), equal at all positions: linear in q like the table; six lengths of l_ref
     school_build(&setup[0],
                  TIME "fish: [{wave: {amplitude: 0.5, constant: 0.2, linear: 0.8, quadratic: 0, number: 0}}]\n");
     school_build(&setup[1], TIME
@@ -129,7 +129,7 @@ static void no_joint_turns_by_more_than_the_largest_turn(void **state) {
 
 static void a_table_is_met_at_its_places_and_phases(void **state) {
     (void)state;
-    // odd and even numbers of phases; rows at quarters of the length, where the joints 1, 2, 3 of five nodes are
+    // odd and even numbers of phases; rows at quarters of the length, the positions of joints 1, 2, 3 of five nodes
     const char *const texts[] = {
         TIME "fish: [{nodes: 5, wave: {ramp: 0, table: [[9, 9, 9], [1, 2, -3], [2, 0, 4], [0, 1, 0], [9, 9, 9]]}}]\n",
         TIME

@@ -1,4 +1,4 @@
-/* test_bending_mode.c: the slowest mode against those of uniform beams. */
+/* test_bending_mode.c: the slowest mode against the modes of uniform beams. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -58,7 +58,7 @@ static void force_is_minus_the_gradient_of_the_energy(void **state) {
         y[i] = here - h;
         const double low = clamp_energy(fish, setup.t, y);
         y[i] = here;
-        // what the differences cut off and round
+        // truncation and rounding of the differences
         NEAR(setup.value[fish->at.ax + i], (high - low) / (2 * h), 1e-5, 1e-6);
     }
     assert_true(clamp_energy(fish, setup.t, y) > 0.1);

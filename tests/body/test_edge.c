@@ -14,7 +14,7 @@ static void frame_is_orthonormal_and_points_from_node_to_node(void **state) {
     for (int k = 0; k < fish->n_edges; k++) {
         const struct edge edge = edge_at(fish, k, y);
         for (int i = 0; i < 2; i++) {
-            // rounding of places of the size of the body
+            // rounding of positions of the size of the body
             NEAR(y[edge_place(fish, i, k)] + edge.length * edge.t[i], y[edge_place(fish, i, k + 1)], 1e-15, 0);
             NEAR(edge.middle[i], (y[edge_place(fish, i, k)] + y[edge_place(fish, i, k + 1)]) / 2, 0, 0);
             NEAR(edge.velocity[i], (y[edge_velocity(fish, i, k)] + y[edge_velocity(fish, i, k + 1)]) / 2, 0, 0);

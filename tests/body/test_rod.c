@@ -11,14 +11,14 @@
 #define STRAIN \
     "body: {modulus: 1.0e+5, damping: strain, bending_damping: 0.7, stretching_damping: 30, relaxation_time: 0.1}"
 
-/* What the tests ask of the joints: natural curvature and its rate, and their derivatives by phi0. */
+/* Natural curvature, rate of natural curvature, and derivatives of both by phi0. */
 static double natural[] = {0.1, -0.2, 0.3, 0.05, -0.15}, natural_rate[] = {0.5, -1, 2, 0.3, 1};
 static double by_phi0[] = {0.3, 0.2, 0.4, 0.1, 0.5}, rate_by_phi0[] = {-2, 1, 3, -1, 4};
 static const struct actuation muscle = {natural, natural_rate, by_phi0, rate_by_phi0};
 static double zero[64];
 static const struct actuation no_muscle = {zero, zero, zero, zero};
 
-/* Energies and powers by the places of the nodes. */
+/* Energies and powers from the node positions. */
 struct energetics {
     double bending, stretching, actuation, damping;
 };
@@ -159,7 +159,7 @@ static void damping_power_is_that_of_the_damping_forces_and_never_positive(void 
             power -= (setup.value[fish->at.ax + i] - elastic[fish->at.ax + i]) * velocity[i];
             size += fabs(elastic[fish->at.ax + i]);
         }
-        // rounding of the elastic forces that are taken off
+        // rounding of the subtracted elastic forces
         NEAR(damping_power(fish, &muscle, y), power, 1e-14 * size, 1e-12);
         assert_true(damping_power(fish, &muscle, y) < 0);
     }
@@ -206,7 +206,7 @@ static void energies_of_a_regular_polygon_are_exact(void **state) {
     double curvature[5];
     rod_curvature(fish, setup.state->y, curvature);
     for (int j = 0; j < 5; j++) NEAR(curvature[j], kappa, 1e-14, 0);
-    // rounding of 1e-16 in places a sixth apart
+    // rounding of 1e-16 in positions a sixth apart
     NEAR(bending_energy(fish, &no_muscle, setup.state->y), 5 * EI * kappa * kappa / (2 * l), 0, 1e-13);
     NEAR(stretching_energy(fish, setup.state->y), EA * 0.05 * 0.05 / 2, 0, 1e-12);
     school_clear(&setup);
@@ -223,7 +223,7 @@ static void energy_of_a_circular_arc_converges_to_that_of_the_continuum(void **s
         const double R = 0.5, pi = acos(-1), EI = 1e6 * pi * 0.25 * 0.001 / 64;
         const struct fish *fish = setup.school->fish;
         bend(&setup, fish->edge_length / R, 1);
-        // N - 2 joints bend, of N - 1 that a closed ring would have: per joint EI lbar/(2 R^2)
+        // N - 2 joints bend, a closed ring has N - 1 joints: per joint EI lbar/(2 R^2)
         const double energy = bending_energy(fish, &no_muscle, setup.state->y) * fish->n_edges / fish->n_joints;
         error[i] = energy / (EI / (2 * R * R)) - 1;
         school_clear(&setup);
@@ -284,8 +284,7 @@ static void muscle_power_is_the_change_of_energy_at_a_fixed_shape(void **state) 
     school_clear(&setup);
 }
 
-// the rate of the energies where the nodes move with their velocities and the muscle goes on, by differences of fourth
-// order
+// the rate of the energies for moving nodes and muscle, by differences of fourth order
 static double rate_of_energy(struct setup *setup) {
     static const double node[4] = {-2, -1, 1, 2}, weight[4] = {1.0 / 12, -8.0 / 12, 8.0 / 12, -1.0 / 12};
     const struct fish *fish = setup->school->fish;
@@ -321,7 +320,7 @@ static void what_the_muscle_gives_is_stored_damped_or_work_on_the_nodes(void **s
         for (int m = 0; m < 2 * fish->n_nodes; m++) work -= setup.value[fish->at.ax + m] * y[fish->at.vx + m];
         const double power = actuation_power(fish, y) + damping_power(fish, &muscle, y);
         assert_true(fabs(power) > 1);
-        // what the differences of an energy of 10 J cut and round off
+        // truncation and rounding of the differences of an energy of 10 J
         NEAR(power, work + rate_of_energy(&setup), 1e-9 * fabs(work), 1e-9);
         school_clear(&setup);
     }
@@ -334,7 +333,7 @@ static void a_body_that_does_what_its_muscle_asks_is_not_damped(void **state) {
     school_stir(&setup);
     const struct fish *fish = setup.school->fish;
     double *const y = setup.state->y;
-    // edges keep their length; edge k turns at the sum of the rates of the joints before it
+    // edge lengths are constant; edge k turns at the sum of the rates of the joints before it
     double turn = 0.7, rate[5], damped[5];
     const struct actuation follows = {natural, rate, by_phi0, rate_by_phi0};
     for (int k = 0; k < fish->n_edges; k++) {

@@ -1,4 +1,4 @@
-/* test_rod_stress.c: stresses by the balance of momentum, and the strains that follow: doc/model.md, section 13. */
+/* test_rod_stress.c: stresses by the balance of momentum, and the resulting strains: doc/model.md, section 13. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,14 +13,14 @@ enum { STRAINS = 64 };
 static double zero[STRAINS];
 static const struct actuation no_muscle = {zero, zero, zero, zero};
 
-/* The stresses of a body by its places. */
+/* The stresses of a body from the node positions. */
 static void stresses(const struct fish *fish, const double *y, double *stress) {
     double strain[STRAINS], rate[STRAINS];
     assert_true(rod_n_strains(fish) <= STRAINS);
     rod_strains(fish, &no_muscle, y, &(struct rod_strains){strain, rate, stress});
 }
 
-// m a less the forces of the rod: the residue of a body that nothing else acts on
+// m a minus the forces of the rod: the residue of a body without other forces
 static void residue_of(const struct fish *fish, const double *y, double *residue) {
     for (int i = 0; i < 2 * fish->n_nodes; i++) {
         residue[fish->at.ax + i] = fish->mass[i % fish->n_nodes] * y[fish->at.ax + i];
@@ -37,7 +37,7 @@ static void the_balance_finds_the_stresses_that_the_accelerations_say(void **sta
     const struct fish *fish = setup.school->fish;
     double *const y = setup.state->y;
     double want[STRAINS], law[STRAINS], got[STRAINS];
-    // strains of a stiff body, and errors in its places and velocities, as large as these, that an iteration leaves
+    // strains of a stiff body, and errors of positions and velocities, as large as the strains, left by an iteration
     const double strain = 1e-6, error = 1e-6;
     for (int i = 0; i < 2 * fish->n_nodes; i++) {
         y[fish->at.x + i] += strain * school_random(&setup);
@@ -62,7 +62,7 @@ static void the_balance_finds_the_stresses_that_the_accelerations_say(void **sta
     for (int i = 0; i < rod_n_strains(fish); i++)
         size[i >= fish->n_joints] = fmax(size[i >= fish->n_joints], fabs(want[i]));
     for (int i = 0; i < rod_n_strains(fish); i++) {
-        // turned by the errors of the places over the length of an edge
+        // turned by the position errors over the length of an edge
         NEAR(got[i], want[i], 1e-4 * size[i >= fish->n_joints], 0);
         wrong = fmax(wrong, fabs(law[i] - want[i]) / size[i >= fish->n_joints]);
     }
@@ -165,7 +165,7 @@ static void strains_creep_as_the_law_of_the_material_says(void **state) {
             oldest[i] = parabola(s, start - g);
             before[i] = parabola(s, start);
             now[i] = parabola(s, start + h);
-            // a strain of its own that decays
+            // an initial strain that decays
             strain[i] = 0.1;
         }
         rod_stress_creep(fish, h, g, oldest, before, now, strain);
@@ -174,7 +174,7 @@ static void strains_creep_as_the_law_of_the_material_says(void **state) {
             const int edge = i - fish->n_joints;
             const double stiffness =
                 edge < 0 ? fish->bending_stiffness[i] / fish->edge_length : fish->axial_stiffness[edge];
-            // where the relaxation time is long the sum of the settled strain cancels, and the integral is easy
+            // for a long relaxation time the sum of the steady strain cancels, and the integral is easy
             const double own = 0.1 - settled(stiffness, tau, s, start);
             const double want = tau < h ? settled(stiffness, tau, s, start + h) + (tau > 0 ? exp(-h / tau) * own : 0)
                                         : crept(stiffness, tau, s, start, h, 0.1);
@@ -242,11 +242,11 @@ static void powers_and_energies_of_a_stiff_body_have_a_limit(void **state) {
     const struct diagnostics_fish *const want = &fine->diagnostics->fish[0], *const got = &stiff->diagnostics->fish[0];
     NEAR(got->actuation_work, want->actuation_work, 0, 5e-3);
     NEAR(got->cost_of_transport, want->cost_of_transport, 0, 5e-3);
-    // strains go as one over the modulus, and so do energy and damping
+    // strains are proportional to 1/modulus, and so are energy and damping
     NEAR(100 * got->bending_energy, want->bending_energy, 0, 0.02);
     NEAR(100 * got->damping_power, want->damping_power, 0, 0.05);
     NEAR(100 * got->cost_of_transport_body, want->cost_of_transport_body, 0, 0.05);
-    // the energies and works belong together
+    // energies and works are consistent
     assert_true(fabs(got->energy_balance) < 1e-3 * got->actuation_work);
     simulate_free(fine);
     simulate_free(stiff);

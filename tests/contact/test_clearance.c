@@ -1,4 +1,4 @@
-/* test_clearance.c: bodies that touch, that pass each other, and that pass through each other between two steps. */
+/* test_clearance.c: bodies that touch, pass each other, or pass through each other between two steps. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,7 +10,7 @@
 
 #define TIME "time: {end: 1, shedding_interval: 0.02, output_interval: 0.02}\n"
 
-// two straight bodies, nose to tail from x = 0 to 1 at y = 0, and the other one where it is told; thickness 0.2 or less
+// two straight bodies of thickness at most 0.2: one from x = 0 (nose) to 1 at y = 0, the other at a given position
 #define PAIR(x, y)                                                                                                  \
     TIME "defaults: {fish: {wave: {amplitude: 0}, body: {profile: uniform, thickness: 0.1}}}\nfish: [{}, {start: {" \
          "position: [" x ", " y "]}}]\n"
@@ -46,7 +46,7 @@ static const struct closest *step(struct pair *pair, int f, double dx, double dy
     return pair->setup.state->closest;
 }
 
-// many pairs at the same distance, and as many fish as threads need
+// many pairs at the same distance, and enough fish for several threads
 static void of_pairs_at_the_same_distance_the_first_one_counts(void **state) {
     (void)state;
     enum { N_FISH = 30 };
@@ -62,7 +62,7 @@ static void of_pairs_at_the_same_distance_the_first_one_counts(void **state) {
     memcpy(at_start, pair.setup.state->y, (size_t)pair.setup.school->n_unknowns * sizeof *at_start);
     for (int threads = 1; threads <= 3; threads++) {
         pair.setup.school->threads = threads;
-        // all but the first two come nearer to their neighbours by halves
+        // all fish but the first two halve the distance to a neighbour
         for (int f = 0; f < N_FISH; f++) {
             const struct fish *const fish = &pair.setup.school->fish[f];
             for (int k = 0; k < fish->n_nodes; k++) pair.setup.state->y[fish->at.y + k] = f < 2 ? 2 * f : 3 + 0.5 * f;
@@ -71,12 +71,12 @@ static void of_pairs_at_the_same_distance_the_first_one_counts(void **state) {
         const struct closest *const closest = pair.setup.state->closest;
         assert_int_equal(closest->fish[0], 2);
         assert_int_equal(closest->fish[1], 3);
-        // the record is not taken by another pair at the same distance
+        // another pair at the same distance does not replace the record
         step(&pair, 1, 0, 1.5, threads);
         assert_int_equal(closest->fish[0], 2);
         memcpy(pair.setup.state->y, at_start, (size_t)pair.setup.school->n_unknowns * sizeof *at_start);
     }
-    // those that the residual has made room for
+    // neighbours allocated by the residual
     pair.setup.school->threads = 1;
     free(at_start);
     clear(&pair);
@@ -104,11 +104,11 @@ static void closest_approach_is_that_of_all_steps(void **state) {
 
 static void bodies_that_cross_between_two_steps_have_touched(void **state) {
     (void)state;
-    // head on, at ten lengths a step; at both ends they are lengths apart
+    // head on, at ten lengths per step; the bodies are lengths apart at both ends of the step
     struct pair pair = place(PAIR("5", "0"));
     const struct closest *const closest = step(&pair, 1, -10, 0, 0.5);
     NEAR(closest->distance, 0, 0, 0);
-    // the gap is 4 lengths of the way of 10, less two halves of the thickness
+    // the gap is 4 of the 10 lengths of the step, minus two halves of the thickness
     NEAR(closest->t, 0.5 * 3.9 / 10, 1e-3, 0);
     clear(&pair);
     // sideways
@@ -150,10 +150,10 @@ static void bodies_that_pass_each_other_have_not(void **state) {
     (void)state;
     struct pair pair = place(PAIR("5", "0.15"));
     const struct closest *const closest = step(&pair, 1, -10, 0, 0.5);
-    // 0.05 m beside each other when they are level; the advances see it within that distance
+    // 0.05 m side by side at the closest approach; the advances resolve this within that distance
     assert_true(closest->distance >= 0.05 - 1e-12 && closest->distance < 0.1);
     clear(&pair);
-    // a school that moves as one comes no closer, however far it goes
+    // a rigid translation of the school changes no distance
     pair = place(PAIR("0", "0.5"));
     const struct fish *const other = &pair.setup.school->fish[1];
     for (int k = 0; k < other->n_nodes; k++) pair.setup.state->y[other->at.x + k] += 100;
@@ -171,7 +171,7 @@ static void bodies_that_have_touched_stay_so(void **state) {
     clear(&pair);
 }
 
-// the smallest distance of all pairs on the way from the places before to those now
+// the smallest distance of all pairs on the way from the old to the new positions
 static double of_all_pairs(const struct pair *pair, const double *before) {
     const struct school *const school = pair->setup.school;
     double least = INFINITY;
@@ -215,7 +215,7 @@ static void the_record_of_a_school_is_that_of_all_pairs(void **state) {
         const double here = of_all_pairs(&pair, before);
         n_records += here < least;
         least = fmin(least, here);
-        // the last steps without memory for the neighbours
+        // in the last steps the allocation of neighbours fails
         if (i == STEPS / 2) {
             free(pair.setup.residual->neighbours->pair);
             pair.setup.residual->neighbours->pair = NULL;

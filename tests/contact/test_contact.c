@@ -1,4 +1,4 @@
-/* test_contact.c: forces in contact follow from an energy, and bodies that meet do not cross. Their derivatives:
+/* test_contact.c: contact forces follow from an energy, and colliding bodies do not cross. Derivatives of the forces:
  * test_residual.c. */
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,7 +11,7 @@
 
 #define TIME "time: {end: 1, shedding_interval: 0.01, output_interval: 0.01}\n"
 
-// bodies at rest, of one thickness: two of them with the given gap
+// bodies at rest, of uniform thickness: two bodies with the given gap
 #define STRAIGHT "defaults: {fish: {sheet_points: 9, wave: {amplitude: 0}, body: {profile: uniform, thickness: 0.1}}}\n"
 #define BESIDE(y) STRAIGHT "fish: [{}, {start: {position: [0, " y "]}}]\n"
 
@@ -140,7 +140,7 @@ static void walls_push_with_the_gradient_of_the_energy(void **state) {
         memcpy(force, on.force, sizeof force);
         NEAR_ARRAY(2, force, sum, 1e-13, 1e-13);
         NEAR(force[0], 0, 0, 0);
-        // a wall is at rest: it gives no power
+        // a wall is at rest: no power
         NEAR(contact_power(contact, f, y), 0, 0, 0);
     }
     assert_true(n > 5);
@@ -185,7 +185,7 @@ static void what_crosses_on_its_way_asks_for_a_smaller_step(void **state) {
 
 // ---- runs
 
-// momentum of so many fish, kg m s-1, and its scale
+// momentum of n fish, kg m s-1, and a scale of the momentum
 static double momentum(const struct simulation *simulation, int n_fish, double sum[2]) {
     double scale = 0;
     sum[0] = sum[1] = 0;
@@ -208,7 +208,7 @@ static double momentum(const struct simulation *simulation, int n_fish, double s
            "}}}\nfish: [{start: {position: [-0.2, 0.01], heading: 0}}, {length: 0.8, start: {position: [0.2, 0], " \
            "heading: 175}}]\n"
 
-// bodies meet, come apart, have kept momentum and energy; steps per event are those of a collision
+// bodies collide and separate, momentum and energy are conserved; the steps per event show the collision
 static void meet(const char *name, const char *text, double end, double audit_limit) {
     struct simulation *const simulation = school_simulation(text);
     const int n_fish = simulation->school->n_fish;
@@ -228,12 +228,12 @@ static void meet(const char *name, const char *text, double end, double audit_li
         most = simulation->totals.steps - steps > most ? simulation->totals.steps - steps : most;
         steps = simulation->totals.steps;
         momentum(simulation, n_fish, after);
-        // walls along x take what is across them
+        // walls along x take the momentum across
         NEAR_ARRAY(simulation->school->walls.n > 0 ? 1 : 2, after, before, 1e-10 * scale, 0);
     }
     print_message("%s: least %.2e m, imbalance %.1e of %.0f J, at most %ld steps per event\n", name,
                   simulation->state->closest->distance, imbalance, energy, most);
-    // without a contact the momentum of the first one would be what it was
+    // without contact the momentum of the first body is constant
     momentum(simulation, 1, after);
     assert_true(hypot(after[0] - first[0], after[1] - first[1]) > 1e-3 * scale);
     assert_true(simulation->state->closest->distance > 0);
@@ -269,7 +269,7 @@ static void bodies_that_meet_do_not_cross(void **state) {
          0.3, 5e-3);
 }
 
-// Of two plates that heave and swim the one behind is faster: it pushes the other one, and does not get through.
+// Two plates heave and swim in line; the faster plate behind pushes the plate in front and does not pass through.
 static void plates_that_swim_in_line_do_not_cross(void **state) {
     (void)state;
     struct simulation *const simulation = school_simulation(
@@ -316,8 +316,8 @@ static void walls_throw_bodies_back(void **state) {
          0.3, 5e-3);
 }
 
-// Two bodies with the pressure of their sheets, the one the other turned by half a turn: what they and the fluid have
-// of momentum stays nothing, and the energy balance has every power.
+// Two bodies with sheet pressure, point-symmetric: the momentum of bodies and fluid stays 0, and the energy balance
+// includes every power.
 static void bodies_under_pressure_throw_each_other_back(void **state) {
     (void)state;
     struct simulation *const simulation = school_simulation(
@@ -345,12 +345,12 @@ static void bodies_under_pressure_throw_each_other_back(void **state) {
     assert_true(simulation->state->closest->distance > 0);
     assert_true(stored > 0.005 * energy);
     assert_true(imbalance < 1e-3 * energy);
-    // they have turned back, aside or into a spin
+    // the bodies have turned back, aside or into a spin
     assert_true(simulation->diagnostics->fish[0].com_velocity[0] < 0.5);
     simulate_free(simulation);
 }
 
-// A body that is thrown back goes with its tail first, which overtakes the marker that it has just laid.
+// A body that is thrown back moves tail first, and the tail overtakes the newest marker.
 static void bodies_that_are_thrown_back_go_on_tail_first(void **state) {
     (void)state;
 #define PRESSED(fish) SCHOOL_DEFAULTS TIME "defaults: {fish: {force: pressure, sheet_points: 33, " fish "}}\n"
@@ -358,7 +358,7 @@ static void bodies_that_are_thrown_back_go_on_tail_first(void **state) {
         // at a wall, at a right angle: the tail turns back within an interval
         PRESSED("nodes: 9, body: {modulus: 5.394e+6}") "fluid: {walls: [-0.4974]}\n"
         "fish: [{start: {heading: 265.83, speed: 4}, wave: {phase: 33.9}}]\n",
-        // the same with a softer body, the tail of which turns back later
+        // the same with a softer body: the tail turns back later
         PRESSED("nodes: 17, body: {modulus: 9.907e+5}") "fluid: {walls: [-0.6660]}\n"
         "fish: [{start: {heading: 259.75, speed: 2}, wave: {phase: 257}}]\n",
         // head on: one body at rest; both fast
@@ -423,7 +423,7 @@ static void a_failure_in_contact_names_both_bodies_and_the_gap(void **state) {
         {TIME "solver: {max_steps: 20}\nfluid: {density: 0, walls: [0]}\nwake: {shedding: continuous, taper: 0, "
               "taper_beside: 0}\nfish: [{" PASSIVE ", start: {position: [0, 0.15], heading: 280, speed: 5}}]\n",
          "; fish1 was "},
-        // apart: the message is silent about contact
+        // bodies apart: no contact in the message
         {"solver: {max_steps: 1}\n" TIME "fish: [{}, {start: {position: [0, 1]}}]\n", NULL}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct simulation *const simulation = school_simulation(cases[i].text);
@@ -444,7 +444,7 @@ static void a_failure_in_contact_names_both_bodies_and_the_gap(void **state) {
 
 enum { CROWD = 256 };
 
-// 256 fish in pairs that meet, each pair at an angle of its own
+// 256 fish in colliding pairs, each pair at a different angle
 static char *crowd(void) {
     enum { BYTES = 40000 };
     char *const text = malloc(BYTES);
@@ -476,7 +476,7 @@ static void of_256_fish_no_two_get_through_each_other(void **state) {
     const struct contact *const contact = simulation->residual->contact;
     const double *const y = simulation->state->y;
     school_ok(contact_find(simulation->residual->contact, simulation->state, simulation->state->t, y));
-    // those found from the sorted boxes are those of all pairs
+    // the sorted boxes find the same contacts as all pairs
     const double range = simulation->school->contact_range;
     int n_contacts = 0;
     for (int f = 0; f < CROWD; f++) {
@@ -516,7 +516,7 @@ static void stop_ends_the_run_at_the_time_and_with_the_names(void **state) {
 
 static void stop_does_not_wait_until_bodies_touch(void **state) {
     (void)state;
-    // they pass each other at 0.1 range, 2 mm
+    // the bodies pass each other at 0.1 range, 2 mm
     struct simulation *const simulation =
         school_simulation("contact: {action: stop}\nfluid: {density: 0}\n" TIME STRAIGHT
                           "fish: [{start: {position: [1.2, 0.102], speed: 5}}, {}]\n");
@@ -565,7 +565,7 @@ static double energy_of_pair(const struct school *school, const struct fish *a, 
 
 static void the_energy_is_that_of_all_ends_above_all_edges(void **state) {
     (void)state;
-    // random shapes, and two in line: of edges whose ends are near the first nodes may be far apart
+    // random shapes, and two bodies in line: edges with near ends may have first nodes far apart
     static const char *const texts[] = {
         NEAR_ANOTHER, TIME "contact: {range: 0.5}\n" STRAIGHT "fish: [{}, {start: {position: [1.4, 0.01]}}]\n",
         TIME "contact: {range: 0.5}\n" STRAIGHT "fish: [{}, {start: {position: [2.4, 0.01], heading: 0}}]\n"};

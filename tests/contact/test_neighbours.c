@@ -1,4 +1,4 @@
-/* test_neighbours.c: the overlaps of boxes are those that a comparison of all pairs finds. */
+/* test_neighbours.c: the overlaps of boxes against a comparison of all pairs. */
 #include <stdlib.h>
 
 #include "contact/neighbours.h"
@@ -51,7 +51,7 @@ static void overlaps_are_those_of_all_pairs(void **state) {
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct neighbours *neighbours;
         assert_int_equal(neighbours_create(&neighbours, cases[i].n), STATUS_OK);
-        // places that have nothing to do with each other, and the same ones again
+        // independent random positions, and the same positions again
         for (int time = 0; time < 3; time++) {
             place(neighbours, cases[i].size, &seed);
             assert_int_equal(neighbours_find(neighbours), STATUS_OK);

@@ -1,5 +1,5 @@
-/* test_self_crossing.c: which shapes cross themselves, by their line, their outline, or a bend that is too sharp; and
- * what a run remembers of it. */
+/* test_self_crossing.c: shapes that cross themselves by centre line, outline or a sharp bend; record of the first
+ * crossing in a run. */
 #include <stdio.h>
 
 #include "contact/self_crossing.h"
@@ -15,7 +15,7 @@ static void build(struct setup *setup, double thickness) {
     school_build(setup, text);
 }
 
-// the body goes on from the nose in the direction angle(s)
+// from the nose, the body follows the direction angle(s)
 static int crosses(double thickness, double (*angle)(double s)) {
     struct setup setup;
     build(&setup, thickness);
@@ -46,7 +46,7 @@ static int crosses(double thickness, double (*angle)(double s)) {
 static double straight(double s) {
     return 0 * s;
 }
-// a circle of radius 1/(2 pi) of which a twentieth is open, closed, and passed by a twentieth
+// a circle of radius 1/(2 pi): open by a twentieth, closed, and overlapping by a twentieth
 static double open_circle(double s) {
     return 0.95 * 2 * M_PI * s;
 }
@@ -84,7 +84,7 @@ static void a_line_crosses_itself_beyond_a_circle(void **state) {
 
 static void an_outline_crosses_itself_where_it_is_thicker_than_the_gap(void **state) {
     (void)state;
-    // the legs of the hairpin are 0.1 m apart; the radius of its bend, 0.05 m, is no less than half the thickness
+    // the legs of the hairpin are 0.1 m apart; the radius of the bend, 0.05 m, is at least half the thickness
     assert_false(crosses(0.09, hairpin));
     assert_true(crosses(0.11, hairpin));
 }
@@ -98,7 +98,7 @@ static void a_bend_sharper_than_half_the_thickness_is_folded(void **state) {
 
 static void a_run_remembers_the_first_fish_and_when(void **state) {
     (void)state;
-    // the second body is limp, and nothing but its muscle bends it: it curls up
+    // the second body is limp, and only the muscle bends the body: the body curls up
     struct simulation *const simulation = school_simulation(
         SCHOOL_DEFAULTS TIME
         "fluid: {density: 0}\nfish: [{}, {start: {position: [0, 3]}, wave: {amplitude: 0.4, constant: 3, linear: 0,"

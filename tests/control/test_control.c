@@ -77,7 +77,7 @@ static void waypoints_are_visited_in_order_and_the_last_course_is_held(void **st
     y[fish->at.y] = 2.95;
     assert_int_equal(control_event(fish, memory, &(struct control_view){.t = 0.4, .interval = 0.02}, y), 1);
     assert_int_equal(memory->waypoint, 2);
-    // from one waypoint to the other, wherever the fish is by now
+    // from the first waypoint to the second, independent of the present position of the fish
     y[fish->at.x] = 7;
     NEAR(control_desired_heading(fish, memory, 0, y), pi / 2, 1e-14, 0);
     assert_int_equal(control_event(fish, memory, &(struct control_view){.t = 0.5, .interval = 0.02}, y), 0);
@@ -86,7 +86,7 @@ static void waypoints_are_visited_in_order_and_the_last_course_is_held(void **st
 
 static void the_course_that_is_held_is_that_of_the_last_leg(void **state) {
     (void)state;
-    // from one waypoint to the next, and from the start where there is one waypoint only
+    // from waypoint to waypoint, and from the start for a single waypoint
     const struct {
         const char *text;
         int waypoint; /* the last */
@@ -147,7 +147,7 @@ static void averaged_heading_moves_the_bias_with_bounded_rate(void **state) {
     school_clear(&setup);
 }
 
-// what a law with feedforward 1 makes of the filtered moment alone: the fish is on its desired heading
+// value of a law with feedforward 1 for the filtered moment alone: the fish has the desired heading
 static double moment_seen(struct setup *setup, double since) {
     const struct fish *fish = setup->school->fish;
     setup->state->y[fish->at.phi0] = 0;
@@ -162,7 +162,7 @@ static void feedforward_acts_through_a_moving_mean(void **state) {
     const struct fish *fish = setup.school->fish;
     struct control_memory *memory = &setup.state->control[0];
     const double interval = 0.02, share = 1 - exp(-interval / 0.4), tau[] = {0.3, -0.2, 0.5};
-    double before = 0;  // there is none before t = 0, which is an event
+    double before = 0;  // no moment before t = 0; t = 0 is an event
     for (int n = 0; n < 3; n++) {
         control_advance(memory, interval);
         const struct control_view view = {.t = n * interval, .interval = interval, .moment = tau[n]};
@@ -211,7 +211,7 @@ static void course_is_damped_and_waits_for_a_whole_period(void **state) {
     NEAR(memory->phi0_rate, 0, 0, 0);
     view.has_course = 1;
     control_event(fish, memory, &view, setup.state->y);
-    // neither the moment nor the heading counts; the period is half a second
+    // the law depends neither on the moment nor on the heading; the period is half a second
     const double target = 0.4 * tanh(0.7 * (2 - pi / 2) + 1.5 * 0.5 * -3);
     NEAR(memory->phi0_rate, target / 0.02, 1e-12, 1e-14);
     control_advance(memory, 0.02);
@@ -244,7 +244,7 @@ static void rate_is_that_of_the_bias_of_a_moving_fish(void **state) {
         double *const y = setup.state->y, phi0[2];
         const double rate = control_rate(fish, memory, setup.t, since, y);
         for (int side = 0; side < 2; side++) {
-            // every node goes on with its velocity
+            // every node moves with the velocity of the node
             for (int k = 0; k < 2 * fish->n_nodes; k++)
                 y[fish->at.x + k] += (side == 0 ? -h : 2 * h) * y[fish->at.vx + k];
             y[fish->at.phi0] = 0;

@@ -1,4 +1,4 @@
-/* test_lead.c: values that are led from outside. */
+/* test_lead.c: values set from outside during a run. */
 #include "base/ramp.h"
 #include "control/lead.h"
 #include "near.h"
@@ -84,7 +84,7 @@ static void changes_at_every_event_do_not_run_away(void **state) {
     double most = 0;
     unsigned seed = 1;
     for (int i = 0; i < 20000; i++) {
-        // targets of -1 and 1 that stay for 1 to 60 events, 25 events a ramp
+        // targets of -1 and 1 for 1 to 60 events each, 25 events per ramp
         seed = 1664525 * seed + 1013904223;
         if (seed >> 24 < 10) lead_change(&lead, i * 0.02, 0.5, -lead.target + (lead.target == 0));
         most = fmax(most, fabs(lead_value(&lead, i * 0.02)));

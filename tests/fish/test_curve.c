@@ -49,7 +49,7 @@ static void middles_of_the_polygon_hold_each_node_once(void **state) {
     curve_free(curve);
 }
 
-// places between nodes, on them, and as close to them as rounding lets a place come
+// positions between nodes, on nodes, and as close to nodes as rounding permits
 static const double places[] = {0, 1e-300, 1e-12, 0.3, 0.5, 1 - 1e-15, 1, 1 + 1e-9, 1.7, 2.5, 3 - 4e-16, 3};
 enum { N_PLACES = sizeof places / sizeof *places };
 
@@ -107,7 +107,7 @@ static void slope_is_the_derivative_of_the_point(void **state) {
     }
 }
 
-// largest error of places on the curve through n nodes on a half circle
+// largest position error on the curve through n nodes on a half circle
 static double error_of_arc(int n) {
     double x[200], y[200], largest = 0;
     for (int k = 0; k < n; k++) {

@@ -133,7 +133,7 @@ static void drag_coefficients_follow_the_extent(void **state) {
     }
 }
 
-// the arc coordinate of a point is that of its nodes
+// the arc coordinate of a point from the nodes of the stencil
 static double arc_of(const struct fish *fish, const struct stencil *point) {
     return fish_mean(point, fish->arc);
 }
@@ -148,7 +148,7 @@ static void sheet_points_are_cosine_points_and_weights_add_up_to_the_length(void
         // the rounding of a body of six edges
         NEAR(arc_of(fish, &fish->sheet_point[j]), 1.2 * (1 - cos(pi * j / 10)) / 2, 1e-15, 0);
     }
-    // on a smooth sheet the weights are those of Gauss-Lobatto quadrature, pi/(M-1) sin(theta) L/2, up to a factor
+    // on a smooth sheet the weights are Gauss-Lobatto weights, pi/(M-1) sin(theta) L/2, up to a factor
     NEAR(fish->sheet_weight[5] / fish->sheet_weight[3], 1 / sin(0.3 * pi), 0, 1e-13);
     school_clear(&setup);
 }
@@ -240,7 +240,7 @@ static void overlapping_fish_are_refused(void **state) {
 
 static void fish_that_begin_beyond_a_wall_are_refused(void **state) {
     (void)state;
-    // half of the body is 0.05 thick; of one wall the first fish says on which side the water is
+    // half of the body is 0.05 thick; with a single wall the first fish is on the side of the fluid
     static const struct {
         const char *walls, *fish;
         int status;

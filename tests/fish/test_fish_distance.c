@@ -1,4 +1,4 @@
-/* test_fish_distance.c: distances of bodies: those of their outlines. */
+/* test_fish_distance.c: distances between the outlines of bodies. */
 #include <stdio.h>
 #include <string.h>
 
@@ -16,10 +16,10 @@ static void distance_is_that_of_the_outlines(void **state) {
                  "fish: [{}, {start: {position: [0, 0.5]}}, {start: {position: [1.5, 0]}}]\n");
     const struct fish *fish = setup.school->fish;
     NEAR(fish_distance(&fish[0], &fish[1], setup.state->y, INFINITY), 0.4, 1e-14, 0);
-    // tail at x = 1 to nose at 1.5, half of both heights taken off
+    // tail at x = 1 to nose at 1.5, minus half of both thicknesses
     NEAR(fish_distance(&fish[0], &fish[2], setup.state->y, INFINITY), 0.4, 1e-14, 0);
     NEAR(fish_distance(&fish[2], &fish[0], setup.state->y, INFINITY), 0.4, 1e-14, 0);
-    // not computed where the boxes around them are further apart than the limit
+    // not computed if the gap of the boxes is above the limit
     NEAR(fish_distance(&fish[0], &fish[1], setup.state->y, 0.4 + 1e-12), 0.4, 1e-14, 0);
     NEAR(fish_distance(&fish[0], &fish[1], setup.state->y, 0.3), INFINITY, 0, 0);
     // crossing bodies touch
@@ -31,7 +31,7 @@ static void distance_is_that_of_the_outlines(void **state) {
     school_clear(&setup);
 }
 
-// the distance between two edges takes four of these
+// the distance between two edges is the smallest of four
 static int n_hypot;
 double __real_hypot(double x, double y);
 double __wrap_hypot(double x, double y);
@@ -60,7 +60,7 @@ static void bodies_in_boxes_apart_are_not_compared_edge_by_edge(void **state) {
     case_free(&values);
 }
 
-/* The same by points along the bodies, SAMPLES to an edge; too large by less than the distance between two of them. */
+/* The same from points along the bodies, SAMPLES per edge; too large by less than the distance between two points. */
 enum { SAMPLES = 200 };
 static double sampled_distance(const struct fish *a, const struct fish *b, const double *y) {
     double least = INFINITY;
@@ -99,7 +99,7 @@ static void distance_of_bent_bodies_is_the_least_of_their_points(void **state) {
         const double got = fish_distance(a, b, y, INFINITY);
         assert_true(got <= want + 1e-14 && got >= want - spacing);
         NEAR(fish_distance(b, a, y, INFINITY), got, 1e-15, 0);
-        // boxes never hide bodies that are near enough
+        // boxes never exclude near bodies
         NEAR(fish_distance(a, b, y, got + 1e-12), got, 0, 0);
         n_touching += got <= 0;
     }

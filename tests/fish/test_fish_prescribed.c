@@ -1,4 +1,4 @@
-/* test_fish_prescribed.c: the straight motion that is given in time: doc/model.md, section 5. */
+/* test_fish_prescribed.c: the prescribed straight motion: doc/model.md, section 5. */
 #include "fish/fish_prescribed.h"
 #include "school.h"
 
@@ -42,7 +42,7 @@ static void prescribed_body_is_straight_and_turns_about_its_pivot(void **state) 
     NEAR(v[0], -2, 1e-14, 0);
     NEAR(v[1], 0, 1e-14, 0);
     fish_prescribed_node(fish, 4, 0.25, q, v, a);
-    // the body points from its pivot backwards: the heading 205 degrees turned round
+    // the body extends backwards from the pivot: the heading 205 degrees turned round
     NEAR(q[0] - p[0], 0.75 * cos(25 * pi / 180), 1e-14, 0);
     NEAR(q[1] - p[1], 0.75 * sin(25 * pi / 180), 1e-14, 0);
     school_clear(&setup);

@@ -13,8 +13,8 @@ static struct fish_parameters foil(int nodes, double thickness, enum section sec
 
 static void joukowski_heights_are_those_of_the_mapped_circle(void **state) {
     (void)state;
-    // the thickness of both ends of an edge; where theta gives s, z(theta) gives r: check by the inverse, theta of
-    // every node found from s by Newton's method here
+    // the thickness of both ends of an edge; s(theta) and r from z(theta): check with theta of every node from s by
+    // Newton's method
     const double d = 0.15, r0 = 1.3 * (1 - d) / 4, c = r0 * (1 + d), nose = 2 * r0 * (1 + d * d) / (d - 1);
     const struct fish_parameters fish = foil(9, d, SECTION_NODES);
     double before = 0;
@@ -31,7 +31,7 @@ static void joukowski_heights_are_those_of_the_mapped_circle(void **state) {
             }
         }
         const struct profile_edge edge = profile_edge(&fish, k - 1);
-        // rounding, twice that of the arc coordinate where the outline is steep
+        // rounding, twice the rounding of the arc coordinate at the steep nose
         NEAR(edge.h, before + r, 1e-13, 0);
         NEAR(edge.w, 0.25 * 1.3, 1e-15, 0);
         NEAR(edge.square, 1, 0, 0);
@@ -79,7 +79,7 @@ static void means_over_the_edges_add_up_to_the_foil_with_any_number_of_nodes(voi
                 assert_true(edge.square >= 1 && edge.cube >= edge.square);
             }
             NEAR(got[0], area, 0, 1e-10);
-            // what the rectangles leave of the thickest foil
+            // error of the rectangles for the thickest foil
             NEAR_ARRAY(3, got, want, 0, 1e-9);
         }
     }
@@ -87,8 +87,8 @@ static void means_over_the_edges_add_up_to_the_foil_with_any_number_of_nodes(voi
 
 static void means_are_good_to_ten_figures_next_to_the_blunt_nose(void **state) {
     (void)state;
-    // h = alpha sqrt(s) (1 + beta s + ...) there: h^2 is smooth in s, so Gauss-Legendre in s is exact for it. The
-    // thickness in s by bisection in theta, for itself
+    // h = alpha sqrt(s) (1 + beta s + ...) there: h^2 is smooth in s, so Gauss-Legendre in s is exact. The thickness at
+    // s follows from an independent bisection in theta
     const struct fish_parameters fish = foil(41, 0.2, SECTION_MEAN);
     const double d = 0.2, r0 = 1.3 * (1 - d) / 4, c = r0 * (1 + d), nose = 2 * r0 * (1 + d * d) / (d - 1);
     const double x[] = {-0.9061798459386640, -0.5384693101056831, 0, 0.5384693101056831, 0.9061798459386640};
@@ -143,7 +143,7 @@ static void a_foil_ends_in_a_cusp_or_with_the_thickness_of_its_tail(void **state
     NEAR(profile_tail_thickness(&fish), 0.03 * 1.3, 1e-17, 0);
 }
 
-// h of a foil with a cusp, and of the same with a tail, at an arc coordinate over the length: theta by bisection
+// h of a foil with a cusp, and with a tail thickness, at an arc coordinate over the length: theta by bisection
 static double thickness_at(double d, double tail, double length, double sigma) {
     const double r0 = length * (1 - d) / 4, c = r0 * (1 + d), nose = 2 * r0 * (1 + d * d) / (d - 1);
     double low = 0, high = pi, h = 0;
@@ -170,7 +170,7 @@ static void a_tail_of_some_thickness_changes_the_whole_outline_smoothly(void **s
         NEAR(profile_edge(&fish, k).h, (before + after) / 2, 1e-13, 0);
     }
     // mean: over the last edge h^2 of the foil behaves like (1 - sigma)^3: the rule of the trapezoids
-    // has the error of its interval squared
+    // has an error proportional to the interval squared
     fish.body.section = SECTION_MEAN;
     enum { N = 20000 };
     double mean[3] = {0, 0, 0};
@@ -185,7 +185,7 @@ static void a_tail_of_some_thickness_changes_the_whole_outline_smoothly(void **s
 
 static void means_with_a_tail_are_good_to_twelve_figures_next_to_the_blunt_nose(void **state) {
     (void)state;
-    // h^2 is smooth in s there with a tail as well: Gauss-Legendre in s, exact for degree 9
+    // h^2 is smooth in s, with a tail as well: Gauss-Legendre in s, exact for degree 9
     struct fish_parameters fish = foil(41, 0.2, SECTION_MEAN);
     fish.body.tail_thickness = 0.04;
     const double x[] = {-0.9061798459386640, -0.5384693101056831, 0, 0.5384693101056831, 0.9061798459386640};

@@ -1,5 +1,5 @@
-/* test_sheet_integrals.c: the circulation between vortices, and the momentum, of sheets whose integrals are known:
- * doc/model.md, section 15. */
+/* test_sheet_integrals.c: circulation between vortices, and momentum, of sheets with known integrals: doc/model.md,
+ * section 15. */
 #include "failing_malloc.h"
 #include "fish/sheet_integrals.h"
 #include "near.h"
@@ -8,7 +8,7 @@ static const double pi = 3.14159265358979323846;
 
 enum { N_NODES = 7, N_SHEET = 13 };
 
-// the circulations of a sheet with g = cos(m theta): the trapezoidal rule halves those at the ends
+// the circulations of a sheet with g = cos(m theta): the trapezoidal rule halves the circulations at the ends
 static void cosine(int m, double *circulation) {
     for (int j = 0; j < N_SHEET; j++) {
         const int is_end = j == 0 || j == N_SHEET - 1;
@@ -68,7 +68,7 @@ static void a_kink_at_the_tail_is_what_the_series_lacks(void **state) {
     struct sheet_integrals *const integrals = make(three);
     const double h = pi / (N_SHEET - 1);
     for (int c = 0; c < N_SHEET - 1; c++) {
-        // g = sin(theta) (1 - cos(theta)): a strength like the place, finite at the tail
+        // g = sin(theta) (1 - cos(theta)): a strength proportional to the position, finite at the tail
         const double theta = h * (c + 0.5), end = h * sin(pi - h) * (1 - cos(pi - h));
         double around = integrals->kink_strength[c] * end, before = integrals->kink_circulation[c] * end;
         for (int j = 0; j < N_SHEET; j++) {
@@ -79,7 +79,7 @@ static void a_kink_at_the_tail_is_what_the_series_lacks(void **state) {
         NEAR(around, h * sin(theta) * (1 - cos(theta)), 1e-14, 0);
         NEAR(before, pow(1 - cos(theta), 2) / 2, 1e-13, 0);
     }
-    // it matters at the tail
+    // the kink is large at the tail
     assert_true(fabs(integrals->kink_strength[N_SHEET - 2]) > 0.1);
     assert_true(fabs(integrals->kink_strength[0]) < 0.01);
     sheet_integrals_free(integrals);

@@ -11,7 +11,7 @@ static const struct walls below = {1, {-0.4}, {1}}, above = {1, {1.1}, {-1}}, ch
 
 enum { N_SOURCES = 40, N_TARGETS = 70, SMALL = 7 };
 
-// vortices of two smoothings, all inside of all walls
+// vortices of two smoothings, inside all walls
 static void make(struct vortices *vortices, int n) {
     *vortices = (struct vortices){0};
     assert_int_equal(vortices_append(vortices, n / 3, 0.1), STATUS_OK);
@@ -86,7 +86,7 @@ static void one_wall_has_one_image_of_every_vortex(void **state) {
     vortices_free(&vortices);
 }
 
-// what so many images on either side induce at a point
+// velocity of a number of images on either side at a point
 static void sum_images(const struct vortices *vortices, double x, double y, int rows, double velocity[2]) {
     const double low = channel.y[0], width = channel.y[1] - channel.y[0];
     velocity[0] = velocity[1] = 0;
@@ -109,7 +109,7 @@ static void a_channel_has_all_images_of_the_images(void **state) {
     vortices_zero(&points.at);
     images_induce(&channel, &vortices, (struct range){0, SMALL}, &points.at);
     for (int i = 0; i < SMALL; i++) {
-        // what the images beyond add falls like 1/rows: extrapolated
+        // the truncated part of the sum decreases as 1/rows: extrapolate
         double few[2], more[2];
         sum_images(&vortices, points.at.x[i], points.at.y[i], 500, few);
         sum_images(&vortices, points.at.x[i], points.at.y[i], 1000, more);
@@ -226,7 +226,7 @@ static void images_of_one_source_follow_it(void **state) {
             NEAR(unit.shifted.u[i] + unit.mirrored.u[i], u[i], 1e-14, 1e-12);
             NEAR(unit.shifted.v[i] + unit.mirrored.v[i], v[i], 1e-14, 1e-12);
         }
-        // by the place of the source
+        // by the source position
         for (int c = 0; c < 2; c++) {
             double after[2] = {source[0], source[1]}, before[2] = {source[0], source[1]};
             const double minus = -1;
@@ -275,8 +275,8 @@ static void many_are_summed_by_the_tree_and_by_threads(void **state) {
     vortices_free(&vortices);
 }
 
-// The largest error of the images of many vortices in a channel, in units of the bound: at targets next to both walls
-// and everywhere between them, along the channel for length widths.
+// The largest error of the images of many vortices in a channel, in units of the bound, at targets next to both walls
+// and between the walls, over a channel length of `length` widths.
 static double error_in_channel(const struct vortices *vortices, double length, double tolerance,
                                struct velocity_sum *sum) {
     enum { N = 400 };
@@ -361,7 +361,7 @@ static void cells_sum_where_that_pays(void **state) {
     make(&vortices, N);
     make_points(&points, N);
     assert_true(images_by_cells(&channel, &vortices, tolerance, &points.at));
-    // one wall, no tolerance, few vortices, a channel far too long, a place that is none
+    // one wall, no tolerance, few vortices, a channel far too long, a position that is not finite
     assert_false(images_by_cells(&below, &vortices, tolerance, &points.at));
     assert_false(images_by_cells(&channel, &vortices, 0, &points.at));
     struct induced few = points.at;
@@ -398,7 +398,7 @@ static void rates(const struct walls *walls, const struct vortices *vortices, do
 
 static void a_pair_that_meets_a_wall_parts_along_it(void **state) {
     (void)state;
-    // Lamb, 155: each of the two goes along 1/x^2 + 1/d^2 = constant, d from the wall
+    // Lamb, 155: the path of each vortex is 1/x^2 + 1/d^2 = constant, d from the wall
     struct vortices pair = {0};
     assert_int_equal(vortices_append(&pair, 2, 1e-6), STATUS_OK);
     const double start[2][2] = {{0.1, 0.6}, {-0.1, 0.6}};
@@ -408,7 +408,7 @@ static void a_pair_that_meets_a_wall_parts_along_it(void **state) {
         pair.circulation[i] = i == 0 ? 1 : -1;
     }
     const double constant = 1 / (0.1 * 0.1) + 1 / (0.6 * 0.6), dt = 1e-3;
-    for (int step = 0; step < 1200; step++) {  // Runge and Kutta's method of order 4
+    for (int step = 0; step < 1200; step++) {  // Runge-Kutta method of order 4
         static const double part[4] = {0, 0.5, 0.5, 1}, weight[4] = {1, 2, 2, 1};
         double x[2], y[2], u[2] = {0, 0}, v[2] = {0, 0}, sum_u[2] = {0, 0}, sum_v[2] = {0, 0};
         memcpy(x, pair.x, sizeof x);

@@ -1,4 +1,4 @@
-/* test_kernel.c: the vector loops against plain ones, and against each other. */
+/* test_kernel.c: the vector loops against plain loops, and against each other. */
 #include <string.h>
 
 #include "school.h"
@@ -73,11 +73,12 @@ static double product(double a, double b, double c) {
     return is_fused(kernel_variant(0)) ? fma(a, b, c) : a * b + c;
 }
 
-// what kernel.h promises, step by step
+// the rounding of kernel.h, step by step
 static void promised_velocity(int n, double smoothing, double *u, double *v) {
     const double square = smoothing * smoothing + 1e-150, inverse_two_pi = 0.159154943091895335769;
     for (int i = 0; i < n; i++) {
-        // the last block has a partner for a target only if more than 8 are left, and the last target fills it up
+        // in the last block a target has a partner only if the block has more than 8 targets; the last target pads the
+        // block
         const int first = i - i % 16, in_block = i - first;
         const int alone = n - first <= 8;
         int partner = first + (in_block + 8) % 16;
@@ -120,7 +121,7 @@ static void whole_blocks_do_not_depend_on_other_targets(void **state) {
     }
 }
 
-// numbers of all sizes: about half of those that the sums must round, and some whose fused products are awkward
+// numbers of all magnitudes: about half of the sums need rounding, and some fused products are hard cases
 static double any_size(struct setup *random, int largest) {
     const int exponent = (int)(largest * school_random(random));
     const double value = ldexp(school_random(random), exponent);
@@ -133,7 +134,7 @@ static void all_variants_with_fused_products_give_the_same_bits(void **state) {
     struct setup random = {.seed = 11};
     static double x[N], y[N], source_x[N], source_y[N], circulation[N], square[N];
     for (int trial = 0; trial < 240; trial++) {
-        // from all near each other to sizes so different that most sums keep one of the two numbers
+        // from similar magnitudes to magnitudes so different that most sums keep one of the two numbers
         const int largest = 1 + trial % 60;
         for (int i = 0; i < N; i++) {
             x[i] = any_size(&random, largest);
@@ -157,7 +158,7 @@ static void all_variants_with_fused_products_give_the_same_bits(void **state) {
             double got[16][N] = {{0}};
             variant->velocity(40, x, y, &sources, got[0], got[1]);
             variant->gradient(40, x, y, &sources, got[2], got[3], got[4], got[5], got[6]);
-            // the upper halves of 7 and 8 are those of the second tile
+            // the upper halves of 7 and 8 belong to the second tile
             const struct kernel_tile a = {32, x, y, circulation, got[7], got[8]};
             const struct kernel_tile b = {16, source_x, source_y, circulation + 32, got[7] + 32, got[8] + 32};
             variant->pairwise(&a, &b, sources.square);
@@ -202,7 +203,7 @@ static void every_processor_has_a_variant(void **state) {
     assert_null(kernel_variant(n + 1));
 }
 
-// with the smoothing to each in place of from, less with from: the sums of a change, for any number of targets
+// the sums of a change, with the new smoothings minus with the old smoothing, for any number of targets
 static void a_change_of_smoothing_is_the_difference_of_two_sums(void **state) {
     (void)state;
     const double from = 0.01;
@@ -229,7 +230,7 @@ static void a_change_of_smoothing_is_the_difference_of_two_sums(void **state) {
     }
 }
 
-// the same where the smoothing changes with the target
+// the same for a smoothing that depends on the target
 static void a_change_at_every_target_is_the_difference_of_two_sums(void **state) {
     (void)state;
     const double from = 0.1;
@@ -259,7 +260,7 @@ static void a_change_at_every_target_is_the_difference_of_two_sums(void **state)
     }
 }
 
-// where both smoothings are nearly the same, the change keeps the digits that the difference of two sums loses
+// for nearly equal smoothings the change keeps the digits that the difference of two sums loses
 static void a_small_change_keeps_its_digits(void **state) {
     (void)state;
     const double from = 0.01, to = 0.01 * (1 - 0x1p-40), place = 0, circulation = 1;
@@ -430,7 +431,7 @@ static void sources_with_a_smoothing_each_add_up_one_by_one(void **state) {
     (void)state;
     double square[N_SOURCES], got[7][N_TARGETS] = {{0}}, want[5][N_TARGETS] = {{0}};
     for (int j = 0; j < N_SOURCES; j++) {
-        // one of them has none, the one on a target among others some
+        // one source has no smoothing; the source on a target has a smoothing
         const double smoothing = 0.01 * (j % 9);
         square[j] = smoothing * smoothing;
         kernel_add_gradient(N_TARGETS, cloud.x, cloud.y, 1, &cloud.source_x[j], &cloud.source_y[j],

@@ -1,4 +1,4 @@
-/* test_pairwise.c: the pairs of tiles against every vortex at every other. */
+/* test_pairwise.c: the pairs of tiles against the direct sum over all pairs of vortices. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -27,7 +27,7 @@ static int scatter(void **state) {
         cloud.y[i] = school_random(&random);
         cloud.circulation[i] = school_random(&random);
     }
-    // two vortices at one place, next to each other and in different tiles
+    // two coincident vortices, adjacent in the array and in different tiles
     const int twins[2][2] = {{3, 4}, {5, 900}};
     for (int k = 0; k < 2; k++) {
         cloud.x[twins[k][0]] = cloud.x[twins[k][1]];
@@ -59,7 +59,7 @@ static struct vortices grouped(int n_groups, const struct stretch *stretch, stru
     return vortices;
 }
 
-// added to zero; the caller frees u, and v follows it
+// velocities added to zero; the caller frees u, v is in the same allocation
 static double *velocity(int n_groups, const struct stretch *stretch, enum pairwise_smoothing smoothing, int threads) {
     struct vortex_group group[MAX_GROUPS];
     const struct vortices vortices = grouped(n_groups, stretch, group);
@@ -91,7 +91,7 @@ static void compare(int n_groups, const struct stretch *group, enum pairwise_smo
                 size += fabs(cloud.circulation[j]) * hypot(unit.u[0], unit.v[0]);
             }
         }
-        // rounding of the terms, and of sums that grow like the root of their number
+        // rounding of the terms, and of the sums, in proportion to the square root of the number of terms
         NEAR(got[i], u, 2e-15 * size, 0);
         NEAR(got[n + i], v, 2e-15 * size, 0);
     }
@@ -111,7 +111,7 @@ static void every_group_has_its_own_smoothing_or_that_of_a_pair(void **state) {
     const struct stretch groups[][MAX_GROUPS] = {
         {{30, 0.1}, {0, 0.5}, {200, 0.2}, {1, 0.3}},    // all different, one empty, one alone
         {{150, 0.1}, {70, 0.2}, {33, 0.1}, {19, 0.2}},  // two smoothings that alternate
-        {{100, 0.1}, {100, 0.1}, {100, 0.1}, {9, 0}},   // one for all but a few
+        {{100, 0.1}, {100, 0.1}, {100, 0.1}, {9, 0}},   // one smoothing for nearly all vortices
         {{0, 0.1}, {0, 0.1}, {0, 0.2}, {0, 0.3}},       // no vortex at all
     };
     for (size_t k = 0; k < sizeof groups / sizeof *groups; k++) {

@@ -1,4 +1,4 @@
-/* test_tree_boxes.c: boxes that are copied, or whose points have moved, against those made from the same points. */
+/* test_tree_boxes.c: copied boxes, and boxes with moved points, against boxes sorted from the same points. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -35,7 +35,7 @@ static void assert_same(const struct tree_boxes *got, const struct tree_boxes *w
     assert_memory_equal(got->weight, want->weight, N * sizeof *want->weight);
 }
 
-// every point inside of the circle of its leaf, and of all boxes around that
+// every point is inside the circle of the leaf, and of all parent boxes
 static void assert_encloses(const struct tree_boxes *boxes) {
     for (int b = 0; b < boxes->n_boxes; b++) {
         const struct tree_box *const box = &boxes->box[b];

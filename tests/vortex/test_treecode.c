@@ -11,7 +11,7 @@ enum { MAX = 6400 };
 
 static double x[MAX], y[MAX], circulation[MAX];
 
-// ---- where vortices lie ----
+// ---- distributions of vortices ----
 
 static uint64_t seed;
 
@@ -50,7 +50,7 @@ static void line(int i) {
     put(i, 30 * random_number(), 7, 1);
 }
 
-// Heaps of 32, so that the points of a box lie at its ends: the worst for expansions.
+// Heaps of 32: the points of a box lie at the ends of the box, the worst case for expansions.
 static void heaps(int i) {
     const double at_x = i / 32 % 12 + 1e-3 * random_number();
     put(i, at_x, i / 384 + 1e-3 * random_number(), 1);
@@ -81,7 +81,7 @@ static struct treecode *build(int n, double smoothing, double tolerance) {
 // ---- errors ----
 
 struct errors {
-    double velocity, gradient; /* the largest ones, in units of A and of the same sum for the gradient */
+    double velocity, gradient; /* largest errors, in units of A and of the same sum for the gradient */
 };
 
 // not fmax, which ignores NaN
@@ -89,7 +89,7 @@ static void keep_worse(double *worst, double error) {
     if (!(error <= *worst)) *worst = error;
 }
 
-// those of two velocities and a gradient at every seventh target
+// the errors of two velocities and a gradient at every seventh target
 static struct errors compare(int n, double smoothing, int n_targets, const double *at_x, const double *at_y,
                              const double *u, const double *v, double got[5][MAX]) {
     double want[5];
@@ -163,13 +163,13 @@ static void errors_are_below_the_tolerance_and_not_far_below(void **state) {
         print_message("%-9s smoothing %-5g errors in tolerances: velocity %.3f, gradient %.3f\n", cloud->name,
                       cloud->smoothing, max.velocity, max.gradient);
     }
-    // the degrees are no higher than the worst of these clouds needs
+    // the degrees are no higher than needed for the worst of these clouds
     for (int t = 0; t < N_TOLERANCES; t++) assert_true(worst[t] > tolerances[t] / 50);
 }
 
 static void targets_need_not_be_the_sources(void **state) {
     (void)state;
-    // points of bodies, 27 along each; one of them far away; all sources in one box or in many
+    // points of bodies, 27 along each body; one body far away; all sources in one box or in many
     enum { N_TARGETS = 27 * 40 };
     static double at_x[N_TARGETS], at_y[N_TARGETS];
     for (int i = 0; i < N_TARGETS; i++) {
@@ -196,7 +196,8 @@ struct targets {
     double x[BODIES], y[BODIES];
 };
 
-// points of bodies, 27 along each, and wakes, all of which have moved by up to a distance, each its own way
+// points of bodies, 27 along each body, and wakes; every point is displaced by up to a distance in a different
+// direction
 static void move(struct targets *targets, double far) {
     fill(N_PLANNED, strips);
     for (int i = 0; i < N_PLANNED; i++) {
@@ -218,7 +219,7 @@ static struct treecode *plan(double smoothing, double tolerance, int with_gradie
     return tree;
 }
 
-// whether a plan fits where all have moved by a distance
+// whether a plan fits after displacements of up to a distance
 static int move_all(struct treecode *tree, struct targets *targets, double far, int threads) {
     move(targets, far);
     treecode_move_vortices(tree, 0, x, y, circulation, threads);
@@ -226,7 +227,7 @@ static int move_all(struct treecode *tree, struct targets *targets, double far, 
     return treecode_fits(tree, threads);
 }
 
-// The sums of a plan for a distance; with the gradient where there is room for it.
+// The sums of a plan for a distance; with the gradient if the arrays are given.
 static void sum_planned(struct treecode *tree, int threads, double value[5][MAX], int with_gradient) {
     memset(value, 0, 5 * sizeof *value);
     double *const none = NULL, *const *const g = with_gradient ? (double *[]){value[2], value[3], value[4]}
@@ -249,7 +250,7 @@ static void a_plan_keeps_the_tolerance_wherever_it_fits(void **state) {
                 struct targets targets;
                 const int fits = move_all(one, &targets, far[k], 1) && move_all(both, &targets, far[k], 1);
                 n_fit += fits;
-                // at small tolerances there are so few pairs that they may fit anywhere
+                // small tolerances give so few pairs that a plan may fit any displacement
                 assert_true(far[k] > 0.02 || fits);
                 assert_false(far[k] >= 1 && tolerances[t] > 1e-9 && fits);
                 if (!fits) continue;
@@ -259,7 +260,7 @@ static void a_plan_keeps_the_tolerance_wherever_it_fits(void **state) {
                     compare(N_PLANNED, smoothing[e], BODIES, targets.x, targets.y, velocity[0], velocity[1], gradient);
                 NEAR(now.velocity, 0, tolerances[t] + 1e-14, 0);
                 NEAR(now.gradient, 0, 50 * tolerances[t] + 1e-13, 0);
-                // a plan with the gradient is good for velocities alone
+                // a plan with the gradient also serves velocities alone
                 sum_planned(both, 1, velocity, 0);
                 now =
                     compare(N_PLANNED, smoothing[e], BODIES, targets.x, targets.y, velocity[0], velocity[1], gradient);
@@ -285,7 +286,7 @@ static void a_plan_is_the_tree_that_is_built_there(void **state) {
         struct treecode *const fresh = build(N_PLANNED, 0.2, tolerance);
         assert_int_equal(treecode_add_velocity(fresh, BODIES, targets.x, targets.y, 1, built[0], built[1]), STATUS_OK);
         treecode_free(fresh);
-        // the error of each, A is below 160
+        // the error of both sums, A is below 160
         NEAR_ARRAY(BODIES, planned[0], built[0], 2 * 160 * tolerance, 0);
         NEAR_ARRAY(BODIES, planned[1], built[1], 2 * 160 * tolerance, 0);
     }
@@ -314,7 +315,7 @@ static void neither_threads_nor_what_came_between_change_a_bit_of_a_plan(void **
     }
 }
 
-// A sum whose pairs change as points move jumps by up to its tolerance; the second difference shows it.
+// A sum with new pairs for every displacement jumps by up to the tolerance; the second difference shows the jump.
 static void a_planned_sum_is_continuous(void **state) {
     (void)state;
     enum { STEPS = 100 };
@@ -457,7 +458,7 @@ static void a_second_sum_needs_no_more_memory(void **state) {
     n_until_failure = -1;
     assert_int_equal(built, STATUS_OK);
     assert_int_equal(added, STATUS_OK);
-    // a call that needs more memory and fails leaves an empty tree, which can be filled later
+    // a failed allocation leaves an empty tree that can be filled later
     fill(MAX, strips);
     n_until_failure = 0;
     assert_int_equal(treecode_build(tree, MAX, x, y, circulation, 0.2, 1e-8, 1), STATUS_MEMORY);

@@ -90,7 +90,7 @@ static void the_tree_has_a_tenth_of_the_tolerance(void **state) {
     struct velocity_sum *sum;
     struct treecode *tree;
     make(&all);
-    // of one smoothing, so that they are one set
+    // one smoothing, so one set
     assert_int_equal(vortices_append(&vortices, all.n, 0.1), STATUS_OK);
     memcpy(vortices.x, all.x, (size_t)all.n * sizeof *all.x);
     memcpy(vortices.y, all.y, (size_t)all.n * sizeof *all.y);
@@ -132,17 +132,17 @@ static void by_plan_it_is_the_same_sum_to_the_tolerance(void **state) {
         assert_int_equal(velocity_sum_by_plan(sum, &vortices, tolerance, 1, &targets), STATUS_OK);
         targets = at(&fresh, with_gradient);
         assert_int_equal(velocity_sum_induce(sum, &vortices, tolerance, 1, &targets), STATUS_OK);
-        // the bits tell which of both it was
+        // the bits distinguish the two sums
         const double small = difference(&planned, &fresh);
         assert_true(small > 0 && small < 50 * tolerance);
-        // too far for the plan: that of velocity_sum_induce
+        // too far for the plan: the sum of velocity_sum_induce
         move(&vortices, 2);
         targets = at(&again, with_gradient);
         assert_int_equal(velocity_sum_by_plan(sum, &vortices, tolerance, 1, &targets), STATUS_OK);
         targets = at(&fresh, with_gradient);
         assert_int_equal(velocity_sum_induce(sum, &vortices, tolerance, 1, &targets), STATUS_OK);
         assert_memory_equal(again.value, fresh.value, sizeof fresh.value);
-        // the plan is still there, for any number of threads
+        // the plan is still valid, for any number of threads
         vortices_free(&vortices);
         make(&vortices);
         move(&vortices, 0.003);

@@ -1,4 +1,4 @@
-/* test_vortices.c: groups of one smoothing, and the velocity that they induce. */
+/* test_vortices.c: groups of one smoothing, and the induced velocity. */
 #include <stdlib.h>
 
 #include "near.h"
@@ -112,7 +112,7 @@ static void some_targets_leave_out_a_range(void **state) {
     enum { N = 3 };
     const double x[N] = {0.3, -0.2, 2}, y[N] = {0.1, 0.4, -1};
     const struct range left_out = {1, vortices.n - 2}, all = {0, vortices.n};
-    // ranges of targets that begin before the first one, or end behind the last one, too
+    // including ranges that begin before the first target or end after the last target
     for (int first = -2; first < N + 2; first++) {
         for (int n = 0; n <= N + 2; n++) {
             double value[5][N] = {{0}}, whole[5][N] = {{0}}, out[5][N] = {{0}};
