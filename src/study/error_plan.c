@@ -161,7 +161,7 @@ static double sheet_for(const struct error_study *study, double finest, int f) {
 static void set_times(struct row *row, double interval) {
     const struct case_values *const values = &row->study->study;
     const double beat = row->study->beat;
-    if (row->study->is_steady) set(row, "time.end", 0, beat * ceil(values->time.end / beat - 1e-9));
+    if (row->study->is_steady && beat > 0) set(row, "time.end", 0, beat * ceil(values->time.end / beat - 1e-9));
     set(row, "time.checkpoint_interval", 0, 0);
     const double output = interval * fmax(1, round(values->time.output_interval / interval));
     set(row, "time.output_interval", 0, output);
@@ -194,6 +194,14 @@ static void drop(struct row *row) {
     free(row->value);
 }
 
+/* Whether a quantity of the modes of small disturbances is asked for. */
+static int asks_for_modes(const struct error_study *study) {
+    for (int q = 0; q < study->n_asked; q++) {
+        if (strncmp(member_file_quantity(study->quantity[q])->name, "steady_growth", 13) == 0) return 1;
+    }
+    return 0;
+}
+
 /* The row of the case with some changes. */
 static enum status make_row(const struct error_study *study, int n, const struct error_plan_change *changes,
                             struct row *row) {
@@ -204,8 +212,8 @@ static enum status make_row(const struct error_study *study, int n, const struct
         row->value[c] = strdup(axis->value[c]);
         if (!row->value[c]) row->failed = 1;
     }
-    // only the case itself has multipliers
-    set(row, "steady.multipliers", 0, NO);
+    // only the case itself has multipliers, unless all members need them
+    if (!asks_for_modes(study)) set(row, "steady.multipliers", 0, NO);
     for (int i = 0; i < n; i++) apply(row, &changes[i]);
     if (!row->failed) return STATUS_OK;
     drop(row);
@@ -314,7 +322,8 @@ enum status error_plan_find_level(struct error_study *study, int k, double from,
     const struct error_study_key *const key = &study->key[k];
     const int is_interval = strcmp(key->row->path, "time.shedding_interval") == 0;
     const int is_step = strcmp(key->row->path, "solver.step") == 0;
-    const double whole = is_step ? values->school.shedding_interval : study->is_steady ? study->beat : values->time.end;
+    const double run = study->is_steady && study->beat > 0 ? study->beat : values->time.end;
+    const double whole = is_step ? values->school.shedding_interval : run;
     const double target = is_interval || is_step ? whole / (from * factor) : from * factor;
     *level = NAN;
     int is_valid;
@@ -389,7 +398,9 @@ static int is_used(const struct error_study *study, const struct sweep_error_key
     const struct case_values *const values = &study->study;
     const double value = number_of(values, row->path, 0);
     const int is_wake = strncmp(row->path, "wake.", 5) == 0, has_fluid = values->school.fluid.density > 0;
-    if (study->is_static) return row->kind == SWEEP_POINTS;
+    // an equilibrium has no events, but its modes have shed a wake at events
+    const int is_interval = strcmp(row->path, "time.shedding_interval") == 0;
+    if (study->is_static) return row->kind == SWEEP_POINTS || (is_interval && asks_for_modes(study));
     if (strcmp(row->path, "solver.rtol") == 0) return !(values->solver.step > 0);
     if (strcmp(row->path, "solver.step") == 0) return values->solver.step > 0;
     if (strcmp(row->path, "fish.nodes") != 0 && !has_fluid) return 0;

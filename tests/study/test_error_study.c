@@ -215,6 +215,22 @@ static void an_equilibrium_has_points_only(void **state) {
     assert_true(study.is_static);
     assert_int_equal(study.n_keys, 2);
     error_plan_free(&study);
+    // its modes shed wakes, and are found for every member
+    study = open_study(
+        "format: 1\ntime: {end: 4, shedding_interval: 0.02}\nfluid: {velocity: [1, 0]}\n"
+        "fish: [{nodes: 9, force: pressure, wave: {amplitude: 0, frequency: 0}, motion: {prescribed: head, speed: "
+        "0}}]\n",
+        "{of: steady_growth}");
+    assert_int_equal(study.n_keys, 3);
+    levels_are(&study, "time.shedding_interval", 4, (double[]){0.01, 0.02, 0.04, 0.08}, 0.02);
+    for (int m = 0; m < sweep_n_members(&study.study); m++) {
+        struct case_values member;
+        assert_int_equal(case_member(&member, &study.study, m), STATUS_OK);
+        assert_int_equal(member.steady.multipliers, YES);
+        NEAR(member.time.end, 4, 0, 1e-12);
+        case_free(&member);
+    }
+    error_plan_free(&study);
 }
 
 static void quantities_that_are_not_known_are_refused(void **state) {
