@@ -184,6 +184,9 @@ across a plate that starts at once, where places and momenta stay and velocities
 curvature 5 (0.2 + 0.8 s) sin(2 pi (t - s)) (mass 0.1 rho L, E I = rho f^2 L^5, friction 0.0133 U^1.5), alone and one
 behind the other. Their speeds are compared with those of the prototype from which the method was taken, another program
 with another body (a polygon) and another solver."""),
+    "depth": ("Finite depth", """\
+`pressure.span: finite` (model.md 18): sheets of vortex rings, between Lighthill's slender body and two dimensions; the
+momentum of fish of one and of two depths is found in the fluid."""),
     "walls": ("Walls", """\
 Bodies beside straight walls, model.md 17: a fish beside a wall moves as it does beside its mirror image, a plate between two
 walls has the circulation of thin-foil theory with all images, and a fish that swims against a wall loses no energy to it."""),

@@ -15,17 +15,29 @@ static const char *section;
 static const struct {
     const char *name;
     void (*run)(void);
-} sections[] = {{"theory", verify_theory},     {"rod", verify_rod},
-                {"force", verify_force},       {"sheet", verify_sheet},
-                {"wake", verify_wake},         {"plate", verify_plate},
-                {"school", verify_school},     {"interval", verify_interval},
-                {"symmetry", verify_symmetry}, {"start", verify_start},
-                {"energy", verify_energy},     {"momentum", verify_momentum},
-                {"fish", verify_fish},         {"control", verify_control},
-                {"pressure", verify_pressure}, {"elastic", verify_elastic},
-                {"coupled", verify_coupled},   {"steady", verify_steady},
-                {"static", verify_static},     {"tandem", verify_tandem},
-                {"walls", verify_walls},       {"validation", verify_validation}};
+} sections[] = {{"theory", verify_theory},
+                {"rod", verify_rod},
+                {"force", verify_force},
+                {"sheet", verify_sheet},
+                {"wake", verify_wake},
+                {"plate", verify_plate},
+                {"school", verify_school},
+                {"interval", verify_interval},
+                {"symmetry", verify_symmetry},
+                {"start", verify_start},
+                {"energy", verify_energy},
+                {"momentum", verify_momentum},
+                {"fish", verify_fish},
+                {"control", verify_control},
+                {"pressure", verify_pressure},
+                {"depth", verify_depth},
+                {"elastic", verify_elastic},
+                {"coupled", verify_coupled},
+                {"steady", verify_steady},
+                {"static", verify_static},
+                {"tandem", verify_tandem},
+                {"walls", verify_walls},
+                {"validation", verify_validation}};
 
 int verify_is_fast(void) {
     return fast;
