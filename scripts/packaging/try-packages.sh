@@ -10,7 +10,7 @@ shoal check /usr/share/shoal/cases/diamond.yaml
 shoal run /usr/share/shoal/cases/demo.yaml --set time.end=0.2 -q --force -o /tmp/demo.nc
 shoal info /tmp/demo.nc
 for page in man1/shoal.1 man5/shoal-case.5 man5/shoal-output.5; do [[ -s /usr/share/man/$page.gz ]]; done
-[[ -s /usr/share/doc/shoal-doc/tutorial.md ]]
+[[ -s /usr/share/doc/shoal-doc/tutorial.md.gz ]]
 
 # the module
 cd /tmp
