@@ -233,6 +233,57 @@ static void mean_powers_are_the_works_of_a_beat(void **state) {
     }
 }
 
+// the thrust at the events of a beat
+struct thrusts {
+    const struct simulation *simulation;
+    double value[21];
+    int n;
+};
+
+static enum status note_thrust(void *data) {
+    struct thrusts *const thrusts = data;
+    thrusts->value[thrusts->n++] = thrusts->simulation->diagnostics->fish[0].thrust;
+    return STATUS_OK;
+}
+
+static void mean_forces_are_trapezoids_over_the_events_of_a_beat(void **state) {
+    (void)state;
+    struct steady_setup setup;
+    steady_setup_open(&setup, COARSE
+                      "fluid: {velocity: [1, 0]}\nfish: [{" FISH
+                      ", wave: {amplitude: 0}, motion: {prescribed: head, heave: 0.05, frequency: 1, speed: 0}}]\n");
+    steady_setup_beats(&setup, 2);
+    struct thrusts thrusts = {.simulation = setup.simulation};
+    simulate_measure(setup.simulation);
+    note_thrust(&thrusts);
+    school_ok(steady_map_beat(&setup.problem.map, note_thrust, &thrusts));
+    assert_int_equal(thrusts.n, 21);
+    double mean = 0, square = 0;
+    for (int i = 0; i < 21; i++) {
+        const double share = (i == 0 || i == 20 ? 0.5 : 1) / 20;
+        mean += share * thrusts.value[i];
+        square += share * thrusts.value[i] * thrusts.value[i];
+    }
+    const struct steady_beat *const beat = &setup.problem.map.last[0];
+    NEAR(beat->thrust, mean, 1e-12 * beat->rms_thrust, 0);
+    NEAR(beat->rms_thrust, sqrt(square), 0, 1e-12);
+    assert_true(fabs(thrusts.value[0]) > 1e-6 && fabs(thrusts.value[20]) > 1e-6);
+    steady_setup_close(&setup);
+}
+
+static void a_turn_counts_in_circles_with_a_bias_and_as_a_tenth_without(void **state) {
+    (void)state;
+    for (int has_bias = 0; has_bias < 2; has_bias++) {
+        struct steady_setup setup;
+        steady_setup_open(
+            &setup, has_bias ? COARSE "fish: [{" FISH ", control: {bias: 0.1}}]\n" : COARSE "fish: [{" FISH "}]\n");
+        setup.problem.map.last[0] = (struct steady_beat){.speed = 1, .turn = 0.3};
+        setup.problem.map.before[0] = (struct steady_beat){.speed = 1, .turn = 0.1};
+        NEAR(steady_map_residual(&setup.problem.map), 0.2 / (2 * acos(-1)) / (has_bias ? 1 : 10), 0, 1e-12);
+        steady_setup_close(&setup);
+    }
+}
+
 static void what_can_have_no_steady_state_is_refused_with_the_reason(void **state) {
     (void)state;
     steady_setup_fails(COARSE "fish: [{" FISH ", wave: {frequency: 1.01}}]\n", STATUS_CASE,
@@ -275,6 +326,8 @@ int main(void) {
         cmocka_unit_test(the_state_stays_where_its_multipliers_are_taken),
         cmocka_unit_test(a_held_fish_is_steady_when_its_forces_repeat),
         cmocka_unit_test(mean_powers_are_the_works_of_a_beat),
+        cmocka_unit_test(mean_forces_are_trapezoids_over_the_events_of_a_beat),
+        cmocka_unit_test(a_turn_counts_in_circles_with_a_bias_and_as_a_tenth_without),
         cmocka_unit_test(what_can_have_no_steady_state_is_refused_with_the_reason),
         cmocka_unit_test(a_search_that_takes_too_long_says_how_far_it_came),
         cmocka_unit_test(a_search_that_fails_says_what_the_last_beats_have_in_common),
