@@ -30,7 +30,7 @@ void parallel_for(int threads, int n, parallel_body *body, void *data) {
 }
 
 // a thread that waits until all threads have started
-static void *hold(void *lock) {
+static void *thread_wait(void *lock) {
     pthread_mutex_lock(lock);
     pthread_mutex_unlock(lock);
     return NULL;
@@ -44,7 +44,7 @@ enum status parallel_try_threads(int threads) {
     int n = 0, code = 0;
 
     while (n < threads - 1 && code == 0) {
-        code = pthread_create(&started[n], NULL, hold, &lock);
+        code = pthread_create(&started[n], NULL, thread_wait, &lock);
         n += code == 0;
     }
 

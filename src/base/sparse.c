@@ -50,7 +50,7 @@ int sparse_is_masked(const struct sparse *matrix, int row) {
     return matrix->masked[row - matrix->first];
 }
 
-static int grow(struct sparse *matrix) {
+static int record_grow(struct sparse *matrix) {
     const int64_t capacity = matrix->capacity > 0 ? 2 * matrix->capacity : 1024;
     int *row = realloc(matrix->entry_row, (size_t)capacity * sizeof *row);
     if (row) matrix->entry_row = row;
@@ -68,7 +68,7 @@ static int grow(struct sparse *matrix) {
 
 void sparse_record(struct sparse *matrix, int row, int column, double value) {
     if (matrix->out_of_memory) return;
-    if (matrix->n_entries == matrix->capacity && !grow(matrix)) {
+    if (matrix->n_entries == matrix->capacity && !record_grow(matrix)) {
         matrix->out_of_memory = 1;
         return;
     }

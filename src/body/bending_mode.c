@@ -11,14 +11,14 @@ static double moving_mass(const struct fish *fish, int k) {
 
 /* A point of a straight sheet, at s = L (1 - cos theta)/2: the node before the point, and the fraction of the edge
  * behind that node. */
-struct sheet_place {
+struct sheet_point {
     double sine, cosine, part;
     int node;
 };
-static struct sheet_place sheet_place(const struct fish *fish, double theta) {
+static struct sheet_point sheet_point(const struct fish *fish, double theta) {
     const double u = fish->n_edges * (1 - cos(theta)) / 2;
     const int node = u < fish->n_edges ? (int)u : fish->n_edges - 1;
-    return (struct sheet_place){sin(theta), cos(theta), u - node, node};
+    return (struct sheet_point){sin(theta), cos(theta), u - node, node};
 }
 
 // add the momentum of the fluid around a straight sheet with normal node velocities w, without shedding: the jump of
@@ -30,7 +30,7 @@ static void sheet_momentum_add(const struct fish *fish, const double *w, double 
 
     for (int add = 0; add < 2; add++) {  // first the integrals, then the loads
         for (int i = 0; i < n_points; i++) {
-            const struct sheet_place at = sheet_place(fish, (i + 0.5) * step);
+            const struct sheet_point at = sheet_point(fish, (i + 0.5) * step);
             const double here = (1 - at.part) * w[at.node] + at.part * w[at.node + 1];
             double sine = at.sine, before = 0, jump = 0;
             for (int n = 0; n < n_terms; n++) {

@@ -58,19 +58,19 @@ void contact_free(struct contact *contact) {
 // ---- pairs in contact
 
 // whether the motion of the whole body is prescribed
-static int is_given(const struct fish *fish) {
+static int body_is_prescribed(const struct fish *fish) {
     return fish_is_prescribed(fish, fish->n_nodes - 1, 0);
 }
 
 // whether fish f and g are in contact at y; fails if the bodies touch on the way to y
-static enum status pair_compare(const struct contact *contact, const struct state *state, double t, const double *y,
-                                int f, int g, unsigned char *is_near) {
+static enum status partner_check(const struct contact *contact, const struct state *state, double t, const double *y,
+                                 int f, int g, unsigned char *is_near) {
     const struct fish *const a = &contact->school->fish[f], *const b = &contact->school->fish[g];
     const double range = contact->school->contact_range;
     *is_near = 0;
 
     // repulsion cannot separate two prescribed bodies
-    if (is_given(a) && is_given(b)) return STATUS_OK;
+    if (body_is_prescribed(a) && body_is_prescribed(b)) return STATUS_OK;
     const struct passage passage = clearance_passage(a, b, state->closest->before, y, range, contact->between);
     *is_near = passage.now < range;
     if (passage.least > 0) return STATUS_OK;
@@ -117,7 +117,7 @@ static enum status partners_reserve(struct contact *contact, int capacity) {
 }
 
 // node paths are straight: a body between the walls at both ends of a step is between the walls during the step
-static enum status walls_compare(const struct contact *contact, double t, const double *y) {
+static enum status walls_check(const struct contact *contact, double t, const double *y) {
     const struct school *const school = contact->school;
     for (int f = 0; school->walls.n > 0 && f < school->n_fish; f++) {
         if (fish_wall_distance(school, &school->fish[f], y) > 0) continue;
@@ -128,7 +128,7 @@ static enum status walls_compare(const struct contact *contact, double t, const 
 
 enum status contact_find(struct contact *contact, const struct state *state, double t, const double *y) {
     struct neighbours *const neighbours = contact->neighbours;
-    TRY(walls_compare(contact, t, y));
+    TRY(walls_check(contact, t, y));
     if (!neighbours) return STATUS_OK;
     const int n_fish = contact->school->n_fish, threads = fish_threads(contact->school);
 
@@ -138,6 +138,7 @@ enum status contact_find(struct contact *contact, const struct state *state, dou
             clearance_box(&contact->school->fish[f], contact->school->contact_range, state->closest->before, y);
     }
 
+    // candidates: fish with overlapping boxes
     TRY(neighbours_find(neighbours));
     TRY(partners_reserve(contact, neighbours->capacity));
     partners_find(contact, state, y);
@@ -148,7 +149,7 @@ enum status contact_find(struct contact *contact, const struct state *state, dou
         for (int i = neighbours->first[f]; i < neighbours->first[f + 1]; i++) {
             const int g = neighbours->other[i];
             if (g < f) contact->is_near[i] = pair_is_near(contact, f, g);
-            if (g > f && contact->is_near[i]) TRY(pair_compare(contact, state, t, y, f, g, &contact->is_near[i]));
+            if (g > f && contact->is_near[i]) TRY(partner_check(contact, state, t, y, f, g, &contact->is_near[i]));
             if (contact->is_near[i]) contact->other[n++] = g;
         }
     }
@@ -173,7 +174,7 @@ struct touch {
     double bend[6][6];
 };
 
-// energy of a gap below the range and its derivatives: strength range (1 - s)^3/s with s = gap/range
+// energy of a gap below the range, with derivatives: strength range (1 - s)^3/s with s = gap/range
 static void gap_potential(double gap, double range, double strength, struct touch *touch) {
     const double s = gap / range;
     touch->energy = strength * range * (1 - s) * (1 - s) * (1 - s) / s;
@@ -181,7 +182,8 @@ static void gap_potential(double gap, double range, double strength, struct touc
     touch->curvature = 2 * strength / range * (1 / (s * s * s) - 1);
 }
 
-// the derivatives of the distance from the edge e to the point at r from its first end, at the fraction q of the edge
+// the derivatives of the distance from the edge e to the point at r from the first end of the edge, at the fraction q
+// of the edge
 static void distance_derivatives(const double r[2], const double e[2], double q, double distance, struct touch *touch) {
     const double square = e[0] * e[0] + e[1] * e[1];
     const double n[2] = {(r[0] - q * e[0]) / distance, (r[1] - q * e[1]) / distance}, t[2] = {-n[1], n[0]};
@@ -212,7 +214,7 @@ static void distance_derivatives(const double r[2], const double e[2], double q,
 typedef void visit(void *data, const struct touch *touch);
 
 struct pair {
-    const struct fish *fish[2]; /* in the order of their numbers */
+    const struct fish *fish[2]; /* in ascending order */
     int number[2];
     double range, strength;
     const double *y;
@@ -269,7 +271,7 @@ static void each_touch(const struct contact *contact, int f, int g, const double
     }
 }
 
-/* A node of a body, as an end of one of its edges, above a wall: as in struct touch. */
+/* A node of a body, as an end of an edge, above a wall; fields as in struct touch. */
 struct wall_touch {
     int node;
     double energy, slope, curvature;

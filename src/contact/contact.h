@@ -45,7 +45,7 @@ void contact_jacobian(const struct contact *contact, int f, int g, const double 
 double contact_energy(const struct contact *contact, int f, const double *y);
 double contact_power(const struct contact *contact, int f, const double *y);
 
-/* The force of all partners and of the walls on fish f, N, and its moment about the origin, N m. */
+/* The force of all partners and of the walls on fish f, N, and the moment of this force about the origin, N m. */
 struct contact_forces {
     double force[2], moment;
 };

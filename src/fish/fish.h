@@ -121,10 +121,10 @@ struct fish {
     struct sheet_integrals *integrals; /* NULL with other forces, unless there are rings */
 
     /* rings: section 18 */
-    double strip_depth;       /* w_L, of the last edge, m; 0: the sheets are of infinite span */
-    int depth_varies;         /* along the body */
+    double strip_depth;       /* w_L, depth of the last edge, m; 0: sheets of infinite span */
+    int depth_varies;         /* whether the depth varies along the body */
     double *sheet_half;       /* b^2/2 at the bound vortices, b = w/4, m2                  (n_sheet) */
-    double *point_half;       /* and at the points that feel the fluid (flow.h), m2   (n_control + n_edges + 1) */
+    double *point_half;       /* b^2/2 at the points of the flow (flow.h), m2   (n_control + n_edges + 1) */
     double *control_widening; /* b db/du at control points, m2                             (n_control) */
 
     double *sheet_weight;            /* ds_j: circulation over unknown, m           (n_sheet) */

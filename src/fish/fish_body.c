@@ -6,7 +6,7 @@
 #include "base/array.h"
 #include "fish/profile.h"
 
-static enum status allocate(struct fish *fish) {
+static enum status body_allocate(struct fish *fish) {
     double **const per_node[] = {&fish->arc, &fish->mass};
     double **const per_edge[] = {
         &fish->thickness,       &fish->depth,          &fish->square,          &fish->cube,
@@ -20,7 +20,7 @@ static enum status allocate(struct fish *fish) {
     return array_many_doubles(per_joint, sizeof per_joint / sizeof *per_joint, fish->n_joints, "the joints of a fish");
 }
 
-static void shape_edges(struct fish *fish, const struct fish_parameters *from) {
+static void edges_shape(struct fish *fish, const struct fish_parameters *from) {
     fish->has_mean_section = from->body.section == SECTION_MEAN;
     for (int k = 0; k < fish->n_nodes; k++) fish->arc[k] = k * fish->edge_length;
     for (int k = 0; k < fish->n_edges; k++) {
@@ -125,6 +125,7 @@ static void fluid_forces_set(struct fish *fish, const struct fish_parameters *fr
     fish->has_cusp = from->body.profile == PROFILE_JOUKOWSKI && from->body.tail_thickness <= 0;
     fish->skin = drag->skin;
     boundary_layer_set(fish, drag, fluid);
+    // added mass shed at the tail
     const double at_tail = wide ? fish->depth[fish->n_edges - 1] : profile_tail_thickness(from);
     fish->tail_added_mass =
         published ? 0 : reactive * M_PI * density * from->added_mass.coefficient * at_tail * at_tail / 4;
@@ -135,8 +136,8 @@ static void fluid_forces_set(struct fish *fish, const struct fish_parameters *fr
 }
 
 enum status fish_body_set(struct fish *fish, const struct fish_parameters *from, const struct fluid_parameters *fluid) {
-    TRY(allocate(fish));
-    shape_edges(fish, from);
+    TRY(body_allocate(fish));
+    edges_shape(fish, from);
     body_weigh(fish, from);
     fluid_forces_set(fish, from, fluid);
     return STATUS_OK;

@@ -1,4 +1,4 @@
-/* fish_body.h: from the parameters of a fish to the constants of its edges and joints: shape, masses, stiffness,
+/* fish_body.h: from the parameters of a fish to the constants of edges and joints: shape, masses, stiffness,
  * damping, drag and added mass. doc/model.md, sections 1, 3 and 9. Tested by tests/fish/test_fish.c. */
 #ifndef FISH_BODY_H
 #define FISH_BODY_H

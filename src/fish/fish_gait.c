@@ -25,7 +25,7 @@ static void harmonics_set(const struct fish *fish, const struct number_list *tab
     }
 }
 
-static enum status set_table(struct fish *fish, const struct number_list *table) {
+static enum status table_set(struct fish *fish, const struct number_list *table) {
     if (table->n == 0) return STATUS_OK;
     fish->n_harmonics = table->width / 2 + 1;
     TRY(array_doubles(&fish->harmonic, 2 * fish->n_joints * fish->n_harmonics, "the gait of a fish"));
@@ -33,7 +33,7 @@ static enum status set_table(struct fish *fish, const struct number_list *table)
     return STATUS_OK;
 }
 
-static void set_wave(struct fish *fish, const struct fish_parameters *from) {
+static void wave_set(struct fish *fish, const struct fish_parameters *from) {
     const struct wave_parameters *wave = &from->wave;
     const double reference = fish->length / (from->reference_nodes - 1);
     for (int joint = 0; joint < fish->n_joints; joint++) {
@@ -52,8 +52,8 @@ static void set_wave(struct fish *fish, const struct fish_parameters *from) {
 enum status fish_gait_set(struct fish *fish, const struct fish_parameters *from) {
     TRY(array_doubles(&fish->wave_amplitude, fish->n_joints, "the wave of a fish"));
     TRY(array_doubles(&fish->wave_phase, fish->n_joints, "the wave of a fish"));
-    set_wave(fish, from);
-    return set_table(fish, &from->wave.table);
+    wave_set(fish, from);
+    return table_set(fish, &from->wave.table);
 }
 
 struct fish_gait fish_own_gait(const struct fish *fish, double t) {

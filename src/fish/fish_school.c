@@ -13,7 +13,7 @@
 #include "fish/fish_sheet.h"
 #include "fish/fish_start.h"
 
-static void set_motion(struct fish *fish, const struct fish_parameters *from) {
+static void motion_set(struct fish *fish, const struct fish_parameters *from) {
     fish->start_position[0] = from->start_position[0];
     fish->start_position[1] = from->start_position[1];
     fish->start_heading = angle_radians(from->start_heading);
@@ -36,7 +36,7 @@ static void set_motion(struct fish *fish, const struct fish_parameters *from) {
     fish->period = fish->frequency > 0 ? 1 / fish->frequency : 0;
 }
 
-static enum status set_control(struct fish *fish, const struct fish_parameters *from,
+static enum status control_set(struct fish *fish, const struct fish_parameters *from,
                                const struct school_parameters *parameters) {
     const struct control_parameters *control = &from->control;
     struct control_law_data *to = &fish->control;
@@ -94,9 +94,9 @@ static enum status fish_fill(struct fish *fish, const struct school_parameters *
     TRY(fish_body_set(fish, from, &parameters->fluid));
     TRY(fish_gait_set(fish, from));
     TRY(fish_sheet_set(fish, from, parameters));
-    set_motion(fish, from);
+    motion_set(fish, from);
 
-    return set_control(fish, from, parameters);
+    return control_set(fish, from, parameters);
 }
 
 static struct layout layout_after(int first, int n_nodes, int n_momenta, int n_sheet) {
@@ -128,7 +128,7 @@ static void walls_set(struct school *school, const struct school_parameters *par
     if (walls->n == 1 && parameters->fish[0].start_position[1] < walls->value[0]) school->walls.inward[0] = -1;
 }
 
-static void set_fluid(struct school *school, const struct school_parameters *parameters) {
+static void fluid_set(struct school *school, const struct school_parameters *parameters) {
     school->density = parameters->fluid.density;
     school->velocity[0] = parameters->fluid.velocity[0];
     school->velocity[1] = parameters->fluid.velocity[1];
@@ -171,7 +171,7 @@ static enum status refuse_overlap(const struct school *school) {
         fish_start(&school->fish[f], y);
         if (fish_wall_distance(school, &school->fish[f], y) <= 0) {
             status = status_fail(STATUS_CASE,
-                                 "error: fish[%d] (%s) touches a wall or is beyond it at the start: change "
+                                 "error: fish[%d] (%s) touches a wall or is outside the fluid at the start: change "
                                  "start.position or fluid.walls",
                                  f, school->fish[f].name);
         }
@@ -197,7 +197,7 @@ enum status fish_school_create(struct school **school, const struct school_param
     new->fish = calloc((size_t)parameters->n_fish, sizeof *new->fish);
     if (!new->fish) goto no_memory;
     new->n_fish = parameters->n_fish;
-    set_fluid(new, parameters);
+    fluid_set(new, parameters);
     for (int f = 0; f < new->n_fish; f++) {
         if (fish_fill(&new->fish[f], parameters, &parameters->fish[f]) != STATUS_OK) goto failed;
         struct fish *const fish = &new->fish[f];

@@ -6,7 +6,7 @@
 
 #include "base/array.h"
 
-static enum status allocate(struct fish *fish) {
+static enum status sheet_allocate(struct fish *fish) {
     double **const per_control[] = {&fish->end_correction, &fish->control_density, &fish->control_interval};
     TRY(array_doubles(&fish->sheet_weight, fish->n_sheet, "the sheet of a fish"));
     TRY(array_many_doubles(per_control, sizeof per_control / sizeof *per_control, fish->n_control,
@@ -35,7 +35,7 @@ static double control_place(const struct fish *fish, int c, enum collocation col
     return (cosine_place(fish, c) + cosine_place(fish, c + 1)) / 2;
 }
 
-static void place_sheet_on_polygon(struct fish *fish, enum collocation collocation) {
+static void sheet_set_on_polygon(struct fish *fish, enum collocation collocation) {
     for (int j = 0; j < fish->n_sheet; j++) {
         fish->sheet_point[j] = curve_polygon_point(fish->curve, cosine_place(fish, j) * fish->n_edges);
     }
@@ -51,7 +51,7 @@ static void place_sheet_on_polygon(struct fish *fish, enum collocation collocati
     fish->tail_tangent = fish->control_tangent[fish->n_control - 1];
 }
 
-static void place_sheet_on_smooth_curve(struct fish *fish, enum collocation collocation) {
+static void sheet_set_on_smooth_curve(struct fish *fish, enum collocation collocation) {
     const int last = fish->n_sheet - 1;
     for (int j = 0; j <= last; j++) {
         const double u = cosine_place(fish, j) * fish->n_edges;
@@ -89,21 +89,22 @@ static void end_correction_set(struct fish *fish) {
 }
 
 // bound vortices and control points: doc/model.md, section 6
-static enum status sheet_place(struct fish *fish, const struct sheet_parameters *sheet, enum shedding shedding) {
+static enum status sheet_set(struct fish *fish, const struct sheet_parameters *sheet, enum shedding shedding) {
     for (int j = 1; j < fish->n_sheet; j++) {
         const double distance = cosine_place(fish, j) - cosine_place(fish, j - 1);
         fish->sheet_weight[j - 1] += distance * fish->length / 2;
         fish->sheet_weight[j] += distance * fish->length / 2;
     }
 
+    // place the points on the line of the body
     const int is_smooth = sheet->curve == BODY_LINE_SMOOTH;
     TRY(curve_create(&fish->curve, fish->n_nodes, is_smooth ? 1 : 2 * fish->n_sheet,
                      is_smooth ? 4 * fish->n_sheet + 1 : 0));
 
     if (is_smooth) {
-        place_sheet_on_smooth_curve(fish, sheet->collocation);
+        sheet_set_on_smooth_curve(fish, sheet->collocation);
     } else {
-        place_sheet_on_polygon(fish, sheet->collocation);
+        sheet_set_on_polygon(fish, sheet->collocation);
     }
 
     if (shedding == SHEDDING_SHEET) end_correction_set(fish);
@@ -111,8 +112,8 @@ static enum status sheet_place(struct fish *fish, const struct sheet_parameters 
     return STATUS_OK;
 }
 
-// w and dw/du at u: monotone cubics between the middles of edges with no slope at both ends, constant beyond
-static void depth_at(const struct fish *fish, double u, double *depth, double *slope) {
+// w and dw/du at u: monotone cubics between edge midpoints, slope 0 at both ends, constant beyond
+static void strip_depth_at(const struct fish *fish, double u, double *depth, double *slope) {
     const double *const w = fish->depth, from = fmin(fmax(u - 0.5, 0), fish->n_edges - 1);
     const int k = (int)fmin(from, fish->n_edges - 2);
     double tangent[2] = {0, 0};
@@ -130,31 +131,32 @@ static void depth_at(const struct fish *fish, double u, double *depth, double *s
     *slope = u <= 0.5 || u >= fish->n_edges - 0.5 ? 0 : tangent[0] + q * (2 * c2 + 3 * q * c3);
 }
 
-static double half_at(const struct fish *fish, double u) {
+static double strip_half(const struct fish *fish, double u) {
     double depth, slope;
-    depth_at(fish, u, &depth, &slope);
+    strip_depth_at(fish, u, &depth, &slope);
     return depth * depth / 32;
 }
 
 // the strip of the sheets of the body: doc/model.md, section 18
-static enum status set_strip(struct fish *fish) {
+static enum status strip_set(struct fish *fish) {
     const int n_points = fish->n_control + fish->n_edges + 1;
     TRY(array_doubles(&fish->sheet_half, fish->n_sheet, "the sheet of a fish"));
     TRY(array_doubles(&fish->point_half, n_points, "the sheet of a fish"));
     TRY(array_doubles(&fish->control_widening, fish->n_control, "the sheet of a fish"));
     fish->strip_depth = fish->depth[fish->n_edges - 1];
     for (int k = 0; k < fish->n_edges; k++) fish->depth_varies |= fabs(fish->depth[k] - fish->strip_depth) > 0;
-    for (int j = 0; j < fish->n_sheet; j++) fish->sheet_half[j] = half_at(fish, cosine_place(fish, j) * fish->n_edges);
+    for (int j = 0; j < fish->n_sheet; j++)
+        fish->sheet_half[j] = strip_half(fish, cosine_place(fish, j) * fish->n_edges);
 
     for (int c = 0; c < fish->n_control; c++) {
         double depth, slope;
-        depth_at(fish, cosine_place(fish, c + 0.5) * fish->n_edges, &depth, &slope);
+        strip_depth_at(fish, cosine_place(fish, c + 0.5) * fish->n_edges, &depth, &slope);
         fish->point_half[c] = depth * depth / 32;
         fish->control_widening[c] = depth * slope / 16;
     }
 
-    for (int k = 0; k < fish->n_edges; k++) fish->point_half[fish->n_control + k] = half_at(fish, k + 0.5);
-    fish->point_half[n_points - 1] = half_at(fish, fish->n_edges);
+    for (int k = 0; k < fish->n_edges; k++) fish->point_half[fish->n_control + k] = strip_half(fish, k + 0.5);
+    fish->point_half[n_points - 1] = strip_half(fish, fish->n_edges);
     return STATUS_OK;
 }
 
@@ -163,7 +165,7 @@ static enum status pressure_set(struct fish *fish, const struct fish_parameters 
     if (fish->force != FORCE_PRESSURE && !is_strip) return STATUS_OK;
     const double h = M_PI / fish->n_control;
     double *per_edge;
-    if (is_strip) TRY(set_strip(fish));
+    if (is_strip) TRY(strip_set(fish));
     TRY(array_doubles(&per_edge, fish->n_edges, "the pressure of a fish"));
     for (int k = 0; k < fish->n_edges; k++) per_edge[k] = density * (is_strip ? fish->strip_depth : fish->depth[k]);
 
@@ -174,7 +176,7 @@ static enum status pressure_set(struct fish *fish, const struct fish_parameters 
 
     fish->fluid_density = density;
     fish->nose_factor = fish->n_control * fish->sheet_weight[0] / (M_PI * fish->length);
-    // of a strip the unknowns are circulations times w(s)/w_L
+    // the unknowns of a strip are circulations times w(s)/w_L
     if (is_strip) fish->nose_factor *= fish->strip_depth / fish->depth[0];
     fish->full_suction = M_PI * (density * fish->depth[0]) * fish->length;
     fish->suction = from->suction * fish->full_suction;
@@ -187,8 +189,8 @@ static enum status pressure_set(struct fish *fish, const struct fish_parameters 
 
 enum status fish_sheet_set(struct fish *fish, const struct fish_parameters *from,
                            const struct school_parameters *parameters) {
-    TRY(allocate(fish));
-    TRY(sheet_place(fish, &parameters->sheet, parameters->wake.shedding));
+    TRY(sheet_allocate(fish));
+    TRY(sheet_set(fish, &parameters->sheet, parameters->wake.shedding));
     int is_strip = 0;
     for (int f = 0; f < parameters->n_fish; f++) is_strip |= fish_is_strip(&parameters->fish[f]);
     return pressure_set(fish, from, parameters->fluid.density, is_strip);

@@ -11,7 +11,7 @@
 enum status fish_sheet_set(struct fish *fish, const struct fish_parameters *from,
                            const struct school_parameters *parameters);
 
-/* Whether the sheets of the fish are to be vortex rings: force pressure with span: finite. */
+/* Whether the sheets of the fish consist of vortex rings: force: pressure with span: finite. */
 int fish_is_strip(const struct fish_parameters *from);
 
 /* The least number of sheet points that resolves the smallest depth of a strip: 1 + 5 L/w; 0 for other sheets. */

@@ -78,7 +78,7 @@ struct body_parameters {
     double bending_damping;    /* N m s, per joint of a body of reference_nodes: doc/model.md, section 3 */
     double stretching_damping; /* N s m-1, per edge of a body of reference_nodes */
     double relaxation_time;    /* s */
-    enum damping damping;      /* quantity whose rate the internal damping of bending acts on */
+    enum damping damping;      /* internal damping of bending acts on the rate of strain or of curvature */
 };
 
 struct wave_parameters {

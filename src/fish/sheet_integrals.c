@@ -72,7 +72,7 @@ static void kink_fill(struct sheet_integrals *to) {
     }
 }
 
-// add a point theta with its weight to the integrals of all j
+// add a point theta with its weight to the integrals of every j
 static void integrals_add_point(struct sheet_integrals *to, double theta, double weight, const struct stencil *point,
                                 const struct stencil *slope) {
     const int n = to->n_nodes;
@@ -108,7 +108,7 @@ static enum status edge_integrate(struct sheet_integrals *to, int edge, double d
     return STATUS_OK;
 }
 
-static enum status fill(struct sheet_integrals *to, const double *density) {
+static enum status integrals_fill(struct sheet_integrals *to, const double *density) {
     const size_t n_nodes = (size_t)to->n_nodes, n_sheet = (size_t)to->n_sheet, n_control = (size_t)to->n_control;
     to->momentum = calloc(n_sheet * n_nodes * n_nodes, sizeof *to->momentum);
     to->strength = calloc(n_control * n_sheet, sizeof *to->strength);
@@ -135,7 +135,7 @@ enum status sheet_integrals_create(struct sheet_integrals **integrals, int n_nod
     new->n_nodes = n_nodes;
     new->n_sheet = n_sheet;
     new->n_control = n_sheet - 1;
-    const enum status status = fill(new, density);
+    const enum status status = integrals_fill(new, density);
 
     if (status != STATUS_OK) {
         sheet_integrals_free(new);

@@ -1,4 +1,4 @@
-/* expansions.h: multipole and local expansions of the velocity of boxes of vortices, series in z = x + i y and its
+/* expansions.h: multipole and local expansions of the velocity of boxes of vortices, series in z = x + i y and the
  * conjugate z'. Part of treecode.h.
  *
  * The potential of a smoothed vortex is Phi = log(z z' + e^2), the velocity is u - i v = -i/(2 pi) dPhi/dz. For a box s
@@ -49,7 +49,7 @@ static inline struct expansion_order expansion_order_max(struct expansion_order 
 /* The number of complex coefficients. */
 int expansions_size(struct expansion_order order);
 
-/* P2M: set the multipole expansion of a box from its points. */
+/* P2M: set the multipole expansion of a box from the points of the box. */
 void expansions_p2m(const struct tree_boxes *boxes, int box, const struct expansion *multipole);
 
 /* M2M: set the multipole expansions of n_parents <= EXPANSION_LANES / 2 boxes, from parent on, from the multipole

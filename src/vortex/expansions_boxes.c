@@ -181,6 +181,8 @@ KERNEL_WIDE(void, expansions_m2m,
     }
 
     multipole_shift(block.re[0], block.im[0], DEPTH, order.harmonic, &d_re, &d_im);
+
+    // back to blocks
     for (int n = 1; 2 * n <= order.mixed; n++) {
         for (int m = n; m + n <= order.mixed; m++) {
             block.re[m - n][n] = square.re[n][m];
@@ -188,6 +190,7 @@ KERNEL_WIDE(void, expansions_m2m,
         }
     }
 
+    // add both halves of every parent
     for (int i = 0; i < n_parents; i++) {
         const struct expansion_order own = multipole[parent + i].order;
         if (own.harmonic < 0) continue;
@@ -364,6 +367,7 @@ INLINE void m2l(const struct tree_boxes *targets, const struct tree_boxes *sourc
         target_im[i] = turn_im * to->radius / scale;
     }
 
+    // scale to the units of the pair, multiply by the derivatives, scale to the units of the target
     const struct expansion none = {.order = {-1, 0}};
     for (int i = n; i < LANES; i++) block_read(&block, order, i, &none);
     block_scale(&block, order, &source_re, &source_im, 1);

@@ -257,7 +257,7 @@ static void cell_place(const struct cells *cells, int cell, double x, double y, 
 }
 
 // extend ends to the range of n numbers; returns whether all numbers are finite
-static int find_ends(int n, const double *x, double ends[2]) {
+static int range_extend(int n, const double *x, double ends[2]) {
     for (int i = 0; i < n; i++) {
         if (!isfinite(x[i])) return 0;
         ends[0] = fmin(ends[0], x[i]);
@@ -271,7 +271,7 @@ static struct cells cells_of(const struct walls *channel, const struct vortices 
     const double width = image_rows_width(channel);
     struct cells cells = {.width = width, .middle = (channel->y[0] + channel->y[1]) / 2, .half = width / 2};
     double ends[2] = {INFINITY, -INFINITY};
-    const int is_finite = find_ends(vortices->n, vortices->x, ends) && find_ends(at->n, at->x, ends);
+    const int is_finite = range_extend(vortices->n, vortices->x, ends) && range_extend(at->n, at->x, ends);
     if (!is_finite || !(ends[1] - ends[0] < MAX_CELLS * width) || !(fabs(ends[0]) < 1e9 * width)) return cells;
     cells.first = (int)floor(ends[0] / width);
     cells.n = (int)floor(ends[1] / width) + 1 - cells.first;

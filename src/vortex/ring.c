@@ -9,12 +9,12 @@
 
 static const double inverse_two_pi = 0.159154943091895335769;
 
-/* A source at a target: keeps 0/0 away from the spanwise part, and changes no bit at distances that matter. */
+/* Avoids 0/0 in the spanwise part of a source at a target, and changes no bit at relevant distances. */
 static const double no_square = 1e-150;
 
 enum { N_ARRAYS = 8, BLOCK = 16 };
 
-static void list_arrays(struct rings *rings, double **array[N_ARRAYS]) {
+static void ring_arrays(struct rings *rings, double **array[N_ARRAYS]) {
     double **const all[N_ARRAYS] = {&rings->x,  &rings->y,    &rings->q,   &rings->dx,
                                     &rings->dy, &rings->half, &rings->leg, &rings->square};
     memcpy(array, all, sizeof all);
@@ -22,14 +22,14 @@ static void list_arrays(struct rings *rings, double **array[N_ARRAYS]) {
 
 void ring_free(struct rings *rings) {
     double **array[N_ARRAYS];
-    list_arrays(rings, array);
+    ring_arrays(rings, array);
     for (int i = 0; i < N_ARRAYS; i++) free(*array[i]);
     *rings = (struct rings){0};
 }
 
 enum status ring_append(struct rings *rings, int n) {
     double **array[N_ARRAYS];
-    list_arrays(rings, array);
+    ring_arrays(rings, array);
     const int needed = rings->n + n;
 
     if (needed > rings->capacity) {
@@ -66,7 +66,7 @@ struct ring_targets ring_targets_part(const struct ring_targets *all, struct ran
     return part;
 }
 
-/* Targets of a block, and the sums at them. */
+/* Targets of a block, with sums. */
 struct block {
     double x[BLOCK], y[BLOCK], half[BLOCK], square[BLOCK];
     double u[BLOCK], v[BLOCK], leg_u[BLOCK], leg_v[BLOCK], div[BLOCK];

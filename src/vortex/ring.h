@@ -1,17 +1,17 @@
-/* ring.h: the velocity that the vortex rings of a strip of finite depth induce in its middle plane, and its divergence
- * there. doc/model.md, section 18. Tested by tests/vortex/test_ring.c.
+/* ring.h: the velocity of the vortex rings of a strip of finite depth in the middle plane of the strip, and the
+ * divergence of this velocity. doc/model.md, section 18. Tested by tests/vortex/test_ring.c.
  *
- * A source has a spanwise part of circulation q and two legs, which run along the line d = C dx. With r from the source
+ * A source has a spanwise part of circulation q and two legs along the line d = C dx. With r from the source
  * to the target, B = (b_t^2 + b_n^2)/2 of the half spans, s of the legs and e the smoothing of the spanwise part:
  *
  *     R = r^2 + e^2      T = r^2 + B + s_t + s_n
  *     u     = b ( q E3 r/(2 pi R sqrt(T)) + E3 d/(2 pi T^(3/2)) )
  *     div u = -(3 b/(2 pi)) r.(E3 d)/T^(5/2)                        the spanwise part has no divergence
- *     a     = -(3 b/(4 pi)) d/T^(5/2)                               of the edge force of a body whose depth varies
+ *     a     = -(3 b/(4 pi)) d/T^(5/2)                               edge force of a body of variable depth
  *
- * b^2/2 of a place is its `half`; where a strip is seen from outside, b is twice as large, and `half` four times.
+ * The `half` of a position is b^2/2; for targets outside the strip b is twice as large, and `half` four times as large.
  *
- * Every target sums over the sources in their order with operations that are rounded as written: the same bits on all
+ * The sum at a target runs over the sources in array order, with operations rounded as written: the same bits on all
  * processors. */
 #ifndef RING_H
 #define RING_H
@@ -27,16 +27,16 @@ struct rings {
     double *dx, *dy; /* C dx, m3 s-1 */
     double *half;    /* b^2/2 with b a quarter of the depth, m2 */
     double *leg;     /* s, m2 */
-    double *square;  /* what the source has of e^2, m2 */
+    double *square;  /* contribution of the source to e^2, m2 */
 };
 
 void ring_free(struct rings *rings);
 
-/* Append n sources, all values 0. Fails with STATUS_MEMORY; nothing is changed then. */
+/* Append n sources, all values 0. On STATUS_MEMORY nothing is changed. */
 enum status ring_append(struct rings *rings, int n);
 
-/* Targets; all arrays (n). Values are added to those that are not NULL: u and v always, and either none, or all but the
- * edge, of the gradient. v_y = div - u_x. */
+/* Targets; all arrays (n). Values are added to arrays that are not NULL: u and v always; of the gradient either no
+ * array, or all arrays (the edge arrays are optional). v_y = div - u_x. */
 struct ring_targets {
     int n;
     const double *x, *y;               /* m */
@@ -52,18 +52,18 @@ struct ring_targets {
 };
 struct ring_targets ring_targets_part(const struct ring_targets *all, struct range which);
 
-/* What holds for all pairs of a sum: b in front of the kernel, m; the factor of both `half`: 1 in the own strip, 4 seen
- * from outside; what is added to e^2, m2. */
+/* Constants of all pairs of a sum: span: b in front of the kernel, m; factor: of both `half`, 1 in the own strip, 4
+ * outside; square: addend of e^2, m2. */
 struct ring_pair {
     double span, factor, square;
 };
 
-/* Add what a range of sources induces at the targets. A source at a target has no spanwise part there. */
+/* Add the velocity of a range of sources to the targets. The spanwise part of a source at a target is 0. */
 void ring_induce(const struct ring_pair *pair, const struct rings *rings, struct range which,
                  const struct ring_targets *at);
 
-/* The mirror image of the rings in a wall: place (x, sign y + shift) with sign -1, circulation and legs reversed.
- * *image is made again. Fails with STATUS_MEMORY. */
+/* The mirror image of the rings in a wall: position (x, shift - y), circulation and legs reversed. *image is
+ * overwritten. Fails with STATUS_MEMORY. */
 enum status ring_mirror(const struct rings *rings, double shift, struct rings *image);
 
 /* One source for a Jacobian at n targets of one chunk. */
@@ -76,7 +76,7 @@ struct ring_values {
     double leg[RING_CHUNK];                        /* g: legs d cause the velocity g E3 d */
     double div_by_dx[RING_CHUNK], div_by_dy[RING_CHUNK];
     double edge[RING_CHUNK]; /* legs d cause a = edge d */
-    /* by the place of the target, with q and d of the source */
+    /* derivatives by the target position, with q and d of the source */
     double u_x[RING_CHUNK], u_y[RING_CHUNK], v_x[RING_CHUNK], v_y[RING_CHUNK], div_x[RING_CHUNK], div_y[RING_CHUNK];
     double edge_x[RING_CHUNK], edge_y[RING_CHUNK]; /* of the factor of d in a */
 };

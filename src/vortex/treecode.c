@@ -129,7 +129,7 @@ static void downward_pass(struct treecode *tree, int threads) {
     }
 }
 
-// the direct sums at the points of a leaf over all boxes of a set near one box that contains it
+// the direct sums at the points of a leaf over all boxes of a set near one box around the leaf
 static void leaf_add_near_field(const struct treecode *tree, const struct tree_sources *from, int leaf, int box,
                                 double *const sum[5]) {
     const struct tree_boxes *const targets = &tree->targets, *const sources = &from->boxes;
@@ -190,8 +190,8 @@ static void pairs_sum(struct treecode *tree, int threads, double *const out[5]) 
     leaves_evaluate(tree, threads, sum, out);
 }
 
-static enum status targets_add(struct treecode *tree, int n_targets, const double *x, const double *y, int threads,
-                               double *const out[5]) {
+static enum status tree_add(struct treecode *tree, int n_targets, const double *x, const double *y, int threads,
+                            double *const out[5]) {
     if (n_targets == 0 || tree->n_sets == 0) return STATUS_OK;
     TRY(targets_pair_up(tree, n_targets, x, y, out[2] != NULL, 0, threads));
     pairs_sum(tree, threads, out);
@@ -229,12 +229,12 @@ enum status treecode_build(struct treecode *tree, int n, const double *x, const 
 
 enum status treecode_add_velocity(struct treecode *tree, int n_targets, const double *x, const double *y, int threads,
                                   double *u, double *v) {
-    return targets_add(tree, n_targets, x, y, threads, (double *const[5]){u, v});
+    return tree_add(tree, n_targets, x, y, threads, (double *const[5]){u, v});
 }
 
 enum status treecode_add_gradient(struct treecode *tree, int n_targets, const double *x, const double *y, int threads,
                                   double *u, double *v, double *u_x, double *u_y, double *v_x) {
-    return targets_add(tree, n_targets, x, y, threads, (double *const[5]){u, v, u_x, u_y, v_x});
+    return tree_add(tree, n_targets, x, y, threads, (double *const[5]){u, v, u_x, u_y, v_x});
 }
 
 enum status treecode_plan(struct treecode *tree, int n_targets, const double *x, const double *y, int with_gradient,
