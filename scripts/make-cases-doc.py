@@ -47,7 +47,7 @@ fish:
 prints the tables below. All errors of a case are listed at once, each with its place and a remedy:
 
 ```
-cases/x.yaml:23:5: error: fish[2].stifness: unknown key; did you mean 'modulus'? It belongs to fish[2].body
+cases/x.yaml:23:5: error: fish[2].stifness: unknown key; did you mean 'modulus'? The key belongs to fish[2].body
     stifness: 1e6
     ^
 ```

@@ -1,4 +1,4 @@
-/* main.c: chooses a command and prints errors: the only place that does. */
+/* main.c: select the command; print errors (no other module does). */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,10 +9,10 @@
 #include "app/say.h"
 #include "base/version.h"
 
-// Let threads that wait for others spin for microseconds and then sleep, unless the environment says otherwise. OpenMP
-// spins for milliseconds: if threads share a core with other programs, each of the thousands of short loops of a run
-// takes that long. OpenMP reads the environment when it is loaded, without a priority, and is a part of the program
-// (Makefile: static_gomp), so this function comes first. As a shared library it keeps its own wait.
+// Let waiting threads spin for microseconds and then sleep, unless the environment sets a policy. The default of OpenMP
+// is to spin for milliseconds; if threads share a core with other programs, each of the thousands of short loops of a
+// run then takes milliseconds. OpenMP reads the environment in a constructor without a priority and is linked into the
+// program (Makefile: static_gomp), so this constructor runs first. A shared OpenMP library keeps the default.
 __attribute__((constructor(101))) static void limit_spinning(void) {
     if (!getenv("OMP_WAIT_POLICY")) setenv("GOMP_SPINCOUNT", "4000", 0);
 }
@@ -25,55 +25,50 @@ static const struct command commands[] = {
      "run a case and write its result",
      {'o', OPTION_FORCE, OPTION_STRICT, OPTION_SET, OPTION_THREADS, OPTION_MAX_WALL, OPTION_CHECKPOINT_AT, 'q', 'v',
       'h'},
-     "file of the result (default: output.file of the case, or its name with .nc)",
+     "file of the result (default: output.file of the case, or the name of the case with .nc)",
      main_run},
     {"resume",
      "CHECKPOINT",
-     "go on with a run that was stopped, or extend one that is complete",
+     "continue a stopped run, or extend a complete run",
      {OPTION_END, OPTION_STRICT, OPTION_THREADS, OPTION_MAX_WALL, OPTION_CHECKPOINT_AT, 'q', 'v', 'h'},
      NULL,
      main_resume},
     {"steady",
      "CASE",
-     "find the state that a case swims in when all has settled, and whether it is stable",
+     "find the steady swimming state and its stability",
      {'o', OPTION_FROM, OPTION_FORCE, OPTION_STRICT, OPTION_SET, OPTION_THREADS, OPTION_MAX_WALL, OPTION_JSON, 'q',
       'h'},
-     "file of the result, with the last beats (default: output.file of the case, or its name with .nc)",
+     "file of the result, with the last beats (default: output.file of the case, or the name of the case with .nc)",
      main_steady},
     {"study",
      "CASE",
-     "run all members of a sweep and gather their results",
+     "run all members of a sweep and gather the results",
      {'o', 'j', OPTION_LIMIT, OPTION_MEMBERS, OPTION_PLAN, OPTION_SLURM, OPTION_BUNDLE, OPTION_FORCE, OPTION_STRICT,
       OPTION_SET, OPTION_THREADS, OPTION_MAX_WALL, 'q', 'h'},
      "folder of the study (default: the name of the case with -study)",
      main_study},
     {"error",
      "CASE",
-     "state the errors of quantities: vary each numerical key of a case and judge its levels",
+     "estimate the errors of quantities: vary each numerical key of a case and compare the levels",
      {'o', 'j', OPTION_OF, OPTION_WITHIN, OPTION_NO_CONFIRM, OPTION_PLAN, OPTION_LIMIT, OPTION_FORCE, OPTION_STRICT,
       OPTION_SET, OPTION_THREADS, OPTION_MAX_WALL, 'q', 'h'},
      "folder of the members (default: the name of the case with -error)",
      main_error},
     {"gather",
      "FOLDER",
-     "make study.nc and its table again from the files of the members",
+     "write study.nc and its table again from the files of the members",
      {OPTION_STRICT, 'h'},
      NULL,
      main_gather},
     {"compare",
      "CASE",
-     "compare integration methods: error against cost",
+     "compare integration methods by error and cost",
      {'o', OPTION_FORCE, OPTION_METHODS, OPTION_RTOL, OPTION_STEPS, OPTION_REPEATS, OPTION_REFERENCE, OPTION_LIMIT,
       OPTION_SET, OPTION_THREADS, 'q', 'h'},
-     "file to write, as the study.nc of a study (default: none)",
+     "NetCDF file in the format of study.nc (default: none)",
      main_compare},
-    {"check",
-     "CASE",
-     "check a case and list everything that is wrong with it",
-     {OPTION_SET, OPTION_THREADS, 'q', 'h'},
-     NULL,
-     main_check},
-    {"show", "CASE", "print a case with all keys and their values", {OPTION_SET, OPTION_THREADS, 'h'}, NULL, main_show},
+    {"check", "CASE", "check a case and list all errors", {OPTION_SET, OPTION_THREADS, 'q', 'h'}, NULL, main_check},
+    {"show", "CASE", "print a case with the values of all keys", {OPTION_SET, OPTION_THREADS, 'h'}, NULL, main_show},
     {"keys",
      NULL,
      "list all keys of cases, or all variables of result files",
@@ -94,19 +89,19 @@ static const struct command commands[] = {
      main_info},
     {"view",
      "RUN.nc",
-     "write a run as one html page to look at in a browser",
+     "write a run as one html page for a browser",
      {'o', OPTION_FORCE, 'q', 'h'},
-     "file of the page (default: the name of the run with .html, in this folder)",
+     "file of the page (default: the name of the run with .html, in the current folder)",
      main_view},
     {"export",
      "RUN.nc",
-     "write a run in the files of another program",
+     "convert a run to the format of another program",
      {OPTION_VTK, OPTION_FORCE, 'q', 'h'},
      NULL,
      main_export},
     {"demo",
      NULL,
-     "let a fish swim: write demo.nc, demo.png and demo.html in this folder",
+     "simulate one fish: write demo.nc, demo.png and demo.html in the current folder",
      {OPTION_FORCE, 'q', 'h'},
      NULL,
      main_demo},
@@ -117,7 +112,7 @@ static const char summary[] = "schools of flexible swimmers";
 static const char exit_codes[] =
     "0 success, 1 integration failed, 2 wrong usage or wrong case, 3 an expectation is not met\n"
     "or bodies met with contact.action: stop, 4 file or memory error, 75 stopped by a signal or --max-wall:\n"
-    "shoal resume continues a run, a search for a steady state begins again.";
+    "continue a run with shoal resume; start a search for a steady state again.";
 
 static void print_help(FILE *stream) {
     fprintf(stream, "shoal: %s\n\nUsage: shoal COMMAND [OPTIONS] [FILE]\n\n", summary);
@@ -125,10 +120,11 @@ static void print_help(FILE *stream) {
         fprintf(stream, "  %-8s%-11s%s\n", commands[i].name, commands[i].positional ? commands[i].positional : "",
                 commands[i].summary);
     }
+
     fputs(
         "\n  shoal COMMAND --help    the options of a command\n"
         "  shoal --version         versions of the program and its libraries\n"
-        "  shoal --describe        the same as JSON, from which manual and completion are made\n\n",
+        "  shoal --describe        commands and options as JSON, the source of manual and completion\n\n",
         stream);
     fprintf(stream, "Exit codes: %s\n", exit_codes);
 }
@@ -138,10 +134,12 @@ static enum status describe(void) {
     printf("{\"summary\": \"%s\",\n\"exit_codes\": \"", summary);
     for (const char *c = exit_codes; *c; c++) putchar(*c == '\n' ? ' ' : *c);
     printf("\",\n\"commands\": [");
+
     for (int i = 0; i < N_COMMANDS; i++) {
         if (i > 0) printf(",\n ");
         main_describe(&commands[i], stdout);
     }
+
     printf("]}\n");
     return STATUS_OK;
 }
@@ -159,10 +157,11 @@ static char *join(int argc, char **argv) {
 
 static enum status dispatch(const struct command *command, int argc, char **argv) {
     char *const command_line = join(argc, argv);
-    // one more than the command line can have: main_error adds its own
+    // allocate one element more than the command line can fill: main_error adds an assignment
     const char **const assignments = calloc((size_t)argc + 1, sizeof *assignments);
     const char **const of = calloc((size_t)argc + 1, sizeof *of);
     enum status status = STATUS_OK;
+
     if (command_line && assignments && of) {
         struct request request = {.command_line = command_line, .assignments = assignments, .of = of};
         // getopt starts after the name of the command
@@ -190,19 +189,22 @@ static enum status choose(int argc, char **argv) {
         print_help(stderr);
         return status_fail(STATUS_CASE, "no command");
     }
+
     if (strcmp(argv[1], "--version") == 0) return print_version();
     if (strcmp(argv[1], "--describe") == 0) return describe();
+
     if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0) {
         print_help(stdout);
         return STATUS_OK;
     }
+
     for (int i = 0; i < N_COMMANDS; i++) {
         if (strcmp(argv[1], commands[i].name) == 0) return dispatch(&commands[i], argc, argv);
     }
     return main_usage(NULL, "unknown command '%s'", argv[1]);
 }
 
-// the errors of a case name their places themselves
+// Errors of a case begin with file, line and column, so only other messages get the prefix.
 static void print_message(const char *message) {
     const size_t length = strlen(message);
     say_line(stderr, "%s%s%s", strstr(message, "error: ") ? "" : "shoal: error: ", message,

@@ -26,7 +26,7 @@ static int list_warning(int i, struct result_listed *listed) {
     return 1;
 }
 
-/* The kinds of files, and the list of warnings. */
+/* The kinds of result files; the last row is the list of warnings, which is no file. */
 static const struct result_kind kinds[] = {
     {"run", "shoal_schema", RESULT_SCHEMA, "case_effective", result_info, result_table_listed},
     {"study", "shoal_study", STUDY_FILE_SCHEMA, "study_case", study_info, study_file_listed},

@@ -1,4 +1,4 @@
-/* main_check.c: what a run of a case says before its first step, how its first events end, and what it takes. */
+/* main_check.c: shoal check: the warnings of a run at its start, its first events, and an estimate of its cost. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -16,17 +16,17 @@
 #include "run/record.h"
 #include "school/warnings.h"
 
-/* Seconds of the processor for all of it, and of these for the estimates: simulate_start is the rest. */
+/* CPU time of the command, and the part for estimates [s]; the remainder is for simulate_start. */
 static const double time_limit = 0.4, patience = 0.25;
 
-/* What the members of a study have in common; the only one of a case that is none. */
+/* The findings on all members of a study; a case without a sweep has one member. */
 struct checked {
     const struct request *request;
     const struct case_values *values;
     int n_members;          /* 1 without a sweep */
-    int n_fish, n_unknowns; /* of the last school; n_unknowns 0: none has been made */
+    int n_fish, n_unknowns; /* of the last school; n_unknowns 0: no school yet */
     int n_estimated, n_failed, n_warned[N_WARNINGS], first_warned[N_WARNINGS], first_failed;
-    double seconds, bytes; /* of those that have been estimated: times add up, memory does not */
+    double seconds, bytes; /* sum and maximum over the estimated members */
     char failure[512], warning[N_WARNINGS][WARNING_BYTES];
 };
 
@@ -34,10 +34,11 @@ static int is_study(const struct checked *checked) {
     return checked->values->n_axes > 0;
 }
 
-// the warnings of a run that are known at its start
-static void find_warnings(struct checked *checked, int member, struct simulation *simulation) {
+// Find the warnings of a run that are known at the start.
+static void check_warnings(struct checked *checked, int member, struct simulation *simulation) {
     char line[WARNING_BYTES];
     simulate_measure(simulation);
+
     for (enum warning w = 0; w < N_WARNINGS; w++) {
         if (!warnings_line(w, simulation->school, simulation->state, simulation->diagnostics,
                            simulation->residual->scratch, line))
@@ -59,41 +60,46 @@ static void print_warnings(const struct checked *checked) {
     }
 }
 
-// members that fail are results of a study; a run that fails is none
-static enum status estimate(struct checked *checked, int member, struct simulation *simulation) {
+// A failed member is a result of a study; a failed run without a sweep is an error.
+static enum status estimate_member(struct checked *checked, int member, struct simulation *simulation) {
     struct estimate estimate;
     const enum status status = estimate_run(simulation, patience / checked->n_members, &estimate);
+
     if (status == STATUS_OK) {
-        // a part of an event is better than nothing, but not than whole ones of other members
+        // an estimate from part of an event counts only if no member has completed an event
         if (estimate.n_events == 0 && checked->n_estimated > 0) return STATUS_OK;
         checked->n_estimated++;
         checked->seconds += estimate.seconds;
         checked->bytes = fmax(checked->bytes, estimate.bytes);
         return STATUS_OK;
     }
+
     if (!is_study(checked) || status == STATUS_MEMORY) return status;
     if (checked->n_failed++ == 0) {
         checked->first_failed = member;
         snprintf(checked->failure, sizeof checked->failure, "%s", status_message());
     }
+
     return STATUS_OK;
 }
 
-// as `shoal run` begins; once the time is over, only as far as the school
+// Start a member as `shoal run` does. Create only the school once the CPU time is spent.
 static enum status check_start(struct checked *checked, int member, const struct case_values *values) {
     const volatile sig_atomic_t *const stop = main_stop_signal();
     struct simulation *simulation = NULL;
     enum status status = *stop ? STATUS_STOPPED : simulate_start(&simulation, values, stop);
+
     if (status == STATUS_STOPPED) {
         struct school *school;
         TRY(fish_school_create(&school, &values->school));
         fish_school_free(school);
         return STATUS_OK;
     }
+
     TRY(status);
     if (checked->n_unknowns == 0) checked->n_unknowns = simulation->school->n_unknowns;
-    find_warnings(checked, member, simulation);
-    status = estimate(checked, member, simulation);
+    check_warnings(checked, member, simulation);
+    status = estimate_member(checked, member, simulation);
     simulate_free(simulation);
     return status;
 }
@@ -102,11 +108,12 @@ static int common_divisor(int a, int b) {
     return b == 0 ? a : common_divisor(b, a % b);
 }
 
-// every member, round and round in steps of the golden ratio: the first ones are then like all
+// Check all members in steps of the golden ratio, so that the first members sample the entire sweep.
 static enum status check_members(struct checked *checked) {
     const int n = checked->n_members;
     int step = (int)fmax(1, round(0.618 * n));
     while (common_divisor(n, step) > 1) step++;
+
     for (int i = 0, m = 0; i < n; i++, m = (m + step) % n) {
         struct case_values member;
         TRY(case_member(&member, checked->values, m));
@@ -114,10 +121,11 @@ static enum status check_members(struct checked *checked) {
         case_free(&member);
         TRY(status);
     }
+
     return STATUS_OK;
 }
 
-static enum status check(struct checked *checked) {
+static enum status check_case(struct checked *checked) {
     const struct case_values *const values = checked->values;
     TRY(parallel_try_threads(values->school.threads));
     if (is_study(checked)) return check_members(checked);
@@ -125,7 +133,8 @@ static enum status check(struct checked *checked) {
     if (!path) return status_fail(STATUS_MEMORY, "out of memory: a file name");
     enum status status = target_check(path, TARGET_NETCDF, true);
     if (status == STATUS_OK) status = check_start(checked, 0, values);
-    // what has to be there or not for this command alone is no fault of the case
+
+    // an existing output file is no error of the case: only note
     if (status == STATUS_OK && !checked->request->quiet && target_check(path, TARGET_NETCDF, false) != STATUS_OK) {
         say_line(stderr, "shoal: note: %s\n", status_message());
     }
@@ -133,27 +142,31 @@ static enum status check(struct checked *checked) {
     return status;
 }
 
-// ---- what is printed
+// ---- printing
 
 static void print_cost(const struct checked *checked) {
     static const struct {
         double seconds;
         const char *name;
     } units[] = {{86400, "days"}, {3600, "h"}, {60, "min"}, {0, "s"}};
+
     if (checked->n_failed > 0) {
-        say_line(stdout, "    %d of its members fail%s in the first events, as member %d: %s\n", checked->n_failed,
-                 checked->n_failed == 1 ? "s" : "", checked->first_failed, checked->failure);
+        say_line(stdout, "    %d of %d members %s in the first events; member %d: %s\n", checked->n_failed,
+                 checked->n_members, checked->n_failed == 1 ? "fails" : "fail", checked->first_failed,
+                 checked->failure);
     }
+
     if (checked->n_estimated == 0) {
-        say_line(stdout, "    no estimate of its time: %s\n",
-                 checked->n_failed > 0 ? "no member has one" : "its start takes too long");
+        say_line(stdout, "    no estimate of the run time: %s\n",
+                 checked->n_failed > 0 ? "all estimated members failed" : "the first evaluation takes too long");
         return;
     }
+
     const double seconds = checked->seconds * (checked->n_members - checked->n_failed) / checked->n_estimated;
     int i = 0;
     while (seconds < 1.5 * units[i].seconds) i++;
     printf("    %s about %.2g %s and %.2g MB on this machine%s: estimated from a few events",
-           is_study(checked) ? "its runs take" : "its run takes", seconds / fmax(units[i].seconds, 1), units[i].name,
+           is_study(checked) ? "the runs take" : "the run takes", seconds / fmax(units[i].seconds, 1), units[i].name,
            1e-6 * checked->bytes, is_study(checked) ? ", one after the other" : "");
     if (checked->n_estimated + checked->n_failed < checked->n_members) printf(" of %d members", checked->n_estimated);
     printf(", often within a factor of two\n");
@@ -175,12 +188,14 @@ enum status main_check(const struct request *request) {
     TRY(case_read(&values, request->positional, request->n_assignments, request->assignments));
     struct checked checked = {
         .request = request, .values = &values, .n_members = values.n_axes > 0 ? sweep_n_members(&values) : 1};
-    const enum status status = check(&checked);
+    const enum status status = check_case(&checked);
+
     if (status == STATUS_OK) {
         main_print_notes(request, &values);
         print_warnings(&checked);
         if (!request->quiet) print_verdict(&checked);
     }
+
     case_free(&values);
     return status;
 }

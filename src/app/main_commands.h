@@ -1,5 +1,5 @@
-/* main_commands.h: the commands of the program. Each takes what the command line says, prints results to stdout and
- * progress to stderr, and fails with any status. Tested by tests/app/test_command.sh and tests/study.
+/* main_commands.h: the commands of the program. Each command gets the parsed command line, prints results to stdout and
+ * progress to stderr, and can fail with any status. Tested by tests/app/test_command.sh and tests/study.
  *
  *     main_run.c      run, resume, demo
  *     main_steady.c   steady
@@ -31,10 +31,10 @@ enum status main_info(const struct request *request);
 enum status main_view(const struct request *request);
 enum status main_export(const struct request *request);
 
-/* Print the notes on a case to stderr, unless told to be quiet. */
+/* Print the notes on a case to stderr, unless the request is quiet. */
 void main_print_notes(const struct request *request, const struct case_values *values);
 
-/* Print what a file of shoal holds, or the case in it alone. Fails with STATUS_FILE or STATUS_MEMORY. */
+/* Print a summary of a file of shoal, or only the case in the file. Fails with STATUS_FILE or STATUS_MEMORY. */
 enum status main_print_info(const char *path, int case_only);
 
 #endif

@@ -10,10 +10,10 @@
 #include "result/target.h"
 #include "view/field_file.h"
 
-/* Points along the longer side where no grid is given. */
+/* Default number of points along the longer side. */
 enum { STANDARD_POINTS = 400 };
 
-/* The n numbers of an option, with commas between them. */
+/* Read the n comma-separated numbers of an option. */
 static enum status read_numbers(const char *option, const char *text, const char *expected, int n, double *number) {
     const char *at = text;
     for (int i = 0; i < n; i++) {
@@ -26,6 +26,7 @@ static enum status read_numbers(const char *option, const char *text, const char
         }
         at += length + !is_last;
     }
+
     return STATUS_OK;
 }
 
@@ -39,26 +40,30 @@ static enum status read_box(const char *text, const struct field_row *row, struc
     field_file_box(row, grid->low, grid->high);
     if (!text) return STATUS_OK;
     TRY(read_numbers("--box", text, "X0,Y0,X1,Y1 in m", 4, corner));
+
     for (int i = 0; i < 2; i++) {
         grid->low[i] = corner[i];
         grid->high[i] = corner[i + 2];
         if (corner[i] < corner[i + 2]) continue;
         return status_fail(STATUS_CASE, "--box %s: expects the lower left corner before the upper right one", text);
     }
+
     return STATUS_OK;
 }
 
-/* After read_box. */
+/* Read the numbers of points. The box must be set: the default number depends on the sides. */
 static enum status read_grid(const char *text, struct field_grid *grid) {
     const double side[2] = {grid->high[0] - grid->low[0], grid->high[1] - grid->low[1]};
     double n[2];
     for (int i = 0; i < 2; i++) n[i] = fmax(2, 1 + round((STANDARD_POINTS - 1) * side[i] / fmax(side[0], side[1])));
     if (text) TRY(read_numbers("--grid", text, "NX,NY, integers", 2, n));
+
     for (int i = 0; i < 2; i++) {
         if (n[i] != floor(n[i]) || n[i] < 2) {
             return status_fail(STATUS_CASE, "--grid %s: expects NX,NY, integers from 2 on", text);
         }
     }
+
     if (n[0] * n[1] > FIELD_FILE_POINTS) {
         return status_fail(STATUS_CASE, "--grid %s: more than %d points", text, FIELD_FILE_POINTS);
     }

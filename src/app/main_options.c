@@ -9,7 +9,8 @@
 #include "base/text.h"
 #include "study/study_compare.h"
 
-/* One option: its names, the word for its argument (NULL: none), and what it means; NULL: each command says so. */
+/* One option: its names, the word for the argument (NULL: none), and the meaning (NULL: struct command has the
+ * meaning). */
 struct option_help {
     int code;
     const char *name, *argument, *meaning;
@@ -17,45 +18,45 @@ struct option_help {
 
 static const struct option_help all_options[] = {
     {'o', "output", "PATH", NULL},
-    {'j', "processes", "N", "members to run at once (default: available processors / solver.threads)"},
-    {OPTION_SLURM, "slurm", NULL, "run nothing: write the scripts of a Slurm array job into the folder"},
-    {OPTION_BUNDLE, "bundle", "N", "with --slurm: members per task (default: 1; more where there are over 1000)"},
+    {'j', "processes", "N", "number of members that run in parallel (default: available processors / solver.threads)"},
+    {OPTION_SLURM, "slurm", NULL, "write the scripts of a Slurm array job into the folder; do not run"},
+    {OPTION_BUNDLE, "bundle", "N", "with --slurm: members per task (default: 1; more for over 1000 members)"},
     {OPTION_METHODS, "methods", "LIST", "methods to compare, separated by commas: "},
     {OPTION_RTOL, "rtol", "LIST", "tolerances, separated by commas (default: 1e-3,1e-4,1e-5,1e-6,1e-7)"},
     {OPTION_STEPS, "steps", "LIST",
-     "fixed steps in s, separated by commas, of all methods but ida (default: adaptive steps)"},
+     "fixed steps in s, separated by commas, for all methods except ida (default: adaptive steps)"},
     {OPTION_REPEATS, "repeats", "N", "runs of each setting; the wall time is their median (default: 3)"},
-    {OPTION_REFERENCE, "reference-rtol", "X", "tolerance of the reference, which is ida5 (default: 1e-9)"},
+    {OPTION_REFERENCE, "reference-rtol", "X", "tolerance of the reference solution by ida5 (default: 1e-9)"},
     {OPTION_LIMIT, "limit", "SECONDS",
-     "longest wall time of a run; one that takes longer is stopped and has failed (default: none; compare: 60)"},
+     "maximum wall time of a run; a run that takes longer fails (default: none; compare: 60)"},
     {OPTION_OF, "of", "QUANTITY",
-     "a number of a result, or of a steady state (steady_...), whose error is wanted; any number of times"},
-    {OPTION_WITHIN, "within", "X", "refine until the errors are below this part of the values, as in 0.01"},
-    {OPTION_PLAN, "plan", NULL, "print the plan of the errors of a case and its time, and run nothing"},
-    {OPTION_NO_CONFIRM, "no-confirm", NULL, "no finer level of each key: less time, wider errors"},
-    {OPTION_MEMBERS, "members", "A-B", "run only member A, or members A to B, and do not gather"},
-    {OPTION_VTK, "vtk", "FOLDER", "write files of VTK, for ParaView, into this folder"},
+     "quantity of a result or of a steady state (steady_...) to estimate the error of; repeatable"},
+    {OPTION_WITHIN, "within", "X", "refine until the relative errors are below X, such as 0.01"},
+    {OPTION_PLAN, "plan", NULL, "print the members of the error estimate and the estimated time; do not run"},
+    {OPTION_NO_CONFIRM, "no-confirm", NULL, "omit the finest level of each key: less time, wider error bounds"},
+    {OPTION_MEMBERS, "members", "A-B", "run only member A, or members A to B; do not gather"},
+    {OPTION_VTK, "vtk", "FOLDER", "write VTK files for ParaView into this folder"},
     {OPTION_FORCE, "force", NULL, "overwrite existing results"},
-    {OPTION_END, "end", "SECONDS", "another end of the run, also of one that is complete"},
+    {OPTION_END, "end", "SECONDS", "new end of the run; extends a complete run"},
     {OPTION_FROM, "from", "RESULT.nc",
-     "start with the speeds of another steady state, and the places in it (default: those of the case)"},
+     "start with the speeds and positions of another steady state (default: of the case)"},
     {OPTION_CHECKPOINT_AT, "checkpoint-at", "LIST",
-     "further times of checkpoints in s, separated by commas (see time.checkpoint_interval)"},
+     "additional times of checkpoints in s, separated by commas (see time.checkpoint_interval)"},
     {OPTION_MAX_WALL, "max-wall", "HH:MM:SS",
-     "stop after this time, as by a signal: with exit code 75, and of a run with a checkpoint"},
-    {OPTION_STRICT, "strict", NULL, "warnings about a result end with exit code 3"},
-    {OPTION_AT, "at", "T", "time of a row of the result, s (default: the last one with its wake)"},
-    {OPTION_GRID, "grid", "NX,NY", "points in x and y (default: 400 along the longer side, at equal distances)"},
+     "stop after this wall time, as a signal does: exit code 75; a run writes a checkpoint"},
+    {OPTION_STRICT, "strict", NULL, "exit with code 3 if the result has warnings"},
+    {OPTION_AT, "at", "T", "time of a row of the result, s (default: the last row with a wake)"},
+    {OPTION_GRID, "grid", "NX,NY", "number of points in x and y (default: 400 along the longer side, equal spacing)"},
     {OPTION_BOX, "box", "X0,Y0,X1,Y1",
-     "corners of the grid, m (default: around all bodies and wakes, and half a body length more)"},
+     "corners of the grid, m (default: all bodies and wakes, with a margin of half a body length)"},
     {OPTION_SET, "set", "KEY=VALUE", "set a key of the case: fish[0].wave.frequency=1.2, fish[*].nodes=13"},
-    {OPTION_THREADS, "threads", "N", "threads of a run: the same as --set solver.threads=N"},
-    {'q', "quiet", NULL, "print no progress, no notes and no summary; warnings all the same"},
+    {OPTION_THREADS, "threads", "N", "threads of a run; same as --set solver.threads=N"},
+    {'q', "quiet", NULL, "suppress progress, notes and summary; warnings are still printed"},
     {'v', "verbose", NULL, "print a summary of the result at the end"},
     {OPTION_JSON, "json", NULL, "print JSON"},
-    {OPTION_SCHEMA, "schema", NULL, "print the keys as a JSON schema, by which editors check and complete cases"},
+    {OPTION_SCHEMA, "schema", NULL, "print the keys as a JSON schema, with which editors check and complete cases"},
     {OPTION_OUTPUT, "output", NULL, "list the variables of result files instead of the keys of cases"},
-    {OPTION_CASE, "case", NULL, "print only the complete case that made the file"},
+    {OPTION_CASE, "case", NULL, "print only the complete case stored in the file"},
     {'h', "help", NULL, "print this help"},
 };
 
@@ -67,10 +68,11 @@ static const struct option_help *option_of(int code) {
     return option;
 }
 
-/* Print a sentence in lines of at most 100 characters, of which all but the first begin at the same column. */
+/* Print a sentence in lines of at most 100 characters; indent all lines after the first. */
 static void print_wrapped(const char *sentence, FILE *stream) {
     enum { COLUMN = 27, WIDTH = 100 };
     int column = COLUMN;
+
     while (*sentence) {
         const int length = (int)strcspn(sentence, " ");
         if (column > COLUMN && column + 1 + length > WIDTH) {
@@ -84,10 +86,11 @@ static void print_wrapped(const char *sentence, FILE *stream) {
         column += length;
         sentence += length + (sentence[length] == ' ');
     }
+
     fputc('\n', stream);
 }
 
-/* What an option means to a command; the caller frees *meaning. */
+/* Write the meaning of an option of a command; the caller frees *meaning. */
 static void write_meaning(const struct command *command, const struct option_help *option, struct text *meaning) {
     text_add(meaning, "%s", option->meaning ? option->meaning : command->output);
     if (option->code == OPTION_METHODS) study_compare_words(meaning);
@@ -96,6 +99,7 @@ static void write_meaning(const struct command *command, const struct option_hel
 static void print_command_help(const struct command *command, FILE *stream) {
     fprintf(stream, "shoal %s: %s\n\nUsage: shoal %s [OPTIONS]%s%s\n\n", command->name, command->summary, command->name,
             command->positional ? " " : "", command->positional ? command->positional : "");
+
     for (int i = 0; command->options[i]; i++) {
         const struct option_help *option = option_of(command->options[i]);
         char names[64];
@@ -133,10 +137,12 @@ void main_describe(const struct command *command, FILE *stream) {
     print_string(stream, ", ", "positional", command->positional);
     print_string(stream, ", ", "summary", command->summary);
     fputs(", \"options\": [", stream);
+
     for (int i = 0; command->options[i]; i++) {
         if (i > 0) fputs(",\n  ", stream);
         describe_option(command, option_of(command->options[i]), stream);
     }
+
     fputs("]}", stream);
 }
 
@@ -195,6 +201,7 @@ static void take_option(struct request *request, int code, char *argument) {
 int main_parse(const struct command *command, int argc, char **argv, struct request *request, enum status *status) {
     struct option options[N_OPTIONS + 1] = {0};
     char letters[2 * N_OPTIONS + 2] = ":";
+
     for (int i = 0; command->options[i]; i++) {
         const struct option_help *from = option_of(command->options[i]);
         options[i] = (struct option){from->name, from->argument ? required_argument : no_argument, NULL, from->code};
@@ -204,6 +211,8 @@ int main_parse(const struct command *command, int argc, char **argv, struct requ
             letters[end + 1] = from->argument ? ':' : '\0';
         }
     }
+
+    // parse; getopt itself prints nothing
     opterr = 0;
     for (int code; (code = getopt_long(argc, argv, letters, options, NULL)) != -1;) {
         if (code == 'h') {
@@ -217,10 +226,12 @@ int main_parse(const struct command *command, int argc, char **argv, struct requ
         }
         take_option(request, code, optarg);
     }
+
+    // check the positional argument
     const int n_left = argc - optind;
     if (command->positional && n_left == 0) *status = main_usage(command, "%s is missing", command->positional);
     if (n_left > (command->positional ? 1 : 0)) {
-        *status = main_usage(command, "'%s' is one word too many", argv[optind + (command->positional ? 1 : 0)]);
+        *status = main_usage(command, "unexpected argument '%s'", argv[optind + (command->positional ? 1 : 0)]);
     }
     if (command->positional && n_left > 0) request->positional = argv[optind];
     return 0;

@@ -1,4 +1,4 @@
-/* main_options.h: what follows a command on the command line, and the help on it. Tested by
+/* main_options.h: arguments and options of the commands, and the help texts. Tested by
  * tests/app/test_command.sh. */
 #ifndef MAIN_OPTIONS_H
 #define MAIN_OPTIONS_H
@@ -7,7 +7,7 @@
 
 #include "base/status.h"
 
-/* Options without a letter of their own. */
+/* Options without a letter. */
 enum option_code {
     OPTION_SET = 256,
     OPTION_THREADS,
@@ -40,7 +40,7 @@ enum option_code {
     OPTION_NO_CONFIRM
 };
 
-/* What the command line says. A string is NULL where its option is not given. */
+/* The parsed command line. A string is NULL if the option is absent. */
 struct request {
     const char *command_line;
     const char *output;
@@ -48,7 +48,7 @@ struct request {
     int n_assignments;
     const char **assignments; /* of --set, "KEY=VALUE" */
     char threads[64];         /* --threads as an assignment */
-    char end[64];             /* --end as one */
+    char end[64];             /* --end as an assignment */
     const char *checkpoint_at, *max_wall;
     const char *processes, *members;
     const char *methods, *rtols, *steps, *repeats, *reference_rtol, *limit, *bundle;
@@ -63,8 +63,8 @@ struct request {
     const char *positional;
 };
 
-/* One command: its name, what follows it, one sentence, the codes of its options, what --output means to it, and the
- * function that does it. */
+/* One command: name, positional argument (NULL: none), summary, codes of the options, meaning of --output, and the
+ * function that runs the command. */
 struct command {
     const char *name, *positional, *summary;
     int options[20]; /* 0 at the end */
@@ -72,17 +72,16 @@ struct command {
     enum status (*run)(const struct request *request);
 };
 
-/* Read the options of a command, argv[0] being its name, into *request, whose assignments and of have room for argc
- * strings. Returns -1 once the help of the command has been printed; else 0, and *status is STATUS_CASE where they are
- * wrong. */
+/* Parse the options of a command into *request; argv[0] is the name of the command, and assignments and of have room
+ * for argc strings. Returns -1 after printing the help of the command, else 0; *status is STATUS_CASE for wrong
+ * options. */
 int main_parse(const struct command *command, int argc, char **argv, struct request *request, enum status *status);
 
-/* Print a command as an object of JSON: name, positional, summary, and its options with letter, name, argument and
- * meaning. */
+/* Print a command as a JSON object: name, positional, summary, and options with letter, name, argument and meaning. */
 void main_describe(const struct command *command, FILE *stream);
 
-/* Fail with STATUS_CASE: the problem (a printf format with one %s for the word) and where the help is; command may be
- * NULL. */
+/* Fail with STATUS_CASE. The message is the problem (a printf format with one %s for the word) and the command that
+ * prints help; command may be NULL. */
 enum status main_usage(const struct command *command, const char *format, const char *word);
 
 #endif

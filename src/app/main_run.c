@@ -1,4 +1,4 @@
-/* main_run.c: run a case, go on with a run that was stopped; the demonstration. */
+/* main_run.c: shoal run, resume and demo. */
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -37,9 +37,9 @@ static void tell_progress(const struct simulate_progress *now, void *data) {
     progress_show(now, &teller->progress);
 }
 
-/* Run, or resume where values is NULL, and tell about it. */
-static enum status run_and_tell(const struct case_values *values, const struct request *request, const char *path,
-                                struct teller *teller) {
+/* Run a case, or resume if values is NULL, and report progress, notes and warnings. */
+static enum status run_with_reports(const struct case_values *values, const struct request *request, const char *path,
+                                    struct teller *teller) {
     const struct simulate_options options = {.path = path,
                                              .overwrite = request->force,
                                              .command = request->command_line,
@@ -62,7 +62,7 @@ static enum status run_and_tell(const struct case_values *values, const struct r
 
 static enum status run_case(const struct case_values *values, const struct request *request, const char *path) {
     struct teller teller = {0};
-    enum status status = run_and_tell(values, request, path, &teller);
+    enum status status = run_with_reports(values, request, path, &teller);
     const char *const result = teller.path ? teller.path : "";
     if (status == STATUS_OK && request->verbose) status = main_print_info(result, 0);
     if (status == STATUS_OK && !request->quiet && !request->verbose) say_line(stdout, "%s\n", result);
@@ -81,7 +81,7 @@ enum status main_resume(const struct request *request) {
 
 // ---- demo
 
-// find the folder of cases and scripts: that of the sources, or share/shoal next to an installed program
+// Find the folder of cases and scripts: the source tree, or share/shoal of an installation.
 static enum status find_share(char share[PATH_MAX]) {
     char program[PATH_MAX];
     const ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
@@ -90,6 +90,7 @@ static enum status find_share(char share[PATH_MAX]) {
     char *const slash = strrchr(program, '/');
     if (slash) *slash = '\0';
     static const char *const places[] = {"..", "../share/shoal"};
+
     for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
         char file[PATH_MAX];
         if (snprintf(share, PATH_MAX, "%s/%s", program, places[i]) >= PATH_MAX) continue;
@@ -100,29 +101,33 @@ static enum status find_share(char share[PATH_MAX]) {
         free(found);
         return STATUS_OK;
     }
+
     return status_fail(STATUS_FILE, "cases/demo.yaml is neither in %s/.. nor in %s/../share/shoal", program, program);
 }
 
-static enum status draw(const char *share, const char *result, const char *picture) {
+static enum status draw_demo(const char *share, const char *result, const char *picture) {
     char script[PATH_MAX + 32];
     snprintf(script, sizeof script, "%s/scripts/plot.py", share);
     fflush(NULL);
     const pid_t child = fork();
+
     if (child == 0) {
         execl("/usr/bin/python3", "python3", script, result, picture, (char *)NULL);
         _exit(127);
     }
+
     int outcome = -1;
     if (child < 0 || waitpid(child, &outcome, 0) != child || outcome != 0) {
         return status_fail(STATUS_FILE, "%s was written, but /usr/bin/python3 %s could not draw %s", result, script,
                            picture);
     }
+
     return STATUS_OK;
 }
 
 static enum status check_demo_target(const char *path, enum target_kind kind, int force) {
     if (!force && access(path, F_OK) == 0) {
-        return status_fail(STATUS_FILE, "%s exists: allow replacing it with --force, or go to another folder", path);
+        return status_fail(STATUS_FILE, "%s exists: replace it with --force, or change to another folder", path);
     }
     return target_check(path, kind, true);
 }
@@ -139,10 +144,9 @@ enum status main_demo(const struct request *request) {
     demo.output = "demo.nc";
     demo.verbose = !request->quiet;
     TRY(main_run(&demo));
-    TRY(draw(share, "demo.nc", "demo.png"));
+    TRY(draw_demo(share, "demo.nc", "demo.png"));
     TRY(page_write("demo.nc", "demo.html", request->force));
     if (!request->quiet)
-        say_line(stdout, "\nThe picture is demo.png, the movie demo.html (open it in a browser); the case is %s.\n",
-                 path);
+        say_line(stdout, "\nPicture: demo.png. Movie: demo.html (open in a browser). Case: %s.\n", path);
     return STATUS_OK;
 }

@@ -1,4 +1,4 @@
-/* main_signals.c: a handler stores the number of the signal, and the work looks at it. */
+/* main_signals.c: the handler stores the signal number; the integration polls the number. */
 #include "app/main_signals.h"
 
 #include <fcntl.h>
@@ -15,18 +15,19 @@ static void on_signal(int number) {
     stop_signal = number;
 }
 
-/* Signals that ask the work to stop, and whether the program that started us ignores them. Libraries catch some before
- * main begins (SUNDIALS 7 of Debian loads MPI, which catches SIGHUP), so an executable looks before they are loaded. */
+/* Signals that request a stop, and the actions inherited from the parent process. Libraries install handlers before
+ * main (SUNDIALS 7 of Debian loads MPI, which catches SIGHUP), so the executable stores the inherited actions before
+ * the libraries are loaded. */
 static struct {
     int number, flags;
     struct sigaction before;
 } asking[] = {
     {.number = SIGINT, .flags = (int)SA_RESETHAND},
-    // a queue may send these more than once while the checkpoint is written
+    // a batch queue can send these repeatedly while the checkpoint is written
     {.number = SIGTERM},
     {.number = SIGHUP},
     {.number = SIGUSR1},
-    // the soft limit on CPU time; the hard one kills
+    // soft limit on CPU time; the hard limit kills
     {.number = SIGXCPU},
 };
 enum { N_ASKING = sizeof asking / sizeof *asking };
@@ -43,7 +44,7 @@ __attribute__((constructor)) static void keep_at_start(void) {
 #endif
 
 void main_open_standard(void) {
-    // standard output must fail as it would have: nothing can be written to what is open for reading
+    // open standard output for reading, so that writing still fails
     for (int file = 0; file <= STDERR_FILENO; file++) {
         if (fcntl(file, F_GETFD) < 0) open("/dev/null", file == STDERR_FILENO ? O_WRONLY : O_RDONLY);
     }
@@ -60,9 +61,11 @@ void main_catch_signals(void) {
         const int is_ignored = asking[i].before.sa_handler == SIG_IGN;
         sigaction(asking[i].number, is_ignored ? &asking[i].before : &action, NULL);
     }
-    // a full disk or a file limit is an error to report, not a death
+
+    // report a full disk or a file size limit as an error; the default action kills
     signal(SIGXFSZ, SIG_IGN);
-    // so is a closed pipe; of progress, it is not even that
+
+    // report a closed pipe as an error; progress ignores a closed stderr
     signal(SIGPIPE, SIG_IGN);
 }
 
@@ -95,8 +98,7 @@ static volatile sig_atomic_t is_guarded;
 
 static void on_exit_of_a_library(void) {
     if (!is_guarded) return;
-    fputs("shoal: error: a library ended the program: there is too little memory, or there are too many threads\n",
-          stderr);
+    fputs("shoal: error: a library ended the program: out of memory or too many threads\n", stderr);
     _exit(status_exit_code(STATUS_MEMORY));
 }
 

@@ -1,4 +1,5 @@
-/* main_signals.h: what signals do to the program. Tested by tests/app/test_command.sh and tests/study/test_study.sh. */
+/* main_signals.h: stop requests by signals and time limits; exits of libraries. Tested by tests/app/test_command.sh and
+ * tests/study/test_study.sh. */
 #ifndef MAIN_SIGNALS_H
 #define MAIN_SIGNALS_H
 
@@ -6,29 +7,29 @@
 
 #include "base/status.h"
 
-/* Open /dev/null in the place of standard input, output and error where the program was started without them: the next
- * file would take their number, and what is printed would go into it. */
+/* Open /dev/null for each of standard input, output and error that is closed: otherwise the next file would get the
+ * descriptor, and printed text would go into that file. */
 void main_open_standard(void);
 
-/* Wait for our own processes even where the program that started us ignores the ends of its own. */
+/* Restore the default action of SIGCHLD: if the parent process ignores SIGCHLD, waiting for child processes fails. */
 void main_reset_signals(void);
 
-/* From here on SIGINT, SIGTERM, SIGHUP, SIGUSR1 and SIGXCPU ask the work to stop; a second SIGINT ends the program at
- * once. What the program that started us has ignored stays ignored. */
+/* Let SIGINT, SIGTERM, SIGHUP, SIGUSR1 and SIGXCPU request a stop; a second SIGINT ends the program at once. Signals
+ * that the parent process ignores stay ignored. */
 void main_catch_signals(void);
 
-/* Ask the work to stop after this time, "HH:MM:SS" (--max-wall). Fails with STATUS_CASE where it is none. */
+/* Request a stop after a wall time "HH:MM:SS" (--max-wall). Fails with STATUS_CASE for any other text. */
 enum status main_limit_wall_time(const char *text);
 
-/* Ask the work to stop once it has used this time of the processor, s. */
+/* Request a stop after this CPU time [s]. */
 void main_limit_processor_time(double seconds);
 
-/* From here to main_exit an exit is that of a library, which ends the program where it finds no threads or memory: the
- * exit code becomes 4, with a message. main_exit returns the exit code of main. */
+/* Turn a call of exit before main_exit into exit code 4 with a message: some libraries call exit if threads or memory
+ * run out. main_exit returns the exit code of main. */
 void main_guard_exit(void);
 int main_exit(int code);
 
-/* The number of the last of these signals, SIGALRM or SIGPROF where the time is over; 0 before. */
+/* The number of the last stop signal; SIGALRM or SIGPROF after a time limit; 0 without a stop request. */
 const volatile sig_atomic_t *main_stop_signal(void);
 
 #endif

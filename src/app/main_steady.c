@@ -1,4 +1,4 @@
-/* main_steady.c: the steady state of a case. */
+/* main_steady.c: shoal steady: the steady state of a case. */
 #include <stdio.h>
 
 #include "app/main_commands.h"
@@ -16,7 +16,8 @@ static void tell_progress(const struct steady_progress *now, void *data) {
     progress_steady(now, &teller->progress);
 }
 
-static enum status find(const struct case_values *values, const struct request *request, const char *path) {
+static enum status find_steady_state(const struct case_values *values, const struct request *request,
+                                     const char *path) {
     struct teller teller = {0};
     const struct steady_options options = {.path = path,
                                            .from = request->from,
@@ -42,9 +43,10 @@ static enum status find(const struct case_values *values, const struct request *
         TRY(say_begin(&page));
         TRY(say_end(&page, netcdf_print(path, steady_info, page.stream)));
     }
+
     return main_refuse_warnings(request, &teller, path);
 }
 
 enum status main_steady(const struct request *request) {
-    return main_with_case(request, find);
+    return main_with_case(request, find_steady_state);
 }

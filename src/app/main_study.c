@@ -1,4 +1,4 @@
-/* main_study.c: many runs from one case. */
+/* main_study.c: shoal study, error, gather and compare: many runs of one case. */
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -18,7 +18,7 @@
 
 // ---- study, error, gather
 
-/* The value of an option: an integer that is not negative. */
+/* Read the value of an option: a non-negative integer. */
 static enum status read_count(const char *option, const char *text, int *count) {
     char *end;
     const long number = strtol(text, &end, 10);
@@ -29,7 +29,7 @@ static enum status read_count(const char *option, const char *text, int *count) 
     return STATUS_OK;
 }
 
-/* The value of an option: a positive number; the default where the option is not given. */
+/* Read the value of an option: a positive number; the default if the option is absent. */
 static enum status read_number(const char *option, const char *text, double standard, double *number) {
     char *end = NULL;
     *number = text ? strtod(text, &end) : standard;
@@ -37,17 +37,17 @@ static enum status read_number(const char *option, const char *text, double stan
     return status_fail(STATUS_CASE, "%s %s: expects a number above 0", option, text);
 }
 
-/* "3", or "3-7". */
+/* Read one member, "3", or a range of members, "3-7". */
 static enum status read_range(const char *text, int *first, int *last) {
     int length = 0;
     const int n = sscanf(text, "%9d-%9d%n", first, last, &length);
     if (n == 1 && sscanf(text, "%*d%n", &length) == 0) *last = *first;
     if (n >= 1 && text[length] == '\0' && *first >= 0 && *last >= *first) return STATUS_OK;
-    return status_fail(STATUS_CASE, "--members %s: expects the number of a member, or a range as in 0-9", text);
+    return status_fail(STATUS_CASE, "--members %s: expects the number of a member, or a range such as 0-9", text);
 }
 
-static enum status fill_options(const struct request *request, const char *folder, struct progress *progress,
-                                struct study_options *options) {
+static enum status study_options_from(const struct request *request, const char *folder, struct progress *progress,
+                                      struct study_options *options) {
     *options = (struct study_options){.folder = folder,
                                       .command = request->command_line,
                                       .last = -1,
@@ -67,41 +67,46 @@ static enum status run_study(const struct case_values *values, const struct requ
     struct study_options options;
     int n_failed;
     progress_start(&progress);
-    TRY(fill_options(request, folder, &progress, &options));
+    TRY(study_options_from(request, folder, &progress, &options));
     main_catch_signals();
     const enum status status = study_run(values, &options, &n_failed);
     progress_end(&progress);
     TRY(status);
+
     if (options.last < 0) {
         struct say_page page;
         TRY(say_begin(&page));
         return say_end(&page, study_report(values, folder, NULL, request->command_line, request->strict, page.stream));
     }
+
     if (n_failed == 0) return STATUS_OK;
-    return status_fail(STATUS_SOLVER, "%d of %d members failed; %s/member-*.failed say why", n_failed,
+    return status_fail(STATUS_SOLVER, "%d of %d members failed: see %s/member-*.failed", n_failed,
                        options.last - options.first + 1, folder);
 }
 
-/* The errors of a case: all members, some of those that it begins with, or their scripts. */
+/* Estimate the errors of a case: run all members, run some members of the first plan, or write the scripts. */
 static enum status run_errors(const struct case_values *values, const struct request *request, const char *folder,
                               int bundle) {
     if (!request->slurm && !request->members) {
         struct progress progress;
         struct study_options options;
         progress_start(&progress);
-        TRY(fill_options(request, folder, &progress, &options));
+        TRY(study_options_from(request, folder, &progress, &options));
         main_catch_signals();
         const enum status status =
             study_errors(values, &options, request->plan ? 2 : !request->quiet, request->strict, stdout);
         progress_end(&progress);
         return status;
     }
+
     struct error_study study;
     enum status status = error_plan_create(&study, values);
+
     if (status == STATUS_OK) {
         status = request->slurm ? study_slurm(&study.study, folder, bundle, stdout)
                                 : run_study(&study.study, request, folder);
     }
+
     error_plan_free(&study);
     return status;
 }
@@ -134,28 +139,34 @@ enum status main_study(const struct request *request) {
     return status;
 }
 
-/* What the command line says of errors, over what the case says, as an assignment that the caller frees. */
+/* Write the assignment of the key `error`: the settings of the case, overridden by the command line. The caller frees
+ * the assignment. */
 static enum status assign_errors(const struct case_values *values, const struct request *request, char **assignment) {
     struct sweep_error error = {.within = NAN, .most = SWEEP_ERROR_MOST, .confirm = 1};
     struct text text = {0};
     *assignment = NULL;
     if (values->error) error = *values->error;
+
     if (request->n_of > 0) {
         error.n_of = request->n_of;
         error.of = (char **)(uintptr_t)request->of;
     }
+
     if (error.n_of == 0) {
-        return status_fail(STATUS_CASE, "%s has no `error`: give --of QUANTITY, as in --of steady_speed",
+        return status_fail(STATUS_CASE, "%s has no `error`: give --of QUANTITY, such as --of steady_speed",
                            request->positional);
     }
+
     if (request->within) TRY(read_number("--within", request->within, 0, &error.within));
     if (request->no_confirm) error.confirm = 0;
     text_add(&text, "error=");
     sweep_error_write(&text, &error);
+
     if (text.failed) {
         text_free(&text);
         return status_fail(STATUS_MEMORY, "out of memory: the command line");
     }
+
     *assignment = text.text;
     return STATUS_OK;
 }
@@ -170,10 +181,12 @@ enum status main_error(const struct request *request) {
     TRY(status);
     with_errors.assignments[with_errors.n_assignments++] = assignment;
     status = case_read(&values, request->positional, with_errors.n_assignments, with_errors.assignments);
+
     if (status == STATUS_OK) {
         status = run_in_folder(&values, &with_errors, "-error");
         case_free(&values);
     }
+
     free(assignment);
     return status;
 }

@@ -1,4 +1,4 @@
-/* main_teller.c: the case of a command, and the warnings about its result. */
+/* main_teller.c: read the case of a command; print and count the warnings on the result. */
 #include "app/main_teller.h"
 
 #include <stdio.h>

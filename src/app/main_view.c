@@ -1,4 +1,4 @@
-/* main_view.c: results for other programs to show. */
+/* main_view.c: shoal view and export: results for other programs. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,14 +11,14 @@
 #include "view/page.h"
 #include "view/vtk.h"
 
-/* Add the name of a file without its folders and its ending. */
+/* Add the name of a file without folders and ending. */
 static void add_stem(struct text *text, const char *path) {
     const char *const slash = strrchr(path, '/'), *const name = slash ? slash + 1 : path,
                       *const dot = strrchr(name, '.');
     text_add(text, "%.*s", (int)(dot && dot > name ? (size_t)(dot - name) : strlen(name)), name);
 }
 
-/* Say which rows are not shown. */
+/* Print a note on rows that are missing because the file is truncated. */
 static void note_missing(const char *path) {
     struct netcdf_rows rows;
     if (netcdf_read_rows(path, &rows) != STATUS_OK || rows.n == 0 || rows.n == rows.n_counted) return;
@@ -35,6 +35,7 @@ enum status main_view(const struct request *request) {
         add_stem(&path, request->positional);
         text_add(&path, ".html");
     }
+
     const enum status status = path.failed ? status_fail(STATUS_MEMORY, "out of memory: a file name")
                                            : page_write(request->positional, path.text, request->force);
     if (status == STATUS_OK) note_missing(request->positional);
@@ -45,7 +46,8 @@ enum status main_view(const struct request *request) {
 
 enum status main_export(const struct request *request) {
     char *list = NULL;
-    if (!request->vtk) return status_fail(STATUS_CASE, "export: to what? give --vtk FOLDER; see shoal export --help");
+    if (!request->vtk)
+        return status_fail(STATUS_CASE, "export: choose a format: --vtk FOLDER; see shoal export --help");
     TRY(vtk_export(request->positional, request->vtk, request->force, &list));
     note_missing(request->positional);
     if (!request->quiet) say_line(stdout, "%s\n", list);

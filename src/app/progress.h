@@ -1,4 +1,4 @@
-/* progress.h: how far a run or a study is, on stderr: on a terminal one line, redrawn; in a log one line per tenth. */
+/* progress.h: progress of a run or a study on stderr: on a terminal one line, redrawn; in a log one line per tenth. */
 #ifndef PROGRESS_H
 #define PROGRESS_H
 
@@ -7,25 +7,25 @@
 #include "study/study.h"
 
 struct progress {
-    int terminal;    /* stderr is one */
+    int terminal;    /* stderr is a terminal */
     double drawn_at; /* wall time of the run when the line was last drawn, s */
-    int tenth;       /* of the run that a log last reported */
-    int drawn;       /* there is a line on the terminal */
+    int tenth;       /* of the run, as last reported in a log */
+    int drawn;       /* the terminal shows a line */
 };
 
 /* Start a run. */
 void progress_start(struct progress *progress);
 
-/* Report how far it is; data is a struct progress. Fits simulate_options.progress. */
+/* Report the progress of a run; data is a struct progress. The signature fits simulate_options.progress. */
 void progress_show(const struct simulate_progress *now, void *data);
 
-/* How far a search for a steady state is. Fits steady_options.progress. */
+/* Report the progress of a search for a steady state. The signature fits steady_options.progress. */
 void progress_steady(const struct steady_progress *now, void *data);
 
-/* The same for the members of a study. Fits study_options.progress. */
+/* Report the progress of a study. The signature fits study_options.progress. */
 void progress_study(const struct study_progress *now, void *data);
 
-/* Clear the line of a terminal, so that what is printed next has a line of its own. */
+/* Clear the progress line on a terminal before other output. */
 void progress_end(struct progress *progress);
 
 #endif

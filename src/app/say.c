@@ -20,14 +20,14 @@ void say_line(FILE *stream, const char *format, ...) {
     free(line);
 }
 
-static enum status out_of_memory(void) {
-    return status_fail(STATUS_MEMORY, "out of memory: what is to be printed");
+static enum status page_out_of_memory(void) {
+    return status_fail(STATUS_MEMORY, "out of memory: text to print");
 }
 
 enum status say_begin(struct say_page *page) {
     *page = (struct say_page){0};
     page->stream = open_memstream(&page->text, &page->n);
-    return page->stream ? STATUS_OK : out_of_memory();
+    return page->stream ? STATUS_OK : page_out_of_memory();
 }
 
 enum status say_end(struct say_page *page, enum status status) {
@@ -35,5 +35,5 @@ enum status say_end(struct say_page *page, enum status status) {
     if (page->text) text_print_clean(stdout, page->text);
     free(page->text);
     *page = (struct say_page){0};
-    return status == STATUS_OK && failed ? out_of_memory() : status;
+    return status == STATUS_OK && failed ? page_out_of_memory() : status;
 }

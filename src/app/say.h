@@ -1,4 +1,4 @@
-/* say.h: what the program prints has no control characters: names of files and what files hold may be anybody's. Tested
+/* say.h: printing without control characters, which file names and the contents of files can have. Tested
  * by tests/app/test_exits.sh. */
 #ifndef SAY_H
 #define SAY_H
@@ -10,7 +10,7 @@
 /* Print to a stream (printf format): text_print_clean. */
 void say_line(FILE *stream, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* Collect what functions write to a stream, and print it to standard output at the end. */
+/* Collect text in a stream and print the text to standard output at the end. */
 struct say_page {
     FILE *stream; /* write here */
     char *text;
@@ -20,7 +20,7 @@ struct say_page {
 /* Begin a page; fails with STATUS_MEMORY. */
 enum status say_begin(struct say_page *page);
 
-/* Print the page, also where a function that should write it has failed with this status. Returns that status, or
+/* Print the page, even after a failure of the writer with this status. Returns the status of the writer, or
  * STATUS_MEMORY. */
 enum status say_end(struct say_page *page, enum status status);
 

@@ -27,25 +27,25 @@ struct reading {
     struct yaml_errors errors;
 };
 
-static enum status out_of_memory(void) {
+static enum status case_out_of_memory(void) {
     return status_fail(STATUS_MEMORY, "out of memory: the values of the case");
 }
 
 // ---- unknown keys
 
-/* Complain about the unknown keys of a map, and of the maps below it. section: its path in the table ("" is the top);
- * path: its path in messages; owner: the fish that it belongs to, or NULL. */
+/* Add errors for the unknown keys of a map and of nested maps. section: path of the map in the table ("": the top);
+ * path: path of the map in messages; owner: the fish with the map, or NULL. */
 static void check_keys(const struct yaml_node *map, const char *section, const char *path, const char *owner,
                        struct yaml_errors *errors);
 
-/* Complain unless a node is a map, and about its keys. */
+/* Require a node to be a map with known keys. */
 static void check_map(const struct yaml_node *node, const char *section, const char *path, const char *owner,
                       struct yaml_errors *errors) {
     char shown[64];
     if (node->kind == YAML_MAP) {
         check_keys(node, section, path, owner, errors);
     } else {
-        yaml_errors_add(errors, node->mark, "%s: expects keys below it, got %s", path,
+        yaml_errors_add(errors, node->mark, "%s: expects a section with keys, got %s", path,
                         yaml_tree_describe(node, shown, sizeof shown));
     }
 }
@@ -55,10 +55,12 @@ static void check_school(const struct yaml_node *node, struct yaml_errors *error
         yaml_errors_add(errors, node->mark, "fish: expects a list; begin the keys of each fish with '- '");
         return;
     }
+
     if (node->n > CASE_MAX_FISH) {
         yaml_errors_add(errors, node->mark, "fish: more than %d fish", CASE_MAX_FISH);
         return;
     }
+
     for (int i = 0; i < node->n; i++) {
         char path[32];
         snprintf(path, sizeof path, "fish[%d]", i);
@@ -71,6 +73,7 @@ static void check_defaults(const struct yaml_node *node, struct yaml_errors *err
         yaml_errors_add(errors, node->mark, "defaults: expects {fish: {...}}");
         return;
     }
+
     for (int i = 0; i < node->n; i++) {
         const struct yaml_entry *const entry = &node->entry[i];
         if (strcmp(entry->key, "fish") == 0) {
@@ -103,7 +106,7 @@ static void check_keys(const struct yaml_node *map, const char *section, const c
 
 // ---- values
 
-/* Read the value of one key from the text of its default. */
+/* Read the default of a key. */
 static enum status read_default(const struct key *key, const char *text, void *field) {
     const struct yaml_source source = {"default", (char *)text, strlen(text), 0, true};
     struct yaml_errors none = {0};
@@ -129,6 +132,7 @@ static bool is_under_value(const struct case_tree *tree, const struct key *key) 
 static enum status read_key(struct reading *reading, const struct key *key, int fish, enum preset preset, void *field) {
     bool is_default;
     const struct yaml_node *const node = case_merge_value(&reading->tree, key->path, fish, &is_default);
+
     if (node) {
         // errors in defaults.fish have been reported already
         struct yaml_errors silent = {0};
@@ -142,20 +146,24 @@ static enum status read_key(struct reading *reading, const struct key *key, int 
         yaml_errors_free(&silent);
         return status;
     }
+
     const char *const initial = preset == PRESET_PUBLISHED && key->published ? key->published : key->initial;
     if (initial) return read_default(key, initial, field);
+
     if (!key->derived && !is_under_value(&reading->tree, key)) {
         yaml_errors_add(&reading->errors, case_merge_mark(&reading->tree, key->path, fish), "%s: is required: %s%s%s",
                         key->path, key->meaning, *key->unit ? ", in " : "", key->unit);
     }
+
     return STATUS_OK;
 }
 
-/* Check the values under defaults.fish by reading them, each once. */
+/* Check each value under defaults.fish by reading the value once. */
 static enum status check_default_values(struct reading *reading) {
     const struct yaml_node *const defaults = yaml_tree_find(reading->tree.root, "defaults.fish");
     struct fish_parameters scratch;
     enum status status = STATUS_OK;
+
     for (int k = 0; k < case_table_n && status == STATUS_OK; k++) {
         const struct key *const key = &case_table[k];
         if (!case_table_is_of_fish(key)) continue;
@@ -168,6 +176,7 @@ static enum status check_default_values(struct reading *reading) {
         status = case_value_read(key, field, node, path, &reading->errors);
         case_value_free(key, field);
     }
+
     return status;
 }
 
@@ -186,6 +195,7 @@ static void clear(struct case_values *values) {
 static enum status read_keys(struct reading *reading, struct case_values *values) {
     const struct key *const preset = case_table_row("preset");
     TRY(read_key(reading, preset, 0, PRESET_NONE, &values->preset));
+
     for (int k = 0; k < case_table_n; k++) {
         const struct key *const key = &case_table[k];
         if (key == preset || !case_table_is_value(key)) continue;
@@ -197,12 +207,13 @@ static enum status read_keys(struct reading *reading, struct case_values *values
             TRY(read_key(reading, key, i, values->preset, case_table_field(key, values, &values->school.fish[i])));
         }
     }
+
     return STATUS_OK;
 }
 
-// ---- defaults that are computed from other values; the table describes them
+// ---- derived defaults, described in the table
 
-/* Give a value that was not read its default. */
+/* Replace a value that was not read by the default. */
 static void derive(double *value, double standard) {
     if (isnan(*value)) *value = standard;
 }
@@ -226,21 +237,24 @@ static enum status derive_fish(struct fish_parameters *fish, int index) {
     derive(&fish->control.ramp, period > 0 ? period / 2 : 1);
     derive(&fish->motion.speed, fish->start_speed);
     if ((int)fish->control.law < 0) fish->control.law = fish->control.waypoints.n > 0 ? CONTROL_COURSE : CONTROL_NONE;
+
     if (!fish->name) {
         char name[32];
         snprintf(name, sizeof name, "fish%d", index + 1);
-        if (!(fish->name = strdup(name))) return out_of_memory();
+        if (!(fish->name = strdup(name))) return case_out_of_memory();
     }
+
     if (fish->control.desired_heading.n == 0) {
         double *const pair = calloc(2, sizeof *pair);
-        if (!pair) return out_of_memory();
+        if (!pair) return case_out_of_memory();
         pair[1] = fish->start_heading;
         fish->control.desired_heading = (struct number_list){.n = 1, .value = pair};
     }
+
     return STATUS_OK;
 }
 
-/* The name of a file without its folders and its ending. */
+/* The name of a file without folders and ending. */
 static char *stem(const char *path) {
     const char *const slash = strrchr(path, '/');
     const char *const from = slash ? slash + 1 : path;
@@ -259,7 +273,7 @@ static bool are_damped(const struct school_parameters *school) {
     return true;
 }
 
-/* Whether the slowest bending mode of a fish has less than 0.6 of the frequency of its beat. */
+/* True if the slowest bending mode of a fish is below 0.6 of the beat frequency. */
 static enum status is_soft(const struct school_parameters *parameters, int index, bool *soft) {
     struct school_parameters alone = *parameters;
     alone.n_fish = 1;
@@ -271,10 +285,10 @@ static enum status is_soft(const struct school_parameters *parameters, int index
     if (scratch) *soft = bending_mode_frequency(fish, scratch) < 0.6 * fish->frequency;
     free(scratch);
     fish_school_free(school);
-    return scratch ? STATUS_OK : out_of_memory();
+    return scratch ? STATUS_OK : case_out_of_memory();
 }
 
-/* The highest order where the case does not say it: doc/numerics.md, section 3. Of checked values. */
+/* The default of solver.order (doc/numerics.md, section 3); the values must be checked. */
 static enum status derive_order(struct case_values *values) {
     const struct school_parameters *const school = &values->school;
     if (values->solver.order > 0) return STATUS_OK;
@@ -318,7 +332,7 @@ static enum status derive_all(struct case_values *values, const char *origin) {
     derive(&values->time.output_interval, 10 * values->school.shedding_interval);
     derive_wake(&values->school);
     derive(&values->output.wake_interval, values->time.output_interval);
-    if (!values->name && !(values->name = stem(origin))) return out_of_memory();
+    if (!values->name && !(values->name = stem(origin))) return case_out_of_memory();
     for (int i = 0; i < values->school.n_fish; i++) TRY(derive_fish(&values->school.fish[i], i));
     return STATUS_OK;
 }
@@ -326,7 +340,7 @@ static enum status derive_all(struct case_values *values, const char *origin) {
 // ---- the complete case
 
 /* Read the values from the tree. Errors of the case are added to the list; fails with STATUS_MEMORY only. */
-static enum status fill(struct reading *reading, struct case_values *values) {
+static enum status fill_case(struct reading *reading, struct case_values *values) {
     const struct case_tree *const tree = &reading->tree;
     const int n_before = reading->errors.n;
     check_keys(tree->root, "", "", NULL, &reading->errors);
@@ -335,22 +349,26 @@ static enum status fill(struct reading *reading, struct case_values *values) {
     values->school.n_fish = case_merge_n_fish(tree);
     if (values->school.n_fish > CASE_MAX_FISH) values->school.n_fish = 0;
     values->school.fish = calloc((size_t)values->school.n_fish + 1, sizeof *values->school.fish);
+
     if (!values->school.fish) {
         values->school.n_fish = 0;
-        return out_of_memory();
+        return case_out_of_memory();
     }
+
     clear(values);
     if (case_merge_n_fish(tree) == 0 && are_keys_known) {
         yaml_errors_add(&reading->errors, case_merge_mark(tree, "fish", 0),
-                        "fish: at least one fish is required; write 'fish:' and under it '  - name: first'");
+                        "fish: at least one fish is required; write 'fish:' and on the next line '  - name: first'");
     }
+
     TRY(check_default_values(reading));
     TRY(read_keys(reading, values));
     TRY(derive_all(values, tree->source[0]->name));
     TRY(sweep_read(values, tree->root, &reading->errors));
     TRY(sweep_expect_read(values, tree->root, &reading->errors));
     TRY(sweep_error_read(values, tree->root, &reading->errors));
-    // an unknown key may be a known one misspelt, whose value would be missing here
+
+    // skip the relations after an unknown key: it can be a misspelt key, whose value is then missing
     if (are_keys_known) case_check(values, tree, &reading->errors);
     return reading->errors.n > n_before ? STATUS_OK : derive_order(values);
 }
@@ -358,7 +376,7 @@ static enum status fill(struct reading *reading, struct case_values *values) {
 /* Keep the text of the case file. */
 static enum status keep_text(struct case_values *values, const struct yaml_source *source) {
     values->text = malloc(source->length + 1);
-    if (!values->text) return out_of_memory();
+    if (!values->text) return case_out_of_memory();
     memcpy(values->text, source->text, source->length);
     values->text[source->length] = '\0';
     return STATUS_OK;
@@ -372,16 +390,18 @@ static enum status keep_merged(struct case_values *values, const struct yaml_nod
         yaml_write_scalar(&text, values->name);
         text_add(&text, "\n");
     }
+
     for (int i = 0; i < root->n; i++) {
         text_add(&text, "%s: ", root->entry[i].key);
         yaml_write_node(&text, root->entry[i].value);
         text_add(&text, "\n");
     }
+
     values->merged = text.text;
     if (!text.failed) return STATUS_OK;
     text_free(&text);
     values->merged = NULL;
-    return out_of_memory();
+    return case_out_of_memory();
 }
 
 /* Keep the notes on the values of a case without errors. */
@@ -390,21 +410,22 @@ static enum status keep_notes(struct case_values *values, const struct case_tree
     case_notes(values, tree, &notes);
     values->notes = yaml_errors_list(&notes, "note");
     yaml_errors_free(&notes);
-    return values->notes ? STATUS_OK : out_of_memory();
+    return values->notes ? STATUS_OK : case_out_of_memory();
 }
 
-/* Apply the assignments to a tree that has been read, and fill the values from it. status: of reading the tree. */
+/* Apply the assignments to the tree, and fill the values from the tree. status: of reading the tree. */
 static enum status finish(struct reading *reading, enum status status, struct case_values *values, int n_assignments,
                           const char *const *assignments) {
     if (status == STATUS_OK && reading->tree.root) {
         for (int i = 0; i < n_assignments && status == STATUS_OK; i++) {
             status = case_merge_assign(&reading->tree, assignments[i], &reading->errors);
         }
-        if (status == STATUS_OK) status = fill(reading, values);
+        if (status == STATUS_OK) status = fill_case(reading, values);
         if (status == STATUS_OK) status = keep_text(values, reading->tree.source[0]);
         if (status == STATUS_OK && reading->errors.n == 0) status = keep_merged(values, reading->tree.root);
         if (status == STATUS_OK && reading->errors.n == 0) status = keep_notes(values, &reading->tree);
     }
+
     if (status == STATUS_OK) status = yaml_errors_status(&reading->errors);
     if (status != STATUS_OK) case_free(values);
     yaml_errors_free(&reading->errors);
@@ -436,6 +457,7 @@ void case_free(struct case_values *values) {
             case_value_free(key, case_table_field(key, values, &values->school.fish[i]));
         }
     }
+
     sweep_error_free(values);
     sweep_expect_free(values);
     sweep_free(values);

@@ -1,11 +1,11 @@
-/* case_check.h: what must hold between keys, each of which is good by itself. Tested by tests/case/test_case.c. */
+/* case_check.h: relations between keys whose separate values are valid. Tested by tests/case/test_case.c. */
 #ifndef CASE_CHECK_H
 #define CASE_CHECK_H
 
 #include "case/case_merge.h"
 #include "case/case_values.h"
 
-/* Add an error for every inconsistency. Values that could not be read (see case_value.h) are skipped. */
+/* Add an error for every inconsistency. Skips values that were not read (see case_value.h). */
 void case_check(const struct case_values *values, const struct case_tree *tree, struct yaml_errors *errors);
 
 #endif

@@ -24,7 +24,7 @@ static const char *fish_rest(const struct key *key) {
     return case_table_is_of_fish(key) ? key->path + strlen("fish") : key->path;
 }
 
-/* What a method is: "explicit, order 2, fixed or adaptive steps: Heun's method". */
+/* Describe a method: "explicit, order 2, fixed or adaptive steps: Heun's method". */
 static void describe_method(const struct method_properties *method, char *text, size_t size) {
     const char *const steps = !method->has_fixed_steps      ? "adaptive"
                               : !method->has_adaptive_steps ? "fixed"
@@ -63,7 +63,7 @@ static void print_string(FILE *stream, const char *before, const char *name, con
     text_print_json(stream, text);
 }
 
-/* Add "words", what each word of the methods means, to a key. */
+/* Add "words", the meaning of each method, to a key. */
 static void print_words(FILE *stream) {
     fprintf(stream, ", \"words\": {");
     for (int i = 0; i < methods_n; i++) {
@@ -101,6 +101,7 @@ static void print_json(FILE *stream) {
         fprintf(stream, "}");
         text_free(&range);
     }
+
     fprintf(stream, "]\n");
 }
 

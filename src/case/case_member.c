@@ -7,8 +7,8 @@
 #include "case/case.h"
 #include "case/sweep_members.h"
 
-/* Fill the assignments of a member, and one more that removes sweep or errors; returns their number, or -1 when out of
- * memory. */
+/* Fill the assignments of a member, and one assignment that removes the sweep or the errors; returns the number of
+ * assignments, or -1 if out of memory. */
 static int fill_assignments(const struct case_values *study, int member, char **assignments) {
     int n = 0;
     for (int a = 0; a < study->n_axes; a++) {
@@ -24,15 +24,17 @@ static int fill_assignments(const struct case_values *study, int member, char **
             n++;
         }
     }
+
     assignments[n] = strdup(study->error ? "error=none" : "sweep=[]");
     return assignments[n] ? n + 1 : -1;
 }
 
-/* Read the case of a member and mark it as one. */
+/* Read the case of a member and store the number of the member. */
 static enum status read_member(struct case_values *values, const struct case_values *study, int member,
                                int n_assignments, char **assignments) {
     const enum status status = case_parse(values, study->merged, strlen(study->merged), study->name, NULL,
                                           n_assignments, (const char *const *)assignments);
+
     if (status == STATUS_CASE) {
         char *text;
         TRY(sweep_member_text(study, member, &text));
@@ -40,6 +42,7 @@ static enum status read_member(struct case_values *values, const struct case_val
         free(text);
         return STATUS_CASE;
     }
+
     TRY(status);
     free(values->text);
     values->text = strdup(study->text);

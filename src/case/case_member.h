@@ -5,8 +5,8 @@
 #include "base/status.h"
 #include "case/case_values.h"
 
-/* Fill *values with the case of one member: the study's, with the member's values set as --set sets them and without
- * a sweep. Fails with STATUS_CASE, naming the member, or with STATUS_MEMORY. Free with case_free. */
+/* Fill *values with the case of one member: the case of the study with the values of the member assigned as by --set,
+ * without a sweep. Fails with STATUS_CASE, naming the member, or with STATUS_MEMORY. Free with case_free. */
 enum status case_member(struct case_values *values, const struct case_values *study, int member);
 
 #endif

@@ -1,4 +1,4 @@
-/* case_merge.c: reads the case file and its includes, merges them, and applies assignments. */
+/* case_merge.c: read the case file and the includes, merge the trees, apply assignments. */
 #include "case/case_merge.h"
 
 #include <errno.h>
@@ -14,7 +14,7 @@
 
 enum { MAX_INCLUDES = 64, MAX_INCLUDE_DEPTH = 8 };
 
-/* The files that are being read, innermost first. A file that includes itself is found among them. */
+/* The files being read, innermost first, to detect a file that includes itself. */
 struct open_file {
     dev_t device;
     ino_t inode;
@@ -22,13 +22,13 @@ struct open_file {
     const struct open_file *by;
 };
 
-static enum status out_of_memory(void) {
+static enum status merge_out_of_memory(void) {
     return status_fail(STATUS_MEMORY, "out of memory: reading the case file");
 }
 
 // ---- sources
 
-/* Add an empty source; NULL when out of memory. The tree owns it. */
+/* Add an empty source, owned by the tree; NULL if out of memory. */
 static struct yaml_source *add_source(struct case_tree *tree, const char *name) {
     const size_t size = (size_t)(tree->n_sources + 1) * sizeof(struct yaml_source *);
     struct yaml_source **const grown = realloc(tree->source, size);
@@ -57,8 +57,9 @@ void case_merge_free(struct case_tree *tree) {
 static enum status read_bytes(int file, struct yaml_source *source) {
     const size_t capacity = YAML_TREE_BYTES + 1;
     source->text = malloc(capacity);
-    if (!source->text) return out_of_memory();
+    if (!source->text) return merge_out_of_memory();
     ssize_t n;
+
     do {
         n = read(file, source->text + source->length, capacity - source->length);
         if (n > 0) source->length += (size_t)n;
@@ -74,11 +75,13 @@ static enum status read_file(const char *path, struct yaml_source *source, struc
     struct stat facts;
     // a FIFO that nobody writes to is empty, and not waited for
     const int file = open(path, O_RDONLY | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+
     if (file < 0 || fstat(file, &facts) != 0) {
         const enum status status = status_fail(STATUS_FILE, "cannot be read: %s", strerror(errno));
         if (file >= 0) close(file);
         return status;
     }
+
     fcntl(file, F_SETFL, 0);
     self->device = facts.st_dev;
     self->inode = facts.st_ino;
@@ -99,7 +102,7 @@ static int folder_length(const char *path) {
     return slash ? (int)(slash - path) + 1 : 0;
 }
 
-/* True if a file is being read already: it includes itself. */
+/* True if a file is being read already, that is, includes itself. */
 static bool is_open(const struct open_file *file, const struct open_file *by) {
     for (; by; by = by->by) {
         if (by->device == file->device && by->inode == file->inode) return true;
@@ -111,39 +114,45 @@ static bool is_open(const struct open_file *file, const struct open_file *by) {
 static enum status include_path(struct case_tree *tree, const struct yaml_node *node, const char *path,
                                 const struct open_file *by, struct yaml_errors *errors, struct yaml_node **base) {
     struct yaml_source *const source = add_source(tree, path);
-    if (!source) return out_of_memory();
+    if (!source) return merge_out_of_memory();
     struct open_file self = {.depth = by->depth + 1, .by = by};
     const enum status status = read_file(path, source, &self);
+
     if (status == STATUS_FILE) {
         yaml_errors_add(errors, node->mark, "include: %.200s: %s", path, status_message());
         return STATUS_OK;
     }
+
     TRY(status);
     if (is_open(&self, by)) {
         yaml_errors_add(errors, node->mark, "include: %.200s includes itself", path);
         return STATUS_OK;
     }
+
     struct yaml_node *root = NULL;
     TRY(read_source(tree, source, path, &self, errors, &root));
     return root ? yaml_tree_merge(base, root) : STATUS_OK;
 }
 
-/* Read the file that an entry of an include list names, relative to the folder, which ends at its last slash. */
+/* Read the file of an entry of an include list, relative to the folder, which ends at the last slash. */
 static enum status include_entry(struct case_tree *tree, const struct yaml_node *node, const char *folder,
                                  const struct open_file *by, struct yaml_errors *errors, struct yaml_node **base) {
     if (node->kind != YAML_SCALAR || node->text[0] == '\0') {
         yaml_errors_add(errors, node->mark, "include: expects a list of file names, as in [water.yaml]");
         return STATUS_OK;
     }
+
     if (by->depth == MAX_INCLUDE_DEPTH || tree->n_sources > MAX_INCLUDES) {
         yaml_errors_add(errors, node->mark, "include: more than %d files, or nested more than %d deep", MAX_INCLUDES,
                         MAX_INCLUDE_DEPTH);
         return STATUS_OK;
     }
+
     struct text path = {0};
     if (node->text[0] != '/') text_add(&path, "%.*s", folder_length(folder), folder);
     text_add(&path, "%s", node->text);
-    const enum status status = path.failed ? out_of_memory() : include_path(tree, node, path.text, by, errors, base);
+    const enum status status =
+        path.failed ? merge_out_of_memory() : include_path(tree, node, path.text, by, errors, base);
     text_free(&path);
     return status;
 }
@@ -159,6 +168,7 @@ static enum status read_includes(struct case_tree *tree, const char *folder, con
 
     struct yaml_node *base = NULL;
     enum status status = STATUS_OK;
+
     if (list->kind == YAML_LIST) {
         for (int i = 0; i < list->n && status == STATUS_OK; i++) {
             status = include_entry(tree, list->entry[i].value, folder, self, errors, &base);
@@ -167,6 +177,7 @@ static enum status read_includes(struct case_tree *tree, const char *folder, con
         status = include_entry(tree, list, folder, self, errors, &base);
     }
     yaml_tree_free(list);
+
     if (status == STATUS_OK && base) {
         status = yaml_tree_merge(&base, *root);
         *root = base;
@@ -176,17 +187,19 @@ static enum status read_includes(struct case_tree *tree, const char *folder, con
     return status;
 }
 
-/* Parse a source and what it includes into a tree; *root stays NULL if the source itself is wrong. */
+/* Parse a source and the included files into a tree; *root stays NULL if the source has errors. */
 static enum status read_source(struct case_tree *tree, const struct yaml_source *source, const char *folder,
                                const struct open_file *self, struct yaml_errors *errors, struct yaml_node **root) {
     const enum status status = yaml_tree_read(root, source, errors);
     if (status == STATUS_CASE) return STATUS_OK;
     TRY(status);
+
     if (!*root) {
         const struct yaml_mark start = {source, 1, 1};
         yaml_errors_add(errors, start, "the file is empty; a case needs at least format, time and fish");
         return STATUS_OK;
     }
+
     if ((*root)->kind != YAML_MAP) {
         yaml_errors_add(errors, (*root)->mark,
                         "a case file consists of keys with values, such as 'format: 1', with a blank after each ':'");
@@ -194,10 +207,11 @@ static enum status read_source(struct case_tree *tree, const struct yaml_source 
         *root = NULL;
         return STATUS_OK;
     }
+
     return read_includes(tree, folder, self, errors, root);
 }
 
-/* Read the case file and what it includes. */
+/* Read the case file and the included files. */
 static enum status read_case(struct case_tree *tree, const char *folder, const struct open_file *self,
                              struct yaml_errors *errors) {
     struct yaml_node *root = NULL;
@@ -212,7 +226,7 @@ static enum status read_case(struct case_tree *tree, const char *folder, const s
 
 enum status case_merge_read_file(struct case_tree *tree, const char *path, struct yaml_errors *errors) {
     struct yaml_source *const source = add_source(tree, path);
-    if (!source) return out_of_memory();
+    if (!source) return merge_out_of_memory();
     struct open_file self = {0};
     const enum status status = read_file(path, source, &self);
     if (status == STATUS_FILE) return status_fail(STATUS_FILE, "%s: error: the case file %s", path, status_message());
@@ -223,14 +237,14 @@ enum status case_merge_read_file(struct case_tree *tree, const char *path, struc
 enum status case_merge_read_text(struct case_tree *tree, const char *text, size_t length, const char *origin,
                                  const char *folder, struct yaml_errors *errors) {
     struct yaml_source *const source = add_source(tree, origin);
-    if (!source || !(source->text = malloc(length + 1))) return out_of_memory();
+    if (!source || !(source->text = malloc(length + 1))) return merge_out_of_memory();
     memcpy(source->text, text, length);
     source->length = length;
     struct text place = {0};
     if (folder && *folder) text_add(&place, "%s/", folder);
     const struct open_file self = {0};
     const enum status status =
-        place.failed ? out_of_memory() : read_case(tree, place.text ? place.text : "", &self, errors);
+        place.failed ? merge_out_of_memory() : read_case(tree, place.text ? place.text : "", &self, errors);
     text_free(&place);
     return status;
 }
@@ -240,7 +254,7 @@ enum status case_merge_read_text(struct case_tree *tree, const char *text, size_
 /* Merge a value into *node at a path of keys; "" is the node itself. Takes ownership of the value. */
 static enum status put_at(struct yaml_node **node, const char *path, struct yaml_mark mark, struct yaml_node *value) {
     if (*path == '\0') return yaml_tree_merge(node, value);
-    if ((*node)->kind != YAML_MAP) {  // that is reported when its section is read
+    if ((*node)->kind != YAML_MAP) {  // reported when the section is read
         yaml_tree_free(value);
         return STATUS_OK;
     }
@@ -251,12 +265,13 @@ static enum status put_at(struct yaml_node **node, const char *path, struct yaml
 
     if (!yaml_tree_entry(*node, key, length)) {
         struct yaml_node *const map = yaml_tree_map(mark);
-        const enum status status = map ? yaml_tree_put(*node, key, mark, map) : out_of_memory();
+        const enum status status = map ? yaml_tree_put(*node, key, mark, map) : merge_out_of_memory();
         if (status != STATUS_OK) {
             yaml_tree_free(value);
             return status;
         }
     }
+
     return put_at(&yaml_tree_entry(*node, key, length)->value, path + length + 1, mark, value);
 }
 
@@ -266,14 +281,14 @@ static enum status put_in_fish(struct case_tree *tree, const struct case_path *p
     for (int i = 0; i < case_merge_n_fish(tree); i++) {
         if (path->fish != i && path->fish != CASE_EVERY_FISH) continue;
         struct yaml_node *const copy = yaml_tree_copy(value);
-        if (!copy) return out_of_memory();
+        if (!copy) return merge_out_of_memory();
         TRY(put_at(&school->value->entry[i].value, path->below, value->mark, copy));
     }
     return STATUS_OK;
 }
 
 /* Put a value at a path. Takes ownership of the value. */
-static enum status put(struct case_tree *tree, const struct case_path *path, struct yaml_node *value) {
+static enum status put_node(struct case_tree *tree, const struct case_path *path, struct yaml_node *value) {
     if (path->fish == CASE_NO_FISH) return put_at(&tree->root, path->below, value->mark, value);
     const enum status status = put_in_fish(tree, path, value);
     yaml_tree_free(value);
@@ -287,19 +302,21 @@ static enum status assign(struct case_tree *tree, char *name, const char *text, 
     struct case_path path;
     if (!case_path_parse(&path, name, case_merge_n_fish(tree), mark, errors)) return STATUS_OK;
     const struct key *const key = case_table_row(path.pattern);
+
     if (key && key->type == FILES) {
         yaml_errors_add(errors, mark, "%s: is allowed in case files only", name);
         return STATUS_OK;
     }
+
     // nothing after the equals sign is the empty string
     source->text = strdup(text[strspn(text, " ")] ? text : "\"\"");
-    if (!source->text) return out_of_memory();
+    if (!source->text) return merge_out_of_memory();
     source->length = strlen(source->text);
     struct yaml_node *value = NULL;
     const enum status status = yaml_tree_read(&value, source, errors);
     if (status == STATUS_CASE) return STATUS_OK;
     TRY(status);
-    if (value) return put(tree, &path, value);
+    if (value) return put_node(tree, &path, value);
     yaml_errors_add(errors, mark, "%s: expects a value after the '='", name);
     return STATUS_OK;
 }
@@ -310,13 +327,16 @@ enum status case_merge_assign(struct case_tree *tree, const char *assignment, st
     struct yaml_source *const source = title.failed ? NULL : add_source(tree, title.text);
     text_free(&title);
     char *const name = strdup(assignment);
+
     if (!source || !name) {
         free(name);
-        return out_of_memory();
+        return merge_out_of_memory();
     }
+
     source->one_line = true;
     enum status status = STATUS_OK;
     char *const equals = strchr(name, '=');
+
     if (equals) {
         *equals = '\0';
         status = assign(tree, name, equals + 1, source, errors);
@@ -324,6 +344,7 @@ enum status case_merge_assign(struct case_tree *tree, const char *assignment, st
         const struct yaml_mark mark = {source, 1, 1};
         yaml_errors_add(errors, mark, "expects PATH=VALUE, as in --set time.end=3");
     }
+
     free(name);
     return status;
 }
@@ -348,6 +369,7 @@ const struct yaml_node *case_merge_value(const struct case_tree *tree, const cha
 struct yaml_mark case_merge_mark(const struct case_tree *tree, const char *path, int fish) {
     char around[80];
     snprintf(around, sizeof around, "%s", path);
+
     for (;;) {
         bool is_default;
         const struct yaml_node *const node = case_merge_value(tree, around, fish, &is_default);

@@ -1,8 +1,9 @@
-/* case_merge.h: one tree from a case file, its includes and the assignments of the command line.
- * Tested by tests/case/test_case.c.
+/* case_merge.h: one tree from a case file, the includes and the assignments of the command line. Tested by
+ * tests/case/test_case.c.
  *
- * The tree holds the values with the highest precedence: assignments, then the case file, then its includes (the last
- * one first). defaults.fish is not merged into the fish: a key is looked up there if the fish does not have it. */
+ * The tree holds the values with the highest precedence: assignments, then the case file, then the includes (the last
+ * include first). defaults.fish is not merged into the fish: case_merge_value looks up keys that are missing in a fish
+ * under defaults.fish. */
 #ifndef CASE_MERGE_H
 #define CASE_MERGE_H
 
@@ -16,8 +17,8 @@ struct case_tree {
     struct yaml_source **source; /* the case file first */
 };
 
-/* Read a case from a file, or from a string: origin is its name in messages, folder (NULL or "": the working directory)
- * is where its includes are. Zero the tree before. What is wrong with the case is added to errors, and
+/* Read a case from a file, or from a string. origin: the name of the string in messages; folder: the folder of the
+ * includes (NULL or "": the working directory). Zero the tree before. Defects of the case are added to errors, and
  * tree->root is then NULL. Fails with STATUS_FILE (the case file cannot be read) or STATUS_MEMORY only. */
 enum status case_merge_read_file(struct case_tree *tree, const char *path, struct yaml_errors *errors);
 enum status case_merge_read_text(struct case_tree *tree, const char *text, size_t length, const char *origin,
@@ -26,15 +27,15 @@ enum status case_merge_read_text(struct case_tree *tree, const char *text, size_
 /* Apply an assignment "fish[0].nodes=9" to the tree. Fails with STATUS_MEMORY only. */
 enum status case_merge_assign(struct case_tree *tree, const char *assignment, struct yaml_errors *errors);
 
-/* Release all that the tree owns and zero it. */
+/* Release the tree and zero *tree. */
 void case_merge_free(struct case_tree *tree);
 
 /* The number of fish, and the node at a path ("time.end", "fish.nodes") for one fish (ignored for other paths): among
- * its own keys or, with *is_default, under defaults.fish; NULL if there is none. */
+ * the keys of the fish or, with *is_default, under defaults.fish; NULL if absent. */
 int case_merge_n_fish(const struct case_tree *tree);
 const struct yaml_node *case_merge_value(const struct case_tree *tree, const char *path, int fish, bool *is_default);
 
-/* The place that a message about a path points at: its value, or the innermost section around it that is written. */
+/* The place of a path for messages: the value, or the innermost section present in the case. */
 struct yaml_mark case_merge_mark(const struct case_tree *tree, const char *path, int fish);
 
 /* Add "fish[2].nodes: REASON" at that place to a list of errors. */

@@ -1,4 +1,4 @@
-/* case_notes.c: one rule after the other, for each fish. */
+/* case_notes.c: implausible values, fish by fish. */
 #include "case/case_notes.h"
 
 #include <math.h>
@@ -10,7 +10,7 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* The case, and the list that notes are added to. fish: the one being looked at. */
+/* The case, and the list of notes. fish: index of the fish being examined. */
 struct look {
     const struct case_values *values;
     const struct case_tree *tree;
@@ -18,13 +18,13 @@ struct look {
     int fish;
 };
 
-static bool is_same(struct yaml_mark a, struct yaml_mark b) {
+static bool is_same_mark(struct yaml_mark a, struct yaml_mark b) {
     return a.source == b.source && a.line == b.line && a.column == b.column;
 }
 
-/* Note something about the value at a path; not again where fish share their value and its place. */
-__attribute__((format(printf, 3, 4))) static void note(const struct look *look, const char *path, const char *format,
-                                                       ...) {
+/* Add a note on the value at a path, once for a value that several fish share. */
+__attribute__((format(printf, 3, 4))) static void note_value(const struct look *look, const char *path,
+                                                             const char *format, ...) {
     char reason[512];
     va_list arguments;
     va_start(arguments, format);
@@ -33,18 +33,18 @@ __attribute__((format(printf, 3, 4))) static void note(const struct look *look, 
     const struct yaml_mark mark = case_merge_mark(look->tree, path, look->fish);
     for (int i = 0; i < look->notes->n && i < YAML_ERRORS_KEPT; i++) {
         const char *const dot = strchr(path, '.');
-        if (is_same(look->notes->kept[i].mark, mark) && strstr(look->notes->kept[i].text, dot)) return;
+        if (is_same_mark(look->notes->kept[i].mark, mark) && strstr(look->notes->kept[i].text, dot)) return;
     }
     case_merge_complain(look->tree, path, look->fish, reason, look->notes);
 }
 
-/* Note an angle in degrees that is a simple part of pi: it may be in radians. */
+/* Note an angle in degrees that is a simple fraction of pi: the unit may be radians. */
 static void note_radians(const struct look *look, const char *path, double degrees) {
     static const int parts[] = {12, 6, 4, 3, 2, 1};  // of half a turn
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
         const double part = pi / parts[i], n = round(degrees / part);
         if (n == 0 || fabs(degrees) > 2.001 * pi || fabs(degrees - n * part) > 5e-4 * fabs(degrees)) continue;
-        note(look, path, "%.6g is taken in degrees; if it is in radians, write %.6g", degrees, n * 180 / parts[i]);
+        note_value(look, path, "%.6g is in degrees; if radians are meant, write %.6g", degrees, n * 180 / parts[i]);
         return;
     }
 }
@@ -62,17 +62,16 @@ static void note_angles(const struct look *look) {
     }
 }
 
-/* Note a time that the default of the shedding interval has changed. */
+/* Note a time that was rounded to the default shedding interval. */
 static void note_rounded(const struct look *look, const char *path, double time, const char *unit) {
     bool is_default;
     const struct yaml_node *const node = case_merge_value(look->tree, path, 0, &is_default);
     double written;
     if (!node || !text_number(node->text, &written) || fabs(written - time) <= 1e-9 * time) return;
-    note(
-        look, path,
-        "%.6g s is not an integer multiple of %s, taken as %.6g s; time.shedding_interval is by default a hundredth of "
-        "the fastest beat, %.6g s",
-        written, unit, time, look->values->school.shedding_interval);
+    note_value(look, path,
+               "%.6g s is not an integer multiple of %s and is rounded to %.6g s; the default of "
+               "time.shedding_interval is 1/100 of the fastest beat, %.6g s",
+               written, unit, time, look->values->school.shedding_interval);
 }
 
 static void note_times(const struct look *look) {
@@ -88,15 +87,18 @@ static void note_body(const struct look *look) {
     const struct fish_parameters *const fish = &look->values->school.fish[look->fish];
     const double longest = 30 /* a blue whale, m */, shortest = 1e-3 /* a larva */, softest = 1e3 /* jelly, Pa */,
                  stiffest = 1e12 /* diamond */;
+
     if (fish->length > longest || fish->length < shortest) {
-        note(look, "fish.length", "%g m is %s than any swimmer: lengths are in metres", fish->length,
-             fish->length > longest ? "longer" : "shorter");
+        note_value(look, "fish.length", "%g m is %s than any swimmer; the unit is metres", fish->length,
+                   fish->length > longest ? "longer" : "shorter");
     }
+
     if (fish->body.modulus < softest) {
-        note(look, "fish.body.modulus",
-             "%g Pa is softer than jelly (1e3 Pa): the body follows the water, not the muscle", fish->body.modulus);
+        note_value(look, "fish.body.modulus",
+                   "%g Pa is softer than jelly (1e3 Pa): the body follows the flow, not the muscle",
+                   fish->body.modulus);
     } else if (fish->body.modulus > stiffest) {
-        note(look, "fish.body.modulus", "%g Pa is stiffer than diamond (1e12 Pa)", fish->body.modulus);
+        note_value(look, "fish.body.modulus", "%g Pa is stiffer than diamond (1e12 Pa)", fish->body.modulus);
     }
 }
 
@@ -104,16 +106,18 @@ static void note_nodes(const struct look *look) {
     const struct fish_parameters *const fish = &look->values->school.fish[look->fish];
     const int enough = 17;
     if (fish->force == FORCE_PRESSURE && fish->nodes < enough && fish->motion.prescribed != PRESCRIBED_ALL) {
-        note(look, "fish.nodes", "%d: with force pressure fewer than %d nodes resolve the shape of a body poorly",
-             fish->nodes, enough);
+        note_value(look, "fish.nodes",
+                   "%d: with force pressure, fewer than %d nodes resolve the shape of the body poorly", fish->nodes,
+                   enough);
     }
 }
 
 static void note_wave(const struct look *look) {
     const struct wave_parameters *const wave = &look->values->school.fish[look->fish].wave;
     if (wave->number > 0 && wave->frequency > 0 && wave->table.n == 0) {
-        note(look, "fish.wave.number", "%g: the wave travels from tail to head; from head to tail it is %g",
-             wave->number, -wave->number);
+        note_value(look, "fish.wave.number",
+                   "%g: the wave travels from tail to head; for a wave from head to tail write %g", wave->number,
+                   -wave->number);
     }
 }
 

@@ -17,7 +17,7 @@ void case_path_unknown(struct yaml_errors *errors, struct yaml_mark mark, const 
     text_free(&hint);
 }
 
-/* Read "[2]" or "[*]" at text; the end of it, or NULL after an error. */
+/* Read "[2]" or "[*]" at text; returns the end of the index, or NULL after an error. */
 static const char *parse_index(struct case_path *path, const char *text, int n_fish, struct yaml_mark mark,
                                struct yaml_errors *errors) {
     const size_t length = strspn(text + 1, "0123456789");
@@ -25,17 +25,20 @@ static const char *parse_index(struct case_path *path, const char *text, int n_f
         path->fish = CASE_EVERY_FISH;
         return text + 3;
     }
+
     if (length == 0 || text[1 + length] != ']') {
         yaml_errors_add(errors, mark,
                         "fish%.20s: expects the number of a fish, as in fish[0], or fish[*] for every fish", text);
         return NULL;
     }
+
     const long index = length < 9 ? strtol(text + 1, NULL, 10) : CASE_MAX_FISH;
     if (index >= n_fish) {
         yaml_errors_add(errors, mark, "fish[%.*s]: there is no such fish; the case has %d, the last is fish[%d]",
                         (int)(length < 20 ? length : 20), text + 1, n_fish, n_fish - 1);
         return NULL;
     }
+
     path->fish = (int)index;
     return text + 2 + length;
 }
@@ -58,14 +61,14 @@ static bool check_words(struct case_path *path, const char *words, const char *t
         words += length;
         if (*words == '\0') return true;
         if (key) {
-            yaml_errors_add(errors, mark, "%.150s: %s is a value and has no keys of its own", text, path->pattern);
+            yaml_errors_add(errors, mark, "%.150s: %s is a value and has no keys", text, path->pattern);
             return false;
         }
         words++;
     }
 }
 
-/* Complain about the words after "fish." of a path: they need the number of a fish, in brackets. */
+/* Refuse a path "fish." without the number of a fish in brackets. */
 static void complain_of_fish(const char *words, const char *text, struct yaml_mark mark, struct yaml_errors *errors) {
     const size_t digits = strspn(words, "0123456789*");
     if (digits > 0 && (words[digits] == '.' || words[digits] == '\0')) {
@@ -84,10 +87,12 @@ bool case_path_parse(struct case_path *path, const char *text, int n_fish, struc
         complain_of_fish(text + 5, text, mark, errors);
         return false;
     }
+
     if (strncmp(text, "defaults.fish.", 14) == 0) {
         snprintf(path->pattern, sizeof path->pattern, "fish");
         return check_words(path, text + 14, text, "defaults.fish", mark, errors);
     }
+
     if (strcmp(text, "defaults.fish") == 0 || strncmp(text, "fish[", 5) == 0) {
         snprintf(path->pattern, sizeof path->pattern, "fish");
     }
@@ -97,10 +102,12 @@ bool case_path_parse(struct case_path *path, const char *text, int n_fish, struc
     path->below = parse_index(path, text + 4, n_fish, mark, errors);
     if (!path->below) return false;
     if (*path->below == '\0') return true;
+
     if (*path->below != '.') {
         yaml_errors_add(errors, mark, "%.150s: expects a '.' after the ']'", text);
         return false;
     }
+
     char owner[32];
     snprintf(owner, sizeof owner, "%.*s", (int)(path->below - text), text);
     path->below++;

@@ -1,4 +1,4 @@
-/* case_path.h: paths such as fish[2].wave.frequency, as --set and sweep take them. Tested by tests/case/test_case.c. */
+/* case_path.h: paths of --set and sweep, such as fish[2].wave.frequency. Tested by tests/case/test_case.c. */
 #ifndef CASE_PATH_H
 #define CASE_PATH_H
 
@@ -14,7 +14,7 @@ struct case_path {
     const char *below; /* "wave.frequency": points into the text that was parsed */
 };
 
-/* Parse a path and check that it exists; false after adding what is wrong to errors. */
+/* Parse a path and check the existence of the key; false after adding an error. */
 bool case_path_parse(struct case_path *path, const char *text, int n_fish, struct yaml_mark mark,
                      struct yaml_errors *errors);
 

@@ -1,4 +1,4 @@
-/* case_schema.c: sections become objects, keys their properties. */
+/* case_schema.c: sections become objects, keys become properties. */
 #include "case/case_schema.h"
 
 #include <math.h>
@@ -45,7 +45,7 @@ static void print_words(FILE *stream, const struct key *key) {
     fputc(']', stream);
 }
 
-/* What the axes of a sweep and the expectations of a study may be; their values are those of other keys. */
+/* The form of the axes of a sweep and of the expectations of a study, whose values belong to other keys. */
 static const char files[] = "\"type\": [\"string\", \"array\"], \"items\": {\"type\": \"string\"}";
 static const char defaults[] =
     "\"type\": \"object\", \"additionalProperties\": false, \"properties\": {\"fish\": {\"$ref\": "
@@ -87,7 +87,7 @@ static void print_type(FILE *stream, const struct key *key) {
         case HEADING:
             fputs("\"anyOf\": [{", stream);
             print_number(stream, key, "number");
-            // the bounds are those of the angle, not of the time
+            // the bounds apply to the angle, not to the time
             fputs("}, {\"type\": \"array\", \"items\": {\"type\": \"array\", \"minItems\": 2, \"maxItems\": 2, ",
                   stream);
             fputs("\"items\": [{\"type\": \"number\"}, {", stream);
@@ -117,13 +117,13 @@ static void print_key(FILE *stream, const struct key *key) {
 
 // ---- sections
 
-/* The word after a section ("" holds all but the fish's) in the path of a key; NULL if it is not in there. */
+/* The word after a section ("": the top, without fish) in the path of a key; NULL if the key is not in the section. */
 static const char *word_in(const struct key *key, const char *section, size_t length) {
     if (length == 0) return case_table_is_of_fish(key) ? NULL : key->path;
     return strncmp(key->path, section, length) == 0 && key->path[length] == '.' ? key->path + length + 1 : NULL;
 }
 
-/* True if no key before this one has its word in the section. */
+/* True if no previous key has the same word in the section. */
 static bool is_first(const struct key *key, const char *section, size_t length) {
     const char *const word = word_in(key, section, length);
     const size_t n = strcspn(word, ".");
@@ -134,10 +134,11 @@ static bool is_first(const struct key *key, const char *section, size_t length) 
     return true;
 }
 
-/* The object of a section: its keys, and its own sections where the first key of each stands. */
+/* The object of a section: the keys, and each subsection at the place of the first key of the subsection. */
 static void print_section(FILE *stream, const char *section, size_t length, int depth) {
     fputs("{\"type\": \"object\", \"additionalProperties\": false, \"properties\": {", stream);
     const char *comma = "";
+
     for (int k = 0; k < case_table_n; k++) {
         const struct key *const key = &case_table[k];
         const char *const word = word_in(key, section, length);
@@ -151,10 +152,12 @@ static void print_section(FILE *stream, const char *section, size_t length, int 
             print_key(stream, key);
         }
     }
+
     if (length == 0) {
         fputs(",\n  \"fish\": {\"description\": \"the fish of the school\", \"type\": \"array\", ", stream);
         fputs("\"items\": {\"$ref\": \"#/definitions/fish\"}}", stream);
     }
+
     fputs("}}", stream);
 }
 

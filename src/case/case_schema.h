@@ -1,5 +1,5 @@
-/* case_schema.h: the table of keys as a JSON schema, by which editors check and complete case files. Tested by
- * tests/app/test_manual.sh, which validates every case of cases/ by it. */
+/* case_schema.h: the table of keys as a JSON schema, with which editors check and complete case files. Tested by
+ * tests/app/test_manual.sh, which validates every case of cases/. */
 #ifndef CASE_SCHEMA_H
 #define CASE_SCHEMA_H
 

@@ -22,10 +22,11 @@ static size_t column(const struct text *text) {
     return n;
 }
 
-/* Add the headings of the sections that a path is in and the path before it was not. below: where both begin. */
+/* Add the headings of the sections that contain a path but not the previous path. below: start of both paths. */
 static void show_headings(struct text *text, const char *path, const char *before, const char *below) {
     bool is_same = true;
     int depth = 0;
+
     for (const char *c = below; strchr(c, '.'); c = strchr(c, '.') + 1, depth++) {
         const size_t length = (size_t)(strchr(c, '.') + 1 - path);
         is_same = is_same && before && strncmp(path, before, length) == 0;
@@ -50,14 +51,16 @@ static void show_key(struct text *text, const struct key *key, const void *field
     }
     if (text->failed) return;
     case_value_write(text, key, field);
+
     if (*key->unit && !text->failed) {
         const size_t used = column(text);
         text_add(text, "%*s# %s", used < COMMENT_COLUMN ? (int)(COMMENT_COLUMN - used) : 2, "", key->unit);
     }
+
     text_add(text, "\n");
 }
 
-/* True if a key is omitted: it has been applied already, or it has no value. */
+/* True if a key is omitted: already applied, or without a value. */
 static bool is_hidden(const struct key *key, const void *field) {
     if (!case_table_is_value(key)) return true;
     if (strcmp(key->path, "preset") == 0) return true;
@@ -91,6 +94,7 @@ static void show_group(struct text *text, const struct sweep_axis *axis, int val
             text_add(text, "%s", axis->value[value * axis->n_keys + k]);
         }
     }
+
     if (axis->n_keys > 1) text_add(text, "]");
 }
 
@@ -122,6 +126,7 @@ static void show_reference(struct text *text, const struct case_values *values, 
         }
         text_add(text, "]");
     }
+
     text_add(text, "}\n");
 }
 
@@ -130,10 +135,12 @@ static void show_axis(struct text *text, const struct case_values *values, int a
     text_add(text, "  - %s: ", axis->n_keys > 1 ? "keys" : "key");
     show_group(text, axis, -1);
     text_add(text, "\n    values: [");
+
     for (int i = 0; i < axis->n_values; i++) {
         if (i > 0) text_add(text, ", ");
         show_group(text, axis, i);
     }
+
     text_add(text, "]\n");
     if (axis->steady) text_add(text, "    steady: true\n");
     if (!axis->refine) return;
@@ -167,6 +174,7 @@ static void show_expectation(struct text *text, const struct case_values *values
         text_add(text, ", fish: ");
         yaml_write_scalar(text, values->school.fish[one->fish].name);
     }
+
     for (int c = 0; c < one->n_where; c++) {
         const struct sweep_condition *const condition = &one->where[c];
         struct text assignment = {0};
@@ -176,6 +184,7 @@ static void show_expectation(struct text *text, const struct case_values *values
         if (!assignment.failed) yaml_write_scalar(text, assignment.text);
         text_free(&assignment);
     }
+
     if (one->n_where > 0) text_add(text, "]");
     if (!one->fails) {
         show_bound(text, "least", one->min);
@@ -183,33 +192,38 @@ static void show_expectation(struct text *text, const struct case_values *values
         show_bound(text, "spread", one->spread);
         show_bound(text, "ratio", one->ratio);
     }
+
     text_add(text, "}\n");
 }
 
 static void show_sweep(struct text *text, const struct case_values *values) {
     if (values->n_axes > 0) text_add(text, "\nsweep:\n");
     for (int i = 0; i < values->n_axes; i++) show_axis(text, values, i);
+
     if (values->error) {
         text_add(text, "\nerror: ");
         sweep_error_write(text, values->error);
         text_add(text, "\n");
     }
+
     if (values->n_expectations > 0) text_add(text, "\nexpect:\n");
     for (int i = 0; i < values->n_expectations; i++) show_expectation(text, values, &values->expect[i]);
 }
 
 enum status case_show(const struct case_values *values, char **text) {
-    struct case_values all = *values;  // a shallow copy, so that the table can point into it
+    struct case_values all = *values;  // shallow copy for the offsets of the table
     struct text list = {0};
     show_rows(&list, &all, NULL);
     text_add(&list, "\nfish:\n");
     for (int i = 0; i < all.school.n_fish; i++) show_rows(&list, &all, &all.school.fish[i]);
     show_sweep(&list, &all);
     *text = NULL;
+
     if (list.failed) {
         text_free(&list);
         return status_fail(STATUS_MEMORY, "out of memory: showing the case");
     }
+
     *text = list.text;
     return STATUS_OK;
 }

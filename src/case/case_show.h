@@ -5,7 +5,7 @@
 #include "base/status.h"
 #include "case/case_values.h"
 
-/* The complete case with every key and its value, as a case file that reads back to the same values bit for bit. The
+/* The complete case with the values of all keys, as a case file from which case_read reads the same bits. The
  * caller frees *text. Fails with STATUS_MEMORY. */
 enum status case_show(const struct case_values *values, char **text);
 

@@ -14,18 +14,19 @@ struct candidate {
     char word[WORD + 1];
     char section[80]; /* "fish.body"; "" at the top */
     int distance;     /* edits from the word of the user */
-    int remoteness;   /* 0: a sibling, 1: below, 2: elsewhere in a fish, for a word in a fish, 3: elsewhere */
+    int remoteness;   /* 0: same section, 1: subsection, 2: both in a fish, 3: elsewhere */
 };
 
-/* What users look for and the model calls otherwise: words, and what to do. */
+/* Words for quantities that are no keys, and the keys to use instead. */
 static const struct {
     const char *words, *instead;
 } missing[] = {
     {"kinematic_viscosity dynamic_viscosity mu reynolds reynolds_number",
-     "; friction is drag.tangential of a fish, or fluid.viscosity with 'drag.skin: boundary_layer' or 'laminar'"},
+     "; the friction is set by drag.tangential of a fish, or by fluid.viscosity with 'drag.skin: boundary_layer' or "
+     "'laminar'"},
 };
 
-static char lower(char c) {
+static char lower_case(char c) {
     return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
 }
 
@@ -39,15 +40,17 @@ static int edit_distance(const char *a, size_t n, const char *b, size_t m) {
     int d[WORD + 1][WORD + 1];
     for (size_t i = 0; i <= n; i++) d[i][0] = (int)i;
     for (size_t j = 0; j <= m; j++) d[0][j] = (int)j;
+
     for (size_t i = 1; i <= n; i++) {
         for (size_t j = 1; j <= m; j++) {
-            const int change = d[i - 1][j - 1] + (lower(a[i - 1]) != lower(b[j - 1]));
+            const int change = d[i - 1][j - 1] + (lower_case(a[i - 1]) != lower_case(b[j - 1]));
             d[i][j] = smaller(change, smaller(d[i - 1][j], d[i][j - 1]) + 1);
-            const bool is_swap =
-                i > 1 && j > 1 && lower(a[i - 1]) == lower(b[j - 2]) && lower(a[i - 2]) == lower(b[j - 1]);
+            const bool is_swap = i > 1 && j > 1 && lower_case(a[i - 1]) == lower_case(b[j - 2]) &&
+                                 lower_case(a[i - 2]) == lower_case(b[j - 1]);
             if (is_swap) d[i][j] = smaller(d[i][j], d[i - 2][j - 2] + 1);
         }
     }
+
     return d[n][m];
 }
 
@@ -62,12 +65,12 @@ static int distance_to_any(const char *word, const char *words) {
     return distance;
 }
 
-/* True if a section is that of the fish, or one in it. */
+/* True if a section is "fish" or a subsection of "fish". */
 static bool is_in_fish(const char *section) {
     return strncmp(section, "fish", 4) == 0 && (section[4] == '\0' || section[4] == '.');
 }
 
-/* How far one section is from another, as struct candidate says. */
+/* The remoteness of one section from another: see struct candidate. */
 static int remoteness_of(const char *section, const char *from) {
     const size_t here = strlen(from);
     if (strcmp(section, from) == 0) return 0;
@@ -75,8 +78,9 @@ static int remoteness_of(const char *section, const char *from) {
     return is_in_fish(section) && is_in_fish(from) ? 2 : 3;
 }
 
-/* Consider the word of a path that ends at end: it becomes the best if it is nearer than the best so far. */
-static void consider(struct candidate *best, const struct key *key, size_t end, const char *section, const char *word) {
+/* Compare the word of a path that ends at end with the best candidate; keep the nearer one. */
+static void keep_nearer(struct candidate *best, const struct key *key, size_t end, const char *section,
+                        const char *word) {
     size_t begin = end;
     while (begin > 0 && key->path[begin - 1] != '.') begin--;
     struct candidate one = {{0}, {0}, INT_MAX, 0};
@@ -114,6 +118,7 @@ static void add_words(struct text *hint, const char *section) {
     size_t last_length = 0;
     const char *last = "";
     text_add(hint, "; known keys:");
+
     for (int i = 0; i < case_table_n; i++) {
         const char *const path = case_table[i].path;
         if (here > 0 && (strncmp(path, section, here - 1) != 0 || path[here - 1] != '.')) continue;
@@ -125,7 +130,8 @@ static void add_words(struct text *hint, const char *section) {
     }
 }
 
-/* The section of row i of the table if it has the word and is that near to another section; the length, 0 if not. */
+/* Copy the section of row i of the table if the row has the word and the section this remoteness; returns the length,
+ * else 0. */
 static size_t section_with(char *section, size_t size, int i, const char *word, const char *from, int remoteness) {
     const char *const dot = strrchr(case_table[i].path, '.');
     if (!dot || strcmp(dot + 1, word) != 0) return 0;
@@ -133,7 +139,7 @@ static size_t section_with(char *section, size_t size, int i, const char *word, 
     return remoteness_of(section, from) == remoteness ? strlen(section) : 0;
 }
 
-/* Add all sections that have the word of the best candidate and are as near: "fish[0].wave or fish[0].motion". */
+/* Add all sections with the word and the remoteness of the best candidate: "fish[0].wave or fish[0].motion". */
 static void add_sections(struct text *hint, const struct candidate *best, const char *from, const char *owner) {
     char section[sizeof best->section];
     int n = 0;
@@ -144,6 +150,7 @@ static void add_sections(struct text *hint, const struct candidate *best, const 
         add_section(hint, best->section, owner);
         return;
     }
+
     for (int i = 0, k = 0; i < case_table_n; i++) {
         if (section_with(section, sizeof section, i, best->word, from, best->remoteness) == 0) continue;
         if (k++ > 0) text_add(hint, " or ");
@@ -151,7 +158,7 @@ static void add_sections(struct text *hint, const struct candidate *best, const 
     }
 }
 
-/* Add what stands for a word that the model does not have; false if it is not one of those. */
+/* Add the keys to use instead of a word of `missing`; false for any other word. */
 static bool add_missing(struct text *hint, const char *word) {
     for (size_t i = 0; i < sizeof missing / sizeof *missing; i++) {
         if (distance_to_any(word, missing[i].words) > 0) continue;
@@ -161,39 +168,44 @@ static bool add_missing(struct text *hint, const char *word) {
     return false;
 }
 
-/* Add the present path of a key that had another one in former versions; false if the word is no such key. */
+/* Add the present path of a key that had another path in former versions; false if the word is no such key. */
 static bool add_renamed(struct text *hint, const char *section, const char *word) {
     const size_t length = strlen(section);
     for (int i = 0; i < case_table_n; i++) {
         const char *const former = case_table[i].former, *const path = case_table[i].path;
         if (!former || strncmp(former, section, length) != 0) continue;
         if (strcmp(former + length + (length > 0 && former[length] == '.'), word) != 0) continue;
-        text_add(hint, "; it is called '%s' now", is_in_fish(path) ? path + strlen("fish.") : path);
+        text_add(hint, "; renamed to '%s'", is_in_fish(path) ? path + strlen("fish.") : path);
         return true;
     }
+
     return false;
 }
 
 void case_suggest(struct text *hint, const char *section, const char *word, const char *owner) {
     if (add_renamed(hint, section, word) || add_missing(hint, word)) return;
     struct candidate best = {{0}, {0}, INT_MAX, INT_MAX};
+
     for (int i = 0; i < case_table_n; i++) {
         const char *const path = case_table[i].path;
         for (size_t end = 1; end <= strlen(path); end++) {
-            if (path[end] == '.' || path[end] == '\0') consider(&best, &case_table[i], end, section, word);
+            if (path[end] == '.' || path[end] == '\0') keep_nearer(&best, &case_table[i], end, section, word);
         }
     }
+
     const int length = (int)strnlen(word, WORD);
     const int allowed = length < 4 ? length / 2 : smaller(3, length / 3);
+
     if (best.distance > allowed) {
         add_words(hint, section);
         return;
     }
+
     const bool is_known = strcmp(best.word, word) == 0, is_elsewhere = best.remoteness > 0;
     if (is_known) {
-        text_add(hint, " here; it belongs to ");
+        text_add(hint, " here; the key belongs to ");
     } else {
-        text_add(hint, "; did you mean '%s'?%s", best.word, is_elsewhere ? " It belongs to " : "");
+        text_add(hint, "; did you mean '%s'?%s", best.word, is_elsewhere ? " The key belongs to " : "");
     }
     if (is_elsewhere) add_sections(hint, &best, section, owner);
 }

@@ -1,11 +1,11 @@
-/* case_suggest.h: what a user may have meant by an unknown key. Tested by tests/case/test_case.c. */
+/* case_suggest.h: suggestions for an unknown key. Tested by tests/case/test_case.c. */
 #ifndef CASE_SUGGEST_H
 #define CASE_SUGGEST_H
 
 #include "base/text.h"
 
-/* Add what the user may have meant by an unknown word under a section ("" is the top, "fish.body" that of fish): "; did
- * you mean 'modulus'?". owner is how messages call the fish that the word belongs to ("fish[2]"), or NULL. */
+/* Add a suggestion for an unknown word in a section ("": the top; "fish.body": the body of a fish), such as "; did you
+ * mean 'modulus'?". owner: the fish with the word, as named in messages ("fish[2]"), or NULL. */
 void case_suggest(struct text *hint, const char *section, const char *word, const char *owner);
 
 #endif

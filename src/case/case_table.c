@@ -1,4 +1,4 @@
-/* case_table.c: the table of keys. What reads, checks, prints or documents a case loops over it. */
+/* case_table.c: the table of keys. The code that reads, checks, prints and documents a case loops over the table. */
 #include "case/case_table.h"
 
 #include <math.h>
@@ -18,7 +18,7 @@
     { min, max, false, true }
 #define BETWEEN(min, max) \
     { min, max, true, true }
-// an angle keeps digits below 1e-9 degrees, and a wave those of its phase
+// up to 1e6 degrees a double resolves angles to 1e-9 degrees
 #define ANGLE FROM_TO(-1e6, 1e6)
 #define WORDS(...)          \
     (const char *const[]) { \
@@ -28,89 +28,87 @@
 enum { NAME_BYTES = 200, FILE_BYTES = 4000, MAX_NODES = 10000, MAX_THREADS = 1024, MAX_STEPS = 1000000000 };
 
 const struct key case_table[] = {
-    {"format", INTEGER, AT(format), NULL, FROM_TO(1, 1), "", .meaning = "version of the case file format, which is 1"},
+    {"format", INTEGER, AT(format), NULL, FROM_TO(1, 1), "", .meaning = "version of the case file format: 1"},
     {"name", STRING, AT(name), NULL, FROM_TO(1, NAME_BYTES), "", .meaning = "name of the case",
-     .derived = "the file's name without its ending", .synonyms = "title case"},
+     .derived = "the name of the file without the ending", .synonyms = "title case"},
     {"include", FILES, 0, "[]", FROM_TO(1, FILE_BYTES), "",
      .meaning = "case files to read first, relative to this file; keys in this file override theirs",
      .synonyms = "import includes"},
     {"preset", CHOICE, AT(preset), "none", ANY, "",
-     .meaning = "published: the options of the published scheme become the defaults; keys in the case override them",
+     .meaning = "published: take the defaults from the published scheme; keys in the case override these defaults",
      .words = WORDS("none", "published"), .synonyms = "variant"},
 
-    {"time.end", REAL, AT(time.end), NULL, ABOVE(0), "s", .meaning = "end of the simulated time, which starts at 0",
+    {"time.end", REAL, AT(time.end), NULL, ABOVE(0), "s", .meaning = "end of the simulation, which starts at time 0",
      .synonyms = "duration t_end tend final_time stop t_final"},
     {"time.shedding_interval", REAL, AT(school.shedding_interval), NULL, ABOVE(0), "s",
      .meaning = "time between two events; at each event every fish sheds a vortex",
-     .derived = "a hundredth of the period of the fastest beat or prescribed motion, 0.01 s without one; the end and "
-                "the output intervals are then rounded to events",
+     .derived = "1/100 of the period of the fastest beat or prescribed motion, 0.01 s without a beat; time.end and the "
+                "output intervals are then rounded to events",
      .synonyms = "dt delta_t timestep time_step", .published = "0.01"},
     {"time.output_interval", REAL, AT(time.output_interval), NULL, ABOVE(0), "s",
      .meaning = "time between two rows of output; an integer multiple of shedding_interval",
      .derived = "ten shedding intervals", .synonyms = "output_every save_interval dt_out"},
     {"time.checkpoint_interval", REAL, AT(time.checkpoint_interval), "0", FROM(0), "s",
-     .meaning = "time between two checkpoints, from which `shoal resume` goes on; an integer multiple of "
-                "shedding_interval; 0: only when the run is stopped",
+     .meaning = "time between two checkpoints for `shoal resume`; an integer multiple of shedding_interval; 0: a "
+                "checkpoint only when the run is stopped",
      .synonyms = "checkpoint restart_interval checkpoint_every save_every"},
 
     {"fluid.density", REAL, AT(school.fluid.density), "1000", FROM(0), "kg m-3",
      .meaning = "density of the fluid; 0: no fluid forces", .synonyms = "rho rho_f"},
     {"fluid.viscosity", REAL, AT(school.fluid.viscosity), "1e-6", FROM(0), "m2 s-1",
-     .meaning = "kinematic viscosity of the fluid, of which the friction of a boundary layer and of 'drag.skin: "
-                "laminar' is made",
+     .meaning = "kinematic viscosity of the fluid, for the friction with 'drag.skin: laminar' and 'boundary_layer'",
      .synonyms = "nu"},
     {"fluid.velocity", PAIR, AT(school.fluid.velocity), "[0, 0]", ANY, "m s-1", .meaning = "uniform background flow",
      .synonyms = "current stream flow wind u_inf"},
     {"fluid.shear", REAL, AT(school.fluid.shear), "0", ANY, "s-1",
      .meaning = "adds shear * y to the x component of the background flow"},
     {"fluid.gust.amplitude", REAL, AT(school.fluid.gust_amplitude), "0", ANY, "m s-1",
-     .meaning = "amplitude of a uniform flow across the stream that oscillates in time"},
+     .meaning = "amplitude of the gust, a uniform flow in y that oscillates in time"},
     {"fluid.gust.frequency", REAL, AT(school.fluid.gust_frequency), "0", FROM(0), "Hz",
      .meaning = "frequency of the gust"},
     {"fluid.walls", NUMBERS, AT(school.fluid.walls), "[]", ANY, "m",
-     .meaning = "straight walls along x: the y of one, or those of both sides of a channel; the bodies begin on one "
-                "side of it, or between them",
+     .meaning = "straight walls along x: y of one wall, or y of both walls of a channel; the bodies start on one side "
+                "of a single wall, or inside the channel",
      .synonyms = "wall channel boundary tank ground bottom"},
 
     {"wake.smoothing", REAL, AT(school.wake.smoothing), "0.1", ABOVE(0), "",
-     .meaning = "smoothing radius of a free vortex for the velocity that it induces at the wake, in body lengths",
+     .meaning = "smoothing radius of a free vortex for the velocity induced at the wake, in body lengths",
      .synonyms = "delta core blob epsilon", .published = "0.2"},
     {"wake.taper", REAL, AT(school.wake.taper), NULL, FROM(0), "",
-     .meaning = "shedding sheet: distance from the tail over which the smoothing radius of the wake, as the body sees "
-                "it, grows from 0, in body lengths; 0: no taper",
+     .meaning = "shedding sheet: distance from the tail over which the smoothing radius of the wake, for the velocity "
+                "induced at the body, grows from 0, in body lengths; 0: no taper",
      .derived = "0.6 with shedding sheet, else 0"},
     {"wake.taper_beside", REAL, AT(school.wake.taper_beside), NULL, FROM(0), "",
      .meaning = "shedding sheet: the same distance for vortices beside the body, in body lengths",
      .derived = "0.07 with shedding sheet, else 0"},
     {"wake.lifetime", DURATION, AT(school.wake.lifetime), NULL, ABOVE(0), "s",
-     .meaning = "age at which a vortex is removed, in seconds, or in beats of the slowest fish as in '3 beats'",
-     .derived = "3 beats; 2 s where no fish beats", .published = "2", .synonyms = "life max_age age"},
+     .meaning = "age at which a vortex is removed, in seconds, or in beats of the slowest fish, such as '3 beats'",
+     .derived = "3 beats; 2 s if no fish beats", .published = "2", .synonyms = "life max_age age"},
     {"wake.decay", DURATION, AT(school.wake.decay), NULL, FROM(0), "s",
-     .meaning = "last part of the lifetime, over which the strength of a vortex decays to 0, in seconds or in beats",
-     .derived = "three quarters of the lifetime", .published = "0", .former = "wake.fade"},
+     .meaning = "last part of the lifetime, in which the circulation of a vortex decays to 0, in seconds or in beats",
+     .derived = "3/4 of the lifetime", .published = "0", .former = "wake.fade"},
     {"wake.shedding", CHOICE, AT(school.wake.shedding), "sheet", ANY, "",
      .meaning = "sheet: a vortex sheet grows from the tail; continuous: a nascent vortex grows between events; "
-                "impulsive: a vortex of full strength appears at each event",
+                "impulsive: a vortex of full circulation appears at each event",
      .words = WORDS("continuous", "impulsive", "sheet"), .published = "impulsive"},
     {"wake.removed_circulation", CHOICE, AT(school.wake.removed_circulation), "retained", ANY, "",
-     .meaning = "whether the circulation of removed vortices is retained in Kelvin's theorem or dropped",
+     .meaning = "treatment of the circulation of removed vortices in Kelvin's theorem: retained or dropped",
      .published = "dropped", .words = WORDS("retained", "dropped"), .former = "wake.dissipated_circulation"},
     {"wake.tolerance", REAL, AT(school.wake.tolerance), NULL, FROM_TO(0, 0.01), "",
      .meaning = "estimated error allowed in the velocity that far vortices induce at the bodies, in body lengths per "
                 "beat; 0: direct summation",
-     .derived = "a hundredth of solver.rtol", .synonyms = "accuracy theta"},
+     .derived = "solver.rtol/100", .synonyms = "accuracy theta"},
     {"wake.merge", REAL, AT(school.wake.merge), "0", FROM_TO(0, 0.1), "",
-     .meaning =
-         "error allowed in the velocity at a body by neighbours in one wake that are merged far from all bodies, in "
-         "body lengths per beat; 0: none are merged",
+     .meaning = "error allowed in the velocity at the bodies due to merging neighbouring vortices of a wake far from "
+                "all bodies, in body lengths per beat; 0: no merging",
      .synonyms = "coarsen thin"},
     {"wake.spare_vortices", INTEGER, AT(school.wake.spare), "0", FROM_TO(0, 1000000), "",
-     .meaning = "vortices of each wake that a program may add to those that its fish sheds: doc/python.md, section 2",
+     .meaning = "number of vortices that a program can add to each wake: doc/python.md, section 2",
      .synonyms = "extra_vortices added_vortices"},
 
     {"sheet.smoothing", REAL, AT(school.sheet.smoothing), "0.05", ABOVE(0), "",
-     .meaning = "smoothing radius of a bound vortex for the velocity that it induces at the wake and at other fish, in "
-                "body lengths",
+     .meaning =
+         "smoothing radius of a bound vortex for the velocity induced at the wake and at other fish, in body lengths",
      .published = "0.01", .former = "wake.sheet_smoothing"},
     {"sheet.curve", CHOICE, AT(school.sheet.curve), "smooth", ANY, "",
      .meaning = "line of the bound sheet through the nodes: a smooth interpolant, or straight edges",
@@ -121,15 +119,15 @@ const struct key case_table[] = {
          "control points of the impermeability condition: chebyshev points, or midpoints between the bound vortices",
      .published = "midpoint", .words = WORDS("chebyshev", "midpoint"), .former = "wake.collocation"},
     {"sheet.kutta", CHOICE, AT(school.sheet.kutta), "edge", ANY, "",
-     .meaning = "Kutta condition; edge: the sheet strength at the tail vanishes; rate: circulation is shed at the rate "
-                "that the slip at the tail gives",
+     .meaning = "Kutta condition; edge: the sheet strength at the tail vanishes; rate: the slip velocity at the tail "
+                "sets the shedding rate",
      .published = "rate", .words = WORDS("edge", "rate"), .synonyms = "kutta_condition", .former = "wake.kutta"},
     {"sheet.kutta_ramp", REAL, AT(school.sheet.kutta_ramp), "0", FROM(0), "s",
      .meaning = "kutta rate: time over which shedding is ramped up", .published = "0.5", .former = "wake.kutta_ramp"},
 
     {"contact.action", CHOICE, AT(school.contact.action), "repel", ANY, "",
-     .meaning = "what happens where the outlines of two bodies are nearer than contact.range; repel: they repel each "
-                "other; warn: nothing, and the result says so; stop: the run ends with exit code 3",
+     .meaning = "action when the outlines of two bodies are closer than contact.range; repel: a repulsive force; warn: "
+                "a warning in the result, no force; stop: the run ends with exit code 3",
      .words = WORDS("repel", "warn", "stop"), .synonyms = "law mode collision"},
     {"contact.range", REAL, AT(school.contact.range), "0.02", ABOVE(0), "",
      .meaning = "distance below which two bodies are in contact; in lengths of the longest fish",
@@ -142,12 +140,11 @@ const struct key case_table[] = {
      .synonyms = "tolerance tol reltol relative_tolerance"},
     {"solver.order", INTEGER, AT(solver.order), NULL, FROM_TO(1, 5), "",
      .meaning = "highest order of ida (doc/numerics.md, section 3)",
-     .derived = "3; 5 where the slowest bending mode of every fish has less than 0.6 of the frequency of its beat; 2 "
-                "where a fish has a relaxation_time below a thousandth of its period"},
+     .derived = "3; 5 if the slowest bending mode of every fish is below 0.6 of the beat frequency; 2 if a fish has a "
+                "relaxation_time below 1/1000 of the beat period"},
     {"solver.coupling_distance", REAL, AT(school.coupling_distance), "0.5", FROM(0), "",
-     .meaning =
-         "fish farther apart than this are not coupled in the Jacobian, until it converges too slowly; in lengths of "
-         "the longest fish"},
+     .meaning = "maximum distance of two fish coupled in the Jacobian, unless Newton's method then converges too "
+                "slowly; in lengths of the longest fish"},
     {"solver.threads", INTEGER, AT(school.threads), "1", FROM_TO(1, MAX_THREADS), "", .meaning = "number of threads",
      .synonyms = "n_threads cores processes"},
     {"solver.step", REAL, AT(solver.step), "0", FROM(0), "s", .meaning = "fixed step; 0: adaptive steps",
@@ -160,31 +157,30 @@ const struct key case_table[] = {
     {"output.precision", CHOICE, AT(output.precision), "double", ANY, "",
      .meaning = "floating-point precision of the variables in the file", .words = WORDS("double", "single")},
     {"output.forces", CHOICE, AT(output.forces), "totals", ANY, "",
-     .meaning = "forces on the bodies in the file: their totals, or also those on every edge",
+     .meaning = "forces on the bodies in the file; totals: per fish; edges: also per edge",
      .words = WORDS("totals", "edges")},
     {"output.wake_interval", REAL, AT(output.wake_interval), NULL, ABOVE(0), "s",
      .meaning = "time between two records of the wake; an integer multiple of output_interval",
      .derived = "time.output_interval"},
 
     {"steady.tolerance", REAL, AT(steady.tolerance), "1e-5", FROM_TO(1e-12, 0.1), "",
-     .meaning = "a state is steady where its speed, in body lengths per beat, and what else is compared "
-                "(doc/steady.md) change by no more than this from one beat to the next",
+     .meaning = "maximum change per beat of a steady state: of the speed, in body lengths per beat, and of the other "
+                "quantities compared (doc/steady.md)",
      .synonyms = "residual accuracy"},
     {"steady.beats", INTEGER, AT(steady.beats), "200", FROM_TO(3, MAX_STEPS), "",
      .meaning = "the search fails after this many beats", .synonyms = "max_beats limit"},
     {"steady.output_beats", INTEGER, AT(steady.output_beats), "2", FROM_TO(1, MAX_STEPS), "",
-     .meaning = "beats in the result, from the steady state on", .synonyms = "last_beats"},
+     .meaning = "number of beats in the result, from the steady state on", .synonyms = "last_beats"},
     {"steady.formation", CHOICE, AT(steady.formation), "false", ANY, "",
-     .meaning = "true: the places of the other fish, as the first one sees them, are looked for, too: a formation that "
-                "keeps together",
+     .meaning =
+         "true: also find positions of the other fish relative to the first fish at which the formation is steady",
      .words = WORDS("false", "true"), .synonyms = "places school"},
     {"steady.multipliers", CHOICE, AT(steady.multipliers), "true", ANY, "",
-     .meaning = "whether Floquet multipliers are computed; without a beat, the modes of the bodies",
+     .meaning = "true: compute the Floquet multipliers; without a beat, the modes of the bodies",
      .words = WORDS("false", "true"), .synonyms = "floquet stability"},
 
     {"defaults", DEFAULTS, 0, "{}", ANY, "",
-     .meaning = "defaults: {fish: {...}}: values for every fish that does not set the key itself",
-     .synonyms = "default common shared"},
+     .meaning = "defaults: {fish: {...}}: values for every fish without the key", .synonyms = "default common shared"},
 
     {"fish.name", STRING, IN_FISH(name), NULL, FROM_TO(1, NAME_BYTES), "",
      .meaning = "name of the fish, unique in the school", .derived = "fish1, fish2, ..."},
@@ -198,12 +194,12 @@ const struct key case_table[] = {
      .published = "21", .derived = "2 nodes - 1, at least 33; with pressure.span finite at least 1 + 5 L/w"},
 
     {"fish.body.profile", CHOICE, IN_FISH(body.profile), "joukowski", ANY, "",
-     .meaning = "thickness along the body: a Joukowski foil, uniform, or the lists h and w",
+     .meaning = "thickness along the body: a Joukowski foil, uniform, or the lists thickness_table and depth_table",
      .words = WORDS("joukowski", "uniform", "table"), .synonyms = "shape"},
     {"fish.body.thickness", REAL, IN_FISH(body.thickness), "0.2", BETWEEN(0, 1), "",
      .meaning = "joukowski: parameter d of the foil; uniform: thickness over length"},
     {"fish.body.tail_thickness", REAL, IN_FISH(body.tail_thickness), NULL, FROM_BELOW(0, 1), "",
-     .meaning = "joukowski: thickness at the tail over length; 0: a cusp, with which results do not converge in nodes",
+     .meaning = "joukowski: thickness at the tail over length; 0: a cusp, for which results do not converge with nodes",
      .derived = "0.04 with profile joukowski, else 0", .published = "0"},
     {"fish.body.depth", REAL, IN_FISH(body.depth), "0.25", ABOVE(0), "",
      .meaning = "depth of the body (its span, out of the plane of motion) over length", .former = "fish.body.width"},
@@ -219,20 +215,20 @@ const struct key case_table[] = {
     {"fish.body.modulus", REAL, IN_FISH(body.modulus), "1e6", ABOVE(0), "Pa", .meaning = "Young's modulus of the body",
      .synonyms = "stiffness young youngs_modulus young_modulus elasticity rigidity e"},
     {"fish.body.second_moment", CHOICE, IN_FISH(body.second_moment), "ellipse", ANY, "",
-     .meaning = "second moment of area: that of the elliptic cross-section, or as computed in the article",
+     .meaning = "second moment of area; ellipse: of the elliptic cross-section; published: the formula of the article",
      .published = "published", .words = WORDS("ellipse", "published")},
     {"fish.body.bending_damping", REAL, IN_FISH(body.bending_damping), "0", FROM(0), "N m s",
-     .meaning = "internal damping of bending, of each joint of a body of reference_nodes nodes",
+     .meaning = "internal damping of bending, per joint of a body with reference_nodes nodes",
      .synonyms = "d_b damping", .published = "0.5"},
     {"fish.body.stretching_damping", REAL, IN_FISH(body.stretching_damping), "0", FROM(0), "N s m-1",
-     .meaning = "internal damping of stretching, of each edge of a body of reference_nodes nodes", .synonyms = "d_s",
+     .meaning = "internal damping of stretching, per edge of a body with reference_nodes nodes", .synonyms = "d_s",
      .published = "1"},
     {"fish.body.relaxation_time", REAL, IN_FISH(body.relaxation_time), NULL, FROM(0), "s",
      .meaning = "Kelvin-Voigt damping: ratio of damping to stiffness", .published = "0",
-     .derived = "a fiftieth of the period of the beat, or of the prescribed motion (0 without one)"},
+     .derived = "1/50 of the period of the beat or of the prescribed motion (0 without a beat)"},
     {"fish.body.damping", CHOICE, IN_FISH(body.damping), "strain", ANY, "",
-     .meaning = "internal damping of bending; strain: of the curvature less the natural one; curvature: of the "
-                "curvature, also where the muscle asks for it",
+     .meaning = "internal damping of bending; strain: of the curvature minus the natural curvature; curvature: of the "
+                "total curvature",
      .words = WORDS("strain", "curvature"), .published = "curvature"},
 
     {"fish.wave.amplitude", REAL, IN_FISH(wave.amplitude), "0.4", ANY, "rad",
@@ -248,23 +244,23 @@ const struct key case_table[] = {
      .meaning = "wavenumber: phase difference over one body length; negative: the wave travels from head to tail",
      .synonyms = "beta wavenumber wave_number k"},
     {"fish.wave.wavelength", REAL, IN_FISH(wave.wavelength), NULL, FROM(1e-5), "",
-     .meaning = "length of the wave in body lengths, from head to tail: another way to say number, -2 pi/wavelength",
-     .derived = "that of wave.number", .synonyms = "lambda"},
+     .meaning = "wavelength in body lengths of a wave from head to tail; sets number to -2 pi/wavelength",
+     .derived = "from wave.number", .synonyms = "lambda"},
     {"fish.wave.table", ROWS, IN_FISH(wave.table), "[]", ANY, "",
-     .meaning = "natural curvature times body length instead of the wave: rows at equal distances from nose to tail, "
-                "in each values at equal phases of one period",
+     .meaning = "natural curvature times body length, replaces the wave: rows at equal distances from nose to tail, in "
+                "each row values at equal phases of one period",
      .synonyms = "curvature profile"},
     {"fish.wave.frequency", REAL, IN_FISH(wave.frequency), "1", FROM(0), "Hz", .meaning = "beat frequency",
      .synonyms = "omega freq f beat period"},
     {"fish.wave.phase", REAL, IN_FISH(wave.phase), "0", ANGLE, "degree", .meaning = "phase at time 0"},
     {"fish.wave.ramp", REAL, IN_FISH(wave.ramp), NULL, FROM(0), "s",
-     .meaning = "time over which the amplitude is ramped up",
-     .derived = "one period, 1/frequency (0 when the frequency is 0)", .published = "0"},
+     .meaning = "time over which the amplitude is ramped up", .derived = "one period, 1/frequency (0 for frequency 0)",
+     .published = "0"},
 
     {"fish.force", CHOICE, IN_FISH(force), "reactive", ANY, "",
      .meaning =
-         "force of the fluid besides drag; reactive: from its kinetic energy, with what is left in the fluid at the "
-         "tail; published: added mass across each edge; pressure: the pressure jump across the bound sheet",
+         "force of the fluid besides drag; reactive: from the kinetic energy of the fluid, with the momentum shed at "
+         "the tail; published: added mass across each edge; pressure: the pressure jump across the bound sheet",
      .words = WORDS("reactive", "published", "pressure"), .published = "published"},
     {"fish.pressure.span", CHOICE, IN_FISH(span), "infinite", ANY, "",
      .meaning =
@@ -272,32 +268,29 @@ const struct key case_table[] = {
          "rings; infinite: two-dimensional flow, in which the depth is only a factor of the forces",
      .words = WORDS("finite", "infinite")},
     {"fish.pressure.suction", REAL, IN_FISH(suction), "1", FROM_TO(0, 1), "",
-     .meaning = "force pressure: the part of the suction at the leading edge that acts on the body"},
+     .meaning = "force pressure: fraction of the leading-edge suction that acts on the body"},
     {"fish.pressure.suction_limit", REAL, IN_FISH(suction_limit), "0.18", FROM(0), "",
-     .meaning =
-         "force pressure: largest leading-edge suction parameter A_0 that the flow round the nose holds before it "
-         "separates, 0.11 (sharp nose, low Reynolds number) to 0.25 (round nose, high); 0: no limit",
+     .meaning = "force pressure: leading-edge suction parameter A_0 above which the flow at the nose separates, 0.11 "
+                "(sharp nose, low Reynolds number) to 0.25 (round nose, high); 0: no limit",
      .synonyms = "lesp critical a0 leading_edge"},
 
     {"fish.drag.tangential", REAL, IN_FISH(drag.tangential), "4e-3", FROM(0), "",
      .meaning = "tangential drag coefficient (friction)", .synonyms = "friction c_f cf", .published = "1e-3"},
     {"fish.drag.skin", CHOICE, IN_FISH(drag.skin), NULL, ANY, "",
-     .meaning =
-         "law of the tangential drag; quadratic: the one of drag.law, with drag.tangential; laminar: the friction of a "
-         "laminar boundary layer on a plate, with fluid.viscosity; boundary_layer: with transition, and factors for "
-         "waving and thick bodies",
+     .meaning = "law of the tangential drag; quadratic: drag.law with drag.tangential; laminar: laminar boundary layer "
+                "on a flat plate, with fluid.viscosity; boundary_layer: the same with transition, and with factors for "
+                "waving and thick bodies",
      .words = WORDS("quadratic", "laminar", "boundary_layer"),
      .derived = "boundary_layer with force pressure, else quadratic"},
     {"fish.drag.transition", REAL, IN_FISH(drag.transition), "2e5", FROM(0), "",
-     .meaning =
-         "skin boundary_layer: Reynolds number of the distance from the nose at which the boundary layer becomes "
-         "turbulent; 0: turbulent from the nose",
+     .meaning = "skin boundary_layer: transition Reynolds number, based on the distance from the nose; 0: turbulent "
+                "from the nose",
      .synonyms = "turbulence re_t"},
     {"fish.drag.waving", REAL, IN_FISH(drag.waving), NULL, ABOVE(0), "",
-     .meaning = "skin boundary_layer: factor of the laminar friction, for the waves of the body",
+     .meaning = "skin boundary_layer: factor of the laminar friction due to the wave of the body",
      .derived = "1.5 for a body with a wave, else 1"},
     {"fish.drag.form", REAL, IN_FISH(drag.form), NULL, ABOVE(0), "",
-     .meaning = "skin boundary_layer: factor of the friction, for the thickness of the body",
+     .meaning = "skin boundary_layer: factor of the friction due to the thickness of the body",
      .derived = "1 + 2 h/L + 60 (h/L)^4 with the largest thickness h of an edge", .synonyms = "form_factor"},
     {"fish.drag.normal", REAL, IN_FISH(drag.normal), NULL, FROM(0), "", .meaning = "normal drag coefficient",
      .synonyms = "c_d cd lateral", .published = "0.5", .derived = "1, or 0 with force pressure"},
@@ -305,12 +298,12 @@ const struct key case_table[] = {
      .meaning = "dependence of both drag forces on the velocity v: v |v|, or v (V1 + |v|)", .published = "quadratic",
      .words = WORDS("quadratic", "linear_quadratic")},
     {"fish.drag.linear_speed", REAL, IN_FISH(drag.linear_speed), "1", FROM(0), "",
-     .meaning = "V1 of the law linear_quadratic, in lengths per beat; with force published it is 1 m/s"},
+     .meaning = "V1 of the law linear_quadratic, in lengths per beat; force published: 1 m/s"},
 
     {"fish.added_mass.coefficient", REAL, IN_FISH(added_mass.coefficient), "1", FROM(0), "",
      .meaning = "added-mass coefficient", .synonyms = "c_a ca", .published = "1.5", .former = "fish.drag.added_mass"},
     {"fish.added_mass.extent", CHOICE, IN_FISH(added_mass.extent), "depth", ANY, "",
-     .meaning = "extent of the body in added mass and normal drag: its thickness h, or its depth w",
+     .meaning = "extent of the body in added mass and normal drag: thickness h or depth w",
      .words = WORDS("thickness", "depth"), .published = "thickness", .former = "fish.drag.extent"},
 
     {"fish.start.position", PAIR, IN_FISH(start_position), "[0, 0]", ANY, "m",
@@ -324,13 +317,12 @@ const struct key case_table[] = {
      .synonyms = "force"},
 
     {"fish.motion.prescribed", CHOICE, IN_FISH(motion.prescribed), "none", ANY, "",
-     .meaning = "prescribed motion: of no node; of the nose and the direction of the first edge; or of the entire "
+     .meaning = "prescribed motion; none; head: of the nose and of the direction of the first edge; all: of the entire "
                 "straight body",
      .words = WORDS("none", "head", "all"), .synonyms = "drive prescribed", .former = "fish.motion.driven"},
     {"fish.motion.surge", CHOICE, IN_FISH(motion.surge), "given", ANY, "",
-     .meaning =
-         "motion along start.heading; given: with motion.speed; free: prescribed nodes have a given motion across "
-         "the heading only, and go along it by the forces on them",
+     .meaning = "motion along start.heading; given: with motion.speed; free: the motion is prescribed only across the "
+                "heading, and the forces on the body determine the surge",
      .words = WORDS("given", "free")},
     {"fish.motion.speed", REAL, IN_FISH(motion.speed), NULL, ANY, "m s-1",
      .meaning = "prescribed speed along start.heading; surge free: at the start", .derived = "start.speed"},
@@ -349,17 +341,17 @@ const struct key case_table[] = {
      .meaning = "pitch axis, in body lengths from the nose"},
 
     {"fish.control.law", CHOICE, IN_FISH(control.law), NULL, ANY, "",
-     .meaning = "what sets the steering bias: the key bias, the error of the heading, the error of the heading "
-                "averaged over a period, or the error of the course over the last period",
+     .meaning = "law of the steering bias; none: the key bias; heading: error of the heading; averaged_heading: error "
+                "of the heading averaged over a period; course: error of the course over the last period",
      .words = WORDS("none", "heading", "averaged_heading", "course"), .synonyms = "controller type",
-     .derived = "course where there are waypoints, else none"},
+     .derived = "course with waypoints, else none"},
     {"fish.control.bias", REAL, IN_FISH(control.bias), "0", ANY, "",
      .meaning = "law none: the steering bias; positive turns right", .synonyms = "phi0 offset"},
     {"fish.control.desired_heading", HEADING, IN_FISH(control.desired_heading), NULL, ANGLE, "degree",
      .meaning = "desired heading: a number, or a list of [time in s, angle], linear between the times",
      .derived = "start.heading", .synonyms = "target h_des target_heading"},
     {"fish.control.waypoints", PAIRS, IN_FISH(control.waypoints), "[]", ANY, "m",
-     .meaning = "points [x, y] to visit in order; they set the desired heading", .synonyms = "route points"},
+     .meaning = "points [x, y] to visit in order; the next point sets the desired heading", .synonyms = "route points"},
     {"fish.control.acceptance_radius", REAL, IN_FISH(control.acceptance_radius), "0.5", ABOVE(0), "",
      .meaning = "acceptance radius of a waypoint, in body lengths", .synonyms = "radius",
      .former = "fish.control.arrival"},
@@ -371,29 +363,27 @@ const struct key case_table[] = {
     {"fish.control.limit", REAL, IN_FISH(control.limit), "0.5", ABOVE(0), "",
      .meaning = "maximum of the steering bias"},
     {"fish.control.feedforward", REAL, IN_FISH(control.feedforward), "0", ANY, "",
-     .meaning = "weight of the moment that the flow exerts (feedforward), a moving mean", .published = "1"},
+     .meaning = "weight of the feedforward: the filtered moment of the flow", .published = "1"},
     {"fish.control.filter", REAL, IN_FISH(control.filter), NULL, FROM(0), "s",
-     .meaning = "time constant of that mean; 0: the moment at the last event",
-     .derived = "one period, 1/wave.frequency (0 when the frequency is 0)"},
+     .meaning = "time constant of the filter of feedforward; 0: the moment at the last event",
+     .derived = "one period, 1/wave.frequency (0 for frequency 0)"},
     {"fish.control.rate", REAL, IN_FISH(control.rate), "2", ABOVE(0), "s-1",
      .meaning = "averaged_heading, course: maximum rate of change of the steering bias"},
     {"fish.control.ramp", REAL, IN_FISH(control.ramp), NULL, ABOVE(0), "s",
-     .meaning =
-         "time in which a change of amplitude, frequency, bias or desired heading from outside (doc/python.md) is made",
-     .derived = "half a period, 0.5/wave.frequency (1 s when the frequency is 0)"},
+     .meaning = "duration of a change of amplitude, frequency, bias or desired heading by a program (doc/python.md)",
+     .derived = "half a period, 0.5/wave.frequency (1 s for frequency 0)"},
 
     {"sweep", AXES, 0, "[]", ANY, "",
-     .meaning =
-         "axes of a study, {key: PATH, values: [...]} or {keys: [...], values: [[...], ...]}; `shoal study` runs "
-         "their product",
+     .meaning = "axes of a study, {key: PATH, values: [...]} or {keys: [...], values: [[...], ...]}; `shoal study` "
+                "runs all combinations of the axes",
      .synonyms = "study parameters scan"},
     {"expect", EXPECTATIONS, 0, "[]", ANY, "",
-     .meaning = "expectations of the ends of a study's members, {of: QUANTITY, least: ..., most: ...}; `shoal study` "
-                "checks them",
+     .meaning = "expectations of the final states of the members of a study, {of: QUANTITY, least: ..., most: ...}, "
+                "checked by `shoal study`",
      .synonyms = "expected check assert"},
     {"error", ERRORS, 0, "{}", ANY, "",
      .meaning = "errors of quantities, {of: [QUANTITY, ...], within: ...}; `shoal study` and `shoal error` vary each "
-                "numerical key alone and print the share of each",
+                "numerical key separately and print the contribution of each key",
      .synonyms = "uncertainty errors accuracy error_bars"},
 };
 
@@ -459,16 +449,19 @@ void case_table_range(const struct key *key, struct text *range) {
         }
         return;
     }
+
     if (key->type == STRING || key->type == FILES || isinf(bounds->min)) return;
     if (bounds->min == bounds->max) {
         text_add_number(range, bounds->min);
         return;
     }
+
     if (isinf(bounds->max)) {
         text_add(range, bounds->is_min_open ? "above " : "at least ");
         text_add_number(range, bounds->min);
         return;
     }
+
     text_add(range, bounds->is_min_open ? "between " : "from ");
     text_add_number(range, bounds->min);
     text_add(range, bounds->is_min_open ? " and " : bounds->is_max_open ? " to below " : " to ");

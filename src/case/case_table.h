@@ -1,4 +1,4 @@
-/* case_table.h: the table of the keys of a case file, and queries of it. Tested by tests/case/test_case.c. */
+/* case_table.h: the table of the keys of a case file, and queries of the table. Tested by tests/case/test_case.c. */
 #ifndef CASE_TABLE_H
 #define CASE_TABLE_H
 
@@ -41,10 +41,10 @@ struct key {
     size_t offset;       /* in struct case_values, or in struct fish_parameters */
     const char *initial; /* the default as YAML; NULL: see derived, or required when that is NULL too */
     struct bounds bounds;
-    const char *unit; /* "" where there is none */
+    const char *unit; /* "": none */
     const char *meaning;
     const char *derived;      /* how the program computes the default, in words */
-    const char *published;    /* the default under preset: published, where it differs */
+    const char *published;    /* the default under preset: published; NULL: as without the preset */
     const char *const *words; /* of a CHOICE, in the order of its enum, NULL at the end */
     const char *synonyms;     /* words that users write instead, separated by blanks */
     const char *former;       /* the path of the key in former versions; NULL: as now */
@@ -71,7 +71,7 @@ void *case_table_field(const struct key *key, struct case_values *values, struct
 /* Word i of a CHOICE or METHOD; NULL past the last. */
 const char *case_table_word(const struct key *key, int i);
 
-/* The type of a key in the words of the reference, and its range ("0 to 1", "> 0" or ""). */
+/* The type and the range of a key as in doc/cases.md: "number"; "from 0 to 1", "above 0" or "". */
 const char *case_table_type(const struct key *key);
 void case_table_range(const struct key *key, struct text *range);
 

@@ -10,8 +10,8 @@ double case_times_beat(const struct fish_parameters *fish) {
     return is_prescribed ? fish->motion.frequency : fish->wave.frequency;
 }
 
-/* Round a time to a multiple of a unit, up or to the nearest; false for a multiple, which stays. */
-static bool fit(double *time, double unit, bool up) {
+/* Round a time to a multiple of a unit, up or to the nearest; false if the time is a multiple already. */
+static bool round_to_multiple(double *time, double unit, bool up) {
     const double n = *time / unit, nearest = fmax(round(n), 1);
     if (!(*time > 0) || fabs(n - nearest) <= 1e-9 * n) return false;
     *time = (up ? ceil(n) : nearest) * unit;
@@ -26,11 +26,11 @@ void case_times_derive(struct case_values *values) {
         fastest = fmax(fastest, case_times_beat(&values->school.fish[i]));
     }
     *interval = fastest > 0 ? 1 / (events_per_beat * fastest) : without_beat;
-    fit(&values->time.end, *interval, true);
-    fit(&values->time.checkpoint_interval, *interval, false);
+    round_to_multiple(&values->time.end, *interval, true);
+    round_to_multiple(&values->time.checkpoint_interval, *interval, false);
 
-    // rows that were not read, or have moved, move those of the wake
+    // round the wake interval too if the output interval is rounded or not read
     double *const rows = &values->time.output_interval;
-    const bool are_free = isnan(*rows) || fit(rows, *interval, false);
-    if (are_free) fit(&values->output.wake_interval, isnan(*rows) ? 10 * *interval : *rows, false);
+    const bool are_free = isnan(*rows) || round_to_multiple(rows, *interval, false);
+    if (are_free) round_to_multiple(&values->output.wake_interval, isnan(*rows) ? 10 * *interval : *rows, false);
 }

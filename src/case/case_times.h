@@ -1,17 +1,16 @@
-/* case_times.h: the shedding interval of a case that does not give one, and the times that fit it. doc/model.md,
+/* case_times.h: the default shedding interval, and times rounded to events. doc/model.md,
  * section 7. Tested by tests/case/test_case_times.c. */
 #ifndef CASE_TIMES_H
 #define CASE_TIMES_H
 
 #include "case/case_values.h"
 
-/* The beats per second of a fish, or those of its prescribed motion; 0 where it has none. */
+/* The frequency of the beat of a fish, or of the prescribed motion [Hz]; 0 without a beat. */
 double case_times_beat(const struct fish_parameters *fish);
 
-/* Set the shedding interval, where it was not read, to a hundredth of the period of the fastest beat, which then has
- * 100 events; without a beat to 0.01 s. The end of the run, where it is no event then, becomes the next event; the
- * times between outputs and between checkpoints become the nearest multiples of the interval. A time that was not read
- * stays so. */
+/* Set a shedding interval that was not read to 1/100 of the period of the fastest beat, or to 0.01 s without a beat.
+ * Then round the end of the run up to an event, and the output and checkpoint intervals to the nearest multiples of the
+ * shedding interval. Times that were not read are left unset. */
 void case_times_derive(struct case_values *values);
 
 #endif

@@ -1,4 +1,4 @@
-/* case_value.c: the types of the key table, each with how it is read, written and released. */
+/* case_value.c: reading, writing and releasing each type of the key table. */
 #include "case/case_value.h"
 
 #include <limits.h>
@@ -15,7 +15,7 @@ enum { MAX_VALUES = 10000 /* of one list */ };
 struct context {
     const struct key *key;
     const char *path;
-    const char *unit; /* "" if the message has it already */
+    const char *unit; /* "" if part of the message */
     struct yaml_errors *errors;
 };
 
@@ -65,20 +65,23 @@ static bool is_in(const struct bounds *bounds, double value) {
     return bounds->is_max_open ? value < bounds->max : value <= bounds->max;
 }
 
-/* Read one number. what: "a number", "two numbers [x, y]": the form that messages name. */
+/* Read one number. what: the form for messages, "a number" or "two numbers [x, y]". */
 static bool read_any(const struct context *context, const struct yaml_node *node, const char *what, double *value) {
     char shown[64];
     const char *const unit = context->unit;
     double number;
+
     if (node->kind != YAML_SCALAR || !text_number(node->text, &number)) {
         yaml_errors_add(context->errors, node->mark, "%s: expects %s%s%s, got %s", context->path, what,
                         *unit ? " in " : "", unit, yaml_tree_describe(node, shown, sizeof shown));
         return false;
     }
+
     if (isinf(number)) {
         yaml_errors_add(context->errors, node->mark, "%s: %.40s is too large a number", context->path, node->text);
         return false;
     }
+
     *value = number;
     return true;
 }
@@ -124,6 +127,7 @@ static bool has_digits_only(const char *text) {
 static void read_integer(const struct context *context, const struct yaml_node *node, int *value) {
     char shown[64];
     double number;
+
     if (node->kind != YAML_SCALAR || !has_digits_only(node->text) || !text_number(node->text, &number)) {
         yaml_errors_add(context->errors, node->mark, "%s: expects an integer, got %s", context->path,
                         yaml_tree_describe(node, shown, sizeof shown));
@@ -144,6 +148,7 @@ static void read_choice(const struct context *context, const struct yaml_node *n
             return;
         }
     }
+
     char shown[64];
     struct text range = {0};
     case_table_range(key, &range);
@@ -183,13 +188,16 @@ static enum status read_string(const struct context *context, const struct yaml_
 static bool read_pair(const struct context *context, const struct yaml_node *node, const char *what, double value[2]) {
     char shown[64];
     const char *const unit = context->unit;
+
     if (node->kind != YAML_LIST || node->n != 2) {
         yaml_errors_add(context->errors, node->mark, "%s: expects %s%s%s, got %s", context->path, what,
                         *unit ? " in " : "", unit, yaml_tree_describe(node, shown, sizeof shown));
         return false;
     }
+
     double pair[2];
-    // the range of desired headings is that of the angles, not of the times
+
+    // the bounds apply to the angles, not to the times
     const bool has_time = context->key->type == HEADING;
     if (!(has_time ? read_any : read_number)(context, node->entry[0].value, what, &pair[0])) return false;
     if (!read_number(context, node->entry[1].value, what, &pair[1])) return false;
@@ -212,6 +220,7 @@ static bool read_values(const struct context *context, const struct yaml_node *n
                 read_pair(context, one, "a number in degree or a list of [time in s, angle in degree]", &value[2 * i]);
         }
     }
+
     return is_good;
 }
 
@@ -222,10 +231,12 @@ static enum status read_list(const struct context *context, const struct yaml_no
                         case_table_type(context->key), yaml_tree_describe(node, shown, sizeof shown));
         return STATUS_OK;
     }
+
     if (node->n > MAX_VALUES) {
         yaml_errors_add(context->errors, node->mark, "%s: more than %d values", context->path, MAX_VALUES);
         return STATUS_OK;
     }
+
     if (node->n == 0) return STATUS_OK;
     double *const value = calloc(2 * (size_t)node->n, sizeof *value);
     if (!value) return status_fail(STATUS_MEMORY, "out of memory: the %d values of %s", node->n, context->path);
@@ -245,6 +256,7 @@ static bool read_row(const struct context *context, const struct yaml_node *node
         yaml_errors_add(context->errors, node->mark, "%s: expects rows of %d numbers as the first, got %s",
                         context->path, width, yaml_tree_describe(node, shown, sizeof shown));
     }
+
     for (int i = 0; i < width && is_good; i++) {
         is_good = read_number(context, node->entry[i].value, "rows of numbers", &value[i]);
     }
@@ -255,17 +267,20 @@ static bool read_row(const struct context *context, const struct yaml_node *node
 static enum status read_rows(const struct context *context, const struct yaml_node *node, struct number_list *list) {
     if (node->kind == YAML_LIST && node->n == 0) return STATUS_OK;
     const struct yaml_node *const first = node->kind == YAML_LIST ? node->entry[0].value : node;
+
     if (node->kind != YAML_LIST || first->kind != YAML_LIST || first->n == 0) {
         char shown[64];
         yaml_errors_add(context->errors, first->mark, "%s: expects a %s, got %s", context->path,
                         case_table_type(context->key), yaml_tree_describe(first, shown, sizeof shown));
         return STATUS_OK;
     }
+
     const int width = first->n;
     if (node->n > MAX_VALUES / width) {
         yaml_errors_add(context->errors, node->mark, "%s: more than %d values", context->path, MAX_VALUES);
         return STATUS_OK;
     }
+
     double *const value = calloc((size_t)node->n * (size_t)width, sizeof *value);
     if (!value) return status_fail(STATUS_MEMORY, "out of memory: the %d rows of %s", node->n, context->path);
     bool is_good = true;
@@ -285,6 +300,7 @@ static enum status read_heading(const struct context *context, const struct yaml
                         context->path);
         return STATUS_OK;
     }
+
     if (node->kind == YAML_LIST) return read_list(context, node, list);
     double angle;
     if (!read_number(context, node, "a number in degree or a list of [time in s, angle in degree]", &angle)) {
@@ -301,6 +317,7 @@ enum status case_value_read(const struct key *key, void *field, const struct yam
                             struct yaml_errors *errors) {
     const char *const unit = key->type == HEADING ? "" : key->unit;
     const struct context context = {key, path, unit, errors};
+
     switch (key->type) {
         case REAL: read_number(&context, node, "a number", field); break;
         case DURATION: read_duration(&context, node, field); break;
@@ -319,6 +336,7 @@ enum status case_value_read(const struct key *key, void *field, const struct yam
         case EXPECTATIONS:
         case ERRORS: break;
     }
+
     return STATUS_OK;
 }
 
@@ -342,6 +360,7 @@ static void write_list(struct text *text, const struct number_list *list, bool i
             text_add_number(text, list->value[i]);
         }
     }
+
     text_add(text, "]");
 }
 

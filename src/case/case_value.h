@@ -1,8 +1,7 @@
-/* case_value.h: one value of a case: how each type of key is read, written and released. Tested by
- * tests/case/test_case.c.
+/* case_value.h: one value of a case: reading, writing and releasing each type of key. Tested by tests/case/test_case.c.
  *
- * A field that has not been read is NaN, -1 (word), 0, NULL or an empty list: comparisons with it are false, so that a
- * check of several keys does not complain of a value that has been reported already. */
+ * A field that was not read is NaN, -1 (word), 0, NULL or an empty list. Comparisons with such a field are false, so
+ * that a check of several keys does not report the error of one key again. */
 #ifndef CASE_VALUE_H
 #define CASE_VALUE_H
 
@@ -17,7 +16,7 @@ void case_value_clear(const struct key *key, void *field);
 enum status case_value_read(const struct key *key, void *field, const struct yaml_node *node, const char *path,
                             struct yaml_errors *errors);
 
-/* Release what a field owns and clear it. */
+/* Release and clear a field. */
 void case_value_free(const struct key *key, void *field);
 
 /* Add the value as YAML. */

@@ -1,7 +1,6 @@
 /* case_values.h: a case as plain values, in the units of the case file: angles in degrees, lengths in metres or in
- * fractions of the body length, as the meaning of the key says. Those that the model needs are in fish/parameters.h,
- * the axes of a study in sweep_members.h, its errors in sweep_error.h, the expectations of its members in
- * sweep_expect.h. */
+ * fractions of the body length, as stated in the meaning of the key. Parameters of the model are in fish/parameters.h,
+ * the axes of a study in sweep_members.h, errors in sweep_error.h, expectations in sweep_expect.h. */
 #ifndef CASE_VALUES_H
 #define CASE_VALUES_H
 
@@ -58,14 +57,14 @@ struct case_values {
     struct case_steady steady;
     int n_axes;
     struct sweep_axis *sweep;  /* (n_axes) */
-    struct sweep_error *error; /* whose errors are asked for; NULL: none are */
+    struct sweep_error *error; /* requested error estimates; NULL: none */
     int n_expectations;
     struct sweep_expectation *expect; /* (n_expectations) */
-    char *text;                       /* the text of the case file as read (without its includes) */
-    char *merged; /* what the case file, its includes and the assignments say, as one text: defaults are not in it */
-    char *notes;  /* on values that are hardly ever meant, one after the other as errors are written; "": none */
-    char *study;  /* of a member of a study: the merged text of the study; else NULL */
-    int member;   /* its number, from 0 */
+    char *text;                       /* text of the case file, without includes */
+    char *merged;                     /* case file, includes and assignments merged into one text, without defaults */
+    char *notes; /* on values that are hardly ever meant, one after the other as errors are written; "": none */
+    char *study; /* of a member of a study: the merged text of the study; else NULL */
+    int member;  /* number of the member, from 0 */
 };
 
 #endif

@@ -4,7 +4,7 @@
  *     - {keys: [fish[*].nodes, fish[*].sheet_points], values: [[7, 21], [13, 41]]}     two that change together
  *     - {key: ..., values: ..., refine: true}                                          resolutions: sweep_refine.c
  *
- * A value is checked as a value of its key, and kept as the string that --set takes. */
+ * Each value is checked as a value of the key, and stored as a string for --set. */
 #include "case/sweep.h"
 
 #include <math.h>
@@ -22,7 +22,7 @@ static const double max_members = 1e5;
 
 enum { MAX_KEYS = 16 /* of one axis */ };
 
-static enum status out_of_memory(void) {
+static enum status sweep_out_of_memory(void) {
     return status_fail(STATUS_MEMORY, "out of memory: the sweep");
 }
 
@@ -47,6 +47,7 @@ void sweep_free(struct case_values *values) {
         free(axis->reference);
         free(axis->before);
     }
+
     free(values->sweep);
     values->sweep = NULL;
     values->n_axes = 0;
@@ -73,14 +74,17 @@ static const struct key *find_key(const struct case_values *values, const struct
                         "%s.key: expects the path of a key, as in \"fish[*].body.modulus\"", axis->name);
         return NULL;
     }
+
     struct case_path path;
     if (!case_path_parse(&path, node->text, values->school.n_fish, node->mark, axis->errors)) return NULL;
     const struct key *const key = case_table_row(path.pattern);
     const bool is_fixed = !key || !case_table_is_value(key);
+
     if (is_fixed || strcmp(key->path, "format") == 0) {
         yaml_errors_add(axis->errors, node->mark, "%s.key: '%.60s' cannot be swept", axis->name, node->text);
         return NULL;
     }
+
     check_twice(values, axis, node);
     return key;
 }
@@ -95,23 +99,25 @@ static enum status read_key(const struct case_values *values, struct axis *axis,
     swept->unit = key->unit;
     swept->is_number = key->type == REAL || key->type == INTEGER || key->type == DURATION;
     swept->path = strdup(node->text);
-    return swept->path ? STATUS_OK : out_of_memory();
+    return swept->path ? STATUS_OK : sweep_out_of_memory();
 }
 
 /* Read "key", or "keys". */
 static enum status read_axis_keys(const struct case_values *values, struct axis *axis) {
     const struct yaml_node *const list = yaml_tree_find(axis->node, "keys");
     axis->is_zipped = list != NULL;
+
     if (list && (list->kind != YAML_LIST || list->n == 0 || list->n > MAX_KEYS)) {
         yaml_errors_add(axis->errors, list->mark, "%s.keys: expects a list of 1 to %d paths", axis->name, MAX_KEYS);
         return STATUS_OK;
     }
+
     const struct yaml_node *const single = yaml_tree_find(axis->node, "key");
     if (list && single) {
         yaml_errors_add(axis->errors, single->mark, "%s: takes key or keys, not both", axis->name);
     }
     axis->into->key = calloc(MAX_KEYS, sizeof *axis->into->key);
-    if (!axis->into->key) return out_of_memory();
+    if (!axis->into->key) return sweep_out_of_memory();
     if (!list) return read_key(values, axis, single);
     for (int k = 0; k < list->n; k++) TRY(read_key(values, axis, list->entry[k].value));
     return STATUS_OK;
@@ -119,7 +125,7 @@ static enum status read_axis_keys(const struct case_values *values, struct axis 
 
 // ---- values
 
-/* Check one value as that of its key, and keep its text. */
+/* Check one value as a value of the key, and store the text. */
 static enum status read_value(struct axis *axis, int index, int k, const struct yaml_node *value) {
     if (axis->key[k]) {
         union {
@@ -138,12 +144,15 @@ static enum status read_value(struct axis *axis, int index, int k, const struct 
         case_value_free(axis->key[k], &field);
         TRY(status);
     }
+
     struct text text = {0};
     yaml_write_node(&text, value);
+
     if (text.failed) {
         text_free(&text);
-        return out_of_memory();
+        return sweep_out_of_memory();
     }
+
     axis->into->value[index * axis->n_keys + k] = text.text;
     return STATUS_OK;
 }
@@ -156,9 +165,11 @@ static enum status read_values(struct axis *axis) {
                         "%s.values: expects a list of at least one value, as in [1, 2]", axis->name);
         return STATUS_OK;
     }
+
     axis->into->value = calloc((size_t)list->n * (size_t)axis->n_keys + 1, sizeof *axis->into->value);
-    if (!axis->into->value) return out_of_memory();
+    if (!axis->into->value) return sweep_out_of_memory();
     axis->into->n_values = list->n;
+
     for (int i = 0; i < list->n; i++) {
         const struct yaml_node *const value = list->entry[i].value;
         if (!axis->is_zipped) {
@@ -172,6 +183,7 @@ static enum status read_values(struct axis *axis) {
         }
         for (int k = 0; k < axis->n_keys; k++) TRY(read_value(axis, i, k, value->entry[k].value));
     }
+
     return STATUS_OK;
 }
 
@@ -191,6 +203,7 @@ static void read_steady(const struct case_values *values, const struct axis *axi
         yaml_errors_add(axis->errors, steady->mark, "%s.steady: sweep[%d] is steady already; one axis can be",
                         axis->name, i);
     }
+
     axis->into->steady = is_true;
 }
 
@@ -200,6 +213,7 @@ static enum status read_axis(const struct case_values *values, struct axis *axis
         yaml_errors_add(axis->errors, axis->node->mark, "%s: expects {key: PATH, values: [...]}", axis->name);
         return STATUS_OK;
     }
+
     yaml_tree_check_keys(axis->node, axis->name, "key, keys, values, refine, expect, reference, steady", axis->errors);
     TRY(read_axis_keys(values, axis));
     if (axis->n_keys == 0) return STATUS_OK;
@@ -211,15 +225,18 @@ static enum status read_axis(const struct case_values *values, struct axis *axis
 enum status sweep_read(struct case_values *values, const struct yaml_node *root, struct yaml_errors *errors) {
     const struct yaml_node *const list = yaml_tree_find(root, "sweep");
     if (!list) return STATUS_OK;
+
     if (list->kind != YAML_LIST) {
         yaml_errors_add(errors, list->mark, "sweep: expects a list of axes, each {key: PATH, values: [...]}");
         return STATUS_OK;
     }
+
     if (list->n == 0) return STATUS_OK;
     values->sweep = calloc((size_t)list->n, sizeof *values->sweep);
-    if (!values->sweep) return out_of_memory();
+    if (!values->sweep) return sweep_out_of_memory();
     const int n_before = errors->n;
     double n_members = 1;
+
     for (int i = 0; i < list->n && n_members <= max_members; i++) {
         struct axis axis = {.node = list->entry[i].value, .into = &values->sweep[i], .errors = errors};
         snprintf(axis.name, sizeof axis.name, "sweep[%d]", i);
@@ -228,11 +245,13 @@ enum status sweep_read(struct case_values *values, const struct yaml_node *root,
         values->n_axes++;
         TRY(status);
     }
+
     if (n_members > max_members) {
         yaml_errors_add(errors, list->mark, "sweep: %.0f members or more; the maximum is %.0f", n_members, max_members);
     }
     if (errors->n == n_before) sweep_refine_check(values, list, errors);
-    // axes with values that are missing, or too many of them, must not be counted through
+
+    // do not count the members of axes with missing or too many values
     if (errors->n > n_before) sweep_free(values);
     return STATUS_OK;
 }

@@ -6,7 +6,7 @@
 #include "case/case_values.h"
 #include "case/yaml_tree.h"
 
-/* Read the axes of the sweep, and check each value as the value of its key. The case has no axes if one is wrong. Fails
+/* Read the axes of the sweep, and check each value as a value of the key. After an error the case has no axes. Fails
  * with STATUS_MEMORY only. */
 enum status sweep_read(struct case_values *values, const struct yaml_node *root, struct yaml_errors *errors);
 

@@ -39,7 +39,7 @@ double sweep_error_order(const struct case_values *values, const struct sweep_er
 
 // ---- reading
 
-static enum status out_of_memory(void) {
+static enum status error_out_of_memory(void) {
     return status_fail(STATUS_MEMORY, "out of memory: the errors of a study");
 }
 
@@ -57,7 +57,8 @@ void sweep_error_free(struct case_values *values) {
 static enum status read_of(struct sweep_error *error, const struct yaml_node *of, struct yaml_errors *errors) {
     const int n = of->kind == YAML_LIST ? of->n : 1;
     error->of = calloc((size_t)n + 1, sizeof *error->of);
-    if (!error->of) return out_of_memory();
+    if (!error->of) return error_out_of_memory();
+
     for (int i = 0; i < n; i++) {
         const struct yaml_node *const name = of->kind == YAML_LIST ? of->entry[i].value : of;
         if (name->kind != YAML_SCALAR || !*name->text) {
@@ -65,13 +66,14 @@ static enum status read_of(struct sweep_error *error, const struct yaml_node *of
             continue;
         }
         error->of[error->n_of] = strdup(name->text);
-        if (!error->of[error->n_of++]) return out_of_memory();
+        if (!error->of[error->n_of++]) return error_out_of_memory();
     }
+
     if (n == 0) yaml_errors_add(errors, of->mark, "error.of: expects the name of a quantity, or a list of names");
     return STATUS_OK;
 }
 
-/* Read a positive number; the default where it is not there. */
+/* Read a positive number; the default if absent. */
 static double read_positive(const struct yaml_node *map, const char *name, double standard,
                             struct yaml_errors *errors) {
     const struct yaml_node *const node = yaml_tree_find(map, name);
@@ -94,6 +96,7 @@ static void read_confirm(struct sweep_error *error, const struct yaml_node *conf
 static const struct sweep_error_key *find_key(const char *name, struct yaml_mark mark, struct yaml_errors *errors) {
     static const char every[] = "fish[*].";
     struct text known = {0};
+
     for (int i = 0; i < SWEEP_N_ERROR_KEYS; i++) {
         const char *const path = sweep_error_keys[i].path, *const last = strrchr(path, '.') + 1;
         const int is_of_fish = strncmp(path, "fish.", 5) == 0;
@@ -105,6 +108,7 @@ static const struct sweep_error_key *find_key(const char *name, struct yaml_mark
         }
         text_add(&known, "%s%s", i > 0 ? ", " : "", last);
     }
+
     yaml_errors_add(errors, mark, "error.keys: '%.60s' is not a numerical key; these are: %s", name,
                     known.text ? known.text : "");
     if (known.failed) errors->out_of_memory = true;
@@ -119,7 +123,8 @@ static enum status read_levels(struct sweep_error_levels *levels, const struct y
     if (is_default) return STATUS_OK;
     int is_wrong = node->kind != YAML_LIST || node->n < 2;
     levels->value = calloc(node->kind == YAML_LIST ? (size_t)node->n + 1 : 1, sizeof *levels->value);
-    if (!levels->value) return out_of_memory();
+    if (!levels->value) return error_out_of_memory();
+
     for (int i = 0; i < node->n && !is_wrong; i++) {
         const struct yaml_node *const number = node->entry[i].value;
         is_wrong = number->kind != YAML_SCALAR || !text_number(number->text, &levels->value[i]) ||
@@ -127,6 +132,7 @@ static enum status read_levels(struct sweep_error_levels *levels, const struct y
         for (int j = 0; j < i && !is_wrong; j++) is_wrong = !(fabs(levels->value[j] - levels->value[i]) > 0);
         levels->n++;
     }
+
     if (!is_wrong) return STATUS_OK;
     yaml_errors_add(errors, node->mark, "error.keys: expects 'default', or at least two different levels above 0");
     return STATUS_OK;
@@ -140,8 +146,10 @@ static enum status read_keys(struct sweep_error *error, const struct yaml_node *
                         "error.keys: expects 'default', a list of keys, or levels, as in {nodes: [13, 17, 25, 35]}");
         return STATUS_OK;
     }
+
     error->levels = calloc((size_t)keys->n, sizeof *error->levels);
-    if (!error->levels) return out_of_memory();
+    if (!error->levels) return error_out_of_memory();
+
     for (int i = 0; i < keys->n; i++) {
         const struct yaml_entry *const entry = &keys->entry[i];
         const int is_map = keys->kind == YAML_MAP;
@@ -160,6 +168,7 @@ static enum status read_keys(struct sweep_error *error, const struct yaml_node *
         if (is_map) TRY(read_levels(&error->levels[error->n_keys], entry->value, errors));
         error->n_keys++;
     }
+
     return STATUS_OK;
 }
 
@@ -168,20 +177,22 @@ enum status sweep_error_read(struct case_values *values, const struct yaml_node 
     // as for a member of such a study
     const int is_none = map && map->kind == YAML_SCALAR && strcmp(map->text, "none") == 0;
     if (!map || is_none || (map->kind == YAML_MAP && map->n == 0)) return STATUS_OK;
+
     if (map->kind != YAML_MAP) {
         yaml_errors_add(errors, map->mark, "error: expects {of: QUANTITY}");
         return STATUS_OK;
     }
-    if (values->n_axes > 0) yaml_errors_add(errors, map->mark, "error: takes the place of a sweep: remove one of them");
+
+    if (values->n_axes > 0) yaml_errors_add(errors, map->mark, "error: replaces a sweep: remove error or sweep");
     yaml_tree_check_keys(map, "error", "of, within, keys, confirm, most", errors);
     struct sweep_error *const error = values->error = calloc(1, sizeof *error);
-    if (!error) return out_of_memory();
+    if (!error) return error_out_of_memory();
     error->within = read_positive(map, "within", NAN, errors);
     error->most = read_positive(map, "most", SWEEP_ERROR_MOST, errors);
     error->confirm = 1;
     const struct yaml_node *const of = yaml_tree_find(map, "of"), *const keys = yaml_tree_find(map, "keys"),
                                   *const confirm = yaml_tree_find(map, "confirm");
-    if (!of) yaml_errors_add(errors, map->mark, "error.of: is required: a quantity, or a list of them");
+    if (!of) yaml_errors_add(errors, map->mark, "error.of: is required: a quantity, or a list of quantities");
     if (of) TRY(read_of(error, of, errors));
     if (keys) TRY(read_keys(error, keys, errors));
     if (confirm) read_confirm(error, confirm, errors);
@@ -194,15 +205,18 @@ void sweep_error_write(struct text *text, const struct sweep_error *error) {
         if (i > 0) text_add(text, ", ");
         yaml_write_scalar(text, error->of[i]);
     }
+
     text_add(text, "]");
     if (!isnan(error->within)) {
         text_add(text, ", within: ");
         text_add_number(text, error->within);
     }
+
     if (fabs(error->most - SWEEP_ERROR_MOST) > 0) {
         text_add(text, ", most: ");
         text_add_number(text, error->most);
     }
+
     if (!error->confirm) text_add(text, ", confirm: false");
     for (int i = 0; i < error->n_keys; i++) {
         text_add(text, "%s%s: ", i == 0 ? ", keys: {" : ", ", strrchr(error->levels[i].key->path, '.') + 1);
@@ -213,5 +227,6 @@ void sweep_error_write(struct text *text, const struct sweep_error *error) {
         }
         if (error->levels[i].n > 0) text_add(text, "]");
     }
+
     text_add(text, error->n_keys > 0 ? "}}" : "}");
 }

@@ -1,9 +1,8 @@
-/* sweep_error.h: the numerical keys, on which results depend and fish do not; and what a case says of the errors of its
- * quantities. Tested by tests/case/test_sweep.c.
+/* sweep_error.h: the numerical keys, and the requested error estimates of a case. Tested by tests/case/test_sweep.c.
  *
  *     error: {of: [steady_speed, steady_cost_of_transport], within: 0.01, keys: default, confirm: true, most: 16}
  *
- * What is done with it: study/error_study.h and doc/studies.md. */
+ * Evaluation: study/error_study.h and doc/studies.md. */
 #ifndef SWEEP_ERROR_H
 #define SWEEP_ERROR_H
 
@@ -17,7 +16,7 @@ enum sweep_error_kind {
     SWEEP_POINTS,   /* a number of points n: grid spacing 1/(n - 1) */
     SWEEP_SPACING,  /* the value is the grid spacing, or a tolerance */
     SWEEP_DURATION, /* the larger the better: 1/duration is the grid spacing */
-    SWEEP_MODEL     /* a length of the model: its effect is shown, and is no error */
+    SWEEP_MODEL     /* a length of the model: the effect is printed but does not count as an error */
 };
 
 /* A numerical key, or a choice of the model that looks like one. */
@@ -32,18 +31,18 @@ struct sweep_error_key {
 enum { SWEEP_N_ERROR_KEYS = 11 };
 extern const struct sweep_error_key sweep_error_keys[SWEEP_N_ERROR_KEYS];
 
-/* The row of a key by its path in the table of keys, as in "fish.nodes"; NULL: it is not numerical. */
+/* The row of a key by the path in the table of keys, such as "fish.nodes"; NULL: not numerical. */
 const struct sweep_error_key *sweep_error_find(const char *path);
 
 /* The design order of a key in this case; NaN: none. */
 double sweep_error_order(const struct case_values *values, const struct sweep_error_key *key);
 
-// ---- what a case says
+// ---- settings of a case
 
 /* The levels of a key. */
 struct sweep_error_levels {
     const struct sweep_error_key *key;
-    int n;         /* 0: those of the table */
+    int n;         /* 0: all keys of the table */
     double *value; /* (n) */
 };
 

@@ -16,7 +16,7 @@
 #include "case/sweep_members.h"
 #include "case/sweep_quantity.h"
 
-static enum status out_of_memory(void) {
+static enum status expect_out_of_memory(void) {
     return status_fail(STATUS_MEMORY, "out of memory: the expectations");
 }
 
@@ -36,6 +36,7 @@ void sweep_expect_free(struct case_values *values) {
         free(one->where);
         free(one->fails);
     }
+
     free(values->expect);
     values->expect = NULL;
     values->n_expectations = 0;
@@ -68,6 +69,7 @@ int sweep_expects_of(const struct case_values *study, const struct sweep_expecta
         }
         if (!is_met) return 0;
     }
+
     return 1;
 }
 
@@ -82,6 +84,7 @@ static bool find_key(const struct case_values *values, const char *text, size_t 
             return true;
         }
     }
+
     return false;
 }
 
@@ -92,8 +95,10 @@ static enum status read_where(const struct reading *reading, const struct yaml_n
                         reading->name);
         return STATUS_OK;
     }
+
     reading->into->where = calloc((size_t)list->n + 1, sizeof *reading->into->where);
-    if (!reading->into->where) return out_of_memory();
+    if (!reading->into->where) return expect_out_of_memory();
+
     for (int i = 0; i < list->n; i++) {
         const struct yaml_node *const node = list->entry[i].value;
         const char *const equals = node->kind == YAML_SCALAR ? strchr(node->text, '=') : NULL;
@@ -105,9 +110,10 @@ static enum status read_where(const struct reading *reading, const struct yaml_n
             continue;
         }
         condition->value = strdup(equals + 1);
-        if (!condition->value) return out_of_memory();
+        if (!condition->value) return expect_out_of_memory();
         reading->into->n_where++;
     }
+
     return STATUS_OK;
 }
 
@@ -122,7 +128,7 @@ static void check_members(const struct reading *reading, const struct yaml_node 
 
 // ---- what
 
-/* Read a number of the expectation; NaN if it is not there. */
+/* Read a number of the expectation; NaN if absent. */
 static double read_number(const struct reading *reading, const char *name, double min) {
     const struct yaml_node *const node = yaml_tree_find(reading->node, name);
     double number;
@@ -146,7 +152,7 @@ static void read_fish(const struct reading *reading, const struct yaml_node *nod
     yaml_errors_add(reading->errors, node->mark, "%s.fish: expects the name of a fish", reading->name);
 }
 
-/* Complain about what a quantity does not have. */
+/* Refuse keys that the quantity does not have. */
 static void check_quantities(const struct reading *reading) {
     const struct sweep_expectation *const one = reading->into;
     for (int q = 0; q < SWEEP_N_QUANTITIES; q++) {
@@ -163,7 +169,7 @@ static void check_quantities(const struct reading *reading) {
     }
 }
 
-/* Read the quantities and their bounds. */
+/* Read the quantities and the bounds. */
 static void read_bounds(const struct reading *reading, const struct yaml_node *of) {
     struct sweep_expectation *const into = reading->into;
     if (of) into->of = sweep_quantities_read(of, reading->name, SWEEP_N_QUANTITIES, reading->errors);
@@ -173,10 +179,12 @@ static void read_bounds(const struct reading *reading, const struct yaml_node *o
     into->ratio = read_number(reading, "ratio", 1);
     const bool has_bound = yaml_tree_find(reading->node, "least") || yaml_tree_find(reading->node, "most") ||
                            yaml_tree_find(reading->node, "spread") || yaml_tree_find(reading->node, "ratio");
+
     if (!of || !has_bound) {
         yaml_errors_add(reading->errors, reading->node->mark,
                         "%s: expects of, and at least one of least, most, spread, ratio", reading->name);
     }
+
     check_quantities(reading);
 }
 
@@ -189,7 +197,7 @@ static enum status read_fails(const struct reading *reading, const struct yaml_n
     }
     yaml_tree_check_keys(reading->node, reading->name, "fails, where", reading->errors);
     reading->into->fails = strdup(fails->text);
-    return reading->into->fails ? STATUS_OK : out_of_memory();
+    return reading->into->fails ? STATUS_OK : expect_out_of_memory();
 }
 
 /* Read one expectation into an entry that is zero. */
@@ -200,6 +208,7 @@ static enum status read_expectation(const struct reading *reading) {
                         reading->name);
         return STATUS_OK;
     }
+
     const struct yaml_node *const fails = yaml_tree_find(reading->node, "fails"),
                                   *const fish = yaml_tree_find(reading->node, "fish"),
                                   *const where = yaml_tree_find(reading->node, "where");
@@ -211,6 +220,7 @@ static enum status read_expectation(const struct reading *reading) {
         if (fish) read_fish(reading, fish);
         read_bounds(reading, yaml_tree_find(reading->node, "of"));
     }
+
     if (!where) return STATUS_OK;
     const int n_before = reading->errors->n;
     TRY(read_where(reading, where));
@@ -222,13 +232,16 @@ enum status sweep_expect_read(struct case_values *values, const struct yaml_node
     const struct yaml_node *const list = yaml_tree_find(root, "expect");
     // a member, or a run with --set 'sweep=[]', expects nothing
     if (!list || (values->n_axes == 0 && yaml_tree_find(root, "sweep"))) return STATUS_OK;
+
     if (list->kind != YAML_LIST) {
         yaml_errors_add(errors, list->mark, "expect: expects a list, as in [{of: QUANTITY, least: ...}]");
         return STATUS_OK;
     }
+
     if (values->n_axes == 0) yaml_errors_add(errors, list->mark, "expect: has no effect without a sweep");
     values->expect = calloc((size_t)list->n + 1, sizeof *values->expect);
-    if (!values->expect) return out_of_memory();
+    if (!values->expect) return expect_out_of_memory();
+
     for (int i = 0; i < list->n; i++) {
         struct reading reading = {
             .values = values, .node = list->entry[i].value, .into = &values->expect[i], .errors = errors};
@@ -236,5 +249,6 @@ enum status sweep_expect_read(struct case_values *values, const struct yaml_node
         values->n_expectations++;
         TRY(read_expectation(&reading));
     }
+
     return STATUS_OK;
 }

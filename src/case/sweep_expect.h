@@ -1,4 +1,4 @@
-/* sweep_expect.h: what a study expects of the ends of its members. Tested by tests/case/test_sweep.c. */
+/* sweep_expect.h: expectations of a study on the final states of the members. Tested by tests/case/test_sweep.c. */
 #ifndef SWEEP_EXPECT_H
 #define SWEEP_EXPECT_H
 
@@ -16,17 +16,17 @@ struct sweep_condition {
 
 /* An expectation of the ends of members: of all, or of those that have the values of where. */
 struct sweep_expectation {
-    char *fails; /* they fail with these words in their messages, and nothing else is expected; NULL: they do not */
+    char *fails; /* expected words of the message of failed members, then the only expectation; NULL: must not fail */
     uint64_t of; /* bit q: of quantity q */
     int fish;    /* -1: of all */
     int n_where;
     struct sweep_condition *where; /* one of each key must hold                (n_where) */
     double min, max;               /* of each value; NaN: no bound, as below */
-    double spread;                 /* of the values; of points, the diagonal of the box around them */
+    double spread;                 /* of the values; for points, the diagonal of the bounding box */
     double ratio; /* of the largest to the smallest absolute value; values of both signs, or 0, have none */
 };
 
-/* Read the expectations of a case whose sweep has been read. Fails with STATUS_MEMORY only. */
+/* Read the expectations of a case, after the sweep. Fails with STATUS_MEMORY only. */
 enum status sweep_expect_read(struct case_values *values, const struct yaml_node *root, struct yaml_errors *errors);
 
 /* Release the expectations. */

@@ -6,8 +6,8 @@
 enum status sweep_refuse(const struct case_values *values) {
     if (values->n_axes == 0) return STATUS_OK;
     return status_fail(STATUS_CASE,
-                       "error: sweep: `shoal run` runs one case; this case has a sweep of %d ax%cs: run it with "
-                       "`shoal study`, or remove the sweep with --set 'sweep=[]'",
+                       "error: sweep: `shoal run` runs one case; this case has a sweep of %d ax%cs: use `shoal study`, "
+                       "or remove the sweep with --set 'sweep=[]'",
                        values->n_axes, values->n_axes == 1 ? 'i' : 'e');
 }
 
@@ -46,6 +46,7 @@ void sweep_add_assignment(struct text *text, const struct sweep_axis *axis, int 
 enum status sweep_member_text(const struct case_values *study, int member, char **text) {
     struct text list = {0};
     text_add(&list, "%s", "");
+
     for (int a = 0; a < study->n_axes; a++) {
         const int value = sweep_member_value(study, member, a);
         for (int k = 0; k < study->sweep[a].n_keys; k++) {
@@ -53,6 +54,7 @@ enum status sweep_member_text(const struct case_values *study, int member, char 
             sweep_add_assignment(&list, &study->sweep[a], value, k);
         }
     }
+
     *text = list.text;
     if (!list.failed) return STATUS_OK;
     text_free(&list);

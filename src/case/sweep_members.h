@@ -1,4 +1,4 @@
-/* sweep_members.h: the axes of a study, and the members that they make: each combination of their values. Tested by
+/* sweep_members.h: the axes of a study, and the members: all combinations of the values. Tested by
  * tests/case/test_sweep.c. */
 #ifndef SWEEP_MEMBERS_H
 #define SWEEP_MEMBERS_H
@@ -12,26 +12,26 @@
 /* A key that an axis of a sweep changes. */
 struct sweep_key {
     char *path;       /* as --set takes it */
-    const char *row;  /* path of its row in the table of keys: fish.nodes */
+    const char *row;  /* path of the row in the table of keys: fish.nodes */
     const char *unit; /* of the table of keys */
     int is_number;    /* each value is one number */
 };
 
-/* One axis of a sweep. It changes one key, or several together. */
+/* One axis of a sweep: changes one key, or several keys together. */
 struct sweep_axis {
     int n_keys;
     struct sweep_key *key; /* (n_keys) */
     int n_values;
     char **value;         /* value i of key k is value[i * n_keys + k], as --set takes it     (n_values * n_keys) */
     int refine;           /* the values are resolutions of the first key: a study of convergence */
-    int steady;           /* every member is a steady state, looked for from that of the value before */
-    int *before;          /* from that of this value instead, -1: from the start of the case; NULL     (n_values) */
+    int steady;           /* members are steady states; each search starts from the state of the previous value */
+    int *before;          /* start from the state of this value instead, -1: start of the case; NULL     (n_values) */
     double order, within; /* the expected order of convergence: order +- within; NaN: none */
     uint64_t order_of;    /* bit q: of quantity q */
     double *reference;    /* see sweep_reference; NULL: none */
 };
 
-/* Fails with STATUS_CASE, and says what to do, where a case is a study and not one run. */
+/* Fail with STATUS_CASE if the case is a study; the message says how to run the study. */
 enum status sweep_refuse(const struct case_values *values);
 
 /* The number of members of the study: the product of the axes; 1 without a sweep. */
@@ -40,16 +40,16 @@ int sweep_n_members(const struct case_values *study);
 /* Which value of an axis a member has. The last axis runs fastest. */
 int sweep_member_value(const struct case_values *study, int member, int axis);
 
-/* Whether the members are steady states: an axis says steady; and the member with the value before on that axis, from
- * whose result one is to be found: -1 where it has the first. */
+/* True if the members are steady states: an axis has `steady`. The start of a member is the member from whose result
+ * the search starts, with the previous value of that axis; -1 for the first value. */
 int sweep_is_steady(const struct case_values *study);
 int sweep_member_before(const struct case_values *study, int member);
 
-/* Add "solver.rtol=1e-5": what --set takes to give key k of an axis the value of this number. */
+/* Add "solver.rtol=1e-5": the assignment of this value to key k of an axis. */
 void sweep_add_assignment(struct text *text, const struct sweep_axis *axis, int value, int k);
 
-/* "solver.rtol=1e-5, fish[*].nodes=7": what one member sets. Empty without a sweep. The caller frees *text. Fails with
- * STATUS_MEMORY. */
+/* "solver.rtol=1e-5, fish[*].nodes=7": the assignments of one member. Empty without a sweep. The caller frees *text.
+ * Fails with STATUS_MEMORY. */
 enum status sweep_member_text(const struct case_values *study, int member, char **text);
 
 #endif

@@ -38,11 +38,10 @@ const struct sweep_quantity sweep_quantities[SWEEP_N_QUANTITIES] = {
     {"residual_evaluations", 0, 0, NULL, NULL, 0},
     {"jacobian_evaluations", 0, 0, NULL, NULL, 0},
     {"wall_time", 0, 0, NULL, NULL, 0},
-    {"nose_error", 1, 0, "1", "distance of the nose from that of the reference of a comparison, in body lengths", 0},
-    {"tail_error", 1, 0, "1", "distance of the tail from that of the reference of a comparison, in body lengths", 0},
+    {"nose_error", 1, 0, "1", "distance of the nose from the reference of a comparison, in body lengths", 0},
+    {"tail_error", 1, 0, "1", "distance of the tail from the reference of a comparison, in body lengths", 0},
     {"power_error", 1, 0, "1",
-     "relative error of the work of the muscle, or of mean_power without one, from that of the reference of a "
-     "comparison",
+     "error of the work of the muscle, or of mean_power without a muscle, relative to the reference of a comparison",
      0},
     {"beat_time", 0, 0, "s", "wall time of a beat of the search for a steady state", SWEEP_OF_STEADY},
     {"steady_stiffness", 0, 0, NULL, NULL, SWEEP_OF_STEADY},
@@ -73,6 +72,7 @@ uint64_t sweep_quantities_read(const struct yaml_node *of, const char *path, int
     snprintf(place, sizeof place, "%s.of", path);
     uint64_t all = 0;
     const int n = of->kind == YAML_LIST ? of->n : 1;
+
     for (int i = 0; i < n; i++) {
         const struct yaml_node *const name = of->kind == YAML_LIST ? of->entry[i].value : of;
         if (name->kind != YAML_SCALAR) {
@@ -82,6 +82,7 @@ uint64_t sweep_quantities_read(const struct yaml_node *of, const char *path, int
         const int q = sweep_quantity_read(name->text, name->mark, place, n_known, errors);
         if (q >= 0) all |= UINT64_C(1) << q;
     }
+
     if (n == 0) yaml_errors_add(errors, of->mark, "%s: expects the name of a quantity, or a list of names", place);
     return all;
 }

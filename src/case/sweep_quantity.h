@@ -1,5 +1,5 @@
-/* sweep_quantity.h: the quantities of studies: what a case can expect of the ends of its members, or give as a
- * reference. Tested by tests/case/test_sweep.c and tests/study/test_study_file.c. */
+/* sweep_quantity.h: the quantities of studies, for expectations and references. Tested by tests/case/test_sweep.c and
+ * tests/study/test_study_file.c. */
 #ifndef SWEEP_QUANTITY_H
 #define SWEEP_QUANTITY_H
 
@@ -9,13 +9,13 @@
 
 enum {
     SWEEP_OF_STEADY = 1, /* of a steady state, or of an equilibrium */
-    SWEEP_JUDGE = 2      /* speed, cost and Strouhal number: the error of any other quantity is judged with them */
+    SWEEP_JUDGE = 2      /* speed, cost and Strouhal number: also evaluated for the error of any other quantity */
 };
 
 struct sweep_quantity {
     const char *name;
     int of_fish, of_xy;         /* one value for every fish; a point in the plane */
-    const char *unit, *meaning; /* NULL: those of the variable of a result file that has this name */
+    const char *unit, *meaning; /* NULL: as of the variable of a result file with this name */
     unsigned traits;
 };
 
@@ -29,7 +29,7 @@ enum {
 
 extern const struct sweep_quantity sweep_quantities[SWEEP_N_QUANTITIES];
 
-/* The number of a quantity among the first n_known; -1 if none of them has this name. */
+/* The number of a quantity among the first n_known; -1 if the name is unknown. */
 int sweep_quantity_find(const char *name, int n_known);
 
 /* The same for a name in a case; -1 after adding an error, with path as the place of the name. */

@@ -1,7 +1,7 @@
-/* sweep_refine.c: what an axis of resolutions can say besides its values.
+/* sweep_refine.c: the keys of an axis of resolutions besides the values.
  *
  *     refine: true
- *     reference: {speed: 1.014, nose: [-1.6, 0.01]}       given values, which errors and orders are taken against
+ *     reference: {speed: 1.014, nose: [-1.6, 0.01]}       given values, the reference of errors and orders
  *     expect: {order: 2, within: 0.2, of: [nose, speed]}
  */
 #include "case/sweep_refine.h"
@@ -30,6 +30,7 @@ struct reading {
 static void check_refine(const struct reading *axis, const struct key *key, const struct yaml_node *node) {
     const struct sweep_axis *const into = axis->into;
     if (!key) return;
+
     if (!sweep_error_find(key->path)) {
         struct text known = {0};
         for (int i = 0; i < SWEEP_N_ERROR_KEYS; i++) {
@@ -43,6 +44,7 @@ static void check_refine(const struct reading *axis, const struct key *key, cons
         text_free(&known);
         return;
     }
+
     int n_different = 0;
     for (int i = 0; i < into->n_values; i++) {
         int is_new = 1;
@@ -53,6 +55,7 @@ static void check_refine(const struct reading *axis, const struct key *key, cons
         }
         n_different += is_new;
     }
+
     if (n_different < MIN_LEVELS || n_different < into->n_values) {
         yaml_errors_add(axis->errors, node->mark, "%s.refine: expects at least %d values, all different", axis->name,
                         MIN_LEVELS);
@@ -79,6 +82,7 @@ static void read_refine(const struct reading *axis, const struct key *key, const
     axis->into->refine = is_true;
     if (!is_true) return;
     check_refine(axis, key, refine);
+
     for (int i = 0; i < axis->values->n_axes; i++) {
         if (!axis->values->sweep[i].refine) continue;
         yaml_errors_add(axis->errors, refine->mark, "%s.refine: sweep[%d] is refined already; one axis can be",
@@ -92,6 +96,7 @@ static void read_expect(const struct reading *axis, const struct yaml_node *expe
         yaml_errors_add(axis->errors, expect->mark, "%s.expect: expects {order: 2, within: 0.2}", axis->name);
         return;
     }
+
     char path[64];
     snprintf(path, sizeof path, "%s.expect", axis->name);
     yaml_tree_check_keys(expect, path, "order, within, of", axis->errors);
@@ -103,7 +108,7 @@ static void read_expect(const struct reading *axis, const struct yaml_node *expe
 
 // ---- the reference
 
-/* Read one value of a quantity: a number, or two; false if it is something else. */
+/* Read one value of a quantity: one or two numbers; false for anything else. */
 static bool read_value(const struct yaml_node *node, int of_xy, double value[2]) {
     if (of_xy && (node->kind != YAML_LIST || node->n != 2)) return false;
     for (int k = 0; k < 1 + of_xy; k++) {
@@ -129,14 +134,17 @@ static bool read_values(const struct reading *axis, const struct yaml_node *node
 static enum status read_reference(const struct reading *axis, const struct yaml_node *node) {
     char path[64];
     snprintf(path, sizeof path, "%s.reference", axis->name);
+
     if (node->kind != YAML_MAP || node->n == 0) {
         yaml_errors_add(axis->errors, node->mark, "%s: expects the values of quantities, as in {speed: 1.01}", path);
         return STATUS_OK;
     }
+
     const size_t n = (size_t)SWEEP_N_ORDERS * (size_t)axis->values->school.n_fish * 2;
     axis->into->reference = malloc((n + 1) * sizeof *axis->into->reference);
     if (!axis->into->reference) return status_fail(STATUS_MEMORY, "out of memory: the sweep");
     for (size_t i = 0; i < n; i++) axis->into->reference[i] = NAN;
+
     for (int i = 0; i < node->n; i++) {
         const struct yaml_entry *const entry = &node->entry[i];
         const int q = sweep_quantity_read(entry->key, entry->mark, path, SWEEP_N_ORDERS, axis->errors);
@@ -145,6 +153,7 @@ static enum status read_reference(const struct reading *axis, const struct yaml_
                         sweep_quantities[q].of_xy ? "[x, y]" : "a number",
                         axis->values->school.n_fish > 1 ? ", or a list of one for each fish" : "");
     }
+
     return STATUS_OK;
 }
 
@@ -167,6 +176,7 @@ uint64_t sweep_refine_orders(const struct case_values *study) {
 void sweep_refine_check(struct case_values *values, const struct yaml_node *sweep, struct yaml_errors *errors) {
     const uint64_t known = sweep_refine_orders(values);
     const uint64_t standard = UINT64_C(1) << SWEEP_NOSE | UINT64_C(1) << SWEEP_TAIL;
+
     for (int a = 0; a < values->n_axes; a++) {
         struct sweep_axis *const axis = &values->sweep[a];
         if (axis->order_of == 0 && axis->order > 0) {
@@ -189,11 +199,13 @@ enum status sweep_refine_read(const struct case_values *values, struct sweep_axi
     into->order = into->within = NAN;
     if (refine) read_refine(&axis, key, refine);
     const struct yaml_node *const ignored[] = {expect, reference};
+
     for (int i = 0; i < 2; i++) {
         if (!ignored[i] || into->refine) continue;
         yaml_errors_add(errors, ignored[i]->mark, "%s.%s: has no effect without refine: true", name,
                         i == 0 ? "expect" : "reference");
     }
+
     if (expect) read_expect(&axis, expect);
     return reference ? read_reference(&axis, reference) : STATUS_OK;
 }

@@ -1,4 +1,4 @@
-/* yaml_errors.c: errors sorted by place, each with its source line and a caret. */
+/* yaml_errors.c: errors sorted by place, each with the source line and a caret. */
 #include "case/yaml_errors.h"
 
 #include <stdarg.h>
@@ -35,8 +35,8 @@ static bool is_before(struct yaml_mark a, struct yaml_mark b) {
     return a.column < b.column;
 }
 
-/* The order in which the kept errors are listed; errors at one place stay in the order they were found in. */
-static int sort(const struct yaml_errors *errors, int order[YAML_ERRORS_KEPT]) {
+/* The order in which the kept errors are listed; errors at one place keep the order of detection. */
+static int sort_errors(const struct yaml_errors *errors, int order[YAML_ERRORS_KEPT]) {
     int n = 0;
     for (; n < errors->n && n < YAML_ERRORS_KEPT; n++) {
         int i = n;
@@ -53,15 +53,17 @@ static size_t character_size(const char *from, const char *end) {
     return size;
 }
 
-/* Find the line that a mark points at: its bytes are *from up to the returned end. */
+/* Find the line of a mark: the bytes from *from up to the returned end. */
 static const char *line_of(struct yaml_mark mark, const char **from) {
     const char *place = mark.source->text;
     const char *const end = place + mark.source->length;
     if (mark.source->length >= 3 && memcmp(place, "\xEF\xBB\xBF", 3) == 0) place += 3;  // the mark of UTF-8
+
     for (int line = 1; line < mark.line && place < end; place++) {
         const bool return_only = *place == '\r' && !(place + 1 < end && place[1] == '\n');
         if (*place == '\n' || return_only) line++;
     }
+
     *from = place;
     while (place < end && *place != '\n' && *place != '\r') place++;
     return place;
@@ -71,22 +73,26 @@ static const char *line_of(struct yaml_mark mark, const char **from) {
 static void add_excerpt(struct text *list, struct yaml_mark mark) {
     const char *from, *const end = line_of(mark, &from);
     int column = 1;
+
     for (; column < mark.column - EXCERPT / 2; column++) {
         if (from >= end) return;
         from += character_size(from, end);
     }
+
     if (from >= end) return;
     text_add(list, "\n");
+
     for (int shown = 0; from < end && shown < EXCERPT; shown++) {
         const size_t size = character_size(from, end);
         const bool visible = (unsigned char)*from >= ' ' && *from != 0x7F && (size > 1 || (unsigned char)*from < 0x80);
         text_add(list, "%.*s", visible ? (int)size : 1, visible ? from : " ");
         from += size;
     }
+
     text_add(list, "\n%*s", mark.column - column + 1, "^");
 }
 
-/* Add one error with its place. */
+/* Add one error with the place. */
 static void add_error(struct text *list, struct yaml_mark mark, const char *word, const char *text) {
     if (list->length > 0) text_add(list, "\n");
     if (mark.source->one_line) {
@@ -99,7 +105,7 @@ static void add_error(struct text *list, struct yaml_mark mark, const char *word
 
 char *yaml_errors_list(const struct yaml_errors *errors, const char *word) {
     int order[YAML_ERRORS_KEPT];
-    const int n = errors->out_of_memory ? 0 : sort(errors, order);
+    const int n = errors->out_of_memory ? 0 : sort_errors(errors, order);
     struct text list = {0};
     text_add(&list, "%s", "");
     for (int i = 0; i < n && i < YAML_ERRORS_SHOWN; i++) {

@@ -20,7 +20,7 @@ struct yaml_source {
     char *text;    /* not terminated by a zero */
     size_t length; /* bytes */
     int rank;      /* errors are listed by rank, then by line */
-    bool one_line; /* an assignment, which is its name: messages need neither line nor caret */
+    bool one_line; /* an assignment: messages show the name, without line and caret */
 };
 
 /* A place in a source; line and column (in characters) count from 1. */
@@ -48,8 +48,8 @@ void yaml_errors_add(struct yaml_errors *errors, struct yaml_mark mark, const ch
 /* STATUS_OK if nothing was added; else STATUS_CASE with the list as message, or STATUS_MEMORY. */
 enum status yaml_errors_status(const struct yaml_errors *errors);
 
-/* The list with another word than "error", such as "note", for the caller to free; "" where nothing was added, NULL
- * when out of memory. */
+/* The list with another word than "error", such as "note"; "" for an empty list, NULL if out of memory. The caller
+ * frees the text. */
 char *yaml_errors_list(const struct yaml_errors *errors, const char *word);
 
 /* Release the errors and zero the list. */

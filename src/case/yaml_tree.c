@@ -1,4 +1,4 @@
-/* yaml_tree.c: a tree from the events of libyaml, with its limits and refusals. */
+/* yaml_tree.c: a tree from the events of libyaml; limits and refused constructs. */
 #include "case/yaml_tree.h"
 
 #include <stdio.h>
@@ -12,13 +12,13 @@ struct reader {
     struct yaml_errors *errors;
 };
 
-static enum status out_of_memory(void) {
+static enum status yaml_out_of_memory(void) {
     return status_fail(STATUS_MEMORY, "out of memory: the tree of a case file");
 }
 
 // ---- the tree
 
-static struct yaml_node *create(enum yaml_kind kind, struct yaml_mark mark) {
+static struct yaml_node *create_node(enum yaml_kind kind, struct yaml_mark mark) {
     struct yaml_node *const node = calloc(1, sizeof *node);
     if (!node) return NULL;
     node->kind = kind;
@@ -27,7 +27,7 @@ static struct yaml_node *create(enum yaml_kind kind, struct yaml_mark mark) {
 }
 
 struct yaml_node *yaml_tree_map(struct yaml_mark mark) {
-    return create(YAML_MAP, mark);
+    return create_node(YAML_MAP, mark);
 }
 
 void yaml_tree_free(struct yaml_node *node) {
@@ -41,10 +41,12 @@ void yaml_tree_free(struct yaml_node *node) {
     free(node);
 }
 
-/* Append an entry with a copy of the key (NULL in a list). Takes ownership of the value, also when it fails. */
-static enum status append(struct yaml_node *node, const char *key, struct yaml_mark mark, struct yaml_node *value) {
+/* Append an entry with a copy of the key (NULL in a list). Takes ownership of the value, also on failure. */
+static enum status append_node(struct yaml_node *node, const char *key, struct yaml_mark mark,
+                               struct yaml_node *value) {
     char *const own_key = key ? strdup(key) : NULL;
     if (key && !own_key) goto failed;
+
     if (node->n == node->capacity) {
         const int capacity = 2 * node->capacity + 4;
         struct yaml_entry *const grown = realloc(node->entry, (size_t)capacity * sizeof *grown);
@@ -52,22 +54,25 @@ static enum status append(struct yaml_node *node, const char *key, struct yaml_m
         node->entry = grown;
         node->capacity = capacity;
     }
+
     node->entry[node->n++] = (struct yaml_entry){own_key, mark, value};
     return STATUS_OK;
 failed:
     free(own_key);
     yaml_tree_free(value);
-    return out_of_memory();
+    return yaml_out_of_memory();
 }
 
 struct yaml_node *yaml_tree_copy(const struct yaml_node *node) {
-    struct yaml_node *const copy = create(node->kind, node->mark);
+    struct yaml_node *const copy = create_node(node->kind, node->mark);
     if (!copy) return NULL;
     if (node->text && !(copy->text = strdup(node->text))) goto failed;
+
     for (int i = 0; i < node->n; i++) {
         struct yaml_node *const value = yaml_tree_copy(node->entry[i].value);
-        if (!value || append(copy, node->entry[i].key, node->entry[i].mark, value) != STATUS_OK) goto failed;
+        if (!value || append_node(copy, node->entry[i].key, node->entry[i].mark, value) != STATUS_OK) goto failed;
     }
+
     return copy;
 failed:
     yaml_tree_free(copy);
@@ -95,7 +100,7 @@ const struct yaml_node *yaml_tree_find(const struct yaml_node *map, const char *
 
 enum status yaml_tree_put(struct yaml_node *map, const char *key, struct yaml_mark mark, struct yaml_node *value) {
     struct yaml_entry *const entry = yaml_tree_entry(map, key, strlen(key));
-    if (!entry) return append(map, key, mark, value);
+    if (!entry) return append_node(map, key, mark, value);
     entry->mark = mark;
     return yaml_tree_merge(&entry->value, value);
 }
@@ -106,12 +111,14 @@ enum status yaml_tree_merge(struct yaml_node **base, struct yaml_node *over) {
         *base = over;
         return STATUS_OK;
     }
+
     enum status status = STATUS_OK;
     for (int i = 0; i < over->n && status == STATUS_OK; i++) {
         struct yaml_node *const value = over->entry[i].value;
         over->entry[i].value = NULL;
         status = yaml_tree_put(*base, over->entry[i].key, over->entry[i].mark, value);
     }
+
     (*base)->mark = over->mark;
     yaml_tree_free(over);
     return status;
@@ -123,6 +130,7 @@ const char *yaml_tree_describe(const struct yaml_node *node, char *buffer, size_
         snprintf(buffer, size, "a list of %d", node->n);
         return buffer;
     }
+
     if (node->text[0] == '\0') return "nothing";
     const int shown = 40;
     snprintf(buffer, size, "'%.*s%s'", shown, node->text, strlen(node->text) > (size_t)shown ? "..." : "");
@@ -144,11 +152,9 @@ static const char *remedy(const char *problem) {
         {"mapping values are not allowed in this context",
          "a key is not allowed here: check the indentation, and quote strings that contain ': '"},
         {"could not find expected ':'", "a key ends with ':' and a blank"},
-        {"did not find expected ',' or ']'",
-         "a list that begins with '[' needs ',' between its values and ']' at its end"},
+        {"did not find expected ',' or ']'", "a list that begins with '[' needs ',' between values and ends with ']'"},
         {"did not find expected ',' or '}'",
-         "a map that begins with '{' needs ',' between its keys and '}' at its end; a string with brackets needs "
-         "quotes"},
+         "a map that begins with '{' needs ',' between keys and ends with '}'; a string with brackets needs quotes"},
         {"found unexpected end of stream", "the quote that begins here is not closed"},
         {"found character that cannot start any token", "quote strings that begin with this character"},
     };
@@ -169,19 +175,22 @@ static bool is_tab_indented(struct yaml_mark mark) {
 /* Add the error of libyaml to the list. */
 static enum status report_parser(struct reader *reader) {
     const yaml_parser_t *const parser = &reader->parser;
-    if (parser->error == YAML_MEMORY_ERROR) return out_of_memory();
+    if (parser->error == YAML_MEMORY_ERROR) return yaml_out_of_memory();
     const char *const problem = parser->problem ? parser->problem : "not readable";
     struct yaml_mark mark = mark_at(reader, parser->problem_mark);
+
     if (is_tab_indented(mark)) {
         mark.column = 1;
         yaml_errors_add(reader->errors, mark, "the line is indented with a tab; use blanks");
         return STATUS_CASE;
     }
+
     if (!parser->context) {
         yaml_errors_add(reader->errors, mark, "%s (%s)", remedy(problem), problem);
         return STATUS_CASE;
     }
-    // a bracket or quote that is never closed: its beginning is more useful than the end of the file
+
+    // for a bracket or quote that is not closed, report the opening, not the end of the file
     const struct yaml_mark begin = mark_at(reader, parser->context_mark);
     if (strcmp(problem, "found unexpected end of stream") == 0) mark = begin;
     yaml_errors_add(reader->errors, mark, "%s (%s, line %d: %s)", remedy(problem), parser->context, begin.line,
@@ -214,8 +223,8 @@ static enum status read_scalar(struct reader *reader, const yaml_event_t *event,
     if (strlen(text) != event->data.scalar.length) {
         yaml_errors_add(reader->errors, mark, "a string cannot contain a zero byte");
     }
-    *node = create(YAML_SCALAR, mark);
-    if (!*node || !((*node)->text = strdup(text))) return out_of_memory();
+    *node = create_node(YAML_SCALAR, mark);
+    if (!*node || !((*node)->text = strdup(text))) return yaml_out_of_memory();
     return STATUS_OK;
 }
 
@@ -231,7 +240,7 @@ static enum status read_list(struct reader *reader, int depth, struct yaml_node 
         enum status status = read_node(reader, &event, depth, &value);
         yaml_event_delete(&event);
         if (status == STATUS_OK) {
-            status = append(list, NULL, value->mark, value);
+            status = append_node(list, NULL, value->mark, value);
         } else {
             yaml_tree_free(value);
         }
@@ -239,33 +248,37 @@ static enum status read_list(struct reader *reader, int depth, struct yaml_node 
     }
 }
 
-/* Check a key; false if its value is not to be kept. */
+/* Check a key; false if the value is discarded. */
 static bool accept_key(struct reader *reader, const struct yaml_node *map, const struct yaml_node *key) {
     if (strcmp(key->text, "<<") == 0) {
         yaml_errors_add(reader->errors, key->mark,
                         "merge keys ('<<') are not used in case files; put shared values under defaults");
         return false;
     }
+
     const struct yaml_entry *const twin = yaml_tree_entry(map, key->text, strlen(key->text));
     if (twin) {
         yaml_errors_add(reader->errors, key->mark, "the key '%.40s' is here twice; the first is on line %d: remove one",
                         key->text, twin->mark.line);
     }
+
     return !twin;
 }
 
-/* Read a value and put it under its key. */
+/* Read a value and append the value under the key. */
 static enum status read_value(struct reader *reader, int depth, struct yaml_node *map, const struct yaml_node *key) {
     yaml_event_t event;
     TRY(next_event(reader, &event));
     struct yaml_node *value = NULL;
     const enum status status = read_node(reader, &event, depth, &value);
     yaml_event_delete(&event);
+
     if (status != STATUS_OK || !accept_key(reader, map, key)) {
         yaml_tree_free(value);
         return status;
     }
-    return append(map, key->text, key->mark, value);
+
+    return append_node(map, key->text, key->mark, value);
 }
 
 static enum status read_map(struct reader *reader, int depth, struct yaml_node *map) {
@@ -292,25 +305,30 @@ static enum status read_map(struct reader *reader, int depth, struct yaml_node *
     }
 }
 
-/* Read the node that begins with an event. *node is set also when it fails. */
+/* Read the node that begins with an event. *node is set also on failure. */
 static enum status read_node(struct reader *reader, const yaml_event_t *event, int depth, struct yaml_node **node) {
     const struct yaml_mark mark = mark_at(reader, event->start_mark);
     if (event->type == YAML_SCALAR_EVENT) return read_scalar(reader, event, node);
+
     if (event->type == YAML_ALIAS_EVENT) {
         yaml_errors_add(reader->errors, mark, "aliases ('*') are not used in case files; write the value");
         return STATUS_CASE;
     }
+
     if (depth == YAML_TREE_DEPTH) {
         yaml_errors_add(reader->errors, mark, "nested deeper than %d levels", YAML_TREE_DEPTH);
         return STATUS_CASE;
     }
+
     const bool is_map = event->type == YAML_MAPPING_START_EVENT;
-    *node = create(is_map ? YAML_MAP : YAML_LIST, mark);
-    if (!*node) return out_of_memory();
+    *node = create_node(is_map ? YAML_MAP : YAML_LIST, mark);
+    if (!*node) return yaml_out_of_memory();
+
     if (is_map) {
         refuse_extras(reader, mark, event->data.mapping_start.anchor, event->data.mapping_start.tag);
         return read_map(reader, depth + 1, *node);
     }
+
     refuse_extras(reader, mark, event->data.sequence_start.anchor, event->data.sequence_start.tag);
     return read_list(reader, depth + 1, *node);
 }
@@ -342,30 +360,33 @@ static enum status read_document(struct reader *reader, struct yaml_node **root)
 
 // ---- checks before parsing
 
-/* The code point of the character at text and its size in bytes; -1 if it is not UTF-8. */
+/* The code point of the character at text and its size in bytes; -1 for invalid UTF-8. */
 static long code_point(const unsigned char *text, size_t left, size_t *size) {
     const unsigned char first = text[0];
     *size = first < 0x80 ? 1 : first < 0xC2 ? 0 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : first < 0xF5 ? 4 : 0;
     if (*size == 0 || *size > left) return -1;
     static const unsigned char payload[] = {0, 0x7F, 0x1F, 0x0F, 0x07};
     long code = first & payload[*size];
+
     for (size_t i = 1; i < *size; i++) {
         if ((text[i] & 0xC0) != 0x80) return -1;
         code = code << 6 | (text[i] & 0x3F);
     }
+
     const bool overlong = (*size == 3 && code < 0x800) || (*size == 4 && code < 0x10000);
     return overlong || (code >= 0xD800 && code <= 0xDFFF) || code > 0x10FFFF ? -1 : code;
 }
 
-/* The size of the byte order mark that some editors write; libyaml does not skip it. */
+/* The size of a byte order mark, written by some editors and not skipped by libyaml. */
 static size_t mark_size(const struct yaml_source *source) {
     return source->length >= 3 && memcmp(source->text, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0;
 }
 
-/* Refuse what is not UTF-8, and control characters: one error at the first place. */
+/* Refuse invalid UTF-8 and control characters: one error at the first place. */
 static enum status check_characters(const struct yaml_source *source, struct yaml_errors *errors) {
     const unsigned char *const text = (const unsigned char *)source->text;
     struct yaml_mark mark = {source, 1, 1};
+
     for (size_t i = mark_size(source), size; i < source->length; i += size) {
         const long code = code_point(text + i, source->length - i, &size);
         const bool is_control = (code < ' ' && code != '\t' && code != '\n' && code != '\r') ||
@@ -380,13 +401,14 @@ static enum status check_characters(const struct yaml_source *source, struct yam
         mark.column++;
         if (code == '\n') mark = (struct yaml_mark){source, mark.line + 1, 1};
     }
+
     return STATUS_OK;
 }
 
 /* Parse a source that has passed the checks of size and characters. */
 static enum status read_text(struct yaml_node **root, const struct yaml_source *source, struct yaml_errors *errors) {
     struct reader reader = {.source = source, .errors = errors};
-    if (!yaml_parser_initialize(&reader.parser)) return out_of_memory();
+    if (!yaml_parser_initialize(&reader.parser)) return yaml_out_of_memory();
     yaml_parser_set_encoding(&reader.parser, YAML_UTF8_ENCODING);
     const size_t skipped = mark_size(source);
     yaml_parser_set_input_string(&reader.parser, (const unsigned char *)source->text + skipped,
@@ -400,17 +422,21 @@ enum status yaml_tree_read(struct yaml_node **root, const struct yaml_source *so
     *root = NULL;
     const struct yaml_mark start = {source, 1, 1};
     const int n_errors = errors->n;
+
     if (source->length > YAML_TREE_BYTES) {
         yaml_errors_add(errors, start, "larger than %d MiB; is this a case file?", YAML_TREE_BYTES >> 20);
         return STATUS_CASE;
     }
+
     TRY(check_characters(source, errors));
     enum status status = read_text(root, source, errors);
     if (status == STATUS_OK && errors->n > n_errors) status = STATUS_CASE;
+
     if (status != STATUS_OK) {
         yaml_tree_free(*root);
         *root = NULL;
     }
+
     return status;
 }
 

@@ -1,13 +1,12 @@
-/* yaml_tree.h: a subset of YAML, read into a tree in which every node has its place in the source. Tested by
- * tests/case/test_yaml.c.
+/* yaml_tree.h: a subset of YAML, read into a tree of nodes with places in the source. Tested by tests/case/test_yaml.c.
  *
  *     time: {end: 3}          map -- "time" -- map -- "end" -- scalar "3"
  *     fish:                    |
  *       - nodes: 7             +-- "fish" -- list -- map -- "nodes" -- scalar "7"
  *
- * Maps, lists and scalars only: anchors, aliases, tags, merge keys, duplicate keys and further documents are refused.
- * A scalar is a string, which the key interprets, never YAML. Only the events of libyaml are used: its loader takes
- * quadratic time on hostile input. (The name "yaml.h" is that of libyaml's header.) */
+ * Maps, lists and scalars only: anchors, aliases, tags, merge keys, duplicate keys and further documents are refused. A
+ * scalar is a string, which the key interprets, never YAML. Only the events of libyaml are used: the loader of libyaml
+ * takes quadratic time on hostile input. (The header of libyaml has the name "yaml.h".) */
 #ifndef YAML_TREE_H
 #define YAML_TREE_H
 
@@ -32,11 +31,11 @@ struct yaml_entry {
     struct yaml_node *value;
 };
 
-/* Parse a source. Fails with STATUS_CASE after adding what is wrong to errors, or with STATUS_MEMORY; *root is then
+/* Parse a source. Fails with STATUS_CASE after adding to errors, or with STATUS_MEMORY; *root is then
  * NULL. The nodes point at the source. Free with yaml_tree_free. */
 enum status yaml_tree_read(struct yaml_node **root, const struct yaml_source *source, struct yaml_errors *errors);
 
-/* Release a node and all below it. Accepts NULL. */
+/* Release a node with all nested nodes. Accepts NULL. */
 void yaml_tree_free(struct yaml_node *node);
 
 /* A new empty map, or a copy of a tree; NULL when out of memory. */
@@ -49,14 +48,14 @@ struct yaml_entry *yaml_tree_entry(const struct yaml_node *map, const char *key,
 /* The node at a path of keys like "time.end"; NULL if there is none. */
 const struct yaml_node *yaml_tree_find(const struct yaml_node *map, const char *path);
 
-/* Merge over onto *base: maps are merged key by key, anything else is replaced. Takes ownership of over, also when it
- * fails with STATUS_MEMORY. */
+/* Merge over onto *base: maps are merged key by key, anything else is replaced. Takes ownership of over, also on
+ * STATUS_MEMORY. */
 enum status yaml_tree_merge(struct yaml_node **base, struct yaml_node *over);
 
 /* The same for one key of a map. */
 enum status yaml_tree_put(struct yaml_node *map, const char *key, struct yaml_mark mark, struct yaml_node *value);
 
-/* Add an error for each key of a map that is not among the known ones, "key, values"; path is that of the map. */
+/* Add an error for each key of a map that is not among the known ones, "key, values"; path: path of the map. */
 void yaml_tree_check_keys(const struct yaml_node *map, const char *path, const char *known, struct yaml_errors *errors);
 
 /* "a map of keys", "a list of 3", "'text'" or "nothing": for messages, kept in buffer and returned. */

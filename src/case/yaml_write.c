@@ -1,4 +1,4 @@
-/* yaml_write.c: quotes where they are needed. */
+/* yaml_write.c: strings with quotes where YAML needs quotes. */
 #include "case/yaml_write.h"
 
 #include <stdbool.h>
@@ -26,6 +26,7 @@ void yaml_write_scalar(struct text *text, const char *scalar) {
         text_add(text, "%s", scalar);
         return;
     }
+
     text_add(text, "\"");
     for (const char *c = scalar; *c; c++) {
         const unsigned char byte = (unsigned char)*c;
@@ -37,6 +38,7 @@ void yaml_write_scalar(struct text *text, const char *scalar) {
             text_add(text, "%c", *c);
         }
     }
+
     text_add(text, "\"");
 }
 
@@ -45,6 +47,7 @@ void yaml_write_node(struct text *text, const struct yaml_node *node) {
         yaml_write_scalar(text, node->text);
         return;
     }
+
     text_add(text, node->kind == YAML_LIST ? "[" : "{");
     for (int i = 0; i < node->n; i++) {
         if (i > 0) text_add(text, ", ");
@@ -54,5 +57,6 @@ void yaml_write_node(struct text *text, const struct yaml_node *node) {
         }
         yaml_write_node(text, node->entry[i].value);
     }
+
     text_add(text, node->kind == YAML_LIST ? "]" : "}");
 }

@@ -5,7 +5,7 @@
 #include "base/text.h"
 #include "case/yaml_tree.h"
 
-/* Add a string, in quotes where YAML needs them. */
+/* Add a string, quoted if YAML needs quotes. */
 void yaml_write_scalar(struct text *text, const char *scalar);
 
 /* Add any value on one line: [1, 2] and {a: 1}. */

@@ -28,9 +28,9 @@ spends() {  # ms, arguments...
 estimates() {
     run check "$demo"
     check "time and memory are estimated" \
-        grep -qE '^    its run takes about [0-9.e+]+ (s|min|h) and [0-9.e+]+ MB on this machine' out
+        grep -qE '^    the run takes about [0-9.e+]+ (s|min|h) and [0-9.e+]+ MB on this machine' out
     run check "$cases/studies/phase.yaml" --set time.end=1
-    check "the runs of a study add up" grep -q '^    its runs take about .* on this machine, one after the other' out
+    check "the runs of a study add up" grep -q '^    the runs take about .* on this machine, one after the other' out
     run check "$demo" -q
     check "-q says nothing" silent
 }
@@ -45,7 +45,7 @@ one_verdict() {
     # member 10 of 11 goes wrong at once: a result of the study
     run check "$cases/studies/vibration.yaml"
     check "members that fail are results of a study" ended 0
-    check "and are told" grep -q '^    1 of its members fails in the first events, as member 10: unstable' out
+    check "and are told" grep -q '^    1 of [0-9]* members fails in the first events; member 10: unstable' out
 }
 
 before_the_first_step() {
@@ -77,7 +77,7 @@ before_the_first_step() {
 half_a_second() {
     printf '%s\n' 'format: 1' 'time: {end: 2000, shedding_interval: 0.01}' 'wake: {lifetime: 2000}' 'fish: [{}]' >long.yaml
     check "200,000 vortices: half a second" spends 500 long.yaml
-    check "and hours of a run" grep -qE 'its run takes about [0-9.]+ h and [0-9.e+]+ MB' out
+    check "and hours of a run" grep -qE 'the run takes about [0-9.]+ h and [0-9.e+]+ MB' out
     check "in a channel" spends 500 long.yaml --set 'fluid.walls=[-1, 1]'
     check "without a tree" spends 500 long.yaml --set wake.tolerance=0
     awk 'BEGIN { print "format: 1\ntime: {end: 10}\nfish:"

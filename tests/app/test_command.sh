@@ -290,7 +290,7 @@ notes() {
     check "a note does not make check fail" ended 0
     check "check prints notes" says "note: fish[0].length: 50 m is longer than any swimmer"
     run run "$demo" --set time.end=0.01 --set "fish[0].start.heading=3.14159" -o noted.nc
-    check "run prints notes" says "note: fish[0].start.heading: 3.14159 is taken in degrees"
+    check "run prints notes" says "note: fish[0].start.heading: 3.14159 is in degrees"
     run run "$demo" -q --set time.end=0.01 --set "fish[0].start.heading=3.14159" -o quiet.nc
     check "-q prints none" silent
 }

@@ -24,7 +24,7 @@ refused existing_files_are_kept 4 'exists' export 'a <pair>.nc' --vtk out_of_it
 run export 'a <pair>.nc' --vtk out_of_it --force -q
 check force_replaces_them test "$code" = 0 -a ! -s out
 refused no_result 4 'nothing.nc' export nothing.nc --vtk out_of_it
-refused no_format 2 'to what? give --vtk FOLDER' export 'a <pair>.nc'
+refused no_format 2 'choose a format: --vtk FOLDER' export 'a <pair>.nc'
 refused no_folder 4 'cannot make this folder' export 'a <pair>.nc' --vtk no/such
 
 cat >compare.py <<'end'

@@ -152,7 +152,7 @@ set_fails() {  # name, text, assignment...
 }
 
 set_fails set_unknown_key \
-    "--set fish[0].stifness=3: error: fish[0].stifness: unknown key; did you mean 'modulus'? It belongs to fish[0].body" \
+    "--set fish[0].stifness=3: error: fish[0].stifness: unknown key; did you mean 'modulus'? The key belongs to fish[0].body" \
     'fish[0].stifness=3'
 set_fails set_unknown_section "--set tiem.end=3: error: tiem.end: unknown key; did you mean 'time'?" tiem.end=3
 set_fails set_no_equals_sign '--set time.end: error: expects PATH=VALUE, as in --set time.end=3' time.end
@@ -164,23 +164,23 @@ set_fails set_index_negative 'fish[-1].nodes: expects the number of a fish' 'fis
 set_fails set_index_missing 'fish.nodes: write fish[0].nodes for one fish, or fish[*].nodes for every fish' fish.nodes=7
 set_fails set_index_after_a_dot '--set fish.0.length=2: error: fish.0.length: write fish[0].length' fish.0.length=2
 set_fails set_star_after_a_dot 'fish.*.wave.phase: write fish[*].wave.phase' 'fish.*.wave.phase=2'
-set_fails set_in_another_section 'unknown key here; it belongs to fish[0].wave or fish[0].motion' 'fish[0].body.frequency=2'
-set_fails set_in_one_other_section 'unknown key here; it belongs to fish[0].body' 'fish[0].wave.modulus=2'
-set_fails set_viscosity "has no effect: all fish have 'drag.skin: quadratic', whose friction is drag.tangential" fluid.viscosity=1e-3
-set_fails set_reynolds 'friction is drag.tangential of a fish, or fluid.viscosity with' fluid.reynolds=1000
+set_fails set_in_another_section 'unknown key here; the key belongs to fish[0].wave or fish[0].motion' 'fish[0].body.frequency=2'
+set_fails set_in_one_other_section 'unknown key here; the key belongs to fish[0].body' 'fish[0].wave.modulus=2'
+set_fails set_viscosity "has no effect: all fish have 'drag.skin: quadratic' with the coefficient drag.tangential" fluid.viscosity=1e-3
+set_fails set_reynolds 'the friction is set by drag.tangential of a fish, or by fluid.viscosity with' fluid.reynolds=1000
 set_fails set_index_open 'expects the number of a fish, as in fish[0]' 'fish[0=7'
 set_fails set_no_dot_after_index "fish[0]nodes: expects a '.' after the ']'" 'fish[0]nodes=7'
-set_fails set_below_a_value 'time.end.x: time.end is a value and has no keys of its own' time.end.x=3
+set_fails set_below_a_value 'time.end.x: time.end is a value and has no keys' time.end.x=3
 set_fails set_mistyped '--set time.end=soon: error: time.end: expects a number in s, got '"'soon'" time.end=soon
 set_fails set_out_of_range '--set fish[*].nodes=3: error: fish[1].nodes: must be from 4 to 10000, got 3' 'fish[*].nodes=3'
 set_fails set_empty '--set time.end=: error: time.end: expects a number in s, got nothing' time.end=
-set_fails set_bad_yaml "needs ',' between its values and ']' at its end" 'fish[0].start.position=[1'
+set_fails set_bad_yaml "needs ',' between values and ends with ']'" 'fish[0].start.position=[1'
 set_fails set_only_a_comment "expects a value after the '='" 'name=# eel'
 set_fails set_unknown_key_in_map "fish[0].wave.amplitud: unknown key; did you mean 'amplitude'?" 'fish[0].wave={amplitud: 1}'
 set_fails set_include '--set include=[a.yaml]: error: include: is allowed in case files only' 'include=[a.yaml]'
 set_fails set_inconsistent '--set wake.decay=4: error: wake.decay: 4 s is longer than wake.lifetime, 3 s' wake.decay=4
 set_fails set_twice_the_last_counts 'time.end: expects a number in s, got '"'b'" time.end=1 time.end=b
-set_fails set_section_to_a_value "--set wake=3: error: wake: expects keys below it, got '3'" wake=3
+set_fails set_section_to_a_value "--set wake=3: error: wake: expects a section with keys, got '3'" wake=3
 expect set_and_bad_file 2 "time.ned: unknown key" crlf.yaml --set nmae=3
 
 # ---- out of memory

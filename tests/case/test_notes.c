@@ -22,12 +22,12 @@ static void a_usual_case_has_no_notes(void **state) {
 static void an_angle_in_radians_is_noted(void **state) {
     (void)state;
     notes_are("fish[0].start.heading=3.14159",
-              "--set fish[0].start.heading=3.14159: note: fish[0].start.heading: 3.14159 is taken in degrees; if it is "
-              "in radians, write 180");
+              "--set fish[0].start.heading=3.14159: note: fish[0].start.heading: 3.14159 is in degrees; if radians are "
+              "meant, write 180");
     notes_are("fish[0].start.heading=-1.571", "write -90");
     notes_are("fish[0].wave.phase=0.7854", "write 45");
     notes_are("fish[0].motion={prescribed: head, pitch: 0.5236, frequency: 1}",
-              "fish[0].motion.pitch: 0.5236 is taken");
+              "fish[0].motion.pitch: 0.5236 is in degrees");
     notes_are("fish[0].motion.pitch_phase=1.5708", "write 90");
     notes_are("fish[0].motion.phase=6.2832", "write 360");
     notes_are("fish[0].control={law: course, desired_heading: [[0, 180], [1, 2.3562]]}", "write 135");
@@ -35,7 +35,7 @@ static void an_angle_in_radians_is_noted(void **state) {
 
 static void a_body_like_no_other_is_noted(void **state) {
     (void)state;
-    notes_are("fish[0].length=50", "fish[0].length: 50 m is longer than any swimmer: lengths are in metres");
+    notes_are("fish[0].length=50", "fish[0].length: 50 m is longer than any swimmer; the unit is metres");
     notes_are("fish[0].length=1e-4", "fish[0].length: 0.0001 m is shorter than any swimmer");
     notes_are("fish[0].body.modulus=1", "fish[0].body.modulus: 1 Pa is softer than jelly");
     notes_are("fish[0].body.modulus=1e13", "1e+13 Pa is stiffer than diamond");
@@ -43,7 +43,7 @@ static void a_body_like_no_other_is_noted(void **state) {
 
 static void few_nodes_under_pressure_are_noted(void **state) {
     (void)state;
-    notes_are("fish[0]={nodes: 9, force: pressure}", "fish[0].nodes: 9: with force pressure fewer than 17 nodes");
+    notes_are("fish[0]={nodes: 9, force: pressure}", "fish[0].nodes: 9: with force pressure, fewer than 17 nodes");
     notes_are("fish[0]={nodes: 17, force: pressure}", "");
     notes_are("fish[0]={nodes: 9, force: reactive}", "");
     // a rigid plate has no shape to resolve

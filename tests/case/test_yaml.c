@@ -147,7 +147,7 @@ static void what_is_not_in_the_subset_is_refused_with_its_place(void **state) {
         {"? {a: 1}\n: 1\n", "x.yaml:1:3: error: a key must be a plain word"},
         {"a:\n\tb: 1\n", "x.yaml:2:1: error: the line is indented with a tab; use blanks"},
         {"a: 1\n  b: 2\n", "x.yaml:2:4: error: a key is not allowed here"},
-        {"a: [1, 2\nb: 3\n", "needs ',' between its values and ']' at its end"},
+        {"a: [1, 2\nb: 3\n", "needs ',' between values and ends with ']'"},
         {"a: \"b\nc: 1\n", "x.yaml:1:4: error: the quote that begins here is not closed"},
         {"a: \"b\\0c\"\n", "x.yaml:1:4: error: a string cannot contain a zero byte"},
         {"a: 1\nb: \x01\n", "x.yaml:2:4: error: not a text file (control character 0x01)"},

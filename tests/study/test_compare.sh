@@ -66,7 +66,7 @@ check then_nothing_else_runs test ! -s out
 
 refused unknown_method 2 "--methods: 'adams' is unknown" compare case.yaml --methods ida2,adams
 refused tolerance_out_of_range 2 'solver.rtol' compare case.yaml --rtol 1e-3,-1
-refused implicit_methods_without_steps 2 'takes fixed steps only: give solver.step' \
+refused implicit_methods_without_steps 2 'needs a fixed step: set solver.step' \
     compare case.yaml --methods trapezoid
 refused tolerance_of_words 2 "--rtol: 'small' is not a number" compare case.yaml --rtol 1e-3,small
 refused step_that_is_no_part 2 'solver.step' compare case.yaml --methods rk4 --steps 0.013

@@ -135,7 +135,7 @@ refused members_beyond_the_study 2 '--members 4-6: the study has members 0 to 5'
 refused members_backwards 2 '--members 3-1: expects the number of a member' study small.yaml -o parts --members 3-1
 refused members_of_words 2 '--members all: expects' study small.yaml -o parts --members all
 refused processes_of_words 2 '-j two: expects an integer' study small.yaml -o parts -j two
-refused run_refuses_a_sweep 2 'run it with `shoal study`' run small.yaml -o never.nc
+refused run_refuses_a_sweep 2 'use `shoal study`' run small.yaml -o never.nc
 run study small.yaml --limit 0.4 -o slow -q --set time.end=2000 --set 'sweep=[{key: solver.rtol, values: [1e-5]}]'
 check a_member_that_takes_too_long_has_failed eval 'test "$code" = 1 && has out "member 0 failed: too slow: at t = "'
 refused limit_of_nothing 2 '--limit 0: expects a number above 0' study small.yaml --limit 0
