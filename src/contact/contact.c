@@ -227,11 +227,14 @@ static void touch_visit(const struct pair *pair, int one, int node, int i, int j
     const double a[2] = {y[other->at.x + j], y[other->at.y + j]};
     const double e[2] = {y[other->at.x + j + 1] - a[0], y[other->at.y + j + 1] - a[1]};
     const double r[2] = {y[fish->at.x + node] - a[0], y[fish->at.y + node] - a[1]};
+
+    // nearest point of the edge, at the fraction q, and gap
     const double square = e[0] * e[0] + e[1] * e[1];
     const double along = square > 0 ? (r[0] * e[0] + r[1] * e[1]) / square : 0, q = fmin(1, fmax(0, along));
     const double distance = hypot(r[0] - q * e[0], r[1] - q * e[1]);
     const double gap = distance - (fish->thickness[i] + other->thickness[j]) / 2;
     if (gap >= pair->range) return;
+
     struct touch touch = {.fish = {pair->number[one], pair->number[1 - one], pair->number[1 - one]},
                           .node = {node, j, j + 1}};
     gap_potential(gap, pair->range, pair->strength / 4, &touch);
@@ -288,6 +291,7 @@ static void each_wall_touch(const struct contact *contact, int f, const double *
         const double inward = school->walls.inward[wall];
         const double gap = inward * (y[fish->at.y + node] - school->walls.y[wall]) - fish->thickness[edge] / 2;
         if (gap >= school->contact_range) continue;
+
         struct touch touch;
         gap_potential(gap, school->contact_range, fish->contact_strength / 2, &touch);
         visitor(data, &(struct wall_touch){node, touch.energy, touch.slope, touch.curvature, inward});
@@ -384,6 +388,7 @@ static void sums_add(void *data, const struct touch *touch) {
         const struct layout *const at = &sums->contact->school->fish[touch->fish[i]].at;
         const double force[2] = {-touch->slope * touch->gradient[2 * i], -touch->slope * touch->gradient[2 * i + 1]};
         const double power = force[0] * sums->y[at->vx + touch->node[i]] + force[1] * sums->y[at->vy + touch->node[i]];
+
         const int is_own = touch->fish[i] == sums->f;
         sums->power += (is_own ? power : -power) / 2;
         if (is_own) add_to_forces(sums, touch->node[i], force);

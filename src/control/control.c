@@ -146,10 +146,12 @@ double control_rate(const struct fish *fish, const struct control_memory *memory
                     const double *y) {
     if (fish->control.law == CONTROL_NONE) return lead_rate(&memory->bias, t);
     if (fish->control.law != CONTROL_HEADING) return memory->phi0_rate;
+
     double head[2], rate[2];
     head_vector(fish, y, head);
     rate[0] = y[fish->at.vx] - fish_mean(&fish->heading_point, y + fish->at.vx);
     rate[1] = y[fish->at.vy] - fish_mean(&fish->heading_point, y + fish->at.vy);
+
     const double error_rate = turn_rate(head, rate) - desired_heading_rate(fish, memory, t, y);
     const double tangent = tanh(heading_argument(fish, memory, t, since, y));
 
@@ -235,6 +237,8 @@ int control_event(const struct fish *fish, struct control_memory *memory, const 
     memory->moment_rate = fish->control.filter_share * (view->moment - memory->moment) / view->interval;
     if (fish->control.law == CONTROL_NONE) return 0;
     if (fish->control.law == CONTROL_HEADING) return passed;
+
+    // an event-based law approaches the target by at most rate per second
     const double most = fish->control.rate, target = event_target(fish, memory, view, y);
     memory->phi0_rate = fmax(-most, fmin(most, (target - memory->phi0) / view->interval));
 
@@ -285,6 +289,7 @@ void control_set_waypoints(const struct fish *fish, struct control_memory *memor
     memory->n_waypoints = n;
     memory->waypoint = 0;
     for (int i = 0; i < 2 * n; i++) memory->waypoints[i] = waypoints[i];
+
     memory->set_out[0] = y[fish->at.x];
     memory->set_out[1] = y[fish->at.y];
 }

@@ -42,6 +42,8 @@ double lead_integral(const struct lead *lead, double t) {
     double integral = 0;
     for (int i = LEAD_TERMS - 1; i >= 0; i--) integral = (integral + lead->series[i] / (i + 1)) * end;
     integral *= lead->ramp;
+
+    // constant value after the ramp
     if (q >= 1) integral += (t - lead->start - lead->ramp) * lead->target;
     return lead->integral + integral;
 }
@@ -62,6 +64,7 @@ static void series_set(const double given[N_GIVEN], double series[LEAD_TERMS]) {
 static void lead_start(struct lead *lead, double t, double ramp, const double given[N_GIVEN], double target) {
     lead->integral = lead_integral(lead, t);
     const double from_target[N_GIVEN] = {given[0] - target, given[1], given[2], given[3]};
+
     series_set(from_target, lead->series);
     lead->series[0] += target;
     lead->start = t;

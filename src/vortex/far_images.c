@@ -433,9 +433,11 @@ static void cells_add_velocity(const struct table *table, const struct cells *ce
         cell_place(cells, cell, to->x[i], to->y[i], at);
         chebyshev_polynomials(table->x.n, at[0], x, by_x);
         chebyshev_polynomials(table->y.n, at[1], y, by_y);
+
         to->u[i] += polynomial_sum(table, u, y, x);
         to->v[i] += polynomial_sum(table, v, y, x);
         if (!to->u_x) continue;
+
         const double scale = 2 / cells->width;
         to->u_x[i] += scale * polynomial_sum(table, u, y, by_x);
         to->u_y[i] += scale * polynomial_sum(table, u, by_y, x);

@@ -65,6 +65,7 @@ static inline struct image_velocity image_row_of(const struct image_column *c, d
     struct image_velocity row = {.u = -c->strength * 4 * t * both * inverse,
                                  .v = c->strength * c->ratio * sinh * inverse};
     if (!with_gradient) return row;
+
     const double bend = c->strength * c->rate * 2 * t * inverse * inverse, cos_y = 1 - 2 * square;
     // cosh S cos Y - 1, without cancellation near the vortex
     const double turn = gap * gap * cos_y - 4 * t * square;
@@ -98,6 +99,7 @@ static inline struct image_rows image_rows_of(const struct image_column *column,
     const double ss = target->sine * source->sine, cc = target->cosine * source->cosine;
     struct image_rows rows = {image_row_of(column, sc - cs, cc + ss, with_gradient),
                               image_row_of(column, sc + cs, cc - ss, with_gradient)};
+
     const struct image_velocity direct = image_direct_of(r[0], r[1], square, with_gradient);
     rows.shifted.u -= direct.u;
     rows.shifted.v -= direct.v;

@@ -88,6 +88,7 @@ static void channel_induce(const struct walls *walls, const struct sources *s, c
     for (int first = 0; first < at->n; first += KERNEL_CHUNK) {
         const int end = at->n - first < KERNEL_CHUNK ? at->n : first + KERNEL_CHUNK;
         for (int i = first; i < end; i++) target[i - first] = image_height_of(walls, at->y[i]);
+
         for (int j = 0; j < s->n; j++) {
             const struct image_height source = image_height_of(walls, s->y[j]);
             for (int i = first; i < end; i++) {

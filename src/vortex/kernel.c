@@ -120,6 +120,7 @@ static void targets_add(const struct addition *what, int n, const double *x, con
     const int whole = n - n % (2 * BLOCK), n_sums = what->with_gradient ? 5 : 2;
     targets_add_blocks(what, whole, x, y, to);
     if (whole == n) return;
+
     double *rest[5] = {NULL};
     for (int k = 0; k < n_sums; k++) rest[k] = to[k] + whole;
     targets_add_rest(what, n - whole, x + whole, y + whole, rest);

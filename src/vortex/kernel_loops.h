@@ -40,6 +40,8 @@ static inline TARGET void VARIANT(velocity_two)(const double *x, const double *y
         const lanes rx0 = x0 - sources->x[j], ry0 = y0 - sources->y[j];
         const lanes rx1 = x1 - sources->x[j], ry1 = y1 - sources->y[j];
         const lanes d0 = FUSED(rx0, rx0, FUSED(ry0, ry0, square)), d1 = FUSED(rx1, rx1, FUSED(ry1, ry1, square));
+
+        // one division for both targets: 1/d0 = d1/(d0 d1)
         const lanes shared = sources->circulation[j] / (d0 * d1);
         const lanes g0 = shared * d1, g1 = shared * d0;
         u0 = FUSED(g0, ry0, u0);
@@ -92,6 +94,7 @@ static TARGET void VARIANT(gradient)(int n, const double *x, const double *y, co
             const lanes rx = xs - sources->x[j], ry = ys - sources->y[j], rx_square = rx * rx;
             const lanes inverse = 1 / FUSED(ry, ry, rx_square + square);
             const lanes g = sources->circulation[j] * inverse, h = g * inverse;
+
             us = FUSED(g, ry, us);
             vs = FUSED(g, rx, vs);
             products = FUSED(h, rx * ry, products);
@@ -99,6 +102,7 @@ static TARGET void VARIANT(gradient)(int n, const double *x, const double *y, co
             gs += g;
             hs += h;
         }
+
         const lanes across = gs - 2 * squares;
         VARIANT(add)(u + i, -inverse_two_pi, us);
         VARIANT(add)(v + i, inverse_two_pi, vs);
@@ -141,6 +145,7 @@ static TARGET void VARIANT(gradient_change)(int n, const double *x, const double
             const lanes rx = xs - changes->x[j], ry = ys - changes->y[j], square = FUSED(rx, rx, ry * ry);
             const lanes d0 = square + to, d1 = square + from, inverse = 1 / (d0 * d1);
             const lanes g = changes->circulation[j] * (from - to) * inverse, h = 2 * g * (d0 + d1) * inverse;
+
             us = FUSED(g, ry, us);
             vs = FUSED(g, rx, vs);
             products = FUSED(h, rx * ry, products);
@@ -162,6 +167,7 @@ static TARGET void VARIANT(pairwise)(const struct kernel_tile *a, const struct k
     double sum_v[KERNEL_TILE * BLOCK] __attribute__((aligned(64)));
     memset(sum_u, 0, (size_t)b->n * BLOCK * sizeof *sum_u);
     memset(sum_v, 0, (size_t)b->n * BLOCK * sizeof *sum_v);
+
     const lanes square = VARIANT(all)(square_value);
     for (int first = 0; first < a->n; first += 2 * BLOCK) {
         for (int lane = 0; lane < BLOCK; lane += VARIANT(width)) {
@@ -176,11 +182,15 @@ static TARGET void VARIANT(pairwise)(const struct kernel_tile *a, const struct k
                 const lanes d1 = FUSED(rx1, rx1, FUSED(ry1, ry1, square));
                 const lanes shared = 1 / (d0 * d1), inverse0 = shared * d1, inverse1 = shared * d0;
                 const lanes kx0 = rx0 * inverse0, ky0 = ry0 * inverse0, kx1 = rx1 * inverse1, ky1 = ry1 * inverse1;
+
+                // velocity at a from b
                 const lanes gb = VARIANT(all)(b->circulation[j]);
                 u0 = FUSED(gb, ky0, u0);
                 v0 = FUSED(gb, kx0, v0);
                 u1 = FUSED(gb, ky1, u1);
                 v1 = FUSED(gb, kx1, v1);
+
+                // velocity at b from a, with the opposite sign
                 double *const to_u = sum_u + BLOCK * j + lane, *const to_v = sum_v + BLOCK * j + lane;
                 VARIANT(put)(to_u, FUSED(ga0, ky0, FUSED(ga1, ky1, VARIANT(get)(to_u))));
                 VARIANT(put)(to_v, FUSED(ga0, kx0, FUSED(ga1, kx1, VARIANT(get)(to_v))));
@@ -191,6 +201,7 @@ static TARGET void VARIANT(pairwise)(const struct kernel_tile *a, const struct k
             VARIANT(add)(a->v + i + BLOCK, inverse_two_pi, v1);
         }
     }
+
     for (int j = 0; j < b->n; j++) {
         b->u[j] += inverse_two_pi * sum_of_block(sum_u + BLOCK * j);
         b->v[j] -= inverse_two_pi * sum_of_block(sum_v + BLOCK * j);
