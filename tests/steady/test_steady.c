@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "force/bound_sheet.h"
+#include "school/rigid.h"
 #include "steady_setup.h"
 
 // mean speed, and change of the heading, over the last of some beats of a run
@@ -284,6 +285,23 @@ static void a_turn_counts_in_circles_with_a_bias_and_as_a_tenth_without(void **s
     }
 }
 
+static void speed_and_slip_are_those_through_the_water(void **state) {
+    (void)state;
+    struct steady_setup setup;
+    steady_setup_open(&setup,
+                      COARSE "fluid: {velocity: [0.3, 0.1]}\nfish: [{" FISH ", start: {heading: 150, speed: 0}}]\n");
+    const struct fish *const fish = setup.simulation->school->fish;
+    const double *const y = setup.simulation->state->y;
+    const double heading = rigid_of(fish, y).heading, c = cos(heading), s = sin(heading);
+    const double u = fish_mass_mean(fish, y + fish->at.vx) - 0.3, v = fish_mass_mean(fish, y + fish->at.vy) - 0.1;
+    const struct steady_unknown unknown[] = {{0, STEADY_SPEED}, {0, STEADY_SLIP}};
+    double value[2];
+    steady_map_read(&setup.problem.map, 2, unknown, value);
+    NEAR(value[0], c * u + s * v, 1e-12, 0);
+    NEAR(value[1], c * v - s * u, 1e-12, 0);
+    steady_setup_close(&setup);
+}
+
 static void what_can_have_no_steady_state_is_refused_with_the_reason(void **state) {
     (void)state;
     steady_setup_fails(COARSE "fish: [{" FISH ", wave: {frequency: 1.01}}]\n", STATUS_CASE,
@@ -328,6 +346,7 @@ int main(void) {
         cmocka_unit_test(mean_powers_are_the_works_of_a_beat),
         cmocka_unit_test(mean_forces_are_trapezoids_over_the_events_of_a_beat),
         cmocka_unit_test(a_turn_counts_in_circles_with_a_bias_and_as_a_tenth_without),
+        cmocka_unit_test(speed_and_slip_are_those_through_the_water),
         cmocka_unit_test(what_can_have_no_steady_state_is_refused_with_the_reason),
         cmocka_unit_test(a_search_that_takes_too_long_says_how_far_it_came),
         cmocka_unit_test(a_search_that_fails_says_what_the_last_beats_have_in_common),
