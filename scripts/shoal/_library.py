@@ -84,8 +84,8 @@ HERE = pathlib.Path(__file__).resolve().parent
 
 def _find():
     """SHOAL_LIBRARY; beside the modules (a wheel); build/ of the sources; lib/ above dist-packages or site-packages."""
-    places = [os.environ.get("SHOAL_LIBRARY"), HERE / NAME, HERE.parents[1] / "build" / NAME, HERE.parents[2] / NAME,
-              HERE.parents[3] / NAME]
+    places = [os.environ.get("SHOAL_LIBRARY"), HERE / NAME, HERE / "../../build" / NAME, HERE / "../../.." / NAME,
+              HERE / "../../../.." / NAME]  # ".." of / is /
     return next((str(place) for place in places if place and os.path.isfile(place)), NAME)
 
 
