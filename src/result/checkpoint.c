@@ -1,4 +1,4 @@
-/* checkpoint.c: sections for what is not state, then one section for each row of the table of the state. */
+/* checkpoint.c: first sections for data besides the state, then one section for each row of the table of the state. */
 #include "result/checkpoint.h"
 
 #include <math.h>
@@ -12,7 +12,7 @@
 #include "result/target.h"
 #include "state/state_table.h"
 
-// ---- what is not state: strings and numbers, each a section
+// ---- data besides the state: strings and numbers, each a section
 
 #define PLACE(field) offsetof(struct checkpoint, field), sizeof(((struct checkpoint *)0)->field)
 
@@ -79,16 +79,19 @@ enum status checkpoint_write(const char *path, const char *previous, const struc
     all.processor = processor;
     struct sections_writer writer;
     sections_start(&writer);
+
     for (int i = 0; i < N_STRINGS; i++) {
         sections_open(&writer, strings[i].name);
         sections_add(&writer, *string_of(&all, i), strlen(*string_of(&all, i)));
         sections_close(&writer);
     }
+
     for (int i = 0; i < N_NUMBERS; i++) {
         sections_open(&writer, numbers[i].name);
         sections_add(&writer, number_of(&all, i), numbers[i].size);
         sections_close(&writer);
     }
+
     add_state(&writer, state, school);
     enum status status = sections_finish(&writer);
     if (status == STATUS_OK) status = durable_replace(path, previous, writer.bytes, writer.n);
@@ -104,9 +107,9 @@ void checkpoint_free(struct checkpoint *checkpoint) {
     *checkpoint = (struct checkpoint){0};
 }
 
-// what a program cannot have written
+// Fail on a section that no program can have written.
 static enum status unfit(const char *name) {
-    return status_fail(STATUS_FILE, "its section '%s' does not fit", name);
+    return status_fail(STATUS_FILE, "section '%s' is invalid", name);
 }
 
 static enum status read_string(const struct checkpoint *checkpoint, int i) {
@@ -151,9 +154,9 @@ enum status checkpoint_check_program(const struct checkpoint *checkpoint) {
     version_libraries(libraries);
     const int is_other_program = strcmp(checkpoint->program, version_short()) != 0;
     if (!is_other_program && strcmp(checkpoint->libraries, libraries) == 0) return STATUS_OK;
-    return status_fail(STATUS_FILE, "it was made by %s, and this is %s: go on with that one, or run the case again",
-                       is_other_program ? checkpoint->program : checkpoint->libraries,
-                       is_other_program ? version_short() : libraries);
+    return status_fail(
+        STATUS_FILE, "written by %s, but this program is %s: resume with that program, or run the case again",
+        is_other_program ? checkpoint->program : checkpoint->libraries, is_other_program ? version_short() : libraries);
 }
 
 // the values of one row of the table
@@ -187,6 +190,7 @@ enum status checkpoint_set_state(const struct checkpoint *checkpoint, struct sta
         TRY(check_wakes(checkpoint, state, school));
         TRY(state_table_make_room(state, school));
     }
+
     return state_table_check(state, school);
 }
 
@@ -197,15 +201,17 @@ enum status checkpoint_check_target(const char *path, const char *result) {
     TRY(target_check(path, TARGET_CHECKPOINT, true));
     if (access(path, F_OK) != 0) return STATUS_OK;
     const enum status status = checkpoint_read(&there, path);
+
     // a damaged one is of no use to anybody
     if (status != STATUS_OK) return status == STATUS_MEMORY ? status : STATUS_OK;
     const bool is_of_result = strcmp(there.result, result) == 0;
+
     if (!is_of_result) {
         status_fail(STATUS_FILE,
-                    "%s is a checkpoint of %s, and checkpoints of this run would replace it: choose another name "
-                    "with -o",
-                    path, there.result);
+                    "%s is a checkpoint of %s and would be replaced by this run: choose another name with -o", path,
+                    there.result);
     }
+
     checkpoint_free(&there);
     return is_of_result ? STATUS_OK : STATUS_FILE;
 }
@@ -218,7 +224,7 @@ static void print_row(const struct checkpoint *checkpoint, const struct state_ro
 }
 
 static void print_summary(const struct checkpoint *checkpoint, FILE *stream) {
-    fprintf(stream, "a run at t = %.10g s; its result is %s, with %ld rows up to there\n", checkpoint->t,
+    fprintf(stream, "a run at t = %.10g s; the result is %s, with %ld rows up to this time\n", checkpoint->t,
             checkpoint->result, checkpoint->rows.n_rows);
     fprintf(stream, "made by    %s\n           %s\non         %s\n", checkpoint->program, checkpoint->libraries,
             checkpoint->processor);
@@ -240,6 +246,7 @@ enum status checkpoint_info(const char *path, bool case_only, FILE *stream) {
         fprintf(stream, "%s: ", path);
         print_summary(&checkpoint, stream);
     }
+
     checkpoint_free(&checkpoint);
     return STATUS_OK;
 }

@@ -1,5 +1,5 @@
-/* checkpoint.h: the file from which a stopped run goes on: everything a run holds that its result file does not. The
- * table of the state (state/state_table.h) drives writing, reading and the summary. doc/reliability.md. Tested by
+/* checkpoint.h: the file from which a stopped run continues: all data of a run that the result file lacks. The table of
+ * the state (state/state_table.h) drives writing, reading and the summary. doc/reliability.md. Tested by
  * tests/result/test_checkpoint.c. */
 #ifndef CHECKPOINT_H
 #define CHECKPOINT_H
@@ -12,13 +12,13 @@
 #include "solver/integrator.h"
 #include "state/state.h"
 
-/* What a checkpoint holds besides the state. */
+/* The data of a checkpoint besides the state. */
 struct checkpoint {
-    char *program, *libraries, *processor; /* that made it */
+    char *program, *libraries, *processor; /* that wrote the checkpoint */
     char *effective;                       /* the complete case (case_show) */
     char *result;                          /* name of the result file, which is in the same folder */
-    char *places;            /* times of checkpoints besides those of time.checkpoint_interval, s: "0.3,1.25", or "" */
-    struct result_mark rows; /* the rows of the result that belong to it */
+    char *places;                          /* additional times of checkpoints, s: "0.3,1.25", or "" */
+    struct result_mark rows;               /* the rows of the result before the checkpoint */
     struct integrator_counts totals;
     double wall_time; /* since the start of the run, s */
     double t;         /* of the state, s */
@@ -31,23 +31,23 @@ struct checkpoint {
 enum status checkpoint_write(const char *path, const char *previous, const struct checkpoint *checkpoint,
                              const struct state *state, const struct school *school);
 
-/* Read a checkpoint. Fails with STATUS_FILE and the reason where it is none, or not whole, or of another format, or
- * with STATUS_MEMORY; *checkpoint then owns nothing. checkpoint_free releases and zeroes it. */
+/* Read a checkpoint. Fails with STATUS_FILE and the reason for a file that is no checkpoint, incomplete or of another
+ * format, or with STATUS_MEMORY; *checkpoint then owns nothing. checkpoint_free releases and zeroes it. */
 enum status checkpoint_read(struct checkpoint *checkpoint, const char *path);
 void checkpoint_free(struct checkpoint *checkpoint);
 
 /* Fail with STATUS_FILE unless this program, with these libraries, made the checkpoint. */
 enum status checkpoint_check_program(const struct checkpoint *checkpoint);
 
-/* Set a state of the checkpoint's case. Fails with STATUS_FILE where it does not fit, or with STATUS_MEMORY; the state
- * can then only be freed. */
+/* Set a state of the case of the checkpoint. Fails with STATUS_FILE if a section is invalid, or with
+ * STATUS_MEMORY; the state can then only be freed. */
 enum status checkpoint_set_state(const struct checkpoint *checkpoint, struct state *state, const struct school *school);
 
 /* Fail with STATUS_FILE where another file than a checkpoint of the result of this name is at path, or with
  * STATUS_MEMORY. */
 enum status checkpoint_check_target(const char *path, const char *result);
 
-/* Print what a checkpoint holds, or the case in it alone. Fails as checkpoint_read. */
+/* Print a summary of a checkpoint, or only the case in the checkpoint. Fails as checkpoint_read. */
 enum status checkpoint_info(const char *path, bool case_only, FILE *stream);
 
 #endif

@@ -42,6 +42,7 @@ int durable_write(int descriptor, const void *bytes, size_t n) {
         from += written;
         n -= (size_t)written;
     }
+
     return 0;
 }
 
@@ -53,6 +54,7 @@ int durable_lock(int descriptor, uint64_t first, uint64_t n) {
     if (fcntl(descriptor, F_OFD_SETLK, &range) == 0) return 0;
     return errno == EACCES || errno == EAGAIN ? EAGAIN : ENOLCK;
 #else
+
     // flock has no ranges
     if (first > 0 || n > 0) return ENOLCK;
     if (flock(descriptor, LOCK_EX | LOCK_NB) == 0) return 0;
@@ -68,10 +70,11 @@ bool durable_has_name(int descriptor, const char *path) {
 
 // ---- a file in the making
 
-/* Create a file under a name that no other part has, and lock it before durable_sweep finds it; errno or 0. */
+/* Create a part under a unique name, and lock the part before durable_sweep can remove it; errno or 0. */
 static int create_part(struct durable_part *part, char *name, size_t size, unsigned permissions) {
     enum { TRIES = 100 };
     static atomic_ulong number;
+
     for (int i = 0; i < TRIES; i++) {
         snprintf(name, size, "%s.%ld-%lu.part", part->target, (long)getpid(), atomic_fetch_add(&number, 1));
         const int descriptor = open(name, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, permissions);
@@ -84,6 +87,7 @@ static int create_part(struct durable_part *part, char *name, size_t size, unsig
         }
         close(descriptor);
     }
+
     return EBUSY;
 }
 
@@ -127,7 +131,7 @@ void durable_end(struct durable_part *part) {
 
 // ---- parts of processes that died
 
-// whether a name is that of a part, after so many letters
+// True if the rest of a name, after `length` letters, is the ending of a part.
 static bool is_part(const char *name, size_t length) {
     for (const char *at = name + length; (at = strchr(at, '.')); at++) {
         int end = 0;
@@ -137,7 +141,7 @@ static bool is_part(const char *name, size_t length) {
     return false;
 }
 
-/* Remove a file of a folder if nobody has it locked and it begins like a file of shoal. */
+/* Remove a file of a folder if no process holds a lock and the file begins like a file of shoal. */
 static void sweep_one(int folder, const char *name) {
     unsigned char head[16];
     struct stat facts, named;
@@ -157,10 +161,12 @@ void durable_sweep(const char *path) {
     const char *const slash = strrchr(path, '/'), *const base = slash ? slash + 1 : path;
     DIR *const entries = opendir(folder);
     if (!entries) return;
+
     for (const struct dirent *entry; (entry = readdir(entries));) {
         const bool begins_so = strncmp(entry->d_name, base, strlen(base)) == 0;
         if (begins_so && is_part(entry->d_name, strlen(base))) sweep_one(dirfd(entries), entry->d_name);
     }
+
     closedir(entries);
 }
 
@@ -189,10 +195,11 @@ static int read_all(int descriptor, unsigned char *bytes, size_t n) {
         const ssize_t got = read(descriptor, bytes, n);
         if (got < 0 && errno == EINTR) continue;
         if (got < 0) return errno;
-        if (got == 0) return EIO;  // it has become shorter
+        if (got == 0) return EIO;  // the file was truncated meanwhile
         bytes += got;
         n -= (size_t)got;
     }
+
     return 0;
 }
 

@@ -23,8 +23,8 @@ struct durable_part {
     int descriptor; /* -1: none */
 };
 
-/* Make what has been written to a file, or the names in the folder of a file, survive a power cut; errno or 0. Some
- * file systems cannot keep names, and a folder may be closed to readers: that is no error. */
+/* Flush a file, or the names in the folder of a file, to disk, so that the data survive a power cut; errno or 0. A file
+ * system that cannot flush names and an unreadable folder are no errors. */
 int durable_sync(int descriptor);
 int durable_sync_folder(const char *path);
 
@@ -39,27 +39,26 @@ int durable_lock(int descriptor, uint64_t first, uint64_t n);
 /* Whether the file of a descriptor is the one at this path. */
 bool durable_has_name(int descriptor, const char *path);
 
-/* Create a part of the file at target with these permissions; errno or 0. durable_end zeroes it, also after a failure.
- * */
+/* Create a part of the file at target with these permissions; errno or 0. Call durable_end also after a failure. */
 int durable_begin(struct durable_part *part, const char *target, unsigned permissions);
 
-/* Make the part survive a power cut and give it the name of its target; the descriptor stays open. overwrite: replace a
- * file that exists, else that is EEXIST. Errno or 0. */
+/* Flush the part to disk and rename the part to the target; the descriptor stays open. overwrite: replace an existing
+ * file, else EEXIST. Errno or 0. */
 int durable_publish(struct durable_part *part, bool overwrite);
 
-/* Close the part; remove it unless it has been published. */
+/* Close the part; remove an unpublished part. */
 void durable_end(struct durable_part *part);
 
-/* Remove parts of files whose path begins like this, where the processes that made them have died. */
+/* Remove parts of files whose path begins like this, if the process of the part has died. */
 void durable_sweep(const char *path);
 
-/* Give a file new bytes; the file that had the name is kept as previous, in place of an earlier one, or replaced
- * where previous is NULL. Whatever fails, and whenever the power does, path or previous is a whole file. Fails with
- * STATUS_FILE and a message that begins with the path, or with STATUS_MEMORY. */
+/* Replace the contents of a file; the old file is renamed to previous, or discarded if previous is NULL. After any
+ * failure or power cut, path or previous is a complete file. Fails with STATUS_FILE and a message that begins with the
+ * path, or with STATUS_MEMORY. */
 enum status durable_replace(const char *path, const char *previous, const void *bytes, size_t n);
 
-/* Read a whole regular file into memory that the caller frees. Fails with STATUS_FILE, also for what is no regular file
- * (a pipe is not waited for), or with STATUS_MEMORY. */
+/* Read a whole regular file into memory that the caller frees. Fails with STATUS_FILE, also for anything but a regular
+ * file (without waiting for a pipe), or with STATUS_MEMORY. */
 enum status durable_read(const char *path, unsigned char **bytes, size_t *n);
 
 #endif

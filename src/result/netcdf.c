@@ -16,7 +16,7 @@
 
 enum {
     SPARE_BYTES = 4096,     /* kept at the end of the header for attributes that other programs add later */
-    BUFFER_BYTES = 1 << 14, /* what NetCDF collects before it writes */
+    BUFFER_BYTES = 1 << 14, /* buffer of NetCDF for writing */
     HISTORY_LENGTH = 4096   /* bytes of a longer command line are cut */
 };
 
@@ -46,7 +46,7 @@ char *netcdf_local_path(const char *path) {
 }
 
 bool netcdf_has_memory(void) {
-    // its first call takes 2.2 MB
+    // the first call of NetCDF takes 2.2 MB
     void *volatile const needed = malloc((size_t)4 << 20);
     free(needed);
     return needed != NULL;
@@ -58,7 +58,7 @@ static enum status failed(const char *path, int code) {
 
 // ---- definitions
 
-/* Where the file comes from. */
+/* Write the attributes on the origin of the file. */
 static void write_origin(struct netcdf_writer *writer, const char *title, const char *command) {
     char libraries[VERSION_LENGTH], source[2 * VERSION_LENGTH], history[HISTORY_LENGTH], date[32];
     version_libraries(libraries);
@@ -81,8 +81,8 @@ static enum status opened(struct netcdf_writer *writer, const char *path) {
     return failed(path, code);
 }
 
-/* Begin with a writer without a file; the path for NetCDF, NULL: out of memory. The caller frees it. */
-static char *begin(struct netcdf_writer *writer, const char *path) {
+/* Initialise a writer without a file; returns the path for NetCDF, which the caller frees, or NULL if out of memory. */
+static char *writer_begin(struct netcdf_writer *writer, const char *path) {
     *writer = (struct netcdf_writer){.path = path, .part.descriptor = -1, .file = -1, .last_fsync = -INFINITY};
     char *const local = netcdf_has_memory() ? netcdf_local_path(path) : NULL;
     if (!local) writer->code = ENOMEM;
@@ -94,7 +94,7 @@ static void keep_path(struct netcdf_writer *writer) {
 }
 
 enum status netcdf_create(struct netcdf_writer *writer, const char *path, const char *title, const char *command) {
-    char *const local = begin(writer, path);
+    char *const local = writer_begin(writer, path);
     if (local) durable_sweep(local);
     CALL(writer, durable_begin(&writer->part, local, 0666));
     free(local);
@@ -106,7 +106,7 @@ enum status netcdf_create(struct netcdf_writer *writer, const char *path, const 
 }
 
 enum status netcdf_continue(struct netcdf_writer *writer, const char *path) {
-    writer->part.target = begin(writer, path);
+    writer->part.target = writer_begin(writer, path);
     if (writer->part.target) durable_sweep(writer->part.target);
     keep_path(writer);
     size_t buffer_bytes = BUFFER_BYTES;
@@ -121,7 +121,8 @@ enum status netcdf_patch(const char *path, const char *name, size_t n, const cha
     struct netcdf_writer writer;
     TRY(netcdf_continue(&writer, path));
     netcdf_write_bytes(&writer, NETCDF_GLOBAL, name, n, bytes);
-    // nc_close would fill the file up to the rows that its header counts
+
+    // nc_close would extend the file to the number of rows in the header
     const int closed = nc_abort(writer.file);
     writer.file = -1;
     CALL(&writer, closed);
@@ -145,10 +146,12 @@ int netcdf_define_variable(struct netcdf_writer *writer, const struct netcdf_var
     int number = 0;
     CALL(writer, nc_def_var(writer->file, variable->name, type, variable->n_dimensions, variable->dimension, &number));
     netcdf_write_string(writer, number, "long_name", variable->long_name);
+
     if (type == NC_CHAR) {
         netcdf_write_string(writer, number, "_Encoding", "utf-8");
         return number;
     }
+
     netcdf_write_string(writer, number, "units", *variable->units ? variable->units : "1");
     const double gap = NAN;
     if (variable->has_gaps) CALL(writer, nc_put_att_double(writer->file, number, "_FillValue", type, 1, &gap));
@@ -168,7 +171,7 @@ void netcdf_write_integer(struct netcdf_writer *writer, int variable, const char
 }
 
 void netcdf_end_definitions(struct netcdf_writer *writer) {
-    // every value is written by us: NetCDF would fill each row first, and so write it twice
+    // disable fill values: every value is written, so NetCDF would write each row twice
     CALL(writer, nc_set_fill(writer->file, NC_NOFILL, NULL));
     CALL(writer, nc__enddef(writer->file, SPARE_BYTES, sizeof(double), 0, sizeof(double)));
 }
@@ -233,10 +236,12 @@ enum status netcdf_finish(struct netcdf_writer *writer) {
     const int closed = writer->file >= 0 ? nc_close(writer->file) : NC_NOERR;
     CALL(writer, closed);
     enum status status = STATUS_OK;
+
     if (!writer->part.name && writer->code != NC_NOERR) {
-        status = status_fail(STATUS_FILE, "%s: cannot be closed (%s): its end may be missing", writer->path,
+        status = status_fail(STATUS_FILE, "%s: cannot be closed (%s): the end may be missing", writer->path,
                              nc_strerror(writer->code));
     }
+
     durable_end(&writer->part);
     *writer = (struct netcdf_writer){.part.descriptor = -1, .file = -1};
     return status;

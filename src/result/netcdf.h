@@ -1,6 +1,5 @@
-/* netcdf.h: the one place that calls the NetCDF library. A file of ours is written under a temporary name and gets its
- * own when it is complete; a file that may be anybody's is read with every variable checked. Tested by
- * tests/result/test_netcdf.c. */
+/* netcdf.h: the only caller of the NetCDF library. A file is written under a temporary name and renamed when complete;
+ * reading checks every variable, because a file can come from another program. Tested by tests/result/test_netcdf.c. */
 #ifndef NETCDF_H
 #define NETCDF_H
 
@@ -22,7 +21,7 @@ enum netcdf_type { NETCDF_TEXT, NETCDF_INT, NETCDF_INT64, NETCDF_FLOAT, NETCDF_D
 
 /* A file that is being written. Once a call has failed, later ones do nothing, and code tells why. */
 struct netcdf_writer {
-    const char *path;         /* as the caller names it */
+    const char *path;         /* as given by the caller */
     struct durable_part part; /* part.target: the path for NetCDF; part.name: NULL after netcdf_publish */
     int file;                 /* NetCDF's number; -1: none */
     double last_fsync;        /* s on the monotonic clock */
@@ -35,15 +34,15 @@ struct netcdf_variable {
     const char *units; /* of numbers; "" is written as "1" */
     enum netcdf_type type;
     int n_dimensions, dimension[NETCDF_MAX_DIMENSIONS]; /* numbers of the dimensions */
-    bool has_gaps;                                      /* NaN marks where there is no value */
+    bool has_gaps;                                      /* NaN marks missing values */
 };
 
 /* Create a file in the classic format with 64-bit sizes (CDF-5), with the attributes Conventions, title, history (now,
- * and the command line) and source (this version and its libraries). Fails with STATUS_FILE or STATUS_MEMORY; nothing
+ * and the command line) and source (this version and its libraries). Fails with STATUS_FILE or STATUS_MEMORY; no file
  * has then changed, and netcdf_finish does nothing. */
 enum status netcdf_create(struct netcdf_writer *writer, const char *path, const char *title, const char *command);
 
-/* Go on writing a file of ours that is there, where the last one ended: its definitions stay as they are. Fails with
+/* Continue an existing file of shoal behind the last row; the definitions are unchanged. Fails with
  * STATUS_FILE or STATUS_MEMORY; netcdf_finish then does nothing. */
 enum status netcdf_continue(struct netcdf_writer *writer, const char *path);
 
@@ -51,23 +50,23 @@ enum status netcdf_continue(struct netcdf_writer *writer, const char *path);
  * that are missing stay missing. Fails with STATUS_FILE or STATUS_MEMORY. */
 enum status netcdf_patch(const char *path, const char *name, size_t n, const char *bytes);
 
-/* Define a dimension, which grows where the length is 0, or a variable; the number it gets. */
+/* Define a dimension (length 0: grows by rows) or a variable; returns the number of the dimension or variable. */
 int netcdf_define_dimension(struct netcdf_writer *writer, const char *name, size_t length);
 int netcdf_define_variable(struct netcdf_writer *writer, const struct netcdf_variable *variable);
 
-/* Write an attribute of a variable, by its number, or of the file (NETCDF_GLOBAL): before netcdf_end_definitions, or
- * later one of no more bytes than before. */
+/* Write an attribute of a variable, by number, or of the file (NETCDF_GLOBAL). After netcdf_end_definitions an
+ * attribute can only be replaced, by at most as many bytes. */
 void netcdf_write_string(struct netcdf_writer *writer, int variable, const char *name, const char *string);
 void netcdf_write_bytes(struct netcdf_writer *writer, int variable, const char *name, size_t n, const char *bytes);
 void netcdf_write_integer(struct netcdf_writer *writer, int variable, const char *name, int value);
 
-/* Values follow. All of them must be written: what is not is undefined. */
+/* End the definitions. Write all values afterwards: values that are not written are undefined. */
 void netcdf_end_definitions(struct netcdf_writer *writer);
 
 /* The number of a variable that has been defined. */
 int netcdf_number(struct netcdf_writer *writer, const char *name);
 
-/* Write count values of a variable from start on, each with one entry per dimension; both NULL: all of it. */
+/* Write count values of a variable from start on, with one entry per dimension; both NULL: the entire variable. */
 void netcdf_write_doubles(struct netcdf_writer *writer, int variable, const size_t *start, const size_t *count,
                           const double *values);
 void netcdf_write_ints(struct netcdf_writer *writer, int variable, const size_t *start, const size_t *count,
@@ -77,57 +76,55 @@ void netcdf_write_longs(struct netcdf_writer *writer, int variable, const size_t
 void netcdf_write_text(struct netcdf_writer *writer, int variable, const size_t *start, const size_t *count,
                        const char *values);
 
-/* Show everything to readers, and make it survive a power cut: now, or if this has not been done for a second. NetCDF
- * writes the number of rows after the rows themselves, so that neither a reader nor a full disk ever sees a part of a
- * row. */
+/* Make all rows visible to readers and flush to disk: now, or if the last flush is over a second ago. NetCDF writes the
+ * number of rows after the rows, so that readers never see part of a row, even on a full disk. */
 void netcdf_sync(struct netcdf_writer *writer, bool now);
 
-/* Make the file survive a power cut and then give it its name. Fails with STATUS_FILE or STATUS_MEMORY, also where a
- * call before has failed, or where a file exists that must not be overwritten (target_check). */
+/* Flush the file to disk and then rename the file to the path. Fails with STATUS_FILE or STATUS_MEMORY, also after a
+ * failure of an earlier call, or for an existing file that must not be overwritten (target_check). */
 enum status netcdf_publish(struct netcdf_writer *writer, bool overwrite);
 
-/* Open a published file again after a failure: a header on a full disk has its place already, and counts whole rows
- * only. What NetCDF still holds of the rows that could not be written is given up with it: it would write a part of
- * them, and count it. */
+/* Open a published file again after a failure: on a full disk the header is in place and counts complete rows only. The
+ * rows in the buffer of NetCDF that could not be written are discarded: NetCDF would write and count part of these
+ * rows. */
 void netcdf_reopen(struct netcdf_writer *writer);
 
-/* Close the file and release the writer. Removes a file that has not been published; fails with STATUS_FILE where a
- * call after netcdf_publish, or closing itself, has failed. */
+/* Close the file and release the writer. Removes an unpublished file. Fails with STATUS_FILE if closing, or a call
+ * after netcdf_publish, has failed. */
 enum status netcdf_finish(struct netcdf_writer *writer);
 
-/* Release the writer without touching its file, which another process writes: this one is a fork of it. */
+/* Release the writer in a fork of the writing process, without touching the file. */
 void netcdf_abandon(struct netcdf_writer *writer);
 
-/* What a code means. */
+/* The message of a NetCDF code. */
 const char *netcdf_reason(int code);
 
 /* ---- reading: every function fails with STATUS_FILE or STATUS_MEMORY and a message that names the file, and never
- * writes more than the caller has asked for, whatever the file says */
+ * writes more values than requested, whatever the contents of the file */
 
 struct netcdf_reader {
     const char *path;
     int file;         /* NetCDF's number */
     size_t n_rows;    /* that are whole: the length of the dimension that grows */
-    size_t n_missing; /* that the header counts besides, and the file does not hold: it was cut off */
+    size_t n_missing; /* further rows counted by the header but missing: the file was truncated */
 };
 
-/* A part of a variable: for each of its dimensions the name, the first index and the number of values; ends with
- * NULL. */
+/* Part of a variable: for each dimension the name, the first index and the number of values; ends with NULL. */
 struct netcdf_slice {
     const char *dimension;
     size_t first, n;
 };
 
-/* Open a file of the classic formats. Refused is what is no regular file, has a damaged header, or lacks a value that
- * does not grow. Rows that are not whole do not count. The path must live as long as the reader. */
+/* Open a file of the classic formats. Refuses anything but a regular file, a damaged header, and a missing value of a
+ * variable without rows. Incomplete rows do not count. The path must outlive the reader. */
 enum status netcdf_open(struct netcdf_reader *reader, const char *path);
 void netcdf_close(struct netcdf_reader *reader);
 
-/* Open a file, print what is in it, close it. Fails as these. */
+/* Open a file, print the contents, close the file. Fails as netcdf_open or print. */
 enum status netcdf_print(const char *path, enum status (*print)(const struct netcdf_reader *reader, FILE *stream),
                          FILE *stream);
 
-/* An attribute of the file: a string, "" where it is missing, that the caller frees; or an integer. */
+/* An attribute of the file: a string, "" if missing, which the caller frees; or an integer. */
 enum status netcdf_read_string(const struct netcdf_reader *reader, const char *name, char **string);
 enum status netcdf_read_integer(const struct netcdf_reader *reader, const char *name, int missing, int *value);
 
@@ -155,7 +152,7 @@ struct netcdf_rows {
     uint64_t n_counted;     /* rows that the header counts */
 };
 
-/* Where the rows of a file are, and how many. Refused is what netcdf_open refuses. */
+/* The places and the number of the rows of a file. Refuses the same files as netcdf_open. */
 enum status netcdf_read_rows(const char *path, struct netcdf_rows *rows);
 
 /* Remove the rows behind the first n of a file that nobody has open. The file is whole at every time in between. Fails
@@ -164,11 +161,11 @@ enum status netcdf_cut_rows(const char *path, const struct netcdf_rows *rows, ui
 
 /* ---- shared by the files of netcdf only */
 
-/* The path as NetCDF needs it: "./" keeps it from taking a name for an address or dropping blanks that it begins with.
- * NULL: out of memory. The caller frees it. */
+/* The path for NetCDF: without "./" in front, NetCDF would take some names for addresses and drop leading blanks. NULL:
+ * out of memory. The caller frees the path. */
 char *netcdf_local_path(const char *path);
 
-/* Whether there is memory for what NetCDF may need to create or open a file: it crashes where there is none. */
+/* True if the memory that NetCDF can need to create or open a file is available: NetCDF crashes if out of memory. */
 bool netcdf_has_memory(void);
 
 #endif

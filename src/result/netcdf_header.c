@@ -1,5 +1,5 @@
-/* netcdf_header.c: is a file whole, and where are its rows? NetCDF reads what is missing at its end as zeros, and
- * trusts its sizes.
+/* netcdf_header.c: check a file for completeness, and find the rows. NetCDF reads a missing end as zeros and trusts the
+ * sizes in the header.
  *
  *     header    = "CDF" version  n_rows  dimensions  attributes  variables
  *     list      = tag  n  n entries; both 0: none          tag: DIMENSION, ATTRIBUTE, VARIABLE
@@ -28,14 +28,14 @@ static const uint64_t max_size = (uint64_t)1 << 60; /* of anything, bytes */
 struct header {
     FILE *file;
     uint64_t size;   /* of the file */
-    bool is_damaged; /* also where it ends within the header */
+    bool is_damaged; /* also if the file ends within the header */
     int version, n_bytes;
     uint64_t n_rows, n_dimensions;
     uint64_t length[NC_MAX_DIMS];              /* of the dimensions */
     uint64_t begin, begin_of_rows;             /* of the first value, of the first row */
     uint64_t end;                              /* of the variables that do not grow */
     uint64_t end_of_row;                       /* of the first */
-    uint64_t row_bytes, n_growing, last_bytes; /* size of a row; variables in it; of the last, not filled up */
+    uint64_t row_bytes, n_growing, last_bytes; /* size and variables of a row; size of the last one without padding */
 };
 
 // ---- pieces
@@ -54,7 +54,7 @@ static uint64_t fill_up(uint64_t n) {
     return (n + 3) / 4 * 4;
 }
 
-/* Skip n bytes and what fills them up. */
+/* Skip n bytes and the padding. */
 static void skip(struct header *header, uint64_t n) {
     const off_t place = ftello(header->file);
     if (place < 0 || n > header->size || fill_up(n) > header->size - (uint64_t)place) {
@@ -111,12 +111,13 @@ static void skip_attributes(struct header *header) {
     }
 }
 
-/* The dimensions of a variable: the number of its values, in one row where it grows. */
+/* Read the dimensions of a variable; the number of values, per row if the variable grows. */
 static uint64_t read_shape(struct header *header, bool *grows) {
     const uint64_t n = read_number(header, header->n_bytes);
     uint64_t n_values = 1;
     *grows = false;
     if (n > NC_MAX_VAR_DIMS) header->is_damaged = true;
+
     for (uint64_t d = 0; d < n && !header->is_damaged; d++) {
         const uint64_t number = read_number(header, header->n_bytes);
         const uint64_t length = number < header->n_dimensions ? header->length[number] : max_size;
@@ -128,6 +129,7 @@ static uint64_t read_shape(struct header *header, bool *grows) {
             n_values *= length;
         }
     }
+
     return n_values;
 }
 
@@ -137,7 +139,7 @@ static void read_variable(struct header *header) {
     const uint64_t n_values = read_shape(header, &grows);
     if (!header->is_damaged) skip_attributes(header);
     const uint64_t bytes = n_values * read_type(header);
-    read_number(header, header->n_bytes);  // its size, which follows from all else
+    read_number(header, header->n_bytes);  // skip the size, which follows from type and dimensions
     const uint64_t begin = read_number(header, header->version == 1 ? 4 : 8);
     if (begin > max_size) header->is_damaged = true;
     if (header->is_damaged) return;
@@ -163,11 +165,12 @@ static void read_header(struct header *header) {
     if (!header->is_damaged) skip_attributes(header);
     const uint64_t n_variables = header->is_damaged ? 0 : read_list(header, VARIABLE);
     for (uint64_t i = 0; i < n_variables && !header->is_damaged; i++) read_variable(header);
+
     // a single variable is not filled up
     if (header->n_growing == 1) header->row_bytes = header->last_bytes;
 }
 
-/* The rows that are whole: the header may reach the disk before the rows that it counts. */
+/* The number of complete rows: the header can reach the disk before the rows that the header counts. */
 static uint64_t n_whole_rows(const struct header *header) {
     if (header->n_growing == 0 || header->end_of_row > header->size) return 0;
     const uint64_t n = (header->size - header->end_of_row) / header->row_bytes + 1;
@@ -192,6 +195,7 @@ static enum status examine(struct header *header, const char *path) {
     header->file = fopen(path, "rb");
     if (!header->file) return status_fail(STATUS_FILE, "%s: cannot be read: %s", path, strerror(errno));
     enum status status = STATUS_OK;
+
     if (is_netcdf(header->file)) {
         header->size = size_of(header->file);
         rewind(header->file);
@@ -199,7 +203,7 @@ static enum status examine(struct header *header, const char *path) {
         // a row that was added meanwhile counts in the header, which was read after the size
         header->size = size_of(header->file);
         if (header->is_damaged) {
-            status = status_fail(STATUS_FILE, "%s: cannot be read: its header is damaged", path);
+            status = status_fail(STATUS_FILE, "%s: cannot be read: the header is damaged", path);
         } else if (header->end > header->size) {
             status = status_fail(STATUS_FILE, "%s: the end of the file is missing: was it copied completely?", path);
         }
@@ -208,6 +212,7 @@ static enum status examine(struct header *header, const char *path) {
                              "%s: cannot be read: not a NetCDF file of a classic format: name a file that shoal wrote",
                              path);
     }
+
     fclose(header->file);
     return status;
 }
@@ -223,7 +228,7 @@ enum status netcdf_read_rows(const char *path, struct netcdf_rows *rows) {
     return STATUS_OK;
 }
 
-// write another number of rows and drop what follows the last one; errno or 0
+// Write another number of rows and truncate the file behind the last row; errno or 0.
 static int cut(int descriptor, const struct netcdf_rows *rows, uint64_t n) {
     unsigned char number[8];
     for (int i = 0; i < 8; i++) number[i] = (unsigned char)(n >> (8 * (7 - i)) & 0xff);
@@ -242,5 +247,5 @@ enum status netcdf_cut_rows(const char *path, const struct netcdf_rows *rows, ui
     int code = descriptor < 0 ? errno : cut(descriptor, rows, n);
     if (descriptor >= 0 && close(descriptor) != 0 && code == 0) code = errno;
     if (code == 0) return STATUS_OK;
-    return status_fail(STATUS_FILE, "%s: its last rows cannot be removed: %s", path, strerror(code));
+    return status_fail(STATUS_FILE, "%s: the last rows cannot be removed: %s", path, strerror(code));
 }

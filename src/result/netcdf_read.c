@@ -9,12 +9,12 @@
 
 #include "result/netcdf.h"
 
-static enum status out_of_memory(const char *path) {
+static enum status netcdf_out_of_memory(const char *path) {
     return status_fail(STATUS_MEMORY, "%s: out of memory while reading", path);
 }
 
 static enum status cannot_read(const char *path, int code) {
-    if (code == NC_ENOMEM) return out_of_memory(path);
+    if (code == NC_ENOMEM) return netcdf_out_of_memory(path);
     return status_fail(STATUS_FILE, "%s: cannot be read: %s", path, nc_strerror(code));
 }
 
@@ -31,12 +31,13 @@ enum status netcdf_open(struct netcdf_reader *reader, const char *path) {
     reader->n_rows = rows.n;
     reader->n_missing = rows.n_counted - rows.n;
     char *const local = netcdf_has_memory() ? netcdf_local_path(path) : NULL;
-    if (!local) return out_of_memory(path);
+    if (!local) return netcdf_out_of_memory(path);
     const int code = nc_open(local, NC_NOWRITE, &reader->file);
     free(local);
-    // NetCDF says that it lacks memory where a header asks for too much
+
+    // NetCDF also returns NC_ENOMEM for a damaged header with huge sizes
     if (code == NC_ENOMEM)
-        return status_fail(STATUS_FILE, "%s: cannot be read: its header is damaged, or out of memory", path);
+        return status_fail(STATUS_FILE, "%s: cannot be read: the header is damaged, or out of memory", path);
     return code == NC_NOERR ? STATUS_OK : cannot_read(path, code);
 }
 
@@ -61,9 +62,9 @@ enum status netcdf_read_string(const struct netcdf_reader *reader, const char *n
     size_t length = 0;
     const bool exists = nc_inq_att(reader->file, NC_GLOBAL, name, &type, &length) == NC_NOERR;
     *string = NULL;
-    if (type != NC_CHAR) return status_fail(STATUS_FILE, "%s: its attribute %s is no string", reader->path, name);
+    if (type != NC_CHAR) return status_fail(STATUS_FILE, "%s: attribute %s is no string", reader->path, name);
     *string = calloc((exists ? length : 0) + 1, 1);
-    if (!*string) return out_of_memory(reader->path);
+    if (!*string) return netcdf_out_of_memory(reader->path);
     const int code = exists ? nc_get_att_text(reader->file, NC_GLOBAL, name, *string) : NC_NOERR;
     if (code == NC_NOERR) return STATUS_OK;
     free(*string);
@@ -78,7 +79,7 @@ enum status netcdf_read_integer(const struct netcdf_reader *reader, const char *
     if (nc_inq_att(reader->file, NC_GLOBAL, name, &type, &length) != NC_NOERR) return STATUS_OK;
     if (length == 1 && type == NC_INT && nc_get_att_int(reader->file, NC_GLOBAL, name, value) == NC_NOERR)
         return STATUS_OK;
-    return status_fail(STATUS_FILE, "%s: its attribute %s is no integer", reader->path, name);
+    return status_fail(STATUS_FILE, "%s: attribute %s is no integer", reader->path, name);
 }
 
 /* The length of a dimension; of the one that grows the rows that are whole. */
@@ -94,11 +95,10 @@ enum status netcdf_read_length(const struct netcdf_reader *reader, const char *n
                                size_t *length) {
     int number;
     if (nc_inq_dimid(reader->file, name, &number) != NC_NOERR || read_length(reader, number, length) != NC_NOERR) {
-        return status_fail(STATUS_FILE, "%s: it has no dimension %s", reader->path, name);
+        return status_fail(STATUS_FILE, "%s: dimension %s is missing", reader->path, name);
     }
     if (*length >= min && *length <= max) return STATUS_OK;
-    return status_fail(STATUS_FILE, "%s: its dimension %s has the length %zu, which cannot be", reader->path, name,
-                       *length);
+    return status_fail(STATUS_FILE, "%s: dimension %s has an invalid length, %zu", reader->path, name, *length);
 }
 
 // ---- variables
@@ -119,37 +119,40 @@ static bool has_slice(const struct netcdf_reader *reader, int n, const int *dime
         if (strcmp(name, slice->dimension) != 0) return false;
         if (slice->first > length || slice->n > length - slice->first) return false;
     }
+
     return !slice->dimension;
 }
 
-/* Say what has been expected of a variable. */
-static enum status refuse(const struct netcdf_reader *reader, const char *name, bool is_text,
-                          const struct netcdf_slice *slice) {
+/* Fail with the expected form of a variable. */
+static enum status refuse_variable(const struct netcdf_reader *reader, const char *name, bool is_text,
+                                   const struct netcdf_slice *slice) {
     char dimensions[256] = "";
     for (size_t length = 0; slice->dimension; slice++) {
         length += (size_t)snprintf(dimensions + length, sizeof dimensions - length, "%s%s[%zu:%zu]",
                                    length > 0 ? ", " : "", slice->dimension, slice->first, slice->first + slice->n);
         if (length >= sizeof dimensions) break;
     }
-    return status_fail(STATUS_FILE, "%s: its variable %s is not what shoal writes: %s over (%s) %s expected",
-                       reader->path, name, is_text ? "text" : "numbers", dimensions, is_text ? "is" : "are");
+    return status_fail(STATUS_FILE, "%s: variable %s was not written by shoal: %s over (%s) %s expected", reader->path,
+                       name, is_text ? "text" : "numbers", dimensions, is_text ? "is" : "are");
 }
 
-/* The number of a variable that is what a slice expects, with the slice in NetCDF's form. */
-static enum status find(const struct netcdf_reader *reader, const char *name, bool is_text,
-                        const struct netcdf_slice *slice, int *number, size_t *start, size_t *count) {
+/* The number of a variable of the expected form, with the slice as start and count for NetCDF. */
+static enum status find_variable(const struct netcdf_reader *reader, const char *name, bool is_text,
+                                 const struct netcdf_slice *slice, int *number, size_t *start, size_t *count) {
     int n, dimensions[NC_MAX_VAR_DIMS];
     nc_type type;
     if (nc_inq_varid(reader->file, name, number) != NC_NOERR)
-        return status_fail(STATUS_FILE, "%s: it has no variable %s", reader->path, name);
+        return status_fail(STATUS_FILE, "%s: variable %s is missing", reader->path, name);
     const int code = nc_inq_var(reader->file, *number, NULL, &type, &n, dimensions, NULL);
     if (code != NC_NOERR) return cannot_read(reader->path, code);
     if ((type == NC_CHAR) != is_text || n > NETCDF_MAX_DIMENSIONS || !has_slice(reader, n, dimensions, slice))
-        return refuse(reader, name, is_text, slice);
+        return refuse_variable(reader, name, is_text, slice);
+
     for (int d = 0; d < n; d++) {
         start[d] = slice[d].first;
         count[d] = slice[d].n;
     }
+
     return STATUS_OK;
 }
 
@@ -157,7 +160,7 @@ enum status netcdf_read_doubles(const struct netcdf_reader *reader, const char *
                                 double *values) {
     int number;
     size_t start[NETCDF_MAX_DIMENSIONS], count[NETCDF_MAX_DIMENSIONS];
-    TRY(find(reader, name, false, slice, &number, start, count));
+    TRY(find_variable(reader, name, false, slice, &number, start, count));
     const int code = nc_get_vara_double(reader->file, number, start, count, values);
     return code == NC_NOERR ? STATUS_OK : cannot_read(reader->path, code);
 }
@@ -166,7 +169,7 @@ enum status netcdf_read_text(const struct netcdf_reader *reader, const char *nam
                              char *values) {
     int number;
     size_t start[NETCDF_MAX_DIMENSIONS], count[NETCDF_MAX_DIMENSIONS];
-    TRY(find(reader, name, true, slice, &number, start, count));
+    TRY(find_variable(reader, name, true, slice, &number, start, count));
     const int code = nc_get_vara_text(reader->file, number, start, count, values);
     return code == NC_NOERR ? STATUS_OK : cannot_read(reader->path, code);
 }

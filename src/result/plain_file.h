@@ -1,4 +1,4 @@
-/* plain_file.h: a file of text that has its name only once it is whole. Tested by tests/view/test_page.c. */
+/* plain_file.h: a text file that gets the final name only when complete. Tested by tests/view/test_page.c. */
 #ifndef PLAIN_FILE_H
 #define PLAIN_FILE_H
 
@@ -17,13 +17,13 @@ struct plain_file {
     bool overwrite;
 };
 
-/* Open a file for writing, with these permissions (0777 of a script). The path must live until it is closed. Fails with
- * STATUS_FILE (target_check) or STATUS_MEMORY; nothing is then left. */
+/* Open a file for writing, with these permissions (0777 of a script). The path must live until plain_file_close. Fails
+ * with STATUS_FILE (target_check) or STATUS_MEMORY; no file is then left. */
 enum status plain_file_open(struct plain_file *file, const char *path, enum target_kind kind, bool overwrite,
                             unsigned permissions);
 
-/* Close the file and give it its name, unless status says that what should be in it has failed, or writing has; it is
- * then removed. Returns that status, or STATUS_FILE. */
+/* Close the file and rename the file to the path; after a failure of the caller (status) or of writing, remove the
+ * file. Returns status, or STATUS_FILE. */
 enum status plain_file_close(struct plain_file *file, enum status status);
 
 #endif

@@ -13,7 +13,7 @@ struct copying {
     double *read;      /* one row of the largest variable there */
 };
 
-/* The values of one row of a variable for each fish, and how many of them there are to read. */
+/* The number of values of a variable per row and fish; to_read: with the vortices of the source only. */
 static size_t n_of_fish(const struct copying *copying, const struct result_variable *variable, bool to_read) {
     size_t n = 1;
     for (const enum result_dimension *d = variable->dimension; *d != NONE; d++) {
@@ -61,12 +61,15 @@ static enum status copy_all(struct copying *copying) {
     const struct result_target *const target = copying->target;
     TRY(netcdf_read_length(&copying->reader, result_table_dimension(VORTEX), 1, SIZE_MAX / 64, &copying->n_vortices));
     size_t most = 1;
+
     for (int i = 0; i < result_table_n; i++) {
         const size_t n = n_of_fish(copying, &result_table[i], true) * target->length[FISH];
         if (n > most) most = n;
     }
+
     copying->read = calloc(most, sizeof *copying->read);
     if (!copying->read) return status_fail(STATUS_MEMORY, "%s: out of memory while reading", copying->source->path);
+
     for (long row = 0; row < copying->source->n_rows; row++) {
         for (int i = 0; i < result_table_n; i++) {
             const struct result_variable *const variable = &result_table[i];
@@ -74,6 +77,7 @@ static enum status copy_all(struct copying *copying) {
             TRY(copy_row(copying, i, row));
         }
     }
+
     return STATUS_OK;
 }
 

@@ -13,11 +13,11 @@
 struct result_source {
     const char *path;
     long n_rows;
-    bool drop_last_wake; /* the last of them gets no record of the wake */
+    bool drop_last_wake; /* the last row gets no record of the wake */
 };
 
-/* Where they go: number of each variable of the table, whether it is in the file, its lengths, and a buffer for one
- * row of any. */
+/* The target: for each variable of the table the number, presence in the file and lengths, and a buffer for one row of
+ * any variable. */
 struct result_target {
     struct netcdf_writer *writer;
     const int *number;
@@ -26,8 +26,8 @@ struct result_target {
     double *buffer;
 };
 
-/* Copy all rows. Fails with STATUS_FILE or STATUS_MEMORY where they cannot be read; the writer knows what could not be
- * written. */
+/* Copy all rows. Fails with STATUS_FILE or STATUS_MEMORY if rows cannot be read; the writer stores failures of writing.
+ * */
 enum status result_copy_rows(const struct result_source *source, const struct result_target *target);
 
 #endif

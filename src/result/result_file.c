@@ -10,7 +10,7 @@
 #include "result/target.h"
 #include "school/warnings.h"
 
-/* Bytes of attributes that are rewritten in place and must never move what follows. */
+/* Reserved bytes of attributes that are rewritten in place without moving the rest of the file. */
 enum { STATUS_LENGTH = 256, MAX_NOTE_LENGTH = N_WARNINGS * WARNING_BYTES };
 
 static const struct note {
@@ -26,11 +26,11 @@ enum { N_NOTES = sizeof notes / sizeof *notes };
 
 struct result_file {
     struct netcdf_writer writer;
-    bool overwrite;                     /* when the file gets its name */
+    bool overwrite;                     /* when the file is published */
     size_t length[RESULT_N_DIMENSIONS]; /* of the dimensions; 1 for TIME, as one row is written at a time */
     int *number;                        /* of the variables in the file                (result_table_n) */
-    enum output_forces forces;          /* which of them it has */
-    bool is_steady;                     /* whether it has those of a steady state */
+    enum output_forces forces;          /* variables of the table in the file */
+    bool is_steady;                     /* the file has the variables of a steady state */
     size_t n_rows;
     struct result_checksum checksum; /* of the rows that were marked last */
     double *buffer;                  /* one row, or the whole, of the largest variable */
@@ -54,14 +54,14 @@ static enum netcdf_type type_in_file(enum result_type type, enum precision preci
     }
 }
 
-/* An attribute in the space that is kept for it; a longer string is cut. */
+/* Write an attribute into the reserved space; a longer string is cut. */
 static void write_fixed(struct result_file *result, const char *name, size_t length, const char *text) {
     char bytes[MAX_NOTE_LENGTH] = {0};
     snprintf(bytes, length, "%s", text);
     netcdf_write_bytes(&result->writer, NETCDF_GLOBAL, name, length, bytes);
 }
 
-/* Say of a file that nobody writes that its run goes on: one with fewer rows must never say that it is complete. */
+/* Set run_status to "running" in a file without a writer: a file with rows removed must never be marked complete. */
 static enum status patch_run_status(const char *path) {
     const char bytes[STATUS_LENGTH] = "running";
     return netcdf_patch(path, "run_status", STATUS_LENGTH, bytes);
@@ -107,10 +107,12 @@ static void write_attributes(struct result_file *result, const struct case_value
     write_run_status(result, "running");
     for (int i = 0; i < N_NOTES; i++) result_file_note(result, (enum result_note)i, "");
     netcdf_write_string(writer, NETCDF_GLOBAL, "case_text", values->text);
+
     if (values->study) {
         netcdf_write_string(writer, NETCDF_GLOBAL, "study_case", values->study);
         netcdf_write_integer(writer, NETCDF_GLOBAL, "study_member", values->member);
     }
+
     netcdf_write_string(writer, NETCDF_GLOBAL, "case_effective", effective);
 }
 
@@ -121,10 +123,12 @@ static void define_all(struct result_file *result, const struct case_values *val
         dimension_number[d] =
             netcdf_define_dimension(&result->writer, result_table_dimension(d), d == TIME ? 0 : result->length[d]);
     }
+
     for (int i = 0; i < result_table_n; i++) {
         if (!is_written(result, &result_table[i])) continue;
         define_variable(result, i, dimension_number, values->output.precision);
     }
+
     write_attributes(result, values, effective);
     netcdf_end_definitions(&result->writer);
 }
@@ -141,6 +145,7 @@ static void write_variable(struct result_file *result, int i, const struct resul
     struct netcdf_writer *const writer = &result->writer;
     const int number = result->number[i];
     const void *const values = result->buffer;
+
     switch (variable->type) {
         case RESULT_INTEGER: netcdf_write_ints(writer, number, start, count, values); break;
         case RESULT_COUNT: netcdf_write_longs(writer, number, start, count, values); break;
@@ -160,7 +165,7 @@ static void write_variables(struct result_file *result, bool with_time, const st
 
 // ---- the life of a result file
 
-static void release(struct result_file *result) {
+static void result_release(struct result_file *result) {
     if (!result) return;
     free(result->number);
     free(result->buffer);
@@ -168,30 +173,32 @@ static void release(struct result_file *result) {
 }
 
 /* A result without a file yet. */
-static struct result_file *allocate(const struct school *school, long n_events) {
+static struct result_file *result_allocate(const struct school *school, long n_events) {
     struct result_file *const result = calloc(1, sizeof *result);
     if (!result) return NULL;
     result_values_lengths(school, wake_most(school, n_events), result->length);
     size_t max = 1;
+
     for (int i = 0; i < result_table_n; i++) {
         const size_t n = result_values_n(&result_table[i], result->length);
         if (n > max) max = n;
     }
+
     result->number = calloc((size_t)result_table_n, sizeof *result->number);
     result->buffer = calloc(max, sizeof *result->buffer);
     if (result->number && result->buffer) return result;
-    release(result);
+    result_release(result);
     return NULL;
 }
 
-/* What a new file is made of. */
+/* The arguments of a new file. */
 struct origin {
     const char *path;
     int overwrite;
     const struct case_values *values;
     const char *effective, *command;
     const struct school *school;
-    const struct result_source *source; /* rows that it begins with; NULL: none */
+    const struct result_source *source; /* first rows of the file; NULL: none */
     bool is_steady;
 };
 
@@ -219,10 +226,10 @@ static enum status write_new(struct result_file *result, const struct origin *or
     return status;
 }
 
-static enum status create(struct result_file **result, const struct origin *origin, long n_events) {
+static enum status result_create(struct result_file **result, const struct origin *origin, long n_events) {
     *result = NULL;
     TRY(target_check(origin->path, TARGET_NETCDF, origin->overwrite));
-    struct result_file *const new = allocate(origin->school, n_events);
+    struct result_file *const new = result_allocate(origin->school, n_events);
     if (!new) return status_fail(STATUS_MEMORY, "%s: out of memory while writing", origin->path);
     new->forces = origin->values->output.forces;
     new->is_steady = origin->is_steady;
@@ -231,7 +238,7 @@ static enum status create(struct result_file **result, const struct origin *orig
     if (status == STATUS_OK) {
         *result = new;
     } else {
-        release(new);
+        result_release(new);
     }
     return status;
 }
@@ -240,14 +247,14 @@ enum status result_file_create(struct result_file **result, const char *path, in
                                const struct case_values *values, const char *effective, const char *command,
                                const struct school *school, long n_events) {
     const struct origin origin = {path, overwrite, values, effective, command, school, NULL, false};
-    return create(result, &origin, n_events);
+    return result_create(result, &origin, n_events);
 }
 
 enum status result_file_create_steady(struct result_file **result, const char *path, int overwrite,
                                       const struct case_values *values, const char *effective, const char *command,
                                       const struct school *school, long n_events) {
     const struct origin origin = {path, overwrite, values, effective, command, school, NULL, true};
-    return create(result, &origin, n_events);
+    return result_create(result, &origin, n_events);
 }
 
 void result_file_steady(struct result_file *result, const struct school *school, const struct steady_values *steady) {
@@ -261,7 +268,7 @@ enum status result_file_extend(struct result_file **result, const struct result_
                                const struct case_values *values, const char *effective, const char *command,
                                const struct school *school, long n_events) {
     const struct origin origin = {source->path, 1, values, effective, command, school, source, false};
-    return create(result, &origin, n_events);
+    return result_create(result, &origin, n_events);
 }
 
 enum status result_file_publish(struct result_file *result, const char *run_status) {
@@ -276,6 +283,7 @@ static enum status find_all(struct result_file *result, const char *path) {
         if (is_written(result, &result_table[i]))
             result->number[i] = netcdf_number(&result->writer, result_table[i].name);
     }
+
     const int code = result->writer.code;
     if (code == 0) return STATUS_OK;
     netcdf_finish(&result->writer);
@@ -290,7 +298,7 @@ enum status result_file_continue(struct result_file **result, const char *path, 
     TRY(netcdf_read_rows(path, &rows));
     TRY(patch_run_status(path));
     TRY(netcdf_cut_rows(path, &rows, (uint64_t)mark->n_rows));
-    struct result_file *const new = allocate(school, n_events);
+    struct result_file *const new = result_allocate(school, n_events);
     if (!new) return status_fail(STATUS_MEMORY, "%s: out of memory while writing", path);
     new->forces = values->output.forces;
     new->n_rows = (size_t)mark->n_rows;
@@ -299,7 +307,7 @@ enum status result_file_continue(struct result_file **result, const char *path, 
     if (status == STATUS_OK) {
         *result = new;
     } else {
-        release(new);
+        result_release(new);
     }
     return status;
 }
@@ -335,25 +343,29 @@ enum status result_file_close(struct result_file *result, const char *run_status
     if (!result) return STATUS_OK;
     struct netcdf_writer *const writer = &result->writer;
     const bool is_published = !writer->part.name;
+
     // the rows are safe before the file says how the run has ended
     if (is_published) netcdf_sync(writer, true);
-    // what NetCDF holds after a failed write cannot be written
+
+    // after a failed write the buffer of NetCDF cannot be written
     if (is_published && writer->code != 0) netcdf_reopen(writer);
     write_run_status(result, run_status);
     netcdf_sync(writer, true);
     enum status status = STATUS_OK;
+
     if (is_published && writer->code != 0) {
-        status = status_fail(STATUS_FILE, "%s: cannot be closed (%s): its last rows may be missing", writer->path,
+        status = status_fail(STATUS_FILE, "%s: cannot be closed (%s): the last rows may be missing", writer->path,
                              netcdf_reason(writer->code));
         netcdf_reopen(writer);
         write_run_status(result, "failed: the last rows could not be written");
     }
+
     const enum status finished = netcdf_finish(writer);
-    release(result);
+    result_release(result);
     return status == STATUS_OK ? finished : status;
 }
 
 void result_file_abandon(struct result_file *result) {
     netcdf_abandon(&result->writer);
-    release(result);
+    result_release(result);
 }

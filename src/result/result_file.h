@@ -1,4 +1,4 @@
-/* result_file.h: writing the file of a run. doc/output.md lists what is in it. Tested by
+/* result_file.h: writing the file of a run. doc/output.md lists the variables. Tested by
  * tests/result/test_result_file.c. / */
 #ifndef RESULT_FILE_H
 #define RESULT_FILE_H
@@ -12,15 +12,16 @@
 
 struct result_file; /* an open result file */
 
-/* Begin a file for path, with the constants of the school. The file gets its name with result_file_publish;
- * result_file_close before that removes the file. overwrite: replace a result that exists, else that is an error.
- * effective: the complete case (case_show); command: the command line, for the attribute history; n_events: of the
- * whole run, without the one at the start. Fails with STATUS_FILE or STATUS_MEMORY; *result is then NULL. */
+/* Begin a file for path, with the constants of the school. The file appears at path with result_file_publish;
+ * result_file_close removes an unpublished file. overwrite: replace an existing result, else fail. effective: the
+ * complete case (case_show); command: the command line, for the attribute history; n_events: of the whole run, without
+ * the one at the start. Fails with STATUS_FILE or STATUS_MEMORY; *result is then NULL. */
 enum status result_file_create(struct result_file **result, const char *path, int overwrite,
                                const struct case_values *values, const char *effective, const char *command,
                                const struct school *school, long n_events);
 
-/* The same for a file that is to hold a steady state, and write that state into it: NaN and 0 before. */
+/* Begin a file with the variables of a steady state, and write the steady state: NaN and 0 before. Otherwise as
+ * result_file_create. */
 enum status result_file_create_steady(struct result_file **result, const char *path, int overwrite,
                                       const struct case_values *values, const char *effective, const char *command,
                                       const struct school *school, long n_events);
@@ -32,26 +33,25 @@ enum status result_file_extend(struct result_file **result, const struct result_
                                const struct case_values *values, const char *effective, const char *command,
                                const struct school *school, long n_events);
 
-/* Make all rows so far survive a power cut, set the attribute run_status, and give the file its name. Fails with
+/* Flush all rows to disk, set the attribute run_status, and rename the file to the path. Fails with
  * STATUS_FILE or STATUS_MEMORY; a file that existed at the path is then unchanged. */
 enum status result_file_publish(struct result_file *result, const char *run_status);
 
-/* Go on writing a file that result_file_create made for this case, behind the rows of a mark with this checksum; what
- * follows them is removed. run_status is "running" again. Fails with STATUS_FILE or STATUS_MEMORY; *result is then
- * NULL. */
+/* Continue a file of result_file_create for this case, behind the rows of a mark with this checksum; later rows are
+ * removed. run_status is "running" again. Fails with STATUS_FILE or STATUS_MEMORY; *result is then NULL. */
 enum status result_file_continue(struct result_file **result, const char *path, const struct result_mark *mark,
                                  const struct result_checksum *checksum, const struct case_values *values,
                                  const struct school *school, long n_events);
 
-/* Make all rows survive a power cut, and mark them. Fails with STATUS_FILE. */
+/* Flush all rows to disk, and mark the rows. Fails with STATUS_FILE. */
 enum status result_file_mark(struct result_file *result, struct result_mark *mark);
 
-/* Append one row. Readers see it at once; a power cut costs the rows of the last second. Fails with STATUS_FILE. */
+/* Append one row, visible to readers at once; a power cut loses the rows of the last second. Fails with STATUS_FILE. */
 enum status result_file_row(struct result_file *result, const struct result_row *row);
 
-/* Set an attribute for which the file keeps room, before it is closed: warnings (a line each), closest_approach ("1.2 m
- * between a and b at t = 3 s") or checkpoint_at ("0.3,1.25": when there were checkpoints besides those of
- * time.checkpoint_interval, s); all are empty before. A longer string is cut. */
+/* Set an attribute with reserved space, before closing: warnings (a line each), closest_approach ("1.2 m between a and
+ * b at t = 3 s") or checkpoint_at ("0.3,1.25": times of additional checkpoints, s). The initial attributes are empty. A
+ * longer string is cut. */
 enum result_note { RESULT_WARNINGS, RESULT_CLOSEST_APPROACH, RESULT_MERGED, RESULT_CHECKPOINT_AT };
 void result_file_note(struct result_file *result, enum result_note note, const char *text);
 

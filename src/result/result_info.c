@@ -59,7 +59,7 @@ static const struct column {
 };
 enum { N_COLUMNS = sizeof columns / sizeof *columns, N_CONSTANT_COLUMNS = 3 };
 
-/* A number of a table, or "-" where there is none. */
+/* Print a number of a table, or "-" for NaN. */
 static void print_cell(const struct info *info, const char *format, double value) {
     char text[320];
     snprintf(text, sizeof text, format, value);
@@ -71,6 +71,7 @@ static enum status print_fish(const struct info *info, int n_columns, size_t f, 
     TRY(result_reader_name(info->reader, f, &name));
     fprintf(info->stream, "  %-*s", width, name);
     free(name);
+
     for (int c = 0; c < n_columns; c++) {
         const struct column *const column = &columns[c];
         double value;
@@ -81,6 +82,7 @@ static enum status print_fish(const struct info *info, int n_columns, size_t f, 
         }
         print_cell(info, column->format, value);
     }
+
     fprintf(info->stream, "\n");
     return STATUS_OK;
 }
@@ -97,7 +99,7 @@ static enum status print_table(const struct info *info) {
     return STATUS_OK;
 }
 
-// ---- what there is once
+// ---- data of the school
 
 static enum status print_status(const struct info *info) {
     char *run_status;
@@ -113,10 +115,12 @@ static enum status print_rows(const struct info *info) {
         fprintf(info->stream, "  missing     %zu of %zu rows: the file was cut off\n", n_missing,
                 info->n_rows + n_missing);
     }
+
     if (info->n_rows == 0) {
         fprintf(info->stream, "  rows        %s\n", n_missing > 0 ? "none is whole" : "none yet");
         return STATUS_OK;
     }
+
     double first, last, interval;
     TRY(of_school(info, 0, "time", &first));
     TRY(of_school(info, info->n_rows - 1, "time", &last));
@@ -126,7 +130,7 @@ static enum status print_rows(const struct info *info) {
     return STATUS_OK;
 }
 
-/* An attribute of several lines, each after a word; nothing where it is empty or missing. */
+/* Print each line of an attribute after a word; nothing for an empty or missing attribute. */
 static enum status print_lines(const struct info *info, const char *name, const char *word) {
     char *text;
     TRY(netcdf_read_string(info->reader, name, &text));
@@ -144,6 +148,7 @@ static enum status print_school(const struct info *info) {
     TRY(of_school(info, last, "least_distance", &distance));
     TRY(of_school(info, last, "polarisation", &polarisation));
     fprintf(info->stream, "\n  total circulation     %11.1e m2 s-1\n", circulation);
+
     // files of earlier versions have no balance
     const struct netcdf_slice row[] = {{"time", last, 1}, {"xy", 0, 2}, {NULL}};
     if (netcdf_read_doubles(info->reader, "momentum_balance", row, balance) == STATUS_OK && !isnan(balance[0]))
@@ -168,6 +173,7 @@ static enum status print_solver(const struct info *info) {
     TRY(interval_of(info, &interval));
     const double n_events = t / interval;
     fprintf(info->stream, "\n");
+
     for (size_t i = 0; i < sizeof totals / sizeof *totals; i++) {
         double total;
         TRY(of_school(info, last, totals[i], &total));
@@ -175,6 +181,7 @@ static enum status print_solver(const struct info *info) {
         if (n_events >= 1) fprintf(info->stream, "   %.2f per event", total / n_events);
         fprintf(info->stream, "\n");
     }
+
     fprintf(info->stream, "  %-20s  %11.2f s   %.3g times real time\n", "wall_time", wall, t / wall);
     return STATUS_OK;
 }

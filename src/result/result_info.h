@@ -6,7 +6,7 @@
 
 #include "base/status.h"
 
-/* Print the status of a run, its fish with their last values, and the work of the solver. Fails with STATUS_FILE or
+/* Print the status of a run, the last values of every fish, and the effort of the solver. Fails with STATUS_FILE or
  * STATUS_MEMORY. */
 enum status result_info(const char *path, FILE *stream);
 

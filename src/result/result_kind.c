@@ -1,4 +1,4 @@
-/* result_kind.c: what is the same for all files that shoal writes. */
+/* result_kind.c: common summary of all files of shoal. */
 #include "result/result_kind.h"
 
 #include <stdlib.h>
@@ -18,11 +18,13 @@ static enum status find_kind(const struct netcdf_reader *reader, int n_kinds, co
         if (schema == none) continue;
         *kind = &kinds[k];
         if (schema == kinds[k].schema) return STATUS_OK;
-        return status_fail(STATUS_FILE,
-                           "%s: written in schema %d, but this program reads %d: use the one that wrote it",
-                           reader->path, schema, kinds[k].schema);
+        return status_fail(
+            STATUS_FILE,
+            "%s: written in schema %d, but this program reads schema %d: use the program that wrote the file",
+            reader->path, schema, kinds[k].schema);
     }
-    return status_fail(STATUS_FILE, "%s: a NetCDF file, but not one of shoal (it has no attribute %s)", reader->path,
+
+    return status_fail(STATUS_FILE, "%s: a NetCDF file, but not of shoal (attribute %s is missing)", reader->path,
                        kinds[0].schema_name);
 }
 
@@ -99,5 +101,6 @@ void result_kind_variables(int n_kinds, const struct result_kind *kinds, int as_
             }
         }
     }
+
     if (as_json) fprintf(stream, "\n]\n");
 }

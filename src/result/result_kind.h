@@ -1,6 +1,6 @@
-/* result_kind.h: the kinds of files that shoal writes, and what is the same for all of them: the summary that `shoal
- * info` prints, and the list of variables that `shoal keys --output` prints. The program has one table of its kinds, in
- * app/main_case.c. Tested by tests/result/test_result_info.c. */
+/* result_kind.h: the kinds of files of shoal, with the common parts: the summary of `shoal info`, and the list of
+ * variables of `shoal keys --output`. The table of kinds is in app/main_case.c. Tested by
+ * tests/result/test_result_info.c. */
 #ifndef RESULT_KIND_H
 #define RESULT_KIND_H
 
@@ -15,20 +15,20 @@ struct result_listed {
 };
 
 struct result_kind {
-    const char *name; /* "run": what the file is of */
+    const char *name; /* the subject of the file: "run" */
     const char
         *schema_name;      /* the attribute that says that a file is of this kind; NULL: a list in words, of no file */
-    int schema;            /* what it is in files that this program reads */
+    int schema;            /* the schema that this program reads */
     const char *case_name; /* the attribute that holds the case */
 
-    /* Print what a file holds, after what is the same for all kinds. Fails with STATUS_FILE or STATUS_MEMORY. */
+    /* Print the summary of this kind, after the common part. Fails with STATUS_FILE or STATUS_MEMORY. */
     enum status (*info)(const char *path, FILE *stream);
 
-    /* Row i, from 0, of the list of its variables; 0 beyond the last. */
+    /* Row i, from 0, of the list of variables; 0 beyond the last. */
     int (*listed)(int i, struct result_listed *listed);
 };
 
-/* Print a summary of a file, or the case in it alone. Fails with STATUS_FILE or STATUS_MEMORY. */
+/* Print a summary of a file, or only the case in the file. Fails with STATUS_FILE or STATUS_MEMORY. */
 enum status result_kind_info(int n_kinds, const struct result_kind *kinds, const char *path, int case_only,
                              FILE *stream);
 

@@ -1,4 +1,4 @@
-/* result_lock.c: locks on a file that says who has it. */
+/* result_lock.c: locks on a file that names the owner. */
 #include "result/result_lock.h"
 
 #include <errno.h>
@@ -15,37 +15,39 @@
 
 enum { OWNER_BYTES = 256 };
 
-/* What is locked: bytes of the file, and what another one that has them is doing. */
+/* A range of bytes to lock, and the message for a range held by another process. */
 struct claim {
     const char *path, *message; /* of the result or study; a format with the path and the owner */
     uint64_t first, n;
 };
 
-// ---- who has the lock
+// ---- the owner of the lock
 
-// the bytes of the file, with a zero behind them; their number
+// Read the bytes of the file, with a zero at the end; returns the number of bytes.
 static size_t read_owner(int descriptor, char owner[OWNER_BYTES]) {
     const ssize_t n = pread(descriptor, owner, OWNER_BYTES - 1, 0);
     owner[n > 0 ? n : 0] = '\0';
     return n > 0 ? (size_t)n : 0;
 }
 
-/* Whether these are the bytes of write_owner, or what a power cut leaves of them: a part, or zeros. */
+/* True for bytes of write_owner, or for the remains after a power cut: a part, or zeros. */
 static bool is_owner(const char *owner, size_t n) {
     static const char form[] = "process # on ";
     size_t n_zeros = 0, at = 0;
     while (n_zeros < n && owner[n_zeros] == '\0') n_zeros++;
     if (n_zeros == n || n == OWNER_BYTES - 1) return n_zeros == n;
+
     for (const char *letter = form; *letter && at < n; letter++) {
         const size_t n_same = *letter == '#' ? strspn(owner + at, "0123456789") : owner[at] == *letter;
         if (n_same == 0) return false;
         at += n_same;
     }
+
     const char *const end = memchr(owner, '\n', n);
     return !end || end == owner + n - 1;
 }
 
-// say who has the lock; it holds without that too
+// write the owner; the lock is valid even if writing fails
 static void write_owner(int descriptor) {
     char host[128] = "an unknown host", owner[OWNER_BYTES];
     gethostname(host, sizeof host - 1);
@@ -53,65 +55,71 @@ static void write_owner(int descriptor) {
     if (ftruncate(descriptor, 0) != 0 || pwrite(descriptor, owner, (size_t)n, 0) != n) return;
 }
 
-static enum status refuse(const struct claim *claim, int descriptor) {
+static enum status refuse_lock(const struct claim *claim, int descriptor) {
     char owner[OWNER_BYTES];
     read_owner(descriptor, owner);
     owner[strcspn(owner, "\n")] = '\0';
-    return status_fail(STATUS_FILE, "%s: %s (%s): wait for its end, or choose another name with -o", claim->path,
+    return status_fail(STATUS_FILE, "%s: %s (%s): wait until it has ended, or choose another name with -o", claim->path,
                        claim->message, *owner ? owner : "an unknown process");
 }
 
 // ---- the file
 
-/* Open the file, or create it. A file that exists must be a lock of shoal, whole or cut by a power failure. */
+/* Open or create the file. An existing file must be a lock of shoal, complete or truncated by a power cut. */
 static enum status open_file(struct result_lock *lock, const struct claim *claim) {
     const int flags = O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK;
     lock->is_my_own = false;
     lock->descriptor = open(lock->path, flags);
+
     if (lock->descriptor < 0 && errno == ENOENT) {
         lock->is_my_own = true;
         lock->descriptor = open(lock->path, flags | O_CREAT | O_EXCL, 0666);
         if (lock->descriptor < 0 && errno == EEXIST) return open_file(lock, claim);
     }
+
     struct stat facts;
     if (lock->descriptor < 0 && errno == ENOENT)  // the folder is there: that has been checked
         return status_fail(STATUS_FILE, "%s: the folder takes no new files: choose another place with -o", claim->path);
+
     if (lock->descriptor < 0 || fstat(lock->descriptor, &facts) != 0 || !S_ISREG(facts.st_mode)) {
         return status_fail(STATUS_FILE, "%s: cannot be made (%s): choose another name with -o", lock->path,
                            lock->descriptor < 0 ? strerror(errno) : "it is not an ordinary file");
     }
+
     char owner[OWNER_BYTES];
     if (!is_owner(owner, read_owner(lock->descriptor, owner))) {
         return status_fail(STATUS_FILE, "%s exists and is no lock of shoal: remove it, or choose another name with -o",
                            lock->path);
     }
+
     // an empty file may be anybody's
     if (facts.st_size > 0) lock->is_my_own = true;
     return STATUS_OK;
 }
 
-/* Open and lock the file once; *is_gone: it has lost its name meanwhile, because its owner has removed it. */
+/* Open and lock the file once; *is_gone: the previous owner has removed the name meanwhile. */
 static enum status try_claim(struct result_lock *lock, const struct claim *claim, bool *is_gone) {
     *is_gone = false;
     TRY(open_file(lock, claim));
-    if (durable_lock(lock->descriptor, claim->first, claim->n) == EAGAIN) return refuse(claim, lock->descriptor);
+    if (durable_lock(lock->descriptor, claim->first, claim->n) == EAGAIN) return refuse_lock(claim, lock->descriptor);
     *is_gone = !durable_has_name(lock->descriptor, lock->path);
     if (!*is_gone) write_owner(lock->descriptor);
     return STATUS_OK;
 }
 
-// close the file and forget its name
+// Close the file and clear the name.
 static void forget(struct result_lock *lock) {
     if (lock->descriptor >= 0) close(lock->descriptor);
     free(lock->path);
     *lock = (struct result_lock){.descriptor = -1};
 }
 
-static enum status take(struct result_lock *lock, const struct claim *claim, const char *ending) {
+static enum status take_lock(struct result_lock *lock, const struct claim *claim, const char *ending) {
     const size_t size = strlen(claim->path) + strlen(ending) + 1;
     *lock = (struct result_lock){.path = malloc(size), .descriptor = -1, .owner = getpid()};
     if (!lock->path) return status_fail(STATUS_MEMORY, "out of memory: a file name");
     snprintf(lock->path, size, "%s%s", claim->path, ending);
+
     for (;;) {
         bool is_gone;
         const enum status status = try_claim(lock, claim, &is_gone);
@@ -124,20 +132,20 @@ static enum status take(struct result_lock *lock, const struct claim *claim, con
 // ---- locks
 
 enum status result_lock_take(struct result_lock *lock, const char *result) {
-    const struct claim claim = {.path = result, .message = "another run writes it"};
-    return take(lock, &claim, ".lock");
+    const struct claim claim = {.path = result, .message = "another run writes this result"};
+    return take_lock(lock, &claim, ".lock");
 }
 
 enum status result_lock_members(struct result_lock *lock, const char *folder, int first, int n) {
     const struct claim claim = {.path = folder,
-                                .message = "another study runs members of it that this one would run",
+                                .message = "another study runs some of the same members",
                                 .first = (uint64_t)first,
                                 .n = (uint64_t)n};
-    return take(lock, &claim, "/study.lock");
+    return take_lock(lock, &claim, "/study.lock");
 }
 
 void result_lock_release(struct result_lock *lock) {
-    // while it is locked: who waits for the name then finds that it is gone
+    // remove the name before unlocking, so that a waiting process finds the name gone
     if (lock->path && lock->owner == getpid() && durable_lock(lock->descriptor, 0, 0) != EAGAIN) {
         const int code = lock->is_my_own ? unlink(lock->path) : ftruncate(lock->descriptor, 0);
         (void)code;  // a lock without an owner locks nothing

@@ -17,6 +17,7 @@ enum { BLOCK = 1 << 16 };
 static int add_bytes(int descriptor, uint64_t begin, uint64_t end, struct result_checksum *checksum) {
     unsigned char block[BLOCK];
     if (checksum->done == 0) *checksum = (struct result_checksum){begin, (uint32_t)crc32_z(0, NULL, 0)};
+
     while (checksum->done < end) {
         const uint64_t left = end - checksum->done;
         const ssize_t n = pread(descriptor, block, left < BLOCK ? (size_t)left : BLOCK, (off_t)checksum->done);
@@ -25,6 +26,7 @@ static int add_bytes(int descriptor, uint64_t begin, uint64_t end, struct result
         checksum->value = (uint32_t)crc32_z(checksum->value, block, (size_t)n);
         checksum->done += (uint64_t)n;
     }
+
     return 0;
 }
 
@@ -32,21 +34,25 @@ enum status result_mark_take(const char *path, long n_rows, struct result_checks
                              struct result_mark *mark) {
     struct netcdf_rows rows;
     TRY(netcdf_read_rows(path, &rows));
+
     if (rows.bytes == 0 || n_rows < 0 || rows.n < (uint64_t)n_rows) {
-        return status_fail(STATUS_FILE, "%s: it has %llu rows, of %ld that belong to the checkpoint", path,
+        return status_fail(STATUS_FILE, "%s: has %llu rows, but the checkpoint requires %ld", path,
                            (unsigned long long)rows.n, n_rows);
     }
+
     const int descriptor = open(path, O_RDONLY | O_CLOEXEC);
     int code = descriptor < 0 ? errno : 0;
+
     if (code == 0) {
         code = add_bytes(descriptor, rows.begin, rows.begin_of_rows + (uint64_t)n_rows * rows.bytes, checksum);
         close(descriptor);
     }
+
     *mark = (struct result_mark){n_rows, checksum->value};
     return code == 0 ? STATUS_OK : status_fail(STATUS_FILE, "%s: cannot be read: %s", path, strerror(code));
 }
 
-// the case of a result, and how its run has ended
+// Read the case and the run_status of a result.
 static enum status check_attributes(const char *path, const char *effective, int *is_complete) {
     struct netcdf_reader reader;
     char *found = NULL, *run_status = NULL;
@@ -55,12 +61,14 @@ static enum status check_attributes(const char *path, const char *effective, int
     if (status == STATUS_OK) status = netcdf_read_string(&reader, "run_status", &run_status);
     const size_t n_missing = reader.n_missing;
     netcdf_close(&reader);
+
     if (status == STATUS_OK) {
         *is_complete = strcmp(run_status, "complete") == 0 && n_missing == 0;
         if (strcmp(found, effective) != 0) {
             status = status_fail(STATUS_FILE, "%s is the result of another case than the checkpoint", path);
         }
     }
+
     free(found);
     free(run_status);
     return status;
@@ -73,6 +81,5 @@ enum status result_mark_check(const char *path, const struct result_mark *mark, 
     *checksum = (struct result_checksum){0};
     TRY(result_mark_take(path, mark->n_rows, checksum, &found));
     if (found.check == mark->check) return STATUS_OK;
-    return status_fail(STATUS_FILE, "%s: its rows are not those of the checkpoint: they have been changed or damaged",
-                       path);
+    return status_fail(STATUS_FILE, "%s: the rows do not match the checkpoint: changed or damaged since", path);
 }

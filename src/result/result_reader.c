@@ -1,4 +1,4 @@
-/* result_reader.c: reading the file of a run by the table of its variables. */
+/* result_reader.c: read the file of a run by the table of variables. */
 #include "result/result_reader.h"
 
 #include <math.h>
@@ -7,11 +7,11 @@
 
 enum { MAX_LENGTH = 100000000 /* of a dimension */ };
 
-static enum status out_of_memory(const struct netcdf_reader *file) {
+static enum status reader_out_of_memory(const struct netcdf_reader *file) {
     return status_fail(STATUS_MEMORY, "%s: out of memory while reading", file->path);
 }
 
-static const struct result_variable *find(const char *name) {
+static const struct result_variable *find_variable(const char *name) {
     const struct result_variable *variable = result_table;
     while (strcmp(variable->name, name) != 0) variable++;
     return variable;
@@ -19,7 +19,7 @@ static const struct result_variable *find(const char *name) {
 
 // ---- the file
 
-/* Refuse what is not the file of a run. */
+/* Refuse files that are not of a run. */
 static enum status check_kind(const struct result_reader *reader) {
     const struct netcdf_reader *const file = &reader->file;
     int schema, study;
@@ -27,13 +27,14 @@ static enum status check_kind(const struct result_reader *reader) {
     TRY(netcdf_read_integer(file, "shoal_study", 0, &study));
     if (schema == RESULT_SCHEMA) return STATUS_OK;
     if (schema != 0)
-        return status_fail(STATUS_FILE,
-                           "%s: written in schema %d, but this program reads %d: use the one that wrote it", file->path,
-                           schema, RESULT_SCHEMA);
+        return status_fail(
+            STATUS_FILE,
+            "%s: written in schema %d, but this program reads schema %d: use the program that wrote the file",
+            file->path, schema, RESULT_SCHEMA);
     if (study != 0)
-        return status_fail(STATUS_FILE, "%s: the file of a study: name that of one of its runs, as in member-0000.nc",
+        return status_fail(STATUS_FILE, "%s: the file of a study: give the file of one run, such as member-0000.nc",
                            file->path);
-    return status_fail(STATUS_FILE, "%s: a NetCDF file, but not one of shoal", file->path);
+    return status_fail(STATUS_FILE, "%s: a NetCDF file, but not of shoal", file->path);
 }
 
 static enum status read_lengths(struct result_reader *reader) {
@@ -41,17 +42,19 @@ static enum status read_lengths(struct result_reader *reader) {
         TRY(netcdf_read_length(&reader->file, result_table_dimension(d), d == XY ? 2 : 0, d == XY ? 2 : MAX_LENGTH,
                                &reader->length[d]));
     }
+
     if (reader->length[TIME] > 0 && reader->length[FISH] > 0) return STATUS_OK;
     if (reader->file.n_missing > 0) {
-        return status_fail(STATUS_FILE, "%s: none of its %zu rows is whole: was it copied completely?",
-                           reader->file.path, reader->file.n_missing);
+        return status_fail(STATUS_FILE, "%s: none of the %zu rows is complete: copy the file again", reader->file.path,
+                           reader->file.n_missing);
     }
+
     return status_fail(STATUS_FILE, "%s: the run has not written a row yet", reader->file.path);
 }
 
 static enum status read_names(struct result_reader *reader) {
     reader->name = calloc(reader->length[FISH], sizeof *reader->name);
-    if (!reader->name) return out_of_memory(&reader->file);
+    if (!reader->name) return reader_out_of_memory(&reader->file);
     for (size_t f = 0; f < reader->length[FISH]; f++) {
         TRY(result_reader_name(&reader->file, f, &reader->name[f]));
     }
@@ -64,15 +67,17 @@ static enum status read_counts(const struct result_reader *reader, const char *n
     double *values;
     TRY(result_reader_new(reader, name, 0, &values));
     *counts = calloc(reader->length[FISH], sizeof **counts);
-    enum status status = *counts ? STATUS_OK : out_of_memory(&reader->file);
+    enum status status = *counts ? STATUS_OK : reader_out_of_memory(&reader->file);
+
     for (size_t f = 0; status == STATUS_OK && f < reader->length[FISH]; f++) {
         if (values[f] >= (double)min && values[f] <= (double)max) {
             (*counts)[f] = (int)values[f];
         } else {
-            status = status_fail(STATUS_FILE, "%s: its variable %s is %g for a fish, which cannot be",
-                                 reader->file.path, name, values[f]);
+            status = status_fail(STATUS_FILE, "%s: variable %s has an invalid value, %g, for a fish", reader->file.path,
+                                 name, values[f]);
         }
     }
+
     free(values);
     return status;
 }
@@ -82,6 +87,7 @@ static enum status read_key(const struct result_reader *reader, const char *key,
     char *text;
     size_t n = 0;
     TRY(netcdf_read_string(&reader->file, "case_effective", &text));
+
     for (const char *line = text; line && *line; line = strchr(line, '\n')) {
         line += strspn(line, "\n");
         const char *const word = line + strspn(line, " ");
@@ -89,9 +95,10 @@ static enum status read_key(const struct result_reader *reader, const char *key,
         if (n < reader->length[FISH]) has_value[n] = strncmp(word + strlen(key), value, strlen(value)) == 0;
         n++;
     }
+
     free(text);
     if (n == reader->length[FISH]) return STATUS_OK;
-    return status_fail(STATUS_FILE, "%s: its case says '%s' of %zu of its %zu fish: use the program that wrote it",
+    return status_fail(STATUS_FILE, "%s: the case has '%s' for %zu of %zu fish: use the program that wrote the file",
                        reader->file.path, key, n, reader->length[FISH]);
 }
 
@@ -104,22 +111,25 @@ static enum status read_flags(const struct result_reader *reader, const char *na
     return STATUS_OK;
 }
 
-/* What fish.body.section and fish.force say of each fish. */
+/* Read fish.body.section and fish.force of each fish. */
 static enum status read_words(struct result_reader *reader) {
     const size_t n_fish = reader->length[FISH];
     reader->has_mean_section = calloc(n_fish, sizeof *reader->has_mean_section);
     bool *const has_pressure = calloc(n_fish, sizeof *has_pressure);
-    enum status status = reader->has_mean_section && has_pressure ? STATUS_OK : out_of_memory(&reader->file);
+    enum status status = reader->has_mean_section && has_pressure ? STATUS_OK : reader_out_of_memory(&reader->file);
+
     if (status == STATUS_OK) {
         status = netcdf_has(&reader->file, "mean_section")
                      ? read_flags(reader, "mean_section", 1, reader->has_mean_section)
                      : read_key(reader, "section: ", "mean", reader->has_mean_section);
     }
+
     if (status == STATUS_OK) {
         status = netcdf_has(&reader->file, "fluid_force")
                      ? read_flags(reader, "fluid_force", FORCE_PRESSURE, has_pressure)
                      : read_key(reader, "force: ", "pressure", has_pressure);
     }
+
     for (size_t f = 0; status == STATUS_OK && f < n_fish; f++) reader->has_pressure |= has_pressure[f];
     free(has_pressure);
     return status;
@@ -132,7 +142,7 @@ static enum status read_walls(struct result_reader *reader) {
     return result_reader_row(reader, "wall_y", 0, reader->wall_y);
 }
 
-static enum status fill(struct result_reader *reader) {
+static enum status fill_reader(struct result_reader *reader) {
     TRY(check_kind(reader));
     TRY(read_lengths(reader));
     TRY(read_walls(reader));
@@ -140,6 +150,7 @@ static enum status fill(struct result_reader *reader) {
     TRY(netcdf_read_string(&reader->file, "run_status", &reader->run_status));
     TRY(read_names(reader));
     TRY(read_words(reader));
+
     // an outline needs the edges between the nodes
     const size_t n_nodes = reader->length[NODE], n_edges = reader->length[EDGE];
     TRY(read_counts(reader, "n_nodes", 4, n_edges < n_nodes ? n_edges + 1 : n_nodes, &reader->n_nodes));
@@ -149,7 +160,7 @@ static enum status fill(struct result_reader *reader) {
 enum status result_reader_open(struct result_reader *reader, const char *path) {
     *reader = (struct result_reader){.file.file = -1};
     TRY(netcdf_open(&reader->file, path));
-    const enum status status = fill(reader);
+    const enum status status = fill_reader(reader);
     if (status != STATUS_OK) result_reader_close(reader);
     return status;
 }
@@ -173,7 +184,7 @@ enum status result_reader_name(const struct netcdf_reader *file, size_t f, char 
     *name = NULL;
     TRY(netcdf_read_length(file, "name", 1, MAX_LENGTH, &n));
     *name = calloc(n + 1, 1);
-    if (!*name) return out_of_memory(file);
+    if (!*name) return reader_out_of_memory(file);
     const struct netcdf_slice slice[] = {{"fish", f, 1}, {"name", 0, n}, {NULL}};
     const enum status status = netcdf_read_text(file, "fish_name", slice, *name);
     if (status == STATUS_OK) return STATUS_OK;
@@ -184,26 +195,28 @@ enum status result_reader_name(const struct netcdf_reader *file, size_t f, char 
 
 size_t result_reader_n(const struct result_reader *reader, const char *name) {
     size_t n = 1;
-    for (const enum result_dimension *d = find(name)->dimension; *d != NONE; d++)
+    for (const enum result_dimension *d = find_variable(name)->dimension; *d != NONE; d++)
         if (*d != TIME) n *= reader->length[*d];
     return n;
 }
 
 enum status result_reader_row(const struct result_reader *reader, const char *name, size_t row, double *values) {
     struct netcdf_slice slice[RESULT_MAX_DIMENSIONS + 1] = {0};
-    const enum result_dimension *const dimension = find(name)->dimension;
+    const enum result_dimension *const dimension = find_variable(name)->dimension;
+
     for (int d = 0; dimension[d] != NONE; d++) {
         slice[d] = (struct netcdf_slice){result_table_dimension(dimension[d]), 0, reader->length[dimension[d]]};
         if (dimension[d] != TIME) continue;
         slice[d].first = row;
         slice[d].n = 1;
     }
+
     return netcdf_read_doubles(&reader->file, name, slice, values);
 }
 
 enum status result_reader_new(const struct result_reader *reader, const char *name, size_t row, double **values) {
     *values = calloc(result_reader_n(reader, name) + 1, sizeof **values);
-    if (!*values) return out_of_memory(&reader->file);
+    if (!*values) return reader_out_of_memory(&reader->file);
     const enum status status = result_reader_row(reader, name, row, *values);
     if (status == STATUS_OK) return STATUS_OK;
     free(*values);
@@ -217,8 +230,8 @@ enum status result_reader_has_wake(const struct result_reader *reader, size_t ro
     TRY(result_reader_new(reader, "wake_count", row, &count));
     const struct netcdf_slice slice[] = {{"time", row, 1}, {"fish", 0, n_fish}, {"vortex", 0, 1}, {NULL}};
     double *const first = calloc(n_fish, sizeof *first);
-    const enum status status =
-        first ? netcdf_read_doubles(&reader->file, "wake_circulation", slice, first) : out_of_memory(&reader->file);
+    const enum status status = first ? netcdf_read_doubles(&reader->file, "wake_circulation", slice, first)
+                                     : reader_out_of_memory(&reader->file);
     *has_wake = status == STATUS_OK;
     for (size_t f = 0; *has_wake && f < n_fish; f++) *has_wake = count[f] == 0 || isfinite(first[f]);
     free(count);

@@ -8,8 +8,8 @@
 
 struct result_reader {
     struct netcdf_reader file;
-    size_t length[RESULT_N_DIMENSIONS]; /* of the dimensions; that of TIME is the number of rows */
-    char *title, *run_status;           /* of the case, and how its run ended; owned */
+    size_t length[RESULT_N_DIMENSIONS]; /* of the dimensions; length[TIME] is the number of rows */
+    char *title, *run_status;           /* case and run_status; owned */
     char **name;                        /* of the fish; owned                          (FISH) */
     int *n_nodes, *n_sheet;             /* of each fish; owned                         (FISH) */
     bool *has_mean_section;             /* edge_thickness is a mean over the edge; owned  (FISH) */
@@ -17,12 +17,12 @@ struct result_reader {
     double wall_y[2];                   /* of the walls, m                             (length[WALL]) */
 };
 
-/* Open the file of a run that has at least one row. Fails with STATUS_FILE (also for the file of a study, and says what
- * to do) or STATUS_MEMORY; nothing is then open. The path must live as long as the reader. */
+/* Open the file of a run that has at least one row. Fails with STATUS_FILE (also for the file of a study) or
+ * STATUS_MEMORY; no file is then open. The path must outlive the reader. */
 enum status result_reader_open(struct result_reader *reader, const char *path);
 void result_reader_close(struct result_reader *reader);
 
-/* The number of values of a variable of the table: of one row where it has rows. */
+/* The number of values of a variable of the table, per row if the variable has rows. */
 size_t result_reader_n(const struct result_reader *reader, const char *name);
 
 /* Read a row of a variable, or all of one that has none; slots that a fish does not use are NaN. */
@@ -31,7 +31,7 @@ enum status result_reader_row(const struct result_reader *reader, const char *na
 /* The same in an array that the caller frees. */
 enum status result_reader_new(const struct result_reader *reader, const char *name, size_t row, double **values);
 
-/* The name of fish f in the file of a run, with or without rows; the caller frees it. */
+/* The name of fish f in the file of a run, with or without rows; the caller frees the name. */
 enum status result_reader_name(const struct netcdf_reader *file, size_t f, char **name);
 
 /* Whether the wake was written in a row, or there was none to write: *has_wake. */

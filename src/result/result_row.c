@@ -6,7 +6,7 @@
 #include "force/bound_sheet.h"
 #include "force/fluid_force.h"
 
-// ---- the bodies and their wakes
+// ---- bodies and wakes
 
 static void interleave(int n, const double *x, const double *y, double *slots) {
     for (int i = 0; i < n; i++) {
@@ -15,7 +15,7 @@ static void interleave(int n, const double *x, const double *y, double *slots) {
     }
 }
 
-static void copy(int n, const double *value, double *slots) {
+static void copy_values(int n, const double *value, double *slots) {
     for (int i = 0; i < n; i++) slots[i] = value[i];
 }
 
@@ -31,7 +31,7 @@ void result_row_velocity(const struct result_row *row, int f, double *slots) {
 
 void result_row_acceleration(const struct result_row *row, int f, double *slots) {
     const struct fish *fish = &row->school->fish[f];
-    // where there are momenta, the unknowns a are their rates
+    // with momenta as unknowns, the unknowns a are the rates of the momenta
     const double *const a = fish_has_momentum(fish) ? row->state->yp + fish->at.vx : row->state->y + fish->at.ax;
     interleave(fish->n_nodes, a, a + fish->n_nodes, slots);
 }
@@ -42,7 +42,7 @@ void result_row_curvature(const struct result_row *row, int f, double *slots) {
 
 void result_row_natural_curvature(const struct result_row *row, int f, double *slots) {
     const struct range joints = row->residual->joints[f];
-    copy(joints.n, row->residual->muscle.curvature + joints.first, slots);
+    copy_values(joints.n, row->residual->muscle.curvature + joints.first, slots);
 }
 
 void result_row_sheet_position(const struct result_row *row, int f, double *slots) {
@@ -75,7 +75,7 @@ void result_row_wake_circulation(const struct result_row *row, int f, double *sl
 
 void result_row_wake_birth(const struct result_row *row, int f, double *slots) {
     const struct wake *wake = &row->state->wake[f];
-    if (row->with_wake) copy(wake->n_vortex, wake->birth, slots);
+    if (row->with_wake) copy_values(wake->n_vortex, wake->birth, slots);
 }
 
 // ---- pressure
@@ -101,7 +101,7 @@ static void edge_force(const struct result_row *row, int f, enum named_force nam
     const double *const about = row->diagnostics->fish[f].com;
     for (int k = 0; k < fish->n_edges; k++) {
         const struct fluid_forces forces = fluid_force_of_edge(fish, &flow, k, about, row->state->y);
-        copy(2, name == RESISTIVE ? forces.resistive : forces.reactive, slots + 2 * k);
+        copy_values(2, name == RESISTIVE ? forces.resistive : forces.reactive, slots + 2 * k);
     }
 }
 

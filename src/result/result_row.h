@@ -1,5 +1,5 @@
-/* result_row.h: what a row of a result file is made of, and those of its values that no field holds as they are in the
- * file. Tested by tests/result/test_result_file.c. */
+/* result_row.h: the input of a row of a result file, and variables that are computed from several fields. Tested by
+ * tests/result/test_result_file.c. */
 #ifndef RESULT_ROW_H
 #define RESULT_ROW_H
 
@@ -22,8 +22,8 @@ struct result_row {
     bool with_wake;                     /* else the variables of the wake hold NaN */
 };
 
-/* Each writes a variable of fish f to its slots, in the order of the file, and leaves those that the fish does not use
- * as they are; where the row has no wake, all of the wake's. result/result_table.c has units and meanings. */
+/* Each function writes a variable of fish f to the slots of f, in the order of the file. Unused slots are unchanged, as
+ * are all slots of the wake in a row without wake. Units and meanings: result/result_table.c. */
 void result_row_position(const struct result_row *row, int f, double *slots);
 void result_row_velocity(const struct result_row *row, int f, double *slots);
 void result_row_acceleration(const struct result_row *row, int f, double *slots);
@@ -41,7 +41,7 @@ void result_row_edge_resistive_force(const struct result_row *row, int f, double
 void result_row_edge_reactive_force(const struct result_row *row, int f, double *slots);
 void result_row_edge_pressure_force(const struct result_row *row, int f, double *slots);
 
-/* The Floquet multipliers of the school, where the row is of a steady state; f plays no part. */
+/* The Floquet multipliers of the school, for a row of a steady state; f is ignored. */
 void result_row_multiplier(const struct result_row *row, int f, double *slots);
 
 /* The exponents of disturbances likewise. */

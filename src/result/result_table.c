@@ -20,7 +20,7 @@
 
 // clang-format off
 const struct result_variable result_table[] = {
-    // what does not change
+    // constants
     {"fish_name",             {FISH, NAME},           RESULT_TEXT,    "",       ARRAY_IN_FISH(name),
      .long_name = "name of the fish"},
     {"fish",                  {FISH, NAME},           RESULT_TEXT,    "",       ARRAY_IN_FISH(name),
@@ -48,7 +48,7 @@ const struct result_variable result_table[] = {
     {"wake_smoothing",        {FISH},                 RESULT_REAL,    "m",      IN_FISH(smoothing),
      .long_name = "smoothing radius of the free vortices"},
     {"sheet_smoothing",       {FISH},                 RESULT_REAL,    "m",      IN_FISH(sheet_smoothing),
-     .long_name = "smoothing radius of the bound vortices as other bodies and wakes see them"},
+     .long_name = "smoothing radius of the bound vortices for the velocity induced at other bodies and wakes"},
     {"node_arc",              {FISH, NODE},           RESULT_REAL,    "m",      ARRAY_IN_FISH(arc),
      .long_name = "arc coordinate of the nodes, from the nose"},
     {"node_mass",             {FISH, NODE},           RESULT_REAL,    "kg",     ARRAY_IN_FISH(mass),
@@ -58,7 +58,7 @@ const struct result_variable result_table[] = {
     {"edge_depth",            {FISH, EDGE},           RESULT_REAL,    "m",      ARRAY_IN_FISH(depth),
      .long_name = "depth (span) of the body, out of the plane of motion"},
     {"mean_section",          {FISH},                 RESULT_INTEGER, "1",      IN_FISH(has_mean_section),
-     .long_name = "1: edge_thickness and edge_depth are means over an edge; 0: means of the values at its nodes"},
+     .long_name = "1: edge_thickness and edge_depth are means over an edge; 0: means of the values at the two nodes"},
     {"fluid_force",           {FISH},                 RESULT_INTEGER, "1",      IN_FISH(force),
      .long_name = "force of the fluid on the body: 0 reactive, 1 published, 2 pressure"},
     {"sheet_arc",             {FISH, SHEET},          RESULT_REAL,    "m",      GATHERED(result_row_sheet_arc),
@@ -66,7 +66,7 @@ const struct result_variable result_table[] = {
     {"control_arc",           {FISH, CONTROL},        RESULT_REAL,    "m",      GATHERED(result_row_control_arc),
      .long_name = "arc coordinate of the control points, from the nose"},
     {"sheet_weight",          {FISH, SHEET},          RESULT_REAL,    "m",      ARRAY_IN_FISH(sheet_weight),
-     .long_name = "natural length of body of a bound vortex: circulation over strength where nothing is stretched"},
+     .long_name = "natural length of body per bound vortex: circulation over sheet strength of an unstretched body"},
     {"fluid_density",         {NONE},                 RESULT_REAL,    "kg m-3", IN_SCHOOL(density),
      .long_name = "density of the fluid"},
     {"shedding_interval",     {NONE},                 RESULT_REAL,    "s",      IN_SCHOOL(interval),
@@ -74,41 +74,43 @@ const struct result_variable result_table[] = {
     {"wake_lifetime",         {NONE},                 RESULT_REAL,    "s",      IN_SCHOOL(lifetime),
      .long_name = "age at which a free vortex is removed"},
     {"wake_decay",             {NONE},                 RESULT_REAL,    "s",      IN_SCHOOL(decay),
-     .long_name = "time before its removal over which a free vortex decays"},
+     .long_name = "time before removal over which a free vortex decays"},
     {"wall_y",                {WALL},                 RESULT_REAL,    "m",      IN_SCHOOL(walls.y),
      .long_name = "y of the walls along x, the lower one first; in the files of cases with fluid.walls only"},
 
-    // a steady state: means over its last beat
+    // a steady state: means over the last beat
     {"steady_beats",          {NONE},                 RESULT_INTEGER, "1",      IN_STEADY(n_beats),
      .long_name = "beats that the search for the steady state took"},
     {"steady_multiplier_beats", {NONE},               RESULT_INTEGER, "1",      IN_STEADY(n_multiplier_beats),
-     .long_name = "beats that its multipliers took"},
+     .long_name = "beats simulated for the multipliers"},
     {"steady_residual",       {NONE},                 RESULT_REAL,    "1",      IN_STEADY(residual),
-     .long_name = "change from beat to beat: of the speed in lengths per beat, or of what else is compared; without a "
-                  "beat the largest force, or velocity, that is left, over its scale"},
+     .long_name = "change from beat to beat: of the speed in lengths per beat, or of the other quantities "
+                  "compared; without a beat the largest residual force or velocity over the scale of the force or"
+                  " velocity"},
     {"steady_stiffness",      {NONE},                 RESULT_REAL,    "1",      IN_STEADY(stiffness),
      .long_name = "determinant of the static stiffness of an equilibrium without a beat, over that at rest; below 0 "
                   "the bodies diverge"},
     {"steady_error",          {NONE},                 RESULT_REAL,    "1",      IN_STEADY(error),
-     .long_name = "estimated distance from the steady state: the residual over that of 1 from the next multiplier, "
-                  "at least the speed that is missing, in lengths per beat"},
+     .long_name = "estimated distance from the steady state: the residual over the distance of 1 from the nearest"
+                  " multiplier, at least the missing speed, in lengths per beat"},
     {"steady_multiplier",     {MULTIPLIER, XY},       RESULT_REAL,    "1",
      .of_steady = true, .owner = OF_STEADY, GATHERED(result_row_multiplier),
      .long_name = "Floquet multipliers of the slow quantities, real and imaginary parts; stable where all are below 1"},
     {"steady_growth",         {NONE},                 RESULT_REAL,    "s-1",    IN_STEADY(growth),
      .long_name = "growth rate of the disturbance that grows fastest or decays slowest; unstable above 0"},
     {"steady_growth_frequency", {NONE},               RESULT_REAL,    "Hz",     IN_STEADY(growth_frequency),
-     .long_name = "its frequency; 0: it does not swing, with a beat that is its frequency beside the beat"},
+     .long_name = "frequency of the oscillation, with a beat in addition to the frequency of the beat; 0: no "
+                  "oscillation"},
     {"steady_exponent",       {MULTIPLIER, XY},       RESULT_REAL,    "s-1",
      .of_steady = true, .owner = OF_STEADY, GATHERED(result_row_exponent),
-     .long_name = "growth rates and angular frequencies of disturbances: logarithms of multipliers over the beat, or "
-                  "without a beat modes of the bodies with their wakes"},
+     .long_name = "growth rates and angular frequencies of disturbances: logarithms of multipliers over the beat,"
+                  " or without a beat modes of bodies and wakes"},
     {"steady_speed",          {FISH},                 RESULT_REAL,    "m s-1",  IN_STEADY_FISH(speed),
      .long_name = "speed through the water"},
     {"steady_turn",           {FISH},                 RESULT_REAL,    "degree", IN_STEADY_FISH(turn),
      .long_name = "change of the heading in a beat"},
     {"steady_place",          {FISH, XY},             RESULT_REAL,    "m",      IN_STEADY_FISH(place),
-     .long_name = "centre of mass ahead of that of the first fish, and to the left of it"},
+     .long_name = "position of the centre of mass relative to the first fish: ahead, and to the left"},
     {"steady_force",          {FISH, XY},             RESULT_REAL,    "N",      IN_STEADY_FISH(force),
      .long_name = "force of the fluid on the body"},
     {"steady_thrust",         {FISH},                 RESULT_REAL,    "N",      IN_STEADY_FISH(thrust),
@@ -196,7 +198,7 @@ const struct result_variable result_table[] = {
     {"stretching_energy",     {TIME, FISH},           RESULT_REAL,    "J",      IN_FISH_DIAGNOSTICS(stretching_energy),
      .long_name = "elastic energy of stretching"},
     {"contact_energy",        {TIME, FISH},           RESULT_REAL,    "J",      IN_FISH_DIAGNOSTICS(contact_energy),
-     .long_name = "potential energy of contacts, half of it with either body"},
+     .long_name = "potential energy of contacts, half for each of the two bodies"},
     {"added_mass_energy",     {TIME, FISH},           RESULT_REAL,    "J",      IN_FISH_DIAGNOSTICS(added_mass_energy),
      .long_name = "kinetic energy of the fluid that the body accelerates"},
     {"actuation_power",       {TIME, FISH},           RESULT_REAL,    "W",      IN_FISH_DIAGNOSTICS(actuation_power),
@@ -215,15 +217,15 @@ const struct result_variable result_table[] = {
      .long_name = "power on the body of the suction at the leading edge; 0 unless force: pressure"},
     {"separation_power",      {TIME, FISH},           RESULT_REAL,    "W",
      IN_FISH_DIAGNOSTICS(pressure.separation_power),
-     .long_name = "power that the suction of attached flow would add to suction_power: it goes into separated flow"},
+     .long_name = "power that the suction of attached flow would add to suction_power, lost to separated flow"},
     {"added_mass_power",      {TIME, FISH},           RESULT_REAL,    "W",      IN_FISH_DIAGNOSTICS(added_mass_power),
-     .long_name = "power on the body of the fluid that it accelerates, without what leaves at the tail"},
+     .long_name = "power on the body of the fluid accelerated by the body, without the tail flux"},
     {"wake_power",            {TIME, FISH},           RESULT_REAL,    "W",      IN_FISH_DIAGNOSTICS(wake_power),
-     .long_name = "power on the body of what leaves at the tail"},
+     .long_name = "power of the tail flux on the body"},
     {"constraint_power",      {TIME, FISH},           RESULT_REAL,    "W",      IN_FISH_DIAGNOSTICS(constraint_power),
      .long_name = "power of the forces that hold prescribed nodes to their motion, and of loads"},
     {"contact_power",         {TIME, FISH},           RESULT_REAL,    "W",      IN_FISH_DIAGNOSTICS(contact_power),
-     .long_name = "power that bodies in contact give to the body and to its half of the energy of contacts"},
+     .long_name = "power of contact forces on the body and into the half of contact_energy of the body"},
     {"energy_balance",          {TIME, FISH},           RESULT_REAL,    "J",      IN_FISH_DIAGNOSTICS(energy_balance),
      .long_name = "energy balance: change of energy minus the integral of all powers, an error of integration"},
     {"actuation_work",        {TIME, FISH},           RESULT_REAL,    "J",      IN_FISH_DIAGNOSTICS(actuation_work),
@@ -242,11 +244,11 @@ const struct result_variable result_table[] = {
     {"efficiency",            {TIME, FISH},           RESULT_REAL,    "1",      IN_FISH_DIAGNOSTICS(efficiency),
      .long_name = "friction times speed over the power that goes into the fluid, over the last period"},
     {"mean_thrust",           {TIME, FISH},           RESULT_REAL,    "N",      IN_FISH_DIAGNOSTICS(mean_thrust),
-     .long_name = "mean of all forces of the fluid along the way, over the last period: 0 once it swims steadily"},
+     .long_name = "mean force of the fluid along the path over the last period: 0 in steady swimming"},
     {"mean_power",            {TIME, FISH},           RESULT_REAL,    "W",      IN_FISH_DIAGNOSTICS(mean_power),
      .long_name = "mean power that the motion takes, for thrust and for the wake, over the last period"},
     {"thrust_efficiency",     {TIME, FISH},           RESULT_REAL,    "1",      IN_FISH_DIAGNOSTICS(thrust_efficiency),
-     .long_name = "mean_thrust times speed over mean_power: that of a body that is held"},
+     .long_name = "efficiency of a held body: mean_thrust times speed over mean_power"},
     {"strouhal",              {TIME, FISH},           RESULT_REAL,    "1",      IN_FISH_DIAGNOSTICS(strouhal),
      .long_name = "Strouhal number: frequency times peak-to-peak motion of the tail over speed"},
 
@@ -269,7 +271,7 @@ const struct result_variable result_table[] = {
     {"constraint_force",      {TIME, FISH, XY},       RESULT_REAL,    "N",      IN_FISH_DIAGNOSTICS(constraint_force),
      .long_name = "force that holds prescribed nodes to their motion; 0 for a free fish"},
     {"contact_force",         {TIME, FISH, XY},       RESULT_REAL,    "N",      IN_FISH_DIAGNOSTICS(contact_force),
-     .long_name = "force of the bodies that it touches"},
+     .long_name = "force of the bodies in contact"},
     {"thrust",                {TIME, FISH},           RESULT_REAL,    "N",      IN_FISH_DIAGNOSTICS(thrust),
      .long_name = "sum of the forces of the fluid along the heading"},
     {"resistive_moment",      {TIME, FISH},           RESULT_REAL,    "N m",    IN_FISH_DIAGNOSTICS(resistive_moment),
@@ -288,15 +290,15 @@ const struct result_variable result_table[] = {
      IN_FISH_DIAGNOSTICS(pressure.momentum_moment),
      .long_name = "moment of the added momentum about the centre of mass"},
     {"constraint_moment",     {TIME, FISH},           RESULT_REAL,    "N m",    IN_FISH_DIAGNOSTICS(constraint_moment),
-     .long_name = "moment about the centre of mass of what holds a prescribed motion"},
+     .long_name = "moment about the centre of mass of the forces that hold a prescribed motion"},
 
-    // momentum: of the fluid, and what comes from outside
+    // momentum of the fluid, and external forces
     {"fluid_impulse",         {TIME, FISH, XY},       RESULT_REAL,    "N s",    IN_FISH_DIAGNOSTICS(fluid_impulse),
-     .long_name = "impulse of the vortices of the fish, bound, free and lost; NaN where its depth varies"},
+     .long_name = "impulse of the vortices of the fish, bound, free and lost; NaN for a varying depth"},
     {"fluid_angular_impulse", {TIME, FISH},           RESULT_REAL,    "N m s",  IN_FISH_DIAGNOSTICS(fluid_impulse[2]),
      .long_name = "angular impulse about the origin of the vortices of the fish"},
     {"lost_impulse",          {TIME, FISH, XY},       RESULT_REAL,    "N s",    IN_FISH_DIAGNOSTICS(lost_impulse),
-     .long_name = "part of fluid_impulse: of circulation that has faded or been removed, where that happened"},
+     .long_name = "part of fluid_impulse: of decayed and removed circulation, at the places of decay and removal"},
     {"lost_angular_impulse",  {TIME, FISH},           RESULT_REAL,    "N m s",  IN_FISH_DIAGNOSTICS(lost_impulse[2]),
      .long_name = "part of fluid_angular_impulse: of circulation that has faded or been removed"},
     {"external_impulse",      {TIME, FISH, XY},       RESULT_REAL,    "N s",    IN_FISH_DIAGNOSTICS(external_impulse),
@@ -358,7 +360,7 @@ const struct result_variable result_table[] = {
 // clang-format on
 const int result_table_n = sizeof result_table / sizeof *result_table;
 _Static_assert(FORCE_REACTIVE == 0 && FORCE_PUBLISHED == 1 && FORCE_PRESSURE == 2 && sizeof(enum force) == sizeof(int),
-               "fluid_force is written as it is");
+               "fluid_force is stored unchanged");
 _Static_assert(sizeof result_table / sizeof *result_table <= RESULT_TABLE_MAX, "raise RESULT_TABLE_MAX");
 
 // ---- look-ups ----
@@ -416,9 +418,11 @@ int result_table_listed(int i, struct result_listed *listed) {
     *listed =
         (struct result_listed){variable->name, variable->unit, type_name(variable->type), variable->long_name, ""};
     size_t length = 0;
+
     for (const enum result_dimension *d = variable->dimension; *d != NONE; d++) {
         length += (size_t)snprintf(listed->dimensions + length, sizeof listed->dimensions - length, "%s%s",
                                    length > 0 ? ", " : "", result_table_dimension(*d));
     }
+
     return 1;
 }

@@ -1,4 +1,4 @@
-/* result_table.h: the variables of a result file and where the value of each lives. One table drives definition,
+/* result_table.h: the variables of a result file and the source of each value. One table drives definition,
  * writing, reading and doc/output.md: a new variable is a new row. Tested by tests/result/test_result_file.c. */
 #ifndef RESULT_TABLE_H
 #define RESULT_TABLE_H
@@ -15,8 +15,8 @@ enum {
     RESULT_TABLE_MAX = 160 /* no more variables than these */
 };
 
-/* Dimensions; NONE ends a list of them. Slots beyond what a fish has hold NaN. One of length 0 is not in the file, and
- * neither are its variables. */
+/* Dimensions; NONE ends a list of dimensions. Unused slots of a fish are NaN. A dimension of length 0 and variables
+ * over this dimension are not in the file. */
 enum result_dimension {
     NONE,
     TIME,
@@ -43,7 +43,7 @@ enum result_type {
     RESULT_TEXT     /* char *, cut or filled up with zeros to the length of NAME */
 };
 
-/* What a value is a part of. */
+/* The struct that contains a value. */
 enum result_owner {
     OF_SCHOOL,
     OF_FISH,
@@ -65,18 +65,18 @@ struct result_variable {
     const char *unit; /* "": none, as for text */
     const char *long_name;
 
-    /* Where the value of a school or of fish f lives: at offset in its owner; where is_pointer, the owner holds the
-     * address of an array there; or gather writes it to the slots of fish f, which are NaN before. */
+    /* The source of the value of a school or of fish f: at offset in the owner (is_pointer: the address of an array is
+     * at offset), or gather writes the value to the slots of fish f, initially NaN. */
     enum result_owner owner;
     size_t offset;
     bool is_pointer;
     void (*gather)(const struct result_row *row, int f, double *slots);
 
-    enum output_forces forces; /* in the file where the case asks for these forces; 0: always */
+    enum output_forces forces; /* in the file if the case has these output.forces; 0: always */
     bool of_steady;            /* in the file of a steady state only */
 };
 
-/* In the order in which they are in the file; wall_time is the last, by which scripts see that a file is whole. */
+/* In the order of the file; wall_time is last, so that scripts can check a file for completeness. */
 extern const struct result_variable result_table[];
 extern const int result_table_n;
 
@@ -86,10 +86,11 @@ const char *result_table_dimension(enum result_dimension dimension);
 /* True if the variable has the dimension. */
 bool result_table_has(const struct result_variable *variable, enum result_dimension dimension);
 
-/* The length of a dimension for one fish; 1 where it does not depend on the fish. */
+/* The length of a dimension for one fish; 1 for dimensions that do not depend on the fish. */
 int result_table_length(const struct fish *fish, enum result_dimension dimension);
 
-/* The address of what a value is a part of; of an axis, which is x or y, f counts the axes. NULL: there is none. */
+/* The address of the struct that contains a value; f is the fish, or for the axes x and y the number of the axis. NULL:
+ * none. */
 const void *result_table_owner(const struct result_row *row, enum result_owner owner, int f);
 
 /* Row i, from 0, of the list of variables; 0 beyond the last. */

@@ -1,4 +1,4 @@
-/* result_values.c: from where a value lives to its slots in an array. */
+/* result_values.c: copy values from the structs of a run to the slots of an array. */
 #include "result/result_values.h"
 
 #include <math.h>
@@ -11,6 +11,7 @@ void result_values_lengths(const struct school *school, int n_vortices, size_t l
     length[XY] = 2;
     length[WALL] = (size_t)school->walls.n;
     length[MULTIPLIER] = STEADY_QUANTITIES * (size_t)school->n_fish;
+
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *fish = &school->fish[f];
         for (enum result_dimension d = NODE; d <= CONTROL; d++) {
@@ -37,22 +38,25 @@ size_t result_values_size(enum result_type type) {
     }
 }
 
-/* Put the n_slots values of the school or of fish f at their place. */
+/* Write the n_slots values of the school or of fish f. */
 static void fill_slots(const struct result_variable *variable, const struct result_row *row, int f, size_t n_slots,
                        void *slots) {
     if (variable->gather) {
         variable->gather(row, f, slots);
         return;
     }
+
     const char *value = result_table_owner(row, variable->owner, f);
     if (!value) return;
     value += variable->offset;
     size_t n = n_slots;
+
     if (variable->is_pointer) {
         memcpy(&value, value, sizeof(const char *));
         const enum result_dimension last = variable->dimension[1];
         n = last == NAME ? strlen(value) : (size_t)result_table_length(&row->school->fish[f], last);
     }
+
     memcpy(slots, value, n * result_values_size(variable->type));
 }
 

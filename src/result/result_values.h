@@ -1,12 +1,12 @@
-/* result_values.h: the values of the variables of the table at one event, put together in memory as a result file and
- * the public interface hold them: in C order, slots that a fish does not use NaN or zero. Tested by
- * tests/result/test_result_file.c and tests/library/test_shoal.c. */
+/* result_values.h: the values of the variables of the table at one event, as arrays in memory for the result file and
+ * the public interface: in C order, unused slots of a fish NaN or zero. Tested by tests/result/test_result_file.c and
+ * tests/library/test_shoal.c. */
 #ifndef RESULT_VALUES_H
 #define RESULT_VALUES_H
 
 #include "result/result_table.h"
 
-/* The length of each dimension for this school, with room for so many vortices of each fish; that of TIME is 1. */
+/* The length of each dimension for this school, with n_vortex vortices per fish; the length of TIME is 1. */
 void result_values_lengths(const struct school *school, int n_vortices, size_t length[RESULT_N_DIMENSIONS]);
 
 /* The number of values of a variable at one event. */

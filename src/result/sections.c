@@ -12,7 +12,7 @@ enum {
     SIZE_AT = ORDER_AT + 4,
     CHECK_AT = SIZE_AT + 8,
     HEADER_BYTES = CHECK_AT + 4,
-    SECTION_HEADER = SECTIONS_NAME + 8 /* bytes before those of a section */
+    SECTION_HEADER = SECTIONS_NAME + 8 /* size of the header of a section */
 };
 
 static uint32_t checksum(const unsigned char *bytes, size_t n) {
@@ -33,6 +33,7 @@ void sections_add(struct sections_writer *writer, const void *bytes, size_t n) {
         writer->bytes = more;
         writer->capacity = capacity;
     }
+
     memcpy(writer->bytes + writer->n, bytes, n);
     writer->n += n;
 }
@@ -92,7 +93,7 @@ static uint64_t size_at(const unsigned char *bytes) {
     return size;
 }
 
-// the bytes of the section that begins at a place, header and checksum included; 0: they are not all there
+// The size of the section at a place, with header and checksum; 0 if incomplete.
 static size_t whole_section(const unsigned char *bytes, size_t n, size_t at) {
     const size_t around = SECTION_HEADER + sizeof(uint32_t);
     if (n - at < around) return 0;
@@ -102,19 +103,21 @@ static size_t whole_section(const unsigned char *bytes, size_t n, size_t at) {
 
 static enum status check_header(const unsigned char *bytes, size_t n) {
     if (n < FORMAT_AT || memcmp(bytes, SECTIONS_MAGIC, FORMAT_AT) != 0)
-        return status_fail(STATUS_FILE, "it is no checkpoint of shoal");
-    if (n < HEADER_BYTES) return status_fail(STATUS_FILE, "it is cut off");
+        return status_fail(STATUS_FILE, "not a checkpoint of shoal");
+    if (n < HEADER_BYTES) return status_fail(STATUS_FILE, "the file is truncated");
     const uint32_t found = number_at(bytes + ORDER_AT), format = number_at(bytes + FORMAT_AT);
+
     if (number_at(bytes + CHECK_AT) != checksum(bytes, CHECK_AT)) {
-        // that of a machine of the other order of bytes does not fit either
-        return status_fail(STATUS_FILE, found == 0x04030201 ? "it was made on a machine with another order of bytes"
-                                                            : "it is damaged in its first bytes");
+        // with another byte order the checksum fails too
+        return status_fail(STATUS_FILE, found == 0x04030201 ? "written on a machine with another byte order"
+                                                            : "the first bytes are damaged");
     }
+
     if (found != order || format != SECTIONS_FORMAT) {
-        return status_fail(STATUS_FILE, "it has format %u, and this program reads format %d", format, SECTIONS_FORMAT);
+        return status_fail(STATUS_FILE, "format %u, but this program reads format %d", format, SECTIONS_FORMAT);
     }
     if (size_at(bytes + SIZE_AT) == n) return STATUS_OK;
-    return status_fail(STATUS_FILE, "it has %zu bytes instead of %llu: it is cut off, or more was added", n,
+    return status_fail(STATUS_FILE, "%zu bytes instead of %llu: truncated or extended", n,
                        (unsigned long long)size_at(bytes + SIZE_AT));
 }
 
@@ -124,10 +127,11 @@ enum status sections_check(const unsigned char *bytes, size_t n) {
         const size_t size = whole_section(bytes, n, at);
         const size_t checked = size - sizeof(uint32_t);
         if (size == 0 || number_at(bytes + at + checked) != checksum(bytes + at, checked)) {
-            return status_fail(STATUS_FILE, "it is damaged behind byte %zu", at);
+            return status_fail(STATUS_FILE, "damaged behind byte %zu", at);
         }
         at += size;
     }
+
     return STATUS_OK;
 }
 

@@ -1,11 +1,11 @@
-/* sections.h: bytes in named sections, each with a checksum, as a checkpoint keeps them. Tested by
+/* sections.h: bytes in named sections, each with a checksum, the format of checkpoints. Tested by
  * tests/result/test_checkpoint.c.
  *
  *     "SHOAL\r\n\x1a"  format  0x01020304  size of all  checksum of these 24 bytes
  *     section = name (24 bytes, filled up with zeros)  n  n bytes  checksum of name, n and bytes
  *
- * Numbers are those of the machine, whose order the second one shows: format, order and checksums have 4 bytes, sizes
- * 8. A checksum is the CRC-32 of zlib. The line break in the first word shows a copy that was made as text. */
+ * Numbers have the byte order of the machine, shown by the second number: format, order and checksums have 4 bytes,
+ * sizes 8. A checksum is the CRC-32 of zlib. The line break in the first word reveals a copy in text mode. */
 #ifndef SECTIONS_H
 #define SECTIONS_H
 
@@ -40,22 +40,22 @@ void sections_free(struct sections_writer *writer);
 
 /* ---- reading */
 
-/* Where a section is read. */
+/* The reading position in a section. */
 struct section_reader {
     const unsigned char *next;
     size_t left;    /* bytes */
     bool is_short;  /* more has been asked for than there is */
-    uint32_t check; /* its checksum */
+    uint32_t check; /* checksum of the section */
 };
 
-/* Fail with STATUS_FILE unless these n bytes are whole: the message ("it is cut off", "it is damaged behind byte 28",
- * "it has format 2, and this program reads format 1") says why. */
+/* Fail with STATUS_FILE unless these n bytes are complete and undamaged. The message is the reason: "the file is
+ * truncated", "damaged behind byte 28", "format 2, but this program reads format 1". */
 enum status sections_check(const unsigned char *bytes, size_t n);
 
-/* The section of a name in bytes that have been checked; an empty and short one where there is none. */
+/* The section of a name in checked bytes; an empty, short section if the name is missing. */
 struct section_reader sections_find(const unsigned char *bytes, size_t n, const char *name);
 
-/* Take the next n bytes of a section; zeros where it is short. */
+/* Take the next n bytes of a section; zeros beyond the end. */
 void sections_take(struct section_reader *section, void *to, size_t n);
 
 #endif

@@ -8,7 +8,7 @@
 
 #include "result/result_reader.h"
 
-/* The rows of the table; those of each direction have two. */
+/* The rows of the table; vector variables have two rows. */
 static const struct quantity {
     const char *variable, *head, *unit, *format;
     bool of_xy;
@@ -37,6 +37,7 @@ static enum status print_modes(const struct netcdf_reader *reader, FILE *stream)
     double first[2] = {0};
     if (!netcdf_has(reader, "steady_exponent")) return STATUS_OK;
     TRY(netcdf_read_length(reader, "multiplier", 0, INT_MAX, &n));
+
     for (; i < n; i++) {
         double value[2];
         TRY(netcdf_read_doubles(reader, "steady_exponent",
@@ -46,12 +47,14 @@ static enum status print_modes(const struct netcdf_reader *reader, FILE *stream)
         fprintf(stream, "%s %+.4f s-1 at %.4g Hz", i == 0 ? "  growth of disturbances:" : ",",
                 fabs(value[0]) < still ? 0 : value[0], value[1] / two_pi);
     }
+
     if (i > 0) {
         fprintf(stream, ": %s\n",
                 first[0] < still ? "stable"
                 : first[1] > 0   ? "unstable: flutters"
                                  : "unstable: diverges");
     }
+
     return STATUS_OK;
 }
 
@@ -75,7 +78,7 @@ static enum status print_effort(const struct netcdf_reader *reader, FILE *stream
     TRY(netcdf_read_doubles(reader, "steady_residual", all, &residual));
     TRY(netcdf_read_doubles(reader, "steady_error", all, &error));
     if (!(beats > 0)) return print_equilibrium(reader, residual, stream);
-    fprintf(stream, "\n  steady state after %.0f beats: from beat to beat it changes by %.1e", beats, residual);
+    fprintf(stream, "\n  steady state after %.0f beats: change from beat to beat %.1e", beats, residual);
     if (!isnan(error)) fprintf(stream, ", about %.1e from the fixed point", error);
     fprintf(stream, "\n");
     if (multiplier_beats > 0) fprintf(stream, "  multipliers in %.0f more beats:", multiplier_beats);
@@ -87,6 +90,7 @@ static enum status print_multipliers(const struct netcdf_reader *reader, FILE *s
     size_t n;
     TRY(netcdf_read_length(reader, "multiplier", 0, INT_MAX, &n));
     double largest = NAN;
+
     for (size_t i = 0; i < n; i++) {
         double value[2];
         TRY(netcdf_read_doubles(reader, "steady_multiplier",
@@ -97,6 +101,7 @@ static enum status print_multipliers(const struct netcdf_reader *reader, FILE *s
         fprintf(stream, "%s %.4f", i > 0 ? "," : "", value[0]);
         if (value[1] > 0) fprintf(stream, " +- %.4f i", value[1]);
     }
+
     if (!isnan(largest)) fprintf(stream, ": %s\n", largest < 1 ? "stable" : "unstable");
     return STATUS_OK;
 }
@@ -112,6 +117,7 @@ static enum status print_cells(const struct netcdf_reader *reader, const struct 
         snprintf(text, sizeof text, quantity->format, value);
         fprintf(stream, "  %12s", isnan(value) ? "-" : text);
     }
+
     fprintf(stream, "  %s\n", quantity->unit);
     return STATUS_OK;
 }
@@ -137,6 +143,7 @@ static enum status print_head(const struct netcdf_reader *reader, size_t n_fish,
         fprintf(stream, "  %12s", name);
         free(name);
     }
+
     fprintf(stream, "\n");
     return STATUS_OK;
 }
@@ -149,6 +156,7 @@ enum status steady_info(const struct netcdf_reader *reader, FILE *stream) {
     TRY(print_multipliers(reader, stream));
     TRY(netcdf_read_length(reader, "fish", 1, INT_MAX, &n_fish));
     TRY(print_head(reader, n_fish, stream));
+
     for (size_t q = 0; q < sizeof quantities / sizeof *quantities; q++) {
         const struct quantity *const quantity = &quantities[q];
         const int is_place = strcmp(quantity->head, "place") == 0;
@@ -162,5 +170,6 @@ enum status steady_info(const struct netcdf_reader *reader, FILE *stream) {
             TRY(print_cells(reader, quantity, n_fish, xy, stream));
         }
     }
+
     return STATUS_OK;
 }

@@ -22,11 +22,13 @@ static void print_list(const struct netcdf_slice *slice, const double **value, F
         print_number(*(*value)++, stream);
         return;
     }
+
     fputc('[', stream);
     for (size_t i = 0; i < slice->n; i++) {
         if (i > 0) fputs(", ", stream);
         print_list(slice + 1, value, stream);
     }
+
     fputc(']', stream);
 }
 
@@ -39,20 +41,24 @@ static enum status print_variable(const struct netcdf_reader *reader, const stru
                                   FILE *stream) {
     struct netcdf_slice slice[RESULT_MAX_DIMENSIONS + 1] = {{NULL, 0, 0}};
     size_t size = 1;
+
     for (int d = 0; variable->dimension[d] != NONE; d++) {
         slice[d].dimension = result_table_dimension(variable->dimension[d]);
         TRY(netcdf_read_length(reader, slice[d].dimension, 1, INT_MAX, &slice[d].n));
         size *= slice[d].n;
     }
+
     double *const values = calloc(size, sizeof *values);
     if (!values) return status_fail(STATUS_MEMORY, "%s: out of memory while reading", reader->path);
     const enum status status = netcdf_read_doubles(reader, variable->name, slice, values);
+
     if (status == STATUS_OK) {
         if (variable->dimension[0] == MULTIPLIER) slice[0].n = used_multipliers(slice[0].n, values);
         const double *next = values;
         fprintf(stream, ",\n  \"%s\": ", variable->name);
         print_list(slice, &next, stream);
     }
+
     free(values);
     return status;
 }
@@ -61,6 +67,7 @@ static enum status print_names(const struct netcdf_reader *reader, FILE *stream)
     size_t n_fish;
     TRY(netcdf_read_length(reader, "fish", 1, INT_MAX, &n_fish));
     fputs(",\n  \"fish_name\": [", stream);
+
     for (size_t f = 0; f < n_fish; f++) {
         char *name;
         TRY(result_reader_name(reader, f, &name));
@@ -68,6 +75,7 @@ static enum status print_names(const struct netcdf_reader *reader, FILE *stream)
         text_print_json(stream, name);
         free(name);
     }
+
     fputc(']', stream);
     return STATUS_OK;
 }
@@ -76,10 +84,12 @@ enum status steady_json(const struct netcdf_reader *reader, FILE *stream) {
     fputs("{\"file\": ", stream);
     text_print_json(stream, reader->path);
     TRY(print_names(reader, stream));
+
     for (int i = 0; i < result_table_n; i++) {
         const struct result_variable *const variable = &result_table[i];
         if (variable->of_steady && netcdf_has(reader, variable->name)) TRY(print_variable(reader, variable, stream));
     }
+
     fputs("}\n", stream);
     return STATUS_OK;
 }

@@ -1,7 +1,6 @@
-/* steady_json.h: what a search for a steady state found as JSON, from the file that holds it: an object with "file",
- * "fish_name", and every variable steady_... under its name, as a number or as lists over its dimensions. null stands
- * where the file has NaN; slots of multipliers that are not used are left out. Tested by
- * tests/app/test_steady_command.sh. */
+/* steady_json.h: a steady state as JSON, from the result file: an object with "file", "fish_name", and every variable
+ * steady_... as a number or as lists over the dimensions. NaN becomes null; unused slots of multipliers are omitted.
+ * Tested by tests/app/test_steady_command.sh. */
 #ifndef STEADY_JSON_H
 #define STEADY_JSON_H
 
@@ -9,7 +8,7 @@
 
 #include "result/netcdf.h"
 
-/* Print it; the file must be one of a steady state. Fails with STATUS_FILE or STATUS_MEMORY. */
+/* Print the object; the file must have a steady state. Fails with STATUS_FILE or STATUS_MEMORY. */
 enum status steady_json(const struct netcdf_reader *reader, FILE *stream);
 
 #endif

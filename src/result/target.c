@@ -1,4 +1,4 @@
-/* target.c: marks of the files that shoal writes, and the checks before one of them is replaced. */
+/* target.c: marks of the files of shoal, and checks before replacing a file. */
 #include "result/target.h"
 
 #include <errno.h>
@@ -12,8 +12,8 @@
 
 enum { HEAD = 32768 /* bytes that are searched for a mark */, MAX_MARKS = 6 };
 
-/* How each kind begins, and marks of which one follows. The attributes of a NetCDF file stand at its beginning; there
- * are several, so that one damaged byte does not make a file unknown. */
+/* The first bytes of each kind, and marks, one of which must follow. The marks of a NetCDF file are several attributes
+ * near the beginning, so that one damaged byte does not make the file unknown. */
 static const struct {
     const char *name, *begin, *mark[MAX_MARKS];
 } kinds[] = {
@@ -62,11 +62,13 @@ static int examine(const char *path, enum target_kind kind, bool *is_ours) {
     const int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     if (file < 0) return errno;
     int code = fstat(file, &facts) == 0 ? 0 : errno;
+
     if (code == 0 && S_ISREG(facts.st_mode)) {
         const ssize_t n = pread(file, head, HEAD, 0);
         if (n < 0) code = errno;
         *is_ours = n > 0 && is_kind(head, (size_t)n, kind);
     }
+
     close(file);
     return code;
 }
@@ -93,6 +95,7 @@ bool target_may_begin(const unsigned char *bytes, size_t n) {
 enum status target_failed(const char *path, int code, const char *reason) {
     char folder[PATH_MAX];
     target_folder(path, folder);
+
     switch (code) {
         case ENOENT:
         case ENOTDIR:
@@ -100,7 +103,8 @@ enum status target_failed(const char *path, int code, const char *reason) {
                 return status_fail(STATUS_FILE, "%s: the folder %s takes no new files: choose another place with -o",
                                    path, folder);
             }
-            return status_fail(STATUS_FILE, "%s: there is no folder %s: make it, or choose another name with -o", path,
+            return status_fail(STATUS_FILE,
+                               "%s: there is no folder %s: create the folder, or choose another name with -o", path,
                                folder);
         case EACCES:
         case EPERM:
@@ -109,8 +113,7 @@ enum status target_failed(const char *path, int code, const char *reason) {
                                path, reason);
         case ENOMEM: return status_fail(STATUS_MEMORY, "%s: out of memory while writing", path);
         case EEXIST:
-            return status_fail(STATUS_FILE, "%s exists: choose another name with -o or allow replacing it with --force",
-                               path);
+            return status_fail(STATUS_FILE, "%s exists: choose another name with -o or replace it with --force", path);
         default:
             return status_fail(STATUS_FILE, "%s: cannot be written (%s): make room or choose another place with -o",
                                path, reason);
@@ -120,30 +123,34 @@ enum status target_failed(const char *path, int code, const char *reason) {
 enum status target_check(const char *path, enum target_kind kind, bool overwrite) {
     struct stat target;
     if (path[0] == '\0') return status_fail(STATUS_FILE, "the name of the result file is empty: choose one with -o");
+
     if (lstat(path, &target) != 0) {
         char folder[PATH_MAX];
         target_folder(path, folder);
         return access(folder, W_OK | X_OK) == 0 ? STATUS_OK : target_failed(path, errno, strerror(errno));
     }
+
     if (S_ISDIR(target.st_mode))
         return status_fail(STATUS_FILE, "%s is a folder: name a file with -o, as in -o %s/run.nc", path, path);
     if (S_ISLNK(target.st_mode))
-        return status_fail(STATUS_FILE, "%s is a link: name the file that it points to, or another one, with -o", path);
+        return status_fail(STATUS_FILE, "%s is a link: give the file behind the link, or another name, with -o", path);
     if (!S_ISREG(target.st_mode))
         return status_fail(STATUS_FILE, "%s is not an ordinary file: choose another name with -o", path);
     bool is_ours;
     const int code = examine(path, kind, &is_ours);
+
     if (code != 0) {
         return status_fail(STATUS_FILE, "%s exists and cannot be read (%s): choose another name with -o", path,
                            strerror(code));
     }
+
     if (target.st_size > 0 && !is_ours) {
-        return status_fail(
-            STATUS_FILE,
-            "%s exists and is no %s of shoal, so that no option replaces it: remove it, or choose another "
-            "name with -o",
-            path, kinds[kind].name);
+        return status_fail(STATUS_FILE,
+                           "%s exists and is no %s of shoal, so no option replaces the file: remove the file, or "
+                           "choose another name with -o",
+                           path, kinds[kind].name);
     }
+
     return overwrite ? STATUS_OK : target_failed(path, EEXIST, "");
 }
 

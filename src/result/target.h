@@ -1,7 +1,7 @@
-/* target.h: where a command may write a file. Tested by tests/result/test_target.c.
+/* target.h: checks of the path of an output file. Tested by tests/result/test_target.c.
  *
- * Every kind of file that shoal writes can be recognised by its first bytes. A file that lacks them was written by
- * another program or by hand, and no option lets shoal replace it. */
+ * Every file of shoal is recognised by the first bytes. A file without these bytes was written by another program or by
+ * hand, and no option lets shoal replace such a file. */
 #ifndef TARGET_H
 #define TARGET_H
 
@@ -33,19 +33,20 @@ void target_folder(const char *path, char folder[PATH_MAX]);
 /* Whether the file at path is a regular file that shoal wrote, of this kind; whole or not. */
 bool target_is(const char *path, enum target_kind kind);
 
-/* Whether bytes can be the beginning of a file of any kind: also no bytes, or zeros alone, as a power cut leaves them.
+/* True if bytes can be the beginning of a file of any kind; also for no bytes, or only zeros, as left by a power cut.
  * */
 bool target_may_begin(const unsigned char *bytes, size_t n);
 
 /* Fail with STATUS_FILE if no file of this kind can be made at path: the folder is missing or read-only; path is a
- * folder, a link or a device; a file exists there and overwrite is false, or it is neither empty nor of this kind. */
+ * folder, a link or a device; a file exists and overwrite is false; or the existing file is neither empty nor of this
+ * kind. */
 enum status target_check(const char *path, enum target_kind kind, bool overwrite);
 
 /* Fail with STATUS_FILE if path is the file that the command reads. */
 enum status target_refuse_input(const char *path, const char *input);
 
-/* Fail with STATUS_FILE, or STATUS_MEMORY, because a file could not be made at path: code is an errno, reason its
- * meaning; the message says what to do. */
+/* Fail with STATUS_FILE, or STATUS_MEMORY, because a file could not be created at path: code is an errno, reason the
+ * message of the errno; the message says what to do. */
 enum status target_failed(const char *path, int code, const char *reason);
 
 #endif

@@ -44,7 +44,7 @@ enum {
 
 static const char *const axis_name[N_AXES] = {"time", "y", "x", "fish", "node", "edge", "xy", "name", "wall"};
 
-/* In the order of the file; wall_y only where there are walls. */
+/* In the order of the file; wall_y only with walls. */
 static const struct variable {
     const char *name;
     int axis[NETCDF_MAX_DIMENSIONS + 1]; /* NO_AXIS at the end */
@@ -71,10 +71,10 @@ static const struct variable {
      {FISH_AXIS, NO_AXIS},
      NETCDF_INT,
      "1",
-     "1: edge_thickness is a mean over an edge; 0: the mean of the values at its nodes"},
+     "1: edge_thickness is a mean over an edge; 0: the mean of the values at the two nodes"},
     {"n_nodes", {FISH_AXIS, NO_AXIS}, NETCDF_INT, "1", "number of nodes"},
     {"fish_name", {FISH_AXIS, NAME_AXIS, NO_AXIS}, NETCDF_TEXT, "", "name of the fish"},
-    {"wall_y", {WALL_AXIS, NO_AXIS}, NETCDF_DOUBLE, "m", "y of the walls; where there are walls only"},
+    {"wall_y", {WALL_AXIS, NO_AXIS}, NETCDF_DOUBLE, "m", "y of the walls; only with walls"},
 };
 
 int field_file_listed(int i, struct result_listed *listed) {
@@ -83,11 +83,13 @@ int field_file_listed(int i, struct result_listed *listed) {
     const struct variable *const variable = &variables[i];
     *listed =
         (struct result_listed){variable->name, variable->unit, type_name[variable->type], variable->long_name, ""};
+
     for (int d = 0; variable->axis[d] != NO_AXIS; d++) {
         const size_t length = strlen(listed->dimensions);
         snprintf(listed->dimensions + length, sizeof listed->dimensions - length, "%s%s", d > 0 ? ", " : "",
                  axis_name[variable->axis[d]]);
     }
+
     return 1;
 }
 
@@ -96,7 +98,7 @@ int field_file_listed(int i, struct result_listed *listed) {
 /* A field that is being made. */
 struct field {
     const struct field_row *row;
-    struct induced at;     /* the points, row after row of the grid, and what is induced there (n) */
+    struct induced at;     /* the points, row after row of the grid, and the induced velocity and vorticity (n) */
     double *vorticity;     /* (n) */
     size_t length[N_AXES]; /* of the dimensions */
 };
@@ -118,18 +120,22 @@ static enum status make_points(struct field *field, const struct field_grid *gri
     double **const of_points[] = {
         &x, &y, &field->at.u, &field->at.v, &field->at.u_x, &field->at.u_y, &field->at.v_x, &field->vorticity};
     int is_whole = 1;
+
     for (size_t i = 0; i < sizeof of_points / sizeof *of_points; i++) {
         *of_points[i] = calloc(n, sizeof(double));
         is_whole &= *of_points[i] != NULL;
     }
+
     field->at.n = (int)n;
     field->at.x = x;
     field->at.y = y;
     if (!is_whole) return status_fail(STATUS_MEMORY, "out of memory: a grid of %d x %d points", grid->nx, grid->ny);
+
     for (int i = 0; i < field->at.n; i++) {
         x[i] = coordinate(grid, 0, i % grid->nx);
         y[i] = coordinate(grid, 1, i / grid->nx);
     }
+
     return STATUS_OK;
 }
 
@@ -157,6 +163,7 @@ void field_file_box(const struct field_row *row, double low[2], double high[2]) 
     double margin = 0;
     low[0] = low[1] = INFINITY;
     high[0] = high[1] = -INFINITY;
+
     for (int f = 0; f < row->school->n_fish; f++) {
         const struct fish *const fish = &row->school->fish[f];
         const struct wake *const wake = &row->state->wake[f];
@@ -164,6 +171,7 @@ void field_file_box(const struct field_row *row, double low[2], double high[2]) 
         include(low, high, wake->n_vortex, wake->x, wake->y);
         margin = fmax(margin, fish->length / 2);
     }
+
     for (int i = 0; i < 2; i++) {
         low[i] -= margin;
         high[i] += margin;
@@ -181,12 +189,14 @@ static void set_lengths(struct field *field, const struct field_grid *grid) {
     length[FISH_AXIS] = (size_t)school->n_fish;
     length[XY_AXIS] = 2;
     length[WALL_AXIS] = (size_t)school->walls.n;
+
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
         const size_t n_nodes = (size_t)fish->n_nodes, n_name = strlen(fish->name);
         if (n_nodes > length[NODE_AXIS]) length[NODE_AXIS] = n_nodes;
         if (n_name > length[NAME_AXIS]) length[NAME_AXIS] = n_name;
     }
+
     length[EDGE_AXIS] = length[NODE_AXIS] - 1;
 }
 
@@ -196,6 +206,7 @@ static void define_all(struct netcdf_writer *writer, const struct field *field, 
     const int has_walls = field->length[WALL_AXIS] > 0, n_axes = has_walls ? N_AXES : WALL_AXIS;
     for (int a = 0; a < n_axes; a++) number[a] = netcdf_define_dimension(writer, axis_name[a], field->length[a]);
     const int is_single = field->row->values.output.precision == PRECISION_SINGLE;
+
     for (int i = 0; i < (has_walls ? N_VARIABLES : WALL_Y); i++) {
         const struct variable *const variable = &variables[i];
         struct netcdf_variable to_define = {.name = variable->name, .long_name = variable->long_name};
@@ -207,12 +218,13 @@ static void define_all(struct netcdf_writer *writer, const struct field *field, 
         }
         netcdf_define_variable(writer, &to_define);
     }
+
     netcdf_write_integer(writer, NETCDF_GLOBAL, "shoal_field", FIELD_FILE_SCHEMA);
     netcdf_write_string(writer, NETCDF_GLOBAL, "run", run);
     netcdf_write_string(writer, NETCDF_GLOBAL, "comment",
-                        "the external flow, all wakes and all bound sheets, with the smoothing with which another body "
-                        "sees them; bodies are lines, so that the flow around their thickness is left out, and so is "
-                        "that a body sees its own newest wake more sharply");
+                        "external flow, all wakes and all bound sheets, with the smoothing of the velocity induced at "
+                        "other bodies; bodies are lines, so the flow around the thickness is omitted, as is the "
+                        "smaller smoothing of the newest wake at the own body");
     netcdf_write_string(writer, NETCDF_GLOBAL, "case_effective", field->row->effective);
     netcdf_end_definitions(writer);
 }
@@ -221,17 +233,21 @@ static void write_body(struct netcdf_writer *writer, const struct field *field, 
     const struct fish *const fish = &field->row->school->fish[f];
     const double *const y = field->row->state->y;
     const size_t at = (size_t)f;
+
     for (size_t k = 0; k < field->length[NODE_AXIS]; k++) {
         const int is_node = (int)k < fish->n_nodes;
         const double place[2] = {is_node ? y[fish->at.x + (int)k] : NAN, is_node ? y[fish->at.y + (int)k] : NAN};
         netcdf_write_doubles(writer, BODY_X, (const size_t[]){0, at, k, 0}, (const size_t[]){1, 1, 1, 2}, place);
     }
+
     for (size_t k = 0; k < field->length[EDGE_AXIS]; k++) {
         const double thickness = (int)k < fish->n_edges ? fish->thickness[k] : NAN;
         netcdf_write_doubles(writer, EDGE_HEIGHT, (const size_t[]){at, k}, (const size_t[]){1, 1}, &thickness);
     }
+
     netcdf_write_ints(writer, MEAN_SECTION, (const size_t[]){at}, (const size_t[]){1}, &fish->has_mean_section);
     netcdf_write_ints(writer, N_NODES, (const size_t[]){at}, (const size_t[]){1}, &fish->n_nodes);
+
     for (size_t i = 0; i < field->length[NAME_AXIS]; i++) {
         const char letter = i < strlen(fish->name) ? fish->name[i] : '\0';
         netcdf_write_text(writer, FISH_NAME, (const size_t[]){at, i}, (const size_t[]){1, 1}, &letter);
@@ -241,10 +257,12 @@ static void write_body(struct netcdf_writer *writer, const struct field *field, 
 static void write_all(struct netcdf_writer *writer, const struct field *field) {
     netcdf_write_doubles(writer, TIME_AT, NULL, NULL, &field->row->state->t);
     netcdf_write_doubles(writer, X_AT, NULL, NULL, field->at.x);
+
     for (size_t i = 0; i < field->length[Y_AXIS]; i++) {
         netcdf_write_doubles(writer, Y_AT, (const size_t[]){i}, (const size_t[]){1},
                              field->at.y + i * field->length[X_AXIS]);
     }
+
     netcdf_write_doubles(writer, U, NULL, NULL, field->at.u);
     netcdf_write_doubles(writer, V, NULL, NULL, field->at.v);
     netcdf_write_doubles(writer, VORTICITY, NULL, NULL, field->vorticity);
@@ -262,6 +280,7 @@ enum status field_file_write(const char *path, int overwrite, const char *run, c
     enum status status = make_points(&field, grid);
     if (status == STATUS_OK) status = sum_field(&field);
     if (status == STATUS_OK) status = netcdf_create(&writer, path, row->values.name, command);
+
     if (status == STATUS_OK) {
         define_all(&writer, &field, run);
         write_all(&writer, &field);
@@ -269,6 +288,7 @@ enum status field_file_write(const char *path, int overwrite, const char *run, c
         const enum status finished = netcdf_finish(&writer);
         if (status == STATUS_OK) status = finished;
     }
+
     free_field(&field);
     return status;
 }
@@ -279,10 +299,12 @@ static enum status print_axis(const struct netcdf_reader *file, const char *name
     size_t n;
     double ends[2];
     TRY(netcdf_read_length(file, name, 2, INT_MAX, &n));
+
     for (int i = 0; i < 2; i++) {
         const struct netcdf_slice slice[] = {{name, i == 0 ? 0 : n - 1, 1}, {NULL, 0, 0}};
         TRY(netcdf_read_doubles(file, name, slice, &ends[i]));
     }
+
     fprintf(stream, "  %-10s  %zu points from %g m to %g m\n", name, n, ends[0], ends[1]);
     return STATUS_OK;
 }

@@ -20,18 +20,18 @@ struct field_grid {
     double low[2], high[2]; /* m */
 };
 
-/* The box around all bodies and free vortices of a row, with half a body length around it, m. */
+/* The box around all bodies and free vortices of a row, with a margin of half a body length, m. */
 void field_file_box(const struct field_row *row, double low[2], double high[2]);
 
-/* Sum the field of a row on a grid, and write it to a file at path. run: the name of the result file; command: the
- * command line. Fails with STATUS_FILE or STATUS_MEMORY; there is no file then. */
+/* Sum the field of a row on a grid, and write the field to a file at path. run: the name of the result file; command:
+ * the command line. Fails with STATUS_FILE or STATUS_MEMORY; no file is then left. */
 enum status field_file_write(const char *path, int overwrite, const char *run, const char *command,
                              const struct field_row *row, const struct field_grid *grid);
 
 /* Print time, grid and range of such a file. Fails with STATUS_FILE or STATUS_MEMORY. */
 enum status field_file_info(const char *path, FILE *stream);
 
-/* Row i, from 0, of the list of its variables; 0 beyond the last. */
+/* Row i, from 0, of the list of variables; 0 beyond the last. */
 int field_file_listed(int i, struct result_listed *listed);
 
 #endif

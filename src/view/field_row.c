@@ -28,7 +28,7 @@ static bool is_row(const struct reading *reading, long row) {
     return row >= 0 && row < reading->n_rows;
 }
 
-/* Whether the wakes of a row are in the file: those of all fish or of none. */
+/* True if the wakes of a row are in the file: all fish or none have a wake in a row. */
 static enum status find_wake(const struct reading *reading, const struct school *school, long row, bool *has_wake) {
     *has_wake = true;
     for (int f = 0; f < school->n_fish; f++) {
@@ -41,10 +41,11 @@ static enum status find_wake(const struct reading *reading, const struct school 
         TRY(netcdf_read_doubles(&reading->file, "wake_circulation", of_vortex, &first));
         if (isnan(first)) *has_wake = false;
     }
+
     return STATUS_OK;
 }
 
-/* The first row with its wake from the given one on, forwards or backwards; not a row where there is none. */
+/* The first row with a wake from the given row on, forwards or backwards; an invalid row number if there is none. */
 static enum status next_with_wake(const struct reading *reading, const struct school *school, long from, int step,
                                   long *row) {
     bool has_wake = false;
@@ -57,43 +58,48 @@ static enum status next_with_wake(const struct reading *reading, const struct sc
 
 static enum status fail_without_wake(const struct reading *reading, const struct school *school, long row) {
     long before, after;
-    char near[96] = "; no row has it";
+    char near[96] = "; no row has a wake";
     TRY(next_with_wake(reading, school, row, -1, &before));
     TRY(next_with_wake(reading, school, row, 1, &after));
     const double *const time = reading->time;
     if (is_row(reading, before) && is_row(reading, after)) {
-        snprintf(near, sizeof near, ": the nearest with it are at %g s and %g s", time[before], time[after]);
+        snprintf(near, sizeof near, ": the nearest rows with a wake are at %g s and %g s", time[before], time[after]);
     } else if (is_row(reading, before) || is_row(reading, after)) {
-        snprintf(near, sizeof near, ": the nearest with it is at %g s", time[is_row(reading, before) ? before : after]);
+        snprintf(near, sizeof near, ": the nearest row with a wake is at %g s",
+                 time[is_row(reading, before) ? before : after]);
     }
-    return status_fail(STATUS_CASE, "%s: the row at t = %g s is without its wake (output.wake_interval)%s",
-                       reading->file.path, time[row], near);
+    return status_fail(STATUS_CASE, "%s: the row at t = %g s has no wake (output.wake_interval)%s", reading->file.path,
+                       time[row], near);
 }
 
-/* The row at time t; NaN: the last one with its wake. */
+/* The row at time t; NaN: the last row with a wake. */
 static enum status find_row(const struct reading *reading, const struct school *school, double t, long *row) {
     const long last = reading->n_rows - 1;
     const double *const time = reading->time, rounding = 1e-6 * school->interval;
     if (last < 0) return status_fail(STATUS_CASE, "%s: there is no row yet", reading->file.path);
+
     if (isnan(t)) {
         TRY(next_with_wake(reading, school, last, -1, row));
         return is_row(reading, *row) ? STATUS_OK : fail_without_wake(reading, school, last);
     }
+
     if (!(t >= time[0] - rounding && t <= time[last] + rounding)) {
-        return status_fail(STATUS_CASE, "%s: t = %g s is outside of its rows, which go from %g s to %g s",
-                           reading->file.path, t, time[0], time[last]);
+        return status_fail(STATUS_CASE, "%s: t = %g s is outside of the rows, %g s to %g s", reading->file.path, t,
+                           time[0], time[last]);
     }
+
     for (*row = 0; *row < last && time[*row] < t - rounding;) ++*row;
     if (*row > 0 && fabs(time[*row] - t) > rounding) {
         return status_fail(STATUS_CASE, "%s: there is no row at t = %g s: the nearest are at %g s and %g s",
                            reading->file.path, t, time[*row - 1], time[*row]);
     }
+
     bool has_wake;
     TRY(find_wake(reading, school, *row, &has_wake));
     return has_wake ? STATUS_OK : fail_without_wake(reading, school, *row);
 }
 
-// ---- its values
+// ---- the values of a row
 
 /* A variable over (time, fish, dimension[, xy]): n values of fish f, all of them finite. */
 static enum status read_values(const struct reading *reading, const char *name, long row, int f, const char *dimension,
@@ -105,11 +111,13 @@ static enum status read_values(const struct reading *reading, const char *name, 
                                          {NULL, 0, 0}};
     if (n == 0) return STATUS_OK;
     TRY(netcdf_read_doubles(&reading->file, name, slice, reading->buffer));
+
     for (int i = 0; i < (has_xy ? 2 : 1) * n; i++) {
         if (isfinite(reading->buffer[i])) continue;
         return status_fail(STATUS_FILE, "%s: variable %s has a gap where fish %d has a value", reading->file.path, name,
                            f);
     }
+
     return STATUS_OK;
 }
 
@@ -126,11 +134,13 @@ static enum status read_body(const struct reading *reading, long row, int f, con
     TRY(read_values(reading, "x", row, f, "node", fish->n_nodes, true));
     separate(fish->n_nodes, reading->buffer, y + fish->at.x, y + fish->at.y);
     TRY(read_values(reading, "sheet_strength", row, f, "sheet", fish->n_sheet, false));
+
     for (int j = 0; j < fish->n_sheet; j++) {
-        // the file has it per length of the body as it is, the unknown is per natural length
+        // the file has the strength per actual length, the unknown is per natural length
         y[fish->at.gamma + j] = 1;
         y[fish->at.gamma + j] = reading->buffer[j] / bound_sheet_strength(fish, j, y);
     }
+
     return STATUS_OK;
 }
 
@@ -195,11 +205,13 @@ static enum status read_row(struct reading *reading, double t, struct field_row 
     long row = 0;
     TRY(netcdf_read_length(&reading->file, "fish", (size_t)school->n_fish, (size_t)school->n_fish, &n_fish));
     static const char *const dimensions[] = {"node", "sheet", "vortex"};
+
     for (int i = 0; i < 3; i++) {
         size_t length;
         TRY(netcdf_read_length(&reading->file, dimensions[i], 1, INT_MAX, &length));
         if (length > longest) longest = length;
     }
+
     TRY(netcdf_read_length(&reading->file, "time", 0, INT_MAX, &n_rows));
     reading->n_rows = (long)n_rows;
     reading->time = calloc(n_rows + 1, sizeof *reading->time);
@@ -211,10 +223,12 @@ static enum status read_row(struct reading *reading, double t, struct field_row 
     if (n_rows > 0) TRY(netcdf_read_doubles(&reading->file, "time", rows, reading->time));
     TRY(find_row(reading, school, t, &row));
     to->state->t = reading->time[row];
+
     for (int f = 0; f < school->n_fish; f++) {
         TRY(read_body(reading, row, f, to));
         TRY(read_wake(reading, row, f, to));
     }
+
     return STATUS_OK;
 }
 

@@ -1,7 +1,7 @@
-/* field_row.h: the bodies, sheets and wakes of one row of a result file as a state, of which the velocity of the fluid
- * can be summed. Tested by tests/view/test_field_file.c.
+/* field_row.h: the bodies, sheets and wakes of one row of a result file as a state, for velocity sums. Tested by
+ * tests/view/test_field_file.c.
  *
- * Rows are written at events: there is no nascent vortex then, and every vortex is where its row says. The rest of the
+ * Rows are written at events, without nascent vortices, so the row has the positions of all vortices. The rest of the
  * state (velocities, control, works) stays as at the start. */
 #ifndef FIELD_ROW_H
 #define FIELD_ROW_H
@@ -15,16 +15,16 @@ struct field_row {
     char *effective; /* the case of the result file */
     struct case_values values;
     struct school *school;
-    struct state *state; /* its time, places, sheets and wakes are those of the row */
+    struct state *state; /* time, positions, sheets and wakes of the row */
 };
 
-/* Read the row at time t [s], NaN: the last one with its wake, of the result file at path; assignments of
- * solver.threads may change how sums are made. Fails with STATUS_CASE where the file has no such row, STATUS_FILE or
- * STATUS_MEMORY; *row then owns nothing. */
+/* Read the row at time t [s], NaN: the last row with a wake, of the result file at path; assignments can set
+ * solver.threads for the sums. Fails with STATUS_CASE if the file has no such row, STATUS_FILE or STATUS_MEMORY; *row
+ * then owns nothing. */
 enum status field_row_read(struct field_row *row, const char *path, double t, int n_assignments,
                            const char *const *assignments);
 
-/* Release what a row owns and zero it. */
+/* Release a row and zero *row. */
 void field_row_free(struct field_row *row);
 
 #endif

@@ -21,17 +21,17 @@ static double parabola_slope(const double *knot, const double *value) {
     return ((value[0] - value[-1]) * right / left + (value[1] - value[0]) * left / right) / (left + right);
 }
 
-/* The thickness of an edge between two angles if the half thickness is their sine: a mean over the edge, or the sum of
- * the half thicknesses at its ends. */
+/* The thickness of an edge between two angles for a half thickness equal to the sine of the angle: a mean over the
+ * edge, or the sum of the half thicknesses at both ends. */
 static double thickness_of_sine(double from, double to, bool is_mean) {
     if (!is_mean) return sin(from) + sin(to);
     // along the body ds = sin(angle)/2 d angle
     return ((to - sin(2 * to) / 2) - (from - sin(2 * from) / 2)) / (cos(from) - cos(to));
 }
 
-/* Half thickness at the points. Over the angle whose cosine runs along the body a blunt nose is as smooth as a sine:
- * what is interpolated is the ratio to the sine, continued as in a mirror at both ends. knot, ratio and slope have room
- * for n_nodes + 3. */
+/* Half thickness at the points. As a function of the angle whose cosine is the coordinate along the body, the half
+ * thickness of a blunt nose is as smooth as a sine. Interpolate the ratio of half thickness to sine, continued
+ * symmetrically at both ends. knot, ratio and slope have room for n_nodes + 3. */
 static void interpolate_half(const struct outline *outline, const double *thickness, bool is_mean, double *knot,
                              double *ratio, double *slope) {
     const int n_edges = outline->n_nodes - 1, n = n_edges + 4;
@@ -40,29 +40,32 @@ static void interpolate_half(const struct outline *outline, const double *thickn
         knot[k + 2] = acos((cos(from) + cos(to)) / 2);
         ratio[k + 2] = thickness[k] / thickness_of_sine(from, to, is_mean);
     }
+
     for (int k = 0; k < 2; k++) {
         knot[1 - k] = -knot[2 + k];
         ratio[1 - k] = ratio[2 + k];
         knot[n - 2 + k] = 2 * pi - knot[n - 3 - k];
         ratio[n - 2 + k] = ratio[n - 3 - k];
     }
+
     for (int k = 1; k < n - 1; k++) slope[k] = parabola_slope(knot + k, ratio + k);
     for (int i = 0, k = 1; i < OUTLINE_POINTS; i++) {
         const double angle = pi * i / (OUTLINE_POINTS - 1);
         while (k < n - 3 && angle > knot[k + 1]) k++;
         outline->half[i] = fmax(0, sin(angle) * hermite(knot + k, ratio + k, slope + k, angle));
     }
+
     outline->half[0] = outline->half[OUTLINE_POINTS - 1] = 0;
 }
 
-static enum status out_of_memory(int n_nodes) {
+static enum status outline_out_of_memory(int n_nodes) {
     return status_fail(STATUS_MEMORY, "out of memory: the outline of a body of %d nodes", n_nodes);
 }
 
 static enum status fill_half(const struct outline *outline, const double *thickness, bool is_mean) {
     const size_t n = (size_t)outline->n_nodes + 3;
     double *const scratch = calloc(3 * n, sizeof *scratch);
-    if (!scratch) return out_of_memory(outline->n_nodes);
+    if (!scratch) return outline_out_of_memory(outline->n_nodes);
     interpolate_half(outline, thickness, is_mean, scratch, scratch + n, scratch + 2 * n);
     free(scratch);
     return STATUS_OK;
@@ -72,6 +75,7 @@ static enum status fill_weights(const struct outline *outline) {
     const int n = outline->n_nodes;
     struct curve *curve;
     TRY(curve_create(&curve, n, 0, 2 * OUTLINE_POINTS));
+
     for (int i = 0; i < OUTLINE_POINTS; i++) {
         // the last point is the last node, however the cosine is rounded
         const double part = (1 - cos(pi * i / (OUTLINE_POINTS - 1))) / 2;
@@ -82,6 +86,7 @@ static enum status fill_weights(const struct outline *outline) {
             outline->slope[i * n + k] = slope.weight[k];
         }
     }
+
     curve_free(curve);
     return STATUS_OK;
 }
@@ -91,7 +96,8 @@ enum status outline_create(struct outline *outline, int n_nodes, const double *t
     outline->weight = calloc((size_t)n_nodes * OUTLINE_POINTS, sizeof *outline->weight);
     outline->slope = calloc((size_t)n_nodes * OUTLINE_POINTS, sizeof *outline->slope);
     outline->half = calloc(OUTLINE_POINTS, sizeof *outline->half);
-    enum status status = outline->weight && outline->slope && outline->half ? STATUS_OK : out_of_memory(n_nodes);
+    enum status status =
+        outline->weight && outline->slope && outline->half ? STATUS_OK : outline_out_of_memory(n_nodes);
     if (status == STATUS_OK) status = fill_weights(outline);
     if (status == STATUS_OK) status = fill_half(outline, thickness, is_mean);
     if (status != STATUS_OK) outline_free(outline);

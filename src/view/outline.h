@@ -15,7 +15,7 @@
 
 enum { OUTLINE_POINTS = 48 /* of the curve, dense at nose and tail */, OUTLINE_SIDES = 2 * OUTLINE_POINTS - 2 };
 
-/* What turns the nodes of a body into its outline. */
+/* The map from the nodes of a body to the outline. */
 struct outline {
     int n_nodes;
     double *weight; /* points of the curve: weights of the nodes                  (OUTLINE_POINTS, n_nodes) */
@@ -23,13 +23,13 @@ struct outline {
     double *half;   /* half thickness there, m; 0 at nose and tail                (OUTLINE_POINTS) */
 };
 
-/* For a body of n_nodes (at least four) whose edges are so thick [m] (n_nodes - 1): a mean over each edge where
- * is_mean, else the sum of the half thicknesses at its nodes (fish.body.section). Fails with STATUS_MEMORY;
- * outline_free zeroes it and accepts zero. */
+/* For a body of n_nodes (at least four) with the thickness of every edge [m] (n_nodes - 1): the mean over the edge if
+ * is_mean, else the sum of the half thicknesses at the two nodes (fish.body.section). Fails with STATUS_MEMORY.
+ * outline_free zeroes *outline and accepts zero. */
 enum status outline_create(struct outline *outline, int n_nodes, const double *thickness, bool is_mean);
 void outline_free(struct outline *outline);
 
-/* Point i of the polygon counts from the nose along the left side: where along the curve it is. */
+/* The coordinate along the curve of point i of the polygon, counted from the nose along the left side. */
 int outline_point(int i);
 
 /* The polygon [m] (OUTLINE_SIDES, 2) at the positions of the nodes [m] (n_nodes, 2). */

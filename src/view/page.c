@@ -1,6 +1,6 @@
-/* page.c: the data of a run between the two halves of page.html, as JSON with its numbers in base 64.
+/* page.c: the data of a run between the two halves of page.html, as JSON with numbers in base 64.
  *
- * Positions are 16-bit integers within a box of their row: {left, bottom, size / 65535}. */
+ * Positions are 16-bit integers within a box per row: {left, bottom, size / 65535}. */
 #include "view/page.h"
 
 #include <math.h>
@@ -15,12 +15,12 @@
 #include "view/outline.h"
 #include "wake/wake.h"
 
-/* src/view/page.html; the data go where it says PAGE_DATA */
+/* src/view/page.html; PAGE_DATA marks the place of the data */
 extern const char page_template[];
 __asm__(".pushsection .rodata\npage_template: .incbin \"page.html\"\n.byte 0\n.popsection");
 static const char placeholder[] = "PAGE_DATA";
 
-/* What each part of the page may take, bytes of base 64. */
+/* The maximum size of each part of the page, bytes of base 64. */
 static const double body_bytes = 2.4e6, wake_bytes = 4e6, series_bytes = 0.8e6;
 
 enum { MIN_WAKES = 240 /* rows of wakes are left out down to so many before vortices are */, POSITIONS = 65535 };
@@ -29,18 +29,18 @@ struct page {
     struct result_reader reader;
     FILE *stream;
     size_t n_rows, n_fish, n_nodes /* of all fish */;
-    struct school school; /* what the strength of a vortex needs */
+    struct school school; /* data for the strength of a vortex */
     size_t body_stride, wake_stride, series_stride, vortex_stride;
     size_t n_wake_rows, *wake_row; /* rows with a wake                                  (n_wake_rows) */
 };
 
-static enum status out_of_memory(const struct page *page) {
+static enum status page_out_of_memory(const struct page *page) {
     return status_fail(STATUS_MEMORY, "%s: out of memory: the page of a run", page->reader.file.path);
 }
 
 // ---- JSON
 
-/* A string; what HTML or JSON would take for a mark is written as a number. */
+/* Write a string; escape the characters with a meaning in HTML or JSON. */
 static void write_string(FILE *stream, const char *name, const char *string) {
     fprintf(stream, "\"%s\":\"", name);
     for (const char *c = string; *c; c++) {
@@ -50,6 +50,7 @@ static void write_string(FILE *stream, const char *name, const char *string) {
             fputc(*c, stream);
         }
     }
+
     fputc('"', stream);
 }
 
@@ -68,6 +69,7 @@ static void find_box(size_t n, const double *xy, double box[3]) {
         low[i % 2] = fmin(low[i % 2], xy[i]);
         high[i % 2] = fmax(high[i % 2], xy[i]);
     }
+
     const double size = n > 0 ? fmax(high[0] - low[0], high[1] - low[1]) : 0;
     box[0] = n > 0 ? low[0] : 0;
     box[1] = n > 0 ? low[1] : 0;
@@ -83,11 +85,12 @@ static void place_in_box(size_t n, const double *xy, const double box[3], uint16
 
 // ---- how much of the run
 
-/* Find the rows with a wake, and how many vortices they have in all. */
+/* Find the rows with a wake, and the total number of vortices in these rows. */
 static enum status find_wakes(struct page *page, double *n_vortices) {
     *n_vortices = 0;
     page->wake_row = calloc(page->n_rows, sizeof *page->wake_row);
-    if (!page->wake_row) return out_of_memory(page);
+    if (!page->wake_row) return page_out_of_memory(page);
+
     for (size_t row = 0; row < page->n_rows; row++) {
         bool has_wake;
         double *count;
@@ -98,6 +101,7 @@ static enum status find_wakes(struct page *page, double *n_vortices) {
         free(count);
         page->wake_row[page->n_wake_rows++] = row;
     }
+
     return STATUS_OK;
 }
 
@@ -126,7 +130,7 @@ static enum status choose(struct page *page) {
     return STATUS_OK;
 }
 
-/* The number of rows that every stride-th one of n is; the last is always one of them. */
+/* The number of rows for every stride-th row of n; the last row is always included. */
 static size_t n_of(size_t n, size_t stride) {
     return n > 0 ? (n - 1 + stride - 1) / stride + 1 : 0;
 }
@@ -152,9 +156,10 @@ static enum status write_shape(const struct page *page, const double *thickness,
     const size_t n_weights = (size_t)n * OUTLINE_POINTS;
     struct outline outline;
     float *const values = calloc(2 * n_weights + OUTLINE_POINTS, sizeof *values);
-    if (!values) return out_of_memory(page);
+    if (!values) return page_out_of_memory(page);
     const enum status status =
         outline_create(&outline, n, thickness + f * page->reader.length[EDGE], page->reader.has_mean_section[f]);
+
     if (status == STATUS_OK) {
         for (size_t i = 0; i < n_weights; i++) {
             values[i] = (float)outline.weight[i];
@@ -170,20 +175,23 @@ static enum status write_shape(const struct page *page, const double *thickness,
         fputc('}', page->stream);
         outline_free(&outline);
     }
+
     free(values);
     return status;
 }
 
-/* The walls, and the side on which the fluid is, where the first fish begins. */
+/* Write the walls, and the side with the fluid: the side of the first fish at the start. */
 static enum status write_walls(const struct page *page) {
     const struct result_reader *const reader = &page->reader;
     double *x;
     TRY(result_reader_new(reader, "x", 0, &x));
     fprintf(page->stream, "\"walls\":[");
+
     for (size_t i = 0; i < reader->length[WALL]; i++) {
         const double y = reader->wall_y[i];
         fprintf(page->stream, "%s{\"y\":%.9g,\"inward\":%d}", i > 0 ? "," : "", y, x[1] > y ? 1 : -1);
     }
+
     fprintf(page->stream, "],\n");
     free(x);
     return STATUS_OK;
@@ -194,6 +202,7 @@ static enum status write_fish(const struct page *page, const double *thickness, 
                               size_t *first) {
     size_t n_shapes = 0;
     fprintf(page->stream, "\"shapes\":[");
+
     for (size_t f = 0; f < page->n_fish; f++) {
         size_t s = 0;
         while (s < n_shapes && !has_same_shape(page, thickness, first[s], f)) s++;
@@ -203,12 +212,14 @@ static enum status write_fish(const struct page *page, const double *thickness, 
         if (s > 0) fputc(',', page->stream);
         TRY(write_shape(page, thickness, f));
     }
+
     fprintf(page->stream, "],\n\"fish\":[");
     for (size_t f = 0; f < page->n_fish; f++) {
         fprintf(page->stream, "%s{", f > 0 ? ",\n" : "");
         write_string(page->stream, "name", page->reader.name[f]);
         fprintf(page->stream, ",\"length\":%.9g,\"shape\":%zu}", length[f], shape[f]);
     }
+
     fprintf(page->stream, "],\n");
     return STATUS_OK;
 }
@@ -216,7 +227,7 @@ static enum status write_fish(const struct page *page, const double *thickness, 
 static enum status write_all_fish(const struct page *page) {
     double *thickness, *length = NULL;
     size_t *const numbers = calloc(2 * page->n_fish, sizeof *numbers);
-    if (!numbers) return out_of_memory(page);
+    if (!numbers) return page_out_of_memory(page);
     enum status status = result_reader_new(&page->reader, "edge_thickness", 0, &thickness);
     if (status == STATUS_OK) status = result_reader_new(&page->reader, "body_length", 0, &length);
     if (status == STATUS_OK) status = write_fish(page, thickness, length, numbers, numbers + page->n_fish);
@@ -240,7 +251,7 @@ static enum status rows_create(const struct page *page, struct rows *rows, size_
     rows->time = calloc(n + 1, sizeof *rows->time);
     rows->box = calloc(n + 1, 3 * sizeof *rows->box);
     rows->place = calloc(n_places + 1, 2 * sizeof *rows->place);
-    return rows->time && rows->box && rows->place ? STATUS_OK : out_of_memory(page);
+    return rows->time && rows->box && rows->place ? STATUS_OK : page_out_of_memory(page);
 }
 
 static void rows_free(struct rows *rows) {
@@ -281,6 +292,7 @@ static enum status add_bodies(const struct page *page, struct rows *rows, double
         }
         TRY(rows_add(page, rows, i, row, n, x));
     }
+
     return STATUS_OK;
 }
 
@@ -289,13 +301,15 @@ static enum status write_bodies(const struct page *page) {
     const size_t n = n_of(page->n_rows, page->body_stride);
     double *const x = calloc(result_reader_n(&page->reader, "x") + 1, sizeof *x);
     enum status status = rows_create(page, &rows, n, n * page->n_nodes);
-    if (status == STATUS_OK && !x) status = out_of_memory(page);
+    if (status == STATUS_OK && !x) status = page_out_of_memory(page);
     if (status == STATUS_OK) status = add_bodies(page, &rows, x);
+
     if (status == STATUS_OK) {
         fprintf(page->stream, "\"bodies\":{");
         rows_write(page, &rows);
         fprintf(page->stream, "},\n");
     }
+
     rows_free(&rows);
     free(x);
     return status;
@@ -303,8 +317,8 @@ static enum status write_bodies(const struct page *page) {
 
 // ---- wakes
 
-/* The wakes being collected. A vortex has the number of the interval in which it was released; only every
- * vortex_stride-th number is there, so that a vortex that is there in one row is there in the next. */
+/* The wakes being collected. A vortex has the number of the interval of release. Only vortices of every
+ * vortex_stride-th number are kept, so that a vortex kept in one row is kept in the next row. */
 struct wakes {
     struct rows rows;
     int32_t *first, *count;          /* the number of the oldest over the stride, and how many  (n, n_fish) */
@@ -314,12 +328,14 @@ struct wakes {
     double *xy;                      /* those that are kept */
 };
 
-/* Keep the vortices of a fish in a row: their positions go behind the n in wakes->xy; how many. */
+/* Append the positions of the kept vortices of a fish in a row behind the n in wakes->xy; returns the number of
+ * vortices. */
 static size_t keep_vortices(const struct page *page, struct wakes *wakes, size_t i, size_t f, size_t n) {
     const size_t slots = page->reader.length[VORTEX];
     const long stride = (long)page->vortex_stride;
     const double t = wakes->rows.time[i];
     size_t kept = 0;
+
     for (size_t v = f * slots; v < (f + 1) * slots && isfinite(wakes->circulation[v]); v++) {
         const long number = lround(wakes->birth[v] / page->school.interval);
         if (number % stride != 0) continue;
@@ -329,6 +345,7 @@ static size_t keep_vortices(const struct page *page, struct wakes *wakes, size_t
         wakes->strength[wakes->rows.n_places + n + kept] = (float)(wakes->circulation[v] * strength);
         kept++;
     }
+
     wakes->count[i * page->n_fish + f] = (int32_t)kept;
     return kept;
 }
@@ -345,6 +362,7 @@ static enum status add_wakes(const struct page *page, struct wakes *wakes) {
         for (size_t f = 0; f < page->n_fish; f++) n += keep_vortices(page, wakes, i, f, n);
         TRY(rows_add(page, &wakes->rows, i, row, n, wakes->xy));
     }
+
     return STATUS_OK;
 }
 
@@ -373,8 +391,9 @@ static enum status write_wakes(const struct page *page) {
     enum status status = rows_create(page, &wakes.rows, n, most);
     const bool has_memory = wakes.first && wakes.count && wakes.strength && wakes.integer && wakes.x &&
                             wakes.circulation && wakes.birth && wakes.xy;
-    if (status == STATUS_OK && !has_memory) status = out_of_memory(page);
+    if (status == STATUS_OK && !has_memory) status = page_out_of_memory(page);
     if (status == STATUS_OK) status = add_wakes(page, &wakes);
+
     if (status == STATUS_OK) {
         fprintf(page->stream, "\"wakes\":{\"interval\":%.9g,", page->school.interval * (double)page->vortex_stride);
         rows_write(page, &wakes.rows);
@@ -385,6 +404,7 @@ static enum status write_wakes(const struct page *page) {
         write_strength(page, &wakes);
         fprintf(page->stream, "},\n");
     }
+
     rows_free(&wakes.rows);
     void *const arrays[] = {wakes.first, wakes.count,       wakes.strength, wakes.integer,
                             wakes.x,     wakes.circulation, wakes.birth,    wakes.xy};
@@ -409,13 +429,15 @@ static enum status write_series(const struct page *page) {
     const size_t n = n_of(page->n_rows, page->series_stride);
     double *const time = calloc(n, sizeof *time), *const row = calloc(page->n_fish, sizeof *row);
     float *const values = calloc(n * page->n_fish, sizeof *values);
-    enum status status = time && row && values ? STATUS_OK : out_of_memory(page);
+    enum status status = time && row && values ? STATUS_OK : page_out_of_memory(page);
     for (size_t i = 0; i < n && status == STATUS_OK; i++)
         status = result_reader_row(&page->reader, "time", row_of(i, page->n_rows, page->series_stride), &time[i]);
+
     if (status == STATUS_OK) {
         fprintf(page->stream, "\"series\":{\"n\":%zu,", n);
         write_array(page->stream, "time", n * sizeof *time, time);
     }
+
     for (size_t k = 0; k < sizeof names / sizeof *names && status == STATUS_OK; k++)
         status = write_one_series(page, names[k], n, row, values);
     fprintf(page->stream, "}");
@@ -427,18 +449,20 @@ static enum status write_series(const struct page *page) {
 
 // ---- the page
 
-/* What is left out, in words; "" where all is there. */
+/* Describe the omitted rows and vortices; "" for a complete page. */
 static void write_thinned(const struct page *page) {
     const size_t strides[] = {page->body_stride, page->wake_stride, page->vortex_stride, page->series_stride};
     static const char *const what[] = {"bodies", "wakes", "vortices", "points of the traces"};
     static const char *const of[] = {"rows", "rows", "vortices", "rows"};
     char words[256] = "";
+
     for (size_t i = 0; i < sizeof strides / sizeof *strides; i++) {
         const size_t length = strlen(words);
         if (strides[i] < 2) continue;
         snprintf(words + length, sizeof words - length, "%s%s: one of %zu %s", length > 0 ? "; " : "", what[i],
                  strides[i], of[i]);
     }
+
     write_string(page->stream, "thinned", words);
 }
 
@@ -465,7 +489,7 @@ static enum status write_data(const struct page *page) {
     return STATUS_OK;
 }
 
-static enum status fill(struct page *page) {
+static enum status fill_page(struct page *page) {
     page->n_rows = page->reader.length[TIME];
     page->n_fish = page->reader.length[FISH];
     for (size_t f = 0; f < page->n_fish; f++) page->n_nodes += (size_t)page->reader.n_nodes[f];
@@ -486,10 +510,12 @@ enum status page_write(const char *from, const char *to, bool overwrite) {
     durable_sweep(to);
     TRY(result_reader_open(&page.reader, from));
     enum status status = plain_file_open(&file, to, TARGET_PAGE, overwrite, 0666);
+
     if (status == STATUS_OK) {
         page.stream = file.stream;
-        status = plain_file_close(&file, fill(&page));
+        status = plain_file_close(&file, fill_page(&page));
     }
+
     free(page.wake_row);
     result_reader_close(&page.reader);
     return status;

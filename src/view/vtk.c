@@ -20,25 +20,26 @@ struct export {
     const char *folder;
     char stem[256]; /* of the names of all files */
     bool overwrite;
-    struct school school;    /* what the strength of a vortex needs */
+    struct school school;    /* data for the strength of a vortex */
     struct outline *outline; /* of each fish                                   (n_fish) */
     double *sheet_arc;       /* as in the file */
     double *control_arc;     /* as in the file; NULL: no fish has force: pressure */
     size_t n_points;         /* of all bodies */
 };
 
-static enum status out_of_memory(const struct export *export) {
+static enum status export_out_of_memory(const struct export *export) {
     return status_fail(STATUS_MEMORY, "%s: out of memory: files of VTK", export->reader.file.path);
 }
 
 // ---- XML
 
-/* One array: its bytes, after their number, in base 64. */
+/* Write one array in base 64: the number of bytes, then the bytes. */
 static void write_array(FILE *stream, const char *type, const char *name, int components, size_t bytes,
                         const void *values) {
     fprintf(stream, "<DataArray type=\"%s\" Name=\"%s\" NumberOfComponents=\"%d\" format=\"binary\">", type, name,
             components);
-    // the number and the values are one sequence of bytes: 24 of them make whole letters
+
+    // the number and the values are one sequence of bytes; 3 bytes make 4 letters, so groups of 24 need no padding
     const uint64_t n = bytes;
     unsigned char head[24];
     const size_t in_head = bytes < sizeof head - sizeof n ? bytes : sizeof head - sizeof n;
@@ -73,11 +74,13 @@ static void end_piece(FILE *stream) {
 /* Positions in the plane as points in space. */
 static enum status write_points(const struct export *export, FILE *stream, size_t n, const double *xy) {
     double *const points = calloc(n + 1, 3 * sizeof *points);
-    if (!points) return out_of_memory(export);
+    if (!points) return export_out_of_memory(export);
+
     for (size_t i = 0; i < n; i++) {
         points[3 * i] = xy[2 * i];
         points[3 * i + 1] = xy[2 * i + 1];
     }
+
     fputs("<Points>\n", stream);
     write_array(stream, "Float64", "Points", 3, 3 * n * sizeof *points, points);
     fputs("</Points>\n", stream);
@@ -91,7 +94,7 @@ static enum status write_cells(const struct export *export, FILE *stream, const 
     size_t n = 0;
     for (size_t i = 0; i < n_cells; i++) n += sizes[i];
     int64_t *const numbers = calloc(n + n_cells + 1, sizeof *numbers), *const offsets = numbers + n;
-    if (!numbers) return out_of_memory(export);
+    if (!numbers) return export_out_of_memory(export);
     for (size_t i = 0; i < n; i++) numbers[i] = (int64_t)(first + i);
     int64_t end = 0;
     for (size_t i = 0; i < n_cells; i++) offsets[i] = end += (int64_t)sizes[i];
@@ -105,7 +108,7 @@ static enum status write_cells(const struct export *export, FILE *stream, const 
 
 // ---- bodies
 
-/* What a row has of all bodies: first the points of all lines, then those of all outlines. */
+/* The bodies of a row: first the points of all lines, then the points of all outlines. */
 struct bodies {
     double *nodes, *sheet, *strength, *speed, *heading; /* as in the file */
     double *xy, *value;                                 /* points, and strengths there   (n_points, 2), (n_points) */
@@ -133,7 +136,7 @@ static enum status bodies_read(const struct export *export, size_t row, struct b
                               .pressure_at = calloc(export->n_points, sizeof *bodies->pressure_at)};
     if (!bodies->xy || !bodies->value || !bodies->size || !bodies->fish || !bodies->is_outline || !bodies->cell ||
         !bodies->pressure_at)
-        return out_of_memory(export);
+        return export_out_of_memory(export);
     if (export->control_arc) TRY(result_reader_new(&export->reader, "pressure", row, &bodies->pressure));
     TRY(result_reader_new(&export->reader, "x", row, &bodies->nodes));
     TRY(result_reader_new(&export->reader, "sheet_x", row, &bodies->sheet));
@@ -142,7 +145,7 @@ static enum status bodies_read(const struct export *export, size_t row, struct b
     return result_reader_new(&export->reader, "heading", row, &bodies->heading);
 }
 
-/* A value at an arc coordinate between those of n points. */
+/* Interpolate a value at an arc coordinate between n points. */
 static double value_at(const double *arc, const double *value, size_t n, double s) {
     size_t k = 0;
     while (k + 2 < n && s > arc[k + 1]) k++;
@@ -161,6 +164,7 @@ static void bodies_press(const struct export *export, struct bodies *bodies) {
     const struct result_reader *const reader = &export->reader;
     const size_t slots = reader->length[CONTROL], n_fish = reader->length[FISH];
     size_t line = 0, side = export->n_points - n_fish * OUTLINE_SIDES;
+
     for (size_t f = 0; f < n_fish; f++) {
         const double *const arc = export->control_arc + f * slots, *const jump = bodies->pressure + f * slots;
         size_t n = 0;
@@ -179,12 +183,14 @@ static void bodies_place(const struct export *export, struct bodies *bodies) {
     const struct result_reader *const reader = &export->reader;
     const size_t n_fish = reader->length[FISH], n_slots = reader->length[SHEET];
     size_t n = 0;
+
     for (size_t f = 0; f < n_fish; f++) {
         bodies->size[f] = (size_t)reader->n_sheet[f];
         memcpy(bodies->xy + 2 * n, bodies->sheet + 2 * f * n_slots, 2 * bodies->size[f] * sizeof *bodies->xy);
         memcpy(bodies->value + n, bodies->strength + f * n_slots, bodies->size[f] * sizeof *bodies->value);
         n += bodies->size[f];
     }
+
     for (size_t f = 0; f < n_fish; f++) {
         bodies->size[n_fish + f] = OUTLINE_SIDES;
         outline_polygon(&export->outline[f], bodies->nodes + 2 * f * reader->length[NODE], bodies->xy + 2 * n);
@@ -193,6 +199,7 @@ static void bodies_place(const struct export *export, struct bodies *bodies) {
                                           (size_t)reader->n_sheet[f], outline_arc(export, f, i));
         }
     }
+
     for (size_t i = 0; i < 2 * n_fish; i++) {
         bodies->fish[i] = (int64_t)(i % n_fish);
         bodies->is_outline[i] = i >= n_fish;
@@ -210,6 +217,7 @@ static enum status write_bodies(const struct export *export, size_t row, FILE *s
     struct bodies bodies;
     const size_t n_fish = export->reader.length[FISH];
     enum status status = bodies_read(export, row, &bodies);
+
     if (status == STATUS_OK) {
         bodies_place(export, &bodies);
         if (export->control_arc) bodies_press(export, &bodies);
@@ -225,6 +233,7 @@ static enum status write_bodies(const struct export *export, size_t row, FILE *s
         fputs("</CellData>\n", stream);
         status = write_points(export, stream, export->n_points, bodies.xy);
     }
+
     if (status == STATUS_OK) status = write_cells(export, stream, "Lines", n_fish, bodies.size, 0);
     if (status == STATUS_OK)
         status = write_cells(export, stream, "Polys", n_fish, bodies.size + n_fish,
@@ -254,12 +263,13 @@ static enum status wakes_read(const struct export *export, size_t row, struct wa
     *wakes = (struct wakes){.age = calloc(slots + 1, sizeof *wakes->age),
                             .fish = calloc(slots + 1, sizeof *wakes->fish),
                             .size = calloc(slots + 1, sizeof *wakes->size)};
-    if (!wakes->age || !wakes->fish || !wakes->size) return out_of_memory(export);
+    if (!wakes->age || !wakes->fish || !wakes->size) return export_out_of_memory(export);
     TRY(result_reader_new(&export->reader, "wake_x", row, &wakes->x));
     TRY(result_reader_new(&export->reader, "wake_circulation", row, &wakes->circulation));
     TRY(result_reader_new(&export->reader, "wake_birth", row, &wakes->birth));
     double t;
     TRY(result_reader_row(&export->reader, "time", row, &t));
+
     // move the vortices of all fish together, to the front of the arrays
     for (size_t i = 0; i < slots; i++) {
         if (!isfinite(wakes->circulation[i])) continue;
@@ -271,12 +281,14 @@ static enum status wakes_read(const struct export *export, size_t row, struct wa
         wakes->fish[n] = (int64_t)(i / export->reader.length[VORTEX]);
         wakes->size[n] = 1;
     }
+
     return STATUS_OK;
 }
 
 static enum status write_wakes(const struct export *export, size_t row, FILE *stream) {
     struct wakes wakes;
     enum status status = wakes_read(export, row, &wakes);
+
     if (status == STATUS_OK) {
         begin_piece(stream, wakes.n, wakes.n, 0, 0);
         fputs("<PointData Scalars=\"circulation\">\n", stream);
@@ -286,6 +298,7 @@ static enum status write_wakes(const struct export *export, size_t row, FILE *st
         fputs("</PointData>\n", stream);
         status = write_points(export, stream, wakes.n, wakes.x);
     }
+
     if (status == STATUS_OK) status = write_cells(export, stream, "Verts", wakes.n, wakes.size, 0);
     end_piece(stream);
     wakes_free(&wakes);
@@ -300,6 +313,7 @@ static enum status find_ends(const struct export *export, double ends[2]) {
     double *x, *length, longest = 0;
     ends[0] = INFINITY;
     ends[1] = -INFINITY;
+
     for (size_t row = 0; row < export->reader.length[TIME]; row++) {
         TRY(result_reader_new(&export->reader, "x", row, &x));
         // fmin and fmax leave out the NaN of slots without a node
@@ -309,6 +323,7 @@ static enum status find_ends(const struct export *export, double ends[2]) {
         }
         free(x);
     }
+
     TRY(result_reader_new(&export->reader, "body_length", 0, &length));
     for (size_t f = 0; f < n_fish; f++) longest = fmax(longest, length[f]);
     free(length);
@@ -323,10 +338,12 @@ static enum status write_walls(const struct export *export, size_t row, FILE *st
     const size_t n = export->reader.length[WALL], size[] = {2, 2};
     double ends[2], xy[8];
     TRY(find_ends(export, ends));
+
     for (size_t i = 0; i < 2 * n; i++) {
         xy[2 * i] = ends[i % 2];
         xy[2 * i + 1] = export->reader.wall_y[i / 2];
     }
+
     begin_piece(stream, 2 * n, 0, n, 0);
     TRY(write_points(export, stream, 2 * n, xy));
     TRY(write_cells(export, stream, "Lines", n, size, 0));
@@ -348,8 +365,8 @@ static enum status write_file(const struct export *export, const char *what, siz
     struct plain_file file;
     text_add(&path, "%s/", export->folder);
     add_name(&path, export, what, row);
-    enum status status =
-        path.failed ? out_of_memory(export) : plain_file_open(&file, path.text, TARGET_VTK, export->overwrite, 0666);
+    enum status status = path.failed ? export_out_of_memory(export)
+                                     : plain_file_open(&file, path.text, TARGET_VTK, export->overwrite, 0666);
     if (status == STATUS_OK) status = plain_file_close(&file, write(export, row, file.stream));
     text_free(&path);
     return status;
@@ -364,7 +381,7 @@ static void list_file(const struct export *export, FILE *list, double t, int par
     text_free(&name);
 }
 
-/* Write the files of all rows, and their names into the list. */
+/* Write the files of all rows, and list the names. */
 static enum status write_rows(const struct export *export, FILE *list) {
     fputs("<?xml version=\"1.0\"?>\n" TARGET_VTK_MARK
           "\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n"
@@ -372,6 +389,7 @@ static enum status write_rows(const struct export *export, FILE *list) {
           list);
     const bool has_walls = export->reader.length[WALL] > 0;
     if (has_walls) TRY(write_file(export, "walls", 0, write_walls));
+
     for (size_t row = 0; row < export->reader.length[TIME]; row++) {
         double t;
         bool has_wake;
@@ -383,11 +401,12 @@ static enum status write_rows(const struct export *export, FILE *list) {
         if (has_wake) list_file(export, list, t, 1, "wakes", row);
         if (has_walls) list_file(export, list, t, 2, "walls", 0);
     }
+
     fputs("</Collection>\n</VTKFile>\n", list);
     return STATUS_OK;
 }
 
-/* The stem of the names: that of the result, of letters that need no care in XML. */
+/* The stem of the names: the stem of the result, with letters that need no escape in XML. */
 static void find_stem(struct export *export) {
     const char *const path = export->reader.file.path, *const slash = strrchr(path, '/');
     snprintf(export->stem, sizeof export->stem, "%.200s", slash ? slash + 1 : path);
@@ -397,7 +416,7 @@ static void find_stem(struct export *export) {
         if (strchr("<>&\"'", *c)) *c = '_';
 }
 
-static enum status fill(struct export *export) {
+static enum status fill_export(struct export *export) {
     const struct result_reader *const reader = &export->reader;
     if (reader->has_pressure) TRY(result_reader_new(reader, "control_arc", 0, &export->control_arc));
     find_stem(export);
@@ -407,14 +426,16 @@ static enum status fill(struct export *export) {
     TRY(result_reader_new(reader, "sheet_arc", 0, &export->sheet_arc));
     export->outline = calloc(reader->length[FISH], sizeof *export->outline);
     double *thickness;
-    if (!export->outline) return out_of_memory(export);
+    if (!export->outline) return export_out_of_memory(export);
     TRY(result_reader_new(reader, "edge_thickness", 0, &thickness));
     enum status status = STATUS_OK;
+
     for (size_t f = 0; f < reader->length[FISH] && status == STATUS_OK; f++) {
         export->n_points += (size_t)reader->n_sheet[f] + OUTLINE_SIDES;
         status = outline_create(&export->outline[f], reader->n_nodes[f], thickness + f * reader->length[EDGE],
                                 reader->has_mean_section[f]);
     }
+
     free(thickness);
     return status;
 }
@@ -423,7 +444,7 @@ static enum status write_list(const struct export *export, char **name) {
     struct text path = {0};
     struct plain_file list;
     text_add(&path, "%s/%s.pvd", export->folder, export->stem);
-    if (path.failed) return out_of_memory(export);
+    if (path.failed) return export_out_of_memory(export);
     enum status status = plain_file_open(&list, path.text, TARGET_VTK, export->overwrite, 0666);
     if (status == STATUS_OK) status = plain_file_close(&list, write_rows(export, list.stream));
     if (status == STATUS_OK && name) {
@@ -437,7 +458,7 @@ static enum status write_list(const struct export *export, char **name) {
 enum status vtk_export(const char *from, const char *folder, bool overwrite, char **name) {
     struct export export = {.folder = folder, .overwrite = overwrite};
     TRY(result_reader_open(&export.reader, from));
-    enum status status = fill(&export);
+    enum status status = fill_export(&export);
     if (status == STATUS_OK && mkdir(folder, 0777) != 0 && errno != EEXIST)
         status = status_fail(STATUS_FILE, "%s: cannot make this folder: %s", folder, strerror(errno));
     if (status == STATUS_OK) status = write_list(&export, name);

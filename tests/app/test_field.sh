@@ -17,7 +17,7 @@ run info run-field.nc
 check "info of a field: exit 0" test "$code" = 0
 check "info of a field: the run" has out "run.nc"
 check "info of a field: the grid" has out "40 points from"
-check "info of a field: what is left out" has out "left out"
+check "info of a field: what is left out" has out "omitted"
 run info --case run-field.nc
 cp out case.yaml
 run check case.yaml
@@ -32,8 +32,8 @@ check "field without a time: the last row with its wake" has out "at t = 0.5 s"
 
 refused "field: an existing file" 4 "run-field.nc exists" field run.nc --at 0.2
 refused "field: no such row" 2 "no row at t = 0.25 s: the nearest are at 0.2 s and 0.3 s" field run.nc --at 0.25 -o a.nc
-refused "field: a row without its wake" 2 "the nearest with it are at 0.2 s and 0.4 s" field run.nc --at 0.3 -o a.nc
-refused "field: after the end" 2 "go from 0 s to 0.5 s" field run.nc --at 3 -o a.nc
+refused "field: a row without its wake" 2 "the nearest rows with a wake are at 0.2 s and 0.4 s" field run.nc --at 0.3 -o a.nc
+refused "field: after the end" 2 "outside of the rows, 0 s to 0.5 s" field run.nc --at 3 -o a.nc
 refused "field: a time that is none" 2 "--at soon: expects a time in s" field run.nc --at soon -o a.nc
 refused "field: one number for two" 2 "--grid 30: expects NX,NY" field run.nc --grid 30 -o a.nc
 refused "field: three numbers for two" 2 "--grid 3,3,3: expects NX,NY" field run.nc --grid 3,3,3 -o a.nc

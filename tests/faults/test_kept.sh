@@ -47,11 +47,11 @@ texts=('mine' 'CDF of another program' '<!DOCTYPE html> of another program' '<?x
 for text in "${texts[@]}"; do
     echo "$text" >foreign
     cp foreign foreign.kept
-    refused "run does not replace '$text'" 4 'no option replaces it' run small.yaml -q -o foreign --force
-    refused "field does not replace '$text'" 4 'no option replaces it' field good.nc -q -o foreign --force
-    refused "view does not replace '$text'" 4 'no option replaces it' view good.nc -q -o foreign --force
-    refused "steady does not replace '$text'" 4 'no option replaces it' steady still.yaml -q -o foreign --force
-    refused "compare does not replace '$text'" 4 'no option replaces it' compare small.yaml -q -o foreign --force
+    refused "run does not replace '$text'" 4 'no option replaces the file' run small.yaml -q -o foreign --force
+    refused "field does not replace '$text'" 4 'no option replaces the file' field good.nc -q -o foreign --force
+    refused "view does not replace '$text'" 4 'no option replaces the file' view good.nc -q -o foreign --force
+    refused "steady does not replace '$text'" 4 'no option replaces the file' steady still.yaml -q -o foreign --force
+    refused "compare does not replace '$text'" 4 'no option replaces the file' compare small.yaml -q -o foreign --force
     check "the file stays ('$text')" unchanged foreign foreign.kept
 done
 refused a_page_does_not_replace_a_run 4 'kept.nc exists and is no page of shoal' view good.nc -q -o kept.nc --force
@@ -149,7 +149,7 @@ check the_next_search_removes_what_that_one_left eval '((code == 0)) && ! ls ste
 
 run run small.yaml -q -o a.nc --checkpoint-at 0.04
 run run small.yaml -q -o a --checkpoint-at 0.06
-check a_result_without_an_ending_leaves_the_checkpoint_of_the_other has <("$program" info a.ckpt) 'its result is a.nc'
+check a_result_without_an_ending_leaves_the_checkpoint_of_the_other has <("$program" info a.ckpt) 'the result is a.nc'
 run resume a.ckpt -q --end 0.12
 check the_first_is_resumed test "$code" = 0
 run resume a.checkpoint -q --end 0.14

@@ -78,7 +78,7 @@ for foreign in text netcdf; do
         -o foreign --force
     check "it too is untouched ($foreign)" cmp before foreign/member-0002.nc
     rm foreign/member-0002.nc && cp before foreign/study.nc
-    refused "a foreign study.nc stays ($foreign)" 4 'no option replaces it' study study/case.yaml -q -o foreign --force
+    refused "a foreign study.nc stays ($foreign)" 4 'no option replaces the file' study study/case.yaml -q -o foreign --force
     check "that is found before a member runs ($foreign)" test ! -e foreign/member-0000.nc
     rm foreign/study.nc
 done

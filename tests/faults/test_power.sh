@@ -49,14 +49,14 @@ check it_is_resumed_to_the_same_bits eval '((code == 0)) && same x.nc whole.nc'
 # with fewer rows than the newest checkpoint counts the one before it serves; with fewer than both there is nothing to do
 cp kept/* .
 "$program" info x.ckpt >out
-rows=$(sed -n 's/.*with \([0-9]*\) rows up to there/\1/p' out)
+rows=$(sed -n 's/.*with \([0-9]*\) rows up to this time/\1/p' out)
 per_row=$((($(stat -c %s whole.nc) - $(stat -c %s kept/x.nc) - 100) / (121 - n)))
 truncate -s "-$((per_row * (n - rows)))" x.nc
 run resume x.ckpt -q
 check the_one_before_it_serves eval '((code == 0)) && has err "; going on from x.ckpt.previous" && same x.nc whole.nc'
 cp kept/* .
 truncate -s $(($(stat -c %s x.nc) - per_row * (n - 1))) x.nc
-refused rows_that_both_count_are_missing 4 "of $rows that belong to the checkpoint" resume x.ckpt
+refused rows_that_both_count_are_missing 4 "the checkpoint requires $rows" resume x.ckpt
 run info x.nc
 check info_still_reads_it test "$code" = 0
 truncate -s -$((2 * per_row)) x.nc

@@ -715,7 +715,7 @@ static void two_runs_of_one_process_do_not_write_the_same_result(void **state) {
     for (int overwrite = 0; overwrite < 2; overwrite++) {
         assert_int_equal(shoal_write(other, result_path, overwrite), SHOAL_FILE);
     }
-    assert_non_null(strstr(shoal_message(), "another run writes it"));
+    assert_non_null(strstr(shoal_message(), "another run writes this result"));
     shoal_close(other);
     // the lock holds for other processes too
     const pid_t child = fork();

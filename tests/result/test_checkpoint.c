@@ -128,10 +128,10 @@ static void other_format(size_t at, uint32_t number, const char *reason) {
 
 static void another_format_is_refused_by_name(void **state) {
     (void)state;
-    other_format(8, 2, "it has format 2");
+    other_format(8, 2, "format 2, but this program reads format");
     other_format(12, 0x04030201, "format");
     assert_int_equal(sections_check((const unsigned char *)"CDF\5", 4), STATUS_FILE);
-    assert_non_null(strstr(status_message(), "it is no checkpoint of shoal"));
+    assert_non_null(strstr(status_message(), "not a checkpoint of shoal"));
 }
 
 // a checkpoint of other strings and numbers, all of them with checksums that fit
@@ -169,20 +169,20 @@ static void crafted(const char *section, const void *bytes, size_t n, const char
 static void what_no_run_has_written_is_refused(void **state) {
     (void)state;
     const int many[] = {0, 1 << 30}, negative[] = {0, -1}, few[] = {0, 29}, large = 1 << 20;
-    crafted("program", "shoal 9", 7, "it was made by shoal 9, and this is ");
-    crafted("libraries", "SUNDIALS 1", 10, "it was made by SUNDIALS 1, and this is ");
-    crafted("result", "../run.nc", 9, "its section 'result' does not fit");
-    crafted("rows", "\xff\xff\xff\xff\xff\xff\xff\xff", 8, "its section 'result' does not fit");
-    crafted("steps", "1234567", 7, "its section 'steps' does not fit");
-    crafted("t", "", 0, "its section 't' does not fit");
-    crafted("y", "12345678", 8, "its section 'y' does not fit");
-    crafted("wake.n_vortex", many, sizeof many, "its section 'wake.n_vortex' does not fit");
-    crafted("wake.n_vortex", negative, sizeof negative, "its section 'wake.n_vortex' does not fit");
-    crafted("wake.n_vortex", few, sizeof few, "its section 'wake.x' does not fit");
+    crafted("program", "shoal 9", 7, "written by shoal 9, but this program is ");
+    crafted("libraries", "SUNDIALS 1", 10, "written by SUNDIALS 1, but this program is ");
+    crafted("result", "../run.nc", 9, "section 'result' is invalid");
+    crafted("rows", "\xff\xff\xff\xff\xff\xff\xff\xff", 8, "section 'result' is invalid");
+    crafted("steps", "1234567", 7, "section 'steps' is invalid");
+    crafted("t", "", 0, "section 't' is invalid");
+    crafted("y", "12345678", 8, "section 'y' is invalid");
+    crafted("wake.n_vortex", many, sizeof many, "section 'wake.n_vortex' is invalid");
+    crafted("wake.n_vortex", negative, sizeof negative, "section 'wake.n_vortex' is invalid");
+    crafted("wake.n_vortex", few, sizeof few, "section 'wake.x' is invalid");
     crafted("history.last", (const int[]){large, large}, 8, "its state is none of this case");
     crafted("balance.n", (const int[]){3, 3}, 8, "its state is none of this case");
     // a section that is missing
-    crafted("wake.birth", NULL, 0, "its section 'wake.birth' does not fit");
+    crafted("wake.birth", NULL, 0, "section 'wake.birth' is invalid");
 }
 
 /* A value that is not finite, in a checkpoint whose checksums fit, is refused with the name of its field. */
@@ -207,8 +207,8 @@ static void values_that_are_not_finite_are_refused(void **state) {
         free(bytes);
     }
     assert_true(n_refused > 100);
-    crafted("wall_time", &wrong[0], sizeof wrong[0], "its section 'wall_time' does not fit");
-    crafted("step_size", &wrong[1], sizeof wrong[1], "its section 'step_size' does not fit");
+    crafted("wall_time", &wrong[0], sizeof wrong[0], "section 'wall_time' is invalid");
+    crafted("step_size", &wrong[1], sizeof wrong[1], "section 'step_size' is invalid");
     crafted("t", &(double){0.62}, sizeof(double), "its state is none of this case");
 }
 
@@ -227,7 +227,7 @@ static void a_checkpoint_of_the_other_order_of_bytes_is_refused_by_name(void **s
     school_ok(durable_replace(path, previous, other, n_whole));
     struct checkpoint read;
     assert_int_equal(checkpoint_read(&read, path), STATUS_FILE);
-    if (!strstr(status_message(), "made on a machine with another order of bytes")) fail_msg("%s", status_message());
+    if (!strstr(status_message(), "written on a machine with another byte order")) fail_msg("%s", status_message());
     free(other);
     school_ok(durable_replace(path, previous, whole, n_whole));
 }

@@ -257,7 +257,7 @@ static void only_what_is_expected_is_read(void **state) {
         craft(f->path, tries[i].type, tries[i].n);
         const enum status status = read_crafted(f->path, tries[i].as_text, tries[i].slice);
         if (status != (tries[i].is_right ? STATUS_OK : STATUS_FILE)) fail_msg("try %zu: %d", i, status);
-        if (status == STATUS_FILE) assert_message("its variable v is not what shoal writes");
+        if (status == STATUS_FILE) assert_message("variable v was not written by shoal");
         if (status == STATUS_FILE) assert_message(f->path);
     }
 }
@@ -273,13 +273,13 @@ static void attributes_and_lengths_are_checked_too(void **state) {
     char *string;
     size_t length;
     assert_int_equal(netcdf_read_integer(&reader, "numbers", 0, &integer.value), STATUS_FILE);
-    assert_message("its attribute numbers is no integer");
+    assert_message("attribute numbers is no integer");
     assert_int_equal(integer.guard, 0x55);
     assert_int_equal(netcdf_read_integer(&reader, "string", 0, &integer.value), STATUS_FILE);
     assert_int_equal(netcdf_read_integer(&reader, "nothing", -3, &integer.value), STATUS_OK);
     assert_int_equal(integer.value, -3);
     assert_int_equal(netcdf_read_string(&reader, "numbers", &string), STATUS_FILE);
-    assert_message("its attribute numbers is no string");
+    assert_message("attribute numbers is no string");
     assert_null(string);
     assert_int_equal(netcdf_read_string(&reader, "nothing", &string), STATUS_OK);
     assert_string_equal(string, "");
@@ -287,12 +287,12 @@ static void attributes_and_lengths_are_checked_too(void **state) {
     assert_int_equal(netcdf_read_length(&reader, "b", 3, 3, &length), STATUS_OK);
     assert_int_equal(netcdf_read_length(&reader, "b", 4, 9, &length), STATUS_FILE);
     assert_int_equal(netcdf_read_length(&reader, "b", 0, 2, &length), STATUS_FILE);
-    assert_message("its dimension b has the length 3");
+    assert_message("dimension b has an invalid length, 3");
     assert_int_equal(netcdf_read_length(&reader, "z", 0, 2, &length), STATUS_FILE);
-    assert_message("it has no dimension z");
+    assert_message("dimension z is missing");
     double value;
     assert_int_equal(netcdf_read_doubles(&reader, "z", (struct netcdf_slice[]){{NULL}}, &value), STATUS_FILE);
-    assert_message("it has no variable z");
+    assert_message("variable z is missing");
     netcdf_close(&reader);
 }
 

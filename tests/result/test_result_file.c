@@ -380,7 +380,7 @@ static void existing_file_of_another_program_is_never_replaced(void **state) {
         FILE *const other = fopen(f->path, "w");
         fputs(texts[i], other);
         fclose(other);
-        assert_refused(f, f->path, 1, "is no NetCDF file of shoal, so that no option replaces it");
+        assert_refused(f, f->path, 1, "is no NetCDF file of shoal, so no option replaces the file");
     }
 }
 

@@ -76,7 +76,7 @@ static void info_refuses_other_files(void **state) {
     int file;
     assert_int_equal(nc_create(f->path, NC_CLOBBER, &file), NC_NOERR);
     nc_close(file);
-    assert_no_info(f, "not one of shoal");
+    assert_no_info(f, "not of shoal");
 }
 
 static void info_refuses_another_schema(void **state) {

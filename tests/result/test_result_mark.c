@@ -29,7 +29,7 @@ static void a_growing_file_has_the_marks_of_a_whole_one(void **state) {
     assert_true(mark[0].check != mark[1].check && mark[1].check != mark[2].check);
     struct result_checksum checksum = {0};
     assert_int_equal(result_mark_take(f->path, 4, &checksum, &again), STATUS_FILE);
-    assert_message("it has 3 rows, of 4 that belong to the checkpoint");
+    assert_message("has 3 rows, but the checkpoint requires 4");
 }
 
 static void other_rows_and_other_cases_are_refused(void **state) {
@@ -96,7 +96,7 @@ static void only_the_rows_of_a_mark_have_to_be_there(void **state) {
         write_file(f, 4);
         assert_int_equal(truncate(f->path, (off_t)(rows.begin_of_rows + 2 * rows.bytes - 1)), 0);
         assert_int_equal(result_mark_check(f->path, &mark, EFFECTIVE, &found, &is_complete), STATUS_FILE);
-        assert_message("it has 1 rows, of 2 that belong to the checkpoint");
+        assert_message("has 1 rows, but the checkpoint requires 2");
         unlink(f->path);
     }
 }

@@ -63,8 +63,7 @@ static void a_file_replaces_only_one_of_its_kind(void **state) {
             assert_int_equal(target_is(path, kind), is_same);
             assert_int_equal(target_check(path, kind, true), is_same ? STATUS_OK : STATUS_FILE);
             refused(kind, false,
-                    is_same ? "exists: choose another name with -o or allow replacing it with --force"
-                            : "exists and is no ");
+                    is_same ? "exists: choose another name with -o or replace it with --force" : "exists and is no ");
         }
     }
 }
@@ -75,7 +74,8 @@ static void a_file_without_the_mark_is_foreign_and_an_empty_one_is_free(void **s
         // all but the last byte of the mark
         put(path, samples[i].text, samples[i].n - 1);
         assert_false(target_is(path, samples[i].kind));
-        refused(samples[i].kind, true, "so that no option replaces it: remove it, or choose another name with -o");
+        refused(samples[i].kind, true,
+                "so no option replaces the file: remove the file, or choose another name with -o");
         put(path, "", 0);
         assert_int_equal(target_check(path, samples[i].kind, true), STATUS_OK);
     }

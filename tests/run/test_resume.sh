@@ -95,13 +95,13 @@ run run small.yaml --set solver.method=dormand_prince --set time.checkpoint_inte
     -o reference.nc --checkpoint-at "$(places run.nc)" --force
 check an_extended_run_is_the_longer_run same run.nc reference.nc
 refused no_checkpoint 4 'nothing.ckpt: cannot be read' resume nothing.ckpt
-refused a_result 4 'run.nc: cannot be used: it is no checkpoint of shoal' resume run.nc
+refused a_result 4 'run.nc: cannot be used: not a checkpoint of shoal' resume run.nc
 refused no_event 2 "--checkpoint-at: '0.333' is not the time of an event" run small.yaml --checkpoint-at 0.3,0.333
 refused no_time 2 '--max-wall 5: expects HH:MM:SS' run small.yaml --max-wall 5
 refused no_multiple 2 'time.checkpoint_interval: 0.015 s is not an integer multiple' check small.yaml \
     --set time.checkpoint_interval=0.015
 run info run.ckpt
-check info_tells_of_a_checkpoint eval 'has out "a run at t = 1 s; its result is run.nc" && has out balance.power'
+check info_tells_of_a_checkpoint eval 'has out "a run at t = 1 s; the result is run.nc" && has out balance.power'
 run info --case run.ckpt
 cp out case.yaml
 check the_case_of_a_checkpoint_is_a_case "$program" check case.yaml -q
@@ -134,7 +134,7 @@ restore() { cp kept/* .; }
 restore
 printf 'x' | dd of=run.ckpt bs=1 seek=3000 conv=notrunc status=none
 run resume run.ckpt -q
-check a_damaged_checkpoint_falls_back eval 'has err "run.ckpt: cannot be used: it is damaged behind byte" &&
+check a_damaged_checkpoint_falls_back eval 'has err "run.ckpt: cannot be used: damaged behind byte" &&
     has err "; going on from run.ckpt.previous" && same run.nc reference.nc'
 cat >nan.py <<'end'
 """nan.py CHECKPOINT SECTION: put a value that is not a number into a section, with checksums that fit."""
@@ -167,10 +167,10 @@ refused two_damaged_checkpoints 4 'it has 3000 bytes instead of' resume run.ckpt
 restore
 printf 'x' | dd of=run.nc bs=1 seek=$(($(stat -c %s run.nc) * 2 / 3)) conv=notrunc status=none
 rm run.ckpt.previous
-refused changed_rows 4 'its rows are not those of the checkpoint' resume run.ckpt
+refused changed_rows 4 'the rows do not match the checkpoint' resume run.ckpt
 restore
 cp reference.nc run.nc
-refused rows_of_another_run 4 'its rows are not those of the checkpoint' resume run.ckpt
+refused rows_of_another_run 4 'the rows do not match the checkpoint' resume run.ckpt
 rm run.nc
 refused a_missing_result 4 'run.nc: cannot be read' resume run.ckpt
 restore
@@ -183,7 +183,7 @@ refused a_file_of_another_program 4 'run.ckpt exists and is no checkpoint of sho
 
 rm -f ./*.nc ./*.ckpt*
 start run small.yaml --set time.end=100 -o run.nc
-refused locked 4 "run.nc: another run writes it (process $pid on $(hostname))" run small.yaml -o run.nc --force
+refused locked 4 "run.nc: another run writes this result (process $pid on $(hostname))" run small.yaml -o run.nc --force
 end TERM
 check the_lock_is_removed test ! -e run.nc.lock
 rm -f ./*.nc ./*.ckpt*

@@ -27,10 +27,10 @@ end() {
 }
 
 start all -j 1
-refused a_second_study_is_refused_at_once 4 "all: another study runs members of it that this one would run (process $pid on" \
+refused a_second_study_is_refused_at_once 4 "all: another study runs some of the same members (process $pid on" \
     study study.yaml -q -o all --set time.end=0.1
 for members in 0 1-2; do
-    refused "and so is one of its members $members" 4 'another study runs members of it' study study.yaml -q -o all --members $members
+    refused "and so is one of its members $members" 4 'another study runs some of the same members' study study.yaml -q -o all --members $members
 done
 check nothing_is_said_of_a_member_that_runs test -z "$(ls all/*.failed 2>/dev/null)"
 end
@@ -46,7 +46,7 @@ check other_members_may_run_at_the_same_time kill -0 $other
 kill -TERM $other
 wait $other
 check the_lock_stays_for_the_first test -e part/study.lock
-refused which_still_has_its_member 4 'another study runs members of it' study study.yaml -q -o part
+refused which_still_has_its_member 4 'another study runs some of the same members' study study.yaml -q -o part
 end
 check the_last_one_removes_the_lock test "$code" = 75 -a ! -e part/study.lock
 

@@ -216,9 +216,10 @@ static void other_times_are_refused(void **state) {
     (void)state;
     write_run(school_of("sheet"));
     refused(0.17, STATUS_CASE, "no row at t = 0.17 s: the nearest are at 0.1 s and 0.2 s");
-    refused(0.5, STATUS_CASE, "without its wake (output.wake_interval): the nearest with it are at 0.3 s and 0.6 s");
-    refused(0.7, STATUS_CASE, "outside of its rows, which go from 0 s to 0.6 s");
-    refused(-0.1, STATUS_CASE, "outside of its rows");
+    refused(0.5, STATUS_CASE,
+            "has no wake (output.wake_interval): the nearest rows with a wake are at 0.3 s and 0.6 s");
+    refused(0.7, STATUS_CASE, "outside of the rows, 0 s to 0.6 s");
+    refused(-0.1, STATUS_CASE, "outside of the rows");
     struct field_row row;
     school_ok(field_row_read(&row, path, 0.3, 0, NULL));
     NEAR(row.state->t, 0.3, 1e-12, 0);

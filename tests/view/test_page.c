@@ -59,11 +59,11 @@ static void the_reader_refuses_other_files(void **state) {
     write_file(f, 0);
     cannot_be_read(f->path, "has not written a row yet");
     put_attribute(f, "shoal_schema", RESULT_SCHEMA + 1);
-    cannot_be_read(f->path, "use the one that wrote it");
+    cannot_be_read(f->path, "use the program that wrote the file");
     put_attribute(f, "shoal_schema", 0);
-    cannot_be_read(f->path, "not one of shoal");
+    cannot_be_read(f->path, "not of shoal");
     put_attribute(f, "shoal_study", 1);
-    cannot_be_read(f->path, "the file of a study: name that of one of its runs");
+    cannot_be_read(f->path, "the file of a study: give the file of one run");
 }
 
 static void set_text(const struct fixture *f, const char *name, const char *text) {
@@ -120,7 +120,7 @@ static void files_without_these_variables_are_read_by_the_lines_of_their_case(vo
     assert_true(reader.has_pressure);
     result_reader_close(&reader);
     set_text(f, "case_effective", "fish:\n  - name: a\n    body:\n      section: nodes\n");
-    cannot_be_read(f->path, "its case says 'section: ' of 1 of its 2 fish: use the program that wrote it");
+    cannot_be_read(f->path, "the case has 'section: ' for 1 of 2 fish: use the program that wrote the file");
 }
 
 static void an_outline_needs_its_edges(void **state) {
@@ -138,7 +138,7 @@ static void an_outline_needs_its_edges(void **state) {
     assert_int_equal(nc_def_var(file, "edge_thickness", NC_DOUBLE, 2, (int[]){fish, edge}, &number), NC_NOERR);
     assert_int_equal(nc_close(file), NC_NOERR);
     // the second fish has 7 nodes and needs 6 edges
-    cannot_be_read(f->path, "its variable n_nodes is 7 for a fish, which cannot be");
+    cannot_be_read(f->path, "variable n_nodes has an invalid value, 7, for a fish");
 }
 
 // ---- the page
