@@ -163,7 +163,7 @@ run resume run.ckpt -q
 check a_missing_checkpoint_falls_back same run.nc reference.nc
 restore
 truncate -s 3000 run.ckpt run.ckpt.previous
-refused two_damaged_checkpoints 4 'it has 3000 bytes instead of' resume run.ckpt
+refused two_damaged_checkpoints 4 '3000 bytes instead of' resume run.ckpt
 restore
 printf 'x' | dd of=run.nc bs=1 seek=$(($(stat -c %s run.nc) * 2 / 3)) conv=notrunc status=none
 rm run.ckpt.previous
