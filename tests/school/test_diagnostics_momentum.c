@@ -2,6 +2,7 @@
  * doc/model.md, section 13. */
 #include <stdio.h>
 
+#include "run/event.h"
 #include "school.h"
 #include "school/diagnostics_energy.h"
 #include "school/diagnostics_momentum.h"
@@ -207,6 +208,57 @@ static void a_restart_begins_the_balance_again(void **state) {
     simulate_free(simulation);
 }
 
+// ---- the tree code
+
+enum { ADDED = 450 }; /* vortices of each fish: three markers each */
+
+/* A school whose wakes the tree sums where the tolerance is not 0: its balance, and whether it has been the tree. */
+static void swim_among_many(const char *fluid, double tolerance, double balance[3], double *size, int *by_tree) {
+    char text[1024];
+    snprintf(text, sizeof text,
+             SCHOOL_DEFAULTS TIME
+             "%swake: {lifetime: 0.8, decay: 0.6, spare_vortices: %d, tolerance: %g}\n"
+             "defaults: {fish: {" FISH "}}\nfish: [{}, {start: {position: [0.5, 0.6]}}]\n",
+             fluid, 3 * ADDED, tolerance);
+    struct simulation *const simulation = school_simulation(text);
+    school_run(simulation, 0.1);
+    struct setup random = {.seed = 7};
+    for (int i = 0; i < 2 * ADDED; i++) {
+        const double x = 1.5 * school_random(&random), y = 0.7 + 0.9 * school_random(&random);
+        school_ok(wake_add_vortex(&simulation->state->wake[i % 2], simulation->school, simulation->state->t, x, y,
+                                  2e-3 * school_random(&random)));
+    }
+    school_ok(event_change(simulation->state, simulation->residual, simulation->consistent, 0));
+    diagnostics_restart(simulation->residual, simulation->state);
+    school_ok(simulate_renew(simulation));
+    for (int n = 0; n < 15; n++) school_ok(simulate_step(simulation));
+    simulate_measure(simulation);
+    for (int i = 0; i < 3; i++) balance[i] = simulation->diagnostics->momentum_balance[i];
+    *size = simulation->diagnostics->momentum_size;
+    const struct flow *const flow = simulation->residual->flow;
+    *by_tree = velocity_sum_by_tree(&flow->convecting, flow->class[0].markers.n, tolerance);
+    simulate_free(simulation);
+}
+
+static void it_is_closed_where_the_tree_sums(void **state) {
+    (void)state;
+    static const char *const fluids[] = {"", "fluid: {walls: [-1]}\n"};
+    for (size_t w = 0; w < sizeof fluids / sizeof *fluids; w++) {
+        double direct[3], summed[3], size, error = 0;
+        int by_tree;
+        swim_among_many(fluids[w], 0, direct, &size, &by_tree);
+        assert_false(by_tree);
+        swim_among_many(fluids[w], 1e-4, summed, &size, &by_tree);
+        assert_true(by_tree);
+        for (int i = 0; i < 3; i++) error = fmax(error, fabs(summed[i] - direct[i]) / size);
+        print_message("direct: %.2g, angular %.2g; by the tree: %.2g more\n", hypot(direct[0], direct[1]) / size,
+                      direct[2] / size, error);
+        assert_true(hypot(summed[0], summed[1]) < 5e-3 * size);
+        assert_true(fabs(summed[2]) < 5e-3 * size);
+        assert_true(error > 0 && error < 1e-3);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_balance_is_closed_with_every_external_force),
@@ -215,6 +267,7 @@ int main(void) {
         cmocka_unit_test(impulses_do_not_depend_on_the_origin),
         cmocka_unit_test(a_stream_changes_no_balance),
         cmocka_unit_test(a_restart_begins_the_balance_again),
+        cmocka_unit_test(it_is_closed_where_the_tree_sums),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
