@@ -7,9 +7,8 @@
                                     method the cheapest that is accurate, also as a table
     a position as the only axis     a map of the places, a number at each
     two axes of numbers             a map over both
-    anything else                   speed, cost of transport and Strouhal number over the first axis; of fish whose muscle
-                                    does no work the efficiency; of fish that are held at a speed thrust and power over it;
-                                    of bodies without a beat drag, lift and deflection
+    anything else                   speed, cost of transport and Strouhal number over the first axis; of fish that are held
+                                    at a speed thrust and power over it; of bodies without a beat drag, lift and deflection
     a comparison of methods         error against wall time and evaluations
 """
 
@@ -363,8 +362,7 @@ def panels_of(study, first):
     speed, given = study["speed"][study.complete], study[first.name][study.complete]
     if first.long_name.endswith(".speed") and np.allclose(speed, given[:, None], rtol=1e-3):
         return ["mean_thrust", "mean_power", "thrust_efficiency"]
-    is_paid = np.any(study["cost_of_transport"][study.complete])
-    return ["speed", "cost_of_transport" if is_paid else "efficiency", "strouhal"]
+    return ["speed", "cost_of_transport", "strouhal"]
 
 
 def plot_lines(study, figure):
