@@ -3,9 +3,9 @@
 
 #include <math.h>
 
-// add the derivative of a row by a vector along the body, through the nodes that the vector depends on
-static void tangent_jacobian(const struct fish *fish, const struct tangent *tangent, int row, const double by_vector[2],
-                             struct sparse *jacobian) {
+// add the derivative of a row with respect to a tangent vector of the body, by the nodes of its two stencils
+static void bound_sheet_tangent_jacobian(const struct fish *fish, const struct tangent *tangent, int row,
+                                         const double by_vector[2], struct sparse *jacobian) {
     const struct stencil *const parts[2] = {&tangent->from, &tangent->to};
     for (int part = 0; part < 2; part++) {
         const struct stencil *const end = parts[part];
@@ -55,6 +55,7 @@ void bound_sheet_residual(const struct fish *fish, double removed, const double 
             row[c] += bound_sheet_end_correction(fish, c, j) * y[fish->at.gamma + j];
         }
     }
+
     row[fish->n_control] = bound_sheet_circulation(fish, y) + y[fish->at.circulation] - removed;
 }
 
@@ -75,8 +76,9 @@ void bound_sheet_jacobian(const struct fish *fish, const double *u, const double
         // the normal turns with the tangent e: dn = -t (n.de)/|e|
         const double turn = -(slip[0] * body.t[0] + slip[1] * body.t[1]) / body.length;
         const double by_vector[2] = {turn * body.n[0], turn * body.n[1]};
-        tangent_jacobian(fish, &fish->control_tangent[c], row, by_vector, jacobian);
+        bound_sheet_tangent_jacobian(fish, &fish->control_tangent[c], row, by_vector, jacobian);
     }
+
     const int kelvin = fish->at.gamma + fish->n_control;
     for (int j = 0; j < fish->n_sheet; j++) sparse_add(jacobian, kelvin, fish->at.gamma + j, fish->sheet_weight[j]);
     sparse_add(jacobian, kelvin, fish->at.circulation, 1);
@@ -84,7 +86,7 @@ void bound_sheet_jacobian(const struct fish *fish, const double *u, const double
 
 void bound_sheet_flow_jacobian(const struct fish *fish, const struct influence_block *block, const double *y,
                                struct coupling_block *rows) {
-    enum { CHUNK = 32 };  // normals at a time, so that the loop over them is the inner one
+    enum { CHUNK = 32 };  // normals per chunk, so that the loop over the normals is the inner loop
     double normal_x[CHUNK], normal_y[CHUNK];
     for (int first = 0; first < fish->n_control; first += CHUNK) {
         const int n = fish->n_control - first < CHUNK ? fish->n_control - first : CHUNK;
@@ -102,9 +104,9 @@ void bound_sheet_flow_jacobian(const struct fish *fish, const struct influence_b
     }
 }
 
-// the fluid's velocity past the tail along the body
-static double slip_along(const struct fish *fish, const struct direction *body, const double *u, const double *v,
-                         const double *y, double slip[2]) {
+// velocity of the fluid relative to the tail (slip), and its tangential component (return value)
+static double tail_slip_along(const struct fish *fish, const struct direction *body, const double *u, const double *v,
+                              const double *y, double slip[2]) {
     const int p = flow_tail(fish), tail = fish->n_nodes - 1;
     slip[0] = u[p] - y[fish->at.vx + tail];
     slip[1] = v[p] - y[fish->at.vy + tail];
@@ -115,7 +117,7 @@ double bound_sheet_shedding_rate(const struct fish *fish, double chi, const doub
                                  const double *y) {
     const struct direction body = fish_direction(fish, &fish->tail_tangent, y);
     double slip[2];
-    return chi * y[fish->at.gamma + fish->n_sheet - 1] * slip_along(fish, &body, u, v, y, slip);
+    return chi * y[fish->at.gamma + fish->n_sheet - 1] * tail_slip_along(fish, &body, u, v, y, slip);
 }
 
 void bound_sheet_kutta_residual(const struct fish *fish, enum bound_sheet_law law, double chi, const double *u,
@@ -127,6 +129,7 @@ void bound_sheet_kutta_residual(const struct fish *fish, enum bound_sheet_law la
         case BOUND_SHEET_RATE: value -= bound_sheet_shedding_rate(fish, chi, u, v, y); break;
         case BOUND_SHEET_FROZEN: break;
     }
+
     residual[fish->at.circulation] = value;
 }
 
@@ -137,19 +140,21 @@ void bound_sheet_kutta_jacobian(const struct fish *fish, enum bound_sheet_law la
         sparse_add(jacobian, row, fish->at.gamma + last, fish->sheet_weight[last]);
         return;
     }
+
     sparse_add(jacobian, row, fish->at.circulation, cj);
     if (law == BOUND_SHEET_FROZEN) return;
     const struct direction body = fish_direction(fish, &fish->tail_tangent, y);
     double slip[2];
-    const double along = slip_along(fish, &body, u, v, y, slip);
+    const double along = tail_slip_along(fish, &body, u, v, y, slip);
     const double strength = chi * y[fish->at.gamma + last];
     sparse_add(jacobian, row, fish->at.gamma + last, -chi * along);
     sparse_add(jacobian, row, fish->at.vx + tail, strength * body.t[0]);
     sparse_add(jacobian, row, fish->at.vy + tail, strength * body.t[1]);
-    // the tangent turns with the vector e along it: dt = n (n.de)/|e|
+
+    // the tangent turns with the tangent vector e: dt = n (n.de)/|e|
     const double turn = -strength * (slip[0] * body.n[0] + slip[1] * body.n[1]) / body.length;
     const double by_vector[2] = {turn * body.n[0], turn * body.n[1]};
-    tangent_jacobian(fish, &fish->tail_tangent, row, by_vector, jacobian);
+    bound_sheet_tangent_jacobian(fish, &fish->tail_tangent, row, by_vector, jacobian);
 }
 
 void bound_sheet_kutta_flow_jacobian(const struct fish *fish, double chi, const struct influence_block *block,
@@ -158,6 +163,7 @@ void bound_sheet_kutta_flow_jacobian(const struct fish *fish, double chi, const 
     const double strength = chi * y[fish->at.gamma + fish->n_sheet - 1];
     const double *const u = block->u + flow_tail(fish), *const v = block->v + flow_tail(fish);
     double *const row = rows->value + (fish->at.circulation - fish->at.ax);
+
     for (long i = 0; i < block->n_columns; i++) {
         row[i * rows->n_rows] -= strength * (body.t[0] * u[i * block->n_points] + body.t[1] * v[i * block->n_points]);
     }

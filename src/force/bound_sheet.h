@@ -7,31 +7,32 @@
 #include "fish/fish.h"
 #include "flow/flow_derivative.h"
 
-/* What holds for the circulation shed by a fish. */
+/* The equation for the circulation shed by a fish. */
 enum bound_sheet_law {
     BOUND_SHEET_EDGE,  /* the bound vortex at the tail vanishes */
     BOUND_SHEET_RATE,  /* dGamma/dt = chi gamma_{M-1} ubar */
     BOUND_SHEET_FROZEN /* dGamma/dt = 0: nothing is shed between events (impulsive) */
 };
 
-/* The rows gamma: impermeability at the control points, m s-1, then Kelvin, m2 s-1. removed is the circulation that no
- * longer counts, m2 s-1; u, v the fluid's velocity at the fish's points, m s-1 (flow_n_points). */
+/* The rows gamma: impermeability at the control points, m s-1, then Kelvin's theorem, m2 s-1. removed: removed
+ * circulation, m2 s-1; u, v: velocity of the fluid at the points of the fish, m s-1 (flow_n_points). */
 void bound_sheet_residual(const struct fish *fish, double removed, const double *u, const double *v, const double *y,
                           double *residual);
 
-/* Add the derivatives of the rows gamma: what depends on the body itself. */
+/* Add the derivatives of the rows gamma by the unknowns of the fish, with the velocity of the fluid held constant. */
 void bound_sheet_jacobian(const struct fish *fish, const double *u, const double *v, const double *y,
                           struct sparse *jacobian);
 
-/* Add the derivatives of the rows gamma that come through the fluid's velocity. */
+/* Add the derivatives of the rows gamma through the velocity of the fluid. */
 void bound_sheet_flow_jacobian(const struct fish *fish, const struct influence_block *block, const double *y,
                                struct coupling_block *rows);
 
-/* The rate at which circulation is shed by law BOUND_SHEET_RATE, m2 s-2; u, v as above, chi the ramp. */
+/* The shedding rate dGamma/dt of law BOUND_SHEET_RATE, m2 s-2; u, v as above; chi: the ramp. */
 double bound_sheet_shedding_rate(const struct fish *fish, double chi, const double *u, const double *v,
                                  const double *y);
 
-/* The row circulation, its derivatives, and those that come through the fluid's velocity (BOUND_SHEET_RATE only). */
+/* The row circulation, the derivatives of this row, and the derivatives through the velocity of the fluid
+ * (BOUND_SHEET_RATE only). */
 void bound_sheet_kutta_residual(const struct fish *fish, enum bound_sheet_law law, double chi, const double *u,
                                 const double *v, const double *y, const double *yp, double *residual);
 void bound_sheet_kutta_jacobian(const struct fish *fish, enum bound_sheet_law law, double chi, double cj,
@@ -45,7 +46,7 @@ double bound_sheet_end_correction(const struct fish *fish, int c, int j);
 /* Unit normal of the body at control point c. */
 void bound_sheet_normal(const struct fish *fish, int c, const double *y, double normal[2]);
 
-/* Circulation of bound vortex j per length of the body as it is now, m s-1. */
+/* Circulation of bound vortex j per current length of the body, m s-1. */
 double bound_sheet_strength(const struct fish *fish, int j, const double *y);
 
 /* Circulation of the bound sheet, m2 s-1. */

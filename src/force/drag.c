@@ -1,4 +1,4 @@
-/* drag.c: every edge by itself: the force in its frame, and how the force changes. */
+/* drag.c: drag on an edge in the frame of the edge, and the derivatives of this drag. */
 #include "force/drag.h"
 
 #include <math.h>
@@ -14,14 +14,14 @@ static double drag_speed_law_slope(const struct fish *fish, double speed) {
     return 2 * fabs(speed) + fish->linear_speed;
 }
 
-/* The friction of a boundary layer on an edge over the velocity along it, kg s-1, and the derivative of that by s2, the
- * square of the velocity and of u0. */
+/* Friction of a boundary layer on an edge over tangential velocity, kg s-1, and the derivative of this ratio by s2, the
+ * sum of the squares of velocity and u0. */
 struct boundary_layer {
     double resistance, by_square;
 };
 
 static struct boundary_layer boundary_layer(const struct fish *fish, int k, double square) {
-    // B: the turbulent part, 1 - B the laminar one; dB/ds2 = 2 B (1 - B)/s2
+    // B: turbulent fraction, 1 - B: laminar fraction; dB/ds2 = 2 B (1 - B)/s2
     const double ratio = square * fish->past_transition[k], laminar = 1 / (1 + ratio * ratio), turbulent = 1 - laminar;
     const double by_square = 2 * turbulent * laminar / square;
     const double factor = fish->form * (1 + (fish->waving - 1) * laminar);
@@ -34,15 +34,15 @@ static struct boundary_layer boundary_layer(const struct fish *fish, int k, doub
     return (struct boundary_layer){factor * sum, factor * slope + factor_slope * sum};
 }
 
-static double square_of(const struct fish *fish, double speed) {
+static double friction_speed_square(const struct fish *fish, double speed) {
     return speed * speed + fish->friction_speed * fish->friction_speed;
 }
 
-// the tangential drag on edge k; laminar: c_t (u^2 + u0^2)^(1/4) u
+// tangential drag on edge k; laminar: c_t (u^2 + u0^2)^(1/4) u
 static double skin_drag(const struct fish *fish, int k, double speed) {
     switch (fish->skin) {
         case SKIN_LAMINAR: return fish->drag_tangential[k] * (sqrt(hypot(speed, fish->friction_speed)) * speed);
-        case SKIN_BOUNDARY_LAYER: return boundary_layer(fish, k, square_of(fish, speed)).resistance * speed;
+        case SKIN_BOUNDARY_LAYER: return boundary_layer(fish, k, friction_speed_square(fish, speed)).resistance * speed;
         case SKIN_QUADRATIC: break;
     }
     return fish->drag_tangential[k] * drag_speed_law(fish, speed);
@@ -50,9 +50,10 @@ static double skin_drag(const struct fish *fish, int k, double speed) {
 
 static double skin_drag_slope(const struct fish *fish, int k, double speed) {
     if (fish->skin == SKIN_BOUNDARY_LAYER) {
-        const struct boundary_layer layer = boundary_layer(fish, k, square_of(fish, speed));
+        const struct boundary_layer layer = boundary_layer(fish, k, friction_speed_square(fish, speed));
         return layer.resistance + 2 * layer.by_square * speed * speed;
     }
+
     if (fish->skin == SKIN_QUADRATIC) return fish->drag_tangential[k] * drag_speed_law_slope(fish, speed);
     const double size = hypot(speed, fish->friction_speed);
     return fish->drag_tangential[k] * (sqrt(size) * (1 + speed / size * (speed / size) / 2));
@@ -76,6 +77,7 @@ void drag_slope(const struct fish *fish, int k, const struct edge *s, const doub
     const double across = fish->drag_normal[k] * drag_speed_law(fish, wn);
     const double along_slope = skin_drag_slope(fish, k, wt);
     const double across_slope = fish->drag_normal[k] * drag_speed_law_slope(fish, wn);
+
     for (int i = 0; i < 2; i++) {
         for (int j = 0; j < 2; j++) {
             by_velocity[i][j] = -along_slope * s->t[i] * s->t[j] - across_slope * s->n[i] * s->n[j];
@@ -85,8 +87,8 @@ void drag_slope(const struct fish *fish, int k, const struct edge *s, const doub
 }
 
 // the drag that the flow causes on edge k: F(v - u) - F(v)
-static void force_of_flow(const struct fish *fish, int k, const struct edge *s, const double *u, const double *v,
-                          double force[2]) {
+static void drag_of_flow(const struct fish *fish, int k, const struct edge *s, const double *u, const double *v,
+                         double force[2]) {
     double w[2], still[2];
     flow_relative_velocity(fish, k, s->velocity, u, v, w);
     drag_force(fish, k, s, w, force);
@@ -95,7 +97,7 @@ static void force_of_flow(const struct fish *fish, int k, const struct edge *s, 
     force[1] -= still[1];
 }
 
-static void centre_of_mass(const struct fish *fish, const double *y, double com[2]) {
+static void drag_centre_of_mass(const struct fish *fish, const double *y, double com[2]) {
     com[0] = com[1] = 0;
     for (int k = 0; k < fish->n_nodes; k++) {
         com[0] += fish->mass[k] / fish->total_mass * y[fish->at.x + k];
@@ -105,12 +107,13 @@ static void centre_of_mass(const struct fish *fish, const double *y, double com[
 
 double drag_moment(const struct fish *fish, const double *u, const double *v, const double *y) {
     double com[2], moment = 0;
-    centre_of_mass(fish, y, com);
+    drag_centre_of_mass(fish, y, com);
     for (int k = 0; k < fish->n_edges; k++) {
         const struct edge s = edge_at(fish, k, y);
         double force[2];
-        force_of_flow(fish, k, &s, u, v, force);
+        drag_of_flow(fish, k, &s, u, v, force);
         moment += (s.middle[0] - com[0]) * force[1] - (s.middle[1] - com[1]) * force[0];
     }
+
     return moment / fish->control.torque_scale;
 }

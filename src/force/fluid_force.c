@@ -1,5 +1,5 @@
-/* fluid_force.c: edge by edge, the forces of drag.c and reactive.c on its two nodes, that of tail_flux.c on the last
- * one, and their derivatives. */
+/* fluid_force.c: drag and reactive force of every edge on the nodes of the edge, the tail flux on the last node, and
+ * the derivatives. */
 #include "force/fluid_force.h"
 
 #include "body/edge.h"
@@ -7,7 +7,8 @@
 #include "force/reactive.h"
 #include "force/tail_flux.h"
 
-// drag on an edge, the reactive force on its two nodes, and what leaves at the tail: on the tail node, of the last edge
+// forces of one edge: the drag on the edge, the reactive force on each node, and the tail flux on the tail node (last
+// edge only)
 struct edge_forces {
     struct edge edge;
     double drag[2], friction[2], reactive[2][2], tail[2];
@@ -39,7 +40,7 @@ void fluid_force_residual(const struct fish *fish, const struct flow_at_body *fl
     }
 }
 
-static double moment_of(const double place[2], const double about[2], const double force[2]) {
+static double moment_about(const double place[2], const double about[2], const double force[2]) {
     return (place[0] - about[0]) * force[1] - (place[1] - about[1]) * force[0];
 }
 
@@ -48,8 +49,9 @@ struct fluid_forces fluid_force_of_edge(const struct fish *fish, const struct fl
     const struct edge_forces on = forces_of_edge(fish, flow, k, y);
     struct fluid_forces forces = {.resistive = {on.drag[0], on.drag[1]},
                                   .friction = {on.friction[0], on.friction[1]},
-                                  .resistive_moment = moment_of(on.edge.middle, about, on.drag),
-                                  .friction_moment = moment_of(on.edge.middle, about, on.friction)};
+                                  .resistive_moment = moment_about(on.edge.middle, about, on.drag),
+                                  .friction_moment = moment_about(on.edge.middle, about, on.friction)};
+
     for (int end = 0; end < 2; end++) {
         const double node[2] = {y[edge_place(fish, 0, k + end)], y[edge_place(fish, 1, k + end)]};
         double force[2];
@@ -57,8 +59,9 @@ struct fluid_forces fluid_force_of_edge(const struct fish *fish, const struct fl
             force[i] = on.reactive[end][i] + (end == 1 ? on.tail[i] : 0);
             forces.reactive[i] += force[i];
         }
-        forces.reactive_moment += moment_of(node, about, force);
+        forces.reactive_moment += moment_about(node, about, force);
     }
+
     return forces;
 }
 
@@ -76,12 +79,13 @@ struct fluid_forces fluid_force_sum(const struct fish *fish, const struct flow_a
         sum.friction_moment += of_edge.friction_moment;
         sum.reactive_moment += of_edge.reactive_moment;
     }
+
     return sum;
 }
 
-// the derivatives of all forces of edge k on its two nodes, half of the drag on each
-static void slope_at(const struct fish *fish, const struct flow_at_body *flow, int k, const struct edge *edge,
-                     struct reactive_slope *slope) {
+// derivatives of all forces of edge k on each node; half of the drag acts on each node
+static void slope_of_edge(const struct fish *fish, const struct flow_at_body *flow, int k, const struct edge *edge,
+                          struct reactive_slope *slope) {
     double w[2], by_velocity[2][2], by_turn[2];
     flow_relative_velocity(fish, k, edge->velocity, flow->u, flow->v, w);
     drag_slope(fish, k, edge, w, by_velocity, by_turn);
@@ -99,7 +103,7 @@ void fluid_force_jacobian(const struct fish *fish, const struct flow_at_body *fl
     for (int k = 0; k < fish->n_edges; k++) {
         const struct edge edge = edge_at(fish, k, y);
         struct reactive_slope slope;
-        slope_at(fish, flow, k, &edge, &slope);
+        slope_of_edge(fish, flow, k, &edge, &slope);
         for (int row = 0; row < 4; row++) {
             const int end = row / 2, i = row % 2, equation = edge_acceleration(fish, i, k + end);
             const double mass = fish->mass[k + end];
@@ -116,6 +120,7 @@ void fluid_force_jacobian(const struct fish *fish, const struct flow_at_body *fl
             }
         }
     }
+
     tail_flux_jacobian(fish, flow, y, jacobian);
 }
 
@@ -124,7 +129,7 @@ void fluid_force_flow_jacobian(const struct fish *fish, const struct flow_at_bod
     for (int k = 0; k < fish->n_edges; k++) {
         const struct edge edge = edge_at(fish, k, y);
         struct reactive_slope slope;
-        slope_at(fish, flow, k, &edge, &slope);
+        slope_of_edge(fish, flow, k, &edge, &slope);
         const double per_mass[2] = {1 / fish->mass[k], 1 / fish->mass[k + 1]};
         const double *const du = block->u + flow_midpoint(fish, k), *const dv = block->v + flow_midpoint(fish, k);
         for (long c = 0; c < block->n_columns; c++) {
@@ -137,6 +142,7 @@ void fluid_force_flow_jacobian(const struct fish *fish, const struct flow_at_bod
             }
         }
     }
+
     tail_flux_flow_jacobian(fish, flow, block, y, rows);
 }
 
@@ -152,6 +158,7 @@ struct fluid_power fluid_force_power(const struct fish *fish, const struct flow_
         power.friction += edge_dot(friction, edge.velocity);
         power.added_mass += reactive_power(fish, k, &edge, w, flow->acceleration);
     }
+
     return power;
 }
 
@@ -163,5 +170,6 @@ double fluid_force_added_mass_energy(const struct fish *fish, const struct flow_
         flow_relative_velocity(fish, k, edge.velocity, flow->u, flow->v, w);
         energy += reactive_energy(fish, k, &edge, w);
     }
+
     return energy;
 }

@@ -1,4 +1,4 @@
-/* pressure.c: the added momentum and its turning, convection along the sheet, suction, and their derivatives. */
+/* pressure.c: added momentum and its rotation, convection along the sheet, suction, and the derivatives. */
 #include "force/pressure.h"
 
 #include <math.h>
@@ -28,17 +28,19 @@ enum status pressure_create(struct pressure **pressure, const struct fish *fish)
         !new->point) {
         goto no_memory;
     }
+
     for (int c = 0; c < fish->n_control; c++) {
         for (int k = 0; k < fish->n_nodes; k++) {
             new->share[c * fish->n_nodes + k] = fish->control_point[c].weight[k] / fish->mass[k];
         }
     }
+
     *pressure = new;
     return STATUS_OK;
 
 no_memory:
     pressure_free(new);
-    return status_fail(STATUS_MEMORY, "out of memory: the pressure on fish %s", fish->name);
+    return status_fail(STATUS_MEMORY, "out of memory: pressure on fish %s", fish->name);
 }
 
 void pressure_free(struct pressure *pressure) {
@@ -53,8 +55,8 @@ void pressure_free(struct pressure *pressure) {
     free(pressure);
 }
 
-// R = sum over j: P_j times the circulation of vortex j, whose unknowns or their rates are given
-static void find_matrix(struct pressure *p, const double *strength) {
+// R = sum over j: P_j times the circulation of vortex j; strength: the unknowns or the rates of the unknowns
+static void pressure_find_matrix(struct pressure *p, const double *strength) {
     const struct fish *fish = p->fish;
     const int n = fish->n_nodes;
     for (int j = 0; j < fish->n_sheet; j++) p->circulation[j] = fish->sheet_weight[j] * strength[fish->at.gamma + j];
@@ -62,8 +64,8 @@ static void find_matrix(struct pressure *p, const double *strength) {
     kernel_multiply(n * n, fish->n_sheet, fish->integrals->momentum, p->circulation, p->matrix);
 }
 
-// add E3 R x to the pairs of all nodes, x being those of y from this index on
-static void add_product(const struct pressure *p, const double *x, double *to) {
+// add E3 R x to the pairs of all nodes; x: x components of all nodes, then y components
+static void pressure_add_product(const struct pressure *p, const double *x, double *to) {
     const int n = p->fish->n_nodes;
     for (int k = 0; k < n; k++) {
         const double *const row = p->matrix + (long)k * n;
@@ -74,12 +76,12 @@ static void add_product(const struct pressure *p, const double *x, double *to) {
     }
 }
 
-// tau, the fluid's velocity past the body along it
-static double along(const struct pressure_point *point) {
+// tau: tangential velocity of the fluid relative to the body
+static double slip_along(const struct pressure_point *point) {
     return edge_dot(point->slip, point->body.t);
 }
 
-static void convect(struct pressure *p, const struct flow_at_body *flow, const double *y) {
+static void pressure_convect(struct pressure *p, const struct flow_at_body *flow, const double *y) {
     const struct fish *fish = p->fish;
     const int n = fish->n_nodes;
     for (int c = 0; c < fish->n_control; c++) {
@@ -90,7 +92,7 @@ static void convect(struct pressure *p, const struct flow_at_body *flow, const d
         point->slip[1] = flow->v[c] - fish_mean(at, y + fish->at.vy);
         point->circulation = sheet_integrals_around(fish->integrals, c, p->circulation);
         point->strength = fish->control_density[c] * point->circulation;
-        const double size = -point->strength * along(point);
+        const double size = -point->strength * slip_along(point);
         for (int k = 0; k < n; k++) {
             p->force[k] += at->weight[k] * size * point->body.n[0];
             p->force[n + k] += at->weight[k] * size * point->body.n[1];
@@ -98,7 +100,7 @@ static void convect(struct pressure *p, const struct flow_at_body *flow, const d
     }
 }
 
-// the circulation between the nose and control point c, of a sheet with these circulations
+// circulation between the nose and control point c, from the circulations of the bound vortices
 static double circulation_before(const struct fish *fish, int c, const double *circulation) {
     const double *const weight = fish->integrals->circulation + (long)c * fish->n_sheet;
     double sum = 0;
@@ -106,8 +108,8 @@ static double circulation_before(const struct fish *fish, int c, const double *c
     return sum;
 }
 
-// with rings: the spanwise flow, and the force along the side edges (model.md, section 18)
-static void spread_out(struct pressure *p, const struct flow_at_body *flow) {
+// rings: force of the spanwise flow, and force along the side edges (doc/model.md, section 18)
+static void pressure_span(struct pressure *p, const struct flow_at_body *flow) {
     const struct fish *fish = p->fish;
     const int n = fish->n_nodes;
     for (int c = 0; flow->div && c < fish->n_control; c++) {
@@ -132,18 +134,20 @@ struct suction_law pressure_suction_law(double full, double bound) {
     const double share = 1 / sqrt(sqrt(1 + fourth)), by_least = share / (1 + fourth),
                  by_most = by_least * fourth * ratio;
     const int is_attached = full <= bound;
+
     return (struct suction_law){.value = least * share,
                                 .by_full = is_attached ? by_least : by_most,
                                 .by_bound = is_attached ? by_most : by_least};
 }
 
-// the suction on the nose, with what the limit takes from it
-static void suck(struct pressure *p, const double *y) {
+// suction on the nose, and the part of the attached suction lost to separation
+static void pressure_suck(struct pressure *p, const double *y) {
     const struct fish *fish = p->fish;
     const double strength = fish->nose_factor * y[fish->at.gamma], full = strength * strength;
-    const double square = fish->suction_limit * fish->suction_limit, tau = along(&p->point[0]);
+    const double square = fish->suction_limit * fish->suction_limit, tau = slip_along(&p->point[0]);
     const struct suction_law law =
         square > 0 ? pressure_suction_law(full, square * tau * tau) : (struct suction_law){full, 1, 0};
+
     p->nose = fish_direction(fish, &fish->nose_tangent, y);
     p->by_strength = fish->suction * law.by_full * 2 * strength * fish->nose_factor;
     p->by_slip = fish->suction * law.by_bound * 2 * square * tau;
@@ -156,14 +160,14 @@ static void suck(struct pressure *p, const double *y) {
 void pressure_update(struct pressure *p, const struct flow_at_body *flow, const double *y) {
     const struct fish *fish = p->fish;
     const size_t size = 2 * (size_t)fish->n_nodes * sizeof *p->momentum;
-    find_matrix(p, y);
+    pressure_find_matrix(p, y);
     memset(p->momentum, 0, size);
     memset(p->force, 0, size);
-    add_product(p, y + fish->at.x, p->momentum);
-    add_product(p, y + fish->at.vx, p->force);
-    convect(p, flow, y);
-    spread_out(p, flow);
-    suck(p, y);
+    pressure_add_product(p, y + fish->at.x, p->momentum);
+    pressure_add_product(p, y + fish->at.vx, p->force);
+    pressure_convect(p, flow, y);
+    pressure_span(p, flow);
+    pressure_suck(p, y);
 }
 
 double pressure_momentum_ratio(const struct fish *fish, int k) {
@@ -195,8 +199,8 @@ void pressure_residual(const struct pressure *p, double *residual) {
     residual[fish->at.ay] -= p->suction[1];
 }
 
-// sum over the nodes of P_kij x_i, per unknown of vortex j
-static double by_strength(const struct fish *fish, int k, int j, const double *x) {
+// sum over the nodes i of P_kij x_i, times the weight of vortex j
+static double momentum_by_strength(const struct fish *fish, int k, int j, const double *x) {
     const double *const row = fish->integrals->momentum + ((long)j * fish->n_nodes + k) * fish->n_nodes;
     double sum = 0;
     for (int i = 0; i < fish->n_nodes; i++) sum += row[i] * x[i];
@@ -204,8 +208,8 @@ static double by_strength(const struct fish *fish, int k, int j, const double *x
 }
 
 void pressure_momentum_by_strength(const struct fish *fish, int k, int j, const double *x, double momentum[2]) {
-    momentum[0] = -by_strength(fish, k, j, x + fish->n_nodes);
-    momentum[1] = by_strength(fish, k, j, x);
+    momentum[0] = -momentum_by_strength(fish, k, j, x + fish->n_nodes);
+    momentum[1] = momentum_by_strength(fish, k, j, x);
 }
 
 void pressure_momentum_jacobian(const struct pressure *p, int at_start, const double *y, struct sparse *jacobian) {
@@ -221,7 +225,8 @@ void pressure_momentum_jacobian(const struct pressure *p, int at_start, const do
                 sparse_add(jacobian, row, fish->at.x + other + m, sign * p->matrix[k * n + m]);
             }
             for (int j = 0; j < fish->n_sheet; j++) {
-                sparse_add(jacobian, row, fish->at.gamma + j, sign * by_strength(fish, k, j, y + fish->at.x + other));
+                sparse_add(jacobian, row, fish->at.gamma + j,
+                           sign * momentum_by_strength(fish, k, j, y + fish->at.x + other));
             }
         }
     }
@@ -231,9 +236,10 @@ void pressure_jacobian(const struct pressure *p, struct sparse *jacobian) {
     const struct fish *fish = p->fish;
     const struct direction *const first = &p->point[0].body;
     const int n = fish->n_nodes;
+
     for (int k = 0; k < n; k++) {
         for (int m = 0; m < n; m++) {
-            // convection: n t of every control point; turning: -E3
+            // convection: n t of every control point; rotation: -E3
             double sum[2][2] = {{0, p->matrix[k * n + m]}, {-p->matrix[k * n + m], 0}};
             for (int c = 0; c < fish->n_control; c++) {
                 const double *const weight = fish->control_point[c].weight;
@@ -258,8 +264,8 @@ void pressure_jacobian(const struct pressure *p, struct sparse *jacobian) {
     }
 }
 
-// add a force at control point c to the rows ax, ay of all nodes in one column
-static void spread(const struct pressure *p, int c, double x, double y, double *column) {
+// add a force at control point c to the rows ax, ay of all nodes, in one column
+static void spread_force(const struct pressure *p, int c, double x, double y, double *column) {
     const int n = p->fish->n_nodes;
     const double *const share = p->share + (long)c * n;
     for (int k = 0; k < n; k++) {
@@ -268,13 +274,13 @@ static void spread(const struct pressure *p, int c, double x, double y, double *
     }
 }
 
-// convection by the places of the nodes: the line turns with X', dt = n (n.dX')/|X'|, dn = -t (n.dX')/|X'|
+// convection by the positions of the nodes: the tangent turns with X', dt = n (n.dX')/|X'|, dn = -t (n.dX')/|X'|
 static void convection_by_places(const struct pressure *p, struct coupling_block *rows) {
     const struct fish *fish = p->fish;
     for (int c = 0; c < fish->n_control; c++) {
         const struct pressure_point *const point = &p->point[c];
         const struct direction *const body = &point->body;
-        const double across = edge_dot(point->slip, body->n), tau = along(point);
+        const double across = edge_dot(point->slip, body->n), tau = slip_along(point);
         const double *const slope = fish->control_tangent[c].to.weight;
         double by_turn[2];
         for (int i = 0; i < 2; i++) {
@@ -282,13 +288,13 @@ static void convection_by_places(const struct pressure *p, struct coupling_block
         }
         for (int m = 0; m < 2 * fish->n_nodes; m++) {
             const double turn = body->n[m / fish->n_nodes] * slope[m % fish->n_nodes];
-            spread(p, c, by_turn[0] * turn, by_turn[1] * turn, rows->value + (long)m * rows->n_rows);
+            spread_force(p, c, by_turn[0] * turn, by_turn[1] * turn, rows->value + (long)m * rows->n_rows);
         }
     }
 }
 
-// the spanwise flow by the places of the nodes: E3 dx_c is linear in them
-static void spreading_by_places(const struct pressure *p, struct coupling_block *rows) {
+// spanwise flow by the positions of the nodes: E3 dx_c is linear in the positions
+static void span_by_places(const struct pressure *p, struct coupling_block *rows) {
     const struct fish *fish = p->fish;
     const int n = fish->n_nodes;
     for (int c = 0; fish->strip_depth > 0 && c < fish->n_control; c++) {
@@ -296,19 +302,20 @@ static void spreading_by_places(const struct pressure *p, struct coupling_block 
         const double *const slope = fish->control_tangent[c].to.weight;
         const double size = point->before * point->divergence * fish->control_interval[c];
         for (int m = 0; m < n; m++) {
-            spread(p, c, 0, size * slope[m], rows->value + (long)m * rows->n_rows);
-            spread(p, c, -size * slope[m], 0, rows->value + (long)(n + m) * rows->n_rows);
+            spread_force(p, c, 0, size * slope[m], rows->value + (long)m * rows->n_rows);
+            spread_force(p, c, -size * slope[m], 0, rows->value + (long)(n + m) * rows->n_rows);
         }
     }
 }
 
-// suction by the strength at the nose, by its direction, and by the turn of tau's, at control point 0
+// suction by the strength at the nose, by the tangent at the nose, and through tau by the tangent at control point 0
 static void suction_jacobian(const struct pressure *p, struct coupling_block *rows) {
     const struct fish *fish = p->fish;
     const int n = fish->n_nodes;
     const struct direction *const nose = &p->nose, *const first = &p->point[0].body;
     const double *const turn = fish->nose_tangent.to.weight, *const turn_first = fish->control_tangent[0].to.weight;
     const double size = -edge_dot(p->suction, nose->t), across = edge_dot(p->point[0].slip, first->n);
+
     for (int i = 0; i < 2; i++) {
         rows->value[2L * n * rows->n_rows + i * n] += p->by_strength * nose->t[i] / fish->mass[0];
         const double by_turn = size * nose->n[i] / nose->length / fish->mass[0];
@@ -324,35 +331,36 @@ void pressure_own_jacobian(const struct pressure *p, const double *y, struct cou
     const struct fish *fish = p->fish;
     const int n = fish->n_nodes;
     convection_by_places(p, rows);
-    spreading_by_places(p, rows);
+    span_by_places(p, rows);
     suction_jacobian(p, rows);
     for (int j = 0; j < fish->n_sheet; j++) {
         double *const column = rows->value + (long)(2 * n + j) * rows->n_rows;
         for (int c = 0; c < fish->n_control; c++) {
             const struct pressure_point *const point = &p->point[c];
             const double size = fish->control_density[c] * fish->integrals->strength[(long)c * fish->n_sheet + j] *
-                                fish->sheet_weight[j] * along(point);
-            spread(p, c, size * point->body.n[0], size * point->body.n[1], column);
+                                fish->sheet_weight[j] * slip_along(point);
+            spread_force(p, c, size * point->body.n[0], size * point->body.n[1], column);
             if (!(fish->strip_depth > 0)) continue;
             const double before = fish->control_density[c] * fish->sheet_weight[j] *
                                   fish->integrals->circulation[(long)c * fish->n_sheet + j];
             const double across = before * point->divergence * point->body.length * fish->control_interval[c];
-            spread(p, c, across * point->body.n[0] - before * point->edge[0],
-                   across * point->body.n[1] - before * point->edge[1], column);
+            spread_force(p, c, across * point->body.n[0] - before * point->edge[0],
+                         across * point->body.n[1] - before * point->edge[1], column);
         }
         for (int k = 0; k < n; k++) {
-            column[k] += by_strength(fish, k, j, y + fish->at.vy) / fish->mass[k];
-            column[n + k] -= by_strength(fish, k, j, y + fish->at.vx) / fish->mass[k];
+            column[k] += momentum_by_strength(fish, k, j, y + fish->at.vy) / fish->mass[k];
+            column[n + k] -= momentum_by_strength(fish, k, j, y + fish->at.vx) / fish->mass[k];
         }
     }
 }
 
-// the spanwise flow and the force along the side edges by column m of the flow
-static void spreading_by_flow(const struct pressure *p, const struct influence_block *block, long m, double *column) {
+// spanwise flow and force along the side edges, by the velocity in column m
+static void span_by_flow(const struct pressure *p, const struct influence_block *block, long m, double *column) {
     const struct fish *fish = p->fish;
     const double *const div = block->div + m * block->n_points;
     const double *const edge = block->edge ? block->edge + m * block->n_points : NULL;
     const long other = (long)block->n_columns * block->n_points;
+
     for (int c = 0; c < fish->n_control; c++) {
         const struct pressure_point *const point = &p->point[c];
         const double across = point->before * div[c] * point->body.length * fish->control_interval[c];
@@ -362,7 +370,7 @@ static void spreading_by_flow(const struct pressure *p, const struct influence_b
             force[0] -= widening * edge[c];
             force[1] -= widening * edge[other + c];
         }
-        spread(p, c, force[0], force[1], column);
+        spread_force(p, c, force[0], force[1], column);
     }
 }
 
@@ -375,9 +383,9 @@ void pressure_flow_jacobian(const struct pressure *p, const struct influence_blo
         for (int c = 0; c < fish->n_control; c++) {
             const struct direction *const body = &p->point[c].body;
             const double size = p->point[c].strength * (body->t[0] * u[c] + body->t[1] * v[c]);
-            spread(p, c, size * body->n[0], size * body->n[1], rows->value + m * rows->n_rows);
+            spread_force(p, c, size * body->n[0], size * body->n[1], rows->value + m * rows->n_rows);
         }
-        if (block->div) spreading_by_flow(p, block, m, rows->value + m * rows->n_rows);
+        if (block->div) span_by_flow(p, block, m, rows->value + m * rows->n_rows);
         // suction: tau
         const double by_slip = p->by_slip * (first->t[0] * u[0] + first->t[1] * v[0]) / fish->mass[0];
         for (int i = 0; i < 2; i++) rows->value[m * rows->n_rows + i * fish->n_nodes] += by_slip * p->nose.t[i];
@@ -387,21 +395,21 @@ void pressure_flow_jacobian(const struct pressure *p, const struct influence_blo
 void pressure_update_rate(struct pressure *p, const double *y, const double *yp) {
     const struct fish *fish = p->fish;
     memset(p->momentum_rate, 0, 2 * (size_t)fish->n_nodes * sizeof *p->momentum_rate);
-    add_product(p, y + fish->at.vx, p->momentum_rate);
-    find_matrix(p, yp);
-    add_product(p, y + fish->at.x, p->momentum_rate);
-    find_matrix(p, y);
+    pressure_add_product(p, y + fish->at.vx, p->momentum_rate);
+    pressure_find_matrix(p, yp);
+    pressure_add_product(p, y + fish->at.x, p->momentum_rate);
+    pressure_find_matrix(p, y);
 }
 
-// how much of a kink the sheet has at the tail, from its strengths or their rates
-static double kink_of(const struct fish *fish, const double *y) {
+// amplitude of the kink of the sheet at the tail, from the strengths or from the rates of the strengths
+static double tail_kink(const struct fish *fish, const double *y) {
     const int last = fish->n_sheet - 1;
     const double *const strength = y + fish->at.gamma;
     return fish->sheet_weight[last - 1] * strength[last - 1] - 2 * fish->sheet_weight[last] * strength[last];
 }
 
-// the depth of a strip at control point c
-static double depth_of(const struct fish *fish, int c) {
+// depth of the strip at control point c
+static double strip_depth_at(const struct fish *fish, int c) {
     return 4 * sqrt(2 * fish->point_half[c]);
 }
 
@@ -409,18 +417,20 @@ double pressure_jump(const struct pressure *p, int c, const double *y, const dou
     const struct fish *fish = p->fish;
     const double *const circulation = fish->integrals->circulation + (long)c * fish->n_sheet;
     const struct pressure_point *const point = &p->point[c];
-    // the length of the line around the control point, in which its circulation lies
+
+    // length of the interval around the control point, which contains the circulation of the point
     const double length = point->body.length * fish->control_interval[c];
-    double rate = fish->integrals->kink_circulation[c] * kink_of(fish, yp);
+    double rate = fish->integrals->kink_circulation[c] * tail_kink(fish, yp);
     for (int j = 0; j < fish->n_sheet; j++) {
         rate += circulation[j] * fish->sheet_weight[j] * yp[fish->at.gamma + j];
     }
-    const double around = point->circulation + fish->integrals->kink_strength[c] * kink_of(fish, y);
-    const double jump = rate + around / length * along(point);
+
+    const double around = point->circulation + fish->integrals->kink_strength[c] * tail_kink(fish, y);
+    const double jump = rate + around / length * slip_along(point);
     if (!(fish->strip_depth > 0)) return fish->fluid_density * jump;
     const double before =
-        point->before / fish->control_density[c] + fish->integrals->kink_circulation[c] * kink_of(fish, y);
-    return fish->fluid_density * fish->strip_depth / depth_of(fish, c) * (jump + before * point->divergence);
+        point->before / fish->control_density[c] + fish->integrals->kink_circulation[c] * tail_kink(fish, y);
+    return fish->fluid_density * fish->strip_depth / strip_depth_at(fish, c) * (jump + before * point->divergence);
 }
 
 void pressure_of_edge(const struct pressure *p, int k, const double *y, const double *yp, double force[2]) {
@@ -431,21 +441,22 @@ void pressure_of_edge(const struct pressure *p, int k, const double *y, const do
         if ((int)u != k) continue;
         const struct direction *const body = &p->point[c].body;
         const double length = body->length * fish->control_interval[c];
-        const double depth = fish->strip_depth > 0 ? depth_of(fish, c) : fish->depth[k];
+        const double depth = fish->strip_depth > 0 ? strip_depth_at(fish, c) : fish->depth[k];
         const double size = -depth * pressure_jump(p, c, y, yp) * length;
         for (int i = 0; i < 2; i++) force[i] += size * body->n[i];
     }
 }
 
-static double moment_of(const double arm[2], const double vector[2]) {
+static double moment_about(const double arm[2], const double vector[2]) {
     return arm[0] * vector[1] - arm[1] * vector[0];
 }
 
 struct pressure_forces pressure_sum(const struct pressure *p, const double about[2], const double *y) {
     const struct fish *fish = p->fish;
     const int n = fish->n_nodes;
-    const double tau = along(&p->point[0]), strength = fish->nose_factor * y[fish->at.gamma];
+    const double tau = slip_along(&p->point[0]), strength = fish->nose_factor * y[fish->at.gamma];
     struct pressure_forces sum = {.leading_edge_a0 = fabs(tau) > 0 ? strength / tau : NAN};
+
     for (int k = 0; k < n; k++) {
         const double arm[2] = {y[fish->at.x + k] - about[0], y[fish->at.y + k] - about[1]};
         const double velocity[2] = {y[fish->at.vx + k], y[fish->at.vy + k]};
@@ -455,17 +466,19 @@ struct pressure_forces pressure_sum(const struct pressure *p, const double about
             sum.pressure[i] += force[i];
             sum.momentum[i] += momentum[i];
         }
-        sum.pressure_moment += moment_of(arm, force);
-        sum.momentum_moment += moment_of(arm, momentum);
+        sum.pressure_moment += moment_about(arm, force);
+        sum.momentum_moment += moment_about(arm, momentum);
         sum.pressure_power += edge_dot(force, velocity);
         if (k > 0) continue;
-        sum.suction_moment = moment_of(arm, p->suction);
+        sum.suction_moment = moment_about(arm, p->suction);
         sum.suction_power = edge_dot(p->suction, velocity);
         sum.separation_power = edge_dot(p->separation, velocity);
     }
+
     for (int i = 0; i < 2; i++) {
         sum.suction[i] = p->suction[i];
         sum.separation[i] = p->separation[i];
     }
+
     return sum;
 }

@@ -1,17 +1,17 @@
-/* tail_flux.c: m_L (min(w_t, 0) w_n n - w_n^2/2 t) with direction and flow at the tail. */
+/* tail_flux.c: m_L (min(w_t, 0) w_n n - w_n^2/2 t) with direction and velocity of the fluid at the tail. */
 #include "force/tail_flux.h"
 
 #include <math.h>
 
 #include "body/edge.h"
 
-/* Extrapolation to the tail, half an edge behind the middle of the last one; the last edge first: of the angles of
- * three edges by a parabola, of the velocity at two midpoints by a line. */
+/* Extrapolation weights to the tail, half an edge behind the midpoint of the last edge; the last edge comes first.
+ * Angle: parabola through three edges. Velocity: line through two midpoints. */
 enum { N_ANGLES = 3, N_MIDPOINTS = 2 };
 static const double angle_weight[N_ANGLES] = {15.0 / 8, -10.0 / 8, 3.0 / 8};
 static const double flow_weight[N_MIDPOINTS] = {1.5, -0.5};
 
-// the last edges, the last one first; direction of the body at the tail; velocity of the tail relative to the fluid
+// the last edges (last edge first); direction of the body at the tail; velocity of the tail relative to the fluid
 struct tail {
     struct edge edge[N_ANGLES];
     double t[2], n[2];
@@ -27,7 +27,7 @@ static struct tail tail_at(const struct fish *fish, const struct flow_at_body *f
     const int last = fish->n_edges - 1;
     for (int i = 0; i < N_ANGLES; i++) tail.edge[i] = edge_at(fish, last - i, y);
 
-    // turn the last edge by what the weights, whose sum is 1, leave of the angles of the last two joints
+    // extrapolate the direction: the weights sum to 1, so the turn depends only on the angles of the last two joints
     const double turn = (angle_weight[0] - 1) * angle_between(&tail.edge[1], &tail.edge[0]) -
                         angle_weight[2] * angle_between(&tail.edge[2], &tail.edge[1]);
     const double c = cos(turn), s = sin(turn);
@@ -41,6 +41,7 @@ static struct tail tail_at(const struct fish *fish, const struct flow_at_body *f
         tail.w[i] = y[edge_velocity(fish, i, last + 1)];
         for (int k = 0; k < N_MIDPOINTS; k++) tail.w[i] -= flow_weight[k] * u[i][flow_midpoint(fish, last - k)];
     }
+
     tail.wt = edge_dot(tail.w, tail.t);
     tail.wn = edge_dot(tail.w, tail.n);
     return tail;
@@ -50,15 +51,15 @@ int tail_flux_exists(const struct fish *fish) {
     return fish->tail_added_mass > 0;
 }
 
-static void force_at(const struct fish *fish, const struct tail *tail, double force[2]) {
+static void tail_force(const struct fish *fish, const struct tail *tail, double force[2]) {
     const double leaving = fmin(tail->wt, 0), wn = tail->wn;
     for (int i = 0; i < 2; i++) {
         force[i] = fish->tail_added_mass * (leaving * wn * tail->n[i] - wn * wn / 2 * tail->t[i]);
     }
 }
 
-// the derivatives of the force: [component][component of w], and by a turn of the tail (dt = n, dn = -t)
-static void slope_at(const struct fish *fish, const struct tail *tail, double by_velocity[2][2], double by_turn[2]) {
+// derivatives of the force: by w [component][component of w], and by a rotation of the tail (dt = n, dn = -t)
+static void tail_slope(const struct fish *fish, const struct tail *tail, double by_velocity[2][2], double by_turn[2]) {
     const double *const t = tail->t, *const n = tail->n, mass = fish->tail_added_mass;
     const double wt = tail->wt, wn = tail->wn, leaving = fmin(wt, 0), leaves = wt < 0;
     for (int i = 0; i < 2; i++) {
@@ -73,7 +74,7 @@ void tail_flux_force(const struct fish *fish, const struct flow_at_body *flow, c
     force[0] = force[1] = 0;
     if (!tail_flux_exists(fish)) return;
     const struct tail tail = tail_at(fish, flow, y);
-    force_at(fish, &tail, force);
+    tail_force(fish, &tail, force);
 }
 
 void tail_flux_jacobian(const struct fish *fish, const struct flow_at_body *flow, const double *y,
@@ -82,7 +83,7 @@ void tail_flux_jacobian(const struct fish *fish, const struct flow_at_body *flow
     const struct tail tail = tail_at(fish, flow, y);
     const int node = fish->n_nodes - 1;
     double by_velocity[2][2], by_turn[2];
-    slope_at(fish, &tail, by_velocity, by_turn);
+    tail_slope(fish, &tail, by_velocity, by_turn);
     for (int i = 0; i < 2; i++) {
         const int row = edge_acceleration(fish, i, node);
         for (int j = 0; j < 2; j++) {
@@ -105,7 +106,7 @@ void tail_flux_flow_jacobian(const struct fish *fish, const struct flow_at_body 
     const struct tail tail = tail_at(fish, flow, y);
     const int node = fish->n_nodes - 1, last = fish->n_edges - 1;
     double by_velocity[2][2], by_turn[2];
-    slope_at(fish, &tail, by_velocity, by_turn);
+    tail_slope(fish, &tail, by_velocity, by_turn);
     for (int k = 0; k < N_MIDPOINTS; k++) {
         const double *const du = block->u + flow_midpoint(fish, last - k);
         const double *const dv = block->v + flow_midpoint(fish, last - k);
@@ -123,6 +124,6 @@ double tail_flux_power(const struct fish *fish, const struct flow_at_body *flow,
     if (!tail_flux_exists(fish)) return 0;
     const struct tail tail = tail_at(fish, flow, y);
     double force[2];
-    force_at(fish, &tail, force);
+    tail_force(fish, &tail, force);
     return force[0] * y[fish->at.vx + fish->n_nodes - 1] + force[1] * y[fish->at.vy + fish->n_nodes - 1];
 }

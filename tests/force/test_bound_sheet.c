@@ -1,6 +1,5 @@
-/* test_bound_sheet.c: impermeability, Kelvin, Kutta; flat plate and circular arc in closed form: doc/model.md, sections
- * 6,
- * 7 and 12. */
+/* test_bound_sheet.c: impermeability, Kelvin, Kutta; flat plate and circular arc in closed form. doc/model.md, sections
+ * 6, 7 and 12. */
 #include <stdio.h>
 
 #include "flow/flow_at_bodies.h"
@@ -19,7 +18,7 @@ static void of_fish(struct setup *setup, int f, const double **u, const double *
 }
 
 static const double removed = 0.3, chi = 0.6;
-static enum bound_sheet_law law; /* of the pass that is compared */
+static enum bound_sheet_law law; /* law of the Jacobian under test */
 
 static void value_of_sheet(struct setup *setup, const double *y, const double *yp, double *value) {
     school_flow(setup, y);
@@ -80,8 +79,8 @@ static void derivatives_agree_with_differences(void **state) {
     }
 }
 
-// A plate at rest along x in the stream (cos alpha, sin alpha), its bound circulations in q (m). The free vortex at its
-// tail is so wide that it has no velocity: what is left is the closed problem of the bound sheet.
+// Bound circulations q (m) of a plate at rest along x in the stream (cos alpha, sin alpha). The smoothing of the free
+// vortex is so wide that the vortex induces no velocity: only the bound sheet remains.
 static void solve_plate(const char *collocation, const char *kutta, int m, const char *more, double *q) {
     char text[512];
     snprintf(text, sizeof text,
@@ -103,6 +102,7 @@ static void solve_plate(const char *collocation, const char *kutta, int m, const
 
 static void plate_without_circulation_is_exact_with_chebyshev_points(void **state) {
     (void)state;
+
     // gamma = -2 w (L/2 - s)/sqrt(s (L-s)) with w = 0.6, as circulations of Gauss-Lobatto quadrature
     for (int m = 5; m <= 33; m += 7) {
         double q[64], want[64];
@@ -110,7 +110,7 @@ static void plate_without_circulation_is_exact_with_chebyshev_points(void **stat
         for (int j = 0; j < m; j++) {
             want[j] = -0.6 * pi / (m - 1) * cos(pi * j / (m - 1)) * (j == 0 || j == m - 1 ? 0.5 : 1);
         }
-        // the rounding of a linear system whose condition grows like M^2
+        // rounding of a linear system with a condition number of order M^2
         NEAR_ARRAY(m, q, want, 1e-12, 0);
     }
 }
@@ -127,7 +127,7 @@ static void plate_with_kutta_condition_is_exact_with_chebyshev_points(void **sta
     }
 }
 
-// largest error of the strengths in the middle of the plate without circulation, relative to those of a plate
+// largest error of the strengths in the middle of a plate without circulation, relative to the strengths of the plate
 static double error_of_midpoints(int m) {
     static double q[300];
     solve_plate("midpoint", "rate", m, "", q);
@@ -135,6 +135,7 @@ static double error_of_midpoints(int m) {
     for (int j = m / 4; j < 3 * m / 4; j++) {
         error = fmax(error, fabs(q[j] / (-0.6 * pi / (m - 1)) - cos(pi * j / (m - 1))));
     }
+
     return error;
 }
 
@@ -142,10 +143,12 @@ static void plate_with_midpoints_converges(void **state) {
     (void)state;
     const double coarse = error_of_midpoints(41), fine = error_of_midpoints(81);
     assert_true(fine < 0.03);
+
     // first order: midpoints of chords are not the points of a quadrature
     assert_true(coarse / fine > 1.8);
-    // but the sum of the strengths with Kutta's condition is exact on any mesh: it is (L/2) w times 2 pi by Vieta's
-    // formula for the polynomial whose zeros are the control points, which are the means of their neighbours
+
+    // With Kutta's condition the sum of the strengths is exact on any mesh: (L/2) w times 2 pi, by Vieta's formula for
+    // the polynomial whose zeros are the control points, the means of neighbouring bound points.
     for (int m = 5; m <= 33; m += 7) {
         double q[64], total = 0;
         solve_plate("midpoint", "edge", m, "", q);
@@ -154,7 +157,7 @@ static void plate_with_midpoints_converges(void **state) {
     }
 }
 
-// bound circulation of a plate beside a vortex of circulation 1 at (0.4, 0.3), which has a smoothing of its own
+// bound circulation of a plate beside a vortex of circulation 1 at (0.4, 0.3) with smoothing 0.2
 static double circulation_beside_a_vortex(int m) {
     char text[512];
     snprintf(text, sizeof text,
@@ -177,7 +180,8 @@ static void chebyshev_points_converge_spectrally(void **state) {
     const double limit = circulation_beside_a_vortex(161);
     double before = fabs(circulation_beside_a_vortex(11) - limit);
     assert_true(before < 0.1 && before > 1e-9);
-    // ten more points are worth a factor, not a power: the error falls tenfold each time until rounding
+
+    // spectral convergence: ten more points reduce the error tenfold, down to rounding
     for (int m = 21; m <= 51; m += 10) {
         const double error = fabs(circulation_beside_a_vortex(m) - limit);
         assert_true(error < before / 10 || error < 1e-12);
@@ -186,7 +190,7 @@ static void chebyshev_points_converge_spectrally(void **state) {
 }
 
 /* The bound circulation, under Kutta's condition, of a body of length 1 at rest in the stream (cos 10, sin 10 degrees).
- * place gives its nodes as functions of the arc length. What is shed has no velocity. */
+ * place: positions of the nodes as functions of the arc length. Shed circulation induces no velocity. */
 typedef void line(double s, double place[2]);
 static double circulation_of_a_bent_body(line *place, const char *curve, int n_nodes, int m) {
     char text[512];
@@ -205,6 +209,7 @@ static double circulation_of_a_bent_body(line *place, const char *curve, int n_n
         setup.state->y[fish->at.x + k] = at[0];
         setup.state->y[fish->at.y + k] = at[1];
     }
+
     struct initial_conditions *consistent;
     school_ok(initial_conditions_create(&consistent, setup.residual));
     school_ok(initial_conditions_solve(consistent, 0, setup.state->y, setup.state->yp));
@@ -214,7 +219,7 @@ static double circulation_of_a_bent_body(line *place, const char *curve, int n_n
     return circulation;
 }
 
-// an arc of half opening 30 degrees that bulges up; its circulation by Joukowski's map
+// an arc of half opening 30 degrees, convex upwards; circulation by Joukowski's map
 static void arc(double s, double place[2]) {
     const double angle = pi / 6 * (2 * s - 1), radius = 3 / pi;
     place[0] = radius * (sin(angle) + 0.5);
@@ -231,7 +236,7 @@ static void smooth_curve_has_the_circulation_of_an_arc(void **state) {
     }
 }
 
-// a default fish in mid-beat: the curvature of its full wave, integrated by Simpson's rule
+// a default fish in mid-beat: curvature of the full wave, integrated by Simpson's rule
 static void beat(double s, double place[2]) {
     enum { N = 2000 };
     double angle = 0;
@@ -253,6 +258,7 @@ static void beat(double s, double place[2]) {
 static void smooth_curve_and_polygon_of_a_bent_fish_have_one_limit(void **state) {
     (void)state;
     const double limit = circulation_of_a_bent_body(beat, "smooth", 641, 65);
+
     // about 16 N^-3.5 and 2.5 N^-1.5 on this body
     const int n_nodes[] = {17, 33, 65};
     double smooth[3], polygon[3];
@@ -260,6 +266,7 @@ static void smooth_curve_and_polygon_of_a_bent_fish_have_one_limit(void **state)
         smooth[i] = fabs(circulation_of_a_bent_body(beat, "smooth", n_nodes[i], 65) / limit - 1);
         polygon[i] = fabs(circulation_of_a_bent_body(beat, "polygon", n_nodes[i], 65) / limit - 1);
     }
+
     assert_true(smooth[0] < 1e-3 && smooth[1] < 1e-4 && smooth[2] < 1e-5);
     assert_true(log2(smooth[0] / smooth[1]) > 3 && log2(smooth[1] / smooth[2]) > 3);
     assert_true(polygon[0] > 1e-2 && log2(polygon[1] / polygon[2]) > 1.3);
@@ -272,6 +279,7 @@ static void strength_is_circulation_per_length_of_the_body_as_it_is(void **state
     school_build(&setup, TIME "sheet: {curve: smooth}\nfish: [{sheet_points: 9, length: 1.2, start: {heading: 30}}]\n");
     const struct fish *fish = setup.school->fish;
     double *const y = setup.state->y;
+
     // stretched by a tenth
     for (int i = fish->at.x; i < fish->at.vx; i++) y[i] *= 1.1;
     const double h = pi / 8;
@@ -280,7 +288,8 @@ static void strength_is_circulation_per_length_of_the_body_as_it_is(void **state
         const double q = 0.7 * fish->sheet_weight[j];
         NEAR(bound_sheet_strength(fish, j, y), q / (1.1 * 0.6 * h * sin(j * h)), 0, 1e-13);
     }
-    // at the ends the quadrature has no weight
+
+    // the quadrature weight vanishes at both ends
     y[fish->at.gamma + 8] = 0.7;
     NEAR(bound_sheet_strength(fish, 8, y), 0.7, 0, 0);
     NEAR(fish->sheet_weight[8], 0.3 * (1 - cos(h)), 1e-15, 0);
@@ -289,8 +298,8 @@ static void strength_is_circulation_per_length_of_the_body_as_it_is(void **state
 
 static void end_correction_makes_a_sheet_that_ends_with_a_step_exact(void **state) {
     (void)state;
-    // a plate along x at rest with the strength s/L, which is 0 at the tail itself: normal velocity by Cauchy's
-    // integral
+
+    // a plate along x at rest with the strength s/L, except 0 at the tail point: normal velocity by Cauchy's integral
     for (int m = 5; m <= 33; m += 14) {
         char text[200];
         snprintf(text, sizeof text,
@@ -310,7 +319,7 @@ static void end_correction_makes_a_sheet_that_ends_with_a_step_exact(void **stat
         for (int c = 0; c < m - 1; c++) {
             const double sigma = fish_mean(&fish->control_point[c], fish->arc) / 1.2;
             with[c] = (sigma * log(sigma / (1 - sigma)) - 1) / (2 * pi);
-            // the correction is in proportion to the strength next to the tail, not at it
+            // the correction is proportional to the strength next to the tail, not to the strength at the tail
             const double strength = y[fish->at.gamma + m - 2];
             setup.value[fish->at.gamma + c] +=
                 (1 / strength - 1) * bound_sheet_end_correction(fish, c, m - 2) * strength;
@@ -349,6 +358,7 @@ static void shedding_rate_is_edge_strength_times_slip(void **state) {
     of_fish(&setup, 0, &u, &v);
     double slip[2];
     flow_slip(setup.residual->flow, 0, y, slip);
+
     // the last two bound points lie on the last edge
     const double e[2] = {y[fish->at.x + 6] - y[fish->at.x + 5], y[fish->at.y + 6] - y[fish->at.y + 5]};
     const double along = (slip[0] * e[0] + slip[1] * e[1]) / hypot(e[0], e[1]);

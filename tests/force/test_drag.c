@@ -1,4 +1,4 @@
-/* test_drag.c: the drag on an edge, and the moment of what the flow adds: doc/model.md, sections 9 and 11. */
+/* test_drag.c: drag on an edge, and moment of the drag caused by the flow. doc/model.md, sections 9 and 11. */
 #include <stdio.h>
 
 #include "flow/flow_at_bodies.h"
@@ -14,11 +14,12 @@ static const double *flow_v(const struct setup *setup, int f) {
     return setup->residual->flow->v + setup->residual->flow->points[f].first;
 }
 
-// the derivatives of the drag on an edge against differences, at a velocity; tolerance relative to the largest of them
+// derivatives of the drag on an edge against differences, at a velocity; tolerance relative to the largest derivative
 static void compare_slope(const struct fish *fish, int k, const double w[2], double rtol) {
     const double size = hypot(w[0], w[1]), h = 1e-5, angle = 0.7;
     const struct edge edge = {.t = {cos(angle), sin(angle)}, .n = {-sin(angle), cos(angle)}};
     double by_velocity[2][2], by_turn[2], force[2][2];
+
     drag_slope(fish, k, &edge, w, by_velocity, by_turn);
     for (int j = 0; j < 3; j++) {
         const double step = j == 2 ? h : h * size;
@@ -44,7 +45,7 @@ static void slope_of_the_force_agrees_with_differences(void **state) {
     for (int i = 0; i < 3; i++) {
         struct setup setup;
         school_build(&setup, texts[i]);
-        // the force is quadratic in w and in cosine and sine: what is cut off is of size h^2
+        // the force is quadratic in w and in cosine and sine: truncation error of order h^2
         compare_slope(setup.school->fish, 2, (const double[]){-0.4, 0.3}, 1e-8);
         school_clear(&setup);
     }
@@ -59,7 +60,7 @@ static void slope_of_the_force_agrees_with_differences(void **state) {
          "        wave: {frequency: 0}, start: {speed: 0.5}, drag: {skin: boundary_layer, normal: 0" more "}}]\n"
 #define BARE ", form: 1, waving: 1"
 
-// the friction of a plate that goes at this speed, over that of a laminar boundary layer
+// friction of a plate at this speed over friction of a laminar boundary layer
 static double friction_over_blasius(const char *text, double speed) {
     struct setup setup;
     school_build(&setup, text);
@@ -72,23 +73,25 @@ static double friction_over_blasius(const char *text, double speed) {
         NEAR(force[1], 0, 0, 0);
         total += force[0];
     }
+
     school_clear(&setup);
     return total / (1.328 * 3 * 0.8 * sqrt(nu * 2) * pow(speed, 1.5));
 }
 
-// half of the drag coefficient 0.074 Re^(-1/5) of a side is 0.664 Re^(-1/2) of Blasius, times their ratio
+// half of the drag coefficient 0.074 Re^(-1/5) of a side over Blasius' 0.664 Re^(-1/2)
 static double turbulent_over_blasius(double reynolds) {
     return 0.074 * pow(reynolds, -0.2) / (1.328 * pow(reynolds, -0.5));
 }
 
 static void boundary_layer_of_a_plate_is_laminar_turbulent_or_between(void **state) {
     (void)state;
-    // u0 = 1e-4 * 0.5 m/s; far from the transition the blend leaves (Re/Re_t)^4
+
+    // u0 = 1e-4 * 0.5 m/s; far from the transition the error of the blend is (Re/Re_t)^4
     NEAR(friction_over_blasius(PLATE("9", BARE), 0.01), 1, 0, 1e-4);
     NEAR(friction_over_blasius(PLATE("9", BARE ", transition: 1.0e+9"), 1), 1, 0, 1e-6);
     NEAR(friction_over_blasius(PLATE("9", BARE ", transition: 0"), 1), turbulent_over_blasius(2e6), 0, 1e-6);
-    // with a sudden transition the one law ends where Re is 2e5, and the other begins there; the blend is smooth,
-    // over a factor of 2 in Re
+
+    // A sudden transition would switch the law at Re = 2e5; the blend is smooth, over a factor of 2 in Re.
     const double reynolds[] = {3e5, 9e5, 3e6, 1e7};
     for (int i = 0; i < 4; i++) {
         const double got = friction_over_blasius(PLATE("65", BARE), reynolds[i] * 1e-6 / 2);
@@ -97,7 +100,7 @@ static void boundary_layer_of_a_plate_is_laminar_turbulent_or_between(void **sta
     }
 }
 
-// at the Reynolds number of the transition of the middle of an edge half of the friction there is turbulent
+// at the transition Reynolds number of the middle of an edge, half of the friction of the edge is turbulent
 static void transition_of_an_edge_is_that_of_its_middle(void **state) {
     (void)state;
     struct setup setup;
@@ -112,13 +115,15 @@ static void transition_of_an_edge_is_that_of_its_middle(void **state) {
         const double half = fish->drag_tangential[k] * pow(speed, 1.5) + fish->drag_turbulent[k] * pow(speed, 1.8);
         NEAR(force[0], half / 2, 0, 1e-5);
     }
+
     school_clear(&setup);
 }
 
 static void factors_multiply_the_friction(void **state) {
     (void)state;
     const double form = 1 + 2 * 0.1 + 60 * 1e-4;
-    // laminar: both; turbulent: that of the thickness alone
+
+    // laminar: form and waving; turbulent: form factor of the thickness only
     NEAR(friction_over_blasius(PLATE("9", ""), 0.01), form, 0, 1e-4);
     NEAR(friction_over_blasius(PLATE("9", ", waving: 1.7"), 0.01), 1.7 * form, 0, 1e-4);
     NEAR(friction_over_blasius(PLATE("9", ", waving: 1.7, form: 1.2"), 0.01), 1.7 * 1.2, 0, 1e-4);
@@ -151,7 +156,7 @@ static void a_body_with_a_wave_has_the_factor_of_waving(void **state) {
     }
 }
 
-// across transition, at rest and at high speed; the friction takes energy from the body at any velocity
+// across transition, at rest and at high speed; friction takes energy from the body at any velocity
 static void boundary_layer_is_smooth_and_takes_energy(void **state) {
     (void)state;
     const char *const texts[] = {PLATE("9", ""), PLATE("9", ", waving: 1.7"), PLATE("9", ", waving: 0.6, form: 3"),
@@ -168,11 +173,11 @@ static void boundary_layer_is_smooth_and_takes_energy(void **state) {
                 double force[2];
                 drag_friction(fish, k, &edge, w, force);
                 assert_true(edge_dot(force, w) < 0);
-                // second differences of h = 1e-5, and rounding over h
+                // second differences of step h = 1e-5, and rounding over h
                 compare_slope(fish, k, w, 2e-9);
             }
         }
-        // at rest: no force, and the slope of (u0)^(1/2), finite
+        // at rest: zero force, and the finite slope (u0)^(1/2)
         double force[2], by_velocity[2][2], by_turn[2];
         const struct edge edge = {.t = {1, 0}, .n = {0, 1}};
         drag_slope(fish, 0, &edge, (const double[]){0, 0}, by_velocity, by_turn);
@@ -202,10 +207,12 @@ static void laminar_friction_of_a_plate_is_that_of_its_boundary_layer(void **sta
         total[1] += friction[0];
         across += fabs(force[1]) + fabs(friction[1]);
     }
+
     const double blasius = 1.328 * 3 * 0.8 * sqrt(0.002 * 2) * pow(0.7, 1.5);
     for (int i = 0; i < 2; i++) NEAR(total[i], blasius, 0, 1e-8);  // u0 = 1e-4 * 0.5 m/s
     NEAR(across, 0, 0, 0);
-    // near rest it is linear: (u0)^(1/2) u
+
+    // near rest the friction is linear: (u0)^(1/2) u
     drag_force(fish, 0, &edge, slow, force);
     NEAR(force[0], -blasius / pow(0.7, 1.5) * sqrt(1.0 / 6) * sqrt(0.5e-4) * 1e-9, 0, 1e-8);
     school_clear(&setup);
@@ -221,6 +228,7 @@ static double moment_about(const struct fish *fish, const double *u, const doubl
         drag_force(fish, k, &edge, w, force);
         moment += (edge.middle[0] - com[0]) * force[1] - (edge.middle[1] - com[1]) * force[0];
     }
+
     return moment;
 }
 
@@ -239,8 +247,10 @@ static void moment_is_that_of_the_forces_that_the_flow_adds(void **state) {
         com[0] += fish->mass[k] * y[fish->at.x + k] / fish->total_mass;
         com[1] += fish->mass[k] * y[fish->at.y + k] / fish->total_mass;
     }
+
     const double moment =
         moment_about(fish, flow_u(&setup, 0), flow_v(&setup, 0), y, com) - moment_about(fish, still, still, y, com);
+
     // rho w L^2 (L f)^2
     const double scale = 1000 * 0.25 * 1.1 * 1.1 * 1.1 * pow(1.1 * 1.2, 2);
     NEAR(drag_moment(fish, flow_u(&setup, 0), flow_v(&setup, 0), y), moment / scale, 1e-14, 1e-12);

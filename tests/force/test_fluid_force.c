@@ -54,7 +54,7 @@ static void jacobian_agrees_with_differences(void **state) {
         TIME "fish: [{sheet_points: 9, force: reactive}]\n",
         TIME
         "fish: [{sheet_points: 9, force: reactive, drag: {normal: 0, tangential: 0}, added_mass: {extent: depth}}]\n",
-        // swimming backwards: nothing leaves along a tail that leads
+        // swimming backwards: no flux along a leading tail
         TIME "fish: [{sheet_points: 9, force: reactive, start: {speed: -2}, added_mass: {extent: depth}}]\n",
         TIME
         "fluid: {velocity: [0.3, -0.2], shear: 0.7, gust: {amplitude: 0.4, frequency: 1.3}}\n"
@@ -75,7 +75,7 @@ static void jacobian_agrees_with_differences(void **state) {
     }
 }
 
-// a plate along the heading 180 degrees that moves with (vx, vy) in still fluid: total force into (fx, fy)
+// total force (fx, fy) on a plate along the heading 180 degrees that moves with (vx, vy) in still fluid
 static void force_on_plate(const char *keys, double vx, double vy, double ay, double force[2]) {
     char text[256];
     snprintf(text, sizeof text, TIME "fish: [{body: {profile: uniform, thickness: 0.1}, %s}]\n", keys);
@@ -87,6 +87,7 @@ static void force_on_plate(const char *keys, double vx, double vy, double ay, do
         setup.state->y[fish->at.vy + k] = vy;
         setup.state->y[fish->at.ay + k] = ay;
     }
+
     const double still[64] = {0};
     const struct flow_at_body flow = {.u = still, .v = still};
     fluid_force_residual(fish, &flow, setup.state->y, setup.value);
@@ -95,11 +96,13 @@ static void force_on_plate(const char *keys, double vx, double vy, double ay, do
         force[0] -= setup.value[fish->at.ax + k];
         force[1] -= setup.value[fish->at.ay + k];
     }
+
     school_clear(&setup);
 }
 
 static void forces_on_a_plate_are_the_formulas(void **state) {
     (void)state;
+
     // rho 1000, L 1, h 0.1, w 0.25, C_F 0.02, C_D 0.5, C_A 1.5
     const double pi = acos(-1), ct = 1000 * pi * 0.02 * 0.35 / 8, cn = 1000 * 0.5 * 0.1 / 2,
                  mu = pi * 1000 * 1.5 * 0.01 / 4;
@@ -115,7 +118,8 @@ static void forces_on_a_plate_are_the_formulas(void **state) {
     NEAR(force[1], -12 * cn, 0, 1e-13);
     force_on_plate("drag: {tangential: 0.02}", 0, 0, 5, force);
     NEAR(force[1], -5 * mu, 0, 1e-13);
-    // the whole wetted surface; a linear speed of 0.4 lengths per beat, 1.5 beats per second
+
+    // whole wetted surface; linear speed of 0.4 lengths per beat at 1.5 beats per second
     force_on_plate("force: reactive, drag: {tangential: 0.02}, added_mass: {coefficient: 0}", -2, 0, 0, force);
     NEAR(force[0], 8 * ct, 0, 1e-13);
     force_on_plate(
@@ -165,14 +169,16 @@ static void added_mass_takes_up_no_tangential_acceleration(void **state) {
     const double still[64] = {0};
     const struct flow_at_body flow = {.u = still, .v = still};
     fluid_force_residual(fish, &flow, setup.state->y, setup.value);
-    // the normal of a body along 180 degrees is (0, 1) up to rounding
+
+    // the normal of a body along 180 degrees is (0, 1) within rounding
     for (int i = fish->at.ax; i < fish->at.gamma; i++) NEAR(setup.value[i], 0, 1e-13, 0);
     school_clear(&setup);
 }
 
 static void the_reactive_force_does_not_feel_the_own_wake(void **state) {
     (void)state;
-    // the nose after 1 s, from rest; the smoothing of its wake changes what a body feels of it
+
+    // displacement of the nose after 1 s, from rest; the smoothing of the wake changes the velocity at the body
     const struct {
         const char *force;
         double smoothing;
@@ -192,7 +198,9 @@ static void the_reactive_force_does_not_feel_the_own_wake(void **state) {
         nose[i][1] = simulation->state->y[fish->at.y];
         simulate_free(simulation);
     }
-    // the tolerance of a step is 1e-7 m, and Newton's iteration, which sees the sheets, ends at less of it
+
+    // the tolerance of a step is 1e-7 m; Newton's iteration, which includes the sheets, stops at a fraction of this
+    // tolerance
     NEAR_ARRAY(2, nose[0], nose[1], 1e-7, 0);
     NEAR_ARRAY(2, nose[2], nose[1], 1e-7, 0);
     assert_true(hypot(nose[4][0] - nose[3][0], nose[4][1] - nose[3][1]) > 1e-4);

@@ -1,5 +1,5 @@
-/* test_pressure.c: the added mass, impulses, and the force of the pressure: doc/model.md, section 15. The Jacobian is
- * compared with differences in test_residual.c. */
+/* test_pressure.c: added mass, impulses, and force of the pressure. doc/model.md, section 15. test_residual.c compares
+ * the Jacobian with differences. */
 #include <lapacke.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -26,7 +26,8 @@ static void build_plate(struct setup *setup, int nodes, int points, const char *
              "        body: {profile: uniform, thickness: 0.1, depth: 1, %s}}]\n",
              nodes, 2 * nodes - 1, more);
     school_settings(&setup->values, text);
-    // as the keys refuse it
+
+    // the keys do not allow this value
     setup->values.school.fish[0].sheet_points = points;
     school_ok(fish_school_create(&setup->school, &setup->values.school));
     school_ok(state_create(&setup->state, setup->school));
@@ -36,7 +37,7 @@ static void build_plate(struct setup *setup, int nodes, int points, const char *
     setup->term = NULL;
 }
 
-// the added momentum across the plate of its nodes where they have these velocities across it and nothing is shed
+// added momentum of the nodes across the plate, for these velocities across the plate and no shed circulation
 static void added_momentum(struct setup *setup, const double *velocity, double *momentum) {
     const struct fish *fish = setup->school->fish;
     for (int k = 0; k < fish->n_nodes; k++) setup->state->y[fish->at.vy + k] = velocity[k];
@@ -49,8 +50,8 @@ static void added_momentum(struct setup *setup, const double *velocity, double *
     for (int k = 0; k < fish->n_nodes; k++) momentum[k] = setup->residual->pressure[0]->momentum[fish->n_nodes + k];
 }
 
-// pi/4 rho L^2 of heave, pi/128 rho L^4 of a rotation about the middle. What is left is the end correction's, of order
-// M^-4: it is meant for a sheet that sheds
+// Heave: pi/4 rho L^2. Rotation about the middle: pi/128 rho L^4. The error of order M^-4 comes from the end
+// correction, which assumes a sheet that sheds.
 static void added_mass_of_a_plate_is_that_of_potential_flow(void **state) {
     (void)state;
     const struct {
@@ -76,7 +77,7 @@ static void added_mass_of_a_plate_is_that_of_potential_flow(void **state) {
     }
 }
 
-// the smallest eigenvalue of the symmetric part of the matrix from velocities across the plate to momenta
+// smallest eigenvalue of the symmetric part of the matrix from velocities across the plate to momenta
 static double smallest_eigenvalue(int nodes, int points) {
     struct setup setup;
     build_plate(&setup, nodes, points, "density: 1");
@@ -86,9 +87,11 @@ static double smallest_eigenvalue(int nodes, int points) {
         velocity[i] = 1;
         added_momentum(&setup, velocity, matrix + i * nodes);
     }
+
     for (int i = 0; i < nodes; i++) {
         for (int k = 0; k < nodes; k++) symmetric[i * nodes + k] = (matrix[i * nodes + k] + matrix[k * nodes + i]) / 2;
     }
+
     assert_int_equal(LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'N', 'U', nodes, symmetric, nodes, value), 0);
     school_clear(&setup);
     return value[0];
@@ -101,7 +104,8 @@ static void added_mass_is_positive_with_twice_as_many_vortices_as_nodes_only(voi
     assert_true(smallest_eigenvalue(17, 17) < -1e-4);
 }
 
-// Of two dimensions, by an independent program (NumPy); a slender plate has w/L of it, a deep one all. At 65 points.
+// Ratios to the two-dimensional added mass, by an independent program (NumPy), with 65 points. Limits: w/L for a
+// slender plate, 1 for a deep plate.
 static void added_mass_of_a_plate_of_finite_span_lies_between_slender_and_deep(void **state) {
     (void)state;
     static const struct {
@@ -125,9 +129,9 @@ static void added_mass_of_a_plate_of_finite_span_lies_between_slender_and_deep(v
         added_momentum(&setup, velocity, momentum);
         for (int k = 0; k < 17; k++) mass += momentum[k];
         for (int k = 0; k < 17; k++) moment += momentum[k] * (k / 16.0 - 0.5);
-        // the last digit, and where the points are hardly nearer to each other than the sheet is deep half a per cent
+        // the last digit; half a per cent if the spacing of the points is not much smaller than the depth of the sheet
         NEAR(mass / (pi / 4 * cases[i].depth), cases[i].part, cases[i].depth < 0.2 ? 6e-4 : 6e-5, 0);
-        // symmetric: heave causes no moment, and rotation as little lift
+        // symmetry: heave causes no moment, and rotation causes no lift
         for (int k = 0; k < 17; k++) velocity[k] = k / 16.0 - 0.5;
         added_momentum(&setup, velocity, momentum);
         for (int k = 0; k < 17; k++) lift += momentum[k];
@@ -136,8 +140,8 @@ static void added_mass_of_a_plate_of_finite_span_lies_between_slender_and_deep(v
     }
 }
 
-// A smooth bend of a body whose depth varies: the matrix from velocities to momenta is symmetric but for a term that
-// the model leaves out (2.5 per cent, doc/model.md, section 18), and positive; of one depth it is symmetric.
+// A smooth bend of a body of varying depth: the matrix from velocities to momenta is positive, and symmetric except for
+// a term neglected by the model (2.5 per cent, doc/model.md, section 18). Constant depth: symmetric.
 static void added_mass_of_finite_span_is_symmetric_and_positive(void **state) {
     (void)state;
     enum { N = 9 };
@@ -179,7 +183,7 @@ static void added_mass_of_finite_span_is_symmetric_and_positive(void **state) {
     }
 }
 
-// the modes of a free plate from the matrix of its added mass, against the iteration that warns of slow ones
+// modes of a free plate from the added-mass matrix, against the iteration of the warning of slow modes
 static void slow_modes_have_the_added_mass_of_the_sheet(void **state) {
     (void)state;
     enum { N = 17 };
@@ -192,10 +196,12 @@ static void slow_modes_have_the_added_mass_of_the_sheet(void **state) {
         velocity[i] = 1;
         added_momentum(&setup, velocity, matrix + i * N);
     }
+
     for (int i = 0; i < N; i++) {
         for (int k = 0; k < N; k++) mass[i * N + k] = (matrix[i * N + k] + matrix[k * N + i]) / 2;
         mass[i * N + i] += fish->mass[i];
     }
+
     for (int j = 0; j < fish->n_joints; j++) {
         const double turn[3] = {1, -2, 1}, l = fish->edge_length;
         for (int i = 0; i < 9; i++) {
@@ -203,13 +209,16 @@ static void slow_modes_have_the_added_mass_of_the_sheet(void **state) {
                 fish->bending_stiffness[j] / (l * l * l) * turn[i / 3] * turn[i % 3];
         }
     }
+
     assert_int_equal(LAPACKE_dsygv(LAPACK_ROW_MAJOR, 1, 'N', 'U', N, stiffness, N, mass, N, value), 0);
+
     // after translation and rotation
     NEAR(bending_mode_frequency(fish, scratch), sqrt(value[2]) / (2 * pi), 0, 0.01);
     school_clear(&setup);
 }
 
-// a stream of 0.1 across a stiff free plate starts at once: with p kept it takes up 0.1 mu/(m + mu), mu = pi/4
+// A stream of 0.1 across a stiff free plate starts impulsively: with p conserved the plate velocity becomes 0.1 mu/(m +
+// mu), mu = pi/4.
 static void a_stream_that_starts_at_once_pushes_by_the_added_mass(void **state) {
     (void)state;
     char body[128];
@@ -226,6 +235,7 @@ static void a_stream_that_starts_at_once_pushes_by_the_added_mass(void **state) 
     struct simulation *const simulation = school_simulation(text);
     const struct fish *fish = simulation->school->fish;
     double *const y = simulation->state->y;
+
     // as in still fluid
     for (int i = fish->at.px; i < fish->at.ax; i++) y[i] = 0;
     school_ok(initial_conditions_solve(simulation->consistent, 0, y, simulation->state->yp));
@@ -233,12 +243,14 @@ static void a_stream_that_starts_at_once_pushes_by_the_added_mass(void **state) 
     school_run(simulation, 0.002);
     double velocity = 0;
     for (int k = 0; k < 17; k++) velocity += fish->mass[k] / fish->total_mass * y[fish->at.vy + k];
-    // the difference is the lift of what has been shed within 0.002 s
+
+    // the difference is the lift of the circulation shed within 0.002 s
     NEAR(velocity, 0.1 * (pi / 4) / (mass + pi / 4), 0, 1.5e-3);
     simulate_free(simulation);
 }
 
-// the force on the nodes is that of the jump along the line, and the reactions of a prescribed body balance it
+// the force on the nodes equals the integral of the jump along the line, and the reactions of a prescribed body balance
+// this force
 static void force_and_reaction_are_those_of_the_jump(void **state) {
     (void)state;
     struct simulation *const simulation =
@@ -260,13 +272,15 @@ static void force_and_reaction_are_those_of_the_jump(void **state) {
         const double jump = pressure_jump(pressure, c, simulation->state->y, simulation->state->yp);
         for (int i = 0; i < 2; i++) sum[i] -= 0.5 * jump * body->length * fish->control_interval[c] * body->n[i];
     }
-    // near the tail the jump falls to 0 like the square root of the distance, like theta, without teeth
+
+    // near the tail the jump decreases to 0 like the square root of the distance, like theta, without oscillations
     const int last = fish->n_control - 1;
     double jump[8], step = 0;
     for (int i = 0; i < 8; i++) {
         jump[i] = pressure_jump(pressure, last - i, simulation->state->y, simulation->state->yp);
         if (i > 0) step += (jump[i] - jump[i - 1]) / 7;
     }
+
     NEAR(jump[0] - step / 2, 0, 2 * fabs(step), 0);
     for (int i = 1; i < 8; i++) NEAR(jump[i] - jump[i - 1], step, 0, 0.75);
     for (int k = 0; k < fish->n_nodes; k++) {
@@ -274,18 +288,21 @@ static void force_and_reaction_are_those_of_the_jump(void **state) {
             inertia[i] += fish->mass[k] * simulation->state->y[fish->at.ax + i * fish->n_nodes + k];
         }
     }
+
     double of_edges[2] = {0, 0};
     for (int k = 0; k < fish->n_edges; k++) {
         double force[2];
         pressure_of_edge(pressure, k, simulation->state->y, simulation->state->yp, force);
         for (int i = 0; i < 2; i++) of_edges[i] += force[i];
     }
+
     for (int i = 0; i < 2; i++) {
         NEAR(of_edges[i], sum[i], 0, 1e-12);
-        // the midpoint rule in theta, of a jump that has a kink at the tail
+        // midpoint rule in theta, for a jump with a kink at the tail
         NEAR(sum[i], of->pressure.pressure[i], 1e-3 * fabs(of->pressure.pressure[1]), 0);
         NEAR(of->constraint_force[i], inertia[i] - of->pressure.pressure[i] - of->pressure.suction[i], 1e-9, 1e-9);
     }
+
     simulate_free(simulation);
 }
 
@@ -293,7 +310,8 @@ static void force_and_reaction_are_those_of_the_jump(void **state) {
 
 static void suction_law_has_its_limits_its_bound_and_its_derivatives(void **state) {
     (void)state;
-    // attached: the fourth power of the ratio is lost; separated: the bound
+
+    // attached: error of the fourth power of the ratio; separated: the bound
     NEAR(pressure_suction_law(3e-4, 3).value, 3e-4, 0, 1e-15);
     NEAR(pressure_suction_law(0.5, 1).value, 0.5 / pow(1 + 1.0 / 16, 0.25), 0, 1e-15);
     NEAR(pressure_suction_law(3, 3e-4).value, 3e-4, 0, 1e-15);
@@ -304,17 +322,17 @@ static void suction_law_has_its_limits_its_bound_and_its_derivatives(void **stat
         const double a = values[i / N], b = values[i % N], h = 1e-5;
         const struct suction_law law = pressure_suction_law(a, b);
         assert_true(law.value > 0 && law.value <= fmin(a, b) && law.by_full > 0 && law.by_bound > 0);
-        // of degree 1 (Euler): both derivatives make up the value
+        // homogeneous of degree 1 (Euler): the derivatives determine the value
         NEAR(law.by_full * a + law.by_bound * b, law.value, 0, 1e-14);
         const double by_full = pressure_suction_law(a * (1 + h), b).value - pressure_suction_law(a * (1 - h), b).value;
         const double by_bound = pressure_suction_law(a, b * (1 + h)).value - pressure_suction_law(a, b * (1 - h)).value;
-        // the second difference of a function of degree 1, and rounding
+        // second difference of a function of degree 1, and rounding
         NEAR(law.by_full * a, by_full / (2 * h), 1e-10 * law.value, 1e-8);
         NEAR(law.by_bound * b, by_bound / (2 * h), 1e-10 * law.value, 1e-8);
     }
 }
 
-// at rest there is no suction, and no number that is none
+// at rest: zero suction, and no NaN
 static void suction_law_has_a_value_at_rest(void **state) {
     (void)state;
     const double at[][2] = {{0, 0}, {0, 2}, {2, 0}, {1e-300, 1e-300}, {1e-310, 2}, {2, 1e-310}};
@@ -325,7 +343,7 @@ static void suction_law_has_a_value_at_rest(void **state) {
     }
 }
 
-// a plate at an incidence in a stream, with this limit; the caller frees it
+// a plate at an incidence in a stream, with this suction limit; the caller frees the setup
 static struct simulation *inclined_plate(double degrees, double limit) {
     char text[512];
     snprintf(
@@ -347,7 +365,8 @@ static double size_of(const double force[2]) {
     return hypot(force[0], force[1]);
 }
 
-// A_0 = qhat/tau: attached, the suction is S pi rho w L qhat^2, and the flow past the nose is that along the plate
+// A_0 = qhat/tau. Attached flow: the suction is S pi rho w L qhat^2, and the velocity past the nose is the velocity
+// along the plate.
 static void suction_of_a_plate_ends_at_its_limit(void **state) {
     (void)state;
     const double scale = 0.8 * pi * 2 * 0.5, along = 3 * cos(20 * pi / 180);
@@ -357,29 +376,31 @@ static void suction_of_a_plate_ends_at_its_limit(void **state) {
     const struct pressure_forces *const full = &plate[0]->diagnostics->fish[0].pressure;
     const double a0 = fabs(full->leading_edge_a0);
     assert_true(a0 > 0.15);
-    // the flow that the wake induces along the plate: of its curvature
+
+    // velocity along the plate induced by the wake, from the curvature of the wake
     NEAR(size_of(full->suction), scale * pow(along * a0, 2), 0, 0.02);
     NEAR(size_of(plate[1]->diagnostics->fish[0].pressure.suction), size_of(full->suction), 0, 1e-12);
     for (int i = 0; i < 4; i++) {
         const struct diagnostics_fish *const of = plate[i]->diagnostics->fish;
         const double ratio = i == 0 ? 0 : pow(a0 / limit[i], 2), part = pow(1 + pow(ratio, 4), -0.25);
-        // the motion is given: no limit changes the circulation
+        // prescribed motion: the suction limit does not change the circulation
         NEAR(of->pressure.leading_edge_a0, full->leading_edge_a0, 0, 1e-9);
         NEAR(of->leading_edge_most, a0, 0, 1e-9);
         NEAR(size_of(of->pressure.suction), part * size_of(full->suction), 0, 1e-9);
         NEAR(size_of(of->pressure.separation), (1 / 0.8 - part) * size_of(full->suction), 1e-9, 1e-9);
-        // along the plate, and ahead, as the suction: 20 degrees to the way
+        // along the plate and forward, like the suction: 20 degrees to the direction of motion
         NEAR(of->pressure.separation[0], (1 / 0.8 - part) * full->suction[0], 1e-9, 1e-9);
         NEAR(of->pressure.separation[1], (1 / 0.8 - part) * full->suction[1], 1e-9, 1e-9);
         NEAR(of->pressure.separation_power, -3 * of->pressure.separation[0], 1e-9, 1e-9);
-        // without a period: now
+        // no period: instantaneous value
         NEAR(of->separation_share, limit[i] > 0 && a0 > limit[i], 0, 0);
     }
+
     assert_true(plate[3]->diagnostics->fish[0].pressure.separation_power > 0);
     for (int i = 0; i < 4; i++) simulate_free(plate[i]);
 }
 
-// a free fish whose nose holds next to nothing: its energy balance is closed as without a limit
+// a free fish with nearly no suction: the energy balance is as accurate as without a limit
 static void energy_balance_is_closed_where_the_limit_acts(void **state) {
     (void)state;
     double imbalance[2];
@@ -401,12 +422,13 @@ static void energy_balance_is_closed_where_the_limit_acts(void **state) {
         assert_true(i == 0 ? of->separation_share <= 0 : of->separation_share > 0.5);
         simulate_free(simulation);
     }
+
     assert_true(imbalance[0] < 1e-3);
     assert_true(imbalance[1] < 1e-3);
 }
 
-// The jump of dC/dt alone, and that of the strengths in a stream along the plate, at control point c, where the
-// circulation is g dtheta with g = 1: singular at both ends. Its cosine series is exact, and there is no kink.
+// The jump of dC/dt alone, and the jump of the strengths in a stream along the plate, at control point c, for the
+// circulation g dtheta with g = 1: singular at both ends, exact cosine series, no kink.
 static void a_strength_that_is_singular_at_the_tail_has_no_kink(void **state) {
     (void)state;
     struct setup setup;
@@ -421,10 +443,12 @@ static void a_strength_that_is_singular_at_the_tail_has_no_kink(void **state) {
         u[c] = speed * body.t[0];
         v[c] = speed * body.t[1];
     }
+
     for (int j = 0; j < fish->n_sheet; j++) {
         const int is_end = j == 0 || j == fish->n_sheet - 1;
         y[fish->at.gamma + j] = (is_end ? 0.5 : 1) * h / fish->sheet_weight[j];
     }
+
     pressure_update(pressure, &flow, y);
     for (int c = 0; c < fish->n_control; c++) {
         const double theta = h * (c + 0.5);
@@ -437,10 +461,11 @@ static void a_strength_that_is_singular_at_the_tail_has_no_kink(void **state) {
         NEAR(pressure_jump(pressure, c, y, yp) - now, theta, 1e-12, 0);
         for (int j = 0; j < fish->n_sheet; j++) yp[fish->at.gamma + j] = 0;
     }
+
     school_clear(&setup);
 }
 
-// a soft free fish that begins to beat: the energy balance, and momentum against forces by name
+// a soft free fish starts to beat: energy balance, and momentum against forces
 static void energy_and_momentum_of_a_free_fish_are_accounted_for(void **state) {
     (void)state;
     struct simulation *const simulation =
@@ -458,10 +483,11 @@ static void energy_and_momentum_of_a_free_fish_are_accounted_for(void **state) {
         for (int k = 0; k < fish->n_nodes; k++) {
             rate[i] += fish->mass[k] * simulation->state->yp[fish->at.vx + i * fish->n_nodes + k];
         }
-        // rates are the integrator's, which are of the order of its tolerance over a step
+        // the rates come from the integrator and have errors of the order of the tolerance over a step
         NEAR(rate[i], of->resistive_force[i] + of->pressure.pressure[i] + of->pressure.suction[i],
              0.02 * fabs(of->pressure.pressure[1]), 0);
     }
+
     assert_true(fabs(of->energy_balance) < 1e-3 * of->actuation_work);
     assert_true(of->actuation_work > 0.1);
 
@@ -481,6 +507,7 @@ static void no_memory_leaves_nothing(void **state) {
         assert_null(pressure);
         assert_int_equal(n_live, before);
     }
+
     school_clear(&setup);
 }
 

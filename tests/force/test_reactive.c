@@ -1,4 +1,4 @@
-/* test_reactive.c: the force of the fluid that a body accelerates: doc/model.md, section 9. */
+/* test_reactive.c: reactive force on a body. doc/model.md, section 9. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,15 +10,15 @@
 #include "school.h"
 
 #define TIME "time: {end: 60, shedding_interval: 0.05}\n"
-// free vortices of this smoothing cause velocities of 1e-12 m/s: the fluid is still
+// free vortices with this smoothing induce velocities of 1e-12 m/s: the fluid is still
 #define STILL "wake: {smoothing: 1.0e+6}\n"
 #define NO_DRAG "tangential: 0, normal: 0"
 #define NO_DAMPING "bending_damping: 0, stretching_damping: 0"
 
 static const double pi = 3.14159265358979323846;
 
-// the kinetic energy of a still fluid that an edge accelerates, as a function of places and velocities of its two nodes
-// (x y vx vy each)
+// kinetic energy of still fluid accelerated by an edge, as a function of positions and velocities of the two nodes (x y
+// vx vy each)
 static double energy_at(const struct fish *fish, const double *state) {
     double y[64] = {0};
     for (int node = 0; node < 2; node++) {
@@ -27,24 +27,27 @@ static double energy_at(const struct fish *fish, const double *state) {
             y[edge_velocity(fish, i, node)] = state[4 + 2 * node + i];
         }
     }
+
     const struct edge edge = edge_at(fish, 0, y);
     return reactive_energy(fish, 0, &edge, edge.velocity);
 }
 
-// dT/dq of the eight by differences of fourth order: exact for the velocities
+// dT/dq of the eight coordinates by differences of fourth order: exact for the velocities
 static double slope_of_energy(const struct fish *fish, const double *state, int q) {
     static const double node[4] = {-2, -1, 1, 2}, weight[4] = {1.0 / 12, -8.0 / 12, 8.0 / 12, -1.0 / 12};
     const double h = 1e-4;
     double moved[8], slope = 0;
+
     memcpy(moved, state, sizeof moved);
     for (int i = 0; i < 4; i++) {
         moved[q] = state[q] + node[i] * h;
         slope += weight[i] / h * energy_at(fish, moved);
     }
+
     return slope;
 }
 
-// at the time tau from now on the path with these accelerations
+// state at the time tau from now on the path with these accelerations
 static void go_on(const double *state, const double *acceleration, double tau, double *moved) {
     for (int q = 0; q < 4; q++) {
         moved[q] = state[q] + tau * state[4 + q] + tau * tau / 2 * acceleration[q];
@@ -79,10 +82,11 @@ static void force_follows_from_lagrange_s_equations_of_the_kinetic_energy(void *
             go_on(motion, acceleration, -h, before);
             go_on(motion, acceleration, h, after);
             const double rate = (slope_of_energy(fish, after, 4 + q) - slope_of_energy(fish, before, 4 + q)) / (2 * h);
-            // what the differences in time cut off
+            // truncation error of the differences in time
             NEAR(force[q / 2][q % 2], slope_of_energy(fish, motion, q) - rate, 1e-4, 1e-5);
         }
     }
+
     school_clear(&setup);
 }
 
@@ -107,10 +111,12 @@ static void a_stream_that_accelerates_acts_as_a_body_that_does_not_and_pushes_wh
             }
         }
     }
+
     school_clear(&setup);
 }
 
-// a straight plate of 7 nodes along the x axis, nose first, its motion given: forces on the nodes in still fluid
+// forces on the nodes of a straight plate of 7 nodes along the x axis, nose first, with prescribed motion in still
+// fluid
 static void forces_on_plate(const char *motion, double t, double force[7][2]) {
     char text[512];
     snprintf(text, sizeof text,
@@ -132,6 +138,7 @@ static void forces_on_plate(const char *motion, double t, double force[7][2]) {
             y[edge_acceleration(fish, i, k)] = acceleration[i];
         }
     }
+
     const double still[64] = {0};
     const struct flow_at_body flow = {.u = still, .v = still};
     fluid_force_residual(fish, &flow, y, setup.value);
@@ -139,13 +146,15 @@ static void forces_on_plate(const char *motion, double t, double force[7][2]) {
         force[k][0] = -setup.value[fish->at.ax + k];
         force[k][1] = -setup.value[fish->at.ay + k];
     }
+
     school_clear(&setup);
 }
 
-static const double mass_per_length = 1000 * 3.14159265358979323846 * 0.09 / 4; /* of that plate, C_A 1 */
+static const double mass_per_length = 1000 * 3.14159265358979323846 * 0.09 / 4; /* of the plate above, C_A 1 */
 
 static void towed_plate_feels_a_couple_and_loses_at_its_tail(void **state) {
     (void)state;
+
     // heading 180 degrees, pitched by 10 degrees at all times, towed at 2 m/s: w_t = -2 cos, w_n = -+2 sin
     double force[7][2], sum[2] = {0, 0}, moment = 0;
     forces_on_plate("speed: 2, pitch: 10, frequency: 0, phase: 90", 0, force);
@@ -153,7 +162,7 @@ static void towed_plate_feels_a_couple_and_loses_at_its_tail(void **state) {
     const double t[2] = {-c, -s}, n[2] = {s, -c}, wn = -2 * n[0];
     NEAR(-2 * t[0], wt, 1e-14, 0);
     for (int k = 0; k < 7; k++) {
-        // what pushes the last node alone
+        // tail flux: acts on the last node only
         if (k == 6) {
             for (int i = 0; i < 2; i++) force[k][i] -= mass_per_length * (wt * wn * n[i] - wn * wn / 2 * t[i]);
         }
@@ -161,6 +170,7 @@ static void towed_plate_feels_a_couple_and_loses_at_its_tail(void **state) {
         moment += arm * (t[0] * force[k][1] - t[1] * force[k][0]);
         for (int i = 0; i < 2; i++) sum[i] += force[k][i];
     }
+
     // d'Alembert: no force in steady motion; Munk: the couple -mu w_n w_t, mu of the whole plate
     NEAR(sum[0], 0, 1e-11, 0);
     NEAR(sum[1], 0, 1e-11, 0);
@@ -169,11 +179,12 @@ static void towed_plate_feels_a_couple_and_loses_at_its_tail(void **state) {
 
 static void oscillating_plate_feels_its_added_mass(void **state) {
     (void)state;
-    // at the end of its stroke it is at rest: -mu a on all, half on either end node
+
+    // at the end of the stroke the plate is at rest: -mu a on all nodes, half on each end node
     double force[7][2];
     forces_on_plate("speed: 0, heave: 0.1, frequency: 2", 0.125, force);
     const double a =
-        0.1 * 16 * pi * pi;  // the heave is to the left of 180 degrees: downwards, the acceleration upwards
+        0.1 * 16 * pi * pi;  // the heave is to the left of 180 degrees: displacement downwards, acceleration upwards
     for (int k = 0; k < 7; k++) {
         NEAR(force[k][0], 0, 1e-11, 0);
         NEAR(force[k][1], -mass_per_length / 6 * a * (k == 0 || k == 6 ? 0.5 : 1), 0, 1e-12);
@@ -182,6 +193,7 @@ static void oscillating_plate_feels_its_added_mass(void **state) {
 
 static void mean_thrust_of_a_plate_of_small_amplitude_is_lighthill_s(void **state) {
     (void)state;
+
     // heave and pitch at the nose; at the tail h = heave sin + pitch sin(angle + phase) L to the left
     enum { N = 64 };
     const double speed = 1.5, heave = 2e-3, pitch = 3e-3, phase = 70 * pi / 180, omega = 2 * pi * 1.2;
@@ -194,13 +206,15 @@ static void mean_thrust_of_a_plate_of_small_amplitude_is_lighthill_s(void **stat
         double force[7][2];
         forces_on_plate(motion, angle / omega, force);
         for (int k = 0; k < 7; k++) thrust -= force[k][0] / N;  // the heading is along -x
-        // a positive pitch turns the nose to the left, and the tail, behind the pivot, to the right
+        // a positive pitch turns the nose to the left, and the tail behind the pivot to the right
         const double rate = omega * (heave * cos(angle) - pitch * cos(angle + phase));
         const double slope = pitch * sin(angle + phase);
         lighthill += mass_per_length / 2 * (rate * rate - speed * speed * slope * slope) / N;
     }
+
     assert_true(lighthill > 1e-3);
-    // relative terms of the amplitude squared
+
+    // relative error of the order of the amplitude squared
     NEAR(thrust, lighthill, 0, 2e-5);
 }
 
@@ -215,7 +229,8 @@ static double whole_energy(const struct diagnostics_fish *fish) {
 
 static void energy_of_body_and_fluid_is_the_work_of_the_muscle(void **state) {
     (void)state;
-    // no drag, no damping, a pointed tail: nothing else gives or takes
+
+    // no drag, no damping, a pointed tail: energy is conserved
     const double rtol[] = {1e-5, 1e-7};
     double worst[2] = {0, 0};
     for (int i = 0; i < 2; i++) {
@@ -235,12 +250,13 @@ static void energy_of_body_and_fluid_is_the_work_of_the_muscle(void **state) {
         print_message("rtol %.0e: %.1e J of %.2f J, %.2f J of them in the fluid\n", rtol[i], worst[i],
                       whole_energy(fish), fish->added_mass_energy);
         assert_true(fish->added_mass_energy > 0.01);
-        // a method of order 2 whose steps go as rtol^(1/3)
+        // a method of order 2 with steps proportional to rtol^(1/3)
         assert_true(worst[i] < pow(rtol[i], 2.0 / 3.0) * whole_energy(fish));
-        // what the energy balance of the body alone finds is the same
+        // the energy balance of the body alone finds the same error
         assert_true(fabs(fish->energy_balance) < 2 * worst[i]);
         simulate_free(simulation);
     }
+
     assert_true(worst[0] / worst[1] > 10);
 }
 
@@ -262,7 +278,7 @@ static void no_fish_gains_energy_from_still_fluid(void **state) {
         while (simulation->state->t < 10) {
             school_ok(simulate_step(simulation));
             const struct diagnostics_fish *const fish = measured(simulation);
-            // all that is in the body came from the muscle, less what damping took
+            // energy of the body = work of the muscle less damping
             const double in_body = whole_energy(fish) - fish->added_mass_energy;
             gained = fmax(gained, in_body - fish->actuation_work);
             fastest = fmax(fastest, hypot(fish->com_velocity[0], fish->com_velocity[1]));
@@ -275,7 +291,7 @@ static void no_fish_gains_energy_from_still_fluid(void **state) {
     }
 }
 
-// a fish in still fluid without anything that takes energy, that beats from the start
+// a fish in still fluid without dissipation that beats from the start
 static struct simulation *ideal_fish(double amplitude, double number, double phase) {
     char text[512];
     snprintf(text, sizeof text,
@@ -290,7 +306,8 @@ static struct simulation *ideal_fish(double amplitude, double number, double pha
 
 static void reversing_the_wave_reverses_the_path(void **state) {
     (void)state;
-    // after a period the wave runs backwards: kbar(t) becomes kbar(T - t); all velocities are turned round
+
+    // after a period the wave is reversed in time: kbar(t) becomes kbar(T - t), and all velocities change sign
     struct simulation *const there = ideal_fish(0.4, -6, 20), *const back = ideal_fish(-0.4, 6, -20);
     const struct fish *fish = there->school->fish;
     double start[14];
@@ -302,12 +319,14 @@ static void reversing_the_wave_reverses_the_path(void **state) {
         y[fish->at.vx + i] = -there->state->y[fish->at.vx + i];
         gone = fmax(gone, fabs(y[fish->at.x + i] - start[i]));
     }
+
     school_ok(initial_conditions_solve(back->consistent, 0, y, back->state->yp));
     school_ok(back->integrator->restart(back->solver));
     school_run(back, 1);
-    print_message("went %.3f m\n", gone);
+    print_message("distance %.3f m\n", gone);
     assert_true(gone > 0.01);
-    // the method's error, (omega step)^4 of the fastest motion
+
+    // error of the method: (omega step)^4 of the fastest motion
     NEAR_ARRAY(14, y + fish->at.x, start, 1e-5 * gone, 0);
     simulate_free(there);
     simulate_free(back);

@@ -1,4 +1,4 @@
-/* test_tail_flux.c: the force of what a body leaves behind its tail: doc/model.md, section 9. */
+/* test_tail_flux.c: force of the momentum flux at the tail. doc/model.md, section 9. */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -44,7 +44,7 @@ static void derivatives_agree_with_differences(void **state) {
     const char *const texts[] = {
         TIME "fish: [{nodes: 4, sheet_points: 9, force: reactive, " WIDE "}]\n",
         TIME "fish: [{nodes: 6, sheet_points: 9, force: reactive, " WIDE ", start: {speed: 2}}]\n",
-        // swimming backwards: nothing leaves along a tail that leads
+        // swimming backwards: no flux along a leading tail
         TIME "fish: [{nodes: 6, sheet_points: 9, force: reactive, " WIDE ", start: {speed: -2}}]\n",
         TIME
         "solver: {coupling_distance: 100}\ncontact: {action: warn}\n"
@@ -69,7 +69,8 @@ static void it_takes_from_the_body_what_it_leaves_in_the_wake(void **state) {
     const struct flow_at_body flow = {.u = still, .v = still};
     double *const y = setup.state->y;
     for (int trial = 0; trial < 20; trial++) {
-        // edges of different lengths whose angles are a parabola in their number: that at the tail, half an edge on
+        // edges of different lengths whose angles are a parabola in the edge number; the tail is half an edge behind
+        // the last midpoint
         const double angle = 3 * school_random(&setup), slope = 0.3 * school_random(&setup),
                      bend = 0.1 * school_random(&setup);
         for (int k = 0; k < 5; k++) {
@@ -84,9 +85,10 @@ static void it_takes_from_the_body_what_it_leaves_in_the_wake(void **state) {
         tail_flux_force(fish, &flow, y, force);
         NEAR(force[0] * cos(angle) + force[1] * sin(angle), -mass_per_length * wn * wn / 2, 1e-12, 1e-12);
         NEAR(force[1] * cos(angle) - force[0] * sin(angle), mass_per_length * fmin(wt, 0) * wn, 1e-12, 1e-12);
-        // never a gain, whether the tail follows or leads
+        // the power is never positive, for a trailing and for a leading tail
         NEAR(tail_flux_power(fish, &flow, y), -mass_per_length * wn * wn * fabs(wt) / 2, 1e-12, 1e-12);
     }
+
     school_clear(&setup);
 }
 
@@ -96,16 +98,19 @@ static void it_has_the_velocity_of_a_linear_flow_at_the_tail(void **state) {
     school_build(&setup, TIME "fish: [{nodes: 6, force: reactive, " WIDE "}]\n");
     const struct fish *fish = setup.school->fish;
     double u[64] = {0}, v[64] = {0}, force[2], want[2];
+
     // a straight body along x, nose at 0
     for (int k = 0; k < fish->n_edges; k++) {
         const double s = (k + 0.5) / 5;
         u[flow_midpoint(fish, k)] = 0.7 + 0.4 * s;
         v[flow_midpoint(fish, k)] = -0.2 + 0.9 * s;
     }
+
     const struct flow_at_body flow = {.u = u, .v = v};
     double *const y = setup.state->y;
     tail_flux_force(fish, &flow, y, force);
-    // a body that moves as the tail does relative to that flow, in still fluid
+
+    // a body in still fluid with the velocity of the tail relative to the flow
     const double still[64] = {0};
     const struct flow_at_body none = {.u = still, .v = still};
     y[fish->at.vx + 5] -= 1.1;
@@ -139,7 +144,8 @@ static void its_mass_is_that_of_the_extent_at_the_tail(void **state) {
 
 static void a_stiff_body_swims_at_a_speed_of_second_order_in_its_nodes(void **state) {
     (void)state;
-    // a uniform body, whose resolution nothing else limits, feels no wake; from rest, speed after 4 s
+
+    // a uniform body without wake, so that only the resolution of the tail matters; from rest, speed after 4 s
     const int nodes[] = {17, 33, 65};
     double speed[3];
     for (int i = 0; i < 3; i++) {
@@ -157,6 +163,7 @@ static void a_stiff_body_swims_at_a_speed_of_second_order_in_its_nodes(void **st
         speed[i] = simulation->diagnostics->fish[0].speed;
         simulate_free(simulation);
     }
+
     const double order = log2((speed[1] - speed[0]) / (speed[2] - speed[1]));
     print_message("%.5f %.5f %.5f m/s: order %.1f\n", speed[0], speed[1], speed[2], order);
     assert_true(order > 1.8);
