@@ -1,5 +1,5 @@
-/* tail_flux.h: momentum flux into the wake at the tail (Lighthill), as a force on the tail node.
- * doc/model.md, section 9. Tested by tests/force/test_tail_flux.c.
+/* tail_flux.h: momentum flux into the wake at the tail (Lighthill), as a force on the tail node. doc/model.md, section
+ * 9. Tested by tests/force/test_tail_flux.c.
  *
  *     node N-4 -- edge N-4 -- node N-3 -- edge N-3 -- node N-2 -- edge N-2 -- node N-1
  *                  angle                   angle, u                angle, u    tail: angle and u by extrapolation */

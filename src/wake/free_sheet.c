@@ -1,4 +1,4 @@
-/* free_sheet.c: the middles of stretches, the strengths of markers, and the points that the own body sees. */
+/* free_sheet.c: middles of stretches, strengths of markers, and sources for the own control points. */
 #include "wake/free_sheet.h"
 
 #include <math.h>
@@ -26,7 +26,7 @@ void free_sheet_free(struct free_sheet *sheet) {
     *sheet = (struct free_sheet){0};
 }
 
-static enum status reserve(struct free_sheet *sheet, int n) {
+static enum status free_sheet_reserve(struct free_sheet *sheet, int n) {
     if (n <= sheet->capacity) return STATUS_OK;
     const int capacity = n + n / 2;
     free_sheet_free(sheet);
@@ -47,10 +47,12 @@ enum status free_sheet_middles(const struct wake *markers, struct wake *middles)
     for (int k = 0; k < 6; k++) {
         for (int i = 0; i < n; i++) to[k][i] = (from[k][i] + from[k][i + 1]) / 2;
     }
+
     for (int i = 0; i < n; i++) {
         middles->circulation[i] = wake_source(markers, i);
         middles->birth[i] = markers->birth[i + 1];
     }
+
     return STATUS_OK;
 }
 
@@ -64,7 +66,8 @@ void free_sheet_strengths(const struct wake *markers, const struct school *schoo
         strength[i] += stretch / 2;
         strength[i + 1] += stretch / 2;
     }
-    // the nascent stretch has no length yet: both of its halves are here
+
+    // the nascent stretch has length 0 at the event: both halves act at the newest marker
     if (n > 0) strength[n - 1] += nascent;
 }
 
@@ -77,36 +80,39 @@ double free_sheet_smoothing(const struct fish *fish, const double from_tail[2], 
     const double length = fish->taper * behind + fish->taper_beside * (1 - behind);
     if (length <= 0) return fish->smoothing;
     const double ratio = square / (length * length) * (square / (length * length));
-    // exp is faster, and as good where its digits do not cancel
+
+    // without cancellation exp is as accurate as expm1, and faster
     return fish->smoothing * (ratio > 1 ? 1 - exp(-ratio) : -expm1(-ratio));
 }
 
-// Both ends of a stretch at one time.
+// both ends of a stretch at one time
 struct ends {
-    int stretch;  // -2 before the first
+    int stretch;  // -2: unset
     double newer[2], older[2];
 };
 
-// the ends of a stretch, tau after the event: the newer one is known when the stretch before was the next newer one
-static void find_ends(struct ends *ends, const struct wake *markers, int stretch, double interval, double tau) {
+// ends of a stretch, tau after the event; the previous older end is reused if the previous stretch is the next newer
+// stretch
+static void stretch_find_ends(struct ends *ends, const struct wake *markers, int stretch, double interval, double tau) {
     if (ends->stretch == stretch) return;
     if (ends->stretch == stretch + 1) {
         memcpy(ends->newer, ends->older, sizeof ends->newer);
     } else {
         wake_marker(markers, stretch + 1, interval, tau, ends->newer);
     }
+
     wake_marker(markers, stretch, interval, tau, ends->older);
     ends->stretch = stretch;
 }
 
-// the point at xi of the way from the newer to the older end
-static void point_of(const struct ends *ends, double xi, double point[2]) {
+// point at the fraction xi of the way from the newer to the older end
+static void stretch_point(const struct ends *ends, double xi, double point[2]) {
     for (int i = 0; i < 2; i++) point[i] = (1 - xi) * ends->newer[i] + xi * ends->older[i];
 }
 
-// at[0], at[1]: the ends of the stretch at the beginning and the end of the interval
-static void add(struct free_sheet *sheet, const struct fish *fish, const struct wake *markers, double interval,
-                const struct ends at[2], double xi, double part) {
+// add a source; at[0], at[1]: ends of the stretch at the start and at the end of the interval
+static void free_sheet_add(struct free_sheet *sheet, const struct fish *fish, const struct wake *markers,
+                           double interval, const struct ends at[2], double xi, double part) {
     const int i = sheet->n++;
     sheet->stretch[i] = at[0].stretch;
     sheet->xi[i] = xi;
@@ -115,36 +121,37 @@ static void add(struct free_sheet *sheet, const struct fish *fish, const struct 
         sheet->smoothing[0][i] = sheet->smoothing[1][i] = fish->smoothing;
         return;
     }
-    // the tail is where the newest marker was born, and goes on as it went then
+
+    // the tail starts at the newest marker and keeps its velocity during the interval
     const int newest = markers->n_vortex - 1;
     for (int end = 0; end < 2; end++) {
         const double tau = end * interval;
         const double tail[2] = {markers->x[newest] + tau * markers->tail_velocity[0],
                                 markers->y[newest] + tau * markers->tail_velocity[1]};
         double point[2];
-        point_of(&at[end], xi, point);
+        stretch_point(&at[end], xi, point);
         const double from_tail[2] = {point[0] - tail[0], point[1] - tail[1]};
         sheet->smoothing[end][i] = free_sheet_smoothing(fish, from_tail, markers->tail_tangent);
     }
 }
 
-// whether the smoothing of a source is the full one to rounding, so that the own body may see what others see
-static int is_untapered(const struct free_sheet *sheet, const struct fish *fish, int i) {
+// whether the smoothing of a source is untapered within rounding, so that no correction is required
+static int free_sheet_is_untapered(const struct free_sheet *sheet, const struct fish *fish, int i) {
     const double rounding = 1e-13;
     return fish->smoothing - sheet->smoothing[0][i] <= rounding * fish->smoothing &&
            fish->smoothing - sheet->smoothing[1][i] <= rounding * fish->smoothing;
 }
 
-// the taper is exp(-ratio^2) short of 1, and that of a square ratio of 31 is below the rounding above
+// the taper differs from 1 by exp(-ratio^2), which is below the rounding above for a square ratio of 31
 int free_sheet_is_far(const struct fish *fish, const double from_tail[2]) {
     static const double far = 5.5677643628300219;
     const double length = fmax(fish->taper, fish->taper_beside);
     return from_tail[0] * from_tail[0] + from_tail[1] * from_tail[1] > far * length * length;
 }
 
-// whether the middle of a stretch, whose ends are at[0] now and at[1] at the end of the interval, is far at both
-static int is_far_behind(const struct fish *fish, const struct wake *markers, double interval,
-                         const struct ends at[2]) {
+// whether the middle of a stretch is far from the tail at the start (ends at[0]) and at the end (at[1]) of the interval
+static int stretch_is_far(const struct fish *fish, const struct wake *markers, double interval,
+                          const struct ends at[2]) {
     const int newest = markers->n_vortex - 1;
     int is_far = 1;
     for (int end = 0; end < 2; end++) {
@@ -154,32 +161,36 @@ static int is_far_behind(const struct fish *fish, const struct wake *markers, do
             (at[end].newer[1] + at[end].older[1]) / 2 - markers->y[newest] - tau * markers->tail_velocity[1]};
         is_far &= free_sheet_is_far(fish, from_tail);
     }
+
     return is_far;
 }
 
 enum status free_sheet_build(struct free_sheet *sheet, const struct fish *fish, const struct school *school,
                              const struct wake *markers) {
     const int n_stretches = markers->n_vortex - 1;
-    TRY(reserve(sheet, 2 * (n_stretches > 0 ? n_stretches : 0) + 4 * FREE_SHEET_PANEL + 1));
+    TRY(free_sheet_reserve(sheet, 2 * (n_stretches > 0 ? n_stretches : 0) + 4 * FREE_SHEET_PANEL + 1));
     sheet->n = 0;
     const double interval = school->interval;
     struct ends at[2] = {{.stretch = -2}, {.stretch = -2}};
     for (int i = n_stretches - FREE_SHEET_PAIRED - 1; i >= 0; i--) {
-        for (int end = 0; end < 2; end++) find_ends(&at[end], markers, i, interval, end * interval);
-        if (is_far_behind(fish, markers, interval, at)) continue;
-        add(sheet, fish, markers, interval, at, 0.5, 1);
-        if (is_untapered(sheet, fish, sheet->n - 1)) sheet->n--;
+        for (int end = 0; end < 2; end++) stretch_find_ends(&at[end], markers, i, interval, end * interval);
+        if (stretch_is_far(fish, markers, interval, at)) continue;
+        free_sheet_add(sheet, fish, markers, interval, at, 0.5, 1);
+        if (free_sheet_is_untapered(sheet, fish, sheet->n - 1)) sheet->n--;
     }
+
     sheet->n_tapered = sheet->n;
     for (int age = 1; age <= FREE_SHEET_PAIRED && age <= n_stretches; age++) {
-        for (int end = 0; end < 2; end++) find_ends(&at[end], markers, n_stretches - age, interval, end * interval);
+        for (int end = 0; end < 2; end++)
+            stretch_find_ends(&at[end], markers, n_stretches - age, interval, end * interval);
         for (int k = 0; age <= FREE_SHEET_GRADED && k < FREE_SHEET_PANEL; k++) {
-            add(sheet, fish, markers, interval, at, free_sheet_xi[k], free_sheet_part[k]);
+            free_sheet_add(sheet, fish, markers, interval, at, free_sheet_xi[k], free_sheet_part[k]);
         }
         for (int k = 0; age > FREE_SHEET_GRADED && k < 2; k++)
-            add(sheet, fish, markers, interval, at, free_sheet_pair_xi[k], 0.5);
-        add(sheet, fish, markers, interval, at, 0.5, -1);
+            free_sheet_add(sheet, fish, markers, interval, at, free_sheet_pair_xi[k], 0.5);
+        free_sheet_add(sheet, fish, markers, interval, at, 0.5, -1);
     }
+
     sheet->n += FREE_SHEET_PANEL + 1;
     return STATUS_OK;
 }
@@ -189,14 +200,15 @@ void free_sheet_place(struct free_sheet *sheet, const struct school *school, con
     const double q = tau / school->interval;
     struct ends ends = {.stretch = -2};
     double strength = 1;
+
     for (int i = 0; i < sheet->n - (FREE_SHEET_PANEL + 1); i++) {
         const int stretch = sheet->stretch[i];
         if (stretch != ends.stretch) {
-            find_ends(&ends, markers, stretch, school->interval, tau);
+            stretch_find_ends(&ends, markers, stretch, school->interval, tau);
             strength = wake_strength_within(school, t - middles->birth[stretch], q);
         }
         double point[2];
-        point_of(&ends, sheet->xi[i], point);
+        stretch_point(&ends, sheet->xi[i], point);
         const double smoothing = (1 - q) * sheet->smoothing[0][i] + q * sheet->smoothing[1][i];
         sheet->x[i] = point[0];
         sheet->y[i] = point[1];
@@ -212,11 +224,11 @@ void free_sheet_nascent_point(const struct wake *markers, double interval, doubl
     for (int k = 0; k < 2; k++) point[k] = (1 - xi) * tail[k] + xi * newest[k];
 }
 
-/* The older end of the nascent stretch for the own control points: the newest marker; where the tail has overtaken it,
- * the place beside the tail, x - s t with s = (x - x_tail) . t < 0. With the tail it moves along t, and as the tangent
- * turns, dt = n (n.dX')/|X'|, by -((r.n) t + s n)/|X'| per n.dX'. */
-static void end_nascent(struct free_sheet *sheet, const double marker[2], const double tail[2],
-                        const struct direction *tangent, double end[2]) {
+/* The older end of the nascent stretch for the own control points: the newest marker, or, if the tail has overtaken the
+ * marker, the point beside the tail, x - s t with s = (x - x_tail) . t < 0. This point moves with the tail along t and,
+ * as the tangent turns, dt = n (n.dX')/|X'|, by -((r.n) t + s n)/|X'| per n.dX'. */
+static void free_sheet_end_nascent(struct free_sheet *sheet, const double marker[2], const double tail[2],
+                                   const struct direction *tangent, double end[2]) {
     const double r[2] = {marker[0] - tail[0], marker[1] - tail[1]};
     const double s = fmin(0, edge_dot(r, tangent->t)), across = edge_dot(r, tangent->n);
     sheet->is_overtaken = s < 0;
@@ -234,7 +246,7 @@ void free_sheet_place_nascent(struct free_sheet *sheet, const struct fish *fish,
     const int first = sheet->n - (FREE_SHEET_PANEL + 1);
     double marker[2], end[2];
     free_sheet_nascent_point(markers, interval, tau, tail, 1, marker);
-    end_nascent(sheet, marker, tail, tangent, end);
+    free_sheet_end_nascent(sheet, marker, tail, tangent, end);
     for (int i = 0; i < FREE_SHEET_PANEL; i++) {
         const double xi = free_sheet_xi[i];
         sheet->x[first + i] = (1 - xi) * tail[0] + xi * end[0];
@@ -243,7 +255,7 @@ void free_sheet_place_nascent(struct free_sheet *sheet, const struct fish *fish,
         sheet->square[first + i] = 0;
     }
 
-    // take away the middle that everybody else sees
+    // subtract the middle, which is a source for all other targets
     const int middle = first + FREE_SHEET_PANEL;
     sheet->x[middle] = (tail[0] + marker[0]) / 2;
     sheet->y[middle] = (tail[1] + marker[1]) / 2;

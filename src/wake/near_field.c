@@ -1,4 +1,4 @@
-/* near_field.c: estimates of errors, and the vortices that they put into the near field. */
+/* near_field.c: error estimates, and the selection of the near field. */
 #include "wake/near_field.h"
 
 #include <math.h>
@@ -6,24 +6,24 @@
 
 static const double two_pi = 6.28318530717958647692;
 
-/* Interpolation costs more than it saves where there are more near vortices than this, and more than a third of all. */
+/* Interpolation costs more than the direct sum if the near vortices are more than FEW and more than a third of all. */
 enum { FEW = 32 };
 
-/* The largest error of the cubic through the times of wake_interpolation.c, over the fourth derivative / 4!. */
+/* Largest error of the cubic through the times of wake_interpolation.c, over the fourth derivative / 4!. */
 static const double cubic_error = 0.0107233047033631;
 
-/* Along a straight line, n-th derivatives of K over n! are at most this times 1/(2 pi R^(n+1)), R^2 = r^2 + e^2: K is a
+/* Along a straight line the n-th derivative of K over n! is at most pole_bound/(2 pi R^(n+1)), R^2 = r^2 + e^2: K is a
  * sum of two complex poles at the distance R. */
 static const double pole_bound = 1.4142135623730951;
 
-/* The estimate is this part of the bound: near_field.h. */
+/* Ratio of estimate to bound: near_field.h. */
 static const double estimate_per_bound = 0.1;
 
-/* How a body moves: its points stay within width of the line from one end to the other. */
+/* Motion of a body: all points stay within width of the line from the first to the last point. */
 struct body {
     double end[2], along[2], length; /* along: unit vector */
     double width;                    /* m */
-    double mean[2], deviation;       /* velocity of the points, and how far they differ from it, m s-1 */
+    double mean[2], deviation;       /* mean velocity of the points, and largest deviation from the mean, m s-1 */
     double acceleration;             /* largest, m s-2 */
 };
 
@@ -47,12 +47,13 @@ struct near_field_bounds near_field_bound_wake(const struct wake *wake, double i
         b.strength += fabs(strength_start[i]);
         b.decay += fabs(strength_end[i] - strength_start[i]);
     }
+
     b.acceleration = sqrt(change) / interval;
     b.speed = sqrt(speed);
     return b;
 }
 
-// how far a place is from the line between the ends of a body
+// distance of a position from the line between the ends of a body
 static double distance_to_line(const struct body *body, double x, double y) {
     const double rx = x - body->end[0], ry = y - body->end[1];
     double s = rx * body->along[0] + ry * body->along[1];
@@ -61,36 +62,41 @@ static double distance_to_line(const struct body *body, double x, double y) {
     return sqrt(dx * dx + dy * dy);
 }
 
-static struct body body_of(const struct near_field_input *input, int f) {
+static struct body body_motion(const struct near_field_input *input, int f) {
     const int first = input->points[f].first, n = input->points[f].n;
     const double *const x = input->motion[0] + first, *const y = input->motion[1] + first;
     const double *const u = input->motion[2] + first, *const v = input->motion[3] + first;
     const double *const a = input->motion[4] + first, *const b = input->motion[5] + first;
     struct body body = {.end = {x[0], y[0]}, .along = {x[n - 1] - x[0], y[n - 1] - y[0]}};
+
     body.length = hypot(body.along[0], body.along[1]);
     if (body.length > 0) {
         body.along[0] /= body.length;
         body.along[1] /= body.length;
     }
+
     for (int p = 0; p < n; p++) {
         body.mean[0] += u[p] / n;
         body.mean[1] += v[p] / n;
     }
+
     for (int p = 0; p < n; p++) {
         body.width = max_of(body.width, distance_to_line(&body, x[p], y[p]));
         body.deviation = max_of(body.deviation, hypot(u[p] - body.mean[0], v[p] - body.mean[1]));
         body.acceleration = max_of(body.acceleration, hypot(a[p], b[p]));
     }
+
     return body;
 }
 
-// the error of vortices of some strength that come no closer than the distance, m, with a relative velocity and
-// acceleration no larger than these, and whose strength decays by so much
-static struct near_field_error estimate(double distance, double smoothing, double speed, double acceleration,
-                                        double interval, double strength, double decay) {
+// error of vortices with the given total strength and decay, which stay at least distance, m, away and whose relative
+// speed and acceleration do not exceed the given values
+static struct near_field_error estimate_error(double distance, double smoothing, double speed, double acceleration,
+                                              double interval, double strength, double decay) {
     const double square = distance * distance + smoothing * smoothing;
     const double inverse = 1 / sqrt(square), h = interval;
-    // derivatives in time of K(r(t)): of K along a line, and those that come with the curvature of the path
+
+    // derivatives in time of K(r(t)): derivatives of K along a line, and terms of the curvature of the path
     const double w = speed * h * inverse, bend = acceleration * h * h * inverse;
     const double k = estimate_per_bound * pole_bound / two_pi * inverse;
     return (struct near_field_error){
@@ -102,7 +108,7 @@ static struct near_field_error estimate(double distance, double smoothing, doubl
     };
 }
 
-// no point of the box is closer to the body than this
+// lower bound of the distance between box and body
 static double box_distance(const struct near_field_bounds *bounds, const struct body *body) {
     double square = 0;
     for (int k = 0; k < 2; k++) {
@@ -111,10 +117,11 @@ static double box_distance(const struct near_field_bounds *bounds, const struct 
         const double gap = max_of(max_of(bounds->low[k] - high, low - bounds->high[k]), 0);
         square += gap * gap;
     }
+
     return sqrt(square) - body->width;
 }
 
-static enum status add_to_near(struct near_field *near_field, const struct near_field_vortex *near) {
+static enum status near_field_add_near(struct near_field *near_field, const struct near_field_vortex *near) {
     if (near_field->n_near == near_field->capacity) {
         const int capacity = 2 * near_field->capacity + 64;
         struct near_field_vortex *const more = realloc(near_field->near, (size_t)capacity * sizeof *more);
@@ -122,17 +129,18 @@ static enum status add_to_near(struct near_field *near_field, const struct near_
         near_field->near = more;
         near_field->capacity = capacity;
     }
+
     near_field->near[near_field->n_near++] = *near;
     return STATUS_OK;
 }
 
-static void add_to_far(struct near_field *near_field, const struct near_field_error *error) {
+static void near_field_add_far(struct near_field *near_field, const struct near_field_error *error) {
     near_field->far.error += error->error;
     near_field->far.by_drift_square += error->by_drift_square;
     near_field->far.by_drift += error->by_drift;
 }
 
-// the bounds of a wake's image
+// bounds of the image of a wake
 static struct near_field_bounds bounds_of_image(const struct near_field_bounds *bounds, const struct image *image) {
     struct near_field_bounds mirrored = *bounds;
     const double low = image->sign * bounds->low[1] + image->shift, high = image->sign * bounds->high[1] + image->shift;
@@ -141,25 +149,27 @@ static struct near_field_bounds bounds_of_image(const struct near_field_bounds *
     return mirrored;
 }
 
-// the vortices of one wake, or of an image of it: those with an error up to max_error go to the far field, the others
-// may be near
-static enum status divide_wake(const struct near_field_input *input, int g, const struct image *image, int is_own,
-                               const struct body *body, double max_error, struct near_field *near_field) {
+// the vortices of one wake or of an image of the wake: vortices with an error up to max_error go to the far field, all
+// others to the candidates of the near field
+static enum status near_field_divide_wake(const struct near_field_input *input, int g, const struct image *image,
+                                          int is_own, const struct body *body, double max_error,
+                                          struct near_field *near_field) {
     const struct wake *const wake = &input->wakes[g];
     const struct near_field_bounds *const bounds = &input->bounds[g];
     const double h = input->school->interval, smoothing = input->school->fish[g].smoothing;
     const double acceleration = body->acceleration + bounds->acceleration;
     const double *const start = input->strength_start + input->wake[g].first;
     const double *const end = input->strength_end + input->wake[g].first;
+
     for (int i = 0; i < wake->n_vortex; i++) {
         const double y = image->sign * wake->y[i] + image->shift, v = image->sign * wake->v[i];
         const double du = body->mean[0] - wake->u[i], dv = body->mean[1] - v;
         const double speed = sqrt(du * du + dv * dv) + body->deviation + h * acceleration;
         const double distance = distance_to_line(body, wake->x[i], y) - body->width - h * speed;
-        const struct near_field_error error =
-            estimate(max_of(distance, 0), smoothing, speed, acceleration, h, fabs(start[i]), fabs(end[i] - start[i]));
+        const struct near_field_error error = estimate_error(max_of(distance, 0), smoothing, speed, acceleration, h,
+                                                             fabs(start[i]), fabs(end[i] - start[i]));
         if (error.error <= max_error) {
-            add_to_far(near_field, &error);
+            near_field_add_far(near_field, &error);
             continue;
         }
         const struct near_field_vortex near = {
@@ -172,12 +182,13 @@ static enum status divide_wake(const struct near_field_input *input, int g, cons
             .smoothing = smoothing,
             .is_own = is_own,
         };
-        TRY(add_to_near(near_field, &near));
+        TRY(near_field_add_near(near_field, &near));
     }
+
     return STATUS_OK;
 }
 
-// 0 for numbers below 2^-(n - 1), n - 1 for 1 and more, in between by powers of two
+// 0 for numbers below 2^-(n - 1), n - 1 for numbers >= 1, binned by powers of two in between
 static int exponent_bin(double number, int n) {
     if (!(number < 1)) return n - 1;
     int exponent;
@@ -185,55 +196,62 @@ static int exponent_bin(double number, int n) {
     return exponent + n - 1 > 0 ? exponent + n - 1 : 0;
 }
 
-/* Of the vortices that may be near, move those to the far field whose errors, the smallest first, add up to max_error
- * at most. Sorted by powers of two only. */
-static void move_to_far(struct near_field *near_field, double max_error) {
+/* Move the candidates with the smallest errors to the far field, up to a sum of errors of max_error. The candidates are
+ * sorted by powers of two only. */
+static void near_field_move_far(struct near_field *near_field, double max_error) {
     enum { BINS = 64 };
     double sum[BINS] = {0};
     for (int i = 0; i < near_field->n_near; i++) {
         const double error = near_field->near[i].error.error;
         sum[exponent_bin(error / max_error, BINS)] += error;
     }
+
     int last = 0;
     for (double total = sum[0]; last < BINS - 1 && total <= max_error; total += sum[last]) last++;
     int n_near = 0;
     for (int i = 0; i < near_field->n_near; i++) {
         const struct near_field_vortex near = near_field->near[i];
         if (exponent_bin(near.error.error / max_error, BINS) < last) {
-            add_to_far(near_field, &near.error);
+            near_field_add_far(near_field, &near.error);
         } else {
             near_field->near[n_near++] = near;
         }
     }
+
     near_field->n_near = n_near;
 }
 
-// a wake or an image of it: as a whole to the far field, or vortex by vortex; n_images: of every wake
-static enum status divide_image(struct near_field *near_field, const struct near_field_input *input, int g,
-                                const struct image *image, int is_own, int n_images, const struct body *body) {
+// a wake or an image of the wake: move the whole wake to the far field, or divide the wake vortex by vortex; n_images:
+// images per wake
+static enum status near_field_divide_image(struct near_field *near_field, const struct near_field_input *input, int g,
+                                           const struct image *image, int is_own, int n_images,
+                                           const struct body *body) {
     const struct school *const school = input->school;
     const struct near_field_bounds bounds = bounds_of_image(&input->bounds[g], image);
     const double acceleration = body->acceleration + bounds.acceleration;
     const double speed = sqrt(body->mean[0] * body->mean[0] + body->mean[1] * body->mean[1]) + body->deviation +
                          bounds.speed + school->interval * acceleration;
     const double distance = box_distance(&bounds, body) - school->interval * speed;
-    const struct near_field_error error = estimate(max_of(distance, 0), school->fish[g].smoothing, speed, acceleration,
-                                                   school->interval, bounds.strength, bounds.decay);
+    const struct near_field_error error = estimate_error(max_of(distance, 0), school->fish[g].smoothing, speed,
+                                                         acceleration, school->interval, bounds.strength, bounds.decay);
+
     if (error.error <= near_field->tolerance / 8 / (school->n_fish * n_images)) {
-        add_to_far(near_field, &error);
+        near_field_add_far(near_field, &error);
         return STATUS_OK;
     }
+
     const double max_error = near_field->tolerance / 8 / (input->n_released * n_images);
-    return divide_wake(input, g, image, is_own, body, max_error, near_field);
+    return near_field_divide_wake(input, g, image, is_own, body, max_error, near_field);
 }
 
-/* Half of the tolerance is for the far field on the predicted path (an eighth of it all for whole wakes, one for single
- * vortices of little effect, a quarter for those that move_to_far finds), half for drift. */
-static enum status divide(struct near_field *near_field, const struct near_field_input *input, int f) {
+/* Budget of the tolerance: half for the far field on the predicted path (an eighth for whole wakes, an eighth for
+ * single vortices of small effect, a quarter for near_field_move_far), half for drift. */
+static enum status near_field_divide(struct near_field *near_field, const struct near_field_input *input, int f) {
     const struct school *const school = input->school;
     const struct fish *const fish = &school->fish[f];
-    const struct body body = body_of(input, f);
+    const struct body body = body_motion(input, f);
     const int n_released = input->n_released;
+
     near_field->n_near = 0;
     near_field->far = (struct near_field_error){0};
     near_field->tolerance = school->wake_tolerance * fish->length * fish_rate(school, fish);
@@ -241,41 +259,45 @@ static enum status divide(struct near_field *near_field, const struct near_field
     const int n_images = 1 + images_nearest(&school->walls, image + 1);
     for (int g = 0; g < school->n_fish; g++) {
         for (int i = 0; i < n_images; i++) {
-            TRY(divide_image(near_field, input, g, &image[i], g == f && i == 0, n_images, &body));
+            TRY(near_field_divide_image(near_field, input, g, &image[i], g == f && i == 0, n_images, &body));
         }
     }
-    move_to_far(near_field, near_field->tolerance / 4);
-    // a near vortex is evaluated about twice as often as a far one
+
+    near_field_move_far(near_field, near_field->tolerance / 4);
+
+    // a near vortex is evaluated about twice as often as a far vortex
     near_field->is_interpolated = 3 * near_field->n_near <= n_released || near_field->n_near <= FEW;
     return STATUS_OK;
 }
 
-// those of the own wake follow one another
-static struct range own_of(const struct near_field *near_field) {
+// the near vortices of the own wake are consecutive
+static struct range near_field_own(const struct near_field *near_field) {
     struct range own = {0, 0};
     for (int i = 0; i < near_field->n_near; i++) {
         if (!near_field->near[i].is_own) continue;
         if (own.n == 0) own.first = i;
         own.n++;
     }
+
     return own;
 }
 
-// allocate the near vortices, in groups of one smoothing
-static enum status reserve(struct near_field *near_field) {
+// allocate the near vortices in groups of equal smoothing
+static enum status near_field_reserve(struct near_field *near_field) {
     const struct near_field_vortex *const near = near_field->near;
     vortices_clear(&near_field->vortices);
     for (int i = 0, n; i < near_field->n_near; i += n) {
         for (n = 1; i + n < near_field->n_near && near[i + n].smoothing == near[i].smoothing;) n++;
         TRY(vortices_append(&near_field->vortices, n, near[i].smoothing));
     }
+
     return STATUS_OK;
 }
 
 enum status near_field_find(struct near_field *near_field, const struct near_field_input *input, int f) {
-    TRY(divide(near_field, input, f));
-    near_field->own = own_of(near_field);
-    return reserve(near_field);
+    TRY(near_field_divide(near_field, input, f));
+    near_field->own = near_field_own(near_field);
+    return near_field_reserve(near_field);
 }
 
 int near_field_is_valid(const struct near_field *near_field, double drift_square) {

@@ -1,4 +1,4 @@
-/* ring_sheet.c: points of stretches and markers with their legs. */
+/* ring_sheet.c: points of stretches, and markers, with the legs of the rings. */
 #include "wake/ring_sheet.h"
 
 #include <math.h>
@@ -11,15 +11,15 @@
 struct ends {
     double newer[2], older[2];
 };
-static struct ends ends_of(const struct wake *markers, int stretch, double interval, double tau) {
+static struct ends stretch_ends(const struct wake *markers, int stretch, double interval, double tau) {
     struct ends ends;
     wake_marker(markers, stretch + 1, interval, tau, ends.newer);
     wake_marker(markers, stretch, interval, tau, ends.older);
     return ends;
 }
 
-// the point at xi of the way from the newer to the older end
-static void point_of(const struct ends *ends, double xi, double point[2]) {
+// point at the fraction xi of the way from the newer to the older end
+static void stretch_point(const struct ends *ends, double xi, double point[2]) {
     for (int i = 0; i < 2; i++) point[i] = (1 - xi) * ends->newer[i] + xi * ends->older[i];
 }
 
@@ -61,10 +61,10 @@ static void ring_sheet_add(struct ring_sheet *sheet, enum ring_view view, const 
     for (int end = 0; end < 2; end++) {
         const double tau = end * interval;
         double point[2];
-        point_of(&at[end], xi, point);
+        stretch_point(&at[end], xi, point);
         const double from_tail[2] = {point[0] - markers->x[newest] - tau * markers->tail_velocity[0],
                                      point[1] - markers->y[newest] - tau * markers->tail_velocity[1]};
-        // others see the middles with the full smoothing of the pair
+        // middles are sources for other targets, with the full smoothing of the pair
         sheet->smoothing[end][i] =
             view == RING_GRADED ? free_sheet_smoothing(fish, from_tail, markers->tail_tangent) : 0;
         sheet->leg[end][i] = ring_sheet_leg(fish, from_tail);
@@ -76,30 +76,32 @@ enum status ring_sheet_build(struct ring_sheet *sheet, enum ring_view view, cons
     const int n_stretches = markers->n_vortex > 0 ? markers->n_vortex - 1 : 0;
     const int graded = view == RING_GRADED ? FREE_SHEET_GRADED : 0,
               paired = view == RING_GRADED ? FREE_SHEET_PAIRED : 0;
+
     TRY(ring_sheet_reserve(sheet, n_stretches + 2 * FREE_SHEET_PAIRED + 4 * FREE_SHEET_PANEL));
     sheet->n_released = 0;
     sheet->n_nascent = view == RING_GRADED ? FREE_SHEET_PANEL : 1;
     for (int i = 0; i < n_stretches; i++) {
         const int age = n_stretches - i;
         const int n = age <= graded ? FREE_SHEET_PANEL : age <= paired ? 2 : 1;
-        const struct ends at[2] = {ends_of(markers, i, school->interval, 0),
-                                   ends_of(markers, i, school->interval, school->interval)};
+        const struct ends at[2] = {stretch_ends(markers, i, school->interval, 0),
+                                   stretch_ends(markers, i, school->interval, school->interval)};
         for (int k = 0; k < n; k++) {
             const double xi = n == 1 ? 0.5 : n == 2 ? free_sheet_pair_xi[k] : free_sheet_xi[k];
             const double part = n <= 2 ? 1.0 / n : free_sheet_part[k];
             ring_sheet_add(sheet, view, fish, markers, school->interval, i, at, xi, part);
         }
     }
+
     sheet->rings.n = 0;
     return ring_append(&sheet->rings, sheet->n_released + sheet->n_nascent);
 }
 
-// a point at xi of a stretch of which both ends count with these labels
-static void put_ring(struct rings *rings, int i, const struct ends *ends, double xi, double part, double newer,
+// set ring i at the fraction xi of a stretch with the labels newer and older at its ends
+static void ring_set(struct rings *rings, int i, const struct ends *ends, double xi, double part, double newer,
                      double older) {
     const double along = -(newer + xi * (older - newer)) * part;
     double point[2];
-    point_of(ends, xi, point);
+    stretch_point(ends, xi, point);
     rings->x[i] = point[0];
     rings->y[i] = point[1];
     rings->q[i] = part * (newer - older);
@@ -114,15 +116,16 @@ void ring_sheet_place(struct ring_sheet *sheet, const struct fish *fish, const s
     struct ends ends = {{0}, {0}};
     int placed = -2;
     double newer = 0, older = 0;
+
     for (int i = 0; i < sheet->n_released; i++) {
         const int stretch = sheet->stretch[i];
         if (stretch != placed) {
             older = stretch == placed + 1 ? newer : wake_ring(markers, school, stretch, t, tau);
             newer = wake_ring(markers, school, stretch + 1, t, tau);
-            ends = ends_of(markers, stretch, school->interval, tau);
+            ends = stretch_ends(markers, stretch, school->interval, tau);
             placed = stretch;
         }
-        put_ring(rings, i, &ends, sheet->xi[i], sheet->part[i], newer, older);
+        ring_set(rings, i, &ends, sheet->xi[i], sheet->part[i], newer, older);
         const double smoothing = (1 - q) * sheet->smoothing[0][i] + q * sheet->smoothing[1][i];
         rings->square[i] = smoothing * smoothing;
         rings->leg[i] = (1 - q) * sheet->leg[0][i] + q * sheet->leg[1][i];
@@ -144,12 +147,14 @@ double ring_sheet_place_nascent(struct ring_sheet *sheet, const struct fish *fis
     const int newest = markers->n_vortex - 1;
     const double older = newest >= 0 ? wake_ring(markers, school, newest, t, tau) : markers->shed_before;
     struct ends ends = {.newer = {tail[0], tail[1]}, .older = {tail[0], tail[1]}};
+
     if (newest >= 0) wake_marker(markers, newest, school->interval, tau, ends.older);
     for (int k = 0; k < sheet->n_nascent; k++) {
         const int i = sheet->n_released + k;
-        put_ring(rings, i, &ends, ring_sheet_xi(sheet, k), ring_sheet_part(sheet, k), shed, older);
+        ring_set(rings, i, &ends, ring_sheet_xi(sheet, k), ring_sheet_part(sheet, k), shed, older);
         rings->half[i] = fish->strip_depth * fish->strip_depth / 32;
     }
+
     return shed - older;
 }
 
@@ -174,7 +179,8 @@ enum status ring_sheet_markers(struct rings *rings, const struct fish *fish, con
         to->q[first + i] += stretch / 2;
         to->q[first + i - 1] += stretch / 2;
     }
-    // the nascent stretch has no length yet: both of its halves are here
+
+    // the nascent stretch has length 0 at the event: both halves act at the newest marker
     if (n > 0) rings->q[first + n - 1] += nascent;
     return STATUS_OK;
 }

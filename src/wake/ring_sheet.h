@@ -8,45 +8,44 @@
 #include "vortex/ring.h"
 #include "wake/wake.h"
 
-/* Points of all stretches, oldest first, then those of the
- * nascent one. */
+/* Points of all stretches, oldest stretch first, then the points of the nascent stretch. */
 struct ring_sheet {
     int n_released, n_nascent, capacity;
-    /* fixed for an interval; source i lies at xi of the way from the newer to the older end of its stretch
+    /* fixed for an interval; source i lies at the fraction xi of the way from the newer to the older end of its stretch
      * (n_released) */
     int *stretch;
     double *xi, *part;
-    double *smoothing[2], *leg[2]; /* delta(d) and s at both ends of the interval, m, m2 */
+    double *smoothing[2], *leg[2]; /* delta(d) and s at the start and at the end of the interval, m, m2 */
     struct rings rings;            /* at one time */
 };
 void ring_sheet_free(struct ring_sheet *sheet);
 
-/* How a sheet is divided: as the own control points see it, or one point, its middle, for every stretch. */
+/* Discretisation of a sheet: graded points for the own control points, or the middle of every stretch. */
 enum ring_view { RING_GRADED, RING_MIDDLES };
 
-/* Choose the points for the interval that begins now. Fails with STATUS_MEMORY. */
+/* Select the points of the interval that starts at the event. Fails with STATUS_MEMORY. */
 enum status ring_sheet_build(struct ring_sheet *sheet, enum ring_view view, const struct fish *fish,
                              const struct school *school, const struct wake *markers);
 
-/* Put the released points where they are tau after the event at time t. */
+/* Set the released points to the time tau after the event at time t. */
 void ring_sheet_place(struct ring_sheet *sheet, const struct fish *fish, const struct school *school,
                       const struct wake *markers, double t, double tau);
 
-/* Put the nascent ones where they are then, with the tail there; shed: all circulation that the fish has shed, m2 s-1.
- * Returns the circulation of the nascent stretch. */
+/* Set the nascent points to the time tau with the tail position at this time; shed: total circulation shed by the fish,
+ * m2 s-1. Returns the circulation of the nascent stretch. */
 double ring_sheet_place_nascent(struct ring_sheet *sheet, const struct fish *fish, const struct school *school,
                                 const struct wake *markers, double t, double tau, const double tail[2], double shed);
 
-/* The nascent points: the part of the way from the tail to the newest marker, and of the stretch. */
+/* Nascent point i: fraction of the way from the tail to the newest marker, and fraction of the stretch. */
 double ring_sheet_xi(const struct ring_sheet *sheet, int i);
 double ring_sheet_part(const struct ring_sheet *sheet, int i);
 
-/* The markers as they count among themselves at the event at time t, appended to rings; nascent: the circulation of the
- * nascent stretch. Fails with STATUS_MEMORY. */
+/* Append the markers as sources at markers, at the event at time t, to rings; nascent: circulation of the nascent
+ * stretch. Fails with STATUS_MEMORY. */
 enum status ring_sheet_markers(struct rings *rings, const struct fish *fish, const struct school *school,
                                const struct wake *markers, double t, double nascent);
 
-/* s of a point of the wake at this distance from the own tail, m2. */
+/* s of a point of the wake at this position relative to the own tail, m2. */
 double ring_sheet_leg(const struct fish *fish, const double from_tail[2]);
 
 #endif

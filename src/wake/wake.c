@@ -9,53 +9,55 @@
 
 enum { N_ARRAYS = 10 };
 
-static void list_arrays(struct wake *wake, double **array[N_ARRAYS]) {
+static void wake_list_arrays(struct wake *wake, double **array[N_ARRAYS]) {
     double **const all[N_ARRAYS] = {&wake->x,        &wake->y,           &wake->u,     &wake->v,    &wake->u_before,
                                     &wake->v_before, &wake->circulation, &wake->birth, &wake->rate, &wake->rate_before};
     memcpy(array, all, sizeof all);
 }
 
-static enum status reserve(struct wake *wake, int capacity) {
+static enum status wake_reserve(struct wake *wake, int capacity) {
     double **array[N_ARRAYS];
-    list_arrays(wake, array);
+    wake_list_arrays(wake, array);
     for (int i = 0; i < N_ARRAYS; i++) {
         double *const more = realloc(*array[i], (size_t)capacity * sizeof *more);
         if (!more) return status_fail(STATUS_MEMORY, "out of memory: a wake of %d vortices", capacity);
         *array[i] = more;
     }
+
     wake->capacity = capacity;
     return STATUS_OK;
 }
 
 enum status wake_create(struct wake *wake, int capacity) {
     *wake = (struct wake){0};
-    const enum status status = reserve(wake, capacity > 0 ? capacity : 1);
+    const enum status status = wake_reserve(wake, capacity > 0 ? capacity : 1);
     if (status != STATUS_OK) wake_free(wake);
     return status;
 }
 
 void wake_free(struct wake *wake) {
     double **array[N_ARRAYS];
-    list_arrays(wake, array);
+    wake_list_arrays(wake, array);
     for (int i = 0; i < N_ARRAYS; i++) free(*array[i]);
     *wake = (struct wake){0};
 }
 
 int wake_most(const struct school *school, long n_events) {
-    // one is released at every event but the first (impulsive: at the first too) and lives for a lifetime
+    // one vortex is released at every event except the first (impulsive shedding: including the first) and lives for a
+    // lifetime
     const double in_a_lifetime = ceil(school->lifetime / school->interval * (1 - 1e-9)) + 1;
     const double ever = (double)n_events + 1;
     return (int)fmin(fmin(in_a_lifetime, ever) + school->wake_spare, 2e9);
 }
 
 enum status wake_resize(struct wake *wake, int n) {
-    if (n > wake->capacity) TRY(reserve(wake, n + n / 2));
+    if (n > wake->capacity) TRY(wake_reserve(wake, n + n / 2));
     wake->n_vortex = n;
     return STATUS_OK;
 }
 
 enum status wake_release(struct wake *wake, double x, double y, double circulation, double birth) {
-    if (wake->n_vortex == wake->capacity) TRY(reserve(wake, 2 * wake->capacity));
+    if (wake->n_vortex == wake->capacity) TRY(wake_reserve(wake, 2 * wake->capacity));
     const int i = wake->n_vortex++;
     wake->version++;
     wake->x[i] = x;
@@ -67,20 +69,20 @@ enum status wake_release(struct wake *wake, double x, double y, double circulati
     return STATUS_OK;
 }
 
-// without decay a vortex of continuous shedding is removed within its last interval
-static int fades_in_one_interval(const struct school *school) {
+// without a decay time a vortex of continuous shedding vanishes within the last interval of its lifetime
+static int decay_takes_one_interval(const struct school *school) {
     return school->decay <= 0 && school->shedding != SHEDDING_IMPULSIVE;
 }
 
 double wake_strength(const struct school *school, double age) {
     const double left = school->lifetime - age;
-    if (fades_in_one_interval(school)) return fmax(0, fmin(1, left / school->interval));
+    if (decay_takes_one_interval(school)) return fmax(0, fmin(1, left / school->interval));
     if (school->decay <= 0) return 1;
-    // it stands for what was shed around half an interval before its release
+    // the vortex represents circulation shed half an interval before the release, on average
     return 1 - ramp_step((school->interval / 2 + school->decay - left) / school->decay);
 }
 
-// the age from which on the strength may be less than 1 within an interval
+// age from which the strength may be less than 1 within an interval
 static double age_of_decay(const struct school *school) {
     return school->lifetime - fmax(school->decay + school->interval / 2, school->interval);
 }
@@ -137,6 +139,7 @@ void wake_at(const struct wake *wake, const struct school *school, double t, dou
         y[i] = along_path(wake->y[i], wake->v[i], wake->v_before[i], tau, school->interval);
         strength[i] = wake->circulation[i];
     }
+
     for (int i = 0; i < wake->n_vortex; i++) {
         const double age = t - wake->birth[i];
         if (age + school->interval <= age_of_decay(school)) break;
@@ -151,6 +154,7 @@ double wake_lost(const struct wake *wake, const struct school *school, double t,
         if (age + school->interval <= age_of_decay(school)) break;
         lost += wake_source(wake, i) * (1 - wake_strength_within(school, age, tau / school->interval));
     }
+
     return lost;
 }
 
@@ -160,21 +164,23 @@ void wake_advance(struct wake *wake, double interval) {
         wake->x[i] = along_path(wake->x[i], wake->u[i], wake->u_before[i], interval, interval);
         wake->y[i] = along_path(wake->y[i], wake->v[i], wake->v_before[i], interval, interval);
         const double label = wake_label(wake, i, interval, interval);
-        // the oldest label is all that has been removed
+        // the oldest label equals the removed circulation
         if (i == 0 && wake->has_markers) wake->removed += label - wake->circulation[i];
         wake->circulation[i] = label;
     }
 }
 
 int wake_n_old(const struct wake *wake, const struct school *school, double t) {
-    // ages are multiples of the interval: a part of one decides what rounding must not
-    const double rounding = school->interval * (fades_in_one_interval(school) ? 1e-6 : 0.5);
-    // a stretch is as old as its newer marker
+    // ages are multiples of the interval; the margin makes the comparison independent of rounding
+    const double rounding = school->interval * (decay_takes_one_interval(school) ? 1e-6 : 0.5);
+
+    // the age of a stretch is the age of the newer marker
     const int newer = wake->has_markers;
     int n_old = 0;
     while (n_old + newer < wake->n_vortex && t - wake->birth[n_old + newer] > school->lifetime - rounding) {
         n_old++;
     }
+
     return n_old;
 }
 
@@ -185,13 +191,13 @@ void wake_remove_old(struct wake *wake, const struct school *school, double t) {
     wake->version++;
     wake->n_vortex -= n_old;
     double **array[N_ARRAYS];
-    list_arrays(wake, array);
+    wake_list_arrays(wake, array);
     for (int i = 0; i < N_ARRAYS; i++)
         memmove(*array[i], *array[i] + n_old, (size_t)wake->n_vortex * sizeof **array[i]);
 }
 
 void wake_add_shed(struct wake *wake, double circulation) {
-    // the label of a marker is what had been shed at its birth
+    // the label of a marker is the circulation shed until the birth of the marker
     for (int i = 0; i < wake->n_vortex && wake->has_markers; i++) wake->circulation[i] += circulation;
     wake->shed_before += circulation;
     wake->removed += circulation;
@@ -200,16 +206,17 @@ void wake_add_shed(struct wake *wake, double circulation) {
 
 // ---- from outside
 
-// room for n vortices from outside
+// reserve n vortices from outside
 static enum status wake_make_spare(struct wake *wake, const struct school *school, int n) {
     if (wake->n_added + n > school->wake_spare) {
-        return status_fail(
-            STATUS_CASE,
-            "wake.spare_vortices: %d, of which %d are used: this takes %d more; set it to the number that "
-            "the program adds to one wake",
-            school->wake_spare, wake->n_added, n);
+        return status_fail(STATUS_CASE,
+                           "wake.spare_vortices: %d, of which %d are used; %d more are required: set "
+                           "wake.spare_vortices to the number "
+                           "of vortices that the program adds to one wake",
+                           school->wake_spare, wake->n_added, n);
     }
-    if (wake->n_vortex + n > wake->capacity) TRY(reserve(wake, 2 * (wake->n_vortex + n)));
+
+    if (wake->n_vortex + n > wake->capacity) TRY(wake_reserve(wake, 2 * (wake->n_vortex + n)));
     wake->n_added += n;
     wake->version++;
     return STATUS_OK;
@@ -217,37 +224,44 @@ static enum status wake_make_spare(struct wake *wake, const struct school *schoo
 
 enum status wake_add_vortex(struct wake *wake, const struct school *school, double t, double x, double y,
                             double circulation) {
-    enum { BEHIND = 5, N_MARKERS = 3 }; /* markers at the tail that stay together: their stretches are seen as points */
+    enum {
+        BEHIND = 5,
+        N_MARKERS = 3
+    }; /* newest markers stay consecutive: the sources of their stretches are graded points */
     if (school->removed == REMOVED_DROPPED) {
         return status_fail(
             STATUS_CASE,
-            "wake.dissipated_circulation: dropped: the circulation of a vortex that is added would go to "
-            "the body when it is removed: choose 'retained'");
+            "wake.dissipated_circulation: dropped: removal of an added vortex would add its circulation to the "
+            "body: choose 'retained'");
     }
+
     if (school->finite) {
         return status_fail(STATUS_CASE,
-                           "pressure.span: finite: a vortex alone is no ring: choose 'infinite' to add vortices");
+                           "pressure.span: finite: a single vortex is not a ring: choose 'infinite' to add vortices");
     }
+
     TRY(wake_make_spare(wake, school, wake->has_markers ? N_MARKERS : 1));
     wake->removed -= circulation;
     if (!wake->has_markers || wake->n_vortex == 0) return wake_release(wake, x, y, circulation, t);
 
-    // make a gap of three behind marker i
+    // insert N_MARKERS markers behind marker i
     const int i = wake->n_vortex > BEHIND ? wake->n_vortex - 1 - BEHIND : 0;
     double **array[N_ARRAYS];
-    list_arrays(wake, array);
+    wake_list_arrays(wake, array);
     for (int k = 0; k < N_ARRAYS; k++) {
         double *const values = *array[k];
         memmove(values + i + 1 + N_MARKERS, values + i + 1, (size_t)(wake->n_vortex - 1 - i) * sizeof *values);
         for (int m = 1; m <= N_MARKERS; m++) values[i + m] = values[i];
     }
+
     wake->n_vortex += N_MARKERS;
 
-    // both ends of the stretch are the vortex; the labels up to its older end fall by its circulation
+    // both ends of the stretch are at the vortex; subtract the circulation from the labels up to the older end
     for (int m = 1; m <= 2; m++) {
         wake->x[i + m] = x;
         wake->y[i + m] = y;
     }
+
     for (int k = 0; k <= i + 1; k++) wake->circulation[k] -= circulation;
     return STATUS_OK;
 }
@@ -271,6 +285,7 @@ void wake_set_velocity(struct wake *wake, const double *u, const double *v, cons
     const double *const from[] = {u, v, rate};
     double *const now[] = {wake->u, wake->v, wake->rate};
     double *const before[] = {wake->u_before, wake->v_before, wake->rate_before};
+
     wake->version++;
     for (int i = 0; i < (rate ? 3 : 2); i++) {
         memcpy(before[i], now[i], (size_t)n_old * sizeof *u);

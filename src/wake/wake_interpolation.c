@@ -11,59 +11,62 @@
 
 enum { N_TIMES = 4, END = N_TIMES - 1 };
 
-/* The times, as parts of the interval: of all four that include both ends, these have the smallest maximum of the
- * product of |q - time|, (3 - 2 sqrt(2))/16: the cubic_error of near_field.c. */
+/* The times as fractions of the interval. Of all four times with both ends of the interval, these have the smallest
+ * maximum of the product of |q - time|, (3 - 2 sqrt(2))/16: the cubic_error of near_field.c. */
 static const double time_of[N_TIMES] = {0, 0.29289321881345248, 0.70710678118654752, 1};
 
 struct wake_interpolation {
     const struct school *school;
-    double start, q;        /* time of the event, s; now, as part of the interval */
-    double weight[N_TIMES]; /* of the values at the four times, now */
+    double start, q;        /* time of the event, s; current time as a fraction of the interval */
+    double weight[N_TIMES]; /* current weights of the values at the four times */
     int n_points;
     const struct range *points;      /* of each fish                                    (n_fish) */
     const struct range *without_own; /* see wake_interpolation_create                 (n_fish) */
     struct near_field *near_field;   /*                                                    (n_fish) */
 
-    double *motion[6];                                  /* of all points at the event: x y, u v, a b (n_points) */
-    double *predicted[2];                               /* their predicted positions now, m          (n_points) */
-    double *path[N_TIMES][2];                           /* and at the four times                     (n_points) */
-    double *velocity_u[N_TIMES], *velocity_v[N_TIMES];  /* of the fluid there, m s-1                 (n_points) */
-    double *u_x[N_TIMES], *u_y[N_TIMES], *v_x[N_TIMES]; /* its gradient at both ends, s-1          (n_points) */
+    double *motion[6];        /* of all points at the event: x y, u v, a b (n_points) */
+    double *predicted[2];     /* predicted positions at the current time, m        (n_points) */
+    double *path[N_TIMES][2]; /* predicted positions at the four times, m          (n_points) */
+    double *velocity_u[N_TIMES], *velocity_v[N_TIMES]; /* velocity of the fluid on these paths, m s-1      (n_points) */
+    double *u_x[N_TIMES], *u_y[N_TIMES],
+        *v_x[N_TIMES]; /* velocity gradient at both ends, s-1              (n_points) */
 
     struct velocity_sum *velocity_sum;
     struct vortices released[N_TIMES]; /* of all fish */
-    struct range *wake;                /* those of each fish                       (n_fish) */
-    double *opposite;                  /* their circulations at one time with the other sign     (n_opposite) */
+    struct range *wake;                /* released vortices of each fish                (n_fish) */
+    double *opposite;                  /* circulations at one time with opposite sign  (n_opposite) */
     int n_opposite;
     struct near_field_bounds *bounds; /* of each wake                             (n_fish) */
 };
 
-static enum status at_points(double **values, int n) {
-    return array_doubles(values, n, "the wakes' velocity at points");
+static enum status allocate_at_points(double **values, int n) {
+    return array_doubles(values, n, "velocity of the wakes at points");
 }
 
-static enum status allocate(struct wake_interpolation *interpolation) {
+static enum status wake_interpolation_allocate(struct wake_interpolation *interpolation) {
     TRY(velocity_sum_create(&interpolation->velocity_sum));
     const size_t n_fish = (size_t)interpolation->school->n_fish;
     interpolation->near_field = calloc(n_fish, sizeof *interpolation->near_field);
     interpolation->wake = calloc(n_fish, sizeof *interpolation->wake);
     interpolation->bounds = calloc(n_fish, sizeof *interpolation->bounds);
     if (!interpolation->near_field || !interpolation->wake || !interpolation->bounds) {
-        return status_fail(STATUS_MEMORY, "out of memory: the wakes' velocity at %d fish",
+        return status_fail(STATUS_MEMORY, "out of memory: velocity of the wakes at %d fish",
                            interpolation->school->n_fish);
     }
+
     const int n = interpolation->n_points;
-    for (int i = 0; i < 6; i++) TRY(at_points(&interpolation->motion[i], n));
-    for (int i = 0; i < 2; i++) TRY(at_points(&interpolation->predicted[i], n));
+    for (int i = 0; i < 6; i++) TRY(allocate_at_points(&interpolation->motion[i], n));
+    for (int i = 0; i < 2; i++) TRY(allocate_at_points(&interpolation->predicted[i], n));
     for (int i = 0; i < N_TIMES; i++) {
-        for (int k = 0; k < 2; k++) TRY(at_points(&interpolation->path[i][k], n));
-        TRY(at_points(&interpolation->velocity_u[i], n));
-        TRY(at_points(&interpolation->velocity_v[i], n));
+        for (int k = 0; k < 2; k++) TRY(allocate_at_points(&interpolation->path[i][k], n));
+        TRY(allocate_at_points(&interpolation->velocity_u[i], n));
+        TRY(allocate_at_points(&interpolation->velocity_v[i], n));
         if (i > 0 && i < END) continue;
-        TRY(at_points(&interpolation->u_x[i], n));
-        TRY(at_points(&interpolation->u_y[i], n));
-        TRY(at_points(&interpolation->v_x[i], n));
+        TRY(allocate_at_points(&interpolation->u_x[i], n));
+        TRY(allocate_at_points(&interpolation->u_y[i], n));
+        TRY(allocate_at_points(&interpolation->v_x[i], n));
     }
+
     return STATUS_OK;
 }
 
@@ -71,16 +74,17 @@ enum status wake_interpolation_create(struct wake_interpolation **interpolation,
                                       const struct range *points, const struct range *without_own) {
     *interpolation = NULL;
     struct wake_interpolation *const new = calloc(1, sizeof *new);
-    if (!new) return status_fail(STATUS_MEMORY, "out of memory: the interpolation of wakes");
+    if (!new) return status_fail(STATUS_MEMORY, "out of memory: interpolation of wakes");
     new->school = school;
     for (int f = 0; f < school->n_fish; f++) new->n_points += points[f].n;
     new->points = points;
     new->without_own = without_own;
-    const enum status status = allocate(new);
+    const enum status status = wake_interpolation_allocate(new);
     if (status != STATUS_OK) {
         wake_interpolation_free(new);
         return status;
     }
+
     *interpolation = new;
     return STATUS_OK;
 }
@@ -91,14 +95,16 @@ void wake_interpolation_free(struct wake_interpolation *interpolation) {
     for (int i = 0; i < 2; i++) free(interpolation->predicted[i]);
     for (int i = 0; i < N_TIMES; i++) {
         for (int k = 0; k < 2; k++) free(interpolation->path[i][k]);
-        double *const at_points[] = {interpolation->velocity_u[i], interpolation->velocity_v[i], interpolation->u_x[i],
-                                     interpolation->u_y[i], interpolation->v_x[i]};
-        for (size_t k = 0; k < sizeof at_points / sizeof *at_points; k++) free(at_points[k]);
+        double *const allocate_at_points[] = {interpolation->velocity_u[i], interpolation->velocity_v[i],
+                                              interpolation->u_x[i], interpolation->u_y[i], interpolation->v_x[i]};
+        for (size_t k = 0; k < sizeof allocate_at_points / sizeof *allocate_at_points; k++) free(allocate_at_points[k]);
         vortices_free(&interpolation->released[i]);
     }
+
     for (int f = 0; interpolation->near_field && f < interpolation->school->n_fish; f++) {
         near_field_free(&interpolation->near_field[f]);
     }
+
     velocity_sum_free(interpolation->velocity_sum);
     free(interpolation->near_field);
     free(interpolation->opposite);
@@ -107,8 +113,8 @@ void wake_interpolation_free(struct wake_interpolation *interpolation) {
     free(interpolation);
 }
 
-// the predicted positions of all points
-static void predict(const struct wake_interpolation *interpolation, double tau, double *const path[2]) {
+// predicted positions of all points
+static void predict_paths(const struct wake_interpolation *interpolation, double tau, double *const path[2]) {
     for (int k = 0; k < 2; k++) {
         const double *const x = interpolation->motion[k], *const u = interpolation->motion[2 + k],
                             *const a = interpolation->motion[4 + k];
@@ -116,7 +122,7 @@ static void predict(const struct wake_interpolation *interpolation, double tau, 
     }
 }
 
-// make room for the released vortices of all wakes
+// reserve the released vortices of all wakes
 static enum status reserve_released(const struct school *school, const struct wake *wakes, struct vortices *released,
                                     struct range *wake) {
     vortices_clear(released);
@@ -127,7 +133,7 @@ static enum status reserve_released(const struct school *school, const struct wa
     return STATUS_OK;
 }
 
-// room for the opposite of all circulations
+// reserve the opposite of all circulations
 static enum status reserve_opposite(struct wake_interpolation *interpolation) {
     const int n = interpolation->released[0].n;
     if (n <= interpolation->n_opposite) return STATUS_OK;
@@ -138,7 +144,7 @@ static enum status reserve_opposite(struct wake_interpolation *interpolation) {
     return STATUS_OK;
 }
 
-// put those of one wake where they are tau after the event at time t
+// positions and strengths of the released vortices of one wake, tau after the event at time t
 static void place_released(const struct school *school, const struct wake *wake, double t, double tau, int first,
                            const struct vortices *released) {
     wake_at(wake, school, t, tau, released->x + first, released->y + first, released->circulation + first);
@@ -159,9 +165,9 @@ static struct induced targets_at(const struct wake_interpolation *interpolation,
                             interpolation->u_y[i],        interpolation->v_x[i]};
 }
 
-// ---- the parts of a build; the loops are shared by the threads of the region that they are called in
+// ---- steps of a build; `omp for` shares the loops among the threads of the calling region
 
-// every released vortex at every point at all times
+// sum of every released vortex at every point and time
 static void sum_directly(const struct wake_interpolation *interpolation) {
     const int n_tasks = N_TIMES * parallel_n_chunks(interpolation->n_points);
 #pragma omp for schedule(dynamic)
@@ -173,7 +179,7 @@ static void sum_directly(const struct wake_interpolation *interpolation) {
     }
 }
 
-// the same by the tree, planned once for all times, and the images of all in walls, one time after another
+// tree sum, planned once for all times, and the images of all vortices in walls, one time after another
 static enum status sum_by_tree(const struct wake_interpolation *interpolation, int by_tree, int threads) {
     const double tolerance = interpolation->school->wake_tolerance;
     struct velocity_sum *const sum = interpolation->velocity_sum;
@@ -181,34 +187,37 @@ static enum status sum_by_tree(const struct wake_interpolation *interpolation, i
         const struct induced first = targets_at(interpolation, 0);
         TRY(velocity_sum_plan(sum, &interpolation->released[0], tolerance, threads, &first));
     }
+
     for (int i = 0; i < N_TIMES; i++) {
         const struct induced at = targets_at(interpolation, i);
         const struct vortices *const released = &interpolation->released[i];
         if (by_tree) TRY(velocity_sum_by_plan(sum, released, tolerance, threads, &at));
         TRY(images_induce_many(&interpolation->school->walls, sum, released, tolerance, threads, &at));
     }
+
     return STATUS_OK;
 }
 
-// the points of fish f, from its point number first on, that leave out its own vortices
+// the points of fish f at which its own vortices are omitted; indices relative to point number first
 static struct range without_own(const struct wake_interpolation *interpolation, int f, int first) {
     const struct range points = interpolation->without_own[f];
     return (struct range){points.first - first, points.n};
 }
 
-// subtract the own wake of a fish, at time i, where its points leave it out
+// subtract the own wake of a fish, at time i, at the points at which the own wake is omitted
 static void subtract_own(const struct wake_interpolation *interpolation, int f, int i) {
     const struct range own = interpolation->wake[f];
     const struct induced all = targets_at(interpolation, i);
     const struct induced at = vortices_targets(&all, interpolation->without_own[f]);
     struct vortices released = interpolation->released[i];
+
     if (at.n == 0) return;
     for (int k = own.first; k < own.first + own.n; k++) interpolation->opposite[k] = -released.circulation[k];
     released.circulation = interpolation->opposite;
     vortices_induce(&released, own, &at);
 }
 
-// subtract from the sums of all times what a fish does not have in the far field
+// subtract near vortices and own wake of a fish from the sums of all times
 static void subtract(struct wake_interpolation *interpolation, int f) {
     struct near_field *const near_field = &interpolation->near_field[f];
     const struct range points = interpolation->points[f];
@@ -226,7 +235,7 @@ static void subtract_all(struct wake_interpolation *interpolation) {
     for (int f = 0; f < interpolation->school->n_fish; f++) subtract(interpolation, f);
 }
 
-// the released vortices at the four times, and what holds for each wake
+// released vortices at the four times, and bounds of each wake
 static void place_wakes(const struct wake_interpolation *interpolation, const struct wake *wakes) {
     const struct school *const school = interpolation->school;
     const struct vortices *const released = interpolation->released;
@@ -241,7 +250,7 @@ static void place_wakes(const struct wake_interpolation *interpolation, const st
     }
 }
 
-// divide the wakes into the near and the far field of every fish; counts those for which there is no memory
+// divide the wakes into near and far field of every fish; n_failed counts the fish that are out of memory
 static void find_near_fields(const struct wake_interpolation *interpolation, const struct wake *wakes, int *n_failed) {
     const struct near_field_input input = {.school = interpolation->school,
                                            .wakes = wakes,
@@ -260,27 +269,29 @@ static void find_near_fields(const struct wake_interpolation *interpolation, con
     }
 }
 
-// the targets of the sums at the four times
+// targets of the sums at the four times
 static void place_targets(const struct wake_interpolation *interpolation) {
 #pragma omp for schedule(static)
     for (int i = 0; i < N_TIMES; i++) {
         const struct induced at = targets_at(interpolation, i);
-        predict(interpolation, time_of[i] * interpolation->school->interval, interpolation->path[i]);
+        predict_paths(interpolation, time_of[i] * interpolation->school->interval, interpolation->path[i]);
         vortices_zero(&at);
     }
 }
 
-static enum status build(struct wake_interpolation *interpolation, const struct wake *wakes, double t,
-                         const struct wake_interpolation_points *points) {
+static enum status wake_interpolation_try_build(struct wake_interpolation *interpolation, const struct wake *wakes,
+                                                double t, const struct wake_interpolation_points *points) {
     const struct school *const school = interpolation->school;
     const struct vortices *const released = interpolation->released;
     const int n_points = interpolation->n_points;
     const double *const motion[6] = {points->x, points->y, points->u, points->v, points->a, points->b};
+
     for (int k = 0; k < 6; k++) memcpy(interpolation->motion[k], motion[k], (size_t)n_points * sizeof(double));
     interpolation->start = t;
     for (int i = 0; i < N_TIMES; i++) {
         TRY(reserve_released(school, wakes, &interpolation->released[i], interpolation->wake));
     }
+
     TRY(reserve_opposite(interpolation));
     const double work = (double)N_TIMES * n_points * released[0].n;
     const int threads = parallel_threads(school->threads, n_points, work, PARALLEL_INTERACTIONS);
@@ -295,8 +306,9 @@ static enum status build(struct wake_interpolation *interpolation, const struct 
         if (!by_tree) sum_directly(interpolation);
         if (is_whole && n_failed == 0) subtract_all(interpolation);
     }
-    // a message stays with the thread that wrote it
-    if (n_failed > 0) return status_fail(STATUS_MEMORY, "out of memory: the near vortices of %d fish", n_failed);
+
+    // messages are per thread: write the message on the calling thread
+    if (n_failed > 0) return status_fail(STATUS_MEMORY, "out of memory: near vortices of %d fish", n_failed);
     if (is_whole) return STATUS_OK;
     TRY(sum_by_tree(interpolation, by_tree, threads));
 #pragma omp parallel num_threads(threads)
@@ -306,7 +318,7 @@ static enum status build(struct wake_interpolation *interpolation, const struct 
 
 enum status wake_interpolation_build(struct wake_interpolation *interpolation, const struct wake *wakes, double t,
                                      const struct wake_interpolation_points *points) {
-    const enum status status = build(interpolation, wakes, t, points);
+    const enum status status = wake_interpolation_try_build(interpolation, wakes, t, points);
     for (int f = 0; status != STATUS_OK && f < interpolation->school->n_fish; f++) {
         interpolation->near_field[f].is_interpolated = 0;
     }
@@ -323,7 +335,8 @@ void wake_interpolation_update(struct wake_interpolation *interpolation, double 
             if (k != i) interpolation->weight[i] *= (q - time_of[k]) / (time_of[i] - time_of[k]);
         }
     }
-    predict(interpolation, tau, interpolation->predicted);
+
+    predict_paths(interpolation, tau, interpolation->predicted);
     const int threads = fish_threads(interpolation->school);
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (int f = 0; f < interpolation->school->n_fish; f++) near_field_update(&interpolation->near_field[f], tau, q, 1);
@@ -339,6 +352,7 @@ int wake_interpolation_is_valid(const struct wake_interpolation *interpolation, 
         const double here = dx * dx + dy * dy;
         drift_square = here > drift_square ? here : drift_square;
     }
+
     return near_field_is_valid(&interpolation->near_field[f], drift_square);
 }
 
@@ -364,6 +378,7 @@ void wake_interpolation_induce(const struct wake_interpolation *interpolation, i
             at->v_x[i] += v_x;
         }
     }
+
     const struct near_field *const near_field = &interpolation->near_field[f];
     vortices_induce_without(&near_field->vortices, near_field->own, without_own(interpolation, f, first), at);
 }

@@ -1,4 +1,4 @@
-/* test_free_sheet.c: markers, stretches, and what the own body sees of them: doc/model.md, section 8. */
+/* test_free_sheet.c: markers, stretches, and sources for the own body. doc/model.md, section 8. */
 #include <string.h>
 
 #include "school.h"
@@ -9,7 +9,8 @@
 
 static void the_panel_integrates_the_inverse_square_root(void **state) {
     (void)state;
-    // of xi^(-1/2) xi^k over [0, 1]: 1/(k + 1/2); four points are exact to k = 3
+
+    // integral of xi^(-1/2) xi^k over [0, 1]: 1/(k + 1/2); four points are exact up to k = 3
     for (int k = 0; k < 4; k++) {
         double sum = 0;
         for (int i = 0; i < FREE_SHEET_PANEL; i++) sum += free_sheet_part[i] * pow(free_sheet_xi[i], k - 0.5);
@@ -23,7 +24,8 @@ static void a_marker_is_born_at_the_tail_at_every_event(void **state) {
     const struct fish *fish = simulation->school->fish;
     const struct wake *wake = &simulation->state->wake[0];
     const double *const y = simulation->state->y;
-    // marker 0, with nothing shed
+
+    // marker 0, without shed circulation
     assert_int_equal(wake->n_vortex, 1);
     NEAR(wake->circulation[0], 0, 0, 0);
     for (int n = 1; n <= 20; n++) {
@@ -33,12 +35,13 @@ static void a_marker_is_born_at_the_tail_at_every_event(void **state) {
         NEAR(wake->x[n], y[fish->at.x + fish->n_nodes - 1], 0, 0);
         NEAR(wake->y[n], y[fish->at.y + fish->n_nodes - 1], 0, 0);
         NEAR(wake->birth[n], 0.02 * n, 1e-15, 0);
-        // it does not move forwards along the body
+        // the marker does not move forwards along the body
         const struct direction tail = fish_direction(fish, &fish->tail_tangent, y);
         const double relative[2] = {wake->u[n] - y[fish->at.vx + fish->n_nodes - 1],
                                     wake->v[n] - y[fish->at.vy + fish->n_nodes - 1]};
         assert_true(relative[0] * tail.t[0] + relative[1] * tail.t[1] > -1e-12);
     }
+
     simulate_free(simulation);
 }
 
@@ -58,6 +61,7 @@ static void stretches_lie_between_markers_and_markers_have_half_of_both(void **s
         NEAR(middles.circulation[i], wake->circulation[i + 1] - wake->circulation[i], 1e-15, 0);
         all += middles.circulation[i] * wake_strength(setup.school, setup.state->t - middles.birth[i]);
     }
+
     for (int i = 0; i < wake->n_vortex; i++) sum += strength[i];
     NEAR(sum, all + 0.25, 1e-14, 0);
     wake_free(&middles);
@@ -71,12 +75,14 @@ static void the_own_body_sees_the_same_circulation_as_others(void **state) {
     school_stir(&setup);
     school_flow(&setup, setup.state->y);
     const struct free_sheet *const sheet = setup.residual->flow->free_sheet;
-    // what it sees in place of the middles of the newest stretches, with the middles taken away, adds up to nothing
+
+    // the sources of the newest stretches and the subtracted middles sum to zero circulation
     double sum = 0, size = 0;
     for (int i = sheet->n_tapered; i < sheet->n; i++) {
         sum += sheet->circulation[i];
         size += fabs(sheet->circulation[i]);
     }
+
     assert_true(size > 0.1);
     NEAR(sum, 0, 1e-14, 0);
     school_clear(&setup);
@@ -95,10 +101,11 @@ static void the_smoothing_tapers_to_nothing_at_the_tail(void **state) {
         if (sheet->part[i] < 0) continue;
         const double dx = sheet->x[i] - y[fish->at.x + last], dy = sheet->y[i] - y[fish->at.y + last];
         const double want = 0.1 * (1 - exp(-pow(hypot(dx, dy) / 0.4, 4)));
-        // a wake behind the body; to the rounding of a difference near the tail
+        // a wake behind the body; tolerance: rounding of a difference near the tail
         NEAR(sqrt(sheet->square[i]), want, 1e-12, 1e-9);
         n++;
     }
+
     assert_true(n > 20);
     simulate_free(simulation);
 }
@@ -130,21 +137,22 @@ static void a_tail_that_overtakes_its_newest_marker_keeps_the_nascent_stretch_be
         const int first = sheet->n - (FREE_SHEET_PANEL + 1);
         assert_int_equal(sheet->is_overtaken, !is_behind);
         for (int i = 0; i < FREE_SHEET_PANEL; i++) {
-            // beside the tail where the marker is ahead of it, else straight to the marker
+            // a marker ahead of the tail: end beside the tail; else the end is the marker
             const double along = is_behind ? 0.03 : 0, xi = free_sheet_xi[i];
             NEAR(sheet->x[first + i], place[0] + xi * (0.01 * at.n[0] + along * at.t[0]), 1e-15, 1e-14);
             NEAR(sheet->y[first + i], place[1] + xi * (0.01 * at.n[1] + along * at.t[1]), 1e-15, 1e-14);
         }
-        // everybody else sees the middle between tail and marker, which is taken away here
+        // subtracted source: the middle between tail and marker
         NEAR(sheet->x[first + FREE_SHEET_PANEL], (place[0] + marker[0]) / 2, 1e-15, 1e-14);
         NEAR(sheet->y[first + FREE_SHEET_PANEL], (place[1] + marker[1]) / 2, 1e-15, 1e-14);
         NEAR(sheet->circulation[first + FREE_SHEET_PANEL], -setup.residual->flow->nascent.circulation[0], 0, 0);
         NEAR(setup.residual->flow->nascent.x[0], (place[0] + marker[0]) / 2, 1e-15, 1e-14);
     }
+
     school_clear(&setup);
 }
 
-// beyond 2.36 times the longer taper nothing is left of it, in any direction; just before it there is something
+// beyond 2.36 times the longer taper the taper is negligible in any direction; slightly closer the taper is finite
 static void far_from_the_tail_the_smoothing_is_full(void **state) {
     (void)state;
     struct setup setup;
@@ -160,7 +168,8 @@ static void far_from_the_tail_the_smoothing_is_full(void **state) {
             NEAR(free_sheet_smoothing(fish, at, along), 0.2, 0, i == 0 ? 1e-12 : 1e-13);
         }
     }
-    // a spacing of the bound sheet beside the body: with the defaults 0.023 L at 0.05 L
+
+    // one spacing of the bound sheet beside the body: with the defaults 0.023 L at 0.05 L
     NEAR(free_sheet_smoothing(fish, (const double[]){-0.1, 0.02}, along), 0.2 * (1 - exp(-pow(0.10198 / 0.2, 4))), 1e-6,
          0);
     NEAR(free_sheet_smoothing(fish, (const double[]){0, 0}, along), 0, 0, 0);
@@ -176,6 +185,7 @@ static void total_circulation_vanishes(void **state) {
         simulate_measure(simulation);
         NEAR(simulation->diagnostics->total_circulation, 0, 1e-12, 0);
     }
+
     assert_int_equal(simulation->state->wake[0].n_vortex, 16);
     simulate_free(simulation);
 }

@@ -1,4 +1,4 @@
-/* test_near_field.c: the estimated errors of the far field against true ones: doc/numerics.md, section 12. */
+/* test_near_field.c: estimated errors of the far field against true errors. doc/numerics.md, section 12. */
 #include <string.h>
 
 #include "school.h"
@@ -7,14 +7,14 @@
 
 enum { N_VORTICES = 20 };
 
-/* One point at rest in the origin, and equal vortices that pass it, all on one path. */
+/* One point at rest at the origin, and equal vortices on one path past the point. */
 static struct {
     struct setup setup;
     struct near_field near_field;
     struct near_field_bounds bounds;
     double x[2], u[2], a[2]; /* the path of the vortices: m, m s-1, m s-2 */
-    double start, end;       /* strength of all of them together, m2 s-1 */
-    int one_by_one;          /* 0: all of them at once, where their bounds allow it */
+    double start, end;       /* total strength, m2 s-1 */
+    int one_by_one;          /* 0: all vortices at once, if the bounds permit */
 } scene;
 
 static int build(void **state) {
@@ -32,11 +32,12 @@ static int clear(void **state) {
     return 0;
 }
 
-// divide the vortices, whose fish moves with the velocity (mean, 0), into near and far ones
+// divide the vortices into near and far vortices for a fish with the velocity (mean, 0)
 static void divide(double mean, double smoothing, double tolerance) {
     struct school *const school = scene.setup.school;
     struct wake *const wake = &scene.setup.state->wake[0];
     double start[N_VORTICES], end[N_VORTICES];
+
     school->fish[0].smoothing = smoothing;
     school->wake_tolerance = tolerance;
     for (int i = 0; i < N_VORTICES; i++) {
@@ -49,6 +50,7 @@ static void divide(double mean, double smoothing, double tolerance) {
         start[i] = scene.start / N_VORTICES;
         end[i] = scene.end / N_VORTICES;
     }
+
     const struct range point = {0, 1}, all = {0, N_VORTICES};
     double zero = 0;
     double *const motion[6] = {&zero, &zero, &mean, &zero, &zero, &zero};
@@ -66,24 +68,26 @@ static void divide(double mean, double smoothing, double tolerance) {
     school_ok(near_field_find(&scene.near_field, &input, 0));
 }
 
-// the velocity and its gradient, u v u_x u_y v_x, at (x, y) at a part q of the interval
+// velocity and gradient, u v u_x u_y v_x, at (x, y) at the fraction q of the interval
 static void induce(double smoothing, double q, double x, double y, double value[5]) {
     const double tau = q * scene.setup.school->interval;
     const double source[2] = {scene.x[0] + tau * (scene.u[0] + tau / 2 * scene.a[0]),
                               scene.x[1] + tau * (scene.u[1] + tau / 2 * scene.a[1])};
     const double strength = scene.start + q * (scene.end - scene.start);
+
     memset(value, 0, 5 * sizeof *value);
     kernel_add_gradient(1, &x, &y, 1, &source[0], &source[1], &strength, smoothing, &value[0], &value[1], &value[2],
                         &value[3], &value[4]);
 }
 
-// the largest errors in the interval: of the cubic through four velocities; of the gradient, linear in time, by a drift
-// of unit length; and of the velocity that a linear field gives at a drift, over its square
+// largest errors in the interval: of the cubic through four velocities; of the gradient, linear in time, for a drift of
+// unit length; of the linear velocity field at a drift, over the square of the drift
 static struct near_field_error true_error(double smoothing) {
     static const double time[4] = {0, 0.29289321881345248, 0.70710678118654752, 1};
     const double drift = 1e-4;
     double at_time[4][5];
     struct near_field_error worst = {0};
+
     for (int i = 0; i < 4; i++) induce(smoothing, time[i], 0, 0, at_time[i]);
     for (int step = 0; step <= 40; step++) {
         const double q = step / 40.0;
@@ -107,12 +111,13 @@ static struct near_field_error true_error(double smoothing) {
             worst.by_drift = fmax(worst.by_drift, hypot(error[2] * c + error[3] * s, error[4] * c - error[2] * s));
         }
     }
+
     return worst;
 }
 
 enum { DIRECTIONS = 16 };
 
-// a path that begins at the distance 1, with velocity and acceleration in two of the directions
+// a path that starts at the distance 1, with velocity and acceleration in two of the directions
 static void set_path(double speed, int direction, double acceleration, int bend) {
     const double turn = 2 * acos(-1) / DIRECTIONS, v = direction * turn, a = bend * turn;
     scene.x[0] = 1;
@@ -123,7 +128,7 @@ static void set_path(double speed, int direction, double acceleration, int bend)
     scene.a[1] = acceleration * sin(a);
 }
 
-// the true errors over the bounds, which are ten estimates: the largest for all directions of velocity and acceleration
+// true errors over the bounds (ten times the estimates): maximum over the directions of velocity and acceleration
 static struct near_field_error ratios(double speed, double acceleration, double smoothing) {
     struct near_field_error worst = {0};
     for (int i = 0; i < DIRECTIONS * DIRECTIONS; i++) {
@@ -135,14 +140,15 @@ static struct near_field_error ratios(double speed, double acceleration, double 
         worst.by_drift = fmax(worst.by_drift, error.by_drift / (10 * estimate->by_drift));
         worst.by_drift_square = fmax(worst.by_drift_square, error.by_drift_square / (10 * estimate->by_drift_square));
     }
+
     return worst;
 }
 
 static void errors_are_below_ten_estimates_and_not_far_below(void **state) {
     (void)state;
-    // A single pole reaches 1/sqrt(2) of the bound, and less because the bound lets vortices come closer in the
-    // interval than they are at its beginning. The motions: all terms matter; acceleration matters most; half of the
-    // way to the point is covered.
+
+    // A single pole reaches 1/sqrt(2) of the bound, and less because the bound uses the smallest distance in the
+    // interval. Motions: all terms matter; acceleration dominates; the vortex covers half of the distance to the point.
     const struct {
         double speed, acceleration, smoothing, end, least;
     } rows[] = {{1, 1.3, 0, 1, 0.6}, {0, 50, 0, 1, 0.6},  {1, 1.3, 0, 0, 0.6}, {1, 50, 0, 0, 0.3},
@@ -157,17 +163,20 @@ static void errors_are_below_ten_estimates_and_not_far_below(void **state) {
             assert_true(worst.by_drift_square < 1 && worst.by_drift_square > rows[i].least);
         }
     }
+
     scene.one_by_one = 0;
 }
 
 static void a_vortex_that_moves_with_the_body_is_far(void **state) {
     (void)state;
     scene.start = scene.end = 1;
-    // the bounds of the whole wake tell nothing: both are fast
+
+    // the bounds of the whole wake do not separate the vortices: both are fast
     set_path(0, 0, 0, 0);
     divide(3, 0.1, 1e-12);
     assert_int_equal(scene.near_field.n_near, 0);
-    // one is faster
+
+    // one vortex is faster
     set_path(1, 0, 0, 0);
     divide(3, 0.1, 1e-12);
     assert_int_equal(scene.near_field.n_near, N_VORTICES);
@@ -175,7 +184,8 @@ static void a_vortex_that_moves_with_the_body_is_far(void **state) {
 
 static void a_cluster_of_one_sign_can_exceed_the_tolerance(void **state) {
     (void)state;
-    // the path of the largest error, and a strength that makes the cluster just far
+
+    // the path of the largest error, and a strength at which the cluster is just far
     scene.start = scene.end = 1;
     double largest = 0;
     int worst = 0;
@@ -186,15 +196,19 @@ static void a_cluster_of_one_sign_can_exceed_the_tolerance(void **state) {
         largest = error;
         worst = i;
     }
+
     set_path(1, worst % DIRECTIONS, 1, worst / DIRECTIONS);
     divide(0, 0, 1);
-    // a quarter of the tolerance is for those that are neither far as a whole nor small one by one
+
+    // a quarter of the tolerance is for vortices that are neither in a far wake nor small one by one
     const double tolerance = 4 * scene.near_field.far.error;
     divide(0, 0, 1.01 * tolerance);
     assert_int_equal(scene.near_field.n_near, 0);
-    // doc/numerics.md says so
+
+    // value of doc/numerics.md
     NEAR(largest / tolerance, 1.65, 0.01, 0);
-    // with half of that tolerance all are near
+
+    // with half of the tolerance all vortices are near
     divide(0, 0, tolerance / 2);
     assert_int_equal(scene.near_field.n_near, N_VORTICES);
 }
@@ -206,7 +220,7 @@ static void the_far_field_is_valid_up_to_half_of_the_tolerance(void **state) {
         struct near_field near_field = {.is_interpolated = 1, .tolerance = 2};
         near_field.far.by_drift = far[i].by_drift;
         near_field.far.by_drift_square = far[i].by_drift_square;
-        // each is 1 at a drift of a half
+        // each term is 1 at a drift of a half
         assert_true(near_field_is_valid(&near_field, 0));
         assert_true(near_field_is_valid(&near_field, 0.499 * 0.499));
         assert_false(near_field_is_valid(&near_field, 0.501 * 0.501));

@@ -1,4 +1,4 @@
-/* test_wake.c: the queue of free vortices: doc/model.md, sections 7 and 8. */
+/* test_wake.c: queue of free vortices. doc/model.md, sections 7 and 8. */
 #include "base/ramp.h"
 #include "school.h"
 #include "wake/wake.h"
@@ -17,7 +17,9 @@ static void release_keeps_what_is_there_while_it_grows(void **state) {
         const double want[] = {i, 2 * i, 3 * i, 4 * i, 0, 0};
         NEAR_ARRAY(6, got, want, 0, 0);
     }
+
     wake_free(&wake);
+
     // accepts a zeroed wake
     wake_free(&wake);
 }
@@ -29,7 +31,8 @@ static void path_follows_a_velocity_that_is_linear_in_time(void **state) {
     const double interval = setup.school->interval;
     struct wake *wake = &setup.state->wake[0];
     school_ok(wake_release(wake, 1, 2, 0.5, 0));
-    // W(t) = 3 + 8 t and -1 + 2 t: the path 1 + 3 t + 4 t^2, 2 - t + t^2 is met from the second interval on
+
+    // W(t) = 3 + 8 t and -1 + 2 t: the path 1 + 3 t + 4 t^2, 2 - t + t^2 is exact from the second interval on
     wake->u_before[0] = 3 - 8 * interval;
     wake->v_before[0] = -1 - 2 * interval;
     wake->u[0] = 3;
@@ -42,6 +45,7 @@ static void path_follows_a_velocity_that_is_linear_in_time(void **state) {
         NEAR(y, 2 - tau + tau * tau, 1e-15, 0);
         NEAR(strength, 0.5, 0, 0);
     }
+
     wake_advance(wake, interval);
     NEAR(wake->x[0], 1 + 3 * interval + 4 * interval * interval, 1e-15, 0);
     NEAR(wake->y[0], 2 - interval + interval * interval, 1e-15, 0);
@@ -59,6 +63,7 @@ static double error_on_a_circle(int n) {
         wake_set_velocity(&wake, &u, &v, NULL, i == 0 ? 1 : 0);
         wake_advance(&wake, interval);
     }
+
     const double error = hypot(wake.x[0] - 1, wake.y[0]);
     wake_free(&wake);
     return error;
@@ -67,7 +72,7 @@ static double error_on_a_circle(int n) {
 static void paths_are_second_order_in_the_interval(void **state) {
     (void)state;
     const double order = log2(error_on_a_circle(200) / error_on_a_circle(400));
-    // the first interval is of first order, once: it does not show
+    // the first interval is of first order, but occurs only once: the global order is two
     NEAR(order, 2, 0.1, 0);
 }
 
@@ -79,7 +84,8 @@ static void new_velocities_push_the_old_ones_back(void **state) {
     const double u[] = {1, 2, 3}, v[] = {4, 5, 6}, more_u[] = {7, 8, 9}, more_v[] = {10, 11, 12};
     wake_set_velocity(&wake, u, v, NULL, 3);
     NEAR_ARRAY(3, wake.u_before, u, 0, 0);
-    // the last one is new: its velocity stands for the one before, too
+
+    // the last vortex is new: the velocity also replaces the previous velocity
     wake_set_velocity(&wake, more_u, more_v, NULL, 1);
     const double want_u[] = {1, 2, 9}, want_v[] = {4, 5, 12};
     NEAR_ARRAY(3, wake.u_before, want_u, 0, 0);
@@ -95,7 +101,8 @@ static void strength_fades_as_the_ramp_over_the_last_part_of_life(void **state) 
     school_build(&setup, TIME "wake: {lifetime: 1, decay: 0.4}\nfish: [{}]\n");
     for (int i = 0; i <= 4; i++) NEAR(wake_strength(setup.school, 0.59 + 0.1 * i), 1 - ramp_step(0.25 * i), 1e-14, 0);
     NEAR(wake_strength(setup.school, 0.5), 1, 0, 0);
-    // inside an interval linear between its ends
+
+    // linear within an interval
     struct wake *wake = &setup.state->wake[0];
     school_ok(wake_release(wake, 0, 0, 2, 0));
     double x, y, at[3];
@@ -112,7 +119,8 @@ static void old_vortices_go_and_leave_their_circulation(void **state) {
     school_build(&setup, TIME "wake: {lifetime: 0.1}\nfish: [{}]\n");
     struct wake *wake = &setup.state->wake[0];
     for (int i = 1; i <= 9; i++) school_ok(wake_release(wake, i, -i, 0.1 * i, 0.02 * i));
-    // at 0.16 those of 0.02, 0.04 and, exactly a lifetime old, 0.06 go; nothing is left of them
+
+    // at 0.16 the vortices of 0.02, 0.04 and 0.06 (exactly a lifetime old) are removed, without remaining strength
     NEAR(wake_strength(setup.school, 0.1), 0, 0, 0);
     wake_remove_old(wake, setup.school, 0.16);
     assert_int_equal(wake->n_vortex, 6);
@@ -133,7 +141,8 @@ static void without_fade_a_vortex_vanishes_within_one_interval(void **state) {
     school_ok(wake_release(wake, 0, 0, 2, 0));
     NEAR(wake_strength(setup.school, 0.08), 1, 0, 0);
     NEAR(wake_strength(setup.school, 0.1), 0.25, 1e-14, 0);
-    // it stays until nothing is left of it, and what it has lost counts meanwhile
+
+    // a vortex stays until its strength is 0; the lost circulation is counted meanwhile
     wake_remove_old(wake, setup.school, 0.1);
     assert_int_equal(wake->n_vortex, 1);
     NEAR(wake_lost(wake, setup.school, 0.1, 0), 1.5, 1e-13, 0);
@@ -147,7 +156,8 @@ static void without_fade_a_vortex_vanishes_within_one_interval(void **state) {
 
 static void what_was_shed_long_ago_changes_no_vortex(void **state) {
     (void)state;
-    // as vortices, and as markers, whose labels are what had been shed before
+
+    // as vortices, and as markers, whose labels are the circulation shed before
     for (int has_markers = 0; has_markers <= 1; has_markers++) {
         struct wake wake;
         school_ok(wake_create(&wake, 3));

@@ -1,5 +1,4 @@
-/* test_wake_interpolation.c: the interpolated velocity against the sum over every vortex: doc/numerics.md, section
- * 12. */
+/* test_wake_interpolation.c: interpolated velocity against the sum over every vortex. doc/numerics.md, section 12. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,7 +6,7 @@
 #include "flow/flow_at_bodies.h"
 #include "school.h"
 
-// one fish in the wake of another, while the oldest vortices decay; of one the midpoints leave out its own wake
+// one fish in the wake of another fish, while the oldest vortices decay; the midpoints of one fish omit the own wake
 static struct simulation *two_fish_in(const char *fluid, double tolerance, double interval, double smoothing) {
     char text[512];
     snprintf(text, sizeof text,
@@ -25,11 +24,13 @@ static struct simulation *two_fish(double tolerance, double interval, double smo
     return two_fish_in("", tolerance, interval, smoothing);
 }
 
-// the unknowns at a part q of the interval: positions on the predicted path, or off it by a drift in a fixed pattern
+// unknowns at the fraction q of the interval: positions on the predicted path, or displaced by a drift in a fixed
+// pattern
 static double *later(const struct simulation *simulation, double q, double drift) {
     const struct state *const state = simulation->state;
     const double tau = q * simulation->school->interval;
     double *const y = malloc((size_t)simulation->school->n_unknowns * sizeof *y);
+
     assert_non_null(y);
     memcpy(y, state->y, (size_t)simulation->school->n_unknowns * sizeof *y);
     for (int f = 0; f < simulation->school->n_fish; f++) {
@@ -39,10 +40,11 @@ static double *later(const struct simulation *simulation, double q, double drift
             y[fish->at.x + i] += tau * (v + tau / 2 * a) + drift * sin(7 * i + f);
         }
     }
+
     return y;
 }
 
-// the velocity at all points: interpolated, or (after flow_sum_exactly) the sum over every vortex
+// velocity at all points: interpolated, or (after flow_sum_exactly) summed over every vortex
 static void evaluate(const struct simulation *simulation, double q, const double *y, double *u, double *v) {
     struct flow *const flow = simulation->residual->flow;
     school_ok(flow_velocity(flow, simulation->state, simulation->state->t + q * simulation->school->interval, y));
@@ -71,12 +73,14 @@ static double worst_error(const struct simulation *simulation, double drift) {
         for (int p = 0; p < flow->n_points; p++) worst = fmax(worst, hypot(u[1][p] - u[0][p], v[1][p] - v[0][p]));
         free(y);
     }
+
     return worst;
 }
 
 static void the_error_stays_below_the_tolerance(void **state) {
     (void)state;
-    // the finest tolerance of each needs near vortices, the others fewer or none
+
+    // the finest tolerance of each case requires near vortices, coarser tolerances fewer or none
     const struct {
         double interval, smoothing, finest;
     } wakes[] = {{0.02, 0.2, 1e-6}, {0.005, 0.05, 1e-7}, {0.0025, 0.05, 1e-8}};
@@ -89,7 +93,7 @@ static void the_error_stays_below_the_tolerance(void **state) {
             const struct wake_interpolation *const interpolation = simulation->residual->flow->interpolation;
             const int n_near =
                 wake_interpolation_n_near(interpolation, 0) + wake_interpolation_n_near(interpolation, 1);
-            // length and frequency are 1; an error of nothing would mean that nothing was interpolated
+            // length and frequency are 1; an error of 0 would mean that interpolation was not used
             if (error > tolerance || error == 0) {
                 print_error("interval %g, smoothing %g, tolerance %g: error %g with %d near vortices\n",
                             wakes[w].interval, wakes[w].smoothing, tolerance, error, n_near);
@@ -119,10 +123,12 @@ static void images_in_walls_are_interpolated_as_exactly(void **state) {
 static void with_drift_the_error_is_below_the_tolerance_or_every_vortex_is_summed(void **state) {
     (void)state;
     struct simulation *const simulation = two_fish(1e-5, 0.01, 0.2);
+
     // a gradient of 1 and a second derivative of 10 (in s and m): a drift of 1e-4 adds 1e-7
     const double error = worst_error(simulation, 1e-4);
     assert_true(error > 0 && error < 1e-5);
-    // with a large drift every vortex is summed
+
+    // a large drift requires the sum over every vortex
     struct flow *const flow = simulation->residual->flow;
     double *const y = later(simulation, 0.5, 0.1), u[2][POINTS], v[2][POINTS];
     flow_sum_exactly(flow);
@@ -137,7 +143,7 @@ static void with_drift_the_error_is_below_the_tolerance_or_every_vortex_is_summe
     simulate_free(simulation);
 }
 
-// the equations at a part q of the interval, as a caller of the solver sees them
+// residual at the fraction q of the interval, as the solver evaluates the residual
 static void equations(const struct simulation *simulation, double q, const double *y, double *value) {
     struct residual *const residual = simulation->residual;
     const struct state *const state = simulation->state;
@@ -154,13 +160,15 @@ static void the_equations_do_not_depend_on_what_was_evaluated_before(void **stat
     assert_true(first && again);
     equations(simulation, 0.5, near, first);
     assert_true(flow->by_interpolation[0] && flow->by_interpolation[1]);
-    // an iterate with so much drift that every vortex is summed, at the same time and at another
+
+    // an iterate with a large drift (sum over every vortex), at the same time and at another time
     for (int i = 0; i < 2; i++) {
         equations(simulation, 0.5 + 0.2 * i, far, again);
         assert_true(!flow->by_interpolation[0] && !flow->by_interpolation[1]);
         equations(simulation, 0.5, near, again);
         assert_memory_equal(again, first, size);
     }
+
     free(near);
     free(far);
     free(first);
@@ -170,7 +178,8 @@ static void the_equations_do_not_depend_on_what_was_evaluated_before(void **stat
 
 static void the_gradient_is_that_of_the_interpolated_velocity(void **state) {
     (void)state;
-    // near vortices too
+
+    // includes near vortices
     struct simulation *const simulation = two_fish(1e-6, 0.02, 0.2);
     struct flow *const flow = simulation->residual->flow;
     assert_true(wake_interpolation_n_near(flow->interpolation, 0) > 0);
@@ -191,12 +200,13 @@ static void the_gradient_is_that_of_the_interpolated_velocity(void **state) {
             const struct induced there = {1, &x, &y, &moved[i][0], &moved[i][1], NULL, NULL, NULL};
             wake_interpolation_induce(flow->interpolation, f, p, &there);
         }
-        // third derivatives of 100 times h^2/6
+        // third derivatives of order 100 times h^2/6
         NEAR(got[2], (moved[0][0] - moved[1][0]) / (2 * h), 2e-7, 0);
         NEAR(got[4], (moved[0][1] - moved[1][1]) / (2 * h), 2e-7, 0);
         NEAR(got[3], (moved[2][0] - moved[3][0]) / (2 * h), 2e-7, 0);
         NEAR(-got[2], (moved[2][1] - moved[3][1]) / (2 * h), 2e-7, 0);
     }
+
     simulate_free(simulation);
 }
 
@@ -227,6 +237,7 @@ static void run(const char *solver, double *x) {
         const double ends[4] = {y[fish->at.x], y[fish->at.y], y[fish->at.x + tail], y[fish->at.y + tail]};
         memcpy(x + 4 * f, ends, sizeof ends);
     }
+
     simulate_free(simulation);
 }
 
@@ -237,7 +248,8 @@ static void a_run_is_as_exact_as_the_tolerance(void **state) {
     run("}\nwake: {tolerance: 1e-7", interpolated);
     run(", threads: 3}\nwake: {tolerance: 1e-7", threads);
     run("}\nwake: {tolerance: 1e-3", coarse);
-    // beside the tolerance of the wake, that of the solver
+
+    // tolerance of the wake plus tolerance of the solver
     NEAR_ARRAY(8, interpolated, exact, 1e-7, 0);
     NEAR_ARRAY(8, coarse, exact, 1e-3, 0);
     NEAR_ARRAY(8, threads, interpolated, 0, 0);
