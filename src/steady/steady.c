@@ -19,10 +19,11 @@
 #include "steady/steady_start.h"
 #include "steady/steady_static.h"
 
-/* Where the estimated distance of the speed from that of the fixed point, in lengths per beat, is above this multiple
- * of the tolerance, the state is corrected, so often at most. A beat may change the speed by little for another reason
- * than that it is steady: where one slow quantity still swings, it is at the end of a swing. The multipliers tell the
- * way; where that is longer than this, or not half of the last one, Newton's method goes on instead. */
+/* Correct the state, at most CORRECTIONS times, while the estimated distance between the speed and the speed of the
+ * fixed point, in lengths per beat, exceeds far_away times the tolerance. A small change of the speed per beat does not
+ * prove a steady state: a slow oscillation also has a small change per beat at its turning points. The multipliers give
+ * the correction. If the correction is longer than farthest, or longer than half of the previous correction, a Newton
+ * step replaces the correction. */
 static const double far_away = 10, half = 0.5, farthest = 2;
 enum { CORRECTIONS = 6 };
 
@@ -31,12 +32,12 @@ struct run {
     const struct steady_options *options;
     struct simulation *simulation;
     struct steady_problem problem;
-    double *way; /* to the fixed point, as the multipliers tell it                 (problem.n_unknowns) */
+    double *way; /* correction towards the fixed point, from the multipliers       (problem.n_unknowns) */
     struct steady_values found;
     struct record record;
 };
 
-static void tell(const struct steady_problem *problem, void *data) {
+static void report_progress(const struct steady_problem *problem, void *data) {
     const struct run *const run = data;
     if (!run->options->progress) return;
     const struct steady_progress progress = {.n_beats = problem->map.n_beats,
@@ -49,9 +50,9 @@ static void tell(const struct steady_problem *problem, void *data) {
     run->options->progress(&progress, run->options->data);
 }
 
-// ---- what is found
+// ---- the values of the steady state
 
-static enum status allocate(struct run *run) {
+static enum status values_allocate(struct run *run) {
     const size_t n_fish = (size_t)run->simulation->school->n_fish, n = STEADY_QUANTITIES * n_fish;
     run->found.fish = calloc(n_fish, sizeof *run->found.fish);
     run->found.real = calloc(n, sizeof *run->found.real);
@@ -62,11 +63,12 @@ static enum status allocate(struct run *run) {
     run->way = calloc(n, sizeof *run->way);
     const int has_all = run->found.real && run->found.imaginary && run->found.rate && run->found.omega;
     if (run->found.fish && has_all && run->way) return STATUS_OK;
+
     return status_fail(STATUS_MEMORY, "out of memory: the steady state of %zu fish", n_fish);
 }
 
-// of the speed that is to be found, in lengths per beat; places that a formation keeps are solved for
-static double distance(const struct run *run) {
+// distance between the speed and the speed of the fixed point, lengths per beat; 0 for a formation, which is solved for
+static double speed_distance(const struct run *run) {
     const struct steady_problem *const problem = &run->problem;
     double most = 0;
     for (int i = 0; i < problem->n_unknowns && !problem->map.is_formation; i++) {
@@ -82,19 +84,22 @@ static enum status find_multipliers(struct run *run) {
     TRY(steady_multipliers_find(&run->problem, found->real, found->imaginary, run->way, &n_beats));
     found->n_multipliers = run->problem.n_unknowns;
     found->n_multiplier_beats += n_beats;
+
+    // distance between 1 and the nearest multiplier
     double nearest = INFINITY;
     for (int i = 0; i < found->n_multipliers; i++) {
         nearest = fmin(nearest, hypot(1 - found->real[i], found->imaginary[i]));
     }
-    found->error = fmax(found->residual / nearest, distance(run));
+
+    found->error = fmax(found->residual / nearest, speed_distance(run));
     return steady_reason_check(&run->problem, nearest);
 }
 
-static enum status correct(struct run *run) {
+static enum status correct_by_multipliers(struct run *run) {
     double last = farthest;
     TRY(find_multipliers(run));
     for (int i = 0; i < CORRECTIONS; i++) {
-        const double now = distance(run);
+        const double now = speed_distance(run);
         if (now <= far_away * run->values->steady.tolerance) return STATUS_OK;
         TRY(steady_search_correct(&run->problem, now <= half * last ? run->way : NULL));
         last = now;
@@ -103,8 +108,8 @@ static enum status correct(struct run *run) {
     return STATUS_OK;
 }
 
-// the means over the last beat
-static void gather(struct run *run) {
+// fill the means over the last beat
+static void gather_means(struct run *run) {
     const struct steady_map *const map = &run->problem.map;
     const struct school *const school = run->simulation->school;
     for (int f = 0; f < school->n_fish; f++) {
@@ -140,44 +145,47 @@ static enum status write_if_due(void *data) {
     return record_row(&run->record, &row);
 }
 
-// the last beats, from the steady state on; the energy balance and the closest approach are those of the rows
+// write the last beats, which start from the steady state; energy balance and closest approach cover these rows only
 static enum status write_beats(struct run *run) {
     struct simulation *const simulation = run->simulation;
     const int n_beats = run->problem.map.n_beats;
     diagnostics_restart(simulation->residual, simulation->state);
     run->record.first = simulation->state->event;
     run->record.n_events = run->record.first + run->values->steady.output_beats * run->problem.map.events;
+
     TRY(write_if_due(run));
     for (int i = 0; i < run->values->steady.output_beats; i++) {
         TRY(steady_map_beat(&run->problem.map, write_if_due, run));
     }
+
     run->problem.map.n_beats = n_beats;
     run->found.residual = fmax(run->found.residual, steady_map_residual(&run->problem.map));
-    gather(run);
+    gather_means(run);
+
     return STATUS_OK;
 }
 
-// the integrator begins again where the rows do, with errors that a small tolerance does not allow
+// the integrator restarts at the first row; a restart error can exceed a small tolerance
 static void warn_of_change(const struct run *run) {
     const double tolerance = run->values->steady.tolerance;
     if (!(run->found.residual > tolerance) || !run->options->warn) return;
     char line[256];
-    snprintf(
-        line, sizeof line,
-        "the beats of the result change by %.2g from one to the next, more than steady.tolerance, %g: the state is "
-        "unstable, or these are the errors of the integrator, which begins again there: lower solver.rtol",
-        run->found.residual, tolerance);
+    snprintf(line, sizeof line,
+             "the beats of the result change by %.2g per beat, more than steady.tolerance, %g: the state is unstable, "
+             "or the "
+             "integrator restarts with this error: lower solver.rtol",
+             run->found.residual, tolerance);
     run->options->warn(line, run->options->data);
 }
 
 // ---- a run
 
-static enum status search(struct run *run) {
+static enum status find_fixed_point(struct run *run) {
     TRY(steady_search_run(&run->problem));
     run->found.residual = steady_map_residual(&run->problem.map);
     run->found.error = NAN;
     run->found.stiffness = NAN;
-    if (run->values->steady.multipliers != NO && run->problem.n_unknowns > 0) TRY(correct(run));
+    if (run->values->steady.multipliers != NO && run->problem.n_unknowns > 0) TRY(correct_by_multipliers(run));
     steady_modes_of_multipliers(&run->found, run->problem.map.period);
     run->found.n_beats = run->problem.map.n_beats;
     TRY(write_beats(run));
@@ -185,7 +193,7 @@ static enum status search(struct run *run) {
     return STATUS_OK;
 }
 
-// of bodies without a beat: one row
+// equilibrium of bodies without a beat: one row
 static enum status find_equilibrium(struct run *run) {
     run->found.error = NAN;
     TRY(steady_static_find(run->simulation, run->options->from, &run->found));
@@ -193,7 +201,7 @@ static enum status find_equilibrium(struct run *run) {
     return write_if_due(run);
 }
 
-// from the start of the case, or from that of another steady state
+// start from the initial values of the case, or from another steady state
 static enum status create_simulation(struct run *run) {
     if (!run->options->from) return simulate_create(&run->simulation, run->values);
     struct case_values values = *run->values;
@@ -205,15 +213,15 @@ static enum status create_simulation(struct run *run) {
     return status;
 }
 
-static enum status pose(struct run *run) {
+static enum status pose_problem(struct run *run) {
     TRY(steady_problem_create(&run->problem, &run->values->steady, run->simulation));
-    run->problem.progress = tell;
+    run->problem.progress = report_progress;
     run->problem.data = run;
     return STATUS_OK;
 }
 
-/* Give the file its name and close it. An earlier result stays where nothing has been found. */
-static enum status finish(struct run *run, enum status status) {
+/* Rename the temporary file to the result file and close the file. A failed search keeps an earlier result. */
+static enum status result_finish(struct run *run, enum status status) {
     char reason[4096];
     snprintf(reason, sizeof reason, "%s", status_message());
     if (status == STATUS_OK) {
@@ -225,33 +233,37 @@ static enum status finish(struct run *run, enum status status) {
     return record_close(&run->record, status);
 }
 
-static enum status start(struct run *run) {
+static enum status find_and_write(struct run *run) {
     const struct steady_options *const options = run->options;
     TRY(target_check(options->path, TARGET_NETCDF, options->overwrite));
     if (options->from) TRY(target_refuse_input(options->path, options->from));
     TRY(create_simulation(run));
     run->simulation->stop = options->stop;
     const int is_static = steady_static_applies(run->simulation->school);
-    TRY(is_static ? steady_static_refuse(run->simulation->school) : pose(run));
-    TRY(allocate(run));
-    // room for as many vortices as there can be
+    TRY(is_static ? steady_static_refuse(run->simulation->school) : pose_problem(run));
+    TRY(values_allocate(run));
+
+    // the largest number of events bounds the number of vortices in the file
     const long n_beats = run->values->steady.beats + run->values->steady.output_beats;
     const long n_events = is_static ? 1 : n_beats * run->problem.map.events;
     TRY(record_create_steady(&run->record, run->values, run->simulation->school, n_events, options->path,
                              options->overwrite, options->command));
-    const enum status status = is_static ? find_equilibrium(run) : search(run);
+
+    const enum status status = is_static ? find_equilibrium(run) : find_fixed_point(run);
     if (status == STATUS_STOPPED && !is_static) {
-        status_fail(status, "stopped %s in beat %d of the search, which cannot be resumed: begin it again",
+        status_fail(status, "stopped %s in beat %d of the search; a search cannot be resumed: start the search again",
                     simulate_stopped_by(options->stop), run->problem.map.n_beats + 1);
     }
+
     if (status == STATUS_OK) {
         result_file_steady(run->record.file, run->simulation->school, &run->found);
         record_notes_write(run->record.file, run->simulation, options->warn, options->data);
     }
-    return finish(run, status);
+
+    return result_finish(run, status);
 }
 
-static void release(struct run *run) {
+static void run_release(struct run *run) {
     steady_problem_free(&run->problem);
     simulate_free(run->simulation);
     free(run->found.fish);
@@ -262,14 +274,14 @@ static void release(struct run *run) {
     free(run->way);
 }
 
-static enum status run_all(void *data) {
+static enum status run_locked(void *data) {
     struct run *const run = data;
-    const enum status status = start(run);
-    release(run);
+    const enum status status = find_and_write(run);
+    run_release(run);
     return status;
 }
 
 enum status steady_run(const struct case_values *values, const struct steady_options *options) {
     struct run run = {.values = values, .options = options};
-    return result_lock_hold(options->path, run_all, &run);
+    return result_lock_hold(options->path, run_locked, &run);
 }

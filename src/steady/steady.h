@@ -1,6 +1,6 @@
-/* steady.h: from a case to the file of its steady state: the search, its multipliers, and the last beats; of a case
- * without a beat its equilibrium.
- * doc/steady.md. Tested by tests/steady/test_steady.c and tests/app/test_steady_command.sh. */
+/* steady.h: computation of the steady state of a case and of the result file: search, multipliers, last beats. A case
+ * without a beat gives an equilibrium. doc/steady.md. Tested by tests/steady/test_steady.c and
+ * tests/app/test_steady_command.sh. */
 #ifndef STEADY_H
 #define STEADY_H
 
@@ -9,7 +9,7 @@
 #include "base/status.h"
 #include "case/case.h"
 
-/* What a search tells after every beat. */
+/* Progress of a search, reported after every beat. */
 struct steady_progress {
     int n_beats, max_beats;
     double t; /* s */
@@ -20,18 +20,18 @@ struct steady_progress {
 
 struct steady_options {
     const char *path;    /* of the result file */
-    const char *from;    /* result of a steady state with whose speeds and places this one starts; NULL: the case's */
-    int overwrite;       /* replace one that exists */
-    const char *command; /* command line, for the file's history */
+    const char *from;    /* steady result that supplies the initial speeds and positions; NULL: values of the case */
+    int overwrite;       /* replace an existing result */
+    const char *command; /* command line, for the history attribute of the file */
     void (*progress)(const struct steady_progress *progress, void *data); /* may be NULL */
     void (*warn)(const char *line, void *data);                           /* may be NULL */
     void *data;
-    const volatile sig_atomic_t *stop; /* the search stops once this is not 0; may be NULL */
+    const volatile sig_atomic_t *stop; /* a nonzero value stops the search; may be NULL */
 };
 
-/* Find the steady state of a case, and write its result file. Where the search fails with STATUS_SOLVER, STATUS_CONTACT
- * or STATUS_STOPPED the file has no rows, and says why; an earlier result, which it would replace, stays. Fails with
- * STATUS_CASE where the case can have no steady state, with STATUS_FILE or STATUS_MEMORY; there is no file then. */
+/* Find the steady state of a case and write the result file. If the search fails with STATUS_SOLVER, STATUS_CONTACT or
+ * STATUS_STOPPED, the file contains the reason and no rows, unless an earlier result exists, which is kept. Without a
+ * file: STATUS_CASE if the case can have no steady state, STATUS_FILE, STATUS_MEMORY. */
 enum status steady_run(const struct case_values *values, const struct steady_options *options);
 
 #endif

@@ -8,56 +8,58 @@
 #include "solver/newton.h"
 #include "steady/steady_reason.h"
 
-/* A step changes the slow quantities by no more than this, in lengths, and in their other scales; Newton's method has
- * left the places of the start where one is so far away. */
+/* Largest change of a slow quantity in one step, in lengths and in the other scales; largest distance of a place from
+ * the initial place, in lengths, beyond which Newton's method has failed. */
 static const double longest_step = 0.25, farthest = 1.5;
 
-/* How much is added to a quantity for the Jacobian, in its scale. */
+/* Difference increment of the Jacobian, in the scale of the quantity. */
 static const double difference = 0.01;
 
-/* Beats of an evaluation, each of which begins with the same slow quantities, so that the wake becomes that of fish
- * which have always had them, and of a column of the Jacobian, which are the last ones of an evaluation once more. The
- * last beat counts; it is the last where it differs from the one before by no more than this part of the change. */
+/* BEATS: largest number of beats of an evaluation. Every beat begins with the same slow quantities, so that the wake
+ * converges to the wake of these quantities; the last beat gives the value. An evaluation ends early if the changes in
+ * two successive beats differ by at most settled times the change. COLUMN_BEATS: beats of a column of the Jacobian,
+ * which repeat the last beats of an evaluation. */
 enum { BEATS = 5, COLUMN_BEATS = 2 };
 static const double settled = 0.3;
 
-/* A step at least as long tells of the Jacobian; what a shorter one tells is what the wake remembers. */
+/* Shortest step that updates the Jacobian: the memory of the wake dominates the change after a shorter step. */
 static const double telling_step = 0.05;
 
-/* The Jacobian is made again where so many steps in a row leave more than this of the change. */
+/* Evaluate the Jacobian again after SLOW_STEPS successive steps that each leave more than least_progress times the
+ * change. */
 enum { SLOW_STEPS = 2 };
 static const double least_progress = 0.7;
 
-/* What the fish do is followed over this many times as many beats as they would need for a length. */
+/* Time step of the implicit Euler method, as a fraction of the number of beats per length of motion. */
 static const double patience = 1 / 3.0;
 
-/* All in the scales of the quantities. */
+/* All values in the scales of the quantities. */
 struct formation {
     struct steady_problem *problem;
     double tolerance;
     double *start;      /*                                                (n_unknowns) */
-    double *u, *change; /* of the last evaluation                         (n_unknowns) */
-    double *before;     /* the change in the beat before                  (n_unknowns) */
-    double *held;       /* for a column of the Jacobian                   (n_unknowns) */
+    double *u, *change; /* unknowns and change of the last evaluation     (n_unknowns) */
+    double *before;     /* change in the previous beat                    (n_unknowns) */
+    double *held;       /* unknowns for a column of the Jacobian          (n_unknowns) */
     double *step;       /* between the last two evaluations               (n_unknowns) */
-    double *made_at;    /* where the Jacobian was made                    (n_unknowns) */
-    double *matrix;     /* the Jacobian, which stays the problem's        (n_unknowns, n_unknowns) */
-    double last_norm;   /* of the change before the last step */
+    double *made_at;    /* unknowns at the last difference Jacobian       (n_unknowns) */
+    double *matrix;     /* Jacobian, owned by the problem                 (n_unknowns, n_unknowns) */
+    double last_norm;   /* norm of the change before the last step */
     int has_value, has_matrix, n_slow;
-    int follows;    /* what the fish do */
-    int most_beats; /* of the whole search, until which it is tried */
+    int follows;    /* implicit Euler steps instead of Newton steps */
+    int most_beats; /* beats of the whole search after which Newton's method stops */
     struct state *begun, *reached;
-    struct state *late[COLUMN_BEATS]; /* before each of the last beats */
+    struct state *late[COLUMN_BEATS]; /* states before each of the last beats */
 };
 
-static double norm(int n, const double *value) {
+static double euclidean_norm(int n, const double *value) {
     double square = 0;
     for (int i = 0; i < n; i++) square += value[i] * value[i];
     return sqrt(square);
 }
 
-// the longest way from one to the other
-static double way(int n, const double *from, const double *to) {
+// the maximum norm of to - from
+static double largest_distance(int n, const double *from, const double *to) {
     double most = 0;
     for (int i = 0; i < n; i++) most = fmax(most, fabs(to[i] - from[i]));
     return most;
@@ -79,30 +81,35 @@ static enum status beat_from(struct formation *formation, const double *u, doubl
     return STATUS_OK;
 }
 
-// beats that begin with the same values, until the wake is theirs
-static enum status settle(struct formation *formation, const double *u, double *change) {
+// repeat beats with the same initial values until the wake has converged
+static enum status settle_wake(struct formation *formation, const double *u, double *change) {
     const int n = formation->problem->n_unknowns;
     for (int i = 0; i < BEATS; i++) {
+        // keep the states before the last COLUMN_BEATS beats
         struct state *const oldest = formation->late[0];
         memmove(formation->late, formation->late + 1, (COLUMN_BEATS - 1) * sizeof oldest);
         formation->late[COLUMN_BEATS - 1] = oldest;
         TRY(steady_map_save(&formation->problem->map, &formation->late[COLUMN_BEATS - 1]));
+
         TRY(beat_from(formation, u, change));
-        const double moved = way(n, formation->before, change);
+        const double moved = largest_distance(n, formation->before, change);
         memcpy(formation->before, change, (size_t)n * sizeof *change);
-        // the first evaluation begins with a wake of other values
+
+        // the wake at the first evaluation belongs to other values
         const int fewest = formation->has_matrix ? COLUMN_BEATS : COLUMN_BEATS + 1;
-        if (i + 1 >= fewest && moved <= fmax(settled * norm(n, change), formation->tolerance)) break;
+        if (i + 1 >= fewest && moved <= fmax(settled * euclidean_norm(n, change), formation->tolerance)) break;
     }
+
     return STATUS_OK;
 }
 
-// Broyden: the least that the Jacobian has to change to agree with the last step
-static void learn(struct formation *formation, const double *u, const double *change) {
+// Broyden's update: the smallest change of the Jacobian that reproduces the last step
+static void broyden_update(struct formation *formation, const double *u, const double *change) {
     const int n = formation->problem->n_unknowns;
     for (int i = 0; i < n; i++) formation->step[i] = u[i] - formation->u[i];
-    const double length = norm(n, formation->step);
+    const double length = euclidean_norm(n, formation->step);
     if (!formation->has_value || !formation->has_matrix || length < telling_step) return;
+
     for (int i = 0; i < n; i++) {
         double missing = change[i] - formation->change[i];
         for (int j = 0; j < n; j++) missing -= formation->matrix[i + j * n] * formation->step[j];
@@ -112,8 +119,8 @@ static void learn(struct formation *formation, const double *u, const double *ch
     }
 }
 
-// Newton's method may lead to where the fish no longer feel each other, or onto one another, and back and forth
-static enum status check_way(const struct formation *formation, const double *u) {
+// Newton's method can separate the fish until the interaction vanishes, make the fish overlap, or oscillate
+static enum status check_iterate(const struct formation *formation, const double *u) {
     const struct steady_problem *const problem = formation->problem;
     double most = 0;
     for (int i = 0; i < problem->n_unknowns; i++) {
@@ -123,12 +130,12 @@ static enum status check_way(const struct formation *formation, const double *u)
     return status_fail(STATUS_SOLVER, "Newton's method leaves the places of the start");
 }
 
-static enum status value(void *data, const double *u, double *change) {
+static enum status formation_value(void *data, const double *u, double *change) {
     struct formation *const formation = data;
     const size_t bytes = (size_t)formation->problem->n_unknowns * sizeof *u;
-    TRY(check_way(formation, u));
-    TRY(settle(formation, u, change));
-    learn(formation, u, change);
+    TRY(check_iterate(formation, u));
+    TRY(settle_wake(formation, u, change));
+    broyden_update(formation, u, change);
     formation->has_value = 1;
     memcpy(formation->u, u, bytes);
     memcpy(formation->change, change, bytes);
@@ -137,22 +144,24 @@ static enum status value(void *data, const double *u, double *change) {
 
 // ---- the Jacobian
 
-// each place has to tell
-static enum status check_places(const struct formation *formation) {
+// every place must change the beat
+static enum status check_place_columns(const struct formation *formation) {
     const int n = formation->problem->n_unknowns;
     for (int j = 0; j < n; j++) {
-        if (is_place(formation, j)) TRY(steady_reason_check(formation->problem, norm(n, formation->matrix + j * n)));
+        if (is_place(formation, j))
+            TRY(steady_reason_check(formation->problem, euclidean_norm(n, formation->matrix + j * n)));
     }
     return STATUS_OK;
 }
 
-// by differences: the last beats of the evaluation once more, with something added to one quantity
-static enum status differences(struct formation *formation) {
+// each column repeats the last beats of the evaluation with an increment of one quantity
+static enum status difference_jacobian(struct formation *formation) {
     struct steady_map *const map = &formation->problem->map;
     const int n = formation->problem->n_unknowns;
     memcpy(formation->held, formation->u, (size_t)n * sizeof *formation->held);
     memcpy(formation->made_at, formation->u, (size_t)n * sizeof *formation->made_at);
     TRY(steady_map_save(map, &formation->reached));
+
     for (int j = 0; j < n; j++) {
         double *const column = formation->matrix + j * n;
         TRY(steady_map_return(map, formation->late[0]));
@@ -161,29 +170,34 @@ static enum status differences(struct formation *formation) {
         formation->held[j] = formation->u[j];
         for (int i = 0; i < n; i++) column[i] = (column[i] - formation->change[i]) / difference;
     }
+
     formation->has_matrix = 1;
     formation->n_slow = 0;
     TRY(steady_map_return(map, formation->reached));
-    return check_places(formation);
+
+    return check_place_columns(formation);
 }
 
-static enum status jacobian(void *data, double *matrix) {
+static enum status formation_jacobian(void *data, double *matrix) {
     struct formation *const formation = data;
     const int n = formation->problem->n_unknowns;
-    const double now = norm(n, formation->change);
+    const double now = euclidean_norm(n, formation->change);
+
     formation->n_slow = now > least_progress * formation->last_norm ? formation->n_slow + 1 : 0;
-    const int is_elsewhere = way(n, formation->made_at, formation->u) > telling_step;
-    if (!formation->has_matrix || (formation->n_slow >= SLOW_STEPS && is_elsewhere)) TRY(differences(formation));
+    const int is_elsewhere = largest_distance(n, formation->made_at, formation->u) > telling_step;
+    if (!formation->has_matrix || (formation->n_slow >= SLOW_STEPS && is_elsewhere))
+        TRY(difference_jacobian(formation));
     formation->last_norm = now;
     memcpy(matrix, formation->matrix, (size_t)n * (size_t)n * sizeof *matrix);
-    // Euler's implicit step of du/dn = change, n: beats
+
+    // implicit Euler step of du/dn = change, n: number of beats
     for (int i = 0; i < n && formation->follows; i++) matrix[i + i * n] -= now / patience;
     return STATUS_OK;
 }
 
 // ---- the search
 
-static enum status solve(struct formation *formation, double *scale, double *u) {
+static enum status formation_newton(struct formation *formation, double *scale, double *u) {
     const struct steady_problem *const problem = formation->problem;
     const int n = problem->n_unknowns;
     for (int i = 0; i < n; i++) scale[i] = longest_step;
@@ -197,9 +211,10 @@ static enum status solve(struct formation *formation, double *scale, double *u) 
                                   .max_step = 1,
                                   .reuse = 1,
                                   .max_iterations = problem->settings->beats,
-                                  .value = value,
-                                  .jacobian = jacobian,
+                                  .value = formation_value,
+                                  .jacobian = formation_jacobian,
                                   .data = formation};
+
     return newton_solve(&newton, u);
 }
 
@@ -208,17 +223,18 @@ static enum status solve_or_follow(struct formation *formation, double *scale, d
     const int most_beats = formation->problem->settings->beats;
     formation->most_beats = (map->n_beats + most_beats) / 2;
     TRY(steady_map_save(map, &formation->begun));
-    enum status status = solve(formation, scale, u);
+    enum status status = formation_newton(formation, scale, u);
     if (status != STATUS_SOLVER || formation->last_norm <= 0) return status;
     TRY(steady_map_return(map, formation->begun));
     if (map->n_beats < most_beats) {
         formation->follows = 1;
         formation->has_matrix = 0;
-        status = solve(formation, scale, u);
+        status = formation_newton(formation, scale, u);
         if (status != STATUS_SOLVER) return status;
-        // what they do from the start says more than what they do where the search has gone
+        // the motion from the start explains more than the motion from the last iterate
         TRY(steady_map_return(map, formation->begun));
     }
+
     return map->n_beats < most_beats ? steady_reason_find(formation->problem) : status;
 }
 
@@ -227,11 +243,13 @@ enum status steady_formation_solve(struct steady_problem *problem, double tolera
     const size_t n = (size_t)problem->n_unknowns;
     double *const memory = calloc(9 * n, sizeof *memory);
     const int is_new = !problem->jacobian;
+
     if (is_new) problem->jacobian = calloc(n * n, sizeof *problem->jacobian);
     if (!memory || !problem->jacobian) {
         free(memory);
         return status_fail(STATUS_MEMORY, "out of memory: a formation of %d fish", school->n_fish);
     }
+
     struct formation formation = {.problem = problem,
                                   .tolerance = tolerance,
                                   .start = memory,
@@ -248,5 +266,6 @@ enum status steady_formation_solve(struct steady_problem *problem, double tolera
     state_free(formation.reached, school);
     for (int i = 0; i < COLUMN_BEATS; i++) state_free(formation.late[i], school);
     free(memory);
+
     return status;
 }

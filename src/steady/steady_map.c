@@ -18,7 +18,7 @@ enum steady_freedom steady_map_freedom(const struct fish *fish) {
 
 // ---- the beat
 
-// the beat that all fish have
+// the common beat period of all fish
 static enum status find_period(struct steady_map *map) {
     const struct school *const school = map->simulation->school;
     const struct fish *first = NULL;
@@ -27,10 +27,11 @@ static enum status find_period(struct steady_map *map) {
         if (fish->period <= 0) continue;
         if (!first) first = fish;
         if (fabs(fish->period - first->period) <= 1e-9 * first->period) continue;
-        return status_fail(
-            STATUS_CASE, "%s beats %g times a second and %s %g times: a state that repeats itself needs one frequency",
-            first->name, 1 / first->period, fish->name, 1 / fish->period);
+        return status_fail(STATUS_CASE,
+                           "%s beats %g times per second and %s beats %g times: a periodic state needs one frequency",
+                           first->name, 1 / first->period, fish->name, 1 / fish->period);
     }
+
     map->period = first ? first->period : 0;
     return STATUS_OK;
 }
@@ -62,15 +63,18 @@ enum status steady_map_create(struct steady_map *map, struct simulation *simulat
     for (int f = simulation->school->n_fish - 1; f >= 0; f--) {
         if (simulation->school->fish[f].control.law != CONTROL_NONE) map->steered = f;
     }
+
     TRY(find_period(map));
-    if (map->period <= 0) return status_fail(STATUS_CASE, "no fish beats: there is no beat to repeat");
+    if (map->period <= 0) return status_fail(STATUS_CASE, "no fish beats, so there is no beat to repeat");
     TRY(check_events(map));
     TRY(check_gust(map));
+
     const size_t n_fish = (size_t)simulation->school->n_fish;
     map->last = calloc(n_fish, sizeof *map->last);
     map->before = calloc(n_fish, sizeof *map->before);
     if (map->last && map->before) return STATUS_OK;
     steady_map_free(map);
+
     return status_fail(STATUS_MEMORY, "out of memory: the beats of %zu fish", n_fish);
 }
 
@@ -82,7 +86,7 @@ void steady_map_free(struct steady_map *map) {
 
 // ---- one beat
 
-// trapezoids over the events of a beat, the ends of which count half
+// trapezoidal rule over the events of a beat: half weight for both ends
 static void add_event(struct steady_map *map, double share) {
     for (int f = 0; f < map->simulation->school->n_fish; f++) {
         const struct diagnostics_fish *const now = &map->simulation->diagnostics->fish[f];
@@ -97,7 +101,7 @@ static void add_event(struct steady_map *map, double share) {
     }
 }
 
-// what the history of the beat has; means of powers are works, which know the steps between the events
+// fill the values from the history; works give the mean powers, because works include the steps between events
 static void finish_beat(struct steady_map *map) {
     for (int f = 0; f < map->simulation->school->n_fish; f++) {
         const struct history *const history = &map->simulation->state->history[f];
@@ -107,6 +111,7 @@ static void finish_beat(struct steady_map *map) {
         beat->turn = new->heading - old->heading;
         const struct steady_unknown place[] = {{f, STEADY_AHEAD}, {f, STEADY_ASIDE}};
         steady_map_read(map, 2, place, beat->place);
+
         beat->actuation = (new->work[WORK_ACTUATION] - old->work[WORK_ACTUATION]) / map->period;
         beat->damping = (new->work[WORK_DAMPING] - old->work[WORK_DAMPING]) / map->period;
         beat->driving = (new->work[WORK_DRIVING] - old->work[WORK_DRIVING]) / map->period;
@@ -124,19 +129,21 @@ enum status steady_map_beat(struct steady_map *map, enum status (*row)(void *dat
     const double share = 1 / (double)map->events;
     simulate_measure(map->simulation);
     add_event(map, share / 2);
+
     for (long i = 1; i <= map->events; i++) {
         TRY(simulate_step(map->simulation));
         simulate_measure(map->simulation);
         add_event(map, i < map->events ? share : share / 2);
         if (row) TRY(row(data));
     }
+
     finish_beat(map);
     map->n_beats++;
     return STATUS_OK;
 }
 
-// a change over a scale; nothing changes where the scale is 0
-static double relative(double now, double before, double scale) {
+// change over scale; 0 if the scale is 0
+static double relative_change(double now, double before, double scale) {
     return scale > 0 ? fabs(now - before) / scale : 0;
 }
 
@@ -145,17 +152,18 @@ double steady_map_residual(const struct steady_map *map) {
     double residual = 0;
     for (int f = 0; f < school->n_fish; f++) {
         const struct steady_beat *const now = &map->last[f], *const before = &map->before[f];
-        residual = fmax(residual, relative(now->speed, before->speed, school->fish[f].length / map->period));
+        residual = fmax(residual, relative_change(now->speed, before->speed, school->fish[f].length / map->period));
         const int circles = fabs(school->fish[f].control.bias) > 0;
-        residual = fmax(residual, relative(now->turn, before->turn, (circles ? 1 : 10) * 2 * M_PI));
+        residual = fmax(residual, relative_change(now->turn, before->turn, (circles ? 1 : 10) * 2 * M_PI));
         for (int i = 0; i < 2 && map->is_formation; i++) {
-            residual = fmax(residual, relative(now->place[i], before->place[i], school->fish[f].length));
+            residual = fmax(residual, relative_change(now->place[i], before->place[i], school->fish[f].length));
         }
         if (steady_map_freedom(&school->fish[f]) != STEADY_HELD) continue;
-        residual = fmax(residual, relative(now->thrust, before->thrust, now->rms_thrust));
-        residual = fmax(residual,
-                        relative(now->actuation + now->driving, before->actuation + before->driving, now->rms_power));
+        residual = fmax(residual, relative_change(now->thrust, before->thrust, now->rms_thrust));
+        residual = fmax(residual, relative_change(now->actuation + now->driving, before->actuation + before->driving,
+                                                  now->rms_power));
     }
+
     return residual;
 }
 
@@ -173,7 +181,7 @@ double steady_map_scale(const struct steady_map *map, struct steady_unknown unkn
     }
 }
 
-// the stream at the centre of mass, along a heading and to its left
+// the stream at the centre of mass: components along the heading and to the left
 static void stream_along(const struct steady_map *map, const struct rigid *rigid, double stream[2]) {
     const struct simulation *const simulation = map->simulation;
     double u, v;
@@ -183,7 +191,7 @@ static void stream_along(const struct steady_map *map, const struct rigid *rigid
     stream[1] = c * v - s * u;
 }
 
-// the heading of a fish, as the first one sees it; of that one, as the law of control does
+// heading relative to the heading of the first fish; for the first fish relative to the desired heading, if any
 static double heading_seen(const struct steady_map *map, int f, double heading, double first) {
     const struct simulation *const simulation = map->simulation;
     const struct state *const state = simulation->state;
@@ -198,6 +206,7 @@ void steady_map_read(const struct steady_map *map, int n, const struct steady_un
     const struct school *const school = map->simulation->school;
     const double *const y = map->simulation->state->y;
     const struct rigid first = rigid_of(&school->fish[0], y);
+
     for (int i = 0; i < n; i++) {
         const struct rigid rigid = rigid_of(&school->fish[unknown[i].fish], y);
         double stream[2], place[2];
@@ -215,7 +224,7 @@ void steady_map_read(const struct steady_map *map, int n, const struct steady_un
     }
 }
 
-static void add_one(struct rigid *change, const struct rigid *first, enum steady_quantity quantity, double add) {
+static void add_quantity(struct rigid *change, const struct rigid *first, enum steady_quantity quantity, double add) {
     const double c = cos(first->heading), s = sin(first->heading);
     switch (quantity) {
         case STEADY_SPEED: change->velocity[0] += add; break;
@@ -234,7 +243,7 @@ static void add_one(struct rigid *change, const struct rigid *first, enum steady
     }
 }
 
-// as if it had been shed infinitely long ago
+// the added circulation counts as shed infinitely long ago
 static void add_shed(const struct school *school, struct state *state, const struct steady_unknown *unknown,
                      double add) {
     if (unknown->quantity != STEADY_SHED) return;
@@ -242,8 +251,8 @@ static void add_shed(const struct school *school, struct state *state, const str
     wake_add_shed(&state->wake[unknown->fish], add);
 }
 
-// what turning the first fish adds to another one, so that it stays where that one sees it
-static void turn_with(struct rigid *change, const struct rigid *first, const struct rigid *other, double turn) {
+// rotate another fish with the first fish: the place in the frame of the first fish is constant
+static void add_turn(struct rigid *change, const struct rigid *first, const struct rigid *other, double turn) {
     const double c = cos(turn) - 1, s = sin(turn);
     const double way[2] = {other->place[0] - first->place[0], other->place[1] - first->place[1]};
     change->heading += turn;
@@ -251,8 +260,8 @@ static void turn_with(struct rigid *change, const struct rigid *first, const str
     change->place[1] += s * way[0] + c * way[1];
 }
 
-// all but the state is made again, and the velocity of the fluid is that at the event
-static enum status renew(struct simulation *simulation) {
+// renew all data derived from the state; evaluate the fluid velocity at the event
+static enum status renew_simulation(struct simulation *simulation) {
     TRY(simulate_renew(simulation));
     struct residual *const residual = simulation->residual;
     const struct state *const state = simulation->state;
@@ -260,14 +269,14 @@ static enum status renew(struct simulation *simulation) {
     return status == STATUS_RETRY ? status_fail(STATUS_SOLVER, "%s", status_message()) : status;
 }
 
-// the record of the closest approach begins again
+// restart the record of the closest approach
 static enum status check_overlap(struct simulation *simulation) {
     const struct school *const school = simulation->school;
     struct residual *const residual = simulation->residual;
     const struct closest *const closest = simulation->state->closest;
     clearance_start(school, simulation->state, residual->neighbours, residual->scratch);
     if (closest->distance > 0 || school->contact == CONTACT_WARN) return STATUS_OK;
-    return status_fail(STATUS_SOLVER, "collision: the places that the search tries next put %s onto %s",
+    return status_fail(STATUS_SOLVER, "collision: the next search iterate makes %s and %s overlap",
                        school->fish[closest->fish[0]].name, school->fish[closest->fish[1]].name);
 }
 
@@ -277,25 +286,30 @@ enum status steady_map_add(struct steady_map *map, int n, const struct steady_un
     const struct school *const school = simulation->school;
     const struct rigid first = rigid_of(&school->fish[0], state->y);
     double turn = 0;
+
     diagnostics_before_jump(simulation->residual, state);
     for (int i = 0; i < n; i++) add_shed(school, state, &unknown[i], add[i]);
+
     for (int f = 0; f < school->n_fish; f++) {
         struct rigid change = {.heading = 0};
         for (int i = 0; i < n; i++) {
-            if (unknown[i].fish == f) add_one(&change, &first, unknown[i].quantity, add[i]);
+            if (unknown[i].fish == f) add_quantity(&change, &first, unknown[i].quantity, add[i]);
         }
         if (f == 0) turn = change.heading;
         const struct rigid other = rigid_of(&school->fish[f], state->y);
-        if (f > 0 && fabs(turn) > 0) turn_with(&change, &first, &other, turn);
+        if (f > 0 && fabs(turn) > 0) add_turn(&change, &first, &other, turn);
         rigid_change(school, state, f, &change);
     }
+
     TRY(check_overlap(simulation));
-    // velocities are given, as at a start: momenta follow from them
+
+    // velocities are given, as at the start of a run: solve for the momenta
     simulation->residual->at_start = 1;
     const enum status status = initial_conditions_solve(simulation->consistent, state->t, state->y, state->yp);
     simulation->residual->at_start = 0;
     TRY(status);
-    TRY(renew(simulation));
+
+    TRY(renew_simulation(simulation));
     diagnostics_after_jump(simulation->residual, state);
     return STATUS_OK;
 }
@@ -307,5 +321,5 @@ enum status steady_map_save(struct steady_map *map, struct state **state) {
 
 enum status steady_map_return(struct steady_map *map, const struct state *state) {
     TRY(state_table_copy(map->simulation->state, state, map->simulation->school));
-    return renew(map->simulation);
+    return renew_simulation(map->simulation);
 }

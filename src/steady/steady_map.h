@@ -1,6 +1,5 @@
-/* steady_map.h: a simulation as a map from one beat to the next: of a few slow quantities of its fish, which can be
- * read and changed where a beat ends; all else runs along. doc/steady.md. Tested by
- * tests/steady/test_steady.c. */
+/* steady_map.h: a simulation as a map from one beat to the next. The slow quantities of the fish can be read and
+ * changed at the end of a beat; the fast quantities follow. doc/steady.md. Tested by tests/steady/test_steady.c. */
 #ifndef STEADY_MAP_H
 #define STEADY_MAP_H
 
@@ -8,10 +7,10 @@
 #include "run/simulate.h"
 #include "school/rigid.h"
 
-/* The slow quantities of a fish: velocity through the water along its heading and to the left of it, rate of turning;
- * heading, and place ahead of the first fish and to its left, seen from that one; circulation that it has shed. The
- * heading of the first fish counts from the one that the first law of control wants, and all fish turn with it, around
- * the first. What is added to the circulation has been shed infinitely long ago. */
+/* The slow quantities of a fish: velocity relative to the water along the heading and to the left, rate of turning;
+ * heading, and place ahead and to the left of the first fish, in the frame of the first fish; shed circulation. The
+ * heading of the first fish is relative to the desired heading of the first control law. A change of this heading
+ * rotates the whole school about the first fish. Added circulation counts as shed infinitely long ago. */
 enum steady_quantity {
     STEADY_SPEED,
     STEADY_SLIP,
@@ -27,61 +26,61 @@ struct steady_unknown {
     enum steady_quantity quantity;
 };
 
-/* How a fish can move as a whole. */
+/* Freedom of the motion of a whole fish. */
 enum steady_freedom {
-    STEADY_HELD,   /* its motion is given */
-    STEADY_SURGES, /* only along its heading: motion.surge: free */
-    STEADY_SWIMS   /* freely */
+    STEADY_HELD,   /* prescribed motion */
+    STEADY_SURGES, /* free along the heading only (motion.surge: free) */
+    STEADY_SWIMS   /* free */
 };
 enum steady_freedom steady_map_freedom(const struct fish *fish);
 
-/* The sums of one beat. */
+/* Means and end values of one beat. */
 struct steady_beat {
     double speed;                              /* m s-1 */
-    double place[2];                           /* at its end, ahead of the first fish and to its left, m */
+    double place[2];                           /* at the end: ahead and to the left of the first fish, m */
     double turn;                               /* rad */
     double force[2], thrust;                   /* means, N */
     double rms_thrust;                         /* N */
     double actuation, damping, driving, fluid; /* means, W */
-    double rms_power;                          /* of actuation and driving together, W */
+    double rms_power;                          /* of the sum of actuation and driving power, W */
 };
 
 struct steady_map {
     struct simulation *simulation;
-    int is_formation;                  /* whether places count in the residual */
-    int steered;                       /* the first fish with a law of control; -1: none has */
-    long events;                       /* in a beat */
+    int is_formation;                  /* the residual includes places */
+    int steered;                       /* first fish with a control law; -1: no fish */
+    long events;                       /* per beat */
     double period;                     /* s */
-    int n_beats;                       /* so far */
+    int n_beats;                       /* beats since the start */
     struct steady_beat *last, *before; /* the last two beats                                  (n_fish) */
 };
 
-/* The map of a simulation, which stays its owner's. Fails with STATUS_CASE where the case has no beat that all of it
- * repeats, with the remedy, or with STATUS_MEMORY; steady_map_free takes a zeroed map. */
+/* Create the map of a simulation; the caller keeps the simulation. STATUS_CASE, with the remedy in the message, if the
+ * whole case does not repeat with one beat; STATUS_MEMORY. steady_map_free accepts a zeroed map. */
 enum status steady_map_create(struct steady_map *map, struct simulation *simulation);
 void steady_map_free(struct steady_map *map);
 
-/* Go on by a beat. row, if any, is called at each event. Fails as simulate_step or row. */
+/* Advance by one beat; call row, unless NULL, after each event. Fails as simulate_step or row. */
 enum status steady_map_beat(struct steady_map *map, enum status (*row)(void *data), void *data);
 
-/* The largest change from the last beat but one to the last: of the speed in lengths per beat; of a tenth of the turn
- * in full circles, or of the whole where a fish has a steering bias; of a formation, of the places in lengths; of a
- * fish that is held, of thrust and power over their root mean squares. */
+/* The largest change between the last two beats: speed in lengths per beat; turn in full circles, divided by ten unless
+ * the fish has a steering bias; places of a formation in lengths; thrust and power of a held fish over the root mean
+ * squares. */
 double steady_map_residual(const struct steady_map *map);
 
-/* The unit in which a quantity is measured: lengths per beat, rad per beat, rad, lengths, squares of them per beat; in
- * m s-1, s-1, rad, m, m2 s-1. */
+/* The scale of a quantity (length per beat, rad per beat, rad, length, square length per beat) in m s-1, s-1, rad, m,
+ * m2 s-1. */
 double steady_map_scale(const struct steady_map *map, struct steady_unknown unknown);
 
-/* What the quantities are now, in SI units                                                        (n) */
+/* Read the current values of the quantities, SI units                                             (n) */
 void steady_map_read(const struct steady_map *map, int n, const struct steady_unknown *unknown, double *value);
 
-/* Add to them; the state is then consistent again, and the integration has begun again. Fails with STATUS_SOLVER, as
- * where bodies overlap then, or with STATUS_MEMORY. */
+/* Add increments to the quantities, solve for a consistent state and restart the integration. Fails with STATUS_SOLVER,
+ * also if bodies overlap, or with STATUS_MEMORY. */
 enum status steady_map_add(struct steady_map *map, int n, const struct steady_unknown *unknown, const double *add);
 
-/* Keep the state, and return to it; both begin the integration again. *state is made where it is NULL; state_free
- * releases it. Fail with STATUS_MEMORY or STATUS_SOLVER. */
+/* Save the state; return to a saved state and restart the integration. steady_map_save creates *state if NULL;
+ * state_free releases the saved state. Both fail with STATUS_MEMORY, steady_map_return also with STATUS_SOLVER. */
 enum status steady_map_save(struct steady_map *map, struct state **state);
 enum status steady_map_return(struct steady_map *map, const struct state *state);
 

@@ -16,7 +16,7 @@ static void add_pin(struct steady_problem *problem, int f, enum steady_quantity 
     problem->pin[problem->n_pins++] = (struct steady_unknown){f, quantity};
 }
 
-static void list_fish(struct steady_problem *problem, int f, const struct fish *fish) {
+static void list_fish_unknowns(struct steady_problem *problem, int f, const struct fish *fish) {
     const enum steady_freedom freedom = steady_map_freedom(fish);
     const int follows = f > 0 && problem->map.is_formation;
     if (freedom == STEADY_HELD) return;
@@ -34,7 +34,7 @@ static void list_fish(struct steady_problem *problem, int f, const struct fish *
     }
 }
 
-static enum status list(struct steady_problem *problem) {
+static enum status list_unknowns(struct steady_problem *problem) {
     const struct school *const school = problem->map.simulation->school;
     const size_t most = STEADY_QUANTITIES * (size_t)school->n_fish;
     problem->unknown = calloc(most, sizeof *problem->unknown);
@@ -44,45 +44,50 @@ static enum status list(struct steady_problem *problem) {
     if (!problem->unknown || !problem->pin || !problem->pinned || !problem->scratch) {
         return status_fail(STATUS_MEMORY, "out of memory: the slow quantities of %d fish", school->n_fish);
     }
-    for (int f = 0; f < school->n_fish; f++) list_fish(problem, f, &school->fish[f]);
+
+    for (int f = 0; f < school->n_fish; f++) list_fish_unknowns(problem, f, &school->fish[f]);
     steady_map_read(&problem->map, problem->n_pins, problem->pin, problem->pinned);
     return STATUS_OK;
 }
 
-// ---- what can have no steady state
+// ---- cases without a steady state
 
 static enum status refuse_fish(const struct school *school, const struct fish *fish) {
     const enum steady_freedom freedom = steady_map_freedom(fish);
     if (freedom != STEADY_HELD && fabs(school->shear) > 0) {
         return status_fail(STATUS_CASE,
-                           "%s swims through a shear, in which the stream depends on its place: hold it with "
+                           "%s swims in a shear, where the stream depends on the place of the fish: hold the fish with "
                            "motion.prescribed, or set fluid.shear to 0",
                            fish->name);
     }
+
     if (freedom == STEADY_SWIMS && school->walls.n > 0) {
         return status_fail(STATUS_CASE,
-                           "%s swims freely beside a wall, and nothing holds its distance from it: hold it with "
-                           "motion.prescribed (surge: free leaves it its speed), or remove fluid.walls",
+                           "%s swims freely beside a wall without control of the wall distance: hold the fish with "
+                           "motion.prescribed (surge: free keeps the speed free), or remove fluid.walls",
                            fish->name);
     }
+
     if (fish->control.n_waypoints > 0 || fish->control.n_headings > 1) {
-        return status_fail(STATUS_CASE, "%s is to change its heading: give it one desired_heading, and no waypoints",
+        return status_fail(STATUS_CASE, "%s changes heading during the case: give one desired_heading and no waypoints",
                            fish->name);
     }
+
     return STATUS_OK;
 }
 
-static enum status refuse(const struct steady_problem *problem) {
+static enum status refuse_case(const struct steady_problem *problem) {
     const struct school *const school = problem->map.simulation->school;
     int n_free = 0;
     for (int f = 0; f < school->n_fish; f++) {
         TRY(refuse_fish(school, &school->fish[f]));
         n_free += steady_map_freedom(&school->fish[f]) != STEADY_HELD;
     }
+
     if (n_free == 0 || school->n_fish == 1 || problem->map.is_formation) return STATUS_OK;
     return status_fail(STATUS_CASE,
-                       "%d of %d fish swim at speeds of their own and do not keep their places: look for places that "
-                       "they keep with steady.formation: true, or hold them all with motion.prescribed",
+                       "%d of %d fish swim at independent speeds, so the places change: search for a formation with "
+                       "steady.formation: true, or hold all fish with motion.prescribed",
                        n_free, school->n_fish);
 }
 
@@ -91,8 +96,8 @@ enum status steady_problem_create(struct steady_problem *problem, const struct c
     *problem = (struct steady_problem){.settings = settings};
     TRY(steady_map_create(&problem->map, simulation));
     problem->map.is_formation = settings->formation == YES;
-    TRY(refuse(problem));
-    return list(problem);
+    TRY(refuse_case(problem));
+    return list_unknowns(problem);
 }
 
 void steady_problem_free(struct steady_problem *problem) {
@@ -107,8 +112,8 @@ void steady_problem_free(struct steady_problem *problem) {
 
 // ---- beats
 
-// the largest difference of two of the last beats that are so many beats apart, m s-1
-static double unlike(const struct steady_problem *problem, int apart) {
+// the largest speed difference between recent beats at this distance in beats, m s-1
+static double largest_difference(const struct steady_problem *problem, int apart) {
     double most = 0;
     for (int i = 0; i + apart < STEADY_RECENT; i++) {
         const int n = problem->map.n_beats - i;
@@ -117,32 +122,34 @@ static double unlike(const struct steady_problem *problem, int apart) {
     return most;
 }
 
-// what the last beats have in common: after how many they repeat themselves, or by how much they differ
-static void say_rhythm(const struct steady_problem *problem, size_t size, char *words) {
+// describe the last beats: period of a repetition, or largest difference
+static void format_rhythm(const struct steady_problem *problem, size_t size, char *words) {
     const struct steady_map *const map = &problem->map;
     const double speed = map->last[0].speed;
     const double equal = problem->settings->tolerance * map->simulation->school->fish[0].length / map->period;
     double most = 0;
+
     words[0] = 0;
     if (map->n_beats < STEADY_RECENT) return;
-    for (int apart = 1; apart < STEADY_RECENT; apart++) most = fmax(most, unlike(problem, apart));
+    for (int apart = 1; apart < STEADY_RECENT; apart++) most = fmax(most, largest_difference(problem, apart));
     for (int apart = 2; apart <= STEADY_RECENT / 4; apart++) {
-        if (unlike(problem, apart) > equal) continue;
-        snprintf(words, size, ", and repeats itself every %d beats", apart);
+        if (largest_difference(problem, apart) > equal) continue;
+        snprintf(words, size, ", and the speed repeats every %d beats", apart);
         return;
     }
-    snprintf(words, size, ", which differs by %.2g %% between the last %d beats", 100 * most / fabs(speed),
+
+    snprintf(words, size, ", and the speed differs by %.2g %% between the last %d beats", 100 * most / fabs(speed),
              STEADY_RECENT);
 }
 
 static enum status no_steady_state(const struct steady_problem *problem) {
     char rhythm[128];
-    say_rhythm(problem, sizeof rhythm, rhythm);
+    format_rhythm(problem, sizeof rhythm, rhythm);
     const struct steady_map *const map = &problem->map;
     const struct fish *const first = map->simulation->school->fish;
     return status_fail(STATUS_SOLVER,
-                       "no steady state in %d beats (steady.beats): from beat to beat it still changes by %.2g, more "
-                       "than steady.tolerance, %.2g; %s has %.4g m/s, %.2g lengths per beat%s",
+                       "no steady state in %d beats (steady.beats): residual change per beat %.2g, more than "
+                       "steady.tolerance, %.2g; speed of %s %.4g m/s, %.2g lengths per beat%s",
                        map->n_beats, steady_map_residual(map), problem->settings->tolerance, first->name,
                        map->last[0].speed, map->last[0].speed * map->period / first->length, rhythm);
 }
@@ -155,8 +162,9 @@ enum status steady_problem_beat(struct steady_problem *problem) {
     return STATUS_OK;
 }
 
-// make n quantities what they are to be, m s-1 and so on; nothing is touched where they are that already
-static enum status put(struct steady_problem *problem, int n, const struct steady_unknown *unknown, const double *to) {
+// set n quantities, SI units; leave the state untouched if all quantities have these values already
+static enum status put_quantities(struct steady_problem *problem, int n, const struct steady_unknown *unknown,
+                                  const double *to) {
     double *const add = problem->scratch;
     steady_map_read(&problem->map, n, unknown, add);
     int is_elsewhere = 0;
@@ -176,12 +184,12 @@ enum status steady_problem_put(struct steady_problem *problem, const double *to)
     const int n = problem->n_unknowns;
     double *const target = problem->scratch + n;
     for (int i = 0; i < n; i++) target[i] = to[i] * steady_map_scale(&problem->map, problem->unknown[i]);
-    return put(problem, n, problem->unknown, target);
+    return put_quantities(problem, n, problem->unknown, target);
 }
 
 enum status steady_problem_put_pins(struct steady_problem *problem, double speed) {
     for (int i = 0; i < problem->n_pins; i++) {
         if (problem->pin[i].quantity == STEADY_SPEED) problem->pinned[i] = speed;
     }
-    return put(problem, problem->n_pins, problem->pin, problem->pinned);
+    return put_quantities(problem, problem->n_pins, problem->pin, problem->pinned);
 }

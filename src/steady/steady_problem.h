@@ -1,5 +1,5 @@
-/* steady_problem.h: what has to be found for a steady state: which slow quantities a case has, and the beats of the
- * search. doc/steady.md. Tested by tests/steady/test_steady.c. */
+/* steady_problem.h: unknowns of a steady state (the slow quantities of a case) and beats of the search. doc/steady.md.
+ * Tested by tests/steady/test_steady.c. */
 #ifndef STEADY_PROBLEM_H
 #define STEADY_PROBLEM_H
 
@@ -11,39 +11,40 @@ enum { STEADY_RECENT = 16 };
 struct steady_problem {
     struct steady_map map;
     const struct case_steady *settings;
-    int n_unknowns; /* the slow quantities of the case                             (n_unknowns) */
+    int n_unknowns; /* slow quantities of the case                                 (n_unknowns) */
     struct steady_unknown *unknown;
-    int solves_speed; /* whether the first fish has a speed to solve for; without a formation there is no other one */
-    int n_pins;       /* of these the ones that are set while its speed is solved for: all speeds, to that one, and the
-                         places and directions in a formation, to what they are at the start (n_pins) */
+    int solves_speed; /* the first fish has a speed to solve for; without a formation no other fish has one */
+    int n_pins; /* unknowns fixed during the solution for the speed of the first fish: all speeds equal this speed,
+                         places and headings of a formation equal the initial values (n_pins) */
     struct steady_unknown *pin;
     double *pinned;   /* (n_pins) */
     double *scratch;  /* (4 n_unknowns) */
-    double *jacobian; /* of a formation: by what each unknown changes what a beat does to all of them, in their scales,
-                         column after column; NULL: not known yet (n_unknowns, n_unknowns) */
+    double *jacobian; /* of a formation: derivatives of the change per beat by the unknowns, in the scales of the
+                         unknowns, by columns; NULL: not evaluated yet (n_unknowns, n_unknowns) */
     double recent[STEADY_RECENT]; /* speed of the first fish in the last beats, beat n at n % STEADY_RECENT, m s-1 */
-    /* told after each beat of the search; may be NULL */
+    /* called after each beat of the search; may be NULL */
     void (*progress)(const struct steady_problem *problem, void *data);
     void *data;
 };
 
-/* Pose the problem of a simulation at its start, which stays its owner's. Fails with STATUS_CASE where the case can
- * have no steady state, with the reason, or with STATUS_MEMORY; steady_problem_free takes what is left. */
+/* Pose the problem for a simulation at the initial state; the caller keeps the simulation. Fails with STATUS_CASE and
+ * the reason if the case can have no steady state, or with STATUS_MEMORY; call steady_problem_free after a failure
+ * too. */
 enum status steady_problem_create(struct steady_problem *problem, const struct case_steady *settings,
                                   struct simulation *simulation);
 void steady_problem_free(struct steady_problem *problem);
 
-/* Go on by a beat of the search. Fails with STATUS_SOLVER and the reason after settings->beats of them, or as
+/* Advance the search by one beat. Fails with STATUS_SOLVER and the reason after settings->beats beats, or as
  * steady_map_beat. */
 enum status steady_problem_beat(struct steady_problem *problem);
 
-/* What the unknowns are now, over their scales                                                   (n_unknowns) */
+/* Read the unknowns, over the scales                                                             (n_unknowns) */
 void steady_problem_read(const struct steady_problem *problem, double *value);
 
-/* Make the unknowns what they are to be, over their scales. Fails as steady_map_add.               (n_unknowns) */
+/* Set the unknowns to these values, over the scales. Fails as steady_map_add.                    (n_unknowns) */
 enum status steady_problem_put(struct steady_problem *problem, const double *to);
 
-/* Put all pins where they belong, and the speeds among them to this one, m s-1. */
+/* Set all pinned speeds to this speed, m s-1, and all other pins to the initial values. Fails as steady_map_add. */
 enum status steady_problem_put_pins(struct steady_problem *problem, double speed);
 
 #endif

@@ -8,43 +8,44 @@
 #include "steady/steady_reason.h"
 #include "steady/steady_together.h"
 
-/* A step of Newton's method changes the speed by no more than this, in lengths per beat. */
+/* Largest change of the speed in one Newton step, in lengths per beat. */
 static const double longest_step = 1;
 
-/* The change of the speed in a beat by the speed, where it is not known or makes no sense: one that grows. */
+/* Derivative of the change of the speed per beat by the speed: initial value, and upper limit, which excludes
+ * growth. */
 static const double first_slope = -0.2, least_slope = -0.01;
 
-/* Each addition to the state lets the integrator begin again, with errors of its own: Newton's method on the speed
- * stops at this multiple of the tolerance. Beats follow to which nothing is added, so many before it is tried again;
- * two in a row must meet the tolerance. */
+/* Each increment of the state restarts the integrator with a restart error, so Newton's method for the speed stops at
+ * ROUGH times the tolerance. At most PATIENCE beats without an increment follow before the next attempt; two successive
+ * beats must meet the tolerance. */
 enum { ROUGH = 3, PATIENCE = 8 };
 
-/* On all slow quantities of a formation it stops at this part of the tolerance, and where the beats that follow run
- * away, as they do from what is unstable, at a smaller one, by this factor, the next time; it begins where it was
- * then. */
+/* Newton's method for all slow quantities of a formation stops at margin times the tolerance. If the following beats
+ * diverge, as from an unstable state, the next attempt starts from the last solution with a margin smaller by the
+ * factor sharper. */
 static const double margin = 0.5, sharper = 0.3;
 
-/* Change over the tolerance in a beat that has run away. */
+/* Change per beat over the tolerance above which the beats diverge. */
 static const double lost = 10;
 
-/* Iterations of Newton's method on the speed alone; how often it is begun, and then, or at once where a fish circles,
- * that on all slow quantities; then the fish swims until it is steady. What the speed alone does not tell has a long
- * memory: an evaluation is then so many beats. */
+/* SPEED_ITERATIONS: iterations of Newton's method for the speed alone. TRIES: attempts for the speed alone, none for a
+ * circling fish. TRIES_TOGETHER: subsequent attempts for all slow quantities; afterwards the fish swims until the state
+ * is steady. AGED: beats of an evaluation for all slow quantities, because the other quantities have a long memory. */
 enum { SPEED_ITERATIONS = 20, TRIES = 2, TRIES_TOGETHER = 6, AGED = 3 };
 
-/* The speed of the first fish, and what is known of its change in a beat. */
+/* State of the search: speed of the first fish and change of the speed per beat. */
 struct search {
     struct steady_problem *problem;
-    int n_tries;    /* of Newton's method on the speed alone that are left */
-    int n_together; /* and on all slow quantities of the fish */
+    int n_tries;    /* remaining attempts for the speed alone */
+    int n_together; /* remaining attempts for all slow quantities of the fish */
     struct steady_together together;
-    double margin;       /* part of the tolerance to which a formation is solved for */
-    struct state *found; /* what that came to; NULL: none has been */
-    int has_failed;      /* a beat has */
+    double margin;       /* tolerance of Newton's method for a formation, over the tolerance */
+    struct state *found; /* last solution for a formation; NULL: none */
+    int has_failed;      /* a beat failed */
     struct steady_unknown speed;
     double scale;        /* m s-1 */
-    double from, change; /* in the last beat, m s-1 */
-    double slope;        /* of the change by the speed, as the last two beats have it */
+    double from, change; /* speed before the last beat and change in the last beat, m s-1 */
+    double slope;        /* derivative of the change by the speed: secant of the last two beats */
 };
 
 static double speed_now(const struct search *search) {
@@ -53,29 +54,31 @@ static double speed_now(const struct search *search) {
     return speed;
 }
 
-// one beat that begins with a speed: what it tells of the slope
+// simulate one beat from this speed and update the slope
 static enum status try_beat(struct search *search, double speed, double *change) {
     const enum status status = steady_problem_beat(search->problem);
     search->has_failed = status != STATUS_OK;
     TRY(status);
     *change = speed_now(search) - speed;
     const double way = speed - search->from;
-    // below that the secant is that of the integrator's errors
+
+    // integration errors dominate the secant of a shorter step
     if (fabs(way) > 1e-3 * search->scale) {
         search->slope = fmin(least_slope, fmax(-1, (*change - search->change) / way));
     }
+
     search->from = speed;
     search->change = *change;
     return STATUS_OK;
 }
 
-static enum status value(void *data, const double *speed, double *change) {
+static enum status speed_value(void *data, const double *speed, double *change) {
     struct search *const search = data;
     TRY(steady_problem_put_pins(search->problem, *speed));
     return try_beat(search, *speed, change);
 }
 
-static enum status slope(void *data, double *matrix) {
+static enum status speed_slope(void *data, double *matrix) {
     const struct search *const search = data;
     *matrix = search->slope;
     return STATUS_OK;
@@ -89,18 +92,19 @@ static enum status solve_speed(struct search *search) {
                                    .max_step = longest_step,
                                    .reuse = 1,
                                    .max_iterations = SPEED_ITERATIONS,
-                                   .value = value,
-                                   .jacobian = slope,
+                                   .value = speed_value,
+                                   .jacobian = speed_slope,
                                    .data = search};
     double speed = speed_now(search);
     const enum status status = newton_solve(&problem, &speed);
+
     if (status != STATUS_SOLVER || search->has_failed) return status;
     search->n_tries = 0;
     return STATUS_OK;
 }
 
-// the first beats: the muscle begins smoothly, and the wake has to grow
-static enum status settle(struct search *search) {
+// the first beats: the muscle ramp ends and the wake grows
+static enum status settle_start(struct search *search) {
     const struct steady_map *const map = &search->problem->map;
     const struct school *const school = map->simulation->school;
     double ramp = 0, change;
@@ -120,7 +124,7 @@ static enum status solve_fish(struct search *search) {
     return STATUS_OK;
 }
 
-static enum status solve(struct search *search) {
+static enum status solve_unknowns(struct search *search) {
     struct steady_problem *const problem = search->problem;
     if (problem->n_unknowns == 0) return STATUS_OK;
     if (!problem->map.is_formation) return solve_fish(search);
@@ -128,8 +132,8 @@ static enum status solve(struct search *search) {
     return steady_map_save(&problem->map, &search->found);
 }
 
-// the speed of a fish that circles cannot be found without its slip and turn, which remember more than a beat
-static int circles(const struct school *school) {
+// the speed of a circling fish depends on slip and turn, which have a memory of several beats
+static int has_circling_fish(const struct school *school) {
     int circles = 0;
     for (int f = 0; f < school->n_fish; f++) {
         const struct fish *const fish = &school->fish[f];
@@ -138,37 +142,43 @@ static int circles(const struct school *school) {
     return circles;
 }
 
-// beats to which nothing is added, until two in a row are steady
-static enum status let_go(struct search *search, int *is_steady) {
+// simulate beats without increments until two successive beats are steady
+static enum status swim_freely(struct search *search, int *is_steady) {
     struct steady_problem *const problem = search->problem;
     const double tolerance = problem->settings->tolerance;
     int n_good = 0;
     double change = 0;
+
     for (int i = 0; i < PATIENCE && n_good < 2 && (!search->found || change <= lost * tolerance); i++) {
         TRY(steady_problem_beat(problem));
         change = steady_map_residual(&problem->map);
         n_good = change <= tolerance ? n_good + 1 : 0;
-        // how the first of them compares with one that was held says nothing
+        // the change from a beat with held quantities to the first free beat has no meaning
         if (i == 0 && search->found) change = 0;
     }
+
     *is_steady = n_good == 2;
     if (*is_steady || !search->found || change <= lost * tolerance) return STATUS_OK;
     search->margin *= sharper;
+
     return steady_map_return(&problem->map, search->found);
 }
 
-static enum status run(struct search *search) {
+static enum status run_search(struct search *search) {
     struct steady_problem *const problem = search->problem;
-    TRY(settle(search));
-    // a formation first gets one speed with its places kept; then all follows
+    TRY(settle_start(search));
+
+    // solve for a common speed of a formation at the initial places first, then for all unknowns
     if (problem->map.is_formation) {
         if (problem->solves_speed) TRY(solve_speed(search));
         TRY(steady_problem_put_pins(problem, speed_now(search)));
     }
+
     for (int is_steady = 0; !is_steady;) {
-        TRY(solve(search));
-        TRY(let_go(search, &is_steady));
+        TRY(solve_unknowns(search));
+        TRY(swim_freely(search, &is_steady));
     }
+
     return STATUS_OK;
 }
 
@@ -180,25 +190,28 @@ enum status steady_search_correct(struct steady_problem *problem, const double *
         steady_problem_read(problem, to);
         for (int i = 0; i < problem->n_unknowns; i++) to[i] += way[i];
         TRY(steady_problem_put(problem, to));
-        TRY(let_go(&search, &is_steady));
+        TRY(swim_freely(&search, &is_steady));
     }
+
     while (!is_steady) {
         if (!problem->map.is_formation) TRY(solve_fish(&search));
-        TRY(let_go(&search, &is_steady));
+        TRY(swim_freely(&search, &is_steady));
     }
+
     return STATUS_OK;
 }
 
 enum status steady_search_run(struct steady_problem *problem) {
     struct search search = {.problem = problem, .speed = {0, STEADY_SPEED}, .slope = first_slope, .margin = margin};
     search.scale = steady_map_scale(&problem->map, search.speed);
-    const int is_circle = circles(problem->map.simulation->school);
+    const int is_circle = has_circling_fish(problem->map.simulation->school);
     search.n_tries = is_circle ? 0 : TRIES;
     search.n_together = TRIES_TOGETHER;
     search.together.beats = is_circle ? 1 : AGED;
-    const enum status status = run(&search);
+    const enum status status = run_search(&search);
     state_free(search.found, problem->map.simulation->school);
     const int is_late = problem->map.n_beats >= problem->settings->beats;
     if (status != STATUS_SOLVER || !is_late || !problem->map.is_formation || problem->n_unknowns == 0) return status;
+
     return steady_reason_find(problem);
 }

@@ -5,12 +5,12 @@
 
 #include "steady/steady_problem.h"
 
-/* Go on until the simulation repeats itself from beat to beat. Fails with STATUS_SOLVER and the reason where it does
- * not within steady.beats (of a formation, what its fish do then), or as simulate_step. */
+/* Advance the simulation to a state that repeats with the beat. Fails with STATUS_SOLVER and the reason after
+ * steady.beats beats (for a formation: the motion of the released fish), or as simulate_step. */
 enum status steady_search_run(struct steady_problem *problem);
 
-/* Go the way to the fixed point that steady_multipliers_find tells (n_unknowns), or, where that is NULL, take a step of
- * Newton's method; then go on until the simulation repeats itself. Fails as steady_search_run. */
+/* Take the step way of steady_multipliers_find to the fixed point (n_unknowns), or a Newton step if way is NULL; then
+ * advance the simulation to a state that repeats with the beat. Fails as steady_search_run. */
 enum status steady_search_correct(struct steady_problem *problem, const double *way);
 
 #endif

@@ -13,7 +13,7 @@
 struct reading {
     struct netcdf_reader reader;
     size_t last;             /* row */
-    double nose[2], heading; /* of the first fish there, m, rad */
+    double nose[2], heading; /* of the first fish in the file, m, rad */
 };
 
 static enum status read_nose(const struct reading *reading, size_t f, double nose[2]) {
@@ -22,27 +22,29 @@ static enum status read_nose(const struct reading *reading, size_t f, double nos
     return netcdf_read_doubles(&reading->reader, "x", slice, nose);
 }
 
-static enum status open(struct reading *reading, const char *path, int n_fish) {
+static enum status start_open(struct reading *reading, const char *path, int n_fish) {
     TRY(netcdf_open(&reading->reader, path));
     size_t n_rows = 0, n = 0;
     double degrees = 0;
     enum status status = netcdf_read_length(&reading->reader, "time", 0, SIZE_MAX, &n_rows);
     if (status == STATUS_OK) status = netcdf_read_length(&reading->reader, "fish", 1, INT_MAX, &n);
     if (status == STATUS_OK && (n_rows == 0 || n != (size_t)n_fish || !netcdf_has(&reading->reader, "steady_speed"))) {
-        status = status_fail(STATUS_FILE, "%s: it does not hold a steady state of %d fish to start from", path, n_fish);
+        status = status_fail(STATUS_FILE, "%s does not contain a steady state of %d fish to start from", path, n_fish);
     }
+
     if (status == STATUS_OK) {
         const struct netcdf_slice slice[] = {{"time", n_rows - 1, 1}, {"fish", 0, 1}, {NULL}};
         reading->last = n_rows - 1;
         status = netcdf_read_doubles(&reading->reader, "heading", slice, &degrees);
         reading->heading = angle_radians(degrees);
     }
+
     if (status == STATUS_OK) status = read_nose(reading, 0, reading->nose);
     if (status != STATUS_OK) netcdf_close(&reading->reader);
     return status;
 }
 
-// the nose, as the first fish sees it in the file and then at its start
+// transform the nose from the frame of the first fish in the file to the initial frame of the first fish
 static enum status read_place(const struct reading *reading, size_t f, const struct fish_parameters *first,
                               double position[2]) {
     double nose[2];
@@ -61,7 +63,7 @@ static enum status read_fish(const struct reading *reading, size_t f, const stru
     if (!is_free) return STATUS_OK;
     TRY(netcdf_read_doubles(&reading->reader, "steady_speed", (struct netcdf_slice[]){{"fish", f, 1}, {NULL}}, &speed));
     if (!isfinite(speed)) {
-        return status_fail(STATUS_FILE, "%s: it does not hold a steady state to start from", reading->reader.path);
+        return status_fail(STATUS_FILE, "%s does not contain a steady state to start from", reading->reader.path);
     }
     fish->start_speed = fish->motion.speed = speed;
     return f > 0 ? read_place(reading, f, first, fish->start_position) : STATUS_OK;
@@ -70,33 +72,39 @@ static enum status read_fish(const struct reading *reading, size_t f, const stru
 enum status steady_start_read(const char *path, const struct school_parameters *school, struct fish_parameters **fish) {
     struct reading reading;
     *fish = NULL;
-    TRY(open(&reading, path, school->n_fish));
+    TRY(start_open(&reading, path, school->n_fish));
     const size_t bytes = (size_t)school->n_fish * sizeof **fish;
     struct fish_parameters *const copy = malloc(bytes);
     enum status status = copy ? STATUS_OK : status_fail(STATUS_MEMORY, "out of memory: %d fish", school->n_fish);
     if (copy) memcpy(copy, school->fish, bytes);
+
     for (int f = 0; f < school->n_fish && status == STATUS_OK; f++) {
         status = read_fish(&reading, (size_t)f, school->fish, &copy[f]);
     }
+
     netcdf_close(&reading.reader);
     if (status == STATUS_OK) {
         *fish = copy;
     } else {
         free(copy);
     }
+
     return status;
 }
 
 // ---- shapes
 
-// the places of the nodes of a body: x and y in turns                                              (2 n_nodes)
+// read the node positions of a body, x and y interleaved                                           (2 n_nodes)
 static enum status read_nodes(const struct reading *reading, size_t f, const struct fish *fish, double *places) {
     const size_t n_nodes = (size_t)fish->n_nodes;
     size_t n = 0;
     const struct netcdf_slice slice[] = {
         {"time", reading->last, 1}, {"fish", f, 1}, {"node", 0, n_nodes}, {"xy", 0, 2}, {NULL}};
+
     TRY(netcdf_read_length(&reading->reader, "node", 2, INT_MAX, &n));
     if (n >= n_nodes) TRY(netcdf_read_doubles(&reading->reader, "x", slice, places));
+
+    // a body with fewer nodes is padded with NaN
     int is_other = n < n_nodes;
     for (size_t i = 0; i < 2 * n_nodes && !is_other; i++) is_other = !isfinite(places[i]);
     if (!is_other && n > n_nodes) {
@@ -106,12 +114,13 @@ static enum status read_nodes(const struct reading *reading, size_t f, const str
         TRY(netcdf_read_doubles(&reading->reader, "x", next, beyond));
         is_other = isfinite(beyond[0]);
     }
+
     if (!is_other) return STATUS_OK;
-    return status_fail(STATUS_FILE, "%s: %s has another number of nodes there, not %d", reading->reader.path,
-                       fish->name, fish->n_nodes);
+    return status_fail(STATUS_FILE, "%s: %s does not have %d nodes in this file", reading->reader.path, fish->name,
+                       fish->n_nodes);
 }
 
-// turn and stretch them so that edge 0 is that of a straight body, from its nose on
+// rotate and scale the shape so that edge 0 coincides with edge 0 of a straight body at the nose
 static void place_nodes(const struct fish *fish, const double *places, double *y) {
     double direction[2], rate;
     fish_prescribe(fish, 1, 0, y);
@@ -129,7 +138,7 @@ static void place_nodes(const struct fish *fish, const double *places, double *y
 
 enum status steady_start_shapes(const char *path, const struct school *school, double *y) {
     struct reading reading;
-    TRY(open(&reading, path, school->n_fish));
+    TRY(start_open(&reading, path, school->n_fish));
     enum status status = STATUS_OK;
     for (int f = 0; f < school->n_fish && status == STATUS_OK; f++) {
         const struct fish *const fish = &school->fish[f];
@@ -139,6 +148,7 @@ enum status steady_start_shapes(const char *path, const struct school *school, d
         if (status == STATUS_OK) place_nodes(fish, places, y);
         free(places);
     }
+
     netcdf_close(&reading.reader);
     return status;
 }

@@ -24,7 +24,7 @@ int steady_static_applies(const struct school *school) {
     return 1;
 }
 
-// ---- what can have no equilibrium
+// ---- cases without an equilibrium
 
 static void velocity_of(const struct fish *fish, double velocity[2]) {
     double position[2], acceleration[2];
@@ -35,80 +35,90 @@ static enum status refuse_body(const struct school *school, const struct fish *f
     double velocity[2], first[2];
     if (fish->motion.prescribed == PRESCRIBED_NONE || fish->motion.surge == SURGE_FREE) {
         return status_fail(STATUS_CASE,
-                           "%s neither beats nor is held: nothing keeps it from going with the stream; hold it with "
-                           "motion.prescribed (and motion.surge: given), or let it beat",
+                           "%s neither beats nor is held, so the stream carries the body away: hold the body with "
+                           "motion.prescribed (and motion.surge: given), or add a beat",
                            fish->name);
     }
+
     if (fish->control.law != CONTROL_NONE) {
-        return status_fail(STATUS_CASE, "%s does not beat, and has nothing to steer with: set control.law to none",
-                           fish->name);
+        return status_fail(STATUS_CASE, "%s does not beat and cannot steer: set control.law to none", fish->name);
     }
+
     if (fish->ramp > 0 && fish_largest_turn(fish, 1, 0) > 0) {
-        return status_fail(STATUS_CASE, "%s gets its natural curvature in %g s: set wave.ramp to 0", fish->name,
-                           fish->ramp);
+        return status_fail(STATUS_CASE, "the natural curvature of %s has a ramp of %g s: set wave.ramp to 0",
+                           fish->name, fish->ramp);
     }
+
     velocity_of(fish, velocity);
     velocity_of(&school->fish[0], first);
     if (fabs(velocity[0] - first[0]) + fabs(velocity[1] - first[1]) > 0) {
-        return status_fail(STATUS_CASE, "%s and %s go at velocities of their own: give them the same motion.speed",
+        return status_fail(STATUS_CASE, "%s and %s move at different velocities: give both fish the same motion.speed",
                            school->fish[0].name, fish->name);
     }
+
     if (fabs(velocity[1]) > 0 && (school->walls.n > 0 || fabs(school->shear) > 0)) {
         return status_fail(STATUS_CASE,
-                           "%s goes across %s, so that nothing stays as it is: give it start.heading 0 or "
-                           "180, or motion.speed 0",
+                           "%s moves across %s, so no equilibrium exists: set start.heading to 0 or 180, or "
+                           "motion.speed to 0",
                            fish->name, school->walls.n > 0 ? "a channel" : "a shear");
     }
+
     return STATUS_OK;
 }
 
 enum status steady_static_refuse(const struct school *school) {
     for (int f = 0; f < school->n_fish; f++) TRY(refuse_body(school, &school->fish[f]));
     if (school->gust_omega > 0 && fabs(school->gust[0]) + fabs(school->gust[1]) > 0) {
-        return status_fail(STATUS_CASE,
-                           "no fish beats, and a gust does not rest: set fluid.gust.amplitude to 0, or give a "
-                           "fish the frequency of the gust");
+        return status_fail(
+            STATUS_CASE,
+            "no fish beats, so an oscillating gust has no equilibrium: set fluid.gust.amplitude to 0, or "
+            "give a fish the frequency of the gust");
     }
+
     if (school->finite) {
         return status_fail(
             STATUS_CASE,
-            "a steady wake of finite span has legs without an end, and the equilibrium has none: run the "
+            "a steady wake of finite span has infinite legs, which the equilibrium does not model: run the "
             "case in time, or set pressure.span to infinite");
     }
+
     if (school->removed == REMOVED_DROPPED) {
         return status_fail(STATUS_CASE,
-                           "what is removed of a wake is forgotten, so that a body with lift sheds for ever: set "
+                           "removed circulation is dropped, so a body with lift never stops shedding: set "
                            "wake.removed_circulation to retained");
     }
+
     return STATUS_OK;
 }
 
-// ---- the stream and the loads, which grow from nothing
+// ---- growth of the stream and the loads from zero
 
 struct growth {
     struct simulation *simulation;
-    struct school school; /* that of the simulation with a part of its stream and loads; only its bodies are its own */
+    struct school
+        school; /* school of the simulation with a part of the stream and loads; owns the array of fish only */
     struct residual *residual; /* of this school */
     struct equilibrium *equilibrium;
-    double *last, *before; /* the last two solutions, at these parts of them            (n_unknowns) */
-    double last_part, before_part;
+    double *last, *before;         /* the last two solutions                                    (n_unknowns) */
+    double last_part, before_part; /* parts of the stream at the last two solutions */
     int n_solutions;
-    struct equilibrium_stiffness rest; /* without any */
+    struct equilibrium_stiffness rest; /* without stream and loads */
     double *kept; /* scratch                                                              (n_unknowns) */
 };
 
-/* No edge turns by more from one solution to the next: so it is the same branch. */
+/* Largest rotation of an edge between two successive solutions of one branch. */
 static const double most_turn = 0.5; /* rad */
 
-/* Where a branch does not go on by so much of the stream, it ends. */
+/* A branch ends if a step by this part of the stream fails. */
 static const double least_step = 1e-4;
 
-static enum status begin(struct growth *growth) {
+static enum status growth_create(struct growth *growth) {
     const struct school *const school = growth->simulation->school;
     struct state *const state = growth->simulation->state;
     const size_t n_fish = (size_t)school->n_fish, n = (size_t)school->n_unknowns;
     double **const arrays[] = {&growth->last, &growth->before, &growth->kept};
     int has_all = 1;
+
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
         has_all &= !!(*arrays[i] = calloc(n, sizeof **arrays[i]));
     growth->school = *school;
@@ -117,10 +127,11 @@ static enum status begin(struct growth *growth) {
         return status_fail(STATUS_MEMORY, "out of memory: the equilibrium of %zu bodies", n_fish);
     memcpy(growth->school.fish, school->fish, n_fish * sizeof *school->fish);
     TRY(residual_create(&growth->residual, &growth->school, state));
+
     return equilibrium_create(&growth->equilibrium, growth->residual, state);
 }
 
-static void end(struct growth *growth) {
+static void growth_free(struct growth *growth) {
     double *const owned[] = {growth->last, growth->before, growth->kept};
     for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) free(owned[i]);
     equilibrium_free(growth->equilibrium);
@@ -128,7 +139,7 @@ static void end(struct growth *growth) {
     free(growth->school.fish);
 }
 
-// this part of the stream of the case, and the square of this part of the loads: forces of a stream grow like that
+// set the stream to this part of the full stream, and the loads to the square of this part, as forces of a stream scale
 static void set_part(struct growth *growth, double part) {
     const struct school *const whole = growth->simulation->school;
     struct school *const school = &growth->school;
@@ -140,8 +151,8 @@ static void set_part(struct growth *growth, double part) {
     }
 }
 
-// straight, or as the natural curvature asks for; no sheets
-static void rest(const struct simulation *simulation) {
+// set straight or naturally curved bodies without sheets
+static void set_to_rest(const struct simulation *simulation) {
     double *const y = simulation->state->y;
     for (int f = 0; f < simulation->school->n_fish; f++) {
         const struct fish *const fish = &simulation->school->fish[f];
@@ -160,7 +171,7 @@ static void rest(const struct simulation *simulation) {
     }
 }
 
-// the largest angle by which an edge has turned between two solutions
+// the largest rotation of an edge between two solutions
 static double largest_turn(const struct school *school, const double *from, const double *to) {
     double most = 0;
     for (int f = 0; f < school->n_fish; f++) {
@@ -176,38 +187,44 @@ static int is_fatal(enum status status) {
     return status == STATUS_MEMORY || status == STATUS_STOPPED;
 }
 
-// the solution at this part of the stream, from what is in the state, near the last one; which is back in the state
-// where there is none
-static enum status solve(struct growth *growth, double part) {
+// solve at this part of the stream, from the current state; on a failure restore the last solution
+static enum status growth_solve(struct growth *growth, double part) {
     struct simulation *const simulation = growth->simulation;
     struct state *const state = simulation->state;
     const size_t bytes = (size_t)simulation->school->n_unknowns * sizeof *state->y;
+
     if (simulation->stop && *simulation->stop) {
         return status_fail(STATUS_STOPPED,
-                           "stopped %s at %.3g of the stream: a search cannot be resumed: begin it again",
+                           "stopped %s at %.3g of the stream; a search cannot be resumed: start the search again",
                            simulate_stopped_by(simulation->stop), part);
     }
+
     set_part(growth, part);
     enum status status = equilibrium_solve(growth->equilibrium);
     if (status == STATUS_OK && largest_turn(simulation->school, growth->last, state->y) > most_turn) {
-        status = status_fail(STATUS_SOLVER, "it is another branch");
+        status = status_fail(STATUS_SOLVER, "the solution is on another branch");
     }
+
     if (status != STATUS_OK) {
         memcpy(state->y, growth->last, bytes);
         return is_fatal(status) ? status : STATUS_SOLVER;
     }
+
+    // shift the solutions
     memcpy(growth->before, growth->last, bytes);
     memcpy(growth->last, state->y, bytes);
-    // bodies that touch are known by where they were
+
+    // contact detection compares with the previous positions
     memcpy(state->closest->before, state->y, bytes);
     growth->before_part = growth->last_part;
     growth->last_part = part;
     growth->n_solutions++;
+
     return STATUS_OK;
 }
 
-// the line through the last two solutions
-static void predict(const struct growth *growth, double part) {
+// extrapolate linearly from the last two solutions
+static void growth_predict(const struct growth *growth, double part) {
     const struct school *const school = growth->simulation->school;
     const double step = growth->last_part - growth->before_part;
     if (growth->n_solutions < 2 || part - growth->last_part > 2 * step) return;
@@ -223,7 +240,7 @@ static void predict(const struct growth *growth, double part) {
     }
 }
 
-// the determinant of the stiffness over that at rest; below 0 where the bodies leave the equilibrium by themselves
+// determinant of the stiffness over the determinant at rest; negative if the equilibrium is statically unstable
 static enum status find_stiffness(struct growth *growth, double *stiffness) {
     struct equilibrium_stiffness now;
     TRY(equilibrium_stiffness(growth->equilibrium, &now));
@@ -232,7 +249,7 @@ static enum status find_stiffness(struct growth *growth, double *stiffness) {
     return STATUS_OK;
 }
 
-static enum status branch_ends(struct growth *growth) {
+static enum status report_end_of_branch(struct growth *growth) {
     double stiffness;
     char reason[512];
     snprintf(reason, sizeof reason, "%s", status_message());
@@ -240,75 +257,77 @@ static enum status branch_ends(struct growth *growth) {
     TRY(find_stiffness(growth, &stiffness));
     return status_fail(
         STATUS_SOLVER,
-        "no equilibrium in this stream: the one that grows from rest ends at %.4g of it, where the static "
-        "stiffness is %.2g of that at rest; try a slower stream or a stiffer body, or start from another "
-        "shape with --from (%s)",
+        "no equilibrium in this stream: the branch from rest ends at %.4g of the stream, with static stiffness %.2g "
+        "of the stiffness at rest; try a slower stream or a stiffer body, or start from another shape with --from (%s)",
         growth->last_part, stiffness, reason);
 }
 
-static enum status begin_at_rest(struct growth *growth) {
+static enum status growth_from_rest(struct growth *growth) {
     struct state *const state = growth->simulation->state;
     const size_t bytes = (size_t)growth->simulation->school->n_unknowns * sizeof *state->y;
     set_part(growth, 0);
-    rest(growth->simulation);
+    set_to_rest(growth->simulation);
     memcpy(growth->last, state->y, bytes);
-    const enum status status = solve(growth, 0);
+    const enum status status = growth_solve(growth, 0);
     if (status != STATUS_SOLVER) return status;
     char reason[512];
     snprintf(reason, sizeof reason, "%s", status_message());
     return status_fail(status, "no equilibrium of the bodies, not even without a stream (%s)", reason);
 }
 
-// from rest on
-static enum status grow(struct growth *growth) {
+// increase the stream from rest with adaptive steps
+static enum status growth_to_stream(struct growth *growth) {
     double step = 1;
     while (growth->last_part < 1) {
         const double part = fmin(1, growth->last_part + step);
-        predict(growth, part);
-        const enum status status = solve(growth, part);
+        growth_predict(growth, part);
+        const enum status status = growth_solve(growth, part);
         if (is_fatal(status)) return status;
         step *= status == STATUS_OK ? 2 : 0.5;
-        if (step < least_step) return branch_ends(growth);
+        if (step < least_step) return report_end_of_branch(growth);
     }
     return STATUS_OK;
 }
 
-// from the shapes in a file, to the whole stream; whether that is a solution, in *found
-static enum status try_from(struct growth *growth, const char *from, int *found) {
+// solve for the full stream from the shapes in a file; *found: a solution exists
+static enum status growth_from_file(struct growth *growth, const char *from, int *found) {
     struct state *const state = growth->simulation->state;
     const size_t bytes = (size_t)growth->simulation->school->n_unknowns * sizeof *state->y;
     memcpy(growth->kept, growth->last, bytes);
     enum status status = steady_start_shapes(from, growth->simulation->school, state->y);
     if (status == STATUS_OK) {
         memcpy(growth->last, state->y, bytes);
-        status = solve(growth, 1);
+        status = growth_solve(growth, 1);
     }
+
     *found = status == STATUS_OK;
     if (!*found) memcpy(growth->last, growth->kept, bytes);
     memcpy(state->y, growth->last, bytes);
+
     return is_fatal(status) ? status : STATUS_OK;
 }
 
-static enum status find(struct growth *growth, const char *from, struct steady_values *found) {
+static enum status find_solution(struct growth *growth, const char *from, struct steady_values *found) {
     int is_found = 0;
-    TRY(begin(growth));
-    TRY(begin_at_rest(growth));
+    TRY(growth_create(growth));
+    TRY(growth_from_rest(growth));
     TRY(equilibrium_stiffness(growth->equilibrium, &growth->rest));
-    if (from) TRY(try_from(growth, from, &is_found));
-    if (!is_found) TRY(grow(growth));
+    if (from) TRY(growth_from_file(growth, from, &is_found));
+    if (!is_found) TRY(growth_to_stream(growth));
     TRY(find_stiffness(growth, &found->stiffness));
     found->residual = equilibrium_residual(growth->equilibrium);
     return STATUS_OK;
 }
 
-// ---- what is found
+// ---- the values of the equilibrium
 
-static void fill(const struct simulation *simulation, int f, struct steady_fish *found) {
+static void fill_fish(const struct simulation *simulation, int f, struct steady_fish *found) {
     const struct fish *const fish = &simulation->school->fish[f];
     const struct diagnostics_fish *const now = &simulation->diagnostics->fish[f];
     const double *const y = simulation->state->y;
     const int tail = fish->n_nodes - 1;
     double stream[2], direction[2], rate;
+
     flow_external(simulation->school, simulation->state->t, now->com[1], &stream[0], &stream[1]);
     fish_prescribed_direction(fish, simulation->state->t, direction, &rate);
     const double way[2] = {y[fish->at.x + tail] - y[fish->at.x], y[fish->at.y + tail] - y[fish->at.y]};
@@ -322,6 +341,8 @@ static void fill(const struct simulation *simulation, int f, struct steady_fish 
                                   .cost_of_transport = NAN,
                                   .efficiency = NAN,
                                   .strouhal = NAN};
+
+    // drag and lift along and across the relative stream
     diagnostics_fluid_force(now->resistive_force, now->reactive_force, &now->pressure, found->force);
     for (int i = 0; i < 2; i++) stream[i] -= now->com_velocity[i];
     const double speed = hypot(stream[0], stream[1]);
@@ -333,10 +354,12 @@ static void fill(const struct simulation *simulation, int f, struct steady_fish 
 enum status steady_static_find(struct simulation *simulation, const char *from, struct steady_values *found) {
     struct growth growth = {.simulation = simulation};
     struct state *const state = simulation->state;
-    const enum status status = find(&growth, from, found);
-    end(&growth);
+    const enum status status = find_solution(&growth, from, found);
+
+    growth_free(&growth);
     TRY(status);
-    // the flow of the simulation itself
+
+    // evaluate the full case, which the residual of the simulation describes
     TRY(residual_evaluate(simulation->residual, state->t, state->y, state->yp, simulation->residual->scratch));
     diagnostics_remember(simulation->residual, state);
     diagnostics_after_jump(simulation->residual, state);
@@ -345,8 +368,9 @@ enum status steady_static_find(struct simulation *simulation, const char *from, 
     const struct rigid first = rigid_of(&simulation->school->fish[0], state->y);
     for (int f = 0; f < simulation->school->n_fish; f++) {
         const struct rigid rigid = rigid_of(&simulation->school->fish[f], state->y);
-        fill(simulation, f, &found->fish[f]);
+        fill_fish(simulation, f, &found->fish[f]);
         rigid_relative_place(&first, &rigid, found->fish[f].place);
     }
+
     return STATUS_OK;
 }

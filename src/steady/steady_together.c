@@ -6,16 +6,16 @@
 
 #include "solver/newton.h"
 
-/* A step changes the quantities by no more than this, in their scales. */
+/* Largest change of a quantity in one step, in the scale of the quantity. */
 static const double longest_step = 0.3;
 
-/* How much is added to a quantity for the Jacobian, in its scale. */
+/* Difference increment of the Jacobian, in the scale of the quantity. */
 static const double difference = 0.01;
 
-/* A Jacobian serves for so many steps; a search that takes more iterations does not converge. */
+/* STEPS: steps with one Jacobian. ITERATIONS: a search with more iterations does not converge. */
 enum { STEPS = 12, ITERATIONS = 18 };
 
-/* All in the scales of the quantities, of which there are n. */
+/* All values of the n quantities are in the scales of the quantities. */
 struct solution {
     struct steady_together *together;
     struct steady_problem *problem;
@@ -24,12 +24,12 @@ struct solution {
     double unit[STEADY_QUANTITIES];                         /* SI */
     double u[STEADY_QUANTITIES], change[STEADY_QUANTITIES]; /* of the last evaluation */
     int n_steps;                                            /* with this Jacobian */
-    struct state *begun;                                    /* where all begins */
-    struct state *before, *reached;                         /* by an evaluation, for the Jacobian */
+    struct state *begun;                                    /* at the start of the solution */
+    struct state *before, *reached;                         /* before and after the last evaluation */
 };
 
-// the slow quantities of the fish, and what it has shed: where that is retained, the circulation around it is as much
-static void list(struct solution *solution) {
+// list the slow quantities and, if removed circulation is retained, the shed circulation
+static void list_quantities(struct solution *solution) {
     const struct steady_problem *const problem = solution->problem;
     const struct steady_map *const map = &problem->map;
     solution->n = problem->n_unknowns;
@@ -45,7 +45,7 @@ static void read_all(const struct solution *solution, double *value) {
     for (int i = 0; i < solution->n; i++) value[i] /= solution->unit[i];
 }
 
-static enum status put(const struct solution *solution, const double *to) {
+static enum status put_quantities(const struct solution *solution, const double *to) {
     double add[STEADY_QUANTITIES], most = 0;
     read_all(solution, add);
     for (int i = 0; i < solution->n; i++) {
@@ -53,14 +53,15 @@ static enum status put(const struct solution *solution, const double *to) {
         most = fmax(most, fabs(add[i]));
         add[i] *= solution->unit[i];
     }
-    // where it is there already the integration goes on
+
+    // do not restart the integration without a change
     return most > 1e-12 ? steady_map_add(&solution->problem->map, solution->n, solution->unknown, add) : STATUS_OK;
 }
 
-// what the last beat of an evaluation changes, of which each begins with these values
-static enum status change_of(const struct solution *solution, const double *u, double *change) {
+// change in the last beat of an evaluation; every beat begins with the values u
+static enum status evaluate_change(const struct solution *solution, const double *u, double *change) {
     for (int i = 0; i < solution->together->beats; i++) {
-        TRY(put(solution, u));
+        TRY(put_quantities(solution, u));
         TRY(steady_problem_beat(solution->problem));
     }
     read_all(solution, change);
@@ -68,18 +69,18 @@ static enum status change_of(const struct solution *solution, const double *u, d
     return STATUS_OK;
 }
 
-static enum status value(void *data, const double *u, double *change) {
+static enum status together_value(void *data, const double *u, double *change) {
     struct solution *const solution = data;
     const size_t bytes = (size_t)solution->n * sizeof *u;
     TRY(steady_map_save(&solution->problem->map, &solution->before));
-    TRY(change_of(solution, u, change));
+    TRY(evaluate_change(solution, u, change));
     memcpy(solution->u, u, bytes);
     memcpy(solution->change, change, bytes);
     return STATUS_OK;
 }
 
-// by differences: from the same state with something added to one quantity
-static enum status differences(struct solution *solution) {
+// each column starts from the same state with an increment of one quantity
+static enum status difference_jacobian(struct solution *solution) {
     struct steady_map *const map = &solution->problem->map;
     TRY(steady_map_save(map, &solution->reached));
     for (int j = 0; j < solution->n; j++) {
@@ -87,23 +88,24 @@ static enum status differences(struct solution *solution) {
         memcpy(u, solution->u, sizeof u);
         u[j] += difference;
         TRY(steady_map_return(map, solution->before));
-        TRY(change_of(solution, u, column));
+        TRY(evaluate_change(solution, u, column));
         for (int i = 0; i < solution->n; i++) column[i] = (column[i] - solution->change[i]) / difference;
     }
+
     solution->together->is_known = 1;
     solution->n_steps = 0;
     return steady_map_return(map, solution->reached);
 }
 
-static enum status jacobian(void *data, double *matrix) {
+static enum status together_jacobian(void *data, double *matrix) {
     struct solution *const solution = data;
-    if (!solution->together->is_known || solution->n_steps == STEPS) TRY(differences(solution));
+    if (!solution->together->is_known || solution->n_steps == STEPS) TRY(difference_jacobian(solution));
     solution->n_steps++;
     memcpy(matrix, solution->together->matrix, (size_t)(solution->n * solution->n) * sizeof *matrix);
     return STATUS_OK;
 }
 
-static enum status solve(struct solution *solution, double tolerance, int *is_done) {
+static enum status together_newton(struct solution *solution, double tolerance, int *is_done) {
     struct steady_problem *const problem = solution->problem;
     double scale[STEADY_QUANTITIES], u[STEADY_QUANTITIES];
     for (int i = 0; i < solution->n; i++) scale[i] = longest_step;
@@ -113,8 +115,8 @@ static enum status solve(struct solution *solution, double tolerance, int *is_do
                                   .max_step = 1,
                                   .reuse = 1,
                                   .max_iterations = ITERATIONS,
-                                  .value = value,
-                                  .jacobian = jacobian,
+                                  .value = together_value,
+                                  .jacobian = together_jacobian,
                                   .data = solution};
     TRY(steady_map_save(&problem->map, &solution->begun));
     read_all(solution, u);
@@ -122,6 +124,7 @@ static enum status solve(struct solution *solution, double tolerance, int *is_do
     *is_done = status == STATUS_OK;
     if (status != STATUS_SOLVER || problem->map.n_beats >= problem->settings->beats) return status;
     solution->together->is_known = 0;
+
     return steady_map_return(&problem->map, solution->begun);
 }
 
@@ -129,8 +132,8 @@ enum status steady_together_solve(struct steady_together *together, struct stead
                                   int *is_done) {
     const struct school *const school = problem->map.simulation->school;
     struct solution solution = {.together = together, .problem = problem};
-    list(&solution);
-    const enum status status = solve(&solution, tolerance, is_done);
+    list_quantities(&solution);
+    const enum status status = together_newton(&solution, tolerance, is_done);
     state_free(solution.begun, school);
     state_free(solution.before, school);
     state_free(solution.reached, school);

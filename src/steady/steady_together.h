@@ -1,20 +1,20 @@
-/* steady_together.h: Newton's method on all slow quantities of one fish. doc/steady.md. Tested by
+/* steady_together.h: Newton's method for all slow quantities of one fish. doc/steady.md. Tested by
  * tests/steady/test_steady.c. */
 #ifndef STEADY_TOGETHER_H
 #define STEADY_TOGETHER_H
 
 #include "steady/steady_problem.h"
 
-/* How a search takes its evaluations, and their Jacobian, which it keeps. */
+/* Settings of the evaluations of a search, and the Jacobian, which is kept between solutions. */
 struct steady_together {
-    int beats; /* of an evaluation, each of which begins with the same values; the last one counts */
+    int beats; /* per evaluation; every beat begins with the same values, the last beat gives the change */
     int is_known;
-    double matrix[STEADY_QUANTITIES * STEADY_QUANTITIES]; /* column after column */
+    double matrix[STEADY_QUANTITIES * STEADY_QUANTITIES]; /* by columns */
 };
 
-/* Change the slow quantities of the only fish until a beat changes them by no more than the tolerance. The Jacobian is
- * made where it is not known. *is_done: whether that is found; if not, the simulation is where it was. Fails after
- * steady.beats as steady_problem_beat, or with STATUS_MEMORY. */
+/* Solve for slow quantities of the only fish that one beat changes by at most the tolerance. Evaluate the Jacobian
+ * unless is_known. *is_done: 1 on success; 0: no convergence, the simulation is restored. Fails after steady.beats as
+ * steady_problem_beat, or with STATUS_MEMORY. */
 enum status steady_together_solve(struct steady_together *together, struct steady_problem *problem, double tolerance,
                                   int *is_done);
 

@@ -119,7 +119,7 @@ run steady swim.yaml -q -o again.nc --from swim.nc --set steady.multipliers=fals
 check a_search_starts_from_another_one test "$code" = 0
 beats() { /usr/bin/python3 -c 'import netCDF4, sys; print(int(netCDF4.Dataset(sys.argv[1])["steady_beats"][...]))' "$1"; }
 check and_is_shorter test "$(beats again.nc)" -lt "$(beats swim.nc)"
-refused a_run_is_no_start 4 'does not hold a steady state of 1 fish' steady swim.yaml -o no.nc --from run.nc
+refused a_run_is_no_start 4 'does not contain a steady state of 1 fish' steady swim.yaml -o no.nc --from run.nc
 sed 's/0.1}/0.1}\nsteady: {tolerance: 1e-3, multipliers: false, output_beats: 1}/' swim.yaml >axis.yaml
 cat >>axis.yaml <<'end'
 sweep:
@@ -184,7 +184,7 @@ sys.exit(0 if max(lift) / min(lift) - 1 < 1e-8 else str(lift))'
 check plot_draws_what_the_stream_does /usr/bin/python3 "$root/scripts/plot.py" study grow-study/study.nc grow.png
 refused nothing_holds_it 2 'neither beats nor is held' steady plate.yaml -q -o none.nc \
     --set fish[0].motion.prescribed=none
-refused a_load_that_crushes_it 1 'the one that grows from rest ends at 0' steady plate.yaml -q -o crushed.nc \
+refused a_load_that_crushes_it 1 'the branch from rest ends at 0' steady plate.yaml -q -o crushed.nc \
     --set 'fish[0].load.tip=[-1e4, 0]'
 run info crushed.nc
 check the_file_says_where_the_branch_ends has out 'failed: no equilibrium in this stream'

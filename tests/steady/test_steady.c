@@ -1,5 +1,5 @@
-/* test_steady.c: the search for a steady state: what it finds is what a long run comes to, with how fast it comes; and
- * what can have none is refused with the reason. doc/steady.md. */
+/* test_steady.c: the search for a steady state: agreement with a long run, rate of convergence, and refusal of cases
+ * without a steady state, with the reason. doc/steady.md. */
 #include <stdio.h>
 #include <string.h>
 
@@ -34,15 +34,15 @@ static void speed_and_multiplier_are_those_of_a_long_run(void **state) {
     steady_setup_find(&setup, text);
     run_long(text, 50, brute);
     assert_true(setup.problem.map.n_beats <= 20);
-    // the bound that the search is made for
+    // the required number of beats
     NEAR(setup.problem.map.last[0].speed, brute[49].speed, 0, 1e-4);
-    // over ten beats the error of the run falls by the tenth power of the largest multiplier: its own errors are 1 %
+    // the error of the run decays in ten beats by the tenth power of the largest multiplier, to 1 %
     NEAR(setup.real[0], pow((brute[24].speed - brute[49].speed) / (brute[14].speed - brute[49].speed), 0.1), 0.01, 0);
     NEAR(setup.imaginary[0], 0, 0, 0);
     steady_setup_close(&setup);
 }
 
-// a plate whose nose holds a part of the suction that attached flow has; slower, it would lose more of it
+// a plate with a part of the leading-edge suction of attached flow; a slower plate loses more suction
 static void a_plate_with_limited_suction_has_the_speed_of_a_long_run(void **state) {
     (void)state;
     static const char text[] = SCHOOL_DEFAULTS
@@ -68,7 +68,7 @@ static void a_plate_with_limited_suction_has_the_speed_of_a_long_run(void **stat
     steady_setup_close(&setup);
 }
 
-// a run takes 25 to 45 beats to 1e-4
+// a run converges to 1e-4 in 25 to 45 beats
 static void circle(const char *text, double least_turn, int most_beats) {
     struct steady_setup setup;
     struct brute brute[80];
@@ -94,14 +94,14 @@ static void a_fish_that_is_steered_to_one_side_goes_in_a_circle(void **state) {
            22);
     circle(COARSE "steady: {tolerance: 2e-5}\nfish: [{" FISH ", control: {bias: 0.4}}]\n", 0.4, 30);
     circle(COARSE "steady: {tolerance: 2e-5}\nfish: [{" FISH ", force: pressure, control: {bias: 0.2}}]\n", 0.2, 25);
-    // what is removed of the wake is forgotten: the circulation is no quantity of its own
+    // removed circulation is dropped: the circulation is not a separate quantity
     circle(COARSE
            "steady: {tolerance: 2e-5}\nwake: {removed_circulation: dropped}\n"
            "fish: [{" FISH ", start: {speed: 0.6}, control: {bias: 0.2}}]\n",
            0.2, 22);
 }
 
-// a run forgets its start by 1 % in a beat
+// the influence of the initial state decays by 1 % per beat
 static void a_fish_that_coasts_has_the_same_speed_from_two_starts(void **state) {
     (void)state;
     double speed[2];
@@ -139,7 +139,7 @@ static void circulation_that_is_added_changes_nothing_else(void **state) {
     school_ok(steady_map_add(&setup.problem.map, 4, unknown, add));
     steady_map_read(&setup.problem.map, 4, unknown, after);
     for (int i = 0; i < 4; i++) NEAR(after[i] - before[i], add[i], 1e-12, 0);
-    // Kelvin: around the body as much the other way round, less what the nascent stretch has of it
+    // Kelvin: the bound circulation is opposite to the shed circulation, less the circulation of the nascent stretch
     NEAR(bound_sheet_circulation(fish, now->y) - bound, -0.1, 0, 0.05);
     NEAR(wake_source(&now->wake[0], 3), source, 1e-14, 0);
     steady_setup_close(&setup);
@@ -153,7 +153,7 @@ static void a_law_of_control_brings_the_heading_to_where_a_run_has_it(void **sta
     struct steady_setup setup, run;
     struct brute brute[50];
     steady_setup_find(&setup, text);
-    // speed, slip, turn, and the heading, which the law holds
+    // speed, slip, turn, and the heading, which the control law holds
     assert_int_equal(setup.problem.n_unknowns, 4);
     const struct steady_unknown heading = {0, STEADY_HEADING};
     double found, reached;
@@ -181,7 +181,7 @@ static void the_state_stays_where_its_multipliers_are_taken(void **state) {
     steady_setup_multipliers(&setup);
     assert_memory_equal(simulation->state->y, before, bytes);
     assert_int_equal(simulation->state->wake[0].n_vortex, n_vortex);
-    // of four runs, one without and three with something added, each eight beats
+    // four runs of eight beats each: one undisturbed, three with an increment
     assert_int_equal(setup.n_multiplier_beats, 32);
     assert_int_equal(setup.problem.map.n_beats, 3);
     steady_setup_close(&setup);
@@ -222,7 +222,7 @@ static void mean_powers_are_the_works_of_a_beat(void **state) {
         steady_setup_beats(&setup, 1);
         const struct steady_beat *const beat = &setup.problem.map.last[0];
         const struct diagnostics_fish *const now = &setup.simulation->diagnostics->fish[0];
-        // a beat of a second
+        // a beat of 1 s
         NEAR(beat->actuation, work[WORK_ACTUATION] - before[WORK_ACTUATION], 1e-12, 1e-6);
         NEAR(beat->damping, work[WORK_DAMPING] - before[WORK_DAMPING], 1e-12, 1e-6);
         NEAR(beat->driving, work[WORK_DRIVING] - before[WORK_DRIVING], 1e-12, 1e-6);
@@ -310,14 +310,14 @@ static void what_can_have_no_steady_state_is_refused_with_the_reason(void **stat
     steady_setup_fails(COARSE "defaults: {fish: {" FISH
                               ", motion: {prescribed: all}}}\n"
                               "fish: [{}, {start: {position: [3, 0]}, motion: {heave: 0.1, frequency: 2}}]\n",
-                       STATUS_CASE, "fish1 beats 1 times a second and fish2 2 times");
+                       STATUS_CASE, "fish1 beats 1 times per second and fish2 beats 2 times");
     steady_setup_fails(COARSE "fluid: {gust: {amplitude: 0.1, frequency: 1.5}}\nfish: [{" FISH "}]\n", STATUS_CASE,
                        "1.5 gusts");
     steady_setup_fails(COARSE "fluid: {shear: 0.1}\nfish: [{" FISH "}]\n", STATUS_CASE, "shear");
     steady_setup_fails(COARSE "fluid: {walls: [-1]}\nfish: [{" FISH "}]\n", STATUS_CASE, "beside a wall");
     steady_setup_fails(COARSE "fish: [{" FISH ", control: {waypoints: [[9, 0]]}}]\n", STATUS_CASE, "waypoints");
     steady_setup_fails(COARSE "defaults: {fish: {" FISH "}}\nfish: [{}, {start: {position: [3, 0]}}]\n", STATUS_CASE,
-                       "2 of 2 fish swim at speeds of their own");
+                       "2 of 2 fish swim at independent speeds");
 }
 
 static void a_search_that_takes_too_long_says_how_far_it_came(void **state) {
@@ -326,7 +326,7 @@ static void a_search_that_takes_too_long_says_how_far_it_came(void **state) {
                        "no steady state in 5 beats (steady.beats)");
 }
 
-// no search meets such a tolerance: in the end the fish swims as in a run
+// no search meets such a tolerance: the fish swims without increments at the end, as in a run
 static void a_search_that_fails_says_what_the_last_beats_have_in_common(void **state) {
     (void)state;
     steady_setup_fails(COARSE "steady: {tolerance: 1e-12, beats: 70}\nfish: [{" FISH "}]\n", STATUS_SOLVER,

@@ -1,7 +1,7 @@
-/* test_steady_formation.c: the places that fish keep behind one another. doc/steady.md. */
+/* test_steady_formation.c: stable places of fish in a formation. doc/steady.md. */
 #include "steady_setup.h"
 
-// two plates that heave, from a start of the follower
+// two heaving plates, from this initial place of the follower
 #define PLATES                                                                                                   \
     SCHOOL_DEFAULTS                                                                                              \
     "time: {end: 1, shedding_interval: 0.05, output_interval: 0.05}\n"                                           \
@@ -11,7 +11,7 @@
     "  wave: {amplitude: 0, frequency: 0}, motion: {prescribed: all, surge: free, heave: 0.15, frequency: 1},\n" \
     "  body: {profile: uniform, thickness: 0.05, depth: 1, density: 20}}}\n"
 
-// from tail to nose, in wavelengths of the way that they go in a beat
+// gap between tail and nose, over the distance travelled per beat
 static double spacing(const struct steady_setup *setup) {
     const struct steady_beat *const last = setup->problem.map.last;
     return (-last[1].place[0] - 1) / last[0].speed;
@@ -24,15 +24,15 @@ static void a_follower_finds_the_place_where_it_is_as_fast_as_its_leader(void **
     // two speeds and a distance
     assert_int_equal(setup.problem.n_unknowns, 3);
     const struct steady_beat *const last = setup.problem.map.last;
-    // lengths per beat; the last two beats changed by no more than the tolerance, and the beat of the follower is 1 s
+    // lengths per beat; the last two beats changed by at most the tolerance; the follower has a beat of 1 s
     NEAR(last[1].speed, last[0].speed, 2 * 3e-3, 0);
     // about one wavelength, as in experiments: doc/verification.md
     NEAR(spacing(&setup), 1, 0.1, 0);
     NEAR(last[1].place[1], 0, 1e-12, 0);
     assert_true(hypot(setup.real[0], setup.imaginary[0]) < 1);
-    // a run needs more than a hundred beats from here; five for each unknown and Jacobian took 60
+    // a run from this start needs more than 100 beats; five beats for each unknown and Jacobian took 60
     assert_true(setup.problem.map.n_beats <= 40);
-    // it is stable, so beats without a search keep it
+    // the formation is stable: beats without a search keep the places
     steady_setup_beats(&setup, 5);
     assert_true(steady_map_residual(&setup.problem.map) < 3e-3);
     steady_setup_close(&setup);
@@ -46,7 +46,7 @@ static void between_two_stable_places_is_one_that_the_follower_leaves(void **sta
     NEAR(spacing(&setup), 1.57, 0.1, 0);
     assert_true(setup.real[0] > 1.5);
     NEAR(setup.imaginary[0], 0, 0, 0);
-    // put to either side it goes on to the next stable place there, by a length at least
+    // after a displacement to either side the follower moves to the next stable place, by at least one length
     struct state *kept = NULL;
     school_ok(steady_map_save(&setup.problem.map, &kept));
     const double place = setup.problem.map.last[1].place[0];
@@ -70,13 +70,13 @@ static void fish_that_swim_freely_keep_the_place_that_is_found(void **state) {
                       "defaults: {fish: {" FISH
                       ", start: {speed: 0.75}, control: {law: heading, desired_heading: 180}}}\n"
                       "fish: [{}, {start: {position: [1.4, 0]}}]\n");
-    // speed, slip and turn of both, the heading of the first, place and heading of the second as that one sees it
+    // speed, slip and turn of both, heading of the first, place and heading of the second relative to the first
     assert_int_equal(setup.problem.n_unknowns, 10);
     school_ok(steady_search_run(&setup.problem));
     const struct steady_beat found = setup.problem.map.last[1];
     NEAR(found.place[0], -1.4, 0.1, 0);
     assert_true(setup.problem.map.n_beats <= 60);
-    // let go it stays for some beats: 0.1 lengths from there it would be off by 0.05 by now
+    // the released follower keeps the place for some beats; an initial error of 0.1 lengths would drift by 0.05
     steady_setup_beats(&setup, 4);
     for (int i = 0; i < 2; i++) NEAR(setup.problem.map.last[1].place[i], found.place[i], 0.02, 0);
     steady_setup_close(&setup);
@@ -94,9 +94,9 @@ static void a_diamond_of_plates_is_found_and_stable(void **state) {
     const struct steady_beat *const last = setup.problem.map.last;
     double place[4];
     for (int f = 0; f < 4; f++) place[f] = last[f].place[0];
-    // what is to the right of the leader half a beat later is to its left now
+    // mirror symmetry: a place to the right of the leader half a beat later corresponds to a place to the left now
     NEAR(place[1], place[2], 0.02, 0);
-    // put aside it comes back, as a run from there does
+    // a displaced follower returns, as in a run from the same place
     const struct steady_unknown ahead = {3, STEADY_AHEAD};
     const double add = 0.2;
     school_ok(steady_map_add(&setup.problem.map, 1, &ahead, &add));
@@ -111,21 +111,21 @@ static void a_follower_of_a_held_leader_takes_its_speed(void **state) {
     steady_setup_find(&setup, PLATES "fish: [{motion: {surge: given, speed: 4}}, {start: {position: [5.2, 0]}}]\n");
     // speed and distance of the follower
     assert_int_equal(setup.problem.n_unknowns, 2);
-    // its place changes by no more than the tolerance in a beat, nor does its speed
+    // place and speed of the follower change by at most the tolerance per beat
     NEAR(setup.problem.map.last[1].speed, 4, 2 * 3e-3, 0);
     NEAR(spacing(&setup), 1, 0.15, 0);
     assert_true(hypot(setup.real[0], setup.imaginary[0]) < 1);
     steady_setup_close(&setup);
-    // behind one that is faster, and hardly beats, it stays back
+    // the follower falls back behind a faster leader with a small amplitude
     steady_setup_fails(PLATES
                        "fish: [{motion: {surge: given, speed: 6, heave: 0.03}}, {start: {position: [5.2, 0]}}]\n",
-                       STATUS_SOLVER, "drift: let go, fish2 goes back, as fish1 sees it, by");
+                       STATUS_SOLVER, "drift: after release, fish2 drifts back relative to fish1 by");
 }
 
 static void from_between_two_places_it_goes_where_the_fish_would(void **state) {
     (void)state;
     struct steady_setup setup;
-    // the thrust is largest near there: Newton's method alone goes to the side until they do not feel each other
+    // the thrust is largest near this place: Newton's method alone moves the fish apart until the interaction vanishes
     steady_setup_open(&setup, SCHOOL_DEFAULTS
                       "time: {end: 1, shedding_interval: 0.025, output_interval: 0.025}\n"
                       "steady: {formation: true, tolerance: 3e-4}\nwake: {lifetime: 2, decay: 0.2}\n"
@@ -139,26 +139,27 @@ static void from_between_two_places_it_goes_where_the_fish_would(void **state) {
     steady_setup_close(&setup);
 }
 
-/* Two fish, and 20 beats at most to find a formation in. */
+/* Two fish and a search of at most 20 beats. */
 #define SCHOOL COARSE "steady: {formation: true, beats: 20}\ndefaults: {fish: {" FISH ", start: {speed: 0.8}}}\n"
 
 static void where_no_formation_is_found_the_reason_is_what_the_fish_do(void **state) {
     (void)state;
-    // across the way of the first
+    // across the path of the first fish
     steady_setup_fails(SCHOOL "fish: [{name: a}, {name: b, start: {position: [0.4, 0.8], heading: 210}}]\n",
-                       STATUS_SOLVER, "in 20 beats (steady.beats): collision: let go, a and b come within");
+                       STATUS_SOLVER, "in 20 beats (steady.beats): collision: after release, a and b approach to");
     steady_setup_fails(SCHOOL "fish: [{name: a}, {name: b, wave: {amplitude: 0.05}, start: {position: [3, 0]}}]\n",
-                       STATUS_SOLVER, "in 20 beats (steady.beats): drift: let go, b goes back, as a sees it, by 0.");
-    // the search has gone somewhere else and back when it gives up, before its beats are at an end
+                       STATUS_SOLVER,
+                       "in 20 beats (steady.beats): drift: after release, b drifts back relative to a by 0.");
+    // the search leaves the start, returns and fails before steady.beats
     steady_setup_fails(COARSE
                        "steady: {formation: true, tolerance: 1e-3}\n"
                        "wake: {lifetime: 2, decay: 0.2}\ndefaults: {fish: {" FISH
                        ", start: {speed: 0.75}, control: {law: heading, desired_heading: 180}}}\n"
                        "fish: [{name: a}, {name: b, start: {position: [1, 0.3]}}]\n",
-                       STATUS_SOLVER, "beats near the start: collision: let go, a and b come within");
-    // beside each other they go apart
+                       STATUS_SOLVER, "beats near the start: collision: after release, a and b approach to");
+    // fish side by side separate
     steady_setup_fails(PLATES "fish: [{}, {start: {position: [0, 40]}}]\n", STATUS_SOLVER,
-                       "no equilibrium: the fish hardly feel each other");
+                       "no equilibrium: the fish hardly interact");
 }
 
 int main(void) {

@@ -1,5 +1,5 @@
-/* test_steady_modes.c: growth and decay of small disturbances of bodies without a beat: as beams in vacuum, as in a
- * run, and wherever the stream comes from. Thresholds of flutter: section "elastic" of `make verify`. */
+/* test_steady_modes.c: growth and decay of small disturbances of bodies without a beat: agreement with beams in vacuum
+ * and with a run, independence of the stream direction. Flutter thresholds: section "elastic" of `make verify`. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -28,7 +28,7 @@ static void find(struct found *found, const char *text) {
     school_ok(steady_modes_find(found->simulation, &found->values));
 }
 
-/* The exponent whose frequency is nearest to one. */
+/* The exponent with the frequency nearest to a given one. */
 static int nearest(const struct found *found, double omega) {
     int best = 0;
     for (int i = 1; i < found->values.n_exponents; i++) {
@@ -69,7 +69,7 @@ static void without_water_they_are_those_of_a_clamped_beam(void **state) {
     "solver: {rtol: 1e-7}\nwake: {lifetime: 12, decay: 9}\n"
 #define FLAG "nodes: 9, sheet_points: 17, " CLAMPED PLATE "relaxation_time: 0}, "
 
-/* A flag that is off by 1e-5 rad: the logarithm of the ratio of two swings of its tail, three periods apart. */
+/* A flag disturbed by 1e-5 rad: logarithmic decrement of the tail over three periods. */
 static void a_run_grows_as_fast(void **state) {
     (void)state;
     struct found found;
@@ -115,7 +115,7 @@ static void they_do_not_depend_on_who_moves(void **state) {
     simulate_free(moving.simulation);
 }
 
-/* Of a long lifetime the modes see the newest part of the wake, which must fade all the same. */
+/* For a long vortex lifetime the modes include the newest part of the wake only, which must decay all the same. */
 static void the_lifetime_of_a_long_wake_does_not_matter(void **state) {
     (void)state;
     static const char *const wake[] = {"lifetime: 12, decay: 9", "lifetime: 1000", "lifetime: 1000, decay: 100"};
@@ -147,7 +147,7 @@ static void bodies_far_apart_have_the_modes_of_one(void **state) {
         NEAR(two.omega[j], one.omega[i], 1e-5, 0);
     }
     simulate_free(one.simulation);
-    // side by side they feel each other
+    // flags side by side interact
     struct found beside;
     find(&beside, STREAM("[1, 0]") "fish: [{" FLAG "start: {heading: 180, speed: 0}}, {" FLAG
                                    "start: {position: [0, 0.3], heading: 180, speed: 0}}]\n");
@@ -156,7 +156,7 @@ static void bodies_far_apart_have_the_modes_of_one(void **state) {
     simulate_free(two.simulation);
 }
 
-/* A flag whose clamp is downstream is a column under the load pi/4 rho U^2 of slender bodies: it buckles. */
+/* A flag with the clamp downstream is a column under the load pi/4 rho U^2 of slender bodies, which buckles. */
 static void what_has_no_stiffness_left_diverges(void **state) {
     (void)state;
     const double pi = 3.14159265358979, critical = pi / 2 * sqrt(1 / 64.0 / (pi / 4));
@@ -236,7 +236,7 @@ static void every_failing_allocation_is_reported_and_leaves_nothing(void **state
         simulate_free(found.simulation);
         if (n_live != n_before) fail_msg("with allocation %d failing %d are left", n, n_live - n_before);
         if (!ran_out) break;
-        // what is only faster with memory does without
+        // an optional allocation saves time only
         if (status == STATUS_OK) continue;
         if (status != STATUS_MEMORY && status != STATUS_SOLVER) fail_msg("allocation %d: %d", n, (int)status);
         n_failures++;

@@ -1,5 +1,5 @@
-/* test_steady_static.c: the equilibrium of bodies without a beat: what it is, where a run comes to it, how far the
- * stream can grow, and what is refused with the reason. doc/steady.md, "Without a beat". */
+/* test_steady_static.c: the equilibrium of bodies without a beat: agreement with a run, largest stream with an
+ * equilibrium, and refused cases, with the reason. doc/steady.md, "Without a beat". */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -29,7 +29,7 @@ static void answer(struct answer *answer, const char *text) {
     if (answer->status == STATUS_OK) answer->status = steady_static_find(answer->simulation, NULL, &answer->values);
 }
 
-// places of the nodes at the end of a run, which are those of the answer
+// node positions at the end of a run agree with the equilibrium
 static void is_where_a_run_ends(const struct answer *answer, const char *text, double end, double within) {
     struct simulation *const run = school_simulation(text);
     const struct fish *const fish = &run->school->fish[0];
@@ -43,7 +43,7 @@ static void a_run_with_damping_comes_to_it(void **state) {
     static const char pressure[] = SCHOOL_DEFAULTS TIME
         "fluid: {density: 1, velocity: [0.3, 0], viscosity: 0}\nwake: {lifetime: 20}\n"
         "fish: [{" HEAD ", force: pressure, start: {heading: 170, speed: 0}}]\n";
-    // across the stream: it bends by half of its length
+    // across the stream: the body bends by half of the length
     static const char across[] = SCHOOL_DEFAULTS TIME
         "fluid: {density: 1, velocity: [0.5, 0]}\nwake: {lifetime: 5}\n"
         "fish: [{" HEAD
@@ -54,7 +54,7 @@ static void a_run_with_damping_comes_to_it(void **state) {
     school_ok(found.status);
     assert_true(found.values.residual < 1e-10);
     assert_true(fabs(found.fish[0].deflection) > 0.02);
-    // the starting vortex has gone then; what is left dies slowly
+    // the starting vortex is far downstream by now; the remaining transient decays slowly
     is_where_a_run_ends(&found, pressure, 60, 1e-4);
     simulate_free(found.simulation);
     answer(&found, across);
@@ -82,7 +82,7 @@ static void forces_are_those_along_and_across_the_stream(void **state) {
     simulate_free(found.simulation);
 }
 
-// a flag whose clamp is downstream is a column under the load pi/4 rho U^2 of slender bodies: Euler
+// a flag with the clamp downstream is a column under the load pi/4 rho U^2 of slender bodies: Euler buckling
 #define REVERSED                                    \
     SCHOOL_DEFAULTS TIME                            \
         "fluid: {density: 1, velocity: [-%g, 0]}\n" \
@@ -120,7 +120,7 @@ static void natural_curvature_is_the_shape_at_rest(void **state) {
     const double each = fish_natural_angle(fish, 0, &gait, 0);
     assert_true(fabs(each) > 0.1);
     const double last[2] = {y[fish->at.x + 8] - y[fish->at.x + 7], y[fish->at.y + 8] - y[fish->at.y + 7]};
-    // the first edge goes backwards from the nose, and seven joints turn the last one
+    // the first edge points backwards from the nose; seven joints rotate the last edge
     NEAR(cos(atan2(last[1], last[0]) - (fish->start_heading - 3.14159265358979323846 + 7 * each)), 1, 1e-9, 0);
     simulate_free(found.simulation);
 }
@@ -140,7 +140,7 @@ static void what_can_have_no_equilibrium_is_refused_with_the_reason(void **state
             "motion.surge: given");
     refused(SCHOOL_DEFAULTS TIME "fish: [{" HEAD "}, {" BODY
                                  ", start: {position: [3, 0]}, motion: {prescribed: head, speed: 1}}]\n",
-            "velocities of their own");
+            "move at different velocities");
     refused(SCHOOL_DEFAULTS TIME "fluid: {gust: {amplitude: 0.1, frequency: 1}}\nfish: [{" HEAD "}]\n", "gust");
     refused(SCHOOL_DEFAULTS TIME
             "fluid: {shear: 0.1}\n"
@@ -155,7 +155,7 @@ static void what_can_have_no_equilibrium_is_refused_with_the_reason(void **state
 
 static void where_there_is_none_it_says_how_far_the_stream_can_grow(void **state) {
     (void)state;
-    // no edge carries more along it than E A = 628 N, which the load is at the root of 0.628 of the stream
+    // the largest axial force of an edge is E A = 628 N; the load reaches 628 N at sqrt(0.628) of the stream
     struct answer found;
     answer(&found, SCHOOL_DEFAULTS TIME
            "fluid: {density: 1, velocity: [0.01, 0]}\n"
@@ -164,7 +164,7 @@ static void where_there_is_none_it_says_how_far_the_stream_can_grow(void **state
     const char *const words = strstr(status_message(), "ends at ");
     assert_non_null(words);
     NEAR(strtod(words + strlen("ends at "), NULL), sqrt(0.62832), 2e-3, 0);
-    // the stream and the loads of the case are constants, also where only a part of them has an equilibrium
+    // the search restores the stream and the loads of the case, also if only a part of the stream has an equilibrium
     const struct school *const school = found.simulation->school;
     NEAR(school->velocity[0], 0.01, 0, 0);
     NEAR(school->fish[0].load_tip[0], -1000, 0, 0);
