@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "force/bound_sheet.h"
+#include "school/diagnostics_energy.h"
 #include "school/rigid.h"
 #include "steady_setup.h"
 
@@ -333,6 +334,45 @@ static void a_search_that_fails_says_what_the_last_beats_have_in_common(void **s
                        " % between the last 16 beats");
 }
 
+// the balance of a school after a beat, over the largest of its terms
+static double beat_balance(struct steady_map *map, double balance[3]) {
+    struct simulation *const simulation = map->simulation;
+    school_ok(steady_map_beat(map, NULL, NULL));
+    simulate_measure(simulation);
+    memcpy(balance, simulation->diagnostics->momentum_balance, 3 * sizeof *balance);
+    return hypot(balance[0], balance[1]) / simulation->diagnostics->momentum_size;
+}
+
+static void the_balance_of_momentum_begins_with_the_rows_and_is_kept(void **state) {
+    (void)state;
+    struct steady_setup setup;
+    struct state *kept = NULL;
+    double searched[3], first[3], again[3];
+    steady_setup_open(&setup, COARSE
+                      "steady: {tolerance: 1e-3}\n"
+                      "fish: [{" FISH ", force: pressure, start: {speed: 0.3}}]\n");
+    school_ok(steady_search_run(&setup.problem));
+    struct steady_map *const map = &setup.problem.map;
+    struct simulation *const simulation = map->simulation;
+    // the search has added velocities to body and wake
+    const double open = beat_balance(map, searched);
+    diagnostics_restart(simulation->residual, simulation->state);
+    const double closed = beat_balance(map, first);
+    print_message("%.2g of the largest term with what the search adds, %.2g in a beat of the rows\n", open, closed);
+    assert_true(open > 0.1);
+    assert_true(closed < 0.01);
+
+    school_ok(steady_map_save(map, &kept));
+    school_ok(steady_map_return(map, kept));
+    beat_balance(map, first);
+    school_ok(steady_map_return(map, kept));
+    beat_balance(map, again);
+    // to the tolerance of the solver
+    NEAR_ARRAY(3, again, first, 1e-6, 0);
+    state_free(kept, simulation->school);
+    steady_setup_close(&setup);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(speed_and_multiplier_are_those_of_a_long_run),
@@ -350,6 +390,7 @@ int main(void) {
         cmocka_unit_test(what_can_have_no_steady_state_is_refused_with_the_reason),
         cmocka_unit_test(a_search_that_takes_too_long_says_how_far_it_came),
         cmocka_unit_test(a_search_that_fails_says_what_the_last_beats_have_in_common),
+        cmocka_unit_test(the_balance_of_momentum_begins_with_the_rows_and_is_kept),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
